@@ -1,0 +1,2 @@
+//! The wire protocol between a pad and its host.
+#![no_std]

@@ -1,0 +1,1 @@
+//! Where a contact is and how hard it presses, from strain.

@@ -1,0 +1,1 @@
+//! The influence field of the nominal pad: nine channels per newton at any contact point.

@@ -1,0 +1,17 @@
+//! Turns a tactile disc with nine strain channels into a game controller.
+//!
+//! The way of the data is one line: bytes → sample → raw channels → strain → contact → intents → output events.
+//! `ARCHITECTURE.md` tells where each step lives and which rules hold between them.
+
+pub mod contact;
+pub mod control;
+pub mod influence;
+pub mod mapping;
+pub mod output;
+pub mod quantity;
+pub mod time;
+
+#[cfg(all(feature = "live", target_os = "linux"))]
+pub mod sink;
+#[cfg(all(feature = "live", target_os = "linux"))]
+pub mod transport;

@@ -1,0 +1,3 @@
+//! The `tactpad` program: parse, dispatch, print the error, set the exit code.
+
+fn main() {}

@@ -1,0 +1,118 @@
+//! A profile after checking: numbers and codes only, no text to interpret.
+
+use arrayvec::ArrayVec;
+
+use crate::control::{Code, Device};
+
+/// The most buttons a profile can bind.
+pub const BUTTONS_MAX: usize = 8;
+
+/// What a control does when it is active: one key, or one axis pushed to a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Binding {
+    /// The key or axis.
+    pub code: Code,
+    /// 1 for keys, −1 or 1 for the hat.
+    pub value: i32,
+}
+
+/// How the directions divide the plate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DpadMode {
+    /// Four sectors of 90°.
+    FourWay,
+    /// Four sectors; between them, on the diagonals, the last direction stays.
+    FourWaySticky,
+    /// Eight sectors; a diagonal holds two directions.
+    EightWay,
+}
+
+/// Directions from the place of the contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dpad {
+    /// How the directions divide the plate.
+    pub mode: DpadMode,
+    /// A direction starts at this distance from the centre or farther.
+    pub centre_radius_mm: f32,
+    /// It ends closer than `centre_radius_mm − radius_hysteresis_mm`.
+    pub radius_hysteresis_mm: f32,
+    /// Angle of each diagonal zone; used by the sticky 4-way and the 8-way mode.
+    pub diagonal_deg: f32,
+    /// A direction changes only when the contact is this far past the sector's edge.
+    pub hysteresis_deg: f32,
+    /// Turns the sectors counter-clockwise seen from above.
+    pub rotation_deg: f32,
+    /// A direction starts at this normal force or more.
+    pub min_force_n: f32,
+    /// It ends below this normal force.
+    pub release_force_n: f32,
+    /// Up.
+    pub up: Binding,
+    /// Down.
+    pub down: Binding,
+    /// Left.
+    pub left: Binding,
+    /// Right.
+    pub right: Binding,
+}
+
+/// Which force presses a button. The sign says which direction counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Force {
+    /// Pressing into the plate.
+    Fz,
+    /// Pushing right.
+    FxPositive,
+    /// Pushing left.
+    FxNegative,
+    /// Pushing up.
+    FyPositive,
+    /// Pushing down.
+    FyNegative,
+}
+
+/// What a press does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Held as long as the press lasts.
+    Hold(Binding),
+    /// A press that ends before `long_press_us` taps `tap`; one that lasts as long holds `hold` until it ends.
+    TapHold {
+        /// Output of a short press.
+        tap: Binding,
+        /// Output of a long press.
+        hold: Binding,
+        /// From this duration on a press is long.
+        long_press_us: u64,
+    },
+}
+
+/// A button pressed by a force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Button {
+    /// The force that presses it.
+    pub force: Force,
+    /// Pressed at this force or more.
+    pub press_n: f32,
+    /// Released below this force; less than `press_n`.
+    pub release_n: f32,
+    /// What a press does.
+    pub action: Action,
+}
+
+/// One game's mapping.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// Name for people.
+    pub name: String,
+    /// The device that the bindings belong to.
+    pub output: Device,
+    /// Window of the mean filter, in samples.
+    pub filter_samples: usize,
+    /// An output, once down, stays down at least this long, so that a game that polls once a frame sees it.
+    pub min_press_us: u64,
+    /// Directions; `None` where the profile has none.
+    pub dpad: Option<Dpad>,
+    /// Buttons, in the file's order.
+    pub buttons: ArrayVec<Button, BUTTONS_MAX>,
+}

@@ -1,0 +1,22 @@
+//! Where pad bytes come from.
+
+use std::io;
+use std::os::fd::BorrowedFd;
+
+/// A byte stream from and to one pad. Reading never blocks for long after `fd` polls readable.
+pub trait Transport {
+    /// The descriptor to poll for readable bytes.
+    fn fd(&self) -> BorrowedFd<'_>;
+
+    /// Takes what is there.
+    ///
+    /// # Errors
+    /// `BrokenPipe` or `UnexpectedEof` when the pad is gone; `WouldBlock` when nothing is there.
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize>;
+
+    /// Sends a command to the pad.
+    ///
+    /// # Errors
+    /// The command did not get out whole.
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
+}

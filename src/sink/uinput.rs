@@ -25,6 +25,11 @@ const NODE_LIMIT_MS: u32 = 2_000;
 /// How long the device service may take to set a new node's permissions, in milliseconds.
 const SERVICE_LIMIT_MS: u32 = 1_000;
 
+/// How long readers get to see the last releases before the device leaves, in milliseconds.
+///
+/// A reader that comes later finds no device and not what it sent last. A game reads once a frame.
+const FAREWELL_MS: u32 = 20;
+
 /// Size of the time stamp in `struct input_event`: two machine words. The kernel fills it in where it is zero.
 const TIME_LEN: usize = 2 * size_of::<usize>();
 
@@ -154,7 +159,9 @@ impl Drop for Unit {
         let held = std::mem::take(&mut self.held);
         if !held.is_empty() {
             // Where this fails the device is gone, and with it what it held.
-            let _ = self.write(held.into_iter().map(|code| (code, 0)));
+            if self.write(held.into_iter().map(|code| (code, 0))).is_ok() {
+                let _: Option<()> = eventually(FAREWELL_MS, || None);
+            }
         }
     }
 }

@@ -10,6 +10,7 @@ pub mod mapping;
 pub mod output;
 pub mod quantity;
 pub mod time;
+pub mod virtual_pad;
 
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod sink;

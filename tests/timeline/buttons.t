@@ -142,3 +142,14 @@ profile contra
 2ms ABS_HAT0Y 0
 2ms BTN_SOUTH 0
 2ms BTN_EAST 0
+
+case a lift exactly at 400 ms is long
+profile super-mario
+
+0ms fz=3
+399ms fz=3
+400ms lift
+401ms lift
+
+400ms BTN_EAST 1
+401ms BTN_EAST 0

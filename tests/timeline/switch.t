@@ -102,3 +102,16 @@ profile super-mario
 101ms fz=2.5
 
 nothing
+
+case a press of a more sensitive profile does not become one of a stiffer profile
+profile super-mario
+set button.1.press_n = 1.6
+
+0ms fz=1.7
+100ms switch contra
+101ms fz=1.7
+102ms fz=2.2
+103ms fz=1.39
+104ms fz=2.2
+
+104ms BTN_SOUTH 1

@@ -91,6 +91,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let script = Script::for_profile(&profile, (arguments.seconds * 1e6) as u64);
     let expected = script.expected().to_vec();
     let contacts = script.contacts() as u64;
+    let name = profile.name.clone();
     let (sink, title) = open_sink(arguments, &profile)?;
     tell(arguments, &title)?;
     let seen = Seen::default();
@@ -106,7 +107,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         seconds: Some(arguments.seconds),
         patience: Patience::Limited,
     })?;
-    let screen = (!arguments.json).then(|| start_screen(&bridge, &seen));
+    let title = format!("{name} on a virtual pad");
+    let screen = (!arguments.json).then(|| start_screen(title, &bridge, &seen));
     let played = play(&mut bridge, &PadAddress::Virtual);
     drop(screen);
     played?;
@@ -154,9 +156,9 @@ fn tell(arguments: &Arguments, line: &str) -> io::Result<()> {
     if arguments.json { writeln!(io::stderr(), "{line}") } else { writeln!(io::stdout(), "{line}") }
 }
 
-fn start_screen(bridge: &Bridge, seen: &Seen) -> Option<Screen> {
+fn start_screen(title: String, bridge: &Bridge, seen: &Seen) -> Option<Screen> {
     let seen = Arc::clone(seen);
-    Screen::start("tactpad demo".into(), bridge.snapshot(), move || {
+    Screen::start(title, bridge.snapshot(), move || {
         let events = seen.lock().map(|seen| seen.iter().rev().take(8).copied().collect::<Vec<_>>());
         events.unwrap_or_default().iter().rev().map(line).collect()
     })

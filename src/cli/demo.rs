@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::live::{Output, Plan, bridge, open_virtual, play};
 use super::screen::Screen;
 use super::{Failure, print_json, profile};
-use crate::bridge::{Bridge, Patience};
+use crate::bridge::{Bridge, Ending, Patience};
 use crate::control::{Code, Device, OutputEvent};
 use crate::latency::Percentiles;
 use crate::mapping::profile::Profile;
@@ -111,11 +111,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let screen = (!arguments.json).then(|| start_screen(title, &bridge, &seen));
     let played = play(&mut bridge, &PadAddress::Virtual);
     drop(screen);
-    played?;
+    let ending = played?;
     let seen = seen.lock().map(|seen| seen.clone()).unwrap_or_default();
     report(arguments, &bridge, &seen)?;
+    if ending != Ending::TimeOver {
+        return Err(Failure::Failed("interrupted: the events were not compared with the script".into()));
+    }
     compare(&seen, &expected)?;
-    check_contacts(&bridge, contacts)
+    check_end(&bridge, contacts)
 }
 
 /// The sink, and the demo's first line: where events go, and what would bring a better place.
@@ -177,7 +180,7 @@ fn report(arguments: &Arguments, bridge: &Bridge, seen: &[OutputEvent]) -> Resul
         contacts: health.contacts,
         downs: tally.downs,
         ups: tally.ups,
-        held_at_end: tally.held.len(),
+        held_at_end: bridge.held_at_end(),
         latency_us: bridge.latency().percentiles(),
     };
     if arguments.json {
@@ -193,24 +196,23 @@ fn report(arguments: &Arguments, bridge: &Bridge, seen: &[OutputEvent]) -> Resul
     )?)
 }
 
-/// How often controls went down and up, and how many are still down.
+/// How often controls went down and up.
 #[derive(Default)]
 struct Tally {
     downs: usize,
     ups: usize,
-    held: BTreeMap<(Device, Code), i32>,
 }
 
 impl Tally {
     fn of(seen: &[OutputEvent]) -> Self {
         let mut tally = Self::default();
+        let mut held = BTreeMap::new();
         for event in seen {
             // A hat that goes over from one side to the other is an up and a down in one event.
-            let before = tally.held.insert((event.device, event.code), event.value).unwrap_or(0);
+            let before = held.insert((event.device, event.code), event.value).unwrap_or(0);
             tally.ups += usize::from(before != 0);
             tally.downs += usize::from(event.value != 0);
         }
-        tally.held.retain(|_, value| *value != 0);
         tally
     }
 }
@@ -236,8 +238,11 @@ fn compare(seen: &[OutputEvent], expected: &[Expected]) -> Result<(), Failure> {
     )))
 }
 
-fn check_contacts(bridge: &Bridge, expected: u64) -> Result<(), Failure> {
-    let contacts = bridge.health().contacts;
+fn check_end(bridge: &Bridge, expected: u64) -> Result<(), Failure> {
+    let (contacts, held) = (bridge.health().contacts, bridge.held_at_end());
+    if held > 0 {
+        return Err(Failure::Failed(format!("{held} controls were still held at the end")));
+    }
     if contacts == expected {
         return Ok(());
     }

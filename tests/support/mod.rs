@@ -9,7 +9,7 @@ use std::env;
 ///
 /// # Panics
 /// The program is missing and `TACTPAD_REQUIRE_ALL` is `1`: then nothing may be left out.
-pub fn require(program: &str, install: &str) -> bool {
+pub(crate) fn require(program: &str, install: &str) -> bool {
     let path = env::var_os("PATH").unwrap_or_default();
     if env::split_paths(&path).any(|folder| folder.join(program).is_file()) {
         return true;

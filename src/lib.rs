@@ -9,6 +9,7 @@ pub mod influence;
 pub mod mapping;
 pub mod output;
 pub mod quantity;
+pub mod spelling;
 pub mod time;
 
 #[cfg(all(feature = "live", target_os = "linux"))]

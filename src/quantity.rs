@@ -9,8 +9,7 @@ pub const CHANNELS: usize = 9;
 pub const MODULES: usize = 3;
 
 /// Channel names in wire order; everything that holds nine values holds them in this order.
-pub const CHANNEL_NAMES: [&str; CHANNELS] =
-    ["m0x", "m0y", "m0z", "m1x", "m1y", "m1z", "m2x", "m2y", "m2z"];
+pub const CHANNEL_NAMES: [&str; CHANNELS] = ["m0x", "m0y", "m0z", "m1x", "m1y", "m1z", "m2x", "m2y", "m2z"];
 
 /// The nine bridge signals in microvolts, zero for an untouched pad.
 ///

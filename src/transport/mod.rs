@@ -1,5 +1,11 @@
 //! Where pad bytes come from.
 
+pub mod address;
+mod pacing;
+pub mod playback;
+pub mod serial;
+pub mod virtual_pad;
+
 use std::io;
 use std::os::fd::BorrowedFd;
 

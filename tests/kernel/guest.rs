@@ -47,7 +47,7 @@ pub(crate) fn in_guest(name: &str, body: impl FnOnce()) {
     let root = first_root(name);
     let output = boot(&kernel, root.path());
     let said = String::from_utf8_lossy(&output.stdout).replace('\r', "");
-    println!("{said}");
+    println!("{}", said.trim_end().trim_end_matches("reboot: Power down"));
     let exit_code = fs::read_to_string(root.path().join("exit-code")).unwrap_or_default();
     assert!(
         exit_code.trim() == "0" && said.contains(BODY_DONE),

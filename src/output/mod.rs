@@ -1,1 +1,3 @@
 //! From levels to edges.
+
+pub mod event_log;

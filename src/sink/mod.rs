@@ -1,5 +1,11 @@
 //! Where output events go.
 
+pub mod identity;
+pub mod log;
+pub mod null;
+pub mod uinput;
+pub mod x11;
+
 use std::fmt;
 
 use crate::control::{Device, OutputEvent};

@@ -4,8 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// Bits per second of a serial port where the address says none.
-const DEFAULT_BAUD: u32 = 2_000_000;
+use firmware_proto::DEFAULT_BAUD;
 
 /// Where a pad is.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -152,6 +152,6 @@ mod tests {
 
     #[test]
     fn empty_recording_is_finished_at_once() {
-        assert_eq!(read_all(&mut Playback::start([]).unwrap()).0, []);
+        assert!(read_all(&mut Playback::start([]).unwrap()).0.is_empty());
     }
 }

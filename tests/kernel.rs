@@ -4,7 +4,11 @@
 //! neither uinput nor rights. `tests/kernel/build-kernel.sh` makes the kernel. The latency test prints its numbers:
 //! `cargo test --release --test kernel latency -- --nocapture`.
 #![cfg(all(feature = "live", target_os = "linux"))]
-#![allow(clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking and shows what it saw")]
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking and shows what it saw"
+)]
 
 #[path = "kernel/bridge.rs"]
 mod bridge;

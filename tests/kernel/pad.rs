@@ -123,7 +123,13 @@ impl Pad {
     }
 
     /// Streams `touch` until `done` says so.
-    pub(crate) fn hold_until(&mut self, what: &str, touch: Touch, limit_ms: u64, mut done: impl FnMut() -> bool) {
+    pub(crate) fn hold_until(
+        &mut self,
+        what: &str,
+        touch: Touch,
+        limit_ms: u64,
+        mut done: impl FnMut() -> bool,
+    ) {
         let limit_ns = monotonic_ns() + limit_ms * MS;
         while !done() {
             let now_ns = monotonic_ns();

@@ -9,8 +9,7 @@ use crate::pad::{DOWN, LEFT, NONE, PRESS, RIGHT, Touch, UP};
 use crate::reader::find;
 
 /// Codes of the eleven buttons of the kernel's driver for this pad (`drivers/input/joystick/xpad.c`).
-const GAMEPAD_KEYS: [u16; 11] =
-    [0x130, 0x131, 0x133, 0x134, 0x136, 0x137, 0x13a, 0x13b, 0x13c, 0x13d, 0x13e];
+const GAMEPAD_KEYS: [u16; 11] = [0x130, 0x131, 0x133, 0x134, 0x136, 0x137, 0x13a, 0x13b, 0x13c, 0x13d, 0x13e];
 
 /// Axes of the same driver: number, minimum, maximum, fuzz, flat.
 const GAMEPAD_AXES: [(u16, i32, i32, i32, i32); 8] = [
@@ -61,7 +60,8 @@ pub(crate) fn gamepad() {
 
 /// The virtual keyboard is a device of its own, has keys only, and plays the same touches.
 pub(crate) fn keyboard() {
-    let shipped = include_str!("../../mappings/super-mario.toml");
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/mappings/super-mario.toml");
+    let shipped = std::fs::read_to_string(shipped).expect("the shipped profile");
     let profile = shipped.replace(r#"output = "gamepad""#, r#"output = "keyboard""#);
     assert_ne!(profile, shipped, "the shipped profile is for the gamepad");
     let file = std::env::temp_dir().join("keyboard.toml");
@@ -70,7 +70,10 @@ pub(crate) fn keyboard() {
     let device = &bridge.reader.device;
     assert!(device.supported_absolute_axes().is_none_or(|axes| axes.iter().next().is_none()));
     assert!(device.supported_keys().is_some_and(|keys| keys.iter().all(|key| key.code() < 0x100)));
-    assert!(!device.supported_events().contains(EventType::REPEAT), "holding a direction must not repeat keys");
+    assert!(
+        !device.supported_events().contains(EventType::REPEAT),
+        "holding a direction must not repeat keys"
+    );
     let hold_start_ns = play_everything(&mut bridge);
     let keys = ["KEY_RIGHT", "KEY_LEFT", "KEY_UP", "KEY_DOWN", "KEY_Z", "KEY_X"];
     let expected: Vec<_> = keys.into_iter().flat_map(|key| [(key, 1), (key, 0)]).collect();

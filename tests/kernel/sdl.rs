@@ -29,7 +29,11 @@ pub(crate) fn game_controller() {
     println!("{}", listed.join("\n"));
     assert_eq!(listed.len(), 2, "one joystick and its mapping");
     // USB, 045e:028e, version 0114, the last one being what tells a wired pad from those with another D-pad.
-    assert!(listed[0].starts_with("joystick 0300") && listed[0].contains("5e0400008e02000014010000"), "{}", listed[0]);
+    assert!(
+        listed[0].starts_with("joystick 0300") && listed[0].contains("5e0400008e02000014010000"),
+        "{}",
+        listed[0]
+    );
     assert!(listed[0].ends_with("controller 1"), "{}", listed[0]);
     assert!(listed[1].contains("dpright:h0.2") && listed[1].contains("a:b0"), "{}", listed[1]);
     bridge.pad.hold(NONE, 500);

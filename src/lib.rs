@@ -11,6 +11,7 @@ pub mod output;
 pub mod quantity;
 pub mod spelling;
 pub mod time;
+pub mod virtual_pad;
 
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod sink;

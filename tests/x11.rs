@@ -96,8 +96,8 @@ impl Client {
         Self { connection, first_key, symbols }
     }
 
-    /// What has arrived since the last call: the symbol on the key, with Shift where it was held, and whether it went
-    /// down.
+    /// What has arrived since the last call: the symbol on the key, with Shift where it was held, and whether
+    /// it went down.
     fn seen(&self) -> Vec<(u32, bool)> {
         // The server has handled every key before it answers this.
         self.connection.sync().unwrap();

@@ -6,8 +6,8 @@ use crate::control::OutputEvent;
 
 /// An event as a line of the log, without the line's end.
 ///
-/// `{"t_us":123,"device":"gamepad","code":"BTN_SOUTH","value":1}`: stream time in microseconds, the device, the
-/// kernel's name of the control, its new value.
+/// `{"t_us":123,"device":"gamepad","code":"BTN_SOUTH","value":1}`: stream time in microseconds, the device,
+/// the kernel's name of the control, its new value.
 #[derive(Clone, Copy, Debug)]
 pub struct LogLine<'a>(pub &'a OutputEvent);
 

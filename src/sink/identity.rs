@@ -1,8 +1,8 @@
 //! What the virtual devices say they are.
 //!
-//! The gamepad is an Xbox 360 pad on a wire, down to the last axis range, because games, browsers and SDL recognise
-//! controllers by their numbers and count buttons and axes by the order of the codes. Version 0x0114 matters: SDL's
-//! controller database maps the D-pad of version 1 upside down.
+//! The gamepad is an Xbox 360 pad on a wire, down to the last axis range, because games, browsers and SDL
+//! recognise controllers by their numbers and count buttons and axes by the order of the codes. Version
+//! 0x0114 matters: SDL's controller database maps the D-pad of version 1 upside down.
 
 use crate::control::names::{GAMEPAD_BUTTONS, canonical, is_keyboard_key, name};
 use crate::control::{Code, Device};
@@ -74,8 +74,8 @@ const fn hat(code: u16) -> Axis {
 
 /// The numbers of all keys of `device`.
 ///
-/// The pad has the eleven of the driver xpad and no more: readers count them. The keyboard has every key that a
-/// profile can name, so that a profile which passed its check loses nothing here.
+/// The pad has the eleven of the driver xpad and no more: readers count them. The keyboard has every key that
+/// a profile can name, so that a profile which passed its check loses nothing here.
 pub fn keys(device: Device) -> impl Iterator<Item = u16> {
     canonical().filter(move |(_, code)| declares(device, *code)).filter_map(|(_, code)| match code {
         Code::Key(number) => Some(number),

@@ -12,7 +12,8 @@ use crate::control::{Device, OutputEvent};
 
 /// A place for output events.
 pub trait Sink {
-    /// Makes what `device` needs, so that the next write to it reaches readers. Does nothing if it is there already.
+    /// Makes what `device` needs, so that the next write to it reaches readers. Does nothing if it is there
+    /// already.
     ///
     /// # Errors
     /// The device cannot be made; the text says what would help.

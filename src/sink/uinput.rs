@@ -1,7 +1,7 @@
 //! Virtual devices of the kernel (uinput), which every program takes for hardware.
 //!
-//! A device leaves when its descriptor closes, also when the program is killed, and the kernel then releases its
-//! keys. It does not bring axes back to rest; dropping the sink does that.
+//! A device leaves when its descriptor closes, also when the program is killed, and the kernel then releases
+//! its keys. It does not bring axes back to rest; dropping the sink does that.
 
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
@@ -30,7 +30,8 @@ const SERVICE_LIMIT_MS: u32 = 1_000;
 /// A reader that comes later finds no device and not what it sent last. A game reads once a frame.
 const FAREWELL_MS: u32 = 20;
 
-/// Size of the time stamp in `struct input_event`: two machine words. The kernel fills it in where it is zero.
+/// Size of the time stamp in `struct input_event`: two machine words. The kernel fills it in where it is
+/// zero.
 const TIME_LEN: usize = 2 * size_of::<usize>();
 
 const EV_SYN: u16 = 0;
@@ -223,8 +224,8 @@ fn input_id(identity: &Identity) -> InputId {
 
 /// Waits until readers can open the device, so that its first event is not lost.
 ///
-/// The kernel makes the node at once or a little later; then the device service, where one runs, gives the user
-/// access to it and tells programs that wait for controllers. `None`: the node did not appear.
+/// The kernel makes the node at once or a little later; then the device service, where one runs, gives the
+/// user access to it and tells programs that wait for controllers. `None`: the node did not appear.
 fn wait_for_node(device: &mut VirtualDevice) -> Option<PathBuf> {
     let node = eventually(NODE_LIMIT_MS, || {
         let mut nodes = device.enumerate_dev_nodes_blocking().ok()?.flatten();
@@ -263,9 +264,10 @@ fn cannot_make(error: &io::Error) -> SinkError {
             format!("{UINPUT} does not exist: load the kernel's module with `sudo modprobe uinput`")
         }
         io::ErrorKind::PermissionDenied => format!(
-            "no permission to use {UINPUT}: run `echo 'KERNEL==\"uinput\", SUBSYSTEM==\"misc\", TAG+=\"uaccess\", \
-             OPTIONS+=\"static_node=uinput\"' | sudo tee /etc/udev/rules.d/60-tactpad-uinput.rules && sudo udevadm control \
-             --reload && sudo udevadm trigger {UINPUT}`"
+            "no permission to use {UINPUT}: run `echo 'KERNEL==\"uinput\", SUBSYSTEM==\"misc\", \
+             TAG+=\"uaccess\", OPTIONS+=\"static_node=uinput\"' | sudo tee \
+             /etc/udev/rules.d/60-tactpad-uinput.rules && sudo udevadm control --reload && \
+             sudo udevadm trigger {UINPUT}`"
         ),
         _ if error.raw_os_error() == Some(Errno::NODEV.raw_os_error()) => {
             format!("{UINPUT} has no driver behind it: load the kernel's module with `sudo modprobe uinput`")
@@ -277,8 +279,8 @@ fn cannot_make(error: &io::Error) -> SinkError {
 
 fn no_node(name: &str) -> SinkError {
     let message = format!(
-        "the virtual {name} got no node in /dev/input within {NODE_LIMIT_MS} ms: load the kernel's module with \
-         `sudo modprobe evdev` and see that /sys is mounted"
+        "the virtual {name} got no node in /dev/input within {NODE_LIMIT_MS} ms: load the kernel's module \
+         with `sudo modprobe evdev` and see that /sys is mounted"
     );
     SinkError { message }
 }

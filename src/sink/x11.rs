@@ -1,9 +1,9 @@
 //! Key presses through the X server, for machines where no virtual device may be made.
 //!
-//! They reach X11 programs only, and nothing releases them when the program is killed; dropping the sink does.
-//! Keys go out by number, not by symbol: the X server numbers a key 8 higher than the kernel, so a profile means the
-//! same key here as with the virtual keyboard. A symbol that the layout has only with Shift would be moved to a spare
-//! key, and each later press would then come 12 ms late (enigo-rs/enigo#489).
+//! They reach X11 programs only, and nothing releases them when the program is killed; dropping the sink
+//! does. Keys go out by number, not by symbol: the X server numbers a key 8 higher than the kernel, so a
+//! profile means the same key here as with the virtual keyboard. A symbol that the layout has only with Shift
+//! would be moved to a spare key, and each later press would then come 12 ms late (enigo-rs/enigo#489).
 
 use enigo::{Direction, Enigo, InputError, Keyboard, NewConError, Settings};
 use x11rb::connection::Connection;
@@ -62,7 +62,8 @@ impl X11Sink {
     }
 }
 
-/// For each key number of the server, whether it has a symbol; checks on the way that key presses can be sent.
+/// For each key number of the server, whether it has a symbol; checks on the way that key presses can be
+/// sent.
 fn read_layout(connection: &impl Connection, place: &str) -> Result<Vec<bool>, SinkError> {
     let failed = |error: ReplyError| no_answer(place, &error);
     let present = |name: &[u8]| connection.query_extension(name)?.reply().map(|reply| reply.present);
@@ -132,8 +133,8 @@ fn no_answer(place: &str, error: &ReplyError) -> SinkError {
 
 fn no_extension(place: &str) -> SinkError {
     let message = format!(
-        "X display {place} takes no key presses from programs: start its server with the extension XTEST or use \
-         `--output uinput`"
+        "X display {place} takes no key presses from programs: start its server with the extension XTEST or \
+         use `--output uinput`"
     );
     SinkError { message }
 }

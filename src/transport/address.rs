@@ -147,8 +147,8 @@ impl fmt::Display for AddressError {
         match self {
             Self::UnknownKind { text } => write!(
                 f,
-                "`{text}` names no pad: write auto[:SERIAL], virtual, serial:PATH[@BAUD], hid:VID:PID[:SERIAL] \
-                 or capture:FILE"
+                "`{text}` names no pad: write auto[:SERIAL], virtual, serial:PATH[@BAUD], \
+                 hid:VID:PID[:SERIAL] or capture:FILE"
             ),
             Self::Incomplete { kind, wanted } => write!(f, "`{kind}:` lacks {wanted}"),
             Self::BadBaud { path, baud } => write!(
@@ -158,8 +158,8 @@ impl fmt::Display for AddressError {
             ),
             Self::BadUsbNumber { number } => write!(
                 f,
-                "`{number}` is not a USB number: write vendor and product with four hexadecimal digits each, as in \
-                 hid:1209:0001"
+                "`{number}` is not a USB number: write vendor and product with four hexadecimal digits each, \
+                 as in hid:1209:0001"
             ),
         }
     }

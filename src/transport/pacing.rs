@@ -1,7 +1,7 @@
 //! Acting at absolute times of the monotonic clock, until told to stop.
 //!
-//! Only the sources that play a pad's part need this: a recording and the virtual pad. Deadlines are absolute, so a
-//! late wake-up delays one chunk and never the ones after it.
+//! Only the sources that play a pad's part need this: a recording and the virtual pad. Deadlines are
+//! absolute, so a late wake-up delays one chunk and never the ones after it.
 
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};

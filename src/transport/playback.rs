@@ -61,7 +61,8 @@ impl Transport for Playback {
     /// Takes what has been played so far.
     ///
     /// # Errors
-    /// `UnexpectedEof` when the recording has ended and all of it was taken; `WouldBlock` when nothing is there.
+    /// `UnexpectedEof` when the recording has ended and all of it was taken; `WouldBlock` when nothing
+    /// is there.
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         match rustix::io::read(&self.reader, bytes) {
             Ok(0) => Err(io::Error::new(io::ErrorKind::UnexpectedEof, "the recording has ended")),

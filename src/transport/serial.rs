@@ -20,13 +20,15 @@ const SEND_LIMIT_US: u64 = 200_000;
 /// An open serial port, locked against other programs.
 #[derive(Debug)]
 pub struct Serial {
-    // Sets the line and holds the lock. Its own descriptor blocks and cannot be borrowed, so bytes go through `file`.
+    // Sets the line and holds the lock. Its own descriptor blocks and cannot be borrowed, so bytes go through
+    // `file`.
     _port: TTYPort,
     file: File,
 }
 
 impl Serial {
-    /// Opens `path` with `baud` bits per second, 8N1, raw, for this program alone, and forgets bytes from before.
+    /// Opens `path` with `baud` bits per second, 8N1, raw, for this program alone, and forgets bytes from
+    /// before.
     ///
     /// # Errors
     /// There is no such port, it is no port, it is in use, it may not be opened, or it refuses the settings.
@@ -204,7 +206,8 @@ impl fmt::Display for OpenError {
             Self::NoPermission { path } => write!(
                 f,
                 "no permission to open {path}: join the group that owns it with \
-                 `sudo usermod -aG dialout $USER` and log in again, or give it away by a udev rule with TAG+=\"uaccess\""
+                 `sudo usermod -aG dialout $USER` and log in again, or give it away by a udev rule \
+                 with TAG+=\"uaccess\""
             ),
             Self::Refused { path, baud, cause } => {
                 write!(

@@ -1,7 +1,7 @@
 //! A pad made of software behind a real pseudo-terminal, so that the bridge opens it like any serial pad.
 //!
-//! The firmware is a pure type that is told the time; this file gives it a clock, a thread and a wire. Closing the
-//! terminal is what pulling the plug is: the reader sees a hang-up.
+//! The firmware is a pure type that is told the time; this file gives it a clock, a thread and a wire.
+//! Closing the terminal is what pulling the plug is: the reader sees a hang-up.
 
 use std::io;
 use std::os::fd::{AsFd, OwnedFd};
@@ -23,7 +23,8 @@ pub trait PadFirmware {
     /// When there is something to send next; may lie in the past.
     fn due_us(&self) -> u64;
 
-    /// Appends to `bytes` everything due up to `now_us`; afterwards [`due_us`](Self::due_us) lies later than that.
+    /// Appends to `bytes` everything due up to `now_us`; afterwards [`due_us`](Self::due_us) lies later than
+    /// that.
     fn emit(&mut self, now_us: u64, bytes: &mut Vec<u8>);
 }
 
@@ -38,8 +39,9 @@ pub struct VirtualPad {
 impl VirtualPad {
     /// Makes the terminal and starts the pad's clock.
     ///
-    /// While nobody has the terminal open the pad talks to nobody, like a port that no program reads. While it is
-    /// open nothing is lost: when the reader falls so far behind that the terminal is full, the pad's clock stands.
+    /// While nobody has the terminal open the pad talks to nobody, like a port that no program reads. While
+    /// it is open nothing is lost: when the reader falls so far behind that the terminal is full, the pad's
+    /// clock stands.
     ///
     /// # Errors
     /// The system has no pseudo-terminal or no thread to give.
@@ -69,8 +71,8 @@ impl Drop for VirtualPad {
 
 /// The master's end and the path of a new terminal in raw mode.
 ///
-/// The mode belongs to the terminal and outlives this first opening; without it the line discipline would echo the
-/// pad's bytes and rewrite some of them before the reader sets its own mode.
+/// The mode belongs to the terminal and outlives this first opening; without it the line discipline would
+/// echo the pad's bytes and rewrite some of them before the reader sets its own mode.
 pub(super) fn open_terminal() -> io::Result<(OwnedFd, String)> {
     let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
     grantpt(&master)?;
@@ -119,7 +121,8 @@ impl<F: PadFirmware> Wire<F> {
         if open {
             return wait(&self.stop, Some((self.master.as_fd(), PollFlags::IN)), due_us);
         }
-        // A terminal that nobody has open reports its hang-up without end, so it is looked at now and then instead.
+        // A terminal that nobody has open reports its hang-up without end, so it is looked at now and then
+        // instead.
         wait(&self.stop, None, due_us.min(monotonic_us().saturating_add(RETRY_US)))
     }
 
@@ -174,7 +177,8 @@ mod tests {
         }
     }
 
-    /// A chunk of `len` bytes: its number, then every byte value in turn, starting from one that depends on it.
+    /// A chunk of `len` bytes: its number, then every byte value in turn, starting from one that depends on
+    /// it.
     fn chunk(number: u32, len: usize) -> Vec<u8> {
         let filling = (0..).map(|i: u32| number.wrapping_add(i) as u8);
         number.to_le_bytes().into_iter().chain(filling).take(len).collect()

@@ -5,8 +5,8 @@ use std::io::{Write, stderr};
 
 /// Says whether `program` is in the search path.
 ///
-/// Where it is missing, prints one line with the command that installs it and returns `false`, so that the test can
-/// pass without having run.
+/// Where it is missing, prints one line with the command that installs it and returns `false`, so that the
+/// test can pass without having run.
 ///
 /// # Panics
 /// The program is missing and `TACTPAD_REQUIRE_ALL` is `1`: then nothing may be left out.

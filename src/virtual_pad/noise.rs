@@ -1,0 +1,87 @@
+//! Repeatable pseudo-random numbers for offsets and noise.
+
+/// How many uniform numbers make one normal one.
+const TERMS: u32 = 12;
+const LANE_BITS: u32 = 16;
+const LANES: u32 = u64::BITS / LANE_BITS;
+
+/// A stream of pseudo-random numbers that depends on nothing but its seed.
+///
+/// Source: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014
+/// (SplitMix64).
+#[derive(Clone, Debug)]
+pub(super) struct Noise {
+    state: u64,
+}
+
+impl Noise {
+    pub(super) const fn new(seed: u64) -> Self {
+        Self { state: seed }
+    }
+
+    fn next_bits(&mut self) -> u64 {
+        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.state ^ (self.state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+
+    /// Evenly distributed in −1..1.
+    pub(super) fn uniform(&mut self) -> f32 {
+        let steps = (self.next_bits() >> 40) as f32;
+        steps / (1_u32 << 23) as f32 - 1.0
+    }
+
+    /// Mean 0, standard deviation 1, never beyond ±6: the sum of twelve uniform numbers, which comes close enough to
+    /// the normal distribution and needs no transcendental function.
+    pub(super) fn normal(&mut self) -> f32 {
+        let mut sum = 0;
+        for _ in 0..TERMS / LANES {
+            let bits = self.next_bits();
+            sum += (0..LANES).map(|lane| (bits >> (lane * LANE_BITS)) & 0xffff).sum::<u64>();
+        }
+        let one = (1_u32 << LANE_BITS) as f32;
+        // Half a step, so that the mean is zero: a lane's mean is 0x7fff and a half.
+        (sum as f32 + 0.5 * TERMS as f32) / one - 0.5 * TERMS as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_generator_is_the_published_one() {
+        // First outputs for seed 1234567, as other implementations of SplitMix64 print them.
+        let mut noise = Noise::new(1_234_567);
+        assert_eq!(noise.next_bits(), 6_457_827_717_110_365_317);
+        assert_eq!(noise.next_bits(), 3_203_168_211_198_807_973);
+    }
+
+    #[test]
+    fn moments_are_those_of_the_distributions() {
+        let mut noise = Noise::new(7);
+        let moments = |draw: &mut dyn FnMut() -> f32| {
+            let (mut mean, mut square, mut fourth) = (0.0, 0.0, 0.0);
+            for _ in 0..100_000 {
+                let value = f64::from(draw());
+                mean += value / 1e5;
+                square += value * value / 1e5;
+                fourth += value.powi(4) / 1e5;
+            }
+            (mean, square, fourth)
+        };
+        let (mean, square, fourth) = moments(&mut || noise.normal());
+        assert!(mean.abs() < 0.015 && (square - 1.0).abs() < 0.02, "{mean} {square}");
+        // Twelve terms: the fourth moment is 3 − 6/(5·12) = 2.9.
+        assert!((fourth - 2.9).abs() < 0.1, "{fourth}");
+        let (mean, square, _) = moments(&mut || noise.uniform());
+        assert!(mean.abs() < 0.01 && (square - 1.0 / 3.0).abs() < 0.01, "{mean} {square}");
+    }
+
+    #[test]
+    fn the_seed_decides() {
+        assert_eq!(Noise::new(3).normal(), Noise::new(3).normal());
+        assert_ne!(Noise::new(3).normal(), Noise::new(4).normal());
+    }
+}

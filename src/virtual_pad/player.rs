@@ -1,0 +1,330 @@
+//! The player: which gestures a profile's bindings and numbers allow.
+//!
+//! Gestures are first made for every binding, then those go whose forces or places come too near to a threshold.
+
+use crate::mapping::profile::{Action, Binding, Button, Dpad, DpadMode, Force, Profile};
+use crate::quantity::Contact;
+use crate::virtual_pad::gesture::{Gesture, Held, Step};
+
+/// A ramp of force, as quick as a finger's.
+const RAMP_US: u64 = 45_000;
+/// A slide or roll of the finger between two places.
+const SLIDE_US: u64 = 60_000;
+/// Slack in every time that something else must fit into.
+const SLACK_US: u64 = 60_000;
+const PAUSE_MIN_US: u64 = 100_000;
+const SAMPLE_US: u64 = 1_000;
+const LONG_PRESS_MAX_US: u64 = 3_000_000;
+
+/// Below this normal force nothing touches, whatever the profile says.
+const TOUCH_N: f32 = 0.15;
+const FORCE_MAX_N: f32 = 4.5;
+const RADIUS_MAX_MM: f32 = 25.0;
+const PLACE_SLACK_MM: f32 = 2.0;
+const ANGLE_SLACK_DEG: f32 = 5.0;
+
+/// Less hysteresis than this lets noise turn one crossing into several.
+const FORCE_HYSTERESIS_MIN_N: f32 = 0.02;
+const RADIUS_HYSTERESIS_MIN_MM: f32 = 0.5;
+const ANGLE_HYSTERESIS_MIN_DEG: f32 = 2.0;
+
+/// A normal force reads as at most this much shear, per newton, within [`RADIUS_MAX_MM`].
+const FALSE_SHEAR: f32 = 0.12;
+/// A force is read this well.
+const FORCE_ERROR: f32 = 0.02;
+
+/// Everything the player does with `profile`, in a lively order. Empty if the profile leaves nothing to do.
+pub(super) fn gestures(profile: &Profile) -> Vec<Gesture> {
+    let player = Player::new(profile);
+    let mut gestures = player.first_round();
+    gestures.extend(player.second_round());
+    gestures.retain(|gesture| gesture.is_consistent() && player.is_clear(gesture));
+    gestures
+}
+
+/// A direction from the centre and what it holds.
+#[derive(Clone)]
+struct Aim {
+    angle_deg: f32,
+    held: Held,
+}
+
+struct Player<'p> {
+    profile: &'p Profile,
+    /// Normal force that holds a direction and presses nothing.
+    light_n: f32,
+    /// Normal force under a shear.
+    grip_n: f32,
+    /// Distance at which directions are pressed.
+    radius_mm: f32,
+    /// Long enough for filter and ledger to follow.
+    pause_us: u64,
+}
+
+impl<'p> Player<'p> {
+    fn new(profile: &'p Profile) -> Self {
+        let (mut press_n, mut release_n) = (2.0_f32, 1.5_f32);
+        for button in profile.buttons.iter().filter(|button| button.force == Force::Fz) {
+            press_n = press_n.min(button.press_n);
+            release_n = release_n.min(button.release_n);
+        }
+        let (touch_n, centre_mm) = profile.dpad.as_ref().map_or((TOUCH_N, 0.0), |dpad| {
+            (dpad.min_force_n.max(dpad.release_force_n).max(TOUCH_N), dpad.centre_radius_mm)
+        });
+        let (floor_n, ceiling_n) = (1.5 * touch_n, (0.7 * press_n).min(0.8 * release_n));
+        let filter_us = SAMPLE_US.saturating_mul(profile.filter_samples as u64);
+        let follow_us = profile.min_press_us.saturating_add(filter_us).saturating_add(SLACK_US);
+        Self {
+            profile,
+            light_n: floor_n + 0.6 * (ceiling_n - floor_n),
+            grip_n: 0.75 * press_n,
+            radius_mm: (0.5 * (centre_mm + 27.0)).min(RADIUS_MAX_MM),
+            pause_us: follow_us.max(PAUSE_MIN_US),
+        }
+    }
+
+    /// Every binding once: directions, then buttons at the centre.
+    fn first_round(&self) -> Vec<Gesture> {
+        let mut gestures: Vec<Gesture> = self.cardinals().iter().map(|aim| self.press_aim(aim)).collect();
+        for button in 0..self.profile.buttons.len() {
+            gestures.extend(self.short_press(button, None));
+            gestures.extend(self.long_press(button, None));
+        }
+        gestures
+    }
+
+    /// Directions that change, and buttons together with directions.
+    fn second_round(&self) -> Vec<Gesture> {
+        let cardinals = self.cardinals();
+        let mut gestures = Vec::new();
+        if let [right, up, left, down] = cardinals.as_slice() {
+            gestures.extend(self.roll(right, up));
+            for button in 0..self.profile.buttons.len() {
+                gestures.extend(self.short_press(button, Some(right)));
+            }
+            gestures.push(self.slide_over(right, left));
+            gestures.extend(self.roll(left, down));
+            for button in 0..self.profile.buttons.len() {
+                gestures.extend(self.long_press(button, Some(left)));
+            }
+            gestures.extend(self.diagonal(right, up).map(|aim| self.press_aim(&aim)));
+            gestures.extend(self.roll(down, right));
+        }
+        gestures
+    }
+
+    /// Right, up, left, down; none where the sectors are too narrow to hit.
+    fn cardinals(&self) -> Vec<Aim> {
+        let Some(dpad) = &self.profile.dpad else { return Vec::new() };
+        if cardinal_half_deg(dpad) < ANGLE_SLACK_DEG {
+            return Vec::new();
+        }
+        let aim = |angle_deg, binding: Binding| Aim { angle_deg, held: Held::from_iter([binding]) };
+        vec![aim(0.0, dpad.right), aim(90.0, dpad.up), aim(180.0, dpad.left), aim(270.0, dpad.down)]
+    }
+
+    /// Between two neighbours of which `horizontal` is right or left.
+    fn diagonal(&self, horizontal: &Aim, vertical: &Aim) -> Option<Aim> {
+        let dpad = self.profile.dpad.as_ref().filter(|dpad| dpad.mode == DpadMode::EightWay)?;
+        let wide = 0.5 * dpad.diagonal_deg >= ANGLE_SLACK_DEG;
+        let held = horizontal.held.iter().chain(&vertical.held).copied().collect();
+        wide.then(|| Aim { angle_deg: 0.5 * (horizontal.angle_deg + vertical.angle_deg), held })
+    }
+
+    fn press_aim(&self, aim: &Aim) -> Gesture {
+        self.lifted(vec![self.rest_on(Some(aim))], None)
+    }
+
+    /// Rolls by a quarter turn over the diagonal between two neighbours.
+    fn roll(&self, from: &Aim, to: &Aim) -> Option<Gesture> {
+        let dpad = self.profile.dpad.as_ref()?;
+        let past_edge_deg = dpad.hysteresis_deg + ANGLE_SLACK_DEG;
+        let steady =
+            dpad.hysteresis_deg >= ANGLE_HYSTERESIS_MIN_DEG && cardinal_half_deg(dpad) >= past_edge_deg;
+        let end_deg = if to.angle_deg < from.angle_deg { to.angle_deg + 360.0 } else { to.angle_deg };
+        let middle_deg = 0.5 * (from.angle_deg + end_deg);
+        let middle = match dpad.mode {
+            DpadMode::EightWay if 0.5 * dpad.diagonal_deg < past_edge_deg => return None,
+            DpadMode::EightWay => Aim { angle_deg: middle_deg, held: both(from, to) },
+            DpadMode::FourWay | DpadMode::FourWaySticky => {
+                Aim { angle_deg: middle_deg, held: from.held.clone() }
+            }
+        };
+        let mut steps: Vec<Step> = [from, &middle, to].iter().map(|aim| self.rest_on(Some(aim))).collect();
+        for step in steps.iter_mut().skip(1) {
+            step.ramp_us = SLIDE_US;
+        }
+        steady.then(|| self.lifted(steps, None))
+    }
+
+    /// Slides from one side over the centre to the other.
+    fn slide_over(&self, from: &Aim, to: &Aim) -> Gesture {
+        let mut steps = vec![self.rest_on(Some(from)), self.rest_on(None), self.rest_on(Some(to))];
+        for step in steps.iter_mut().skip(1) {
+            step.ramp_us = SLIDE_US;
+        }
+        self.lifted(steps, None)
+    }
+
+    /// Presses a button and lets go soon. A tap button taps, a hold button holds meanwhile.
+    fn short_press(&self, index: usize, aim: Option<&Aim>) -> Option<Gesture> {
+        let button = self.profile.buttons.get(index)?;
+        let (held, tapped, stay_us) = match button.action {
+            Action::Hold(binding) => (Some(binding), None, self.pause_us),
+            Action::TapHold { tap, long_press_us, .. } => (None, Some(tap), self.tap_us(long_press_us)?),
+        };
+        let mut press = self.press_step(index, button, aim);
+        press.held.extend(held);
+        press.stay_us = stay_us;
+        Some(self.around_press(vec![press], aim, tapped))
+    }
+
+    /// Presses a tap-or-hold button until it holds.
+    fn long_press(&self, index: usize, aim: Option<&Aim>) -> Option<Gesture> {
+        let button = self.profile.buttons.get(index)?;
+        let Action::TapHold { hold, long_press_us, .. } = button.action else { return None };
+        if long_press_us > LONG_PRESS_MAX_US {
+            return None;
+        }
+        let mut wait = self.press_step(index, button, aim);
+        wait.stay_us = long_press_us;
+        let mut held = Step { ramp_us: 0, stay_us: self.pause_us, ..wait.clone() };
+        held.held.push(hold);
+        Some(self.around_press(vec![wait, held], aim, None))
+    }
+
+    /// How long a short press stays at its force; `None` if it could come out long or be filtered away.
+    fn tap_us(&self, long_press_us: u64) -> Option<u64> {
+        let filter_us = SAMPLE_US.saturating_mul(self.profile.filter_samples as u64);
+        let shortest_us = filter_us.saturating_add(SLACK_US / 2);
+        let room_us = (long_press_us / 5 * 4).checked_sub(2 * RAMP_US)?.checked_sub(filter_us)?;
+        (room_us >= shortest_us).then(|| room_us.min(shortest_us.max(PAUSE_MIN_US)))
+    }
+
+    /// A press on a direction, or by shear, starts and ends with a light touch, so that one thing happens at a time.
+    fn around_press(&self, press: Vec<Step>, aim: Option<&Aim>, tapped: Option<Binding>) -> Gesture {
+        let sheared = press.iter().any(|step| step.contact.fx_n != 0.0 || step.contact.fy_n != 0.0);
+        if aim.is_none() && !sheared {
+            return self.lifted(press, tapped);
+        }
+        let mut steps = vec![self.rest_on(aim)];
+        steps.extend(press);
+        steps.push(Step { tapped, ..self.rest_on(aim) });
+        self.lifted(steps, None)
+    }
+
+    fn press_step(&self, index: usize, button: &Button, aim: Option<&Aim>) -> Step {
+        let mut step = self.rest_on(aim);
+        step.pressed = Some(index);
+        let shear_n = 1.3 * button.press_n;
+        let contact = &mut step.contact;
+        contact.fz_n = if button.force == Force::Fz { 1.4 * button.press_n } else { self.grip_n };
+        match button.force {
+            Force::Fz => {}
+            Force::FxPositive => contact.fx_n = shear_n,
+            Force::FxNegative => contact.fx_n = -shear_n,
+            Force::FyPositive => contact.fy_n = shear_n,
+            Force::FyNegative => contact.fy_n = -shear_n,
+        }
+        step
+    }
+
+    /// A light touch on a direction, or at the centre.
+    fn rest_on(&self, aim: Option<&Aim>) -> Step {
+        let rotation_deg = self.profile.dpad.as_ref().map_or(0.0, |dpad| dpad.rotation_deg);
+        let (radius_mm, angle_deg) =
+            aim.map_or((0.0, 0.0), |aim| (self.radius_mm, aim.angle_deg + rotation_deg));
+        let (sin, cos) = libm::sincosf(angle_deg.to_radians());
+        let (x_mm, y_mm) = (radius_mm * cos, radius_mm * sin);
+        Step {
+            contact: Contact { x_mm, y_mm, fx_n: 0.0, fy_n: 0.0, fz_n: self.light_n },
+            ramp_us: RAMP_US,
+            stay_us: self.pause_us,
+            held: aim.map_or_else(Held::new, |aim| aim.held.clone()),
+            tapped: None,
+            pressed: None,
+        }
+    }
+
+    fn lifted(&self, mut steps: Vec<Step>, tapped: Option<Binding>) -> Gesture {
+        let mut lift = self.rest_on(None);
+        if let Some(last) = steps.last() {
+            lift.contact = Contact { x_mm: last.contact.x_mm, y_mm: last.contact.y_mm, ..Contact::default() };
+        }
+        lift.tapped = tapped;
+        lift.stay_us = self.pause_us.saturating_add(SLACK_US);
+        steps.push(lift);
+        Gesture { steps }
+    }
+
+    /// Whether every step before the lift keeps clear of the thresholds that it is not meant to cross.
+    fn is_clear(&self, gesture: &Gesture) -> bool {
+        let Some((_, touching)) = gesture.steps.split_last() else { return false };
+        let mut pressed_before = Vec::new();
+        touching.iter().all(|step| {
+            pressed_before.extend(step.pressed);
+            let buttons = self.profile.buttons.iter().enumerate();
+            step.contact.fz_n >= 1.3 * TOUCH_N
+                && step.contact.fz_n.max(shear_n(&step.contact)) <= FORCE_MAX_N
+                && self.is_place_clear(step)
+                && buttons.into_iter().all(|(index, button)| {
+                    button_is_clear(button, step, index, pressed_before.contains(&index))
+                })
+        })
+    }
+
+    fn is_place_clear(&self, step: &Step) -> bool {
+        let Some(dpad) = &self.profile.dpad else { return true };
+        let radius_mm = libm::hypotf(step.contact.x_mm, step.contact.y_mm);
+        if radius_mm > 0.0 {
+            dpad.radius_hysteresis_mm >= RADIUS_HYSTERESIS_MIN_MM
+                && dpad.min_force_n - dpad.release_force_n >= FORCE_HYSTERESIS_MIN_N
+                && radius_mm >= dpad.centre_radius_mm + PLACE_SLACK_MM
+                && step.contact.fz_n >= 1.3 * dpad.min_force_n
+                && step.contact.fz_n >= 1.3 * dpad.release_force_n
+        } else {
+            dpad.centre_radius_mm - dpad.radius_hysteresis_mm >= PLACE_SLACK_MM
+        }
+    }
+}
+
+fn both(a: &Aim, b: &Aim) -> Held {
+    let is_horizontal = |aim: &Aim| aim.angle_deg == 0.0 || aim.angle_deg == 180.0;
+    let (first, second) = if is_horizontal(a) { (a, b) } else { (b, a) };
+    first.held.iter().chain(&second.held).copied().collect()
+}
+
+/// Half the angle in which a touch certainly means this cardinal direction.
+fn cardinal_half_deg(dpad: &Dpad) -> f32 {
+    match dpad.mode {
+        DpadMode::FourWay => 45.0,
+        DpadMode::FourWaySticky | DpadMode::EightWay => 0.5 * (90.0 - dpad.diagonal_deg),
+    }
+}
+
+fn shear_n(contact: &Contact) -> f32 {
+    libm::hypotf(contact.fx_n, contact.fy_n)
+}
+
+/// Whether the button is clearly pressed where it is meant to be, and clearly not where it is not.
+fn button_is_clear(button: &Button, step: &Step, index: usize, pressed_before: bool) -> bool {
+    let contact = &step.contact;
+    let force_n = match button.force {
+        Force::Fz => contact.fz_n,
+        Force::FxPositive => contact.fx_n,
+        Force::FxNegative => -contact.fx_n,
+        Force::FyPositive => contact.fy_n,
+        Force::FyNegative => -contact.fy_n,
+    };
+    // At the centre the threefold symmetry leaves no false shear.
+    let off_centre = contact.x_mm != 0.0 || contact.y_mm != 0.0;
+    let false_n = if button.force == Force::Fz || !off_centre { 0.0 } else { FALSE_SHEAR * contact.fz_n };
+    let doubt_n = false_n + FORCE_ERROR * contact.fz_n.max(shear_n(contact));
+    if step.pressed == Some(index) {
+        button.press_n - button.release_n >= FORCE_HYSTERESIS_MIN_N
+            && force_n - doubt_n >= 1.05 * button.press_n
+    } else {
+        let limit_n = if pressed_before { button.release_n } else { button.press_n };
+        force_n + doubt_n <= 0.9 * limit_n
+    }
+}

@@ -13,6 +13,12 @@ use crate::reader::{Change, Reader, find};
 /// Everything is neutral at most this long after the last sample.
 const NEUTRAL_LIMIT_MS: u64 = 100;
 
+/// A game that shows 100 pictures a second; one that shows 60 leaves a guest under load no time to be late.
+const PICTURE_MS: u64 = 10;
+
+/// Pictures until the device must be gone: three seconds.
+const PICTURES_MAX: u64 = 300;
+
 /// Ended politely: a reader sees everything released before the device goes.
 pub(crate) fn after_sigterm() {
     let mut bridge = holding();
@@ -67,14 +73,27 @@ fn holding() -> Bridge {
 fn read_to_the_end(bridge: &mut Bridge, signal: Signal) {
     let Bridge { pad, program, reader } = bridge;
     thread::scope(|scope| {
-        // A game reads as soon as there is something; read later, the last events would be gone with the device.
-        let reading = scope.spawn(|| reader.read_until(3_000, |_| false));
+        let reading = scope.spawn(|| read_as_a_game_does(reader));
         let sent_ns = stamp_ns();
         program.signal(signal);
         pad.hold_until("the end of the bridge", PRESS_RIGHT, 2_000, || program.has_ended());
         println!("ended {} us after {signal:?}", (stamp_ns() - sent_ns) / 1_000);
         reading.join().expect("the reader saw the device go");
     });
+}
+
+/// Reads once a picture until the device is gone. What it has not read by then went with the device.
+fn read_as_a_game_does(reader: &mut Reader) {
+    let mut picture_ns = monotonic_ns();
+    for _ in 0..PICTURES_MAX {
+        picture_ns += PICTURE_MS * MS;
+        wait_until(picture_ns);
+        reader.read_available();
+        if reader.gone {
+            return;
+        }
+    }
+    panic!("the device is still there");
 }
 
 fn check_neutral_since(since_ns: u64, reader: &mut Reader) {

@@ -1,7 +1,8 @@
 //! The influence field of the nominal pad: nine channels per newton at any contact point.
 //!
-//! It says what an ideal pad would report for a given contact. The virtual pad and the tests use it; the way from
-//! bytes to events does not. The values come from a finite-element solution of the pad in `models/sstid.toml`.
+//! It says what an ideal pad would report for a given contact. The virtual pad and the tests use it; the way
+//! from bytes to events does not. The values come from a finite-element solution of the pad in
+//! `models/sstid.toml`.
 
 use std::f32::consts::TAU;
 use std::fmt;
@@ -22,10 +23,10 @@ type Node = [f32; COLUMNS];
 
 /// Channel readings per newton of contact force, on a polar grid, with interpolation between its nodes.
 ///
-/// The interpolation is bicubic (Catmull and Rom's cubic): periodic in angle, and in radius along whole diameters,
-/// so that it is smooth across the centre. At a node it returns the node. With every second ring or ray left out,
-/// what was left out is recovered within 2.4 µV/N of a field that reaches 2,400 µV/N (over the edges of the posts;
-/// 0.1 µV/N nearer the centre); the whole grid is closer still.
+/// The interpolation is bicubic (Catmull and Rom's cubic): periodic in angle, and in radius along whole
+/// diameters, so that it is smooth across the centre. At a node it returns the node. With every second ring
+/// or ray left out, what was left out is recovered within 2.4 µV/N of a field that reaches 2,400 µV/N (over
+/// the edges of the posts; 0.1 µV/N nearer the centre); the whole grid is closer still.
 #[derive(Clone, Debug)]
 pub struct InfluenceField {
     /// `RINGS` × `RAYS` nodes; the first ring holds the centre node in every ray.
@@ -73,7 +74,8 @@ impl InfluenceField {
     }
 
     /// Reads a field: a header line, the centre, then rings at 1, 2, … 29 mm with a place every 5° from +x,
-    /// counter-clockwise. Columns: `x_mm`, `y_mm`, then for each channel the microvolts per newton of Fx, Fy, Fz.
+    /// counter-clockwise. Columns: `x_mm`, `y_mm`, then for each channel the microvolts per newton of Fx, Fy,
+    /// Fz.
     ///
     /// # Errors
     /// The first line that is not as described.
@@ -98,8 +100,8 @@ impl InfluenceField {
 
     /// What the nominal pad reports for `contact`, in microvolts. Linear in the forces.
     ///
-    /// A contact beyond [`RADIUS_MAX_MM`] reads as one at that radius on the same ray: the field ends where a finger
-    /// would reach over the rim. A contact that is not finite reads zero.
+    /// A contact beyond [`RADIUS_MAX_MM`] reads as one at that radius on the same ray: the field ends where a
+    /// finger would reach over the rim. A contact that is not finite reads zero.
     pub fn strain_uv(&self, contact: &Contact) -> Strain {
         let mut strain = Strain::default();
         let forces_n = [contact.fx_n, contact.fy_n, contact.fz_n];
@@ -131,7 +133,8 @@ impl InfluenceField {
         sum
     }
 
-    /// The node at signed radius `ring` mm of ray `ray`; beyond the last ring the parabola through the last three.
+    /// The node at signed radius `ring` mm of ray `ray`; beyond the last ring the parabola through the last
+    /// three.
     fn node(&self, ring: i32, ray: i32) -> Node {
         let last = RINGS as i32 - 1;
         if ring <= last {

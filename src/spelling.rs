@@ -18,27 +18,34 @@ pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) ->
         .map(|(_, best)| best)
 }
 
-/// Letters to insert, delete or replace to make one word of the other.
+/// Single-letter changes that make one word of the other: insert, delete, replace, or swap two neighbours.
 ///
-/// Source: V. I. Levenshtein, "Binary codes capable of correcting deletions, insertions, and reversals" (1966);
-/// computed row by row over the letters of `left`.
+/// Source: F. J. Damerau, "A technique for computer detection and correction of spelling errors" (1964), in the form
+/// that changes no letter twice; computed row by row over the letters of `left`.
 fn distance(left: &str, right: &str) -> usize {
     let right: Vec<char> = right.chars().flat_map(char::to_lowercase).collect();
-    let mut row: Vec<usize> = (0..=right.len()).collect();
-    for (above_first, letter) in left.chars().flat_map(char::to_lowercase).enumerate() {
-        let mut diagonal = above_first;
-        let mut before = above_first + 1;
-        for (other, cell) in right.iter().zip(row.iter_mut().skip(1)) {
-            let replaced = diagonal + usize::from(*other != letter);
-            diagonal = *cell;
-            before = replaced.min(before + 1).min(*cell + 1);
-            *cell = before;
+    let mut older: Vec<usize> = Vec::new();
+    let mut above: Vec<usize> = (0..=right.len()).collect();
+    let mut letter_above = None;
+    for (number, letter) in (1..).zip(left.chars().flat_map(char::to_lowercase)) {
+        let mut row = vec![number];
+        let mut before = number;
+        let mut other_before = None;
+        for (column, other) in right.iter().copied().enumerate() {
+            let at = |cells: &[usize], column: usize| cells.get(column).copied().unwrap_or(usize::MAX);
+            let replaced = at(&above, column).saturating_add(usize::from(other != letter));
+            let mut best = replaced.min(before + 1).min(at(&above, column + 1).saturating_add(1));
+            if letter_above == Some(other) && other_before == Some(letter) {
+                best = best.min(at(&older, column.wrapping_sub(1)).saturating_add(1));
+            }
+            row.push(best);
+            before = best;
+            other_before = Some(other);
         }
-        if let Some(first) = row.first_mut() {
-            *first = above_first + 1;
-        }
+        older = std::mem::replace(&mut above, row);
+        letter_above = Some(letter);
     }
-    row.last().copied().unwrap_or(0)
+    above.last().copied().unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -53,7 +60,8 @@ mod tests {
             ("abc", "", 3),
             ("kitten", "sitting", 3),
             ("Fz", "fz", 0),
-            ("ab", "ba", 2),
+            ("ab", "ba", 1),
+            ("ca", "abc", 3),
         ] {
             assert_eq!(distance(left, right), changes, "{left} {right}");
         }

@@ -1,10 +1,12 @@
 //! The statics decoder: forces and moments of three modules, and one contact that balances them.
 //!
-//! Each module reports a force along its three axes. Their sum is the contact's force, and their moment about the
-//! pad's centre tells where a force of that size must act. There is nothing to train: five numbers describe the pad.
+//! Each module reports a force along its three axes. Their sum is the contact's force, and their moment about
+//! the pad's centre tells where a force of that size must act. There is nothing to train: five numbers
+//! describe the pad.
 //!
-//! Source: A. Bicchi, J. K. Salisbury and D. L. Brock, "Contact sensing from force measurements", International
-//! Journal of Robotics Research 12(3), 1993: the contact on a known surface (here a plane) from force and moment.
+//! Source: A. Bicchi, J. K. Salisbury and D. L. Brock, "Contact sensing from force measurements",
+//! International Journal of Robotics Research 12(3), 1993: the contact on a known surface (here a plane) from
+//! force and moment.
 
 use std::f32::consts::TAU;
 use std::fmt;
@@ -13,8 +15,8 @@ use serde::Deserialize;
 
 use crate::quantity::{Contact, MODULES, Strain};
 
-/// A normal force closer to zero than this has no place: it is the pad's force resolution (Wu et al., Sensors 2026,
-/// 26(4), 1378).
+/// A normal force closer to zero than this has no place: it is the pad's force resolution (Wu et al., Sensors
+/// 2026, 26(4), 1378).
 pub const FORCE_RESOLUTION_N: f32 = 0.005;
 
 const NOMINAL: &str = include_str!("../../models/statics.toml");
@@ -142,9 +144,10 @@ impl Statics {
     /// With the overturning moments `p` of the modules, contact height `h` and false shear `k`:
     /// `F = (F_raw − k·p) / (1 − k·h)` for both shears, then `x·Fz = p_x − h·Fx` and the same for y.
     ///
-    /// Degenerate input: a normal force within ±[`FORCE_RESOLUTION_N`] has no place and reads as the centre; a place
-    /// beyond the plate is moved to its rim along the ray; a pull (`fz_n < 0`) has a place like a push. Strain that is
-    /// not finite, or so large that the result would not be, reads as no contact (all zero).
+    /// Degenerate input: a normal force within ±[`FORCE_RESOLUTION_N`] has no place and reads as the centre;
+    /// a place beyond the plate is moved to its rim along the ray; a pull (`fz_n < 0`) has a place like a
+    /// push. Strain that is not finite, or so large that the result would not be, reads as no contact (all
+    /// zero).
     pub fn decode(&self, strain: &Strain) -> Contact {
         let raw = self.raw_wrench(strain);
         let StaticsModel { contact_height_mm: height_mm, false_shear_per_mm: share, .. } = self.model;
@@ -162,8 +165,8 @@ impl Statics {
         }
     }
 
-    /// Sums the modules' forces in the pad frame. The local triad is left-handed, so its vectors are written out:
-    /// `x_local` = (−sin, cos), `y_local` = (cos, sin).
+    /// Sums the modules' forces in the pad frame. The local triad is left-handed, so its vectors are written
+    /// out: `x_local` = (−sin, cos), `y_local` = (cos, sin).
     fn raw_wrench(&self, strain: &Strain) -> RawWrench {
         let model = &self.model;
         let mut sum = RawWrench::default();

@@ -1,6 +1,18 @@
 //! From contacts to what should be held now.
 //!
 //! The mapping states *levels*; it never emits. `output::ledger` turns levels into edges.
+//!
+//! A profile's text becomes a [`profile::Profile`] in `diag` → `syntax` → `binding` → `conflict` → `check`; each of
+//! these uses only those before it. The live part is `sector` and `press`, put together by `engine`.
 
+mod binding;
+pub mod check;
+mod conflict;
+pub mod diag;
+pub mod engine;
 pub mod intent;
+mod press;
 pub mod profile;
+mod sector;
+pub mod shipped;
+mod syntax;

@@ -27,8 +27,8 @@ const TEMPERATURE_CENTI_C: i16 = 2500;
 
 /// A pad in memory. Pad time starts at 0 with the script.
 ///
-/// Bytes from the host go in by [`receive`](Self::receive); [`emit`](Self::emit) gives the bytes for the host. Its
-/// board stays at 25 °C, and its channels keep their zero.
+/// Bytes from the host go in by [`receive`](Self::receive); [`emit`](Self::emit) gives the bytes for the
+/// host. Its board stays at 25 °C, and its channels keep their zero.
 #[derive(Clone, Debug)]
 pub struct VirtualPad {
     script: Script,
@@ -81,8 +81,8 @@ impl VirtualPad {
         }
     }
 
-    /// Takes bytes from the host, whole commands or parts of them. Damaged commands get no answer; of more than 16
-    /// commands between two calls of [`emit`](Self::emit) the later ones are done but not answered.
+    /// Takes bytes from the host, whole commands or parts of them. Damaged commands get no answer; of more
+    /// than 16 commands between two calls of [`emit`](Self::emit) the later ones are done but not answered.
     pub fn receive(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             let reply = match self.commands.push(byte) {
@@ -102,7 +102,8 @@ impl VirtualPad {
         self.schedule.due_us()
     }
 
-    /// Appends to `out` the answers that wait, then every sample due at `now_us` of pad time or before, as frames.
+    /// Appends to `out` the answers that wait, then every sample due at `now_us` of pad time or before, as
+    /// frames.
     ///
     /// After [`SAMPLES_PER_EMIT_MAX`] samples it stops; [`due_us`](Self::due_us) then still lies in the past.
     pub fn emit(&mut self, now_us: u64, out: &mut Vec<u8>) {

@@ -8,8 +8,8 @@ use crate::virtual_pad::noise::Noise;
 /// Width of the converter's codes.
 pub(super) const COUNT_BITS: u8 = 24;
 
-/// One count, in picovolts at the bridge: full scale is ±20 mV. Unlike the wire's default, so that a host which does
-/// not ask for the scale reads wrong forces.
+/// One count, in picovolts at the bridge: full scale is ±20 mV. Unlike the wire's default, so that a host
+/// which does not ask for the scale reads wrong forces.
 pub(super) const PICOVOLTS_PER_COUNT: u32 = 2384;
 
 const OFFSET_MAX_UV: f32 = 1500.0;

@@ -44,8 +44,8 @@ impl Gesture {
         self.duration_us().saturating_sub(self.steps.last().map_or(0, |lift| lift.stay_us))
     }
 
-    /// Whether what is meant can be said: no control is wanted in two positions at once or turned over without a
-    /// neutral moment, and nothing is tapped that is held.
+    /// Whether what is meant can be said: no control is wanted in two positions at once or turned over
+    /// without a neutral moment, and nothing is tapped that is held.
     pub(super) fn is_consistent(&self) -> bool {
         let mut before = Held::new();
         self.steps.iter().all(|step| {

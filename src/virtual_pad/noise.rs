@@ -7,8 +7,8 @@ const LANES: u32 = u64::BITS / LANE_BITS;
 
 /// A stream of pseudo-random numbers that depends on nothing but its seed.
 ///
-/// Source: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014
-/// (SplitMix64).
+/// Source: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA
+/// 2014 (SplitMix64).
 #[derive(Clone, Debug)]
 pub(super) struct Noise {
     state: u64,
@@ -32,8 +32,8 @@ impl Noise {
         steps / (1_u32 << 23) as f32 - 1.0
     }
 
-    /// Mean 0, standard deviation 1, never beyond ±6: the sum of twelve uniform numbers, which comes close enough to
-    /// the normal distribution and needs no transcendental function.
+    /// Mean 0, standard deviation 1, never beyond ±6: the sum of twelve uniform numbers, which comes close
+    /// enough to the normal distribution and needs no transcendental function.
     pub(super) fn normal(&mut self) -> f32 {
         let mut sum = 0;
         for _ in 0..TERMS / LANES {

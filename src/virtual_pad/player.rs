@@ -1,6 +1,7 @@
 //! The player: which gestures a profile's bindings and numbers allow.
 //!
-//! Gestures are first made for every binding, then those go whose forces or places come too near to a threshold.
+//! Gestures are first made for every binding, then those go whose forces or places come too near to a
+//! threshold.
 
 use crate::mapping::profile::{Action, Binding, Button, Dpad, DpadMode, Force, Profile};
 use crate::quantity::Contact;
@@ -201,7 +202,8 @@ impl<'p> Player<'p> {
         (room_us >= shortest_us).then(|| room_us.min(shortest_us.max(PAUSE_MIN_US)))
     }
 
-    /// A press on a direction, or by shear, starts and ends with a light touch, so that one thing happens at a time.
+    /// A press on a direction, or by shear, starts and ends with a light touch, so that one thing happens at
+    /// a time.
     fn around_press(&self, press: Vec<Step>, aim: Option<&Aim>, tapped: Option<Binding>) -> Gesture {
         let sheared = press.iter().any(|step| step.contact.fx_n != 0.0 || step.contact.fy_n != 0.0);
         if aim.is_none() && !sheared {

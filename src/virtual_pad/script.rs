@@ -26,9 +26,9 @@ pub struct Keyframe {
 
 /// A list of gestures in time.
 ///
-/// Each gesture is one contact that means something in the profile it is played for. Its forces and places keep so
-/// far from the profile's thresholds that noise, filter and decoder cannot change what it means. What it means is
-/// written down with it, not computed from the contact.
+/// Each gesture is one contact that means something in the profile it is played for. Its forces and places
+/// keep so far from the profile's thresholds that noise, filter and decoder cannot change what it means. What
+/// it means is written down with it, not computed from the contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Script {
     keyframes: Vec<Keyframe>,
@@ -37,8 +37,9 @@ pub struct Script {
 }
 
 impl Script {
-    /// Plays as many gestures as fit into `duration_us`, over and over. A gesture that the profile has no binding
-    /// for, or that its numbers make impossible or doubtful, is left out; if none is left the pad rests.
+    /// Plays as many gestures as fit into `duration_us`, over and over. A gesture that the profile has no
+    /// binding for, or that its numbers make impossible or doubtful, is left out; if none is left the pad
+    /// rests.
     ///
     /// The timing is right for a pad at 1 kHz or faster; the profile's filter is slower on a slower pad.
     pub fn for_profile(profile: &Profile, duration_us: u64) -> Self {
@@ -58,7 +59,8 @@ impl Script {
         script
     }
 
-    /// The true contact at `t_us` from the start; no force between gestures, before the first and after the last.
+    /// The true contact at `t_us` from the start; no force between gestures, before the first and after the
+    /// last.
     pub fn contact_at(&self, t_us: u64) -> Contact {
         let next = self.keyframes.partition_point(|keyframe| keyframe.at_us <= t_us);
         let Some(from) = next.checked_sub(1).and_then(|last| self.keyframes.get(last)) else {
@@ -75,7 +77,8 @@ impl Script {
         self.contacts
     }
 
-    /// The events that a correct bridge emits, in order: device, control and new value. At the end nothing is held.
+    /// The events that a correct bridge emits, in order: device, control and new value. At the end nothing is
+    /// held.
     pub fn expected(&self) -> &[(Device, Code, i32)] {
         &self.expected
     }

@@ -1,0 +1,194 @@
+//! What is wrong with a profile and where: line, column, one sentence and the way out.
+
+use std::fmt::{self, Write};
+
+use serde::Serialize;
+
+/// Whether a profile can still be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// There is no profile until this is mended.
+    Error,
+    /// The profile works, but probably not as meant.
+    Warning,
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+        })
+    }
+}
+
+/// One finding about a profile's text.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Diagnostic {
+    /// Whether the profile can still be used.
+    pub severity: Severity,
+    /// One sentence without a full stop: what is wrong.
+    pub message: String,
+    /// Line of the text, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// What to do about it, where that can be said.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// The finding for people, as `FILE:LINE:COLUMN: error: message` and a second line `  help: …`; no final newline.
+    pub fn render(&self, file: &str) -> String {
+        let Self { severity, message, line, column, help } = self;
+        let mut text = format!("{file}:{line}:{column}: {severity}: {message}");
+        if let Some(help) = help {
+            // Writing to a string cannot fail.
+            let _ = write!(text, "\n  help: {help}");
+        }
+        text
+    }
+}
+
+/// Findings about one text while it is read.
+pub(super) struct Report<'t> {
+    text: &'t str,
+    found: Vec<Diagnostic>,
+    broken_lines: Vec<usize>,
+}
+
+impl<'t> Report<'t> {
+    pub(super) const fn new(text: &'t str) -> Self {
+        Self { text, found: Vec::new(), broken_lines: Vec::new() }
+    }
+
+    /// Notes at the byte offset `at` that the text cannot be parsed there.
+    ///
+    /// Whatever else is found on that line would be an echo of this, and so may be keys that are missing or in the
+    /// wrong table anywhere: both are dropped from here on.
+    pub(super) fn broken(&mut self, at: usize, message: &str) {
+        let (line, column) = position(self.text, at);
+        self.broken_lines.push(line);
+        // A bare word is the usual slip, and the parser names what it took the word for.
+        let is_word = message.contains("boolean") || message.contains("must be quoted");
+        let help = is_word.then(|| "text stands in quotation marks".to_owned());
+        self.found.push(Diagnostic {
+            severity: Severity::Error,
+            message: message.to_owned(),
+            line,
+            column,
+            help,
+        });
+    }
+
+    /// Notes an error at the byte offset `at`; an empty `help` is none.
+    pub(super) fn error(&mut self, at: usize, message: impl Into<String>, help: impl Into<String>) {
+        self.note(Severity::Error, at, message.into(), help.into());
+    }
+
+    /// Notes at the byte offset `at` that a key is missing or stands where it does not belong.
+    pub(super) fn misplaced(&mut self, at: usize, message: impl Into<String>, help: impl Into<String>) {
+        if self.broken_lines.is_empty() {
+            self.error(at, message, help);
+        }
+    }
+
+    /// Notes a warning at the byte offset `at`; an empty `help` is none.
+    pub(super) fn warning(&mut self, at: usize, message: impl Into<String>, help: impl Into<String>) {
+        self.note(Severity::Warning, at, message.into(), help.into());
+    }
+
+    fn note(&mut self, severity: Severity, at: usize, message: String, help: String) {
+        let (line, column) = position(self.text, at);
+        if !self.broken_lines.contains(&line) {
+            let help = if help.is_empty() { None } else { Some(help) };
+            self.found.push(Diagnostic { severity, message, line, column, help });
+        }
+    }
+
+    /// Whether an error was noted.
+    pub(super) fn failed(&self) -> bool {
+        self.found.iter().any(|finding| finding.severity == Severity::Error)
+    }
+
+    /// Everything found, in the order of the text.
+    pub(super) fn finish(mut self) -> Vec<Diagnostic> {
+        self.found.sort_by_key(|finding| (finding.line, finding.column));
+        self.found
+    }
+}
+
+/// Line and column, both from 1 and the column in characters, of the byte offset `at`; behind the end means the end.
+fn position(text: &str, at: usize) -> (usize, usize) {
+    let before = text.char_indices().take_while(|(offset, _)| *offset < at).map(|(_, letter)| letter);
+    before.fold(
+        (1, 1),
+        |(line, column), letter| if letter == '\n' { (line + 1, 1) } else { (line, column + 1) },
+    )
+}
+
+/// `text` cut to a length that fits a sentence.
+pub(super) fn shortened(text: &str) -> String {
+    const SHOWN: usize = 40;
+    let mut letters = text.chars();
+    let mut short: String = letters.by_ref().take(SHOWN).collect();
+    if letters.next().is_some() {
+        short.push('…');
+    }
+    short
+}
+
+/// `text` shortened, in quotation marks, control characters escaped.
+pub(super) fn quoted(text: &str) -> String {
+    format!("{:?}", shortened(text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_count_characters_from_one() {
+        let text = "ä = 1\n\nbc";
+        assert_eq!(position(text, 0), (1, 1));
+        assert_eq!(position(text, 2), (1, 2), "ä is two bytes and one character");
+        assert_eq!(position(text, 7), (2, 1));
+        assert_eq!(position(text, 9), (3, 2));
+        assert_eq!(position(text, 1_000), (3, 3));
+        assert_eq!(position("", 3), (1, 1));
+    }
+
+    #[test]
+    fn a_finding_renders_for_people_and_for_programs() {
+        let mut report = Report::new("a = 1\nb = 2\n");
+        report.warning(10, "late", "");
+        report.error(4, "early", "write 2");
+        assert!(report.failed());
+        let found = report.finish();
+        let lines: Vec<_> = found.iter().map(|finding| finding.render("p.toml")).collect();
+        assert_eq!(lines, ["p.toml:1:5: error: early\n  help: write 2", "p.toml:2:5: warning: late"]);
+        assert_eq!(
+            serde_json::to_string(&found).unwrap(),
+            r#"[{"severity":"error","message":"early","line":1,"column":5,"help":"write 2"},"#.to_owned()
+                + r#"{"severity":"warning","message":"late","line":2,"column":5,"help":null}]"#
+        );
+    }
+
+    #[test]
+    fn a_line_that_cannot_be_parsed_is_reported_once() {
+        let mut report = Report::new("a =\nb = 2\n");
+        report.broken(3, "no value");
+        report.error(0, "echo", "");
+        report.misplaced(4, "c is missing", "");
+        report.error(8, "b is too small", "");
+        let messages: Vec<_> = report.finish().into_iter().map(|finding| finding.message).collect();
+        assert_eq!(messages, ["no value", "b is too small"]);
+    }
+
+    #[test]
+    fn quotes_escape_and_cut() {
+        assert_eq!(quoted("a\nb"), r#""a\nb""#);
+        assert_eq!(quoted(&"x".repeat(1_000)).chars().count(), 43);
+    }
+}

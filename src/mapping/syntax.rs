@@ -1,0 +1,228 @@
+//! Typed reads from a table of a profile's text; every failed read is reported at its place.
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::diag::{Report, quoted, shortened};
+use crate::spelling;
+
+/// A value and the byte offset where it is written (or, for a default, where the table starts that lacks it).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Placed<T> {
+    pub(super) value: T,
+    pub(super) at: usize,
+}
+
+/// The allowed values of a number, ends included, and what an absent key means.
+#[derive(Clone, Copy)]
+pub(super) struct Bounds<T> {
+    pub(super) low: T,
+    pub(super) high: T,
+    pub(super) default: T,
+}
+
+/// One table of the text.
+pub(super) struct Section<'t> {
+    /// How messages name it, as `[dpad]`.
+    pub(super) title: String,
+    /// Byte offset of its header.
+    pub(super) at: usize,
+    table: &'t DeTable<'t>,
+    known: &'static [&'static str],
+}
+
+impl<'t> Section<'t> {
+    /// The whole text; every key that is not in `known` is reported.
+    pub(super) fn root(
+        tree: &'t Spanned<DeTable<'t>>,
+        known: &'static [&'static str],
+        report: &mut Report<'_>,
+    ) -> Self {
+        Self { title: "the profile".to_owned(), at: tree.span().start, table: tree.get_ref(), known }
+            .closed(report)
+    }
+
+    fn get(&self, key: &str) -> Option<&'t Spanned<DeValue<'t>>> {
+        self.table.get(key)
+    }
+
+    /// The byte offset of `key`'s value, if it is written.
+    pub(super) fn place_of(&self, key: &str) -> Option<usize> {
+        self.get(key).map(|value| value.span().start)
+    }
+
+    /// Reports every key that is not known here.
+    fn closed(self, report: &mut Report<'_>) -> Self {
+        for key in self.table.keys().filter(|key| !self.known.contains(&key.get_ref().as_ref())) {
+            let name = key.get_ref().as_ref();
+            let help = spelling::nearest(name, self.known.iter().copied()).map_or_else(
+                || format!("known here: {}", self.known.join(", ")),
+                |word| format!("did you mean \"{word}\"?"),
+            );
+            report.misplaced(
+                key.span().start,
+                format!("unknown key {} in {}", quoted(name), self.title),
+                help,
+            );
+        }
+        self
+    }
+
+    /// Reports it if `key` is not there; `help` says what to write. A misspelt one is reported already.
+    pub(super) fn require(&self, key: &'static str, help: &str, report: &mut Report<'_>) {
+        let means_key = |name: &str| spelling::nearest(name, self.known.iter().copied()) == Some(key);
+        let names = self.table.keys().map(|name| name.get_ref().as_ref());
+        let misspelt = names.filter(|name| !self.known.contains(name)).any(means_key);
+        if self.get(key).is_none() && !misspelt {
+            report.misplaced(self.at, format!("{} lacks \"{key}\"", self.title), help);
+        }
+    }
+
+    /// The number under `key`; the default where there is none, `None` (and a report) where it is unusable.
+    pub(super) fn number(
+        &self,
+        key: &str,
+        bounds: Bounds<f32>,
+        report: &mut Report<'_>,
+    ) -> Option<Placed<f32>> {
+        let Some(value) = self.get(key) else { return Some(Placed { value: bounds.default, at: self.at }) };
+        let at = value.span().start;
+        let Some(number) = as_f32(value.get_ref()) else { return wrong_type(key, value, "a number", report) };
+        let Bounds { low, high, .. } = bounds;
+        if (low..=high).contains(&number) {
+            return Some(Placed { value: number, at });
+        }
+        let message = if number.is_finite() {
+            format!("\"{key}\" is {number}; it must be {low} to {high}")
+        } else {
+            format!("\"{key}\" must be {low} to {high}")
+        };
+        report.error(at, message, "");
+        None
+    }
+
+    /// The whole number under `key`; the default where there is none, `None` (and a report) where it is unusable.
+    pub(super) fn whole(
+        &self,
+        key: &str,
+        bounds: Bounds<u32>,
+        report: &mut Report<'_>,
+    ) -> Option<Placed<u32>> {
+        let Some(value) = self.get(key) else { return Some(Placed { value: bounds.default, at: self.at }) };
+        let at = value.span().start;
+        let Some(number) = value.get_ref().as_integer() else {
+            return wrong_type(key, value, "a whole number", report);
+        };
+        let Bounds { low, high, .. } = bounds;
+        match u32::from_str_radix(number.as_str(), number.radix()) {
+            Ok(number) if (low..=high).contains(&number) => Some(Placed { value: number, at }),
+            _ => {
+                let allowed = if low == high { format!("{low}") } else { format!("{low} to {high}") };
+                let number = shortened(number.as_str());
+                report.error(at, format!("\"{key}\" is {number}; it must be {allowed}"), "");
+                None
+            }
+        }
+    }
+
+    /// The text under `key`; `None` where it is absent, and where it is no text (which is reported).
+    pub(super) fn text(&self, key: &str, report: &mut Report<'_>) -> Option<Placed<&'t str>> {
+        let value = self.get(key)?;
+        match value.get_ref().as_str() {
+            Some(text) => Some(Placed { value: text, at: value.span().start }),
+            None => wrong_type(key, value, "text in quotation marks", report),
+        }
+    }
+
+    /// What the word under `key` stands for; `None` where it is absent, and where it is none of `words` (reported).
+    pub(super) fn word<T: Copy>(
+        &self,
+        key: &str,
+        words: &[(&'static str, T)],
+        report: &mut Report<'_>,
+    ) -> Option<Placed<T>> {
+        let Placed { value: text, at } = self.text(key, report)?;
+        if let Some((_, value)) = words.iter().find(|(word, _)| *word == text) {
+            return Some(Placed { value: *value, at });
+        }
+        let known = words.iter().map(|(word, _)| *word);
+        let help = spelling::nearest(text, known.clone()).map_or_else(
+            || {
+                format!(
+                    "write one of: {}",
+                    known.map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
+                )
+            },
+            |word| format!("did you mean \"{word}\"?"),
+        );
+        report.error(at, format!("\"{key}\" cannot be {}", quoted(text)), help);
+        None
+    }
+
+    /// The table under `key`, named `title`, with its `known` keys; `None` where it is absent, and where it is no
+    /// table (reported).
+    pub(super) fn table(
+        &self,
+        key: &str,
+        title: String,
+        known: &'static [&'static str],
+        report: &mut Report<'_>,
+    ) -> Option<Self> {
+        let value = self.get(key)?;
+        let table = value.get_ref().as_table().or_else(|| wrong_type(key, value, "a table", report))?;
+        Some(Self { title, at: value.span().start, table, known }.closed(report))
+    }
+
+    /// The tables `[[key]]` in the text's order, each named after `key` and its number from 1; others are reported.
+    pub(super) fn tables(
+        &self,
+        key: &str,
+        known: &'static [&'static str],
+        report: &mut Report<'_>,
+    ) -> Vec<Self> {
+        let Some(value) = self.get(key) else { return Vec::new() };
+        let wanted = format!("a list of tables, each headed [[{key}]]");
+        let Some(list) = value.get_ref().as_array().or_else(|| wrong_type(key, value, &wanted, report))
+        else {
+            return Vec::new();
+        };
+        let mut tables = Vec::new();
+        for (number, entry) in (1..).zip(list.iter()) {
+            let (title, at) = (format!("{key} {number}"), entry.span().start);
+            let table = entry.get_ref().as_table().or_else(|| wrong_type(key, entry, &wanted, report));
+            tables.extend(table.map(|table| Self { title, at, table, known }.closed(report)));
+        }
+        tables
+    }
+}
+
+/// Integers count as numbers, too: nobody should have to write `2.0` for 2 N.
+fn as_f32(value: &DeValue<'_>) -> Option<f32> {
+    match value {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+        DeValue::Integer(integer) => {
+            u64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|n| n as f32)
+        }
+        _ => None,
+    }
+}
+
+fn wrong_type<T>(
+    key: &str,
+    value: &Spanned<DeValue<'_>>,
+    wanted: &str,
+    report: &mut Report<'_>,
+) -> Option<T> {
+    let kind = match value.get_ref() {
+        DeValue::String(_) => "text",
+        DeValue::Integer(_) => "a whole number",
+        DeValue::Float(_) => "a fraction",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    };
+    report.error(value.span().start, format!("\"{key}\" must be {wanted}, not {kind}"), "");
+    None
+}

@@ -3,16 +3,28 @@
 //! The way of the data is one line: bytes → sample → raw channels → strain → contact → intents → output events.
 //! `ARCHITECTURE.md` tells where each step lives and which rules hold between them.
 
+pub mod capture;
+pub mod cli;
 pub mod contact;
 pub mod control;
+pub mod health;
 pub mod influence;
+pub mod latency;
+pub mod link;
 pub mod mapping;
 pub mod output;
+pub mod pipeline;
 pub mod quantity;
+pub mod replay;
+pub mod signal;
 pub mod spelling;
 pub mod time;
 pub mod virtual_pad;
 
+#[cfg(all(feature = "live", target_os = "linux"))]
+pub mod bridge;
+#[cfg(all(feature = "live", target_os = "linux"))]
+pub mod signals;
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod sink;
 #[cfg(all(feature = "live", target_os = "linux"))]

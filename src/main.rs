@@ -1,3 +1,7 @@
 //! The `tactpad` program: parse, dispatch, print the error, set the exit code.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    tactpad::cli::run()
+}

@@ -13,7 +13,8 @@ pub const CHANNEL_NAMES: [&str; CHANNELS] = ["m0x", "m0y", "m0z", "m1x", "m1y", 
 
 /// The nine bridge signals in microvolts, zero for an untouched pad.
 ///
-/// Per module: x tangential (counter-clockwise +), y radial (outward +), z the pad's axis (pressed +).
+/// Per module: x, positive where the post is pushed counter-clockwise (tangentially); y, **negative** where it is
+/// pushed outwards (radially); z, positive where the module is pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Strain {
     /// Microvolts at the bridge, in the order of [`CHANNEL_NAMES`].

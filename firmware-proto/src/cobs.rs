@@ -1,8 +1,8 @@
 //! Consistent overhead byte stuffing: rewrites a frame without zero bytes, so that a zero can mark its end.
 //!
-//! Source: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7(2),
-//! 1999. No frame of this protocol is longer than [`UNSTUFFED_MAX`] bytes, so the method's one special case, a run
-//! of 254 bytes without a zero, never arises.
+//! Source: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking
+//! 7(2), 1999. No frame of this protocol is longer than [`UNSTUFFED_MAX`] bytes, so the method's one special
+//! case, a run of 254 bytes without a zero, never arises.
 
 use crate::cursor::Writer;
 
@@ -28,7 +28,8 @@ pub(crate) fn stuff(frame: &[u8], out: &mut Writer) {
 pub(crate) enum Unstuffer {
     /// Nothing came yet.
     Start,
-    /// Inside a run: this many of its bytes are still to come, and if any byte follows them, a zero goes before it.
+    /// Inside a run: this many of its bytes are still to come, and if any byte follows them, a zero goes
+    /// before it.
     Run { left: u8 },
 }
 

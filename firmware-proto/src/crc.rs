@@ -1,7 +1,7 @@
 //! CRC-32/ISO-HDLC, the checksum of Ethernet and zip files.
 //!
-//! Four bits at a time: the table of sixteen words costs a microcontroller 64 bytes of flash, and a sample frame
-//! takes 108 look-ups.
+//! Four bits at a time: the table of sixteen words costs a microcontroller 64 bytes of flash, and a sample
+//! frame takes 108 look-ups.
 
 /// Bytes of the checksum in a frame, little-endian.
 pub(crate) const LEN: usize = 4;

@@ -57,8 +57,8 @@ impl<'a> Writer<'a> {
         Self { bytes, len: 0 }
     }
 
-    /// Appends `part`, or as much of it as there is room for. Every caller's slice is sized by a constant that
-    /// is asserted to hold its longest content.
+    /// Appends `part`, or as much of it as there is room for. Every caller's slice is sized by a constant
+    /// that is asserted to hold its longest content.
     pub(crate) fn put(&mut self, part: &[u8]) {
         let free = self.bytes.get_mut(self.len..).unwrap_or_default();
         for (slot, byte) in free.iter_mut().zip(part) {

@@ -39,8 +39,8 @@ impl Message {
 /// Why a frame or report is no message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WireError {
-    /// Bytes were lost, added or changed: stuffing, checksum or length is wrong, or a field that version 1 does not
-    /// allow to vary holds something else.
+    /// Bytes were lost, added or changed: stuffing, checksum or length is wrong, or a field that version 1
+    /// does not allow to vary holds something else.
     Damaged,
     /// More bytes without a zero than any frame has. The rest, up to the next zero, is skipped.
     TooLong,

@@ -56,7 +56,8 @@ pub fn encode_command(command: &Command) -> [u8; REPORT_LEN] {
 /// The message in a report of [`REPORT_LEN`] bytes that begins with its report id.
 ///
 /// # Errors
-/// `Damaged` if the length, the report id or a field is wrong; `UnknownKind` and `NewerVersion` as on the serial line.
+/// `Damaged` if the length, the report id or a field is wrong; `UnknownKind` and `NewerVersion` as on the
+/// serial line.
 pub fn decode_message(report: &[u8]) -> Result<Message, WireError> {
     decode(MESSAGE_REPORT_ID, report)
 }
@@ -64,7 +65,8 @@ pub fn decode_message(report: &[u8]) -> Result<Message, WireError> {
 /// The command in a report of [`REPORT_LEN`] bytes that begins with its report id.
 ///
 /// # Errors
-/// `Damaged` if the length, the report id or a field is wrong; `UnknownKind` and `NewerVersion` as on the serial line.
+/// `Damaged` if the length, the report id or a field is wrong; `UnknownKind` and `NewerVersion` as on the
+/// serial line.
 pub fn decode_command(report: &[u8]) -> Result<Command, WireError> {
     decode(COMMAND_REPORT_ID, report)
 }

@@ -7,8 +7,8 @@ use crate::cursor::{Reader, Writer};
 pub struct Identity {
     /// Tells this pad from its siblings.
     pub serial_number: SerialNumber,
-    /// Number of strain channels; [`CHANNELS`](crate::CHANNELS) in version 1. It is passed on unchecked, so that a
-    /// host can say what it refuses.
+    /// Number of strain channels; [`CHANNELS`](crate::CHANNELS) in version 1. It is passed on unchecked, so
+    /// that a host can say what it refuses.
     pub channels: u8,
     /// Bits of a count, 24 to 32: codes run from -(2^(bits-1)) to 2^(bits-1) - 1. Passed on unchecked.
     pub count_bits: u8,
@@ -72,8 +72,8 @@ impl SerialNumber {
         core::str::from_utf8(characters).unwrap_or_default()
     }
 
-    /// A pad with odd bytes in its serial number still has a scale that the host needs: what follows the first zero
-    /// is dropped, and what is not visible ASCII becomes `?`.
+    /// A pad with odd bytes in its serial number still has a scale that the host needs: what follows the
+    /// first zero is dropped, and what is not visible ASCII becomes `?`.
     fn from_wire(wire: [u8; Self::LEN]) -> Self {
         let mut bytes = [0; Self::LEN];
         for (slot, byte) in bytes.iter_mut().zip(wire.into_iter().take_while(|byte| *byte != 0)) {

@@ -86,8 +86,8 @@ fn read_whole<B: Body>(bytes: &[u8]) -> Result<B, WireError> {
     if reader.is_empty() { Ok(body) } else { Err(WireError::Damaged) }
 }
 
-/// Collects one frame at a time, unstuffed. It keeps room for the longest frame that any version may send, so that
-/// strangers are told from damage.
+/// Collects one frame at a time, unstuffed. It keeps room for the longest frame that any version may send, so
+/// that strangers are told from damage.
 #[derive(Clone, Debug)]
 struct FrameReceiver {
     frame: [u8; cobs::UNSTUFFED_MAX],
@@ -121,7 +121,8 @@ impl FrameReceiver {
         Ok(())
     }
 
-    /// Ends the frame and starts the next. Nothing between two zeros is no frame, and an overlong one is told already.
+    /// Ends the frame and starts the next. Nothing between two zeros is no frame, and an overlong one is told
+    /// already.
     fn end(&mut self) -> Option<Result<&[u8], WireError>> {
         let Self { len, unstuffer, overlong, .. } = *self;
         self.len = 0;

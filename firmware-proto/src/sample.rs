@@ -10,8 +10,8 @@ pub struct Sample {
     pub sequence: u32,
     /// Microseconds of the pad's own clock, counted from its start, at the end of the conversion.
     pub time_us: u64,
-    /// What the converter read, in the order m0x, m0y, m0z, m1x … m2z. A count times the identity's picovolts per
-    /// count times 1e-6 is microvolts at the bridge.
+    /// What the converter read, in the order m0x, m0y, m0z, m1x … m2z. A count times the identity's picovolts
+    /// per count times 1e-6 is microvolts at the bridge.
     pub counts: [i32; CHANNELS],
     /// Temperature of the pad's board in hundredths of a degree Celsius; void if the status says so.
     pub temperature_centi_c: i16,
@@ -54,8 +54,8 @@ const _: () = assert!(Sample::PAYLOAD_LEN == 52);
 /// What the pad knows to be wrong with a sample, one bit each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Status(
-    /// Bits 0–8: channel out of range; 9: temperature invalid; 10: first sample after a restart; 11: supply fault.
-    /// Bits 12–15 mean nothing yet: they are sent as zero and read as zero.
+    /// Bits 0–8: channel out of range; 9: temperature invalid; 10: first sample after a restart; 11: supply
+    /// fault. Bits 12–15 mean nothing yet: they are sent as zero and read as zero.
     pub u16,
 );
 
@@ -72,8 +72,8 @@ impl Status {
         Self(self.0 & Self::DEFINED)
     }
 
-    /// Whether channel `channel` (0 to 8, in wire order) is out of its converter's range or its bridge is open, so
-    /// that its count means nothing. There is no channel from 9 on, so that is `false`.
+    /// Whether channel `channel` (0 to 8, in wire order) is out of its converter's range or its bridge is
+    /// open, so that its count means nothing. There is no channel from 9 on, so that is `false`.
     #[must_use]
     pub const fn is_out_of_range(self, channel: usize) -> bool {
         channel < CHANNELS && self.0 >> channel & 1 == 1
@@ -91,7 +91,8 @@ impl Status {
         self.0 & Self::RESTARTED != 0
     }
 
-    /// Whether the excitation or the converter's reference is out of tolerance, so that no count can be trusted.
+    /// Whether the excitation or the converter's reference is out of tolerance, so that no count can be
+    /// trusted.
     #[must_use]
     pub const fn supply_fault(self) -> bool {
         self.0 & Self::SUPPLY_FAULT != 0

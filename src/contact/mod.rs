@@ -1,6 +1,7 @@
 //! Where a contact is and how hard it presses, from strain.
 
 pub mod statics;
+pub mod touch;
 
 use crate::contact::statics::Statics;
 use crate::quantity::{Contact, Strain};
@@ -13,6 +14,11 @@ pub enum Decoder {
 }
 
 impl Decoder {
+    /// The decoder that is inside the program.
+    pub fn shipped() -> Self {
+        Self::Statics(Statics::nominal())
+    }
+
     /// The contact that explains `strain`. Always finite; see the decoder in question for degenerate input.
     pub fn decode(&self, strain: &Strain) -> Contact {
         match self {

@@ -1,6 +1,7 @@
 //! The event log: one line of JSON for each event.
 
 use std::fmt;
+use std::io::{self, Write};
 
 use crate::control::OutputEvent;
 
@@ -18,6 +19,14 @@ impl fmt::Display for LogLine<'_> {
         // Names of devices and controls hold nothing that JSON would have to escape.
         write!(f, r#"{{"t_us":{t_us},"device":"{device}","code":"{code}","value":{value}}}"#)
     }
+}
+
+/// Writes a line for each event.
+///
+/// # Errors
+/// What `out` says.
+pub fn write(out: &mut impl Write, events: &[OutputEvent]) -> io::Result<()> {
+    events.iter().try_for_each(|event| writeln!(out, "{}", LogLine(event)))
 }
 
 #[cfg(test)]

@@ -1,3 +1,4 @@
 //! From levels to edges.
 
 pub mod event_log;
+pub mod ledger;

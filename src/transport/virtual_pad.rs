@@ -13,6 +13,8 @@ use rustix::io::Errno;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
+use crate::virtual_pad::firmware;
+
 use super::pacing::{RETRY_US, Stop, Wake, Written, limit, monotonic_us, wait, write_whole};
 
 /// The program of a pad, as its wire sees it. Times are microseconds since the pad was started.
@@ -26,6 +28,20 @@ pub trait PadFirmware {
     /// Appends to `bytes` everything due up to `now_us`; afterwards [`due_us`](Self::due_us) lies later than
     /// that.
     fn emit(&mut self, now_us: u64, bytes: &mut Vec<u8>);
+}
+
+impl PadFirmware for firmware::VirtualPad {
+    fn receive(&mut self, bytes: &[u8]) {
+        Self::receive(self, bytes);
+    }
+
+    fn due_us(&self) -> u64 {
+        Self::due_us(self)
+    }
+
+    fn emit(&mut self, now_us: u64, bytes: &mut Vec<u8>) {
+        Self::emit(self, now_us, bytes);
+    }
 }
 
 /// A running virtual pad. Dropping it pulls the plug.

@@ -1,0 +1,243 @@
+//! `tactpad demo`: the main job with nothing attached, and the proof that it went right.
+
+use std::collections::BTreeMap;
+use std::io::{self, IsTerminal, Write};
+use std::sync::{Arc, Mutex};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::live::{Output, Plan, bridge, open_virtual, play};
+use super::screen::Screen;
+use super::{Failure, print_json, profile};
+use crate::bridge::{Bridge, Patience};
+use crate::control::{Code, Device, OutputEvent};
+use crate::latency::Percentiles;
+use crate::mapping::profile::Profile;
+use crate::sink::log::LogSink;
+use crate::sink::null::NullSink;
+use crate::sink::{Sink, SinkError, uinput};
+use crate::transport::address::PadAddress;
+use crate::virtual_pad::script::Script;
+
+/// Arguments of `tactpad demo`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad demo --seconds 10 --profile contra")]
+pub(super) struct Arguments {
+    /// How long to play.
+    #[arg(long, default_value_t = 20.0)]
+    seconds: f64,
+    /// A profile's name or file.
+    #[arg(long, default_value = "super-mario")]
+    profile: String,
+    /// Where events go: auto (a virtual gamepad, else the screen), uinput, x11, log:FILE, none.
+    #[arg(long, default_value = "auto")]
+    output: Output,
+    /// Print one JSON document on stdout.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What the demo comes to.
+#[derive(Serialize)]
+struct Summary {
+    frames: u64,
+    frames_lost: u64,
+    contacts: u64,
+    downs: usize,
+    ups: usize,
+    held_at_end: usize,
+    latency_us: Percentiles,
+}
+
+/// One event as the script lists it.
+type Expected = (Device, Code, i32);
+
+/// Events that went out, in order.
+type Seen = Arc<Mutex<Vec<OutputEvent>>>;
+
+/// Lets events pass and remembers them.
+struct Witness {
+    sink: Box<dyn Sink>,
+    seen: Seen,
+}
+
+impl Sink for Witness {
+    fn prepare(&mut self, device: Device) -> Result<(), SinkError> {
+        self.sink.prepare(device)
+    }
+
+    fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {
+        self.sink.write(group)?;
+        if let Ok(mut seen) = self.seen.lock() {
+            seen.extend_from_slice(group);
+        }
+        Ok(())
+    }
+
+    fn describe(&self) -> String {
+        self.sink.describe()
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if !(0.0..=86_400.0).contains(&arguments.seconds) {
+        return Err(Failure::Unusable(format!(
+            "--seconds {} is not a time between 0 and 86400",
+            arguments.seconds
+        )));
+    }
+    let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
+    let script = Script::for_profile(&profile, (arguments.seconds * 1e6) as u64);
+    let expected = script.expected().to_vec();
+    let contacts = script.contacts() as u64;
+    let (sink, title) = open_sink(arguments, &profile)?;
+    tell(arguments, &title)?;
+    let seen = Seen::default();
+    let witness = Witness { sink, seen: Arc::clone(&seen) };
+    let (mut bridge, _running) = bridge(Plan {
+        pad: open_virtual(script)?,
+        sink: Box::new(witness),
+        profile_name: arguments.profile.clone(),
+        profile_text: text,
+        profile,
+        choice: arguments.output.choice(),
+        record: None,
+        seconds: Some(arguments.seconds),
+        patience: Patience::Limited,
+    })?;
+    let screen = (!arguments.json).then(|| start_screen(&bridge, &seen));
+    let played = play(&mut bridge, &PadAddress::Virtual);
+    drop(screen);
+    played?;
+    let seen = seen.lock().map(|seen| seen.clone()).unwrap_or_default();
+    report(arguments, &bridge, &seen)?;
+    compare(&seen, &expected)?;
+    check_contacts(&bridge, contacts)
+}
+
+/// The sink, and the demo's first line: where events go, and what would bring a better place.
+fn open_sink(arguments: &Arguments, profile: &Profile) -> Result<(Box<dyn Sink>, String), Failure> {
+    if arguments.output != Output::Auto {
+        let sink = arguments.output.open()?;
+        let title = format!("Output: {} (asked for).", sink.describe());
+        return Ok((sink, title));
+    }
+    match uinput::available() {
+        _ if profile.output == Device::Keyboard => {
+            let title =
+                "Output: an event log, here. The profile types keys: for those ask with --output uinput.";
+            Ok((here(arguments), title.into()))
+        }
+        Ok(()) => {
+            let sink = Output::Uinput.open()?;
+            Ok((sink, "Output: a virtual gamepad. Nothing better is to be had.".into()))
+        }
+        Err(error) => {
+            let title = format!("Output: an event log, here. For a virtual gamepad: {}", error.message);
+            Ok((here(arguments), title))
+        }
+    }
+}
+
+/// The event log on the screen: the live picture shows it, and without one it is lines on stdout.
+fn here(arguments: &Arguments) -> Box<dyn Sink> {
+    if arguments.json || io::stdout().is_terminal() {
+        Box::new(NullSink)
+    } else {
+        Box::new(LogSink::new(io::stdout(), "stdout".into()))
+    }
+}
+
+/// What people read goes to stdout, or to stderr where stdout is for a program.
+fn tell(arguments: &Arguments, line: &str) -> io::Result<()> {
+    if arguments.json { writeln!(io::stderr(), "{line}") } else { writeln!(io::stdout(), "{line}") }
+}
+
+fn start_screen(bridge: &Bridge, seen: &Seen) -> Option<Screen> {
+    let seen = Arc::clone(seen);
+    Screen::start("tactpad demo".into(), bridge.snapshot(), move || {
+        let events = seen.lock().map(|seen| seen.iter().rev().take(8).copied().collect::<Vec<_>>());
+        events.unwrap_or_default().iter().rev().map(line).collect()
+    })
+}
+
+fn line(event: &OutputEvent) -> String {
+    format!("{:8.3} s  {} {:+}", event.at.as_us() as f64 * 1e-6, event.code, event.value)
+}
+
+fn report(arguments: &Arguments, bridge: &Bridge, seen: &[OutputEvent]) -> Result<(), Failure> {
+    let health = bridge.health();
+    let tally = Tally::of(seen);
+    let summary = Summary {
+        frames: health.samples,
+        frames_lost: health.frames_lost + health.frames_damaged,
+        contacts: health.contacts,
+        downs: tally.downs,
+        ups: tally.ups,
+        held_at_end: tally.held.len(),
+        latency_us: bridge.latency().percentiles(),
+    };
+    if arguments.json {
+        return print_json(&summary);
+    }
+    let Summary { frames, frames_lost, contacts, downs, ups, held_at_end, latency_us } = summary;
+    let Percentiles { p50, p95, p99, max } = latency_us;
+    writeln!(io::stdout(), "{frames} frames, {frames_lost} lost; {contacts} contacts")?;
+    writeln!(io::stdout(), "{downs} downs, {ups} ups, {held_at_end} held at the end")?;
+    Ok(writeln!(
+        io::stdout(),
+        "bytes readable to event written: p50 {p50:.0} µs, p95 {p95:.0} µs, p99 {p99:.0} µs, max {max:.0} µs"
+    )?)
+}
+
+/// How often controls went down and up, and how many are still down.
+#[derive(Default)]
+struct Tally {
+    downs: usize,
+    ups: usize,
+    held: BTreeMap<(Device, Code), i32>,
+}
+
+impl Tally {
+    fn of(seen: &[OutputEvent]) -> Self {
+        let mut tally = Self::default();
+        for event in seen {
+            // A hat that goes over from one side to the other is an up and a down in one event.
+            let before = tally.held.insert((event.device, event.code), event.value).unwrap_or(0);
+            tally.ups += usize::from(before != 0);
+            tally.downs += usize::from(event.value != 0);
+        }
+        tally.held.retain(|_, value| *value != 0);
+        tally
+    }
+}
+
+fn compare(seen: &[OutputEvent], expected: &[Expected]) -> Result<(), Failure> {
+    let seen: Vec<Expected> = seen.iter().map(|event| (event.device, event.code, event.value)).collect();
+    let differs = seen.iter().zip(expected).position(|(seen, expected)| seen != expected);
+    let Some(index) = differs.or((seen.len() != expected.len()).then(|| seen.len().min(expected.len())))
+    else {
+        return Ok(());
+    };
+    let name = |event: Option<&Expected>| match event {
+        Some((device, code, value)) => format!("{} {code} {value}", device.name()),
+        None => "nothing".into(),
+    };
+    Err(Failure::Failed(format!(
+        "event {} is {} where the script has {} ({} events, {} in the script)",
+        index + 1,
+        name(seen.get(index)),
+        name(expected.get(index)),
+        seen.len(),
+        expected.len()
+    )))
+}
+
+fn check_contacts(bridge: &Bridge, expected: u64) -> Result<(), Failure> {
+    let contacts = bridge.health().contacts;
+    if contacts == expected {
+        return Ok(());
+    }
+    Err(Failure::Failed(format!("{contacts} contacts where the script has {expected}")))
+}

@@ -1,0 +1,255 @@
+//! What the live verbs share: choosing and opening the pad, the output and the recorder.
+
+use std::env;
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use super::{Failure, profile};
+use crate::bridge::{Bridge, BridgeError, Clock, Ending, Opener, Parts, Patience};
+use crate::capture::{CallKind, CallRef, CaptureReader, CaptureWriter};
+use crate::contact::Decoder;
+use crate::mapping::check::OutputChoice;
+use crate::mapping::profile::Profile;
+use crate::pipeline::{Pipeline, Refusal};
+use crate::signals::Signals;
+use crate::sink::{Sink, log::LogSink, null::NullSink, uinput::UinputSink, x11::X11Sink};
+use crate::time::HostInstant;
+use crate::transport::Transport;
+use crate::transport::address::PadAddress;
+use crate::transport::playback::Playback;
+use crate::transport::serial::{OpenError, Serial};
+use crate::transport::virtual_pad::VirtualPad as PadOnTerminal;
+use crate::virtual_pad::firmware::VirtualPad;
+use crate::virtual_pad::script::Script;
+
+/// The virtual pad of `run` and `record` plays this long, then rests.
+const VIRTUAL_SCRIPT_US: u64 = 3_600_000_000;
+
+/// The virtual pad's noise is the same each time.
+pub(super) const VIRTUAL_SEED: u64 = 1;
+
+/// Where events are to go.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Output {
+    /// The best that is there.
+    Auto,
+    /// Virtual devices of the kernel.
+    Uinput,
+    /// Keys of the X server.
+    X11,
+    /// An event log in a file.
+    Log(PathBuf),
+    /// Nowhere.
+    None,
+}
+
+impl FromStr for Output {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once(':') {
+            Some(("log", path)) if !path.is_empty() => Ok(Self::Log(path.into())),
+            None if text == "auto" => Ok(Self::Auto),
+            None if text == "uinput" => Ok(Self::Uinput),
+            None if text == "x11" => Ok(Self::X11),
+            None if text == "none" => Ok(Self::None),
+            _ => Err("choose auto, uinput, x11, log:FILE or none".into()),
+        }
+    }
+}
+
+impl Output {
+    /// X11 knows keys only; everything else uses the output that the profile names.
+    pub(super) fn choice(&self) -> OutputChoice {
+        if *self == Self::X11 { OutputChoice::Keyboard } else { OutputChoice::AsWritten }
+    }
+
+    /// Opens the sink. `Auto` means the kernel's virtual devices; what else would do is said in the error.
+    pub(super) fn open(&self) -> Result<Box<dyn Sink>, Failure> {
+        match self {
+            Self::Auto | Self::Uinput => {
+                let sink = UinputSink::open();
+                Ok(Box::new(sink.map_err(|error| Failure::Unusable(with_alternatives(&error.message)))?))
+            }
+            Self::X11 => Ok(Box::new(X11Sink::open(None).map_err(|error| Failure::Unusable(error.message))?)),
+            Self::Log(path) => {
+                Ok(Box::new(LogSink::create(path).map_err(|error| Failure::Unusable(error.message))?))
+            }
+            Self::None => Ok(Box::new(NullSink)),
+        }
+    }
+}
+
+fn with_alternatives(message: &str) -> String {
+    let x11 = if env::var_os("DISPLAY").is_some() { ", --output x11 for keys of the X server" } else { "" };
+    format!("{message}\nUntil then: --output log:FILE for an event log{x11}")
+}
+
+/// An opened pad: its first opening, and how to open it again.
+pub(super) struct OpenedPad {
+    pub(super) pad: Option<Box<dyn Transport>>,
+    pub(super) opener: Option<Opener>,
+    /// The virtual pad behind the terminal, if it is one; it ends when this is dropped.
+    _virtual_pad: Option<PadOnTerminal>,
+}
+
+/// Opens the pad at `address`. The virtual pad plays a script made for `profile`.
+pub(super) fn open_pad(
+    address: &PadAddress,
+    profile: &Profile,
+    patience: Patience,
+) -> Result<OpenedPad, Failure> {
+    match address {
+        PadAddress::Serial { path, baud } => open_serial(path.clone(), *baud, patience),
+        PadAddress::Virtual => open_virtual(Script::for_profile(profile, VIRTUAL_SCRIPT_US)),
+        PadAddress::Capture { file } => open_capture(file),
+        PadAddress::Auto { .. } | PadAddress::Hid { .. } => Err(Failure::Unusable(format!(
+            "--pad {address} is not supported yet: name the port with --pad serial:PATH, or play with --pad virtual"
+        ))),
+    }
+}
+
+fn open_serial(path: String, baud: u32, patience: Patience) -> Result<OpenedPad, Failure> {
+    let pad = match Serial::open(&path, baud) {
+        Ok(pad) => Some(Box::new(pad) as Box<dyn Transport>),
+        Err(OpenError::NoSuchPort { .. }) if patience == Patience::Endless => None,
+        Err(error) => return Err(Failure::Unusable(error.to_string())),
+    };
+    let opener: Opener = Box::new(move || match Serial::open(&path, baud) {
+        Ok(pad) => Ok(Box::new(pad) as Box<dyn Transport>),
+        Err(error) => Err(io::Error::other(error)),
+    });
+    Ok(OpenedPad { pad, opener: Some(opener), _virtual_pad: None })
+}
+
+/// Starts a virtual pad that plays `script` and opens its terminal like any pad's port.
+pub(super) fn open_virtual(script: Script) -> Result<OpenedPad, Failure> {
+    let virtual_pad = PadOnTerminal::start(VirtualPad::new(script, VIRTUAL_SEED))?;
+    let opened = open_serial(virtual_pad.path().to_owned(), firmware_proto::DEFAULT_BAUD, Patience::Limited)?;
+    Ok(OpenedPad { _virtual_pad: Some(virtual_pad), ..opened })
+}
+
+/// Plays the bytes of a capture at the pace at which they were recorded.
+fn open_capture(path: &Path) -> Result<OpenedPad, Failure> {
+    let unusable = |what: String| Failure::Unusable(format!("{} {what}", path.display()));
+    let file = File::open(path).map_err(|error| unusable(format!("cannot be read: {error}")))?;
+    let calls = CaptureReader::new(BufReader::new(file)).map_err(|error| unusable(error.to_string()))?;
+    let mut last: Option<HostInstant> = None;
+    let chunks = calls.map_while(Result::ok).filter_map(move |call| match call.kind {
+        CallKind::Bytes(bytes) => {
+            let delay_us = last.map_or(0, |last| call.now.us_since(last));
+            last = Some(call.now);
+            Some((delay_us, bytes))
+        }
+        _ => None,
+    });
+    let pad: Box<dyn Transport> = Box::new(Playback::start(chunks)?);
+    Ok(OpenedPad { pad: Some(pad), opener: None, _virtual_pad: None })
+}
+
+/// What a live verb decided before it starts.
+pub(super) struct Plan {
+    pub(super) pad: OpenedPad,
+    pub(super) sink: Box<dyn Sink>,
+    pub(super) profile_name: String,
+    pub(super) profile_text: String,
+    pub(super) profile: Profile,
+    pub(super) choice: OutputChoice,
+    pub(super) record: Option<Box<dyn Write>>,
+    pub(super) seconds: Option<f64>,
+    pub(super) patience: Patience,
+}
+
+/// A bridge for the plan; the opened pad must live as long as the bridge runs.
+pub(super) fn bridge(plan: Plan) -> Result<(Bridge, RunningPad), Failure> {
+    let clock = Clock::start();
+    let now = clock.now();
+    let Plan { pad: OpenedPad { pad, opener, _virtual_pad }, profile_name, profile_text, choice, .. } = plan;
+    let recorder = plan.record.map(|to| begin_capture(to, now, &profile_text, choice)).transpose()?;
+    let parts = Parts {
+        pipeline: Pipeline::new(Decoder::shipped(), plan.profile),
+        pad,
+        opener,
+        sink: plan.sink,
+        signals: Signals::catch()?,
+        recorder,
+        reload: Box::new(move || reload(&profile_name, choice)),
+        end_at: plan.seconds.map(|seconds| now.plus_us((seconds * 1e6) as u64)),
+        patience: plan.patience,
+        clock,
+    };
+    Ok((Bridge::new(parts), RunningPad { _virtual_pad }))
+}
+
+/// Keeps the virtual pad playing.
+pub(super) struct RunningPad {
+    _virtual_pad: Option<PadOnTerminal>,
+}
+
+/// The file of a capture.
+pub(super) fn create_capture(path: &Path) -> Result<Box<dyn Write>, Failure> {
+    match File::create(path) {
+        Ok(file) => Ok(Box::new(BufWriter::new(file))),
+        Err(error) => Err(Failure::Unusable(format!("{} cannot be written: {error}", path.display()))),
+    }
+}
+
+/// Begins a capture with the profile, so that it replays without another word.
+fn begin_capture(
+    to: Box<dyn Write>,
+    now: HostInstant,
+    text: &str,
+    choice: OutputChoice,
+) -> io::Result<CaptureWriter<Box<dyn Write>>> {
+    let mut recorder = CaptureWriter::new(to)?;
+    let call = match choice {
+        OutputChoice::AsWritten => CallRef::Profile(text),
+        OutputChoice::Keyboard => CallRef::KeyboardProfile(text),
+    };
+    recorder.write(now, call)?;
+    Ok(recorder)
+}
+
+/// Reads the profile again; what is wrong with it is told, and the old one stays.
+fn reload(name: &str, choice: OutputChoice) -> Option<(String, Profile)> {
+    match profile::read(name, choice) {
+        Ok(read) => {
+            let _ = writeln!(io::stderr(), "profile {name} was read again");
+            Some(read)
+        }
+        Err(Failure::Unusable(message) | Failure::Failed(message)) => {
+            let _ = writeln!(io::stderr(), "{message}\nthe profile in use stays");
+            None
+        }
+        Err(Failure::Unread) => None,
+    }
+}
+
+/// Runs the bridge and turns its errors into the program's.
+pub(super) fn play(bridge: &mut Bridge, address: &PadAddress) -> Result<Ending, Failure> {
+    bridge.run().map_err(|error| match error {
+        BridgeError::NotAPad(why) => Failure::Unusable(format!("{address} {why}")),
+        BridgeError::Refused(refusal) => Failure::Unusable(format!("{address} {}", why_refused(&refusal))),
+        BridgeError::Sink(error) => Failure::Failed(error.message),
+        BridgeError::Io(error) => Failure::Failed(error.to_string()),
+    })
+}
+
+fn why_refused(refusal: &Refusal) -> String {
+    match refusal {
+        Refusal::NewerVersion(version) => format!(
+            "speaks protocol version {version}; this tactpad knows up to {}: update tactpad",
+            firmware_proto::PROTOCOL_VERSION
+        ),
+        Refusal::Unsuitable(identity) => format!(
+            "says that it has {} channels of {} bits and {} pV per count; a pad has {} channels of 24 to 32 bits: \
+             check its firmware",
+            identity.channels,
+            identity.count_bits,
+            identity.picovolts_per_count,
+            firmware_proto::CHANNELS
+        ),
+    }
+}

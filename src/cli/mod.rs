@@ -1,0 +1,97 @@
+//! The program's verbs, one file each. Errors are printed and exit codes chosen here and nowhere else.
+
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod demo;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod latency;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod live;
+mod profile;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod record;
+mod replay;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod run;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod screen;
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Turns a tactile disc with nine strain channels into a game controller.
+#[derive(Debug, Parser)]
+#[command(name = "tactpad", version, arg_required_else_help = true)]
+#[command(after_help = "Try it with nothing attached: tactpad demo")]
+struct Arguments {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Play with a virtual pad: nothing needs to be attached.
+    #[cfg(all(feature = "live", target_os = "linux"))]
+    Demo(demo::Arguments),
+    /// Play: a pad in, key and gamepad events out.
+    #[cfg(all(feature = "live", target_os = "linux"))]
+    Run(run::Arguments),
+    /// Record a pad, so that `replay` gives the same events again.
+    #[cfg(all(feature = "live", target_os = "linux"))]
+    Record(record::Arguments),
+    /// Print the events that a capture, or a list of contacts, comes to.
+    Replay(replay::Arguments),
+    /// Measure from pad bytes readable to event written, and where the time goes.
+    #[cfg(all(feature = "live", target_os = "linux"))]
+    Latency(latency::Arguments),
+    /// List, show and check profiles.
+    Profile(profile::Arguments),
+}
+
+/// Why a verb did not do what was asked.
+#[derive(Debug)]
+enum Failure {
+    /// Arguments or input that cannot be used: exit 2.
+    Unusable(String),
+    /// It failed, or a check says no: exit 1.
+    Failed(String),
+    /// Nobody reads our output any more; nothing to say.
+    Unread,
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::BrokenPipe { Self::Unread } else { Self::Failed(error.to_string()) }
+    }
+}
+
+/// Runs the program with the process's arguments.
+pub fn run() -> ExitCode {
+    let outcome = match Arguments::parse().verb {
+        #[cfg(all(feature = "live", target_os = "linux"))]
+        Verb::Demo(arguments) => demo::run(&arguments),
+        #[cfg(all(feature = "live", target_os = "linux"))]
+        Verb::Run(arguments) => run::run(&arguments),
+        #[cfg(all(feature = "live", target_os = "linux"))]
+        Verb::Record(arguments) => record::run(&arguments),
+        Verb::Replay(arguments) => replay::run(&arguments),
+        #[cfg(all(feature = "live", target_os = "linux"))]
+        Verb::Latency(arguments) => latency::run(&arguments),
+        Verb::Profile(arguments) => profile::run(&arguments),
+    };
+    let (code, message) = match outcome {
+        Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,
+        Err(Failure::Failed(message)) => (1, message),
+        Err(Failure::Unusable(message)) => (2, message),
+    };
+    // Where even the error cannot be written, the exit code still tells.
+    let _ = writeln!(io::stderr(), "tactpad: {message}");
+    ExitCode::from(code)
+}
+
+/// Prints one JSON document to stdout.
+fn print_json(document: &impl serde::Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string(document).map_err(|error| Failure::Failed(error.to_string()))?;
+    Ok(writeln!(io::stdout(), "{text}")?)
+}

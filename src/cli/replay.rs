@@ -1,0 +1,134 @@
+//! `tactpad replay`: the event log of a capture, or of a list of contacts.
+
+use std::fs::File;
+use std::io::{self, BufReader, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Deserialize;
+
+use super::{Failure, profile};
+use crate::capture::{CallKind, CaptureError, CaptureReader};
+use crate::contact::Decoder;
+use crate::mapping::check::{self, OutputChoice};
+use crate::mapping::engine::Engine;
+use crate::mapping::profile::Profile;
+use crate::output::event_log;
+use crate::output::ledger::{Edges, Ledger};
+use crate::pipeline::{NoProbe, Pipeline};
+use crate::quantity::Contact;
+use crate::replay::make_call;
+use crate::time::StreamInstant;
+
+/// Arguments of `tactpad replay`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad record game.cap, then tactpad replay game.cap")]
+#[group(skip)]
+pub(super) struct Arguments {
+    /// A capture, made by `tactpad record`.
+    #[arg(required_unless_present = "contacts", conflicts_with = "contacts")]
+    capture: Option<PathBuf>,
+    /// A CSV of contacts instead: t_s,x_mm,y_mm,fx_n,fy_n,fz_n.
+    #[arg(long, requires = "profile")]
+    contacts: Option<PathBuf>,
+    /// A profile's name or file. Without it a capture replays with the one it was recorded with.
+    #[arg(long)]
+    profile: Option<String>,
+}
+
+/// One row of a contacts file.
+#[derive(Debug, Deserialize)]
+struct Row {
+    t_s: f64,
+    x_mm: f32,
+    y_mm: f32,
+    fx_n: f32,
+    fy_n: f32,
+    fz_n: f32,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let chosen = arguments.profile.as_deref().map(|name| profile::read(name, OutputChoice::AsWritten));
+    let chosen = chosen.transpose()?.map(|(_, profile)| profile);
+    let mut log = BufWriter::new(io::stdout().lock());
+    match (&arguments.capture, &arguments.contacts, chosen) {
+        (Some(path), _, chosen) => replay_capture(path, chosen, &mut log)?,
+        (None, Some(path), Some(profile)) => replay_contacts(path, profile, &mut log)?,
+        _ => return Err(Failure::Unusable("give a capture, or --contacts and --profile".into())),
+    }
+    Ok(log.flush()?)
+}
+
+fn replay_capture(path: &Path, chosen: Option<Profile>, log: &mut impl Write) -> Result<(), Failure> {
+    let unusable = |error: CaptureError| Failure::Unusable(format!("{} {error}", path.display()));
+    let file = File::open(path).map_err(|error| unusable(CaptureError::Io(error)))?;
+    let mut calls = CaptureReader::new(BufReader::new(file)).map_err(unusable)?;
+    let recorded = match calls.next() {
+        Some(Ok(first)) => recorded_profile(&first.kind),
+        _ => None,
+    };
+    let keeps_profile = chosen.is_none();
+    let profile = chosen.or(recorded).ok_or_else(|| {
+        Failure::Unusable(format!("{} names no usable profile; choose one with --profile", path.display()))
+    })?;
+    let mut pipeline = Pipeline::new(Decoder::shipped(), profile);
+    for call in calls {
+        match call {
+            Ok(call) if !keeps_profile && recorded_profile(&call.kind).is_some() => {}
+            Ok(call) => make_call(&mut pipeline, call.now, call.kind.as_ref(), &mut NoProbe, |events| {
+                event_log::write(log, events)
+            })?,
+            Err(error @ CaptureError::CutOff { .. }) => writeln!(io::stderr(), "{} {error}", path.display())?,
+            Err(error) => {
+                log.flush()?;
+                return Err(unusable(error));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn recorded_profile(call: &CallKind) -> Option<Profile> {
+    match call {
+        CallKind::Profile(text) => check::read(text, OutputChoice::AsWritten).0,
+        CallKind::KeyboardProfile(text) => check::read(text, OutputChoice::Keyboard).0,
+        _ => None,
+    }
+}
+
+/// Maps contacts as they stand: each row is a sample, a row without normal force is a lift.
+fn replay_contacts(path: &Path, profile: Profile, log: &mut impl Write) -> Result<(), Failure> {
+    let unusable = |error: csv::Error| Failure::Unusable(format!("{}: {error}", path.display()));
+    let mut rows = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(unusable)?;
+    let mut ledger = Ledger::new(&profile);
+    let mut engine = Engine::new(profile);
+    let mut at = StreamInstant::default();
+    for row in rows.deserialize() {
+        let row: Row = row.map_err(unusable)?;
+        settle_until(&mut ledger, row_time(&row).max(at), log)?;
+        at = row_time(&row).max(at);
+        let contact =
+            Contact { x_mm: row.x_mm, y_mm: row.y_mm, fx_n: row.fx_n, fy_n: row.fy_n, fz_n: row.fz_n };
+        let levels = engine.step(at, Some(&contact).filter(|contact| contact.fz_n > 0.0));
+        let mut edges = Edges::new();
+        ledger.update(at, &levels, &mut edges);
+        event_log::write(log, &edges)?;
+    }
+    let mut edges = Edges::new();
+    ledger.release_all(at, &mut edges);
+    Ok(event_log::write(log, &edges)?)
+}
+
+/// Emits what the minimum press held back and is due before `until`.
+fn settle_until(ledger: &mut Ledger, until: StreamInstant, log: &mut impl Write) -> io::Result<()> {
+    while let Some(due) = ledger.next_due().filter(|&due| due < until) {
+        let mut edges = Edges::new();
+        ledger.settle(due, &mut edges);
+        event_log::write(log, &edges)?;
+    }
+    Ok(())
+}
+
+fn row_time(row: &Row) -> StreamInstant {
+    StreamInstant::from_us((row.t_s.max(0.0) * 1e6) as u64)
+}

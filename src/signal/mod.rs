@@ -1,0 +1,135 @@
+//! From raw counts to strain: scale, channel faults, mean filter, tare.
+//!
+//! Raw counts carry the bridges' offsets, their drift and the sensor's faults. What leaves here is zero for an
+//! untouched pad, or nothing at all while the zero is not known or a channel cannot be trusted.
+
+pub mod fault;
+pub mod filter;
+pub mod tare;
+
+use firmware_proto::identity::Identity;
+use firmware_proto::sample::Sample;
+use firmware_proto::{DEFAULT_COUNT_BITS, DEFAULT_PICOVOLTS_PER_COUNT};
+
+use crate::health::Health;
+use crate::quantity::{CHANNELS, Strain};
+use crate::time::StreamInstant;
+use fault::ChannelFaults;
+use filter::MeanFilter;
+use tare::Tare;
+
+/// What a count means: told by the pad's identity, or the protocol's default.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// Microvolts at the bridge per count.
+    pub uv_per_count: f64,
+    /// Bits of a count; its range is ±2^(bits − 1).
+    pub count_bits: u8,
+}
+
+impl Scale {
+    /// The scale of a pad that does not tell one.
+    pub fn unidentified() -> Self {
+        Self::new(DEFAULT_PICOVOLTS_PER_COUNT, DEFAULT_COUNT_BITS)
+    }
+
+    /// The scale that a pad's identity states; `None` for one that the wire's specification does not allow.
+    pub fn of(identity: &Identity) -> Option<Self> {
+        let allowed = usize::from(identity.channels) == CHANNELS
+            && (DEFAULT_COUNT_BITS..=32).contains(&identity.count_bits)
+            && identity.picovolts_per_count > 0;
+        allowed.then(|| Self::new(identity.picovolts_per_count, identity.count_bits))
+    }
+
+    fn new(picovolts_per_count: u32, count_bits: u8) -> Self {
+        Self { uv_per_count: f64::from(picovolts_per_count) * 1e-6, count_bits }
+    }
+}
+
+/// What a sample comes to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Conditioned {
+    /// Strain relative to the untouched pad.
+    Strain(Strain),
+    /// The zero is being measured: the pad must lie untouched for a moment.
+    Taring,
+    /// A channel is at its limit, stuck, or without supply; nothing can be said about the contact.
+    Faulty,
+}
+
+/// The conditioning stage.
+#[derive(Clone, Debug)]
+pub struct Signal {
+    scale: Scale,
+    faults: ChannelFaults,
+    filter: MeanFilter,
+    tare: Tare,
+}
+
+impl Signal {
+    /// A stage that has seen nothing: it measures its zero first. `filter_samples` is the mean filter's window.
+    pub fn new(filter_samples: usize) -> Self {
+        Self {
+            scale: Scale::unidentified(),
+            faults: ChannelFaults::new(),
+            filter: MeanFilter::new(filter_samples),
+            tare: Tare::new(),
+        }
+    }
+
+    /// Changes the filter's window; it grows anew from one sample.
+    pub fn set_filter_samples(&mut self, filter_samples: usize) {
+        self.filter = MeanFilter::new(filter_samples);
+    }
+
+    /// Takes the scale of a pad that identified itself. A different scale means a different zero.
+    pub fn set_scale(&mut self, scale: Scale) {
+        if scale != self.scale {
+            self.scale = scale;
+            self.restart();
+        }
+    }
+
+    /// Forgets the zero and everything learned about the channels: another pad, or the same one begun anew.
+    pub fn restart(&mut self) {
+        self.faults = ChannelFaults::new();
+        self.filter.clear();
+        self.tare = Tare::new();
+    }
+
+    /// Measures the zero again, as if the pad had just been plugged in.
+    pub fn retare(&mut self) {
+        self.tare = Tare::new();
+    }
+
+    /// Forgets the filter's past, so that nothing from before a fault mixes with what comes after.
+    pub fn clear_filter(&mut self) {
+        self.filter.clear();
+    }
+
+    /// Conditions one sample. `touched` says whether a contact is under way: the zero is followed only while not.
+    pub fn condition(
+        &mut self,
+        at: StreamInstant,
+        sample: &Sample,
+        touched: bool,
+        health: &mut Health,
+    ) -> Conditioned {
+        if self.faults.check(sample, self.scale.count_bits, health) {
+            self.filter.clear();
+            return Conditioned::Faulty;
+        }
+        let mean = self.filter.push(&sample.counts);
+        if self.tare.is_known() {
+            let raw_uv = mean.map(|counts| counts * self.scale.uv_per_count);
+            let uv = self.tare.apply(at, &raw_uv, touched);
+            return Conditioned::Strain(Strain { uv });
+        }
+        let raw_uv: [f64; CHANNELS] = sample.counts.map(|count| f64::from(count) * self.scale.uv_per_count);
+        self.tare.measure(at, &raw_uv);
+        if self.tare.is_known() {
+            self.faults.learn();
+        }
+        Conditioned::Taring
+    }
+}

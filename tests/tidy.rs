@@ -1,0 +1,239 @@
+//! The rules of ARCHITECTURE.md that a program can check.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Modules by row. A row imports only rows above it, never a sibling.
+const ROWS: &[&[&str]] = &[
+    &["time", "spelling"],
+    &["quantity", "control", "health", "latency"],
+    &["capture", "link", "signal", "influence", "mapping"],
+    &["contact", "output", "virtual_pad"],
+    &["pipeline"],
+    &["replay"],
+    &["transport", "sink", "signals"],
+    &["bridge"],
+    &["cli"],
+];
+
+/// Everything that runs between pad bytes and output events.
+const LIVE_CORE: &[&str] =
+    &["time", "quantity", "control", "health", "link", "signal", "contact", "mapping", "output", "pipeline"];
+
+/// What the live core may not say: clocks, I/O, threads, logs, panics, hash maps. (Lints watch over `unwrap`.)
+const BANNED_IN_LIVE_CORE: &[&str] = &[
+    "std::time",
+    "std::fs",
+    "std::net",
+    "std::thread",
+    "std::env",
+    "std::process",
+    "println!",
+    "panic!(",
+    "unreachable!(",
+    "HashMap",
+    "HashSet",
+];
+
+const BANNED_WORDS: &[&str] = &["TODO", "FIXME", "XXX", "todo!(", "unimplemented!(", "#[ignore"];
+const BANNED_FILE_NAMES: &[&str] =
+    &["manager", "helper", "helpers", "util", "utils", "common", "handler", "data", "info", "base"];
+
+const FILE_LINES_MAX: usize = 500;
+const FUNCTION_LINES_MAX: usize = 70;
+const FUNCTION_LINES_P90: usize = 30;
+const FUNCTION_LINES_MEDIAN: usize = 8;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()
+}
+
+/// All files below `folder` with this extension, without build output.
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        if path.is_dir() && !path.ends_with("target") && !hidden {
+            found.extend(files(&path, extension));
+        } else if path.extension().is_some_and(|found| found == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The program's own sources, as (module, path, text before the tests).
+fn sources() -> Vec<(String, PathBuf, String)> {
+    let src = root().join("src");
+    let read = |path: PathBuf| {
+        let inside = path.strip_prefix(&src).ok()?;
+        let first = inside.components().next()?.as_os_str().to_string_lossy().into_owned();
+        let module = first.trim_end_matches(".rs").to_owned();
+        let text = fs::read_to_string(&path).ok()?;
+        let code = text.split("#[cfg(test)]\nmod tests").next()?.to_owned();
+        Some((module, path, code))
+    };
+    files(&src, "rs").into_iter().filter_map(read).collect()
+}
+
+fn row(module: &str) -> Option<usize> {
+    ROWS.iter().position(|row| row.contains(&module))
+}
+
+/// The top-level modules that a source names through `crate::`.
+fn imports(code: &str) -> Vec<&str> {
+    let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let after = lines.flat_map(|line| line.split("crate::").skip(1));
+    after.map(|rest| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("")).collect()
+}
+
+#[test]
+fn a_row_imports_only_rows_above_it() {
+    let mut wrong = Vec::new();
+    for (module, path, code) in sources() {
+        if ["lib", "main"].contains(&module.as_str()) {
+            continue;
+        }
+        let Some(own) = row(&module) else {
+            wrong.push(format!("{} is in no row", path.display()));
+            continue;
+        };
+        for import in imports(&code).into_iter().filter(|import| *import != module) {
+            if row(import).is_none_or(|other| other >= own) {
+                wrong.push(format!("{} imports {import}", path.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn the_live_core_has_no_clock_io_or_panic() {
+    let mut wrong = Vec::new();
+    for (module, path, code) in sources() {
+        if !LIVE_CORE.contains(&module.as_str()) {
+            continue;
+        }
+        for (number, line) in code.lines().enumerate() {
+            let line = line.split("//").next().unwrap_or("");
+            for word in BANNED_IN_LIVE_CORE.iter().filter(|word| line.contains(**word)) {
+                wrong.push(format!("{}:{}: {word}", path.display(), number + 1));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Lengths of functions, by indentation: from `fn` to the closing brace in the same column.
+fn function_lengths(code: &str) -> Vec<(usize, usize)> {
+    let lines: Vec<&str> = code.lines().collect();
+    let mut lengths = Vec::new();
+    for (number, line) in lines.iter().enumerate() {
+        let indent = line.len() - line.trim_start().len();
+        let words = line.trim_start().split('(').next().unwrap_or("");
+        if !words.split_whitespace().any(|word| word == "fn") || words.starts_with("//") {
+            continue;
+        }
+        let end = format!("{}}}", " ".repeat(indent));
+        if line.trim_end().ends_with('}') {
+            lengths.push((number + 1, 1));
+        } else if let Some(length) = lines.iter().skip(number).position(|line| **line == end) {
+            lengths.push((number + 1, length + 1));
+        }
+    }
+    lengths
+}
+
+#[test]
+fn functions_are_short() {
+    let mut lengths = Vec::new();
+    let mut wrong = Vec::new();
+    let proto = files(&root().join("firmware-proto/src"), "rs");
+    let proto = proto.into_iter().filter_map(|path| {
+        let text = fs::read_to_string(&path).ok()?;
+        Some((String::new(), path, text.split("#[cfg(test)]\nmod tests").next()?.to_owned()))
+    });
+    for (_, path, code) in sources().into_iter().chain(proto) {
+        for (line, length) in function_lengths(&code) {
+            lengths.push(length);
+            if length > FUNCTION_LINES_MAX {
+                wrong.push(format!("{}:{line}: {length} lines", path.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    lengths.sort_unstable();
+    let (median, p90) = (lengths[lengths.len() / 2], lengths[lengths.len() * 9 / 10]);
+    println!("{} functions, median {median} lines, p90 {p90}", lengths.len());
+    assert!(median <= FUNCTION_LINES_MEDIAN && p90 <= FUNCTION_LINES_P90, "median {median}, p90 {p90}");
+}
+
+#[test]
+fn files_are_short_and_well_named() {
+    let mut wrong = Vec::new();
+    for (_, path, code) in sources() {
+        let lines = code.lines().count();
+        if lines > FILE_LINES_MAX {
+            wrong.push(format!("{}: {lines} lines before its tests", path.display()));
+        }
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if BANNED_FILE_NAMES.contains(&name.as_str()) {
+            wrong.push(format!("{}: a name that says nothing", path.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn nothing_is_left_for_later() {
+    let mut wrong = Vec::new();
+    for path in files(&root(), "rs").into_iter().filter(|path| !path.ends_with("tests/tidy.rs")) {
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        for (number, line) in text.lines().enumerate() {
+            for word in BANNED_WORDS.iter().filter(|word| line.contains(**word)) {
+                wrong.push(format!("{}:{}: {word}", path.display(), number + 1));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn every_page_has_one_title_and_links_that_lead_somewhere() {
+    let mut wrong = Vec::new();
+    for path in files(&root(), "md") {
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        let prose = outside_code(&text);
+        let titles = prose.iter().filter(|line| line.starts_with("# ")).count();
+        if titles != 1 {
+            wrong.push(format!("{}: {titles} titles", path.display()));
+        }
+        for target in prose.iter().flat_map(|line| link_targets(line)) {
+            let file = target.split('#').next().unwrap_or("");
+            let there = path.parent().is_some_and(|folder| folder.join(file).exists());
+            if !file.is_empty() && !file.contains("://") && !there {
+                wrong.push(format!("{}: {target} leads nowhere", path.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+fn outside_code(text: &str) -> Vec<&str> {
+    let mut inside = false;
+    let mut prose = Vec::new();
+    for line in text.lines() {
+        if line.trim_start().starts_with("```") {
+            inside = !inside;
+        } else if !inside {
+            prose.push(line);
+        }
+    }
+    prose
+}
+
+fn link_targets(line: &str) -> Vec<&str> {
+    line.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect()
+}

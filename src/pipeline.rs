@@ -309,10 +309,12 @@ impl Pipeline {
         self.distrust();
     }
 
-    /// Maps the contact if it can be trusted, and settles with the ledger.
+    /// Maps the contact and settles with the ledger; does nothing while contacts are not believed.
     fn map(&mut self, contact: Option<Contact>) {
-        let believed = !self.paused && self.refusal.is_none() && self.at >= self.trusted_at;
-        let contact = contact.filter(|_| believed);
+        if self.paused || self.refusal.is_some() || self.at < self.trusted_at {
+            // The engine is not told of a lift: a press that a fault cut short stays dead until it really ends.
+            return;
+        }
         self.health.contacts += u64::from(contact.is_some() && self.contact.is_none());
         self.contact = contact;
         let levels = self.engine.step(self.at, self.contact.as_ref());

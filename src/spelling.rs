@@ -3,9 +3,11 @@
 /// A word longer than this is nobody's slip of the finger, and comparing it would only cost time.
 const LENGTH_MAX: usize = 48;
 
-/// The candidate with the fewest single-letter changes from `word`, the first of equals; letter case does not count.
+/// The candidate with the fewest single-letter changes from `word`, the first of equals; letter case does not
+/// count.
 ///
-/// `None` if even the nearest differs in more than a third of `word`'s letters (but one change always passes).
+/// `None` if even the nearest differs in more than a third of `word`'s letters (but one change always
+/// passes).
 pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     if word.is_empty() || word.len() > LENGTH_MAX {
         return None;
@@ -20,8 +22,8 @@ pub fn nearest<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) ->
 
 /// Single-letter changes that make one word of the other: insert, delete, replace, or swap two neighbours.
 ///
-/// Source: F. J. Damerau, "A technique for computer detection and correction of spelling errors" (1964), in the form
-/// that changes no letter twice; computed row by row over the letters of `left`.
+/// Source: F. J. Damerau, "A technique for computer detection and correction of spelling errors" (1964), in
+/// the form that changes no letter twice; computed row by row over the letters of `left`.
 fn distance(left: &str, right: &str) -> usize {
     let right: Vec<char> = right.chars().flat_map(char::to_lowercase).collect();
     let mut older: Vec<usize> = Vec::new();

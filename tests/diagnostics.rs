@@ -1,7 +1,8 @@
 //! Profiles with mistakes, each annotated with what must be said about it.
 //!
-//! A file in `tests/diagnostics` holds comment lines `# error: LINE:COLUMN message` and `# warning: LINE:COLUMN message`,
-//! each optionally followed by `# help: text`, for everything that the profile is expected to raise, in order.
+//! A file in `tests/diagnostics` holds comment lines `# error: LINE:COLUMN message` and `# warning:
+//! LINE:COLUMN message`, each optionally followed by `# help: text`, for everything that the profile is
+//! expected to raise, in order.
 
 use std::fs;
 use std::path::{Path, PathBuf};

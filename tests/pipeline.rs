@@ -149,6 +149,19 @@ fn a_press_cut_short_by_a_fault_taps_nothing() {
 }
 
 #[test]
+fn a_press_that_goes_on_through_a_fault_stays_dead_until_it_ends() {
+    let mut rig = Rig::rested(profile("super-mario"));
+    rig.press(0.0, 0.0, 3.0, 100);
+    rig.sample(&RIGHT);
+    rig.press(0.0, 0.0, 3.0, 700);
+    rig.rest(100);
+    assert_eq!(rig.take_events(), Vec::<String>::new());
+    rig.press(0.0, 0.0, 3.0, 100);
+    rig.rest(100);
+    assert_eq!(rig.take_events(), ["BTN_SOUTH=1", "BTN_SOUTH=0"]);
+}
+
+#[test]
 fn a_silent_pad_releases_everything_within_a_tenth_of_a_second() {
     let mut rig = holding_right();
     let last_ms = rig.now_us as f64 * 1e-3;

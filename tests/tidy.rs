@@ -137,10 +137,15 @@ fn function_lengths(code: &str) -> Vec<(usize, usize)> {
             continue;
         }
         let end = format!("{}}}", " ".repeat(indent));
-        if line.trim_end().ends_with('}') {
-            lengths.push((number + 1, 1));
-        } else if let Some(length) = lines.iter().skip(number).position(|line| **line == end) {
-            lengths.push((number + 1, length + 1));
+        let signature_end = lines.iter().skip(number).find(|line| line.ends_with(['{', '}', ';']));
+        match signature_end {
+            Some(line) if line.ends_with('}') => lengths.push((number + 1, 1)),
+            Some(line) if line.ends_with('{') => {
+                let length = lines.iter().skip(number).position(|line| **line == end);
+                lengths.extend(length.map(|length| (number + 1, length + 1)));
+            }
+            // A declaration without a body.
+            _ => {}
         }
     }
     lengths

@@ -100,35 +100,45 @@ fn recorded_profile(call: &CallKind) -> Option<Profile> {
 fn replay_contacts(path: &Path, profile: Profile, log: &mut impl Write) -> Result<(), Failure> {
     let unusable = |error: csv::Error| Failure::Unusable(format!("{}: {error}", path.display()));
     let mut rows = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(unusable)?;
-    let mut ledger = Ledger::new(&profile);
-    let mut engine = Engine::new(profile);
+    let mut mapped = Mapped { ledger: Ledger::new(&profile), engine: Engine::new(profile), log };
     let mut at = StreamInstant::default();
     for row in rows.deserialize() {
         let row: Row = row.map_err(unusable)?;
-        settle_until(&mut ledger, row_time(&row).max(at), log)?;
-        at = row_time(&row).max(at);
-        let contact =
-            Contact { x_mm: row.x_mm, y_mm: row.y_mm, fx_n: row.fx_n, fy_n: row.fy_n, fz_n: row.fz_n };
-        let levels = engine.step(at, Some(&contact).filter(|contact| contact.fz_n > 0.0));
-        let mut edges = Edges::new();
-        ledger.update(at, &levels, &mut edges);
-        event_log::write(log, &edges)?;
+        let Row { t_s, x_mm, y_mm, fx_n, fy_n, fz_n } = row;
+        at = at.max(StreamInstant::from_us((t_s.max(0.0) * 1e6) as u64));
+        let contact = Contact { x_mm, y_mm, fx_n, fy_n, fz_n };
+        mapped.step(at, Some(&contact).filter(|contact| contact.fz_n > 0.0))?;
     }
-    let mut edges = Edges::new();
-    ledger.release_all(at, &mut edges);
-    Ok(event_log::write(log, &edges)?)
+    // The list ends with a lift, so that nothing stays held.
+    mapped.step(at, None)?;
+    Ok(mapped.settle(StreamInstant::from_us(u64::MAX))?)
 }
 
-/// Emits what the minimum press held back and is due before `until`.
-fn settle_until(ledger: &mut Ledger, until: StreamInstant, log: &mut impl Write) -> io::Result<()> {
-    while let Some(due) = ledger.next_due().filter(|&due| due < until) {
-        let mut edges = Edges::new();
-        ledger.settle(due, &mut edges);
-        event_log::write(log, &edges)?;
-    }
-    Ok(())
+/// Contacts on their way to the log, past the pipeline: they are decoded already.
+struct Mapped<'a, W> {
+    engine: Engine,
+    ledger: Ledger,
+    log: &'a mut W,
 }
 
-fn row_time(row: &Row) -> StreamInstant {
-    StreamInstant::from_us((row.t_s.max(0.0) * 1e6) as u64)
+impl<W: Write> Mapped<'_, W> {
+    fn step(&mut self, at: StreamInstant, contact: Option<&Contact>) -> io::Result<()> {
+        self.settle(at)?;
+        let mut edges = Edges::new();
+        // A tap is stated once. The second step, at the same instant, tells the ledger that it is over.
+        for _ in 0..2 {
+            self.ledger.update(at, &self.engine.step(at, contact), &mut edges);
+        }
+        event_log::write(self.log, &edges)
+    }
+
+    /// Emits what the minimum press held back and is due before `until`.
+    fn settle(&mut self, until: StreamInstant) -> io::Result<()> {
+        while let Some(due) = self.ledger.next_due().filter(|&due| due < until) {
+            let mut edges = Edges::new();
+            self.ledger.settle(due, &mut edges);
+            event_log::write(self.log, &edges)?;
+        }
+        Ok(())
+    }
 }

@@ -1,7 +1,8 @@
 //! The kernel's names of keys, buttons and axes.
 //!
-//! Source: `linux/input-event-codes.h` of the Linux kernel. The keyboard's keys up to 248, the gamepad block and the
-//! position axes are here; the header's further blocks (media remotes, mice, pens) are nothing a pad should press.
+//! Source: `linux/input-event-codes.h` of the Linux kernel. The keyboard's keys up to 248, the gamepad block
+//! and the position axes are here; the header's further blocks (media remotes, mice, pens) are nothing a pad
+//! should press.
 
 use crate::control::Code;
 
@@ -23,7 +24,8 @@ pub const GAMEPAD_BUTTONS: [Code; 11] = [
 /// The hat of a gamepad: left and right, then up and down.
 pub const HAT_AXES: [Code; 2] = [Code::Axis(0x10), Code::Axis(0x11)];
 
-/// The first number that belongs to a button of a mouse, joystick or gamepad; below it are the keyboard's keys.
+/// The first number that belongs to a button of a mouse, joystick or gamepad; below it are the keyboard's
+/// keys.
 const FIRST_BUTTON: u16 = 0x100;
 
 /// Names of consecutive numbers, from a first number on.
@@ -44,10 +46,12 @@ const KEYS: &[Run] = runs! {
     83: KEY_KPDOT;
     85: KEY_ZENKAKUHANKAKU KEY_102ND KEY_F11 KEY_F12 KEY_RO KEY_KATAKANA KEY_HIRAGANA KEY_HENKAN;
     93: KEY_KATAKANAHIRAGANA KEY_MUHENKAN KEY_KPJPCOMMA KEY_KPENTER KEY_RIGHTCTRL KEY_KPSLASH KEY_SYSRQ;
-    100: KEY_RIGHTALT KEY_LINEFEED KEY_HOME KEY_UP KEY_PAGEUP KEY_LEFT KEY_RIGHT KEY_END KEY_DOWN KEY_PAGEDOWN;
+    100: KEY_RIGHTALT KEY_LINEFEED KEY_HOME KEY_UP KEY_PAGEUP KEY_LEFT KEY_RIGHT KEY_END KEY_DOWN;
+    109: KEY_PAGEDOWN;
     110: KEY_INSERT KEY_DELETE KEY_MACRO KEY_MUTE KEY_VOLUMEDOWN KEY_VOLUMEUP KEY_POWER KEY_KPEQUAL;
     118: KEY_KPPLUSMINUS KEY_PAUSE KEY_SCALE KEY_KPCOMMA KEY_HANGEUL KEY_HANJA KEY_YEN KEY_LEFTMETA;
-    126: KEY_RIGHTMETA KEY_COMPOSE KEY_STOP KEY_AGAIN KEY_PROPS KEY_UNDO KEY_FRONT KEY_COPY KEY_OPEN KEY_PASTE;
+    126: KEY_RIGHTMETA KEY_COMPOSE KEY_STOP KEY_AGAIN KEY_PROPS KEY_UNDO KEY_FRONT KEY_COPY KEY_OPEN;
+    135: KEY_PASTE;
     136: KEY_FIND KEY_CUT KEY_HELP KEY_MENU KEY_CALC KEY_SETUP KEY_SLEEP KEY_WAKEUP KEY_FILE KEY_SENDFILE;
     146: KEY_DELETEFILE KEY_XFER KEY_PROG1 KEY_PROG2 KEY_WWW KEY_MSDOS KEY_COFFEE KEY_ROTATE_DISPLAY;
     154: KEY_CYCLEWINDOWS KEY_MAIL KEY_BOOKMARKS KEY_COMPUTER KEY_BACK KEY_FORWARD KEY_CLOSECD KEY_EJECTCD;
@@ -62,8 +66,8 @@ const KEYS: &[Run] = runs! {
     231: KEY_SEND KEY_REPLY KEY_FORWARDMAIL KEY_SAVE KEY_DOCUMENTS KEY_BATTERY KEY_BLUETOOTH KEY_WLAN KEY_UWB;
     240: KEY_UNKNOWN KEY_VIDEO_NEXT KEY_VIDEO_PREV KEY_BRIGHTNESS_CYCLE KEY_BRIGHTNESS_AUTO KEY_DISPLAY_OFF;
     246: KEY_WWAN KEY_RFKILL KEY_MICMUTE;
-    0x130: BTN_SOUTH BTN_EAST BTN_C BTN_NORTH BTN_WEST BTN_Z BTN_TL BTN_TR BTN_TL2 BTN_TR2 BTN_SELECT BTN_START;
-    0x13c: BTN_MODE BTN_THUMBL BTN_THUMBR;
+    0x130: BTN_SOUTH BTN_EAST BTN_C BTN_NORTH BTN_WEST BTN_Z BTN_TL BTN_TR BTN_TL2 BTN_TR2 BTN_SELECT;
+    0x13b: BTN_START BTN_MODE BTN_THUMBL BTN_THUMBR;
     0x220: BTN_DPAD_UP BTN_DPAD_DOWN BTN_DPAD_LEFT BTN_DPAD_RIGHT;
 };
 

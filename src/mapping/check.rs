@@ -33,8 +33,10 @@ const HYSTERESIS_DEG: Bounds<f32> = Bounds { low: 0.0, high: 45.0, default: 8.0 
 const DIAGONAL_DEG: Bounds<f32> = Bounds { low: 5.0, high: 85.0, default: 45.0 };
 const STICKY_DIAGONAL_DEG: f32 = 30.0;
 const FORCE_N: Bounds<f32> = Bounds { low: 0.05, high: 50.0, default: 0.3 };
+/// Default of a button's release force over its press force.
 const RELEASE_SHARE: f32 = 0.7;
-const DPAD_RELEASE_SHARE: f32 = 2.0 / 3.0;
+/// Force that starts a direction over the default of the force that ends it.
+const DPAD_RELEASE_RATIO: f32 = 1.5;
 
 const MODES: [(&str, DpadMode); 3] =
     [("4way", DpadMode::FourWay), ("4way-sticky", DpadMode::FourWaySticky), ("8way", DpadMode::EightWay)];
@@ -72,8 +74,8 @@ const DIRECTIONS: [(&str, &str, &str); 4] = [
 
 /// Reads a profile from TOML text.
 ///
-/// Returns everything there is to say about the text, in its order. The profile is `None` exactly if there is an error
-/// among it; warnings leave it usable.
+/// Returns everything there is to say about the text, in its order. The profile is `None` exactly if there is
+/// an error among it; warnings leave it usable.
 pub fn read(text: &str, output: OutputChoice) -> (Option<Profile>, Vec<Diagnostic>) {
     let mut report = Report::new(text);
     let (tree, faults) = DeTable::parse_recoverable(text);
@@ -256,7 +258,7 @@ fn read_shape(table: &Section<'_>, mode: Option<DpadMode>, report: &mut Report<'
     let rotation = table.number("rotation_deg", ROTATION_DEG, report);
     let (diagonal, hysteresis) = read_zones(table, mode, report);
     let min_force = table.number("min_force_n", FORCE_N, report);
-    let share = min_force.map_or(FORCE_N.default, |force| force.value) * DPAD_RELEASE_SHARE;
+    let share = min_force.map_or(FORCE_N.default, |force| force.value) / DPAD_RELEASE_RATIO;
     let release = table.number("release_force_n", Bounds { low: 0.0, default: share, ..FORCE_N }, report);
     require_less(table, ("release_force_n", release), ("min_force_n", min_force), report);
     Some(Shape {

@@ -1,8 +1,8 @@
 //! Two parts of a profile that drive the same control.
 //!
-//! On one device a control may have several owners: it is down while any of them wants it down. That is worth a warning,
-//! because games then cannot tell the owners apart. An axis that two owners push in opposite directions at the same
-//! moment has no answer, so it is an error.
+//! On one device a control may have several owners: it is down while any of them wants it down. That is worth
+//! a warning, because games then cannot tell the owners apart. An axis that two owners push in opposite
+//! directions at the same moment has no answer, so it is an error.
 
 use std::fmt;
 

@@ -39,7 +39,8 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// The finding for people, as `FILE:LINE:COLUMN: error: message` and a second line `  help: …`; no final newline.
+    /// The finding for people, as `FILE:LINE:COLUMN: error: message` and a second line `  help: …`; no final
+    /// newline.
     pub fn render(&self, file: &str) -> String {
         let Self { severity, message, line, column, help } = self;
         let mut text = format!("{file}:{line}:{column}: {severity}: {message}");
@@ -65,8 +66,8 @@ impl<'t> Report<'t> {
 
     /// Notes at the byte offset `at` that the text cannot be parsed there.
     ///
-    /// Whatever else is found on that line would be an echo of this, and so may be keys that are missing or in the
-    /// wrong table anywhere: both are dropped from here on.
+    /// Whatever else is found on that line would be an echo of this, and so may be keys that are missing or
+    /// in the wrong table anywhere: both are dropped from here on.
     pub(super) fn broken(&mut self, at: usize, message: &str) {
         let (line, column) = position(self.text, at);
         self.broken_lines.push(line);
@@ -119,7 +120,8 @@ impl<'t> Report<'t> {
     }
 }
 
-/// Line and column, both from 1 and the column in characters, of the byte offset `at`; behind the end means the end.
+/// Line and column, both from 1 and the column in characters, of the byte offset `at`; behind the end means
+/// the end.
 fn position(text: &str, at: usize) -> (usize, usize) {
     let before = text.char_indices().take_while(|(offset, _)| *offset < at).map(|(_, letter)| letter);
     before.fold(

@@ -14,8 +14,8 @@ const _: () = assert!(BUTTONS_MAX + 2 <= LEVELS_MAX);
 
 /// Plays one profile. `mappings/README.md` states its rules.
 ///
-/// All decisions are taken at samples, from their stream times: a long press starts to hold with the first sample at
-/// or after its moment. There is no timer.
+/// All decisions are taken at samples, from their stream times: a long press starts to hold with the first
+/// sample at or after its moment. There is no timer.
 #[derive(Debug)]
 pub struct Engine {
     profile: Profile,
@@ -36,12 +36,12 @@ impl Engine {
         &self.profile
     }
 
-    /// What should be held at stream time `t`, given the contact then; `None` for the contact means that it was
-    /// lifted (or that there still is none).
+    /// What should be held at stream time `t`, given the contact then; `None` for the contact means that it
+    /// was lifted (or that there still is none).
     ///
-    /// A lift ends presses in the ordinary way, so a short one taps in this very step. A contact with a number that is
-    /// not finite is no contact, but no lift either: it works as [`cancel`](Self::cancel) does. Time that runs backwards
-    /// counts as time that stands still.
+    /// A lift ends presses in the ordinary way, so a short one taps in this very step. A contact with a
+    /// number that is not finite is no contact, but no lift either: it works as [`cancel`](Self::cancel)
+    /// does. Time that runs backwards counts as time that stands still.
     pub fn step(&mut self, t: StreamInstant, contact: Option<&Contact>) -> Intents {
         if contact.is_some_and(|contact| !is_finite(contact)) {
             self.cancel();
@@ -65,9 +65,11 @@ impl Engine {
         levels.stated
     }
 
-    /// After a fault (lost link, dead channel, pause): forgets directions and presses; nothing is tapped for them.
+    /// After a fault (lost link, dead channel, pause): forgets directions and presses; nothing is tapped for
+    /// them.
     ///
-    /// A press that was under way stays forgotten until its force was released once, even if the contact goes on.
+    /// A press that was under way stays forgotten until its force was released once, even if the contact goes
+    /// on.
     pub fn cancel(&mut self) {
         self.held = None;
         self.presses.iter_mut().for_each(Press::forget);
@@ -75,9 +77,10 @@ impl Engine {
 
     /// Goes on with another profile, also in the middle of a contact.
     ///
-    /// The next step states the levels of the new profile, so whatever both profiles hold stays held. The direction
-    /// continues (the thresholds that end it apply, not those that start it). A press that was under way, or that the
-    /// new profile would see as under way, does nothing in the new profile until its force was released once.
+    /// The next step states the levels of the new profile, so whatever both profiles hold stays held. The
+    /// direction continues (the thresholds that end it apply, not those that start it). A press that was
+    /// under way, or that the new profile would see as under way, does nothing in the new profile until its
+    /// force was released once.
     pub fn replace_profile(&mut self, profile: Profile) {
         let presses = profile.buttons.iter().map(|button| self.press_for(button)).collect();
         self.presses = presses;

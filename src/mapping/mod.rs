@@ -2,8 +2,8 @@
 //!
 //! The mapping states *levels*; it never emits. `output::ledger` turns levels into edges.
 //!
-//! A profile's text becomes a [`profile::Profile`] in `diag` → `syntax` → `binding` → `conflict` → `check`; each of
-//! these uses only those before it. The live part is `sector` and `press`, put together by `engine`.
+//! A profile's text becomes a [`profile::Profile`] in `diag` → `syntax` → `binding` → `conflict` → `check`;
+//! each of these uses only those before it. The live part is `sector` and `press`, put together by `engine`.
 
 mod binding;
 pub mod check;

@@ -67,7 +67,8 @@ impl Press {
 
 /// What a press that lasted `lasted_us` states in the step that ends it.
 ///
-/// A long press between whose long moment and its end no sample came states its output here, or it would be lost.
+/// A long press between whose long moment and its end no sample came states its output here, or it would be
+/// lost.
 fn on_release(action: Action, lasted_us: u64, long: bool) -> Option<Binding> {
     match action {
         Action::TapHold { tap, long_press_us, .. } if lasted_us < long_press_us => Some(tap),

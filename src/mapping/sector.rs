@@ -105,7 +105,8 @@ fn turn(dpad: &Dpad, held: Option<Sector>, angle_deg: f32) -> Sector {
     if held.distance_deg(angle_deg) <= half_width_deg(dpad, held) + dpad.hysteresis_deg {
         return held;
     }
-    // A diagonal on the far side of the plate is not beside the held direction: there it would steer backwards.
+    // A diagonal on the far side of the plate is not beside the held direction: there it would steer
+    // backwards.
     let beside = held.distance_deg(angle_deg) < 90.0;
     if dpad.mode == DpadMode::FourWaySticky && here.is_diagonal() && beside {
         return held;

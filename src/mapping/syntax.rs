@@ -101,7 +101,8 @@ impl<'t> Section<'t> {
         None
     }
 
-    /// The whole number under `key`; the default where there is none, `None` (and a report) where it is unusable.
+    /// The whole number under `key`; the default where there is none, `None` (and a report) where it is
+    /// unusable.
     pub(super) fn whole(
         &self,
         key: &str,
@@ -134,7 +135,8 @@ impl<'t> Section<'t> {
         }
     }
 
-    /// What the word under `key` stands for; `None` where it is absent, and where it is none of `words` (reported).
+    /// What the word under `key` stands for; `None` where it is absent, and where it is none of `words`
+    /// (reported).
     pub(super) fn word<T: Copy>(
         &self,
         key: &str,
@@ -159,8 +161,8 @@ impl<'t> Section<'t> {
         None
     }
 
-    /// The table under `key`, named `title`, with its `known` keys; `None` where it is absent, and where it is no
-    /// table (reported).
+    /// The table under `key`, named `title`, with its `known` keys; `None` where it is absent, and where it
+    /// is no table (reported).
     pub(super) fn table(
         &self,
         key: &str,
@@ -173,7 +175,8 @@ impl<'t> Section<'t> {
         Some(Self { title, at: value.span().start, table, known }.closed(report))
     }
 
-    /// The tables `[[key]]` in the text's order, each named after `key` and its number from 1; others are reported.
+    /// The tables `[[key]]` in the text's order, each named after `key` and its number from 1; others are
+    /// reported.
     pub(super) fn tables(
         &self,
         key: &str,

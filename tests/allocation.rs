@@ -1,0 +1,41 @@
+//! The live core allocates nothing after it was made.
+
+use tactpad::contact::Decoder;
+use tactpad::mapping::check::{self, OutputChoice};
+use tactpad::mapping::shipped;
+use tactpad::pipeline::{NoProbe, Pipeline};
+use tactpad::time::HostInstant;
+use tactpad::virtual_pad::firmware::VirtualPad;
+use tactpad::virtual_pad::script::Script;
+
+#[test]
+fn ten_seconds_of_play_allocate_nothing() {
+    let profile = check::read(shipped::text("contra").unwrap(), OutputChoice::AsWritten).0.unwrap();
+    let mut pad = VirtualPad::new(Script::for_profile(&profile, 10_000_000), 3);
+    let mut pipeline = Pipeline::new(Decoder::shipped(), profile);
+    let mut bytes = Vec::new();
+    for _ in 0..2 {
+        pad.emit(10_000_000, &mut bytes);
+    }
+    // Some damage, so that the paths of faults are walked too.
+    for place in (0..bytes.len()).step_by(60_007) {
+        bytes[place] ^= 0x20;
+    }
+    let mut events = 0;
+    let allocated = allocation_counter::measure(|| {
+        for (ms, chunk) in bytes.chunks(60).enumerate() {
+            let now = HostInstant::default().plus_us(1_000 * ms as u64);
+            let mut rest = chunk;
+            while !rest.is_empty() {
+                let taken = pipeline.handle_bytes(now, rest, &mut NoProbe);
+                events += pipeline.events().len();
+                rest = &rest[taken..];
+            }
+            pipeline.handle_timeout(now);
+            events += pipeline.events().len();
+        }
+        pipeline.handle_unplugged(HostInstant::default().plus_us(20_000_000));
+    });
+    assert!(events > 30 && pipeline.health().frames_damaged > 3, "{events} events, {:?}", pipeline.health());
+    assert_eq!(allocated.count_total, 0);
+}

@@ -18,7 +18,7 @@ use crate::support::require;
 const BODY_DONE: &str = "guest: body done";
 
 /// A whole guest run that takes longer is killed.
-const TIME_LIMIT_S: &str = "180";
+const TIME_LIMIT_S: &str = "300";
 
 /// Memory of the guest.
 const MEMORY_MIB: u64 = 384;
@@ -87,15 +87,25 @@ fn first_root(name: &str) -> tempfile::TempDir {
         .expect("busybox was there a moment ago");
     fs::copy(shell, root.path().join("busybox")).expect("a copy of busybox");
     write_script(&root.path().join("init"), include_str!("init.sh"));
-    let test = env::current_exe().expect("this executable's path");
-    let folder = env::current_dir().expect("a working directory");
     let command = format!(
-        "#!/bin/sh\ncd '{}' && TACTPAD_IN_GUEST=1 exec '{}' --exact '{name}' --nocapture\n",
-        folder.display(),
-        test.display()
+        "#!/bin/sh\ncd {} && TACTPAD_IN_GUEST=1 {} exec {} --exact {name} --nocapture\n",
+        quoted(&env::current_dir().expect("a working directory").to_string_lossy()),
+        settings(),
+        quoted(&env::current_exe().expect("this executable's path").to_string_lossy())
     );
     write_script(&root.path().join("command"), &command);
     root
+}
+
+/// The settings of this run (`TACTPAD_*`), as a shell sets them for one command.
+fn settings() -> String {
+    let ours = env::vars().filter(|(name, _)| name.starts_with("TACTPAD_"));
+    ours.map(|(name, value)| format!("{name}={} ", quoted(&value))).collect()
+}
+
+/// `word` as a shell takes it literally.
+fn quoted(word: &str) -> String {
+    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 fn write_script(path: &Path, text: &str) {

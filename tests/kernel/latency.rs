@@ -11,7 +11,7 @@ use evdev::KeyCode;
 
 use crate::bridge::Bridge;
 use crate::clock::{MS, monotonic_ns, readable_before};
-use crate::pad::{NONE, Pad, RIGHT};
+use crate::pad::{NONE, Pad, RIGHT, Touch};
 use crate::program::{Running, path};
 use crate::reader::Reader;
 
@@ -27,8 +27,8 @@ min_press_ms = 0
 mode = "4way"
 "#;
 
-/// Turns of each of the two.
-const BLOCKS: usize = 5;
+/// Edges of each of the two, where `TACTPAD_LATENCY_EDGES` names no other number.
+const EDGES: usize = 1_000;
 
 /// Edges in a turn; even, so that a turn ends with nothing held.
 const EDGES_PER_BLOCK: usize = 200;
@@ -51,7 +51,9 @@ struct Way {
 /// The bridge's median is at most twice the echo's, and 20 µs.
 pub(crate) fn against_an_echo() {
     let mut ways = [bridge(), echo()];
-    for _ in 0..BLOCKS {
+    let edges = std::env::var("TACTPAD_LATENCY_EDGES");
+    let edges = edges.map_or(EDGES, |edges| edges.parse().expect("TACTPAD_LATENCY_EDGES is a number"));
+    for _ in 0..edges.div_ceil(EDGES_PER_BLOCK) {
         for measured in 0..ways.len() {
             for _ in 0..EDGES_PER_BLOCK {
                 settle(&mut ways, measured);
@@ -60,8 +62,8 @@ pub(crate) fn against_an_echo() {
         }
     }
     let [bridge, echo] = ways.map(|way| quantiles_us(way.took_ns));
-    println!("us            median     p95     p99");
-    println!("bridge {bridge:>10.1?}\necho   {echo:>10.1?}\nratio of medians {:.2}", bridge[0] / echo[0]);
+    println!("{edges} edges; median, 95th and 99th percentile in us: bridge {bridge:.1?}, echo {echo:.1?}");
+    println!("ratio of the medians {:.2}", bridge[0] / echo[0]);
     assert!(bridge[0] <= 2.0 * echo[0] + 20.0, "the bridge's median is more than twice the echo's and 20 us");
 }
 
@@ -87,10 +89,9 @@ fn echo() -> Way {
 /// The one that is measured next is served last: either finds the processor's caches as its own frame left them.
 fn settle(ways: &mut [Way; 2], measured: usize) {
     for _ in 0..SETTLING_FRAMES {
-        for turn in [1 - measured, measured] {
-            let way = &mut ways[turn];
-            way.pad.hold(if way.held { RIGHT } else { NONE }, 1);
-        }
+        let next_ns = monotonic_ns() + MS;
+        ways[1 - measured].rest_until(0);
+        ways[measured].rest_until(next_ns);
     }
     for way in ways {
         way.reader.read_available();
@@ -99,10 +100,19 @@ fn settle(ways: &mut [Way; 2], measured: usize) {
 }
 
 impl Way {
+    /// One frame that changes nothing, and a wait.
+    fn rest_until(&mut self, next_ns: u64) {
+        self.pad.stream_one(self.touch(), next_ns);
+    }
+
+    fn touch(&self) -> Touch {
+        if self.held { RIGHT } else { NONE }
+    }
+
     /// One frame that changes what is held, timed until the change can be read.
     fn edge(&mut self) {
         self.held = !self.held;
-        let frame = self.pad.next_frame(if self.held { RIGHT } else { NONE });
+        let frame = self.pad.next_frame(self.touch());
         let written_ns = monotonic_ns();
         self.pad.write(&frame);
         let arrived = readable_before(written_ns + EDGE_LIMIT_MS * MS, self.reader.device.as_fd());

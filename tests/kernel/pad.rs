@@ -2,6 +2,7 @@
 
 use std::os::fd::{AsFd, OwnedFd};
 
+use rustix::fs::{Mode, OFlags};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
@@ -72,17 +73,14 @@ pub(crate) struct Pad {
 impl Pad {
     /// Makes a pad; it says nothing yet.
     pub(crate) fn plug_in() -> Self {
-        let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
+        // Not for children: a line that they hold open cannot be unplugged.
+        let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
         let line = openpt(flags).expect("a pseudo-terminal");
         grantpt(&line).expect("grantpt");
         unlockpt(&line).expect("unlockpt");
         let path = ptsname(&line, Vec::new()).expect("its name").into_string().expect("an ASCII name");
-        let far_end = rustix::fs::open(
-            path.as_str(),
-            rustix::fs::OFlags::RDWR | rustix::fs::OFlags::NOCTTY,
-            rustix::fs::Mode::empty(),
-        )
-        .expect("its other end");
+        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+        let far_end = rustix::fs::open(path.as_str(), flags, Mode::empty()).expect("its other end");
         let mut mode = tcgetattr(&far_end).expect("its mode");
         mode.make_raw();
         tcsetattr(&far_end, OptionalActions::Now, &mode).expect("raw mode");
@@ -144,7 +142,7 @@ impl Pad {
     }
 
     /// Writes a frame, then takes what the bridge says until the next one is due.
-    fn stream_one(&mut self, touch: Touch, next_ns: u64) {
+    pub(crate) fn stream_one(&mut self, touch: Touch, next_ns: u64) {
         let frame = self.next_frame(touch);
         self.write(&frame);
         self.last_write_ns = stamp_ns();

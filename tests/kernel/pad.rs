@@ -1,0 +1,153 @@
+//! A pad at the other end of a pseudo-terminal, with a finger that the test moves.
+
+use std::os::fd::{AsFd, OwnedFd};
+
+use rustix::fs::{Mode, OFlags};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+
+use crate::clock::{MS, monotonic_ns, readable_before, stamp_ns};
+use crate::wire::sample_frame;
+
+/// Microvolts of a module's z channel per newton on that module.
+const MODULE_UV_PER_N: f64 = 1_887.0;
+
+/// A pad that says nothing of its converter has counts of 0.01 µV.
+const COUNTS_PER_UV: f64 = 100.0;
+
+/// Distance of the modules from the centre.
+const MODULE_RADIUS_MM: f64 = 20.0;
+
+/// A finger on the plate: where, and how hard it presses.
+#[derive(Clone, Copy)]
+pub(crate) struct Touch {
+    /// Along +x, to the right.
+    pub(crate) x_mm: f64,
+    /// Along +y, up.
+    pub(crate) y_mm: f64,
+    /// Into the plate.
+    pub(crate) fz_n: f64,
+}
+
+/// No finger.
+pub(crate) const NONE: Touch = Touch { x_mm: 0.0, y_mm: 0.0, fz_n: 0.0 };
+/// A light touch right of the centre, and so on.
+pub(crate) const RIGHT: Touch = Touch { x_mm: 12.0, y_mm: 0.0, fz_n: 1.0 };
+pub(crate) const LEFT: Touch = Touch { x_mm: -12.0, ..RIGHT };
+pub(crate) const UP: Touch = Touch { x_mm: 0.0, y_mm: 12.0, fz_n: 1.0 };
+pub(crate) const DOWN: Touch = Touch { y_mm: -12.0, ..UP };
+/// A firm press on the centre, where there is no direction.
+pub(crate) const PRESS: Touch = Touch { fz_n: 3.0, ..NONE };
+/// A firm press right of the centre: direction and button.
+pub(crate) const PRESS_RIGHT: Touch = Touch { fz_n: 3.0, ..RIGHT };
+
+impl Touch {
+    /// The nine counts: three supports of a rigid plate share the force by the lever rule, and nothing pushes sideways.
+    fn counts(self) -> [i32; 9] {
+        let mut counts = [0; 9];
+        for (module, angle_deg) in [0.0_f64, 120.0, 240.0].into_iter().enumerate() {
+            let (sin, cos) = angle_deg.to_radians().sin_cos();
+            let lever_mm = self.x_mm * cos + self.y_mm * sin;
+            let load_n = self.fz_n * (1.0 + 2.0 * lever_mm / MODULE_RADIUS_MM) / 3.0;
+            let count = (load_n * MODULE_UV_PER_N * COUNTS_PER_UV).round();
+            #[expect(clippy::cast_possible_truncation, reason = "a finger's counts fit in 24 bits")]
+            let count = count as i32;
+            counts[3 * module + 2] = count;
+        }
+        counts
+    }
+}
+
+/// The pad: 1000 samples a second while it streams, silent otherwise. It answers no command.
+pub(crate) struct Pad {
+    line: OwnedFd,
+    // Held open so that the line keeps its raw mode and exists before the bridge opens it.
+    _far_end: OwnedFd,
+    path: String,
+    sequence: u32,
+    started_ns: u64,
+    time_ms: u64,
+    last_write_ns: u64,
+}
+
+impl Pad {
+    /// Makes a pad; it says nothing yet.
+    pub(crate) fn plug_in() -> Self {
+        // Not for children: a line that they hold open cannot be unplugged.
+        let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
+        let line = openpt(flags).expect("a pseudo-terminal");
+        grantpt(&line).expect("grantpt");
+        unlockpt(&line).expect("unlockpt");
+        let path = ptsname(&line, Vec::new()).expect("its name").into_string().expect("an ASCII name");
+        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+        let far_end = rustix::fs::open(path.as_str(), flags, Mode::empty()).expect("its other end");
+        let mut mode = tcgetattr(&far_end).expect("its mode");
+        mode.make_raw();
+        tcsetattr(&far_end, OptionalActions::Now, &mode).expect("raw mode");
+        let started_ns = monotonic_ns();
+        Self { line, _far_end: far_end, path, sequence: 0, started_ns, time_ms: 0, last_write_ns: 0 }
+    }
+
+    /// The port to open for this pad.
+    pub(crate) fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// When the last frame was written, on the clock of the kernel's event stamps.
+    pub(crate) fn last_write_ns(&self) -> u64 {
+        self.last_write_ns
+    }
+
+    /// The next frame: a millisecond of the pad's time after the one before, or more if the pad was silent.
+    pub(crate) fn next_frame(&mut self, touch: Touch) -> Vec<u8> {
+        let elapsed_ms = (monotonic_ns() - self.started_ns) / MS;
+        self.time_ms = elapsed_ms.max(self.time_ms + 1);
+        let frame = sample_frame(self.sequence, self.time_ms * 1_000, touch.counts());
+        self.sequence += 1;
+        frame
+    }
+
+    /// Writes `frame` whole, in one system call.
+    pub(crate) fn write(&self, frame: &[u8]) {
+        assert_eq!(rustix::io::write(&self.line, frame), Ok(frame.len()), "the line takes a frame at once");
+    }
+
+    /// Streams `touch` for `for_ms` milliseconds.
+    pub(crate) fn hold(&mut self, touch: Touch, for_ms: u64) {
+        let start_ns = monotonic_ns();
+        for frame in 1..=for_ms {
+            self.stream_one(touch, start_ns + frame * MS);
+        }
+    }
+
+    /// Streams `touch` until `done` says so.
+    pub(crate) fn hold_until(
+        &mut self,
+        what: &str,
+        touch: Touch,
+        limit_ms: u64,
+        mut done: impl FnMut() -> bool,
+    ) {
+        let limit_ns = monotonic_ns() + limit_ms * MS;
+        while !done() {
+            let now_ns = monotonic_ns();
+            assert!(now_ns < limit_ns, "{what}: not within {limit_ms} ms");
+            self.stream_one(touch, now_ns + MS);
+        }
+    }
+
+    /// Pulls the plug; returns the stamp of that moment.
+    pub(crate) fn unplug(self) -> u64 {
+        stamp_ns()
+    }
+
+    /// Writes a frame, then takes what the bridge says until the next one is due.
+    pub(crate) fn stream_one(&mut self, touch: Touch, next_ns: u64) {
+        let frame = self.next_frame(touch);
+        self.write(&frame);
+        self.last_write_ns = stamp_ns();
+        while readable_before(next_ns, self.line.as_fd()) {
+            rustix::io::read(&self.line, &mut [0; 256]).expect("the bridge's commands");
+        }
+    }
+}

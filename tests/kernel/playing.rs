@@ -1,0 +1,126 @@
+//! The virtual devices are what games expect, and playing arrives on them.
+
+use evdev::raw_stream::RawDevice;
+use evdev::{AbsoluteAxisCode, BusType, EventType, KeyCode};
+
+use crate::bridge::Bridge;
+use crate::clock::{MS, stamp_ns};
+use crate::pad::{DOWN, LEFT, NONE, PRESS, RIGHT, Touch, UP};
+use crate::reader::find;
+
+/// Codes of the eleven buttons of the kernel's driver for this pad (`drivers/input/joystick/xpad.c`).
+const GAMEPAD_KEYS: [u16; 11] = [0x130, 0x131, 0x133, 0x134, 0x136, 0x137, 0x13a, 0x13b, 0x13c, 0x13d, 0x13e];
+
+/// Axes of the same driver: number, minimum, maximum, fuzz, flat.
+const GAMEPAD_AXES: [(u16, i32, i32, i32, i32); 8] = [
+    (0x00, -32_768, 32_767, 16, 128),
+    (0x01, -32_768, 32_767, 16, 128),
+    (0x02, 0, 255, 0, 0),
+    (0x03, -32_768, 32_767, 16, 128),
+    (0x04, -32_768, 32_767, 16, 128),
+    (0x05, 0, 255, 0, 0),
+    (0x10, -1, 1, 0, 0),
+    (0x11, -1, 1, 0, 0),
+];
+
+/// A long press of the shipped profiles.
+const LONG_PRESS_MS: u64 = 400;
+
+/// An output stays down at least this long in the shipped profiles.
+const MIN_PRESS_MS: u64 = 40;
+
+/// What the window of the filter, a sample's period and the guest's scheduling may add to a decision.
+const SLACK_MS: u64 = 50;
+
+/// The virtual gamepad is the wired Xbox 360 pad bit by bit, and plays.
+pub(crate) fn gamepad() {
+    let mut bridge = Bridge::start("super-mario", KeyCode::BTN_SOUTH);
+    check_identity(&bridge.reader.device);
+    let hold_start_ns = play_everything(&mut bridge);
+    assert_eq!(
+        bridge.reader.edges(),
+        [
+            ("ABS_HAT0X", 1),
+            ("ABS_HAT0X", 0),
+            ("ABS_HAT0X", -1),
+            ("ABS_HAT0X", 0),
+            ("ABS_HAT0Y", -1),
+            ("ABS_HAT0Y", 0),
+            ("ABS_HAT0Y", 1),
+            ("ABS_HAT0Y", 0),
+            ("BTN_SOUTH", 1),
+            ("BTN_SOUTH", 0),
+            ("BTN_EAST", 1),
+            ("BTN_EAST", 0),
+        ]
+    );
+    check_durations(&bridge, hold_start_ns, "BTN_SOUTH", "BTN_EAST");
+    assert_eq!(find(KeyCode::KEY_RIGHT), None, "a gamepad profile makes no keyboard");
+}
+
+/// The virtual keyboard is a device of its own, has keys only, and plays the same touches.
+pub(crate) fn keyboard() {
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/mappings/super-mario.toml");
+    let shipped = std::fs::read_to_string(shipped).expect("the shipped profile");
+    let profile = shipped.replace(r#"output = "gamepad""#, r#"output = "keyboard""#);
+    assert_ne!(profile, shipped, "the shipped profile is for the gamepad");
+    let file = std::env::temp_dir().join("keyboard.toml");
+    std::fs::write(&file, profile).expect("a profile");
+    let mut bridge = Bridge::start(file.to_str().expect("an ASCII path"), KeyCode::KEY_RIGHT);
+    let device = &bridge.reader.device;
+    assert!(device.supported_absolute_axes().is_none_or(|axes| axes.iter().next().is_none()));
+    assert!(device.supported_keys().is_some_and(|keys| keys.iter().all(|key| key.code() < 0x100)));
+    assert!(
+        !device.supported_events().contains(EventType::REPEAT),
+        "holding a direction must not repeat keys"
+    );
+    let hold_start_ns = play_everything(&mut bridge);
+    let keys = ["KEY_RIGHT", "KEY_LEFT", "KEY_UP", "KEY_DOWN", "KEY_Z", "KEY_X"];
+    let expected: Vec<_> = keys.into_iter().flat_map(|key| [(key, 1), (key, 0)]).collect();
+    assert_eq!(bridge.reader.edges(), expected);
+    check_durations(&bridge, hold_start_ns, "KEY_Z", "KEY_X");
+    assert_eq!(find(KeyCode::BTN_SOUTH), None, "a keyboard profile makes no gamepad");
+}
+
+fn check_identity(device: &RawDevice) {
+    let id = device.input_id();
+    assert_eq!(device.name(), Some("Microsoft X-Box 360 pad"));
+    assert_eq!(id.bus_type(), BusType::BUS_USB);
+    assert_eq!((id.vendor(), id.product(), id.version()), (0x045e, 0x028e, 0x0114));
+    let keys = device.supported_keys().expect("buttons");
+    assert_eq!(keys.iter().map(KeyCode::code).collect::<Vec<_>>(), GAMEPAD_KEYS);
+    let axes: Vec<_> = device
+        .get_absinfo()
+        .expect("axes")
+        .map(|(axis, range)| (axis.0, range.minimum(), range.maximum(), range.fuzz(), range.flat()))
+        .collect();
+    assert_eq!(axes, GAMEPAD_AXES);
+    let hat = device.get_absinfo().expect("axes").find(|(axis, _)| *axis == AbsoluteAxisCode::ABS_HAT0X);
+    assert_eq!(hat.map(|(_, range)| range.value()), Some(0), "the hat starts neutral");
+}
+
+/// Right, left, up, down, a short and a long press. Returns when the long press began.
+fn play_everything(bridge: &mut Bridge) -> u64 {
+    for touch in [RIGHT, LEFT, UP, DOWN] {
+        touch_for(bridge, touch, 100);
+    }
+    touch_for(bridge, PRESS, 150);
+    let hold_start_ns = stamp_ns();
+    touch_for(bridge, PRESS, 700);
+    bridge.reader.read_available();
+    hold_start_ns
+}
+
+fn touch_for(bridge: &mut Bridge, touch: Touch, for_ms: u64) {
+    bridge.pad.hold(touch, for_ms);
+    bridge.pad.hold(NONE, 100);
+}
+
+fn check_durations(bridge: &Bridge, hold_start_ns: u64, tap: &str, hold: &str) {
+    let at = |name, value| bridge.reader.stamp_of(name, value).expect("seen above");
+    let tap_ms = (at(tap, 0) - at(tap, 1)) / MS;
+    // The release may come a little late and the press may be stamped late itself, so a millisecond less is no fault.
+    assert!((MIN_PRESS_MS - 1..MIN_PRESS_MS + SLACK_MS).contains(&tap_ms), "the tap lasted {tap_ms} ms");
+    let long_ms = (at(hold, 1) - hold_start_ns) / MS;
+    assert!((LONG_PRESS_MS..LONG_PRESS_MS + SLACK_MS).contains(&long_ms), "long after {long_ms} ms");
+}

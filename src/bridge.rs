@@ -7,9 +7,7 @@ use std::io::{self, Write};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-use firmware_proto::ENCODED_MAX;
 use firmware_proto::command::Command;
-use firmware_proto::link::encode_command;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::capture::{CallRef, CaptureWriter};
@@ -24,6 +22,7 @@ use crate::signals::{Request, Signals};
 use crate::sink::{Sink, SinkError};
 use crate::time::HostInstant;
 use crate::transport::Transport;
+use crate::transport::pads::Opener;
 
 /// A pad that has not sent one sound frame by then is no pad, or not there.
 const FIRST_FRAME_US: u64 = 3_000_000;
@@ -91,9 +90,6 @@ pub struct Snapshot {
     /// Host time of the snapshot.
     pub at: HostInstant,
 }
-
-/// Opens the pad, again and again if need be.
-pub type Opener = Box<dyn FnMut() -> io::Result<Box<dyn Transport>>>;
 
 /// What a bridge is made of.
 pub struct Parts {
@@ -386,7 +382,7 @@ impl Bridge {
 
     fn reopen(&mut self, now: HostInstant) {
         self.reopen_at = now.plus_us(REOPEN_US);
-        if let Some(pad) = self.parts.opener.as_mut().and_then(|open| open().ok()) {
+        if let Some(pad) = self.parts.opener.as_mut().and_then(|opener| opener.open().ok()) {
             self.parts.pad = Some(pad);
             self.opened_at = now;
             self.identify_asked = 0;
@@ -402,10 +398,8 @@ impl Bridge {
     /// A pad that takes no commands is no error: it plays with the default scale.
     fn ask_identity(&mut self) {
         self.identify_asked += 1;
-        let mut frame = [0; ENCODED_MAX];
-        let length = encode_command(&Command::Identify, &mut frame);
-        if let (Some(pad), Some(frame)) = (&mut self.parts.pad, frame.get(..length)) {
-            let _ = pad.send(frame);
+        if let Some(pad) = &mut self.parts.pad {
+            let _ = pad.send(&Command::Identify);
         }
     }
 

@@ -8,6 +8,7 @@ use std::os::fd::BorrowedFd;
 use std::sync::{Arc, Mutex};
 
 use clap::Args;
+use firmware_proto::command::Command;
 use serde::Serialize;
 
 use super::live::{OpenedPad, Output, Plan, bridge, open_pad, play};
@@ -235,8 +236,8 @@ impl Transport for TimedPad {
         read
     }
 
-    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.pad.send(bytes)
+    fn send(&mut self, command: &Command) -> io::Result<()> {
+        self.pad.send(command)
     }
 }
 

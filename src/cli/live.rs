@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::{Failure, profile};
-use crate::bridge::{Bridge, BridgeError, Clock, Ending, Opener, Parts, Patience};
+use crate::bridge::{Bridge, BridgeError, Clock, Ending, Parts, Patience};
 use crate::capture::{CallKind, CallRef, CaptureReader, CaptureWriter};
 use crate::contact::Decoder;
 use crate::mapping::check::OutputChoice;
@@ -18,8 +18,8 @@ use crate::sink::{Sink, log::LogSink, null::NullSink, uinput::UinputSink, x11::X
 use crate::time::HostInstant;
 use crate::transport::Transport;
 use crate::transport::address::PadAddress;
+use crate::transport::pads::{self, Opener, PadError};
 use crate::transport::playback::Playback;
-use crate::transport::serial::{OpenError, Serial};
 use crate::transport::virtual_pad::VirtualPad as PadOnTerminal;
 use crate::virtual_pad::firmware::VirtualPad;
 use crate::virtual_pad::script::Script;
@@ -102,32 +102,31 @@ pub(super) fn open_pad(
     patience: Patience,
 ) -> Result<OpenedPad, Failure> {
     match address {
-        PadAddress::Serial { path, baud } => open_serial(path.clone(), *baud, patience),
         PadAddress::Virtual => open_virtual(Script::for_profile(profile, VIRTUAL_SCRIPT_US)),
         PadAddress::Capture { file } => open_capture(file),
-        PadAddress::Auto { .. } | PadAddress::Hid { .. } => Err(Failure::Unusable(format!(
-            "--pad {address} is not supported yet: name the port with --pad serial:PATH, or play with --pad virtual"
-        ))),
+        PadAddress::Auto { .. } | PadAddress::Hid { .. } | PadAddress::Serial { .. } => {
+            open_device(address.clone(), patience)
+        }
     }
 }
 
-fn open_serial(path: String, baud: u32, patience: Patience) -> Result<OpenedPad, Failure> {
-    let pad = match Serial::open(&path, baud) {
-        Ok(pad) => Some(Box::new(pad) as Box<dyn Transport>),
-        Err(OpenError::NoSuchPort { .. }) if patience == Patience::Endless => None,
+/// Opens a pad that is a device. With endless patience one that is not there yet is waited for.
+fn open_device(address: PadAddress, patience: Patience) -> Result<OpenedPad, Failure> {
+    let mut opener = pads::Opener::new(address);
+    let pad = match opener.open() {
+        Ok(pad) => Some(pad),
+        Err(PadError::NotThere(_) | PadError::Denied(_)) if patience == Patience::Endless => None,
         Err(error) => return Err(Failure::Unusable(error.to_string())),
     };
-    let opener: Opener = Box::new(move || match Serial::open(&path, baud) {
-        Ok(pad) => Ok(Box::new(pad) as Box<dyn Transport>),
-        Err(error) => Err(io::Error::other(error)),
-    });
     Ok(OpenedPad { pad, opener: Some(opener), _virtual_pad: None })
 }
 
 /// Starts a virtual pad that plays `script` and opens its terminal like any pad's port.
 pub(super) fn open_virtual(script: Script) -> Result<OpenedPad, Failure> {
     let virtual_pad = PadOnTerminal::start(VirtualPad::new(script, VIRTUAL_SEED))?;
-    let opened = open_serial(virtual_pad.path().to_owned(), firmware_proto::DEFAULT_BAUD, Patience::Limited)?;
+    let terminal =
+        PadAddress::Serial { path: virtual_pad.path().to_owned(), baud: firmware_proto::DEFAULT_BAUD };
+    let opened = open_device(terminal, Patience::Limited)?;
     Ok(OpenedPad { _virtual_pad: Some(virtual_pad), ..opened })
 }
 

@@ -274,7 +274,7 @@ mod tests {
         let mut port = open(&pad);
         let every_byte: Vec<u8> = (0..=255).collect();
         for _ in 0..10 {
-            port.send(&every_byte).unwrap();
+            port.write_whole(&every_byte).unwrap();
         }
         eventually(|| heard.lock().unwrap().len() == 2560);
         assert_eq!(*heard.lock().unwrap(), every_byte.repeat(10));

@@ -5,6 +5,7 @@
 //! a force steps from 0 to F, sample k of the step (k = 1 to 6) counts as F · k / 6, and falls the same way.
 
 #![cfg(all(target_os = "linux", feature = "live"))]
+#![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
 
 mod support;
 

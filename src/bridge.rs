@@ -131,8 +131,10 @@ pub enum Patience {
 /// Why a run ended well.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// It was asked to: a signal, or its time was over.
+    /// A signal asked for it.
     Asked,
+    /// Its time was over.
+    TimeOver,
     /// The pad was a capture, and it ended.
     CaptureEnded,
 }
@@ -148,6 +150,7 @@ pub struct Bridge {
     reopen_at: HostInstant,
     bytes: [u8; 4096],
     bytes_heard: u64,
+    held_at_end: usize,
 }
 
 /// What woke the loop.
@@ -178,6 +181,7 @@ impl Bridge {
             reopen_at: now,
             bytes: [0; 4096],
             bytes_heard: 0,
+            held_at_end: 0,
         }
     }
 
@@ -196,9 +200,9 @@ impl Bridge {
         self.parts.pipeline.health()
     }
 
-    /// How many controls are held.
-    pub fn held(&self) -> usize {
-        self.parts.pipeline.held().count()
+    /// How many controls were held when the run ended, before they were released.
+    pub const fn held_at_end(&self) -> usize {
+        self.held_at_end
     }
 
     /// Plays until it is asked to end. Whatever the ending, everything held is released first.
@@ -207,6 +211,7 @@ impl Bridge {
     /// See [`BridgeError`].
     pub fn run(&mut self) -> Result<Ending, BridgeError> {
         let ending = self.play();
+        self.held_at_end = self.parts.pipeline.held().count();
         let released = self.call(self.parts.clock.now(), CallRef::ReleaseAll);
         if let Some(recorder) = &mut self.parts.recorder {
             recorder.flush().map_err(BridgeError::Io)?;
@@ -217,9 +222,11 @@ impl Bridge {
     fn play(&mut self) -> Result<Ending, BridgeError> {
         let device = self.parts.pipeline.profile().output;
         self.prepare(device)?;
+        let mut now = self.parts.clock.now();
         loop {
-            let woken = self.wait().map_err(BridgeError::Io)?;
-            let now = self.parts.clock.now();
+            // The deadline counts from the last wake-up: one clock read less, late by what the work took.
+            let woken = self.wait(now).map_err(BridgeError::Io)?;
+            now = self.parts.clock.now();
             if woken.signal && self.answer_signals(now)? {
                 return Ok(Ending::Asked);
             }
@@ -231,7 +238,7 @@ impl Bridge {
                 self.call_if_due(now)?;
             }
             if self.parts.end_at.is_some_and(|end_at| end_at <= now) {
-                return Ok(Ending::Asked);
+                return Ok(Ending::TimeOver);
             }
             self.attend_pad(now)?;
             self.publish(now);
@@ -239,8 +246,8 @@ impl Bridge {
     }
 
     /// Sleeps until the pad, a signal or a deadline.
-    fn wait(&self) -> io::Result<Woken> {
-        let timeout = self.next_deadline().map(|deadline| until(self.parts.clock.now(), deadline));
+    fn wait(&self, now: HostInstant) -> io::Result<Woken> {
+        let timeout = self.next_deadline().map(|deadline| until(now, deadline));
         let signal = PollFd::from_borrowed_fd(self.parts.signals.fd(), PollFlags::IN);
         let (pad_ready, signal_ready) = match &self.parts.pad {
             Some(pad) => {

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::live::{Output, Plan, bridge, open_virtual, play};
 use super::screen::Screen;
 use super::{Failure, print_json, profile};
-use crate::bridge::{Bridge, Patience};
+use crate::bridge::{Bridge, Ending, Patience};
 use crate::control::{Code, Device, OutputEvent};
 use crate::latency::Percentiles;
 use crate::mapping::profile::Profile;
@@ -91,6 +91,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let script = Script::for_profile(&profile, (arguments.seconds * 1e6) as u64);
     let expected = script.expected().to_vec();
     let contacts = script.contacts() as u64;
+    let name = profile.name.clone();
     let (sink, title) = open_sink(arguments, &profile)?;
     tell(arguments, &title)?;
     let seen = Seen::default();
@@ -106,14 +107,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         seconds: Some(arguments.seconds),
         patience: Patience::Limited,
     })?;
-    let screen = (!arguments.json).then(|| start_screen(&bridge, &seen));
+    let title = format!("{name} on a virtual pad");
+    let screen = (!arguments.json).then(|| start_screen(title, &bridge, &seen));
     let played = play(&mut bridge, &PadAddress::Virtual);
     drop(screen);
-    played?;
+    let ending = played?;
     let seen = seen.lock().map(|seen| seen.clone()).unwrap_or_default();
     report(arguments, &bridge, &seen)?;
+    if ending != Ending::TimeOver {
+        return Err(Failure::Failed("interrupted: the events were not compared with the script".into()));
+    }
     compare(&seen, &expected)?;
-    check_contacts(&bridge, contacts)
+    check_end(&bridge, contacts)
 }
 
 /// The sink, and the demo's first line: where events go, and what would bring a better place.
@@ -154,9 +159,9 @@ fn tell(arguments: &Arguments, line: &str) -> io::Result<()> {
     if arguments.json { writeln!(io::stderr(), "{line}") } else { writeln!(io::stdout(), "{line}") }
 }
 
-fn start_screen(bridge: &Bridge, seen: &Seen) -> Option<Screen> {
+fn start_screen(title: String, bridge: &Bridge, seen: &Seen) -> Option<Screen> {
     let seen = Arc::clone(seen);
-    Screen::start("tactpad demo".into(), bridge.snapshot(), move || {
+    Screen::start(title, bridge.snapshot(), move || {
         let events = seen.lock().map(|seen| seen.iter().rev().take(8).copied().collect::<Vec<_>>());
         events.unwrap_or_default().iter().rev().map(line).collect()
     })
@@ -175,7 +180,7 @@ fn report(arguments: &Arguments, bridge: &Bridge, seen: &[OutputEvent]) -> Resul
         contacts: health.contacts,
         downs: tally.downs,
         ups: tally.ups,
-        held_at_end: tally.held.len(),
+        held_at_end: bridge.held_at_end(),
         latency_us: bridge.latency().percentiles(),
     };
     if arguments.json {
@@ -191,24 +196,23 @@ fn report(arguments: &Arguments, bridge: &Bridge, seen: &[OutputEvent]) -> Resul
     )?)
 }
 
-/// How often controls went down and up, and how many are still down.
+/// How often controls went down and up.
 #[derive(Default)]
 struct Tally {
     downs: usize,
     ups: usize,
-    held: BTreeMap<(Device, Code), i32>,
 }
 
 impl Tally {
     fn of(seen: &[OutputEvent]) -> Self {
         let mut tally = Self::default();
+        let mut held = BTreeMap::new();
         for event in seen {
             // A hat that goes over from one side to the other is an up and a down in one event.
-            let before = tally.held.insert((event.device, event.code), event.value).unwrap_or(0);
+            let before = held.insert((event.device, event.code), event.value).unwrap_or(0);
             tally.ups += usize::from(before != 0);
             tally.downs += usize::from(event.value != 0);
         }
-        tally.held.retain(|_, value| *value != 0);
         tally
     }
 }
@@ -234,8 +238,11 @@ fn compare(seen: &[OutputEvent], expected: &[Expected]) -> Result<(), Failure> {
     )))
 }
 
-fn check_contacts(bridge: &Bridge, expected: u64) -> Result<(), Failure> {
-    let contacts = bridge.health().contacts;
+fn check_end(bridge: &Bridge, expected: u64) -> Result<(), Failure> {
+    let (contacts, held) = (bridge.health().contacts, bridge.held_at_end());
+    if held > 0 {
+        return Err(Failure::Failed(format!("{held} controls were still held at the end")));
+    }
     if contacts == expected {
         return Ok(());
     }

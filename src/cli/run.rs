@@ -16,7 +16,7 @@ use crate::transport::address::PadAddress;
     Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on, SIGHUP reads the profile again.")]
 pub(super) struct Arguments {
     /// The pad: virtual, serial:PATH[@BAUD], capture:FILE.
-    #[arg(long, value_name = "PAD")]
+    #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
     /// Wait for a pad that is not there yet or sends nothing yet.
     #[arg(long)]

@@ -155,13 +155,21 @@ fn cell(x_mm: f32, y_mm: f32) -> (usize, usize) {
     )
 }
 
+/// Where the directions lie, and what marks them.
+const DIRECTIONS: [(f32, f32, char); 4] =
+    [(20.0, 0.0, '→'), (0.0, 20.0, '↑'), (-20.0, 0.0, '←'), (0.0, -20.0, '↓')];
+
+/// The plate without a contact: its edge, its centre, the four directions.
 fn ground(column: usize, row: usize) -> char {
+    let mark = DIRECTIONS.iter().find(|&&(x_mm, y_mm, _)| cell(x_mm, y_mm) == (column, row));
+    if let Some((_, _, mark)) = mark {
+        return *mark;
+    }
     let x = 2.0 * column as f32 / (COLUMNS - 1) as f32 - 1.0;
     let y = 2.0 * row as f32 / (ROWS - 1) as f32 - 1.0;
-    let radius = libm::hypotf(x, y);
-    match (column, row) {
-        _ if (0.92..1.07).contains(&radius) => '·',
-        (column, row) if column == COLUMNS / 2 && row == ROWS / 2 => '+',
+    match libm::hypotf(x, y) {
+        radius if (0.94..1.06).contains(&radius) => '·',
+        _ if cell(0.0, 0.0) == (column, row) => '+',
         _ => ' ',
     }
 }

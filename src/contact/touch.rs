@@ -4,7 +4,7 @@ use crate::quantity::Contact;
 use crate::time::StreamInstant;
 
 /// A touch begins at this normal force. Five times the published noise of Fz after the filter.
-const ON_N: f32 = 0.15;
+pub const ON_N: f32 = 0.15;
 
 /// A touch ends below this normal force.
 const OFF_N: f32 = 0.10;

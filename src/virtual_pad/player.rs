@@ -3,6 +3,7 @@
 //! Gestures are first made for every binding, then those go whose forces or places come too near to a
 //! threshold.
 
+use crate::contact::touch;
 use crate::mapping::profile::{Action, Binding, Button, Dpad, DpadMode, Force, Profile};
 use crate::quantity::Contact;
 use crate::virtual_pad::gesture::{Gesture, Held, Step};
@@ -17,8 +18,6 @@ const PAUSE_MIN_US: u64 = 100_000;
 const SAMPLE_US: u64 = 1_000;
 const LONG_PRESS_MAX_US: u64 = 3_000_000;
 
-/// Below this normal force nothing touches, whatever the profile says.
-const TOUCH_N: f32 = 0.15;
 const FORCE_MAX_N: f32 = 4.5;
 const RADIUS_MAX_MM: f32 = 25.0;
 const PLACE_SLACK_MM: f32 = 2.0;
@@ -69,8 +68,8 @@ impl<'p> Player<'p> {
             press_n = press_n.min(button.press_n);
             release_n = release_n.min(button.release_n);
         }
-        let (touch_n, centre_mm) = profile.dpad.as_ref().map_or((TOUCH_N, 0.0), |dpad| {
-            (dpad.min_force_n.max(dpad.release_force_n).max(TOUCH_N), dpad.centre_radius_mm)
+        let (touch_n, centre_mm) = profile.dpad.as_ref().map_or((touch::ON_N, 0.0), |dpad| {
+            (dpad.min_force_n.max(dpad.release_force_n).max(touch::ON_N), dpad.centre_radius_mm)
         });
         let (floor_n, ceiling_n) = (1.5 * touch_n, (0.7 * press_n).min(0.8 * release_n));
         let filter_us = SAMPLE_US.saturating_mul(profile.filter_samples as u64);
@@ -266,7 +265,7 @@ impl<'p> Player<'p> {
         touching.iter().all(|step| {
             pressed_before.extend(step.pressed);
             let buttons = self.profile.buttons.iter().enumerate();
-            step.contact.fz_n >= 1.3 * TOUCH_N
+            step.contact.fz_n >= 1.3 * touch::ON_N
                 && step.contact.fz_n.max(shear_n(&step.contact)) <= FORCE_MAX_N
                 && self.is_place_clear(step)
                 && buttons.into_iter().all(|(index, button)| {

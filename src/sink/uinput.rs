@@ -158,11 +158,11 @@ impl Unit {
 impl Drop for Unit {
     fn drop(&mut self) {
         let held = std::mem::take(&mut self.held);
-        if !held.is_empty() {
-            // Where this fails the device is gone, and with it what it held.
-            if self.write(held.into_iter().map(|code| (code, 0))).is_ok() {
-                let _: Option<()> = eventually(FAREWELL_MS, || None);
-            }
+        let spoke = !self.bytes.is_empty();
+        // Where this fails the device is gone, and with it what it held.
+        let released = held.is_empty() || self.write(held.into_iter().map(|code| (code, 0))).is_ok();
+        if spoke && released {
+            let _: Option<()> = eventually(FAREWELL_MS, || None);
         }
     }
 }

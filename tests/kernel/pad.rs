@@ -108,8 +108,9 @@ impl Pad {
     }
 
     /// Writes `frame` whole, in one system call.
-    pub(crate) fn write(&self, frame: &[u8]) {
+    pub(crate) fn write(&mut self, frame: &[u8]) {
         assert_eq!(rustix::io::write(&self.line, frame), Ok(frame.len()), "the line takes a frame at once");
+        self.last_write_ns = stamp_ns();
     }
 
     /// Streams `touch` for `for_ms` milliseconds.
@@ -145,7 +146,6 @@ impl Pad {
     pub(crate) fn stream_one(&mut self, touch: Touch, next_ns: u64) {
         let frame = self.next_frame(touch);
         self.write(&frame);
-        self.last_write_ns = stamp_ns();
         while readable_before(next_ns, self.line.as_fd()) {
             rustix::io::read(&self.line, &mut [0; 256]).expect("the bridge's commands");
         }

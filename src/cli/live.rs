@@ -18,7 +18,7 @@ use crate::sink::{Sink, log::LogSink, null::NullSink, uinput::UinputSink, x11::X
 use crate::time::HostInstant;
 use crate::transport::Transport;
 use crate::transport::address::PadAddress;
-use crate::transport::pads::{self, Opener, PadError};
+use crate::transport::pads::{Opener, PadError};
 use crate::transport::playback::Playback;
 use crate::transport::virtual_pad::VirtualPad as PadOnTerminal;
 use crate::virtual_pad::firmware::VirtualPad;
@@ -112,7 +112,7 @@ pub(super) fn open_pad(
 
 /// Opens a pad that is a device. With endless patience one that is not there yet is waited for.
 fn open_device(address: PadAddress, patience: Patience) -> Result<OpenedPad, Failure> {
-    let mut opener = pads::Opener::new(address);
+    let mut opener = Opener::new(address);
     let pad = match opener.open() {
         Ok(pad) => Some(pad),
         Err(PadError::NotThere(_) | PadError::Denied(_)) if patience == Patience::Endless => None,

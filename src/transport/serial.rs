@@ -327,7 +327,7 @@ mod tests {
     #[test]
     fn command_that_nobody_takes_times_out() {
         let (_pad, path) = open_terminal().unwrap();
-        let mut port = Serial::open(&path, BAUD).unwrap();
+        let port = Serial::open(&path, BAUD).unwrap();
         assert_eq!(port.write_whole(&vec![0; 1_000_000]).unwrap_err().kind(), io::ErrorKind::TimedOut);
     }
 

@@ -11,9 +11,10 @@ use clap::Args;
 use firmware_proto::command::Command;
 use serde::Serialize;
 
-use super::live::{OpenedPad, Output, Plan, bridge, open_pad, play};
+use super::live::{Audience, OpenedPad, Output, Plan, bridge, open_pad, play};
 use super::{Failure, print_json, profile};
-use crate::bridge::{Clock, Patience};
+use crate::bridge::clock::Clock;
+use crate::bridge::keeper::Patience;
 use crate::capture::{CallRef, CaptureReader};
 use crate::contact::Decoder;
 use crate::control::{Device, OutputEvent};
@@ -91,6 +92,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: Some(Box::new(calls.clone())),
         seconds: Some(arguments.seconds),
         patience: Patience::Limited,
+        audience: Audience::Nobody,
+        socket: None,
     })?;
     play(&mut bridge, &arguments.pad)?;
     let mut stages = timing.taken();

@@ -45,7 +45,7 @@ fn assert_answers(test: &str, calls_and_answers: &[(String, String)]) {
     }
 }
 
-fn hex(bytes: &[u8]) -> String {
+pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().fold(String::new(), |mut text, byte| {
         write!(text, "{byte:02x}").unwrap();
         text
@@ -104,7 +104,7 @@ fn receiving(parts: &[Vec<u8>]) -> Vec<(String, String)> {
     parts.iter().map(call).collect()
 }
 
-fn command_frame(command: &Command) -> Vec<u8> {
+pub(crate) fn command_frame(command: &Command) -> Vec<u8> {
     let mut frame = [0; ENCODED_MAX];
     let len = encode_command(command, &mut frame);
     frame[..len].to_vec()

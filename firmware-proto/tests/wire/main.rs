@@ -7,6 +7,8 @@ mod c_compiler;
 #[cfg(test)]
 mod c_encoder;
 #[cfg(test)]
+mod c_firmware;
+#[cfg(test)]
 mod damage;
 #[cfg(test)]
 mod random;

@@ -13,8 +13,8 @@ use firmware_proto::hid;
 use firmware_proto::link::{CommandReceiver, encode_command, encode_message};
 use firmware_proto::sample::{Sample, Status};
 
-use crate::c_compiler::compile_plain_and_sanitized;
 use crate::random::Random;
+use crate::sanitized::compile_plain_and_sanitized;
 use crate::vectors::{all_messages, command_frames, message_frames, refused_frames};
 
 /// The driver, plain and sanitized, compiled once; none where there is no compiler.

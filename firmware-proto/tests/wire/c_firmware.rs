@@ -11,8 +11,8 @@ use firmware_proto::link::{MessageReceiver, encode_message};
 use firmware_proto::sample::{Sample, Status};
 use firmware_proto::{CHANNELS, ENCODED_MAX};
 
-use crate::c_compiler::compile_plain_and_sanitized;
 use crate::c_encoder::{command_frame, hex};
+use crate::sanitized::compile_plain_and_sanitized;
 
 const CONVERSION_US: u64 = 20;
 

@@ -17,6 +17,8 @@ mod readme;
 #[cfg(test)]
 mod report;
 #[cfg(test)]
+mod sanitized;
+#[cfg(test)]
 #[path = "../../../tests/support/mod.rs"]
 mod support;
 #[cfg(test)]

@@ -5,7 +5,7 @@
 
 #include "tactpad_proto.h"
 
-/* The fastest rate that converter and line can do; a UART carries its baud rate / 600. */
+/* The fastest rate that converter and line can do. A UART carries its baud rate / 660 with room for replies. */
 #ifndef PAD_RATE_MAX_HZ
 #define PAD_RATE_MAX_HZ TACTPAD_RATE_MAX_HZ
 #endif

@@ -171,14 +171,12 @@ pub extern "C" fn tactpad_crate_receiver_len() -> usize {
 
 /// Makes a receiver of memory that holds anything.
 #[unsafe(no_mangle)]
-#[expect(improper_ctypes_definitions, reason = "C passes the address on and never looks inside")]
 pub extern "C" fn tactpad_crate_receiver_reset(receiver: &mut MaybeUninit<CommandReceiver>) {
     receiver.write(CommandReceiver::new());
 }
 
 /// Takes the next byte from the host.
 #[unsafe(no_mangle)]
-#[expect(improper_ctypes_definitions, reason = "C passes the address on and never looks inside")]
 pub extern "C" fn tactpad_crate_receive(receiver: &mut CommandReceiver, byte: u8, out: &mut CommandC) -> u32 {
     event(receiver.push(byte), out)
 }

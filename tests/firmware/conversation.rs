@@ -81,7 +81,7 @@ fn acknowledged(command: &Command, result: AckResult) -> Message {
 
 #[test]
 fn the_first_sample_tells_of_the_start_and_no_other_does() {
-    let Some(pad) = HostPad::start() else { return };
+    let Some(pad) = HostPad::start(1_000) else { return };
     let mut host = Host::open(&pad.path);
     for sequence in 0..500 {
         let sample = host.sample();
@@ -91,7 +91,7 @@ fn the_first_sample_tells_of_the_start_and_no_other_does() {
 
 #[test]
 fn every_command_is_answered() {
-    let Some(mut pad) = HostPad::start() else { return };
+    let Some(mut pad) = HostPad::start(1_000) else { return };
     let mut host = Host::open(&pad.path);
     let Message::Identity(identity) = host.ask(&Command::Identify) else { panic!("no identity") };
     assert_eq!(identity.serial_number.as_str(), "HOST-0001");
@@ -110,7 +110,7 @@ fn every_command_is_answered() {
 
 #[test]
 fn a_rate_is_set_or_refused() {
-    let Some(pad) = HostPad::start() else { return };
+    let Some(pad) = HostPad::start(1_000) else { return };
     let mut host = Host::open(&pad.path);
     for rate_hz in [99, 8001, 0, u16::MAX] {
         let set = Command::SetRate { rate_hz };
@@ -131,7 +131,7 @@ fn a_rate_is_set_or_refused() {
 
 #[test]
 fn damage_is_passed_over_and_a_stranger_is_answered() {
-    let Some(pad) = HostPad::start() else { return };
+    let Some(pad) = HostPad::start(1_000) else { return };
     let mut host = Host::open(&pad.path);
     let mut frame = [0; ENCODED_MAX];
     let length = encode_command(&Command::SetRate { rate_hz: 100 }, &mut frame);

@@ -46,9 +46,14 @@ pub(crate) struct Counts {
 
 impl HostPad {
     /// Starts it; `None` where there is no compiler.
-    pub(crate) fn start() -> Option<Self> {
+    pub(crate) fn start(rate_hz: u64) -> Option<Self> {
         let program = program()?;
-        let mut child = Command::new(program).stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
+        let mut child = Command::new(program)
+            .arg(rate_hz.to_string())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
         let said = child.stdout.take().unwrap();
         let mut pad = Self { child, said, unread: Vec::new(), path: String::new() };
         pad.path = pad.line();

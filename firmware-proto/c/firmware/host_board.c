@@ -2,7 +2,7 @@
  *
  * Build: gcc -O2 -I.. host_board.c pad_firmware.c ../tactpad_proto.c -o host_pad
  *
- * The first line it prints is the path to open as a serial port. The board starts when that port is first
+ * Its argument is the rate in hertz; 1000 without one. The first line it prints is the path to open as a serial port. The board starts when that port is first
  * opened, as a pad does that draws its power from there. It says when its light goes on and off, and at the
  * end, by SIGTERM or SIGINT, its counts.
  */
@@ -43,6 +43,7 @@ static const int32_t presses_mn[][MODULES] = {
     {1500, 0, 0}, {0, 1500, 0}, {0, 0, 1500}, {800, 800, 0}, {0, 800, 800}, {800, 0, 800}, {1000, 1000, 1000},
 };
 
+static uint16_t rate_hz = 1000;
 static int terminal;
 static uint64_t started_us;
 static volatile sig_atomic_t ended;
@@ -59,7 +60,7 @@ void board_identity(struct tactpad_identity *identity)
     static const char serial_number[TACTPAD_SERIAL_NUMBER_LEN] = "HOST-0001";
     memcpy(identity->serial_number, serial_number, sizeof serial_number);
     identity->count_bits = COUNT_BITS;
-    identity->rate_hz = 1000;
+    identity->rate_hz = rate_hz;
     identity->picovolts_per_count = PICOVOLTS_PER_COUNT;
 }
 
@@ -172,9 +173,15 @@ static const char *open_terminal(void)
     return path;
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     static struct pad pad;
+    if (argc > 1)
+        rate_hz = (uint16_t)strtoul(argv[1], NULL, 10);
+    if (rate_hz < TACTPAD_RATE_MIN_HZ || rate_hz > TACTPAD_RATE_MAX_HZ) {
+        fprintf(stderr, "usage: %s [RATE_HZ, %d to %d]\n", argv[0], TACTPAD_RATE_MIN_HZ, TACTPAD_RATE_MAX_HZ);
+        return EXIT_FAILURE;
+    }
     struct sigaction action = {.sa_handler = end};
     sigaction(SIGTERM, &action, NULL);
     sigaction(SIGINT, &action, NULL);

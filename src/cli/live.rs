@@ -18,6 +18,7 @@ use crate::sink::{Sink, log::LogSink, null::NullSink, uinput::UinputSink, x11::X
 use crate::time::HostInstant;
 use crate::transport::Transport;
 use crate::transport::address::PadAddress;
+use crate::transport::fault::{FaultPlan, FaultyLine};
 use crate::transport::playback::Playback;
 use crate::transport::serial::{OpenError, Serial};
 use crate::transport::virtual_pad::VirtualPad as PadOnTerminal;
@@ -93,6 +94,17 @@ pub(super) struct OpenedPad {
     pub(super) opener: Option<Opener>,
     /// The virtual pad behind the terminal, if it is one; it ends when this is dropped.
     _virtual_pad: Option<PadOnTerminal>,
+}
+
+impl OpenedPad {
+    /// The same pad on a bad line, each time it is opened. Without a plan it stays as it is.
+    pub(super) fn with_faults(self, plan: Option<FaultPlan>) -> io::Result<Self> {
+        let Some(plan) = plan else { return Ok(self) };
+        let faulty = move |line| Ok(Box::new(FaultyLine::new(line, &plan)?) as Box<dyn Transport>);
+        let pad = self.pad.map(faulty).transpose()?;
+        let opener = self.opener.map(|mut open| -> Opener { Box::new(move || faulty(open()?)) });
+        Ok(Self { pad, opener, ..self })
+    }
 }
 
 /// Opens the pad at `address`. The virtual pad plays a script made for `profile`.

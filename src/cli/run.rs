@@ -9,6 +9,7 @@ use super::screen::Screen;
 use super::{Failure, profile};
 use crate::bridge::{Ending, Patience};
 use crate::transport::address::PadAddress;
+use crate::transport::fault::FaultPlan;
 
 /// Arguments of `tactpad run`.
 #[derive(Debug, Args)]
@@ -27,6 +28,9 @@ pub(super) struct Arguments {
     /// Where events go: auto, uinput, x11, log:FILE, none.
     #[arg(long, default_value = "auto")]
     output: Output,
+    /// Try a bad line: SEED[:FAULT=PROBABILITY,...], faults per frame: drop, repeat, reorder, corrupt, delay, stall.
+    #[arg(long, value_name = "FAULTS")]
+    faults: Option<FaultPlan>,
     /// End after this many seconds.
     #[arg(long)]
     seconds: Option<f64>,
@@ -36,7 +40,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let patience = if arguments.wait { Patience::Endless } else { Patience::Limited };
     let sink = arguments.output.open()?;
-    let pad = open_pad(&arguments.pad, &profile, patience)?;
+    let pad = open_pad(&arguments.pad, &profile, patience)?.with_faults(arguments.faults)?;
     let title = format!("{} → {} → {}", arguments.pad, profile.name, sink.describe());
     writeln!(io::stderr(), "{title}")?;
     let (mut bridge, _running) = bridge(Plan {

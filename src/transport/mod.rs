@@ -1,6 +1,7 @@
 //! Where pad bytes come from.
 
 pub mod address;
+pub mod fault;
 mod pacing;
 pub mod playback;
 pub mod serial;

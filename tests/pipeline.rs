@@ -274,9 +274,9 @@ fn a_profile_change_does_not_revive_a_press_that_a_fault_or_a_pause_cut_short() 
         rig.hold(press, 200);
         assert_eq!(rig.take_events(), ["BTN_SOUTH=1"]);
         if pause {
-            rig.pipeline.pause(rig.host())
+            rig.pipeline.pause(rig.host());
         } else {
-            rig.pipeline.release_all(rig.host())
+            rig.pipeline.release_all(rig.host());
         }
         rig.collect();
         rig.pipeline.set_profile(rig.host(), profile("contra"));

@@ -78,7 +78,7 @@ impl Rig {
         match step {
             Step::Hold { finger, samples } => (0..*samples).for_each(|_| self.sample(finger, 1_000)),
             Step::Rest => {
-                (0..50).for_each(|_| self.sample(&Finger { x: 0, y: 0, fx: 0, fy: 0, fz: 0 }, 10_000))
+                (0..20).for_each(|_| self.sample(&Finger { x: 0, y: 0, fx: 0, fy: 0, fz: 0 }, 25_000))
             }
             Step::Odd { finger, oddity } => self.odd(finger, *oddity),
             Step::Bytes(bytes) => self.call(CallRef::Bytes(bytes)),

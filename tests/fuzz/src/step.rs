@@ -10,7 +10,7 @@ pub enum Step {
         finger: Finger,
         samples: u8,
     },
-    /// The pad lies untouched for as long as the zero takes, sampling every 10 ms.
+    /// The pad lies untouched for as long as the zero takes, sampling every 25 ms.
     Rest,
     /// The pad sends one sample with something wrong.
     Odd {

@@ -28,7 +28,8 @@ pub(super) struct Arguments {
     /// Where events go: auto, uinput, x11, log:FILE, none.
     #[arg(long, default_value = "auto")]
     output: Output,
-    /// Try a bad line: SEED[:FAULT=PROBABILITY,...], faults per frame: drop, repeat, reorder, corrupt, delay, stall.
+    /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
+    /// probability is per frame, and 0.001 where only a seed is given.
     #[arg(long, value_name = "FAULTS")]
     faults: Option<FaultPlan>,
     /// End after this many seconds.

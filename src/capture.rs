@@ -51,7 +51,8 @@ pub enum CallKind {
 pub enum CaptureError {
     /// It does not begin like one.
     NotACapture,
-    /// An entry is of no known kind or impossibly long: the file is damaged, or from a newer program.
+    /// An entry is of no known kind, impossibly long, or carries bytes where its kind has none: the file is damaged,
+    /// or from a newer program.
     Damaged {
         /// Byte offset of the entry.
         offset: u64,
@@ -166,6 +167,10 @@ impl CallRef<'_> {
 
 impl CallKind {
     fn from_entry(kind: u8, bytes: Vec<u8>) -> Option<Self> {
+        let carries_bytes = matches!(kind, 0 | 7 | 8);
+        if !carries_bytes && !bytes.is_empty() {
+            return None;
+        }
         match kind {
             0 => Some(Self::Bytes(bytes)),
             1 => Some(Self::Timeout),
@@ -334,5 +339,15 @@ mod tests {
         bytes.extend([99; 200]);
         let entries: Vec<_> = CaptureReader::new(&bytes[..]).unwrap().collect();
         assert!(matches!(entries[..], [Err(CaptureError::Damaged { offset: 18 })]));
+    }
+
+    #[test]
+    fn bytes_where_a_call_has_none_are_damage() {
+        for kind in 0..=9_u8 {
+            let entry = [&[kind; 1][..], &[0; 8], &[1, 0, 0, 0], b"x"].concat();
+            let file = [MAGIC, &entry].concat();
+            let [entry] = &CaptureReader::new(&file[..]).unwrap().collect::<Vec<_>>()[..] else { panic!() };
+            assert_eq!(entry.is_ok(), [0, 7, 8].contains(&kind), "kind {kind}");
+        }
     }
 }

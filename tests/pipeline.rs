@@ -9,7 +9,7 @@ use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::Status;
 use rig::{Rig, frame, profile};
-use tactpad::pipeline::Phase;
+use tactpad::pipeline::{Phase, Refusal};
 use tactpad::quantity::Contact;
 
 const RIGHT: Contact = Contact { x_mm: 20.0, y_mm: 0.0, fx_n: 0.0, fy_n: 0.0, fz_n: 1.0 };
@@ -238,6 +238,56 @@ fn a_pad_that_tells_its_scale_is_believed() {
     rig.rest(200);
     assert_eq!(rig.take_events(), Vec::<String>::new());
     assert_eq!(rig.pipeline.identity(), Some(&identity));
+}
+
+#[test]
+fn a_frame_of_a_newer_version_releases_everything() {
+    let mut rig = holding_right();
+    // Version 2, kind 1, no payload; the checksum is sound.
+    rig.bytes(&[0x07, 0x02, 0x01, 0xeb, 0x40, 0xe8, 0x04, 0x00]);
+    rig.hold(RIGHT, 200);
+    assert_eq!(rig.take_events(), ["ABS_HAT0X=0"]);
+    assert_eq!(rig.pipeline.refusal(), Some(&Refusal::NewerVersion(2)));
+}
+
+#[test]
+fn a_timeout_after_silence_only_releases() {
+    let mut rig = Rig::rested(profile("super-mario"));
+    while rig.events.is_empty() {
+        rig.hold(RIGHT, 1);
+    }
+    assert_eq!(rig.take_events(), ["ABS_HAT0X=1"]);
+    // The other side is wanted, but the minimum press still holds this one when the host falls asleep.
+    rig.hold(Contact { x_mm: -20.0, ..RIGHT }, 20);
+    assert_eq!(rig.take_events(), Vec::<String>::new());
+    rig.now_us += 500_000;
+    rig.pipeline.handle_timeout(rig.host());
+    rig.collect();
+    assert_eq!(rig.take_events(), ["ABS_HAT0X=0"]);
+}
+
+#[test]
+fn a_profile_change_does_not_revive_a_press_that_a_fault_or_a_pause_cut_short() {
+    for pause in [false, true] {
+        let mut rig = Rig::rested(profile("contra"));
+        let press = Contact { fz_n: 3.0, ..Contact::default() };
+        rig.hold(press, 200);
+        assert_eq!(rig.take_events(), ["BTN_SOUTH=1"]);
+        if pause {
+            rig.pipeline.pause(rig.host());
+        } else {
+            rig.pipeline.release_all(rig.host());
+        }
+        rig.collect();
+        rig.pipeline.set_profile(rig.host(), profile("contra"));
+        rig.collect();
+        rig.pipeline.resume();
+        rig.hold(press, 200);
+        assert_eq!(rig.take_events(), ["BTN_SOUTH=0"], "pause: {pause}");
+        rig.rest(100);
+        rig.hold(press, 200);
+        assert_eq!(rig.take_events(), ["BTN_SOUTH=1"], "pause: {pause}");
+    }
 }
 
 #[test]

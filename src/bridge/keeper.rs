@@ -8,7 +8,7 @@ use super::BridgeError;
 use crate::pipeline::Pipeline;
 use crate::time::HostInstant;
 use crate::transport::Transport;
-use crate::transport::pads::{Opener, PadError};
+use crate::transport::pads::PadError;
 
 /// A pad that has not sent one sound frame by then is no pad, or not there.
 const FIRST_FRAME_US: u64 = 3_000_000;
@@ -18,6 +18,9 @@ const REOPEN_US: u64 = 250_000;
 
 /// A pad that is still starting may miss a question: it is asked again after these times.
 const IDENTIFY_US: [u64; 3] = [0, 250_000, 1_000_000];
+
+/// Opens the pad, again and again if need be.
+pub type Reopen = Box<dyn FnMut() -> Result<Box<dyn Transport>, PadError>>;
 
 /// What to do about a pad that is not there at the start, or sends no sound frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +43,7 @@ pub(super) enum Absence {
 /// The pad, or the search for it.
 pub(super) struct Keeper {
     pad: Option<Box<dyn Transport>>,
-    opener: Option<Opener>,
+    opener: Option<Reopen>,
     patience: Patience,
     absence: Absence,
     opened_at: HostInstant,
@@ -53,7 +56,7 @@ impl Keeper {
     /// Keeps `pad`, opened just now. `opener` opens it again; a pad without one ends for good when it leaves.
     pub(super) fn new(
         pad: Option<Box<dyn Transport>>,
-        opener: Option<Opener>,
+        opener: Option<Reopen>,
         patience: Patience,
         now: HostInstant,
     ) -> Self {
@@ -109,6 +112,11 @@ impl Keeper {
         self.reopen_at = now.plus_us(REOPEN_US);
     }
 
+    /// Closes the pad for good.
+    pub(super) fn close(&mut self) {
+        (self.pad, self.opener) = (None, None);
+    }
+
     /// When [`Keeper::attend`] has something to do.
     pub(super) fn next_deadline(&self, pipeline: &Pipeline) -> Option<HostInstant> {
         let reopen = self.reopens().then_some(self.reopen_at);
@@ -148,7 +156,7 @@ impl Keeper {
 
     fn reopen(&mut self, now: HostInstant) {
         self.reopen_at = now.plus_us(REOPEN_US);
-        match self.opener.as_mut().map(Opener::open) {
+        match self.opener.as_mut().map(|open| open()) {
             Some(Ok(pad)) => {
                 (self.pad, self.opened_at) = (Some(pad), now);
                 self.identify_asked = 0;

@@ -22,9 +22,8 @@ use crate::requests::{Asked, Request, Requests};
 use crate::sink::{Sink, SinkError};
 use crate::time::HostInstant;
 use crate::transport::Transport;
-use crate::transport::pads::Opener;
 use clock::Clock;
-use keeper::{Keeper, Patience};
+use keeper::{Keeper, Patience, Reopen};
 use state::{Herald, Snapshot, State, Status};
 
 /// The snapshot for screens is renewed this often.
@@ -56,7 +55,7 @@ pub struct Parts {
     /// The pad, opened once already so that errors were told.
     pub pad: Option<Box<dyn Transport>>,
     /// Opens the pad again after it was unplugged; `None` for a pad that ends, as a capture does.
-    pub opener: Option<Opener>,
+    pub opener: Option<Reopen>,
     /// Where events go.
     pub sink: Box<dyn Sink>,
     /// What people ask for.
@@ -169,6 +168,8 @@ impl Bridge {
     /// See [`BridgeError`].
     pub fn run(&mut self) -> Result<Ending, BridgeError> {
         let ending = self.play();
+        // First of all: a pad that nobody reads any more should not have to count what is not taken.
+        self.keeper.close();
         self.held_at_end = self.pipeline.held().count();
         let released = self.call(self.clock.now(), CallRef::ReleaseAll);
         if let Some(recorder) = &mut self.recorder {

@@ -10,7 +10,7 @@ use rustix::event::{Timespec, poll};
 
 use super::{Failure, profile};
 use crate::bridge::clock::Clock;
-use crate::bridge::keeper::Patience;
+use crate::bridge::keeper::{Patience, Reopen};
 use crate::bridge::{Bridge, BridgeError, Ending, Parts, ReadProfile};
 use crate::capture::{CallKind, CallRef, CaptureReader, CaptureWriter};
 use crate::contact::Decoder;
@@ -22,6 +22,7 @@ use crate::sink::{Sink, log::LogSink, null::NullSink, uinput::UinputSink, x11::X
 use crate::time::HostInstant;
 use crate::transport::Transport;
 use crate::transport::address::PadAddress;
+use crate::transport::fault::{FaultPlan, FaultyLine};
 use crate::transport::pads::{Opener, PadError};
 use crate::transport::playback::Playback;
 use crate::transport::virtual_pad::VirtualPad as PadOnTerminal;
@@ -100,9 +101,23 @@ fn with_alternatives(message: &str) -> String {
 /// An opened pad: its first opening, and how to open it again.
 pub(super) struct OpenedPad {
     pub(super) pad: Option<Box<dyn Transport>>,
-    pub(super) opener: Option<Opener>,
+    pub(super) opener: Option<Reopen>,
     /// The virtual pad behind the terminal, if it is one; it ends when this is dropped.
     _virtual_pad: Option<PadOnTerminal>,
+}
+
+impl OpenedPad {
+    /// The same pad on a bad line, each time it is opened. Without a plan it stays as it is.
+    pub(super) fn with_faults(self, plan: Option<FaultPlan>) -> io::Result<Self> {
+        let Some(plan) = plan else { return Ok(self) };
+        let faulty =
+            move |line| -> io::Result<Box<dyn Transport>> { Ok(Box::new(FaultyLine::new(line, &plan)?)) };
+        let pad = self.pad.map(faulty).transpose()?;
+        let opener = self.opener.map(|mut open| -> Reopen {
+            Box::new(move || faulty(open()?).map_err(|error| PadError::Unusable(error.to_string())))
+        });
+        Ok(Self { pad, opener, ..self })
+    }
 }
 
 /// Opens the pad at `address`. The virtual pad plays a script made for `profile`.
@@ -128,7 +143,7 @@ fn open_device(address: PadAddress, patience: Patience) -> Result<OpenedPad, Fai
         Err(PadError::NotThere(_) | PadError::Denied(_)) if patience == Patience::Endless => None,
         Err(error) => return Err(Failure::Unusable(error.to_string())),
     };
-    Ok(OpenedPad { pad, opener: Some(opener), _virtual_pad: None })
+    Ok(OpenedPad { pad, opener: Some(Box::new(move || opener.open())), _virtual_pad: None })
 }
 
 /// Opens the pad. One that was plugged in just now may still be waiting for its permissions: tries for five seconds.

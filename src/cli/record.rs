@@ -9,6 +9,7 @@ use super::live::{Audience, Output, Plan, bridge, create_capture, open_pad, play
 use super::{Failure, ctl, profile};
 use crate::bridge::keeper::Patience;
 use crate::transport::address::PadAddress;
+use crate::transport::fault::FaultPlan;
 
 /// Arguments of `tactpad record`.
 #[derive(Debug, Args)]
@@ -27,6 +28,10 @@ pub(super) struct Arguments {
     /// Where events go meanwhile: auto, uinput, x11, log:FILE, none.
     #[arg(long, default_value = "none")]
     output: Output,
+    /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
+    /// probability is per frame, and 0.001 where only a seed is given.
+    #[arg(long, value_name = "FAULTS")]
+    faults: Option<FaultPlan>,
     /// End after this many seconds; without it Ctrl-C ends.
     #[arg(long)]
     seconds: Option<f64>,
@@ -35,7 +40,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let sink = arguments.output.open()?;
-    let pad = open_pad(&arguments.pad, &profile, Patience::Limited)?;
+    let pad = open_pad(&arguments.pad, &profile, Patience::Limited)?.with_faults(arguments.faults)?;
     writeln!(io::stderr(), "recording {} in {}", arguments.pad, arguments.capture.display())?;
     let (mut bridge, _running) = bridge(Plan {
         pad,

@@ -10,6 +10,7 @@ use super::{Failure, ctl, profile};
 use crate::bridge::Ending;
 use crate::bridge::keeper::Patience;
 use crate::transport::address::PadAddress;
+use crate::transport::fault::FaultPlan;
 
 /// Arguments of `tactpad run`.
 #[derive(Debug, Args)]
@@ -29,6 +30,10 @@ pub(super) struct Arguments {
     /// Where events go: auto, uinput, x11, log:FILE, none.
     #[arg(long, default_value = "auto")]
     output: Output,
+    /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
+    /// probability is per frame, and 0.001 where only a seed is given.
+    #[arg(long, value_name = "FAULTS")]
+    faults: Option<FaultPlan>,
     /// End after this many seconds.
     #[arg(long)]
     seconds: Option<f64>,
@@ -39,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let waits = arguments.wait || matches!(arguments.pad, PadAddress::Auto { .. });
     let patience = if waits { Patience::Endless } else { Patience::Limited };
     let sink = arguments.output.open()?;
-    let pad = open_pad(&arguments.pad, &profile, patience)?;
+    let pad = open_pad(&arguments.pad, &profile, patience)?.with_faults(arguments.faults)?;
     let title = format!("{} → {} → {}", arguments.pad, profile.name, sink.describe());
     writeln!(io::stderr(), "{title}")?;
     // The live picture shows the state; without one it is told in words.

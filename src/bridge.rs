@@ -17,6 +17,7 @@ use crate::control::Device;
 use crate::health::Health;
 use crate::latency::{Durations, Percentiles};
 use crate::mapping::intent::Level;
+use crate::mapping::profile::Profile;
 use crate::pipeline::{NoProbe, Phase, Pipeline, Refusal};
 use crate::quantity::Contact;
 use crate::replay::make_call;
@@ -110,7 +111,7 @@ pub struct Parts {
     /// Where calls are recorded.
     pub recorder: Option<CaptureWriter<Box<dyn Write>>>,
     /// Reads the profile again when the player asks; tells people why not.
-    pub reload: Box<dyn FnMut() -> Option<(String, crate::mapping::profile::Profile)>>,
+    pub reload: Box<dyn FnMut() -> Option<(String, Profile)>>,
     /// Ends the run at this time.
     pub end_at: Option<HostInstant>,
     /// Whether to go on waiting for a pad that sends no sound frame.
@@ -220,8 +221,7 @@ impl Bridge {
     }
 
     fn play(&mut self) -> Result<Ending, BridgeError> {
-        let device = self.parts.pipeline.profile().output;
-        self.prepare(device)?;
+        prepare(self.parts.sink.as_mut(), self.parts.pipeline.profile())?;
         let mut now = self.parts.clock.now();
         loop {
             // The deadline counts from the last wake-up: one clock read less, late by what the work took.
@@ -339,14 +339,10 @@ impl Bridge {
 
     fn reload_profile(&mut self, now: HostInstant) -> Result<(), BridgeError> {
         let Some((text, profile)) = (self.parts.reload)() else { return Ok(()) };
-        self.prepare(profile.output)?;
+        prepare(self.parts.sink.as_mut(), &profile)?;
         let forced = profile.output == Device::Keyboard;
         let call = if forced { CallRef::KeyboardProfile(&text) } else { CallRef::Profile(&text) };
         self.call(now, call)
-    }
-
-    fn prepare(&mut self, device: Device) -> Result<(), BridgeError> {
-        self.parts.sink.prepare(device).map_err(BridgeError::Sink)
     }
 
     /// Asks the pad who it is, looks for an unplugged one, and gives up on what is no pad.
@@ -425,6 +421,13 @@ impl Bridge {
             snapshot.at = now;
         }
     }
+}
+
+/// Makes the devices that `profile` plays on.
+fn prepare(sink: &mut dyn Sink, profile: &Profile) -> Result<(), BridgeError> {
+    let devices = [Device::Gamepad, Device::Keyboard, Device::Pointer];
+    let mut used = devices.into_iter().filter(|device| profile.uses(*device));
+    used.try_for_each(|device| sink.prepare(device)).map_err(BridgeError::Sink)
 }
 
 fn until(now: HostInstant, deadline: HostInstant) -> Timespec {

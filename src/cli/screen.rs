@@ -8,6 +8,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use crate::bridge::Snapshot;
+use crate::control::Code;
 use crate::mapping::intent::Level;
 use crate::pipeline::Phase;
 use crate::quantity::Contact;
@@ -124,8 +125,9 @@ fn phase(phase: Phase) -> &'static str {
 
 fn level(level: &Level) -> String {
     match level.code {
-        crate::control::Code::Key(_) => format!("{}", level.code),
-        crate::control::Code::Axis(_) => format!("{}={:+}", level.code, level.value),
+        Code::Key(_) => format!("{}", level.code),
+        Code::Axis(_) => format!("{}={:+}", level.code, level.value),
+        Code::Relative(_) => format!("{}{:+}/s", level.code, level.value),
     }
 }
 

@@ -60,10 +60,14 @@ pub enum Phase {
     Taring,
     /// Contacts become events.
     Playing,
+    /// The line was at fault just now; contacts are not believed yet.
+    Doubtful,
     /// A channel cannot be trusted.
     Faulty,
     /// The player paused.
     Paused,
+    /// The pad cannot be played with.
+    Refused,
 }
 
 /// Why a pad cannot be played with.
@@ -232,8 +236,13 @@ impl Pipeline {
     }
 
     /// What the pipeline is doing.
-    pub const fn phase(&self) -> Phase {
-        if self.paused { Phase::Paused } else { self.phase }
+    pub fn phase(&self) -> Phase {
+        match self.phase {
+            _ if self.paused => Phase::Paused,
+            _ if self.refusal.is_some() => Phase::Refused,
+            Phase::Playing if self.at < self.trusted_at => Phase::Doubtful,
+            phase => phase,
+        }
     }
 
     fn handle_link<P: Probe>(&mut self, now: HostInstant, event: &LinkEvent, probe: &mut P) {

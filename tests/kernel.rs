@@ -18,6 +18,8 @@ mod clock;
 mod demo;
 #[path = "kernel/guest.rs"]
 mod guest;
+#[path = "kernel/hid.rs"]
+mod hid;
 #[path = "kernel/latency.rs"]
 mod latency;
 #[path = "kernel/neutral.rs"]
@@ -93,6 +95,21 @@ fn unplugging_releases_and_the_device_stays() {
 #[test]
 fn silence_releases_and_the_device_stays() {
     in_guest("silence_releases_and_the_device_stays", neutral::after_silence);
+}
+
+#[test]
+fn a_hid_pad_is_found_and_plays() {
+    in_guest("a_hid_pad_is_found_and_plays", hid::plays);
+}
+
+#[test]
+fn two_hid_pads_are_told_apart() {
+    in_guest("two_hid_pads_are_told_apart", hid::chosen_by_serial_number);
+}
+
+#[test]
+fn a_hid_pad_may_come_and_go() {
+    in_guest("a_hid_pad_may_come_and_go", hid::replugged);
 }
 
 #[test]

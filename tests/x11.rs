@@ -7,7 +7,7 @@ mod support;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 
-use tactpad::bridge::Clock;
+use tactpad::bridge::clock::Clock;
 use tactpad::control::{Code, Device, OutputEvent};
 use tactpad::latency::{Durations, Percentiles};
 use tactpad::sink::Sink;

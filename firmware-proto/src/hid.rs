@@ -5,6 +5,7 @@
 use crate::command::Command;
 use crate::cursor::{Reader, Writer};
 use crate::frame::{BODY_MAX, Body, Message, WireError, read_body, write_body};
+use crate::{ENCODED_MAX, PROTOCOL_VERSION, link};
 
 /// The USB vendor number: a block of numbers shared by open hardware.
 pub const VENDOR_ID: u16 = 0x1209;
@@ -69,6 +70,21 @@ pub fn decode_message(report: &[u8]) -> Result<Message, WireError> {
 /// serial line.
 pub fn decode_command(report: &[u8]) -> Result<Command, WireError> {
     decode(COMMAND_REPORT_ID, report)
+}
+
+/// Writes what a message report carries as one serial frame with its closing zero; returns how many bytes of `out`
+/// it takes.
+///
+/// For hosts: whatever way a message came, one receiver hears the same of it. What is no message stays what it is: an
+/// unknown kind, a newer version, or damage.
+pub fn to_serial_frame(report: &[u8], out: &mut [u8; ENCODED_MAX]) -> usize {
+    match decode_message(report) {
+        Ok(message) => link::encode_message(&message, out),
+        Err(WireError::UnknownKind(kind)) => link::seal(&[PROTOCOL_VERSION, kind], out),
+        Err(WireError::NewerVersion(version)) => link::seal(&[version, 0], out),
+        // No body has version 0.
+        Err(WireError::Damaged | WireError::TooLong) => link::seal(&[0, 0], out),
+    }
 }
 
 fn encode(report_id: u8, body: &impl Body) -> [u8; REPORT_LEN] {

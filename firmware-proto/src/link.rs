@@ -16,9 +16,17 @@ pub fn encode_command(command: &Command, out: &mut [u8; ENCODED_MAX]) -> usize {
 }
 
 fn encode(body: &impl Body, out: &mut [u8; ENCODED_MAX]) -> usize {
+    let mut plain = [0; BODY_MAX];
+    let mut written = Writer::new(&mut plain);
+    write_body(body, &mut written);
+    seal(written.written(), out)
+}
+
+/// Adds checksum, stuffing and the closing zero to a body of at most [`BODY_MAX`] bytes.
+pub(crate) fn seal(body: &[u8], out: &mut [u8; ENCODED_MAX]) -> usize {
     let mut plain = [0; BODY_MAX + crc::LEN];
     let mut frame = Writer::new(&mut plain);
-    write_body(body, &mut frame);
+    frame.put(body);
     let checksum = crc::crc32(frame.written());
     frame.put(&checksum.to_le_bytes());
 

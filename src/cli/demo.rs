@@ -7,10 +7,11 @@ use std::sync::{Arc, Mutex};
 use clap::Args;
 use serde::Serialize;
 
-use super::live::{Output, Plan, bridge, open_virtual, play};
+use super::live::{Audience, Output, Plan, bridge, open_virtual, play};
 use super::screen::Screen;
 use super::{Failure, print_json, profile};
-use crate::bridge::{Bridge, Ending, Patience};
+use crate::bridge::keeper::Patience;
+use crate::bridge::{Bridge, Ending};
 use crate::control::{Code, Device, OutputEvent};
 use crate::latency::Percentiles;
 use crate::mapping::profile::Profile;
@@ -135,6 +136,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: None,
         seconds: Some(arguments.seconds),
         patience: Patience::Limited,
+        audience: Audience::Nobody,
+        socket: None,
     })?;
     let title = format!("{name} on a virtual pad");
     let screen = (!arguments.json).then(|| start_screen(title, &bridge, &seen));

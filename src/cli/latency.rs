@@ -8,11 +8,13 @@ use std::os::fd::BorrowedFd;
 use std::sync::{Arc, Mutex};
 
 use clap::Args;
+use firmware_proto::command::Command;
 use serde::Serialize;
 
-use super::live::{OpenedPad, Output, Plan, bridge, open_pad, play};
+use super::live::{Audience, OpenedPad, Output, Plan, bridge, open_pad, play};
 use super::{Failure, print_json, profile};
-use crate::bridge::{Clock, Patience};
+use crate::bridge::clock::Clock;
+use crate::bridge::keeper::Patience;
 use crate::capture::{CallRef, CaptureReader};
 use crate::contact::Decoder;
 use crate::control::{Device, OutputEvent};
@@ -90,6 +92,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: Some(Box::new(calls.clone())),
         seconds: Some(arguments.seconds),
         patience: Patience::Limited,
+        audience: Audience::Nobody,
+        socket: None,
     })?;
     play(&mut bridge, &arguments.pad)?;
     let mut stages = timing.taken();
@@ -235,8 +239,8 @@ impl Transport for TimedPad {
         read
     }
 
-    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.pad.send(bytes)
+    fn send(&mut self, command: &Command) -> io::Result<()> {
+        self.pad.send(command)
     }
 }
 

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::live::{Output, Plan, bridge, create_capture, open_pad, play};
-use super::{Failure, profile};
-use crate::bridge::Patience;
+use super::live::{Audience, Output, Plan, bridge, create_capture, open_pad, play};
+use super::{Failure, ctl, profile};
+use crate::bridge::keeper::Patience;
 use crate::transport::address::PadAddress;
 
 /// Arguments of `tactpad record`.
@@ -47,6 +47,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: Some(create_capture(&arguments.capture)?),
         seconds: arguments.seconds,
         patience: Patience::Limited,
+        audience: Audience::Stderr,
+        socket: Some(ctl::socket_path()),
     })?;
     play(&mut bridge, &arguments.pad)?;
     writeln!(io::stderr(), "{} samples recorded", bridge.health().samples)?;

@@ -1,24 +1,26 @@
 //! `tactpad run`: the live bridge.
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 
 use clap::Args;
 
-use super::live::{Output, Plan, bridge, open_pad, play};
+use super::live::{Audience, Output, Plan, bridge, open_pad, play};
 use super::screen::Screen;
-use super::{Failure, profile};
-use crate::bridge::{Ending, Patience};
+use super::{Failure, ctl, profile};
+use crate::bridge::Ending;
+use crate::bridge::keeper::Patience;
 use crate::transport::address::PadAddress;
 
 /// Arguments of `tactpad run`.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tactpad run --pad serial:/dev/ttyACM0 --profile tetris\n\n\
-    Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on, SIGHUP reads the profile again.")]
+    `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on, SIGHUP reads the \
+    profile again.")]
 pub(super) struct Arguments {
-    /// The pad: virtual, serial:PATH[@BAUD], capture:FILE.
+    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], virtual, capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
-    /// Wait for a pad that is not there yet or sends nothing yet.
+    /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.
     #[arg(long)]
     wait: bool,
     /// A profile's name or file.
@@ -34,11 +36,14 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
-    let patience = if arguments.wait { Patience::Endless } else { Patience::Limited };
+    let waits = arguments.wait || matches!(arguments.pad, PadAddress::Auto { .. });
+    let patience = if waits { Patience::Endless } else { Patience::Limited };
     let sink = arguments.output.open()?;
     let pad = open_pad(&arguments.pad, &profile, patience)?;
     let title = format!("{} → {} → {}", arguments.pad, profile.name, sink.describe());
     writeln!(io::stderr(), "{title}")?;
+    // The live picture shows the state; without one it is told in words.
+    let audience = if io::stdout().is_terminal() { Audience::Nobody } else { Audience::Stderr };
     let (mut bridge, _running) = bridge(Plan {
         pad,
         sink,
@@ -49,6 +54,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: None,
         seconds: arguments.seconds,
         patience,
+        audience,
+        socket: Some(ctl::socket_path()),
     })?;
     let screen = Screen::start(title, bridge.snapshot(), Vec::new);
     let ending = play(&mut bridge, &arguments.pad);

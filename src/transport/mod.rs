@@ -1,7 +1,9 @@
 //! Where pad bytes come from.
 
 pub mod address;
+pub mod hid;
 mod pacing;
+pub mod pads;
 pub mod playback;
 pub mod serial;
 pub mod virtual_pad;
@@ -9,7 +11,9 @@ pub mod virtual_pad;
 use std::io;
 use std::os::fd::BorrowedFd;
 
-/// A byte stream from and to one pad. Reading never blocks for long after `fd` polls readable.
+use firmware_proto::command::Command;
+
+/// One pad: a stream of serial frames from it, whatever way they came, and commands to it. Reading never blocks for long after `fd` polls readable.
 pub trait Transport {
     /// The descriptor to poll for readable bytes.
     fn fd(&self) -> BorrowedFd<'_>;
@@ -24,5 +28,5 @@ pub trait Transport {
     ///
     /// # Errors
     /// The command did not get out whole.
-    fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
+    fn send(&mut self, command: &Command) -> io::Result<()>;
 }

@@ -4,6 +4,7 @@ use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::thread::{self, JoinHandle};
 
+use firmware_proto::command::Command;
 use rustix::io::Errno;
 use rustix::pipe::{PipeFlags, pipe_with};
 
@@ -73,7 +74,7 @@ impl Transport for Playback {
     }
 
     /// Does nothing: what the pad answered back then is part of the recording.
-    fn send(&mut self, _bytes: &[u8]) -> io::Result<()> {
+    fn send(&mut self, _command: &Command) -> io::Result<()> {
         Ok(())
     }
 }

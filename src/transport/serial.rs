@@ -6,6 +6,9 @@ use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::OpenOptionsExt;
 
+use firmware_proto::ENCODED_MAX;
+use firmware_proto::command::Command;
+use firmware_proto::link::encode_command;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fs::OFlags;
 use rustix::io::Errno;
@@ -72,7 +75,16 @@ impl Transport for Serial {
         }
     }
 
-    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+    fn send(&mut self, command: &Command) -> io::Result<()> {
+        let mut frame = [0; ENCODED_MAX];
+        let length = encode_command(command, &mut frame);
+        self.write_whole(frame.get(..length).unwrap_or_default())
+    }
+}
+
+impl Serial {
+    /// Writes all of `bytes`, waiting for room at most [`SEND_LIMIT_US`].
+    pub(super) fn write_whole(&self, bytes: &[u8]) -> io::Result<()> {
         let mut rest = bytes;
         while !rest.is_empty() {
             match rustix::io::write(&self.file, rest) {
@@ -83,9 +95,7 @@ impl Transport for Serial {
         }
         Ok(())
     }
-}
 
-impl Serial {
     fn wait_for_room(&self) -> io::Result<()> {
         let mut fds = [PollFd::new(&self.file, PollFlags::OUT)];
         match poll(&mut fds, Some(&limit(SEND_LIMIT_US))) {
@@ -262,7 +272,7 @@ mod tests {
         let mut port = Serial::open(&path, BAUD).unwrap();
         write_all(&pad, &every_byte());
         assert_eq!(read_exactly(&mut port, 512), every_byte());
-        port.send(&every_byte()).unwrap();
+        port.write_whole(&every_byte()).unwrap();
         let mut bytes = [0; 1024];
         assert!(polls(pad.as_fd()));
         assert_eq!(rustix::io::read(&pad, &mut bytes), Ok(512));
@@ -310,15 +320,15 @@ mod tests {
         assert!(polls(port.fd()));
         for _ in 0..2 {
             assert_eq!(port.read(&mut [0; 8]).unwrap_err().kind(), io::ErrorKind::BrokenPipe);
-            assert_eq!(port.send(b"x").unwrap_err().kind(), io::ErrorKind::BrokenPipe);
+            assert_eq!(port.write_whole(b"x").unwrap_err().kind(), io::ErrorKind::BrokenPipe);
         }
     }
 
     #[test]
     fn command_that_nobody_takes_times_out() {
         let (_pad, path) = open_terminal().unwrap();
-        let mut port = Serial::open(&path, BAUD).unwrap();
-        assert_eq!(port.send(&vec![0; 1_000_000]).unwrap_err().kind(), io::ErrorKind::TimedOut);
+        let port = Serial::open(&path, BAUD).unwrap();
+        assert_eq!(port.write_whole(&vec![0; 1_000_000]).unwrap_err().kind(), io::ErrorKind::TimedOut);
     }
 
     #[test]

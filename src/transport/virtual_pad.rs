@@ -271,10 +271,10 @@ mod tests {
         let fake = Fake::new(0, 0, 0);
         let heard = Arc::clone(&fake.heard);
         let pad = VirtualPad::start(fake).unwrap();
-        let mut port = open(&pad);
+        let port = open(&pad);
         let every_byte: Vec<u8> = (0..=255).collect();
         for _ in 0..10 {
-            port.send(&every_byte).unwrap();
+            port.write_whole(&every_byte).unwrap();
         }
         eventually(|| heard.lock().unwrap().len() == 2560);
         assert_eq!(*heard.lock().unwrap(), every_byte.repeat(10));

@@ -43,7 +43,7 @@ pub(crate) const PRESS_RIGHT: Touch = Touch { fz_n: 3.0, ..RIGHT };
 
 impl Touch {
     /// The nine counts: three supports of a rigid plate share the force by the lever rule, and nothing pushes sideways.
-    fn counts(self) -> [i32; 9] {
+    pub(crate) fn counts(self) -> [i32; 9] {
         let mut counts = [0; 9];
         for (module, angle_deg) in [0.0_f64, 120.0, 240.0].into_iter().enumerate() {
             let (sin, cos) = angle_deg.to_radians().sin_cos();
@@ -108,8 +108,9 @@ impl Pad {
     }
 
     /// Writes `frame` whole, in one system call.
-    pub(crate) fn write(&self, frame: &[u8]) {
+    pub(crate) fn write(&mut self, frame: &[u8]) {
         assert_eq!(rustix::io::write(&self.line, frame), Ok(frame.len()), "the line takes a frame at once");
+        self.last_write_ns = stamp_ns();
     }
 
     /// Streams `touch` for `for_ms` milliseconds.
@@ -145,7 +146,6 @@ impl Pad {
     pub(crate) fn stream_one(&mut self, touch: Touch, next_ns: u64) {
         let frame = self.next_frame(touch);
         self.write(&frame);
-        self.last_write_ns = stamp_ns();
         while readable_before(next_ns, self.line.as_fd()) {
             rustix::io::read(&self.line, &mut [0; 256]).expect("the bridge's commands");
         }

@@ -73,6 +73,9 @@ impl Running {
 
     /// Waits for the program's end.
     pub(crate) fn wait(&mut self, limit_ms: u64) -> ExitStatus {
+        if let Some(status) = self.child.try_wait().expect("a child") {
+            return status;
+        }
         let end = pidfd_open(self.pid(), PidfdFlags::empty()).expect("a descriptor of a child");
         let ended = readable_before(monotonic_ns() + limit_ms * MS, end.as_fd());
         assert!(ended, "the program still runs after {limit_ms} ms");

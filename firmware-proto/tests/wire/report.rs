@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use firmware_proto::command::Command;
-use firmware_proto::frame::WireError;
-use firmware_proto::hid;
+use firmware_proto::frame::{Message, WireError};
+use firmware_proto::link::MessageReceiver;
+use firmware_proto::{ENCODED_MAX, hid};
 
 use crate::random::Random;
 
@@ -124,4 +125,35 @@ fn no_report_makes_a_decoder_panic() {
         readable += usize::from(hid::decode_command(&report).is_ok());
     }
     assert!(readable > 1_000, "the noise reached the payloads: {readable}");
+}
+
+/// What the host's receiver says of a report that was turned into a serial frame.
+fn through_the_line(report: &[u8]) -> Vec<Result<Message, WireError>> {
+    let mut frame = [0; ENCODED_MAX];
+    let length = hid::to_serial_frame(report, &mut frame);
+    let mut receiver = MessageReceiver::new();
+    frame[..length].iter().filter_map(|&byte| receiver.push(byte)).collect()
+}
+
+#[test]
+fn a_report_as_a_serial_frame_means_the_same() {
+    let mut random = Random(7);
+    for _ in 0..1_000 {
+        let message = random.message();
+        assert_eq!(through_the_line(&hid::encode_message(&message)), [Ok(message)]);
+    }
+    let report = |start: &[u8]| {
+        let mut report = [0; hid::REPORT_LEN];
+        report[..start.len()].copy_from_slice(start);
+        report
+    };
+    for (start, error) in [
+        (&[1, 1, 0x7E][..], WireError::UnknownKind(0x7E)),
+        (&[1, 9, 1], WireError::NewerVersion(9)),
+        (&[2, 1, 1], WireError::Damaged),
+        (&[0, 0, 0], WireError::Damaged),
+    ] {
+        assert_eq!(through_the_line(&report(start)), [Err(error)]);
+    }
+    assert_eq!(through_the_line(&[1, 1, 1]), [Err(WireError::Damaged)]);
 }

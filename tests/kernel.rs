@@ -66,6 +66,11 @@ fn keyboard_is_a_device_of_its_own_and_plays() {
 }
 
 #[test]
+fn pointer_is_a_mouse_of_its_own_and_moves() {
+    in_guest("pointer_is_a_mouse_of_its_own_and_moves", playing::pointer);
+}
+
+#[test]
 fn sdl_sees_a_game_controller() {
     if sdl::probe_is_there() {
         in_guest("sdl_sees_a_game_controller", sdl::game_controller);
@@ -110,6 +115,11 @@ fn a_hid_pad_may_come_and_go() {
 #[test]
 fn demo_plays_on_uinput() {
     in_guest("demo_plays_on_uinput", demo::plays_on_uinput);
+}
+
+#[test]
+fn demo_moves_the_pointer() {
+    in_guest("demo_moves_the_pointer", demo::moves_the_pointer);
 }
 
 #[test]

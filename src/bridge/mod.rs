@@ -179,7 +179,7 @@ impl Bridge {
     }
 
     fn play(&mut self) -> Result<Ending, BridgeError> {
-        self.prepare(self.pipeline.profile().output)?;
+        prepare(self.sink.as_mut(), self.pipeline.profile())?;
         let mut now = self.clock.now();
         loop {
             // The deadline counts from the last wake-up: one clock read less, late by what the work took.
@@ -301,18 +301,14 @@ impl Bridge {
                 return Ok(serde_json::json!({"ok": false, "error": error}).to_string());
             }
         };
-        self.prepare(profile.output)?;
+        prepare(self.sink.as_mut(), &profile)?;
         (self.tell)(&format!("profile {}", profile.name));
         let call = match profile.output {
             Device::Keyboard => CallRef::KeyboardProfile(&text),
-            Device::Gamepad => CallRef::Profile(&text),
+            Device::Gamepad | Device::Pointer => CallRef::Profile(&text),
         };
         self.call(now, call)?;
         Ok(done())
-    }
-
-    fn prepare(&mut self, device: Device) -> Result<(), BridgeError> {
-        self.sink.prepare(device).map_err(BridgeError::Sink)
     }
 
     fn state(&self) -> State {
@@ -361,6 +357,13 @@ fn done() -> String {
 
 fn is_woken(fd: &PollFd<'_>) -> bool {
     !fd.revents().is_empty()
+}
+
+/// Makes the devices that `profile` plays on.
+fn prepare(sink: &mut dyn Sink, profile: &Profile) -> Result<(), BridgeError> {
+    let devices = [Device::Gamepad, Device::Keyboard, Device::Pointer];
+    let mut used = devices.into_iter().filter(|device| profile.uses(*device));
+    used.try_for_each(|device| sink.prepare(device)).map_err(BridgeError::Sink)
 }
 
 fn until(now: HostInstant, deadline: HostInstant) -> Timespec {

@@ -8,6 +8,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use crate::bridge::state::Snapshot;
+use crate::control::Code;
 use crate::mapping::intent::Level;
 use crate::quantity::Contact;
 
@@ -113,8 +114,9 @@ fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
 
 fn level(level: &Level) -> String {
     match level.code {
-        crate::control::Code::Key(_) => format!("{}", level.code),
-        crate::control::Code::Axis(_) => format!("{}={:+}", level.code, level.value),
+        Code::Key(_) => format!("{}", level.code),
+        Code::Axis(_) => format!("{}={:+}", level.code, level.value),
+        Code::Relative(_) => format!("{}{:+}/s", level.code, level.value),
     }
 }
 

@@ -289,20 +289,38 @@ fn read_zones(
         );
     }
     let hysteresis = table.number("hysteresis_deg", HYSTERESIS_DEG, report);
-    if let (Some(mode), Some(width), Some(hysteresis)) = (mode, diagonal, hysteresis) {
-        let smallest = match mode {
-            DpadMode::FourWay => 90.0,
-            DpadMode::FourWaySticky | DpadMode::EightWay => width.value.min(90.0 - width.value),
-        };
-        if hysteresis.value >= smallest / 2.0 {
-            let at = table.place_of("hysteresis_deg").unwrap_or(width.at);
-            let message =
-                format!("\"hysteresis_deg\" ({}) reaches the middle of the next zone", hysteresis.value);
-            let help = format!("the smallest zone is {smallest}° wide; write less than {}", smallest / 2.0);
-            report.error(at, message, help);
+    if sticky {
+        if let Some(at) = table.place_of("hysteresis_deg") {
+            let message = "\"hysteresis_deg\" does nothing in mode \"4way-sticky\": there the diagonal zone is the \
+                           hysteresis";
+            report.warning(at, message, "remove it; \"diagonal_deg\" sets how far a direction is kept");
         }
+        return (diagonal.map(|width| width.value), hysteresis.map(|_| 0.0));
+    }
+    if let (Some(mode), Some(width), Some(hysteresis)) = (mode, diagonal, hysteresis) {
+        check_hysteresis(table, mode, width, hysteresis.value, report);
     }
     (diagonal.map(|width| width.value), hysteresis.map(|slack| slack.value))
+}
+
+/// Reports a hysteresis that reaches so far into the next zone that it would hide it.
+fn check_hysteresis(
+    table: &Section<'_>,
+    mode: DpadMode,
+    width: Placed<f32>,
+    hysteresis_deg: f32,
+    report: &mut Report<'_>,
+) {
+    let smallest = match mode {
+        DpadMode::FourWay => 90.0,
+        DpadMode::FourWaySticky | DpadMode::EightWay => width.value.min(90.0 - width.value),
+    };
+    if hysteresis_deg >= smallest / 2.0 {
+        let at = table.place_of("hysteresis_deg").unwrap_or(width.at);
+        let message = format!("\"hysteresis_deg\" ({hysteresis_deg}) reaches the middle of the next zone");
+        let help = format!("the smallest zone is {smallest}° wide; write less than {}", smallest / 2.0);
+        report.error(at, message, help);
+    }
 }
 
 /// Reports it if the first number is not less than the second, at whichever of them is written.

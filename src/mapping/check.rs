@@ -21,6 +21,9 @@ pub enum OutputChoice {
     Keyboard,
 }
 
+/// A longer text is no profile; the limit bounds what reading one can cost.
+pub const TEXT_BYTES_MAX: usize = 256_000;
+
 const NAME_CHARS_MAX: usize = 64;
 const FILTER_SAMPLES: Bounds<u32> = Bounds { low: 1, high: 64, default: 6 };
 const MIN_PRESS_MS: Bounds<u32> = Bounds { low: 0, high: 1_000, default: 40 };
@@ -74,10 +77,15 @@ const DIRECTIONS: [(&str, &str, &str); 4] = [
 
 /// Reads a profile from TOML text.
 ///
-/// Returns everything there is to say about the text, in its order. The profile is `None` exactly if there is
-/// an error among it; warnings leave it usable.
+/// Returns what there is to say about the text, in its order; after 50 findings a closing one says that there is
+/// more. The profile is `None` exactly if there is an error among it; warnings leave it usable. A text above
+/// [`TEXT_BYTES_MAX`] is not read.
 pub fn read(text: &str, output: OutputChoice) -> (Option<Profile>, Vec<Diagnostic>) {
     let mut report = Report::new(text);
+    if text.len() > TEXT_BYTES_MAX {
+        report.error(0, too_long(), "a profile is a few lines of TOML");
+        return (None, report.finish());
+    }
     let (tree, faults) = DeTable::parse_recoverable(text);
     for fault in faults {
         report.broken(fault.span().map_or(0, |span| span.start), fault.message());
@@ -86,6 +94,11 @@ pub fn read(text: &str, output: OutputChoice) -> (Option<Profile>, Vec<Diagnosti
     draft.check_conflicts(&mut report);
     let profile = if report.failed() { None } else { draft.settle(output) };
     (profile, report.finish())
+}
+
+/// What is wrong with a text above [`TEXT_BYTES_MAX`].
+pub fn too_long() -> String {
+    format!("the text is longer than {} kB", TEXT_BYTES_MAX / 1_000)
 }
 
 /// A profile while it is read: what is unusable is `None` and reported.
@@ -136,7 +149,8 @@ impl Draft {
         root.require("output", "write output = \"gamepad\" or output = \"keyboard\"", report);
         let min_press_ms = root.whole("min_press_ms", MIN_PRESS_MS, report).map(|ms| ms.value);
         let dpad = root.table("dpad", "[dpad]".to_owned(), &DPAD_KEYS, report);
-        let buttons = root.tables("button", &BUTTON_KEYS, report);
+        // One more than there can be, so that the first one too many is known by its place.
+        let buttons = root.tables("button", &BUTTON_KEYS, BUTTONS_MAX + 1, report);
         if root.place_of("dpad").is_none() && root.place_of("button").is_none() {
             report.warning(root.at, "the profile does nothing", "add a [dpad] or a [[button]] table");
         }

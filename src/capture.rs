@@ -395,7 +395,7 @@ mod tests {
             match &entries[whole..] {
                 [] => assert!(offsets().contains(&(end as u64)) && whole > 1),
                 [Err(CaptureError::CutOff { offset })] => {
-                    assert_eq!((*offset, whole > 1), (offsets()[whole], true))
+                    assert_eq!((*offset, whole > 1), (offsets()[whole], true));
                 }
                 [Err(CaptureError::NoPlay)] => assert!(whole <= 1),
                 rest => panic!("{rest:?}"),

@@ -1,12 +1,11 @@
 //! `tactpad run`: the live bridge.
 
-use std::io::{self, Write};
-
 use clap::Args;
 
+use super::files::Files;
 use super::live::{Output, Plan, bridge, open_pad, play};
 use super::screen::Screen;
-use super::{Failure, profile};
+use super::{Failure, profile, say, seconds};
 use crate::bridge::{Ending, Patience};
 use crate::transport::address::PadAddress;
 
@@ -28,17 +27,19 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "auto")]
     output: Output,
     /// End after this many seconds.
-    #[arg(long)]
+    #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { pad, profile, output, .. } = arguments;
+    Files { pad, profile, output, capture: None }.check()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let patience = if arguments.wait { Patience::Endless } else { Patience::Limited };
     let sink = arguments.output.open()?;
     let pad = open_pad(&arguments.pad, &profile, patience)?;
     let title = format!("{} → {} → {}", arguments.pad, profile.name, sink.describe());
-    writeln!(io::stderr(), "{title}")?;
+    say(&title);
     let (mut bridge, _running) = bridge(Plan {
         pad,
         sink,
@@ -54,7 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let ending = play(&mut bridge, &arguments.pad);
     drop(screen);
     if ending? == Ending::CaptureEnded {
-        writeln!(io::stderr(), "the capture has ended")?;
+        say("the capture has ended");
     }
     Ok(())
 }

@@ -69,8 +69,8 @@ pub enum CallKind {
 pub enum CaptureError {
     /// It does not begin like one.
     NotACapture,
-    /// A checksum is wrong, or an entry is of no known kind or impossibly long: the file is damaged, or from a
-    /// newer program. All entries before it were given.
+    /// A checksum is wrong, an entry is of no known kind or impossibly long, or carries bytes where its kind has
+    /// none: the file is damaged, or from a newer program. All entries before it were given.
     Damaged {
         /// Byte offset of the entry.
         offset: u64,
@@ -205,6 +205,10 @@ impl CallRef<'_> {
 
 impl CallKind {
     fn from_entry(kind: u8, bytes: Vec<u8>) -> Option<Self> {
+        let carries_bytes = matches!(kind, 0 | 7 | 8);
+        if !carries_bytes && !bytes.is_empty() {
+            return None;
+        }
         match kind {
             0 => Some(Self::Bytes(bytes)),
             1 => Some(Self::Timeout),
@@ -469,5 +473,17 @@ mod tests {
         writer.write(HostInstant::default(), CallRef::Bytes(&bytes[1..])).unwrap();
         let calls: Vec<_> = CaptureReader::new(&writer.to[..]).unwrap().map(Result::unwrap).collect();
         assert_eq!(calls.len(), 1);
+    }
+
+    #[test]
+    fn bytes_where_a_call_has_none_are_damage() {
+        for kind in 0..=9_u8 {
+            let fields = [&[kind; 1][..], &[0; 8], &[1, 0, 0, 0]].concat();
+            let head = chained(0, &fields);
+            let ends = [head, chained(head, b"x")].map(u32::to_le_bytes);
+            let file = [MAGIC, &fields, &ends[0], b"x", &ends[1]].concat();
+            let entry = CaptureReader::new(&file[..]).unwrap().next().unwrap();
+            assert_eq!(entry.is_ok(), [0, 7, 8].contains(&kind), "kind {kind}");
+        }
     }
 }

@@ -24,7 +24,7 @@ pub mod virtual_pad;
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod bridge;
 #[cfg(all(feature = "live", target_os = "linux"))]
-pub mod signals;
+pub mod requests;
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod sink;
 #[cfg(all(feature = "live", target_os = "linux"))]

@@ -60,10 +60,14 @@ pub enum Phase {
     Taring,
     /// Contacts become events.
     Playing,
+    /// The line was at fault just now; contacts are not believed yet.
+    Doubtful,
     /// A channel cannot be trusted.
     Faulty,
     /// The player paused.
     Paused,
+    /// The pad cannot be played with.
+    Refused,
 }
 
 /// Why a pad cannot be played with.
@@ -138,11 +142,12 @@ impl Pipeline {
     /// Does what is due at `now`: releases what the minimum press held back, and everything if the pad is silent.
     pub fn handle_timeout(&mut self, now: HostInstant) {
         self.edges.clear();
+        // Silence first: what the minimum press held back must not go down only to come up in the same group.
+        self.check_silence(now);
         if let Some(due) = self.ledger.next_due().filter(|&due| self.link.host_at(due) <= now) {
             self.advance(due);
             self.ledger.settle(self.at, &mut self.edges);
         }
-        self.check_silence(now);
     }
 
     /// The pad was unplugged. Whatever comes next may be another pad: it identifies itself and is tared anew.
@@ -197,8 +202,11 @@ impl Pipeline {
         self.ledger.change_profile(self.at, &profile, &mut self.edges);
         self.signal.set_filter_samples(profile.filter_samples);
         self.engine.replace_profile(profile);
-        let levels = self.engine.step(self.at, self.contact.as_ref());
-        self.ledger.update(self.at, &levels, &mut self.edges);
+        // Without a contact nothing is stated, and the engine must not take that for a lift: see `map`.
+        if self.contact.is_some() {
+            let levels = self.engine.step(self.at, self.contact.as_ref());
+            self.ledger.update(self.at, &levels, &mut self.edges);
+        }
     }
 
     /// The profile in use.
@@ -232,8 +240,13 @@ impl Pipeline {
     }
 
     /// What the pipeline is doing.
-    pub const fn phase(&self) -> Phase {
-        if self.paused { Phase::Paused } else { self.phase }
+    pub fn phase(&self) -> Phase {
+        match self.phase {
+            _ if self.paused => Phase::Paused,
+            _ if self.refusal.is_some() => Phase::Refused,
+            Phase::Playing if self.at < self.trusted_at => Phase::Doubtful,
+            phase => phase,
+        }
     }
 
     fn handle_link<P: Probe>(&mut self, now: HostInstant, event: &LinkEvent, probe: &mut P) {
@@ -253,7 +266,11 @@ impl Pipeline {
                 self.handle_fault(*fault);
             }
             LinkEvent::Identity(identity) => self.handle_identity(identity),
-            LinkEvent::NewerVersion(version) => self.refusal = Some(Refusal::NewerVersion(*version)),
+            LinkEvent::NewerVersion(version) => {
+                self.refusal = Some(Refusal::NewerVersion(*version));
+                self.advance(self.link.stream_at(now));
+                self.distrust();
+            }
         }
     }
 

@@ -22,7 +22,7 @@ pub struct Strain {
 }
 
 /// One contact: where the finger acts on the plate and with what force (the finger's action on the plate).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Contact {
     /// Contact point along +x (right), in millimetres from the centre.
     pub x_mm: f32,

@@ -10,7 +10,14 @@ use tactpad::virtual_pad::script::Script;
 
 #[test]
 fn ten_seconds_of_play_allocate_nothing() {
-    let profile = check::read(shipped::text("contra").unwrap(), OutputChoice::AsWritten).0.unwrap();
+    for name in ["contra", "pointer"] {
+        plays_without_allocating(name);
+    }
+}
+
+fn plays_without_allocating(name: &str) {
+    let read = shipped::text(name).and_then(|text| check::read(text, OutputChoice::AsWritten).0);
+    let Some(profile) = read else { panic!("{name} is in order") };
     let mut pad = VirtualPad::new(Script::for_profile(&profile, 10_000_000), 3);
     let mut pipeline = Pipeline::new(Decoder::shipped(), profile);
     let mut bytes = Vec::new();
@@ -37,5 +44,5 @@ fn ten_seconds_of_play_allocate_nothing() {
         pipeline.handle_unplugged(HostInstant::default().plus_us(20_000_000));
     });
     assert!(events > 30 && pipeline.health().frames_damaged > 3, "{events} events, {:?}", pipeline.health());
-    assert_eq!(allocated.count_total, 0);
+    assert_eq!(allocated.count_total, 0, "{name}");
 }

@@ -18,6 +18,8 @@ mod clock;
 mod demo;
 #[path = "kernel/guest.rs"]
 mod guest;
+#[path = "kernel/hid.rs"]
+mod hid;
 #[path = "kernel/latency.rs"]
 mod latency;
 #[path = "kernel/neutral.rs"]
@@ -64,6 +66,11 @@ fn keyboard_is_a_device_of_its_own_and_plays() {
 }
 
 #[test]
+fn pointer_is_a_mouse_of_its_own_and_moves() {
+    in_guest("pointer_is_a_mouse_of_its_own_and_moves", playing::pointer);
+}
+
+#[test]
 fn sdl_sees_a_game_controller() {
     if sdl::probe_is_there() {
         in_guest("sdl_sees_a_game_controller", sdl::game_controller);
@@ -91,8 +98,28 @@ fn silence_releases_and_the_device_stays() {
 }
 
 #[test]
+fn a_hid_pad_is_found_and_plays() {
+    in_guest("a_hid_pad_is_found_and_plays", hid::plays);
+}
+
+#[test]
+fn two_hid_pads_are_told_apart() {
+    in_guest("two_hid_pads_are_told_apart", hid::chosen_by_serial_number);
+}
+
+#[test]
+fn a_hid_pad_may_come_and_go() {
+    in_guest("a_hid_pad_may_come_and_go", hid::replugged);
+}
+
+#[test]
 fn demo_plays_on_uinput() {
     in_guest("demo_plays_on_uinput", demo::plays_on_uinput);
+}
+
+#[test]
+fn demo_moves_the_pointer() {
+    in_guest("demo_moves_the_pointer", demo::moves_the_pointer);
 }
 
 #[test]

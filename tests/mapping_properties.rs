@@ -1,15 +1,16 @@
 //! What holds for every profile and every contact.
 
 use proptest::prelude::{Just, Strategy, any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
+use tactpad::control::Code;
 use tactpad::mapping::check::{OutputChoice, read};
 use tactpad::mapping::engine::Engine;
 use tactpad::mapping::intent::Intents;
-use tactpad::mapping::profile::Profile;
+use tactpad::mapping::profile::{POINTER_SPEED_MAX, Profile};
 use tactpad::mapping::shipped;
 use tactpad::quantity::Contact;
 use tactpad::time::StreamInstant;
 
-/// Eight directions, five buttons, some on the same controls: as much as can go wrong at once.
+/// Eight directions, the pointer, six buttons, some on the same controls: as much as can go wrong at once.
 const CROWDED: &str = r#"
 schema = 1
 name = "Crowded"
@@ -19,6 +20,13 @@ mode = "8way"
 rotation_deg = 170
 [dpad.keyboard]
 up = "KEY_Z"
+[pointer]
+speed_counts_per_s = 5000
+[[button]]
+force = "fz"
+press_n = 1
+tap = { pointer = "BTN_LEFT" }
+hold = { gamepad = "BTN_SOUTH", keyboard = "KEY_Z" }
 [[button]]
 force = "fz"
 press_n = 1
@@ -79,12 +87,17 @@ fn is_finite(contact: &Contact) -> bool {
     [contact.x_mm, contact.y_mm, contact.fx_n, contact.fy_n, contact.fz_n].iter().all(|n| n.is_finite())
 }
 
-/// Levels that any game can take: each control once, values in range, all on the profile's device.
+/// Levels that any game can take: each control once, values in range, all on devices that the profile uses.
 fn assert_sound(levels: &Intents, profile: &Profile) {
     for (index, level) in levels.iter().enumerate() {
         assert!(levels.iter().skip(index + 1).all(|other| other.code != level.code), "twice in {levels:?}");
-        assert!(level.value == 1 || level.value == -1, "{level:?}");
-        assert_eq!(level.device, profile.output);
+        assert!(profile.uses(level.device), "{level:?}");
+        match level.code {
+            Code::Relative(_) => {
+                assert!(level.value != 0 && level.value.abs() <= POINTER_SPEED_MAX, "{level:?}");
+            }
+            Code::Key(_) | Code::Axis(_) => assert!(level.value == 1 || level.value == -1, "{level:?}"),
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::Status;
 use rig::{Rig, frame, profile};
-use tactpad::pipeline::Phase;
+use tactpad::pipeline::{Phase, Refusal};
 use tactpad::quantity::Contact;
 
 const RIGHT: Contact = Contact { x_mm: 20.0, y_mm: 0.0, fx_n: 0.0, fy_n: 0.0, fz_n: 1.0 };
@@ -241,6 +241,56 @@ fn a_pad_that_tells_its_scale_is_believed() {
 }
 
 #[test]
+fn a_frame_of_a_newer_version_releases_everything() {
+    let mut rig = holding_right();
+    // Version 2, kind 1, no payload; the checksum is sound.
+    rig.bytes(&[0x07, 0x02, 0x01, 0xeb, 0x40, 0xe8, 0x04, 0x00]);
+    rig.hold(RIGHT, 200);
+    assert_eq!(rig.take_events(), ["ABS_HAT0X=0"]);
+    assert_eq!(rig.pipeline.refusal(), Some(&Refusal::NewerVersion(2)));
+}
+
+#[test]
+fn a_timeout_after_silence_only_releases() {
+    let mut rig = Rig::rested(profile("super-mario"));
+    while rig.events.is_empty() {
+        rig.hold(RIGHT, 1);
+    }
+    assert_eq!(rig.take_events(), ["ABS_HAT0X=1"]);
+    // The other side is wanted, but the minimum press still holds this one when the host falls asleep.
+    rig.hold(Contact { x_mm: -20.0, ..RIGHT }, 20);
+    assert_eq!(rig.take_events(), Vec::<String>::new());
+    rig.now_us += 500_000;
+    rig.pipeline.handle_timeout(rig.host());
+    rig.collect();
+    assert_eq!(rig.take_events(), ["ABS_HAT0X=0"]);
+}
+
+#[test]
+fn a_profile_change_does_not_revive_a_press_that_a_fault_or_a_pause_cut_short() {
+    for pause in [false, true] {
+        let mut rig = Rig::rested(profile("contra"));
+        let press = Contact { fz_n: 3.0, ..Contact::default() };
+        rig.hold(press, 200);
+        assert_eq!(rig.take_events(), ["BTN_SOUTH=1"]);
+        if pause {
+            rig.pipeline.pause(rig.host());
+        } else {
+            rig.pipeline.release_all(rig.host());
+        }
+        rig.collect();
+        rig.pipeline.set_profile(rig.host(), profile("contra"));
+        rig.collect();
+        rig.pipeline.resume();
+        rig.hold(press, 200);
+        assert_eq!(rig.take_events(), ["BTN_SOUTH=0"], "pause: {pause}");
+        rig.rest(100);
+        rig.hold(press, 200);
+        assert_eq!(rig.take_events(), ["BTN_SOUTH=1"], "pause: {pause}");
+    }
+}
+
+#[test]
 fn a_dead_channel_ends_the_contact_where_the_pad_is_noisy() {
     let mut rig = Rig::new(profile("super-mario"));
     rig.noise = 600;
@@ -327,4 +377,76 @@ fn any_bytes_at_any_time_leave_nothing_held() {
         let mut last_ms = 0.0;
         assert!(times.all(|ms| std::mem::replace(&mut last_ms, ms) <= ms), "seed {seed}: time went back");
     }
+}
+
+/// A touch at which the pointer has its full speed, with room for the decoder's error.
+const FAR_RIGHT: Contact = Contact { x_mm: 26.0, ..RIGHT };
+
+/// A rig on whose way to the right the pointer is when the test begins.
+fn moving_right() -> Rig {
+    let mut rig = Rig::rested(profile("pointer"));
+    rig.hold(FAR_RIGHT, 200);
+    let rates: Vec<_> = rig.pipeline.held().map(|level| (level.code.to_string(), level.value)).collect();
+    assert_eq!(rates[0], ("REL_X".to_owned(), 800));
+    rig.moved = [0; 2];
+    rig
+}
+
+#[test]
+fn a_second_at_full_speed_is_the_speed_in_counts() {
+    let mut rig = moving_right();
+    rig.hold(FAR_RIGHT, 1_000);
+    let [right, down] = rig.moved;
+    // A step is at most every 4 ms, so up to 3.2 counts came from before or are still to come.
+    assert!((800 - 4..=800 + 4).contains(&right) && down.abs() <= 4, "{:?}", rig.moved);
+    rig.rest(100);
+    let end = rig.moved;
+    rig.rest(1_000);
+    assert_eq!(rig.moved, end, "no finger, no movement");
+    assert!(rig.is_neutral());
+}
+
+#[test]
+fn nothing_moves_the_pointer_in_a_fault_a_silence_or_a_pause() {
+    let doubts: [fn(&mut Rig); 4] = [
+        |rig| rig.silence(1_000),
+        |rig| {
+            rig.sequence += 1;
+            rig.hold(FAR_RIGHT, 1);
+        },
+        |rig| {
+            let now = rig.host();
+            rig.pipeline.pause(now);
+            rig.hold(FAR_RIGHT, 500);
+        },
+        |rig| {
+            let now = rig.host();
+            rig.pipeline.handle_unplugged(now);
+        },
+    ];
+    for doubt in doubts {
+        let mut rig = moving_right();
+        doubt(&mut rig);
+        assert_eq!((rig.moved, rig.is_neutral()), ([0, 0], true));
+    }
+}
+
+#[test]
+fn after_a_lost_frame_the_pointer_goes_on_where_it_is() {
+    let mut rig = moving_right();
+    rig.sequence += 1;
+    rig.now_us += 1_000;
+    rig.hold(FAR_RIGHT, 50);
+    assert_eq!(rig.moved, [0, 0], "not believed yet");
+    rig.hold(FAR_RIGHT, 100);
+    assert!((80 - 8..=80).contains(&rig.moved[0]), "and nothing is made up for: {:?}", rig.moved);
+}
+
+#[test]
+fn the_pointer_drags() {
+    let mut rig = moving_right();
+    rig.hold(Contact { fz_n: 3.0, ..FAR_RIGHT }, 200);
+    rig.rest(100);
+    assert_eq!(rig.take_events(), ["BTN_LEFT=1", "BTN_LEFT=0"]);
+    assert!(rig.moved[0] > 150, "{:?}", rig.moved);
 }

@@ -13,7 +13,7 @@ fn every_example_of_the_reference_is_a_profile() {
     let text = REFERENCE;
     let examples: Vec<_> =
         text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(examples.len(), 3);
+    assert_eq!(examples.len(), 4);
     for example in examples {
         let whole = if example.contains("schema") { example.to_owned() } else { format!("{HEAD}{example}") };
         let (profile, found) = read(&whole, OutputChoice::AsWritten);
@@ -48,7 +48,10 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
         "long_press_ms" => ("itself", "min_press_ms = 0"),
         "radius_hysteresis_mm" => ("[dpad]", "centre_radius_mm = 29"),
         "diagonal_deg" => ("[dpad]", "mode = \"8way\"\nhysteresis_deg = 2"),
-        "release_force_n" => ("[dpad]", "min_force_n = 50"),
+        "release_force_n" if heading.contains("[dpad]") => ("[dpad]", "min_force_n = 50"),
+        "release_force_n" => ("[pointer]", "min_force_n = 50"),
+        "centre_radius_mm" if heading.contains("[pointer]") => ("[pointer]", "full_radius_mm = 30"),
+        "full_radius_mm" => ("[pointer]", "centre_radius_mm = 2"),
         "release_n" => ("[[button]]", "press_n = 50"),
         _ => ("", ""),
     };
@@ -58,16 +61,19 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
         format!("{line}\n{partner}\n")
     };
     let (root, dpad, button) = (lines_of("itself"), lines_of("[dpad]"), lines_of("[[button]]"));
+    let pointer = lines_of("[pointer]");
     let press = if key == "press_n" || key == "release_n" { "" } else { "press_n = 2" };
     let tap = r#"tap = { gamepad = "BTN_A", keyboard = "KEY_Z" }"#;
     let hold = r#"hold = { gamepad = "BTN_B", keyboard = "KEY_X" }"#;
-    format!("{HEAD}{root}[dpad]\n{dpad}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{button}")
+    format!(
+        "{HEAD}{root}[dpad]\n{dpad}[pointer]\n{pointer}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{button}"
+    )
 }
 
 #[test]
 fn the_reference_states_the_ranges_that_hold() {
     let rows = documented_numbers();
-    assert_eq!(rows.len(), 12, "{rows:?}");
+    assert_eq!(rows.len(), 18, "{rows:?}");
     for (heading, key, _, low, high) in rows {
         let errors = |value: f32| {
             let text = profile_with(&heading, &key, &format!("{key} = {value}"));
@@ -94,7 +100,7 @@ fn the_reference_states_the_defaults_that_hold() {
         assert_eq!(written, read_with(""), "{key}");
         checked += 1;
     }
-    assert_eq!(checked, 9);
+    assert_eq!(checked, 14);
 }
 
 #[test]

@@ -11,7 +11,7 @@ const ROWS: &[&[&str]] = &[
     &["contact", "output"],
     &["pipeline", "virtual_pad"],
     &["replay"],
-    &["transport", "sink", "signals"],
+    &["transport", "sink", "requests"],
     &["bridge"],
     &["cli"],
 ];

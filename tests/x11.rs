@@ -1,4 +1,4 @@
-//! Key presses through a real X server, seen by an ordinary X client.
+//! Key presses and the pointer through a real X server, seen by an ordinary X client.
 #![cfg(all(feature = "live", target_os = "linux"))]
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
@@ -7,7 +7,9 @@ mod support;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 
+use tactpad::bridge::clock::Clock;
 use tactpad::control::{Code, Device, OutputEvent};
+use tactpad::latency::{Durations, Percentiles};
 use tactpad::sink::Sink;
 use tactpad::sink::x11::X11Sink;
 use tactpad::time::StreamInstant;
@@ -65,7 +67,12 @@ impl Client {
         let (connection, screen) = x11rb::connect(Some(display)).unwrap();
         let root = connection.setup().roots[screen].root;
         let window = connection.generate_id().unwrap();
-        let mask = EventMask::KEY_PRESS | EventMask::KEY_RELEASE | EventMask::EXPOSURE;
+        let mask = EventMask::KEY_PRESS
+            | EventMask::KEY_RELEASE
+            | EventMask::BUTTON_PRESS
+            | EventMask::BUTTON_RELEASE
+            | EventMask::POINTER_MOTION
+            | EventMask::EXPOSURE;
         connection
             .create_window(
                 COPY_DEPTH_FROM_PARENT,
@@ -115,8 +122,40 @@ impl Client {
     }
 }
 
+/// What the pointer did on the client's window.
+#[derive(Debug, PartialEq, Eq)]
+enum Pointed {
+    /// It is at this place of the screen.
+    At(i16, i16),
+    /// The button of this number went down.
+    Down(u8),
+    /// It went up.
+    Up(u8),
+}
+
+impl Client {
+    /// What the pointer has done since the last call.
+    fn pointed(&self) -> Vec<Pointed> {
+        self.connection.sync().unwrap();
+        let mut seen = Vec::new();
+        while let Some(event) = self.connection.poll_for_event().unwrap() {
+            match event {
+                Event::MotionNotify(event) => seen.push(Pointed::At(event.root_x, event.root_y)),
+                Event::ButtonPress(event) => seen.push(Pointed::Down(event.detail)),
+                Event::ButtonRelease(event) => seen.push(Pointed::Up(event.detail)),
+                _ => {}
+            }
+        }
+        seen
+    }
+}
+
 fn event(key: u16, value: i32) -> OutputEvent {
     OutputEvent { at: StreamInstant::from_us(0), device: Device::Keyboard, code: Code::Key(key), value }
+}
+
+fn pointer(code: Code, value: i32) -> OutputEvent {
+    OutputEvent { at: StreamInstant::from_us(0), device: Device::Pointer, code, value }
 }
 
 const SYMBOL_UP: u32 = 0xff52;
@@ -171,6 +210,27 @@ fn dropping_the_sink_releases_what_it_holds() {
 }
 
 #[test]
+fn the_pointer_moves_and_clicks_where_it_is() {
+    if !support::require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    let server = Server::start();
+    let client = Client::open(&server.display);
+    let root = client.connection.setup().roots[0].root;
+    client.connection.warp_pointer(x11rb::NONE, root, 0, 0, 0, 0, 50, 40).unwrap();
+    client.pointed();
+    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    sink.prepare(Device::Pointer).unwrap();
+    let (x, y, left) = (Code::Relative(0), Code::Relative(1), Code::Key(0x110));
+    sink.write(&[pointer(x, 7), pointer(y, -3), pointer(left, 1)]).unwrap();
+    sink.write(&[pointer(x, -20), pointer(left, 0), pointer(Code::Key(0x111), 1)]).unwrap();
+    use Pointed::{At, Down, Up};
+    assert_eq!(client.pointed(), [At(57, 40), At(57, 37), Down(1), At(37, 37), Up(1), Down(3)]);
+    drop(sink);
+    assert_eq!(client.pointed(), [Up(3)], "what was held is released");
+}
+
+#[test]
 fn what_x_cannot_do_is_refused_before_a_key_goes_out() {
     if !support::require("Xvfb", "apt-get install xvfb") {
         return;
@@ -183,9 +243,10 @@ fn what_x_cannot_do_is_refused_before_a_key_goes_out() {
     let bare = client.symbols.iter().position(|symbols| symbols.iter().all(|symbol| *symbol == 0)).unwrap();
     assert_eq!(client.first_key, 8, "the kernel's key 0");
     // 247 is the highest number that X has room for.
-    for refused in
-        [hat, event(0, 1), event(bare as u16, 1), event(248, 1), event(0x130, 1), event(u16::MAX, 1)]
-    {
+    let wheel = pointer(Code::Relative(8), 1);
+    let moved_key = OutputEvent { code: Code::Relative(0), ..event(0, 1) };
+    let outside = [event(248, 1), event(0x110, 1), event(0x130, 1), event(u16::MAX, 1)];
+    for refused in [hat, event(0, 1), event(bare as u16, 1), wheel, moved_key].into_iter().chain(outside) {
         let error = sink.write(&[event(Z, 1), refused]).unwrap_err();
         assert!(error.message.contains("--output uinput"), "{error}");
     }
@@ -196,4 +257,39 @@ fn what_x_cannot_do_is_refused_before_a_key_goes_out() {
 fn missing_server_is_one_sentence() {
     let error = X11Sink::open(Some(":65000")).err().unwrap();
     assert!(error.message.contains(":65000") && error.message.contains("--output uinput"), "{error}");
+}
+
+/// The keys that the shipped profiles type.
+const PLAYED: [u16; 6] = [UP, 108, LEFT, 106, Z, X];
+
+/// Every key of every shipped profile, press and release in turn, as fast as the sink takes them.
+fn presses(count: usize) -> impl Iterator<Item = OutputEvent> {
+    let keys = PLAYED.into_iter().cycle().take(count);
+    keys.flat_map(|key| [event(key, 1), event(key, 0)])
+}
+
+#[test]
+fn two_thousand_presses_arrive_in_order_and_are_quick() {
+    if !support::require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    let server = Server::start();
+    let client = Client::open(&server.display);
+    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    let clock = Clock::start();
+    let mut calls = Durations::new();
+    for press in presses(2_000) {
+        let before = clock.now();
+        sink.write(&[press]).unwrap();
+        calls.record_ns(clock.now().as_ns() - before.as_ns());
+    }
+    let symbol = |event: &OutputEvent| match event.code {
+        Code::Key(key) => (client.symbols[usize::from(key)][0], event.value == 1),
+        other => panic!("{other} is no key"),
+    };
+    let expected: Vec<_> = presses(2_000).map(|event| symbol(&event)).collect();
+    assert_eq!(client.seen(), expected);
+    let Percentiles { p50, p99, max, .. } = calls.percentiles();
+    println!("a key call: p50 {p50:.0} µs, p99 {p99:.0} µs, max {max:.0} µs");
+    assert!(p50 <= 150.0, "p50 {p50} µs");
 }

@@ -1,6 +1,6 @@
 //! `tactpad demo`: the main job with nothing attached, and the proof that it went right.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::io::{self, IsTerminal, Write};
 use std::sync::{Arc, Mutex};
 
@@ -8,11 +8,12 @@ use clap::Args;
 use serde::Serialize;
 
 use super::files::Files;
-use super::live::{Output, Plan, bridge, open_virtual, play};
+use super::live::{Audience, Output, Plan, bridge, open_virtual, play};
 use super::screen::Screen;
 use super::written::stdout;
 use super::{Failure, if_read, print_json, profile, say, seconds};
-use crate::bridge::{Bridge, Ending, Patience};
+use crate::bridge::keeper::Patience;
+use crate::bridge::{Bridge, Ending};
 use crate::control::{Code, Device, OutputEvent};
 use crate::latency::Percentiles;
 use crate::mapping::profile::Profile;
@@ -48,6 +49,7 @@ struct Summary {
     contacts: u64,
     downs: usize,
     ups: usize,
+    pointer_moves: usize,
     held_at_end: usize,
     latency_us: Percentiles,
 }
@@ -55,8 +57,35 @@ struct Summary {
 /// One event as the script lists it.
 type Expected = (Device, Code, i32);
 
-/// Events that went out, in order.
-type Seen = Arc<Mutex<Vec<OutputEvent>>>;
+/// What went out.
+type Seen = Arc<Mutex<Account>>;
+
+/// The newest events that a screen has room for.
+const SHOWN_EVENTS: usize = 8;
+
+/// What went out, in order. The pointer's steps are many and no two runs have the same: they are counted.
+#[derive(Clone, Default)]
+struct Account {
+    /// All but the pointer's steps.
+    edges: Vec<OutputEvent>,
+    pointer_moves: usize,
+    newest: VecDeque<OutputEvent>,
+}
+
+impl Account {
+    fn extend(&mut self, group: &[OutputEvent]) {
+        for event in group {
+            match event.code {
+                Code::Relative(_) => self.pointer_moves += 1,
+                Code::Key(_) | Code::Axis(_) => self.edges.push(*event),
+            }
+            if self.newest.len() == SHOWN_EVENTS {
+                self.newest.pop_front();
+            }
+            self.newest.push_back(*event);
+        }
+    }
+}
 
 /// Lets events pass and remembers them.
 struct Witness {
@@ -72,7 +101,7 @@ impl Sink for Witness {
     fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {
         self.sink.write(group)?;
         if let Ok(mut seen) = self.seen.lock() {
-            seen.extend_from_slice(group);
+            seen.extend(group);
         }
         Ok(())
     }
@@ -89,6 +118,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let script = Script::for_profile(&profile, (arguments.seconds * 1e6) as u64);
     let expected = script.expected().to_vec();
     let contacts = script.contacts() as u64;
+    let steered = profile.pointer.is_some() && contacts > 0;
     let name = profile.name.clone();
     let (sink, title) = open_sink(arguments, &profile)?;
     if_read(tell(arguments, &title))?;
@@ -104,6 +134,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: None,
         seconds: Some(arguments.seconds),
         patience: Patience::Limited,
+        audience: Audience::Nobody,
+        socket: None,
     })?;
     let title = format!("{name} on a virtual pad");
     let screen = (!arguments.json).then(|| start_screen(title, &bridge, &seen));
@@ -115,7 +147,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if ending != Ending::TimeOver {
         return Err(Failure::Failed("interrupted: the events were not compared with the script".into()));
     }
-    compare(&seen, &expected)?;
+    compare(&seen.edges, &expected)?;
+    if steered && seen.pointer_moves == 0 {
+        return Err(Failure::Failed("the pointer did not move".into()));
+    }
     check_end(&bridge, contacts)
 }
 
@@ -127,9 +162,14 @@ fn open_sink(arguments: &Arguments, profile: &Profile) -> Result<(Box<dyn Sink>,
         return Ok((sink, title));
     }
     match uinput::available() {
-        _ if profile.output == Device::Keyboard => {
+        _ if profile.uses(Device::Keyboard) => {
             let title =
                 "Output: an event log, here. The profile types keys: for those ask with --output uinput.";
+            Ok((here(arguments), title.into()))
+        }
+        _ if profile.uses(Device::Pointer) => {
+            let title = "Output: an event log, here. The profile moves the pointer and clicks: for that ask with \
+                         --output uinput.";
             Ok((here(arguments), title.into()))
         }
         Ok(()) => {
@@ -183,8 +223,8 @@ fn tell(arguments: &Arguments, line: &str) -> Result<(), Failure> {
 fn start_screen(title: String, bridge: &Bridge, seen: &Seen) -> Option<Screen> {
     let seen = Arc::clone(seen);
     Screen::start(title, bridge.snapshot(), move || {
-        let events = seen.lock().map(|seen| seen.iter().rev().take(8).copied().collect::<Vec<_>>());
-        events.unwrap_or_default().iter().rev().map(line).collect()
+        let newest = seen.lock().map(|seen| seen.newest.clone());
+        newest.unwrap_or_default().iter().map(line).collect()
     })
 }
 
@@ -192,25 +232,30 @@ fn line(event: &OutputEvent) -> String {
     format!("{:8.3} s  {} {:+}", event.at.as_us() as f64 * 1e-6, event.code, event.value)
 }
 
-fn report(arguments: &Arguments, bridge: &Bridge, seen: &[OutputEvent]) -> Result<(), Failure> {
+fn report(arguments: &Arguments, bridge: &Bridge, seen: &Account) -> Result<(), Failure> {
     let health = bridge.health();
-    let tally = Tally::of(seen);
+    let tally = Tally::of(&seen.edges);
     let summary = Summary {
         frames: health.samples,
         frames_lost: health.frames_lost + health.frames_damaged,
         contacts: health.contacts,
         downs: tally.downs,
         ups: tally.ups,
+        pointer_moves: seen.pointer_moves,
         held_at_end: bridge.held_at_end(),
         latency_us: bridge.latency().percentiles(),
     };
     if arguments.json {
         return print_json(&summary);
     }
-    let Summary { frames, frames_lost, contacts, downs, ups, held_at_end, latency_us } = summary;
+    let Summary { frames, frames_lost, contacts, downs, ups, pointer_moves, held_at_end, latency_us } =
+        summary;
     let Percentiles { p50, p95, p99, max } = latency_us;
     writeln!(stdout(), "{frames} frames, {frames_lost} lost; {contacts} contacts")?;
     writeln!(stdout(), "{downs} downs, {ups} ups, {held_at_end} held at the end")?;
+    if pointer_moves > 0 {
+        writeln!(stdout(), "{pointer_moves} moves of the pointer")?;
+    }
     Ok(writeln!(
         stdout(),
         "bytes readable to event written: p50 {p50:.0} µs, p95 {p95:.0} µs, p99 {p99:.0} µs, max {max:.0} µs"

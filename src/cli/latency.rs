@@ -12,10 +12,11 @@ use firmware_proto::command::Command;
 use serde::Serialize;
 
 use super::files::Files;
-use super::live::{OpenedPad, Output, Plan, bridge, open_pad, play};
+use super::live::{Audience, OpenedPad, Output, Plan, bridge, open_pad, play};
 use super::written::stdout;
 use super::{Failure, print_json, profile, say, seconds};
-use crate::bridge::{Clock, Patience};
+use crate::bridge::clock::Clock;
+use crate::bridge::keeper::Patience;
 use crate::capture::{CallRef, CaptureReader};
 use crate::contact::Decoder;
 use crate::control::{Device, OutputEvent};
@@ -95,6 +96,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: Some(Box::new(calls.clone())),
         seconds: Some(arguments.seconds),
         patience: Patience::Limited,
+        audience: Audience::Nobody,
+        socket: None,
     })?;
     play(&mut bridge, &arguments.pad)?;
     let mut stages = timing.taken();

@@ -6,18 +6,23 @@ use std::io::{self, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use rustix::event::{Timespec, poll};
+
 use super::{Failure, profile};
-use crate::bridge::{Bridge, BridgeError, Clock, Ending, Parts, Patience};
+use crate::bridge::clock::Clock;
+use crate::bridge::keeper::{Patience, Reopen};
+use crate::bridge::{Bridge, BridgeError, Ending, Parts, ReadProfile};
 use crate::capture::{CallKind, CallRef, CaptureReader, CaptureWriter};
 use crate::contact::Decoder;
 use crate::mapping::check::OutputChoice;
 use crate::mapping::profile::Profile;
 use crate::pipeline::{Pipeline, Refusal};
-use crate::signals::Signals;
+use crate::requests::Requests;
 use crate::sink::{Sink, log::LogSink, null::NullSink, uinput::UinputSink, x11::X11Sink};
 use crate::time::HostInstant;
 use crate::transport::Transport;
 use crate::transport::address::PadAddress;
+use crate::transport::fault::{FaultPlan, FaultyLine};
 use crate::transport::pads::{Opener, PadError};
 use crate::transport::playback::Playback;
 use crate::transport::virtual_pad::VirtualPad as PadOnTerminal;
@@ -26,6 +31,12 @@ use crate::virtual_pad::script::Script;
 
 /// The virtual pad of `run` and `record` plays this long, then rests.
 const VIRTUAL_SCRIPT_US: u64 = 3_600_000_000;
+
+/// A pad whose permissions are not set yet is tried again this often, …
+const PERMISSION_TRIES: u32 = 20;
+
+/// … with this pause between.
+const PERMISSION_WAIT: Timespec = Timespec { tv_sec: 0, tv_nsec: 250_000_000 };
 
 /// The virtual pad's noise is the same each time.
 pub(super) const VIRTUAL_SEED: u64 = 1;
@@ -90,9 +101,23 @@ fn with_alternatives(message: &str) -> String {
 /// An opened pad: its first opening, and how to open it again.
 pub(super) struct OpenedPad {
     pub(super) pad: Option<Box<dyn Transport>>,
-    pub(super) opener: Option<Opener>,
+    pub(super) opener: Option<Reopen>,
     /// The virtual pad behind the terminal, if it is one; it ends when this is dropped.
     _virtual_pad: Option<PadOnTerminal>,
+}
+
+impl OpenedPad {
+    /// The same pad on a bad line, each time it is opened. Without a plan it stays as it is.
+    pub(super) fn with_faults(self, plan: Option<FaultPlan>) -> io::Result<Self> {
+        let Some(plan) = plan else { return Ok(self) };
+        let faulty =
+            move |line| -> io::Result<Box<dyn Transport>> { Ok(Box::new(FaultyLine::new(line, &plan)?)) };
+        let pad = self.pad.map(faulty).transpose()?;
+        let opener = self.opener.map(|mut open| -> Reopen {
+            Box::new(move || faulty(open()?).map_err(|error| PadError::Unusable(error.to_string())))
+        });
+        Ok(Self { pad, opener, ..self })
+    }
 }
 
 /// Opens the pad at `address`. The virtual pad plays a script made for `profile`.
@@ -113,12 +138,31 @@ pub(super) fn open_pad(
 /// Opens a pad that is a device. With endless patience one that is not there yet is waited for.
 fn open_device(address: PadAddress, patience: Patience) -> Result<OpenedPad, Failure> {
     let mut opener = Opener::new(address);
-    let pad = match opener.open() {
+    let pad = match open_when_allowed(&mut opener, patience) {
         Ok(pad) => Some(pad),
         Err(PadError::NotThere(_) | PadError::Denied(_)) if patience == Patience::Endless => None,
         Err(error) => return Err(Failure::Unusable(error.to_string())),
     };
-    Ok(OpenedPad { pad, opener: Some(opener), _virtual_pad: None })
+    Ok(OpenedPad { pad, opener: Some(Box::new(move || opener.open())), _virtual_pad: None })
+}
+
+/// Opens the pad. One that was plugged in just now may still be waiting for its permissions: tries for five seconds.
+fn open_when_allowed(opener: &mut Opener, patience: Patience) -> Result<Box<dyn Transport>, PadError> {
+    let mut opened = opener.open();
+    let tries = if patience == Patience::Limited { PERMISSION_TRIES } else { 0 };
+    for _ in 0..tries {
+        if !matches!(opened, Err(PadError::Denied(_))) {
+            break;
+        }
+        wait(PERMISSION_WAIT);
+        opened = opener.open();
+    }
+    opened
+}
+
+/// Lets time pass before the bridge runs.
+fn wait(time: Timespec) {
+    let _ = poll(&mut [], Some(&time));
 }
 
 /// Starts a virtual pad that plays `script` and opens its terminal like any pad's port.
@@ -159,22 +203,32 @@ pub(super) struct Plan {
     pub(super) record: Option<Box<dyn Write>>,
     pub(super) seconds: Option<f64>,
     pub(super) patience: Patience,
+    pub(super) audience: Audience,
+    pub(super) socket: Option<PathBuf>,
 }
 
 /// A bridge for the plan; the opened pad must live as long as the bridge runs.
 pub(super) fn bridge(plan: Plan) -> Result<(Bridge, RunningPad), Failure> {
     let clock = Clock::start();
     let now = clock.now();
-    let Plan { pad: OpenedPad { pad, opener, _virtual_pad }, profile_name, profile_text, choice, .. } = plan;
+    let Plan { pad: OpenedPad { pad, opener, _virtual_pad }, profile_text, choice, audience, .. } = plan;
+    let mut profile_name = plan.profile_name;
     let recorder = plan.record.map(|to| begin_capture(to, now, &profile_text, choice)).transpose()?;
     let parts = Parts {
         pipeline: Pipeline::new(Decoder::shipped(), plan.profile),
         pad,
         opener,
         sink: plan.sink,
-        signals: Signals::catch()?,
+        requests: requests(plan.socket.as_deref(), audience)?,
         recorder,
-        reload: Box::new(move || reload(&profile_name, choice)),
+        read_profile: Box::new(move |name| {
+            // A profile that was chosen stays the one to be read again.
+            if let Some(name) = name {
+                profile_name = name.to_owned();
+            }
+            read_profile(&profile_name, choice)
+        }),
+        tell: Box::new(move |line| audience.tell(line)),
         end_at: plan.seconds.map(|seconds| now.plus_us((seconds * 1e6) as u64)),
         patience: plan.patience,
         clock,
@@ -211,19 +265,41 @@ fn begin_capture(
     Ok(recorder)
 }
 
-/// Reads the profile again; what is wrong with it is told, and the old one stays.
-fn reload(name: &str, choice: OutputChoice) -> Option<(String, Profile)> {
-    match profile::read(name, choice) {
-        Ok(read) => {
-            let _ = writeln!(io::stderr(), "profile {name} was read again");
-            Some(read)
+/// Reads a profile for the running bridge; the error is for people.
+fn read_profile(name: &str, choice: OutputChoice) -> Result<ReadProfile, String> {
+    profile::read(name, choice).map_err(|failure| match failure {
+        Failure::Unusable(message) | Failure::Failed(message) => message,
+        Failure::Unread => "nobody reads the warnings".into(),
+    })
+}
+
+/// Who is told what the bridge is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Audience {
+    /// Somebody who reads stderr.
+    Stderr,
+    /// Nobody, or somebody who watches the screen.
+    Nobody,
+}
+
+impl Audience {
+    fn tell(self, line: &str) {
+        if self == Self::Stderr {
+            // Where nobody reads, the bridge plays on.
+            let _ = writeln!(io::stderr(), "{line}");
         }
-        Err(Failure::Unusable(message) | Failure::Failed(message)) => {
-            let _ = writeln!(io::stderr(), "{message}\nthe profile in use stays");
-            None
-        }
-        Err(Failure::Unread) => None,
     }
+}
+
+/// Requests by signals and, where `socket` is given, through it. A second bridge plays without one.
+fn requests(socket: Option<&Path>, audience: Audience) -> Result<Requests, Failure> {
+    let mut requests = Requests::catch_signals()?;
+    if let Some(path) = socket
+        && let Err(error) = requests.listen(path)
+    {
+        audience.tell(&format!("`tactpad ctl` does not reach this bridge: {} ({error})", path.display()));
+    }
+    Ok(requests)
 }
 
 /// Runs the bridge and turns its errors into the program's.

@@ -2,7 +2,13 @@
 
 mod contacts;
 #[cfg(all(feature = "live", target_os = "linux"))]
+mod ctl;
+#[cfg(all(feature = "live", target_os = "linux"))]
 mod demo;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod devices;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod doctor;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod files;
 #[cfg(all(feature = "live", target_os = "linux"))]
@@ -45,6 +51,15 @@ enum Verb {
     /// Play: a pad in, key and gamepad events out.
     #[cfg(all(feature = "live", target_os = "linux"))]
     Run(run::Arguments),
+    /// Talk to the running bridge.
+    #[cfg(all(feature = "live", target_os = "linux"))]
+    Ctl(ctl::Arguments),
+    /// List what is attached.
+    #[cfg(all(feature = "live", target_os = "linux"))]
+    Devices(devices::Arguments),
+    /// Say what stands in the way here, and the command that mends it.
+    #[cfg(all(feature = "live", target_os = "linux"))]
+    Doctor(doctor::Arguments),
     /// Record a pad, so that `replay` gives the same events again.
     #[cfg(all(feature = "live", target_os = "linux"))]
     Record(record::Arguments),
@@ -81,6 +96,12 @@ pub fn run() -> ExitCode {
         Verb::Demo(arguments) => demo::run(&arguments),
         #[cfg(all(feature = "live", target_os = "linux"))]
         Verb::Run(arguments) => run::run(&arguments),
+        #[cfg(all(feature = "live", target_os = "linux"))]
+        Verb::Ctl(arguments) => ctl::run(&arguments),
+        #[cfg(all(feature = "live", target_os = "linux"))]
+        Verb::Devices(arguments) => devices::run(&arguments),
+        #[cfg(all(feature = "live", target_os = "linux"))]
+        Verb::Doctor(arguments) => doctor::run(&arguments),
         #[cfg(all(feature = "live", target_os = "linux"))]
         Verb::Record(arguments) => record::run(&arguments),
         Verb::Replay(arguments) => replay::run(&arguments),

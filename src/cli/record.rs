@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::files::Files;
-use super::live::{Output, Plan, bridge, create_capture, open_pad, play};
+use super::live::{Audience, Output, Plan, bridge, create_capture, open_pad, play};
 use super::written::Named;
-use super::{Failure, profile, say, seconds};
-use crate::bridge::Patience;
+use super::{Failure, ctl, profile, say, seconds};
+use crate::bridge::keeper::Patience;
 use crate::transport::address::PadAddress;
+use crate::transport::fault::FaultPlan;
 
 /// Arguments of `tactpad record`.
 #[derive(Debug, Args)]
@@ -28,6 +29,10 @@ pub(super) struct Arguments {
     /// Where events go meanwhile: auto, uinput, x11, log:FILE, none.
     #[arg(long, default_value = "none")]
     output: Output,
+    /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
+    /// probability is per frame, and 0.001 where only a seed is given.
+    #[arg(long, value_name = "FAULTS")]
+    faults: Option<FaultPlan>,
     /// End after this many seconds; without it Ctrl-C ends.
     #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
@@ -38,7 +43,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Files { pad, profile, output, capture: Some(capture) }.check()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let sink = arguments.output.open()?;
-    let pad = open_pad(&arguments.pad, &profile, Patience::Limited)?;
+    let pad = open_pad(&arguments.pad, &profile, Patience::Limited)?.with_faults(arguments.faults)?;
     let place = capture.display().to_string();
     let capture = Named::new(create_capture(capture)?, place.clone());
     say(format_args!("recording {} in {place}", arguments.pad));
@@ -52,6 +57,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: Some(Box::new(capture)),
         seconds: arguments.seconds,
         patience: Patience::Limited,
+        audience: Audience::Stderr,
+        socket: Some(ctl::socket_path()),
     })?;
     play(&mut bridge, &arguments.pad)?;
     say(format_args!("{} samples recorded", bridge.health().samples));

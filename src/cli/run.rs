@@ -1,23 +1,28 @@
 //! `tactpad run`: the live bridge.
 
+use std::io::{self, IsTerminal};
+
 use clap::Args;
 
 use super::files::Files;
-use super::live::{Output, Plan, bridge, open_pad, play};
+use super::live::{Audience, Output, Plan, bridge, open_pad, play};
 use super::screen::Screen;
-use super::{Failure, profile, say, seconds};
-use crate::bridge::{Ending, Patience};
+use super::{Failure, ctl, profile, say, seconds};
+use crate::bridge::Ending;
+use crate::bridge::keeper::Patience;
 use crate::transport::address::PadAddress;
+use crate::transport::fault::FaultPlan;
 
 /// Arguments of `tactpad run`.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tactpad run --pad serial:/dev/ttyACM0 --profile tetris\n\n\
-    Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on, SIGHUP reads the profile again.")]
+    `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on, SIGHUP reads the \
+    profile again.")]
 pub(super) struct Arguments {
-    /// The pad: virtual, serial:PATH[@BAUD], capture:FILE.
+    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], virtual, capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
-    /// Wait for a pad that is not there yet or sends nothing yet.
+    /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.
     #[arg(long)]
     wait: bool,
     /// A profile's name or file.
@@ -26,6 +31,10 @@ pub(super) struct Arguments {
     /// Where events go: auto, uinput, x11, log:FILE, none.
     #[arg(long, default_value = "auto")]
     output: Output,
+    /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
+    /// probability is per frame, and 0.001 where only a seed is given.
+    #[arg(long, value_name = "FAULTS")]
+    faults: Option<FaultPlan>,
     /// End after this many seconds.
     #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
@@ -35,11 +44,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { pad, profile, output, .. } = arguments;
     Files { pad, profile, output, capture: None }.check()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
-    let patience = if arguments.wait { Patience::Endless } else { Patience::Limited };
+    let waits = arguments.wait || matches!(arguments.pad, PadAddress::Auto { .. });
+    let patience = if waits { Patience::Endless } else { Patience::Limited };
     let sink = arguments.output.open()?;
-    let pad = open_pad(&arguments.pad, &profile, patience)?;
+    let pad = open_pad(&arguments.pad, &profile, patience)?.with_faults(arguments.faults)?;
     let title = format!("{} → {} → {}", arguments.pad, profile.name, sink.describe());
     say(&title);
+    // The live picture shows the state; without one it is told in words.
+    let audience = if io::stdout().is_terminal() { Audience::Nobody } else { Audience::Stderr };
     let (mut bridge, _running) = bridge(Plan {
         pad,
         sink,
@@ -50,6 +62,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: None,
         seconds: arguments.seconds,
         patience,
+        audience,
+        socket: Some(ctl::socket_path()),
     })?;
     let screen = Screen::start(title, bridge.snapshot(), Vec::new);
     let ending = play(&mut bridge, &arguments.pad);

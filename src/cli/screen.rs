@@ -7,9 +7,9 @@ use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use crate::bridge::Snapshot;
+use crate::bridge::state::Snapshot;
+use crate::control::Code;
 use crate::mapping::intent::Level;
-use crate::pipeline::Phase;
 use crate::quantity::Contact;
 
 /// The picture of the plate: a character is about twice as high as wide.
@@ -94,7 +94,7 @@ fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
     let Snapshot { health, latency, .. } = seen;
     let contact = seen.contact.unwrap_or_default();
     let mut facts = vec![
-        format!("{:<9} {:6.1} s", phase(seen.phase), seen.at.as_ns() as f64 * 1e-9),
+        format!("{:<9} {:6.1} s", seen.state.word(), seen.at.as_ns() as f64 * 1e-9),
         match seen.contact {
             Some(Contact { x_mm, y_mm, .. }) => format!("x {x_mm:+6.1} mm   y {y_mm:+6.1} mm"),
             None => "no contact".into(),
@@ -112,20 +112,11 @@ fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
     facts
 }
 
-fn phase(phase: Phase) -> &'static str {
-    match phase {
-        Phase::Waiting => "waiting",
-        Phase::Taring => "taring",
-        Phase::Playing => "playing",
-        Phase::Faulty => "faulty",
-        Phase::Paused => "paused",
-    }
-}
-
 fn level(level: &Level) -> String {
     match level.code {
-        crate::control::Code::Key(_) => format!("{}", level.code),
-        crate::control::Code::Axis(_) => format!("{}={:+}", level.code, level.value),
+        Code::Key(_) => format!("{}", level.code),
+        Code::Axis(_) => format!("{}={:+}", level.code, level.value),
+        Code::Relative(_) => format!("{}{:+}/s", level.code, level.value),
     }
 }
 

@@ -1,8 +1,8 @@
 //! The kernel's names of keys, buttons and axes.
 //!
-//! Source: `linux/input-event-codes.h` of the Linux kernel. The keyboard's keys up to 248, the gamepad block
-//! and the position axes are here; the header's further blocks (media remotes, mice, pens) are nothing a pad
-//! should press.
+//! Source: `linux/input-event-codes.h` of the Linux kernel. The keyboard's keys up to 248, a mouse's three
+//! buttons and movements, the gamepad block and the position axes are here; the header's further blocks (media
+//! remotes, pens) are nothing a pad should press.
 
 use crate::control::Code;
 
@@ -23,6 +23,12 @@ pub const GAMEPAD_BUTTONS: [Code; 11] = [
 
 /// The hat of a gamepad: left and right, then up and down.
 pub const HAT_AXES: [Code; 2] = [Code::Axis(0x10), Code::Axis(0x11)];
+
+/// Movement of the pointer: to the right, then down.
+pub const POINTER_MOTION: [Code; 2] = [Code::Relative(0x00), Code::Relative(0x01)];
+
+/// The buttons of the virtual mouse: left, right, middle.
+pub const POINTER_BUTTONS: [Code; 3] = [Code::Key(0x110), Code::Key(0x111), Code::Key(0x112)];
 
 /// The first number that belongs to a button of a mouse, joystick or gamepad; below it are the keyboard's
 /// keys.
@@ -66,6 +72,7 @@ const KEYS: &[Run] = runs! {
     231: KEY_SEND KEY_REPLY KEY_FORWARDMAIL KEY_SAVE KEY_DOCUMENTS KEY_BATTERY KEY_BLUETOOTH KEY_WLAN KEY_UWB;
     240: KEY_UNKNOWN KEY_VIDEO_NEXT KEY_VIDEO_PREV KEY_BRIGHTNESS_CYCLE KEY_BRIGHTNESS_AUTO KEY_DISPLAY_OFF;
     246: KEY_WWAN KEY_RFKILL KEY_MICMUTE;
+    0x110: BTN_LEFT BTN_RIGHT BTN_MIDDLE;
     0x130: BTN_SOUTH BTN_EAST BTN_C BTN_NORTH BTN_WEST BTN_Z BTN_TL BTN_TR BTN_TL2 BTN_TR2 BTN_SELECT;
     0x13b: BTN_START BTN_MODE BTN_THUMBL BTN_THUMBR;
     0x220: BTN_DPAD_UP BTN_DPAD_DOWN BTN_DPAD_LEFT BTN_DPAD_RIGHT;
@@ -74,6 +81,11 @@ const KEYS: &[Run] = runs! {
 const AXES: &[Run] = runs! {
     0x00: ABS_X ABS_Y ABS_Z ABS_RX ABS_RY ABS_RZ;
     0x10: ABS_HAT0X ABS_HAT0Y;
+};
+
+const MOVEMENTS: &[Run] = runs! {
+    0x00: REL_X REL_Y;
+    0x08: REL_WHEEL;
 };
 
 /// Second names that the header defines, each with the name that is printed for it.
@@ -96,6 +108,7 @@ pub fn name(code: Code) -> Option<&'static str> {
     let (runs, number) = match code {
         Code::Key(number) => (KEYS, number),
         Code::Axis(number) => (AXES, number),
+        Code::Relative(number) => (MOVEMENTS, number),
     };
     runs.iter().find_map(|(first, names)| names.get(usize::from(number.checked_sub(*first)?)).copied())
 }
@@ -114,10 +127,11 @@ pub const fn is_keyboard_key(code: Code) -> bool {
     matches!(code, Code::Key(number) if number < FIRST_BUTTON)
 }
 
-/// Every control of the table with its kernel name, keys first.
+/// Every control of the table with its kernel name: keys, axes, movements.
 pub fn canonical() -> impl Iterator<Item = (&'static str, Code)> {
     let keys = numbered(KEYS).map(|(name, number)| (name, Code::Key(number)));
-    keys.chain(numbered(AXES).map(|(name, number)| (name, Code::Axis(number))))
+    let axes = numbered(AXES).map(|(name, number)| (name, Code::Axis(number)));
+    keys.chain(axes).chain(numbered(MOVEMENTS).map(|(name, number)| (name, Code::Relative(number))))
 }
 
 fn aliases() -> impl Iterator<Item = (&'static str, Code)> {
@@ -141,8 +155,8 @@ mod tests {
         }
         assert_eq!(
             canonical().count(),
-            242 + 15 + 4 + 8,
-            "all keys of the header from 1 to 248, buttons, axes"
+            242 + 3 + 15 + 4 + 8 + 3,
+            "all keys of the header from 1 to 248, buttons, axes, movements"
         );
     }
 
@@ -158,11 +172,13 @@ mod tests {
             ("KEY_F24", Code::Key(194)),
             ("KEY_PLAYCD", Code::Key(200)),
             ("KEY_MICMUTE", Code::Key(248)),
+            ("BTN_LEFT", Code::Key(0x110)),
             ("BTN_SOUTH", Code::Key(0x130)),
             ("BTN_THUMBR", Code::Key(0x13e)),
             ("BTN_DPAD_RIGHT", Code::Key(0x223)),
             ("ABS_RZ", Code::Axis(5)),
             ("ABS_HAT0Y", Code::Axis(0x11)),
+            ("REL_WHEEL", Code::Relative(8)),
         ];
         for (text, code) in header {
             assert_eq!(parse(text), Some(code), "{text}");
@@ -179,6 +195,7 @@ mod tests {
             let theirs = match code {
                 Code::Key(number) => format!("{:?}", evdev::KeyCode(number)),
                 Code::Axis(number) => format!("{:?}", evdev::AbsoluteAxisCode(number)),
+                Code::Relative(number) => format!("{:?}", evdev::RelativeAxisCode(number)),
             };
             assert_eq!(parse(&theirs), Some(code), "{theirs} is {text}");
         }

@@ -1,23 +1,26 @@
-//! Outputs as a profile writes them: `"BTN_SOUTH"`, `"ABS_HAT0X+"`, `"KEY_Z"`.
+//! Outputs as a profile writes them: `"BTN_SOUTH"`, `"ABS_HAT0X+"`, `"KEY_Z"`, `"BTN_LEFT"`.
 
 use super::diag::{Report, quoted};
 use super::profile::Binding;
 use super::syntax::{Placed, Section};
-use crate::control::names::{self, GAMEPAD_BUTTONS, HAT_AXES};
+use crate::control::names::{self, GAMEPAD_BUTTONS, HAT_AXES, POINTER_BUTTONS, POINTER_MOTION};
 use crate::control::{Code, Device};
 use crate::spelling;
 
-/// Both devices, in the order of [`Outputs::on`].
-pub(super) const DEVICES: [Device; 2] = [Device::Gamepad, Device::Keyboard];
+/// The devices that a profile plays on alternatively, see [`Outputs`].
+const PLAYED: [Device; 2] = [Device::Gamepad, Device::Keyboard];
 
-/// The keys of [`DEVICES`] in a profile.
-pub(super) const DEVICE_KEYS: [&str; 2] = [Device::Gamepad.name(), Device::Keyboard.name()];
+/// The keys of a binding's table.
+pub(super) const DEVICE_KEYS: [&str; 3] =
+    [Device::Gamepad.name(), Device::Keyboard.name(), Device::Pointer.name()];
 
-/// What one control of the profile does on either device; `None` where the text is unusable (and reported).
+/// What one control of the profile does: on the gamepad or the keyboard, whichever is played, or on the pointer
+/// in any case. `None` where there is none or the text is unusable (and reported).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Outputs {
     pub(super) gamepad: Option<Placed<Binding>>,
     pub(super) keyboard: Option<Placed<Binding>>,
+    pub(super) pointer: Option<Placed<Binding>>,
 }
 
 impl Outputs {
@@ -26,17 +29,31 @@ impl Outputs {
         match device {
             Device::Gamepad => self.gamepad,
             Device::Keyboard => self.keyboard,
+            Device::Pointer => self.pointer,
         }
     }
 
-    /// Reads `{ gamepad = "…", keyboard = "…" }`, a table with [`DEVICE_KEYS`]; both must be there.
+    /// What it does where `output` is played.
+    pub(super) fn settle(self, output: Device) -> Option<Binding> {
+        self.pointer.or(self.on(output)).map(|binding| binding.value)
+    }
+
+    /// Reads `{ gamepad = "…", keyboard = "…" }` or `{ pointer = "…" }`, a table with [`DEVICE_KEYS`].
     pub(super) fn read(table: &Section<'_>, report: &mut Report<'_>) -> Self {
+        if let Some(at) = table.place_of(Device::Pointer.name()) {
+            if PLAYED.iter().any(|device| table.place_of(device.name()).is_some()) {
+                let message = format!("{} names the pointer beside other devices", table.title);
+                report.error(at, message, "name the pointer alone, or both the gamepad and the keyboard");
+            }
+            let pointer = written(Device::Pointer, table, Device::Pointer.name(), report);
+            return Self { gamepad: None, keyboard: None, pointer };
+        }
         let help = "every binding names both devices, so that the profile plays on either of them";
-        let [gamepad, keyboard] = DEVICES.map(|device| {
+        let [gamepad, keyboard] = PLAYED.map(|device| {
             table.require(device.name(), help, report);
             written(device, table, device.name(), report)
         });
-        Self { gamepad, keyboard }
+        Self { gamepad, keyboard, pointer: None }
     }
 }
 
@@ -88,18 +105,23 @@ fn parse(device: Device, text: &str) -> Result<Binding, Misfit> {
         _ => (text, None),
     };
     let Some(code) = names::parse(name) else { return misfit(unknown(device, text), near(device, name)) };
-    let fits = match device {
-        Device::Gamepad => GAMEPAD_BUTTONS.contains(&code) || HAT_AXES.contains(&code),
-        Device::Keyboard => names::is_keyboard_key(code),
-    };
     match (code, sign) {
-        _ if !fits => misfit(wrong_device(device, code), instead(device, name, code)),
-        (Code::Axis(_), Some(value)) => Ok(Binding { code, value }),
+        _ if !fits(device, code) => misfit(wrong_device(device, code), instead(device, name, code)),
+        (Code::Axis(_), Some(value)) => Ok(Binding { device, code, value }),
         (Code::Axis(_), None) => {
             misfit(format!("{code} needs a direction"), format!("write \"{code}+\" or \"{code}-\""))
         }
-        (Code::Key(_), Some(_)) => misfit(format!("{code} has no direction"), format!("write \"{code}\"")),
-        (Code::Key(_), None) => Ok(Binding { code, value: 1 }),
+        (_, Some(_)) => misfit(format!("{code} has no direction"), format!("write \"{code}\"")),
+        (_, None) => Ok(Binding { device, code, value: 1 }),
+    }
+}
+
+/// Whether a profile can bind `code` on `device`. The pointer's movement is no binding: `[pointer]` steers it.
+fn fits(device: Device, code: Code) -> bool {
+    match device {
+        Device::Gamepad => GAMEPAD_BUTTONS.contains(&code) || HAT_AXES.contains(&code),
+        Device::Keyboard => names::is_keyboard_key(code),
+        Device::Pointer => POINTER_BUTTONS.contains(&code),
     }
 }
 
@@ -107,6 +129,7 @@ fn unknown(device: Device, text: &str) -> String {
     match device {
         Device::Gamepad => format!("{} is no control of the gamepad", quoted(text)),
         Device::Keyboard => format!("{} is no key of the keyboard", quoted(text)),
+        Device::Pointer => format!("{} is no button of the pointer", quoted(text)),
     }
 }
 
@@ -115,22 +138,26 @@ fn wrong_device(device: Device, code: Code) -> String {
         Device::Gamepad if names::is_keyboard_key(code) => {
             format!("{code} is a key of the keyboard, not of the gamepad")
         }
+        Device::Gamepad if POINTER_BUTTONS.contains(&code) => {
+            format!("{code} is a button of the pointer, not of the gamepad")
+        }
         Device::Gamepad => format!("{code} is not on the Xbox 360 pad"),
+        Device::Pointer if POINTER_MOTION.contains(&code) => format!("{code} is a movement, not a button"),
+        Device::Pointer => format!("{code} is not on the pointer"),
+        Device::Keyboard if POINTER_BUTTONS.contains(&code) => {
+            format!("{code} is a button of the pointer, not of the keyboard")
+        }
         Device::Keyboard => format!("{code} belongs to the gamepad, not to the keyboard"),
     }
 }
 
 /// The names that `device` takes.
 fn candidates(device: Device) -> impl Iterator<Item = &'static str> {
-    let fits = move |code: &Code| match device {
-        Device::Gamepad => GAMEPAD_BUTTONS.contains(code) || HAT_AXES.contains(code),
-        Device::Keyboard => names::is_keyboard_key(*code),
-    };
-    names::canonical().filter(move |(_, code)| fits(code)).map(|(name, _)| name)
+    names::canonical().filter(move |(_, code)| fits(device, *code)).map(|(name, _)| name)
 }
 
 fn near(device: Device, name: &str) -> String {
-    let prefix = if device == Device::Gamepad { "BTN_" } else { "KEY_" };
+    let prefix = if device == Device::Keyboard { "KEY_" } else { "BTN_" };
     // The prefix alone already resembles the shortest names, so what it is put before must be a word.
     let full = if name.len() > 2 { format!("{prefix}{name}") } else { String::new() };
     let near = [name, &full].into_iter().find_map(|name| spelling::nearest(name, candidates(device)));
@@ -138,20 +165,31 @@ fn near(device: Device, name: &str) -> String {
         (Some(near), _) => format!("did you mean \"{near}\"?"),
         (None, Device::Gamepad) => pad_controls(),
         (None, Device::Keyboard) => "keys have the kernel's names, as KEY_Z, KEY_SPACE, KEY_LEFT".to_owned(),
+        (None, Device::Pointer) => POINTER_HELP.to_owned(),
     }
 }
 
 fn instead(device: Device, name: &str, code: Code) -> String {
     match (device, names::parse(&format!("BTN_{name}"))) {
-        (Device::Gamepad, Some(button)) if GAMEPAD_BUTTONS.contains(&button) => {
+        (Device::Gamepad | Device::Pointer, Some(button)) if fits(device, button) => {
             format!("did you mean \"{button}\"?")
         }
+        (Device::Gamepad | Device::Keyboard, _) if POINTER_BUTTONS.contains(&code) => {
+            format!("in a [[button]] it stands alone, as {{ pointer = \"{code}\" }}")
+        }
         (Device::Gamepad, _) => pad_controls(),
+        (Device::Pointer, _) if POINTER_MOTION.contains(&code) => {
+            "the table [pointer] moves the pointer; a button presses BTN_LEFT, BTN_RIGHT or BTN_MIDDLE"
+                .to_owned()
+        }
+        (Device::Pointer, _) => POINTER_HELP.to_owned(),
         (Device::Keyboard, _) => {
             format!("write {code} as the gamepad's binding and a key, as \"KEY_Z\", here")
         }
     }
 }
+
+const POINTER_HELP: &str = "the pointer has BTN_LEFT, BTN_RIGHT and BTN_MIDDLE";
 
 fn pad_controls() -> String {
     let buttons: Vec<_> = GAMEPAD_BUTTONS.iter().map(Code::to_string).collect();
@@ -169,12 +207,17 @@ mod tests {
 
     #[test]
     fn names_of_the_device_bind() {
-        let key = |code, value| Binding { code, value };
-        assert_eq!(parse(Device::Gamepad, "btn_a").unwrap(), key(Code::Key(0x130), 1));
-        assert_eq!(parse(Device::Gamepad, "ABS_HAT0X+").unwrap(), key(Code::Axis(0x10), 1));
-        assert_eq!(parse(Device::Gamepad, "abs_hat0y-").unwrap(), key(Code::Axis(0x11), -1));
-        assert_eq!(parse(Device::Keyboard, "z").unwrap(), key(Code::Key(44), 1));
-        assert_eq!(parse(Device::Keyboard, "KEY_MINUS").unwrap(), key(Code::Key(12), 1));
+        let cases = [
+            (Device::Gamepad, "btn_a", Code::Key(0x130), 1),
+            (Device::Gamepad, "ABS_HAT0X+", Code::Axis(0x10), 1),
+            (Device::Gamepad, "abs_hat0y-", Code::Axis(0x11), -1),
+            (Device::Keyboard, "z", Code::Key(44), 1),
+            (Device::Keyboard, "KEY_MINUS", Code::Key(12), 1),
+            (Device::Pointer, "btn_right", Code::Key(0x111), 1),
+        ];
+        for (device, text, code, value) in cases {
+            assert_eq!(parse(device, text).unwrap(), Binding { device, code, value });
+        }
     }
 
     #[test]
@@ -195,6 +238,13 @@ mod tests {
             (Device::Keyboard, "spce", "did you mean \"KEY_SPACE\"?"),
             (Device::Keyboard, "", "is no key of the keyboard; keys have the kernel's names"),
             (Device::Keyboard, "+", "is no key of the keyboard"),
+            (Device::Keyboard, "BTN_LEFT", "{ pointer = \"BTN_LEFT\" }"),
+            (Device::Gamepad, "BTN_LEFT", "{ pointer = \"BTN_LEFT\" }"),
+            (Device::Pointer, "left", "did you mean \"BTN_LEFT\"?"),
+            (Device::Pointer, "BTN_LEFFT", "did you mean \"BTN_LEFT\"?"),
+            (Device::Pointer, "BTN_SOUTH", "BTN_SOUTH is not on the pointer; the pointer has BTN_LEFT"),
+            (Device::Pointer, "click", "is no button of the pointer; the pointer has BTN_LEFT"),
+            (Device::Pointer, "REL_X", "REL_X is a movement, not a button; the table [pointer] moves"),
         ];
         for (device, text, expected) in cases {
             let shown = help(device, text);

@@ -8,7 +8,9 @@ use toml::de::DeTable;
 use super::binding::{DEVICE_KEYS, Outputs, written_or};
 use super::conflict::{self, Owner, Use};
 use super::diag::{Diagnostic, Report};
-use super::profile::{Action, BUTTONS_MAX, Binding, Button, Dpad, DpadMode, Force, Profile};
+use super::profile::{
+    Action, BUTTONS_MAX, Button, Dpad, DpadMode, Force, POINTER_SPEED_MAX, Pointer, Profile,
+};
 use super::syntax::{Bounds, Placed, Section};
 use crate::control::Device;
 
@@ -38,8 +40,12 @@ const STICKY_DIAGONAL_DEG: f32 = 30.0;
 const FORCE_N: Bounds<f32> = Bounds { low: 0.05, high: 50.0, default: 0.3 };
 /// Default of a button's release force over its press force.
 const RELEASE_SHARE: f32 = 0.7;
-/// Force that starts a direction over the default of the force that ends it.
-const DPAD_RELEASE_RATIO: f32 = 1.5;
+/// Force that starts a direction, or the pointer, over the default of the force that ends it.
+const RELEASE_RATIO: f32 = 1.5;
+const POINTER_CENTRE_MM: Bounds<f32> = Bounds { default: 5.0, ..CENTRE_RADIUS_MM };
+const FULL_RADIUS_MM: Bounds<f32> = Bounds { low: 3.0, high: 30.0, default: 24.0 };
+const SPEED_COUNTS_PER_S: Bounds<f32> = Bounds { low: 10.0, high: POINTER_SPEED_MAX as f32, default: 800.0 };
+const CURVE: Bounds<f32> = Bounds { low: 1.0, high: 3.0, default: 2.0 };
 
 const MODES: [(&str, DpadMode); 3] =
     [("4way", DpadMode::FourWay), ("4way-sticky", DpadMode::FourWaySticky), ("8way", DpadMode::EightWay)];
@@ -52,7 +58,8 @@ const FORCES: [(&str, Force); 5] = [
 ];
 const OUTPUTS: [(&str, Device); 2] = [("gamepad", Device::Gamepad), ("keyboard", Device::Keyboard)];
 
-const ROOT_KEYS: [&str; 7] = ["schema", "name", "output", "filter_samples", "min_press_ms", "dpad", "button"];
+const ROOT_KEYS: [&str; 8] =
+    ["schema", "name", "output", "filter_samples", "min_press_ms", "dpad", "pointer", "button"];
 const DPAD_KEYS: [&str; 10] = [
     "mode",
     "centre_radius_mm",
@@ -65,6 +72,8 @@ const DPAD_KEYS: [&str; 10] = [
     "gamepad",
     "keyboard",
 ];
+const POINTER_KEYS: [&str; 6] =
+    ["centre_radius_mm", "full_radius_mm", "speed_counts_per_s", "curve", "min_force_n", "release_force_n"];
 const BUTTON_KEYS: [&str; 7] = ["force", "press_n", "release_n", "out", "tap", "hold", "long_press_ms"];
 const DIRECTION_KEYS: [&str; 4] = ["up", "down", "left", "right"];
 /// Each direction with its default bindings on the gamepad and the keyboard.
@@ -108,6 +117,8 @@ struct Draft {
     filter_samples: Option<usize>,
     min_press_ms: Option<u32>,
     dpad: Option<DpadDraft>,
+    /// The inner `None` where a part of it is unusable.
+    pointer: Option<Option<Pointer>>,
     buttons: Vec<ButtonDraft>,
 }
 
@@ -149,10 +160,15 @@ impl Draft {
         root.require("output", "write output = \"gamepad\" or output = \"keyboard\"", report);
         let min_press_ms = root.whole("min_press_ms", MIN_PRESS_MS, report).map(|ms| ms.value);
         let dpad = root.table("dpad", "[dpad]".to_owned(), &DPAD_KEYS, report);
+        let pointer = root.table("pointer", "[pointer]".to_owned(), &POINTER_KEYS, report);
         // One more than there can be, so that the first one too many is known by its place.
         let buttons = root.tables("button", &BUTTON_KEYS, BUTTONS_MAX + 1, report);
-        if root.place_of("dpad").is_none() && root.place_of("button").is_none() {
-            report.warning(root.at, "the profile does nothing", "add a [dpad] or a [[button]] table");
+        if ["dpad", "pointer", "button"].iter().all(|key| root.place_of(key).is_none()) {
+            report.warning(
+                root.at,
+                "the profile does nothing",
+                "add a [dpad], [pointer] or [[button]] table",
+            );
         }
         if let Some(extra) = buttons.get(BUTTONS_MAX) {
             report.error(extra.at, format!("a profile has at most {BUTTONS_MAX} buttons"), "remove this one");
@@ -165,6 +181,7 @@ impl Draft {
                 .map(|count| count.value as usize),
             min_press_ms,
             dpad: dpad.map(|dpad| DpadDraft::read(&dpad, report)),
+            pointer: pointer.map(|pointer| read_pointer(&pointer, report)),
             buttons: buttons.iter().map(|button| ButtonDraft::read(button, min_press_ms, report)).collect(),
         }
     }
@@ -201,6 +218,10 @@ impl Draft {
             Some(draft) => Some(draft.settle(output)?),
             None => None,
         };
+        let pointer = match self.pointer {
+            Some(pointer) => Some(pointer?),
+            None => None,
+        };
         let mut buttons = ArrayVec::new();
         for draft in self.buttons {
             buttons.try_push(draft.settle(output)?).ok()?;
@@ -211,6 +232,7 @@ impl Draft {
             filter_samples: self.filter_samples?,
             min_press_us: u64::from(self.min_press_ms?) * 1_000,
             dpad,
+            pointer,
             buttons,
         })
     }
@@ -242,7 +264,7 @@ impl DpadDraft {
     }
 
     fn settle(self, device: Device) -> Option<Dpad> {
-        let [up, down, left, right] = self.directions.map(|outputs| settled(outputs, device));
+        let [up, down, left, right] = self.directions.map(|outputs| outputs.settle(device));
         let shape = self.shape?;
         Some(Dpad {
             mode: self.mode?,
@@ -261,28 +283,47 @@ impl DpadDraft {
     }
 }
 
-fn settled(outputs: Outputs, device: Device) -> Option<Binding> {
-    outputs.on(device).map(|binding| binding.value)
-}
-
 fn read_shape(table: &Section<'_>, mode: Option<DpadMode>, report: &mut Report<'_>) -> Option<Shape> {
     let centre = table.number("centre_radius_mm", CENTRE_RADIUS_MM, report);
     let slack = table.number("radius_hysteresis_mm", RADIUS_HYSTERESIS_MM, report);
     require_less(table, ("radius_hysteresis_mm", slack), ("centre_radius_mm", centre), report);
     let rotation = table.number("rotation_deg", ROTATION_DEG, report);
     let (diagonal, hysteresis) = read_zones(table, mode, report);
-    let min_force = table.number("min_force_n", FORCE_N, report);
-    let share = min_force.map_or(FORCE_N.default, |force| force.value) / DPAD_RELEASE_RATIO;
-    let release = table.number("release_force_n", Bounds { low: 0.0, default: share, ..FORCE_N }, report);
-    require_less(table, ("release_force_n", release), ("min_force_n", min_force), report);
+    let (min_force_n, release_force_n) = read_gate(table, report);
     Some(Shape {
         centre_radius_mm: centre?.value,
         radius_hysteresis_mm: slack?.value,
         diagonal_deg: diagonal?,
         hysteresis_deg: hysteresis?,
         rotation_deg: rotation?.value,
-        min_force_n: min_force?.value,
-        release_force_n: release?.value,
+        min_force_n: min_force_n?,
+        release_force_n: release_force_n?,
+    })
+}
+
+/// The normal forces that start and end a direction, or the pointer, in newtons.
+fn read_gate(table: &Section<'_>, report: &mut Report<'_>) -> (Option<f32>, Option<f32>) {
+    let min_force = table.number("min_force_n", FORCE_N, report);
+    let share = min_force.map_or(FORCE_N.default, |force| force.value) / RELEASE_RATIO;
+    let release = table.number("release_force_n", Bounds { low: 0.0, default: share, ..FORCE_N }, report);
+    require_less(table, ("release_force_n", release), ("min_force_n", min_force), report);
+    (min_force.map(|force| force.value), release.map(|force| force.value))
+}
+
+fn read_pointer(table: &Section<'_>, report: &mut Report<'_>) -> Option<Pointer> {
+    let centre = table.number("centre_radius_mm", POINTER_CENTRE_MM, report);
+    let full = table.number("full_radius_mm", FULL_RADIUS_MM, report);
+    require_less(table, ("centre_radius_mm", centre), ("full_radius_mm", full), report);
+    let speed = table.number("speed_counts_per_s", SPEED_COUNTS_PER_S, report);
+    let curve = table.number("curve", CURVE, report);
+    let (min_force_n, release_force_n) = read_gate(table, report);
+    Some(Pointer {
+        centre_radius_mm: centre?.value,
+        full_radius_mm: full?.value,
+        speed_counts_per_s: speed?.value,
+        curve: curve?.value,
+        min_force_n: min_force_n?,
+        release_force_n: release_force_n?,
     })
 }
 
@@ -361,6 +402,7 @@ fn read_directions(table: &Section<'_>, report: &mut Report<'_>) -> [Outputs; 4]
         Outputs {
             gamepad: written_or(Device::Gamepad, gamepad.as_ref(), name, default(pad), report),
             keyboard: written_or(Device::Keyboard, keyboard.as_ref(), name, default(key), report),
+            pointer: None,
         }
     })
 }
@@ -380,10 +422,10 @@ impl ButtonDraft {
 
     fn settle(self, device: Device) -> Option<Button> {
         let action = match self.action? {
-            ActionDraft::Hold(out) => Action::Hold(settled(out, device)?),
+            ActionDraft::Hold(out) => Action::Hold(out.settle(device)?),
             ActionDraft::TapHold { tap, hold, long_press_ms } => Action::TapHold {
-                tap: settled(tap, device)?,
-                hold: settled(hold, device)?,
+                tap: tap.settle(device)?,
+                hold: hold.settle(device)?,
                 long_press_us: u64::from(long_press_ms?) * 1_000,
             },
         };

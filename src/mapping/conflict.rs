@@ -6,10 +6,11 @@
 
 use std::fmt;
 
-use super::binding::{DEVICES, Outputs};
+use super::binding::Outputs;
 use super::diag::Report;
 use super::profile::{Binding, DpadMode};
 use super::syntax::Placed;
+use crate::control::Device;
 
 /// What drives a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +39,7 @@ pub(super) struct Use {
 
 /// Reports every pair of owners that drives the same control of a device; `mode` is that of the directions.
 pub(super) fn check(uses: &[Use], mode: Option<DpadMode>, report: &mut Report<'_>) {
-    for device in DEVICES {
+    for device in [Device::Gamepad, Device::Keyboard, Device::Pointer] {
         let on_device = |uses: &Use| uses.outputs.on(device).map(|binding| (uses.owner, binding));
         let bound: Vec<_> = uses.iter().filter_map(on_device).collect();
         for (index, later) in bound.iter().enumerate() {

@@ -6,11 +6,14 @@ use super::intent::{Intents, LEVELS_MAX, Level};
 use super::press::Press;
 use super::profile::{BUTTONS_MAX, Binding, Button, Dpad, Force, Profile};
 use super::sector::{self, Horizontal, Sector, Vertical};
+use super::steer::{self, Velocity};
+use crate::control::Device;
+use crate::control::names::POINTER_MOTION;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
 
-// Every button states at most one level, the D-pad at most two.
-const _: () = assert!(BUTTONS_MAX + 2 <= LEVELS_MAX);
+// Every button states at most one level, the D-pad and the pointer at most two each.
+const _: () = assert!(BUTTONS_MAX + 4 <= LEVELS_MAX);
 
 /// Plays one profile. `mappings/README.md` states its rules.
 ///
@@ -20,6 +23,7 @@ const _: () = assert!(BUTTONS_MAX + 2 <= LEVELS_MAX);
 pub struct Engine {
     profile: Profile,
     held: Option<Sector>,
+    moving: Option<Velocity>,
     presses: ArrayVec<Press, BUTTONS_MAX>,
     last: Option<Contact>,
 }
@@ -28,7 +32,7 @@ impl Engine {
     /// An engine that has seen no contact yet.
     pub fn new(profile: Profile) -> Self {
         let presses = profile.buttons.iter().map(|_| Press::Up).collect();
-        Self { profile, held: None, presses, last: None }
+        Self { profile, held: None, moving: None, presses, last: None }
     }
 
     /// The profile that is played.
@@ -48,7 +52,7 @@ impl Engine {
             return Intents::new();
         }
         self.last = contact.copied();
-        let mut levels = Levels { profile: &self.profile, stated: Intents::new() };
+        let mut levels = Levels { stated: Intents::new() };
         self.held = self
             .profile
             .dpad
@@ -62,23 +66,31 @@ impl Engine {
             let force_n = contact.map(|contact| force_of(button.force, contact));
             levels.state(press.step(button, t, force_n));
         }
+        self.moving = self
+            .profile
+            .pointer
+            .as_ref()
+            .zip(contact)
+            .and_then(|(pointer, contact)| steer::follow(pointer, self.moving, contact));
+        levels.state_motion(self.moving);
         levels.stated
     }
 
-    /// After a fault (lost link, dead channel, pause): forgets directions and presses; nothing is tapped for
-    /// them.
+    /// After a fault (lost link, dead channel, pause): forgets directions, the pointer's way and presses;
+    /// nothing is tapped for them.
     ///
     /// A press that was under way stays forgotten until its force was released once, even if the contact goes
     /// on.
     pub fn cancel(&mut self) {
         self.held = None;
+        self.moving = None;
         self.presses.iter_mut().for_each(Press::forget);
     }
 
     /// Goes on with another profile, also in the middle of a contact.
     ///
     /// The next step states the levels of the new profile, so whatever both profiles hold stays held. The
-    /// direction continues (the thresholds that end it apply, not those that start it). A press that was
+    /// direction and the pointer's way continue (the thresholds that end them apply, not those that start them). A press that was
     /// under way, or that the new profile would see as under way, does nothing in the new profile until its
     /// force was released once.
     pub fn replace_profile(&mut self, profile: Profile) {
@@ -98,12 +110,11 @@ impl Engine {
 }
 
 /// The levels of one step while they are collected.
-struct Levels<'p> {
-    profile: &'p Profile,
+struct Levels {
     stated: Intents,
 }
 
-impl Levels<'_> {
+impl Levels {
     fn state_directions(&mut self, dpad: &Dpad, sector: Sector) {
         self.state(sector.horizontal().map(|horizontal| match horizontal {
             Horizontal::Left => dpad.left,
@@ -117,11 +128,23 @@ impl Levels<'_> {
 
     /// Adds a level. A control that is stated already keeps its first value: each control stands there once.
     fn state(&mut self, binding: Option<Binding>) {
-        let Some(Binding { code, value }) = binding else { return };
-        let device = self.profile.output;
-        if self.stated.iter().all(|level| level.code != code) {
+        if let Some(Binding { device, code, value }) = binding {
+            self.push(Level { device, code, value });
+        }
+    }
+
+    fn state_motion(&mut self, velocity: Option<Velocity>) {
+        let Some(Velocity { right, down }) = velocity else { return };
+        let rates = POINTER_MOTION.into_iter().zip([right, down]);
+        for (code, value) in rates.filter(|(_, rate)| *rate != 0) {
+            self.push(Level { device: Device::Pointer, code, value });
+        }
+    }
+
+    fn push(&mut self, level: Level) {
+        if self.stated.iter().all(|stated| (stated.device, stated.code) != (level.device, level.code)) {
             // There is room: see the assertion above.
-            let _ = self.stated.try_push(Level { device, code, value });
+            let _ = self.stated.try_push(level);
         }
     }
 }

@@ -8,13 +8,15 @@ use crate::control::{Code, Device};
 pub const LEVELS_MAX: usize = 16;
 
 /// One control that should be held at `value` now. A control that no level names is neutral.
+///
+/// A movement is held, too: as long as the level stands the pointer moves at that rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Level {
     /// The device it is held on.
     pub device: Device,
     /// The key or axis.
     pub code: Code,
-    /// 1 for keys, a non-zero position for axes.
+    /// 1 for keys, a non-zero position for axes, a non-zero rate in counts per second for movements.
     pub value: i32,
 }
 

@@ -3,7 +3,7 @@
 //! The mapping states *levels*; it never emits. `output::ledger` turns levels into edges.
 //!
 //! A profile's text becomes a [`profile::Profile`] in `diag` → `syntax` → `binding` → `conflict` → `check`;
-//! each of these uses only those before it. The live part is `sector` and `press`, put together by `engine`.
+//! each of these uses only those before it. The live part is `sector`, `steer` and `press`, put together by `engine`.
 
 mod binding;
 pub mod check;
@@ -15,4 +15,5 @@ mod press;
 pub mod profile;
 mod sector;
 pub mod shipped;
+mod steer;
 mod syntax;

@@ -80,11 +80,11 @@ fn on_release(action: Action, lasted_us: u64, long: bool) -> Option<Binding> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::control::Code;
+    use crate::control::{Code, Device};
     use crate::mapping::profile::Force;
 
-    const TAP: Binding = Binding { code: Code::Key(1), value: 1 };
-    const HOLD: Binding = Binding { code: Code::Key(2), value: 1 };
+    const TAP: Binding = Binding { device: Device::Gamepad, code: Code::Key(1), value: 1 };
+    const HOLD: Binding = Binding { device: Device::Gamepad, code: Code::Key(2), value: 1 };
 
     const fn button(action: Action) -> Button {
         Button { force: Force::Fz, press_n: 2.0, release_n: 1.5, action }

@@ -7,9 +7,14 @@ use crate::control::{Code, Device};
 /// The most buttons a profile can bind.
 pub const BUTTONS_MAX: usize = 8;
 
+/// The fastest pointer that a profile can ask for, in counts per second.
+pub const POINTER_SPEED_MAX: i32 = 5_000;
+
 /// What a control does when it is active: one key, or one axis pushed to a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Binding {
+    /// The device it is on.
+    pub device: Device,
     /// The key or axis.
     pub code: Code,
     /// 1 for keys, −1 or 1 for the hat.
@@ -56,6 +61,23 @@ pub struct Dpad {
     pub left: Binding,
     /// Right.
     pub right: Binding,
+}
+
+/// The pointer steered like a joystick: the place of the contact is a velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pointer {
+    /// Up to this distance from the centre the pointer rests.
+    pub centre_radius_mm: f32,
+    /// From this distance on it has its full speed; more than `centre_radius_mm`.
+    pub full_radius_mm: f32,
+    /// The full speed, at most [`POINTER_SPEED_MAX`].
+    pub speed_counts_per_s: f32,
+    /// Between the two distances the speed grows with this power of the part of the way.
+    pub curve: f32,
+    /// It starts to move at this normal force or more.
+    pub min_force_n: f32,
+    /// It rests below this normal force.
+    pub release_force_n: f32,
 }
 
 /// Which force presses a button. The sign says which direction counts.
@@ -107,7 +129,7 @@ pub struct Button {
 pub struct Profile {
     /// Name for people.
     pub name: String,
-    /// The device that the bindings belong to.
+    /// The device that the directions and those buttons that name no pointer's belong to.
     pub output: Device,
     /// Window of the mean filter, in samples.
     pub filter_samples: usize,
@@ -115,6 +137,33 @@ pub struct Profile {
     pub min_press_us: u64,
     /// Directions; `None` where the profile has none.
     pub dpad: Option<Dpad>,
+    /// The pointer's movement; `None` where the profile moves none.
+    pub pointer: Option<Pointer>,
     /// Buttons, in the file's order.
     pub buttons: ArrayVec<Button, BUTTONS_MAX>,
+}
+
+impl Profile {
+    /// Whether the profile plays on `device`, so that it must be there.
+    pub fn uses(&self, device: Device) -> bool {
+        let moves = self.pointer.is_some() && device == Device::Pointer;
+        moves || self.bindings().any(|binding| binding.device == device)
+    }
+
+    /// All bindings in the order of the output: left, right, up, down, then those of the buttons.
+    pub fn bindings(&self) -> impl Iterator<Item = Binding> + '_ {
+        let directions = self.dpad.iter().flat_map(|dpad| [dpad.left, dpad.right, dpad.up, dpad.down]);
+        directions.chain(self.buttons.iter().flat_map(Button::bindings))
+    }
+}
+
+impl Button {
+    /// What it can press: one control, or the tapped and the held one.
+    pub fn bindings(&self) -> impl Iterator<Item = Binding> + use<> {
+        let (first, second) = match self.action {
+            Action::Hold(binding) => (binding, None),
+            Action::TapHold { tap, hold, .. } => (tap, Some(hold)),
+        };
+        std::iter::once(first).chain(second)
+    }
 }

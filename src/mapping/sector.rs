@@ -154,13 +154,13 @@ fn wrapped(angle_deg: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::control::Code;
+    use crate::control::{Code, Device};
     use crate::mapping::profile::Binding;
 
     const RIGHT_UP: Sector = Sector(1);
 
     fn dpad(mode: DpadMode, diagonal_deg: f32) -> Dpad {
-        let unused = Binding { code: Code::Key(1), value: 1 };
+        let unused = Binding { device: Device::Gamepad, code: Code::Key(1), value: 1 };
         Dpad {
             mode,
             centre_radius_mm: 8.0,

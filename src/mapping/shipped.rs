@@ -1,10 +1,11 @@
 //! The profiles that are inside the program, so that it runs from any folder.
 
-const SHIPPED: [(&str, &str); 4] = [
+const SHIPPED: [(&str, &str); 5] = [
     ("super-mario", include_str!("../../mappings/super-mario.toml")),
     ("tetris", include_str!("../../mappings/tetris.toml")),
     ("tank-battle", include_str!("../../mappings/tank-battle.toml")),
     ("contra", include_str!("../../mappings/contra.toml")),
+    ("pointer", include_str!("../../mappings/pointer.toml")),
 ];
 
 /// The names under which profiles are shipped.
@@ -20,14 +21,14 @@ pub fn text(name: &str) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::control::Code;
+    use crate::control::{Code, Device};
     use crate::mapping::check::{OutputChoice, read};
     use crate::mapping::profile::{Action, Binding, DpadMode, Force, Profile};
 
-    const SOUTH: Binding = Binding { code: Code::Key(0x130), value: 1 };
-    const EAST: Binding = Binding { code: Code::Key(0x131), value: 1 };
-    const KEY_Z: Binding = Binding { code: Code::Key(44), value: 1 };
-    const KEY_X: Binding = Binding { code: Code::Key(45), value: 1 };
+    const SOUTH: Binding = Binding { device: Device::Gamepad, code: Code::Key(0x130), value: 1 };
+    const EAST: Binding = Binding { device: Device::Gamepad, code: Code::Key(0x131), value: 1 };
+    const KEY_Z: Binding = Binding { device: Device::Keyboard, code: Code::Key(44), value: 1 };
+    const KEY_X: Binding = Binding { device: Device::Keyboard, code: Code::Key(45), value: 1 };
 
     fn shipped(name: &str, output: OutputChoice) -> Profile {
         read(text(name).unwrap(), output).0.unwrap()
@@ -70,8 +71,24 @@ mod tests {
     }
 
     #[test]
+    fn pointer_plays_on_the_mouse_alone() {
+        for output in [OutputChoice::AsWritten, OutputChoice::Keyboard] {
+            let profile = shipped("pointer", output);
+            let used =
+                [Device::Gamepad, Device::Keyboard, Device::Pointer].map(|device| profile.uses(device));
+            assert_eq!(used, [false, false, true]);
+            assert_eq!(forces(&profile), [(Force::Fz, 2.0, 1.4), (Force::FxPositive, 1.2, 0.8)]);
+            let codes: Vec<_> = profile.bindings().map(|binding| binding.code).collect();
+            assert_eq!(codes, [Code::Key(0x110), Code::Key(0x111)], "left and right");
+        }
+    }
+
+    #[test]
     fn every_name_has_a_text_and_no_other() {
-        assert_eq!(names().collect::<Vec<_>>(), ["super-mario", "tetris", "tank-battle", "contra"]);
+        assert_eq!(
+            names().collect::<Vec<_>>(),
+            ["super-mario", "tetris", "tank-battle", "contra", "pointer"]
+        );
         assert!(names().all(|name| text(name).is_some()));
         assert_eq!(text("Contra"), None);
     }

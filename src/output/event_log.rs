@@ -8,7 +8,7 @@ use crate::control::OutputEvent;
 /// An event as a line of the log, without the line's end.
 ///
 /// `{"t_us":123,"device":"gamepad","code":"BTN_SOUTH","value":1}`: stream time in microseconds, the device,
-/// the kernel's name of the control, its new value.
+/// the kernel's name of the control, its new value or, for a movement, its counts.
 #[derive(Clone, Copy, Debug)]
 pub struct LogLine<'a>(pub &'a OutputEvent);
 
@@ -53,12 +53,16 @@ mod tests {
             line(0, Device::Keyboard, Code::Key(44), 0),
             r#"{"t_us":0,"device":"keyboard","code":"KEY_Z","value":0}"#
         );
+        assert_eq!(
+            line(4_000, Device::Pointer, Code::Relative(0), -3),
+            r#"{"t_us":4000,"device":"pointer","code":"REL_X","value":-3}"#
+        );
     }
 
     #[test]
     fn every_code_gives_a_line_that_reads_back() {
         for number in 0..=u16::MAX {
-            for code in [Code::Key(number), Code::Axis(number)] {
+            for code in [Code::Key(number), Code::Axis(number), Code::Relative(number)] {
                 let text = line(7, Device::Gamepad, code, -3);
                 let value: serde_json::Value = serde_json::from_str(&text).unwrap();
                 assert_eq!(value["t_us"], 7);

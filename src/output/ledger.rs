@@ -1,22 +1,25 @@
 //! The ledger: the only place that knows what is held, and the only one that emits.
 //!
 //! It compares what should be held (levels) with what is, and writes the difference as edges. So every down has its
-//! up: empty levels release everything, and nothing can be forgotten by whoever stated it.
+//! up: empty levels release everything, and nothing can be forgotten by whoever stated it. Rates of the pointer it passes
+//! through `motion`, so that one place emits and empty levels stop the pointer, too.
 
 use arrayvec::ArrayVec;
 
 use crate::control::{Code, Device, OutputEvent};
 use crate::mapping::intent::{Intents, Level};
-use crate::mapping::profile::{Action, Binding, Button, Dpad, Profile};
+use crate::mapping::profile::Profile;
+use crate::output::motion::{Motion, STEPS_MAX};
 use crate::time::StreamInstant;
 
 /// The most controls a profile can name: four directions, and two for each button.
 const SLOTS_MAX: usize = 20;
 
-/// The most edges of one call: everything released, everything else pressed.
-pub const EDGES_MAX: usize = 2 * SLOTS_MAX;
+/// The most edges of one call: the pointer moved, everything released, everything else pressed.
+pub const EDGES_MAX: usize = STEPS_MAX + 2 * SLOTS_MAX;
 
-/// The edges of one call, simultaneous for a game: releases first.
+/// The edges of one call, simultaneous for a game: the pointer's steps, then releases, then presses. So a press or
+/// release of the pointer's button counts where the pointer has arrived.
 pub type Edges = ArrayVec<OutputEvent, EDGES_MAX>;
 
 /// One control of the profile and what is held of it.
@@ -29,10 +32,11 @@ struct Slot {
     since: StreamInstant,
 }
 
-/// What is held, in the profile's order: horizontal direction, vertical direction, buttons.
+/// What is held, in the profile's order: horizontal direction, vertical direction, buttons, the pointer's way.
 #[derive(Clone, Debug)]
 pub struct Ledger {
     slots: ArrayVec<Slot, SLOTS_MAX>,
+    motion: Motion,
     min_press_us: u64,
 }
 
@@ -40,15 +44,20 @@ impl Ledger {
     /// A ledger for the controls of `profile`, holding nothing.
     pub fn new(profile: &Profile) -> Self {
         let mut slots = ArrayVec::new();
-        for code in controls(profile) {
-            add_slot(&mut slots, profile.output, code);
+        for binding in profile.bindings() {
+            add_slot(&mut slots, binding.device, binding.code);
         }
-        Self { slots, min_press_us: profile.min_press_us }
+        Self { slots, motion: Motion::new(), min_press_us: profile.min_press_us }
     }
 
     /// Writes the edges from what is held to `levels`, as far as the minimum press allows; the rest follows when it
-    /// is due. A level of a control that the profile does not name is ignored.
+    /// is due. A level of a control that the profile does not name is ignored. The pointer moves here only, with a sample.
     pub fn update(&mut self, at: StreamInstant, levels: &Intents, edges: &mut Edges) {
+        self.motion.update(at, levels);
+        for (code, value) in self.motion.take_steps().into_iter().flatten() {
+            // At most STEPS_MAX, so there is always room.
+            let _ = edges.try_push(OutputEvent { at, device: Device::Pointer, code, value });
+        }
         for slot in &mut self.slots {
             slot.wanted = wanted(levels, slot);
         }
@@ -75,8 +84,10 @@ impl Ledger {
         back.map(|slot| slot.since.plus_us(self.min_press_us)).min()
     }
 
-    /// Releases everything at once: fault, pause, panic, exit. The minimum press does not count here.
+    /// Releases everything at once: fault, pause, panic, exit. The minimum press does not count here, and the pointer
+    /// stays where it is.
     pub fn release_all(&mut self, at: StreamInstant, edges: &mut Edges) {
+        self.motion.stop(at);
         for slot in &mut self.slots {
             slot.wanted = 0;
             slot.set(at, 0, edges);
@@ -86,6 +97,9 @@ impl Ledger {
     /// Goes over to the controls of `profile`: releases what it does not have, keeps what both have.
     pub fn change_profile(&mut self, at: StreamInstant, profile: &Profile, edges: &mut Edges) {
         let mut old = std::mem::replace(self, Self::new(profile));
+        if profile.pointer.is_some() {
+            self.motion = old.motion;
+        }
         for slot in &mut old.slots {
             let same = |new: &&mut Slot| new.device == slot.device && new.code == slot.code;
             match self.slots.iter_mut().find(same) {
@@ -98,7 +112,8 @@ impl Ledger {
     /// What is held now, in the profile's order.
     pub fn held(&self) -> impl Iterator<Item = Level> + '_ {
         let held = self.slots.iter().filter(|slot| slot.held != 0);
-        held.map(|slot| Level { device: slot.device, code: slot.code, value: slot.held })
+        let held = held.map(|slot| Level { device: slot.device, code: slot.code, value: slot.held });
+        held.chain(self.motion.rates().map(|(code, value)| Level { device: Device::Pointer, code, value }))
     }
 }
 
@@ -120,28 +135,10 @@ fn wanted(levels: &Intents, slot: &Slot) -> i32 {
 
 /// Adds a control once, however many bindings name it.
 fn add_slot(slots: &mut ArrayVec<Slot, SLOTS_MAX>, device: Device, code: Code) {
-    if slots.iter().all(|slot| slot.code != code) {
+    if slots.iter().all(|slot| (slot.device, slot.code) != (device, code)) {
         // A profile names at most SLOTS_MAX controls, so there is always room.
         let _ = slots.try_push(Slot { device, code, held: 0, wanted: 0, since: StreamInstant::default() });
     }
-}
-
-fn controls(profile: &Profile) -> impl Iterator<Item = Code> + '_ {
-    let directions = profile.dpad.iter().flat_map(directions);
-    let buttons = profile.buttons.iter().flat_map(outputs);
-    directions.chain(buttons).map(|binding| binding.code)
-}
-
-fn directions(dpad: &Dpad) -> impl Iterator<Item = Binding> + use<> {
-    [dpad.left, dpad.right, dpad.up, dpad.down].into_iter()
-}
-
-fn outputs(button: &Button) -> impl Iterator<Item = Binding> + use<> {
-    let (first, second) = match button.action {
-        Action::Hold(binding) => (binding, None),
-        Action::TapHold { tap, hold, .. } => (tap, Some(hold)),
-    };
-    std::iter::once(first).chain(second)
 }
 
 #[cfg(test)]
@@ -178,7 +175,7 @@ mod tests {
             let mut edges = Edges::new();
             ledger.update(StreamInstant::from_us(*us), &intents(levels), &mut edges);
             all.extend(edges.iter().map(|edge| {
-                let (Code::Key(number) | Code::Axis(number)) = edge.code;
+                let (Code::Key(number) | Code::Axis(number) | Code::Relative(number)) = edge.code;
                 (edge.at.as_us(), number, edge.value)
             }));
         }
@@ -240,6 +237,22 @@ mod tests {
             [(Code::Key(0x130), 0)]
         );
         assert_eq!(ledger.held().count(), 1);
+    }
+
+    #[test]
+    fn the_pointer_arrives_before_its_button_changes() {
+        let mut ledger = Ledger::new(&profile("pointer"));
+        let level = |code, value| Level { device: Device::Pointer, code, value };
+        let (right, left) = (level(Code::Relative(0), 2_000), level(Code::Key(0x110), 1));
+        let mut edges = Edges::new();
+        for (ms, levels) in [(0, &[right][..]), (1, &[right, left]), (50, &[left]), (60, &[])] {
+            let levels = levels.iter().copied().collect();
+            ledger.update(StreamInstant::from_us(ms * 1_000), &levels, &mut edges);
+        }
+        let seen: Vec<_> =
+            edges.iter().map(|e| (e.at.as_us() / 1_000, e.code.to_string(), e.value)).collect();
+        let expected = [(1, "REL_X", 2), (1, "BTN_LEFT", 1), (50, "REL_X", 40), (60, "BTN_LEFT", 0)];
+        assert_eq!(seen, expected.map(|(ms, code, value)| (ms, code.to_owned(), value)));
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! From levels to edges.
+//! From levels to edges, and from rates to steps.
 
 pub mod event_log;
 pub mod ledger;
+mod motion;

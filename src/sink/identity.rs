@@ -4,7 +4,7 @@
 //! recognise controllers by their numbers and count buttons and axes by the order of the codes. Version
 //! 0x0114 matters: SDL's controller database maps the D-pad of version 1 upside down.
 
-use crate::control::names::{GAMEPAD_BUTTONS, canonical, is_keyboard_key, name};
+use crate::control::names::{GAMEPAD_BUTTONS, POINTER_BUTTONS, canonical, is_keyboard_key, name};
 use crate::control::{Code, Device};
 
 /// `BUS_USB` of `linux/input.h`.
@@ -41,6 +41,10 @@ pub const GAMEPAD: Identity = Identity {
 pub const KEYBOARD: Identity =
     Identity { bus: BUS_VIRTUAL, name: "tactpad keyboard", vendor: 0x1209, product: 0x0002, version: 0x0001 };
 
+/// The pointer, told from other mice by its name alone.
+pub const POINTER: Identity =
+    Identity { bus: BUS_VIRTUAL, name: "tactpad pointer", vendor: 0x1209, product: 0x0003, version: 0x0001 };
+
 /// One axis of the pad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axis {
@@ -75,11 +79,20 @@ const fn hat(code: u16) -> Axis {
 /// The numbers of all keys of `device`.
 ///
 /// The pad has the eleven of the driver xpad and no more: readers count them. The keyboard has every key that
-/// a profile can name, so that a profile which passed its check loses nothing here.
+/// a profile can name, so that a profile which passed its check loses nothing here. The pointer has a mouse's
+/// three.
 pub fn keys(device: Device) -> impl Iterator<Item = u16> {
     canonical().filter(move |(_, code)| declares(device, *code)).filter_map(|(_, code)| match code {
         Code::Key(number) => Some(number),
-        Code::Axis(_) => None,
+        Code::Axis(_) | Code::Relative(_) => None,
+    })
+}
+
+/// The numbers of the movements that the pointer has: both directions, and the wheel that programs expect of a mouse.
+pub fn movements() -> impl Iterator<Item = u16> {
+    canonical().filter_map(|(_, code)| match code {
+        Code::Relative(number) => Some(number),
+        Code::Key(_) | Code::Axis(_) => None,
     })
 }
 
@@ -88,7 +101,10 @@ pub fn declares(device: Device, code: Code) -> bool {
     match (device, code) {
         (Device::Gamepad, Code::Key(_)) => GAMEPAD_BUTTONS.contains(&code),
         (Device::Gamepad, Code::Axis(axis)) => GAMEPAD_AXES.iter().any(|declared| declared.code == axis),
+        (Device::Gamepad, Code::Relative(_)) => false,
         (Device::Keyboard, _) => is_keyboard_key(code) && name(code).is_some(),
+        (Device::Pointer, Code::Relative(movement)) => movements().any(|declared| declared == movement),
+        (Device::Pointer, _) => POINTER_BUTTONS.contains(&code),
     }
 }
 
@@ -135,6 +151,26 @@ mod tests {
         }
         for code in [Abs::ABS_HAT0X, Abs::ABS_HAT0Y] {
             assert_eq!(of(code), (-1, 1, 0, 0), "{code:?}");
+        }
+    }
+
+    #[test]
+    fn pointer_is_a_mouse_and_nothing_else() {
+        use evdev::RelativeAxisCode as Rel;
+        assert!(movements().eq([Rel::REL_X.0, Rel::REL_Y.0, Rel::REL_WHEEL.0]));
+        assert!(keys(Device::Pointer).eq([KeyCode::BTN_LEFT.0, KeyCode::BTN_RIGHT.0, KeyCode::BTN_MIDDLE.0]));
+        for code in [
+            Code::Key(KeyCode::BTN_SIDE.0),
+            Code::Key(KeyCode::BTN_SOUTH.0),
+            Code::Axis(0),
+            Code::Relative(2),
+        ] {
+            assert!(!declares(Device::Pointer, code), "{code}");
+        }
+        for device in [Device::Gamepad, Device::Keyboard] {
+            assert!(
+                !declares(device, Code::Relative(0)) && !declares(device, Code::Key(KeyCode::BTN_LEFT.0))
+            );
         }
     }
 

@@ -8,11 +8,13 @@ use std::os::fd::{AsFd, BorrowedFd};
 use std::path::{Path, PathBuf};
 
 use evdev::uinput::VirtualDevice;
-use evdev::{AbsInfo, AbsoluteAxisCode, AttributeSet, BusType, InputId, KeyCode, UinputAbsSetup};
+use evdev::{
+    AbsInfo, AbsoluteAxisCode, AttributeSet, BusType, InputId, KeyCode, RelativeAxisCode, UinputAbsSetup,
+};
 use rustix::event::{Timespec, poll};
 use rustix::io::Errno;
 
-use super::identity::{GAMEPAD, GAMEPAD_AXES, Identity, KEYBOARD, declares, keys};
+use super::identity::{GAMEPAD, GAMEPAD_AXES, Identity, KEYBOARD, POINTER, declares, keys, movements};
 use super::{Sink, SinkError};
 use crate::control::{Code, Device, OutputEvent};
 
@@ -36,14 +38,19 @@ const TIME_LEN: usize = 2 * size_of::<usize>();
 
 const EV_SYN: u16 = 0;
 const EV_KEY: u16 = 1;
+const EV_REL: u16 = 2;
 const EV_ABS: u16 = 3;
 const SYN_REPORT: u16 = 0;
 
-/// The virtual gamepad and the virtual keyboard. Each is made when it is first prepared.
+/// Every device, in the order in which a group is written.
+const DEVICES: [Device; 3] = [Device::Gamepad, Device::Keyboard, Device::Pointer];
+
+/// The virtual gamepad, keyboard and pointer. Each is made when it is first prepared.
 #[derive(Debug)]
 pub struct UinputSink {
     gamepad: Option<Unit>,
     keyboard: Option<Unit>,
+    pointer: Option<Unit>,
 }
 
 impl UinputSink {
@@ -53,7 +60,11 @@ impl UinputSink {
     /// uinput cannot be used here; the text says what would help.
     pub fn open() -> Result<Self, SinkError> {
         available()?;
-        Ok(Self { gamepad: None, keyboard: None })
+        Ok(Self::empty())
+    }
+
+    const fn empty() -> Self {
+        Self { gamepad: None, keyboard: None, pointer: None }
     }
 
     /// The node that readers of `device` open; `None` before it is prepared.
@@ -61,6 +72,7 @@ impl UinputSink {
         let unit = match device {
             Device::Gamepad => &self.gamepad,
             Device::Keyboard => &self.keyboard,
+            Device::Pointer => &self.pointer,
         };
         unit.as_ref().map(|unit| unit.node.as_path())
     }
@@ -69,6 +81,7 @@ impl UinputSink {
         let place = match device {
             Device::Gamepad => &mut self.gamepad,
             Device::Keyboard => &mut self.keyboard,
+            Device::Pointer => &mut self.pointer,
         };
         match place {
             Some(unit) => Ok(unit),
@@ -96,7 +109,7 @@ impl Sink for UinputSink {
         if let Some(event) = group.iter().find(|event| !declares(event.device, event.code)) {
             return Err(undeclared(event));
         }
-        for device in [Device::Gamepad, Device::Keyboard] {
+        for device in DEVICES {
             if group.iter().any(|event| event.device == device) {
                 let unit = self.unit(device)?;
                 unit.write(
@@ -111,7 +124,7 @@ impl Sink for UinputSink {
     }
 
     fn describe(&self) -> String {
-        let nodes = [Device::Gamepad, Device::Keyboard].map(|device| {
+        let nodes = DEVICES.map(|device| {
             self.node(device).map(|node| format!("virtual {} at {}", device.name(), node.display()))
         });
         let nodes: Vec<String> = nodes.into_iter().flatten().collect();
@@ -134,6 +147,7 @@ impl Unit {
         let (made, name) = match device {
             Device::Gamepad => (make_gamepad(), GAMEPAD.name),
             Device::Keyboard => (make_keyboard(), KEYBOARD.name),
+            Device::Pointer => (make_pointer(), POINTER.name),
         };
         let mut device = made.map_err(|error| cannot_make(&error))?;
         let node = wait_for_node(&mut device).ok_or_else(|| no_node(name))?;
@@ -145,7 +159,7 @@ impl Unit {
         self.bytes.clear();
         for (code, value) in events {
             self.held.retain(|held| *held != code);
-            if value != 0 {
+            if value != 0 && !matches!(code, Code::Relative(_)) {
                 self.held.push(code);
             }
             encode(code, value, &mut self.bytes);
@@ -185,6 +199,7 @@ fn encode(code: Code, value: i32, bytes: &mut Vec<u8>) {
     match code {
         Code::Key(key) => encode_event(EV_KEY, key, value, bytes),
         Code::Axis(axis) => encode_event(EV_ABS, axis, value, bytes),
+        Code::Relative(movement) => encode_event(EV_REL, movement, value, bytes),
     }
 }
 
@@ -216,6 +231,13 @@ fn make_keyboard() -> io::Result<VirtualDevice> {
     let keys: AttributeSet<KeyCode> = keys(Device::Keyboard).map(KeyCode::new).collect();
     let builder = VirtualDevice::builder()?.name(KEYBOARD.name).input_id(input_id(&KEYBOARD));
     builder.with_keys(&keys)?.build()
+}
+
+fn make_pointer() -> io::Result<VirtualDevice> {
+    let keys: AttributeSet<KeyCode> = keys(Device::Pointer).map(KeyCode::new).collect();
+    let movements: AttributeSet<RelativeAxisCode> = movements().map(RelativeAxisCode).collect();
+    let builder = VirtualDevice::builder()?.name(POINTER.name).input_id(input_id(&POINTER));
+    builder.with_keys(&keys)?.with_relative_axes(&movements)?.build()
 }
 
 fn input_id(identity: &Identity) -> InputId {
@@ -316,10 +338,12 @@ mod tests {
         let mut bytes = Vec::new();
         encode(Code::Key(0x130), 1, &mut bytes);
         encode(Code::Axis(0x11), -1, &mut bytes);
+        encode(Code::Relative(0x01), -2, &mut bytes);
         encode_report(&mut bytes);
         let expected = [
             [[0; 16].as_slice(), &[0x01, 0x00, 0x30, 0x01, 0x01, 0x00, 0x00, 0x00]].concat(),
             [[0; 16].as_slice(), &[0x03, 0x00, 0x11, 0x00, 0xff, 0xff, 0xff, 0xff]].concat(),
+            [[0; 16].as_slice(), &[0x02, 0x00, 0x01, 0x00, 0xfe, 0xff, 0xff, 0xff]].concat(),
             [0; 24].to_vec(),
         ];
         assert_eq!(bytes, expected.concat());
@@ -341,7 +365,7 @@ mod tests {
 
     #[test]
     fn control_of_the_other_device_is_refused_before_anything_is_made() {
-        let mut sink = UinputSink { gamepad: None, keyboard: None };
+        let mut sink = UinputSink::empty();
         let at = StreamInstant::from_us(0);
         let event = OutputEvent { at, device: Device::Keyboard, code: Code::Key(0x130), value: 1 };
         let error = sink.write(&[event]).unwrap_err();
@@ -372,6 +396,6 @@ mod tests {
 
     #[test]
     fn empty_group_writes_nothing() {
-        UinputSink { gamepad: None, keyboard: None }.write(&[]).unwrap();
+        UinputSink::empty().write(&[]).unwrap();
     }
 }

@@ -1,6 +1,7 @@
 //! Where pad bytes come from.
 
 pub mod address;
+pub mod fault;
 pub mod hid;
 mod pacing;
 pub mod pads;

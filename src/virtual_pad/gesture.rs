@@ -59,15 +59,15 @@ impl Gesture {
         })
     }
 
-    /// The edges on `device` that the gesture means, in order: per step releases, presses, then the tap.
-    pub(super) fn expect(&self, device: Device, expected: &mut Vec<(Device, Code, i32)>) {
+    /// The edges that the gesture means, in order: per step releases, presses, then the tap.
+    pub(super) fn expect(&self, expected: &mut Vec<(Device, Code, i32)>) {
         let mut before = Held::new();
         for step in &self.steps {
             let released = before.iter().filter(|binding| !step.held.contains(binding));
-            expected.extend(released.map(|binding| (device, binding.code, 0)));
+            expected.extend(released.map(|binding| (binding.device, binding.code, 0)));
             let pressed = step.held.iter().chain(&step.tapped).filter(|binding| !before.contains(binding));
-            expected.extend(pressed.map(|binding| (device, binding.code, binding.value)));
-            expected.extend(step.tapped.map(|tap| (device, tap.code, 0)));
+            expected.extend(pressed.map(|binding| (binding.device, binding.code, binding.value)));
+            expected.extend(step.tapped.map(|tap| (tap.device, tap.code, 0)));
             before.clone_from(&step.held);
         }
     }
@@ -78,10 +78,10 @@ mod tests {
     use super::*;
     use crate::virtual_pad::fixture::{EAST, HAT_X, HAT_Y, SOUTH};
 
-    const RIGHT: Binding = Binding { code: HAT_X, value: 1 };
-    const LEFT: Binding = Binding { code: HAT_X, value: -1 };
-    const UP: Binding = Binding { code: HAT_Y, value: -1 };
-    const JUMP: Binding = Binding { code: SOUTH, value: 1 };
+    const RIGHT: Binding = Binding { device: Device::Gamepad, code: HAT_X, value: 1 };
+    const LEFT: Binding = Binding { device: Device::Gamepad, code: HAT_X, value: -1 };
+    const UP: Binding = Binding { device: Device::Gamepad, code: HAT_Y, value: -1 };
+    const JUMP: Binding = Binding { device: Device::Gamepad, code: SOUTH, value: 1 };
 
     fn step(held: &[Binding], tapped: Option<Binding>) -> Step {
         let held = held.iter().copied().collect();
@@ -90,7 +90,7 @@ mod tests {
 
     fn expected(steps: Vec<Step>) -> Vec<(Code, i32)> {
         let mut edges = Vec::new();
-        Gesture { steps }.expect(Device::Gamepad, &mut edges);
+        Gesture { steps }.expect(&mut edges);
         edges.into_iter().map(|(_, code, value)| (code, value)).collect()
     }
 
@@ -116,7 +116,10 @@ mod tests {
         assert!(!consistent(&[step(&[RIGHT, LEFT], None)]));
         assert!(consistent(&[step(&[UP], None), step(&[UP], Some(JUMP))]));
         assert!(!consistent(&[step(&[JUMP], None), step(&[], Some(JUMP))]));
-        assert!(!consistent(&[step(&[JUMP, Binding { code: EAST, value: 1 }], Some(JUMP))]));
+        assert!(!consistent(&[step(
+            &[JUMP, Binding { device: Device::Gamepad, code: EAST, value: 1 }],
+            Some(JUMP)
+        )]));
     }
 
     #[test]

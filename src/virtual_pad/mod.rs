@@ -9,6 +9,6 @@ pub mod firmware;
 mod fixture;
 mod front_end;
 mod gesture;
-mod noise;
+pub(crate) mod noise;
 mod player;
 pub mod script;

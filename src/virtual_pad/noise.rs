@@ -10,16 +10,17 @@ const LANES: u32 = u64::BITS / LANE_BITS;
 /// Source: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA
 /// 2014 (SplitMix64).
 #[derive(Clone, Debug)]
-pub(super) struct Noise {
+pub(crate) struct Noise {
     state: u64,
 }
 
 impl Noise {
-    pub(super) const fn new(seed: u64) -> Self {
+    pub(crate) const fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    fn next_bits(&mut self) -> u64 {
+    /// The next 64 bits.
+    pub(crate) fn next_bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mixed = (self.state ^ (self.state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -27,14 +28,14 @@ impl Noise {
     }
 
     /// Evenly distributed in −1..1.
-    pub(super) fn uniform(&mut self) -> f32 {
+    pub(crate) fn uniform(&mut self) -> f32 {
         let steps = (self.next_bits() >> 40) as f32;
         steps / (1_u32 << 23) as f32 - 1.0
     }
 
     /// Mean 0, standard deviation 1, never beyond ±6: the sum of twelve uniform numbers, which comes close
     /// enough to the normal distribution and needs no transcendental function.
-    pub(super) fn normal(&mut self) -> f32 {
+    pub(crate) fn normal(&mut self) -> f32 {
         let mut sum = 0;
         for _ in 0..TERMS / LANES {
             let bits = self.next_bits();

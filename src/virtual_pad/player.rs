@@ -68,9 +68,11 @@ impl<'p> Player<'p> {
             press_n = press_n.min(button.press_n);
             release_n = release_n.min(button.release_n);
         }
-        let (touch_n, centre_mm) = profile.dpad.as_ref().map_or((touch::ON_N, 0.0), |dpad| {
-            (dpad.min_force_n.max(dpad.release_force_n).max(touch::ON_N), dpad.centre_radius_mm)
-        });
+        let directions = profile.dpad.iter().map(|dpad| (dpad.min_force_n, dpad.centre_radius_mm));
+        let motion = profile.pointer.iter().map(|pointer| (pointer.min_force_n, pointer.centre_radius_mm));
+        let (touch_n, centre_mm) = directions
+            .chain(motion)
+            .fold((touch::ON_N, 0.0_f32), |most, gate| (most.0.max(gate.0), most.1.max(gate.1)));
         let (floor_n, ceiling_n) = (1.5 * touch_n, (0.7 * press_n).min(0.8 * release_n));
         let filter_us = SAMPLE_US.saturating_mul(profile.filter_samples as u64);
         let follow_us = profile.min_press_us.saturating_add(filter_us).saturating_add(SLACK_US);
@@ -113,9 +115,13 @@ impl<'p> Player<'p> {
         gestures
     }
 
-    /// Right, up, left, down; none where the sectors are too narrow to hit.
+    /// Right, up, left, down; none where the sectors are too narrow to hit. Without directions the pointer goes there,
+    /// if there is one, and nothing is held.
     fn cardinals(&self) -> Vec<Aim> {
-        let Some(dpad) = &self.profile.dpad else { return Vec::new() };
+        let Some(dpad) = &self.profile.dpad else {
+            let angles_deg = self.profile.pointer.iter().flat_map(|_| [0.0, 90.0, 180.0, 270.0]);
+            return angles_deg.map(|angle_deg| Aim { angle_deg, held: Held::new() }).collect();
+        };
         if cardinal_half_deg(dpad) < ANGLE_SLACK_DEG {
             return Vec::new();
         }

@@ -12,13 +12,29 @@ use crate::reader::{Reader, find};
 
 /// The demo plays on a virtual gamepad; its account agrees with what a reader of the device saw.
 pub(crate) fn plays_on_uinput() {
-    let mut demo = Running::start(TACTPAD, &["demo", "--seconds", "5", "--output", "uinput", "--json"]);
+    let reader = play("super-mario", KeyCode::BTN_SOUTH);
+    assert!(reader.seen.iter().all(|change| !change.name.starts_with("REL")));
+}
+
+/// The demo of the mouse moves a virtual one, in all directions.
+pub(crate) fn moves_the_pointer() {
+    let reader = play("pointer", KeyCode::BTN_LEFT);
+    for (axis, sign) in [("REL_X", 1), ("REL_X", -1), ("REL_Y", 1), ("REL_Y", -1)] {
+        let moved = reader.seen.iter().any(|change| change.name == axis && change.value.signum() == sign);
+        assert!(moved, "{axis} {sign}");
+    }
+}
+
+/// Plays the demo with `profile` and checks its account against the device that has `key`.
+fn play(profile: &str, key: KeyCode) -> Reader {
+    let arguments = ["demo", "--seconds", "5", "--output", "uinput", "--json", "--profile", profile];
+    let mut demo = Running::start(TACTPAD, &arguments);
     let limit_ns = monotonic_ns() + 5_000 * MS;
-    while find(KeyCode::BTN_SOUTH).is_none() {
-        assert!(monotonic_ns() < limit_ns && !demo.has_ended(), "the demo makes a gamepad");
+    while find(key).is_none() {
+        assert!(monotonic_ns() < limit_ns && !demo.has_ended(), "the demo makes a device");
         wait_until(monotonic_ns() + MS);
     }
-    let mut reader = Reader::open(&find(KeyCode::BTN_SOUTH).expect("it was there a moment ago"));
+    let mut reader = Reader::open(&find(key).expect("it was there a moment ago"));
     reader.read_until(15_000, |_| false);
     let mut said = String::new();
     demo.take_output().read_to_string(&mut said).expect("text");
@@ -31,6 +47,10 @@ pub(crate) fn plays_on_uinput() {
     assert_eq!(number("downs"), number("ups"));
     let p50_us = account["latency_us"]["p50"].as_f64().expect("a median latency");
     assert!(p50_us > 0.0, "{said}");
-    let downs = reader.seen.iter().filter(|change| change.value != 0).count();
+    let (moves, edges): (Vec<_>, Vec<_>) =
+        reader.seen.iter().partition(|change| change.name.starts_with("REL"));
+    let downs = edges.iter().filter(|change| change.value != 0).count();
     assert_eq!(number("downs"), downs as u64, "the reader saw {:?}", reader.edges());
+    assert_eq!(number("pointer_moves"), moves.len() as u64);
+    reader
 }

@@ -43,7 +43,7 @@ pub(crate) const PRESS_RIGHT: Touch = Touch { fz_n: 3.0, ..RIGHT };
 
 impl Touch {
     /// The nine counts: three supports of a rigid plate share the force by the lever rule, and nothing pushes sideways.
-    fn counts(self) -> [i32; 9] {
+    pub(crate) fn counts(self) -> [i32; 9] {
         let mut counts = [0; 9];
         for (module, angle_deg) in [0.0_f64, 120.0, 240.0].into_iter().enumerate() {
             let (sin, cos) = angle_deg.to_radians().sin_cos();

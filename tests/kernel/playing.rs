@@ -1,7 +1,7 @@
 //! The virtual devices are what games expect, and playing arrives on them.
 
 use evdev::raw_stream::RawDevice;
-use evdev::{AbsoluteAxisCode, BusType, EventType, KeyCode};
+use evdev::{AbsoluteAxisCode, BusType, EventType, KeyCode, RelativeAxisCode};
 
 use crate::bridge::Bridge;
 use crate::clock::{MS, stamp_ns};
@@ -80,6 +80,37 @@ pub(crate) fn keyboard() {
     assert_eq!(bridge.reader.edges(), expected);
     check_durations(&bridge, hold_start_ns, "KEY_Z", "KEY_X");
     assert_eq!(find(KeyCode::BTN_SOUTH), None, "a keyboard profile makes no gamepad");
+}
+
+/// The pointer is a mouse of its own: the profile makes nothing else, and touches move it and click.
+pub(crate) fn pointer() {
+    let mut bridge = Bridge::start("pointer", KeyCode::BTN_LEFT);
+    let device = &bridge.reader.device;
+    assert_eq!(device.name(), Some("tactpad pointer"));
+    let movements: Vec<_> = device.supported_relative_axes().expect("movements").iter().collect();
+    assert_eq!(movements, [RelativeAxisCode::REL_X, RelativeAxisCode::REL_Y, RelativeAxisCode::REL_WHEEL]);
+    let keys: Vec<_> = device.supported_keys().expect("buttons").iter().collect();
+    assert_eq!(keys, [KeyCode::BTN_LEFT, KeyCode::BTN_RIGHT, KeyCode::BTN_MIDDLE]);
+    assert!(device.supported_absolute_axes().is_none_or(|axes| axes.iter().next().is_none()));
+    let mut before = (0, 0);
+    for (touch, right, down) in [(RIGHT, 1, 0), (UP, 0, -1), (LEFT, -1, 0), (DOWN, 0, 1)] {
+        touch_for(&mut bridge, touch, 300);
+        bridge.reader.read_available();
+        let at = (bridge.reader.moved("REL_X"), bridge.reader.moved("REL_Y"));
+        let way = (at.0 - before.0, at.1 - before.1);
+        assert_eq!((way.0.signum(), way.1.signum()), (right, down), "{way:?}");
+        // At 12 mm of 5 to 24 mm the speed is 109 counts per second.
+        assert!((24..=40).contains(&(way.0 + way.1).abs()), "{way:?}");
+        before = at;
+    }
+    touch_for(&mut bridge, PRESS, 150);
+    bridge.reader.read_available();
+    let clicks: Vec<_> =
+        bridge.reader.edges().into_iter().filter(|(name, _)| name.starts_with("BTN")).collect();
+    assert_eq!(clicks, [("BTN_LEFT", 1), ("BTN_LEFT", 0)]);
+    for key in [KeyCode::BTN_SOUTH, KeyCode::KEY_RIGHT] {
+        assert_eq!(find(key), None, "a pointer's profile makes no other device");
+    }
 }
 
 fn check_identity(device: &RawDevice) {

@@ -9,7 +9,7 @@ use evdev::{EventSummary, KeyCode, SynchronizationCode};
 
 use crate::clock::{MS, monotonic_ns, readable_before};
 
-/// A key or axis took a value.
+/// A key or axis took a value, or the pointer moved by it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Change {
     /// The kernel's name.
@@ -61,6 +61,11 @@ impl Reader {
         self.seen.iter().map(|change| (change.name.as_str(), change.value)).collect()
     }
 
+    /// How far the pointer has moved along `axis`, in counts.
+    pub(crate) fn moved(&self, axis: &str) -> i32 {
+        self.seen.iter().filter(|change| change.name == axis).map(|change| change.value).sum()
+    }
+
     /// When `name` last took `value`, if it did.
     pub(crate) fn stamp_of(&self, name: &str, value: i32) -> Option<u64> {
         let change = self.seen.iter().rev().find(|change| change.name == name && change.value == value);
@@ -76,6 +81,7 @@ impl Reader {
             let name = match event.destructure() {
                 EventSummary::Key(_, key, _) => format!("{key:?}"),
                 EventSummary::AbsoluteAxis(_, axis, _) => format!("{axis:?}"),
+                EventSummary::RelativeAxis(_, axis, _) => format!("{axis:?}"),
                 EventSummary::Synchronization(_, code, _) => {
                     assert_ne!(code, SynchronizationCode::SYN_DROPPED, "the reader was too slow");
                     continue;

@@ -5,7 +5,7 @@ use firmware_proto::frame::Message;
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
 use tactpad::contact::Decoder;
-use tactpad::control::Device;
+use tactpad::control::{Code, Device};
 use tactpad::influence::InfluenceField;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::profile::Profile;
@@ -38,6 +38,8 @@ pub(crate) struct Rig {
     pub(crate) noise: i32,
     random: u64,
     pub(crate) events: Vec<Event>,
+    /// What the pointer has moved: to the right, down.
+    pub(crate) moved: [i32; 2],
 }
 
 impl Rig {
@@ -52,6 +54,7 @@ impl Rig {
             noise: 0,
             random: 88_172_645_463_325_252,
             events: Vec::new(),
+            moved: [0; 2],
         }
     }
 
@@ -128,7 +131,13 @@ impl Rig {
     /// Takes the events of the last call.
     pub(crate) fn collect(&mut self) {
         for event in self.pipeline.events() {
-            assert_eq!(event.device, Device::Gamepad);
+            if let Code::Relative(axis) = event.code {
+                assert_eq!(event.device, Device::Pointer);
+                self.moved[usize::from(axis)] += event.value;
+                continue;
+            }
+            let is_pointers = matches!(event.code, Code::Key(0x110..=0x112));
+            assert_eq!(event.device, if is_pointers { Device::Pointer } else { Device::Gamepad });
             self.events.push((event.at.as_us() as f64 * 1e-3, event.code.to_string(), event.value));
         }
     }

@@ -1,5 +1,13 @@
-//! The wire protocol as a stranger meets it: golden frames, damage, reports, and the README's own examples.
+//! The wire protocol as a stranger meets it: golden frames, damage, reports, the README's own examples, and the
+//! C code for firmware.
 
+#[cfg(test)]
+#[path = "../../../tests/support/c_compiler.rs"]
+mod c_compiler;
+#[cfg(test)]
+mod c_encoder;
+#[cfg(test)]
+mod c_firmware;
 #[cfg(test)]
 mod damage;
 #[cfg(test)]
@@ -8,5 +16,10 @@ mod random;
 mod readme;
 #[cfg(test)]
 mod report;
+#[cfg(test)]
+mod sanitized;
+#[cfg(test)]
+#[path = "../../../tests/support/mod.rs"]
+mod support;
 #[cfg(test)]
 mod vectors;

@@ -130,6 +130,11 @@ fn vectors(text: &str) -> Vec<Vector> {
     text.split("\n\n").filter_map(Vector::parse).collect()
 }
 
+/// Every golden message from a pad.
+pub(crate) fn all_messages() -> Vec<Message> {
+    [SAMPLES, REPLIES].into_iter().flat_map(vectors).map(|vector| vector.message()).collect()
+}
+
 /// Every golden frame from a pad.
 pub(crate) fn message_frames() -> Vec<Vec<u8>> {
     [SAMPLES, REPLIES].into_iter().flat_map(vectors).map(|vector| vector.frame).collect()
@@ -138,6 +143,11 @@ pub(crate) fn message_frames() -> Vec<Vec<u8>> {
 /// Every golden frame from a host.
 pub(crate) fn command_frames() -> Vec<Vec<u8>> {
     vectors(COMMANDS).into_iter().map(|vector| vector.frame).collect()
+}
+
+/// Every golden frame that no host may take for a message.
+pub(crate) fn refused_frames() -> Vec<Vec<u8>> {
+    vectors(REFUSED).into_iter().map(|vector| vector.frame).collect()
 }
 
 #[test]

@@ -1,0 +1,130 @@
+/* The pad's end of the tactpad wire, version 1: messages out, commands in.
+ *
+ * Freestanding C99: no allocation, no library, no floating point, no state but the receiver. The layout of
+ * every byte is in ../README.md; tests hold this code to the Rust crate beside it, byte for byte.
+ */
+#ifndef TACTPAD_PROTO_H
+#define TACTPAD_PROTO_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+    TACTPAD_PROTOCOL_VERSION = 1,
+    TACTPAD_CHANNELS = 9,
+    TACTPAD_SERIAL_NUMBER_LEN = 16,
+    /* The longest frame that a pad sends: a sample, stuffed, with its closing zero. */
+    TACTPAD_ENCODED_MAX = 60,
+    /* A HID report with its report id. */
+    TACTPAD_REPORT_LEN = 64,
+    TACTPAD_REPORT_DESCRIPTOR_LEN = 29,
+    /* Samples per second that a host may ask for. */
+    TACTPAD_RATE_MIN_HZ = 100,
+    TACTPAD_RATE_MAX_HZ = 8000
+};
+
+/* Bits of a sample's status. Bit 0 to 8 says that channel 0 to 8 is out of range or its bridge is open. */
+enum {
+    TACTPAD_STATUS_TEMPERATURE_INVALID = 1 << 9,
+    TACTPAD_STATUS_RESTARTED = 1 << 10,
+    TACTPAD_STATUS_SUPPLY_FAULT = 1 << 11
+};
+
+/* One conversion of all nine channels. */
+struct tactpad_sample {
+    uint32_t sequence;
+    /* Microseconds since the pad started, at the end of the conversion. */
+    uint64_t time_us;
+    /* m0x m0y m0z m1x m1y m1z m2x m2y m2z, as the converter read them. */
+    int32_t counts[TACTPAD_CHANNELS];
+    int16_t temperature_centi_c;
+    /* Bits that mean nothing yet are sent as zero, whatever they are here. */
+    uint16_t status;
+};
+
+/* Who the pad is and what its counts are worth. */
+struct tactpad_identity {
+    /* Visible ASCII, ended by a zero unless all sixteen are used. What follows a zero is not sent. */
+    char serial_number[TACTPAD_SERIAL_NUMBER_LEN];
+    uint8_t channels;
+    uint8_t count_bits;
+    uint16_t rate_hz;
+    uint32_t picovolts_per_count;
+};
+
+/* What became of a command. */
+enum tactpad_result { TACTPAD_DONE = 0, TACTPAD_REFUSED = 1, TACTPAD_UNKNOWN = 2 };
+
+/* Write one frame to out, with its closing zero; return its length. */
+size_t tactpad_encode_sample(const struct tactpad_sample *sample, uint8_t out[TACTPAD_ENCODED_MAX]);
+size_t tactpad_encode_identity(const struct tactpad_identity *identity, uint8_t out[TACTPAD_ENCODED_MAX]);
+size_t tactpad_encode_acknowledgement(uint8_t command_kind, enum tactpad_result result,
+                                      uint8_t out[TACTPAD_ENCODED_MAX]);
+
+/* Write one input report, with its report id and padding. */
+void tactpad_report_sample(const struct tactpad_sample *sample, uint8_t out[TACTPAD_REPORT_LEN]);
+void tactpad_report_identity(const struct tactpad_identity *identity, uint8_t out[TACTPAD_REPORT_LEN]);
+void tactpad_report_acknowledgement(uint8_t command_kind, enum tactpad_result result,
+                                    uint8_t out[TACTPAD_REPORT_LEN]);
+
+/* The report descriptor that a HID pad hands to its host. */
+extern const uint8_t tactpad_report_descriptor[TACTPAD_REPORT_DESCRIPTOR_LEN];
+
+/* Kinds of commands. */
+enum { TACTPAD_IDENTIFY = 0x81, TACTPAD_SET_RATE = 0x82, TACTPAD_BLINK = 0x83 };
+
+/* What came from the host. */
+enum tactpad_event {
+    /* No frame ends here. */
+    TACTPAD_NOTHING,
+    /* A command that this version knows. */
+    TACTPAD_COMMAND,
+    /* Bytes were lost, added or changed. A pad does not answer. */
+    TACTPAD_DAMAGED,
+    /* More bytes without a zero than any frame has. A pad does not answer. */
+    TACTPAD_TOO_LONG,
+    /* A good frame of a kind that this version does not know. A pad answers that. */
+    TACTPAD_UNKNOWN_KIND,
+    /* A good frame of a version that this is not. A pad does not answer. */
+    TACTPAD_NEWER_VERSION
+};
+
+/* A command, or the kind of an unknown one. */
+struct tactpad_command {
+    uint8_t kind;
+    /* Set rate: hertz. Blink: milliseconds. Else 0. */
+    uint16_t value;
+};
+
+/* What is known of the frame that is coming in. Its fields are the receiver's own. */
+struct tactpad_receiver {
+    uint32_t crc;
+    uint8_t head[4];
+    /* Bytes without stuffing. */
+    uint8_t len;
+    /* Bytes of the present run that are still to come. */
+    uint8_t left;
+    bool started;
+    bool overlong;
+};
+
+/* The next byte is a frame's first. */
+void tactpad_receiver_reset(struct tactpad_receiver *receiver);
+
+/* Takes the next byte from the host. *command is set when a command or an unknown kind came. */
+enum tactpad_event tactpad_receive(struct tactpad_receiver *receiver, uint8_t byte,
+                                   struct tactpad_command *command);
+
+/* Reads an output report of len bytes that begins with its report id. */
+enum tactpad_event tactpad_decode_report(const uint8_t *report, size_t len, struct tactpad_command *command);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

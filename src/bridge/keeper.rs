@@ -1,0 +1,190 @@
+//! Keeps the pad: opens it, asks who it is, notices that it left, and looks for it again.
+
+use std::io;
+
+use firmware_proto::command::Command;
+
+use super::BridgeError;
+use crate::pipeline::Pipeline;
+use crate::time::HostInstant;
+use crate::transport::Transport;
+use crate::transport::pads::PadError;
+
+/// A pad that has not sent one sound frame by then is no pad, or not there.
+const FIRST_FRAME_US: u64 = 3_000_000;
+
+/// An unplugged pad is looked for this often. So one whose permissions come late is opened as soon as they are there.
+const REOPEN_US: u64 = 250_000;
+
+/// A pad that is still starting may miss a question: it is asked again after these times.
+const IDENTIFY_US: [u64; 3] = [0, 250_000, 1_000_000];
+
+/// Opens the pad, again and again if need be.
+pub type Reopen = Box<dyn FnMut() -> Result<Box<dyn Transport>, PadError>>;
+
+/// What to do about a pad that is not there at the start, or sends no sound frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Patience {
+    /// Give up with a sentence.
+    Limited,
+    /// Wait.
+    Endless,
+}
+
+/// Why there is no pad at the moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Absence {
+    /// It is not there.
+    Gone,
+    /// It is there but may not be opened.
+    Denied,
+}
+
+/// The pad, or the search for it.
+pub(super) struct Keeper {
+    pad: Option<Box<dyn Transport>>,
+    opener: Option<Reopen>,
+    patience: Patience,
+    absence: Absence,
+    opened_at: HostInstant,
+    reopen_at: HostInstant,
+    identify_asked: usize,
+    bytes_heard: u64,
+}
+
+impl Keeper {
+    /// Keeps `pad`, opened just now. `opener` opens it again; a pad without one ends for good when it leaves.
+    pub(super) fn new(
+        pad: Option<Box<dyn Transport>>,
+        opener: Option<Reopen>,
+        patience: Patience,
+        now: HostInstant,
+    ) -> Self {
+        Self {
+            pad,
+            opener,
+            patience,
+            absence: Absence::Gone,
+            opened_at: now,
+            reopen_at: now,
+            identify_asked: 0,
+            bytes_heard: 0,
+        }
+    }
+
+    /// The pad, if there is one.
+    pub(super) fn pad(&self) -> Option<&dyn Transport> {
+        self.pad.as_deref()
+    }
+
+    /// Why there is none; `None` while there is one.
+    pub(super) fn absence(&self) -> Option<Absence> {
+        self.pad.is_none().then_some(self.absence)
+    }
+
+    /// Whether the pad comes back after it left.
+    pub(super) const fn can_return(&self) -> bool {
+        self.opener.is_some()
+    }
+
+    /// Reads once; `None` when nothing is there.
+    ///
+    /// # Errors
+    /// The pad is gone.
+    pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<Option<usize>> {
+        let Some(pad) = &mut self.pad else { return Ok(None) };
+        match pad.read(bytes) {
+            Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
+            Ok(read) => {
+                self.bytes_heard += read as u64;
+                Ok(Some(read))
+            }
+            Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted) => {
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The pad left: looks for it from now on.
+    pub(super) fn lose(&mut self, now: HostInstant) {
+        (self.pad, self.absence) = (None, Absence::Gone);
+        self.reopen_at = now.plus_us(REOPEN_US);
+    }
+
+    /// Closes the pad for good.
+    pub(super) fn close(&mut self) {
+        (self.pad, self.opener) = (None, None);
+    }
+
+    /// When [`Keeper::attend`] has something to do.
+    pub(super) fn next_deadline(&self, pipeline: &Pipeline) -> Option<HostInstant> {
+        let reopen = self.reopens().then_some(self.reopen_at);
+        let first_frame = self.is_unheard(pipeline).then(|| self.opened_at.plus_us(FIRST_FRAME_US));
+        [reopen, first_frame, self.identify_at(pipeline)].into_iter().flatten().min()
+    }
+
+    /// Looks for a pad that left, asks one that came who it is, and gives up on what is no pad.
+    ///
+    /// # Errors
+    /// What was opened first is no pad, or none that can be played with.
+    pub(super) fn attend(&mut self, now: HostInstant, pipeline: &Pipeline) -> Result<(), BridgeError> {
+        if self.is_unheard(pipeline) {
+            if let Some(refusal) = pipeline.refusal() {
+                return Err(BridgeError::Refused(*refusal));
+            }
+            if now >= self.opened_at.plus_us(FIRST_FRAME_US) {
+                return Err(BridgeError::NotAPad(self.why_not_a_pad()));
+            }
+        }
+        if self.reopens() && now >= self.reopen_at {
+            self.reopen(now);
+        }
+        if self.identify_at(pipeline).is_some_and(|due| due <= now) {
+            self.identify_asked += 1;
+            if let Some(pad) = &mut self.pad {
+                // A pad that takes no commands is no error: it plays with the default scale.
+                let _ = pad.send(&Command::Identify);
+            }
+        }
+        Ok(())
+    }
+
+    const fn reopens(&self) -> bool {
+        self.pad.is_none() && self.opener.is_some()
+    }
+
+    fn reopen(&mut self, now: HostInstant) {
+        self.reopen_at = now.plus_us(REOPEN_US);
+        match self.opener.as_mut().map(|open| open()) {
+            Some(Ok(pad)) => {
+                (self.pad, self.opened_at) = (Some(pad), now);
+                self.identify_asked = 0;
+            }
+            Some(Err(PadError::Denied(_))) => self.absence = Absence::Denied,
+            Some(Err(_)) | None => self.absence = Absence::Gone,
+        }
+    }
+
+    fn identify_at(&self, pipeline: &Pipeline) -> Option<HostInstant> {
+        let asking = self.pad.is_some() && pipeline.identity().is_none();
+        let due = IDENTIFY_US.get(self.identify_asked).filter(|_| asking)?;
+        Some(self.opened_at.plus_us(*due))
+    }
+
+    /// Whether no pad has played yet and patience is limited. Later nothing that a pad does ends the bridge.
+    fn is_unheard(&self, pipeline: &Pipeline) -> bool {
+        self.patience == Patience::Limited && self.pad.is_some() && pipeline.health().samples == 0
+    }
+
+    fn why_not_a_pad(&self) -> String {
+        match self.bytes_heard {
+            0 => "sent nothing for 3 s: check that the pad is powered and this is its port, or wait for it with --wait"
+                .into(),
+            bytes => format!(
+                "sent {bytes} bytes in 3 s but not one tactpad frame: another device, or another baud rate \
+                 (serial:PATH@BAUD)"
+            ),
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Captures in memory: read, written, replayed.
+
+use std::convert::Infallible;
+
+use tactpad::capture::{Call, CaptureReader, CaptureWriter};
+use tactpad::contact::Decoder;
+use tactpad::control::OutputEvent;
+use tactpad::pipeline::{NoProbe, Pipeline};
+use tactpad::replay::make_call;
+
+use crate::rig::first_profile;
+
+/// How a capture begins.
+pub const MAGIC: &[u8] = b"tactpad capture 1\n";
+
+/// The calls of a file up to the first error; none where it is no capture.
+pub fn calls(file: &[u8]) -> Vec<Call> {
+    let reader = CaptureReader::new(file).inspect_err(|error| assert!(!error.to_string().is_empty()));
+    reader.into_iter().flatten().map_while(Result::ok).collect()
+}
+
+/// The file of `calls`.
+pub fn written(calls: &[Call]) -> Vec<u8> {
+    let mut file = Vec::new();
+    let mut writer = CaptureWriter::new(&mut file).unwrap();
+    for call in calls {
+        writer.write(call.now, call.kind.as_ref()).unwrap();
+    }
+    file
+}
+
+/// The events of `calls`. Their times may even run back, as no recorder's do.
+pub fn replayed(calls: &[Call]) -> Vec<OutputEvent> {
+    let mut pipeline = Pipeline::new(Decoder::shipped(), first_profile());
+    let mut all = Vec::new();
+    for call in calls {
+        let made = make_call(&mut pipeline, call.now, call.kind.as_ref(), &mut NoProbe, |events| {
+            all.extend_from_slice(events);
+            Ok::<_, Infallible>(())
+        });
+        assert!(made.is_ok());
+    }
+    all
+}

@@ -1,0 +1,6 @@
+//! What the fuzz targets share: a pad that does anything, and what must hold whatever it does.
+
+pub mod body;
+pub mod captured;
+pub mod rig;
+pub mod step;

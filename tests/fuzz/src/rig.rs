@@ -1,0 +1,234 @@
+//! A pipeline that is told anything, and is checked after every call.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use firmware_proto::ENCODED_MAX;
+use firmware_proto::frame::Message;
+use firmware_proto::identity::{Identity, SerialNumber};
+use firmware_proto::link::encode_message;
+use firmware_proto::sample::{Sample, Status};
+use tactpad::capture::CallRef;
+use tactpad::contact::Decoder;
+use tactpad::control::{Code, Device, OutputEvent};
+use tactpad::influence::InfluenceField;
+use tactpad::mapping::check::{self, OutputChoice};
+use tactpad::mapping::profile::Profile;
+use tactpad::mapping::shipped;
+use tactpad::pipeline::{NoProbe, Phase, Pipeline};
+use tactpad::quantity::Contact;
+use tactpad::replay::make_call;
+use tactpad::time::{HostInstant, StreamInstant};
+
+use crate::body::framed;
+use crate::step::{Finger, Oddity, Step, Waking};
+
+static FIELD: LazyLock<InfluenceField> = LazyLock::new(InfluenceField::nominal);
+
+/// Counts per microvolt of a pad that does not identify itself.
+const COUNTS_PER_UV: f32 = 100.0;
+
+/// More calls than this at one time of the host are no progress: each call answers one of the 20 controls at least.
+const CALLS_MAX: usize = 50;
+
+/// A pipeline under test, its pad and its host.
+pub struct Rig {
+    pub pipeline: Pipeline,
+    pub now: HostInstant,
+    sequence: u32,
+    time_us: u64,
+    held: BTreeMap<(Device, Code), i32>,
+    newest: StreamInstant,
+}
+
+/// The shipped profile `number`, counted round and round.
+fn profile_text(number: u8) -> &'static str {
+    let names: Vec<_> = shipped::names().collect();
+    shipped::text(names[usize::from(number) % names.len()]).unwrap()
+}
+
+/// The first shipped profile.
+pub fn first_profile() -> Profile {
+    check::read(profile_text(0), OutputChoice::AsWritten).0.unwrap()
+}
+
+impl Default for Rig {
+    fn default() -> Self {
+        Self::new(first_profile())
+    }
+}
+
+impl Rig {
+    /// A rig whose pad has just been plugged in.
+    pub fn new(profile: Profile) -> Self {
+        let pipeline = Pipeline::new(Decoder::shipped(), profile);
+        let now = HostInstant::from_ns(1_000_000_000);
+        Self {
+            pipeline,
+            now,
+            sequence: 0,
+            time_us: 0,
+            held: BTreeMap::new(),
+            newest: StreamInstant::default(),
+        }
+    }
+
+    /// Lets `step` happen.
+    pub fn play(&mut self, step: &Step) {
+        match step {
+            Step::Hold { finger, samples } => (0..*samples).for_each(|_| self.sample(finger, 1_000)),
+            Step::Rest => {
+                (0..20).for_each(|_| self.sample(&Finger { x: 0, y: 0, fx: 0, fy: 0, fz: 0 }, 25_000))
+            }
+            Step::Odd { finger, oddity } => self.odd(finger, *oddity),
+            Step::Bytes(bytes) => self.call(CallRef::Bytes(bytes)),
+            Step::Body(body) => self.call(CallRef::Bytes(&framed(body))),
+            Step::Identity { channels, count_bits, picovolts_per_count } => {
+                self.send(&Message::Identity(Identity {
+                    serial_number: SerialNumber::from_ascii("FUZZ").unwrap(),
+                    channels: *channels,
+                    count_bits: *count_bits,
+                    rate_hz: 1_000,
+                    picovolts_per_count: *picovolts_per_count,
+                }));
+            }
+            Step::Silence { us, waking } => self.silence(u64::from(*us), *waking),
+            Step::Timeout => self.call(CallRef::Timeout),
+            Step::Unplugged => self.call(CallRef::Unplugged),
+            Step::Pause => self.call(CallRef::Pause),
+            Step::Resume => self.call(CallRef::Resume),
+            Step::ReleaseAll => self.call(CallRef::ReleaseAll),
+            Step::Retare => self.call(CallRef::Retare),
+            Step::Profile { number, keyboard: false } => self.call(CallRef::Profile(profile_text(*number))),
+            Step::Profile { number, keyboard: true } => {
+                self.call(CallRef::KeyboardProfile(profile_text(*number)))
+            }
+        }
+    }
+
+    /// A finger goes over the plate and pushes every way; then it lifts, and the pad is left alone.
+    pub fn sweep(&mut self) {
+        self.play(&Step::Rest);
+        for place in 0..16_i8 {
+            let (x, y) = ((place % 4) * 24 - 36, (place / 4) * 24 - 36);
+            let finger = Finger { x, y, fx: 3 * x, fy: -3 * y, fz: 90 };
+            (0..4).for_each(|_| self.sample(&finger, 20_000));
+        }
+        self.end();
+    }
+
+    /// After 80 ms without a sample nothing may be held, whatever was before.
+    pub fn end(&mut self) {
+        self.now = self.now.plus_us(200_000);
+        self.call(CallRef::Timeout);
+        assert!(self.held.is_empty(), "held after silence: {:?}", self.held);
+    }
+
+    /// Makes one call and checks what comes of it.
+    pub fn call(&mut self, call: CallRef<'_>) {
+        let Self { pipeline, now, held, newest, .. } = self;
+        let taken = make_call(pipeline, *now, call, &mut NoProbe, |events| {
+            check_group(events, held, newest);
+            Ok::<_, std::convert::Infallible>(())
+        });
+        assert!(taken.is_ok());
+        self.check();
+    }
+
+    fn check(&self) {
+        let held = self.pipeline.held().map(|level| ((level.device, level.code), level.value)).collect();
+        assert_eq!(self.held, held, "what the events say is not what the pipeline says");
+        if self.pipeline.phase() == Phase::Paused || self.pipeline.refusal().is_some() {
+            assert!(self.held.is_empty(), "held in a pause, or with a pad that is refused: {:?}", self.held);
+        }
+    }
+
+    fn silence(&mut self, us: u64, waking: Waking) {
+        let end = self.now.plus_us(us % 1_000_000);
+        while let Some(due) =
+            self.pipeline.poll_timeout().filter(|due| waking == Waking::OnTime && *due <= end)
+        {
+            self.now = due.max(self.now);
+            self.answer_deadlines();
+        }
+        self.now = end;
+        self.answer_deadlines();
+    }
+
+    /// Calls until nothing is due; a host that could call for ever would burn.
+    fn answer_deadlines(&mut self) {
+        for _ in 0..CALLS_MAX {
+            if self.pipeline.poll_timeout().is_none_or(|due| due > self.now) {
+                return;
+            }
+            self.call(CallRef::Timeout);
+        }
+        panic!("always due: {:?} at {:?}", self.pipeline.poll_timeout(), self.now);
+    }
+
+    fn next_sample(&mut self, finger: &Finger, period_us: u64) -> Sample {
+        self.now = self.now.plus_us(period_us);
+        self.sequence = self.sequence.wrapping_add(1);
+        self.time_us = self.time_us.wrapping_add(period_us);
+        let strain = FIELD.strain_uv(&contact(finger));
+        // A channel that never changes counts as stuck: the last bit moves.
+        let counts = strain.uv.map(|uv| (uv * COUNTS_PER_UV) as i32 + (self.sequence & 1) as i32);
+        let Self { sequence, time_us, .. } = *self;
+        Sample { sequence, time_us, counts, temperature_centi_c: 2_300, status: Status::OK }
+    }
+
+    fn sample(&mut self, finger: &Finger, period_us: u64) {
+        let sample = self.next_sample(finger, period_us);
+        self.send(&Message::Sample(sample));
+    }
+
+    fn odd(&mut self, finger: &Finger, oddity: Oddity) {
+        let mut sample = self.next_sample(finger, 1_000);
+        match oddity {
+            Oddity::Counts(counts) => sample.counts = counts,
+            Oddity::Status(status) => sample.status = Status(status),
+            Oddity::Sequence(sequence) => (self.sequence, sample.sequence) = (sequence, sequence),
+            Oddity::TimeUs(time_us) => (self.time_us, sample.time_us) = (time_us, time_us),
+            Oddity::Repeated => self.send(&Message::Sample(sample)),
+            Oddity::Damaged { place, bit } => {
+                let mut frame = encoded(&Message::Sample(sample));
+                let place = usize::from(place) % frame.len();
+                frame[place] ^= 1 << (bit % 8);
+                return self.call(CallRef::Bytes(&frame));
+            }
+        }
+        self.send(&Message::Sample(sample));
+    }
+
+    fn send(&mut self, message: &Message) {
+        self.call(CallRef::Bytes(&encoded(message)));
+    }
+}
+
+fn encoded(message: &Message) -> Vec<u8> {
+    let mut frame = [0; ENCODED_MAX];
+    let length = encode_message(message, &mut frame);
+    frame[..length].to_vec()
+}
+
+fn contact(finger: &Finger) -> Contact {
+    let Finger { x, y, fx, fy, fz } = *finger;
+    let [x_mm, y_mm] = [x, y].map(|half_mm| f32::from(half_mm) * 0.5);
+    let [fx_n, fy_n] = [fx, fy].map(|twentieth_n| f32::from(twentieth_n) * 0.05);
+    Contact { x_mm, y_mm, fx_n, fy_n, fz_n: f32::from(fz) * 0.05 }
+}
+
+/// A group is simultaneous: each control stands in it once, and always with a new value. Time does not run back.
+fn check_group(events: &[OutputEvent], held: &mut BTreeMap<(Device, Code), i32>, newest: &mut StreamInstant) {
+    for (index, event) in events.iter().enumerate() {
+        let control = (event.device, event.code);
+        assert!(
+            !events[..index].iter().any(|other| (other.device, other.code) == control),
+            "twice in {events:?}"
+        );
+        let before = if event.value == 0 { held.remove(&control) } else { held.insert(control, event.value) };
+        assert_ne!(before.unwrap_or(0), event.value, "{event:?} is no change");
+        assert!(event.at >= *newest, "{event:?} is earlier than {newest:?}");
+        *newest = event.at;
+    }
+}

@@ -1,0 +1,211 @@
+//! A HID pad made with uhid: the kernel takes it for a USB device.
+
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Write};
+use std::os::fd::AsFd;
+
+use evdev::KeyCode;
+use firmware_proto::command::Command;
+use firmware_proto::frame::Message;
+use firmware_proto::hid;
+use firmware_proto::identity::{Identity, SerialNumber};
+use firmware_proto::sample::{Sample, Status};
+
+use crate::bridge::TACTPAD;
+use crate::clock::{MS, monotonic_ns, readable_before, stamp_ns, wait_until};
+use crate::pad::{NONE, PRESS, PRESS_RIGHT, RIGHT, Touch};
+use crate::program::Running;
+use crate::reader::{Reader, find};
+
+// Kinds of events on /dev/uhid. Source: Linux, include/uapi/linux/uhid.h.
+const UHID_DESTROY: u32 = 1;
+const UHID_OUTPUT: u32 = 6;
+const UHID_CREATE2: u32 = 11;
+const UHID_INPUT2: u32 = 12;
+
+/// Bytes of a report, or of a report descriptor, in an event.
+const DATA_LEN: usize = 4_096;
+/// Bytes of the longest event: its kind and the request to create a device.
+const EVENT_LEN: usize = 4 + 128 + 64 + 64 + 2 + 2 + 4 * 4 + DATA_LEN;
+const BUS_USB: u16 = 3;
+
+/// A pad without noise, 0.01 µV per count, that answers the question who it is.
+pub(crate) struct HidPad {
+    uhid: File,
+    serial_number: String,
+    sequence: u32,
+    started_ns: u64,
+}
+
+impl HidPad {
+    /// Plugs a pad in.
+    pub(crate) fn plug_in(serial_number: &str) -> Self {
+        let uhid = OpenOptions::new().read(true).write(true).open("/dev/uhid").expect("uhid");
+        let mut pad =
+            Self { uhid, serial_number: serial_number.into(), sequence: 0, started_ns: monotonic_ns() };
+        let mut event = Vec::with_capacity(EVENT_LEN);
+        event.extend(UHID_CREATE2.to_ne_bytes());
+        for (text, length) in [("tactpad test pad", 128), ("test/0", 64), (serial_number, 64)] {
+            event.extend(text.bytes().chain(std::iter::repeat(0)).take(length));
+        }
+        let length = u16::try_from(hid::REPORT_DESCRIPTOR.len()).expect("a short descriptor");
+        event.extend(length.to_ne_bytes());
+        event.extend(BUS_USB.to_ne_bytes());
+        for number in [u32::from(hid::VENDOR_ID), u32::from(hid::PRODUCT_ID), 1, 0] {
+            event.extend(number.to_ne_bytes());
+        }
+        event.extend(hid::REPORT_DESCRIPTOR);
+        event.resize(EVENT_LEN, 0);
+        pad.uhid.write_all(&event).expect("a HID device");
+        pad
+    }
+
+    /// Pulls the plug; returns the stamp of that moment.
+    pub(crate) fn unplug(mut self) -> u64 {
+        let stamp = stamp_ns();
+        self.uhid.write_all(&UHID_DESTROY.to_ne_bytes()).expect("the device goes");
+        stamp
+    }
+
+    /// Reports `touch` for `for_ms` milliseconds, a thousand times a second, and answers the bridge.
+    pub(crate) fn hold(&mut self, touch: Touch, for_ms: u64) {
+        let start_ns = monotonic_ns();
+        for report in 1..=for_ms {
+            self.report_one(touch);
+            self.answer_until(start_ns + report * MS);
+        }
+    }
+
+    /// Reports `touch` until `done` says so.
+    fn hold_until(&mut self, what: &str, touch: Touch, limit_ms: u64, mut done: impl FnMut() -> bool) {
+        let limit_ns = monotonic_ns() + limit_ms * MS;
+        while !done() {
+            assert!(monotonic_ns() < limit_ns, "{what}: not within {limit_ms} ms");
+            self.hold(touch, 10);
+        }
+    }
+
+    fn report_one(&mut self, touch: Touch) {
+        let status = if self.sequence == 0 { Status::OK.with_restarted() } else { Status::OK };
+        self.sequence += 1;
+        let time_us = (monotonic_ns() - self.started_ns) / 1_000;
+        let counts = touch.counts();
+        let sample = Sample { sequence: self.sequence, time_us, counts, temperature_centi_c: 2_100, status };
+        self.send(&Message::Sample(sample));
+    }
+
+    fn send(&mut self, message: &Message) {
+        let report = hid::encode_message(message);
+        let mut event = Vec::with_capacity(6 + report.len());
+        event.extend(UHID_INPUT2.to_ne_bytes());
+        event.extend(u16::try_from(report.len()).expect("a short report").to_ne_bytes());
+        event.extend(report);
+        self.uhid.write_all(&event).expect("a report");
+    }
+
+    fn answer_until(&mut self, until_ns: u64) {
+        while readable_before(until_ns, self.uhid.as_fd()) {
+            let mut event = [0; EVENT_LEN];
+            let length = self.uhid.read(&mut event).expect("an event");
+            let (kind, rest) = event[..length].split_at(4);
+            if kind == UHID_OUTPUT.to_ne_bytes()
+                && hid::decode_command(&rest[..hid::REPORT_LEN]) == Ok(Command::Identify)
+            {
+                let identity = Identity {
+                    serial_number: SerialNumber::from_ascii(&self.serial_number).expect("a short name"),
+                    channels: 9,
+                    count_bits: 24,
+                    rate_hz: 1_000,
+                    picovolts_per_count: 10_000,
+                };
+                self.send(&Message::Identity(identity));
+            }
+        }
+    }
+}
+
+/// The bridge on whatever pad is attached, and a game's view of its gamepad.
+struct Played {
+    program: Running,
+    reader: Reader,
+}
+
+fn start(address: &str, pad: &mut HidPad) -> Played {
+    let arguments = ["run", "--pad", address, "--profile", "super-mario", "--output", "uinput"];
+    let mut program = Running::start(TACTPAD, &arguments);
+    pad.hold_until("the bridge's gamepad", NONE, 5_000, || {
+        assert!(!program.has_ended(), "the bridge ended");
+        find(KeyCode::BTN_SOUTH).is_some()
+    });
+    let reader = Reader::open(&find(KeyCode::BTN_SOUTH).expect("it was there a moment ago"));
+    Played { program, reader }
+}
+
+fn status() -> String {
+    let output = std::process::Command::new(TACTPAD).args(["ctl", "status", "--json"]).output();
+    String::from_utf8(output.expect("ctl runs").stdout).expect("text")
+}
+
+/// A HID pad is found, identified, and plays.
+pub(crate) fn plays() {
+    let mut pad = HidPad::plug_in("HID-7");
+    let listed =
+        std::process::Command::new(TACTPAD).args(["devices", "--json"]).output().expect("devices runs");
+    let listed = String::from_utf8(listed.stdout).expect("text");
+    assert!(listed.contains("hid:1209:0001:HID-7"), "{listed}");
+    let mut played = start("auto", &mut pad);
+    pad.hold(NONE, 600);
+    for touch in [RIGHT, NONE, PRESS, NONE] {
+        pad.hold(touch, 150);
+    }
+    played.reader.read_available();
+    let edges = [("ABS_HAT0X", 1), ("ABS_HAT0X", 0), ("BTN_SOUTH", 1), ("BTN_SOUTH", 0)];
+    assert_eq!(played.reader.edges(), edges);
+    assert!(status().contains(r#""pad":"HID-7""#), "{}", status());
+}
+
+/// With two pads the serial number chooses; without it the bridge does not guess.
+pub(crate) fn chosen_by_serial_number() {
+    let mut other = HidPad::plug_in("HID-A");
+    let mut pad = HidPad::plug_in("HID-B");
+    let guess =
+        std::process::Command::new(TACTPAD).args(["run", "--output", "none"]).output().expect("it runs");
+    let told = String::from_utf8_lossy(&guess.stderr).into_owned();
+    assert_eq!(guess.status.code(), Some(2), "{told}");
+    assert!(told.contains("HID-A") && told.contains("HID-B") && told.contains("auto:SERIAL"), "{told}");
+    let mut played = start("auto:HID-B", &mut pad);
+    pad.hold(NONE, 600);
+    other.hold(PRESS, 100);
+    pad.hold(RIGHT, 150);
+    pad.hold(NONE, 150);
+    played.reader.read_available();
+    assert_eq!(played.reader.edges(), [("ABS_HAT0X", 1), ("ABS_HAT0X", 0)]);
+}
+
+/// Rounds of plugging in, pressing and pulling out: 10, or as many as `TACTPAD_REPLUG_ROUNDS` says.
+pub(crate) fn replugged() {
+    let rounds: u32 =
+        std::env::var("TACTPAD_REPLUG_ROUNDS").ok().and_then(|text| text.parse().ok()).unwrap_or(10);
+    let mut pad = HidPad::plug_in("HID-R");
+    let mut played = start("auto", &mut pad);
+    for round in 0..rounds {
+        played.reader.seen.clear();
+        let reader = &mut played.reader;
+        pad.hold_until("a press that holds", NONE, 3_000, || status().contains(r#""state":"playing""#));
+        pad.hold(PRESS_RIGHT, 600);
+        reader.read_available();
+        assert_eq!(reader.edges(), [("ABS_HAT0X", 1), ("BTN_EAST", 1)], "round {round}");
+        reader.seen.clear();
+        let unplugged_ns = pad.unplug();
+        wait_until(monotonic_ns() + 200 * MS);
+        reader.read_available();
+        let mut released = reader.edges();
+        released.sort_unstable();
+        assert_eq!(released, [("ABS_HAT0X", 0), ("BTN_EAST", 0)], "round {round}");
+        let last_ns = reader.seen.iter().map(|change| change.at_ns).max().unwrap_or(u64::MAX);
+        assert!(last_ns.saturating_sub(unplugged_ns) <= 200 * MS, "round {round}: too late");
+        assert!(!played.program.has_ended(), "round {round}: the bridge ended");
+        pad = HidPad::plug_in("HID-R");
+    }
+    println!("{rounds} rounds, nothing held 200 ms after any");
+}

@@ -1,18 +1,36 @@
 //! The capture: every call made on the pipeline, so that a replay makes the same calls and gets the same events.
 //!
-//! Form, integers little-endian: the line `tactpad capture 1\n`, then one entry per call: kind (u8), host time in
-//! nanoseconds (u64), length of what follows (u32), and that many bytes. A recorder that was killed leaves a file
-//! whose last entry may be cut off; everything before it is sound.
+//! Form, integers little-endian: the line `tactpad capture 1\n`, then one entry per call:
+//!
+//! | bytes | field |
+//! |---|---|
+//! | 1 | kind |
+//! | 8 | host time in nanoseconds |
+//! | 4 | length n of the payload, up to 1 MiB |
+//! | 4 | checksum of the previous entry's payload checksum (0 for the first entry) and of the fields above |
+//! | n | payload: the pad's bytes, or a profile's text |
+//! | 4 | checksum of the head's checksum and of the payload |
+//!
+//! Checksums are the wire's CRC-32. Each covers the one before it, so an entry that is missing, doubled or moved is
+//! damage, too. The head has its own, so that a damaged length is not taken for the end of the file. A recorder that
+//! was killed leaves a file whose last entry may be cut off; everything before it is sound.
 
 use std::fmt;
 use std::io::{self, Read, Write};
+
+use firmware_proto::crc::crc32;
 
 use crate::time::HostInstant;
 
 const MAGIC: &[u8] = b"tactpad capture 1\n";
 
-/// Longer entries are not written by any recorder.
-const ENTRY_BYTES_MAX: u32 = 1 << 20;
+/// Longer payloads are not written by any recorder.
+const PAYLOAD_BYTES_MAX: u32 = 1 << 20;
+
+/// Kind, host time and length.
+const FIELDS_BYTES: usize = 13;
+const CHECKSUM_BYTES: usize = 4;
+const HEAD_BYTES: usize = FIELDS_BYTES + CHECKSUM_BYTES;
 
 /// One call on the pipeline.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,8 +69,8 @@ pub enum CallKind {
 pub enum CaptureError {
     /// It does not begin like one.
     NotACapture,
-    /// An entry is of no known kind, impossibly long, or carries bytes where its kind has none: the file is damaged,
-    /// or from a newer program.
+    /// A checksum is wrong, an entry is of no known kind or impossibly long, or carries bytes where its kind has
+    /// none: the file is damaged, or from a newer program. All entries before it were given.
     Damaged {
         /// Byte offset of the entry.
         offset: u64,
@@ -62,6 +80,8 @@ pub enum CaptureError {
         /// Byte offset of the entry.
         offset: u64,
     },
+    /// It ends, or is cut off, before the first call but that of its profile.
+    NoPlay,
     /// The file cannot be read.
     Io(io::Error),
 }
@@ -74,6 +94,9 @@ impl fmt::Display for CaptureError {
                 write!(f, "is damaged at byte {offset}, or written by a newer tactpad")
             }
             Self::CutOff { offset } => write!(f, "is cut off at byte {offset}; everything before was used"),
+            Self::NoPlay => f.write_str(
+                "holds no play: it ends before the first call; record again with `tactpad record FILE`",
+            ),
             Self::Io(error) => write!(f, "cannot be read: {error}"),
         }
     }
@@ -85,6 +108,8 @@ impl std::error::Error for CaptureError {}
 #[derive(Debug)]
 pub struct CaptureWriter<W: Write> {
     to: W,
+    chain: u32,
+    entry: Vec<u8>,
 }
 
 impl<W: Write> CaptureWriter<W> {
@@ -94,19 +119,27 @@ impl<W: Write> CaptureWriter<W> {
     /// The beginning cannot be written.
     pub fn new(mut to: W) -> io::Result<Self> {
         to.write_all(MAGIC)?;
-        Ok(Self { to })
+        Ok(Self { to, chain: 0, entry: Vec::new() })
     }
 
     /// Adds one call.
     ///
     /// # Errors
-    /// The call cannot be written.
+    /// The call cannot be written, or what it carries is longer than 1 MiB.
     pub fn write(&mut self, now: HostInstant, call: CallRef<'_>) -> io::Result<()> {
-        let bytes = call.payload();
-        self.to.write_all(&[call.kind()])?;
-        self.to.write_all(&now.as_ns().to_le_bytes())?;
-        self.to.write_all(&(bytes.len() as u32).to_le_bytes())?;
-        self.to.write_all(bytes)
+        let payload = call.payload();
+        let length = u32::try_from(payload.len()).ok().filter(|length| *length <= PAYLOAD_BYTES_MAX);
+        let length = length.ok_or_else(|| io::Error::other("a call carries more than 1 MiB"))?;
+        self.entry.clear();
+        self.entry.push(call.kind());
+        self.entry.extend_from_slice(&now.as_ns().to_le_bytes());
+        self.entry.extend_from_slice(&length.to_le_bytes());
+        let head = chained(self.chain, &self.entry);
+        self.entry.extend_from_slice(&head.to_le_bytes());
+        self.entry.extend_from_slice(payload);
+        self.chain = chained(head, payload);
+        self.entry.extend_from_slice(&self.chain.to_le_bytes());
+        self.to.write_all(&self.entry)
     }
 
     /// Hands everything written so far to the file.
@@ -116,6 +149,11 @@ impl<W: Write> CaptureWriter<W> {
     pub fn flush(&mut self) -> io::Result<()> {
         self.to.flush()
     }
+}
+
+/// The checksum of `bytes` behind the checksum of what came before them.
+fn chained(before: u32, bytes: &[u8]) -> u32 {
+    crc32(&[&before.to_le_bytes(), bytes].concat())
 }
 
 /// A call as it is made, borrowing what it carries.
@@ -206,6 +244,8 @@ impl CallKind {
 pub struct CaptureReader<R: Read> {
     from: R,
     offset: u64,
+    chain: u32,
+    plays: bool,
     ended: bool,
 }
 
@@ -220,33 +260,60 @@ impl<R: Read> CaptureReader<R> {
         if magic.get(..read) != Some(MAGIC) {
             return Err(CaptureError::NotACapture);
         }
-        Ok(Self { from, offset: MAGIC.len() as u64, ended: false })
+        Ok(Self { from, offset: MAGIC.len() as u64, chain: 0, plays: false, ended: false })
     }
 
     fn entry(&mut self) -> Result<Option<Call>, CaptureError> {
         let offset = self.offset;
-        let mut head = [0; 13];
-        let read = read_up_to(&mut self.from, &mut head).map_err(CaptureError::Io)?;
-        if read == 0 {
-            return Ok(None);
-        }
-        if read < head.len() {
-            return Err(CaptureError::CutOff { offset });
-        }
-        let [kind, t0, t1, t2, t3, t4, t5, t6, t7, l0, l1, l2, l3] = head;
-        let length = u32::from_le_bytes([l0, l1, l2, l3]);
-        if length > ENTRY_BYTES_MAX {
-            return Err(CaptureError::Damaged { offset });
-        }
-        let mut bytes = vec![0; length as usize];
-        if read_up_to(&mut self.from, &mut bytes).map_err(CaptureError::Io)? < bytes.len() {
-            return Err(CaptureError::CutOff { offset });
-        }
-        self.offset += 13 + u64::from(length);
-        let now = HostInstant::from_ns(u64::from_le_bytes([t0, t1, t2, t3, t4, t5, t6, t7]));
-        let kind = CallKind::from_entry(kind, bytes).ok_or(CaptureError::Damaged { offset })?;
-        Ok(Some(Call { now, kind }))
+        let Some(Head { kind, now, length, checksum }) = self.head()? else { return Ok(None) };
+        let mut payload = vec![0; length as usize];
+        let mut checksum_of_payload = [0; CHECKSUM_BYTES];
+        self.fill(&mut payload)?;
+        self.fill(&mut checksum_of_payload)?;
+        self.chain = u32::from_le_bytes(checksum_of_payload);
+        self.offset += (HEAD_BYTES + CHECKSUM_BYTES) as u64 + u64::from(length);
+        let sound = chained(checksum, &payload) == self.chain;
+        let kind = CallKind::from_entry(kind, payload).filter(|_| sound);
+        Ok(Some(Call { now, kind: kind.ok_or(CaptureError::Damaged { offset })? }))
     }
+
+    /// The head of the next entry; `None` at the end of the file.
+    fn head(&mut self) -> Result<Option<Head>, CaptureError> {
+        let mut head = [0; HEAD_BYTES];
+        let read = read_up_to(&mut self.from, &mut head).map_err(CaptureError::Io)?;
+        let offset = self.offset;
+        match read {
+            0 => return Ok(None),
+            HEAD_BYTES => {}
+            _ => return Err(CaptureError::CutOff { offset }),
+        }
+        let [kind, t0, t1, t2, t3, t4, t5, t6, t7, l0, l1, l2, l3, c0, c1, c2, c3] = head;
+        let now = HostInstant::from_ns(u64::from_le_bytes([t0, t1, t2, t3, t4, t5, t6, t7]));
+        let length = u32::from_le_bytes([l0, l1, l2, l3]);
+        let checksum = u32::from_le_bytes([c0, c1, c2, c3]);
+        let fields = head.get(..FIELDS_BYTES).unwrap_or_default();
+        let sound = chained(self.chain, fields) == checksum && length <= PAYLOAD_BYTES_MAX;
+        if sound {
+            Ok(Some(Head { kind, now, length, checksum }))
+        } else {
+            Err(CaptureError::Damaged { offset })
+        }
+    }
+
+    fn fill(&mut self, bytes: &mut [u8]) -> Result<(), CaptureError> {
+        match read_up_to(&mut self.from, bytes).map_err(CaptureError::Io)? {
+            read if read == bytes.len() => Ok(()),
+            _ => Err(CaptureError::CutOff { offset: self.offset }),
+        }
+    }
+}
+
+/// What stands before an entry's payload.
+struct Head {
+    kind: u8,
+    now: HostInstant,
+    length: u32,
+    checksum: u32,
 }
 
 impl<R: Read> Iterator for CaptureReader<R> {
@@ -256,8 +323,15 @@ impl<R: Read> Iterator for CaptureReader<R> {
         if self.ended {
             return None;
         }
-        let entry = self.entry().transpose();
-        self.ended = !matches!(entry, Some(Ok(_)));
+        let entry = match self.entry().transpose() {
+            None | Some(Err(CaptureError::CutOff { .. })) if !self.plays => Some(Err(CaptureError::NoPlay)),
+            entry => entry,
+        };
+        match &entry {
+            Some(Ok(Call { kind: CallKind::Profile(_) | CallKind::KeyboardProfile(_), .. })) => {}
+            Some(Ok(_)) => self.plays = true,
+            _ => self.ended = true,
+        }
         entry
     }
 }
@@ -322,7 +396,14 @@ mod tests {
             assert!(
                 calls().iter().zip(&entries).take(whole).all(|(call, entry)| entry.as_ref().unwrap() == call)
             );
-            assert!(entries[whole..].iter().all(|entry| matches!(entry, Err(CaptureError::CutOff { .. }))));
+            match &entries[whole..] {
+                [] => assert!(offsets().contains(&(end as u64)) && whole > 1),
+                [Err(CaptureError::CutOff { offset })] => {
+                    assert_eq!((*offset, whole > 1), (offsets()[whole], true));
+                }
+                [Err(CaptureError::NoPlay)] => assert!(whole <= 1),
+                rest => panic!("{rest:?}"),
+            }
         }
     }
 
@@ -333,20 +414,75 @@ mod tests {
         }
     }
 
+    /// The byte offset of each entry of [`written`], and the file's end.
+    fn offsets() -> Vec<u64> {
+        let sizes = calls()
+            .into_iter()
+            .map(|call| (HEAD_BYTES + CHECKSUM_BYTES + call.kind.as_ref().payload().len()) as u64);
+        let mut at = MAGIC.len() as u64;
+        let mut offsets = vec![at];
+        offsets.extend(sizes.map(|size| {
+            at += size;
+            at
+        }));
+        offsets
+    }
+
+    /// Sees that `bytes` give the calls before the entry at `offset`, then damage there.
+    fn is_damaged_at(bytes: &[u8], offset: u64, what: &str) {
+        let mut entries: Vec<_> = CaptureReader::new(bytes).unwrap().collect();
+        let last = entries.pop().unwrap();
+        assert!(
+            matches!(last, Err(CaptureError::Damaged { offset: told }) if told == offset),
+            "{what}: {last:?}"
+        );
+        let before: Vec<_> = entries.into_iter().map(Result::unwrap).collect();
+        assert_eq!(before, calls()[..before.len()], "{what}");
+        assert_eq!(offsets()[before.len()], offset, "{what}");
+    }
+
     #[test]
-    fn damage_ends_the_reading_with_its_place() {
-        let mut bytes = MAGIC.to_vec();
-        bytes.extend([99; 200]);
-        let entries: Vec<_> = CaptureReader::new(&bytes[..]).unwrap().collect();
-        assert!(matches!(entries[..], [Err(CaptureError::Damaged { offset: 18 })]));
+    fn each_flipped_bit_is_damage_of_its_entry() {
+        let bytes = written();
+        for place in MAGIC.len()..bytes.len() {
+            let offset = *offsets().iter().rfind(|offset| **offset <= place as u64).unwrap();
+            for bit in 0..8 {
+                let mut flipped = bytes.clone();
+                flipped[place] ^= 1 << bit;
+                is_damaged_at(&flipped, offset, &format!("bit {bit} of byte {place}"));
+            }
+        }
+    }
+
+    #[test]
+    fn entries_that_are_missing_doubled_or_foreign_are_damage() {
+        let (bytes, offsets) = (written(), offsets());
+        let [first, second, third] = [0, 1, 2].map(|entry| offsets[entry] as usize);
+        let [before, entry, after] = [&bytes[..second], &bytes[second..third], &bytes[third..]];
+        is_damaged_at(&[before, after].concat(), offsets[1], "missing");
+        is_damaged_at(&[before, entry, entry, after].concat(), offsets[2], "doubled");
+        is_damaged_at(&[&bytes[..], &bytes[first..second]].concat(), offsets[10], "two captures in one");
+        is_damaged_at(&[MAGIC, &[99; 200]].concat(), offsets[0], "noise");
+    }
+
+    #[test]
+    fn a_call_that_no_reader_would_take_is_not_written() {
+        let mut writer = CaptureWriter::new(Vec::new()).unwrap();
+        let bytes = vec![0; PAYLOAD_BYTES_MAX as usize + 1];
+        assert!(writer.write(HostInstant::default(), CallRef::Bytes(&bytes)).is_err());
+        writer.write(HostInstant::default(), CallRef::Bytes(&bytes[1..])).unwrap();
+        let calls: Vec<_> = CaptureReader::new(&writer.to[..]).unwrap().map(Result::unwrap).collect();
+        assert_eq!(calls.len(), 1);
     }
 
     #[test]
     fn bytes_where_a_call_has_none_are_damage() {
         for kind in 0..=9_u8 {
-            let entry = [&[kind; 1][..], &[0; 8], &[1, 0, 0, 0], b"x"].concat();
-            let file = [MAGIC, &entry].concat();
-            let [entry] = &CaptureReader::new(&file[..]).unwrap().collect::<Vec<_>>()[..] else { panic!() };
+            let fields = [&[kind; 1][..], &[0; 8], &[1, 0, 0, 0]].concat();
+            let head = chained(0, &fields);
+            let ends = [head, chained(head, b"x")].map(u32::to_le_bytes);
+            let file = [MAGIC, &fields, &ends[0], b"x", &ends[1]].concat();
+            let entry = CaptureReader::new(&file[..]).unwrap().next().unwrap();
             assert_eq!(entry.is_ok(), [0, 7, 8].contains(&kind), "kind {kind}");
         }
     }

@@ -7,7 +7,7 @@
 
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, BufRead, BufReader, Write};
 use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -15,7 +15,8 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-use rustix::fs::{Mode, OFlags, open};
+use rustix::fs::{CWD, FileType, Mode, OFlags, mknodat, open};
+use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use tempfile::TempDir;
@@ -115,16 +116,48 @@ fn a_profile_that_is_missing_is_refused() {
         refuses_line(&format!("{line} nope"), &["nope", "super-mario, tetris, tank-battle, contra"]);
     }
     let line = "run --pad virtual --output none --profile";
-    refuses_line(&format!("{line} ./nope.toml"), &["./nope.toml", "cannot be read"]);
-    refuses_line(&format!("{line} /tmp"), &["/tmp", "cannot be read"]);
+    for (place, why) in [
+        ("./nope.toml", "No such file"),
+        ("/tmp", "it is a directory"),
+        ("/dev/zero", "it is a device"),
+        ("/dev/null", "it is a device"),
+    ] {
+        refuses_line(&format!("{line} {place}"), &[place, "cannot be read", why, "super-mario, tetris"]);
+    }
+}
+
+#[test]
+fn a_profile_that_waits_or_never_ends_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let fifo = folder.path().join("fifo");
+    mknodat(CWD, &fifo, FileType::Fifo, Mode::RWXU, 0).unwrap();
+    refuses_line(&format!("profile check {}", fifo.display()), &["fifo", "a device or a pipe"]);
+    let (_folder, long) = with_file("long.toml", &b"# \n".repeat(100_000));
+    refuses_line(
+        &format!("profile check {}", long.display()),
+        &["long.toml", "longer than 256 kB", "name another"],
+    );
+}
+
+#[test]
+fn a_profile_full_of_mistakes_ends_with_and_more() {
+    let text: String = (0..10_000).map(|key| format!("key{key} = {key}\n")).collect();
+    let (_folder, path) = with_file("many.toml", text.as_bytes());
+    let checked = tactpad().args(["profile", "check", path.to_str().unwrap()]).output().unwrap();
+    assert_eq!(checked.status.code(), Some(1));
+    let answer = String::from_utf8(checked.stdout).unwrap();
+    let findings: Vec<_> = answer.lines().filter(|line| line.contains(": error: ")).collect();
+    assert_eq!(findings.len(), 51);
+    assert!(findings[50].contains("and more"), "{}", findings[50]);
 }
 
 #[test]
 fn a_profile_that_is_no_text_is_refused() {
-    let (_folder, binary) = with_file("binary.toml", &[0x7f, b'E', b'L', b'F', 0xff, 0xfe, 0, 0]);
+    let (_folder, binary) = with_file("binary.toml", b"schema = 1\nELF\xff\xfe\0\0");
     let path = binary.to_str().unwrap();
-    refuses_line(&format!("profile check {path}"), &[path, "UTF-8"]);
-    refuses_line(&format!("run --pad virtual --output none --profile {path}"), &[path, "UTF-8"]);
+    let words = [path, "it is not text", "byte 15 in line 2 is not UTF-8", "name another file"];
+    refuses_line(&format!("profile check {path}"), &words);
+    refuses_line(&format!("run --pad virtual --output none --profile {path}"), &words);
 }
 
 #[test]
@@ -194,42 +227,171 @@ fn a_capture_cut_off_or_followed_by_other_data_says_so_and_gives_what_it_holds()
     fs::write(&path, [&bytes[..], b"\xff\xff\xff\xff\xff\xff\xff\xff\xff"].concat()).unwrap();
     let longer = tactpad().args(["replay", name]).output().unwrap();
     assert!(said(&longer).contains(name), "what follows the capture is not passed over: {}", said(&longer));
+    for cut in [18, 20, 60] {
+        fs::write(&path, &bytes[..cut]).unwrap();
+        for line in [format!("replay {name}"), format!("replay {name} --profile contra")] {
+            refuses_line(&line, &[name, "holds no play", "tactpad record"]);
+        }
+        refuses_line(&format!("run --output none --pad capture:{name}"), &[name, "holds no play"]);
+    }
+}
+
+#[test]
+fn a_damaged_capture_gives_what_is_before_the_damage_and_says_where() {
+    let (_folder, path) = with_file("game.cap", b"");
+    let name = path.to_str().unwrap();
+    let recorded = tactpad().args(["record", name, "--seconds", "2"]).output().unwrap();
+    assert_eq!(recorded.status.code(), Some(0), "{}", said(&recorded));
+    let whole = tactpad().args(["replay", name]).output().unwrap().stdout;
+    let mut bytes = fs::read(&path).unwrap();
+    let place = bytes.len() * 3 / 4;
+    bytes[place] ^= 0x10;
+    fs::write(&path, &bytes).unwrap();
+    let damaged = tactpad().args(["replay", name]).output().unwrap();
+    assert_eq!(damaged.status.code(), Some(2));
+    let text = said(&damaged);
+    let told: usize =
+        text.split("is damaged at byte ").nth(1).unwrap().split(',').next().unwrap().parse().unwrap();
+    assert!((place - 4_200..=place).contains(&told), "byte {place} was changed: {text}");
+    assert!(whole.starts_with(&damaged.stdout) && !damaged.stdout.is_empty());
+    let (reader, writer) = io::pipe().unwrap();
+    drop(reader);
+    let unread = tactpad().args(["replay", name]).stdout(writer).output().unwrap();
+    assert_eq!(unread.status.code(), Some(2), "{}", said(&unread));
+    for line in
+        [format!("run --output none --pad capture:{name}"), format!("record {name}.new --pad capture:{name}")]
+    {
+        refuses_line(&line, &[name, "is damaged at byte"]);
+    }
+    assert!(!Path::new(&format!("{name}.new")).exists());
 }
 
 #[test]
 fn contacts_that_are_no_table_of_numbers_are_refused_with_file_and_line() {
-    let header = "t_s,x_mm,y_mm,fx_n,fy_n,fz_n";
-    for (text, line, word) in [
-        (format!("{header}\n0,0,0,0,0,1\n0.5,15,0,0,0,abc\n"), "line: 3", "float"),
-        (format!("{header}\n0,0,0,0,0,1\n0.5,15,0,0,0,\n"), "line: 3", "empty"),
-        (format!("{header}\n0,0,0,0,0,1\n0.5,15,0,0\n"), "line: 3", "4 fields"),
-        ("t_s,y_mm,fx_n,fy_n,fz_n\n0,0,0,0,1\n".to_owned(), "line: 2", "x_mm"),
-        (format!("x_mm,{header}\n0,0,0,0,0,0,1\n"), "line: 2", "x_mm"),
+    let header = "t_s,x_mm,y_mm,fx_n,fy_n,fz_n\n";
+    let rows = |rows: &str| format!("{header}0,0,0,0,0,1\n\n{rows}\n").into_bytes();
+    for (text, line, words) in [
+        (vec![], 1, &["the file is empty", "x_mm, y_mm, fx_n, fy_n, fz_n"][..]),
+        (b"\n \n".to_vec(), 2, &["the file is empty"]),
+        (header.into(), 1, &["no contact follows"]),
+        (
+            b"t_s,y_mm,fx_n,fz_n\n0,0,0,1\n".to_vec(),
+            1,
+            &["no column is named x_mm, fy_n", "expected is", "t_s if"],
+        ),
+        (format!("x_mm,{header}0,0,0,0,0,0,1\n").into(), 1, &["two columns are named x_mm"]),
+        (vec![0xff; 10_000], 1, &["no column is named"]),
+        (rows("0.5,15,0,0,0,abc"), 4, &["fz_n is \"abc\", which is not a number"]),
+        (rows("0.5,15,0,0,0,NaN"), 4, &["fz_n is \"NaN\", which is not a number"]),
+        (rows("0.5,15,0,0,inf,1"), 4, &["fy_n is \"inf\", which is not a number"]),
+        (rows("0.5,15,0,0,0,"), 4, &["fz_n is empty"]),
+        (rows("0.5,15,0,0"), 4, &["4 values where the header names 6 columns"]),
+        (rows("0.5,15,0,0,0,1,2"), 4, &["7 values where the header names 6 columns"]),
+        (rows("0.5,0,0,0,0,1\n0.4,0,0,0,0,1"), 5, &["t_s goes back from 0.5 to 0.4"]),
+        (rows("-0.5,0,0,0,0,1"), 4, &["t_s is -0.5, and the pad's are 0 to 1000000 s"]),
+        (rows("1e7,0,0,0,0,1"), 4, &["t_s is 1e7, and"]),
+        (rows("1,31,0,0,0,1"), 4, &["x_mm is 31, and the pad's are -30 to 30 mm"]),
+        (rows("1,0,-31,0,0,1"), 4, &["y_mm is -31, and"]),
+        (rows("1,0,0,0,0,101"), 4, &["fz_n is 101, and the pad's are -100 to 100 N"]),
     ] {
-        let (_folder, path) = with_file("contacts.csv", text.as_bytes());
+        let (_folder, path) = with_file("contacts.csv", &text);
         let path = path.to_str().unwrap();
-        refuses_line(&format!("replay --profile contra --contacts {path}"), &[path, line, word]);
+        let place = format!("{path}:{line}: ");
+        let words: Vec<_> = [&[place.as_str()], words].concat();
+        refuses_line(&format!("replay --profile contra --contacts {path}"), &words);
     }
-    refuses_line("replay --profile contra --contacts /no-such.csv", &["/no-such.csv"]);
+    for (place, words) in [
+        ("/no-such.csv", ["cannot be read", "CSV"]),
+        ("/tmp", ["cannot be read", "directory"]),
+        ("/dev/null", ["/dev/null:1: ", "empty"]),
+        ("/dev/zero", ["/dev/zero:1: ", "longer than 1 MB"]),
+    ] {
+        refuses_line(
+            &format!("replay --profile contra --contacts {place}"),
+            &[&[place], &words[..]].concat(),
+        );
+    }
     refuses_line("replay --contacts any.csv", &["--profile"]);
 }
 
 #[test]
-fn a_time_that_is_none_is_refused() {
-    for seconds in ["-1", "nan", "inf", "1e300", "86401"] {
-        refuses_line(&format!("demo --seconds={seconds}"), &["--seconds", "between 0 and 86400"]);
+fn a_time_that_is_none_is_refused_before_a_file_is_touched() {
+    let (_folder, path) = with_file("old", b"precious");
+    let old = path.to_str().unwrap();
+    for verb in [
+        "demo",
+        &format!("run --pad virtual --output log:{old}"),
+        &format!("record {old} --output log:{old}.log"),
+        "latency",
+    ] {
+        for seconds in ["-1", "-inf", "nan", "inf", "0", "1e300", "86401", "abc", ""] {
+            for option in [&["--seconds", seconds][..], &[&format!("--seconds={seconds}")]] {
+                let arguments: Vec<_> = verb.split(' ').chain(option.iter().copied()).collect();
+                refuses(&arguments, &["--seconds", "write a number of seconds above 0 and up to 86400"]);
+            }
+        }
     }
-    for verb in ["demo", "run --pad virtual --output none", "record /no-such-folder/game.cap", "latency"] {
-        refuses_line(&format!("{verb} --seconds abc"), &["abc", "--seconds"]);
-        refuses_line(&format!("{verb} --seconds="), &["--seconds"]);
+    assert_eq!(fs::read(&path).unwrap(), b"precious");
+    assert!(!Path::new(&format!("{old}.log")).exists());
+}
+
+#[test]
+fn a_file_that_is_read_is_not_written_over() {
+    let (folder, path) = with_file("game.cap", b"");
+    let game = path.to_str().unwrap();
+    let recorded = tactpad().args(["record", game, "--seconds", "0.3"]).output().unwrap();
+    assert_eq!(recorded.status.code(), Some(0), "{}", said(&recorded));
+    let (soft, hard) = (folder.path().join("soft"), folder.path().join("hard"));
+    std::os::unix::fs::symlink(&path, &soft).unwrap();
+    fs::hard_link(&path, &hard).unwrap();
+    let profile = folder.path().join("mine.toml");
+    let shown = tactpad().args(["profile", "show", "contra"]).output().unwrap();
+    fs::write(&profile, &shown.stdout).unwrap();
+    let (mine, new) = (profile.display(), folder.path().join("new"));
+    let before = fs::read(&path).unwrap();
+    for line in [
+        format!("record {game} --pad capture:{game}"),
+        format!("record {} --pad capture:{game}", soft.display()),
+        format!("record {game} --pad capture:{}", hard.display()),
+        format!("run --pad capture:{game} --output log:{}", soft.display()),
+        format!("latency --pad capture:{game} --output log:{game}"),
+        format!("record {mine} --profile {mine}"),
+        format!("demo --profile {mine} --output log:{mine}"),
+        format!("record {0} --output log:{0}", new.display()),
+    ] {
+        refuses_line(&line, &["would be written over", "name another file"]);
     }
+    assert_eq!(fs::read(&path).unwrap(), before);
+    assert_eq!(fs::read(&profile).unwrap(), shown.stdout);
+    assert!(!new.exists());
 }
 
 #[test]
 fn a_capture_that_cannot_be_written_is_refused() {
     for place in ["/no-such-folder/game.cap", "/tmp"] {
-        refuses_line(&format!("record {place} --seconds 1"), &[place, "cannot be written"]);
+        let line = format!("record {place} --seconds 1");
+        refuses_line(&line, &[place, "cannot be written"]);
+        let output = tactpad().args(line.split(' ')).output().unwrap();
+        assert!(!said(&output).contains("recording"), "{}", said(&output));
     }
+}
+
+#[test]
+fn output_that_cannot_be_written_is_named() {
+    for line in [
+        "profile list",
+        "profile show contra",
+        "profile check contra --json",
+        "demo --seconds 1 --output none",
+    ] {
+        let full = File::options().write(true).open("/dev/full").unwrap();
+        let output = tactpad().args(line.split(' ')).stdout(full).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{line}");
+        assert_eq!(said(&output), "tactpad: cannot write stdout: No space left on device\n", "{line}");
+    }
+    let output = tactpad().args(["record", "/dev/full", "--seconds", "1"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said(&output).contains("cannot write /dev/full: No space left on device"), "{}", said(&output));
 }
 
 #[test]
@@ -264,6 +426,7 @@ fn a_reader_that_goes_away_is_no_panic() {
         "profile check contra",
         "demo --seconds 1 --output none",
         "demo --seconds 1 --output none --json",
+        "demo --seconds 1 --output auto",
         "latency --seconds 1 --output none",
     ] {
         let (reader, writer) = io::pipe().unwrap();
@@ -273,6 +436,41 @@ fn a_reader_that_goes_away_is_no_panic() {
         let text = said(&output);
         // As with other programs, a reader that has seen enough is no failure.
         assert_eq!(output.status.code(), Some(0), "{line}: {text}");
+    }
+}
+
+#[test]
+fn a_verdict_is_given_even_if_nobody_reads() {
+    let (_folder, bad) = with_file("bad.toml", b"schema = 1\n");
+    for line in
+        [format!("profile check {}", bad.display()), format!("profile check --json {}", bad.display())]
+    {
+        let (reader, writer) = io::pipe().unwrap();
+        drop(reader);
+        let output = tactpad().args(line.split(' ')).stdout(writer).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{line}: {}", said(&output));
+    }
+}
+
+#[test]
+fn an_interrupted_demo_fails_even_if_nobody_reads() {
+    for json in [&[][..], &["--json"]] {
+        let folder = tempfile::tempdir().unwrap();
+        let fifo = folder.path().join("events");
+        mknodat(CWD, &fifo, FileType::Fifo, Mode::RWXU, 0).unwrap();
+        let (reader, writer) = io::pipe().unwrap();
+        drop(reader);
+        let mut demo = tactpad();
+        demo.args(["demo", "--seconds", "60", "--output", &format!("log:{}", fifo.display())]).args(json);
+        let demo = demo.stdout(writer).stderr(Stdio::piped()).spawn().unwrap();
+        let mut events = BufReader::new(File::open(&fifo).unwrap());
+        // With the first event it is surely playing.
+        events.read_line(&mut String::new()).unwrap();
+        kill_process(Pid::from_child(&demo), Signal::TERM).unwrap();
+        io::copy(&mut events, &mut io::sink()).unwrap();
+        let output = demo.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        assert!(said(&output).contains("interrupted"), "{}", said(&output));
     }
 }
 

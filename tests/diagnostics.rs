@@ -6,8 +6,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
-use tactpad::mapping::check::{OutputChoice, read};
+use tactpad::mapping::check::{OutputChoice, TEXT_BYTES_MAX, read};
 use tactpad::mapping::diag::{Diagnostic, Severity};
 use tactpad::mapping::shipped;
 
@@ -56,4 +57,49 @@ fn shipped_profiles_raise_nothing_on_either_output() {
             assert_eq!((profile.is_some(), found), (true, vec![]), "{name}");
         }
     }
+}
+
+/// Texts of the longest length that is read, full of what costs the checker most.
+fn endless_texts() -> Vec<String> {
+    let numbered = |line: fn(usize) -> String| {
+        (0..TEXT_BYTES_MAX).map(line).scan(0, |length, line| {
+            *length += line.len();
+            (*length <= TEXT_BYTES_MAX).then_some(line)
+        })
+    };
+    let button =
+        "[[button]]\nforce = \"fz\"\npress_n = 1\nout = { gamepad = \"BTN_A\", keyboard = \"KEY_A\" }\n";
+    vec![
+        numbered(|number| format!("press_{number} = {number}\n")).collect(),
+        numbered(|_| "= = [\n".to_owned()).collect(),
+        numbered(|_| "a = 1\n".to_owned()).collect(),
+        format!("a = [{}", "1,".repeat(TEXT_BYTES_MAX / 2 - 3)),
+        format!("{}b = 1", "a.".repeat(TEXT_BYTES_MAX / 2 - 3)),
+        button.repeat(TEXT_BYTES_MAX / button.len()),
+    ]
+}
+
+#[test]
+#[expect(clippy::disallowed_methods, reason = "what is tested is the time that it takes")]
+fn checking_is_bounded_whatever_the_text() {
+    let mut texts = endless_texts();
+    assert!(texts.iter().all(|text| (TEXT_BYTES_MAX - 300..=TEXT_BYTES_MAX).contains(&text.len())));
+    texts.push("key = 1\n".repeat(1_000_000 / 8));
+    for text in texts {
+        let start = Instant::now();
+        let (profile, found) = read(&text, OutputChoice::AsWritten);
+        let (took, shown) = (start.elapsed(), &text[..20]);
+        assert!(profile.is_none() && (1..=51).contains(&found.len()), "{shown}: {} findings", found.len());
+        // A slow machine needs a third of this; a checker that is not linear would need minutes.
+        assert!(took < Duration::from_secs(1), "{shown}: {took:?}");
+    }
+}
+
+#[test]
+fn a_text_is_read_up_to_its_limit() {
+    let shown = shipped::text("contra").unwrap();
+    let filled = |length: usize| format!("{shown}{}", " ".repeat(length - shown.len()));
+    assert_eq!(read(&filled(TEXT_BYTES_MAX), OutputChoice::AsWritten).1, vec![]);
+    let (profile, found) = read(&filled(TEXT_BYTES_MAX + 1), OutputChoice::AsWritten);
+    assert!(profile.is_none() && found[0].message.contains("longer than 256 kB"), "{found:?}");
 }

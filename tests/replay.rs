@@ -73,3 +73,19 @@ fn contacts_are_mapped_as_they_stand() {
     ];
     assert_eq!(log.lines().collect::<Vec<_>>(), expected);
 }
+
+#[test]
+fn contacts_without_times_are_a_millisecond_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = "x_mm,y_mm,fx_n,fy_n,fz_n,trial\n20,0,0,0,1,7\n20,0,0,0,0,7\n0,20,0,0,1,7\n";
+    fs::write(folder.path().join("contacts.csv"), rows).unwrap();
+    let arguments = ["replay", "--contacts", "contacts.csv", "--profile", "super-mario"];
+    let log = String::from_utf8(tactpad(&arguments, folder.path()).stdout).unwrap();
+    let expected = [
+        r#"{"t_us":0,"device":"gamepad","code":"ABS_HAT0X","value":1}"#,
+        r#"{"t_us":2000,"device":"gamepad","code":"ABS_HAT0Y","value":-1}"#,
+        r#"{"t_us":40000,"device":"gamepad","code":"ABS_HAT0X","value":0}"#,
+        r#"{"t_us":42000,"device":"gamepad","code":"ABS_HAT0Y","value":0}"#,
+    ];
+    assert_eq!(log.lines().collect::<Vec<_>>(), expected);
+}

@@ -28,7 +28,7 @@ const fn table() -> [u32; 16] {
 }
 
 /// The checksum of `bytes`; 0 for none.
-pub(crate) fn crc32(bytes: &[u8]) -> u32 {
+pub fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| {
         let low_done = shift_nibble(crc ^ u32::from(*byte));
         shift_nibble(low_done)

@@ -2,6 +2,7 @@
 #![no_std]
 
 pub mod command;
+pub mod crc;
 pub mod frame;
 pub mod hid;
 pub mod identity;
@@ -9,7 +10,6 @@ pub mod link;
 pub mod sample;
 
 mod cobs;
-mod crc;
 mod cursor;
 
 /// The version this crate speaks; the first byte of every frame and report body.

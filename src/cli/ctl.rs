@@ -8,6 +8,7 @@ use clap::{Args, Subcommand};
 use serde_json::Value;
 
 use super::Failure;
+use super::written::stdout;
 use crate::requests::ask;
 
 /// Arguments of `tactpad ctl`.
@@ -73,7 +74,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::Unusable(error.to_owned()));
     }
     match arguments.action {
-        _ if arguments.json => Ok(writeln!(io::stdout(), "{answer}")?),
+        _ if arguments.json => Ok(writeln!(stdout(), "{answer}")?),
         Action::Status => Ok(print_status(&document)?),
         _ => Ok(()),
     }
@@ -94,7 +95,7 @@ fn absolute(name: &str) -> Result<String, Failure> {
 }
 
 fn print_status(status: &Value) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = stdout();
     let text = |key: &str| status.get(key).and_then(Value::as_str).unwrap_or("unknown").to_owned();
     writeln!(out, "state    {}", text("state"))?;
     writeln!(out, "pad      {}", text("pad"))?;

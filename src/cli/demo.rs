@@ -7,9 +7,11 @@ use std::sync::{Arc, Mutex};
 use clap::Args;
 use serde::Serialize;
 
+use super::files::Files;
 use super::live::{Audience, Output, Plan, bridge, open_virtual, play};
 use super::screen::Screen;
-use super::{Failure, print_json, profile};
+use super::written::stdout;
+use super::{Failure, if_read, print_json, profile, say, seconds};
 use crate::bridge::keeper::Patience;
 use crate::bridge::{Bridge, Ending};
 use crate::control::{Code, Device, OutputEvent};
@@ -26,7 +28,7 @@ use crate::virtual_pad::script::Script;
 #[command(after_help = "Example: tactpad demo --seconds 10 --profile contra")]
 pub(super) struct Arguments {
     /// How long to play.
-    #[arg(long, default_value_t = 20.0)]
+    #[arg(long, default_value = "20", value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: f64,
     /// A profile's name or file.
     #[arg(long, default_value = "super-mario")]
@@ -110,12 +112,8 @@ impl Sink for Witness {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if !(0.0..=86_400.0).contains(&arguments.seconds) {
-        return Err(Failure::Unusable(format!(
-            "--seconds {} is not a time between 0 and 86400",
-            arguments.seconds
-        )));
-    }
+    let Arguments { profile, output, .. } = arguments;
+    Files { pad: &PadAddress::Virtual, profile, output, capture: None }.check()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let script = Script::for_profile(&profile, (arguments.seconds * 1e6) as u64);
     let expected = script.expected().to_vec();
@@ -123,7 +121,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let steered = profile.pointer.is_some() && contacts > 0;
     let name = profile.name.clone();
     let (sink, title) = open_sink(arguments, &profile)?;
-    tell(arguments, &title)?;
+    if_read(tell(arguments, &title))?;
     let seen = Seen::default();
     let witness = Witness { sink, seen: Arc::clone(&seen) };
     let (mut bridge, _running) = bridge(Plan {
@@ -145,7 +143,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     drop(screen);
     let ending = played?;
     let seen = seen.lock().map(|seen| seen.clone()).unwrap_or_default();
-    report(arguments, &bridge, &seen)?;
+    if_read(report(arguments, &bridge, &seen))?;
     if ending != Ending::TimeOver {
         return Err(Failure::Failed("interrupted: the events were not compared with the script".into()));
     }
@@ -190,13 +188,36 @@ fn here(arguments: &Arguments) -> Box<dyn Sink> {
     if arguments.json || io::stdout().is_terminal() {
         Box::new(NullSink)
     } else {
-        Box::new(LogSink::new(io::stdout(), "stdout".into()))
+        Box::new(LogSink::new(WhileRead(io::stdout()), "stdout".into()))
+    }
+}
+
+/// Writes as long as somebody reads. The demo goes on without a reader: its verdict is the exit code.
+struct WhileRead<W>(W);
+
+impl<W: Write> Write for WhileRead<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.0.write(bytes) {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(bytes.len()),
+            written => written,
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self.0.flush() {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            flushed => flushed,
+        }
     }
 }
 
 /// What people read goes to stdout, or to stderr where stdout is for a program.
-fn tell(arguments: &Arguments, line: &str) -> io::Result<()> {
-    if arguments.json { writeln!(io::stderr(), "{line}") } else { writeln!(io::stdout(), "{line}") }
+fn tell(arguments: &Arguments, line: &str) -> Result<(), Failure> {
+    if arguments.json {
+        say(line);
+        return Ok(());
+    }
+    Ok(writeln!(stdout(), "{line}")?)
 }
 
 fn start_screen(title: String, bridge: &Bridge, seen: &Seen) -> Option<Screen> {
@@ -230,13 +251,13 @@ fn report(arguments: &Arguments, bridge: &Bridge, seen: &Account) -> Result<(), 
     let Summary { frames, frames_lost, contacts, downs, ups, pointer_moves, held_at_end, latency_us } =
         summary;
     let Percentiles { p50, p95, p99, max } = latency_us;
-    writeln!(io::stdout(), "{frames} frames, {frames_lost} lost; {contacts} contacts")?;
-    writeln!(io::stdout(), "{downs} downs, {ups} ups, {held_at_end} held at the end")?;
+    writeln!(stdout(), "{frames} frames, {frames_lost} lost; {contacts} contacts")?;
+    writeln!(stdout(), "{downs} downs, {ups} ups, {held_at_end} held at the end")?;
     if pointer_moves > 0 {
-        writeln!(io::stdout(), "{pointer_moves} moves of the pointer")?;
+        writeln!(stdout(), "{pointer_moves} moves of the pointer")?;
     }
     Ok(writeln!(
-        io::stdout(),
+        stdout(),
         "bytes readable to event written: p50 {p50:.0} µs, p95 {p95:.0} µs, p99 {p99:.0} µs, max {max:.0} µs"
     )?)
 }

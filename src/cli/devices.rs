@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use clap::Args;
 use serde::Serialize;
 
+use super::written::stdout;
 use super::{Failure, print_json};
 use crate::transport::pads::{Attachment, FoundPad, attached};
 
@@ -52,7 +53,7 @@ fn listed(pad: &FoundPad) -> Listed {
 }
 
 fn print(report: &Report) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = stdout();
     match &report.pads[..] {
         [] => writeln!(out, "no pad is attached; play without one: tactpad demo")?,
         pads => {

@@ -8,7 +8,8 @@ use std::path::Path;
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, ctl, print_json};
+use super::written::stdout;
+use super::{Failure, ctl, if_read, print_json};
 use crate::requests::ask;
 use crate::sink::uinput;
 use crate::transport::pads::{self, FoundPad};
@@ -78,7 +79,7 @@ struct Report {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.udev_rules {
-        return Ok(io::stdout().write_all(RULES.as_bytes())?);
+        return Ok(stdout().write_all(RULES.as_bytes())?);
     }
     let root = Path::new("/");
     let mut checks = vec![check_uinput(), check_rules(root)];
@@ -89,16 +90,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     checks.extend(check_session(|name| env::var(name).ok()));
     checks.push(check_bridge());
     let report = Report { ok: checks.iter().all(|check| check.finding != Finding::Bad), checks };
-    if arguments.json {
-        print_json(&report)?;
-    } else {
-        print(&report)?;
-    }
+    let printed = if arguments.json { print_json(&report) } else { print(&report).map_err(Failure::from) };
+    if_read(printed)?;
     if report.ok { Ok(()) } else { Err(Failure::Failed("something stands in the way".into())) }
 }
 
 fn print(report: &Report) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = stdout();
     for Check { name, finding, message, mend } in &report.checks {
         let mark = match finding {
             Finding::Good => "good",

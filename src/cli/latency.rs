@@ -11,8 +11,10 @@ use clap::Args;
 use firmware_proto::command::Command;
 use serde::Serialize;
 
+use super::files::Files;
 use super::live::{Audience, OpenedPad, Output, Plan, bridge, open_pad, play};
-use super::{Failure, print_json, profile};
+use super::written::stdout;
+use super::{Failure, print_json, profile, say, seconds};
 use crate::bridge::clock::Clock;
 use crate::bridge::keeper::Patience;
 use crate::capture::{CallRef, CaptureReader};
@@ -32,7 +34,7 @@ use crate::transport::address::PadAddress;
 #[command(after_help = "Example: tactpad latency --seconds 10 --json")]
 pub(super) struct Arguments {
     /// How long to measure.
-    #[arg(long, default_value_t = 10.0)]
+    #[arg(long, default_value = "10", value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: f64,
     /// The pad: virtual, serial:PATH[@BAUD], capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
@@ -76,12 +78,14 @@ struct Policy {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { pad, profile, output, .. } = arguments;
+    Files { pad, profile, output, capture: None }.check()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let pad = open_pad(&arguments.pad, &profile, Patience::Limited)?;
     let timing = Timing::default();
     let calls = Shared::default();
     let sink = TimedSink { sink: open_sink(&arguments.output)?, timing: timing.clone() };
-    writeln!(io::stderr(), "{} → {} for {} s", arguments.pad, sink.describe(), arguments.seconds)?;
+    say(format_args!("{} → {} for {} s", arguments.pad, sink.describe(), arguments.seconds));
     let (mut bridge, _running) = bridge(Plan {
         pad: timed(pad, &timing),
         sink: Box::new(sink),
@@ -116,7 +120,7 @@ fn open_sink(output: &Output) -> Result<Box<dyn Sink>, Failure> {
 }
 
 fn print(report: &Report) -> io::Result<()> {
-    let mut out = io::stdout().lock();
+    let mut out = stdout();
     writeln!(out, "{} samples, {} writes", report.samples, report.writes)?;
     writeln!(out, "{:<11} {:>9} {:>9} {:>9} {:>9}", "µs", "p50", "p95", "p99", "max")?;
     let Stages { read, decode, map, write } = &report.stages_us;

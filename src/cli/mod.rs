@@ -1,5 +1,6 @@
 //! The program's verbs, one file each. Errors are printed and exit codes chosen here and nowhere else.
 
+mod contacts;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod ctl;
 #[cfg(all(feature = "live", target_os = "linux"))]
@@ -8,6 +9,8 @@ mod demo;
 mod devices;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod doctor;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod files;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod latency;
 #[cfg(all(feature = "live", target_os = "linux"))]
@@ -20,11 +23,16 @@ mod replay;
 mod run;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod screen;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod seconds;
+mod written;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use self::written::stdout;
 
 /// Turns a tactile disc with nine strain channels into a game controller.
 #[derive(Debug, Parser)]
@@ -107,12 +115,25 @@ pub fn run() -> ExitCode {
         Err(Failure::Unusable(message)) => (2, message),
     };
     // Where even the error cannot be written, the exit code still tells.
-    let _ = writeln!(io::stderr(), "tactpad: {message}");
+    say(format_args!("tactpad: {message}"));
     ExitCode::from(code)
 }
 
 /// Prints one JSON document to stdout.
 fn print_json(document: &impl serde::Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string(document).map_err(|error| Failure::Failed(error.to_string()))?;
-    Ok(writeln!(io::stdout(), "{text}")?)
+    Ok(writeln!(stdout(), "{text}")?)
+}
+
+/// Says something to people beside the verb's output. What does not get out must not stop the verb.
+fn say(line: impl std::fmt::Display) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// What is printed on the way to a verdict: a reader that went away is no reason to skip the verdict.
+fn if_read(printed: Result<(), Failure>) -> Result<(), Failure> {
+    match printed {
+        Err(Failure::Unread) => Ok(()),
+        printed => printed,
+    }
 }

@@ -1,15 +1,16 @@
 //! `tactpad profile`: list, show, check.
 
-use std::fs;
-use std::io::{self, Write};
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
-use super::{Failure, print_json};
-use crate::mapping::check::{self, OutputChoice};
-use crate::mapping::diag::{Diagnostic, Severity};
+use super::written::{reason, stdout};
+use super::{Failure, if_read, print_json};
+use crate::mapping::check::{self, OutputChoice, TEXT_BYTES_MAX};
+use crate::mapping::diag::Diagnostic;
 use crate::mapping::profile::Profile;
 use crate::mapping::shipped;
 
@@ -48,7 +49,7 @@ struct CheckReport<'a> {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.action {
         Action::List => list(),
-        Action::Show { profile } => Ok(io::stdout().write_all(text(profile)?.as_bytes())?),
+        Action::Show { profile } => Ok(stdout().write_all(text(profile)?.as_bytes())?),
         Action::Check { profile, json } => report(profile, *json),
     }
 }
@@ -58,15 +59,41 @@ pub(super) fn text(profile: &str) -> Result<String, Failure> {
     if let Some(text) = shipped::text(profile) {
         return Ok(text.to_owned());
     }
+    let names: Vec<_> = shipped::names().collect();
+    let names = names.join(", ");
     if !Path::new(profile).exists() && !profile.contains(['.', '/']) {
-        let names: Vec<_> = shipped::names().collect();
-        let names = names.join(", ");
         return Err(Failure::Unusable(format!(
             "there is no profile {profile:?}: choose one of {names}, or give a file"
         )));
     }
-    fs::read_to_string(profile)
-        .map_err(|error| Failure::Unusable(format!("profile {profile} cannot be read: {error}")))
+    read_file(Path::new(profile)).map_err(|why| {
+        Failure::Unusable(format!(
+            "profile {profile} cannot be read: {why}; name another file, or one of {names}"
+        ))
+    })
+}
+
+/// The text of a file, or why there is none.
+fn read_file(path: &Path) -> Result<String, String> {
+    // Asked before it is opened: opening a pipe would wait for its other end.
+    let file = fs::metadata(path).map_err(|error| reason(&error))?;
+    if !file.is_file() {
+        return Err(format!(
+            "it is {}, not a file",
+            if file.is_dir() { "a directory" } else { "a device or a pipe" }
+        ));
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|error| reason(&error))?;
+    file.take(TEXT_BYTES_MAX as u64 + 1).read_to_end(&mut bytes).map_err(|error| reason(&error))?;
+    if bytes.len() > TEXT_BYTES_MAX {
+        return Err(check::too_long());
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes().iter().take(at).filter(|byte| **byte == b'\n').count();
+        format!("it is not text: byte {} in line {line} is not UTF-8", at + 1)
+    })
 }
 
 /// Reads a profile that is to be used. Warnings go to stderr; errors make it unusable.
@@ -76,6 +103,7 @@ pub(super) fn read(profile: &str, output: OutputChoice) -> Result<(String, Profi
     let mut told: String = diagnostics.iter().map(|diagnostic| diagnostic.render(profile) + "\n").collect();
     match read {
         Some(read) => {
+            // Where people cannot be warned, the profile still plays.
             let _ = io::stderr().write_all(told.as_bytes());
             Ok((text, read))
         }
@@ -88,7 +116,7 @@ pub(super) fn read(profile: &str, output: OutputChoice) -> Result<(String, Profi
 
 fn list() -> Result<(), Failure> {
     for name in shipped::names() {
-        writeln!(io::stdout(), "{name}")?;
+        writeln!(stdout(), "{name}")?;
     }
     Ok(())
 }
@@ -96,17 +124,21 @@ fn list() -> Result<(), Failure> {
 fn report(profile: &str, json: bool) -> Result<(), Failure> {
     let text = text(profile)?;
     let (read, diagnostics) = check::read(&text, OutputChoice::AsWritten);
-    let errors = diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Error).count();
+    if_read(print(profile, read.as_ref(), &diagnostics, json))?;
+    read.map(|_| ()).ok_or_else(|| Failure::Failed(format!("profile {profile} has errors")))
+}
+
+fn print(
+    profile: &str,
+    read: Option<&Profile>,
+    diagnostics: &[Diagnostic],
+    json: bool,
+) -> Result<(), Failure> {
     if json {
-        print_json(&CheckReport { ok: read.is_some(), diagnostics: &diagnostics })?;
-    } else {
-        for diagnostic in &diagnostics {
-            writeln!(io::stdout(), "{}", diagnostic.render(profile))?;
-        }
+        return print_json(&CheckReport { ok: read.is_some(), diagnostics });
     }
-    match read {
-        Some(read) if !json => Ok(writeln!(io::stdout(), "{profile}: {} is in order", read.name)?),
-        Some(_) => Ok(()),
-        None => Err(Failure::Failed(format!("profile {profile} has {errors} error(s)"))),
+    for diagnostic in diagnostics {
+        writeln!(stdout(), "{}", diagnostic.render(profile))?;
     }
+    read.map_or(Ok(()), |read| Ok(writeln!(stdout(), "{profile}: {} is in order", read.name)?))
 }

@@ -1,12 +1,13 @@
 //! `tactpad record`: plays like `run` and writes down every call, so that `replay` gives the same events.
 
-use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::Args;
 
+use super::files::Files;
 use super::live::{Audience, Output, Plan, bridge, create_capture, open_pad, play};
-use super::{Failure, ctl, profile};
+use super::written::Named;
+use super::{Failure, ctl, profile, say, seconds};
 use crate::bridge::keeper::Patience;
 use crate::transport::address::PadAddress;
 use crate::transport::fault::FaultPlan;
@@ -33,15 +34,19 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FAULTS")]
     faults: Option<FaultPlan>,
     /// End after this many seconds; without it Ctrl-C ends.
-    #[arg(long)]
+    #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { capture, pad, profile, output, .. } = arguments;
+    Files { pad, profile, output, capture: Some(capture) }.check()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let sink = arguments.output.open()?;
     let pad = open_pad(&arguments.pad, &profile, Patience::Limited)?.with_faults(arguments.faults)?;
-    writeln!(io::stderr(), "recording {} in {}", arguments.pad, arguments.capture.display())?;
+    let place = capture.display().to_string();
+    let capture = Named::new(create_capture(capture)?, place.clone());
+    say(format_args!("recording {} in {place}", arguments.pad));
     let (mut bridge, _running) = bridge(Plan {
         pad,
         sink,
@@ -49,13 +54,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         profile_text: text,
         profile,
         choice: arguments.output.choice(),
-        record: Some(create_capture(&arguments.capture)?),
+        record: Some(Box::new(capture)),
         seconds: arguments.seconds,
         patience: Patience::Limited,
         audience: Audience::Stderr,
         socket: Some(ctl::socket_path()),
     })?;
     play(&mut bridge, &arguments.pad)?;
-    writeln!(io::stderr(), "{} samples recorded", bridge.health().samples)?;
+    say(format_args!("{} samples recorded", bridge.health().samples));
     Ok(())
 }

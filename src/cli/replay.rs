@@ -5,9 +5,9 @@ use std::io::{self, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde::Deserialize;
 
-use super::{Failure, profile};
+use super::written::stdout;
+use super::{Failure, contacts, if_read, profile, say};
 use crate::capture::{CallKind, CaptureError, CaptureReader};
 use crate::contact::Decoder;
 use crate::mapping::check::{self, OutputChoice};
@@ -29,6 +29,9 @@ pub(super) struct Arguments {
     #[arg(required_unless_present = "contacts", conflicts_with = "contacts")]
     capture: Option<PathBuf>,
     /// A CSV of contacts instead: t_s,x_mm,y_mm,fx_n,fy_n,fz_n.
+    ///
+    /// The first line names the columns; others are ignored. t_s may be missing: then rows are 1 ms apart. A row whose
+    /// fz_n is not above 0 is a lift.
     #[arg(long, requires = "profile")]
     contacts: Option<PathBuf>,
     /// A profile's name or file. Without it a capture replays with the one it was recorded with.
@@ -36,21 +39,10 @@ pub(super) struct Arguments {
     profile: Option<String>,
 }
 
-/// One row of a contacts file.
-#[derive(Debug, Deserialize)]
-struct Row {
-    t_s: f64,
-    x_mm: f32,
-    y_mm: f32,
-    fx_n: f32,
-    fy_n: f32,
-    fz_n: f32,
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let chosen = arguments.profile.as_deref().map(|name| profile::read(name, OutputChoice::AsWritten));
     let chosen = chosen.transpose()?.map(|(_, profile)| profile);
-    let mut log = BufWriter::new(io::stdout().lock());
+    let mut log = BufWriter::new(stdout());
     match (&arguments.capture, &arguments.contacts, chosen) {
         (Some(path), _, chosen) => replay_capture(path, chosen, &mut log)?,
         (None, Some(path), Some(profile)) => replay_contacts(path, profile, &mut log)?,
@@ -63,24 +55,23 @@ fn replay_capture(path: &Path, chosen: Option<Profile>, log: &mut impl Write) ->
     let unusable = |error: CaptureError| Failure::Unusable(format!("{} {error}", path.display()));
     let file = File::open(path).map_err(|error| unusable(CaptureError::Io(error)))?;
     let mut calls = CaptureReader::new(BufReader::new(file)).map_err(unusable)?;
-    let recorded = match calls.next() {
-        Some(Ok(first)) => recorded_profile(&first.kind),
-        _ => None,
-    };
+    let first = calls.next().ok_or_else(|| unusable(CaptureError::NoPlay))?.map_err(unusable)?;
     let keeps_profile = chosen.is_none();
-    let profile = chosen.or(recorded).ok_or_else(|| {
+    let profile = chosen.or_else(|| recorded_profile(&first.kind)).ok_or_else(|| {
         Failure::Unusable(format!("{} names no usable profile; choose one with --profile", path.display()))
     })?;
     let mut pipeline = Pipeline::new(Decoder::shipped(), profile);
-    for call in calls {
+    let first = recorded_profile(&first.kind).is_none().then_some(Ok(first));
+    for call in first.into_iter().chain(calls) {
         match call {
             Ok(call) if !keeps_profile && recorded_profile(&call.kind).is_some() => {}
             Ok(call) => make_call(&mut pipeline, call.now, call.kind.as_ref(), &mut NoProbe, |events| {
                 event_log::write(log, events)
             })?,
-            Err(error @ CaptureError::CutOff { .. }) => writeln!(io::stderr(), "{} {error}", path.display())?,
+            Err(error @ CaptureError::CutOff { .. }) => say(format_args!("{} {error}", path.display())),
             Err(error) => {
-                log.flush()?;
+                // The damage is the verdict, even where nobody reads the events before it.
+                if_read(log.flush().map_err(Failure::from))?;
                 return Err(unusable(error));
             }
         }
@@ -98,19 +89,14 @@ fn recorded_profile(call: &CallKind) -> Option<Profile> {
 
 /// Maps contacts as they stand: each row is a sample, a row without normal force is a lift.
 fn replay_contacts(path: &Path, profile: Profile, log: &mut impl Write) -> Result<(), Failure> {
-    let unusable = |error: csv::Error| Failure::Unusable(format!("{}: {error}", path.display()));
-    let mut rows = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(unusable)?;
+    let rows = contacts::read(path)?;
     let mut mapped = Mapped { ledger: Ledger::new(&profile), engine: Engine::new(profile), log };
-    let mut at = StreamInstant::default();
-    for row in rows.deserialize() {
-        let row: Row = row.map_err(unusable)?;
-        let Row { t_s, x_mm, y_mm, fx_n, fy_n, fz_n } = row;
-        at = at.max(StreamInstant::from_us((t_s.max(0.0) * 1e6) as u64));
-        let contact = Contact { x_mm, y_mm, fx_n, fy_n, fz_n };
-        mapped.step(at, Some(&contact).filter(|contact| contact.fz_n > 0.0))?;
+    for (at, contact) in &rows {
+        mapped.step(*at, Some(contact).filter(|contact| contact.fz_n > 0.0))?;
     }
     // The list ends with a lift, so that nothing stays held.
-    mapped.step(at, None)?;
+    let end = rows.last().map_or_else(StreamInstant::default, |(at, _)| *at);
+    mapped.step(end, None)?;
     Ok(mapped.settle(StreamInstant::from_us(u64::MAX))?)
 }
 

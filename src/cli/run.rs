@@ -1,12 +1,13 @@
 //! `tactpad run`: the live bridge.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 
 use clap::Args;
 
+use super::files::Files;
 use super::live::{Audience, Output, Plan, bridge, open_pad, play};
 use super::screen::Screen;
-use super::{Failure, ctl, profile};
+use super::{Failure, ctl, profile, say, seconds};
 use crate::bridge::Ending;
 use crate::bridge::keeper::Patience;
 use crate::transport::address::PadAddress;
@@ -35,11 +36,13 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FAULTS")]
     faults: Option<FaultPlan>,
     /// End after this many seconds.
-    #[arg(long)]
+    #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { pad, profile, output, .. } = arguments;
+    Files { pad, profile, output, capture: None }.check()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let waits = arguments.wait || matches!(arguments.pad, PadAddress::Auto { .. });
     let patience = if waits { Patience::Endless } else { Patience::Limited };
@@ -66,7 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let ending = play(&mut bridge, &arguments.pad);
     drop(screen);
     if ending? == Ending::CaptureEnded {
-        writeln!(io::stderr(), "the capture has ended")?;
+        say("the capture has ended");
     }
     Ok(())
 }

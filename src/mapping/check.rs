@@ -23,6 +23,9 @@ pub enum OutputChoice {
     Keyboard,
 }
 
+/// A longer text is no profile; the limit bounds what reading one can cost.
+pub const TEXT_BYTES_MAX: usize = 256_000;
+
 const NAME_CHARS_MAX: usize = 64;
 const FILTER_SAMPLES: Bounds<u32> = Bounds { low: 1, high: 64, default: 6 };
 const MIN_PRESS_MS: Bounds<u32> = Bounds { low: 0, high: 1_000, default: 40 };
@@ -83,10 +86,15 @@ const DIRECTIONS: [(&str, &str, &str); 4] = [
 
 /// Reads a profile from TOML text.
 ///
-/// Returns everything there is to say about the text, in its order. The profile is `None` exactly if there is
-/// an error among it; warnings leave it usable.
+/// Returns what there is to say about the text, in its order; after 50 findings a closing one says that there is
+/// more. The profile is `None` exactly if there is an error among it; warnings leave it usable. A text above
+/// [`TEXT_BYTES_MAX`] is not read.
 pub fn read(text: &str, output: OutputChoice) -> (Option<Profile>, Vec<Diagnostic>) {
     let mut report = Report::new(text);
+    if text.len() > TEXT_BYTES_MAX {
+        report.error(0, too_long(), "a profile is a few lines of TOML");
+        return (None, report.finish());
+    }
     let (tree, faults) = DeTable::parse_recoverable(text);
     for fault in faults {
         report.broken(fault.span().map_or(0, |span| span.start), fault.message());
@@ -95,6 +103,11 @@ pub fn read(text: &str, output: OutputChoice) -> (Option<Profile>, Vec<Diagnosti
     draft.check_conflicts(&mut report);
     let profile = if report.failed() { None } else { draft.settle(output) };
     (profile, report.finish())
+}
+
+/// What is wrong with a text above [`TEXT_BYTES_MAX`].
+pub fn too_long() -> String {
+    format!("the text is longer than {} kB", TEXT_BYTES_MAX / 1_000)
 }
 
 /// A profile while it is read: what is unusable is `None` and reported.
@@ -148,7 +161,8 @@ impl Draft {
         let min_press_ms = root.whole("min_press_ms", MIN_PRESS_MS, report).map(|ms| ms.value);
         let dpad = root.table("dpad", "[dpad]".to_owned(), &DPAD_KEYS, report);
         let pointer = root.table("pointer", "[pointer]".to_owned(), &POINTER_KEYS, report);
-        let buttons = root.tables("button", &BUTTON_KEYS, report);
+        // One more than there can be, so that the first one too many is known by its place.
+        let buttons = root.tables("button", &BUTTON_KEYS, BUTTONS_MAX + 1, report);
         if ["dpad", "pointer", "button"].iter().all(|key| root.place_of(key).is_none()) {
             report.warning(
                 root.at,
@@ -330,20 +344,38 @@ fn read_zones(
         );
     }
     let hysteresis = table.number("hysteresis_deg", HYSTERESIS_DEG, report);
-    if let (Some(mode), Some(width), Some(hysteresis)) = (mode, diagonal, hysteresis) {
-        let smallest = match mode {
-            DpadMode::FourWay => 90.0,
-            DpadMode::FourWaySticky | DpadMode::EightWay => width.value.min(90.0 - width.value),
-        };
-        if hysteresis.value >= smallest / 2.0 {
-            let at = table.place_of("hysteresis_deg").unwrap_or(width.at);
-            let message =
-                format!("\"hysteresis_deg\" ({}) reaches the middle of the next zone", hysteresis.value);
-            let help = format!("the smallest zone is {smallest}° wide; write less than {}", smallest / 2.0);
-            report.error(at, message, help);
+    if sticky {
+        if let Some(at) = table.place_of("hysteresis_deg") {
+            let message = "\"hysteresis_deg\" does nothing in mode \"4way-sticky\": there the diagonal zone is the \
+                           hysteresis";
+            report.warning(at, message, "remove it; \"diagonal_deg\" sets how far a direction is kept");
         }
+        return (diagonal.map(|width| width.value), hysteresis.map(|_| 0.0));
+    }
+    if let (Some(mode), Some(width), Some(hysteresis)) = (mode, diagonal, hysteresis) {
+        check_hysteresis(table, mode, width, hysteresis.value, report);
     }
     (diagonal.map(|width| width.value), hysteresis.map(|slack| slack.value))
+}
+
+/// Reports a hysteresis that reaches so far into the next zone that it would hide it.
+fn check_hysteresis(
+    table: &Section<'_>,
+    mode: DpadMode,
+    width: Placed<f32>,
+    hysteresis_deg: f32,
+    report: &mut Report<'_>,
+) {
+    let smallest = match mode {
+        DpadMode::FourWay => 90.0,
+        DpadMode::FourWaySticky | DpadMode::EightWay => width.value.min(90.0 - width.value),
+    };
+    if hysteresis_deg >= smallest / 2.0 {
+        let at = table.place_of("hysteresis_deg").unwrap_or(width.at);
+        let message = format!("\"hysteresis_deg\" ({hysteresis_deg}) reaches the middle of the next zone");
+        let help = format!("the smallest zone is {smallest}° wide; write less than {}", smallest / 2.0);
+        report.error(at, message, help);
+    }
 }
 
 /// Reports it if the first number is not less than the second, at whichever of them is written.

@@ -52,16 +52,21 @@ impl Diagnostic {
     }
 }
 
+/// After so many findings nobody reads on; the rest is told in one line.
+const FINDINGS_MAX: usize = 50;
+
 /// Findings about one text while it is read.
 pub(super) struct Report<'t> {
     text: &'t str,
     found: Vec<Diagnostic>,
     broken_lines: Vec<usize>,
+    /// The severest of the findings that were not kept.
+    dropped: Option<Severity>,
 }
 
 impl<'t> Report<'t> {
     pub(super) const fn new(text: &'t str) -> Self {
-        Self { text, found: Vec::new(), broken_lines: Vec::new() }
+        Self { text, found: Vec::new(), broken_lines: Vec::new(), dropped: None }
     }
 
     /// Notes at the byte offset `at` that the text cannot be parsed there.
@@ -69,6 +74,10 @@ impl<'t> Report<'t> {
     /// Whatever else is found on that line would be an echo of this, and so may be keys that are missing or
     /// in the wrong table anywhere: both are dropped from here on.
     pub(super) fn broken(&mut self, at: usize, message: &str) {
+        if self.is_full() {
+            self.dropped = Some(Severity::Error);
+            return;
+        }
         let (line, column) = position(self.text, at);
         self.broken_lines.push(line);
         // A bare word is the usual slip, and the parser names what it took the word for.
@@ -101,6 +110,12 @@ impl<'t> Report<'t> {
     }
 
     fn note(&mut self, severity: Severity, at: usize, message: String, help: String) {
+        if self.is_full() {
+            // A broken line may hide it, but then there is an error in any case.
+            let is_error = severity == Severity::Error || self.dropped == Some(Severity::Error);
+            self.dropped = Some(if is_error { Severity::Error } else { severity });
+            return;
+        }
         let (line, column) = position(self.text, at);
         if !self.broken_lines.contains(&line) {
             let help = if help.is_empty() { None } else { Some(help) };
@@ -108,14 +123,25 @@ impl<'t> Report<'t> {
         }
     }
 
-    /// Whether an error was noted.
-    pub(super) fn failed(&self) -> bool {
-        self.found.iter().any(|finding| finding.severity == Severity::Error)
+    /// Whether there are so many findings that no other is kept.
+    pub(super) const fn is_full(&self) -> bool {
+        self.found.len() >= FINDINGS_MAX
     }
 
-    /// Everything found, in the order of the text.
+    /// Whether an error was noted.
+    pub(super) fn failed(&self) -> bool {
+        let mut severities = self.found.iter().map(|finding| finding.severity).chain(self.dropped);
+        severities.any(|severity| severity == Severity::Error)
+    }
+
+    /// Everything found, in the order of the text, and a closing line if there is more.
     pub(super) fn finish(mut self) -> Vec<Diagnostic> {
         self.found.sort_by_key(|finding| (finding.line, finding.column));
+        if let Some(severity) = self.dropped {
+            let (line, column) = position(self.text, usize::MAX);
+            let message = format!("and more: only {FINDINGS_MAX} findings are listed");
+            self.found.push(Diagnostic { severity, message, line, column, help: None });
+        }
         self.found
     }
 }
@@ -186,6 +212,29 @@ mod tests {
         report.error(8, "b is too small", "");
         let messages: Vec<_> = report.finish().into_iter().map(|finding| finding.message).collect();
         assert_eq!(messages, ["no value", "b is too small"]);
+    }
+
+    #[test]
+    fn the_fifty_first_finding_closes_the_list() {
+        let text = "\n".repeat(60);
+        let noted = |warnings: usize, errors: usize| {
+            let mut report = Report::new(&text);
+            (0..warnings).for_each(|at| report.warning(at, "w", ""));
+            (warnings..warnings + errors).for_each(|at| report.error(at, "e", ""));
+            let failed = report.failed();
+            let found = report.finish();
+            let last = found.last().unwrap().clone();
+            (found.len(), last.message.starts_with("and more"), last.severity, failed)
+        };
+        assert_eq!(noted(50, 0), (50, false, Severity::Warning, false));
+        assert_eq!(noted(51, 0), (51, true, Severity::Warning, false));
+        assert_eq!(
+            noted(50, 1),
+            (51, true, Severity::Error, true),
+            "an error that is not listed still counts"
+        );
+        assert_eq!(noted(51, 1), (51, true, Severity::Error, true));
+        assert_eq!(noted(0, 60), (51, true, Severity::Error, true));
     }
 
     #[test]

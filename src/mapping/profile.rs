@@ -41,9 +41,11 @@ pub struct Dpad {
     pub centre_radius_mm: f32,
     /// It ends closer than `centre_radius_mm − radius_hysteresis_mm`.
     pub radius_hysteresis_mm: f32,
-    /// Angle of each diagonal zone; used by the sticky 4-way and the 8-way mode.
+    /// Angle of each diagonal zone. The 8-way mode holds two directions there, the sticky 4-way mode keeps the
+    /// last one; the plain 4-way mode has no such zones.
     pub diagonal_deg: f32,
-    /// A direction changes only when the contact is this far past the sector's edge.
+    /// A direction changes only when the contact is this far past the sector's edge. 0 in the sticky 4-way
+    /// mode, whose diagonal zones are its hysteresis.
     pub hysteresis_deg: f32,
     /// Turns the sectors counter-clockwise seen from above.
     pub rotation_deg: f32,

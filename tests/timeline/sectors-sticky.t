@@ -41,10 +41,9 @@ profile tetris
 5ms ABS_HAT0Y 0
 6ms ABS_HAT0Y 1
 
-case hysteresis counts where it reaches beyond the diagonal
+case a narrow diagonal keeps a direction as far as it reaches
 profile tetris
 set dpad.diagonal_deg = 6
-set dpad.hysteresis_deg = 2.9
 
 0ms angle=0 r=20 fz=1
 1ms angle=47.9 r=20 fz=1

@@ -283,7 +283,7 @@ pub(super) enum Audience {
 }
 
 impl Audience {
-    fn tell(self, line: &str) {
+    pub(super) fn tell(self, line: &str) {
         if self == Self::Stderr {
             // Where nobody reads, the bridge plays on.
             let _ = writeln!(io::stderr(), "{line}");

@@ -49,9 +49,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let sink = arguments.output.open()?;
     let pad = open_pad(&arguments.pad, &profile, patience)?.with_faults(arguments.faults)?;
     let title = format!("{} → {} → {}", arguments.pad, profile.name, sink.describe());
-    say(&title);
-    // The live picture shows the state; without one it is told in words.
+    // The live picture has the title and the state; without one they are told in words.
     let audience = if io::stdout().is_terminal() { Audience::Nobody } else { Audience::Stderr };
+    audience.tell(&title);
     let (mut bridge, _running) = bridge(Plan {
         pad,
         sink,

@@ -2,6 +2,7 @@
 
 use std::convert::Infallible;
 
+use firmware_proto::crc::crc32;
 use tactpad::capture::{Call, CaptureReader, CaptureWriter};
 use tactpad::contact::Decoder;
 use tactpad::control::OutputEvent;
@@ -12,6 +13,25 @@ use crate::rig::first_profile;
 
 /// How a capture begins.
 pub const MAGIC: &[u8] = b"tactpad capture 1\n";
+
+/// A file of entries that were written without their checksums, as far as they are whole: no fuzzer guesses those.
+pub fn sealed(mut bare: &[u8]) -> Vec<u8> {
+    const FIELDS_BYTES: usize = 13;
+    let (mut file, mut chain) = (MAGIC.to_vec(), 0_u32);
+    let mut seal = |file: &mut Vec<u8>, bytes: &[u8]| {
+        file.extend_from_slice(bytes);
+        chain = crc32(&[&chain.to_le_bytes(), bytes].concat());
+        file.extend_from_slice(&chain.to_le_bytes());
+    };
+    while let Some((fields, rest)) = bare.split_at_checked(FIELDS_BYTES) {
+        let length = fields.last_chunk().map_or(0, |length| u32::from_le_bytes(*length));
+        let (payload, rest) = rest.split_at(rest.len().min(length as usize));
+        seal(&mut file, fields);
+        seal(&mut file, payload);
+        bare = rest;
+    }
+    file
+}
 
 /// The calls of a file up to the first error; none where it is no capture.
 pub fn calls(file: &[u8]) -> Vec<Call> {

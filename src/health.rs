@@ -15,6 +15,8 @@ pub struct Health {
     pub frames_lost: u64,
     /// Frames that came again or too late; dropped.
     pub frames_repeated: u64,
+    /// Sound frames of a newer protocol version; the pad is refused.
+    pub frames_newer: u64,
     /// Sound frames of a kind this version does not know; skipped.
     pub frames_unknown: u64,
     /// Pad clock steps backwards or by more than [`crate::link::GAP_MAX_US`].

@@ -17,6 +17,9 @@ pub const SILENCE_MAX_US: u64 = 80_000;
 /// The longest step of the pad's clock between two samples that is not a jump: 10 periods of the slowest pad.
 pub const GAP_MAX_US: u64 = 100_000;
 
+/// The pace of the pad's clock is judged over this time.
+const PACE_US: u64 = 1_000_000;
+
 /// A frame this little behind the newest is an old one that came again; farther behind, the pad began anew.
 const REORDER_MAX: u32 = 64;
 
@@ -84,7 +87,10 @@ impl Link {
             Ok(Message::Sample(sample)) => Some(self.order(now, sample, health)),
             Ok(Message::Identity(identity)) => Some(LinkEvent::Identity(identity)),
             Ok(Message::Acknowledgement { .. }) => None,
-            Err(WireError::NewerVersion(version)) => Some(LinkEvent::NewerVersion(version)),
+            Err(WireError::NewerVersion(version)) => {
+                health.frames_newer += 1;
+                Some(LinkEvent::NewerVersion(version))
+            }
             Err(WireError::UnknownKind(_)) => {
                 health.frames_unknown += 1;
                 None
@@ -120,6 +126,10 @@ impl Link {
 
     fn order(&mut self, now: HostInstant, sample: Sample, health: &mut Health) -> LinkEvent {
         let fault = match self.last {
+            None if self.clock.set && sample.status.restarted() => {
+                health.restarts += 1;
+                Some(Fault::Restarted)
+            }
             None => None,
             Some(last) => match step_between(&last, &sample) {
                 Step::Next => None,
@@ -183,11 +193,19 @@ struct StreamClock {
     heard: HostInstant,
     /// False until the first sample, which sets the clock.
     set: bool,
+    /// Where the present look at the pace began: host time and stream time.
+    pace_from: (HostInstant, StreamInstant),
 }
 
 impl StreamClock {
     const fn new() -> Self {
-        Self { offset_us: 0, last: StreamInstant::from_us(0), heard: HostInstant::from_ns(0), set: false }
+        Self {
+            offset_us: 0,
+            last: StreamInstant::from_us(0),
+            heard: HostInstant::from_ns(0),
+            set: false,
+            pace_from: (HostInstant::from_ns(0), StreamInstant::from_us(0)),
+        }
     }
 
     fn at(&self, now: HostInstant) -> StreamInstant {
@@ -200,12 +218,24 @@ impl StreamClock {
         self.heard = now;
     }
 
+    /// Whether stream time goes at least half as fast as the host's. Times in a profile would never pass on a clock
+    /// that crawls: firmware that counts milliseconds for microseconds, say.
+    fn keeps_pace(&mut self, now: HostInstant, at: StreamInstant) -> bool {
+        let (host, stream) = self.pace_from;
+        let host_us = now.us_since(host);
+        if host_us < PACE_US {
+            return true;
+        }
+        self.pace_from = (now, at);
+        at.us_since(stream) >= host_us / 2
+    }
+
     /// Takes a sample's device time. Returns false if the clock jumped and was joined anew; `continues` says whether
     /// a running sequence gives something to jump from.
     fn accept(&mut self, now: HostInstant, device_us: u64, continues: bool) -> bool {
         let stream_us = device_us.wrapping_add(self.offset_us);
-        let smooth = stream_us >= self.last.as_us() && stream_us - self.last.as_us() <= GAP_MAX_US;
-        if continues && smooth {
+        let smooth = stream_us > self.last.as_us() && stream_us - self.last.as_us() <= GAP_MAX_US;
+        if continues && smooth && self.keeps_pace(now, StreamInstant::from_us(stream_us)) {
             self.last = StreamInstant::from_us(stream_us);
             self.heard = now;
             return true;
@@ -216,6 +246,7 @@ impl StreamClock {
             last: StreamInstant::from_us(joined_us),
             heard: now,
             set: true,
+            pace_from: (now, StreamInstant::from_us(joined_us)),
         };
         !continues
     }
@@ -302,7 +333,7 @@ mod tests {
 
     #[test]
     fn jumps_of_the_pads_clock_are_bridged_by_the_hosts() {
-        for jump_us in [0, 1_999_999, 2_101_001, u64::MAX] {
+        for jump_us in [0, 1_999_999, 2_000_000, 2_101_001, u64::MAX] {
             let mut rig = Rig::new();
             rig.hear(0, sample(0, 2_000_000));
             assert_eq!(
@@ -319,6 +350,24 @@ mod tests {
         let mut rig = Rig::new();
         rig.hear(0, sample(0, 2_000_000));
         assert_eq!(rig.hear(1, sample(1, 2_100_000)), (Some(2_100_000), None));
+    }
+
+    #[test]
+    fn a_clock_that_crawls_is_a_jump() {
+        let mut rig = Rig::new();
+        let fault = |ms: u64| rig.hear(ms * 1_000, sample(ms as u32, ms)).1;
+        let faults: Vec<_> = (0..1_100).filter_map(fault).collect();
+        assert_eq!(faults, [Fault::TimeJump]);
+    }
+
+    #[test]
+    fn a_restart_after_silence_is_told() {
+        let mut rig = Rig::new();
+        rig.hear(0, sample(500, 500_000));
+        rig.link.lose(HostInstant::default().plus_us(90_000));
+        let mut first = sample(0, 10);
+        first.status = Status::OK.with_restarted();
+        assert_eq!(rig.hear(150_000, first), (Some(650_000), Some(Fault::Restarted)));
     }
 
     #[test]

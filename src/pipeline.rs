@@ -155,7 +155,7 @@ impl Pipeline {
         self.edges.clear();
         self.lose(now);
         (self.identity, self.refusal) = (None, None);
-        self.signal.restart();
+        self.signal.forget_pad();
     }
 
     /// Host time of the next deadline; `None` if nothing is due before something else happens.
@@ -207,6 +207,11 @@ impl Pipeline {
             let levels = self.engine.step(self.at, self.contact.as_ref());
             self.ledger.update(self.at, &levels, &mut self.edges);
         }
+    }
+
+    /// Whether a pad is being heard: a sample came and the link has not been lost since.
+    pub fn is_heard(&self) -> bool {
+        self.link.silent_at().is_some()
     }
 
     /// The profile in use.
@@ -307,6 +312,8 @@ impl Pipeline {
 
     fn handle_fault(&mut self, fault: Fault) {
         if fault == Fault::Restarted {
+            // It may tell other numbers of itself now.
+            self.identity = None;
             self.signal.restart();
             self.touch = Touch::new();
         }
@@ -319,7 +326,10 @@ impl Pipeline {
             return;
         }
         match Scale::of(identity) {
-            Some(scale) => self.signal.set_scale(scale),
+            Some(scale) => {
+                self.refusal = None;
+                self.signal.set_scale(scale);
+            }
             None => self.refusal = Some(Refusal::Unsuitable(*identity)),
         }
         self.touch = Touch::new();

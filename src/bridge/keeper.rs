@@ -38,6 +38,8 @@ pub(super) enum Absence {
     Gone,
     /// It is there but may not be opened.
     Denied,
+    /// Something is there, but not one pad: several, or what cannot be used.
+    Unclear,
 }
 
 /// The pad, or the search for it.
@@ -48,7 +50,13 @@ pub(super) struct Keeper {
     absence: Absence,
     opened_at: HostInstant,
     reopen_at: HostInstant,
+    /// When asking began: at the opening, and anew when the pad began anew or was heard after silence.
+    asking_since: HostInstant,
     identify_asked: usize,
+    /// Whether the pad was heard, and how often it had begun anew, at the last look.
+    seen: (bool, u64),
+    /// Whether this is still the pad that was opened first.
+    is_first: bool,
     bytes_heard: u64,
 }
 
@@ -67,7 +75,10 @@ impl Keeper {
             absence: Absence::Gone,
             opened_at: now,
             reopen_at: now,
+            asking_since: now,
             identify_asked: 0,
+            seen: (false, 0),
+            is_first: true,
             bytes_heard: 0,
         }
     }
@@ -108,7 +119,7 @@ impl Keeper {
 
     /// The pad left: looks for it from now on.
     pub(super) fn lose(&mut self, now: HostInstant) {
-        (self.pad, self.absence) = (None, Absence::Gone);
+        (self.pad, self.absence, self.is_first) = (None, Absence::Gone, false);
         self.reopen_at = now.plus_us(REOPEN_US);
     }
 
@@ -129,13 +140,19 @@ impl Keeper {
     /// # Errors
     /// What was opened first is no pad, or none that can be played with.
     pub(super) fn attend(&mut self, now: HostInstant, pipeline: &Pipeline) -> Result<(), BridgeError> {
-        if self.is_unheard(pipeline) {
-            if let Some(refusal) = pipeline.refusal() {
-                return Err(BridgeError::Refused(*refusal));
-            }
-            if now >= self.opened_at.plus_us(FIRST_FRAME_US) {
-                return Err(BridgeError::NotAPad(self.why_not_a_pad()));
-            }
+        if self.is_first
+            && self.patience == Patience::Limited
+            && let Some(refusal) = pipeline.refusal()
+        {
+            return Err(BridgeError::Refused(*refusal));
+        }
+        if self.is_unheard(pipeline) && now >= self.opened_at.plus_us(FIRST_FRAME_US) {
+            return Err(BridgeError::NotAPad(self.why_not_a_pad()));
+        }
+        let seen = (pipeline.is_heard(), pipeline.health().restarts);
+        if seen != self.seen {
+            // A pad that was powered late, or began anew, has missed the questions so far.
+            (self.seen, self.asking_since, self.identify_asked) = (seen, now, 0);
         }
         if self.reopens() && now >= self.reopen_at {
             self.reopen(now);
@@ -158,18 +175,19 @@ impl Keeper {
         self.reopen_at = now.plus_us(REOPEN_US);
         match self.opener.as_mut().map(|open| open()) {
             Some(Ok(pad)) => {
-                (self.pad, self.opened_at) = (Some(pad), now);
+                (self.pad, self.opened_at, self.asking_since) = (Some(pad), now, now);
                 self.identify_asked = 0;
             }
             Some(Err(PadError::Denied(_))) => self.absence = Absence::Denied,
-            Some(Err(_)) | None => self.absence = Absence::Gone,
+            Some(Err(PadError::Unusable(_))) => self.absence = Absence::Unclear,
+            Some(Err(PadError::NotThere(_))) | None => self.absence = Absence::Gone,
         }
     }
 
     fn identify_at(&self, pipeline: &Pipeline) -> Option<HostInstant> {
         let asking = self.pad.is_some() && pipeline.identity().is_none();
         let due = IDENTIFY_US.get(self.identify_asked).filter(|_| asking)?;
-        Some(self.opened_at.plus_us(*due))
+        Some(self.asking_since.plus_us(*due))
     }
 
     /// Whether no pad has played yet and patience is limited. Later nothing that a pad does ends the bridge.

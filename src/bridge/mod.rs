@@ -168,10 +168,10 @@ impl Bridge {
     /// See [`BridgeError`].
     pub fn run(&mut self) -> Result<Ending, BridgeError> {
         let ending = self.play();
-        // First of all: a pad that nobody reads any more should not have to count what is not taken.
-        self.keeper.close();
         self.held_at_end = self.pipeline.held().count();
         let released = self.call(self.clock.now(), CallRef::ReleaseAll);
+        // Before anything that takes time: a pad that nobody reads any more has to count what is not taken.
+        self.keeper.close();
         if let Some(recorder) = &mut self.recorder {
             recorder.flush().map_err(BridgeError::Io)?;
         }
@@ -237,8 +237,9 @@ impl Bridge {
             Ok(Some(read)) => self.call(now, CallRef::Bytes(bytes.get(..read).unwrap_or_default()))?,
             Ok(None) => self.call_if_due(now)?,
             Err(_) => {
-                self.keeper.lose(now);
+                // Release first: closing a port can take time.
                 self.call(now, CallRef::Unplugged)?;
+                self.keeper.lose(now);
                 return Ok(!self.keeper.can_return());
             }
         }
@@ -250,7 +251,9 @@ impl Bridge {
         let Self { pipeline, sink, clock, latency, .. } = self;
         make_call(pipeline, now, call, &mut NoProbe, |events| {
             sink.write(events)?;
-            latency.record_ns(clock.now().as_ns().saturating_sub(now.as_ns()));
+            if matches!(call, CallRef::Bytes(_)) {
+                latency.record_ns(clock.now().as_ns().saturating_sub(now.as_ns()));
+            }
             Ok(())
         })
         .map_err(BridgeError::Sink)?;
@@ -294,14 +297,19 @@ impl Bridge {
 
     /// Goes over to another profile; one that cannot be used changes nothing.
     fn change_profile(&mut self, now: HostInstant, name: Option<&str>) -> Result<String, BridgeError> {
-        let (text, profile) = match (self.read_profile)(name) {
-            Ok(read) => read,
+        let read = (self.read_profile)(name);
+        let ready = read.and_then(|(text, profile)| match prepare(self.sink.as_mut(), &profile) {
+            Ok(()) => Ok((text, profile)),
+            Err(BridgeError::Sink(error)) => Err(error.message),
+            Err(_) => Err("its devices cannot be made".into()),
+        });
+        let (text, profile) = match ready {
+            Ok(ready) => ready,
             Err(error) => {
                 (self.tell)(&format!("{error}\nthe profile in use stays"));
                 return Ok(serde_json::json!({"ok": false, "error": error}).to_string());
             }
         };
-        prepare(self.sink.as_mut(), &profile)?;
         (self.tell)(&format!("profile {}", profile.name));
         let call = match profile.output {
             Device::Keyboard => CallRef::KeyboardProfile(&text),

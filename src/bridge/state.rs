@@ -18,6 +18,8 @@ pub enum State {
     Waiting,
     /// The pad is there but may not be opened.
     Denied,
+    /// Several pads are there, or something that cannot be used.
+    Unclear,
     /// The pad is open and sends nothing sound.
     Silent,
     /// The zero is being measured.
@@ -39,6 +41,7 @@ impl State {
         match (pipeline.phase(), absence) {
             (Phase::Paused, _) => Self::Paused,
             (_, Some(Absence::Denied)) => Self::Denied,
+            (_, Some(Absence::Unclear)) => Self::Unclear,
             (_, Some(Absence::Gone)) => Self::Waiting,
             (Phase::Refused, None) => Self::Refused,
             (Phase::Waiting, None) => Self::Silent,
@@ -54,6 +57,7 @@ impl State {
         match self {
             Self::Waiting => "waiting",
             Self::Denied => "denied",
+            Self::Unclear => "unclear",
             Self::Silent => "silent",
             Self::Taring => "taring",
             Self::Playing => "playing",
@@ -68,7 +72,12 @@ impl State {
     pub const fn sentence(self) -> &'static str {
         match self {
             Self::Waiting => "waiting for the pad: plug it in",
-            Self::Denied => "the pad is there but may not be opened: `tactpad doctor` says how to mend it",
+            Self::Denied => {
+                "the pad is there but may not be opened, or is in use: `tactpad doctor` says how to mend it"
+            }
+            Self::Unclear => {
+                "several pads are attached, or what cannot be used: `tactpad devices` lists them"
+            }
             Self::Silent => "the pad sends nothing that can be read: check its power and its line",
             Self::Taring => "measuring the zero: leave the pad untouched for half a second",
             Self::Playing => "playing",
@@ -77,7 +86,7 @@ impl State {
                 "a channel is saturated, stuck or without supply, nothing is pressed: check the pad"
             }
             Self::Paused => "paused",
-            Self::Refused => "this pad cannot be played with: its protocol or its numbers are not ours",
+            Self::Refused => "this pad cannot be played with: update tactpad, or check the pad's firmware",
         }
     }
 }

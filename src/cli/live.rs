@@ -207,6 +207,23 @@ pub(super) struct Plan {
     pub(super) socket: Option<PathBuf>,
 }
 
+/// How long to wait for a pad: `auto` always waits, a named one only if that is asked for.
+pub(super) fn patience(pad: &PadAddress, waits: Waits) -> Patience {
+    match (pad, waits) {
+        (PadAddress::Auto { .. }, _) | (_, Waits::Asked) => Patience::Endless,
+        (_, Waits::NotAsked) => Patience::Limited,
+    }
+}
+
+/// Whether `--wait` was given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Waits {
+    /// It was.
+    Asked,
+    /// It was not.
+    NotAsked,
+}
+
 /// A bridge for the plan; the opened pad must live as long as the bridge runs.
 pub(super) fn bridge(plan: Plan) -> Result<(Bridge, RunningPad), Failure> {
     let clock = Clock::start();
@@ -222,11 +239,11 @@ pub(super) fn bridge(plan: Plan) -> Result<(Bridge, RunningPad), Failure> {
         requests: requests(plan.socket.as_deref(), audience)?,
         recorder,
         read_profile: Box::new(move |name| {
-            // A profile that was chosen stays the one to be read again.
-            if let Some(name) = name {
-                profile_name = name.to_owned();
-            }
-            read_profile(&profile_name, choice)
+            let chosen = name.unwrap_or(&profile_name).to_owned();
+            let read = read_profile(&chosen, choice)?;
+            // A profile that was chosen and can be used is the one to be read again.
+            profile_name = chosen;
+            Ok(read)
         }),
         tell: Box::new(move |line| audience.tell(line)),
         end_at: plan.seconds.map(|seconds| now.plus_us((seconds * 1e6) as u64)),

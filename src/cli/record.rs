@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::files::Files;
-use super::live::{Audience, Output, Plan, bridge, create_capture, open_pad, play};
+use super::live::{Audience, Output, Plan, Waits, bridge, create_capture, open_pad, patience, play};
 use super::written::Named;
 use super::{Failure, ctl, profile, say, seconds};
-use crate::bridge::keeper::Patience;
 use crate::transport::address::PadAddress;
 use crate::transport::fault::FaultPlan;
 
@@ -43,7 +42,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Files { pad, profile, output, capture: Some(capture) }.check()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let sink = arguments.output.open()?;
-    let pad = open_pad(&arguments.pad, &profile, Patience::Limited)?.with_faults(arguments.faults)?;
+    let patience = patience(&arguments.pad, Waits::NotAsked);
+    let pad = open_pad(&arguments.pad, &profile, patience)?.with_faults(arguments.faults)?;
     let place = capture.display().to_string();
     let capture = Named::new(create_capture(capture)?, place.clone());
     say(format_args!("recording {} in {place}", arguments.pad));
@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         choice: arguments.output.choice(),
         record: Some(Box::new(capture)),
         seconds: arguments.seconds,
-        patience: Patience::Limited,
+        patience,
         audience: Audience::Stderr,
         socket: Some(ctl::socket_path()),
     })?;

@@ -5,11 +5,10 @@ use std::io::{self, IsTerminal};
 use clap::Args;
 
 use super::files::Files;
-use super::live::{Audience, Output, Plan, bridge, open_pad, play};
+use super::live::{Audience, Output, Plan, Waits, bridge, open_pad, patience, play};
 use super::screen::Screen;
 use super::{Failure, ctl, profile, say, seconds};
 use crate::bridge::Ending;
-use crate::bridge::keeper::Patience;
 use crate::transport::address::PadAddress;
 use crate::transport::fault::FaultPlan;
 
@@ -44,8 +43,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { pad, profile, output, .. } = arguments;
     Files { pad, profile, output, capture: None }.check()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
-    let waits = arguments.wait || matches!(arguments.pad, PadAddress::Auto { .. });
-    let patience = if waits { Patience::Endless } else { Patience::Limited };
+    let patience = patience(&arguments.pad, if arguments.wait { Waits::Asked } else { Waits::NotAsked });
     let sink = arguments.output.open()?;
     let pad = open_pad(&arguments.pad, &profile, patience)?.with_faults(arguments.faults)?;
     let title = format!("{} → {} → {}", arguments.pad, profile.name, sink.describe());

@@ -61,8 +61,17 @@ impl ChannelFaults {
     /// The zero is known, the pad lay still: what changed meanwhile was noise. From here on silence is a fault if
     /// most channels were lively.
     pub fn learn(&mut self) {
-        let lively = self.changes.iter().filter(|&&changes| changes * 2 >= self.seen.max(1)).count();
+        let lively = self
+            .changes
+            .iter()
+            .filter(|&&changes| u64::from(changes) * 2 >= u64::from(self.seen.max(1)))
+            .count();
         self.noisy_pad = lively >= LIVELY_MIN;
+    }
+
+    /// What was seen so far was no rest: what changed need not have been noise.
+    pub fn forget_rest(&mut self) {
+        (self.seen, self.changes) = (0, [0; CHANNELS]);
     }
 
     fn watch_changes(&mut self, counts: &[i32; CHANNELS]) {

@@ -90,7 +90,13 @@ impl Signal {
         }
     }
 
-    /// Forgets the zero and everything learned about the channels: another pad, or the same one begun anew.
+    /// Forgets everything, the scale too: what comes next may be another pad.
+    pub fn forget_pad(&mut self) {
+        self.scale = Scale::unidentified();
+        self.restart();
+    }
+
+    /// Forgets the zero and everything learned about the channels: the pad began anew.
     pub fn restart(&mut self) {
         self.faults = ChannelFaults::new();
         self.filter.clear();
@@ -99,6 +105,7 @@ impl Signal {
 
     /// Measures the zero again, as if the pad had just been plugged in.
     pub fn retare(&mut self) {
+        self.faults.forget_rest();
         self.tare = Tare::new();
     }
 
@@ -126,7 +133,9 @@ impl Signal {
             return Conditioned::Strain(Strain { uv });
         }
         let raw_uv: [f64; CHANNELS] = sample.counts.map(|count| f64::from(count) * self.scale.uv_per_count);
-        self.tare.measure(at, &raw_uv);
+        if self.tare.measure(at, &raw_uv) {
+            self.faults.forget_rest();
+        }
         if self.tare.is_known() {
             self.faults.learn();
         }

@@ -16,6 +16,9 @@ const REST_UV: f64 = 40.0;
 /// as a press; short against warming up, which drifts by about 30 µV per kelvin (Sensors 2026, 26, 1378, Figure 8).
 const FOLLOW_S: f64 = 20.0;
 
+/// A gap in the stream counts as no longer than this: the period of the slowest pad.
+const FOLLOW_GAP_MAX_US: u64 = 10_000;
+
 /// The zero of the pad, once known.
 #[derive(Clone, Debug)]
 pub struct Tare {
@@ -51,23 +54,27 @@ impl Tare {
         self.zero_uv.is_some()
     }
 
-    /// Takes a raw sample (µV) towards the first zero. Samples until the pad has lain still for three blocks.
-    pub fn measure(&mut self, at: StreamInstant, raw_uv: &[f64; CHANNELS]) {
+    /// Takes a raw sample (µV) towards the first zero. Samples until the pad has lain still for three blocks. True if
+    /// the blocks so far show that it did not.
+    pub fn measure(&mut self, at: StreamInstant, raw_uv: &[f64; CHANNELS]) -> bool {
         let began = *self.block_began.get_or_insert(at);
         for (sum, raw) in self.block_sums.iter_mut().zip(raw_uv) {
             *sum += raw;
         }
         self.block_samples += 1;
-        if at.us_since(began) >= BLOCK_US {
+        let closes = at.us_since(began) >= BLOCK_US;
+        if closes {
             self.close_block(at);
         }
+        closes && self.zero_uv.is_none() && self.block_means.iter().all(Option::is_some)
     }
 
     /// Raw microvolts relative to the zero. Follows the zero if nothing touches the pad.
     pub fn apply(&mut self, at: StreamInstant, raw_uv: &[f64; CHANNELS], touched: bool) -> [f32; CHANNELS] {
         let mut strain_uv = [0.0; CHANNELS];
         if let Some(zero_uv) = &mut self.zero_uv {
-            let elapsed_s = at.us_since(self.followed_at) as f64 * 1e-6;
+            // Nothing is known of a gap: a finger may have come meanwhile.
+            let elapsed_s = at.us_since(self.followed_at).min(FOLLOW_GAP_MAX_US) as f64 * 1e-6;
             let share = if touched { 0.0 } else { (elapsed_s / FOLLOW_S).min(1.0) };
             for ((strain, zero), &raw) in strain_uv.iter_mut().zip(zero_uv.iter_mut()).zip(raw_uv) {
                 *zero += (raw - *zero) * share;
@@ -149,6 +156,14 @@ mod tests {
             let last_uv = strain_uv.last().unwrap();
             assert!((last_uv - expected_uv).abs() < 2.0, "{last_uv} µV is not {expected_uv} µV");
         }
+    }
+
+    #[test]
+    fn a_load_that_came_during_a_gap_is_no_drift() {
+        let mut tare = Tare::new();
+        known_at_ms(&mut tare, |_| 0.0);
+        let strain_uv = tare.apply(StreamInstant::from_us(60_000_000), &[1_000.0; CHANNELS], false);
+        assert!(strain_uv[0] > 999.0, "{} µV", strain_uv[0]);
     }
 
     #[test]

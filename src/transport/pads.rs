@@ -44,7 +44,7 @@ pub struct FoundPad {
 pub enum PadError {
     /// It is not there; it may come.
     NotThere(String),
-    /// It is there, but may not be opened (yet: the system may still be setting its permissions).
+    /// It is there, but may not be opened (yet: the system may still be setting its permissions, or be trying it out).
     Denied(String),
     /// It cannot be used, or the address does not say which pad is meant.
     Unusable(String),
@@ -199,7 +199,9 @@ fn open_serial(path: &str, baud: u32) -> Result<Box<dyn Transport>, PadError> {
     match Serial::open(path, baud) {
         Ok(serial) => Ok(Box::new(serial)),
         Err(error @ OpenError::NoSuchPort { .. }) => Err(PadError::NotThere(error.to_string())),
-        Err(error @ OpenError::NoPermission { .. }) => Err(PadError::Denied(error.to_string())),
+        Err(error @ (OpenError::NoPermission { .. } | OpenError::Busy { .. })) => {
+            Err(PadError::Denied(error.to_string()))
+        }
         Err(error) => Err(PadError::Unusable(error.to_string())),
     }
 }

@@ -25,7 +25,7 @@ const SEND_LIMIT_US: u64 = 200_000;
 pub struct Serial {
     // Sets the line and holds the lock. Its own descriptor blocks and cannot be borrowed, so bytes go through
     // `file`.
-    _port: TTYPort,
+    port: TTYPort,
     file: File,
 }
 
@@ -51,7 +51,14 @@ impl Serial {
         let port = serialport::new(path, baud).open_native();
         let port = port.map_err(|error| OpenError::from_settings(path, baud, error))?;
         port.clear(ClearBuffer::Input).map_err(|error| OpenError::from_settings(path, baud, error))?;
-        Ok(Self { _port: port, file })
+        Ok(Self { port, file })
+    }
+}
+
+impl Drop for Serial {
+    /// Unsent bytes go: closing a port waits for them, with a pad that hangs for half a minute.
+    fn drop(&mut self) {
+        let _ = self.port.clear(ClearBuffer::Output);
     }
 }
 
@@ -351,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_port_is_named_with_those_that_exist() {
+    fn missingport_is_named_with_those_that_exist() {
         let error = Serial::open("/dev/no-such-pad", BAUD).unwrap_err();
         assert!(matches!(error, OpenError::NoSuchPort { .. }));
         let present = vec!["/dev/ttyACM0".into(), "/dev/ttyS0".into()];

@@ -20,6 +20,8 @@ mod demo;
 mod guest;
 #[path = "kernel/hid.rs"]
 mod hid;
+#[path = "kernel/joystick.rs"]
+mod joystick;
 #[path = "kernel/latency.rs"]
 mod latency;
 #[path = "kernel/neutral.rs"]

@@ -13,7 +13,8 @@ use firmware_proto::sample::{Sample, Status};
 
 use crate::bridge::TACTPAD;
 use crate::clock::{MS, monotonic_ns, readable_before, stamp_ns, wait_until};
-use crate::pad::{NONE, PRESS, PRESS_RIGHT, RIGHT, Touch};
+use crate::joystick::Joystick;
+use crate::pad::{NONE, PRESS, PRESS_RIGHT, RIGHT, Touch, period_ns};
 use crate::program::Running;
 use crate::reader::{Reader, find};
 
@@ -67,12 +68,12 @@ impl HidPad {
         stamp
     }
 
-    /// Reports `touch` for `for_ms` milliseconds, a thousand times a second, and answers the bridge.
+    /// Reports `touch` for `for_ms` milliseconds, as often as [`period_ns`] says, and answers the bridge.
     pub(crate) fn hold(&mut self, touch: Touch, for_ms: u64) {
-        let start_ns = monotonic_ns();
-        for report in 1..=for_ms {
+        let (start_ns, period_ns) = (monotonic_ns(), period_ns());
+        for report in 1..=for_ms * MS / period_ns {
             self.report_one(touch);
-            self.answer_until(start_ns + report * MS);
+            self.answer_until(start_ns + report * period_ns);
         }
     }
 
@@ -115,7 +116,7 @@ impl HidPad {
                     serial_number: SerialNumber::from_ascii(&self.serial_number).expect("a short name"),
                     channels: 9,
                     count_bits: 24,
-                    rate_hz: 1_000,
+                    rate_hz: u16::try_from(1_000 * MS / period_ns()).expect("at most a thousand"),
                     picovolts_per_count: 10_000,
                 };
                 self.send(&Message::Identity(identity));
@@ -146,7 +147,7 @@ fn status() -> String {
     String::from_utf8(output.expect("ctl runs").stdout).expect("text")
 }
 
-/// A HID pad is found, identified, and plays.
+/// A HID pad is found, identified, and plays; a game sees it as an event device and as a joystick.
 pub(crate) fn plays() {
     let mut pad = HidPad::plug_in("HID-7");
     let listed =
@@ -154,13 +155,17 @@ pub(crate) fn plays() {
     let listed = String::from_utf8(listed.stdout).expect("text");
     assert!(listed.contains("hid:1209:0001:HID-7"), "{listed}");
     let mut played = start("auto", &mut pad);
+    let mut joystick = Joystick::beside(&find(KeyCode::BTN_SOUTH).expect("the gamepad"));
     pad.hold(NONE, 600);
     for touch in [RIGHT, NONE, PRESS, NONE] {
         pad.hold(touch, 150);
     }
     played.reader.read_available();
     let edges = [("ABS_HAT0X", 1), ("ABS_HAT0X", 0), ("BTN_SOUTH", 1), ("BTN_SOUTH", 0)];
+    println!("events: {:?}", played.reader.seen);
     assert_eq!(played.reader.edges(), edges);
+    let as_joystick = [("A6", i16::MAX), ("A6", 0), ("B0", 1), ("B0", 0)];
+    assert_eq!(joystick.changes(), as_joystick.map(|(name, value)| (name.to_owned(), value)));
     assert!(status().contains(r#""pad":"HID-7""#), "{}", status());
 }
 

@@ -58,7 +58,16 @@ impl Touch {
     }
 }
 
-/// The pad: 1000 samples a second while it streams, silent otherwise. It answers no command.
+/// Nanoseconds from one sample to the next: of a thousand samples a second, or of as many as `TACTPAD_TEST_RATE_HZ`
+/// says. A guest that emulates every instruction keeps up with a hundred.
+pub(crate) fn period_ns() -> u64 {
+    let rate = std::env::var("TACTPAD_TEST_RATE_HZ").unwrap_or_else(|_| "1000".into());
+    let rate_hz: u64 = rate.parse().expect("TACTPAD_TEST_RATE_HZ is a number of samples a second");
+    assert!((100..=1_000).contains(&rate_hz), "TACTPAD_TEST_RATE_HZ is {rate_hz}, not 100 to 1000");
+    1_000 * MS / rate_hz
+}
+
+/// The pad: 1000 samples a second (see [`period_ns`]) while it streams, silent otherwise. It answers no command.
 pub(crate) struct Pad {
     line: OwnedFd,
     // Held open so that the line keeps its raw mode and exists before the bridge opens it.
@@ -115,9 +124,9 @@ impl Pad {
 
     /// Streams `touch` for `for_ms` milliseconds.
     pub(crate) fn hold(&mut self, touch: Touch, for_ms: u64) {
-        let start_ns = monotonic_ns();
-        for frame in 1..=for_ms {
-            self.stream_one(touch, start_ns + frame * MS);
+        let (start_ns, period_ns) = (monotonic_ns(), period_ns());
+        for frame in 1..=for_ms * MS / period_ns {
+            self.stream_one(touch, start_ns + frame * period_ns);
         }
     }
 
@@ -130,10 +139,11 @@ impl Pad {
         mut done: impl FnMut() -> bool,
     ) {
         let limit_ns = monotonic_ns() + limit_ms * MS;
+        let period_ns = period_ns();
         while !done() {
             let now_ns = monotonic_ns();
             assert!(now_ns < limit_ns, "{what}: not within {limit_ms} ms");
-            self.stream_one(touch, now_ns + MS);
+            self.stream_one(touch, now_ns + period_ns);
         }
     }
 

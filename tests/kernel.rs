@@ -105,6 +105,13 @@ fn a_hid_pad_is_found_and_plays() {
 }
 
 #[test]
+fn a_hid_pad_plays_what_sdl_sees() {
+    if sdl::probe_is_there() {
+        in_guest("a_hid_pad_plays_what_sdl_sees", hid::seen_by_sdl);
+    }
+}
+
+#[test]
 fn two_hid_pads_are_told_apart() {
     in_guest("two_hid_pads_are_told_apart", hid::chosen_by_serial_number);
 }

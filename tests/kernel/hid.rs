@@ -17,6 +17,7 @@ use crate::joystick::Joystick;
 use crate::pad::{NONE, PRESS, PRESS_RIGHT, RIGHT, Touch, period_ns};
 use crate::program::Running;
 use crate::reader::{Reader, find};
+use crate::sdl;
 
 // Kinds of events on /dev/uhid. Source: Linux, include/uapi/linux/uhid.h.
 const UHID_DESTROY: u32 = 1;
@@ -167,6 +168,13 @@ pub(crate) fn plays() {
     let as_joystick = [("A6", i16::MAX), ("A6", 0), ("B0", 1), ("B0", 0)];
     assert_eq!(joystick.changes(), as_joystick.map(|(name, value)| (name.to_owned(), value)));
     assert!(status().contains(r#""pad":"HID-7""#), "{}", status());
+}
+
+/// A HID pad plays a game that asks SDL.
+pub(crate) fn seen_by_sdl() {
+    let mut pad = HidPad::plug_in("HID-S");
+    let _played = start("auto", &mut pad);
+    sdl::check(|touch, for_ms| pad.hold(touch, for_ms));
 }
 
 /// With two pads the serial number chooses; without it the bridge does not guess.

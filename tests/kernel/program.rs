@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::os::fd::AsFd;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, ExitStatus, Stdio};
+use std::sync::Mutex;
 
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process, pidfd_open};
 
@@ -19,6 +20,9 @@ pub(crate) fn compiled(name: &str, libraries: &[String]) -> bool {
     if !require("gcc", "apt-get install gcc libc6-dev") {
         return false;
     }
+    // Two tests may want the same program at the same time.
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _turn = ONE_AT_A_TIME.lock();
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/kernel").join(name).with_extension("c");
     let unfinished = scratch().join(format!("{name}.{}", std::process::id()));
     let status = Command::new("gcc")

@@ -6,7 +6,7 @@ use std::process::Command;
 use evdev::KeyCode;
 
 use crate::bridge::Bridge;
-use crate::pad::{NONE, PRESS, RIGHT};
+use crate::pad::{NONE, PRESS, RIGHT, Touch};
 use crate::program::{Running, compiled, path};
 use crate::support::require;
 
@@ -23,6 +23,11 @@ pub(crate) fn probe_is_there() -> bool {
 /// SDL lists the pad as a game controller with a mapping, and its D-pad and A button arrive.
 pub(crate) fn game_controller() {
     let mut bridge = Bridge::start("super-mario", KeyCode::BTN_SOUTH);
+    check(|touch, for_ms| bridge.pad.hold(touch, for_ms));
+}
+
+/// What SDL sees of the gamepad that a running bridge made, while `hold` plays on the pad before it.
+pub(crate) fn check(mut hold: impl FnMut(Touch, u64)) {
     let mut probe = Running::start(path("sdl_probe"), &["4", "10000"]);
     let mut lines = BufReader::new(probe.take_output()).lines().map(|line| line.expect("a line"));
     let listed: Vec<_> = lines.by_ref().take_while(|line| line != "ready").collect();
@@ -36,11 +41,11 @@ pub(crate) fn game_controller() {
     );
     assert!(listed[0].ends_with("controller 1"), "{}", listed[0]);
     assert!(listed[1].contains("dpright:h0.2") && listed[1].contains("a:b0"), "{}", listed[1]);
-    bridge.pad.hold(NONE, 500);
-    bridge.pad.hold(RIGHT, 100);
-    bridge.pad.hold(NONE, 100);
-    bridge.pad.hold(PRESS, 100);
-    bridge.pad.hold(NONE, 100);
+    hold(NONE, 500);
+    hold(RIGHT, 100);
+    hold(NONE, 100);
+    hold(PRESS, 100);
+    hold(NONE, 100);
     let events: Vec<_> = lines.collect();
     assert_eq!(events, ["button dpright 1", "button dpright 0", "button a 1", "button a 0"]);
     assert!(probe.wait(1_000).success());

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 const ROWS: &[&[&str]] = &[
     &["time", "spelling"],
     &["quantity", "control", "health", "latency"],
-    &["capture", "link", "signal", "influence", "mapping"],
+    &["capture", "link", "signal", "device", "influence", "mapping"],
     &["contact", "output"],
     &["pipeline", "virtual_pad"],
     &["replay"],

@@ -13,6 +13,8 @@ pub mod influence;
 pub mod latency;
 pub mod link;
 pub mod mapping;
+#[cfg(feature = "simulator")]
+pub mod mechanics;
 pub mod output;
 pub mod pipeline;
 pub mod quantity;

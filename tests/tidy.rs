@@ -8,7 +8,7 @@ const ROWS: &[&[&str]] = &[
     &["time", "spelling"],
     &["quantity", "control", "health", "latency"],
     &["capture", "link", "signal", "device", "influence", "mapping"],
-    &["contact", "output"],
+    &["contact", "output", "mechanics"],
     &["pipeline", "virtual_pad"],
     &["replay"],
     &["transport", "sink", "requests"],

@@ -1,0 +1,249 @@
+//! The 20-node brick: shape functions and the exact stiffness of a rectangular box.
+//!
+//! Nodes in the usual order: corners of the lower face counter-clockwise from (−1, −1, −1), corners of the upper face,
+//! then the middles of the lower edges, of the upper edges and of the uprights. The shape functions are the
+//! quadratic serendipity family (O. C. Zienkiewicz, R. L. Taylor, The Finite Element Method, vol. 1, chapter 8):
+//! (1+ξξᵢ)(1+ηηᵢ)(1+ζζᵢ)(ξξᵢ+ηηᵢ+ζζᵢ−2)/8 at corners, (1−ξ²)(1+ηηᵢ)(1+ζζᵢ)/4 at the middle of an edge along ξ.
+
+use std::sync::OnceLock;
+
+use crate::device::Material;
+
+/// Nodes of a brick.
+pub const NODES: usize = 20;
+
+/// Displacements of a brick: three for each node.
+pub const DOFS: usize = 3 * NODES;
+
+/// The nodes' places on the reference cube [−1, 1]³.
+pub const CORNERS: [[i8; 3]; NODES] = [
+    [-1, -1, -1],
+    [1, -1, -1],
+    [1, 1, -1],
+    [-1, 1, -1],
+    [-1, -1, 1],
+    [1, -1, 1],
+    [1, 1, 1],
+    [-1, 1, 1],
+    [0, -1, -1],
+    [1, 0, -1],
+    [0, 1, -1],
+    [-1, 0, -1],
+    [0, -1, 1],
+    [1, 0, 1],
+    [0, 1, 1],
+    [-1, 0, 1],
+    [-1, -1, 0],
+    [1, -1, 0],
+    [1, 1, 0],
+    [-1, 1, 0],
+];
+
+/// A symmetric matrix over a brick's displacements, node by node, x y z within a node.
+pub type Stiffness = [[f64; DOFS]; DOFS];
+
+/// ∫ ∂ₐNᵢ ∂ᵦNⱼ over the reference cube, as `[a][b][i][j]`.
+type Gradients = [[[[f64; NODES]; NODES]; 3]; 3];
+
+/// Lamé's constants λ and μ of a material.
+pub fn lame_mpa(material: Material) -> (f64, f64) {
+    let Material { e_mpa, nu } = material;
+    (e_mpa * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e_mpa / (2.0 * (1.0 + nu)))
+}
+
+/// Values of the 20 shape functions at a place of the reference cube.
+pub fn shapes(place: [f64; 3]) -> [f64; NODES] {
+    CORNERS.map(|node| {
+        let factors: [f64; 3] = std::array::from_fn(|a| edge_factor(node[a], place[a]));
+        let product: f64 = factors.iter().product();
+        if node.contains(&0) {
+            product / 4.0
+        } else {
+            let sum: f64 = (0..3).map(|a| f64::from(node[a]) * place[a]).sum();
+            product * (sum - 2.0) / 8.0
+        }
+    })
+}
+
+/// Derivatives of the 20 shape functions along the three axes of the reference cube, as `[axis][node]`.
+pub fn slopes(place: [f64; 3]) -> [[f64; NODES]; 3] {
+    std::array::from_fn(|axis| CORNERS.map(|node| slope(node, place, axis)))
+}
+
+/// The factor of one axis in a shape function: 1 + ξξᵢ, or 1 − ξ² along the node's own edge.
+fn edge_factor(node: i8, place: f64) -> f64 {
+    if node == 0 { 1.0 - place * place } else { 1.0 + f64::from(node) * place }
+}
+
+fn slope(node: [i8; 3], place: [f64; 3], axis: usize) -> f64 {
+    let across: f64 = (0..3).filter(|a| *a != axis).map(|a| edge_factor(node[a], place[a])).product();
+    let along = f64::from(node[axis]);
+    if node.contains(&0) {
+        return if node[axis] == 0 { -2.0 * place[axis] } else { along } * across / 4.0;
+    }
+    let sum: f64 = (0..3).map(|a| f64::from(node[a]) * place[a]).sum();
+    along * across * (sum - 2.0 + edge_factor(node[axis], place[axis])) / 8.0
+}
+
+/// Three-point Gauss-Legendre rule on [−1, 1]: places and weights. Exact up to the fifth power, so exact for a box.
+const GAUSS: [(f64, f64); 3] =
+    [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
+
+fn gradients() -> &'static Gradients {
+    static GRADIENTS: OnceLock<Box<Gradients>> = OnceLock::new();
+    GRADIENTS.get_or_init(|| {
+        let mut sums = Box::new([[[[0.0; NODES]; NODES]; 3]; 3]);
+        for (x, wx) in GAUSS {
+            for (y, wy) in GAUSS {
+                for (z, wz) in GAUSS {
+                    add_products(&slopes([x, y, z]), wx * wy * wz, &mut sums);
+                }
+            }
+        }
+        sums
+    })
+}
+
+fn add_products(slopes: &[[f64; NODES]; 3], weight: f64, sums: &mut Gradients) {
+    for (a, along) in slopes.iter().enumerate() {
+        for (b, across) in slopes.iter().enumerate() {
+            for (i, slope) in along.iter().enumerate() {
+                for (j, other) in across.iter().enumerate() {
+                    sums[a][b][i][j] += weight * slope * other;
+                }
+            }
+        }
+    }
+}
+
+/// The weights of ∫ ∂ₐNᵢ ∂ᵦNⱼ of the reference cube in a box of the given size (mm): `[a][b]`.
+fn box_weights(size_mm: [f64; 3]) -> [[f64; 3]; 3] {
+    let volume: f64 = size_mm.iter().product();
+    std::array::from_fn(|a| std::array::from_fn(|b| volume / (2.0 * size_mm[a] * size_mm[b])))
+}
+
+/// How [`box_weights`] change per millimetre of height.
+fn box_weights_per_height(size_mm: [f64; 3]) -> [[f64; 3]; 3] {
+    let weights = box_weights(size_mm);
+    let vertical = |axis: usize| f64::from(u8::from(axis == 2));
+    let power = |a: usize, b: usize| 1.0 - vertical(a) - vertical(b);
+    std::array::from_fn(|a| std::array::from_fn(|b| weights[a][b] * power(a, b) / size_mm[2]))
+}
+
+/// Stiffness of a box with edges along the axes, in N/mm.
+///
+/// K(ia, jb) = λ ∫∂ₐNᵢ ∂ᵦNⱼ + μ ∫∂ᵦNᵢ ∂ₐNⱼ + μ δₐᵦ Σ ∫∂꜀Nᵢ ∂꜀Nⱼ, integrated exactly.
+pub fn box_stiffness(size_mm: [f64; 3], material: Material) -> Box<Stiffness> {
+    weighted_stiffness(&box_weights(size_mm), material)
+}
+
+/// The derivative of [`box_stiffness`] with respect to the box's height, in N/mm².
+pub fn box_stiffness_per_height(size_mm: [f64; 3], material: Material) -> Box<Stiffness> {
+    weighted_stiffness(&box_weights_per_height(size_mm), material)
+}
+
+fn weighted_stiffness(weights: &[[f64; 3]; 3], material: Material) -> Box<Stiffness> {
+    let (lambda, mu) = lame_mpa(material);
+    let gradients = gradients();
+    let mut stiffness = Box::new([[0.0; DOFS]; DOFS]);
+    for i in 0..NODES {
+        for j in 0..NODES {
+            let gradient = |a: usize, b: usize| weights[a][b] * gradients[a][b][i][j];
+            let laplace: f64 = (0..3).map(|c| gradient(c, c)).sum();
+            for a in 0..3 {
+                for b in 0..3 {
+                    let same = if a == b { mu * laplace } else { 0.0 };
+                    stiffness[3 * i + a][3 * j + b] = lambda * gradient(a, b) + mu * gradient(b, a) + same;
+                }
+            }
+        }
+    }
+    stiffness
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3 };
+    const SIZE: [f64; 3] = [2.0, 3.0, 0.5];
+
+    fn place(node: usize) -> [f64; 3] {
+        std::array::from_fn(|a| f64::from(CORNERS[node][a]) * SIZE[a] / 2.0)
+    }
+
+    /// Forces that the box answers with to a displacement given node by node.
+    fn forces(displacement: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
+        let u: Vec<f64> = (0..NODES).flat_map(|node| displacement(place(node))).collect();
+        box_stiffness(SIZE, STEEL).iter().map(|row| row.iter().zip(&u).map(|(k, u)| k * u).sum()).collect()
+    }
+
+    #[test]
+    fn shapes_are_one_at_their_node_and_sum_to_one() {
+        for (node, corner) in CORNERS.iter().enumerate() {
+            let values = shapes(corner.map(f64::from));
+            for (other, value) in values.iter().enumerate() {
+                let wanted = f64::from(u8::from(node == other));
+                assert!((value - wanted).abs() < 1e-15);
+            }
+        }
+        let sum: f64 = shapes([0.3, -0.7, 0.2]).iter().sum();
+        assert!((sum - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn slopes_are_the_differences_of_the_shapes() {
+        let (at, step) = ([0.31, -0.62, 0.17], 1e-5);
+        for axis in 0..3 {
+            let moved = |by: f64| shapes(std::array::from_fn(|a| at[a] + if a == axis { by } else { 0.0 }));
+            for (node, slope) in slopes(at)[axis].iter().enumerate() {
+                let difference = (moved(step)[node] - moved(-step)[node]) / (2.0 * step);
+                assert!((slope - difference).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn rigid_motions_need_no_force() {
+        let stretched = forces(|[x, _, _]| [1e-3 * x, 0.0, 0.0]);
+        let scale = stretched.iter().fold(0.0_f64, |max, f| max.max(f.abs()));
+        for motion in [
+            forces(|_| [1e-3, 2e-3, -1e-3]),
+            forces(|[x, y, _]| [-1e-3 * y, 1e-3 * x, 0.0]),
+            forces(|[x, _, z]| [1e-3 * z, 0.0, -1e-3 * x]),
+        ] {
+            assert!(motion.iter().all(|force| force.abs() < 1e-11 * scale));
+        }
+    }
+
+    #[test]
+    fn even_strain_has_the_energy_of_hookes_law() {
+        let (ex, ey) = (1e-3, -4e-4);
+        let strained = |[x, y, _]: [f64; 3]| [ex * x, ey * y, 0.0];
+        let work: f64 = forces(strained)
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .enumerate()
+            .map(|(node, force)| force.iter().zip(strained(place(node))).map(|(f, u)| f * u).sum::<f64>())
+            .sum();
+        let (lambda, mu) = lame_mpa(STEEL);
+        let density = lambda * (ex + ey) * (ex + ey) + 2.0 * mu * (ex * ex + ey * ey);
+        let volume: f64 = SIZE.iter().product();
+        assert!((work / (density * volume) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_derivative_by_height_is_the_difference_of_two_boxes() {
+        let step = 1e-4;
+        let high = box_stiffness([SIZE[0], SIZE[1], SIZE[2] + step], STEEL);
+        let low = box_stiffness([SIZE[0], SIZE[1], SIZE[2] - step], STEEL);
+        let slope = box_stiffness_per_height(SIZE, STEEL);
+        let scale = slope.iter().flatten().fold(0.0_f64, |max, k| max.max(k.abs()));
+        for (row, (high, low)) in slope.iter().zip(high.iter().zip(low.iter())) {
+            for (slope, (high, low)) in row.iter().zip(high.iter().zip(low)) {
+                assert!(((high - low) / (2.0 * step) - slope).abs() < 1e-6 * scale);
+            }
+        }
+    }
+}

@@ -16,6 +16,7 @@ pub mod mapping;
 pub mod output;
 pub mod pipeline;
 pub mod quantity;
+mod random;
 pub mod replay;
 pub mod signal;
 pub mod spelling;

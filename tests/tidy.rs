@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Modules by row. A row imports only rows above it, never a sibling.
 const ROWS: &[&[&str]] = &[
-    &["time", "spelling"],
+    &["time", "spelling", "random"],
     &["quantity", "control", "health", "latency"],
     &["capture", "link", "signal", "device", "influence", "mapping"],
     &["contact", "output"],

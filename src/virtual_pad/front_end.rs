@@ -3,7 +3,7 @@
 use firmware_proto::sample::Status;
 
 use crate::quantity::{CHANNELS, Strain};
-use crate::virtual_pad::noise::Noise;
+use crate::random::SplitMix64;
 
 /// Width of the converter's codes.
 pub(super) const COUNT_BITS: u8 = 24;
@@ -20,12 +20,12 @@ const COUNT_MAX: f64 = ((1_u32 << (COUNT_BITS - 1)) - 1) as f64;
 #[derive(Clone, Debug)]
 pub(super) struct FrontEnd {
     offsets_uv: [f32; CHANNELS],
-    noise: Noise,
+    noise: SplitMix64,
 }
 
 impl FrontEnd {
     pub(super) fn new(seed: u64) -> Self {
-        let mut noise = Noise::new(seed);
+        let mut noise = SplitMix64::new(seed);
         let offsets_uv = std::array::from_fn(|_| OFFSET_MAX_UV * noise.uniform());
         Self { offsets_uv, noise }
     }

@@ -17,6 +17,7 @@ pub mod output;
 pub mod pipeline;
 pub mod quantity;
 mod random;
+pub mod readout;
 pub mod replay;
 pub mod signal;
 pub mod spelling;

@@ -7,6 +7,7 @@ pub mod capture;
 pub mod cli;
 pub mod contact;
 pub mod control;
+pub mod dataset;
 pub mod device;
 pub mod health;
 pub mod influence;

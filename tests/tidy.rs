@@ -8,7 +8,7 @@ const ROWS: &[&[&str]] = &[
     &["time", "spelling", "random"],
     &["quantity", "control", "health", "latency"],
     &["capture", "link", "signal", "device", "influence", "mapping"],
-    &["contact", "output", "readout"],
+    &["contact", "output", "readout", "dataset"],
     &["pipeline", "virtual_pad"],
     &["replay"],
     &["transport", "sink", "requests"],

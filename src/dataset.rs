@@ -1,15 +1,7 @@
 //! Contacts to train and to judge decoders on, drawn from a seed.
 //!
-//! [`paper`] draws those of the paper's section 2.3: "7200 samples with random three-axis force loading in the range
-//! 0–5 N, and another 7200 samples with random normal-force loading in the range 0–5 N, both applied at random
-//! locations on the platform surface". What the sentence leaves open is read as follows.
-//!
-//! - *Random locations*: even over the area of the disc on which a contact's patch stays on the plate.
-//! - *Normal force*: even over 0 to 5 N, pressing. A finger does not pull.
-//! - *Three-axis force*: three independent components, the magnitude of each even over 0 to 5 N. Fx and Fy have either
-//!   sign: a tangential load has no preferred direction. So the whole force reaches 8.7 N, and many of these contacts
-//!   would slip under a finger; they are there to be learned from.
-//! - *Order*: three-axis first, then normal, in the order of drawing.
+//! [`paper`] draws those of the paper's section 2.3. `docs/simulation.md` says how its sentence is read: places even over
+//! the disc; Fz even over 0 to 5 N; Fx and Fy of even magnitude and either sign.
 //!
 //! Places and forces do not depend on each other, nor one contact on another. No transcendental function is called, so
 //! that every machine draws the same numbers.
@@ -25,7 +17,7 @@ pub const PAPER_HALF: usize = 7_200;
 ///
 /// Places reach `max_centre_radius_mm` of `patch`, each force `full_scale_n`. The same seed draws the same contacts.
 ///
-/// Source: Wu et al., *Sensors* 2026, 26(4), 1378, section 2.3; the module's text says how it is read.
+/// Source: Wu et al., *Sensors* 2026, 26(4), 1378, section 2.3, read as `docs/simulation.md` says.
 pub fn paper(patch: &Patch, seed: u64) -> Vec<Contact> {
     let mut random = SplitMix64::new(seed);
     let full_scale_n = patch.full_scale_n as f32;

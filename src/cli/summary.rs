@@ -134,7 +134,7 @@ impl fmt::Display for Channel {
         let Self { channel, max_uv, rms_uv, bridge_nonlinearity } = self;
         write!(f, "{channel:<7} {max_uv:>11.1} {rms_uv:>11.1}")?;
         if let Some(Nonlinearity { max_uv, rms_uv, max_percent, rms_percent }) = bridge_nonlinearity {
-            let space = " ".repeat(25);
+            let space = " ".repeat(26);
             write!(f, "{space}{max_uv:>9.3} {rms_uv:>9.3}      {max_percent:>7.4} {rms_percent:>7.4}")?;
         }
         Ok(())
@@ -175,7 +175,9 @@ mod tests {
             assert!((found.rms_percent * 1010.0 - 100.0 * found.rms_uv).abs() < 1e-6);
         }
         let text = report.to_string();
-        assert!(text.contains("\nm2z") && text.contains("  10.000"), "{text}");
+        let (head, row) = (text.lines().nth(1).unwrap(), text.lines().last().unwrap());
+        assert!(row.starts_with("m2z  ") && row.contains("  10.000 "), "{text}");
+        assert_eq!(head.chars().count(), row.chars().count(), "{text}");
     }
 
     #[test]

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 /// Modules by row. A row imports only rows above it, never a sibling.
 const ROWS: &[&[&str]] = &[
-    &["time", "spelling"],
+    &["time", "spelling", "random"],
     &["quantity", "control", "health", "latency"],
     &["capture", "link", "signal", "device", "influence", "mapping"],
-    &["contact", "output", "mechanics"],
+    &["contact", "output", "readout", "dataset", "mechanics"],
     &["pipeline", "virtual_pad"],
     &["replay"],
     &["transport", "sink", "requests"],

@@ -19,22 +19,47 @@ const PERIOD_US: u64 = 1_000;
 
 const TIME: &str = "t_s";
 const TIMES_S: RangeInclusive<f64> = 0.0..=1e6;
-const PLACES_MM: RangeInclusive<f64> = -30.0..=30.0;
 const FORCES_N: RangeInclusive<f64> = -100.0..=100.0;
 
 /// The columns that a table must have, in the order of [`Contact`]'s fields.
 const COLUMNS: [&str; 5] = ["x_mm", "y_mm", "fx_n", "fy_n", "fz_n"];
 
-/// Reads all rows of a table of contacts.
+/// The contacts of a table, in its order.
+#[derive(Debug)]
+pub(super) struct Contacts {
+    /// Where the rows' times come from.
+    pub(super) times: Times,
+    /// At least one.
+    pub(super) rows: Vec<Row>,
+}
+
+/// Where times come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Times {
+    /// The table has them.
+    Written,
+    /// It has none: rows are 1 ms apart.
+    Supposed,
+}
+
+/// A contact, its time, and the line of the table that it stands in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) line: usize,
+    pub(super) at: StreamInstant,
+    pub(super) contact: Contact,
+}
+
+/// Reads all rows of a table of contacts on a plate of this radius.
 ///
-/// `t_s` may be missing, then rows are 1 ms apart; columns of other names are ignored, and so are empty lines.
-pub(super) fn read(path: &Path) -> Result<Vec<(StreamInstant, Contact)>, Failure> {
+/// `t_s` may be missing; columns of other names are ignored, and so are empty lines.
+pub(super) fn read(path: &Path, plate_radius_mm: f64) -> Result<Contacts, Failure> {
     let file = File::open(path).map_err(|error| unreadable(path, &error))?;
     let mut lines = Lines { path, from: BufReader::new(file), number: 0 };
     let Some(header) = lines.next_line()? else {
         return Err(lines.refusal(format_args!("the file is empty; it begins with {}", expected())));
     };
-    let table = Table::new(&lines, &header)?;
+    let table = Table::new(&lines, &header, plate_radius_mm)?;
     let mut rows = Vec::new();
     while let Some(line) = lines.next_line()? {
         let row = table.row(&lines, &line, rows.last())?;
@@ -43,7 +68,8 @@ pub(super) fn read(path: &Path) -> Result<Vec<(StreamInstant, Contact)>, Failure
     if rows.is_empty() {
         return Err(lines.refusal(format_args!("no contact follows the names of the columns")));
     }
-    Ok(rows)
+    let times = if table.time.is_some() { Times::Written } else { Times::Supposed };
+    Ok(Contacts { times, rows })
 }
 
 fn expected() -> String {
@@ -97,10 +123,11 @@ struct Table {
     width: usize,
     time: Option<usize>,
     columns: [usize; COLUMNS.len()],
+    places_mm: RangeInclusive<f64>,
 }
 
 impl Table {
-    fn new(lines: &Lines<'_>, header: &str) -> Result<Self, Failure> {
+    fn new(lines: &Lines<'_>, header: &str, plate_radius_mm: f64) -> Result<Self, Failure> {
         let names = cells(header);
         let place = |name: &str| names.iter().position(|other| *other == name);
         let missing: Vec<_> = COLUMNS.into_iter().filter(|name| place(name).is_none()).collect();
@@ -117,30 +144,26 @@ impl Table {
         }
         // None is missing.
         let columns = COLUMNS.map(|name| place(name).unwrap_or_default());
-        Ok(Self { width: names.len(), time: place(TIME), columns })
+        let places_mm = -plate_radius_mm..=plate_radius_mm;
+        Ok(Self { width: names.len(), time: place(TIME), columns, places_mm })
     }
 
-    fn row(
-        &self,
-        lines: &Lines<'_>,
-        line: &str,
-        before: Option<&(StreamInstant, Contact)>,
-    ) -> Result<(StreamInstant, Contact), Failure> {
+    fn row(&self, lines: &Lines<'_>, line: &str, before: Option<&Row>) -> Result<Row, Failure> {
         let cells = cells(line);
         if cells.len() != self.width {
             let (found, width) = (cells.len(), self.width);
             return Err(lines.refusal(format_args!("{found} values where the header names {width} columns")));
         }
         let cell = |column: usize| cells.get(column).copied().unwrap_or_default();
-        let at = self.time(lines, self.time.map(cell), before.map(|(at, _)| *at))?;
+        let at = self.time(lines, self.time.map(cell), before.map(|row| row.at))?;
         let mut numbers = [0.0; COLUMNS.len()];
         for ((name, column), number) in COLUMNS.iter().zip(self.columns).zip(&mut numbers) {
             let is_place = name.ends_with("_mm");
-            let (allowed, unit) = if is_place { (PLACES_MM, "mm") } else { (FORCES_N, "N") };
-            *number = value(name, cell(column), &allowed, unit).map_err(|what| lines.refusal(what))? as f32;
+            let (allowed, unit) = if is_place { (&self.places_mm, "mm") } else { (&FORCES_N, "N") };
+            *number = value(name, cell(column), allowed, unit).map_err(|what| lines.refusal(what))? as f32;
         }
         let [x_mm, y_mm, fx_n, fy_n, fz_n] = numbers;
-        Ok((at, Contact { x_mm, y_mm, fx_n, fy_n, fz_n }))
+        Ok(Row { line: lines.number, at, contact: Contact { x_mm, y_mm, fx_n, fy_n, fz_n } })
     }
 
     fn time(
@@ -197,12 +220,12 @@ mod tests {
     fn read_text(text: impl AsRef<[u8]>) -> Result<Vec<(u64, [f32; 5])>, String> {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), text).unwrap();
-        let row = |(at, contact): (StreamInstant, Contact)| {
+        let row = |Row { at, contact, .. }: Row| {
             let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = contact;
             (at.as_us(), [x_mm, y_mm, fx_n, fy_n, fz_n])
         };
-        match read(file.path()) {
-            Ok(rows) => Ok(rows.into_iter().map(row).collect()),
+        match read(file.path(), 30.0) {
+            Ok(contacts) => Ok(contacts.rows.into_iter().map(row).collect()),
             Err(Failure::Unusable(what)) => Err(what.replace(file.path().to_str().unwrap(), "FILE")),
             Err(other) => panic!("{other:?}"),
         }
@@ -222,6 +245,19 @@ mod tests {
             rows.iter().map(|row| (row.0, row.1[0])).collect::<Vec<_>>(),
             [(0, 1.0), (1_000, 2.0), (2_000, 3.0)]
         );
+    }
+
+    #[test]
+    fn lines_are_counted_with_the_empty_ones_and_times_are_known_or_not() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let found = |text: &str| {
+            std::fs::write(file.path(), text).unwrap();
+            let Contacts { times, rows } = read(file.path(), 30.0).unwrap();
+            (times, rows.iter().map(|row| row.line).collect::<Vec<_>>())
+        };
+        let text = "x_mm,y_mm,fx_n,fy_n,fz_n\n\n1,0,0,0,1\n2,0,0,0,1\n";
+        assert_eq!(found(text), (Times::Supposed, vec![3, 4]));
+        assert_eq!(found("\nt_s,x_mm,y_mm,fx_n,fy_n,fz_n\n0,1,0,0,0,1\n"), (Times::Written, vec![3]));
     }
 
     #[test]

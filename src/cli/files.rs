@@ -1,11 +1,11 @@
 //! The files of a live verb, checked while all of them are still whole.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::BufReader;
-use std::os::unix::fs::MetadataExt;
-use std::path::{self, Path};
+use std::path::Path;
 
 use super::live::Output;
+use super::written::{is_same, written_over};
 use super::{Failure, say};
 use crate::capture::{CaptureError, CaptureReader};
 use crate::mapping::shipped;
@@ -41,29 +41,14 @@ impl Files<'_> {
         for written in [self.capture, log].into_iter().flatten() {
             for (read, what) in [(source, "is what is played"), (profile, "is the profile")] {
                 if read.is_some_and(|read| is_same(read, written)) {
-                    return Err(refused(written, what));
+                    return Err(written_over(written, what));
                 }
             }
         }
         match (self.capture, log) {
-            (Some(capture), Some(log)) if is_same(capture, log) => Err(refused(log, "is the capture")),
+            (Some(capture), Some(log)) if is_same(capture, log) => Err(written_over(log, "is the capture")),
             _ => Ok(()),
         }
-    }
-}
-
-fn refused(written: &Path, what: &str) -> Failure {
-    Failure::Unusable(format!("{} {what} and would be written over: name another file", written.display()))
-}
-
-/// Whether both names lead to one file. Devices do not count: nothing is lost if `/dev/null` is written twice.
-fn is_same(left: &Path, right: &Path) -> bool {
-    match (fs::metadata(left), fs::metadata(right)) {
-        (Ok(left), Ok(right)) => left.is_file() && (left.dev(), left.ino()) == (right.dev(), right.ino()),
-        (Err(_), Err(_)) => {
-            path::absolute(left).ok().is_some_and(|left| path::absolute(right).ok() == Some(left))
-        }
-        _ => false,
     }
 }
 

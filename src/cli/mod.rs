@@ -15,6 +15,7 @@ mod files;
 mod latency;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod live;
+mod measured;
 mod profile;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod record;
@@ -25,6 +26,8 @@ mod run;
 mod screen;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod seconds;
+mod simulate;
+mod summary;
 mod written;
 
 use std::io::{self, Write};
@@ -68,6 +71,8 @@ enum Verb {
     /// Measure from pad bytes readable to event written, and where the time goes.
     #[cfg(all(feature = "live", target_os = "linux"))]
     Latency(latency::Arguments),
+    /// Say what the channels read for given contacts, or for the paper's dataset.
+    Simulate(simulate::Arguments),
     /// List, show and check profiles.
     Profile(profile::Arguments),
 }
@@ -107,6 +112,7 @@ pub fn run() -> ExitCode {
         Verb::Replay(arguments) => replay::run(&arguments),
         #[cfg(all(feature = "live", target_os = "linux"))]
         Verb::Latency(arguments) => latency::run(&arguments),
+        Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
     };
     let (code, message) = match outcome {

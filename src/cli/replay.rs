@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::contacts::Row;
 use super::written::stdout;
 use super::{Failure, contacts, if_read, profile, say};
 use crate::capture::{CallKind, CaptureError, CaptureReader};
@@ -19,6 +20,9 @@ use crate::pipeline::{NoProbe, Pipeline};
 use crate::quantity::Contact;
 use crate::replay::make_call;
 use crate::time::StreamInstant;
+
+/// The plate of the pads that profiles are made for.
+const PLATE_RADIUS_MM: f64 = 30.0;
 
 /// Arguments of `tactpad replay`.
 #[derive(Debug, Args)]
@@ -89,13 +93,13 @@ fn recorded_profile(call: &CallKind) -> Option<Profile> {
 
 /// Maps contacts as they stand: each row is a sample, a row without normal force is a lift.
 fn replay_contacts(path: &Path, profile: Profile, log: &mut impl Write) -> Result<(), Failure> {
-    let rows = contacts::read(path)?;
+    let rows = contacts::read(path, PLATE_RADIUS_MM)?.rows;
     let mut mapped = Mapped { ledger: Ledger::new(&profile), engine: Engine::new(profile), log };
-    for (at, contact) in &rows {
+    for Row { at, contact, .. } in &rows {
         mapped.step(*at, Some(contact).filter(|contact| contact.fz_n > 0.0))?;
     }
     // The list ends with a lift, so that nothing stays held.
-    let end = rows.last().map_or_else(StreamInstant::default, |(at, _)| *at);
+    let end = rows.last().map_or_else(StreamInstant::default, |row| row.at);
     mapped.step(end, None)?;
     Ok(mapped.settle(StreamInstant::from_us(u64::MAX))?)
 }

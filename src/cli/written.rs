@@ -1,6 +1,10 @@
-//! Output whose errors name where it was to go.
+//! Output whose errors name where it was to go, and that spares the input.
 
+use std::fs::{self, File};
 use std::io::{self, Stdout, Write};
+use std::path::{self, Path};
+
+use super::Failure;
 
 /// Writes to `to`, which people call `place`.
 pub(super) struct Named<W> {
@@ -33,6 +37,53 @@ impl<W: Write> Write for Named<W> {
     fn flush(&mut self) -> io::Result<()> {
         self.to.flush().map_err(|error| self.placed(&error))
     }
+}
+
+/// A new file; one that is there already is replaced. `-` is standard output.
+pub(super) fn create(path: &Path) -> Result<Named<Box<dyn Write>>, Failure> {
+    if is_stdout(path) {
+        return Ok(Named::new(Box::new(io::stdout()), "stdout".into()));
+    }
+    match File::create(path) {
+        Ok(file) => Ok(Named::new(Box::new(file), path.display().to_string())),
+        Err(error) => {
+            let why = reason(&error);
+            Err(Failure::Unusable(format!("{} cannot be written: {why}; name another file", path.display())))
+        }
+    }
+}
+
+/// Whether output is to go to standard output.
+pub(super) fn is_stdout(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Refuses to write over what is needed; `what` says what it is.
+pub(super) fn written_over(written: &Path, what: &str) -> Failure {
+    Failure::Unusable(format!("{} {what} and would be written over: name another file", written.display()))
+}
+
+/// Whether both names lead to one file. Devices do not count: nothing is lost if `/dev/null` is written twice.
+pub(super) fn is_same(left: &Path, right: &Path) -> bool {
+    match (fs::metadata(left), fs::metadata(right)) {
+        (Ok(file), Ok(_)) => file.is_file() && is_one(left, right).unwrap_or(false),
+        (Err(_), Err(_)) => {
+            path::absolute(left).ok().is_some_and(|left| path::absolute(right).ok() == Some(left))
+        }
+        _ => false,
+    }
+}
+
+#[cfg(unix)]
+fn is_one(left: &Path, right: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let (left, right) = (fs::metadata(left)?, fs::metadata(right)?);
+    Ok((left.dev(), left.ino()) == (right.dev(), right.ino()))
+}
+
+#[cfg(not(unix))]
+fn is_one(left: &Path, right: &Path) -> io::Result<bool> {
+    Ok(fs::canonicalize(left)? == fs::canonicalize(right)?)
 }
 
 /// What the system says, without its number.

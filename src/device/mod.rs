@@ -5,6 +5,8 @@
 //! the centre of the plate's top surface; a module's frame has x along the tangent (counter-clockwise), y along the
 //! radius (outwards) and the pad's z, which makes it left-handed.
 
+mod nominal;
+
 use crate::quantity::MODULES;
 
 /// Gauges under each module's film.

@@ -2,6 +2,7 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
@@ -83,11 +84,12 @@ impl Factor {
     ) -> Result<Self, SolveError> {
         let lower = assemble(mesh, freedoms, stiffness_of);
         let pattern = lower.pattern.as_ref();
+        // The unknowns are numbered in elimination order already. (`Identity` would take the upper triangle.)
+        let natural: Vec<usize> = (0..freedoms.unknowns()).collect();
         let symbolic = factorize_symbolic_cholesky(
             pattern,
             Side::Lower,
-            // The unknowns are numbered in elimination order already.
-            SymmetricOrdering::Identity,
+            SymmetricOrdering::Custom(PermRef::new_checked(&natural, &natural, natural.len())),
             CholeskySymbolicParams::default(),
         )
         .map_err(|_| SolveError::OutOfMemory)?;

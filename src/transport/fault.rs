@@ -18,7 +18,7 @@ use rustix::time::{
 
 use super::Transport;
 use super::pacing::{limit, monotonic_us};
-use crate::virtual_pad::noise::Noise;
+use crate::random::SplitMix64;
 
 /// A delayed frame, and whatever comes behind it, is late by this much: too little for the link to count as silent.
 pub const DELAY_US: u64 = 20_000;
@@ -130,7 +130,7 @@ impl std::error::Error for FaultPlanError {}
 #[derive(Debug)]
 struct Injector {
     probabilities: [f32; KINDS.len()],
-    noise: Noise,
+    random: SplitMix64,
     /// What came of the frame that has not ended yet.
     frame: Vec<u8>,
     /// The frame that comes after the next one.
@@ -140,7 +140,7 @@ struct Injector {
 impl Injector {
     fn new(plan: &FaultPlan) -> Self {
         let FaultPlan { seed, probabilities } = *plan;
-        Self { probabilities, noise: Noise::new(seed), frame: Vec::new(), overtaken: None }
+        Self { probabilities, random: SplitMix64::new(seed), frame: Vec::new(), overtaken: None }
     }
 
     /// Takes bytes; hands what comes through to `pass`, with its delay in microseconds.
@@ -187,7 +187,7 @@ impl Injector {
 
     /// The fault of the next frame.
     fn draw(&mut self) -> Option<Kind> {
-        let mut rest = (self.noise.uniform() + 1.0) * 0.5;
+        let mut rest = self.random.fraction();
         for ((_, kind), probability) in KINDS.into_iter().zip(self.probabilities) {
             if rest < probability {
                 return Some(kind);
@@ -198,7 +198,7 @@ impl Injector {
     }
 
     fn flip_bit(&mut self, frame: &mut [u8]) {
-        let bits = self.noise.next_bits();
+        let bits = self.random.next_bits();
         let place = (bits >> 3).checked_rem(frame.len() as u64).unwrap_or(0) as usize;
         if let Some(byte) = frame.get_mut(place) {
             *byte ^= 1 << (bits & 7);

@@ -10,7 +10,7 @@ use firmware_proto::{ENCODED_MAX, RATE_MAX_HZ, RATE_MIN_HZ};
 
 use crate::influence::InfluenceField;
 use crate::quantity::CHANNELS;
-use crate::virtual_pad::front_end::{COUNT_BITS, FrontEnd, PICOVOLTS_PER_COUNT};
+use crate::virtual_pad::front_end::{CONVERTER, FrontEnd};
 use crate::virtual_pad::script::Script;
 
 /// The serial number that the virtual pad tells.
@@ -69,9 +69,9 @@ impl VirtualPad {
                 serial_number: SerialNumber::from_ascii(SERIAL_NUMBER)
                     .expect("it is short and visible ASCII"),
                 channels: CHANNELS as u8,
-                count_bits: COUNT_BITS,
+                count_bits: CONVERTER.count_bits,
                 rate_hz: RATE_DEFAULT_HZ,
-                picovolts_per_count: PICOVOLTS_PER_COUNT,
+                picovolts_per_count: CONVERTER.picovolts_per_count,
             },
             schedule: Schedule { start_us: 0, taken: 0, rate_hz: RATE_DEFAULT_HZ },
             sequence: 0,

@@ -3,29 +3,26 @@
 use firmware_proto::sample::Status;
 
 use crate::quantity::{CHANNELS, Strain};
-use crate::virtual_pad::noise::Noise;
+use crate::random::SplitMix64;
+use crate::readout::Converter;
 
-/// Width of the converter's codes.
-pub(super) const COUNT_BITS: u8 = 24;
-
-/// One count, in picovolts at the bridge: full scale is ±20 mV. Unlike the wire's default, so that a host
-/// which does not ask for the scale reads wrong forces.
-pub(super) const PICOVOLTS_PER_COUNT: u32 = 2384;
+/// Full scale is ±20 mV. Unlike the wire's default, so that a host which does not ask for the scale reads wrong
+/// forces.
+pub(super) const CONVERTER: Converter = Converter { picovolts_per_count: 2384, count_bits: 24 };
 
 const OFFSET_MAX_UV: f32 = 1500.0;
 const NOISE_RMS_UV: f32 = 6.0;
-const COUNT_MAX: f64 = ((1_u32 << (COUNT_BITS - 1)) - 1) as f64;
 
 /// Nine channels with their own constant offset and white noise.
 #[derive(Clone, Debug)]
 pub(super) struct FrontEnd {
     offsets_uv: [f32; CHANNELS],
-    noise: Noise,
+    noise: SplitMix64,
 }
 
 impl FrontEnd {
     pub(super) fn new(seed: u64) -> Self {
-        let mut noise = Noise::new(seed);
+        let mut noise = SplitMix64::new(seed);
         let offsets_uv = std::array::from_fn(|_| OFFSET_MAX_UV * noise.uniform());
         Self { offsets_uv, noise }
     }
@@ -37,12 +34,11 @@ impl FrontEnd {
         let channels = counts.iter_mut().zip(strain.uv).zip(self.offsets_uv);
         for (channel, ((count, uv), offset_uv)) in channels.enumerate() {
             let bridge_uv = uv + offset_uv + NOISE_RMS_UV * self.noise.normal();
-            let code = (f64::from(bridge_uv) * 1e6 / f64::from(PICOVOLTS_PER_COUNT)).round();
-            let kept = code.clamp(-COUNT_MAX - 1.0, COUNT_MAX);
-            if kept != code {
+            let conversion = CONVERTER.convert(f64::from(bridge_uv));
+            if conversion.is_out_of_range {
                 status = status.with_out_of_range(channel);
             }
-            *count = kept as i32;
+            *count = conversion.count;
         }
         (counts, status)
     }
@@ -53,7 +49,7 @@ mod tests {
     use super::*;
 
     fn uv(count: i32) -> f32 {
-        count as f32 * PICOVOLTS_PER_COUNT as f32 * 1e-6
+        CONVERTER.uv(count) as f32
     }
 
     #[test]

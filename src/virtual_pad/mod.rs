@@ -9,6 +9,5 @@ pub mod firmware;
 mod fixture;
 mod front_end;
 mod gesture;
-pub(crate) mod noise;
 mod player;
 pub mod script;

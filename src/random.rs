@@ -1,4 +1,4 @@
-//! Repeatable pseudo-random numbers for offsets and noise.
+//! Repeatable pseudo-random numbers: whatever is drawn depends on a seed and on nothing else.
 
 /// How many uniform numbers make one normal one.
 const TERMS: u32 = 12;
@@ -10,11 +10,12 @@ const LANES: u32 = u64::BITS / LANE_BITS;
 /// Source: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA
 /// 2014 (SplitMix64).
 #[derive(Clone, Debug)]
-pub(crate) struct Noise {
+pub(crate) struct SplitMix64 {
     state: u64,
 }
 
-impl Noise {
+impl SplitMix64 {
+    /// The stream of this seed.
     pub(crate) const fn new(seed: u64) -> Self {
         Self { state: seed }
     }
@@ -27,10 +28,15 @@ impl Noise {
         mixed ^ (mixed >> 31)
     }
 
-    /// Evenly distributed in −1..1.
+    /// Evenly distributed in −1..1, in steps of 2⁻²³.
     pub(crate) fn uniform(&mut self) -> f32 {
+        2.0 * self.fraction() - 1.0
+    }
+
+    /// Evenly distributed in 0..1, in steps of 2⁻²⁴.
+    pub(crate) fn fraction(&mut self) -> f32 {
         let steps = (self.next_bits() >> 40) as f32;
-        steps / (1_u32 << 23) as f32 - 1.0
+        steps / (1_u32 << 24) as f32
     }
 
     /// Mean 0, standard deviation 1, never beyond ±6: the sum of twelve uniform numbers, which comes close
@@ -54,14 +60,14 @@ mod tests {
     #[test]
     fn the_generator_is_the_published_one() {
         // First outputs for seed 1234567, as other implementations of SplitMix64 print them.
-        let mut noise = Noise::new(1_234_567);
-        assert_eq!(noise.next_bits(), 6_457_827_717_110_365_317);
-        assert_eq!(noise.next_bits(), 3_203_168_211_198_807_973);
+        let mut random = SplitMix64::new(1_234_567);
+        assert_eq!(random.next_bits(), 6_457_827_717_110_365_317);
+        assert_eq!(random.next_bits(), 3_203_168_211_198_807_973);
     }
 
     #[test]
     fn moments_are_those_of_the_distributions() {
-        let mut noise = Noise::new(7);
+        let mut random = SplitMix64::new(7);
         let moments = |draw: &mut dyn FnMut() -> f32| {
             let (mut mean, mut square, mut fourth) = (0.0, 0.0, 0.0);
             for _ in 0..100_000 {
@@ -72,17 +78,17 @@ mod tests {
             }
             (mean, square, fourth)
         };
-        let (mean, square, fourth) = moments(&mut || noise.normal());
+        let (mean, square, fourth) = moments(&mut || random.normal());
         assert!(mean.abs() < 0.015 && (square - 1.0).abs() < 0.02, "{mean} {square}");
         // Twelve terms: the fourth moment is 3 − 6/(5·12) = 2.9.
         assert!((fourth - 2.9).abs() < 0.1, "{fourth}");
-        let (mean, square, _) = moments(&mut || noise.uniform());
+        let (mean, square, _) = moments(&mut || random.uniform());
         assert!(mean.abs() < 0.01 && (square - 1.0 / 3.0).abs() < 0.01, "{mean} {square}");
     }
 
     #[test]
     fn the_seed_decides() {
-        assert_eq!(Noise::new(3).normal(), Noise::new(3).normal());
-        assert_ne!(Noise::new(3).normal(), Noise::new(4).normal());
+        assert_eq!(SplitMix64::new(3).normal(), SplitMix64::new(3).normal());
+        assert_ne!(SplitMix64::new(3).normal(), SplitMix64::new(4).normal());
     }
 }

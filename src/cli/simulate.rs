@@ -1,0 +1,265 @@
+//! `tactpad simulate`: what the channels read for given contacts, or for the paper's dataset.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+
+use super::contacts::{self, Contacts, Row, Times};
+use super::measured::Measured;
+use super::summary::{Report, Summary};
+use super::written::{create, is_same, is_stdout, stdout, written_over};
+use super::{Failure, print_json, say};
+use crate::dataset;
+use crate::device::{Device, Patch};
+use crate::influence::InfluenceField;
+use crate::quantity::{CHANNELS, Contact};
+use crate::readout::{Bridges, REFERENCE_C, Readout, ThermalZero};
+use crate::time::StreamInstant;
+
+/// Places are often written to two decimals; so rounded, one on the rim may lie this far beyond it.
+const RIM_TOLERANCE_MM: f64 = 0.01;
+
+/// Arguments of `tactpad simulate`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad simulate --dataset paper --seed 1 --out paper.csv")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    source: Source,
+    /// Draws the dataset; the same seed draws the same contacts.
+    #[arg(long, default_value = "0", conflicts_with = "contacts")]
+    seed: u64,
+    /// The measured CSV to write; a file that is there is replaced, and - is standard output.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Print one JSON document: rows, and each channel's largest magnitude and root mean square.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Where the contacts come from.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct Source {
+    /// A CSV of contacts: t_s,x_mm,y_mm,fx_n,fy_n,fz_n.
+    ///
+    /// The first line names the columns; others are ignored. t_s may be missing. A contact that would reach over the
+    /// plate's rim is refused.
+    #[arg(long, value_name = "FILE")]
+    contacts: Option<PathBuf>,
+    /// Contacts that the program draws itself.
+    #[arg(long, value_name = "NAME")]
+    dataset: Option<Dataset>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Dataset {
+    /// The paper's 14,400 contacts on the plate: 7,200 with forces along three axes, 7,200 normal, each force 0 to 5 N.
+    Paper,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { out, json, .. } = arguments;
+    if *json && is_stdout(out) {
+        return Err(Failure::Unusable("--json and --out - both print: let --out name a file".into()));
+    }
+    let device = Device::nominal();
+    let contacts = contacts(arguments, &device)?;
+    let fields = fields_of(&device)?;
+    let report = measure(&contacts, &fields, &device, create(out)?)?;
+    match (json, is_stdout(out)) {
+        (true, _) => print_json(&report),
+        (false, true) => {
+            say(&report);
+            Ok(())
+        }
+        (false, false) => Ok(writeln!(stdout(), "{report}")?),
+    }
+}
+
+/// Writes what the channels read for each contact.
+fn measure(
+    contacts: &Contacts,
+    fields: &BridgeFields,
+    device: &Device,
+    out: impl Write,
+) -> io::Result<Report> {
+    let readout = Readout::of(device, ThermalZero::NONE);
+    let mut summary = Summary::default();
+    let mut table = Measured::begin(out, contacts.times)?;
+    for row in &contacts.rows {
+        let bridges = fields.bridges(&row.contact);
+        let channels_uv = readout.read_uv(&bridges, REFERENCE_C);
+        table.row(row, &channels_uv)?;
+        summary.add(&channels_uv, &bridges, device.circuit.excitation_v);
+    }
+    table.end()?;
+    Ok(match fields.sums {
+        Some(_) => summary.report(),
+        None => summary.report().without_nonlinearity(),
+    })
+}
+
+/// The contacts that were asked for, all of them on the plate.
+fn contacts(arguments: &Arguments, device: &Device) -> Result<Contacts, Failure> {
+    let Arguments { source: Source { contacts, dataset }, seed, out, .. } = arguments;
+    match (contacts, dataset) {
+        (Some(path), _) if is_same(path, out) => Err(written_over(out, "is the table of contacts")),
+        (Some(path), _) => read(path, device),
+        (None, Some(Dataset::Paper)) => Ok(drawn(dataset::paper(&device.contact, *seed))),
+        (None, None) => Err(Failure::Unusable("give --contacts or --dataset".into())),
+    }
+}
+
+/// Reads a table of contacts, all of which must be on the plate.
+fn read(path: &Path, device: &Device) -> Result<Contacts, Failure> {
+    let contacts = contacts::read(path, 0.5 * device.plate.diameter_mm)?;
+    contacts.rows.iter().try_for_each(|row| on_the_plate(path, row, &device.contact))?;
+    Ok(contacts)
+}
+
+/// Refuses a contact whose patch would reach over the plate's rim.
+///
+/// The field ends there. Taking such a contact at the rim would write a row whose place and channels do not belong
+/// together, and a decoder would learn it.
+fn on_the_plate(path: &Path, row: &Row, patch: &Patch) -> Result<(), Failure> {
+    let Row { line, contact: Contact { x_mm, y_mm, .. }, .. } = row;
+    let radius_mm = f64::from(*x_mm).hypot(f64::from(*y_mm));
+    let Patch { patch_radius_mm, max_centre_radius_mm, .. } = patch;
+    if radius_mm <= max_centre_radius_mm + RIM_TOLERANCE_MM {
+        return Ok(());
+    }
+    Err(Failure::Unusable(format!(
+        "{}:{line}: the contact is {radius_mm:.2} mm from the centre, and a finger of {patch_radius_mm} mm radius stays \
+         on the plate up to {max_centre_radius_mm} mm; move it or leave it out",
+        path.display()
+    )))
+}
+
+/// Drawn contacts as a table without times.
+fn drawn(contacts: Vec<Contact>) -> Contacts {
+    let row = |(index, contact)| Row { line: index + 2, at: StreamInstant::default(), contact };
+    Contacts { times: Times::Supposed, rows: contacts.into_iter().enumerate().map(row).collect() }
+}
+
+/// What the bridges of a pad carry per newton, at any place.
+struct BridgeFields {
+    signals: InfluenceField,
+    /// The gauges' sums; without them only the linear law can be read.
+    sums: Option<InfluenceField>,
+}
+
+/// The fields of `device`.
+fn fields_of(device: &Device) -> Result<BridgeFields, Failure> {
+    let fields = BridgeFields { signals: InfluenceField::nominal(), sums: None };
+    if device.circuit.bridge_nonlinearity && fields.sums.is_none() {
+        return Err(Failure::Unusable(
+            "the sums of the gauges are not known, which bridge_nonlinearity needs; set it to false".into(),
+        ));
+    }
+    Ok(fields)
+}
+
+impl BridgeFields {
+    /// What the bridges carry for `contact`; sums of zero where they are not known.
+    fn bridges(&self, contact: &Contact) -> Bridges {
+        let uv = |field: &InfluenceField| field.strain_uv(contact).uv.map(f64::from);
+        Bridges { signal_uv: uv(&self.signals), sum_uv: self.sums.as_ref().map_or([0.0; CHANNELS], uv) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(x_mm: f32, y_mm: f32, fz_n: f32) -> Row {
+        let contact = Contact { x_mm, y_mm, fx_n: 0.5, fy_n: -1.0, fz_n };
+        Row { line: 7, at: StreamInstant::default(), contact }
+    }
+
+    /// The channels that are written for a few contacts, and the report.
+    fn measured(device: &Device, fields: &BridgeFields) -> (Vec<[f64; CHANNELS]>, serde_json::Value) {
+        let rows = vec![row(0.0, 0.0, 5.0), row(20.0, 0.0, 3.0), row(-9.0, 21.0, 1.0)];
+        let mut text = Vec::new();
+        let contacts = Contacts { times: Times::Supposed, rows };
+        let report = measure(&contacts, fields, device, &mut text).unwrap();
+        let numbers = |line: &str| {
+            let numbers: Vec<f64> = line.split(',').skip(5).map(|number| number.parse().unwrap()).collect();
+            numbers.try_into().unwrap()
+        };
+        let table = String::from_utf8(text).unwrap().lines().skip(1).map(numbers).collect();
+        (table, serde_json::to_value(report).unwrap())
+    }
+
+    /// Fields whose sums are the signals themselves: s = S/δ.
+    fn fields() -> BridgeFields {
+        BridgeFields { signals: InfluenceField::nominal(), sums: Some(InfluenceField::nominal()) }
+    }
+
+    #[test]
+    fn an_exact_bridge_writes_what_the_report_says_it_adds() {
+        let linear = Device::nominal();
+        let mut exact = linear.clone();
+        exact.circuit.bridge_nonlinearity = true;
+        let ((linear_uv, linear_report), (exact_uv, exact_report)) =
+            (measured(&linear, &fields()), measured(&exact, &fields()));
+        let mut max_uv = [0.0_f64; CHANNELS];
+        for (linear_uv, exact_uv) in linear_uv.iter().zip(&exact_uv) {
+            for channel in 0..CHANNELS {
+                let wanted_uv = linear_uv[channel] / (1.0 + linear_uv[channel] / 5.6e6);
+                assert!((exact_uv[channel] - wanted_uv).abs() < 0.002, "{wanted_uv} {exact_uv:?}");
+                max_uv[channel] = max_uv[channel].max((wanted_uv - linear_uv[channel]).abs());
+            }
+        }
+        for (channel, max_uv) in max_uv.into_iter().enumerate() {
+            let told = |report: &serde_json::Value| {
+                report["channels"][channel]["bridge_nonlinearity"]["max_uv"].as_f64().unwrap()
+            };
+            assert!(
+                (told(&linear_report) - max_uv).abs() < 0.002 && told(&exact_report) == told(&linear_report)
+            );
+        }
+        assert!(
+            max_uv.into_iter().fold(0.0, f64::max) > 1.0,
+            "5 N over a module bend the bridge: {max_uv:?}"
+        );
+    }
+
+    #[test]
+    fn gains_and_offsets_are_the_modules() {
+        let nominal = Device::nominal();
+        let mut other = nominal.clone();
+        other.modules[1].gain = [1.0, 2.0, 1.0];
+        other.modules[2].offset_uv = [0.0, 0.0, -300.0];
+        let ((nominal_uv, _), (other_uv, _)) = (measured(&nominal, &fields()), measured(&other, &fields()));
+        for (nominal_uv, other_uv) in nominal_uv.into_iter().zip(other_uv) {
+            let mut wanted_uv = nominal_uv;
+            wanted_uv[4] *= 2.0;
+            wanted_uv[8] -= 300.0;
+            for (wanted_uv, other_uv) in wanted_uv.into_iter().zip(other_uv) {
+                assert!((wanted_uv - other_uv).abs() < 0.002, "{wanted_uv} {other_uv}");
+            }
+        }
+    }
+
+    #[test]
+    fn contacts_end_where_the_patch_would_leave_the_plate() {
+        let patch = Device::nominal().contact;
+        let allowed = |x_mm, y_mm| on_the_plate(Path::new("c.csv"), &row(x_mm, y_mm, 1.0), &patch);
+        for (x_mm, y_mm) in [(0.0, 0.0), (29.0, 0.0), (0.0, -29.009), (20.51, 20.51)] {
+            assert!(allowed(x_mm, y_mm).is_ok(), "{x_mm} {y_mm}");
+        }
+        for (x_mm, y_mm) in [(29.011, 0.0), (-20.52, 20.52), (30.0, 30.0)] {
+            let Err(Failure::Unusable(what)) = allowed(x_mm, y_mm) else { panic!("{x_mm} {y_mm}") };
+            assert!(what.starts_with("c.csv:7: the contact is "), "{what}");
+        }
+    }
+
+    #[test]
+    fn exact_bridges_need_their_sums() {
+        let mut device = Device::nominal();
+        assert!(fields_of(&device).is_ok());
+        device.circuit.bridge_nonlinearity = true;
+        assert!(matches!(fields_of(&device), Err(Failure::Unusable(_))));
+    }
+}

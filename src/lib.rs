@@ -26,6 +26,7 @@ pub mod signal;
 pub mod spelling;
 pub mod time;
 pub mod virtual_pad;
+pub mod zernike;
 
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod bridge;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Modules by row. A row imports only rows above it, never a sibling.
 const ROWS: &[&[&str]] = &[
-    &["time", "spelling", "random"],
+    &["time", "spelling", "zernike", "random"],
     &["quantity", "control", "health", "latency"],
     &["capture", "link", "signal", "device", "influence", "mapping"],
     &["contact", "output", "readout", "dataset", "mechanics"],

@@ -2,7 +2,10 @@
 
 mod brick;
 mod dissection;
+pub mod grams;
 pub mod grid;
 pub mod mesh;
+pub mod pad;
+pub mod plate;
 pub mod superelement;
 pub mod system;

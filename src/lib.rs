@@ -20,6 +20,7 @@ pub mod replay;
 pub mod signal;
 pub mod spelling;
 pub mod time;
+pub mod toml_text;
 pub mod virtual_pad;
 
 #[cfg(all(feature = "live", target_os = "linux"))]

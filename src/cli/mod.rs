@@ -25,6 +25,7 @@ mod run;
 mod screen;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod seconds;
+mod text_file;
 mod written;
 
 use std::io::{self, Write};

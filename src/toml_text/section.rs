@@ -1,4 +1,7 @@
-//! Typed reads from a table of a profile's text; every failed read is reported at its place.
+//! Typed reads from a table of the text; every failed read is reported at its place.
+
+use std::fmt;
+use std::str::FromStr;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -8,38 +11,60 @@ use crate::spelling;
 
 /// A value and the byte offset where it is written (or, for a default, where the table starts that lacks it).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Placed<T> {
-    pub(super) value: T,
-    pub(super) at: usize,
+pub(crate) struct Placed<T> {
+    pub(crate) value: T,
+    pub(crate) at: usize,
 }
 
 /// The allowed values of a number, ends included, and what an absent key means.
 #[derive(Clone, Copy)]
-pub(super) struct Bounds<T> {
-    pub(super) low: T,
-    pub(super) high: T,
-    pub(super) default: T,
+pub(crate) struct Bounds<T> {
+    pub(crate) low: T,
+    pub(crate) high: T,
+    pub(crate) default: T,
 }
 
+/// Numbers with a fraction: what a profile counts in `f32` and a device in `f64`.
+pub(crate) trait Real: Copy + PartialOrd + fmt::Display + FromStr {
+    /// Whether it is neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+}
+
+impl Real for f32 {
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+}
+
+impl Real for f64 {
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+}
+
+/// The longest name for people.
+const NAME_CHARS_MAX: usize = 64;
+
 /// One table of the text.
-pub(super) struct Section<'t> {
+pub(crate) struct Section<'t> {
     /// How messages name it, as `[dpad]`.
-    pub(super) title: String,
+    pub(crate) title: String,
     /// Byte offset of its header.
-    pub(super) at: usize,
+    pub(crate) at: usize,
     table: &'t DeTable<'t>,
-    known: &'static [&'static str],
+    known: Vec<&'static str>,
 }
 
 impl<'t> Section<'t> {
-    /// The whole text; every key that is not in `known` is reported.
-    pub(super) fn root(
+    /// The whole text, which messages call `title`; every key that is not in `known` is reported.
+    pub(crate) fn root(
         tree: &'t Spanned<DeTable<'t>>,
-        known: &'static [&'static str],
+        title: &str,
+        known: &[&'static str],
         report: &mut Report<'_>,
     ) -> Self {
-        Self { title: "the profile".to_owned(), at: tree.span().start, table: tree.get_ref(), known }
-            .closed(report)
+        let (at, table) = (tree.span().start, tree.get_ref());
+        Self { title: title.to_owned(), at, table, known: known.to_vec() }.closed(report)
     }
 
     fn get(&self, key: &str) -> Option<&'t Spanned<DeValue<'t>>> {
@@ -47,7 +72,7 @@ impl<'t> Section<'t> {
     }
 
     /// The byte offset of `key`'s value, if it is written.
-    pub(super) fn place_of(&self, key: &str) -> Option<usize> {
+    pub(crate) fn place_of(&self, key: &str) -> Option<usize> {
         self.get(key).map(|value| value.span().start)
     }
 
@@ -72,7 +97,7 @@ impl<'t> Section<'t> {
     }
 
     /// Reports it if `key` is not there; `help` says what to write. A misspelt one is reported already.
-    pub(super) fn require(&self, key: &'static str, help: &str, report: &mut Report<'_>) {
+    pub(crate) fn require(&self, key: &'static str, help: &str, report: &mut Report<'_>) {
         let means_key = |name: &str| spelling::nearest(name, self.known.iter().copied()) == Some(key);
         let names = self.table.keys().map(|name| name.get_ref().as_ref());
         let misspelt = names.filter(|name| !self.known.contains(name)).any(means_key);
@@ -81,16 +106,25 @@ impl<'t> Section<'t> {
         }
     }
 
+    /// The number under `key`, whatever it is; `None` where it is absent, and where it is no number (which is
+    /// reported).
+    pub(crate) fn real<T: Real>(&self, key: &str, report: &mut Report<'_>) -> Option<Placed<T>> {
+        let value = self.get(key)?;
+        let number = as_real(value.get_ref()).or_else(|| wrong_type(key, value, "a number", report))?;
+        Some(Placed { value: number, at: value.span().start })
+    }
+
     /// The number under `key`; the default where there is none, `None` (and a report) where it is unusable.
-    pub(super) fn number(
+    pub(crate) fn number<T: Real>(
         &self,
         key: &str,
-        bounds: Bounds<f32>,
+        bounds: Bounds<T>,
         report: &mut Report<'_>,
-    ) -> Option<Placed<f32>> {
-        let Some(value) = self.get(key) else { return Some(Placed { value: bounds.default, at: self.at }) };
-        let at = value.span().start;
-        let Some(number) = as_f32(value.get_ref()) else { return wrong_type(key, value, "a number", report) };
+    ) -> Option<Placed<T>> {
+        if self.get(key).is_none() {
+            return Some(Placed { value: bounds.default, at: self.at });
+        }
+        let Placed { value: number, at } = self.real::<T>(key, report)?;
         let Bounds { low, high, .. } = bounds;
         if (low..=high).contains(&number) {
             return Some(Placed { value: number, at });
@@ -106,7 +140,7 @@ impl<'t> Section<'t> {
 
     /// The whole number under `key`; the default where there is none, `None` (and a report) where it is
     /// unusable.
-    pub(super) fn whole(
+    pub(crate) fn whole(
         &self,
         key: &str,
         bounds: Bounds<u32>,
@@ -130,7 +164,7 @@ impl<'t> Section<'t> {
     }
 
     /// The text under `key`; `None` where it is absent, and where it is no text (which is reported).
-    pub(super) fn text(&self, key: &str, report: &mut Report<'_>) -> Option<Placed<&'t str>> {
+    pub(crate) fn text(&self, key: &str, report: &mut Report<'_>) -> Option<Placed<&'t str>> {
         let value = self.get(key)?;
         match value.get_ref().as_str() {
             Some(text) => Some(Placed { value: text, at: value.span().start }),
@@ -138,9 +172,20 @@ impl<'t> Section<'t> {
         }
     }
 
+    /// The name for people under `key`; `None` where it is absent, and where it is no name (reported).
+    pub(crate) fn name(&self, key: &str, report: &mut Report<'_>) -> Option<&'t str> {
+        let Placed { value: name, at } = self.text(key, report)?;
+        let length = name.chars().count();
+        if name.trim().is_empty() || length > NAME_CHARS_MAX || name.chars().any(char::is_control) {
+            report.error(at, format!("\"{key}\" must be one line of 1 to {NAME_CHARS_MAX} characters"), "");
+            return None;
+        }
+        Some(name)
+    }
+
     /// What the word under `key` stands for; `None` where it is absent, and where it is none of `words`
     /// (reported).
-    pub(super) fn word<T: Copy>(
+    pub(crate) fn word<T: Copy>(
         &self,
         key: &str,
         words: &[(&'static str, T)],
@@ -166,24 +211,24 @@ impl<'t> Section<'t> {
 
     /// The table under `key`, named `title`, with its `known` keys; `None` where it is absent, and where it
     /// is no table (reported).
-    pub(super) fn table(
+    pub(crate) fn table(
         &self,
         key: &str,
         title: String,
-        known: &'static [&'static str],
+        known: &[&'static str],
         report: &mut Report<'_>,
     ) -> Option<Self> {
         let value = self.get(key)?;
         let table = value.get_ref().as_table().or_else(|| wrong_type(key, value, "a table", report))?;
-        Some(Self { title, at: value.span().start, table, known }.closed(report))
+        Some(Self { title, at: value.span().start, table, known: known.to_vec() }.closed(report))
     }
 
     /// The first tables `[[key]]` in the text's order, at most `limit`, each named after `key` and its number
     /// from 1; others are reported.
-    pub(super) fn tables(
+    pub(crate) fn tables(
         &self,
         key: &str,
-        known: &'static [&'static str],
+        known: &[&'static str],
         limit: usize,
         report: &mut Report<'_>,
     ) -> Vec<Self> {
@@ -197,6 +242,7 @@ impl<'t> Section<'t> {
         for (number, entry) in (1..).zip(list.iter().take(limit)) {
             let (title, at) = (format!("{key} {number}"), entry.span().start);
             let table = entry.get_ref().as_table().or_else(|| wrong_type(key, entry, &wanted, report));
+            let known = known.to_vec();
             tables.extend(table.map(|table| Self { title, at, table, known }.closed(report)));
         }
         tables
@@ -204,12 +250,12 @@ impl<'t> Section<'t> {
 }
 
 /// Integers count as numbers, too: nobody should have to write `2.0` for 2 N.
-fn as_f32(value: &DeValue<'_>) -> Option<f32> {
+fn as_real<T: Real>(value: &DeValue<'_>) -> Option<T> {
     match value {
         DeValue::Float(float) => float.as_str().parse().ok(),
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
         DeValue::Integer(integer) => {
-            u64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|n| n as f32)
+            u64::from_str_radix(integer.as_str(), integer.radix()).ok()?.to_string().parse().ok()
         }
         _ => None,
     }

@@ -138,6 +138,61 @@ impl<'t> Section<'t> {
         None
     }
 
+    /// The `count` numbers in the list under `key`; `None` where it is absent, and where it is no such list
+    /// (reported).
+    pub(crate) fn reals<T: Real>(
+        &self,
+        key: &str,
+        count: usize,
+        report: &mut Report<'_>,
+    ) -> Option<Vec<Placed<T>>> {
+        let wanted = format!("a list of {count} numbers");
+        self.list(key, count, &wanted, as_real, report)
+    }
+
+    /// The `count` texts in the list under `key`; `None` where it is absent, and where it is no such list
+    /// (reported).
+    pub(crate) fn texts(
+        &self,
+        key: &str,
+        count: usize,
+        report: &mut Report<'_>,
+    ) -> Option<Vec<Placed<&'t str>>> {
+        let wanted = format!("a list of {count} texts in quotation marks");
+        self.list(key, count, &wanted, |value| value.as_str(), report)
+    }
+
+    /// The list under `key`, which must be as `wanted` says; `item` reads one of its `count` values.
+    fn list<T>(
+        &self,
+        key: &str,
+        count: usize,
+        wanted: &str,
+        item: impl Fn(&'t DeValue<'t>) -> Option<T>,
+        report: &mut Report<'_>,
+    ) -> Option<Vec<Placed<T>>> {
+        let value = self.get(key)?;
+        let list = value.get_ref().as_array().or_else(|| wrong_type(key, value, wanted, report))?;
+        let read = |value: &'t Spanned<DeValue<'t>>| {
+            Some(Placed { value: item(value.get_ref())?, at: value.span().start })
+        };
+        let mut items = Vec::new();
+        for value in list.iter().take(count) {
+            items.push(read(value).or_else(|| wrong_type(key, value, wanted, report))?);
+        }
+        if list.len() == count {
+            return Some(items);
+        }
+        report.error(value.span().start, format!("\"{key}\" must be {wanted}, not of {}", list.len()), "");
+        None
+    }
+
+    /// Whether the flag under `key` is set; `None` where it is absent, and where it is no flag (reported).
+    pub(crate) fn flag(&self, key: &str, report: &mut Report<'_>) -> Option<bool> {
+        let value = self.get(key)?;
+        value.get_ref().as_bool().or_else(|| wrong_type(key, value, "true or false", report))
+    }
+
     /// The whole number under `key`; the default where there is none, `None` (and a report) where it is
     /// unusable.
     pub(crate) fn whole(

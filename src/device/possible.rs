@@ -158,10 +158,9 @@ fn check_overlap(device: &Device, finding: &mut Finding<'_, '_>) {
 fn why_overlap(device: &Device, earlier: usize, later: usize) -> (Vec<String>, String) {
     let angle_deg = device.sites.angles_deg[later];
     let apart_deg = (angle_deg - device.sites.angles_deg[earlier]).abs();
-    let (film_mm, radius_mm) = (device.stack.film_length_x_mm, device.sites.centre_radius_mm);
     let (drawn, help) = if apart_deg.min(360.0 - apart_deg) < CLOSE_DEG {
         (format!("modules.angles_deg.{later}"), close_help(angle_deg))
-    } else if film_mm > radius_mm {
+    } else if film_is_vast(device) {
         (
             "stack.film_length_x_mm".to_owned(),
             "write a smaller film, or put the modules farther out".to_owned(),
@@ -216,8 +215,8 @@ fn check_outline(device: &Device, finding: &mut Finding<'_, '_>) {
                 rounded(reach_mm),
                 rounded(plate_mm)
             );
-            let film_is_large = device.stack.film_length_x_mm > device.sites.centre_radius_mm;
-            let drawn = if film_is_large { "stack.film_length_x_mm" } else { "modules.centre_radius_mm" };
+            let drawn =
+                if film_is_vast(device) { "stack.film_length_x_mm" } else { "modules.centre_radius_mm" };
             let names = suspects(device, &[index], drawn);
             let names: Vec<_> = names.iter().map(String::as_str).collect();
             let help =
@@ -267,6 +266,11 @@ fn check_contact(device: &Device, finding: &mut Finding<'_, '_>) {
         let names = ["contact.max_centre_radius_mm", "contact.patch_radius_mm"];
         finding.refuse(&[names[usize::from(is_wide)]], message, help);
     }
+}
+
+/// Whether the film is so long that it, and not its place, is wrong.
+fn film_is_vast(device: &Device) -> bool {
+    device.stack.film_length_x_mm > device.plate.diameter_mm / 2.0
 }
 
 /// Half the film's size along a module's x and y.

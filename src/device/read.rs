@@ -50,7 +50,7 @@ pub(super) fn imperfections(mut device: Device, text: &str) -> (Option<Device>, 
         return (None, reading.report.finish());
     };
     let known: Vec<_> = ["schema"].into_iter().chain(KINDS.iter().map(|kind| kind.table)).collect();
-    let root = Section::root(&tree, "the imperfections", &known, &mut reading.report);
+    let root = Section::root(&tree, "the file of imperfections", &known, &mut reading.report);
     read_schema(&root, &mut reading);
     KINDS.iter().for_each(|kind| (kind.read)(&root, &mut device, &mut reading));
     settle(device, reading)
@@ -144,7 +144,8 @@ fn read_gauges(root: &Section<'_>, gauges: &mut [Gauge; GAUGES], reading: &mut R
     // With as many tables as gauges, the missing ones are those whose names were refused.
     if !missing.is_empty() && (1..GAUGES).contains(&tables.len()) {
         let at = root.place_of("gauge").unwrap_or(root.at);
-        reading.report.misplaced(at, format!("the device lacks gauge {}", missing.join(", ")), HELP);
+        let plural = if missing.len() > 1 { "gauges" } else { "gauge" };
+        reading.report.misplaced(at, format!("the device lacks {plural} {}", missing.join(", ")), HELP);
     }
 }
 

@@ -55,7 +55,7 @@ impl<'t> Reading<'t> {
     /// Reports each of `keys` that the table lacks.
     pub(super) fn require<T>(&mut self, section: &Section<'_>, keys: &'static [Key<T>]) {
         for key in keys {
-            let unit = if key.unit.symbol().is_empty() { "" } else { " in " };
+            let unit = if key.unit.symbol().is_empty() { "" } else { ", in " };
             let help = format!("write {}{unit}{}", key.meaning, key.unit.symbol());
             section.require(key.name, &help, &mut self.report);
         }
@@ -82,14 +82,14 @@ impl<'t> Reading<'t> {
 /// What was probably meant by a number outside the key's range, or why there is none.
 fn why_not<T>(key: &Key<T>, value: f64) -> String {
     let (low, high) = key.range;
-    if key.name == "nu" && value >= high {
-        return "a material of 0.5 keeps its volume under any pressure: its stiffness would be infinite"
+    if key.name == "nu" && (high..1.0).contains(&value) {
+        return "at 0.5 a material would keep its volume under any pressure: its bulk modulus would be infinite"
             .to_owned();
     }
-    if let Some((unit, meant)) = key.unit.meant(value, low, high) {
-        return format!("if it is in {unit}, write {}", shown(meant));
+    match key.unit.meant(value, low, high) {
+        Some((unit, meant)) => format!("if it is in {unit}, write {}", shown(meant)),
+        None => format!("\"{}\" is {}", key.name, key.meaning),
     }
-    format!("it is {}", key.meaning)
 }
 
 /// The name of a parameter: its table's path, its key and, in a list, its element.

@@ -307,10 +307,10 @@ pub(super) static GAUGE: [Key<Gauge>; 5] = [
     Key::new("width_mm", MM, PART_MM, one!(width_mm), "its size across the grid"),
     Key::new(
         "resistance_ratio",
-        RATIO,
+        Unit::BridgeR,
         (0.1, 10.0),
         one!(resistance_ratio),
-        "its resistance as a share of the bridge's R, not in ohms",
+        "its resistance as a share of the bridge's R, not ohms",
     ),
 ];
 

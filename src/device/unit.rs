@@ -17,6 +17,8 @@ pub enum Unit {
     Newton,
     /// Ratios and factors.
     One,
+    /// A resistance as a share of the bridge's R.
+    BridgeR,
 }
 
 impl Unit {
@@ -30,6 +32,7 @@ impl Unit {
             Self::Microvolt => "uV",
             Self::Newton => "N",
             Self::One => "",
+            Self::BridgeR => "R",
         }
     }
 
@@ -43,14 +46,17 @@ impl Unit {
             Self::Newton => &[("millinewtons", 1e-3), ("kilonewtons", 1e3)],
             Self::One => &[("percent", 1e-2)],
             // Radians are small numbers, so no range tells them; `possible` does by where the modules stand.
-            Self::Degree => &[],
+            // And what an ohm is of the bridge's R is not known.
+            Self::Degree | Self::BridgeR => &[],
         }
     }
 
     /// The unit that was probably meant by a number outside `low` to `high`, and the number in this unit.
     pub(super) fn meant(self, value: f64, low: f64, high: f64) -> Option<(&'static str, f64)> {
         let converted = self.mistaken_for().iter().map(|(unit, factor)| (*unit, rounded(value * factor)));
-        converted.into_iter().find(|(_, value)| (low..=high).contains(value) && *value != 0.0)
+        // One percent and less is nobody's mistake: whoever writes 1 means 1.
+        let is_small = |unit, value: f64| value == 0.0 || unit == "percent" && value.abs() <= 0.01;
+        converted.into_iter().find(|(unit, value)| (low..=high).contains(value) && !is_small(*unit, *value))
     }
 }
 

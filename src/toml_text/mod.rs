@@ -1,7 +1,7 @@
 //! TOML texts that people write: what is in them, and everything that is wrong with them, at its place.
 //!
-//! A reader walks the text's tree by [`section::Section`]s and notes findings in a [`diag::Report`], so that
-//! one reading tells them all.
+//! A reader walks the text's tree table by table and notes findings in one report, so that one reading tells them
+//! all.
 
 use toml::Spanned;
 use toml::de::DeTable;

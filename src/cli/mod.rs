@@ -5,6 +5,9 @@ mod contacts;
 mod ctl;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod demo;
+// Part of the program as soon as a verb takes it.
+#[cfg(test)]
+mod device;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod devices;
 #[cfg(all(feature = "live", target_os = "linux"))]

@@ -8,6 +8,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use proptest::prelude::{Just, Strategy, any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
 use tactpad::device::parameter::Parameter;
@@ -222,6 +223,27 @@ fn the_example_of_the_reference_can_be_laid_over_the_nominal_device() {
     let (device, found) = Device::nominal().with_imperfections(example);
     assert_eq!(found, vec![]);
     assert_eq!(device.unwrap().modules[2].frame_e_factor, 0.6);
+}
+
+#[test]
+#[expect(clippy::disallowed_methods, reason = "what is tested is the time that it takes")]
+fn checking_is_bounded_whatever_the_text() {
+    let table = |head: &str| {
+        let keys = (0..).map(|number| format!("film_length_{number} = 1\n"));
+        let text = keys.take(11_000).fold(head.to_owned(), |text, key| text + &key);
+        text[..text.len().min(TEXT_BYTES_MAX)].to_owned()
+    };
+    let gauge = "[[gauge]]\nname = \"R1\"\n";
+    let texts =
+        [table(""), table("[stack]\n"), table("[[module]]\n"), gauge.repeat(TEXT_BYTES_MAX / gauge.len())];
+    for text in texts {
+        assert!(text.len() > TEXT_BYTES_MAX - 30_000, "{}", text.len());
+        let start = Instant::now();
+        let (device, found) = Device::from_toml(&text);
+        let took = start.elapsed();
+        assert!(device.is_none() && found.len() <= 51);
+        assert!(took < Duration::from_secs(1), "{}: {took:?}", &text[..20]);
+    }
 }
 
 /// Rows `| `key` | unit | low to high | …` of the reference, as (key, unit, low, high).

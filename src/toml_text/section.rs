@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 
 use super::diag::{Report, quoted, shortened};
 use crate::spelling;
@@ -53,6 +53,8 @@ pub(crate) struct Section<'t> {
     pub(crate) at: usize,
     table: &'t DeTable<'t>,
     known: Vec<&'static str>,
+    /// Those of `known` that keys which are not among them were probably meant to be.
+    misspelt: Vec<&'static str>,
 }
 
 impl<'t> Section<'t> {
@@ -63,8 +65,7 @@ impl<'t> Section<'t> {
         known: &[&'static str],
         report: &mut Report<'_>,
     ) -> Self {
-        let (at, table) = (tree.span().start, tree.get_ref());
-        Self { title: title.to_owned(), at, table, known: known.to_vec() }.closed(report)
+        Self::closed(title.to_owned(), tree.span().start, tree.get_ref(), known, report)
     }
 
     fn get(&self, key: &str) -> Option<&'t Spanned<DeValue<'t>>> {
@@ -76,32 +77,39 @@ impl<'t> Section<'t> {
         self.get(key).map(|value| value.span().start)
     }
 
-    /// Reports every key that is not known here.
-    fn closed(self, report: &mut Report<'_>) -> Self {
-        for key in self.table.keys().filter(|key| !self.known.contains(&key.get_ref().as_ref())) {
+    /// A table whose keys are checked: those that are not in `known` are reported.
+    fn closed(
+        title: String,
+        at: usize,
+        table: &'t DeTable<'t>,
+        known: &[&'static str],
+        report: &mut Report<'_>,
+    ) -> Self {
+        let mut section = Self { title, at, table, known: known.to_vec(), misspelt: Vec::new() };
+        for key in table.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {
+            section.refuse(key, report);
+            // A name is compared with all known ones, so a table full of strangers must not be.
             if report.is_full() {
                 break;
             }
-            let name = key.get_ref().as_ref();
-            let help = spelling::nearest(name, self.known.iter().copied()).map_or_else(
-                || format!("known here: {}", self.known.join(", ")),
-                |word| format!("did you mean \"{word}\"?"),
-            );
-            report.misplaced(
-                key.span().start,
-                format!("unknown key {} in {}", quoted(name), self.title),
-                help,
-            );
         }
-        self
+        section
+    }
+
+    fn refuse(&mut self, key: &Spanned<DeString<'_>>, report: &mut Report<'_>) {
+        let name = key.get_ref().as_ref();
+        let near = spelling::nearest(name, self.known.iter().copied());
+        self.misspelt.extend(near);
+        let help = near.map_or_else(
+            || format!("known here: {}", self.known.join(", ")),
+            |word| format!("did you mean \"{word}\"?"),
+        );
+        report.misplaced(key.span().start, format!("unknown key {} in {}", quoted(name), self.title), help);
     }
 
     /// Reports it if `key` is not there; `help` says what to write. A misspelt one is reported already.
     pub(crate) fn require(&self, key: &'static str, help: &str, report: &mut Report<'_>) {
-        let means_key = |name: &str| spelling::nearest(name, self.known.iter().copied()) == Some(key);
-        let names = self.table.keys().map(|name| name.get_ref().as_ref());
-        let misspelt = names.filter(|name| !self.known.contains(name)).any(means_key);
-        if self.get(key).is_none() && !misspelt {
+        if self.get(key).is_none() && !self.misspelt.contains(&key) {
             report.misplaced(self.at, format!("{} lacks \"{key}\"", self.title), help);
         }
     }
@@ -275,7 +283,7 @@ impl<'t> Section<'t> {
     ) -> Option<Self> {
         let value = self.get(key)?;
         let table = value.get_ref().as_table().or_else(|| wrong_type(key, value, "a table", report))?;
-        Some(Self { title, at: value.span().start, table, known: known.to_vec() }.closed(report))
+        Some(Self::closed(title, value.span().start, table, known, report))
     }
 
     /// The first tables `[[key]]` in the text's order, at most `limit`, each named after `key` and its number
@@ -297,8 +305,7 @@ impl<'t> Section<'t> {
         for (number, entry) in (1..).zip(list.iter().take(limit)) {
             let (title, at) = (format!("{key} {number}"), entry.span().start);
             let table = entry.get_ref().as_table().or_else(|| wrong_type(key, entry, &wanted, report));
-            let known = known.to_vec();
-            tables.extend(table.map(|table| Self { title, at, table, known }.closed(report)));
+            tables.extend(table.map(|table| Self::closed(title, at, table, known, report)));
         }
         tables
     }

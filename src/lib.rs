@@ -25,6 +25,7 @@ pub mod replay;
 pub mod signal;
 pub mod spelling;
 pub mod time;
+pub mod toml_text;
 pub mod virtual_pad;
 pub mod zernike;
 

@@ -8,9 +8,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use tactpad::mapping::check::{OutputChoice, TEXT_BYTES_MAX, read};
-use tactpad::mapping::diag::{Diagnostic, Severity};
+use tactpad::mapping::check::{OutputChoice, read};
 use tactpad::mapping::shipped;
+use tactpad::toml_text::TEXT_BYTES_MAX;
+use tactpad::toml_text::diag::{Diagnostic, Severity};
 
 fn folder(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)

@@ -1,7 +1,7 @@
 //! `mappings/README.md` is the reference of the profiles' language: what it shows and states must hold.
 
 use tactpad::mapping::check::{OutputChoice, read};
-use tactpad::mapping::diag::Diagnostic;
+use tactpad::toml_text::diag::Diagnostic;
 
 /// The lines that a profile must have.
 const HEAD: &str = "schema = 1\nname = \"Test\"\noutput = \"gamepad\"\n";

@@ -3,10 +3,10 @@
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 
 use tactpad::contact::statics::{Statics, StaticsModel};
+use tactpad::device::Device;
 use tactpad::quantity::{CHANNELS, Contact, MODULES, Strain};
 
 const TABLE: &str = include_str!("../models/influence.csv");
-const DEVICE: &str = include_str!("../models/sstid.toml");
 const MODULE_RADIUS_MM: f64 = 20.0;
 
 /// One place of the table; `gain[channel][axis]` in µV/N.
@@ -115,11 +115,10 @@ fn the_shipped_numbers_are_the_least_squares_fit() {
 
 #[test]
 fn the_geometry_is_the_device_files() {
-    let device: toml::Table = DEVICE.parse().unwrap();
-    let number = |table: &str, key: &str| device[table][key].as_float().unwrap();
+    let device = Device::nominal();
     let model = *Statics::nominal().model();
-    assert_eq!(f64::from(model.module_radius_mm), number("modules", "centre_radius_mm"));
-    assert_eq!(f64::from(model.plate_radius_mm), number("plate", "diameter_mm") / 2.0);
+    assert_eq!(f64::from(model.module_radius_mm), device.sites.centre_radius_mm);
+    assert_eq!(f64::from(model.plate_radius_mm), device.plate.diameter_mm / 2.0);
 }
 
 fn mean_and_worst(values: impl Iterator<Item = f64>) -> (f64, f64) {

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 /// Modules by row. A row imports only rows above it, never a sibling.
 const ROWS: &[&[&str]] = &[
-    &["time", "spelling", "zernike", "random"],
-    &["quantity", "control", "health", "latency"],
+    &["time", "spelling", "random", "zernike"],
+    &["quantity", "control", "health", "latency", "toml_text"],
     &["capture", "link", "signal", "device", "influence", "mapping"],
     &["contact", "output", "readout", "dataset", "mechanics"],
     &["pipeline", "virtual_pad"],
@@ -17,8 +17,19 @@ const ROWS: &[&[&str]] = &[
 ];
 
 /// Everything that runs between pad bytes and output events.
-const LIVE_CORE: &[&str] =
-    &["time", "quantity", "control", "health", "link", "signal", "contact", "mapping", "output", "pipeline"];
+const LIVE_CORE: &[&str] = &[
+    "time",
+    "quantity",
+    "control",
+    "health",
+    "toml_text",
+    "link",
+    "signal",
+    "contact",
+    "mapping",
+    "output",
+    "pipeline",
+];
 
 /// What the live core may not say: clocks, I/O, threads, logs, panics, hash maps. (Lints watch over `unwrap`.)
 const BANNED_IN_LIVE_CORE: &[&str] = &[

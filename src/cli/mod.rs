@@ -5,6 +5,9 @@ mod contacts;
 mod ctl;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod demo;
+// Part of the program as soon as a verb takes it.
+#[cfg(test)]
+mod device;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod devices;
 #[cfg(all(feature = "live", target_os = "linux"))]
@@ -28,6 +31,7 @@ mod screen;
 mod seconds;
 mod simulate;
 mod summary;
+mod text_file;
 mod written;
 
 use std::io::{self, Write};

@@ -1,18 +1,17 @@
 //! `tactpad profile`: list, show, check.
 
-use std::fs::{self, File};
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
-use super::written::{reason, stdout};
-use super::{Failure, if_read, print_json};
-use crate::mapping::check::{self, OutputChoice, TEXT_BYTES_MAX};
-use crate::mapping::diag::Diagnostic;
+use super::written::stdout;
+use super::{Failure, if_read, print_json, text_file};
+use crate::mapping::check::{self, OutputChoice};
 use crate::mapping::profile::Profile;
 use crate::mapping::shipped;
+use crate::toml_text::diag::Diagnostic;
 
 /// Arguments of `tactpad profile`.
 #[derive(Debug, Args)]
@@ -66,33 +65,10 @@ pub(super) fn text(profile: &str) -> Result<String, Failure> {
             "there is no profile {profile:?}: choose one of {names}, or give a file"
         )));
     }
-    read_file(Path::new(profile)).map_err(|why| {
+    text_file::read(Path::new(profile)).map_err(|why| {
         Failure::Unusable(format!(
             "profile {profile} cannot be read: {why}; name another file, or one of {names}"
         ))
-    })
-}
-
-/// The text of a file, or why there is none.
-fn read_file(path: &Path) -> Result<String, String> {
-    // Asked before it is opened: opening a pipe would wait for its other end.
-    let file = fs::metadata(path).map_err(|error| reason(&error))?;
-    if !file.is_file() {
-        return Err(format!(
-            "it is {}, not a file",
-            if file.is_dir() { "a directory" } else { "a device or a pipe" }
-        ));
-    }
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(|error| reason(&error))?;
-    file.take(TEXT_BYTES_MAX as u64 + 1).read_to_end(&mut bytes).map_err(|error| reason(&error))?;
-    if bytes.len() > TEXT_BYTES_MAX {
-        return Err(check::too_long());
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        let line = 1 + error.as_bytes().iter().take(at).filter(|byte| **byte == b'\n').count();
-        format!("it is not text: byte {} in line {line} is not UTF-8", at + 1)
     })
 }
 

@@ -4,10 +4,26 @@
 //! in newtons, bridge signals in microvolts. Frames are those of the device file: the pad frame has its origin at
 //! the centre of the plate's top surface; a module's frame has x along the tangent (counter-clockwise), y along the
 //! radius (outwards) and the pad's z, which makes it left-handed.
-
-mod nominal;
+//!
+//! A file's text becomes a [`Device`] in `reading` → `imperfection` → `possible` → `read`; each of these uses only
+//! those before it, and all follow the list of numbers in [`schema`]. `write` is the way back.
 
 use crate::quantity::MODULES;
+use crate::toml_text::diag::Diagnostic;
+
+mod fingerprint;
+mod imperfection;
+mod lines;
+pub mod parameter;
+pub mod pose;
+mod possible;
+mod read;
+mod reading;
+pub mod schema;
+pub mod unit;
+mod write;
+
+const NOMINAL: &str = include_str!("../../models/sstid.toml");
 
 /// Gauges under each module's film.
 pub const GAUGES: usize = 7;
@@ -33,8 +49,34 @@ pub struct Device {
     pub circuit: Circuit,
     /// What a contact is.
     pub contact: Patch,
+    /// What was measured on the hardware that it describes, where the file says so.
+    pub reported: Option<Reported>,
     /// How each module differs from the nominal one.
     pub modules: [Module; MODULES],
+}
+
+impl Device {
+    /// Reads a device file.
+    ///
+    /// Returns what there is to say about the text, in its order; after 50 findings a closing one says that there
+    /// is more. The device is `None` exactly if there is an error among it. Then all of its numbers are finite,
+    /// within the ranges of `models/README.md`, and its parts fit together.
+    pub fn from_toml(text: &str) -> (Option<Self>, Vec<Diagnostic>) {
+        read::device(text)
+    }
+
+    /// This device with a file of imperfections laid over it: what the file does not write stays.
+    ///
+    /// Returns the same as [`Self::from_toml`]; the parts of the changed device must fit together, too.
+    pub fn with_imperfections(&self, text: &str) -> (Option<Self>, Vec<Diagnostic>) {
+        read::imperfections(self.clone(), text)
+    }
+
+    /// The pad in `models/sstid.toml`.
+    #[expect(clippy::expect_used, reason = "the file is part of the program and a test reads it")]
+    pub fn nominal() -> Self {
+        Self::from_toml(NOMINAL).0.expect("models/sstid.toml is a device")
+    }
 }
 
 /// A round plate of even thickness; its top surface is z = 0.
@@ -166,6 +208,19 @@ pub struct Patch {
     pub full_scale_n: f64,
 }
 
+/// Figures that somebody measured on hardware, for orientation: nothing is computed from them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reported {
+    /// The smallest force that was told apart.
+    pub force_resolution_n: f64,
+    /// Drift of each channel over 10 K.
+    pub thermal_drift_uv_per_10k: f64,
+    /// Repeatability in percent of the full scale's output.
+    pub repeatability_percent_fso: f64,
+    /// Hysteresis in percent of the full scale's output.
+    pub hysteresis_percent_fso: f64,
+}
+
 /// A side of a module's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
@@ -221,4 +276,28 @@ impl Module {
         gain: [1.0; 3],
         offset_uv: [0.0; 3],
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shipped_device_is_read_whole() {
+        let (device, found) = Device::from_toml(NOMINAL);
+        assert_eq!((device, found), (Some(Device::nominal()), vec![]));
+        let device = Device::nominal();
+        assert_eq!(device.name, "SSTID nominal");
+        assert_eq!(device.sites, Sites { angles_deg: [0.0, 120.0, 240.0], centre_radius_mm: 20.0 });
+        assert_eq!(device.stack.film_length_x_mm, 9.8);
+        assert_eq!(device.material.epoxy, Material { e_mpa: 250.0, nu: 0.35 });
+        assert_eq!(device.gauge_law.transverse_ratio, 5.4 / 9.8);
+        let ratios = device.gauges.map(|gauge| gauge.resistance_ratio);
+        assert_eq!(ratios, [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0]);
+        let Gauge { x_mm, y_mm, direction, .. } = device.gauges[3];
+        assert_eq!((x_mm, y_mm, direction), (0.0, 1.0, Direction::Y));
+        assert!(!device.circuit.bridge_nonlinearity);
+        assert_eq!(device.reported.unwrap().hysteresis_percent_fso, 3.1);
+        assert_eq!(device.modules, [Module::NOMINAL; MODULES]);
+    }
 }

@@ -1,11 +1,11 @@
 //! Outputs as a profile writes them: `"BTN_SOUTH"`, `"ABS_HAT0X+"`, `"KEY_Z"`, `"BTN_LEFT"`.
 
-use super::diag::{Report, quoted};
 use super::profile::Binding;
-use super::syntax::{Placed, Section};
 use crate::control::names::{self, GAMEPAD_BUTTONS, HAT_AXES, POINTER_BUTTONS, POINTER_MOTION};
 use crate::control::{Code, Device};
 use crate::spelling;
+use crate::toml_text::diag::{Report, quoted};
+use crate::toml_text::section::{Placed, Section};
 
 /// The devices that a profile plays on alternatively, see [`Outputs`].
 const PLAYED: [Device; 2] = [Device::Gamepad, Device::Keyboard];

@@ -3,16 +3,16 @@
 //! `mappings/README.md` documents every key for people. All findings are reported at once.
 
 use arrayvec::ArrayVec;
-use toml::de::DeTable;
 
 use super::binding::{DEVICE_KEYS, Outputs, written_or};
 use super::conflict::{self, Owner, Use};
-use super::diag::{Diagnostic, Report};
 use super::profile::{
     Action, BUTTONS_MAX, Button, Dpad, DpadMode, Force, POINTER_SPEED_MAX, Pointer, Profile,
 };
-use super::syntax::{Bounds, Placed, Section};
 use crate::control::Device;
+use crate::toml_text;
+use crate::toml_text::diag::{Diagnostic, Report};
+use crate::toml_text::section::{Bounds, Placed, Section};
 
 /// Which of a profile's two sets of bindings to use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,10 +23,6 @@ pub enum OutputChoice {
     Keyboard,
 }
 
-/// A longer text is no profile; the limit bounds what reading one can cost.
-pub const TEXT_BYTES_MAX: usize = 256_000;
-
-const NAME_CHARS_MAX: usize = 64;
 const FILTER_SAMPLES: Bounds<u32> = Bounds { low: 1, high: 64, default: 6 };
 const MIN_PRESS_MS: Bounds<u32> = Bounds { low: 0, high: 1_000, default: 40 };
 const LONG_PRESS_MS: Bounds<u32> = Bounds { low: 1, high: 10_000, default: 400 };
@@ -88,26 +84,17 @@ const DIRECTIONS: [(&str, &str, &str); 4] = [
 ///
 /// Returns what there is to say about the text, in its order; after 50 findings a closing one says that there is
 /// more. The profile is `None` exactly if there is an error among it; warnings leave it usable. A text above
-/// [`TEXT_BYTES_MAX`] is not read.
+/// [`toml_text::TEXT_BYTES_MAX`] is not read.
 pub fn read(text: &str, output: OutputChoice) -> (Option<Profile>, Vec<Diagnostic>) {
     let mut report = Report::new(text);
-    if text.len() > TEXT_BYTES_MAX {
-        report.error(0, too_long(), "a profile is a few lines of TOML");
+    let Some(tree) = toml_text::parse(text, "a profile is a few lines of TOML", &mut report) else {
         return (None, report.finish());
-    }
-    let (tree, faults) = DeTable::parse_recoverable(text);
-    for fault in faults {
-        report.broken(fault.span().map_or(0, |span| span.start), fault.message());
-    }
-    let draft = Draft::read(&Section::root(&tree, &ROOT_KEYS, &mut report), &mut report);
+    };
+    let root = Section::root(&tree, "the profile", &ROOT_KEYS, &mut report);
+    let draft = Draft::read(&root, &mut report);
     draft.check_conflicts(&mut report);
     let profile = if report.failed() { None } else { draft.settle(output) };
     (profile, report.finish())
-}
-
-/// What is wrong with a text above [`TEXT_BYTES_MAX`].
-pub fn too_long() -> String {
-    format!("the text is longer than {} kB", TEXT_BYTES_MAX / 1_000)
 }
 
 /// A profile while it is read: what is unusable is `None` and reported.
@@ -245,13 +232,7 @@ fn read_schema(root: &Section<'_>, report: &mut Report<'_>) {
 
 fn read_name(root: &Section<'_>, report: &mut Report<'_>) -> Option<String> {
     root.require("name", "write name = \"…\", the game's name", report);
-    let Placed { value: name, at } = root.text("name", report)?;
-    let length = name.chars().count();
-    if name.trim().is_empty() || length > NAME_CHARS_MAX || name.chars().any(char::is_control) {
-        report.error(at, format!("\"name\" must be one line of 1 to {NAME_CHARS_MAX} characters"), "");
-        return None;
-    }
-    Some(name.to_owned())
+    root.name("name", report).map(str::to_owned)
 }
 
 impl DpadDraft {

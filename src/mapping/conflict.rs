@@ -7,10 +7,10 @@
 use std::fmt;
 
 use super::binding::Outputs;
-use super::diag::Report;
 use super::profile::{Binding, DpadMode};
-use super::syntax::Placed;
 use crate::control::Device;
+use crate::toml_text::diag::Report;
+use crate::toml_text::section::Placed;
 
 /// What drives a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

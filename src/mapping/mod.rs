@@ -2,13 +2,12 @@
 //!
 //! The mapping states *levels*; it never emits. `output::ledger` turns levels into edges.
 //!
-//! A profile's text becomes a [`profile::Profile`] in `diag` → `syntax` → `binding` → `conflict` → `check`;
-//! each of these uses only those before it. The live part is `sector`, `steer` and `press`, put together by `engine`.
+//! A profile's text becomes a [`profile::Profile`] in `binding` → `conflict` → `check`; each of these uses only
+//! those before it. The live part is `sector`, `steer` and `press`, put together by `engine`.
 
 mod binding;
 pub mod check;
 mod conflict;
-pub mod diag;
 pub mod engine;
 pub mod intent;
 mod press;
@@ -16,4 +15,3 @@ pub mod profile;
 mod sector;
 pub mod shipped;
 mod steer;
-mod syntax;

@@ -2,7 +2,7 @@
 #![no_main]
 
 use tactpad::mapping::check::{self, OutputChoice};
-use tactpad::mapping::diag::Severity;
+use tactpad::toml_text::diag::Severity;
 use tactpad_fuzz::rig::Rig;
 
 libfuzzer_sys::fuzz_target!(|text: &str| {

@@ -1,16 +1,16 @@
-//! What is wrong with a profile and where: line, column, one sentence and the way out.
+//! What is wrong with a text and where: line, column, one sentence and the way out.
 
 use std::fmt::{self, Write};
 
 use serde::Serialize;
 
-/// Whether a profile can still be used.
+/// Whether what the text describes can still be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// There is no profile until this is mended.
+    /// It cannot be used until this is mended.
     Error,
-    /// The profile works, but probably not as meant.
+    /// It works, but probably not as meant.
     Warning,
 }
 
@@ -23,10 +23,10 @@ impl fmt::Display for Severity {
     }
 }
 
-/// One finding about a profile's text.
+/// One finding about a text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Diagnostic {
-    /// Whether the profile can still be used.
+    /// Whether what the text describes can still be used.
     pub severity: Severity,
     /// One sentence without a full stop: what is wrong.
     pub message: String,
@@ -56,7 +56,7 @@ impl Diagnostic {
 const FINDINGS_MAX: usize = 50;
 
 /// Findings about one text while it is read.
-pub(super) struct Report<'t> {
+pub(crate) struct Report<'t> {
     text: &'t str,
     found: Vec<Diagnostic>,
     broken_lines: Vec<usize>,
@@ -65,7 +65,7 @@ pub(super) struct Report<'t> {
 }
 
 impl<'t> Report<'t> {
-    pub(super) const fn new(text: &'t str) -> Self {
+    pub(crate) const fn new(text: &'t str) -> Self {
         Self { text, found: Vec::new(), broken_lines: Vec::new(), dropped: None }
     }
 
@@ -73,7 +73,7 @@ impl<'t> Report<'t> {
     ///
     /// Whatever else is found on that line would be an echo of this, and so may be keys that are missing or
     /// in the wrong table anywhere: both are dropped from here on.
-    pub(super) fn broken(&mut self, at: usize, message: &str) {
+    pub(crate) fn broken(&mut self, at: usize, message: &str) {
         if self.is_full() {
             self.dropped = Some(Severity::Error);
             return;
@@ -93,19 +93,19 @@ impl<'t> Report<'t> {
     }
 
     /// Notes an error at the byte offset `at`; an empty `help` is none.
-    pub(super) fn error(&mut self, at: usize, message: impl Into<String>, help: impl Into<String>) {
+    pub(crate) fn error(&mut self, at: usize, message: impl Into<String>, help: impl Into<String>) {
         self.note(Severity::Error, at, message.into(), help.into());
     }
 
     /// Notes at the byte offset `at` that a key is missing or stands where it does not belong.
-    pub(super) fn misplaced(&mut self, at: usize, message: impl Into<String>, help: impl Into<String>) {
+    pub(crate) fn misplaced(&mut self, at: usize, message: impl Into<String>, help: impl Into<String>) {
         if self.broken_lines.is_empty() {
             self.error(at, message, help);
         }
     }
 
     /// Notes a warning at the byte offset `at`; an empty `help` is none.
-    pub(super) fn warning(&mut self, at: usize, message: impl Into<String>, help: impl Into<String>) {
+    pub(crate) fn warning(&mut self, at: usize, message: impl Into<String>, help: impl Into<String>) {
         self.note(Severity::Warning, at, message.into(), help.into());
     }
 
@@ -124,18 +124,18 @@ impl<'t> Report<'t> {
     }
 
     /// Whether there are so many findings that no other is kept.
-    pub(super) const fn is_full(&self) -> bool {
+    pub(crate) const fn is_full(&self) -> bool {
         self.found.len() >= FINDINGS_MAX
     }
 
     /// Whether an error was noted.
-    pub(super) fn failed(&self) -> bool {
+    pub(crate) fn failed(&self) -> bool {
         let mut severities = self.found.iter().map(|finding| finding.severity).chain(self.dropped);
         severities.any(|severity| severity == Severity::Error)
     }
 
     /// Everything found, in the order of the text, and a closing line if there is more.
-    pub(super) fn finish(mut self) -> Vec<Diagnostic> {
+    pub(crate) fn finish(mut self) -> Vec<Diagnostic> {
         self.found.sort_by_key(|finding| (finding.line, finding.column));
         if let Some(severity) = self.dropped {
             let (line, column) = position(self.text, usize::MAX);
@@ -157,7 +157,7 @@ fn position(text: &str, at: usize) -> (usize, usize) {
 }
 
 /// `text` cut to a length that fits a sentence.
-pub(super) fn shortened(text: &str) -> String {
+pub(crate) fn shortened(text: &str) -> String {
     const SHOWN: usize = 40;
     let mut letters = text.chars();
     let mut short: String = letters.by_ref().take(SHOWN).collect();
@@ -168,7 +168,7 @@ pub(super) fn shortened(text: &str) -> String {
 }
 
 /// `text` shortened, in quotation marks, control characters escaped.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     format!("{:?}", shortened(text))
 }
 

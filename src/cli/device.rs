@@ -1,0 +1,112 @@
+//! `--device` and `--imperfections`: the pad that a verb computes with.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::{Failure, text_file};
+use crate::device::Device;
+use crate::toml_text::diag::Diagnostic;
+
+/// Which pad; flattened into the arguments of each verb that simulates or decodes.
+#[derive(Debug, Args)]
+pub(super) struct Pad {
+    /// A device file; without it the nominal pad, whose file is models/sstid.toml.
+    #[arg(long, value_name = "FILE")]
+    device: Option<PathBuf>,
+    /// A file of [[module]] tables that say how this pad differs from the device.
+    #[arg(long, value_name = "FILE")]
+    imperfections: Option<PathBuf>,
+}
+
+impl Pad {
+    /// Reads the files. What is wrong with them makes them unusable, and all of it is told.
+    pub(super) fn read(&self) -> Result<Device, Failure> {
+        let device = match &self.device {
+            Some(path) => read(path, "device", Device::from_toml)?,
+            None => Device::nominal(),
+        };
+        match &self.imperfections {
+            Some(path) => read(path, "imperfections", |text| device.with_imperfections(text)),
+            None => Ok(device),
+        }
+    }
+}
+
+fn read(
+    path: &Path,
+    what: &str,
+    device: impl Fn(&str) -> (Option<Device>, Vec<Diagnostic>),
+) -> Result<Device, Failure> {
+    let file = path.display().to_string();
+    let text = text_file::read(path).map_err(|why| {
+        Failure::Unusable(format!("{what} {file} cannot be read: {why}; name another file"))
+    })?;
+    let (device, found) = device(&text);
+    device.ok_or_else(|| {
+        let told: Vec<_> = found.iter().map(|finding| finding.render(&file)).collect();
+        Failure::Unusable(format!("{what} {file} cannot be used\n{}", told.join("\n")))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Verb {
+        #[command(flatten)]
+        pad: Pad,
+    }
+
+    /// What a verb gets for these texts under `--device` and `--imperfections`: a device or what is told.
+    fn given(device: Option<&str>, imperfections: Option<&str>) -> Result<Device, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let mut arguments = vec!["verb".into()];
+        for (name, text) in [("device", device), ("imperfections", imperfections)] {
+            if let Some(text) = text {
+                let path = folder.path().join(name);
+                fs::write(&path, text).unwrap();
+                arguments.extend([format!("--{name}").into(), path.into_os_string()]);
+            }
+        }
+        Verb::parse_from(arguments).pad.read().map_err(|failure| match failure {
+            Failure::Unusable(told) => told.replace(&format!("{}/", folder.path().display()), ""),
+            other => panic!("{other:?}"),
+        })
+    }
+
+    #[test]
+    fn the_pad_is_the_nominal_one_unless_files_say_otherwise() {
+        let nominal = Device::nominal();
+        assert_eq!(given(None, None), Ok(nominal.clone()));
+        let thicker = nominal.to_toml().replace("thickness_mm = 1.0 ", "thickness_mm = 1.15 ");
+        let moved = "[[module]]\nindex = 0\nradial_mm = -0.7\n";
+        let both = given(Some(&thicker), Some(moved)).unwrap();
+        assert_eq!((both.plate.thickness_mm, both.modules[0].radial_mm), (1.15, -0.7));
+        assert_eq!(given(None, Some(moved)).unwrap().plate, nominal.plate);
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_file_line_and_column() {
+        let broken = Device::nominal().to_toml().replace("diameter_mm = 60.0", "diameter_mm = -60");
+        let told = given(Some(&broken), None).unwrap_err();
+        let lines: Vec<_> = told.lines().collect();
+        assert_eq!(lines[0], "device device cannot be used");
+        assert_eq!(lines[1], "device:10:15: error: \"diameter_mm\" is -60; it must be 10 to 500 mm");
+        let told = given(None, Some("[[module]]\nindex = 0\nradial_mm = 9\n[[modul]]\n")).unwrap_err();
+        assert!(told.contains("imperfections:3:13: error: module 0 leaves the plate"), "{told}");
+        assert!(told.contains("imperfections:4:3: error: unknown key \"modul\""), "{told}");
+    }
+
+    #[test]
+    fn a_file_that_is_none_is_refused() {
+        let refused = Verb::parse_from(["verb", "--device", "/no-such-file.toml"]).pad.read();
+        let Err(Failure::Unusable(told)) = refused else { panic!("{refused:?}") };
+        assert!(told.contains("/no-such-file.toml cannot be read: No such file"), "{told}");
+    }
+}

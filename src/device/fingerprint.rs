@@ -1,0 +1,80 @@
+//! A short name for everything that a pad's influence field follows from, to keep computed fields under.
+
+use std::fmt::Write;
+
+use super::Device;
+use super::parameter::Parameter;
+use super::schema::{DIRECTIONS, Effect, GAUGE_NAMES, SIDES};
+
+impl Device {
+    /// The text that [`Self::fingerprint`] is taken from: a line `name = value` for each parameter whose effect is
+    /// [`Effect::Field`], in the order of [`Parameter::all`], then the gauges' directions and the open frames.
+    ///
+    /// Values are the shortest decimals that read back equal, so two texts are equal exactly if all these values
+    /// are. It holds neither the device's name, gains and offsets, nor how the bridges' signals are read out.
+    pub fn field_text(&self) -> String {
+        let mut text = String::new();
+        for parameter in Parameter::all().filter(|parameter| parameter.effect() == Effect::Field) {
+            // Negative zero is the same number as zero. Writing to a string cannot fail.
+            let _ = writeln!(text, "{parameter} = {:?}", parameter.get(self) + 0.0);
+        }
+        for (gauge, name) in self.gauges.iter().zip(GAUGE_NAMES) {
+            let word = DIRECTIONS.iter().find(|(_, direction)| *direction == gauge.direction);
+            let _ = writeln!(text, "gauge.{name}.direction = {}", word.map_or("", |(word, _)| word));
+        }
+        for (index, module) in self.modules.iter().enumerate() {
+            let word = SIDES.iter().find(|(_, side)| Some(*side) == module.frame_open);
+            let _ = writeln!(text, "module.{index}.frame_open = {}", word.map_or("none", |(word, _)| word));
+        }
+        text
+    }
+
+    /// The 64-bit FNV-1a hash of [`Self::field_text`]: equal numbers, equal fingerprint, however the file is
+    /// written. Unequal ones may share it, though hardly by chance; a file that is kept under it can hold the
+    /// text, to be sure.
+    pub fn fingerprint(&self) -> u64 {
+        fnv1a(self.field_text().as_bytes())
+    }
+}
+
+/// Source: G. Fowler, L. C. Noll, K.-P. Vo, D. Eastlake, "The FNV Non-Cryptographic Hash Algorithm", section 2.
+fn fnv1a(bytes: &[u8]) -> u64 {
+    const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
+    const PRIME: u64 = 0x0000_0100_0000_01b3;
+    bytes.iter().fold(OFFSET_BASIS, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(PRIME))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::Side;
+
+    #[test]
+    fn the_hash_gives_the_published_values() {
+        assert_eq!(fnv1a(b""), 0xcbf2_9ce4_8422_2325);
+        assert_eq!(fnv1a(b"a"), 0xaf63_dc4c_8601_ec8c);
+        assert_eq!(fnv1a(b"foobar"), 0x8594_4171_f739_67e8);
+    }
+
+    #[test]
+    fn it_changes_with_the_field_and_with_nothing_else() {
+        let nominal = Device::nominal();
+        for parameter in Parameter::all() {
+            let mut device = nominal.clone();
+            let value = parameter.get(&nominal);
+            parameter.set(&mut device, value + (value.abs() + 1.0) * 1e-12);
+            let same = device.fingerprint() == nominal.fingerprint();
+            assert_eq!(same, parameter.effect() != Effect::Field, "{parameter}");
+        }
+        let differs = |change: fn(&mut Device)| {
+            let mut device = nominal.clone();
+            change(&mut device);
+            device.fingerprint() != nominal.fingerprint()
+        };
+        assert!(differs(|device| device.gauges[6].direction = crate::device::Direction::Y));
+        assert!(differs(|device| device.modules[1].frame_open = Some(Side::PlusX)));
+        assert!(!differs(|device| device.name.push('!')));
+        assert!(!differs(|device| device.circuit.bridge_nonlinearity = true));
+        assert!(!differs(|device| device.modules[0].radial_mm = -0.0));
+    }
+}

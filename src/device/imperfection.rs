@@ -1,0 +1,77 @@
+//! Tables that say how a pad differs from the drawn one, in a device file or in a file laid over a device.
+//!
+//! A new kind of table is a new entry of [`KINDS`]: both files then know, read and write it.
+
+use super::lines::{line, quoted};
+use super::reading::Reading;
+use super::schema::{MODULE, SIDES};
+use super::{Device, Module};
+use crate::quantity::MODULES;
+use crate::toml_text::section::{Bounds, Placed, Section};
+
+/// One kind of table.
+pub(super) struct Kind {
+    /// Its header.
+    pub(super) table: &'static str,
+    /// Reads what the text's root has of it over the device.
+    pub(super) read: fn(&Section<'_>, &mut Device, &mut Reading<'_>),
+    /// The text of what a device has of it; empty where that is nothing.
+    pub(super) write: fn(&Device) -> String,
+}
+
+pub(super) static KINDS: [Kind; 1] = [Kind { table: "module", read: read_modules, write: write_modules }];
+
+fn read_modules(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
+    let known: Vec<_> =
+        ["index", "frame_open"].into_iter().chain(MODULE.iter().map(|key| key.name)).collect();
+    // One more than there can be: that one repeats an index.
+    let tables = root.tables("module", &known, MODULES + 1, &mut reading.report);
+    let mut described = [false; MODULES];
+    for table in &tables {
+        let index = read_index(table, &mut described, reading);
+        let mut spare = Module::NOMINAL;
+        let module = index.and_then(|index| device.modules.get_mut(index)).unwrap_or(&mut spare);
+        let path = index.map_or_else(String::new, |index| format!("module.{index}"));
+        reading.numbers(table, &path, &MODULE, module);
+        if let Some(side) = table.word("frame_open", &SIDES, &mut reading.report) {
+            module.frame_open = Some(side.value);
+        }
+    }
+}
+
+/// Which module the table is about; `None` (and a report) if it does not say so or another table is.
+fn read_index(
+    table: &Section<'_>,
+    described: &mut [bool; MODULES],
+    reading: &mut Reading<'_>,
+) -> Option<usize> {
+    table.require("index", "write index = 0, 1 or 2: the module that differs", &mut reading.report);
+    let at = table.place_of("index")?;
+    let bounds = Bounds { low: 0, high: MODULES as u32 - 1, default: 0 };
+    let Placed { value: index, .. } = table.whole("index", bounds, &mut reading.report)?;
+    let described = described.get_mut(index as usize)?;
+    if *described {
+        let help = "write all of its keys into one table";
+        reading.report.error(at, format!("module {index} is described twice"), help);
+        return None;
+    }
+    *described = true;
+    Some(index as usize)
+}
+
+fn write_modules(device: &Device) -> String {
+    let numbered = (0..).zip(&device.modules).filter(|(_, module)| **module != Module::NOMINAL);
+    numbered
+        .map(|(index, module)| format!("\n[[module]]\nindex = {index}\n{}", module_lines(module)))
+        .collect()
+}
+
+/// The lines in which the module differs from the nominal one.
+fn module_lines(module: &Module) -> String {
+    let differs = |get: fn(&Module) -> &[f64]| get(module) != get(&Module::NOMINAL);
+    let numbers = MODULE.iter().filter(|key| differs(key.access.get)).map(|key| line(key, module));
+    let open = SIDES.iter().filter(|(_, side)| module.frame_open == Some(*side));
+    let open = open
+        .map(|(word, _)| format!("frame_open = {} # the side where its frame is missing\n", quoted(word)));
+    numbers.chain(open).collect()
+}

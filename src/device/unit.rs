@@ -1,0 +1,102 @@
+//! The units of a device file, and those that people take for them.
+
+/// What a number of the device file is counted in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Lengths.
+    Millimetre,
+    /// Angles.
+    Degree,
+    /// Moduli; N/mm².
+    Megapascal,
+    /// The excitation.
+    Volt,
+    /// Signals.
+    Microvolt,
+    /// Forces.
+    Newton,
+    /// Ratios and factors.
+    One,
+    /// A resistance as a share of the bridge's R.
+    BridgeR,
+}
+
+impl Unit {
+    /// The unit's symbol; empty for [`Unit::One`].
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::Millimetre => "mm",
+            Self::Degree => "deg",
+            Self::Megapascal => "MPa",
+            Self::Volt => "V",
+            Self::Microvolt => "uV",
+            Self::Newton => "N",
+            Self::One => "",
+            Self::BridgeR => "R",
+        }
+    }
+
+    /// Units that people write by mistake, the likeliest first, each as a multiple of this one.
+    const fn mistaken_for(self) -> &'static [(&'static str, f64)] {
+        match self {
+            Self::Millimetre => &[("metres", 1e3), ("micrometres", 1e-3), ("centimetres", 10.0)],
+            Self::Megapascal => &[("gigapascals", 1e3), ("pascals", 1e-6), ("kilopascals", 1e-3)],
+            Self::Volt => &[("millivolts", 1e-3), ("microvolts", 1e-6)],
+            Self::Microvolt => &[("nanovolts", 1e-3)],
+            Self::Newton => &[("millinewtons", 1e-3), ("kilonewtons", 1e3)],
+            Self::One => &[("percent", 1e-2)],
+            // Radians are small numbers, so no range tells them; `possible` does by where the modules stand.
+            // And what an ohm is of the bridge's R is not known.
+            Self::Degree | Self::BridgeR => &[],
+        }
+    }
+
+    /// The unit that was probably meant by a number outside `low` to `high`, and the number in this unit.
+    pub(super) fn meant(self, value: f64, low: f64, high: f64) -> Option<(&'static str, f64)> {
+        let converted = self.mistaken_for().iter().map(|(unit, factor)| (*unit, rounded(value * factor)));
+        // One percent and less is nobody's mistake: whoever writes 1 means 1.
+        let is_small = |unit, value: f64| value == 0.0 || unit == "percent" && value.abs() <= 0.01;
+        converted.into_iter().find(|(unit, value)| (low..=high).contains(value) && !is_small(*unit, *value))
+    }
+}
+
+/// `value` without the digits that a change of its unit leaves behind.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.9e}").parse().unwrap_or(value)
+}
+
+/// The number as a sentence shows it.
+pub(super) fn shown(value: f64) -> String {
+    let magnitude = value.abs();
+    if value != 0.0 && !(1e-4..1e9).contains(&magnitude) {
+        return format!("{value:e}");
+    }
+    format!("{value}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_of_the_wrong_magnitude_tells_its_unit() {
+        let meant = |unit: Unit, value| unit.meant(value, 0.1, 10.0);
+        assert_eq!(meant(Unit::Millimetre, 0.0012), Some(("metres", 1.2)));
+        assert_eq!(meant(Unit::Millimetre, 1_000.0), Some(("micrometres", 1.0)));
+        assert_eq!(meant(Unit::Millimetre, 0.05), Some(("centimetres", 0.5)));
+        assert_eq!(meant(Unit::One, 60.0), Some(("percent", 0.6)));
+        assert_eq!(meant(Unit::Millimetre, -1.0), None);
+        assert_eq!(meant(Unit::Degree, 400.0), None);
+        assert_eq!(Unit::Megapascal.meant(193.0, 1_200.0, 1e6), Some(("gigapascals", 193_000.0)));
+        assert_eq!(Unit::Megapascal.meant(1.93e11, 1_200.0, 1e6), Some(("pascals", 193_000.0)));
+        assert_eq!(Unit::Microvolt.meant(0.0, 1.0, 2.0), None, "zero is zero in any unit");
+    }
+
+    #[test]
+    fn numbers_stay_short() {
+        assert_eq!(
+            [0.0, -0.125, 193_000.0, 1e300, 2e-9].map(shown),
+            ["0", "-0.125", "193000", "1e300", "2e-9"]
+        );
+    }
+}

@@ -15,6 +15,7 @@ pub mod link;
 pub mod mapping;
 pub mod output;
 pub mod pipeline;
+pub mod plot;
 pub mod quantity;
 pub mod replay;
 pub mod signal;

@@ -22,6 +22,7 @@ pub mod signal;
 pub mod spelling;
 pub mod time;
 pub mod virtual_pad;
+pub mod vtk;
 
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod bridge;

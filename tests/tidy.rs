@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// Modules by row. A row imports only rows above it, never a sibling.
 const ROWS: &[&[&str]] = &[
     &["time", "spelling"],
-    &["quantity", "control", "health", "latency", "plot"],
+    &["quantity", "control", "health", "latency", "plot", "vtk"],
     &["capture", "link", "signal", "device", "influence", "mapping"],
     &["contact", "output"],
     &["pipeline", "virtual_pad"],

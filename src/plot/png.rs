@@ -7,6 +7,8 @@ use tiny_skia::{FillRule, LineJoin, Paint, PathBuilder, Pixmap, StrokeDash, Tran
 use super::figure::{Circle, Ends, Figure, Ink, Mark, Path, Stroke, Text};
 use super::font;
 
+/// The letters of a glyph's outline.
+const COMMANDS: [char; 4] = ['m', 'l', 'q', 'z'];
 /// Pixels along a side of the largest picture.
 const SIDE_MAX: f64 = 20_000.0;
 
@@ -127,20 +129,19 @@ fn outline(text: &str) -> Option<tiny_skia::Path> {
     let mut builder = PathBuilder::new();
     let [mut x, mut y] = [0.0, 0.0];
     let mut start = [0.0, 0.0];
-    for command in text.split_inclusive(['m', 'l', 'q', 'z']).zip(text.split(['m', 'l', 'q', 'z']).skip(1)) {
-        let (letter, numbers) = (command.0.chars().last(), command.1);
+    for (letter, numbers) in text.matches(COMMANDS).zip(text.split(COMMANDS).skip(1)) {
         let numbers: Vec<f32> = numbers.split(' ').filter_map(|number| number.parse().ok()).collect();
         match (letter, numbers.as_slice()) {
-            (Some('m'), [dx, dy]) => {
+            ("m", [dx, dy]) => {
                 [x, y] = [x + dx, y + dy];
                 start = [x, y];
                 builder.move_to(x, y);
             }
-            (Some('l'), [dx, dy]) => {
+            ("l", [dx, dy]) => {
                 [x, y] = [x + dx, y + dy];
                 builder.line_to(x, y);
             }
-            (Some('q'), [ax, ay, dx, dy]) => {
+            ("q", [ax, ay, dx, dy]) => {
                 builder.quad_to(x + ax, y + ay, x + dx, y + dy);
                 [x, y] = [x + dx, y + dy];
             }

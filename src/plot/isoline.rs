@@ -160,11 +160,11 @@ fn far(a: Point, b: Point, distance: f64) -> bool {
     (a[0] - b[0]).hypot(a[1] - b[1]) > distance
 }
 
-/// Text is never upside down.
+/// Text is never upside down, and along steep lines it reads upwards, so that neighbours read alike.
 fn upright(turn_deg: f64) -> f64 {
     match turn_deg {
-        turn if turn > 90.0 => turn - 180.0,
-        turn if turn < -90.0 => turn + 180.0,
+        turn if turn > 80.0 => turn - 180.0,
+        turn if turn <= -100.0 => turn + 180.0,
         turn => turn,
     }
 }
@@ -236,6 +236,6 @@ mod tests {
 
     #[test]
     fn labels_read_upright() {
-        assert_eq!([170.0, -170.0, 45.0, -90.0].map(upright), [-10.0, 10.0, 45.0, -90.0]);
+        assert_eq!([170.0, -170.0, 45.0, -90.0, 89.0].map(upright), [-10.0, 10.0, 45.0, -90.0, -91.0]);
     }
 }

@@ -11,6 +11,8 @@
 //! | modules, regions, gauges, contact points | [`shape::Shape`] in a [`plan::Plan`] |
 //! | curves, points, error bars | [`chart::Chart`] |
 //!
+//! `tests/plot.rs` makes one of each kind.
+//!
 //! What cannot be drawn (values that are not finite, or not positive on a logarithmic axis) is left out; an empty
 //! figure is a frame with axes.
 

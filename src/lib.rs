@@ -18,6 +18,7 @@ pub mod mapping;
 pub mod mechanics;
 pub mod output;
 pub mod pipeline;
+pub mod plot;
 pub mod quantity;
 mod random;
 pub mod readout;
@@ -28,6 +29,7 @@ pub mod time;
 pub mod toml_text;
 pub mod virtual_pad;
 pub mod zernike;
+pub mod vtk;
 
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod bridge;

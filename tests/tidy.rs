@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// Modules by row. A row imports only rows above it, never a sibling.
 const ROWS: &[&[&str]] = &[
     &["time", "spelling", "random", "zernike"],
-    &["quantity", "control", "health", "latency", "toml_text"],
+    &["quantity", "control", "health", "latency", "toml_text", "plot", "vtk"],
     &["capture", "link", "signal", "device", "influence", "mapping"],
     &["contact", "output", "readout", "dataset", "mechanics"],
     &["pipeline", "virtual_pad"],

@@ -11,6 +11,7 @@ pub mod device;
 pub mod health;
 pub mod influence;
 pub mod latency;
+pub mod layout;
 pub mod link;
 pub mod mapping;
 pub mod output;

@@ -9,7 +9,7 @@ const ROWS: &[&[&str]] = &[
     &["quantity", "control", "health", "latency"],
     &["capture", "link", "signal", "device", "influence", "mapping"],
     &["contact", "output"],
-    &["pipeline", "virtual_pad"],
+    &["pipeline", "virtual_pad", "layout"],
     &["replay"],
     &["transport", "sink", "requests"],
     &["bridge"],

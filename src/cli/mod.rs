@@ -13,6 +13,7 @@ mod doctor;
 mod files;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod latency;
+mod layout;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod live;
 mod profile;
@@ -70,6 +71,8 @@ enum Verb {
     Latency(latency::Arguments),
     /// List, show and check profiles.
     Profile(profile::Arguments),
+    /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
+    Layout(layout::Arguments),
 }
 
 /// Why a verb did not do what was asked.
@@ -108,6 +111,7 @@ pub fn run() -> ExitCode {
         #[cfg(all(feature = "live", target_os = "linux"))]
         Verb::Latency(arguments) => latency::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
+        Verb::Layout(arguments) => layout::run(&arguments),
     };
     let (code, message) = match outcome {
         Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,

@@ -1,8 +1,8 @@
 //! Where the modules should stand for the smallest worst error of a located contact.
 
-use super::precision::{Gains, LocationError, Press, over_plate};
+use super::precision::{Gains, Precision, Press, over_plate};
 use super::spacing::{PAIRS, Spacing};
-use crate::device::Device;
+use crate::device::{Plate, Stack};
 use crate::quantity::MODULES;
 
 /// The grid's steps are at most these.
@@ -12,6 +12,9 @@ const ROTATION_STEP_DEG: f64 = 15.0;
 /// The refinement ends when both of its steps are below these.
 const RADIUS_STEP_MIN_MM: f64 = 0.1;
 const ROTATION_STEP_MIN_DEG: f64 = 1.0;
+
+/// Placements that differ by less, in millimetres and in degrees, are the same.
+const SAME: f64 = 1e-9;
 
 /// What is varied: where the modules stand and how they are turned, all three alike.
 ///
@@ -39,12 +42,12 @@ pub struct Candidate {
     /// The placement.
     #[serde(flatten)]
     pub placement: Placement,
-    /// The error over the plate; nothing if no such pad can be built.
-    pub error: Option<LocationError>,
+    /// What it gives over the plate; nothing if no such pad can be built.
+    pub precision: Option<Precision>,
 }
 
 /// The grid with which the search begins; both ends of each range are on it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Range {
     /// Centre radii, from and to.
     pub centre_radius_mm: [f64; 2],
@@ -59,6 +62,8 @@ pub struct Range {
 /// The whole search, for plots.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Search {
+    /// What was searched.
+    pub range: Range,
     /// The grid: all rotations of the first radius, then of the next.
     pub grid: Vec<Candidate>,
     /// What was tried around its best point, in order.
@@ -74,8 +79,8 @@ pub fn judge<F: Fn(f64, f64) -> Gains>(
     contact_radius_mm: f64,
     pad: &mut impl FnMut(Placement) -> Option<F>,
 ) -> Candidate {
-    let error = pad(placement).map(|field| over_plate(field, press, contact_radius_mm));
-    Candidate { placement, error }
+    let precision = pad(placement).map(|field| over_plate(field, press, contact_radius_mm));
+    Candidate { placement, precision }
 }
 
 /// Looks for the placement whose worst location error is smallest.
@@ -96,27 +101,43 @@ pub fn search(range: &Range, mut judge: impl FnMut(Placement) -> Candidate) -> S
     while let Some(centre) = best
         && (radius_step >= RADIUS_STEP_MIN_MM || rotation_step >= ROTATION_STEP_MIN_DEG)
     {
+        // What was tried before is not better than the best so far.
         let around = range.around(centre.placement, radius_step, rotation_step);
-        let tried: Vec<_> = around.into_iter().map(&mut judge).collect();
+        let fresh =
+            around.into_iter().filter(|placement| refinement.iter().all(|tried| !is_at(tried, placement)));
+        let tried: Vec<_> = fresh.map(&mut judge).collect();
         match smallest(&tried).filter(|found| worst_mm(found) < worst_mm(&centre)) {
             Some(better) => best = Some(better),
             None => (radius_step, rotation_step) = (0.5 * radius_step, 0.5 * rotation_step),
         }
         refinement.extend(tried);
     }
-    Search { grid, refinement, best }
+    Search { range: *range, grid, refinement, best }
+}
+
+impl Search {
+    /// The best of the tried candidates whose signals are not larger than this.
+    pub fn best_within(&self, largest_uv: f64) -> Option<Candidate> {
+        let tried = self.grid.iter().chain(&self.refinement);
+        smallest(tried.filter(|tried| tried.precision.is_some_and(|found| found.largest_uv <= largest_uv)))
+    }
+
+    /// Whether the best candidate stands at an end of the radii, so that it is the range that holds it.
+    pub fn best_is_at_an_end(&self) -> bool {
+        let ends = self.range.centre_radius_mm;
+        self.best.is_some_and(|best| ends.contains(&best.placement.centre_radius_mm))
+    }
 }
 
 impl Range {
-    /// What can be varied on a device: from where modules cannot meet however they are turned, to where a film's
+    /// What can be varied under a plate: from where modules cannot meet however they are turned, to where a film's
     /// long side would reach the rim; not everything between can be built. Steps of at most 2 mm and 15°.
-    pub fn of(device: &Device) -> Self {
-        let stack = &device.stack;
+    pub fn of(plate: &Plate, stack: &Stack) -> Self {
         let diagonal = stack.film_length_x_mm.hypot(stack.film_width_y_mm);
         let narrow = stack.film_length_x_mm.min(stack.film_width_y_mm);
         // Three sites at radius a are √3 a apart.
         let nearest = diagonal / (MODULES as f64).sqrt();
-        let farthest = (0.5 * (device.plate.diameter_mm - narrow)).max(nearest);
+        let farthest = (0.5 * (plate.diameter_mm - narrow)).max(nearest);
         Self {
             centre_radius_mm: [nearest, farthest],
             radius_steps: ((farthest - nearest) / RADIUS_STEP_MM).ceil() as usize,
@@ -163,17 +184,24 @@ impl Range {
     }
 }
 
+/// Whether a candidate is this placement, but for rounding.
+fn is_at(candidate: &Candidate, placement: &Placement) -> bool {
+    let Placement { centre_radius_mm, rotation_deg } = candidate.placement;
+    let near = |a: f64, b: f64| (a - b).abs() < SAME;
+    near(centre_radius_mm, placement.centre_radius_mm) && near(rotation_deg, placement.rotation_deg)
+}
+
 fn within(value: f64, [from, to]: [f64; 2]) -> f64 {
     value.min(to).max(from)
 }
 
 fn worst_mm(candidate: &Candidate) -> f64 {
-    candidate.error.map_or(f64::INFINITY, |error| error.worst_mm)
+    candidate.precision.map_or(f64::INFINITY, |precision| precision.worst_mm)
 }
 
 /// The first of the candidates with the smallest worst error, if one can be built.
-fn smallest(candidates: &[Candidate]) -> Option<Candidate> {
-    let built = candidates.iter().filter(|candidate| candidate.error.is_some());
+fn smallest<'a>(candidates: impl IntoIterator<Item = &'a Candidate>) -> Option<Candidate> {
+    let built = candidates.into_iter().filter(|candidate| candidate.precision.is_some());
     built.min_by(|a, b| worst_mm(a).total_cmp(&worst_mm(b))).copied()
 }
 
@@ -190,12 +218,35 @@ mod tests {
         rotation_steps: 6,
     };
 
+    #[test]
+    fn the_range_of_the_nominal_pad() {
+        let plate = Plate { diameter_mm: 60.0, thickness_mm: 1.0 };
+        let stack = Stack {
+            film_length_x_mm: 9.8,
+            film_width_y_mm: 5.4,
+            frame_width_mm: 0.8,
+            frame_thickness_mm: 0.2,
+            pi_thickness_mm: 0.125,
+            adh_thickness_mm: 0.05,
+            fpc_thickness_mm: 0.13,
+            post_length_x_mm: 2.0,
+            post_width_y_mm: 1.4,
+            post_height_mm: 1.2,
+            bond_thickness_mm: 0.1,
+        };
+        let Range { centre_radius_mm: [nearest, farthest], radius_steps, rotation_deg, rotation_steps } =
+            Range::of(&plate, &stack);
+        // Films of 9.8 × 5.4 mm cannot meet if their centres are 11.19 mm apart.
+        assert!((nearest * 3.0_f64.sqrt() - (9.8_f64 * 9.8 + 5.4 * 5.4).sqrt()).abs() < 1e-12);
+        assert!((farthest - 27.3).abs() < 1e-12, "2.7 mm from the rim");
+        assert_eq!((radius_steps, rotation_deg, rotation_steps), (11, [0.0, 90.0], 6));
+    }
+
     /// A candidate whose worst error is given.
     fn valued(placement: Placement, worst_mm: f64) -> Candidate {
-        Candidate {
-            placement,
-            error: Some(LocationError { worst_mm, worst_at_mm: [0.0; 2], rms_mm: worst_mm }),
-        }
+        let largest_uv = 4e4 / placement.centre_radius_mm;
+        let precision = Precision { worst_mm, worst_at_mm: [0.0; 2], rms_mm: worst_mm, largest_uv };
+        Candidate { placement, precision: Some(precision) }
     }
 
     #[test]
@@ -226,20 +277,25 @@ mod tests {
         assert_eq!(found.grid[7].placement.centre_radius_mm, 10.0);
         let kept: Vec<_> = found.grid.iter().chain(&found.refinement).map(|c| c.placement).collect();
         assert_eq!(kept, asked);
+        assert!((1..asked.len()).all(|last| !asked[..last].contains(&asked[last])), "nothing is asked twice");
         assert!(asked.iter().all(|at| (8.0..=26.0).contains(&at.centre_radius_mm)));
         assert!(asked.iter().all(|at| (0.0..=90.0).contains(&at.rotation_deg)));
         assert_eq!(found.best.unwrap().placement, Placement { centre_radius_mm: 8.0, rotation_deg: 0.0 });
+        assert!(found.best_is_at_an_end());
+        let quieter = found.best_within(4e4 / 13.0).unwrap();
+        assert_eq!(quieter.placement.centre_radius_mm, 14.0, "the first of the grid's radii above 13");
+        assert_eq!(found.best_within(1.0), None);
     }
 
     #[test]
     fn what_cannot_be_built_is_passed_over() {
         let wall = |at: Placement| match at.centre_radius_mm {
-            radius if radius > 17.3 => Candidate { placement: at, error: None },
+            radius if radius > 17.3 => Candidate { placement: at, precision: None },
             radius => valued(at, 30.0 - radius),
         };
         let found = search(&RANGE, wall);
         assert!((found.best.unwrap().placement.centre_radius_mm - 17.3).abs() < 0.2);
-        let nothing = search(&RANGE, |placement| Candidate { placement, error: None });
+        let nothing = search(&RANGE, |placement| Candidate { placement, precision: None });
         assert!(nothing.best.is_none() && nothing.refinement.is_empty() && nothing.grid.len() == 70);
     }
 
@@ -258,8 +314,8 @@ mod tests {
         let best = found.best.unwrap();
         assert_eq!(best.placement, Placement { centre_radius_mm: 8.0, rotation_deg: 0.0 });
         let wanted = load_cell_error_mm(8.0, 29.0, 6.0 / 1900.0, 1.0);
-        assert!((best.error.unwrap().worst_mm / wanted - 1.0).abs() < 1e-12);
+        assert!((best.precision.unwrap().worst_mm / wanted - 1.0).abs() < 1e-12);
         let unbuilt = judge(best.placement, &PRESS, 29.0, &mut |_| None::<fn(f64, f64) -> Gains>);
-        assert_eq!(unbuilt, Candidate { error: None, ..best });
+        assert_eq!(unbuilt, Candidate { precision: None, ..best });
     }
 }

@@ -32,15 +32,18 @@ pub struct Press {
     pub noise_uv: f64,
 }
 
-/// The bound over all places of the plate.
+/// The bound over all places of the plate, and what it takes.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct LocationError {
+pub struct Precision {
     /// The largest error; infinite where a contact cannot be located at all.
     pub worst_mm: f64,
     /// Where it is.
     pub worst_at_mm: [f64; 2],
     /// Root of the mean square over the area.
     pub rms_mm: f64,
+    /// The largest signal of any channel for the press, wherever it is: what converter and gauges must bear. Modules
+    /// near the axis locate better and are loaded more.
+    pub largest_uv: f64,
 }
 
 /// Per channel, one number.
@@ -75,9 +78,9 @@ pub fn location_error_mm(gains: &Gains, press: &Press) -> f64 {
     if variance.is_finite() { press.noise_uv * variance.sqrt() } else { f64::INFINITY }
 }
 
-/// Signals per millimetre under a force.
-fn under(slope: &[[f64; 3]; CHANNELS], force_n: [f64; 3]) -> Channels {
-    slope.map(|row| row.iter().zip(force_n).map(|(gain, force_n)| gain * force_n).sum())
+/// Signals under a force; with slopes, per millimetre.
+fn under(gains: &[[f64; 3]; CHANNELS], force_n: [f64; 3]) -> Channels {
+    gains.map(|row| row.iter().zip(force_n).map(|(gain, force_n)| gain * force_n).sum())
 }
 
 /// What of a vector is independent of an orthonormal basis; zero if that is not more than rounding.
@@ -106,30 +109,40 @@ fn squared(vector: &Channels) -> f64 {
 
 /// The bound over contacts within `contact_radius_mm` of the pad's axis.
 ///
-/// The places stand on rings half a millimetre apart, 3° apart on each. A field that is smooth over that distance
-/// has its worst place within 1 % of the largest value found.
-pub fn over_plate(field: impl Fn(f64, f64) -> Gains, press: &Press, contact_radius_mm: f64) -> LocationError {
+/// The places stand on rings half a millimetre apart, 3° apart on each. On the nominal pad no place between them is
+/// worse by 1 %.
+pub fn over_plate(field: impl Fn(f64, f64) -> Gains, press: &Press, contact_radius_mm: f64) -> Precision {
     let rings = (contact_radius_mm / RING_STEP_MM).ceil().max(1.0) as usize;
-    let centre_mm = location_error_mm(&field(0.0, 0.0), press);
-    let mut worst = LocationError { worst_mm: centre_mm, worst_at_mm: [0.0; 2], rms_mm: 0.0 };
+    let mut found = Precision { worst_mm: 0.0, worst_at_mm: [0.0; 2], rms_mm: 0.0, largest_uv: 0.0 };
     let (mut weighted, mut weights) = (0.0, 0.0);
-    for ring in 1..=rings {
+    for ring in 0..=rings {
         let radius = contact_radius_mm * ring as f64 / rings as f64;
         // The trapezoidal rule along the radius: a ring's area is as its radius, the last one has half of it.
         let weight = if ring == rings { 0.5 * radius } else { radius };
         for place in 0..PLACES {
             let (sin, cos) = (place as f64 / PLACES as f64 * TAU).sin_cos();
-            let at_mm = [radius * cos, radius * sin];
-            let error_mm = location_error_mm(&field(at_mm[0], at_mm[1]), press);
-            weighted += weight * error_mm * error_mm;
+            let error_mm = found.take([radius * cos, radius * sin], &field, press);
             weights += weight;
-            if error_mm > worst.worst_mm {
-                (worst.worst_mm, worst.worst_at_mm) = (error_mm, at_mm);
-            }
+            // The centre has no area; an infinite error there must not make the sum undefined.
+            weighted += if weight > 0.0 { weight * error_mm * error_mm } else { 0.0 };
         }
     }
-    worst.rms_mm = (weighted / weights).sqrt();
-    worst
+    found.rms_mm = (weighted / weights).sqrt();
+    found
+}
+
+impl Precision {
+    /// Takes one place into account; returns the error there.
+    fn take(&mut self, at_mm: [f64; 2], field: impl Fn(f64, f64) -> Gains, press: &Press) -> f64 {
+        let gains = field(at_mm[0], at_mm[1]);
+        let signals = under(&gains.value, press.force_n);
+        self.largest_uv = signals.iter().fold(self.largest_uv, |largest, signal| largest.max(signal.abs()));
+        let error_mm = location_error_mm(&gains, press);
+        if error_mm > self.worst_mm {
+            (self.worst_mm, self.worst_at_mm) = (error_mm, at_mm);
+        }
+        error_mm
+    }
 }
 
 #[cfg(test)]
@@ -189,6 +202,22 @@ pub(super) mod tests {
         // The mean of r² over a disc is half of its radius squared; the trapezoidal rule comes within 10⁻⁴.
         let rms = load_cell_error_mm(20.0, 29.0 / 2.0_f64.sqrt(), noise_n, 1.0);
         assert!((found.rms_mm / rms - 1.0).abs() < 1e-3, "{found:?} for {rms}");
+        // A press at the rim beyond a cell loads it with 1/3 + 2·29/(3·20) of its force.
+        assert!((found.largest_uv - 1900.0 * (1.0 / 3.0 + 29.0 / 30.0)).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn a_place_that_cannot_be_located_is_the_worst() {
+        // At the centre all slopes vanish; the centre has no area, so the rms stays finite.
+        let blind = |x: f64, y: f64| {
+            let mut gains = load_cells(20.0, 1900.0)(x, y);
+            let scale = x.hypot(y).min(1.0);
+            gains.dx = gains.dx.map(|row| row.map(|slope| slope * scale));
+            gains
+        };
+        let found = over_plate(blind, &PRESS, 29.0);
+        assert_eq!((found.worst_mm, found.worst_at_mm), (f64::INFINITY, [0.0, 0.0]));
+        assert!(found.rms_mm.is_finite() && found.rms_mm > 0.0);
     }
 
     /// The nominal pad's field; its slopes by differences over 2 × 0.25 mm.
@@ -316,6 +345,22 @@ pub(super) mod tests {
         let (measured, bound) = ((sum / TRIALS as f64).sqrt(), location_error_mm(&gains, &press));
         // 20,000 trials scatter by 0.5 %; the curvature of the response adds less than that at this noise.
         assert!((measured / bound - 1.0).abs() < 0.02, "{measured} for {bound}");
+    }
+
+    #[test]
+    fn no_place_between_the_grids_is_worse() {
+        // The table's contacts end at 29 mm; a quarter of a millimetre is for the slopes.
+        let (field, radius) = (nominal(), 28.5);
+        let worst = over_plate(&field, &PRESS, radius).worst_mm;
+        for step in 0..20_000 {
+            // The golden section spreads the places evenly over the area.
+            let (share, turns) =
+                ((f64::from(step) + 0.5) / 20_000.0, f64::from(step) * 0.618_033_988_749_895);
+            let (sin, cos) = (turns * TAU).sin_cos();
+            let (x, y) = (radius * share.sqrt() * cos, radius * share.sqrt() * sin);
+            let error = location_error_mm(&field(x, y), &PRESS);
+            assert!(error < 1.01 * worst, "{error} at {x}, {y}, worst {worst}");
+        }
     }
 
     #[test]

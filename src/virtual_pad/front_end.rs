@@ -13,7 +13,8 @@ pub(super) const COUNT_BITS: u8 = 24;
 pub(super) const PICOVOLTS_PER_COUNT: u32 = 2384;
 
 const OFFSET_MAX_UV: f32 = 1500.0;
-const NOISE_RMS_UV: f32 = 6.0;
+/// Standard deviation of each channel's white noise.
+pub(crate) const NOISE_RMS_UV: f32 = 6.0;
 const COUNT_MAX: f64 = ((1_u32 << (COUNT_BITS - 1)) - 1) as f64;
 
 /// Nine channels with their own constant offset and white noise.

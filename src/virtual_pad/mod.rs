@@ -7,7 +7,7 @@
 pub mod firmware;
 #[cfg(test)]
 mod fixture;
-mod front_end;
+pub(crate) mod front_end;
 mod gesture;
 pub(crate) mod noise;
 mod player;

@@ -12,6 +12,7 @@ pub mod device;
 pub mod health;
 pub mod influence;
 pub mod latency;
+pub mod layout;
 pub mod link;
 pub mod mapping;
 #[cfg(feature = "simulator")]
@@ -28,8 +29,8 @@ pub mod spelling;
 pub mod time;
 pub mod toml_text;
 pub mod virtual_pad;
-pub mod zernike;
 pub mod vtk;
+pub mod zernike;
 
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod bridge;

@@ -9,7 +9,7 @@ const ROWS: &[&[&str]] = &[
     &["quantity", "control", "health", "latency", "toml_text", "plot", "vtk"],
     &["capture", "link", "signal", "device", "influence", "mapping"],
     &["contact", "output", "readout", "dataset", "mechanics"],
-    &["pipeline", "virtual_pad"],
+    &["pipeline", "virtual_pad", "layout"],
     &["replay"],
     &["transport", "sink", "requests"],
     &["bridge"],

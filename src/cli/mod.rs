@@ -16,6 +16,7 @@ mod doctor;
 mod files;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod latency;
+mod layout;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod live;
 mod measured;
@@ -79,6 +80,8 @@ enum Verb {
     Simulate(simulate::Arguments),
     /// List, show and check profiles.
     Profile(profile::Arguments),
+    /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
+    Layout(layout::Arguments),
 }
 
 /// Why a verb did not do what was asked.
@@ -118,6 +121,7 @@ pub fn run() -> ExitCode {
         Verb::Latency(arguments) => latency::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
+        Verb::Layout(arguments) => layout::run(&arguments),
     };
     let (code, message) = match outcome {
         Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,

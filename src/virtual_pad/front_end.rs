@@ -11,7 +11,8 @@ use crate::readout::Converter;
 pub(super) const CONVERTER: Converter = Converter { picovolts_per_count: 2384, count_bits: 24 };
 
 const OFFSET_MAX_UV: f32 = 1500.0;
-const NOISE_RMS_UV: f32 = 6.0;
+/// Standard deviation of each channel's white noise.
+pub(crate) const NOISE_RMS_UV: f32 = 6.0;
 
 /// Nine channels with their own constant offset and white noise.
 #[derive(Clone, Debug)]

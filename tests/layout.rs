@@ -1,0 +1,86 @@
+//! `tactpad layout` as its user sees it.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
+
+use std::f64::consts::PI;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn layout(arguments: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+    command.arg("layout").args(arguments.split_whitespace()).output().unwrap()
+}
+
+/// The one JSON document that the verb prints.
+fn document(arguments: &str) -> Value {
+    let output = layout(&format!("{arguments} --json"));
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn equal_radii_give_the_papers_triangle_by_all_three_ways() {
+    for seed in [1, 2, 77] {
+        let found = document(&format!("--radii 33,33,33 --seed {seed}"));
+        for way in ["swarm", "grid", "closed_form"] {
+            let answer = &found["spacing"][way];
+            let distances = numbers(&answer["distances_mm"]);
+            assert!(
+                distances.len() == 3 && distances.iter().all(|d| (d - 33.0).abs() < 1e-6),
+                "{way}: {distances:?}"
+            );
+            let wanted = (1.5 * PI + 3.0_f64.sqrt()) * 33.0 * 33.0;
+            assert!((answer["area_mm2"].as_f64().unwrap() / wanted - 1.0).abs() < 1e-9, "{way}");
+        }
+    }
+}
+
+#[test]
+fn unequal_radii_stand_apart_by_the_smaller_of_two() {
+    let found = document("--radii 36,30,33");
+    for way in ["swarm", "grid", "closed_form"] {
+        let distances = numbers(&found["spacing"][way]["distances_mm"]);
+        let near = distances.iter().zip([30.0, 30.0, 33.0]).all(|(d, wanted)| (d - wanted).abs() < 1e-4);
+        assert!(near, "{way}: {distances:?}");
+    }
+}
+
+#[test]
+fn the_same_seed_prints_the_same_bytes() {
+    let (once, again) = (layout("--radii 1,1.9,2.5 --seed 5"), layout("--radii 1,1.9,2.5 --seed 5"));
+    assert_eq!(once.stdout, again.stdout);
+    let text = String::from_utf8(once.stdout).unwrap();
+    assert!(text.contains("d1 may be from 0.9000 to 1.0000 mm"), "{text}");
+}
+
+#[test]
+fn the_papers_tables_stand_beside() {
+    let found = document("--radii 33,33,33");
+    let rows = found["area_per_channel"].as_array().unwrap();
+    let paper = rows.iter().find(|row| row["name"] == "the paper").unwrap();
+    assert_eq!(paper["channels"], 9);
+    assert_eq!(paper["printed_cm2"].to_string(), "3.14");
+    assert!((found["parts_usd"].as_f64().unwrap() - 15.0).abs() < 1e-9);
+}
+
+#[test]
+fn bad_arguments_are_one_sentence_and_exit_2() {
+    for (arguments, words) in [
+        ("--radii 30,30", "three radii in millimetres"),
+        ("--radii 30,-1,30", "R2 is -1 mm: write a radius"),
+        ("--radii 30,30,1e9", "R3 is 1000000000 mm"),
+        ("--radii 30,30,30 --threshold 1.5", "a share above 0 and below 1"),
+        ("--radii 30,30,30 --noise-uv -6", "microvolts above 0"),
+        ("--radii 30,30,30 --seed -1", "invalid digit"),
+    ] {
+        let output = layout(arguments);
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {text}");
+        assert!(output.stdout.is_empty() && text.contains(words) && !text.contains("panicked"), "{text}");
+    }
+}

@@ -1,325 +1,384 @@
-//! The influence field of the nominal pad: nine channels per newton at any contact point.
+//! An influence field: nine channels per newton at any contact point, with their slopes.
 //!
-//! It says what an ideal pad would report for a given contact. The virtual pad and the tests use it; the way
-//! from bytes to events does not. The values come from a finite-element solution of the pad in
-//! `models/sstid.toml`.
+//! It says what an ideal pad would report for a given contact. It is a bicubic spline on a square grid, made once from
+//! the simulator's solution: twice continuously differentiable, the same on every machine, and quick to evaluate.
 
-use std::f32::consts::TAU;
-use std::fmt;
+use std::f64::consts::SQRT_2;
 
 use crate::quantity::{CHANNELS, Contact, Strain};
 
-/// Contacts farther from the centre than this are taken at this radius, on the same ray.
-pub const RADIUS_MAX_MM: f32 = 29.0;
+/// Maps of a field: for each channel one for Fx, Fy and Fz.
+pub const MAPS: usize = 3 * CHANNELS;
 
-const RINGS: usize = 30;
-const RAYS: usize = 72;
-const COLUMNS: usize = 3 * CHANNELS;
-const GRID_TOLERANCE_MM: f32 = 1e-3;
-const NOMINAL: &str = include_str!("../models/influence.csv");
+/// Microvolts per newton at one place, for Fx, Fy (along +x, +y) and Fz (pressing) of each channel, and how they change
+/// per millimetre along +x and +y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gains {
+    /// µV/N.
+    pub value: [[f64; 3]; CHANNELS],
+    /// µV/N per mm along +x.
+    pub dx: [[f64; 3]; CHANNELS],
+    /// µV/N per mm along +y.
+    pub dy: [[f64; 3]; CHANNELS],
+}
 
-/// Microvolts per newton at one place: Fx, Fy, Fz of the first channel, then of the next one.
-type Node = [f32; COLUMNS];
+/// One grid point's spline coefficients: Fx, Fy, Fz of the first channel, then of the next one.
+type Node = [f32; MAPS];
 
-/// Channel readings per newton of contact force, on a polar grid, with interpolation between its nodes.
+/// Channel readings per newton of contact force, anywhere on the plate.
 ///
-/// The interpolation is bicubic (Catmull and Rom's cubic): periodic in angle, and in radius along whole
-/// diameters, so that it is smooth across the centre. At a node it returns the node. With every second ring
-/// or ray left out, what was left out is recovered within 2.4 µV/N of a field that reaches 2,400 µV/N (over
-/// the edges of the posts; 0.1 µV/N nearer the centre); the whole grid is closer still.
-#[derive(Clone, Debug)]
+/// Cubic B-splines in x and y on a square grid, M. Unser, IEEE Signal Processing Magazine 16 (1999) 22.
+#[derive(Clone, Debug, PartialEq)]
 pub struct InfluenceField {
-    /// `RINGS` × `RAYS` nodes; the first ring holds the centre node in every ray.
+    /// Distance of the grid's lines.
+    spacing_mm: f32,
+    /// Contacts farther from the centre are taken at this radius.
+    radius_mm: f32,
+    /// Grid points on each side of the centre.
+    half: usize,
+    /// (2 half + 1)² points, line by line from −y to +y, each from −x to +x; zero beyond the reach.
     nodes: Vec<Node>,
 }
 
-/// A field file that does not hold the polar grid.
-#[derive(Debug, PartialEq, Eq)]
-pub struct FieldError {
-    /// Line of the file, from 1.
-    pub line: usize,
-    /// What is wrong there.
-    pub problem: FieldProblem,
-}
-
-/// What can be wrong with a line of a field file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FieldProblem {
-    /// The line is not 29 finite numbers.
-    Numbers,
-    /// The place is not the next one of the grid.
-    Place,
-    /// The file ends here or goes on after the last place.
-    Length,
-}
-
-impl fmt::Display for FieldError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let problem = match self.problem {
-            FieldProblem::Numbers => "expected x_mm, y_mm and 27 readings per newton, all finite numbers",
-            FieldProblem::Place => "expected the centre, then rings at 1 to 29 mm with a place every 5°",
-            FieldProblem::Length => "expected 2,089 places in all",
-        };
-        write!(f, "influence field, line {}: {problem}", self.line)
-    }
-}
-
-impl std::error::Error for FieldError {}
-
 impl InfluenceField {
-    /// The field of the pad in `models/sstid.toml`.
-    #[expect(clippy::expect_used, reason = "the file is part of the program and a test reads it")]
-    pub fn nominal() -> Self {
-        Self::from_csv(NOMINAL).expect("models/influence.csv holds the grid")
+    /// The field that takes the values of `maps` (µV/N at a place in millimetres), which are asked for up to
+    /// `rim_mm` from the centre. Contacts reach up to `radius_mm`, which is at most the rim.
+    pub fn sampled(
+        spacing_mm: f64,
+        radius_mm: f64,
+        rim_mm: f64,
+        maps: impl Fn([f64; 2]) -> [f64; MAPS],
+    ) -> Self {
+        let half = half(spacing_mm, radius_mm);
+        let side = 2 * half + 1;
+        let place = |k: usize| (k as f64 - half as f64) * spacing_mm;
+        let samples: Vec<[f64; MAPS]> = (0..side * side)
+            .map(|index| continued([place(index % side), place(index / side)], spacing_mm, rim_mm, &maps))
+            .collect();
+        let mut field = Self {
+            spacing_mm: spacing_mm as f32,
+            radius_mm: radius_mm as f32,
+            half,
+            nodes: spline_coefficients(samples, side),
+        };
+        field.forget_what_nobody_reaches();
+        field
     }
 
-    /// Reads a field: a header line, the centre, then rings at 1, 2, … 29 mm with a place every 5° from +x,
-    /// counter-clockwise. Columns: `x_mm`, `y_mm`, then for each channel the microvolts per newton of Fx, Fy,
-    /// Fz.
-    ///
-    /// # Errors
-    /// The first line that is not as described.
-    pub fn from_csv(text: &str) -> Result<Self, FieldError> {
-        let mut lines = text.lines().enumerate().skip(1);
-        let mut nodes = Vec::with_capacity(RINGS * RAYS);
-        for ring in 0..RINGS {
-            let places = if ring == 0 { 1 } else { RAYS };
-            for ray in 0..places {
-                let (index, line) = lines.next().ok_or_else(|| length_error(text))?;
-                let node = parse_node(line, ring, ray);
-                nodes.push(node.map_err(|problem| FieldError { line: index + 1, problem })?);
-            }
-            while let (0, Some(&centre)) = (ring, nodes.last())
-                && nodes.len() < RAYS
-            {
-                nodes.push(centre);
-            }
+    /// The field with the given coefficients: those of all grid points that a contact can reach, line by line. `None`
+    /// if their number is wrong, or a number is not finite or not positive where it must be.
+    pub fn from_coefficients(spacing_mm: f32, radius_mm: f32, coefficients: &[f32]) -> Option<Self> {
+        let usable = spacing_mm > 0.0 && radius_mm > 0.0 && radius_mm < 1e3 * spacing_mm;
+        if !usable || !coefficients.iter().all(|c| c.is_finite()) {
+            return None;
         }
-        if lines.next().is_some() { Err(length_error(text)) } else { Ok(Self { nodes }) }
+        let half = half(spacing_mm.into(), radius_mm.into());
+        let side = 2 * half + 1;
+        let mut field = Self { spacing_mm, radius_mm, half, nodes: vec![[0.0; MAPS]; side * side] };
+        let reached: Vec<usize> = field.reached().collect();
+        let (given, rest) = coefficients.as_chunks::<MAPS>();
+        if !rest.is_empty() || given.len() != reached.len() {
+            return None;
+        }
+        for (index, node) in reached.into_iter().zip(given) {
+            field.nodes[index] = *node;
+        }
+        Some(field)
     }
 
-    /// What the nominal pad reports for `contact`, in microvolts. Linear in the forces.
-    ///
-    /// A contact beyond [`RADIUS_MAX_MM`] reads as one at that radius on the same ray: the field ends where a
-    /// finger would reach over the rim. A contact that is not finite reads zero.
-    pub fn strain_uv(&self, contact: &Contact) -> Strain {
-        let mut strain = Strain::default();
-        let forces_n = [contact.fx_n, contact.fy_n, contact.fz_n];
-        if !(contact.x_mm.is_finite() && contact.y_mm.is_finite() && forces_n.iter().all(|f| f.is_finite())) {
-            return strain;
-        }
-        let gains = self.per_newton(contact.x_mm, contact.y_mm);
-        for (uv, gain) in strain.uv.iter_mut().zip(gains.as_chunks::<3>().0) {
-            *uv = gain.iter().zip(forces_n).map(|(gain, force_n)| gain * force_n).sum();
-        }
-        strain
+    /// The coefficients for [`Self::from_coefficients`].
+    pub fn coefficients(&self) -> Vec<f32> {
+        self.reached().flat_map(|index| self.nodes[index]).collect()
     }
 
-    fn per_newton(&self, x_mm: f32, y_mm: f32) -> Node {
-        let radius = libm::hypotf(x_mm, y_mm).min(RADIUS_MAX_MM);
-        let angle = libm::atan2f(y_mm, x_mm) / TAU * RAYS as f32;
-        let (ring, along) = (libm::floorf(radius), libm::floorf(angle));
-        let ring_weights = cubic_weights(radius - ring);
-        let ray_weights = cubic_weights(angle - along);
-        let mut sum = [0.0; COLUMNS];
-        for (ring, ring_weight) in (ring as i32 - 1..).zip(ring_weights) {
-            for (ray, ray_weight) in (along as i32 - 1..).zip(ray_weights) {
-                let node = self.node(ring, ray);
-                for (sum, value) in sum.iter_mut().zip(node) {
-                    *sum += ring_weight * ray_weight * value;
-                }
-            }
-        }
-        sum
+    /// Distance of the grid's lines.
+    pub fn spacing_mm(&self) -> f32 {
+        self.spacing_mm
     }
 
-    /// The node at signed radius `ring` mm of ray `ray`; beyond the last ring the parabola through the last
-    /// three.
-    fn node(&self, ring: i32, ray: i32) -> Node {
-        let last = RINGS as i32 - 1;
-        if ring <= last {
-            return self.grid_node(ring, ray);
-        }
-        let [a, b, c] = [0, 1, 2].map(|inward| self.grid_node(last - inward, ray));
-        std::array::from_fn(|k| match (a.get(k), b.get(k), c.get(k)) {
-            (Some(a), Some(b), Some(c)) => 3.0 * (a - b) + c,
-            _ => 0.0,
+    /// Farthest contact from the centre.
+    pub fn radius_mm(&self) -> f32 {
+        self.radius_mm
+    }
+
+    /// Grid points whose splines reach a contact's place: a square of two lines around it, seen from the centre.
+    fn reached(&self) -> impl Iterator<Item = usize> + use<> {
+        let (side, half) = (2 * self.half + 1, self.half as f64);
+        let reach = f64::from(self.radius_mm) / f64::from(self.spacing_mm) + 2.0 * SQRT_2;
+        (0..side * side).filter(move |index| {
+            let (x, y) = ((index % side) as f64 - half, (index / side) as f64 - half);
+            x.hypot(y) <= reach
         })
     }
 
-    /// A negative radius lies on the opposite ray.
-    fn grid_node(&self, ring: i32, ray: i32) -> Node {
-        let opposite = if ring < 0 { RAYS as i32 / 2 } else { 0 };
-        let ray = (ray + opposite).rem_euclid(RAYS as i32) as usize;
-        let index = ring.unsigned_abs() as usize * RAYS + ray;
-        self.nodes.get(index).copied().unwrap_or([0.0; COLUMNS])
+    fn forget_what_nobody_reaches(&mut self) {
+        let mut kept = vec![[0.0; MAPS]; self.nodes.len()];
+        for index in self.reached() {
+            kept[index] = self.nodes[index];
+        }
+        self.nodes = kept;
+    }
+
+    /// What each channel reads per newton at a place, and its slopes.
+    ///
+    /// A place beyond [`Self::radius_mm`] reads as the one at that radius on the same ray: the field ends where a
+    /// finger would reach over the rim. A place that is not finite reads as the centre.
+    pub fn gains(&self, x_mm: f32, y_mm: f32) -> Gains {
+        let [x, y] = self.within([x_mm, y_mm]).map(|mm| mm / self.spacing_mm + self.half as f32);
+        let (column, row) = (libm::floorf(x), libm::floorf(y));
+        let across = Weights::at(x - column);
+        let along = Weights::at(y - row);
+        let first =
+            (row as usize).saturating_sub(1) * (2 * self.half + 1) + (column as usize).saturating_sub(1);
+        let mut sums = Sums { value: [0.0; MAPS], dx: [0.0; MAPS], dy: [0.0; MAPS] };
+        for line in 0..4 {
+            let start = first + line * (2 * self.half + 1);
+            if let Some(nodes) = self.nodes.get(start..).and_then(|rest| rest.first_chunk::<4>()) {
+                sums.add(nodes, &across, along.value[line], along.slope[line]);
+            }
+        }
+        sums.gains(1.0 / self.spacing_mm)
+    }
+
+    /// What an ideal pad reports for `contact`, in microvolts. Linear in the forces.
+    ///
+    /// A contact that is not finite reads zero; for the place see [`Self::gains`].
+    pub fn strain_uv(&self, contact: &Contact) -> Strain {
+        let forces_n = [contact.fx_n, contact.fy_n, contact.fz_n];
+        if !(contact.x_mm.is_finite() && contact.y_mm.is_finite() && forces_n.iter().all(|f| f.is_finite())) {
+            return Strain::default();
+        }
+        let gains = self.gains(contact.x_mm, contact.y_mm);
+        let read = |gain: [f64; 3]| {
+            gain.iter().zip(forces_n).map(|(gain, force_n)| gain * f64::from(force_n)).sum::<f64>()
+        };
+        Strain { uv: gains.value.map(|gain| read(gain) as f32) }
+    }
+
+    fn within(&self, place: [f32; 2]) -> [f32; 2] {
+        let radius = libm::hypotf(place[0], place[1]);
+        if radius <= self.radius_mm {
+            return place;
+        }
+        let factor = self.radius_mm / radius;
+        if factor > 0.0 { place.map(|mm| mm * factor) } else { [0.0; 2] }
     }
 }
 
-fn length_error(text: &str) -> FieldError {
-    FieldError { line: text.lines().count(), problem: FieldProblem::Length }
+/// Grid points on each side of the centre that a contact's place needs.
+fn half(spacing_mm: f64, radius_mm: f64) -> usize {
+    (radius_mm / spacing_mm).ceil() as usize + 3
 }
 
-fn parse_node(line: &str, ring: usize, ray: usize) -> Result<Node, FieldProblem> {
-    let mut numbers = [0.0; 2 + COLUMNS];
-    let mut fields = line.split(',');
-    for number in &mut numbers {
-        let parsed = fields.next().and_then(|field| field.trim().parse::<f32>().ok());
-        *number = parsed.filter(|value| value.is_finite()).ok_or(FieldProblem::Numbers)?;
-    }
-    if fields.next().is_some() {
-        return Err(FieldProblem::Numbers);
-    }
-    let [x_mm, y_mm, node @ ..] = numbers;
-    let (sin, cos) = libm::sincosf(ray as f32 / RAYS as f32 * TAU);
-    let off_mm = libm::hypotf(x_mm - ring as f32 * cos, y_mm - ring as f32 * sin);
-    if off_mm <= GRID_TOLERANCE_MM { Ok(node) } else { Err(FieldProblem::Place) }
+/// Weights of the four grid points around a place, and their slopes per grid step.
+struct Weights {
+    value: [f32; 4],
+    slope: [f32; 4],
 }
 
-/// Weights of the nodes at −1, 0, 1, 2 for the place `t` in 0..=1.
-///
-/// Source: E. Catmull and R. Rom, "A class of local interpolating splines", 1974.
-fn cubic_weights(t: f32) -> [f32; 4] {
-    [
-        t * (-0.5 + t * (1.0 - 0.5 * t)),
-        1.0 + t * t * (-2.5 + 1.5 * t),
-        t * (0.5 + t * (2.0 - 1.5 * t)),
-        t * t * (-0.5 + 0.5 * t),
-    ]
+impl Weights {
+    /// Of the cubic B-spline, `t` in 0..=1 after the second of the four points.
+    fn at(t: f32) -> Self {
+        let (s, t2) = (1.0 - t, t * t);
+        Self {
+            value: [
+                s * s * s / 6.0,
+                2.0 / 3.0 - t2 * (2.0 - t) / 2.0,
+                2.0 / 3.0 - s * s * (1.0 + t) / 2.0,
+                t2 * t / 6.0,
+            ],
+            slope: [-s * s / 2.0, t * (1.5 * t - 2.0), s * (2.0 - 1.5 * s), t2 / 2.0],
+        }
+    }
+}
+
+/// The spline and its slopes while lines of grid points are added.
+struct Sums {
+    value: [f32; MAPS],
+    dx: [f32; MAPS],
+    dy: [f32; MAPS],
+}
+
+impl Sums {
+    fn add(&mut self, nodes: &[Node; 4], across: &Weights, weight: f32, slope: f32) {
+        let ([a, b, c, d], [p, q, r, s]) = (across.value, across.slope);
+        let [n0, n1, n2, n3] = nodes;
+        for map in 0..MAPS {
+            let value = a * n0[map] + b * n1[map] + c * n2[map] + d * n3[map];
+            let sloped = p * n0[map] + q * n1[map] + r * n2[map] + s * n3[map];
+            self.value[map] += weight * value;
+            self.dx[map] += weight * sloped;
+            self.dy[map] += slope * value;
+        }
+    }
+
+    fn gains(&self, per_mm: f32) -> Gains {
+        let shaped = |maps: &[f32; MAPS], factor: f32| {
+            let mut rows = [[0.0; 3]; CHANNELS];
+            rows.as_flattened_mut()
+                .iter_mut()
+                .zip(maps)
+                .for_each(|(to, from)| *to = f64::from(factor * from));
+            rows
+        };
+        Gains { value: shaped(&self.value, 1.0), dx: shaped(&self.dx, per_mm), dy: shaped(&self.dy, per_mm) }
+    }
+}
+
+/// The maps' values at a place; beyond the rim, those of the parabola along the ray through the last three points one
+/// spacing apart. There the splines need values, but no contact is.
+fn continued(
+    place: [f64; 2],
+    spacing_mm: f64,
+    rim_mm: f64,
+    maps: &impl Fn([f64; 2]) -> [f64; MAPS],
+) -> [f64; MAPS] {
+    let radius = place[0].hypot(place[1]);
+    if radius <= rim_mm {
+        return maps(place);
+    }
+    let t = (radius - rim_mm) / spacing_mm;
+    let inward = |steps: f64| maps(place.map(|mm| mm * (rim_mm - steps * spacing_mm) / radius));
+    let [last, before, first] = [0.0, 1.0, 2.0].map(inward);
+    std::array::from_fn(|map| {
+        let slope = 1.5 * last[map] - 2.0 * before[map] + 0.5 * first[map];
+        let curvature = last[map] - 2.0 * before[map] + first[map];
+        last[map] + t * slope + t * t / 2.0 * curvature
+    })
+}
+
+/// Coefficients of the splines that take the given values, line by line and then column by column.
+fn spline_coefficients(mut values: Vec<[f64; MAPS]>, side: usize) -> Vec<Node> {
+    for line in 0..side {
+        interpolate(&mut values, line * side, 1, side);
+    }
+    for column in 0..side {
+        interpolate(&mut values, column, side, side);
+    }
+    values.into_iter().map(|node| node.map(|c| c as f32)).collect()
+}
+
+/// Solves (c₋ + 4c + c₊)/6 = value along one line; at its ends the spline is straight. (Thomas's algorithm.)
+fn interpolate(values: &mut [[f64; MAPS]], start: usize, step: usize, count: usize) {
+    let at = |k: usize| start + k * step;
+    // Rows 1 … count − 2 of the system; the ends' coefficients are the values themselves.
+    let mut pivots = vec![1.0; count];
+    for k in 1..count - 1 {
+        let factor = if k == 1 { 0.0 } else { 1.0 / pivots[k - 1] };
+        pivots[k] = 4.0 - factor;
+        let before = values[at(k - 1)];
+        let share = if k == 1 { 1.0 } else { factor };
+        for (value, before) in values[at(k)].iter_mut().zip(before) {
+            *value = 6.0 * *value - share * before;
+        }
+    }
+    for k in (1..count - 1).rev() {
+        let after = values[at(k + 1)];
+        for (value, after) in values[at(k)].iter_mut().zip(after) {
+            *value = (*value - after) / pivots[k];
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn unit_loads() -> [[f32; 3]; 3] {
-        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    /// Something smooth that no cubic is.
+    fn waves([x, y]: [f64; 2]) -> [f64; MAPS] {
+        std::array::from_fn(|map| (0.1 * x + map as f64).sin() * (0.13 * y).cos())
     }
 
-    fn at_polar(radius_mm: f32, angle_deg: f32, [fx_n, fy_n, fz_n]: [f32; 3]) -> Contact {
-        let (sin, cos) = libm::sincosf(angle_deg.to_radians());
-        Contact { x_mm: radius_mm * cos, y_mm: radius_mm * sin, fx_n, fy_n, fz_n }
+    fn field() -> InfluenceField {
+        InfluenceField::sampled(1.0, 29.0, 30.0, waves)
     }
 
-    fn worst_difference_uv(a: &Strain, b: &Strain) -> f32 {
-        a.uv.iter().zip(b.uv).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
-    }
-
-    #[test]
-    fn nodes_read_as_the_file_says() {
-        let field = InfluenceField::nominal();
-        for line in NOMINAL.lines().skip(1) {
-            let row: Vec<f32> = line.split(',').map(|number| number.parse().unwrap()).collect();
-            for (axis, [fx_n, fy_n, fz_n]) in unit_loads().into_iter().enumerate() {
-                let contact = Contact { x_mm: row[0], y_mm: row[1], fx_n, fy_n, fz_n };
-                let strain = field.strain_uv(&contact);
-                for (channel, uv) in strain.uv.iter().enumerate() {
-                    let wanted = row[2 + 3 * channel + axis];
-                    // The file's places are rounded to 0.1 µm, the steepest slope is 300 µV/N per mm.
-                    assert!((uv - wanted).abs() < 0.04, "{contact:?}, channel {channel}: {uv} for {wanted}");
-                }
-            }
-        }
-    }
-
-    /// Interpolates nodes from a grid that has only every second ray or ring; the worst error in µV/N.
-    fn worst_left_out(rings: std::ops::Range<i32>, ray_step: i32, ring_step: i32) -> f32 {
-        let field = InfluenceField::nominal();
-        let weights = cubic_weights(0.5);
-        let mut worst: f32 = 0.0;
-        for ring in rings.step_by(ring_step.max(1) as usize) {
-            for ray in (0..RAYS as i32).map(|ray| if ray_step > 0 { ray | 1 } else { ray }) {
-                let wanted = field.grid_node(ring, ray);
-                let around = [-3, -1, 1, 3]
-                    .map(|step| field.grid_node(ring + step * (ring_step / 2), ray + step * ray_step));
-                for column in 0..COLUMNS {
-                    let guess: f32 =
-                        around.iter().zip(weights).map(|(node, weight)| node[column] * weight).sum();
-                    worst = worst.max((guess - wanted[column]).abs());
-                }
-            }
-        }
-        worst
+    fn places() -> impl Iterator<Item = [f32; 2]> {
+        (0..400).map(|k| {
+            let (radius, angle) = (29.0 * (k as f32 / 400.0).sqrt(), 2.4 * k as f32);
+            [radius * libm::cosf(angle), radius * libm::sinf(angle)]
+        })
     }
 
     #[test]
-    fn left_out_rays_are_recovered() {
-        let worst = worst_left_out(1..30, 1, 0);
-        println!("worst left-out ray: {worst:.2} uV/N");
-        assert!(worst < 1.7, "{worst}");
-    }
-
-    #[test]
-    fn left_out_rings_are_recovered() {
-        let inner = worst_left_out(1..16, 0, 2);
-        let outer = worst_left_out(17..26, 0, 2);
-        println!("worst left-out ring: {inner:.3} uV/N inside the posts, {outer:.2} uV/N over them");
-        assert!(inner < 0.1 && outer < 2.5, "{inner} {outer}");
-    }
-
-    #[test]
-    fn a_third_of_a_turn_moves_the_modules_on() {
-        let field = InfluenceField::nominal();
-        let (sin, cos) = libm::sincosf(TAU / 3.0);
-        for step in 0..300 {
-            let (radius, angle) = (step as f32 * 0.0963, (step * 73 % 360) as f32);
-            for [fx, fy, fz] in unit_loads() {
-                let here = field.strain_uv(&at_polar(radius, angle, [fx, fy, fz]));
-                let turned = [cos * fx - sin * fy, sin * fx + cos * fy, fz];
-                let there = field.strain_uv(&at_polar(radius, angle + 120.0, turned));
-                let moved = Strain { uv: std::array::from_fn(|k| here.uv[(k + 6) % CHANNELS]) };
-                // The file's own nodes keep the symmetry to 0.17 µV/N.
-                assert!(worst_difference_uv(&there, &moved) < 0.25, "{radius} mm, {angle}°");
+    fn it_takes_the_values_of_the_maps() {
+        let field = field();
+        for [x, y] in places() {
+            let wanted = waves([x.into(), y.into()]);
+            let gains = field.gains(x, y);
+            for (value, wanted) in gains.value.as_flattened().iter().zip(wanted) {
+                assert!((value - wanted).abs() < 2e-5, "{x} {y}: {value} {wanted}");
             }
         }
     }
 
     #[test]
-    fn the_field_is_smooth_across_the_centre_and_the_zero_angle() {
-        let field = InfluenceField::nominal();
-        let small = 1e-3;
-        for load in unit_loads() {
-            let centre = field.strain_uv(&at_polar(0.0, 0.0, load));
-            for ray in 0..40 {
-                let near = field.strain_uv(&at_polar(small, ray as f32 * 9.0, load));
-                assert!(worst_difference_uv(&centre, &near) < 0.1);
+    fn slopes_are_those_of_the_maps() {
+        let field = field();
+        let step = 1e-5;
+        for [x, y] in places() {
+            let gains = field.gains(x, y);
+            let at = |dx: f64, dy: f64| waves([f64::from(x) + dx, f64::from(y) + dy]);
+            let (east, west, north, south) = (at(step, 0.0), at(-step, 0.0), at(0.0, step), at(0.0, -step));
+            for map in 0..MAPS {
+                let dx = (east[map] - west[map]) / (2.0 * step);
+                let dy = (north[map] - south[map]) / (2.0 * step);
+                assert!((gains.dx.as_flattened()[map] - dx).abs() < 1e-4, "{x} {y}");
+                assert!((gains.dy.as_flattened()[map] - dy).abs() < 1e-4, "{x} {y}");
             }
-            let below = field.strain_uv(&at_polar(17.5, -0.001, load));
-            let above = field.strain_uv(&at_polar(17.5, 0.001, load));
-            assert!(worst_difference_uv(&below, &above) < 0.1);
         }
     }
 
     #[test]
-    fn beyond_the_grid_the_rim_counts() {
-        let field = InfluenceField::nominal();
-        let rim = field.strain_uv(&at_polar(29.0, 37.0, [0.3, -0.4, 2.0]));
-        let beyond = field.strain_uv(&at_polar(1e9, 37.0, [0.3, -0.4, 2.0]));
-        assert!(worst_difference_uv(&rim, &beyond) < 0.05);
-        assert!(rim.uv.iter().any(|uv| uv.abs() > 100.0));
+    fn coefficients_make_the_same_field() {
+        let field = field();
+        let coefficients = field.coefficients();
+        let again = InfluenceField::from_coefficients(1.0, 29.0, &coefficients);
+        assert_eq!(again.as_ref(), Some(&field));
+        assert_eq!(InfluenceField::from_coefficients(1.0, 29.0, &coefficients[1..]), None);
+        assert_eq!(InfluenceField::from_coefficients(1.0, 29.0, &coefficients[MAPS..]), None);
+        assert_eq!(InfluenceField::from_coefficients(1.0, 28.0, &coefficients), None);
+        assert_eq!(InfluenceField::from_coefficients(0.0, 29.0, &coefficients), None);
+        assert_eq!(InfluenceField::from_coefficients(1e-9, 29.0, &coefficients), None);
+        let mut bad = coefficients;
+        bad[7] = f32::NAN;
+        assert_eq!(InfluenceField::from_coefficients(1.0, 29.0, &bad), None);
+    }
+
+    #[test]
+    fn beyond_the_radius_the_rim_counts() {
+        let field = field();
+        for angle in 0..40 {
+            let (sin, cos) = libm::sincosf(angle as f32 * 0.157);
+            let (rim, beyond) =
+                (field.gains(28.999_9 * cos, 28.999_9 * sin), field.gains(1e9 * cos, 1e9 * sin));
+            for (rim, beyond) in rim.value.as_flattened().iter().zip(beyond.value.as_flattened()) {
+                assert!((rim - beyond).abs() < 1e-3);
+            }
+        }
     }
 
     #[test]
     fn a_contact_that_is_not_finite_reads_zero() {
-        let field = InfluenceField::nominal();
-        for bad in [f32::NAN, f32::INFINITY] {
+        let field = field();
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let place = Contact { x_mm: bad, fz_n: 1.0, ..Contact::default() };
             let force = Contact { fx_n: bad, ..Contact::default() };
             assert_eq!(field.strain_uv(&place), Strain::default());
             assert_eq!(field.strain_uv(&force), Strain::default());
+            assert!(field.gains(bad, bad).value.as_flattened().iter().all(|gain| gain.is_finite()));
         }
     }
 
     #[test]
-    fn a_bad_file_is_refused_with_its_line() {
-        let refused = |text: &str| InfluenceField::from_csv(text).unwrap_err();
-        let cut: Vec<&str> = NOMINAL.lines().take(2000).collect();
-        assert_eq!(refused(&cut.join("\n")), FieldError { line: 2000, problem: FieldProblem::Length });
-        assert_eq!(refused(&format!("{NOMINAL}0,0\n")).problem, FieldProblem::Length);
-        let word = NOMINAL.replacen("242.49", "many", 1);
-        assert_eq!(refused(&word), FieldError { line: 2, problem: FieldProblem::Numbers });
-        let moved = NOMINAL.replacen("0.9962,0.0872", "0.9962,0.0900", 1);
-        assert_eq!(refused(&moved), FieldError { line: 4, problem: FieldProblem::Place });
-        assert!(refused(&moved).to_string().contains("line 4"));
+    fn readings_are_linear_in_the_forces() {
+        let field = field();
+        let read = |fx_n, fy_n, fz_n| field.strain_uv(&Contact { x_mm: 7.0, y_mm: -3.0, fx_n, fy_n, fz_n });
+        let (x, y, z, all) =
+            (read(1.0, 0.0, 0.0), read(0.0, 1.0, 0.0), read(0.0, 0.0, 1.0), read(0.5, -2.0, 3.0));
+        for channel in 0..CHANNELS {
+            let sum = 0.5 * x.uv[channel] - 2.0 * y.uv[channel] + 3.0 * z.uv[channel];
+            assert!((sum - all.uv[channel]).abs() < 1e-5);
+        }
     }
 }

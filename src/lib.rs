@@ -9,6 +9,7 @@ pub mod contact;
 pub mod control;
 pub mod dataset;
 pub mod device;
+pub mod field;
 pub mod health;
 pub mod influence;
 pub mod latency;

@@ -3,6 +3,9 @@
 //! The polynomials of degree n are U(n, 0) … U(n, n), all of them up to degree N span every polynomial in x and y up
 //! to that degree: (N + 1)(N + 2)/2 in all, ordered by degree. They are real and not normalised: the square's
 //! integral over the disc is π/(n+1)·½, or π/(n+1) for the ones that depend on the radius alone.
+//!
+//! With l = |n − 2m|, U(n, m) is R(r) sin lθ for n > 2m and R(r) cos lθ otherwise, R being Zernike's radial
+//! polynomial of degree n and order l, which is 1 at the rim.
 //! Source: T. B. Andersen, Efficient and robust recurrence relations for the Zernike circle polynomials and their
 //! derivatives in Cartesian coordinates, Optics Express 26 (2018) 18878.
 
@@ -85,6 +88,100 @@ fn next(all: &[Jet], n: usize, m: usize, x: f64, y: f64) -> Jet {
     jet
 }
 
+/// The angular part of a polynomial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wave {
+    /// R(r) cos lθ.
+    Cos,
+    /// R(r) sin lθ.
+    Sin,
+}
+
+/// Index of the polynomial of degree n and angular order l; `None` where there is none (l > n, other parity, or a
+/// sine of order 0).
+pub fn index(degree: usize, order: usize, wave: Wave) -> Option<usize> {
+    let exists = order <= degree && (degree - order).is_multiple_of(2) && (order, wave) != (0, Wave::Sin);
+    let m = match wave {
+        Wave::Cos => (degree + order) / 2,
+        Wave::Sin => degree.saturating_sub(order) / 2,
+    };
+    exists.then_some(degree * (degree + 1) / 2 + m)
+}
+
+/// A polynomial over the disc by its coefficients, lowest degree first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polynomial {
+    /// Coefficients of the circle polynomials.
+    pub coefficients: Vec<f64>,
+}
+
+impl Polynomial {
+    /// Its value, given the circle polynomials at a place.
+    pub fn value(&self, jets: &[Jet]) -> f64 {
+        self.coefficients.iter().zip(jets).map(|(c, jet)| c * jet.value).sum()
+    }
+
+    /// Its value and slopes, given the circle polynomials at a place.
+    pub fn jet(&self, jets: &[Jet]) -> Jet {
+        let zero = Jet { value: 0.0, dx: 0.0, dy: 0.0 };
+        self.coefficients.iter().zip(jets).fold(zero, |sum, (c, jet)| sum.plus(*c, *jet))
+    }
+
+    /// The polynomial of its means over discs of `radius` (in units of the unit disc's) about each place.
+    ///
+    /// The mean of f over a disc of radius a is Σ (a/2)²ᵏ/(k!(k+1)!) ∇²ᵏ f, a finite sum for a polynomial.
+    pub fn disc_mean(&self, radius: f64) -> Self {
+        let mut term = self.clone();
+        let mut mean = self.clone();
+        let mut k = 1.0;
+        while term.coefficients.iter().any(|c| *c != 0.0) {
+            let factor = radius * radius / 4.0 / (k * (k + 1.0));
+            term = term.laplacian();
+            for (sum, c) in mean.coefficients.iter_mut().zip(&mut term.coefficients) {
+                *c *= factor;
+                *sum += *c;
+            }
+            k += 1.0;
+        }
+        mean
+    }
+
+    /// ∂²/∂x² + ∂²/∂y².
+    ///
+    /// In z = x + iy, ∂/∂z of R(n, l) exp(ilθ) is the sum of (p + 1) R(p, l−1) exp(i(l−1)θ) over
+    /// p = n−1, n−3, … down to |l−1|, and ∂/∂z* is the same with l+1. ∇² = 4 ∂²/∂z∂z*, which keeps the wave.
+    fn laplacian(&self) -> Self {
+        let mut result = vec![0.0; self.coefficients.len()];
+        let degree = degree_of(self.coefficients.len());
+        for order in 0..=degree {
+            for wave in [Wave::Cos, Wave::Sin] {
+                laplacian_of_wave(&self.coefficients, degree, order, wave, &mut result);
+            }
+        }
+        Self { coefficients: result }
+    }
+}
+
+/// The greatest degree among so many polynomials.
+fn degree_of(polynomials: usize) -> usize {
+    (0..).find(|degree| count(degree + 1) > polynomials).unwrap_or(0)
+}
+
+/// From the highest degree down, running sums: first over ∂/∂z (order l − 1), then over ∂/∂z* back to order l.
+fn laplacian_of_wave(from: &[f64], degree: usize, order: usize, wave: Wave, to: &mut [f64]) {
+    let (mut sum, mut sum_of_sums) = (0.0, 0.0);
+    let top = degree - (degree + order) % 2;
+    for n in (order..=top).rev().step_by(2) {
+        let Some(slot) = index(n, order, wave) else { continue };
+        to[slot] = 4.0 * (n + 1) as f64 * sum_of_sums;
+        sum += from[slot];
+        // The derivative's degree n − 1 holds (n) times the sum of all degrees above it.
+        if n >= 1 {
+            sum_of_sums += n as f64 * sum;
+        }
+    }
+}
+
 /// The integrals of the squares over the unit disc.
 pub fn norms(degree: usize) -> Vec<f64> {
     let norm = |n: usize, m: usize| if 2 * m == n { PI / (n + 1) as f64 } else { PI / (2 * (n + 1)) as f64 };
@@ -118,6 +215,50 @@ mod tests {
         for (k, jet) in jets(DEGREE, at).iter().enumerate() {
             assert!(((east[k].value - west[k].value) / (2.0 * step) - jet.dx).abs() < 1e-7);
             assert!(((north[k].value - south[k].value) / (2.0 * step) - jet.dy).abs() < 1e-7);
+        }
+    }
+
+    #[test]
+    fn indices_name_the_waves() {
+        let (radius, angle) = (0.7_f64, 0.4_f64);
+        let values = jets(5, [radius * angle.cos(), radius * angle.sin()]);
+        let radial = 5.0 * radius.powi(5) - 4.0 * radius.powi(3);
+        let value = |wave| values[index(5, 3, wave).unwrap()].value;
+        assert!((value(Wave::Cos) - radial * (3.0 * angle).cos()).abs() < 1e-14);
+        assert!((value(Wave::Sin) - radial * (3.0 * angle).sin()).abs() < 1e-14);
+        assert_eq!(index(4, 0, Wave::Sin), None);
+        assert_eq!(index(4, 3, Wave::Cos), None);
+        assert_eq!(index(2, 4, Wave::Cos), None);
+        let all = (0..=5).flat_map(|n| (0..=n).map(move |l| (n, l)));
+        let mut named: Vec<usize> =
+            all.flat_map(|(n, l)| [Wave::Cos, Wave::Sin].map(|wave| index(n, l, wave))).flatten().collect();
+        named.sort_unstable();
+        assert!(named.into_iter().eq(0..count(5)));
+    }
+
+    #[test]
+    fn disc_means_agree_with_sampling() {
+        // On circles about the place with the radii of a Gauss rule in the square of the radius.
+        let (at, radius) = ([0.5, -0.7], 0.1);
+        let rule = [(0.069_431_844, 0.173_927_42), (0.330_009_48, 0.326_072_58)];
+        let radii = rule.iter().flat_map(|(x, w)| [(*x, *w), (1.0 - x, *w)]);
+        let places: Vec<([f64; 2], f64)> = radii
+            .flat_map(|(square, weight)| {
+                (0..16).map(move |ray| {
+                    let angle = std::f64::consts::TAU * f64::from(ray) / 16.0;
+                    let r = radius * f64::sqrt(square);
+                    ([at[0] + r * angle.cos(), at[1] + r * angle.sin()], weight / 16.0)
+                })
+            })
+            .collect();
+        let here = jets(DEGREE, at);
+        for j in 0..here.len() {
+            let mut coefficients = vec![0.0; here.len()];
+            coefficients[j] = 1.0;
+            let mean = Polynomial { coefficients }.disc_mean(radius).value(&here);
+            let sampled: f64 =
+                places.iter().map(|(place, weight)| weight * jets(DEGREE, *place)[j].value).sum();
+            assert!((mean - sampled).abs() < 1e-7, "{j}: {mean} {sampled}");
         }
     }
 }

@@ -7,6 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
+use tactpad::field::PadField;
 use tactpad::influence::InfluenceField;
 use tactpad::plot::bands::Bands;
 use tactpad::plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
@@ -96,13 +97,13 @@ fn a_map_over_the_plate() {
     let bands = Bands::diverging(saddle.largest(), 2);
     let field = in_uv(saddle, bands, Isolines::Labelled);
     assert_as_stored("plate", &plate("S_{z} of F_{z}", Some(field), modules()).figure(400.0));
-    let grid = influence(&InfluenceField::nominal(), 8, 121);
+    let grid = influence(&PadField::nominal().signals, 8, 121);
     let field = in_uv(grid, Bands::diverging_decades(2400.0, 2), Isolines::Labelled);
     shown("plate-decades", &plate("m0z per newton of F_{z}", Some(field), modules()).figure(560.0));
 }
 
 fn maps(bars: Bars) -> Multiples {
-    let field = InfluenceField::nominal();
+    let field = PadField::nominal().signals;
     let bands = |grid: &Grid| match bars {
         Bars::Shared => Bands::diverging_decades(2400.0, 2),
         Bars::Each => Bands::diverging(grid.largest(), 6),

@@ -24,6 +24,7 @@ use rustix::event::{PollFd, Timespec, poll};
 use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::time::{ClockId, clock_gettime};
+use tactpad::field::PadField;
 use tactpad::influence::InfluenceField;
 use tactpad::quantity::Contact;
 
@@ -64,7 +65,7 @@ impl Soak {
             folder,
             child,
             line: None,
-            field: InfluenceField::nominal(),
+            field: PadField::nominal().signals,
             random: 0x2545_f491_4f6c_dd1d,
             sequence: 0,
             time_us: 0,

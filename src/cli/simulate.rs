@@ -12,6 +12,7 @@ use super::written::{create, is_same, is_stdout, stdout, written_over};
 use super::{Failure, print_json, say};
 use crate::dataset;
 use crate::device::{Device, Patch};
+use crate::field::PadField;
 use crate::influence::InfluenceField;
 use crate::quantity::{CHANNELS, Contact};
 use crate::readout::{Bridges, REFERENCE_C, Readout, ThermalZero};
@@ -151,7 +152,7 @@ struct BridgeFields {
 
 /// The fields of `device`.
 fn fields_of(device: &Device) -> Result<BridgeFields, Failure> {
-    let fields = BridgeFields { signals: InfluenceField::nominal(), sums: None };
+    let fields = BridgeFields { signals: PadField::nominal().signals, sums: None };
     if device.circuit.bridge_nonlinearity && fields.sums.is_none() {
         return Err(Failure::Unusable(
             "the sums of the gauges are not known, which bridge_nonlinearity needs; set it to false".into(),
@@ -193,7 +194,7 @@ mod tests {
 
     /// Fields whose sums are the signals themselves: s = S/δ.
     fn fields() -> BridgeFields {
-        BridgeFields { signals: InfluenceField::nominal(), sums: Some(InfluenceField::nominal()) }
+        BridgeFields { signals: PadField::nominal().signals, sums: Some(PadField::nominal().signals) }
     }
 
     #[test]

@@ -11,7 +11,7 @@
 use crate::quantity::MODULES;
 use crate::toml_text::diag::Diagnostic;
 
-mod fingerprint;
+pub(crate) mod fingerprint;
 mod imperfection;
 mod lines;
 pub mod parameter;

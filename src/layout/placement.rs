@@ -1,8 +1,9 @@
 //! Where the modules should stand for the smallest worst error of a located contact.
 
-use super::precision::{Gains, Precision, Press, over_plate};
+use super::precision::{Precision, Press, over_plate};
 use super::spacing::{PAIRS, Spacing};
 use crate::device::{Plate, Stack};
+use crate::influence::Gains;
 use crate::quantity::MODULES;
 
 /// The grid's steps are at most these.

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::influence::Gains;
 use crate::quantity::CHANNELS;
 
 /// What is left of a vector after projection, relative to it, below which it counts as dependent on the others:
@@ -11,17 +12,6 @@ const DEPENDENT: f64 = 1e-10;
 /// The contacts over which a bound is taken: rings this far apart, with this many places on each.
 const RING_STEP_MM: f64 = 0.5;
 const PLACES: usize = 120;
-
-/// Response of the channels to unit forces Fx, Fy, Fz at one place, and how it changes with the place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gains {
-    /// Microvolts per newton, per channel: of Fx, Fy, Fz.
-    pub value: [[f64; 3]; CHANNELS],
-    /// The same, per millimetre along x.
-    pub dx: [[f64; 3]; CHANNELS],
-    /// The same, per millimetre along y.
-    pub dy: [[f64; 3]; CHANNELS],
-}
 
 /// The press that is to be located, and the noise of the channels that report it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,8 +138,7 @@ impl Precision {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::influence::InfluenceField;
-    use crate::quantity::Contact;
+    use crate::field::PadField;
 
     const PRESS: Press = Press { force_n: [0.0, 0.0, 1.0], noise_uv: 6.0 };
 
@@ -220,29 +209,10 @@ pub(super) mod tests {
         assert!(found.rms_mm.is_finite() && found.rms_mm > 0.0);
     }
 
-    /// The nominal pad's field; its slopes by differences over 2 × 0.25 mm.
+    /// The nominal pad's field.
     fn nominal() -> impl Fn(f64, f64) -> Gains {
-        let field = InfluenceField::nominal();
-        move |x, y| {
-            let value = |x: f64, y: f64| {
-                let unit = |fx_n, fy_n, fz_n| {
-                    field
-                        .strain_uv(&Contact { x_mm: x as f32, y_mm: y as f32, fx_n, fy_n, fz_n })
-                        .uv
-                        .map(f64::from)
-                };
-                let per_axis = [unit(1.0, 0.0, 0.0), unit(0.0, 1.0, 0.0), unit(0.0, 0.0, 1.0)];
-                std::array::from_fn(|channel| per_axis.map(|axis| axis[channel]))
-            };
-            let slope = |a: [[f64; 3]; 9], b: [[f64; 3]; 9]| {
-                std::array::from_fn(|c| std::array::from_fn(|k| (a[c][k] - b[c][k]) / 0.5))
-            };
-            Gains {
-                value: value(x, y),
-                dx: slope(value(x + 0.25, y), value(x - 0.25, y)),
-                dy: slope(value(x, y + 0.25), value(x, y - 0.25)),
-            }
-        }
+        let field = PadField::nominal().signals;
+        move |x, y| field.gains(x as f32, y as f32)
     }
 
     /// Solves A x = b by elimination with pivots; A is a matrix of 5 × 5.

@@ -2,10 +2,13 @@
 
 mod brick;
 mod dissection;
-pub mod grams;
+mod foot;
 pub mod grid;
 pub mod mesh;
 pub mod pad;
 pub mod plate;
+mod readings;
+pub mod sensitivity;
+pub mod simulator;
 pub mod superelement;
 pub mod system;

@@ -9,18 +9,30 @@
 //! shear       ½ κ G h            ((w,x + α)² + (w,y + β)²),   κ = 5/6
 //! ```
 //!
-//! Each of the five fields is a polynomial over the disc (Ritz's method): w and the rotations of one degree, so that
-//! thin plates do not lock. The edge is free by itself. Unknowns: five blocks of coefficients of [`crate::zernike`]
-//! polynomials in the place divided by the plate's radius R: u, v, w, R α, R β, all in millimetres.
+//! Each field is a polynomial over the disc (Ritz's method), w and the rotations of one degree, so that thin plates
+//! do not lock. The edge is free by itself. The unknowns are coefficients of [`crate::zernike`] polynomials in the
+//! place divided by the plate's radius R, in five blocks: u, v, w, R α, R β, all in millimetres.
+//!
+//! **Blocks.** The plate is round, so its stiffness couples only motions that turn alike. Write U = u + iv and
+//! z = x + iy, and take as unknowns the real multiples c of U = R(n, l) exp(ilθ) and of i times that. Then
+//!
+//! ```text
+//! u,x + v,y = 2 Re ∂U/∂z        (u,x − v,y) + i (u,y + v,x) = 2 ∂U/∂z*        w,x + i w,y = 2 ∂w/∂z*
+//! ```
+//!
+//! and the rule for ∂/∂z in [`crate::zernike`] shows that orders l = 1 + J and l = 1 − J meet only each other and the
+//! waves of order J in w, real multiples apart from imaginary ones. All integrals are closed sums.
 //! Source: R. D. Mindlin, J. Appl. Mech. 18 (1951) 31; E. Reissner, J. Appl. Mech. 12 (1945) A69 for κ.
 
-use faer::{Mat, MatRef};
+use std::f64::consts::PI;
 
-use crate::device::{Device, Material};
-use crate::zernike::{count, jets};
+use faer::linalg::solvers::{Llt, Solve};
+use faer::{Mat, Side};
 
-use super::grams::{Grams, gauss_legendre};
-use super::superelement::{FOOT_SHAPES, MODES, foot_shapes};
+use crate::device::Material;
+use crate::zernike::{Wave, count, index};
+
+use super::system::SolveError;
 
 /// Fields of the plate: u, v, w, R α, R β.
 pub const FIELDS: usize = 5;
@@ -53,173 +65,281 @@ impl Rigidity {
 
     /// The derivative by thickness, per mm.
     pub fn per_thickness(self, thickness_mm: f64) -> Self {
-        Self {
-            stretching: self.stretching / thickness_mm,
-            bending: 3.0 * self.bending / thickness_mm,
-            shear: self.shear / thickness_mm,
-            nu: self.nu,
-        }
+        let Self { stretching, bending, shear, nu } = self;
+        let per_mm = |energy: f64| energy / thickness_mm;
+        Self { stretching: per_mm(stretching), bending: 3.0 * per_mm(bending), shear: per_mm(shear), nu }
     }
 
     /// The derivative by Young's modulus, per MPa.
     pub fn per_modulus(self, e_mpa: f64) -> Self {
-        Self {
-            stretching: self.stretching / e_mpa,
-            bending: self.bending / e_mpa,
-            shear: self.shear / e_mpa,
-            nu: self.nu,
-        }
+        let Self { stretching, bending, shear, nu } = self;
+        Self { stretching: stretching / e_mpa, bending: bending / e_mpa, shear: shear / e_mpa, nu }
     }
 }
 
-/// The plate's stiffness over all unknowns, N/mm. Six motions of it, the rigid ones, cost no energy.
-pub fn stiffness(grams: &Grams, rigidity: Rigidity) -> Mat<f64> {
-    let size = count(grams.degree);
-    let mut matrix = Mat::zeros(FIELDS * size, FIELDS * size);
-    add_plane_stress(grams, rigidity.stretching, rigidity.nu, 0, &mut matrix);
-    add_plane_stress(grams, rigidity.bending, rigidity.nu, 3, &mut matrix);
-    add_shear(grams, rigidity.shear, &mut matrix);
-    matrix
+/// Whether a block's unknowns are real or imaginary multiples of exp(ilθ).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Mirror-symmetric about the x axis: w waves as the cosine.
+    Real,
+    /// Antisymmetric: w waves as the sine.
+    Imaginary,
 }
 
-/// Adds the energy of plane stress in the two fields from block `first` on.
-fn add_plane_stress(grams: &Grams, factor: f64, nu: f64, first: usize, matrix: &mut Mat<f64>) {
-    let size = count(grams.degree);
-    let [[xx, xy], [yx, yy]] = &grams.gradients;
-    let half = (1.0 - nu) / 2.0;
-    let mut add = |[row, column]: [usize; 2], normal: &Mat<f64>, normal_factor: f64, sheared: &Mat<f64>| {
-        for i in 0..size {
-            for j in 0..size {
-                matrix[((first + row) * size + i, (first + column) * size + j)] +=
-                    factor * (normal_factor * normal[(i, j)] + half * sheared[(i, j)]);
-            }
-        }
-    };
-    add([0, 0], xx, 1.0, yy);
-    add([0, 1], xy, nu, yx);
-    add([1, 0], yx, nu, xy);
-    add([1, 1], yy, 1.0, xx);
-}
-
-/// Adds the energy of shear across the thickness.
-fn add_shear(grams: &Grams, factor: f64, matrix: &mut Mat<f64>) {
-    let size = count(grams.degree);
-    let (w, rotations) = (2 * size, [3 * size, 4 * size]);
-    for i in 0..size {
-        for j in 0..size {
-            matrix[(w + i, w + j)] +=
-                factor * (grams.gradients[0][0][(i, j)] + grams.gradients[1][1][(i, j)]);
-            for (axis, rotation) in rotations.iter().enumerate() {
-                matrix[(rotation + i, rotation + j)] += factor * grams.values[(i, j)];
-                let coupled = factor * grams.slopes[axis][(i, j)];
-                matrix[(rotation + i, w + j)] += coupled;
-                matrix[(w + j, rotation + i)] += coupled;
-            }
-        }
-    }
-}
-
-/// Where a module's foot meets the plate, in the pad frame.
+/// One unknown of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foot {
-    /// Its centre.
-    pub centre_mm: [f64; 2],
-    /// Where its edges point (along the module's x and y before any tilt): unit vectors in the pad's plane.
-    pub edges: [[f64; 2]; 2],
-    /// Half its sizes along these edges.
-    pub half_mm: [f64; 2],
-    /// The module's axes x, y, z in the pad frame, tilted with the module.
-    pub axes: [[f64; 3]; 3],
+struct Unknown {
+    /// Degree n.
+    degree: usize,
+    kind: Kind,
 }
 
-impl Foot {
-    /// The foot of a module of the device.
-    pub fn of(device: &Device, module: usize) -> Self {
-        let state = &device.modules[module];
-        let angle = device.sites.angles_deg[module].to_radians();
-        let (tangent, radius) = ([-angle.sin(), angle.cos()], [angle.cos(), angle.sin()]);
-        let outwards = device.sites.centre_radius_mm + state.radial_mm;
-        let centre_mm = [0, 1].map(|a| outwards * radius[a] + state.tangential_mm * tangent[a]);
-        let edges = [tangent, radius].map(|edge| turned(edge, state.rotation_deg.to_radians()));
-        let lifted = |[x, y]: [f64; 2]| [x, y, 0.0];
-        let flat = [lifted(edges[0]), lifted(edges[1]), [0.0, 0.0, 1.0]];
-        let about = |axis: usize, deg: f64| move |v: [f64; 3]| rotated(v, flat[axis], deg.to_radians());
-        let axes = flat.map(about(1, state.tilt_radial_deg)).map(about(0, state.tilt_tangential_deg));
-        let half_mm = [device.stack.post_length_x_mm / 2.0, device.stack.post_width_y_mm / 2.0];
-        Self { centre_mm, edges, half_mm, axes }
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// A wave of the block's order in w.
+    Deflection,
+    /// A rotation (or, in the plate's plane, a displacement) of signed order l.
+    Vector { order: isize },
+}
+
+/// Motions of the plate that meet only each other.
+struct Block {
+    turn: usize,
+    phase: Phase,
+    /// The first of the two fields that the vectors stand for: 0 for u and v, 3 for R α and R β.
+    first_field: usize,
+    unknowns: Vec<Unknown>,
+}
+
+impl Block {
+    /// All blocks up to a degree.
+    fn all(degree: usize) -> Vec<Self> {
+        let turns =
+            (0..=degree + 1).flat_map(|turn| [Phase::Real, Phase::Imaginary].map(|phase| (turn, phase)));
+        let blocks = turns
+            .flat_map(|(turn, phase)| [0, 3].map(|first_field| Self::new(degree, turn, phase, first_field)));
+        blocks.filter(|block| !block.unknowns.is_empty()).collect()
     }
 
-    /// The matrix from the plate's unknowns to the foot's modes (module axes): the underside's displacement over the
-    /// foot, projected on the foot's polynomials.
-    pub fn modes(&self, degree: usize, radius_mm: f64, thickness_mm: f64) -> Mat<f64> {
-        // Enough for a parabola times whatever the plate does over so small a patch.
-        const POINTS: usize = 8;
+    fn new(degree: usize, turn: usize, phase: Phase, first_field: usize) -> Self {
+        let degrees = |order: usize| (order..=degree).step_by(2);
+        let mut unknowns = Vec::new();
+        let waves = !(turn == 0 && phase == Phase::Imaginary);
+        if first_field == 3 && waves {
+            unknowns.extend(degrees(turn).map(|degree| Unknown { degree, kind: Kind::Deflection }));
+        }
+        let above = 1 + turn.cast_signed();
+        let below = 1 - turn.cast_signed();
+        let orders = if turn == 0 { vec![above] } else { vec![above, below] };
+        for order in orders {
+            let kind = Kind::Vector { order };
+            unknowns.extend(degrees(order.unsigned_abs()).map(|degree| Unknown { degree, kind }));
+        }
+        Self { turn, phase, first_field, unknowns }
+    }
+
+    /// The sign with which a vector of order l meets the block's waves: that of Re or Im of exp(i(l−1)θ).
+    fn sign(&self, order: isize) -> f64 {
+        match self.phase {
+            Phase::Real => 1.0,
+            Phase::Imaginary if order > 1 => -1.0,
+            Phase::Imaginary if order < 1 => 1.0,
+            Phase::Imaginary => 0.0,
+        }
+    }
+
+    /// Energy of a pair of unknowns: an entry of the stiffness.
+    fn entry(&self, a: Unknown, b: Unknown, rigidity: Rigidity) -> f64 {
+        let plane = if self.first_field == 0 { rigidity.stretching } else { rigidity.bending };
+        let shear = if self.first_field == 0 { 0.0 } else { rigidity.shear };
+        match (a.kind, b.kind) {
+            (Kind::Deflection, Kind::Deflection) => shear * self.deflections(a.degree, b.degree),
+            (Kind::Deflection, Kind::Vector { order }) => shear * self.mixed(a.degree, b.degree, order),
+            (Kind::Vector { order }, Kind::Deflection) => shear * self.mixed(b.degree, a.degree, order),
+            (Kind::Vector { order: l }, Kind::Vector { order: k }) => {
+                let least = a.degree.min(b.degree);
+                let even = (1.0 + rigidity.nu) / 2.0 * self.sign(l) * self.sign(k) * self.divergence(least);
+                let odd = if l == k { (1.0 - rigidity.nu) / 2.0 * distortion(least, l) } else { 0.0 };
+                let own = if l == k && a.degree == b.degree { PI / (a.degree + 1) as f64 } else { 0.0 };
+                plane * (even + odd) + shear * own
+            }
+        }
+    }
+
+    /// ∫ of the product of two divergences, of which `least` is the smaller degree.
+    fn divergence(&self, least: usize) -> f64 {
+        let norm = if self.turn == 0 { PI } else { PI / 2.0 };
+        4.0 * norm * weighted_sum(least, self.turn)
+    }
+
+    /// ∫ of the product of two slopes of w.
+    fn deflections(&self, a: usize, b: usize) -> f64 {
+        let (least, above, below) = (a.min(b), self.turn + 1, self.turn.abs_diff(1));
+        if self.turn == 0 {
+            return 4.0 * PI * weighted_sum(least, above);
+        }
+        PI * (weighted_sum(least, above) + weighted_sum(least, below))
+    }
+
+    /// ∫ of the slope of w, of degree `deflection`, times a rotation of signed order l.
+    fn mixed(&self, deflection: usize, rotation: usize, order: isize) -> f64 {
+        let doubled = if self.turn == 0 { 2.0 } else { 1.0 };
+        if rotation < deflection { doubled * self.sign(order) * PI } else { 0.0 }
+    }
+
+    /// The coefficients of u, v, w, R α, R β that a unit of the unknown stands for: (index, factor).
+    fn coefficients(&self, unknown: Unknown, size: usize) -> Vec<(usize, f64)> {
+        let Unknown { degree, kind } = unknown;
+        let at = |field: usize, order: usize, wave: Wave, factor: f64| {
+            index(degree, order, wave).map(|k| (field * size + k, factor))
+        };
+        let entries = match (kind, self.phase) {
+            (Kind::Deflection, Phase::Real) => [at(2, self.turn, Wave::Cos, 1.0), None],
+            (Kind::Deflection, Phase::Imaginary) => [at(2, self.turn, Wave::Sin, 1.0), None],
+            (Kind::Vector { order }, phase) => {
+                let (l, side) = (order.unsigned_abs(), if order < 0 { -1.0 } else { 1.0 });
+                let (u, v) = (self.first_field, self.first_field + 1);
+                match phase {
+                    Phase::Real => [at(u, l, Wave::Cos, 1.0), at(v, l, Wave::Sin, side)],
+                    Phase::Imaginary => [at(u, l, Wave::Sin, -side), at(v, l, Wave::Cos, 1.0)],
+                }
+            }
+        };
+        entries.into_iter().flatten().collect()
+    }
+
+    fn stiffness(&self, rigidity: Rigidity) -> Mat<f64> {
+        let size = self.unknowns.len();
+        Mat::from_fn(size, size, |i, j| self.entry(self.unknowns[i], self.unknowns[j], rigidity))
+    }
+}
+
+/// ∫ |2 ∂U/∂z*|² for a product of two vectors of signed order l, of which `least` is the smaller degree.
+fn distortion(least: usize, order: isize) -> f64 {
+    4.0 * PI * weighted_sum(least, (order + 1).unsigned_abs())
+}
+
+/// Σ (p + 1) over p = n−1, n−3, … down to `order`.
+fn weighted_sum(degree: usize, order: usize) -> f64 {
+    let terms = (0..degree).rev().step_by(2).take_while(|p| *p >= order);
+    terms.map(|p| (p + 1) as f64).sum()
+}
+
+/// The stiffness of a plate, and its inverse once the six rigid motions are held.
+pub struct Plate {
+    size: usize,
+    blocks: Vec<HeldBlock>,
+}
+
+struct HeldBlock {
+    block: Block,
+    /// For each unknown, the coefficients it stands for.
+    coefficients: Vec<Vec<(usize, f64)>>,
+    factor: Llt<f64>,
+}
+
+/// Motions whose fixing holds the plate: u, v and w of degree 0, both tilts of w, and the turn in the plane. Each is
+/// a sum of (field, circle polynomial, factor) that meets the unknowns of one block only.
+const HELD: [&[(usize, usize, f64)]; 6] = [
+    &[(0, 0, 1.0)],
+    &[(1, 0, 1.0)],
+    &[(2, 0, 1.0)],
+    &[(2, 1, 1.0)],
+    &[(2, 2, 1.0)],
+    &[(0, 1, -0.5), (1, 2, 0.5)],
+];
+
+/// The held motions as sums of unknowns (index, factor) of a plate with fields up to `degree`.
+pub fn held(degree: usize) -> [Vec<(usize, f64)>; HELD.len()] {
+    HELD.map(|sum| sum.iter().map(|(field, k, factor)| (field * count(degree) + k, *factor)).collect())
+}
+
+impl Plate {
+    /// A plate of the given rigidity with fields up to `degree`, each held motion by a spring of `spring` N/mm.
+    ///
+    /// # Errors
+    /// A rigidity that is not positive.
+    pub fn of(degree: usize, rigidity: Rigidity, spring: f64) -> Result<Self, SolveError> {
         let size = count(degree);
-        let mut matrix = Mat::zeros(MODES, FIELDS * size);
-        let rule = gauss_legendre(POINTS);
-        for (s, s_weight) in &rule {
-            for (t, t_weight) in &rule {
-                let values = jets(degree, self.place([*s, *t]).map(|mm| mm / radius_mm));
-                for (shape, value) in foot_shapes([*s, *t]).iter().enumerate() {
-                    let [a, b] = FOOT_SHAPES[shape];
-                    let weight = ((2 * a + 1) * (2 * b + 1)) as f64 / 4.0 * s_weight * t_weight * value;
-                    for (k, jet) in values.iter().enumerate() {
-                        self.add(
-                            3 * shape,
-                            k,
-                            weight * jet.value,
-                            thickness_mm / (2.0 * radius_mm),
-                            &mut matrix,
-                        );
-                    }
-                }
-            }
-        }
-        matrix
+        let held = |block: Block| {
+            let coefficients: Vec<_> =
+                block.unknowns.iter().map(|unknown| block.coefficients(*unknown, size)).collect();
+            let mut matrix = block.stiffness(rigidity);
+            add_springs(&coefficients, degree, spring, &mut matrix);
+            let factor = matrix.llt(Side::Lower).map_err(|_| SolveError::NotPositive)?;
+            Ok(HeldBlock { block, coefficients, factor })
+        };
+        let blocks = Block::all(degree).into_iter().map(held).collect::<Result<_, _>>()?;
+        Ok(Self { size, blocks })
     }
 
-    fn add(&self, mode: usize, k: usize, value: f64, lever: f64, matrix: &mut Mat<f64>) {
-        let size = matrix.ncols() / FIELDS;
-        for (c, axis) in self.axes.iter().enumerate() {
-            for (direction, share) in axis.iter().enumerate() {
-                matrix[(mode + c, direction * size + k)] += share * value;
-                if direction < 2 {
-                    // The underside lies half the thickness below the middle plane.
-                    matrix[(mode + c, (3 + direction) * size + k)] -= lever * share * value;
-                }
-            }
-        }
+    /// Number of unknowns: five times the number of polynomials.
+    pub fn unknowns(&self) -> usize {
+        FIELDS * self.size
     }
 
-    fn place(&self, [s, t]: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|a| {
-            self.centre_mm[a]
-                + s * self.half_mm[0] * self.edges[0][a]
-                + t * self.half_mm[1] * self.edges[1][a]
-        })
+    /// Displacements of the held plate under loads, one column for each.
+    pub fn solve(&self, loads: &Mat<f64>) -> Mat<f64> {
+        let mut result = Mat::zeros(loads.nrows(), loads.ncols());
+        for HeldBlock { coefficients, factor, .. } in &self.blocks {
+            let mut right = gathered(coefficients, loads);
+            factor.solve_in_place(&mut right);
+            scatter(coefficients, &right, &mut result);
+        }
+        result
+    }
+
+    /// The free plate's stiffness, of another rigidity perhaps, times displacements (no springs).
+    pub fn forces(&self, rigidity: Rigidity, displacements: &Mat<f64>) -> Mat<f64> {
+        let mut result = Mat::zeros(displacements.nrows(), displacements.ncols());
+        for HeldBlock { block, coefficients, .. } in &self.blocks {
+            // The unknowns are orthogonal combinations: back to them takes the square of their length.
+            let mut amplitudes = gathered(coefficients, displacements);
+            for (i, entries) in coefficients.iter().enumerate() {
+                for j in 0..amplitudes.ncols() {
+                    amplitudes[(i, j)] /= entries.len() as f64;
+                }
+            }
+            let mut forces = block.stiffness(rigidity) * amplitudes;
+            for (i, entries) in coefficients.iter().enumerate() {
+                for j in 0..forces.ncols() {
+                    forces[(i, j)] /= entries.len() as f64;
+                }
+            }
+            scatter(coefficients, &forces, &mut result);
+        }
+        result
     }
 }
 
-fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
-    [angle.cos() * x - angle.sin() * y, angle.sin() * x + angle.cos() * y]
+fn add_springs(coefficients: &[Vec<(usize, f64)>], degree: usize, spring: f64, matrix: &mut Mat<f64>) {
+    for held in held(degree) {
+        let share = |entries: &[(usize, f64)]| -> f64 {
+            let pairs = entries.iter().flat_map(|(k, factor)| {
+                held.iter().filter(move |(held, _)| held == k).map(move |(_, share)| factor * share)
+            });
+            pairs.sum()
+        };
+        for (i, a) in coefficients.iter().enumerate() {
+            for (j, b) in coefficients.iter().enumerate() {
+                matrix[(i, j)] += spring * share(a) * share(b);
+            }
+        }
+    }
 }
 
-/// Turns a vector about a unit axis, right-handed (Rodrigues).
-fn rotated(v: [f64; 3], axis: [f64; 3], angle: f64) -> [f64; 3] {
-    let along: f64 = (0..3).map(|a| v[a] * axis[a]).sum();
-    let cross: [f64; 3] =
-        std::array::from_fn(|a| axis[(a + 1) % 3] * v[(a + 2) % 3] - axis[(a + 2) % 3] * v[(a + 1) % 3]);
-    std::array::from_fn(|a| {
-        angle.cos() * v[a] + angle.sin() * cross[a] + (1.0 - angle.cos()) * along * axis[a]
+fn gathered(coefficients: &[Vec<(usize, f64)>], from: &Mat<f64>) -> Mat<f64> {
+    Mat::from_fn(coefficients.len(), from.ncols(), |i, j| {
+        coefficients[i].iter().map(|(k, factor)| factor * from[(*k, j)]).sum()
     })
 }
 
-/// The work that unit forces on the plate's top do on a displacement of the plate: polynomials for forces along +x and
-/// +y and for one pressing into the plate, by coefficients.
-pub fn surface_work(field: MatRef<'_, f64>, radius_mm: f64, thickness_mm: f64) -> [Vec<f64>; 3] {
-    let size = field.nrows() / FIELDS;
-    let lever = thickness_mm / (2.0 * radius_mm);
-    let along =
-        |a: usize| (0..size).map(move |k| field[(a * size + k, 0)] + lever * field[((3 + a) * size + k, 0)]);
-    [along(0).collect(), along(1).collect(), (0..size).map(|k| -field[(2 * size + k, 0)]).collect()]
+fn scatter(coefficients: &[Vec<(usize, f64)>], from: &Mat<f64>, to: &mut Mat<f64>) {
+    for (i, entries) in coefficients.iter().enumerate() {
+        for (k, factor) in entries {
+            for j in 0..from.ncols() {
+                to[(*k, j)] += factor * from[(i, j)];
+            }
+        }
+    }
 }

@@ -33,7 +33,15 @@ pub struct Superelement {
 }
 
 impl Superelement {
-    const ZERO: Self = Self { stiffness: [[0.0; MODES]; MODES], strains: [[0.0; MODES]; STRAINS] };
+    pub(super) const ZERO: Self = Self { stiffness: [[0.0; MODES]; MODES], strains: [[0.0; MODES]; STRAINS] };
+
+    /// Adds a multiple of another one.
+    pub(super) fn add(&mut self, factor: f64, other: &Self) {
+        let pairs = self.stiffness.iter_mut().flatten().zip(other.stiffness.iter().flatten());
+        pairs.for_each(|(k, other)| *k += factor * other);
+        let pairs = self.strains.iter_mut().flatten().zip(other.strains.iter().flatten());
+        pairs.for_each(|(strain, other)| *strain += factor * other);
+    }
 }
 
 /// Values of the foot's polynomials at a place given in half sizes of the foot, −1 … 1.

@@ -8,6 +8,7 @@ use firmware_proto::link::{CommandReceiver, encode_message};
 use firmware_proto::sample::Sample;
 use firmware_proto::{ENCODED_MAX, RATE_MAX_HZ, RATE_MIN_HZ};
 
+use crate::field::PadField;
 use crate::influence::InfluenceField;
 use crate::quantity::CHANNELS;
 use crate::virtual_pad::front_end::{CONVERTER, FrontEnd};
@@ -63,7 +64,7 @@ impl VirtualPad {
     pub fn new(script: Script, seed: u64) -> Self {
         Self {
             script,
-            field: InfluenceField::nominal(),
+            field: PadField::nominal().signals,
             front_end: FrontEnd::new(seed),
             identity: Identity {
                 serial_number: SerialNumber::from_ascii(SERIAL_NUMBER)

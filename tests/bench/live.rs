@@ -8,6 +8,7 @@ use firmware_proto::frame::Message;
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
 use tactpad::contact::Decoder;
+use tactpad::field::PadField;
 use tactpad::influence::InfluenceField;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::shipped;
@@ -19,7 +20,7 @@ const SAMPLES: u32 = 1_000;
 
 /// A second of play: rest, then presses on the right that come and go every 100 ms.
 fn frames(from: u32) -> Vec<Vec<u8>> {
-    let field = InfluenceField::nominal();
+    let field = PadField::nominal().signals;
     let pressed = field.strain_uv(&Contact { x_mm: 20.0, fz_n: 1.0, ..Contact::default() }).uv;
     (from..from + SAMPLES)
         .map(|sequence| {
@@ -68,7 +69,7 @@ fn live(criterion: &mut Criterion) {
         );
     });
     group.finish();
-    let field = InfluenceField::nominal();
+    let field = PadField::nominal().signals;
     let contact = Contact { x_mm: 11.3, y_mm: -7.9, fx_n: 0.4, fy_n: -0.2, fz_n: 2.0 };
     let strain = field.strain_uv(&contact);
     let decoder = Decoder::shipped();

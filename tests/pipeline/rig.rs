@@ -6,6 +6,7 @@ use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
 use tactpad::contact::Decoder;
 use tactpad::control::{Code, Device};
+use tactpad::field::PadField;
 use tactpad::influence::InfluenceField;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::profile::Profile;
@@ -47,7 +48,7 @@ impl Rig {
     pub(crate) fn new(profile: Profile) -> Self {
         Self {
             pipeline: Pipeline::new(Decoder::shipped(), profile),
-            field: InfluenceField::nominal(),
+            field: PadField::nominal().signals,
             now_us: 0,
             sequence: 0,
             offset: [120_000, -40_000, 7, 0, 999_999, -1, 35_000, -250_000, 66],

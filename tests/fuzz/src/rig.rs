@@ -11,6 +11,7 @@ use firmware_proto::sample::{Sample, Status};
 use tactpad::capture::CallRef;
 use tactpad::contact::Decoder;
 use tactpad::control::{Code, Device, OutputEvent};
+use tactpad::field::PadField;
 use tactpad::influence::InfluenceField;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::profile::Profile;
@@ -23,7 +24,7 @@ use tactpad::time::{HostInstant, StreamInstant};
 use crate::body::framed;
 use crate::step::{Finger, Oddity, Step, Waking};
 
-static FIELD: LazyLock<InfluenceField> = LazyLock::new(InfluenceField::nominal);
+static FIELD: LazyLock<InfluenceField> = LazyLock::new(|| PadField::nominal().signals);
 
 /// Counts per microvolt of a pad that does not identify itself.
 const COUNTS_PER_UV: f32 = 100.0;

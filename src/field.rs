@@ -1,0 +1,232 @@
+//! Everything that the simulator found out about a pad, and the file that keeps it.
+//!
+//! The nominal pad's file is part of the program; others lie in a cache, under their device's fingerprint.
+
+use std::fmt;
+
+use crate::device::Device;
+use crate::device::parameter::Parameter;
+use crate::influence::{InfluenceField, MAPS};
+use crate::quantity::CHANNELS;
+use crate::zernike::{Polynomial, count};
+
+/// What one channel reads per newton along +x, along +y and pressing, as polynomials over the plate in the place
+/// divided by its radius.
+pub type ForceMaps = [Polynomial; 3];
+
+/// Highest degree of the polynomials that are kept of a sensitivity.
+pub const SENSITIVITY_DEGREE: usize = 20;
+
+const NOMINAL: &[u8] = include_bytes!("../models/sstid.field");
+
+/// First bytes of a file. The number grows with every change of the form or of the simulator's numbers, so that what
+/// an older program kept is computed anew.
+const MAGIC: &[u8] = b"tactpad field 1\n";
+
+/// How the nine channels' maps change per unit of a number of the device.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// The number.
+    pub parameter: Parameter,
+    /// µV/N per unit of the number.
+    pub maps: [ForceMaps; CHANNELS],
+}
+
+/// A pad's answer to contacts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PadField {
+    /// The signals, µV/N.
+    pub signals: InfluenceField,
+    /// The bridges' sums in the same unit, µV/N: see `readout`.
+    pub sums: InfluenceField,
+    /// How the signals change with the device's numbers.
+    pub sensitivities: Vec<Sensitivity>,
+}
+
+/// Why a file of a field is of no use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FieldFileError {
+    /// It is no such file, or one of another version.
+    Version,
+    /// Its bytes are damaged.
+    Damaged,
+    /// It belongs to another device.
+    Device,
+}
+
+impl fmt::Display for FieldFileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Version => "not a field of this version",
+            Self::Damaged => "the file is damaged",
+            Self::Device => "the field of another device",
+        })
+    }
+}
+
+impl std::error::Error for FieldFileError {}
+
+impl PadField {
+    /// The field of the pad in `models/sstid.toml`.
+    #[expect(clippy::expect_used, reason = "the file is part of the program and a test reads it")]
+    pub fn nominal() -> Self {
+        Self::from_bytes(NOMINAL, &Device::nominal()).expect("models/sstid.field is the nominal pad's")
+    }
+
+    /// Reads the field of `device`.
+    ///
+    /// # Errors
+    /// Bytes that are not what [`Self::to_bytes`] wrote for an equal device.
+    pub fn from_bytes(bytes: &[u8], device: &Device) -> Result<Self, FieldFileError> {
+        let body = bytes.strip_prefix(MAGIC).ok_or(FieldFileError::Version)?;
+        let (body, sum) = body.split_last_chunk::<8>().ok_or(FieldFileError::Damaged)?;
+        if u64::from_le_bytes(*sum) != checksum(body) {
+            return Err(FieldFileError::Damaged);
+        }
+        let mut reader = Reader { rest: body };
+        if reader.text().ok_or(FieldFileError::Damaged)? != device.field_text().as_bytes() {
+            return Err(FieldFileError::Device);
+        }
+        reader.field().filter(|_| reader.rest.is_empty()).ok_or(FieldFileError::Damaged)
+    }
+
+    /// The bytes of the field's file. Numbers are little-endian.
+    ///
+    /// After the magic: the device's canonical text with its length (u32); the signals and the sums, each as spacing,
+    /// radius (f32), number of coefficients (u32) and coefficients (f32); the number of sensitivities (u32), each as
+    /// name with length and, for each of the 27 maps, a scale (f32) and coefficients as multiples of it (i16); last,
+    /// the sum of everything between magic and sum (FNV-1a, u64). A sensitivity so kept is rounded to some 1/65,000 of
+    /// the map's largest coefficient.
+    pub fn to_bytes(&self, device: &Device) -> Vec<u8> {
+        let mut body = Vec::new();
+        write_text(&mut body, device.field_text().as_bytes());
+        for field in [&self.signals, &self.sums] {
+            let coefficients = field.coefficients();
+            body.extend([field.spacing_mm(), field.radius_mm()].iter().flat_map(|f| f.to_le_bytes()));
+            body.extend((coefficients.len() as u32).to_le_bytes());
+            body.extend(coefficients.iter().flat_map(|c| c.to_le_bytes()));
+        }
+        body.extend((self.sensitivities.len() as u32).to_le_bytes());
+        for Sensitivity { parameter, maps } in &self.sensitivities {
+            write_text(&mut body, parameter.name().as_bytes());
+            maps.iter().flatten().for_each(|map| write_map(&mut body, map));
+        }
+        let sum = checksum(&body);
+        [MAGIC, &body, &sum.to_le_bytes()].concat()
+    }
+}
+
+fn checksum(bytes: &[u8]) -> u64 {
+    crate::device::fingerprint::fnv1a(bytes)
+}
+
+fn write_text(to: &mut Vec<u8>, text: &[u8]) {
+    to.extend((text.len() as u32).to_le_bytes());
+    to.extend(text);
+}
+
+fn write_map(to: &mut Vec<u8>, map: &Polynomial) {
+    let kept = || (0..count(SENSITIVITY_DEGREE)).map(|k| map.coefficients.get(k).copied().unwrap_or(0.0));
+    let largest = kept().fold(0.0_f64, |largest, c| largest.max(c.abs()));
+    let scale = (largest / f64::from(i16::MAX)) as f32;
+    to.extend(scale.to_le_bytes());
+    let steps = |c: f64| if scale > 0.0 { (c / f64::from(scale)).round() as i16 } else { 0 };
+    to.extend(kept().flat_map(|c| steps(c).to_le_bytes()));
+}
+
+/// What is left of a file while it is read; `None` wherever it ends early or makes no sense.
+struct Reader<'b> {
+    rest: &'b [u8],
+}
+
+impl<'b> Reader<'b> {
+    fn take(&mut self, length: usize) -> Option<&'b [u8]> {
+        let (taken, rest) = self.rest.split_at_checked(length)?;
+        self.rest = rest;
+        Some(taken)
+    }
+
+    fn number<const N: usize>(&mut self) -> Option<[u8; N]> {
+        self.take(N)?.first_chunk().copied()
+    }
+
+    fn float(&mut self) -> Option<f32> {
+        self.number().map(f32::from_le_bytes)
+    }
+
+    fn length(&mut self) -> Option<usize> {
+        self.number().map(|bytes| u32::from_le_bytes(bytes) as usize)
+    }
+
+    fn text(&mut self) -> Option<&'b [u8]> {
+        let length = self.length()?;
+        self.take(length)
+    }
+
+    fn field(&mut self) -> Option<PadField> {
+        let (signals, sums) = (self.splines()?, self.splines()?);
+        let sensitivities = (0..self.length()?).map(|_| self.sensitivity()).collect::<Option<_>>()?;
+        Some(PadField { signals, sums, sensitivities })
+    }
+
+    fn splines(&mut self) -> Option<InfluenceField> {
+        let (spacing_mm, radius_mm) = (self.float()?, self.float()?);
+        let length = self.length()?.checked_mul(4)?;
+        let coefficients: Vec<f32> =
+            self.take(length)?.as_chunks().0.iter().map(|c| f32::from_le_bytes(*c)).collect();
+        InfluenceField::from_coefficients(spacing_mm, radius_mm, &coefficients)
+    }
+
+    fn sensitivity(&mut self) -> Option<Sensitivity> {
+        let parameter = std::str::from_utf8(self.text()?).ok()?.parse().ok()?;
+        let maps: Vec<Polynomial> = (0..MAPS).map(|_| self.map()).collect::<Option<_>>()?;
+        let mut maps = maps.into_iter();
+        let none = || Polynomial { coefficients: Vec::new() };
+        let maps = std::array::from_fn(|_| std::array::from_fn(|_| maps.next().unwrap_or_else(none)));
+        Some(Sensitivity { parameter, maps })
+    }
+
+    fn map(&mut self) -> Option<Polynomial> {
+        let scale = f64::from(self.float().filter(|scale| scale.is_finite())?);
+        let steps = self.take(2 * count(SENSITIVITY_DEGREE))?.as_chunks().0;
+        Some(Polynomial {
+            coefficients: steps.iter().map(|s| scale * f64::from(i16::from_le_bytes(*s))).collect(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nominal_field_reads_back_and_is_small() {
+        assert!(NOMINAL.len() < 1_000_000, "{}", NOMINAL.len());
+        assert_eq!(PadField::nominal().to_bytes(&Device::nominal()), NOMINAL);
+    }
+
+    #[test]
+    fn damage_is_found() {
+        let device = Device::nominal();
+        let refused = |bytes: &[u8]| PadField::from_bytes(bytes, &device).unwrap_err();
+        assert_eq!(refused(b"tactpad field 0\n"), FieldFileError::Version);
+        assert_eq!(refused(&NOMINAL[..MAGIC.len()]), FieldFileError::Damaged);
+        assert_eq!(refused(&NOMINAL[..NOMINAL.len() - 1]), FieldFileError::Damaged);
+        for at in [MAGIC.len(), NOMINAL.len() / 2, NOMINAL.len() - 1] {
+            let mut bytes = NOMINAL.to_vec();
+            bytes[at] ^= 1;
+            assert_eq!(refused(&bytes), FieldFileError::Damaged, "byte {at}");
+        }
+    }
+
+    #[test]
+    fn another_device_is_told_apart() {
+        let mut device = Device::nominal();
+        device.plate.thickness_mm = 1.15;
+        assert_eq!(PadField::from_bytes(NOMINAL, &device), Err(FieldFileError::Device));
+        let mut renamed = Device::nominal();
+        renamed.name = "mine".into();
+        renamed.modules[1].gain = [1.1, 1.0, 1.0];
+        assert!(PadField::from_bytes(NOMINAL, &renamed).is_ok());
+    }
+}

@@ -1,0 +1,54 @@
+//! From gauge strains to bridge signals: the linear part of the readout, as weights.
+//!
+//! ΔR/R of gauge i is `resistance_ratio` · `gauge_factor` · (ε along + `transverse_ratio` · ε across). With δ the
+//! excitation, the signals are δ (r1 − r2), δ (r3 − r4) and δ (r5 + r6 − r7); the bridges' sums, which make the exact
+//! voltages nonlinear, are δ (r1 + r2), δ (r3 + r4) and δ (r5 + r6 + r7). All in microvolts.
+
+use crate::device::{Device, GAUGES};
+
+use super::superelement::{MODES, STRAINS, Superelement};
+
+/// Signs of R1 … R7 in the signals x, y, z.
+const SIGNS: [[f64; GAUGES]; 3] = [
+    [1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0],
+    [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0],
+];
+
+/// Microvolts per strain of a device's gauges.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Readings {
+    /// Along the grid and across it, for R1, R2, … R7.
+    uv_per_strain: [f64; STRAINS],
+}
+
+impl Readings {
+    /// The weights of the device's gauges.
+    pub fn of(device: &Device) -> Self {
+        let law = device.gauge_law;
+        let uv = 1e6 * device.circuit.excitation_v * law.gauge_factor;
+        Self {
+            uv_per_strain: std::array::from_fn(|i| {
+                let direction = if i % 2 == 0 { 1.0 } else { law.transverse_ratio };
+                uv * direction * device.gauges[i / 2].resistance_ratio
+            }),
+        }
+    }
+
+    /// Signal of one axis (0: x, 1: y, 2: z) for a unit of each mode of a module's foot, µV/mm.
+    pub fn signal(&self, module: &Superelement, axis: usize) -> [f64; MODES] {
+        self.weighted(module, SIGNS[axis])
+    }
+
+    /// The bridge's sum of one axis for a unit of each mode, µV/mm.
+    pub fn sum(&self, module: &Superelement, axis: usize) -> [f64; MODES] {
+        self.weighted(module, SIGNS[axis].map(f64::abs))
+    }
+
+    fn weighted(&self, module: &Superelement, signs: [f64; GAUGES]) -> [f64; MODES] {
+        std::array::from_fn(|mode| {
+            let strains = module.strains.iter().zip(&self.uv_per_strain).enumerate();
+            strains.map(|(i, (strain, uv))| signs[i / 2] * uv * strain[mode]).sum()
+        })
+    }
+}

@@ -225,7 +225,7 @@ impl Sums {
     }
 }
 
-/// The maps' values at a place; beyond the rim, those of the parabola along the ray through the last three points one
+/// The maps' values at a place; beyond the rim, those of the polynomial along the ray through the last points one
 /// spacing apart. There the splines need values, but no contact is.
 fn continued(
     place: [f64; 2],
@@ -233,18 +233,22 @@ fn continued(
     rim_mm: f64,
     maps: &impl Fn([f64; 2]) -> [f64; MAPS],
 ) -> [f64; MAPS] {
+    /// Places of the points, in spacings from the rim. So many that slopes at the rim keep four digits.
+    const STEPS: [f64; 7] = [0.0, -1.0, -2.0, -3.0, -4.0, -5.0, -6.0];
     let radius = place[0].hypot(place[1]);
     if radius <= rim_mm {
         return maps(place);
     }
-    let t = (radius - rim_mm) / spacing_mm;
-    let inward = |steps: f64| maps(place.map(|mm| mm * (rim_mm - steps * spacing_mm) / radius));
-    let [last, before, first] = [0.0, 1.0, 2.0].map(inward);
-    std::array::from_fn(|map| {
-        let slope = 1.5 * last[map] - 2.0 * before[map] + 0.5 * first[map];
-        let curvature = last[map] - 2.0 * before[map] + first[map];
-        last[map] + t * slope + t * t / 2.0 * curvature
-    })
+    // Farther out a polynomial runs away. No contact feels that: what a spline takes falls to a quarter with each line.
+    let t = ((radius - rim_mm) / spacing_mm).min(6.0);
+    let mut sum = [0.0; MAPS];
+    for here in STEPS {
+        let others = STEPS.iter().filter(|other| **other != here);
+        let weight: f64 = others.map(|other| (t - other) / (here - other)).product();
+        let values = maps(place.map(|mm| mm * (rim_mm + here * spacing_mm) / radius));
+        sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+    }
+    sum
 }
 
 /// Coefficients of the splines that take the given values, line by line and then column by column.

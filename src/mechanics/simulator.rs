@@ -136,7 +136,8 @@ pub fn splines(device: &Device, lines_per_radius: f64, maps: &[ForceMaps; CHANNE
     InfluenceField::sampled(
         radius_mm / lines_per_radius,
         device.contact.max_centre_radius_mm,
-        radius_mm,
+        // Farther out the patch would reach over the rim, where the polynomials mean nothing.
+        radius_mm - device.contact.patch_radius_mm,
         |place| {
             let jets = jets(PLATE_DEGREE, place.map(|mm| mm / radius_mm));
             let mut values = [0.0; MAPS];

@@ -6,7 +6,7 @@ use tactpad::contact::statics::{Statics, StaticsModel};
 use tactpad::device::Device;
 use tactpad::quantity::{CHANNELS, Contact, MODULES, Strain};
 
-const TABLE: &str = include_str!("../models/influence.csv");
+const TABLE: &str = include_str!("reference/nominal.csv");
 const MODULE_RADIUS_MM: f64 = 20.0;
 
 /// One place of the table; `gain[channel][axis]` in µV/N.

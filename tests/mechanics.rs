@@ -231,7 +231,7 @@ fn derivatives_are_the_differences_of_solutions() {
 
 #[test]
 fn what_is_kept_of_a_sensitivity_is_close_to_it() {
-    // Degree 20 and 16 bits instead of the plate's degree and 64.
+    // Fewer degrees and 16 bits.
     let device = Device::nominal();
     let kept = PadField::nominal();
     let all = SIMULATOR.lock().unwrap().sensitivities(&device).unwrap();

@@ -6,7 +6,7 @@ use crate::device::{Device, Gauge, Material, Side, Stack};
 use crate::field::{ForceMaps, PadField, Sensitivity};
 use crate::influence::{InfluenceField, MAPS};
 use crate::quantity::{CHANNELS, MODULES};
-use crate::zernike::jets;
+use crate::zernike::{count, jets};
 
 use super::mesh::{Fineness, Layer};
 use super::pad::Pad;
@@ -130,18 +130,30 @@ impl Simulator {
     }
 }
 
-/// Splines through the polynomials of a device's channels.
+/// Splines through the polynomials of a device's channels, for contacts up to the farthest one.
+///
+/// Farther out a contact's disc reaches over the plate's rim, where the polynomials grow without meaning; so nothing
+/// is asked of them there.
 pub fn splines(device: &Device, lines_per_radius: f64, maps: &[ForceMaps; CHANNELS]) -> InfluenceField {
     let radius_mm = device.plate.diameter_mm / 2.0;
-    InfluenceField::sampled(
-        radius_mm / lines_per_radius,
-        device.contact.max_centre_radius_mm,
-        radius_mm,
-        |place| {
-            let jets = jets(PLATE_DEGREE, place.map(|mm| mm / radius_mm));
-            let mut values = [0.0; MAPS];
-            values.iter_mut().zip(maps.iter().flatten()).for_each(|(value, map)| *value = map.value(&jets));
-            values
-        },
-    )
+    let farthest_mm = device.contact.max_centre_radius_mm;
+    // Polynomial by polynomial, so that all maps are summed side by side.
+    let rows: Vec<[f64; MAPS]> = (0..count(PLATE_DEGREE)).map(|k| row(maps, k)).collect();
+    InfluenceField::sampled(radius_mm / lines_per_radius, farthest_mm, farthest_mm, |place| {
+        let jets = jets(PLATE_DEGREE, place.map(|mm| mm / radius_mm));
+        let mut values = [0.0; MAPS];
+        for (row, jet) in rows.iter().zip(&jets) {
+            values.iter_mut().zip(row).for_each(|(value, coefficient)| *value += coefficient * jet.value);
+        }
+        values
+    })
+}
+
+/// The coefficients of one circle polynomial in all maps.
+fn row(maps: &[ForceMaps; CHANNELS], k: usize) -> [f64; MAPS] {
+    let mut row = [0.0; MAPS];
+    row.iter_mut().zip(maps.iter().flatten()).for_each(|(to, map)| {
+        *to = map.coefficients.get(k).copied().unwrap_or(0.0);
+    });
+    row
 }

@@ -7,9 +7,12 @@
 use std::path::Path;
 
 use tactpad::device::Device;
-use tactpad::field::PadField;
+use tactpad::field::{ForceMaps, PadField};
+use tactpad::influence::InfluenceField;
 use tactpad::mechanics::mesh::Fineness;
-use tactpad::mechanics::simulator::Simulator;
+use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
+use tactpad::quantity::CHANNELS;
+use tactpad::zernike::jets;
 
 fn shipped() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("models/sstid.field")
@@ -18,7 +21,9 @@ fn shipped() -> std::path::PathBuf {
 #[test]
 fn the_shipped_field_is_the_simulators() {
     let device = Device::nominal();
-    let made = Simulator::new(Fineness::STANDARD).field(&device).unwrap();
+    let mut simulator = Simulator::new(Fineness::STANDARD);
+    let made = simulator.field(&device).unwrap();
+    assert_splines_follow(&made.signals, &simulator.pad(&device).unwrap().signals());
     if std::env::var_os("TACTPAD_WRITE_FIELD").is_some() {
         std::fs::write(shipped(), made.to_bytes(&device)).unwrap();
     }
@@ -37,6 +42,24 @@ fn the_shipped_field_is_the_simulators() {
             for (kept, made) in kept.coefficients.iter().zip(&made.coefficients) {
                 assert!((kept - made).abs() <= 1e-4 * largest);
             }
+        }
+    }
+}
+
+/// Values and slopes are the polynomials', up to the farthest contact.
+fn assert_splines_follow(splines: &InfluenceField, maps: &[ForceMaps; CHANNELS]) {
+    for (ring, place) in (0..=58).flat_map(|ring| (0..24).map(move |place| (ring, place))) {
+        let (sin, cos) = (f64::from(place) * 15.0).to_radians().sin_cos();
+        let [x, y] = [cos, sin].map(|share| f64::from(ring) / 2.0 * share);
+        let jets = jets(PLATE_DEGREE, [x, y].map(|mm| mm / 30.0));
+        let gains = splines.gains(x as f32, y as f32);
+        for (channel, axis) in (0..CHANNELS).flat_map(|channel| (0..3).map(move |axis| (channel, axis))) {
+            let wanted = maps[channel][axis].jet(&jets);
+            let off_uv = gains.value[channel][axis] - wanted.value;
+            let slopes =
+                [gains.dx[channel][axis] - wanted.dx / 30.0, gains.dy[channel][axis] - wanted.dy / 30.0];
+            assert!(off_uv.abs() < 0.1, "{channel} {axis} at {x}, {y}: {off_uv} µV/N");
+            assert!(slopes[0].hypot(slopes[1]) < 0.5, "{channel} {axis} at {x}, {y}: {slopes:?} µV/N per mm");
         }
     }
 }

@@ -1,15 +1,26 @@
 //! `tactpad layout`: where the three modules should stand, by the paper's rule and by the pad's mechanics.
 
+mod drawing;
+#[cfg(feature = "simulator")]
+mod mechanics;
 mod tables;
+
+use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, print_json};
+#[cfg(feature = "simulator")]
+use self::mechanics::Study;
+use super::device::Pad;
+use super::{Failure, pictures, print_json};
+use crate::device::Device;
 use crate::layout::grid;
+#[cfg(feature = "simulator")]
+use crate::layout::placement::Placement;
 use crate::layout::placement::{Candidate, Search};
 use crate::layout::published::{PARTS, Part, WORKS, Work, area_per_channel_cm2, plate_area_cm2};
-use crate::layout::region::{Isoline, THRESHOLD};
+use crate::layout::region::{Isoline, Outline, THRESHOLD};
 use crate::layout::spacing::{PAIRS, Radii, Spacing};
 use crate::layout::swarm;
 use crate::quantity::{CHANNELS, MODULES};
@@ -17,11 +28,14 @@ use crate::virtual_pad::front_end::NOISE_RMS_UV;
 
 /// Arguments of `tactpad layout`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tactpad layout --radii 30,30,36")]
+#[command(after_help = "Example: tactpad layout --figures figures")]
 #[group(skip)]
 pub(super) struct Arguments {
-    /// Radii of the modules' effective regions in millimetres, instead of those of the simulated pad.
+    #[command(flatten)]
+    pad: Pad,
+    /// Radii of the modules' effective regions in millimetres: only the paper's rule for them, and no simulation.
     #[arg(long, value_name = "R1,R2,R3", value_parser = parse_radii, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["threshold", "noise_uv", "figures", "imperfections"])]
     radii: Option<Radii>,
     /// Share of a press that a module must carry to count as effective.
     #[arg(long, value_name = "SHARE", default_value_t = THRESHOLD, value_parser = parse_share)]
@@ -34,6 +48,9 @@ pub(super) struct Arguments {
     /// The swarm's seed; the same seed gives the same answer.
     #[arg(long, default_value_t = 1, allow_hyphen_values = true)]
     seed: u64,
+    /// Write the figures layout-scan and layout-regions into this folder, as SVG and PNG.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
@@ -49,9 +66,8 @@ const NOISE_MAX_UV: f64 = 1e6;
 #[derive(Serialize)]
 struct Report {
     seed: u64,
-    threshold: f64,
-    noise_uv: f64,
     spacing: SpacingReport,
+    /// Nothing if the radii were given.
     #[serde(flatten)]
     simulated: Option<Simulated>,
     area_per_channel: Vec<AreaRow>,
@@ -74,15 +90,19 @@ struct SpacingReport {
 /// What the mechanics of a pad add.
 #[derive(Serialize)]
 struct Simulated {
-    plate_diameter_mm: f64,
+    threshold: f64,
+    noise_uv: f64,
     /// Per module; nothing where the isoline is not on the plate.
     isolines: [Option<Isoline>; MODULES],
+    /// The isolines for pictures.
+    #[serde(skip)]
+    outlines: [Outline; MODULES],
     /// The force of the press whose location errors follow.
     press_n: [f64; 3],
     /// The pad as its device file has it.
     as_built: Candidate,
     /// The same with its modules where the paper's rule puts them.
-    by_rule: Option<Candidate>,
+    by_rule: Candidate,
     search: Search,
 }
 
@@ -95,40 +115,65 @@ struct AreaRow {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let simulated = simulated(arguments.threshold, arguments.noise_uv)?;
-    let radii = radii(arguments, simulated.as_ref())?;
+    let device = arguments.pad.read()?;
+    let (spacing, simulated) = match &arguments.radii {
+        Some(radii) => (spacing(radii, arguments.seed)?, None),
+        None => simulated(arguments, &device).map(|(spacing, pad)| (spacing, Some(pad)))?,
+    };
     let report = Report {
         seed: arguments.seed,
-        threshold: arguments.threshold,
-        noise_uv: arguments.noise_uv,
-        spacing: spacing(&radii, arguments.seed)?,
-        area_per_channel: area_rows(simulated.as_ref().map(|pad| pad.plate_diameter_mm)),
+        spacing,
+        area_per_channel: area_rows(device.plate.diameter_mm),
         parts: PARTS,
         parts_usd: PARTS.iter().map(Part::price_usd).sum(),
         simulated,
     };
+    if let (Some(folder), Some(pad)) = (&arguments.figures, &report.simulated) {
+        pictures::write(folder, "layout-scan", &drawing::scan(pad))?;
+        pictures::write(folder, "layout-regions", &drawing::regions(pad, &report.spacing, &device))?;
+    }
     if arguments.json { print_json(&report) } else { Ok(tables::print(&report)?) }
 }
 
-/// What the mechanics say about the nominal pad: where they come in. As long as there are none, the tables about a
-/// pad are left out.
-fn simulated(_threshold: f64, _noise_uv: f64) -> Result<Option<Simulated>, Failure> {
-    Ok(None)
+/// The effective regions of the simulated pad, the paper's rule for them, and the search for better placements.
+#[cfg(feature = "simulator")]
+fn simulated(arguments: &Arguments, device: &Device) -> Result<(SpacingReport, Simulated), Failure> {
+    let Arguments { threshold, noise_uv, seed, .. } = *arguments;
+    let mut study = Study::of(device, noise_uv)?;
+    let regions = study.regions(threshold);
+    let isolines = regions.each_ref().map(|(isoline, _)| *isoline);
+    let spacing = spacing(&radii(&isolines, threshold)?, seed)?;
+    let placed = [Placement::of(device), Placement::by_rule(&spacing.closed_form)];
+    let [as_built, by_rule] = placed.map(|placement| study.candidate(placement));
+    let simulated = Simulated {
+        threshold,
+        noise_uv,
+        isolines,
+        outlines: regions.map(|(_, outline)| outline),
+        press_n: study.press_n(),
+        as_built: as_built?,
+        by_rule: by_rule?,
+        search: study.search()?,
+    };
+    Ok((spacing, simulated))
 }
 
-/// The radii that were given, else those of the simulated pad.
-fn radii(arguments: &Arguments, simulated: Option<&Simulated>) -> Result<Radii, Failure> {
-    if let Some(radii) = arguments.radii {
-        return Ok(radii);
-    }
-    let Some(pad) = simulated else {
-        return Err(Failure::Unusable("give the radii of the effective regions: --radii R1,R2,R3".into()));
-    };
-    let [Some(r1), Some(r2), Some(r3)] = pad.isolines.map(|isoline| isoline.map(|isoline| isoline.radius_mm))
+#[cfg(not(feature = "simulator"))]
+fn simulated(_arguments: &Arguments, _device: &Device) -> Result<(SpacingReport, Simulated), Failure> {
+    Err(Failure::Unusable(
+        "this program was built without the simulator: give the radii of the effective regions, as in \
+         --radii 33,33,33, or build it with the feature \"simulator\""
+            .into(),
+    ))
+}
+
+/// The paper's r of each module.
+#[cfg(feature = "simulator")]
+fn radii(isolines: &[Option<Isoline>; MODULES], threshold: f64) -> Result<Radii, Failure> {
+    let [Some(r1), Some(r2), Some(r3)] = isolines.map(|isoline| isoline.map(|isoline| isoline.radius_mm))
     else {
         return Err(Failure::Unusable(format!(
-            "at a threshold of {} an isoline is not on the plate: choose another --threshold, or give --radii R1,R2,R3",
-            arguments.threshold
+            "at a threshold of {threshold} an isoline is not on the plate: choose another --threshold"
         )));
     };
     Radii::new([r1, r2, r3]).map_err(|error| Failure::Failed(error.to_string()))
@@ -146,20 +191,18 @@ fn spacing(radii: &Radii, seed: u64) -> Result<SpacingReport, Failure> {
     })
 }
 
-/// The paper's Table 7, with this pad before it if its diameter is known.
-fn area_rows(plate_diameter_mm: Option<f64>) -> Vec<AreaRow> {
-    let own = plate_diameter_mm.map(|diameter_mm| AreaRow {
-        work: Work {
-            name: "this pad",
-            principle: "sparse strain",
-            channels: CHANNELS as u32,
-            area_cm2: plate_area_cm2(diameter_mm),
-            printed_cm2: None,
-        },
-        area_per_channel_cm2: area_per_channel_cm2(diameter_mm),
-    });
+/// The paper's Table 7, with this pad before it.
+fn area_rows(plate_diameter_mm: f64) -> Vec<AreaRow> {
+    let own = Work {
+        name: "this pad",
+        principle: "sparse strain",
+        channels: CHANNELS as u32,
+        area_cm2: plate_area_cm2(plate_diameter_mm),
+        printed_cm2: None,
+    };
+    let own = AreaRow { work: own, area_per_channel_cm2: area_per_channel_cm2(plate_diameter_mm) };
     let published = WORKS.map(|work| AreaRow { area_per_channel_cm2: work.area_per_channel_cm2(), work });
-    own.into_iter().chain(published).collect()
+    [own].into_iter().chain(published).collect()
 }
 
 fn parse_radii(text: &str) -> Result<Radii, String> {

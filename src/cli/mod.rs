@@ -5,8 +5,6 @@ mod contacts;
 mod ctl;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod demo;
-// Part of the program as soon as a verb takes it.
-#[cfg(test)]
 mod device;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod devices;
@@ -20,7 +18,10 @@ mod layout;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod live;
 mod measured;
+mod pictures;
 mod profile;
+#[cfg(feature = "simulator")]
+mod progress;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod record;
 mod replay;

@@ -2,7 +2,7 @@
 
 use super::precision::{Precision, Press, over_plate};
 use super::spacing::{PAIRS, Spacing};
-use crate::device::{Plate, Stack};
+use crate::device::{Device, Plate, Stack};
 use crate::influence::Gains;
 use crate::quantity::MODULES;
 
@@ -24,11 +24,28 @@ const SAME: f64 = 1e-9;
 pub struct Placement {
     /// Distance of the module centres from the pad's axis.
     pub centre_radius_mm: f64,
-    /// Turn of every module about its own axis, counter-clockwise seen from above.
+    /// Turn of every module about its own axis, counter-clockwise seen from above; on top of what the device's
+    /// `[[module]]` tables say.
     pub rotation_deg: f64,
 }
 
 impl Placement {
+    /// How a device's modules stand as it is.
+    pub const fn of(device: &Device) -> Self {
+        Self { centre_radius_mm: device.sites.centre_radius_mm, rotation_deg: 0.0 }
+    }
+
+    /// The device with its modules placed so; nothing if it could not be built, by the rules for device files.
+    pub fn on(&self, device: &Device) -> Option<Device> {
+        let mut placed = device.clone();
+        placed.sites.centre_radius_mm = self.centre_radius_mm;
+        for module in &mut placed.modules {
+            let turned_deg = module.rotation_deg + self.rotation_deg;
+            module.rotation_deg = if turned_deg > 180.0 { turned_deg - 360.0 } else { turned_deg };
+        }
+        Device::from_toml(&placed.to_toml()).0
+    }
+
     /// Where the paper's rule puts the modules: around the axis, as far apart as the spacing says in the mean, not
     /// turned.
     pub fn by_rule(spacing: &Spacing) -> Self {
@@ -73,29 +90,33 @@ pub struct Search {
     pub best: Option<Candidate>,
 }
 
-/// Judges one placement. `pad` builds it and returns its field of gains; nothing if it cannot be built.
-pub fn judge<F: Fn(f64, f64) -> Gains>(
-    placement: Placement,
-    press: &Press,
-    contact_radius_mm: f64,
-    pad: &mut impl FnMut(Placement) -> Option<F>,
-) -> Candidate {
-    let precision = pad(placement).map(|field| over_plate(field, press, contact_radius_mm));
-    Candidate { placement, precision }
+impl Candidate {
+    /// Judges one placement by the field of gains of the pad that is built so, if it can be built.
+    pub fn judged(
+        placement: Placement,
+        press: &Press,
+        contact_radius_mm: f64,
+        field: Option<impl Fn(f64, f64) -> Gains>,
+    ) -> Self {
+        Self { placement, precision: field.map(|field| over_plate(field, press, contact_radius_mm)) }
+    }
 }
 
 /// Looks for the placement whose worst location error is smallest.
 ///
-/// `judge` is called for each candidate, some hundred times for a usual range: first over the grid, then around the
-/// best so far. There, the eight neighbours at half of the grid's steps are tried; the search moves to the best of
+/// `judge` gets placements that do not depend on each other, and returns a candidate for each, in their order; some
+/// hundred for a usual range. First comes the whole grid, then what is around the best so far. There, the eight neighbours at half of the grid's steps are tried; the search moves to the best of
 /// them, or halves the steps, until they are below 0.1 mm and 1°. The worst error has kinks where the worst place
 /// jumps, so nothing that needs its slope is used. The result is a local optimum of the best cell of the grid;
 /// refinement stays within the range.
 ///
 /// Of equally good candidates the first counts. Noise and force only scale the error: they do not move the optimum
 /// of a linear pad, but the direction of the force does.
-pub fn search(range: &Range, mut judge: impl FnMut(Placement) -> Candidate) -> Search {
-    let grid: Vec<_> = range.grid().into_iter().map(&mut judge).collect();
+pub fn search<E>(
+    range: &Range,
+    mut judge: impl FnMut(&[Placement]) -> Result<Vec<Candidate>, E>,
+) -> Result<Search, E> {
+    let grid = judge(&range.grid())?;
     let mut best = smallest(&grid);
     let mut refinement = Vec::new();
     let [mut radius_step, mut rotation_step] = range.steps().map(|step| 0.5 * step);
@@ -104,16 +125,16 @@ pub fn search(range: &Range, mut judge: impl FnMut(Placement) -> Candidate) -> S
     {
         // What was tried before is not better than the best so far.
         let around = range.around(centre.placement, radius_step, rotation_step);
-        let fresh =
-            around.into_iter().filter(|placement| refinement.iter().all(|tried| !is_at(tried, placement)));
-        let tried: Vec<_> = fresh.map(&mut judge).collect();
+        let is_fresh = |placement: &Placement| refinement.iter().all(|tried| !is_at(tried, placement));
+        let fresh: Vec<_> = around.into_iter().filter(is_fresh).collect();
+        let tried = judge(&fresh)?;
         match smallest(&tried).filter(|found| worst_mm(found) < worst_mm(&centre)) {
             Some(better) => best = Some(better),
             None => (radius_step, rotation_step) = (0.5 * radius_step, 0.5 * rotation_step),
         }
         refinement.extend(tried);
     }
-    Search { range: *range, grid, refinement, best }
+    Ok(Search { range: *range, grid, refinement, best })
 }
 
 impl Search {
@@ -208,6 +229,8 @@ fn smallest<'a>(candidates: impl IntoIterator<Item = &'a Candidate>) -> Option<C
 
 #[cfg(test)]
 mod tests {
+    use std::convert::Infallible;
+
     use super::*;
     use crate::layout::precision::tests::{load_cell_error_mm, load_cells};
 
@@ -243,6 +266,14 @@ mod tests {
         assert_eq!((radius_steps, rotation_deg, rotation_steps), (11, [0.0, 90.0], 6));
     }
 
+    /// The search with a judge of single placements that knows no errors.
+    fn searched(mut judge: impl FnMut(Placement) -> Candidate) -> Search {
+        let all = |placements: &[Placement]| {
+            Ok::<_, Infallible>(placements.iter().map(|placement| judge(*placement)).collect())
+        };
+        search(&RANGE, all).unwrap()
+    }
+
     /// A candidate whose worst error is given.
     fn valued(placement: Placement, worst_mm: f64) -> Candidate {
         let largest_uv = 4e4 / placement.centre_radius_mm;
@@ -257,7 +288,7 @@ mod tests {
                 let (u, v) = ((at.centre_radius_mm - radius) / 2.0, (at.rotation_deg - rotation) / 15.0);
                 valued(at, 1.0 + (u + 0.5 * v).abs().max((v - 0.3 * u).abs()))
             };
-            let found = search(&RANGE, bowl).best.unwrap().placement;
+            let found = searched(bowl).best.unwrap().placement;
             assert!((found.centre_radius_mm - radius).abs() < 0.2, "{found:?}");
             assert!((found.rotation_deg - rotation).abs() < 2.0, "{found:?}");
         }
@@ -266,7 +297,7 @@ mod tests {
     #[test]
     fn the_whole_scan_is_kept_in_order() {
         let mut asked = Vec::new();
-        let found = search(&RANGE, |at| {
+        let found = searched(|at| {
             asked.push(at);
             valued(at, at.centre_radius_mm)
         });
@@ -294,10 +325,25 @@ mod tests {
             radius if radius > 17.3 => Candidate { placement: at, precision: None },
             radius => valued(at, 30.0 - radius),
         };
-        let found = search(&RANGE, wall);
+        let found = searched(wall);
         assert!((found.best.unwrap().placement.centre_radius_mm - 17.3).abs() < 0.2);
-        let nothing = search(&RANGE, |placement| Candidate { placement, precision: None });
+        let nothing = searched(|placement| Candidate { placement, precision: None });
         assert!(nothing.best.is_none() && nothing.refinement.is_empty() && nothing.grid.len() == 70);
+    }
+
+    #[test]
+    fn a_device_is_placed_and_what_cannot_be_built_is_none() {
+        let mut device = Device::nominal();
+        device.modules[1].rotation_deg = 170.0;
+        assert_eq!(Placement::of(&device), Placement { centre_radius_mm: 20.0, rotation_deg: 0.0 });
+        assert_eq!(Placement::of(&device).on(&device), Some(device.clone()));
+        let placed = Placement { centre_radius_mm: 15.5, rotation_deg: 30.0 }.on(&device).unwrap();
+        assert_eq!(placed.sites.centre_radius_mm, 15.5);
+        assert_eq!(placed.modules.map(|module| module.rotation_deg), [30.0, -160.0, 30.0]);
+        for (centre_radius_mm, rotation_deg) in [(27.3, 0.0), (3.0, 0.0), (25.0, 90.0)] {
+            let impossible = Placement { centre_radius_mm, rotation_deg };
+            assert_eq!(impossible.on(&device), None, "{impossible:?}");
+        }
     }
 
     #[test]
@@ -310,13 +356,15 @@ mod tests {
     #[test]
     fn load_cells_belong_as_near_the_axis_as_they_may_stand() {
         // Noise counts per newton, so the closed form's a² + r² is smallest for the smallest a; turns do not matter.
-        let mut pad = |at: Placement| Some(load_cells(at.centre_radius_mm, 1900.0));
-        let found = search(&RANGE, |placement| judge(placement, &PRESS, 29.0, &mut pad));
+        let judge = |at: Placement| {
+            Candidate::judged(at, &PRESS, 29.0, Some(load_cells(at.centre_radius_mm, 1900.0)))
+        };
+        let found = searched(judge);
         let best = found.best.unwrap();
         assert_eq!(best.placement, Placement { centre_radius_mm: 8.0, rotation_deg: 0.0 });
         let wanted = load_cell_error_mm(8.0, 29.0, 6.0 / 1900.0, 1.0);
         assert!((best.precision.unwrap().worst_mm / wanted - 1.0).abs() < 1e-12);
-        let unbuilt = judge(best.placement, &PRESS, 29.0, &mut |_| None::<fn(f64, f64) -> Gains>);
+        let unbuilt = Candidate::judged(best.placement, &PRESS, 29.0, None::<fn(f64, f64) -> Gains>);
         assert_eq!(unbuilt, Candidate { precision: None, ..best });
     }
 }

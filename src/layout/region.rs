@@ -36,6 +36,10 @@ pub struct Isoline {
     pub share_on_plate: f64,
 }
 
+/// For each ray of [`isoline`], counter-clockwise from +x, the place in millimetres where it meets the isoline; nothing
+/// where it does not.
+pub type Outline = Vec<Option<[f64; 2]>>;
+
 /// Follows straight rays from the module's centre to where the reaction first falls below the threshold.
 ///
 /// `reaction` is the share of a press at a place (x, y) that the module carries, `centre_mm` the module's place, both in
@@ -53,14 +57,44 @@ pub fn isoline(
     threshold: f64,
     plate_radius_mm: f64,
 ) -> Option<Isoline> {
-    let mut met = Vec::with_capacity(RAYS);
-    for ray in 0..RAYS {
-        let (sin, cos) = (ray as f64 / RAYS as f64 * TAU).sin_cos();
-        let surplus = |r: f64| reaction(centre_mm[0] + r * cos, centre_mm[1] + r * sin) - threshold;
-        let rim_mm = to_rim_mm(centre_mm, [cos, sin], plate_radius_mm)?;
-        met.extend(crossing_mm(surplus, rim_mm));
-    }
+    let met: Vec<f64> =
+        distances_mm(reaction, centre_mm, threshold, plate_radius_mm).into_iter().flatten().collect();
     (!met.is_empty()).then(|| summary(&met))
+}
+
+/// The isoline itself, for pictures.
+pub fn outline(
+    reaction: impl Fn(f64, f64) -> f64,
+    centre_mm: [f64; 2],
+    threshold: f64,
+    plate_radius_mm: f64,
+) -> Outline {
+    let met = distances_mm(reaction, centre_mm, threshold, plate_radius_mm);
+    let place = |(ray, r): (usize, Option<f64>)| {
+        let [cos, sin] = direction(ray);
+        r.map(|r| [centre_mm[0] + r * cos, centre_mm[1] + r * sin])
+    };
+    met.into_iter().enumerate().map(place).collect()
+}
+
+/// For each ray the distance at which the reaction first falls below the threshold on the plate.
+fn distances_mm(
+    reaction: impl Fn(f64, f64) -> f64,
+    centre_mm: [f64; 2],
+    threshold: f64,
+    plate_radius_mm: f64,
+) -> Vec<Option<f64>> {
+    let met = |ray: usize| {
+        let [cos, sin] = direction(ray);
+        let surplus = |r: f64| reaction(centre_mm[0] + r * cos, centre_mm[1] + r * sin) - threshold;
+        crossing_mm(surplus, to_rim_mm(centre_mm, [cos, sin], plate_radius_mm)?)
+    };
+    (0..RAYS).map(met).collect()
+}
+
+fn direction(ray: usize) -> [f64; 2] {
+    let (sin, cos) = (ray as f64 / RAYS as f64 * TAU).sin_cos();
+    [cos, sin]
 }
 
 /// Length of the ray from a place to the plate's rim, if the place lies on the plate.
@@ -117,6 +151,9 @@ mod tests {
         assert!(near(found.radius_mm, wanted, 1e-9) && found.spread_mm < 1e-9, "{found:?}");
         assert!(near(found.nearest_mm, wanted, 1e-9) && near(found.farthest_mm, wanted, 1e-9));
         assert_eq!(found.share_on_plate, 1.0);
+        let outline: Vec<[f64; 2]> = outline(fading, centre, 0.1, 60.0).into_iter().flatten().collect();
+        assert_eq!(outline.len(), RAYS);
+        assert!(outline.iter().all(|[x, y]| near((x - 4.0).hypot(y + 3.0), wanted, 1e-9)));
     }
 
     #[test]

@@ -16,13 +16,13 @@ pub(super) fn print(report: &Report) -> io::Result<()> {
 
 fn write(out: &mut impl Write, report: &Report) -> io::Result<()> {
     if let Some(pad) = &report.simulated {
-        write_isolines(out, pad, report.threshold)?;
+        write_isolines(out, pad)?;
         writeln!(out)?;
     }
     write_spacing(out, &report.spacing)?;
     if let Some(pad) = &report.simulated {
         writeln!(out)?;
-        write_placements(out, pad, report.noise_uv)?;
+        write_placements(out, pad)?;
     }
     writeln!(out)?;
     write_areas(out, &report.area_per_channel)?;
@@ -30,8 +30,8 @@ fn write(out: &mut impl Write, report: &Report) -> io::Result<()> {
     write_parts(out, &report.parts, report.parts_usd)
 }
 
-fn write_isolines(out: &mut impl Write, pad: &Simulated, threshold: f64) -> io::Result<()> {
-    writeln!(out, "Effective regions: a module carries more than {} % of a press", 100.0 * threshold)?;
+fn write_isolines(out: &mut impl Write, pad: &Simulated) -> io::Result<()> {
+    writeln!(out, "Effective regions: a module carries more than {} % of a press", 100.0 * pad.threshold)?;
     writeln!(
         out,
         "{:<8} {:>8} {:>8} {:>8} {:>8} {:>14}",
@@ -85,8 +85,8 @@ fn is_flat(distances_mm: [f64; 3]) -> bool {
     2.0 * longest >= distances_mm.iter().sum::<f64>() * (1.0 - FREE)
 }
 
-fn write_placements(out: &mut impl Write, pad: &Simulated, noise_uv: f64) -> io::Result<()> {
-    let [fx, fy, fz] = pad.press_n;
+fn write_placements(out: &mut impl Write, pad: &Simulated) -> io::Result<()> {
+    let ([fx, fy, fz], noise_uv) = (pad.press_n, pad.noise_uv);
     writeln!(out, "Location error at best (Cramér–Rao), press of {fx}, {fy}, {fz} N, noise {noise_uv} µV")?;
     writeln!(
         out,
@@ -94,7 +94,7 @@ fn write_placements(out: &mut impl Write, pad: &Simulated, noise_uv: f64) -> io:
         "modules", "radius mm", "turned °", "worst mm", "rms mm", "signal µV"
     )?;
     write_placement(out, "as built", Some(&pad.as_built))?;
-    write_placement(out, "by the paper's rule", pad.by_rule.as_ref())?;
+    write_placement(out, "by the paper's rule", Some(&pad.by_rule))?;
     write_placement(out, "smallest worst error", pad.search.best.as_ref())?;
     let built_uv = pad.as_built.precision.map_or(0.0, |precision| precision.largest_uv);
     write_placement(out, "the same, no larger signals", pad.search.best_within(built_uv).as_ref())?;
@@ -188,11 +188,13 @@ mod tests {
         };
         let unbuilt = Candidate { precision: None, ..candidate(28.0, 0.0, 0.0) };
         Simulated {
-            plate_diameter_mm: 60.0,
+            threshold: 0.01,
+            noise_uv: 6.0,
             isolines: [Some(line), None, Some(line)],
+            outlines: [vec![], vec![], vec![]],
             press_n: [0.0, 0.0, 1.0],
             as_built: candidate(20.0, 0.19, 2400.0),
-            by_rule: Some(unbuilt),
+            by_rule: unbuilt,
             search: Search { range, best: grid.first().copied(), grid, refinement: vec![] },
         }
     }
@@ -211,17 +213,8 @@ mod tests {
             closed_form: answer,
             optimal_ranges_mm,
         };
-        let area_per_channel = area_rows(simulated.as_ref().map(|pad| pad.plate_diameter_mm));
-        Report {
-            seed: 1,
-            threshold: 0.01,
-            noise_uv: 6.0,
-            spacing,
-            simulated,
-            area_per_channel,
-            parts: PARTS,
-            parts_usd: 15.0,
-        }
+        let area_per_channel = area_rows(60.0);
+        Report { seed: 1, spacing, simulated, area_per_channel, parts: PARTS, parts_usd: 15.0 }
     }
 
     fn text(report: &Report) -> String {
@@ -257,7 +250,7 @@ mod tests {
     #[test]
     fn without_a_pad_its_tables_are_left_out() {
         let text = text(&report([1.0, 1.9, 1.0], [[0.9, 1.0], [1.9, 1.9], [0.9, 1.0]], None));
-        for absent in ["Effective regions", "Location error", "this pad", "d2 may", "in a line"] {
+        for absent in ["Effective regions", "Location error", "d2 may", "in a line"] {
             assert!(!text.contains(absent), "{absent}: {text}");
         }
         assert!(text.contains("d1 may be from 0.9000 to 1.0000 mm: the area stays the same"), "{text}");

@@ -5,13 +5,12 @@ mod contacts;
 mod ctl;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod demo;
-// Part of the program as soon as a verb takes it.
-#[cfg(test)]
 mod device;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod devices;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod doctor;
+mod field_cache;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod files;
 #[cfg(all(feature = "live", target_os = "linux"))]
@@ -21,6 +20,8 @@ mod layout;
 mod live;
 mod measured;
 mod profile;
+#[cfg(feature = "simulator")]
+mod progress;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod record;
 mod replay;

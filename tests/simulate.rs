@@ -91,7 +91,7 @@ fn a_measured_table_is_a_table_of_contacts() {
 #[test]
 fn channels_are_those_of_the_reference_solution() {
     // From a separately written finite-element program, its finest mesh: place, unit force, nine channels.
-    let reference = [
+    let reference: [([f64; 5], [f64; 9]); 4] = [
         (
             [0.0, 0.0, 1.0, 0.0, 0.0],
             [0.0, -472.677, 138.945, -209.319, 236.338, -69.473, 209.319, 236.339, -69.473],
@@ -108,9 +108,9 @@ fn channels_are_those_of_the_reference_solution() {
     ];
     let found = channels_uv(&reference.map(|(contact, _)| contact));
     for ((contact, wanted), found) in reference.into_iter().zip(found) {
-        let rms = (wanted.iter().map(|uv| uv * uv).sum::<f64>() / 9.0).sqrt();
+        let largest = wanted.iter().copied().map(f64::abs).fold(0.0, f64::max);
         for (wanted, found) in wanted.into_iter().zip(found) {
-            assert!((wanted - found).abs() < 0.015 * rms, "{contact:?}: {found} for {wanted}");
+            assert!((wanted - found).abs() < 0.015 * largest, "{contact:?}: {found} for {wanted}");
         }
     }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::written::{is_same, written_over};
 use super::{Failure, text_file};
 use crate::device::Device;
 use crate::toml_text::diag::Diagnostic;
@@ -20,6 +21,15 @@ pub(super) struct Pad {
 }
 
 impl Pad {
+    /// Refuses to write over a file that is read.
+    pub(super) fn spare(&self, written: &Path) -> Result<(), Failure> {
+        let files = [(&self.device, "is the device"), (&self.imperfections, "is the file of imperfections")];
+        match files.iter().find(|(file, _)| file.as_ref().is_some_and(|file| is_same(file, written))) {
+            Some((_, what)) => Err(written_over(written, what)),
+            None => Ok(()),
+        }
+    }
+
     /// Reads the files. What is wrong with them makes them unusable, and all of it is told.
     pub(super) fn read(&self) -> Result<Device, Failure> {
         let device = match &self.device {

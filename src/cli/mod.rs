@@ -10,6 +10,7 @@ mod device;
 mod devices;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod doctor;
+mod field_cache;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod files;
 #[cfg(all(feature = "live", target_os = "linux"))]

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::contacts::{self, Contacts, Row, Times};
+use super::device::Pad;
+use super::field_cache::field_of;
 use super::measured::Measured;
 use super::summary::{Report, Summary};
 use super::written::{create, is_same, is_stdout, stdout, written_over};
@@ -14,7 +16,7 @@ use crate::dataset;
 use crate::device::{Device, Patch};
 use crate::field::PadField;
 use crate::influence::InfluenceField;
-use crate::quantity::{CHANNELS, Contact};
+use crate::quantity::Contact;
 use crate::readout::{Bridges, REFERENCE_C, Readout, ThermalZero};
 use crate::time::StreamInstant;
 
@@ -27,6 +29,8 @@ const RIM_TOLERANCE_MM: f64 = 0.01;
 pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
+    #[command(flatten)]
+    pad: Pad,
     /// Draws the dataset; the same seed draws the same contacts.
     #[arg(long, default_value = "0", conflicts_with = "contacts")]
     seed: u64,
@@ -64,10 +68,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if *json && is_stdout(out) {
         return Err(Failure::Unusable("--json and --out - both print: let --out name a file".into()));
     }
-    let device = Device::nominal();
+    arguments.pad.spare(out)?;
+    let device = arguments.pad.read()?;
     let contacts = contacts(arguments, &device)?;
-    let fields = fields_of(&device)?;
-    let report = measure(&contacts, &fields, &device, create(out)?)?;
+    let report = measure(&contacts, &field_of(&device)?, &device, create(out)?)?;
     match (json, is_stdout(out)) {
         (true, _) => print_json(&report),
         (false, true) => {
@@ -79,26 +83,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Writes what the channels read for each contact.
-fn measure(
-    contacts: &Contacts,
-    fields: &BridgeFields,
-    device: &Device,
-    out: impl Write,
-) -> io::Result<Report> {
+fn measure(contacts: &Contacts, field: &PadField, device: &Device, out: impl Write) -> io::Result<Report> {
     let readout = Readout::of(device, ThermalZero::NONE);
     let mut summary = Summary::default();
     let mut table = Measured::begin(out, contacts.times)?;
     for row in &contacts.rows {
-        let bridges = fields.bridges(&row.contact);
+        let bridges = bridges(field, &row.contact);
         let channels_uv = readout.read_uv(&bridges, REFERENCE_C);
         table.row(row, &channels_uv)?;
         summary.add(&channels_uv, &bridges, device.circuit.excitation_v);
     }
     table.end()?;
-    Ok(match fields.sums {
-        Some(_) => summary.report(),
-        None => summary.report().without_nonlinearity(),
-    })
+    Ok(summary.report())
+}
+
+/// What the bridges carry for `contact`.
+fn bridges(field: &PadField, contact: &Contact) -> Bridges {
+    let uv = |field: &InfluenceField| field.strain_uv(contact).uv.map(f64::from);
+    Bridges { signal_uv: uv(&field.signals), sum_uv: uv(&field.sums) }
 }
 
 /// The contacts that were asked for, all of them on the plate.
@@ -143,35 +145,10 @@ fn drawn(contacts: Vec<Contact>) -> Contacts {
     Contacts { times: Times::Supposed, rows: contacts.into_iter().enumerate().map(row).collect() }
 }
 
-/// What the bridges of a pad carry per newton, at any place.
-struct BridgeFields {
-    signals: InfluenceField,
-    /// The gauges' sums; without them only the linear law can be read.
-    sums: Option<InfluenceField>,
-}
-
-/// The fields of `device`.
-fn fields_of(device: &Device) -> Result<BridgeFields, Failure> {
-    let fields = BridgeFields { signals: PadField::nominal().signals, sums: None };
-    if device.circuit.bridge_nonlinearity && fields.sums.is_none() {
-        return Err(Failure::Unusable(
-            "the sums of the gauges are not known, which bridge_nonlinearity needs; set it to false".into(),
-        ));
-    }
-    Ok(fields)
-}
-
-impl BridgeFields {
-    /// What the bridges carry for `contact`; sums of zero where they are not known.
-    fn bridges(&self, contact: &Contact) -> Bridges {
-        let uv = |field: &InfluenceField| field.strain_uv(contact).uv.map(f64::from);
-        Bridges { signal_uv: uv(&self.signals), sum_uv: self.sums.as_ref().map_or([0.0; CHANNELS], uv) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::quantity::CHANNELS;
 
     fn row(x_mm: f32, y_mm: f32, fz_n: f32) -> Row {
         let contact = Contact { x_mm, y_mm, fx_n: 0.5, fy_n: -1.0, fz_n };
@@ -179,11 +156,11 @@ mod tests {
     }
 
     /// The channels that are written for a few contacts, and the report.
-    fn measured(device: &Device, fields: &BridgeFields) -> (Vec<[f64; CHANNELS]>, serde_json::Value) {
+    fn measured(device: &Device, field: &PadField) -> (Vec<[f64; CHANNELS]>, serde_json::Value) {
         let rows = vec![row(0.0, 0.0, 5.0), row(20.0, 0.0, 3.0), row(-9.0, 21.0, 1.0)];
         let mut text = Vec::new();
         let contacts = Contacts { times: Times::Supposed, rows };
-        let report = measure(&contacts, fields, device, &mut text).unwrap();
+        let report = measure(&contacts, field, device, &mut text).unwrap();
         let numbers = |line: &str| {
             let numbers: Vec<f64> = line.split(',').skip(5).map(|number| number.parse().unwrap()).collect();
             numbers.try_into().unwrap()
@@ -192,9 +169,10 @@ mod tests {
         (table, serde_json::to_value(report).unwrap())
     }
 
-    /// Fields whose sums are the signals themselves: s = S/δ.
-    fn fields() -> BridgeFields {
-        BridgeFields { signals: PadField::nominal().signals, sums: Some(PadField::nominal().signals) }
+    /// A field whose sums are the signals themselves: s = S/δ.
+    fn field() -> PadField {
+        let nominal = PadField::nominal();
+        PadField { sums: nominal.signals.clone(), ..nominal }
     }
 
     #[test]
@@ -203,7 +181,7 @@ mod tests {
         let mut exact = linear.clone();
         exact.circuit.bridge_nonlinearity = true;
         let ((linear_uv, linear_report), (exact_uv, exact_report)) =
-            (measured(&linear, &fields()), measured(&exact, &fields()));
+            (measured(&linear, &field()), measured(&exact, &field()));
         let mut max_uv = [0.0_f64; CHANNELS];
         for (linear_uv, exact_uv) in linear_uv.iter().zip(&exact_uv) {
             for channel in 0..CHANNELS {
@@ -232,7 +210,7 @@ mod tests {
         let mut other = nominal.clone();
         other.modules[1].gain = [1.0, 2.0, 1.0];
         other.modules[2].offset_uv = [0.0, 0.0, -300.0];
-        let ((nominal_uv, _), (other_uv, _)) = (measured(&nominal, &fields()), measured(&other, &fields()));
+        let ((nominal_uv, _), (other_uv, _)) = (measured(&nominal, &field()), measured(&other, &field()));
         for (nominal_uv, other_uv) in nominal_uv.into_iter().zip(other_uv) {
             let mut wanted_uv = nominal_uv;
             wanted_uv[4] *= 2.0;
@@ -254,13 +232,5 @@ mod tests {
             let Err(Failure::Unusable(what)) = allowed(x_mm, y_mm) else { panic!("{x_mm} {y_mm}") };
             assert!(what.starts_with("c.csv:7: the contact is "), "{what}");
         }
-    }
-
-    #[test]
-    fn exact_bridges_need_their_sums() {
-        let mut device = Device::nominal();
-        assert!(fields_of(&device).is_ok());
-        device.circuit.bridge_nonlinearity = true;
-        assert!(matches!(fields_of(&device), Err(Failure::Unusable(_))));
     }
 }

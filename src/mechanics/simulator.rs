@@ -71,10 +71,19 @@ impl Simulator {
     pub fn pad(&mut self, device: &Device) -> Result<Pad, SolveError> {
         let mut modules = Vec::with_capacity(MODULES);
         for module in 0..MODULES {
-            modules.push(Arc::clone(&self.solved(device, module)?.superelement));
+            modules.push(self.superelement(device, module)?);
         }
         let [a, b, c] = [0, 1, 2].map(|module| Arc::clone(&modules[module]));
         Pad::of(device, PLATE_DEGREE, [a, b, c])
+    }
+
+    /// Solves a module with its derivatives, if it is not known yet: the long part of [`Self::sensitivities`] and
+    /// [`Self::field`], which then find it done.
+    ///
+    /// # Errors
+    /// As for [`Self::pad`].
+    pub fn solve(&mut self, device: &Device, module: usize) -> Result<(), SolveError> {
+        self.layers(device, module).map(|_| ())
     }
 
     /// How the channels of the device's pad change with its numbers.
@@ -102,30 +111,32 @@ impl Simulator {
         Ok(PadField { signals, sums, sensitivities })
     }
 
-    fn solved(&mut self, device: &Device, module: usize) -> Result<&mut Solved, SolveError> {
-        let blueprint = Blueprint::of(device, module);
-        let known = self.solved.iter().position(|solved| solved.blueprint == blueprint);
-        let index = match known {
-            Some(index) => index,
-            None => {
-                let solution = Solution::of(device, &device.modules[module], self.fineness)?;
-                let superelement = Arc::new(solution.superelement());
-                self.solved.push(Solved { blueprint, superelement, layers: None });
-                self.solved.len() - 1
-            }
-        };
-        Ok(&mut self.solved[index])
+    fn known(&self, blueprint: &Blueprint) -> Option<&Solved> {
+        self.solved.iter().find(|solved| solved.blueprint == *blueprint)
     }
 
+    fn superelement(&mut self, device: &Device, module: usize) -> Result<Arc<Superelement>, SolveError> {
+        let blueprint = Blueprint::of(device, module);
+        if let Some(solved) = self.known(&blueprint) {
+            return Ok(Arc::clone(&solved.superelement));
+        }
+        let solution = Solution::of(device, &device.modules[module], self.fineness)?;
+        let superelement = Arc::new(solution.superelement());
+        self.solved.push(Solved { blueprint, superelement: Arc::clone(&superelement), layers: None });
+        Ok(superelement)
+    }
+
+    /// A module's derivatives, and with them its superelement: both come from one solution.
     fn layers(&mut self, device: &Device, module: usize) -> Result<Arc<Vec<LayerDerivatives>>, SolveError> {
-        let fineness = self.fineness;
-        let solved = self.solved(device, module)?;
-        if let Some(layers) = &solved.layers {
+        let blueprint = Blueprint::of(device, module);
+        if let Some(layers) = self.known(&blueprint).and_then(|solved| solved.layers.as_ref()) {
             return Ok(Arc::clone(layers));
         }
-        let solution = Solution::of(device, &device.modules[module], fineness)?;
+        let solution = Solution::of(device, &device.modules[module], self.fineness)?;
+        let superelement = Arc::new(solution.superelement());
         let layers = Arc::new(solution.derivatives()?);
-        solved.layers = Some(Arc::clone(&layers));
+        self.solved.retain(|solved| solved.blueprint != blueprint);
+        self.solved.push(Solved { blueprint, superelement, layers: Some(Arc::clone(&layers)) });
         Ok(layers)
     }
 }

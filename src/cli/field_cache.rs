@@ -1,0 +1,143 @@
+//! The fields of pads, kept from run to run: `$XDG_CACHE_HOME/tactpad`, else `$HOME/.cache/tactpad`.
+//!
+//! A file is named by its device's fingerprint and holds the numbers that the fingerprint is taken from, so a stale or
+//! damaged one is found out and replaced. The folder may be deleted at any time.
+
+use std::ffi::OsString;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process;
+
+use super::written::reason;
+use super::{Failure, say};
+use crate::device::Device;
+use crate::field::PadField;
+
+/// The field of `device`: the program's own for the nominal pad, else the one that is kept, else computed and kept.
+pub(super) fn field_of(device: &Device) -> Result<PadField, Failure> {
+    if device.field_text() == Device::nominal().field_text() {
+        return Ok(PadField::nominal());
+    }
+    let path = folder(|name| std::env::var_os(name)).map(|folder| folder.join(file_name(device)));
+    if let Some(field) = path.as_deref().and_then(|path| kept(path, device)) {
+        return Ok(field);
+    }
+    let field = computed(device)?;
+    if let Some(path) = path
+        && let Err(error) = keep(&path, &field.to_bytes(device))
+    {
+        say(format_args!(
+            "the pad's field is not kept for the next run: {}: {}",
+            path.display(),
+            reason(&error)
+        ));
+    }
+    Ok(field)
+}
+
+/// Where fields are kept, by the environment's variables; the base must be an absolute path (XDG Base Directory
+/// Specification, version 0.8).
+fn folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+    let absolute = |name| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let base = absolute("XDG_CACHE_HOME").or_else(|| absolute("HOME").map(|home| home.join(".cache")));
+    base.map(|base| base.join("tactpad"))
+}
+
+fn file_name(device: &Device) -> String {
+    format!("{:016x}.field", device.fingerprint())
+}
+
+/// A file that cannot be used is as good as none.
+fn kept(path: &Path, device: &Device) -> Option<PadField> {
+    PadField::from_bytes(&fs::read(path).ok()?, device).ok()
+}
+
+/// Writes a file that others see whole or not at all.
+fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let unfinished = path.with_extension(process::id().to_string());
+    let kept = fs::write(&unfinished, bytes).and_then(|()| fs::rename(&unfinished, path));
+    if kept.is_err() {
+        // It may not even be there.
+        let _ = fs::remove_file(&unfinished);
+    }
+    kept
+}
+
+#[cfg(feature = "simulator")]
+fn computed(device: &Device) -> Result<PadField, Failure> {
+    use super::progress::Progress;
+    use crate::mechanics::mesh::Fineness;
+    use crate::mechanics::simulator::Simulator;
+    use crate::quantity::MODULES;
+
+    let mut progress = Progress::begin();
+    let mut simulator = Simulator::new(Fineness::STANDARD);
+    for module in 0..MODULES {
+        progress.step(format_args!("computing the pad's field: module {} of {MODULES}", module + 1));
+        simulator.solve(device, module).map_err(|error| unsolved(&error))?;
+    }
+    progress.step("computing the pad's field: plate");
+    simulator.field(device).map_err(|error| unsolved(&error))
+}
+
+/// The pad's equations have no answer here.
+#[cfg(feature = "simulator")]
+pub(super) fn unsolved(error: &crate::mechanics::system::SolveError) -> Failure {
+    Failure::Failed(format!("the pad cannot be computed: {error}"))
+}
+
+#[cfg(not(feature = "simulator"))]
+fn computed(_device: &Device) -> Result<PadField, Failure> {
+    Err(Failure::Failed(
+        "this pad's field is not known yet, and this program was built without the simulator that computes it; \
+         build it with the feature \"simulator\""
+            .into(),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder_for(variables: &[(&str, &str)]) -> Option<PathBuf> {
+        folder(|name| variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into()))
+    }
+
+    #[test]
+    fn the_folder_is_the_users_cache() {
+        let wanted = |path: &str| Some(PathBuf::from(path));
+        assert_eq!(folder_for(&[("XDG_CACHE_HOME", "/c"), ("HOME", "/h")]), wanted("/c/tactpad"));
+        assert_eq!(folder_for(&[("HOME", "/h")]), wanted("/h/.cache/tactpad"));
+        assert_eq!(folder_for(&[("XDG_CACHE_HOME", ""), ("HOME", "/h")]), wanted("/h/.cache/tactpad"));
+        assert_eq!(folder_for(&[("XDG_CACHE_HOME", "c"), ("HOME", "")]), None);
+    }
+
+    #[test]
+    fn a_kept_file_reads_back_and_another_devices_does_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let (device, field) = (Device::nominal(), PadField::nominal());
+        let path = folder.path().join("new/folder").join(file_name(&device));
+        assert_eq!(kept(&path, &device), None);
+        keep(&path, b"damaged").unwrap();
+        assert_eq!(kept(&path, &device), None);
+        keep(&path, &field.to_bytes(&device)).unwrap();
+        assert_eq!(kept(&path, &device), Some(field));
+        let mut other = device;
+        other.plate.thickness_mm = 1.5;
+        assert_eq!(kept(&path, &other), None);
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "nothing unfinished is left");
+    }
+
+    #[test]
+    fn what_cannot_be_written_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let taken = folder.path().join("taken.field");
+        fs::create_dir_all(taken.join("full")).unwrap();
+        assert!(keep(&taken, b"bytes").is_err());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

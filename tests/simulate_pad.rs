@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use tactpad::device::Device;
-use tactpad::field::{PadField, SENSITIVITY_DEGREE};
+use tactpad::field::PadField;
+use tactpad::mechanics::simulator::PLATE_DEGREE;
 use tactpad::zernike::jets;
 use tempfile::TempDir;
 
@@ -121,7 +122,7 @@ fn a_damaged_file_is_computed_anew_and_replaced() {
     // The contact in the middle; the slope at the nominal pad is right to first order.
     let slopes = PadField::nominal().sensitivities;
     let slope = slopes.iter().find(|slope| slope.parameter.name() == "plate.thickness_mm").unwrap();
-    let here = jets(SENSITIVITY_DEGREE, [0.0; 2]);
+    let here = jets(PLATE_DEGREE, [0.0; 2]);
     let expected = slope
         .maps
         .each_ref()

@@ -9,7 +9,7 @@ const LEAF_NODES: usize = 60;
 ///
 /// `lattice` has even coordinates on grid planes and odd ones between them, so that the nodes on a grid plane part
 /// the elements on its two sides. Every index from 0 to `lattice.len()` comes once.
-pub fn elimination_order(lattice: &[[usize; 3]], nodes: Vec<usize>) -> Vec<usize> {
+pub(super) fn elimination_order(lattice: &[[usize; 3]], nodes: Vec<usize>) -> Vec<usize> {
     let mut order = Vec::with_capacity(nodes.len());
     dissect(lattice, nodes, &mut order);
     order

@@ -11,7 +11,7 @@ use super::superelement::{FOOT_SHAPES, MODES, foot_shapes};
 /// Gauss-Legendre rule with 8 points on [−1, 1], one half (M. Abramowitz, I. A. Stegun, table 25.4): places, weights.
 /// Exact for a parabola times a polynomial of degree 13: over a foot the plate's fields are no rougher than that.
 const GAUSS: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_361_98),
+    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
     (0.525_532_409_916_329, 0.313_706_645_877_887_3),
     (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
@@ -19,22 +19,22 @@ const GAUSS: [(f64, f64); 4] = [
 
 /// A module's foot on the plate's underside, in the pad frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foot {
+pub(super) struct Foot {
     /// Its centre.
-    pub centre_mm: [f64; 2],
+    centre_mm: [f64; 2],
     /// Where its edges point: the module's x and y before any tilt, unit vectors in the pad's plane.
-    pub edges: [[f64; 2]; 2],
+    edges: [[f64; 2]; 2],
     /// Half its sizes along these edges.
-    pub half_mm: [f64; 2],
+    half_mm: [f64; 2],
     /// The module's axes x, y, z in the pad frame, tilted with the module.
-    pub axes: [[f64; 3]; 3],
+    axes: [[f64; 3]; 3],
 }
 
 impl Foot {
     /// The foot of a module of the device.
     ///
     /// A tilted module's axes turn, its foot stays where it is: the bond fills the wedge.
-    pub fn of(device: &Device, module: usize) -> Self {
+    pub(super) fn of(device: &Device, module: usize) -> Self {
         let (pose, state, stack) = (device.poses()[module], &device.modules[module], &device.stack);
         let edges = [pose.along_x, pose.along_y];
         let [x, y] = edges.map(|[x, y]| [x, y, 0.0]);
@@ -46,7 +46,7 @@ impl Foot {
 
     /// The matrix from the plate's unknowns to the foot's modes (along the module's axes): the underside's
     /// displacement over the foot, projected on the foot's polynomials. Shape `MODES` × unknowns.
-    pub fn modes(&self, degree: usize, radius_mm: f64, thickness_mm: f64) -> Mat<f64> {
+    pub(super) fn modes(&self, degree: usize, radius_mm: f64, thickness_mm: f64) -> Mat<f64> {
         let means = self.means(degree, radius_mm);
         let size = count(degree);
         // The underside lies half the thickness below the middle plane.

@@ -24,8 +24,8 @@ pub fn graded(lines_mm: &[f64], singular_mm: &[f64], sizing: Sizing) -> Vec<f64>
     lines.sort_by(f64::total_cmp);
     lines.dedup_by(|b, a| *b - *a < MERGE_MM);
     let mut grid: Vec<f64> = lines.first().copied().into_iter().collect();
-    for span in lines.array_windows::<2>() {
-        let [start, end] = *span;
+    for span in lines.windows(2) {
+        let &[start, end] = span else { continue };
         grid.extend(divided(start, end, singular_mm, sizing));
     }
     grid
@@ -79,7 +79,7 @@ mod tests {
     #[test]
     fn sizes_grow_away_from_the_singular_place() {
         let grid = graded(&[0.0, 4.0], &[0.0], SIZING);
-        let sizes: Vec<f64> = grid.array_windows::<2>().map(|[a, b]| b - a).collect();
+        let sizes: Vec<f64> = grid.windows(2).map(|pair| pair[1] - pair[0]).collect();
         assert!(sizes.is_sorted_by(|a, b| a <= &(b + 1e-9)), "{sizes:?}");
         assert!(sizes[0] < 0.08 && sizes.iter().all(|size| *size < 0.55), "{sizes:?}");
     }

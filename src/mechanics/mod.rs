@@ -1,6 +1,6 @@
 //! The pad's mechanics by finite elements: from a device to its influence field.
 
-mod brick;
+pub mod brick;
 mod dissection;
 mod foot;
 pub mod grid;

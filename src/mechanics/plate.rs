@@ -343,3 +343,159 @@ fn scatter(coefficients: &[Vec<(usize, f64)>], from: &Mat<f64>, to: &mut Mat<f64
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+    use crate::zernike::{Polynomial, jets};
+
+    const DEGREE: usize = 40;
+    const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3 };
+    const RADIUS_MM: f64 = 30.0;
+    /// So thin that shear does not count.
+    const THIN_MM: f64 = 0.2;
+
+    fn thin() -> Plate {
+        Plate::of(DEGREE, Rigidity::of(STEEL, THIN_MM, RADIUS_MM), 100.0).unwrap()
+    }
+
+    fn bending_stiffness(thickness_mm: f64) -> f64 {
+        STEEL.e_mpa * thickness_mm.powi(3) / (12.0 * (1.0 - STEEL.nu * STEEL.nu))
+    }
+
+    /// Loads along z: the work of a point force of the given size at each place (in plate radii).
+    fn forces(points: &[([f64; 2], f64)]) -> Mat<f64> {
+        let size = count(DEGREE);
+        let mut load = Mat::zeros(FIELDS * size, 1);
+        for (place, newtons) in points {
+            for (k, jet) in jets(DEGREE, *place).iter().enumerate() {
+                load[(2 * size + k, 0)] += newtons * jet.value;
+            }
+        }
+        load
+    }
+
+    fn deflection(field: &Mat<f64>, place: [f64; 2]) -> f64 {
+        let size = count(DEGREE);
+        let coefficients = (0..size).map(|k| field[(2 * size + k, 0)]).collect();
+        Polynomial { coefficients }.value(&jets(DEGREE, place))
+    }
+
+    fn supports() -> [[f64; 2]; 3] {
+        [0.0, 1.0, 2.0].map(|k| {
+            let (sin, cos) = (k * TAU / 3.0).sin_cos();
+            [cos, sin]
+        })
+    }
+
+    /// Deflection of the centre under a central force P on three point supports at the rim, in P a²/D.
+    ///
+    /// The simply supported plate's (3+ν)/(16π(1+ν)), and what the rim's waves of order m = 3, 6, … add: of the support
+    /// forces' Fourier series, each wave of edge force P/(π a) cos mθ lifts the supports by (A + B) cos mθ, where
+    /// w = (A rᵐ + B rᵐ⁺²) cos mθ has no edge moment. Source: S. Timoshenko, S. Woinowsky-Krieger, Theory of Plates and
+    /// Shells, chapter 9 (figures for ν = 0.3: 0.0670 here, with a load on the whole plate 0.0362 q a⁴/D).
+    fn three_supports(nu: f64) -> f64 {
+        let waves = (1..4000).map(|k| {
+            let m = f64::from(3 * k);
+            let ratio = -m * (m - 1.0) * (1.0 - nu) / ((m + 1.0) * (m + 2.0 + nu * (2.0 - m)));
+            let (a, b) = (1.0, ratio);
+            let edge_force = 4.0 * m * (m + 1.0) * b - (1.0 - nu) * m * m * (a * (m - 1.0) + b * (m + 1.0));
+            (a + b) / edge_force.abs() / PI
+        });
+        (3.0 + nu) / (16.0 * PI * (1.0 + nu)) + waves.map(f64::abs).sum::<f64>()
+    }
+
+    #[test]
+    fn a_plate_on_three_supports_sags_as_in_the_books() {
+        let known = three_supports(STEEL.nu);
+        // The book rounds its series early.
+        assert!((known - 0.0670).abs() < 0.0005, "{known}");
+        let thirds = supports().map(|place| (place, 1.0 / 3.0));
+        let loads = [([0.0; 2], -1.0), thirds[0], thirds[1], thirds[2]];
+        let field = thin().solve(&forces(&loads));
+        let sag = supports().map(|place| deflection(&field, place) - deflection(&field, [0.0; 2]));
+        for sag in sag {
+            let found = sag * bending_stiffness(THIN_MM) / (RADIUS_MM * RADIUS_MM);
+            assert!((found / known - 1.0).abs() < 0.005, "{found} for {known}");
+        }
+    }
+
+    #[test]
+    fn an_edge_moment_bends_the_plate_to_a_sphere() {
+        // M all along the rim: w = −M r²/(2 D (1+ν)), R α = M R² r/(D (1+ν)); work of the moment on R α is M ∮ α_r.
+        let size = count(DEGREE);
+        let mut load = Mat::zeros(FIELDS * size, 1);
+        const STEPS: usize = 400;
+        for step in 0..STEPS {
+            let (sin, cos) = (step as f64 / STEPS as f64 * TAU).sin_cos();
+            for (k, jet) in jets(DEGREE, [cos, sin]).iter().enumerate() {
+                // Per millimetre of rim a moment of 1 N; R α works with it once divided by R.
+                let share = TAU / STEPS as f64 * jet.value;
+                load[(3 * size + k, 0)] += share * cos;
+                load[(4 * size + k, 0)] += share * sin;
+            }
+        }
+        let field = thin().solve(&load);
+        let sag = deflection(&field, [0.0; 2]) - deflection(&field, [0.6, 0.0]);
+        let known = (0.6 * RADIUS_MM).powi(2) / (2.0 * bending_stiffness(THIN_MM) * (1.0 + STEEL.nu));
+        assert!((sag / known - 1.0).abs() < 1e-6, "{sag} for {known}");
+    }
+
+    #[test]
+    fn rigid_motions_cost_nothing() {
+        let plate = thin();
+        let size = count(DEGREE);
+        let mut motions = Mat::zeros(FIELDS * size, 6);
+        (0..3).for_each(|field| motions[(field * size, field)] = 1.0);
+        // Tilts: w = x, R α = −R·(1/R)·…: in the place divided by R, w = x goes with R α = −1.
+        for (column, (wave, rotation)) in [(2, 3), (1, 4)].into_iter().enumerate() {
+            motions[(2 * size + wave, 3 + column)] = 1.0;
+            motions[(rotation * size, 3 + column)] = -1.0;
+        }
+        (motions[(1, 5)], motions[(size + 2, 5)]) = (-1.0, 1.0);
+        let rigidity = Rigidity::of(STEEL, THIN_MM, RADIUS_MM);
+        let forces = plate.forces(rigidity, &motions);
+        assert!(forces.norm_max() < 1e-12 * rigidity.stretching, "{}", forces.norm_max());
+    }
+
+    #[test]
+    fn even_tension_stretches_by_hookes_law() {
+        // u = x, v = y (strain 1/R each): energy ½ E h/(1−ν) · 2 · area/R².
+        let plate = thin();
+        let size = count(DEGREE);
+        let mut stretched = Mat::zeros(FIELDS * size, 1);
+        (stretched[(2, 0)], stretched[(size + 1, 0)]) = (1.0, 1.0);
+        let forces = plate.forces(Rigidity::of(STEEL, THIN_MM, RADIUS_MM), &stretched);
+        let work = (stretched.transpose() * forces)[(0, 0)];
+        let known = 2.0 * PI * STEEL.e_mpa * THIN_MM / (1.0 - STEEL.nu);
+        assert!((work / known - 1.0).abs() < 1e-12, "{work} for {known}");
+    }
+
+    #[test]
+    fn a_thick_plate_shears_as_reissner_says() {
+        // Simply supported rim, force on the whole plate: shear adds q a²/(4 κ G h) to the sag of the thin plate
+        // q a⁴ (5+ν)/(64 D (1+ν)). The rim's shear force is spread evenly, as the reaction of a free plate.
+        let thickness_mm = 6.0;
+        let rigidity = Rigidity::of(STEEL, thickness_mm, RADIUS_MM);
+        let plate = Plate::of(DEGREE, rigidity, 100.0).unwrap();
+        let size = count(DEGREE);
+        let mut load = Mat::zeros(FIELDS * size, 1);
+        // 1 N/mm² down on R² times the unit disc; only the constant polynomial has an integral.
+        load[(2 * size, 0)] = -PI * RADIUS_MM * RADIUS_MM;
+        const STEPS: usize = 400;
+        for step in 0..STEPS {
+            let (sin, cos) = (step as f64 / STEPS as f64 * TAU).sin_cos();
+            for (k, jet) in jets(DEGREE, [cos, sin]).iter().enumerate() {
+                load[(2 * size + k, 0)] += PI * RADIUS_MM * RADIUS_MM / STEPS as f64 * jet.value;
+            }
+        }
+        let field = plate.solve(&load);
+        let sag = deflection(&field, [1.0, 0.0]) - deflection(&field, [0.0; 2]);
+        let (a, nu) = (RADIUS_MM, STEEL.nu);
+        let bent = a.powi(4) * (5.0 + nu) / (64.0 * bending_stiffness(thickness_mm) * (1.0 + nu));
+        let sheared = a * a / (4.0 * rigidity.shear);
+        assert!((sag / (bent + sheared) - 1.0).abs() < 1e-9, "{sag} for {bent} + {sheared}");
+    }
+}

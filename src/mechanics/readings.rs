@@ -17,14 +17,14 @@ const SIGNS: [[f64; GAUGES]; 3] = [
 
 /// Microvolts per strain of a device's gauges.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Readings {
+pub(super) struct Readings {
     /// Along the grid and across it, for R1, R2, … R7.
     uv_per_strain: [f64; STRAINS],
 }
 
 impl Readings {
     /// The weights of the device's gauges.
-    pub fn of(device: &Device) -> Self {
+    pub(super) fn of(device: &Device) -> Self {
         let law = device.gauge_law;
         let uv = 1e6 * device.circuit.excitation_v * law.gauge_factor;
         Self {
@@ -36,12 +36,12 @@ impl Readings {
     }
 
     /// Signal of one axis (0: x, 1: y, 2: z) for a unit of each mode of a module's foot, µV/mm.
-    pub fn signal(&self, module: &Superelement, axis: usize) -> [f64; MODES] {
+    pub(super) fn signal(&self, module: &Superelement, axis: usize) -> [f64; MODES] {
         self.weighted(module, SIGNS[axis])
     }
 
     /// The bridge's sum of one axis for a unit of each mode, µV/mm.
-    pub fn sum(&self, module: &Superelement, axis: usize) -> [f64; MODES] {
+    pub(super) fn sum(&self, module: &Superelement, axis: usize) -> [f64; MODES] {
         self.weighted(module, SIGNS[axis].map(f64::abs))
     }
 

@@ -24,7 +24,6 @@ use crate::quantity::MODULES;
 use super::mesh::Layer;
 use super::pad::{Pad, add, springs};
 use super::plate::Rigidity;
-use super::readings::Readings;
 use super::superelement::{LayerDerivatives, Superelement};
 
 /// The numbers whose derivatives the model knows: the keys of `[[module]]` tables that change the mechanics, the

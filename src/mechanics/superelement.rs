@@ -89,8 +89,8 @@ impl<'d> Solution<'d> {
     }
 
     /// Numbers in the factorised stiffness.
-    pub fn factor_len(&self) -> usize {
-        self.factor.len()
+    pub fn factor_entries(&self) -> usize {
+        self.factor.entries()
     }
 
     /// Number of unknown displacements.

@@ -127,7 +127,7 @@ impl Factor {
     }
 
     /// Numbers in the factor: a measure of the memory.
-    pub fn len(&self) -> usize {
+    pub fn entries(&self) -> usize {
         self.values.len()
     }
 }

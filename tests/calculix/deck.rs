@@ -37,12 +37,12 @@ impl Deck {
     }
 
     /// Adds elements of a type ("C3D20") to a set, made of one material; returns the first one's number.
-    pub(crate) fn elements<'n>(
+    pub(crate) fn elements<N: AsRef<[usize]>>(
         &mut self,
         kind: &str,
         set: &str,
         material: Material,
-        elements: impl IntoIterator<Item = &'n [usize]>,
+        elements: impl IntoIterator<Item = N>,
     ) -> usize {
         let first = self.elements;
         self.line(format_args!("*ELEMENT, TYPE={kind}, ELSET={set}"));
@@ -50,7 +50,7 @@ impl Deck {
             self.elements += 1;
             let numbers: Vec<String> = [self.elements]
                 .into_iter()
-                .chain(nodes.iter().map(|node| node + 1))
+                .chain(nodes.as_ref().iter().map(|node| node + 1))
                 .map(|n| n.to_string())
                 .collect();
             // A line holds sixteen entries; a comma at its end calls for another.
@@ -82,24 +82,47 @@ impl Deck {
         self.line(format_args!("*BOUNDARY\n{set}, 1, 3, 0."));
     }
 
-    /// One linear static step: what acts in it, and what is printed of it.
-    pub(crate) fn step(&mut self, acting: &Acting, prints: &str) {
-        self.line("*STEP\n*STATIC");
-        let (keyword, values) = match acting {
-            Acting::Displacements(values) => ("*BOUNDARY", values),
-        };
-        self.line(keyword);
-        for (node, given) in values {
-            for (axis, value) in given.iter().enumerate() {
-                let direction = axis + 1;
-                match acting {
-                    Acting::Displacements(_) => {
-                        self.line(format_args!("{}, {direction}, {direction}, {value:.12e}", node + 1));
-                    }
-                }
+    /// Makes displacements of one node follow others: u = Σ weight · u of each, along all three axes.
+    pub(crate) fn tie(&mut self, node: usize, others: &[(usize, f64)]) {
+        for axis in 1..=3 {
+            self.line(format_args!("*EQUATION\n{}", others.len() + 1));
+            self.line(format_args!("{}, {axis}, 1.", node + 1));
+            for (other, weight) in others {
+                self.line(format_args!("{}, {axis}, {:.12e}", other + 1, -weight));
             }
         }
-        self.line(prints);
+    }
+
+    /// Begins a linear static step, in which nothing acts yet but what is fixed.
+    pub(crate) fn begin_step(&mut self) {
+        self.line("*STEP\n*STATIC");
+    }
+
+    /// Gives displacements, mm.
+    pub(crate) fn displace(&mut self, given: &[(usize, [f64; 3])]) {
+        self.line("*BOUNDARY");
+        for (node, axis, value) in components(given) {
+            self.line(format_args!("{node}, {axis}, {axis}, {value:.12e}"));
+        }
+    }
+
+    /// Applies forces, N, and takes away those of the step before.
+    pub(crate) fn load(&mut self, given: &[(usize, [f64; 3])]) {
+        self.line("*CLOAD, OP=NEW");
+        for (node, axis, value) in components(given) {
+            self.line(format_args!("{node}, {axis}, {value:.12e}"));
+        }
+    }
+
+    /// Ends the step with what is printed of it.
+    pub(crate) fn end_step(&mut self, prints: &[Print]) {
+        for print in prints {
+            match print {
+                Print::Displacements(set) => self.line(format_args!("*NODE PRINT, NSET={set}\nU")),
+                Print::Reactions(set) => self.line(format_args!("*NODE PRINT, NSET={set}\nRF")),
+                Print::Strains(set) => self.line(format_args!("*EL PRINT, ELSET={set}\nE")),
+            }
+        }
         self.line("*END STEP");
     }
 
@@ -111,7 +134,11 @@ impl Deck {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("job.inp"), &self.text).unwrap();
         let mut command = Command::new("ccx");
-        let output = command.args(["-i", "job"]).current_dir(folder.path()).output().unwrap();
+        let output = command
+            .args(["-i", "job"])
+            .current_dir(folder.path())
+            .output()
+            .expect("ccx: apt-get install calculix-ccx");
         let said = String::from_utf8_lossy(&output.stdout);
         let end = &said[said.floor_char_boundary(said.len().saturating_sub(2_000))..];
         assert!(output.status.success() && said.contains("Job finished"), "ccx ended early: {end}");
@@ -120,8 +147,17 @@ impl Deck {
     }
 }
 
-/// What acts on the body in a step: triples for nodes, along x, y and z.
-pub(crate) enum Acting {
-    /// Given displacements, mm.
-    Displacements(Vec<(usize, [f64; 3])>),
+/// What is printed, for which set.
+pub(crate) enum Print {
+    /// Displacements of nodes.
+    Displacements(&'static str),
+    /// Reactions of nodes.
+    Reactions(&'static str),
+    /// Strains at the integration points of elements.
+    Strains(&'static str),
+}
+
+/// Numbers of node and axis as CalculiX counts them, with the value.
+fn components(given: &[(usize, [f64; 3])]) -> impl Iterator<Item = (usize, usize, f64)> {
+    given.iter().flat_map(|(node, values)| (0..3).map(move |axis| (node + 1, axis + 1, values[axis])))
 }

@@ -1,7 +1,7 @@
 //! The eight-node face of a quadratic brick.
 
 /// The nodes' places on the reference square, in a brick's order: corners, then middles of edges.
-const NODES: [[f64; 2]; 8] =
+pub(crate) const NODES: [[f64; 2]; 8] =
     [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
 
 /// Three points of Gauss's rule on [−1, 1] with their weights.

@@ -10,6 +10,9 @@
     reason = "a test that cannot go on has failed; its result is read"
 )]
 
+#[path = "support/proof.rs"]
+mod proof;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::os::fd::OwnedFd;
@@ -212,17 +215,11 @@ fn wait_ms(ms: u64) {
 }
 
 fn write_result(soak: &Soak, seconds: u64, early_kb: u64, late_kb: u64) {
-    let date = Command::new("date").arg("+%Y-%m-%d").output().unwrap();
-    let date = String::from_utf8(date.stdout).unwrap();
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap().join("proofs");
-    fs::create_dir_all(&folder).unwrap();
-    let file = folder.join(format!("soak-{}.json", date.trim()));
     let result = serde_json::json!({
         "seconds": seconds, "unplugged": soak.unplugged, "damaged": soak.damaged,
         "resident_kb_early": early_kb, "resident_kb_late": late_kb,
     });
-    fs::write(&file, format!("{result}\n")).unwrap();
-    println!("{result} in {}", file.display());
+    proof::write("soak", &result);
 }
 
 #[test]

@@ -57,30 +57,72 @@ impl Layer {
     }
 }
 
-/// How fine a module is meshed. Lengths in millimetres.
+/// Element sizes along one direction, which passes the post, the free film and the frame one after another.
+///
+/// The solution is singular where post and film meet at the post's foot, and where film and frame meet at the window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grading {
+    /// In the post, by the distance from its edge.
+    pub post: Sizing,
+    /// In the film, by the distance from the post's edge.
+    pub film_at_post: Sizing,
+    /// In the film, by the distance from the frame's edge; the smaller of the two counts.
+    pub film_at_frame: Sizing,
+    /// In the frame, by the distance from its edge.
+    pub frame: Sizing,
+}
+
+impl Grading {
+    /// The size at a place so far outside the post's edge and so far beyond the frame's (negative: before it).
+    fn at(self, past_post_mm: f64, past_frame_mm: f64) -> f64 {
+        if past_post_mm < 0.0 {
+            self.post.at(-past_post_mm)
+        } else if past_frame_mm > 0.0 {
+            self.frame.at(past_frame_mm)
+        } else {
+            self.film_at_post.at(past_post_mm).min(self.film_at_frame.at(-past_frame_mm))
+        }
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        Self {
+            post: self.post.scaled(factor),
+            film_at_post: self.film_at_post.scaled(factor),
+            film_at_frame: self.film_at_frame.scaled(factor),
+            frame: self.frame.scaled(factor),
+        }
+    }
+}
+
+/// How fine a module is meshed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fineness {
-    /// In the film's plane: refined at the post's and the window's edges.
-    pub plane: Sizing,
-    /// Across the layers: refined at the film's underside and top.
-    pub height: Sizing,
+    /// Along x and along y.
+    pub plane: Grading,
+    /// Across the layers.
+    pub height: Grading,
 }
 
 impl Fineness {
     /// The mesh that the program uses; `docs/mechanics.md` has the study behind it.
     pub const STANDARD: Self = Self {
-        plane: Sizing { finest_mm: 0.06, growth: 0.5, coarsest_mm: 0.6 },
-        height: Sizing { finest_mm: 0.05, growth: 0.7, coarsest_mm: 0.5 },
+        plane: Grading {
+            post: Sizing { finest_mm: 0.006, growth: 1.5, coarsest_mm: 0.6 },
+            film_at_post: Sizing { finest_mm: 0.006, growth: 1.5, coarsest_mm: 0.4 },
+            film_at_frame: Sizing { finest_mm: 0.1, growth: 1.0, coarsest_mm: 0.4 },
+            frame: Sizing { finest_mm: 0.02, growth: 1.5, coarsest_mm: 0.4 },
+        },
+        height: Grading {
+            post: Sizing { finest_mm: 0.006, growth: 1.5, coarsest_mm: 1.0 },
+            film_at_post: Sizing { finest_mm: 0.006, growth: 1.5, coarsest_mm: 0.2 },
+            film_at_frame: Sizing { finest_mm: 0.05, growth: 1.5, coarsest_mm: 0.2 },
+            frame: Sizing { finest_mm: 0.03, growth: 0.7, coarsest_mm: 0.2 },
+        },
     };
 
     /// The same grading with every size multiplied by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
-        let scale = |sizing: Sizing| Sizing {
-            finest_mm: factor * sizing.finest_mm,
-            growth: factor * sizing.growth,
-            coarsest_mm: factor * sizing.coarsest_mm,
-        };
-        Self { plane: scale(self.plane), height: scale(self.height) }
+        Self { plane: self.plane.scaled(factor), height: self.height.scaled(factor) }
     }
 }
 
@@ -109,20 +151,30 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Meshes a module of the device.
+    /// Meshes a module.
     pub fn of(stack: &Stack, gauges: &[Gauge], open: Option<Side>, fineness: Fineness) -> Self {
         let lines_mm =
             [lines_x(stack, gauges, fineness), lines_y(stack, gauges, fineness), lines_z(stack, fineness)];
-        let cells = lines_mm.each_ref().map(|lines| lines.len() - 1);
+        Self::filled(lines_mm, |[x, y, z]| {
+            let layer = layer_at(stack, z);
+            occupied(stack, open, layer, x, y).then_some(layer)
+        })
+    }
+
+    /// Bricks on the given ascending grid lines along x, y and z, wherever a layer fills the middle of a cell.
+    pub fn filled(lines_mm: [Vec<f64>; 3], layer_at: impl Fn([f64; 3]) -> Option<Layer>) -> Self {
+        let cells = lines_mm.each_ref().map(|lines| lines.len().saturating_sub(1));
         let mut numbering = Numbering::new(cells);
         let mut bricks = Vec::new();
         for k in 0..cells[2] {
-            let layer = layer_at(stack, middle(&lines_mm[2], k));
             for j in 0..cells[1] {
                 for i in 0..cells[0] {
-                    if occupied(stack, open, layer, middle(&lines_mm[0], i), middle(&lines_mm[1], j)) {
-                        let size_mm = [cell(&lines_mm[0], i), cell(&lines_mm[1], j), cell(&lines_mm[2], k)];
-                        bricks.push(Brick { layer, size_mm, nodes: numbering.brick([i, j, k]) });
+                    let cell = [i, j, k];
+                    let along = |of: fn(&[f64], usize) -> f64| {
+                        std::array::from_fn(|axis| of(&lines_mm[axis], cell[axis]))
+                    };
+                    if let Some(layer) = layer_at(along(middle)) {
+                        bricks.push(Brick { layer, size_mm: along(size), nodes: numbering.brick(cell) });
                     }
                 }
             }
@@ -184,7 +236,7 @@ fn middle(lines: &[f64], cell: usize) -> f64 {
     f64::midpoint(lines[cell], lines[cell + 1])
 }
 
-fn cell(lines: &[f64], cell: usize) -> f64 {
+fn size(lines: &[f64], cell: usize) -> f64 {
     lines[cell + 1] - lines[cell]
 }
 
@@ -197,28 +249,27 @@ pub fn half_sizes_mm(gauge: &Gauge) -> [f64; 2] {
 }
 
 fn lines_x(stack: &Stack, gauges: &[Gauge], fineness: Fineness) -> Vec<f64> {
-    let film = stack.film_length_x_mm / 2.0;
-    let singular = [stack.post_length_x_mm / 2.0, film - stack.frame_width_mm];
-    plane_lines(film, singular, gauges.iter().map(|gauge| (gauge.x_mm, half_sizes_mm(gauge)[0])), fineness)
+    let outline = [stack.post_length_x_mm, stack.film_length_x_mm].map(|length| length / 2.0);
+    let gauges = gauges.iter().map(|gauge| (gauge.x_mm, half_sizes_mm(gauge)[0]));
+    plane_lines(outline, stack.frame_width_mm, gauges, fineness.plane)
 }
 
 fn lines_y(stack: &Stack, gauges: &[Gauge], fineness: Fineness) -> Vec<f64> {
-    let film = stack.film_width_y_mm / 2.0;
-    let singular = [stack.post_width_y_mm / 2.0, film - stack.frame_width_mm];
-    plane_lines(film, singular, gauges.iter().map(|gauge| (gauge.y_mm, half_sizes_mm(gauge)[1])), fineness)
+    let outline = [stack.post_width_y_mm, stack.film_width_y_mm].map(|width| width / 2.0);
+    let gauges = gauges.iter().map(|gauge| (gauge.y_mm, half_sizes_mm(gauge)[1]));
+    plane_lines(outline, stack.frame_width_mm, gauges, fineness.plane)
 }
 
 fn plane_lines(
-    film: f64,
-    singular: [f64; 2],
+    [post, film]: [f64; 2],
+    frame_width: f64,
     gauges: impl Iterator<Item = (f64, f64)>,
-    fineness: Fineness,
+    grading: Grading,
 ) -> Vec<f64> {
-    let singular: Vec<f64> = singular.iter().flat_map(|at| [-at, *at]).collect();
-    let mut lines = vec![-film, film];
-    lines.extend(&singular);
+    let window = film - frame_width;
+    let mut lines: Vec<f64> = [post, window, film].into_iter().flat_map(|at| [-at, at]).collect();
     lines.extend(gauges.flat_map(|(centre, half)| [centre - half, centre + half]));
-    graded(&lines, &singular, fineness.plane)
+    graded(&lines, |at| grading.at(at.abs() - post, at.abs() - window))
 }
 
 fn lines_z(stack: &Stack, fineness: Fineness) -> Vec<f64> {
@@ -227,8 +278,8 @@ fn lines_z(stack: &Stack, fineness: Fineness) -> Vec<f64> {
         let below = lines.last().copied().unwrap_or(0.0);
         lines.push(below + layer.thickness_mm(stack));
     }
-    let film_top = lines[4];
-    graded(&lines, &[0.0, film_top], fineness.height)
+    let film_top = stack.pi_thickness_mm + stack.adh_thickness_mm + stack.fpc_thickness_mm;
+    graded(&lines, |at| fineness.height.at(film_top - at, -at))
 }
 
 fn layer_at(stack: &Stack, z_mm: f64) -> Layer {

@@ -1,4 +1,4 @@
-//! The linear system of a module's free nodes: sparse assembly and Cholesky factorisation.
+//! The linear system of a mesh's free nodes: sparse assembly, Cholesky factorisation, loads of given displacements.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
@@ -9,7 +9,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, Mat, Par, Side};
 
-use super::brick::Stiffness;
+use super::brick::{DOFS, Stiffness, forces};
 use super::dissection::elimination_order;
 use super::mesh::{Brick, Mesh};
 
@@ -35,7 +35,7 @@ impl std::fmt::Display for SolveError {
 
 impl std::error::Error for SolveError {}
 
-/// The free nodes of a mesh in elimination order.
+/// The nodes of a mesh whose displacement is unknown, in elimination order.
 pub struct Freedoms {
     /// Position of each node in the order; `None` where the displacement is given.
     position: Vec<Option<usize>>,
@@ -43,10 +43,9 @@ pub struct Freedoms {
 }
 
 impl Freedoms {
-    /// All nodes that are neither on the base nor on the bond's top.
-    pub fn of(mesh: &Mesh) -> Self {
-        let free =
-            (0..mesh.lattice.len()).filter(|node| !mesh.is_fixed(*node) && !mesh.is_top(*node)).collect();
+    /// All nodes but those whose displacement is given.
+    pub fn new(mesh: &Mesh, is_given: impl Fn(usize) -> bool) -> Self {
+        let free = (0..mesh.lattice.len()).filter(|node| !is_given(*node)).collect();
         let order = elimination_order(&mesh.lattice, free);
         let mut position = vec![None; mesh.lattice.len()];
         for (place, node) in order.iter().enumerate() {
@@ -63,6 +62,37 @@ impl Freedoms {
     /// The first of a node's three unknowns; `None` where the displacement is given.
     pub fn first(&self, node: usize) -> Option<usize> {
         self.position[node].map(|place| 3 * place)
+    }
+}
+
+/// Displacements of a brick's nodes, x y z within a node.
+pub fn gathered(brick: &Brick, displacement: impl Fn(usize) -> [f64; 3]) -> [f64; DOFS] {
+    let nodes = brick.nodes.map(displacement);
+    std::array::from_fn(|dof| nodes[dof / 3][dof % 3])
+}
+
+/// Adds the forces on the free nodes that hold given displacements of the others: −K_fg u_g.
+///
+/// `bricks` are those that have a given node that moves; `given` is the displacement of a given node, and zero at a free
+/// one.
+pub fn add_holding_forces<'m>(
+    bricks: impl Iterator<Item = &'m Brick>,
+    freedoms: &Freedoms,
+    stiffness_of: impl Fn(&Brick) -> Box<Stiffness>,
+    given: impl Fn(usize, usize) -> [f64; 3],
+    right: &mut Mat<f64>,
+) {
+    for brick in bricks {
+        let stiffness = stiffness_of(brick);
+        for column in 0..right.ncols() {
+            let held = forces(&stiffness, &gathered(brick, |node| given(node, column)));
+            for (node, force) in brick.nodes.iter().zip(held.as_chunks::<3>().0) {
+                let Some(first) = freedoms.first(*node) else { continue };
+                for axis in 0..3 {
+                    right[(first + axis, column)] -= force[axis];
+                }
+            }
+        }
     }
 }
 

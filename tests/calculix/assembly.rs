@@ -181,7 +181,7 @@ impl<'d> Assembly<'d> {
             let bricks = standing.mesh.bricks.iter().filter(|brick| brick.layer == layer);
             let mirrored = bricks.map(|brick| MIRRORED.map(|corner| standing.first + brick.nodes[corner]));
             let material = layer.material(self.device, module);
-            self.deck.elements("C3D20", &format!("{layer:?}{index}"), material, mirrored);
+            self.deck.elements("C3D20R", &format!("{layer:?}{index}"), material, mirrored);
         }
         for node in standing.nodes(|node| standing.mesh.is_top(node)) {
             let [x, y, _] = place_mm(node);

@@ -1,6 +1,7 @@
 //! Mean strains of a module's gauges, from what CalculiX prints.
 
 use tactpad::device::{Direction, GAUGES, Gauge};
+use tactpad::mechanics::brick::slopes;
 use tactpad::mechanics::mesh::{Brick, Mesh, half_sizes_mm};
 use tactpad::mechanics::superelement::STRAINS;
 
@@ -48,21 +49,24 @@ impl<'m> Gauges<'m> {
         })
     }
 
-    /// The same from the strains at the integration points.
-    ///
-    /// A brick's strains are parabolas in its height, so the three points below each other give the strain on the
-    /// face exactly.
+    /// Means at the height of the lower integration points, where CalculiX prints strains.
     pub(crate) fn by_points(&self, step: &Step) -> [f64; STRAINS] {
+        self.means(|brick, axis| step.strain[&brick][..4].iter().map(|strain| strain[axis] / 4.0).sum())
+    }
+
+    /// The same from the displacement of each node of the mesh.
+    pub(crate) fn above_face(&self, displacement: impl Fn(usize) -> [f64; 3]) -> [f64; STRAINS] {
         self.means(|brick, axis| {
-            let at = |i: usize, j: usize, k: usize| step.strain[&brick][9 * k + 3 * j + i][axis];
-            let mut mean = 0.0;
-            for (i, (_, wi)) in GAUSS.iter().enumerate() {
-                for (j, (_, wj)) in GAUSS.iter().enumerate() {
-                    let on_face: f64 = (0..3).map(|k| lagrange(k, -1.0) * at(i, j, k)).sum();
-                    mean += wi * wj / 4.0 * on_face;
-                }
-            }
-            mean
+            let brick = &self.mesh.bricks[brick];
+            let moved = brick.nodes.map(|node| displacement(node)[axis]);
+            let strain = |at: [f64; 3]| {
+                let slopes = slopes(at)[axis];
+                slopes.iter().zip(moved).map(|(slope, moved)| slope * moved).sum::<f64>() * 2.0
+                    / brick.size_mm[axis]
+            };
+            let near = -1.0 / 3.0_f64.sqrt();
+            let corners = [[near, near], [-near, near], [-near, -near], [near, -near]];
+            corners.iter().map(|[x, y]| strain([*x, *y, near]) / 4.0).sum()
         })
     }
 
@@ -110,10 +114,4 @@ fn face_nodes(brick: &Brick) -> [usize; 8] {
 /// The mean of a function over the reference square.
 fn face_mean(of: impl Fn([f64; 2]) -> f64) -> f64 {
     GAUSS.iter().flat_map(|(s, ws)| GAUSS.map(|(t, wt)| ws * wt / 4.0 * of([*s, t]))).sum()
-}
-
-/// The parabola that is 1 at one of Gauss's points and 0 at the others.
-fn lagrange(point: usize, at: f64) -> f64 {
-    let others = (0..3).filter(|other| *other != point);
-    others.map(|other| (at - GAUSS[other].0) / (GAUSS[point].0 - GAUSS[other].0)).product()
 }

@@ -156,7 +156,7 @@ fn radii_mm(device: &Device, sizing: Sizing) -> Vec<f64> {
     let edges: Vec<f64> =
         device.poses().iter().flat_map(|pose| [-half, half].map(|by| radius(pose.centre_mm) + by)).collect();
     let lines = [&[0.0, device.plate.diameter_mm / 2.0], &edges[..]].concat();
-    graded(&lines, &edges, sizing)
+    graded(&lines, |at| sizing.near(&edges, at))
 }
 
 /// Lines around, from 0 to a full turn, with one at either side of each foot; sized at the modules' radius.
@@ -166,5 +166,5 @@ fn angles(device: &Device, sizing: Sizing) -> Vec<f64> {
     let edges = device.poses().map(|pose| [-half, half].map(|by| arc(pose.centre_mm) + by));
     let edges: Vec<f64> = edges.as_flattened().iter().map(|at| at.rem_euclid(radius * TAU)).collect();
     let lines = [&[0.0, radius * TAU], &edges[..]].concat();
-    graded(&lines, &edges, sizing).into_iter().map(|at| at / radius).collect()
+    graded(&lines, |at| sizing.near(&edges, at)).into_iter().map(|at| at / radius).collect()
 }

@@ -69,8 +69,8 @@ pub struct Fineness {
 impl Fineness {
     /// The mesh that the program uses; `docs/mechanics.md` has the study behind it.
     pub const STANDARD: Self = Self {
-        plane: Sizing { finest_mm: 0.06, growth: 0.5, coarsest_mm: 0.6 },
-        height: Sizing { finest_mm: 0.05, growth: 0.7, coarsest_mm: 0.5 },
+        plane: Sizing { finest_mm: 0.03, growth: 0.7, coarsest_mm: 0.6 },
+        height: Sizing { finest_mm: 0.025, growth: 0.7, coarsest_mm: 0.5 },
     };
 
     /// The same grading with every size multiplied by `factor`.

@@ -67,7 +67,7 @@ pub struct Fineness {
 }
 
 impl Fineness {
-    /// The mesh that the program uses; `docs/mechanics.md` has the study behind it.
+    /// The mesh that the program uses.
     pub const STANDARD: Self = Self {
         plane: Sizing { finest_mm: 0.03, growth: 0.7, coarsest_mm: 0.6 },
         height: Sizing { finest_mm: 0.025, growth: 0.7, coarsest_mm: 0.5 },

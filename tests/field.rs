@@ -59,8 +59,8 @@ fn assert_splines_follow(splines: &InfluenceField, maps: &[ForceMaps; CHANNELS])
             let off_uv = gains.value[channel][axis] - wanted.value;
             let slopes =
                 [gains.dx[channel][axis] - wanted.dx / 30.0, gains.dy[channel][axis] - wanted.dy / 30.0];
-            assert!(off_uv.abs() < 0.3, "{channel} {axis} at {x}, {y}: {off_uv} µV/N");
-            assert!(slopes[0].hypot(slopes[1]) < 2.0, "{channel} {axis} at {x}, {y}: {slopes:?} µV/N per mm");
+            assert!(off_uv.abs() < 0.1, "{channel} {axis} at {x}, {y}: {off_uv} µV/N");
+            assert!(slopes[0].hypot(slopes[1]) < 0.5, "{channel} {axis} at {x}, {y}: {slopes:?} µV/N per mm");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The live core allocates nothing after it was made.
 
 use tactpad::contact::Decoder;
+use tactpad::field::PadField;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::shipped;
 use tactpad::pipeline::{NoProbe, Pipeline};
@@ -45,4 +46,18 @@ fn plays_without_allocating(name: &str) {
     });
     assert!(events > 30 && pipeline.health().frames_damaged > 3, "{events} events, {:?}", pipeline.health());
     assert_eq!(allocated.count_total, 0, "{name}");
+}
+
+#[test]
+fn the_field_is_asked_without_allocating() {
+    let field = PadField::nominal().signals;
+    let mut sum = 0.0;
+    let allocated = allocation_counter::measure(|| {
+        for place in 0..1_000_u16 {
+            let (x_mm, y_mm) = (f32::from(place % 61) - 30.0, f32::from(place / 61) - 8.0);
+            sum += field.gains(x_mm, y_mm).dx[0][2];
+        }
+    });
+    assert!(sum.is_finite() && sum != 0.0, "{sum}");
+    assert_eq!(allocated.count_total, 0);
 }

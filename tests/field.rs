@@ -46,7 +46,8 @@ fn the_shipped_field_is_the_simulators() {
     }
 }
 
-/// Values and slopes are the polynomials', up to the farthest contact.
+/// Values and slopes are the polynomials', up to the farthest contact. Over the edges of the posts these reach
+/// 2,400 µV/N and 200 µV/N per mm.
 fn assert_splines_follow(splines: &InfluenceField, maps: &[ForceMaps; CHANNELS]) {
     for (ring, place) in (0..=58).flat_map(|ring| (0..24).map(move |place| (ring, place))) {
         let (sin, cos) = (f64::from(place) * 15.0).to_radians().sin_cos();

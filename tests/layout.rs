@@ -77,10 +77,42 @@ fn bad_arguments_are_one_sentence_and_exit_2() {
         ("--radii 30,30,30 --threshold 1.5", "a share above 0 and below 1"),
         ("--radii 30,30,30 --noise-uv -6", "microvolts above 0"),
         ("--radii 30,30,30 --seed -1", "invalid digit"),
+        ("--radii 30,30,30 --figures here", "cannot be used with"),
+        ("--device /no-such-file.toml", "cannot be read: No such file"),
     ] {
         let output = layout(arguments);
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{arguments}: {text}");
         assert!(output.stdout.is_empty() && text.contains(words) && !text.contains("panicked"), "{text}");
+    }
+}
+
+/// The nominal pad beside what is known without finite elements: lever arms, and three ideal load cells.
+#[cfg(feature = "simulator")]
+#[test]
+fn the_simulated_pad_is_near_statics() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = document(&format!("--figures {}", folder.path().display()));
+    // A module at (a, 0) carries 1/3 + 2x/(3a): 1 % of a press at x = −a (1 − 0.03)/2.
+    for isoline in found["isolines"].as_array().unwrap() {
+        let nearest_mm = isoline["nearest_mm"].as_f64().unwrap();
+        assert!((nearest_mm - (20.0 + 10.0 * 0.97)).abs() < 0.3, "{isoline}");
+    }
+    let number = |candidate: &Value, key: &str| candidate["precision"][key].as_f64().unwrap();
+    let per_newton_uv = number(&found["as_built"], "largest_uv") / (1.0 / 3.0 + 29.0 / 30.0);
+    for candidate in [&found["as_built"], &found["by_rule"], &found["search"]["best"]] {
+        let radius_mm = candidate["centre_radius_mm"].as_f64().unwrap();
+        let cells_mm = |r2: f64| 6.0 / per_newton_uv * (3.0 * (radius_mm * radius_mm + r2)).sqrt();
+        let shares = [("worst_mm", 29.0 * 29.0), ("rms_mm", 0.5 * 29.0 * 29.0)]
+            .map(|(key, r2)| number(candidate, key) / cells_mm(r2));
+        assert!(shares.iter().all(|share| (1.0..1.07).contains(share)), "{candidate}: {shares:?}");
+    }
+    let rule_mm = found["by_rule"]["centre_radius_mm"].as_f64().unwrap();
+    let distance_mm = found["spacing"]["closed_form"]["distances_mm"][0].as_f64().unwrap();
+    assert!((rule_mm * 3.0_f64.sqrt() - distance_mm).abs() < 1e-3, "{rule_mm} {distance_mm}");
+    let best_mm = number(&found["search"]["best"], "worst_mm");
+    assert!(best_mm < number(&found["as_built"], "worst_mm"));
+    for name in ["layout-scan.svg", "layout-scan.png", "layout-regions.svg", "layout-regions.png"] {
+        assert!(std::fs::metadata(folder.path().join(name)).unwrap().len() > 5_000, "{name}");
     }
 }

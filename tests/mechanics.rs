@@ -1,5 +1,6 @@
 //! Laws that any right model of the pad keeps: symmetry, equilibrium, reciprocity; and its derivatives.
 
+#![expect(clippy::unwrap_used, reason = "a test may stop at what it did not expect")]
 #![cfg(feature = "simulator")]
 
 use std::f64::consts::TAU;
@@ -74,8 +75,7 @@ fn the_mirror_image_reads_the_mirrored_channels() {
 fn taken_up(pad: &Pad, place_mm: [f64; 2], axis: usize) -> [[f64; 3]; 2] {
     let deflection = pad.deflection(place_mm, axis);
     let mut sum = [[0.0; 3]; 2];
-    let poses = pad.device.poses();
-    for module in 0..MODULES {
+    for (module, pose) in pad.device.poses().into_iter().enumerate() {
         let modes = pad.foot_modes(module, &deflection);
         let stiffness = &pad.modules[module].stiffness;
         let force = |mode: usize| -> f64 { stiffness[mode].iter().zip(&modes).map(|(k, u)| k * u).sum() };
@@ -85,7 +85,6 @@ fn taken_up(pad: &Pad, place_mm: [f64; 2], axis: usize) -> [[f64; 3]; 2] {
             (0.0, 0.0),
             "the axes below are untilted"
         );
-        let pose = &poses[module];
         let axes = [lifted(pose.along_x), lifted(pose.along_y), [0.0, 0.0, 1.0]];
         let half = [pad.device.stack.post_length_x_mm / 2.0, pad.device.stack.post_width_y_mm / 2.0];
         let [x, y] = pose.centre_mm;

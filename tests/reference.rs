@@ -1,5 +1,6 @@
 //! The simulator against solutions of an independent program: `tests/reference/README.md`.
 
+#![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 #![cfg(feature = "simulator")]
 
 use std::fs;

@@ -1,9 +1,19 @@
-//! `tactpad simulate`: what the channels read for given contacts, or for the paper's dataset.
+//! `tactpad simulate`: what the channels read for given contacts, or for the paper's dataset; and the pad under a press,
+//! in figures and in ParaView's files.
 
+#[cfg(feature = "simulator")]
+mod meshes;
+#[cfg(feature = "simulator")]
+mod pictures;
+#[cfg(feature = "simulator")]
+mod shown;
+
+use std::fmt;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::{ArgGroup, Args, ValueEnum};
+use serde::Serialize;
 
 use super::contacts::{self, Contacts, Row, Times};
 use super::device::Pad;
@@ -26,6 +36,8 @@ const RIM_TOLERANCE_MM: f64 = 0.01;
 /// Arguments of `tactpad simulate`.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tactpad simulate --dataset paper --seed 1 --out paper.csv")]
+#[command(group = ArgGroup::new("wanted").args(["contacts", "dataset", "figures", "vtk"]).required(true).multiple(true))]
+#[group(skip)]
 pub(super) struct Arguments {
     #[command(flatten)]
     source: Source,
@@ -35,25 +47,27 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "0", conflicts_with = "contacts")]
     seed: u64,
     /// The measured CSV to write; a file that is there is replaced, and - is standard output.
-    #[arg(long, value_name = "FILE")]
-    out: PathBuf,
-    /// Print one JSON document: rows, and each channel's largest magnitude and root mean square.
+    #[arg(long, value_name = "FILE", requires = "Source")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    folders: Folders,
+    /// Print one JSON document: rows, and each channel's largest magnitude and root mean square; files beside them.
     #[arg(long)]
     json: bool,
 }
 
 /// Where the contacts come from.
 #[derive(Debug, Args)]
-#[group(required = true, multiple = false)]
+#[group(multiple = false)]
 struct Source {
     /// A CSV of contacts: t_s,x_mm,y_mm,fx_n,fy_n,fz_n.
     ///
     /// The first line names the columns; others are ignored. t_s may be missing. A contact that would reach over the
     /// plate's rim is refused.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", requires = "out")]
     contacts: Option<PathBuf>,
     /// Contacts that the program draws itself.
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", requires = "out")]
     dataset: Option<Dataset>,
 }
 
@@ -63,23 +77,93 @@ enum Dataset {
     Paper,
 }
 
+/// Where the pressed pad is shown.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("shown").args(["figures", "vtk"]).multiple(true))]
+#[group(skip)]
+struct Folders {
+    /// A folder for figures, SVG and PNG: the plate's deflection under a press of 1 N, the strain under module 0's
+    /// film, and the 27 influence maps.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    /// A folder for ParaView's files of the pad under a press of 1 N: the plate and the three modules.
+    #[arg(long, value_name = "DIR")]
+    vtk: Option<PathBuf>,
+    /// Where the pad is pressed for figures and ParaView's files, in millimetres.
+    #[arg(long, value_name = "X,Y", default_value = "12,5", value_parser = parse_place, allow_hyphen_values = true)]
+    #[arg(requires = "shown")]
+    at: [f64; 2],
+}
+
+/// What was done.
+#[derive(Serialize)]
+struct Outcome {
+    #[serde(flatten)]
+    table: Option<Report>,
+    /// Figures and meshes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    files: Vec<String>,
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { out, json, .. } = arguments;
-    if *json && is_stdout(out) {
+    let Arguments { out, folders, json, .. } = arguments;
+    let prints_table = out.as_deref().is_some_and(is_stdout);
+    if *json && prints_table {
         return Err(Failure::Unusable("--json and --out - both print: let --out name a file".into()));
     }
-    arguments.pad.spare(out)?;
     let device = arguments.pad.read()?;
-    let contacts = contacts(arguments, &device)?;
-    let report = measure(&contacts, &field_of(&device)?, &device, create(out)?)?;
-    match (json, is_stdout(out)) {
-        (true, _) => print_json(&report),
+    on_the_plate(folders.at, &device.contact)
+        .map_err(|why| Failure::Unusable(format!("--at {},{}: {why}", folders.at[0], folders.at[1])))?;
+    let table = out.as_ref().map(|out| table(arguments, out, &device)).transpose()?;
+    let outcome = Outcome { table, files: folders.fill(&device)? };
+    match (json, prints_table) {
+        (true, _) => print_json(&outcome),
         (false, true) => {
-            say(&report);
+            say(&outcome);
             Ok(())
         }
-        (false, false) => Ok(writeln!(stdout(), "{report}")?),
+        (false, false) => Ok(writeln!(stdout(), "{outcome}")?),
     }
+}
+
+impl Folders {
+    /// Writes what is wanted, and says which files these are.
+    fn fill(&self, device: &Device) -> Result<Vec<String>, Failure> {
+        if self.figures.is_none() && self.vtk.is_none() {
+            return Ok(Vec::new());
+        }
+        #[cfg(feature = "simulator")]
+        return shown::write(device, self);
+        #[cfg(not(feature = "simulator"))]
+        Err(Failure::Failed(format!(
+            "--figures and --vtk solve the pad {}, and this program was built without the simulator; build it with the \
+             feature \"simulator\"",
+            device.name
+        )))
+    }
+}
+
+fn parse_place(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    let place_mm = numbers.ok().and_then(|numbers| <[f64; 2]>::try_from(numbers).ok());
+    let place_mm = place_mm.filter(|place_mm| place_mm.iter().all(|mm| mm.is_finite()));
+    place_mm.ok_or_else(|| "write x and y in millimetres with a comma between, as in 12,-5".into())
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let files = self.files.iter().map(|file| format!("{file} is written"));
+        let lines: Vec<String> = self.table.iter().map(Report::to_string).chain(files).collect();
+        f.write_str(&lines.join("\n"))
+    }
+}
+
+/// Writes the measured table of the contacts that were asked for.
+fn table(arguments: &Arguments, out: &Path, device: &Device) -> Result<Report, Failure> {
+    arguments.pad.spare(out)?;
+    let contacts = contacts(arguments, out, device)?;
+    let field = field_of(device)?;
+    Ok(measure(&contacts, &field, device, create(out)?)?)
 }
 
 /// Writes what the channels read for each contact.
@@ -104,8 +188,8 @@ fn bridges(field: &PadField, contact: &Contact) -> Bridges {
 }
 
 /// The contacts that were asked for, all of them on the plate.
-fn contacts(arguments: &Arguments, device: &Device) -> Result<Contacts, Failure> {
-    let Arguments { source: Source { contacts, dataset }, seed, out, .. } = arguments;
+fn contacts(arguments: &Arguments, out: &Path, device: &Device) -> Result<Contacts, Failure> {
+    let Arguments { source: Source { contacts, dataset }, seed, .. } = arguments;
     match (contacts, dataset) {
         (Some(path), _) if is_same(path, out) => Err(written_over(out, "is the table of contacts")),
         (Some(path), _) => read(path, device),
@@ -117,7 +201,10 @@ fn contacts(arguments: &Arguments, device: &Device) -> Result<Contacts, Failure>
 /// Reads a table of contacts, all of which must be on the plate.
 fn read(path: &Path, device: &Device) -> Result<Contacts, Failure> {
     let contacts = contacts::read(path, 0.5 * device.plate.diameter_mm)?;
-    contacts.rows.iter().try_for_each(|row| on_the_plate(path, row, &device.contact))?;
+    for Row { line, contact, .. } in &contacts.rows {
+        on_the_plate([contact.x_mm, contact.y_mm].map(f64::from), &device.contact)
+            .map_err(|why| Failure::Unusable(format!("{}:{line}: {why}", path.display())))?;
+    }
     Ok(contacts)
 }
 
@@ -125,18 +212,16 @@ fn read(path: &Path, device: &Device) -> Result<Contacts, Failure> {
 ///
 /// The field ends there. Taking such a contact at the rim would write a row whose place and channels do not belong
 /// together, and a decoder would learn it.
-fn on_the_plate(path: &Path, row: &Row, patch: &Patch) -> Result<(), Failure> {
-    let Row { line, contact: Contact { x_mm, y_mm, .. }, .. } = row;
-    let radius_mm = f64::from(*x_mm).hypot(f64::from(*y_mm));
+fn on_the_plate([x_mm, y_mm]: [f64; 2], patch: &Patch) -> Result<(), String> {
+    let radius_mm = x_mm.hypot(y_mm);
     let Patch { patch_radius_mm, max_centre_radius_mm, .. } = patch;
     if radius_mm <= max_centre_radius_mm + RIM_TOLERANCE_MM {
         return Ok(());
     }
-    Err(Failure::Unusable(format!(
-        "{}:{line}: the contact is {radius_mm:.2} mm from the centre, and a finger of {patch_radius_mm} mm radius stays \
-         on the plate up to {max_centre_radius_mm} mm; move it or leave it out",
-        path.display()
-    )))
+    Err(format!(
+        "the contact is {radius_mm:.2} mm from the centre, and a finger of {patch_radius_mm} mm radius stays on the \
+         plate up to {max_centre_radius_mm} mm; move it or leave it out"
+    ))
 }
 
 /// Drawn contacts as a table without times.
@@ -224,13 +309,12 @@ mod tests {
     #[test]
     fn contacts_end_where_the_patch_would_leave_the_plate() {
         let patch = Device::nominal().contact;
-        let allowed = |x_mm, y_mm| on_the_plate(Path::new("c.csv"), &row(x_mm, y_mm, 1.0), &patch);
-        for (x_mm, y_mm) in [(0.0, 0.0), (29.0, 0.0), (0.0, -29.009), (20.51, 20.51)] {
-            assert!(allowed(x_mm, y_mm).is_ok(), "{x_mm} {y_mm}");
+        for place in [[0.0, 0.0], [29.0, 0.0], [0.0, -29.009], [20.51, 20.51]] {
+            assert_eq!(on_the_plate(place, &patch), Ok(()));
         }
-        for (x_mm, y_mm) in [(29.011, 0.0), (-20.52, 20.52), (30.0, 30.0)] {
-            let Err(Failure::Unusable(what)) = allowed(x_mm, y_mm) else { panic!("{x_mm} {y_mm}") };
-            assert!(what.starts_with("c.csv:7: the contact is "), "{what}");
+        for place in [[29.011, 0.0], [-20.52, 20.52], [30.0, 30.0]] {
+            let why = on_the_plate(place, &patch).unwrap_err();
+            assert!(why.starts_with("the contact is ") && why.contains("up to 29 mm"), "{why}");
         }
     }
 }

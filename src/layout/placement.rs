@@ -138,10 +138,12 @@ pub fn search<E>(
 }
 
 impl Search {
-    /// The best of the tried candidates whose signals are not larger than this.
-    pub fn best_within(&self, largest_uv: f64) -> Option<Candidate> {
+    /// The best among the tried candidates and this one whose signals are not larger than this one's.
+    pub fn best_beside(&self, given: &Candidate) -> Candidate {
+        let largest_uv = given.precision.map_or(0.0, |precision| precision.largest_uv);
         let tried = self.grid.iter().chain(&self.refinement);
-        smallest(tried.filter(|tried| tried.precision.is_some_and(|found| found.largest_uv <= largest_uv)))
+        let quiet = tried.filter(|tried| tried.precision.is_some_and(|found| found.largest_uv <= largest_uv));
+        smallest([given].into_iter().chain(quiet)).unwrap_or(*given)
     }
 
     /// Whether the best candidate stands at an end of the radii, so that it is the range that holds it.
@@ -314,9 +316,12 @@ mod tests {
         assert!(asked.iter().all(|at| (0.0..=90.0).contains(&at.rotation_deg)));
         assert_eq!(found.best.unwrap().placement, Placement { centre_radius_mm: 8.0, rotation_deg: 0.0 });
         assert!(found.best_is_at_an_end());
-        let quieter = found.best_within(4e4 / 13.0).unwrap();
-        assert_eq!(quieter.placement.centre_radius_mm, 14.0, "the first of the grid's radii above 13");
-        assert_eq!(found.best_within(1.0), None);
+        let at_13 = |worst_mm: f64| {
+            let placement = Placement { centre_radius_mm: 13.0, rotation_deg: 0.0 };
+            found.best_beside(&valued(placement, worst_mm)).placement.centre_radius_mm
+        };
+        assert_eq!(at_13(15.0), 14.0, "the first of the grid's radii above 13");
+        assert_eq!(at_13(13.5), 13.0, "nothing of the grid is better and as quiet");
     }
 
     #[test]

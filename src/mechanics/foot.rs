@@ -21,13 +21,13 @@ const GAUSS: [(f64, f64); 4] = [
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Foot {
     /// Its centre.
-    centre_mm: [f64; 2],
+    pub(super) centre_mm: [f64; 2],
     /// Where its edges point: the module's x and y before any tilt, unit vectors in the pad's plane.
     edges: [[f64; 2]; 2],
     /// Half its sizes along these edges.
     half_mm: [f64; 2],
     /// The module's axes x, y, z in the pad frame, tilted with the module.
-    axes: [[f64; 3]; 3],
+    pub(super) axes: [[f64; 3]; 3],
 }
 
 impl Foot {

@@ -1,12 +1,14 @@
 //! The pad's mechanics by finite elements: from a device to its influence field.
 
 pub mod brick;
+pub mod deformed;
 mod dissection;
 mod foot;
 pub mod grid;
 pub mod mesh;
 pub mod pad;
 pub mod plate;
+pub mod pressed;
 mod readings;
 pub mod sensitivity;
 pub mod simulator;

@@ -169,7 +169,13 @@ impl Shape {
             Self::Dots { places, radius_px, look } => {
                 places.iter().for_each(|&place| window.circle(figure, window.at(place), *radius_px, *look));
             }
-            Self::Label { place, text } => figure.text(label(text, window.at(*place))),
+            Self::Label { place, text } => {
+                let text = label(text, window.at(*place));
+                if window.ground == Ground::Field {
+                    figure.path(behind(&text));
+                }
+                figure.text(text);
+            }
             Self::Dimension { from, to, text } => {
                 draw_dimension(figure, [window.at(*from), window.at(*to)], text);
             }
@@ -179,6 +185,13 @@ impl Shape {
 
 fn label(text: &str, [x, y]: Point) -> Text {
     Text::new(text, [x, y + HALF_DIGIT * LABEL_SIZE], LABEL_SIZE, TEXT).anchored(Anchor::Middle)
+}
+
+/// A pale field behind a label, so that it can be read on dark colours.
+fn behind(text: &Text) -> Path {
+    let [width, height] = [text.width() + 4.0, 1.2 * LABEL_SIZE];
+    let corner = [text.at[0] - 0.5 * width, text.at[1] - HALF_DIGIT * LABEL_SIZE - 0.5 * height];
+    Path { fill: Some(RIM), ..Path::rectangle(corner, [width, height]) }
 }
 
 /// Corners of a circle, for distances.

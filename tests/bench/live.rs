@@ -9,7 +9,6 @@ use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
 use tactpad::contact::Decoder;
 use tactpad::field::PadField;
-use tactpad::influence::InfluenceField;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::shipped;
 use tactpad::pipeline::{NoProbe, Pipeline};

@@ -7,13 +7,21 @@ use crate::layout::placement::{Candidate, Placement};
 use crate::layout::precision::Precision;
 use crate::plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
 use crate::plot::colour::Rgb;
-use crate::plot::figure::{Ends, Figure, Stroke};
+use crate::plot::figure::{Ends, Figure, Ink, Stroke, Text};
 use crate::plot::plan::Plan;
 use crate::plot::scale::Scale;
 use crate::plot::shape::{Look, Shape};
 
 const WIDTH: f64 = 480.0;
 const HEIGHT: f64 = 360.0;
+const PLAN_WIDTH: f64 = 560.0;
+const NOTE_SIZE: f64 = 10.0;
+const NOTE_LINE: f64 = 15.0;
+const NOTES: [&str; 3] = [
+    "Lines: the isolines, each in the colour of its module’s circle; they end where contacts do.",
+    "Dashed circles: what the paper’s rule takes them for, with their mean distance as radius.",
+    "Rectangles: the modules as built (dark), by the paper’s rule (grey), with the smallest worst error (dotted).",
+];
 const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);
 const PALE: Rgb = Rgb::new(0x9a, 0xa2, 0xab);
 
@@ -35,10 +43,9 @@ pub(super) fn scan(pad: &Simulated) -> Figure {
     both
 }
 
-/// One figure of merit over the modules' radius: a curve for the least, the middle and the greatest turn.
+/// One figure of merit over the modules' radius: a curve for the least and the greatest turn.
 fn chart(pad: &Simulated, title: String, label: &str, merit: fn(&Precision) -> f64) -> Figure {
     let range = pad.search.range;
-    let turns = [0, range.rotation_steps / 2, range.rotation_steps];
     let curve = |step: usize| {
         let rows = pad.search.grid.chunks(range.rotation_steps + 1);
         let row: Vec<&Candidate> = rows.filter_map(|row| row.get(step)).collect();
@@ -51,9 +58,8 @@ fn chart(pad: &Simulated, title: String, label: &str, merit: fn(&Precision) -> f
         values: value(candidate, merit).into_iter().collect(),
         look: SeriesLook::Points,
     };
-    let mut series = turns.map(curve).to_vec();
+    let mut series = [0, range.rotation_steps].map(curve).to_vec();
     series.push(point("as built", &pad.as_built));
-    series.push(point("the paper’s rule", &pad.by_rule));
     series.extend(pad.search.best.as_ref().map(|best| point("smallest worst error", best)));
     let rule_mm = pad.by_rule.placement.centre_radius_mm;
     let chart = Chart {
@@ -100,9 +106,10 @@ pub(super) fn regions(pad: &Simulated, spacing: &SpacingReport, device: &Device)
         shapes.extend(moved(device, &best.placement, Stroke::solid(PALE, 1.0).dashed(2.0, 2.0)));
     }
     shapes.extend(footprints(device, Look::line(Stroke::solid(DARK, 1.2))));
-    let reach = 2.0 * radius;
+    let far_mm = |(pose, radius_mm): (&Pose, f64)| pose.centre_mm[0].hypot(pose.centre_mm[1]) + radius_mm;
+    let reach = device.poses().iter().zip(spacing.radii_mm).map(far_mm).fold(radius, f64::max).ceil();
     let plan = Plan {
-        title: format!("Where each module carries {} % of a press", 100.0 * pad.threshold),
+        title: format!("Where a module carries {} % of a press", 100.0 * pad.threshold),
         x: [-reach, reach],
         y: [-reach, reach],
         x_label: "x, mm".to_owned(),
@@ -110,7 +117,20 @@ pub(super) fn regions(pad: &Simulated, spacing: &SpacingReport, device: &Device)
         field: None,
         shapes,
     };
-    plan.figure(560.0)
+    with_notes(plan.figure(PLAN_WIDTH), &NOTES)
+}
+
+/// A figure with lines of text under it.
+fn with_notes(figure: Figure, notes: &[&str]) -> Figure {
+    let [width, height] = figure.size();
+    let mut page =
+        Figure::new(width, height + (notes.len() + 1) as f64 * NOTE_LINE, figure.description().to_owned());
+    page.place(figure, [0.0, 0.0]);
+    for (line, note) in (1..).zip(notes) {
+        let at = [NOTE_LINE, height + f64::from(line) * NOTE_LINE];
+        page.text(Text::new(*note, at, NOTE_SIZE, Ink::opaque(DARK)));
+    }
+    page
 }
 
 /// The outlines of the modules, placed otherwise if that can be built.

@@ -57,7 +57,7 @@ fn write_spacing(out: &mut impl Write, spacing: &SpacingReport) -> io::Result<()
     let [r1, r2, r3] = spacing.radii_mm;
     writeln!(
         out,
-        "The paper's rule: cover most, no distance above the smaller radius; radii {r1}, {r2}, {r3} mm"
+        "The paper's rule: cover most, no distance above the smaller radius; radii {r1:.3}, {r2:.3}, {r3:.3} mm"
     )?;
     writeln!(out, "{:<16} {:>10} {:>10} {:>10} {:>13}", "", "d1 mm", "d2 mm", "d3 mm", "area mm²")?;
     let answers = [
@@ -96,8 +96,8 @@ fn write_placements(out: &mut impl Write, pad: &Simulated) -> io::Result<()> {
     write_placement(out, "as built", Some(&pad.as_built))?;
     write_placement(out, "by the paper's rule", Some(&pad.by_rule))?;
     write_placement(out, "smallest worst error", pad.search.best.as_ref())?;
-    let built_uv = pad.as_built.precision.map_or(0.0, |precision| precision.largest_uv);
-    write_placement(out, "the same, no larger signals", pad.search.best_within(built_uv).as_ref())?;
+    let beside = pad.search.best_beside(&pad.as_built);
+    write_placement(out, "with signals as built, or less", Some(&beside))?;
     if pad.search.best_is_at_an_end() {
         let [from, to] = pad.search.range.centre_radius_mm;
         writeln!(
@@ -239,7 +239,7 @@ mod tests {
         assert_eq!(words(&text, "by the paper's rule")[4..], ["28.00", "0.0", "cannot", "be", "built"]);
         assert_eq!(words(&text, "smallest worst error")[3..], ["8.00", "0.0", "0.1500", "0.1200", "5000"]);
         assert_eq!(
-            words(&text, "the same, no larger signals")[5..],
+            words(&text, "with signals as built, or less")[6..],
             ["16.00", "0.0", "0.1800", "0.1440", "2300"]
         );
         assert!(text.contains("at an end of the radii that were tried, 8.0 to 16.0 mm"), "{text}");

@@ -1,0 +1,153 @@
+//! `--figures`: the plate's deflection, the strain under a film, the 27 influence maps.
+
+use crate::device::{Device, GAUGES};
+use crate::field::PadField;
+use crate::influence::{InfluenceField, MAPS};
+use crate::mechanics::mesh::half_sizes_mm;
+use crate::mechanics::pressed::PressedPad;
+use crate::plot::bands::Bands;
+use crate::plot::colour::Rgb;
+use crate::plot::figure::{Ends, Figure, Ink, Stroke};
+use crate::plot::grid::Grid;
+use crate::plot::isoline::Isolines;
+use crate::plot::multiples::{Bars, Multiples};
+use crate::plot::plan::{Field, Plan};
+use crate::plot::shape::{Look, Shape};
+use crate::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
+
+const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);
+
+/// Nodes along a side of the plate's grid, alone and among many.
+const NODES: usize = 121;
+const SMALL_NODES: usize = 61;
+
+/// Strains near the window's edge are many times those at the gauges.
+const STRAIN_DECADES: usize = 2;
+
+/// Channels over a module are a hundred times those at its far side.
+const INFLUENCE_DECADES: usize = 2;
+
+/// All figures with the names of their files.
+pub(super) fn of(pressed: &PressedPad, field: &PadField) -> Vec<(&'static str, Figure)> {
+    vec![
+        ("deflection", deflection(pressed).figure(560.0)),
+        ("strain-x", strain(pressed, 0).figure(720.0)),
+        ("strain-y", strain(pressed, 1).figure(720.0)),
+        ("influence", influence(&pressed.pad.device, &field.signals).figure()),
+    ]
+}
+
+fn deflection(pressed: &PressedPad) -> Plan {
+    let device = &pressed.pad.device;
+    let grid = Grid::over_disc(radius_mm(device), NODES, |x, y| -1e3 * pressed.plate([x, y]).top_mm[2]);
+    let bands = Bands::diverging(grid.largest(), 8);
+    let label = "down, µm".to_owned();
+    let field = Field { grid, bands, isolines: Isolines::Labelled, label };
+    let mut shapes = films(device);
+    shapes.push(Shape::Dots {
+        places: vec![pressed.place_mm],
+        radius_px: 3.5,
+        look: Look::fill(Ink::opaque(DARK)),
+    });
+    let title = format!("Deflection of the plate under {}", load(pressed));
+    plate(title, device, field, shapes)
+}
+
+/// Strain of the first module's film along an axis of the module.
+fn strain(pressed: &PressedPad, axis: usize) -> Plan {
+    let device = &pressed.pad.device;
+    let half_mm = film_half_mm(device);
+    let module = pressed.module(0);
+    let [x, y] = half_mm.map(|half| [-half, half]);
+    // Twenty nodes per millimetre: the mesh's finest elements.
+    let nodes = half_mm.map(|half| (40.0 * half) as usize + 1);
+    let grid = Grid::over_rectangle(x, y, nodes, |x, y| {
+        module.underside_strain([x, y]).map_or(f64::NAN, |strain| 1e6 * strain[axis])
+    });
+    let bands = Bands::diverging_decades(grid.largest(), STRAIN_DECADES);
+    let name = ["x", "y"][axis];
+    Plan {
+        title: format!("Strain ε_{{{name}{name}}} of module 0’s film, underside, under {}", load(pressed)),
+        x,
+        y,
+        x_label: "x (tangential), mm".to_owned(),
+        y_label: "y (radial), mm".to_owned(),
+        field: Some(Field { grid, bands, isolines: Isolines::None, label: "µm/m".to_owned() }),
+        shapes: gauges(device),
+    }
+}
+
+fn gauges(device: &Device) -> Vec<Shape> {
+    let mut shapes = Vec::with_capacity(2 * GAUGES);
+    for (index, gauge) in device.gauges.iter().enumerate() {
+        let centre = [gauge.x_mm, gauge.y_mm];
+        let size = half_sizes_mm(gauge).map(|half| 2.0 * half);
+        let look = Look::line(Stroke::solid(DARK, 1.0));
+        shapes.push(Shape::Rectangle { centre, size, turn_deg: 0.0, look });
+        shapes.push(Shape::Label { place: centre, text: format!("R{}", index + 1) });
+    }
+    shapes
+}
+
+fn influence(device: &Device, signals: &InfluenceField) -> Multiples {
+    let reach_mm = f64::from(signals.radius_mm());
+    // A row for each force, a column for each channel.
+    let grids: Vec<Grid> = (0..MAPS)
+        .map(|plan| {
+            let (force, channel) = (plan / CHANNELS, plan % CHANNELS);
+            let gain = |x: f64, y: f64| signals.gains(x as f32, y as f32).value[channel][force];
+            Grid::over_disc(reach_mm, SMALL_NODES, gain)
+        })
+        .collect();
+    let largest = grids.iter().map(Grid::largest).fold(0.0, f64::max);
+    let plan = |grid: Grid| {
+        let bands = Bands::diverging_decades(largest, INFLUENCE_DECADES);
+        let field = Field { grid, bands, isolines: Isolines::None, label: "µV/N".to_owned() };
+        plate(String::new(), device, field, films(device))
+    };
+    Multiples {
+        title: "What a newton anywhere on the plate does to the nine channels".to_owned(),
+        note: format!("Places up to {reach_mm} mm from the centre; outlines: the modules’ films."),
+        column_titles: CHANNEL_NAMES.map(str::to_owned).to_vec(),
+        row_titles: ["along x", "along y", "pressing"].map(|force| format!("1 N {force}")).to_vec(),
+        plans: grids.into_iter().map(plan).collect(),
+        plan_width: 110.0,
+        bars: Bars::Shared,
+    }
+}
+
+fn plate(title: String, device: &Device, field: Field, shapes: Vec<Shape>) -> Plan {
+    let radius_mm = radius_mm(device);
+    Plan {
+        title,
+        x: [-radius_mm, radius_mm],
+        y: [-radius_mm, radius_mm],
+        x_label: "x, mm".to_owned(),
+        y_label: "y, mm".to_owned(),
+        field: Some(field),
+        shapes,
+    }
+}
+
+/// The outlines of the modules' films.
+fn films(device: &Device) -> Vec<Shape> {
+    let film = |module: usize| Shape::Line {
+        corners: device.poses()[module].corners_mm(film_half_mm(device)).to_vec(),
+        ends: Ends::Closed,
+        look: Look::line(Stroke::solid(DARK, 0.8)),
+    };
+    (0..MODULES).map(film).collect()
+}
+
+fn film_half_mm(device: &Device) -> [f64; 2] {
+    [device.stack.film_length_x_mm / 2.0, device.stack.film_width_y_mm / 2.0]
+}
+
+fn radius_mm(device: &Device) -> f64 {
+    device.plate.diameter_mm / 2.0
+}
+
+fn load(pressed: &PressedPad) -> String {
+    let [x, y] = pressed.place_mm;
+    format!("1 N at ({x}, {y}) mm").replace('-', "−")
+}

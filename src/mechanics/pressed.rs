@@ -1,0 +1,131 @@
+//! A pad under a press of 1 N: how the plate and each module move.
+
+use std::sync::Arc;
+
+use crate::quantity::MODULES;
+use crate::zernike::{Polynomial, jets};
+
+use super::deformed::{Deformed, ModeShapes};
+use super::foot::Foot;
+use super::pad::Pad;
+use super::plate::FIELDS;
+use super::simulator::PLATE_DEGREE;
+
+/// A pad that is pressed with 1 N.
+pub struct PressedPad {
+    /// The pad.
+    pub pad: Pad,
+    /// Centre of the contact.
+    pub place_mm: [f64; 2],
+    modules: [Arc<ModeShapes>; MODULES],
+    deflection: [Polynomial; FIELDS],
+}
+
+/// How the plate moves at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlateMovement {
+    /// Displacement of the top surface in the pad frame.
+    pub top_mm: [f64; 3],
+    /// How much farther points move along x and y per millimetre above the middle plane.
+    pub rotation: [f64; 2],
+}
+
+impl PressedPad {
+    /// Presses a pad whose modules have these shapes; `place_mm` lies on the plate.
+    pub fn of(pad: Pad, modules: [Arc<ModeShapes>; MODULES], place_mm: [f64; 2]) -> Self {
+        let deflection = pad.deflection(place_mm, 2);
+        Self { pad, place_mm, modules, deflection }
+    }
+
+    /// How the plate moves at a place of it.
+    pub fn plate(&self, place_mm: [f64; 2]) -> PlateMovement {
+        let plate = &self.pad.device.plate;
+        let radius_mm = plate.diameter_mm / 2.0;
+        let jets = jets(PLATE_DEGREE, place_mm.map(|mm| mm / radius_mm));
+        let [u, v, w, a, b] = self.deflection.each_ref().map(|field| field.value(&jets));
+        let rotation = [a / radius_mm, b / radius_mm];
+        let height_mm = plate.thickness_mm / 2.0;
+        PlateMovement { top_mm: [u + height_mm * rotation[0], v + height_mm * rotation[1], w], rotation }
+    }
+
+    /// A module as the plate moves its foot.
+    pub fn module(&self, module: usize) -> Deformed<'_> {
+        self.modules[module].moved(&self.pad.foot_modes(module, &self.deflection))
+    }
+
+    /// From a module's frame to the pad's.
+    pub fn module_frame(&self, module: usize) -> ModuleFrame {
+        let device = &self.pad.device;
+        let foot = Foot::of(device, module);
+        let [x, y] = foot.centre_mm;
+        let lines = &self.modules[module].mesh.lines_mm[2];
+        let top_mm = lines.last().copied().unwrap_or(0.0);
+        ModuleFrame { foot_mm: [x, y, -device.plate.thickness_mm], axes: foot.axes, top_mm }
+    }
+}
+
+/// Where a module's points and vectors are in the pad frame. A tilted module is turned about its foot's centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModuleFrame {
+    /// The foot's centre on the plate's underside.
+    foot_mm: [f64; 3],
+    axes: [[f64; 3]; 3],
+    /// Height of the foot in the module's frame.
+    top_mm: f64,
+}
+
+impl ModuleFrame {
+    /// A point.
+    pub fn place_mm(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        let turned = self.vector([x, y, z - self.top_mm]);
+        std::array::from_fn(|axis| self.foot_mm[axis] + turned[axis])
+    }
+
+    /// A vector.
+    pub fn vector(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|axis| x * self.axes[0][axis] + y * self.axes[1][axis] + z * self.axes[2][axis])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::Device;
+    use crate::mechanics::mesh::Fineness;
+    use crate::mechanics::simulator::Simulator;
+
+    fn pressed(place_mm: [f64; 2]) -> PressedPad {
+        let device = Device::nominal();
+        Simulator::new(Fineness::STANDARD.scaled(3.0)).pressed(&device, place_mm).unwrap()
+    }
+
+    #[test]
+    fn modules_move_with_the_plate() {
+        let pad = pressed([12.0, 5.0]);
+        for index in 0..MODULES {
+            let (module, frame) = (pad.module(index), pad.module_frame(index));
+            let tops = (0..module.mesh.lattice.len()).filter(|node| module.mesh.is_top(*node));
+            let mut largest = 0.0_f64;
+            let mut off = 0.0_f64;
+            for node in tops {
+                let [x, y, z] = frame.place_mm(module.mesh.place_mm(node));
+                assert!((z + 1.0).abs() < 1e-12, "the foot is on the plate's underside");
+                let found = frame.vector(module.displacements_mm[node]);
+                let PlateMovement { top_mm, rotation } = pad.plate([x, y]);
+                let wanted = [top_mm[0] - rotation[0], top_mm[1] - rotation[1], top_mm[2]];
+                for (found, wanted) in found.into_iter().zip(wanted) {
+                    (largest, off) = (largest.max(wanted.abs()), off.max((found - wanted).abs()));
+                }
+            }
+            // A foot's parabolas do not follow the plate to the last digit.
+            assert!(off < 0.02 * largest, "module {index}: {off} of {largest} mm");
+        }
+    }
+
+    #[test]
+    fn the_plate_sinks_most_on_the_side_that_is_pressed() {
+        let pad = pressed([12.0, 5.0]);
+        let sinks = |place| -pad.plate(place).top_mm[2];
+        assert!(sinks([12.0, 5.0]) > 0.0 && sinks([12.0, 5.0]) > 2.0 * sinks([-12.0, -5.0]));
+    }
+}

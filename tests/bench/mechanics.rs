@@ -9,7 +9,7 @@ use tactpad::mechanics::mesh::Fineness;
 use tactpad::mechanics::superelement::Solution;
 
 /// Sizes of the elements in units of the program's.
-const LADDER: [f64; 4] = [2.0, 1.4, 1.0, 0.75];
+const LADDER: [f64; 4] = [2.8, 2.0, 1.4, 1.0];
 
 /// Mesh, assembly, factorisation and superelement. Each name says the unknowns and the factor's entries, of 8 bytes.
 fn modules(criterion: &mut Criterion) {

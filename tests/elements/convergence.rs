@@ -1,8 +1,8 @@
 //! How far the program's mesh is from the truth: the signals of a module for unit forces and moments on its foot, and
 //! the foot's flexibilities, on a ladder of meshes.
 //!
-//! The whole ladder, as in `docs/mechanics.md`, takes some minutes and 8 GB:
-//! `TACTPAD_CONVERGENCE=1 cargo test --release --test elements convergence -- --nocapture`.
+//! The whole ladder, as in `docs/mechanics.md`, takes five minutes and 10 GB:
+//! `TACTPAD_CONVERGENCE=1 cargo test --release --test elements ladder -- --nocapture`.
 
 use std::io::{Write as _, stderr};
 

@@ -1,15 +1,16 @@
-//! The statics decoder against the influence table, which comes from a finite-element solution of the whole
-//! pad.
+//! The statics decoder: its numbers come from the nominal field; what it decodes is held against an independent
+//! finite-element solution of the whole pad.
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 
 use tactpad::contact::statics::{Statics, StaticsModel};
 use tactpad::device::Device;
+use tactpad::field::PadField;
 use tactpad::quantity::{CHANNELS, Contact, MODULES, Strain};
 
 const TABLE: &str = include_str!("reference/nominal.csv");
 const MODULE_RADIUS_MM: f64 = 20.0;
 
-/// One place of the table; `gain[channel][axis]` in µV/N.
+/// One place of the plate; `gain[channel][axis]` in µV/N.
 struct Place {
     x_mm: f64,
     y_mm: f64,
@@ -25,6 +26,13 @@ fn table() -> Vec<Place> {
     let places: Vec<Place> = TABLE.lines().skip(1).map(row).collect();
     assert_eq!(places.len(), 1 + 29 * 72);
     places
+}
+
+/// The same places, with the gains of the shipped field.
+fn field() -> Vec<Place> {
+    let field = PadField::nominal();
+    let gain = |x_mm: f64, y_mm: f64| field.signals.gains(x_mm as f32, y_mm as f32).value;
+    table().into_iter().map(|place| Place { gain: gain(place.x_mm, place.y_mm), ..place }).collect()
 }
 
 fn outward(module: usize) -> (f64, f64) {
@@ -97,20 +105,21 @@ fn fitted(places: &[Place]) -> Fit {
     fit
 }
 
-fn assert_same(name: &str, shipped: f32, fitted: f64) {
-    let off = (f64::from(shipped) / fitted - 1.0).abs();
-    println!("{name}: {shipped} shipped, {fitted:.6} fitted");
-    assert!(off < 2e-6, "{name}: {shipped} shipped, {fitted} fitted");
-}
-
 #[test]
 fn the_shipped_numbers_are_the_least_squares_fit() {
-    let (model, fit) = (*Statics::nominal().model(), fitted(&table()));
-    assert_same("tangential_uv_per_n", model.tangential_uv_per_n, fit.tangential);
-    assert_same("radial_uv_per_n", model.radial_uv_per_n, fit.radial);
-    assert_same("normal_uv_per_n", model.normal_uv_per_n, fit.normal);
-    assert_same("contact_height_mm", model.contact_height_mm, fit.height);
-    assert_same("false_shear_per_mm", model.false_shear_per_mm, fit.false_shear);
+    let (model, fit) = (*Statics::nominal().model(), fitted(&field()));
+    let numbers = [
+        ("tangential_uv_per_n", model.tangential_uv_per_n, fit.tangential),
+        ("radial_uv_per_n", model.radial_uv_per_n, fit.radial),
+        ("normal_uv_per_n", model.normal_uv_per_n, fit.normal),
+        ("contact_height_mm", model.contact_height_mm, fit.height),
+        ("false_shear_per_mm", model.false_shear_per_mm, fit.false_shear),
+    ];
+    numbers
+        .iter()
+        .for_each(|(name, shipped, fitted)| println!("{name}: {shipped} shipped, {fitted:.8} fitted"));
+    let off = |(_, shipped, fitted): &(&str, f32, f64)| (f64::from(*shipped) / fitted - 1.0).abs();
+    assert!(numbers.iter().all(|number| off(number) < 2e-6));
 }
 
 #[test]
@@ -197,7 +206,8 @@ fn mixed_loads_are_found() {
         {
             let off = |p: &Place| (f64::from(component(&p.decoded(&statics, force))) - force[axis]).abs();
             let (mean, worst) = mean_and_worst(places.iter().map(off));
-            let bound = if axis == 2 { (0.001, 0.001) } else { (0.06, 0.38) };
+            // The two solutions differ by 0.6 % in Sz.
+            let bound = if axis == 2 { (0.015, 0.015) } else { (0.06, 0.42) };
             assert!(mean < bound.0 && worst < bound.1, "axis {axis}: {mean} {worst}");
         }
     }

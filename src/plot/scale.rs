@@ -11,6 +11,8 @@ pub enum Scale {
 
 /// Larger values are taken as not finite: their differences would be.
 const LARGEST: f64 = 1e150;
+/// An axis may end so many times further out, where its last tick is.
+const ROUNDING: f64 = 100.0;
 /// Spans below this share of the values are no span.
 const RESOLUTION: f64 = 1e-9;
 /// About as many steps between ticks.
@@ -37,11 +39,15 @@ pub(super) struct Tick {
 }
 
 impl Scale {
-    /// Whether a value has a place on an axis of this kind.
+    /// Whether an axis of this kind is made for a value.
     pub(super) fn shows(self, value: f64) -> bool {
+        self.holds(value, LARGEST)
+    }
+
+    fn holds(self, value: f64, largest: f64) -> bool {
         match self {
-            Self::Linear => value.abs() < LARGEST,
-            Self::Log10 => value > 1.0 / LARGEST && value < LARGEST,
+            Self::Linear => value.abs() < largest,
+            Self::Log10 => value > 1.0 / largest && value < largest,
         }
     }
 
@@ -75,7 +81,8 @@ impl Axis {
     pub(super) fn at(&self, value: f64) -> f64 {
         let [low, high] = self.span.map(|end| self.scale.inner(end));
         let share = (self.scale.inner(value) - low) / (high - low);
-        if self.scale.shows(value) { self.page[0] + share * (self.page[1] - self.page[0]) } else { f64::NAN }
+        let is_held = self.scale.holds(value, ROUNDING * LARGEST);
+        if is_held { self.page[0] + share * (self.page[1] - self.page[0]) } else { f64::NAN }
     }
 
     pub(super) fn ticks(&self) -> Vec<Tick> {
@@ -235,12 +242,22 @@ mod tests {
     #[test]
     fn degenerate_values_still_give_an_axis() {
         for scale in [Scale::Linear, Scale::Log10] {
-            for values in
-                [&[][..], &[0.0], &[5.0], &[-3.0, -3.0], &[f64::NAN], &[1e-320, 0.0], &[f64::MAX, f64::MIN]]
-            {
+            for values in [
+                &[][..],
+                &[0.0],
+                &[5.0],
+                &[-3.0, -3.0],
+                &[f64::NAN],
+                &[1e-320, 0.0],
+                &[f64::MAX, f64::MIN],
+                &[0.0, 9e149],
+                &[-9.99e149, 2e-150],
+            ] {
                 let axis = axis(scale, values);
                 assert!(axis.span[0] < axis.span[1], "{scale:?} {values:?}: {:?}", axis.span);
-                assert!(axis.ticks().len() > 1, "{scale:?} {values:?}");
+                let ticks = axis.ticks();
+                assert!(ticks.len() > 1, "{scale:?} {values:?}");
+                assert!(ticks.iter().all(|tick| axis.at(tick.value).is_finite()), "{scale:?} {values:?}");
             }
         }
     }

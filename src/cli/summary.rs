@@ -111,7 +111,8 @@ struct Nonlinearity {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} contacts\n{:<7} {:>11} {:>11}", self.rows, "µV", "max", "rms")?;
+        let contacts = if self.rows == 1 { "contact" } else { "contacts" };
+        write!(f, "{} {contacts}\n{:<7} {:>11} {:>11}", self.rows, "µV", "max", "rms")?;
         write!(f, "   exact bridge − linear: {:>9} {:>9}    % {:>7} {:>7}", "max", "rms", "max", "rms")?;
         self.channels.iter().try_for_each(|channel| write!(f, "\n{channel}"))
     }

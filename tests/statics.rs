@@ -1,6 +1,6 @@
 //! The statics decoder: its numbers come from the nominal field; what it decodes is held against an independent
 //! finite-element solution of the whole pad.
-#![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
+#![expect(clippy::unwrap_used, reason = "a test may stop at what it did not expect")]
 
 use tactpad::contact::statics::{Statics, StaticsModel};
 use tactpad::device::Device;

@@ -16,6 +16,7 @@ pub mod latency;
 pub mod layout;
 pub mod link;
 pub mod mapping;
+pub mod measured;
 #[cfg(feature = "simulator")]
 pub mod mechanics;
 pub mod output;

@@ -8,9 +8,11 @@
 //! A file's text becomes a [`Device`] in `reading` → `imperfection` → `possible` → `read`; each of these uses only
 //! those before it, and all follow the list of numbers in [`schema`]. `write` is the way back.
 
+use self::behaviour::Behaviour;
 use crate::quantity::MODULES;
 use crate::toml_text::diag::Diagnostic;
 
+pub mod behaviour;
 pub(crate) mod fingerprint;
 mod imperfection;
 mod lines;
@@ -53,6 +55,8 @@ pub struct Device {
     pub reported: Option<Reported>,
     /// How each module differs from the nominal one.
     pub modules: [Module; MODULES],
+    /// What it does beyond its mechanics.
+    pub behaviour: Behaviour,
 }
 
 impl Device {
@@ -255,6 +259,10 @@ pub struct Module {
     pub film_e_factor: f64,
     /// The side on which the frame is missing.
     pub frame_open: Option<Side>,
+    /// Share of the bond's area that has come off, from `debonded_side` inwards.
+    pub debonded_share: f64,
+    /// Where the bond has come off.
+    pub debonded_side: Option<Side>,
     /// Factors of the three signals x, y, z.
     pub gain: [f64; 3],
     /// Added to the three signals.
@@ -273,6 +281,8 @@ impl Module {
         bond_e_factor: 1.0,
         film_e_factor: 1.0,
         frame_open: None,
+        debonded_share: 0.0,
+        debonded_side: None,
         gain: [1.0; 3],
         offset_uv: [0.0; 3],
     };

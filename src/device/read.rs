@@ -3,6 +3,7 @@
 //! While it is read, a device holds NaN wherever the text has no usable number. So what is checked across
 //! numbers needs no case for those that are missing: nothing compares with NaN.
 
+use super::behaviour::Behaviour;
 use super::imperfection::KINDS;
 use super::possible;
 use super::reading::Reading;
@@ -243,4 +244,5 @@ const UNREAD: Device = Device {
     contact: Patch { patch_radius_mm: f64::NAN, max_centre_radius_mm: f64::NAN, full_scale_n: f64::NAN },
     reported: None,
     modules: [Module::NOMINAL; MODULES],
+    behaviour: Behaviour::IDEAL,
 };

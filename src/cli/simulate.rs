@@ -25,10 +25,10 @@ use super::{Failure, print_json, say};
 use crate::dataset;
 use crate::device::{Device, Patch};
 use crate::field::PadField;
-use crate::influence::InfluenceField;
 use crate::quantity::Contact;
-use crate::readout::{Bridges, REFERENCE_C, Readout, ThermalZero};
+use crate::readout::Readout;
 use crate::time::StreamInstant;
+use crate::twin::bridges;
 
 /// Places are often written to two decimals; so rounded, one on the rim may lie this far beyond it.
 const RIM_TOLERANCE_MM: f64 = 0.01;
@@ -168,23 +168,18 @@ fn table(arguments: &Arguments, out: &Path, device: &Device) -> Result<Report, F
 
 /// Writes what the channels read for each contact.
 fn measure(contacts: &Contacts, field: &PadField, device: &Device, out: impl Write) -> io::Result<Report> {
-    let readout = Readout::of(device, ThermalZero::NONE);
+    let readout = Readout::of(device);
+    let reference_c = device.behaviour.thermal.reference_c;
     let mut summary = Summary::default();
     let mut table = Measured::begin(out, contacts.times)?;
     for row in &contacts.rows {
         let bridges = bridges(field, &row.contact);
-        let channels_uv = readout.read_uv(&bridges, REFERENCE_C);
+        let channels_uv = readout.read_uv(&bridges, reference_c);
         table.row(row, &channels_uv)?;
         summary.add(&channels_uv, &bridges, device.circuit.excitation_v);
     }
     table.end()?;
     Ok(summary.report())
-}
-
-/// What the bridges carry for `contact`.
-fn bridges(field: &PadField, contact: &Contact) -> Bridges {
-    let uv = |field: &InfluenceField| field.strain_uv(contact).uv.map(f64::from);
-    Bridges { signal_uv: uv(&field.signals), sum_uv: uv(&field.sums) }
 }
 
 /// The contacts that were asked for, all of them on the plate.

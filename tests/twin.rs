@@ -1,5 +1,4 @@
 //! The imperfect twin, each imperfection against its closed form: alone, on the nominal pad.
-#![expect(clippy::unwrap_used, reason = "a test may stop at what it did not expect")]
 
 use std::f64::consts::TAU;
 use std::sync::OnceLock;

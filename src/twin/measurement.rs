@@ -82,7 +82,7 @@ impl Bench {
     /// The true contact and the channels `after_s` later, when this contact is meant.
     fn touch(&mut self, after_s: f64, meant: &Label) -> (Label, [f64; CHANNELS]) {
         self.at_s += after_s;
-        let truth = self.hand.hold(after_s, &contact(&self.stage.truth(meant)));
+        let truth = self.hand.hold(after_s, &self.stage.truth(meant).into());
         (label(&truth), self.pad.read(after_s, &truth, &self.around))
     }
 
@@ -161,11 +161,6 @@ impl Bench {
 
 fn is_loaded(label: &Label) -> bool {
     [label.fx_n, label.fy_n, label.fz_n].iter().any(|force_n| *force_n != 0.0)
-}
-
-const fn contact(label: &Label) -> Contact {
-    let Label { x_mm, y_mm, fx_n, fy_n, fz_n } = *label;
-    Contact { x_mm: x_mm as f32, y_mm: y_mm as f32, fx_n: fx_n as f32, fy_n: fy_n as f32, fz_n: fz_n as f32 }
 }
 
 fn label(contact: &Contact) -> Label {

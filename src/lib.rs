@@ -31,6 +31,7 @@ pub mod signal;
 pub mod spelling;
 pub mod time;
 pub mod toml_text;
+pub mod twin;
 pub mod virtual_pad;
 pub mod vtk;
 pub mod zernike;

@@ -20,6 +20,13 @@ impl SplitMix64 {
         Self { state: seed }
     }
 
+    /// One of many streams of this seed, by the name of what it is for: independent of the others.
+    pub(crate) fn named(seed: u64, name: &str) -> Self {
+        let letters = name.bytes().fold(0, |sum: u64, letter| sum.rotate_left(8) ^ u64::from(letter));
+        let purpose = Self::new(letters).next_bits();
+        Self::new(Self::new(seed).next_bits() ^ purpose)
+    }
+
     /// The next 64 bits.
     pub(crate) fn next_bits(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -1,4 +1,4 @@
-//! From the half-bridges to what a pad writes down: bridge law, gain, offset, temperature, converter.
+//! From the half-bridges to what a pad writes down: bridge law, couplings, gain, offset, temperature, converter.
 //!
 //! A module's seven gauges form three half-bridges. With rᵢ = ΔRᵢ/R, where R is the bridge's resistance, the signals
 //! are S = δ·d for the excitation δ and the differences d
@@ -33,11 +33,9 @@
 //!
 //! Source: Wu et al., *Sensors* 2026, 26(4), 1378, section 2.2; the signs and forms are those of `models/sstid.toml`.
 
+use crate::device::behaviour::{Behaviour, ModuleCrosstalk, Thermal};
 use crate::device::{Circuit, Device, Module};
 use crate::quantity::CHANNELS;
-
-/// Temperature at which an untouched pad reads its offsets and nothing else.
-pub const REFERENCE_C: f64 = 25.0;
 
 /// What the nine half-bridges carry for one contact, in microvolts: gauge law and excitation are in it.
 ///
@@ -64,36 +62,27 @@ impl Bridges {
     }
 }
 
-/// How a zero moves with temperature. The nominal device has no such movement; the paper reports 300 µV per 10 °C
-/// on average over its channels, with a linear course from −10 °C to 50 °C.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ThermalZero {
-    /// Microvolts per degree, channel by channel.
-    pub uv_per_c: [f64; CHANNELS],
-}
+/// Factors by which the nine channels make nine others, `[into][from]`.
+type Mixing = [[f64; CHANNELS]; CHANNELS];
 
-impl ThermalZero {
-    /// Zeros that stay where they are.
-    pub const NONE: Self = Self { uv_per_c: [0.0; CHANNELS] };
-
-    /// How far the zeros have moved at `temperature_c`, in microvolts; nothing at [`REFERENCE_C`].
-    pub fn at_uv(&self, temperature_c: f64) -> [f64; CHANNELS] {
-        self.uv_per_c.map(|uv_per_c| uv_per_c * (temperature_c - REFERENCE_C))
-    }
-}
-
-/// The electronics of a pad between its bridges and its converter.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The electronics of a pad between its bridges and its converter, and the coupling of its modules.
+///
+/// A measured channel is s = (1 + X) g (1 + M) b + z: the bridges b, the shares M that modules take of each other, the gains
+/// g with their change by temperature, the shares X of electrical crosstalk, the zeros z.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Readout {
     circuit: Circuit,
+    module_coupling: Mixing,
     gain: [f64; CHANNELS],
+    crosstalk: Mixing,
     offset_uv: [f64; CHANNELS],
-    thermal_zero: ThermalZero,
+    thermal: Thermal,
 }
 
 impl Readout {
-    /// The readout of `device`: its circuit, and its modules' gains and offsets.
-    pub fn of(device: &Device, thermal_zero: ThermalZero) -> Self {
+    /// The readout of `device`: its circuit, its modules' gains and offsets, its couplings and its temperature law.
+    pub fn of(device: &Device) -> Self {
+        let Behaviour { thermal, crosstalk, module_crosstalk, .. } = &device.behaviour;
         let channels = |of: fn(&Module) -> &[f64; 3]| {
             let mut channels = [0.0; CHANNELS];
             for (channel, value) in channels.iter_mut().zip(device.modules.iter().flat_map(of)) {
@@ -101,11 +90,18 @@ impl Readout {
             }
             channels
         };
+        let between = crosstalk.iter().map(|it| (it.channel, it.with, it.share));
+        let axes = |it: &ModuleCrosstalk| {
+            let ModuleCrosstalk { module, with, share } = *it;
+            (0..3).map(move |axis| (3 * module + axis, 3 * with + axis, share))
+        };
         Self {
             circuit: device.circuit,
+            module_coupling: mixing(module_crosstalk.iter().flat_map(axes)),
             gain: channels(|module| &module.gain),
+            crosstalk: mixing(between),
             offset_uv: channels(|module| &module.offset_uv),
-            thermal_zero,
+            thermal: *thermal,
         }
     }
 
@@ -113,17 +109,57 @@ impl Readout {
     ///
     /// Gain acts on the bridge's signal alone, so that a gain of zero is a dead channel that still has its offset.
     pub fn read_uv(&self, bridges: &Bridges, temperature_c: f64) -> [f64; CHANNELS] {
-        let mut read_uv = if self.circuit.bridge_nonlinearity {
+        let signal_uv = self.signal_uv(&self.strain_uv(bridges), temperature_c);
+        let zero_uv = self.zero_uv(temperature_c);
+        std::array::from_fn(|channel| signal_uv[channel] + zero_uv[channel])
+    }
+
+    /// What the modules' strains are worth, in microvolts: the bridges by the circuit's law, with what modules take of
+    /// each other.
+    pub fn strain_uv(&self, bridges: &Bridges) -> [f64; CHANNELS] {
+        let bridges_uv = if self.circuit.bridge_nonlinearity {
             bridges.exact_uv(self.circuit.excitation_v)
         } else {
             bridges.signal_uv
         };
-        let zeros_uv = self.offset_uv.iter().zip(self.thermal_zero.at_uv(temperature_c));
-        for ((uv, gain), (offset_uv, thermal_uv)) in read_uv.iter_mut().zip(self.gain).zip(zeros_uv) {
-            *uv = gain * *uv + offset_uv + thermal_uv;
-        }
-        read_uv
+        mixed(&self.module_coupling, &bridges_uv)
     }
+
+    /// The channels without their zeros: strains with gain and crosstalk.
+    pub fn signal_uv(&self, strain_uv: &[f64; CHANNELS], temperature_c: f64) -> [f64; CHANNELS] {
+        let above_c = temperature_c - self.thermal.reference_c;
+        let amplified = std::array::from_fn(|channel| {
+            let gain = self.gain[channel] * (1.0 + self.thermal.gain_per_c[channel] * above_c);
+            gain * strain_uv[channel]
+        });
+        mixed(&self.crosstalk, &amplified)
+    }
+
+    /// What an untouched pad reads.
+    pub fn zero_uv(&self, temperature_c: f64) -> [f64; CHANNELS] {
+        let Thermal { reference_c, zero_uv_per_c, zero_uv_per_c2, .. } = &self.thermal;
+        let above_c = temperature_c - reference_c;
+        std::array::from_fn(|channel| {
+            let per_c = zero_uv_per_c[channel] + zero_uv_per_c2[channel] * above_c;
+            self.offset_uv[channel] + per_c * above_c
+        })
+    }
+}
+
+/// One, and the given shares: (into, from, share). An index that names no channel is left out.
+fn mixing(shares: impl Iterator<Item = (usize, usize, f64)>) -> Mixing {
+    let mut mixing: Mixing =
+        std::array::from_fn(|into| std::array::from_fn(|from| f64::from(u8::from(into == from))));
+    for (into, from, share) in shares {
+        if let Some(factor) = mixing.get_mut(into).and_then(|row| row.get_mut(from)) {
+            *factor += share;
+        }
+    }
+    mixing
+}
+
+fn mixed(mixing: &Mixing, from_uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+    mixing.map(|row| row.iter().zip(from_uv).map(|(factor, uv)| factor * uv).sum())
 }
 
 /// An analogue-to-digital converter with a symmetric range, in the wire's terms.
@@ -164,6 +200,7 @@ mod tests {
     use firmware_proto::{DEFAULT_COUNT_BITS, DEFAULT_PICOVOLTS_PER_COUNT};
 
     use super::*;
+    use crate::device::behaviour::Crosstalk;
     use crate::random::SplitMix64;
     use crate::signal::Scale;
 
@@ -248,39 +285,59 @@ mod tests {
         assert!((printed_uv(r7, r5 + r6) + z_uv).abs() < 1e-8, "Vz is printed as it is");
     }
 
-    fn readout(circuit: Circuit) -> Readout {
-        Readout {
-            circuit,
-            gain: [1.0; CHANNELS],
-            offset_uv: [0.0; CHANNELS],
-            thermal_zero: ThermalZero::NONE,
-        }
+    /// A device whose circuit follows the linear or the exact law.
+    fn device(bridge_nonlinearity: bool) -> Device {
+        let mut device = Device::nominal();
+        device.circuit = Circuit { excitation_v: EXCITATION_V, bridge_nonlinearity };
+        device
     }
+
+    const EVEN: Bridges = Bridges { signal_uv: [1000.0; CHANNELS], sum_uv: [0.0; CHANNELS] };
 
     #[test]
     fn the_circuit_chooses_the_law() {
         let bridges = bridges([2e-3, 1e-3, 1e-3, 3e-3, 1e-3, 1e-3, 5e-4]);
-        let linear = Circuit { excitation_v: EXCITATION_V, bridge_nonlinearity: false };
-        let exact = Circuit { bridge_nonlinearity: true, ..linear };
-        assert_eq!(readout(linear).read_uv(&bridges, 40.0), bridges.signal_uv);
-        assert_eq!(readout(exact).read_uv(&bridges, 40.0), bridges.exact_uv(EXCITATION_V));
+        assert_eq!(Readout::of(&device(false)).read_uv(&bridges, 40.0), bridges.signal_uv);
+        assert_eq!(Readout::of(&device(true)).read_uv(&bridges, 40.0), bridges.exact_uv(EXCITATION_V));
         assert_ne!(bridges.signal_uv, bridges.exact_uv(EXCITATION_V));
     }
 
     #[test]
     fn gain_leaves_the_zero_alone() {
-        let circuit = Circuit { excitation_v: EXCITATION_V, bridge_nonlinearity: false };
-        let mut readout = readout(circuit);
-        readout.gain[3] = 1.5;
-        readout.gain[5] = 0.0;
-        readout.offset_uv[3] = -700.0;
-        readout.offset_uv[5] = 200.0;
-        readout.thermal_zero.uv_per_c[3] = 30.0;
-        let bridges = Bridges { signal_uv: [1000.0; CHANNELS], sum_uv: [0.0; CHANNELS] };
-        let read_uv = readout.read_uv(&bridges, REFERENCE_C + 10.0);
-        assert_eq!(read_uv, [1000.0, 1000.0, 1000.0, 1100.0, 1000.0, 200.0, 1000.0, 1000.0, 1000.0]);
-        assert_eq!(readout.read_uv(&bridges, REFERENCE_C)[3], 800.0);
-        assert_eq!(readout.read_uv(&bridges, REFERENCE_C - 10.0)[3], 500.0);
+        let mut device = device(false);
+        device.modules[1].gain = [1.5, 1.0, 0.0];
+        device.modules[1].offset_uv = [-700.0, 0.0, 200.0];
+        device.behaviour.thermal.zero_uv_per_c[3] = 30.0;
+        device.behaviour.thermal.zero_uv_per_c2[3] = 0.5;
+        let readout = Readout::of(&device);
+        let reference_c = device.behaviour.thermal.reference_c;
+        let read_uv = readout.read_uv(&EVEN, reference_c + 10.0);
+        assert_eq!(read_uv, [1000.0, 1000.0, 1000.0, 1150.0, 1000.0, 200.0, 1000.0, 1000.0, 1000.0]);
+        assert_eq!(readout.read_uv(&EVEN, reference_c)[3], 800.0);
+        assert_eq!(readout.read_uv(&EVEN, reference_c - 10.0)[3], 550.0);
+    }
+
+    #[test]
+    fn the_thermal_gain_acts_on_the_signal() {
+        let mut device = device(false);
+        device.modules[0].offset_uv[2] = 100.0;
+        device.behaviour.thermal.gain_per_c[2] = -1e-3;
+        let read_uv = Readout::of(&device).read_uv(&EVEN, device.behaviour.thermal.reference_c + 20.0);
+        assert!((read_uv[2] - 1080.0).abs() < 1e-9, "{}", read_uv[2]);
+    }
+
+    #[test]
+    fn modules_couple_before_the_gain_and_channels_after_it() {
+        let mut device = device(false);
+        device.modules[0].gain[2] = 2.0;
+        device.modules[1].gain[2] = 3.0;
+        device.behaviour.module_crosstalk = vec![ModuleCrosstalk { module: 1, with: 0, share: 0.1 }];
+        device.behaviour.crosstalk = vec![Crosstalk { channel: 8, with: 5, share: 0.01 }];
+        let mut bridges = Bridges { signal_uv: [0.0; CHANNELS], sum_uv: [0.0; CHANNELS] };
+        bridges.signal_uv[2] = 1000.0;
+        let read_uv = Readout::of(&device).read_uv(&bridges, 25.0);
+        // 1000 · 2; a tenth of 1000, times 3; a hundredth of that.
+        assert_eq!(read_uv, [0.0, 0.0, 2000.0, 0.0, 0.0, 300.0, 0.0, 0.0, 3.0]);
     }
 
     const DEFAULT: Converter =

@@ -11,9 +11,12 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use proptest::prelude::{Just, Strategy, any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
+use tactpad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, Play, Prony};
 use tactpad::device::parameter::Parameter;
+use tactpad::device::schema::Effect;
 use tactpad::device::unit::Unit;
 use tactpad::device::{Device, Module, Side};
+use tactpad::quantity::CHANNELS;
 use tactpad::toml_text::TEXT_BYTES_MAX;
 use tactpad::toml_text::diag::Diagnostic;
 
@@ -123,7 +126,10 @@ fn no_number_of_the_nominal_device_passes_in_another_unit() {
             Unit::Megapascal => &[1e-3, 1e3, 1e6],
             Unit::Degree => &[1.0_f64.to_radians()],
             Unit::Volt | Unit::Newton => &[1e3],
-            Unit::Microvolt | Unit::One | Unit::BridgeR => &[],
+            Unit::Hertz => &[1e-3, 1e3],
+            Unit::Celsius => &[298.15 / 25.0],
+            // Of these, the nominal device's are zero or ratios; or a range from a sample to a session tells nothing.
+            _ => &[],
         };
         let value = parameter.get(&nominal);
         for factor in factors.iter().filter(|_| value != 0.0) {
@@ -133,7 +139,7 @@ fn no_number_of_the_nominal_device_passes_in_another_unit() {
             tried += 1;
         }
     }
-    assert_eq!(tried, 2 * (2 + 1 + 11 + 2 + 2 * 7 + 6) + 3 * 7 + 2 + 1 + 1);
+    assert_eq!(tried, 2 * (2 + 1 + 11 + 2 + 2 * 7 + 6) + 3 * 7 + 2 + 1 + 1 + 2 + 1);
 }
 
 #[test]
@@ -185,13 +191,89 @@ fn imperfections_change_what_they_write_and_nothing_else() {
 
 #[test]
 fn the_same_tables_in_a_device_file_and_over_it_are_the_same_device() {
-    let text = fs::read_to_string(
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/device/imperfections/in-order.toml"),
+    for text in [include_str!("device/imperfections/in-order.toml"), BEHAVIOUR] {
+        let inside = Device::from_toml(&format!("{NOMINAL}\n{text}")).0;
+        assert!(inside.is_some());
+        assert_eq!(inside, Device::nominal().with_imperfections(text).0);
+    }
+}
+
+/// Every table of behaviour.
+const BEHAVIOUR: &str = include_str!("device/imperfections/behaviour.toml");
+
+#[test]
+fn behaviour_is_read_as_it_is_written() {
+    let device = Device::nominal().with_imperfections(BEHAVIOUR).0.unwrap();
+    assert_eq!(device.contact.patch_radius_mm, 0.8);
+    let Behaviour { thermal, crosstalk, module_crosstalk, hysteresis, creep, rig, .. } = &device.behaviour;
+    assert_eq!((thermal.reference_c, thermal.zero_uv_per_c), (22.5, [30.0; CHANNELS]));
+    assert_eq!(thermal.gain_per_c[8], -0.0009);
+    assert_eq!(thermal.zero_uv_per_c2, [0.0; CHANNELS], "what is not written is ideal");
+    assert_eq!(
+        crosstalk,
+        &[Crosstalk { channel: 5, with: 2, share: 0.03 }, Crosstalk { channel: 2, with: 5, share: -0.01 }]
     );
-    let text = text.unwrap();
-    let inside = Device::from_toml(&format!("{NOMINAL}\n{text}")).0;
-    assert!(inside.is_some());
-    assert_eq!(inside, Device::nominal().with_imperfections(&text).0);
+    assert_eq!(module_crosstalk, &[ModuleCrosstalk { module: 2, with: 0, share: 0.002 }]);
+    let z_only = [false, false, true, false, false, true, false, false, true];
+    assert_eq!(
+        hysteresis,
+        &[
+            Play { channels: [true; CHANNELS], threshold_uv: 20.0, share: 0.5 },
+            Play { channels: z_only, threshold_uv: 200.0, share: 0.25 }
+        ]
+    );
+    assert_eq!(creep, &[Prony { channels: [true; CHANNELS], time_s: 30.0, share: 0.02 }]);
+    assert_eq!(rig.reference_zero_n, [0.01, -0.02, 0.03]);
+    assert_eq!(Device::from_toml(&device.to_toml()), (Some(device.clone()), vec![]));
+}
+
+#[test]
+fn one_number_for_nine_is_that_number_nine_times_and_written_so() {
+    let laid = |text: &str| Device::nominal().with_imperfections(text).0.unwrap();
+    let short = laid("[noise]\nadditive_uv = 2.5\n");
+    assert_eq!(short, laid("[noise]\nadditive_uv = [2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5]\n"));
+    assert!(short.to_toml().contains("\n[noise]\nadditive_uv = 2.5 #"));
+    let told = Device::nominal().with_imperfections("[noise]\nadditive_uv = -1\n").1;
+    assert_eq!(told.len(), 1, "one number is refused once: {told:?}");
+}
+
+#[test]
+fn over_a_device_keys_replace_keys_and_lists_replace_lists() {
+    let device = Device::nominal().with_imperfections(BEHAVIOUR).0.unwrap();
+    let laid = |text: &str| device.with_imperfections(text).0.unwrap();
+    let mut expected = device.clone();
+    expected.behaviour.thermal.reference_c = 20.0;
+    assert_eq!(laid("[thermal]\nreference_c = 20\n"), expected);
+    let mut expected = device.clone();
+    expected.behaviour.creep = vec![Prony { channels: [true; CHANNELS], time_s: 5.0, share: 0.1 }];
+    assert_eq!(laid("[[creep]]\ntime_s = 5\nshare = 0.1\n"), expected);
+    let mut expected = device.clone();
+    expected.behaviour.crosstalk.clear();
+    assert_eq!(laid("crosstalk = []\n"), expected);
+}
+
+#[test]
+fn terms_of_a_sum_are_counted() {
+    let terms = |count: u32| (1..=count).map(|time| format!("[[creep]]\ntime_s = {time}\nshare = 0.01\n"));
+    let laid = |count| Device::nominal().with_imperfections(&terms(count).collect::<String>());
+    assert_eq!(laid(16).1, vec![]);
+    let (device, told) = laid(17);
+    assert!(device.is_none() && told.len() == 1, "{told:?}");
+    assert!(told[0].line == 49 && told[0].message.contains("more than 16"), "{told:?}");
+    assert_eq!(laid(1_000).1, told, "and no more is said");
+}
+
+#[test]
+fn the_fingers_patch_is_the_contacts() {
+    let nominal = Device::nominal();
+    let over = |text: &str| nominal.with_imperfections(text);
+    let small = over("[finger]\npatch_radius_mm = 0.5\n").0.unwrap();
+    assert_eq!(small.contact.patch_radius_mm, 0.5);
+    assert_ne!(small.fingerprint(), nominal.fingerprint());
+    assert_eq!(over("[finger]\nwander_mm = 0.5\n").0.unwrap().fingerprint(), nominal.fingerprint());
+    let told = &over("# A thumb.\n[finger]\npatch_radius_mm = 2\n").1[0];
+    assert_eq!((told.line, told.column), (3, 19));
+    assert!(told.message.contains("leaves the plate"), "{told:?}");
 }
 
 #[test]
@@ -262,7 +344,8 @@ fn documented_name(parameter: Parameter) -> String {
     let words: Vec<_> = parameter.name().split('.').collect();
     match words.as_slice() {
         ["gauge" | "module", _, key, ..] => format!("{}.N.{key}", words[0]),
-        ["modules", key, ..] => format!("modules.{key}"),
+        ["material", ..] => words.join("."),
+        [table, key, ..] => format!("{table}.{key}"),
         words => words.join("."),
     }
 }
@@ -279,13 +362,76 @@ fn the_reference_states_every_number_with_its_unit_and_range() {
     for row in &found {
         assert!(documented.contains(row), "models/README.md lacks {row:?}");
     }
-    for row in &documented {
+    for row in documented.iter().filter(|(name, ..)| list_of(name).is_none()) {
         assert!(found.contains(row), "no device has {row:?}");
     }
 }
 
-/// The nominal file with a word of it replaced, left out or repeated.
-fn mutated() -> impl Strategy<Value = String> {
+#[test]
+fn the_reference_states_what_is_there_where_nothing_is_written() {
+    let nominal = Device::nominal();
+    let mut stated = 0;
+    for line in include_str!("../models/README.md").lines() {
+        let cells: Vec<_> = line.split('|').map(str::trim).collect();
+        let [_, key, _, _, default, _, _] = cells.as_slice() else { continue };
+        let Ok(default) = default.parse::<f64>() else { continue };
+        for parameter in Parameter::all() {
+            if documented_name(parameter) == key.trim_matches('`') {
+                assert_eq!(parameter.get(&nominal), default, "{parameter}");
+                stated += 1;
+            }
+        }
+    }
+    let behaviour = Parameter::all().filter(|parameter| parameter.effect() == Effect::Behaviour).count();
+    assert_eq!(stated, behaviour);
+}
+
+/// The tables that may stand more than once, each with what a table of it must have beside the key that is looked at.
+const LISTS: [(&str, &str); 4] = [
+    ("crosstalk", "channel = \"m1z\"\nwith = \"m0z\"\n"),
+    ("module_crosstalk", "module = 0\nwith = 1\n"),
+    ("hysteresis", "threshold_uv = 10\nshare = 0.1\n"),
+    ("creep", "time_s = 30\nshare = 0.1\n"),
+];
+
+/// The list that a documented name is about, and its key there.
+fn list_of(name: &str) -> Option<((&'static str, &'static str), &str)> {
+    let (table, key) = name.split_once(".N.")?;
+    LISTS.into_iter().find(|(list, _)| *list == table).map(|list| (list, key))
+}
+
+#[test]
+fn the_reference_states_every_number_of_the_lists_with_its_range() {
+    let nominal = Device::nominal();
+    let mut tried = Vec::new();
+    for (name, unit, low, high) in documented() {
+        let Some(((table, rest), key)) = list_of(&name) else { continue };
+        let others: String =
+            rest.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect();
+        let laid =
+            |value: f64| nominal.with_imperfections(&format!("[[{table}]]\n{others}{key} = {value:?}\n"));
+        for value in [low, high] {
+            assert_eq!(laid(value).1, vec![], "{name} = {value}");
+        }
+        for value in [low - 1e-6 * (high - low), high + 1e-6 * (high - low)] {
+            let told = laid(value).1;
+            let range = format!("it must be {low} to {high} {unit}");
+            assert!(told.len() == 1 && told[0].message.ends_with(range.trim_end()), "{name}: {told:?}");
+        }
+        tried.push(name);
+    }
+    for (table, _) in LISTS {
+        let told = nominal.with_imperfections(&format!("[[{table}]]\nqqqqqqqqqq = 1\n")).1;
+        let keys = told.iter().find_map(|it| it.help.as_ref()?.strip_prefix("known here: "));
+        let keys = keys.unwrap().split(", ");
+        for key in keys.filter(|key| !["channel", "module", "with", "channels"].contains(key)) {
+            assert!(tried.contains(&format!("{table}.N.{key}")), "models/README.md lacks {table} {key}");
+        }
+    }
+}
+
+/// A file with a word of it replaced, left out or repeated.
+fn mutated(file: &'static str) -> impl Strategy<Value = String> {
     let word = prop_oneof![
         prop_oneof![Just("0"), Just("-1"), Just("nan"), Just("1e308"), Just("-inf"), Just("0x7f"), Just("3")],
         prop_oneof![
@@ -301,7 +447,7 @@ fn mutated() -> impl Strategy<Value = String> {
         prop_oneof![Just("\"x\""), Just("true"), Just("[]"), Just("[0, 1e-9, 2]"), Just("plate"), Just("")],
     ];
     prop::collection::vec((any::<prop::sample::Index>(), word), 1..4).prop_map(|edits| {
-        let mut words: Vec<&str> = NOMINAL.split_inclusive([' ', '\n']).collect();
+        let mut words: Vec<&str> = file.split_inclusive([' ', '\n']).collect();
         for (index, word) in edits {
             let index = index.index(words.len());
             words.splice(index..=index, [word, "\n"]);
@@ -320,7 +466,7 @@ fn is_sound(device: &Device) -> bool {
 
 proptest! {
     #[test]
-    fn any_text_has_a_device_or_a_reason(text in prop_oneof![any::<String>(), mutated()]) {
+    fn any_text_has_a_device_or_a_reason(text in prop_oneof![any::<String>(), mutated(NOMINAL), mutated(BEHAVIOUR)]) {
         let nominal = Device::nominal();
         for (device, found) in [Device::from_toml(&text), nominal.with_imperfections(&text)] {
             prop_assert_eq!(device.is_none(), !found.is_empty());

@@ -1,6 +1,5 @@
 //! The program's verbs, one file each. Errors are printed and exit codes chosen here and nowhere else.
 
-mod contacts;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod ctl;
 #[cfg(all(feature = "live", target_os = "linux"))]
@@ -18,7 +17,6 @@ mod latency;
 mod layout;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod live;
-mod measured;
 mod pictures;
 mod profile;
 #[cfg(feature = "simulator")]
@@ -34,6 +32,7 @@ mod screen;
 mod seconds;
 mod simulate;
 mod summary;
+mod tables;
 mod text_file;
 mod written;
 

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::contacts::Row;
 use super::written::stdout;
-use super::{Failure, contacts, if_read, profile, say};
+use super::{Failure, if_read, profile, say, tables};
 use crate::capture::{CallKind, CaptureError, CaptureReader};
 use crate::contact::Decoder;
 use crate::mapping::check::{self, OutputChoice};
 use crate::mapping::engine::Engine;
 use crate::mapping::profile::Profile;
+use crate::measured::columns::Kind;
 use crate::output::event_log;
 use crate::output::ledger::{Edges, Ledger};
 use crate::pipeline::{NoProbe, Pipeline};
@@ -23,6 +23,9 @@ use crate::time::StreamInstant;
 
 /// The plate of the pads that profiles are made for.
 const PLATE_RADIUS_MM: f64 = 30.0;
+
+/// Rows of a table without times are this far apart.
+const PERIOD_US: u64 = 1_000;
 
 /// Arguments of `tactpad replay`.
 #[derive(Debug, Args)]
@@ -93,13 +96,15 @@ fn recorded_profile(call: &CallKind) -> Option<Profile> {
 
 /// Maps contacts as they stand: each row is a sample, a row without normal force is a lift.
 fn replay_contacts(path: &Path, profile: Profile, log: &mut impl Write) -> Result<(), Failure> {
-    let rows = contacts::read(path, PLATE_RADIUS_MM)?.rows;
+    let rows = tables::read(path, Kind::Contacts, PLATE_RADIUS_MM)?.rows;
     let mut mapped = Mapped { ledger: Ledger::new(&profile), engine: Engine::new(profile), log };
-    for Row { at, contact, .. } in &rows {
-        mapped.step(*at, Some(contact).filter(|contact| contact.fz_n > 0.0))?;
+    let mut end = StreamInstant::default();
+    for (index, row) in rows.iter().enumerate() {
+        let us = row.t_s.map_or_else(|| index as u64 * PERIOD_US, |t_s| (t_s * 1e6).round() as u64);
+        end = StreamInstant::from_us(us);
+        mapped.step(end, Some(&row.label.into()).filter(|contact: &&Contact| contact.fz_n > 0.0))?;
     }
     // The list ends with a lift, so that nothing stays held.
-    let end = rows.last().map_or_else(StreamInstant::default, |row| row.at);
     mapped.step(end, None)?;
     Ok(mapped.settle(StreamInstant::from_us(u64::MAX))?)
 }

@@ -15,20 +15,20 @@ use std::path::{Path, PathBuf};
 use clap::{ArgGroup, Args, ValueEnum};
 use serde::Serialize;
 
-use super::contacts::{self, Contacts, Row, Times};
 use super::device::Pad;
 use super::field_cache::field_of;
-use super::measured::Measured;
 use super::summary::{Report, Summary};
 use super::written::{create, is_same, is_stdout, stdout, written_over};
-use super::{Failure, print_json, say};
+use super::{Failure, print_json, say, tables};
 use crate::dataset;
 use crate::device::{Device, Patch};
 use crate::field::PadField;
-use crate::influence::InfluenceField;
+use crate::measured::columns::{Column, Kind};
+use crate::measured::write::Writer;
+use crate::measured::{Label, Row, Table};
 use crate::quantity::Contact;
-use crate::readout::{Bridges, REFERENCE_C, Readout, ThermalZero};
-use crate::time::StreamInstant;
+use crate::readout::Readout;
+use crate::twin::bridges;
 
 /// Places are often written to two decimals; so rounded, one on the rim may lie this far beyond it.
 const RIM_TOLERANCE_MM: f64 = 0.01;
@@ -167,42 +167,38 @@ fn table(arguments: &Arguments, out: &Path, device: &Device) -> Result<Report, F
 }
 
 /// Writes what the channels read for each contact.
-fn measure(contacts: &Contacts, field: &PadField, device: &Device, out: impl Write) -> io::Result<Report> {
-    let readout = Readout::of(device, ThermalZero::NONE);
+fn measure(contacts: &Table, field: &PadField, device: &Device, out: impl Write) -> io::Result<Report> {
+    let readout = Readout::of(device);
+    let reference_c = device.behaviour.thermal.reference_c;
     let mut summary = Summary::default();
-    let mut table = Measured::begin(out, contacts.times)?;
+    let timed = contacts.columns().into_iter().filter(|column| *column == Column::Time);
+    let mut table = Writer::begin(out, &timed.chain([Column::Channels]).collect::<Vec<_>>(), contacts)?;
     for row in &contacts.rows {
-        let bridges = bridges(field, &row.contact);
-        let channels_uv = readout.read_uv(&bridges, REFERENCE_C);
-        table.row(row, &channels_uv)?;
+        let bridges = bridges(field, &row.label.into());
+        let channels_uv = readout.read_uv(&bridges, reference_c);
+        table.row(&Row { uv: Some(channels_uv), ..*row }, contacts)?;
         summary.add(&channels_uv, &bridges, device.circuit.excitation_v);
     }
     table.end()?;
     Ok(summary.report())
 }
 
-/// What the bridges carry for `contact`.
-fn bridges(field: &PadField, contact: &Contact) -> Bridges {
-    let uv = |field: &InfluenceField| field.strain_uv(contact).uv.map(f64::from);
-    Bridges { signal_uv: uv(&field.signals), sum_uv: uv(&field.sums) }
-}
-
 /// The contacts that were asked for, all of them on the plate.
-fn contacts(arguments: &Arguments, out: &Path, device: &Device) -> Result<Contacts, Failure> {
+fn contacts(arguments: &Arguments, out: &Path, device: &Device) -> Result<Table, Failure> {
     let Arguments { source: Source { contacts, dataset }, seed, .. } = arguments;
     match (contacts, dataset) {
         (Some(path), _) if is_same(path, out) => Err(written_over(out, "is the table of contacts")),
         (Some(path), _) => read(path, device),
-        (None, Some(Dataset::Paper)) => Ok(drawn(dataset::paper(&device.contact, *seed))),
+        (None, Some(Dataset::Paper)) => Ok(drawn(&dataset::paper(&device.contact, *seed))),
         (None, None) => Err(Failure::Unusable("give --contacts or --dataset".into())),
     }
 }
 
 /// Reads a table of contacts, all of which must be on the plate.
-fn read(path: &Path, device: &Device) -> Result<Contacts, Failure> {
-    let contacts = contacts::read(path, 0.5 * device.plate.diameter_mm)?;
-    for Row { line, contact, .. } in &contacts.rows {
-        on_the_plate([contact.x_mm, contact.y_mm].map(f64::from), &device.contact)
+fn read(path: &Path, device: &Device) -> Result<Table, Failure> {
+    let contacts = tables::read(path, Kind::Contacts, 0.5 * device.plate.diameter_mm)?;
+    for Row { line, label, .. } in &contacts.rows {
+        on_the_plate([label.x_mm, label.y_mm], &device.contact)
             .map_err(|why| Failure::Unusable(format!("{}:{line}: {why}", path.display())))?;
     }
     Ok(contacts)
@@ -224,10 +220,19 @@ fn on_the_plate([x_mm, y_mm]: [f64; 2], patch: &Patch) -> Result<(), String> {
     ))
 }
 
-/// Drawn contacts as a table without times.
-fn drawn(contacts: Vec<Contact>) -> Contacts {
-    let row = |(index, contact)| Row { line: index + 2, at: StreamInstant::default(), contact };
-    Contacts { times: Times::Supposed, rows: contacts.into_iter().enumerate().map(row).collect() }
+/// Drawn contacts as a table.
+fn drawn(contacts: &[Contact]) -> Table {
+    let rows = contacts.iter().map(|contact| {
+        let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = *contact;
+        let [x_mm, y_mm, fx_n, fy_n, fz_n] = [x_mm, y_mm, fx_n, fy_n, fz_n].map(decimal);
+        Row::of(Label { x_mm, y_mm, fx_n, fy_n, fz_n })
+    });
+    Table { rows: rows.collect(), ..Table::default() }
+}
+
+/// The number with the fewest digits that still means `number`: a table shall not be full of digits that mean nothing.
+fn decimal(number: f32) -> f64 {
+    number.to_string().parse().unwrap_or_else(|_| f64::from(number))
 }
 
 #[cfg(test)]
@@ -235,16 +240,15 @@ mod tests {
     use super::*;
     use crate::quantity::CHANNELS;
 
-    fn row(x_mm: f32, y_mm: f32, fz_n: f32) -> Row {
-        let contact = Contact { x_mm, y_mm, fx_n: 0.5, fy_n: -1.0, fz_n };
-        Row { line: 7, at: StreamInstant::default(), contact }
+    fn row(x_mm: f64, y_mm: f64, fz_n: f64) -> Row {
+        Row::of(Label { x_mm, y_mm, fx_n: 0.5, fy_n: -1.0, fz_n })
     }
 
     /// The channels that are written for a few contacts, and the report.
     fn measured(device: &Device, field: &PadField) -> (Vec<[f64; CHANNELS]>, serde_json::Value) {
         let rows = vec![row(0.0, 0.0, 5.0), row(20.0, 0.0, 3.0), row(-9.0, 21.0, 1.0)];
         let mut text = Vec::new();
-        let contacts = Contacts { times: Times::Supposed, rows };
+        let contacts = Table { rows, ..Table::default() };
         let report = measure(&contacts, field, device, &mut text).unwrap();
         let numbers = |line: &str| {
             let numbers: Vec<f64> = line.split(',').skip(5).map(|number| number.parse().unwrap()).collect();

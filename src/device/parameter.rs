@@ -4,7 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::LazyLock;
 
+use super::behaviour::Behaviour;
 use super::reading::parameter_name;
+use super::schema::behaviour::BEHAVIOUR;
 use super::schema::{Effect, GAUGE, GAUGE_NAMES, Key, MATERIALS, MODULE, TABLES};
 use super::unit::Unit;
 use super::{Device, Gauge, Module};
@@ -15,7 +17,8 @@ use crate::spelling;
 ///
 /// Its name is the way to it in the device file: `plate.thickness_mm`, `material.pick.e_mpa`, `gauge.R1.x`. Modules
 /// are counted by their `index`, as `module.0.radial_mm`; in a list each number is one: `modules.angles_deg.1` and
-/// `module.2.gain.z`. The order is that of [`Parameter::all`]. The figures under `[reported]` are no parameters.
+/// `module.2.gain.z`, and by channel where there is one for each: `noise.additive_uv.m0x`. The order is that of
+/// [`Parameter::all`]. The figures under `[reported]` and those in lists of any length, as `[[creep]]`, are no parameters.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Parameter(usize);
 
@@ -37,6 +40,7 @@ enum Home {
     Pad(&'static Key<Device>),
     Gauge(usize, &'static Key<Gauge>),
     Module(usize, &'static Key<Module>),
+    Behaviour(&'static Key<Behaviour>),
 }
 
 static LISTED: LazyLock<Vec<Listed>> = LazyLock::new(|| {
@@ -51,6 +55,9 @@ static LISTED: LazyLock<Vec<Listed>> = LazyLock::new(|| {
         MODULE
             .iter()
             .for_each(|key| add(&mut list, &format!("module.{index}"), key, Home::Module(index, key)));
+    }
+    for table in &BEHAVIOUR {
+        table.keys.iter().for_each(|key| add(&mut list, table.path, key, Home::Behaviour(key)));
     }
     list
 });
@@ -99,6 +106,7 @@ impl Parameter {
             Home::Pad(key) => (key.access.get)(device)[element],
             Home::Gauge(index, key) => (key.access.get)(&device.gauges[index])[element],
             Home::Module(index, key) => (key.access.get)(&device.modules[index])[element],
+            Home::Behaviour(key) => (key.access.get)(&device.behaviour)[element],
         }
     }
 
@@ -110,6 +118,7 @@ impl Parameter {
             Home::Pad(key) => (key.access.get_mut)(device)[element] = value,
             Home::Gauge(index, key) => (key.access.get_mut)(&mut device.gauges[index])[element] = value,
             Home::Module(index, key) => (key.access.get_mut)(&mut device.modules[index])[element] = value,
+            Home::Behaviour(key) => (key.access.get_mut)(&mut device.behaviour)[element] = value,
         }
     }
 
@@ -132,7 +141,7 @@ impl Parameter {
     pub fn module(self) -> Option<usize> {
         match self.listed().home {
             Home::Module(index, _) => Some(index),
-            Home::Pad(_) | Home::Gauge(..) => None,
+            Home::Pad(_) | Home::Gauge(..) | Home::Behaviour(_) => None,
         }
     }
 
@@ -141,6 +150,7 @@ impl Parameter {
             Home::Pad(key) => key.traits(),
             Home::Gauge(_, key) => key.traits(),
             Home::Module(_, key) => key.traits(),
+            Home::Behaviour(key) => key.traits(),
         }
     }
 }
@@ -198,14 +208,20 @@ mod tests {
         assert_eq!(value("contact.full_scale_n"), 5.0);
         assert_eq!(value("module.2.frame_e_factor"), 1.0);
         assert_eq!(value("module.0.offset_uv.z"), 0.0);
+        assert_eq!(value("thermal.reference_c"), 25.0);
+        assert_eq!(value("ageing.cycles"), 50_000.0);
+        assert_eq!(value("noise.walk_uv.m2z"), 0.0);
+        assert_eq!(value("rig.reference_zero_n.z"), 0.0);
     }
 
     #[test]
     fn each_parameter_is_a_number_of_its_own() {
         let nominal = Device::nominal();
         let count = Parameter::all().count();
-        // Once: 2 + 4 + 11 + 2 + 1 + 3 and seven materials' 2; seven gauges' 5; three modules' 8 and two lists.
-        assert_eq!(count, 23 + 14 + 35 + 42);
+        // Of the pad: 2 + 4 + 11 + 2 + 1 + 3 and seven materials' 2; seven gauges' 5; three modules' 8 and two lists.
+        // Of its behaviour, by table: some numbers, and nine for each list of channels.
+        let behaviour = (3 + 27) + (2 + 9) + (1 + 36) + (1 + 9) + (2 + 9) + 4 + 14;
+        assert_eq!(count, 23 + 14 + 35 + 42 + behaviour);
         for changed in Parameter::all() {
             assert_eq!(changed.name().parse(), Ok(changed));
             let mut device = nominal.clone();
@@ -218,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn only_readout_and_labels_leave_the_field_alone() {
+    fn only_readout_behaviour_and_labels_leave_the_field_alone() {
         let idle: Vec<_> = Parameter::all().filter(|it| it.effect() != Effect::Field).collect();
         let with =
             |effect| idle.iter().filter(|it| it.effect() == effect).map(|it| it.name()).collect::<Vec<_>>();
@@ -226,6 +242,9 @@ mod tests {
             with(Effect::Nothing),
             ["contact.full_scale_n", "material.gauge.e_mpa", "material.gauge.nu"]
         );
+        let behaviour = with(Effect::Behaviour);
+        assert_eq!(behaviour.len(), 117);
+        assert!(behaviour.contains(&"sampling.skew_us.m0x") && behaviour.contains(&"finger.wander_mm"));
         let readout = with(Effect::Readout);
         assert_eq!(readout.len(), 18);
         assert!(

@@ -4,7 +4,7 @@
 //! numbers needs no case for those that are missing: nothing compares with NaN.
 
 use super::behaviour::Behaviour;
-use super::imperfection::KINDS;
+use super::imperfection;
 use super::possible;
 use super::reading::Reading;
 use super::schema::{DIRECTIONS, GAUGE, GAUGE_NAMES, MATERIALS, REPORTED, SCHEMA, TABLES, Table};
@@ -28,7 +28,7 @@ pub(super) fn device(text: &str) -> (Option<Device>, Vec<Diagnostic>) {
     };
     let own = ["schema", "name", "material", "gauge", "reported"].into_iter();
     let known: Vec<_> =
-        own.chain(TABLES.iter().map(|table| table.path)).chain(KINDS.iter().map(|kind| kind.table)).collect();
+        own.chain(TABLES.iter().map(|table| table.path)).chain(imperfection::tables()).collect();
     let root = Section::root(&tree, "the device", &known, &mut reading.report);
     let mut device = UNREAD;
     root.require("schema", "write schema = \"sstid-device/1\"", &mut reading.report);
@@ -39,7 +39,7 @@ pub(super) fn device(text: &str) -> (Option<Device>, Vec<Diagnostic>) {
     read_materials(&root, &mut device, &mut reading);
     read_gauges(&root, &mut device.gauges, &mut reading);
     device.reported = read_reported(&root, &mut reading);
-    KINDS.iter().for_each(|kind| (kind.read)(&root, &mut device, &mut reading));
+    imperfection::read(&root, &mut device, &mut reading);
     settle(device, reading)
 }
 
@@ -50,10 +50,10 @@ pub(super) fn imperfections(mut device: Device, text: &str) -> (Option<Device>, 
     let Some(tree) = toml_text::parse(text, help, &mut reading.report) else {
         return (None, reading.report.finish());
     };
-    let known: Vec<_> = ["schema"].into_iter().chain(KINDS.iter().map(|kind| kind.table)).collect();
+    let known: Vec<_> = ["schema"].into_iter().chain(imperfection::tables()).collect();
     let root = Section::root(&tree, "the file of imperfections", &known, &mut reading.report);
     read_schema(&root, &mut reading);
-    KINDS.iter().for_each(|kind| (kind.read)(&root, &mut device, &mut reading));
+    imperfection::read(&root, &mut device, &mut reading);
     settle(device, reading)
 }
 
@@ -69,7 +69,12 @@ fn read_schema(root: &Section<'_>, reading: &mut Reading<'_>) {
 }
 
 /// Reads the numbers of `table`, and its words if it has any.
-fn read_table(root: &Section<'_>, table: &'static Table, device: &mut Device, reading: &mut Reading<'_>) {
+fn read_table(
+    root: &Section<'_>,
+    table: &'static Table<Device>,
+    device: &mut Device,
+    reading: &mut Reading<'_>,
+) {
     let Table { path, words, keys } = *table;
     root.require(path, &format!("write a table headed [{path}]"), &mut reading.report);
     let known: Vec<_> = words.iter().copied().chain(keys.iter().map(|key| key.name)).collect();
@@ -109,7 +114,7 @@ fn read_circuit(table: &Section<'_>, circuit: &mut Circuit, reading: &mut Readin
 }
 
 fn read_materials(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
-    let key_of = |table: &Table| table.path.trim_start_matches("material.");
+    let key_of = |table: &Table<Device>| table.path.trim_start_matches("material.");
     root.require("material", "write a table headed [material]", &mut reading.report);
     let known = MATERIALS.each_ref().map(key_of);
     let Some(section) = root.table("material", "[material]".to_owned(), &known, &mut reading.report) else {

@@ -33,19 +33,24 @@ impl<'t> Reading<'t> {
         record: &mut T,
     ) {
         for key in keys.iter().filter(|key| section.place_of(key.name).is_some()) {
-            let read = self.list(section, key);
-            for (index, slot) in (key.access.get_mut)(record).iter_mut().enumerate() {
-                let number = read.as_ref().and_then(|numbers| numbers.get(index));
-                if let (Some(number), Some(element)) = (number, key.elements.get(index)) {
+            let written = self.list(section, key).unwrap_or_default();
+            let usable: Vec<_> = written.iter().map(|number| self.in_range(key, *number)).collect();
+            let slots = (key.access.get_mut)(record).iter_mut().zip(key.elements);
+            for (index, (slot, element)) in slots.enumerate() {
+                // A single number stands for all.
+                let index = if written.len() == 1 { 0 } else { index };
+                if let Some(number) = written.get(index) {
                     self.places.insert(parameter_name(path, key.name, element), number.at);
                 }
-                *slot = number.and_then(|number| self.in_range(key, *number)).unwrap_or(f64::NAN);
+                *slot = usable.get(index).copied().flatten().unwrap_or(f64::NAN);
             }
         }
     }
 
     fn list<T>(&mut self, section: &Section<'_>, key: &Key<T>) -> Option<Vec<Placed<f64>>> {
-        if key.elements.len() > 1 {
+        if key.takes_one_for_all() {
+            section.reals_or_one(key.name, key.elements.len(), &mut self.report)
+        } else if key.elements.len() > 1 {
             section.reals(key.name, key.elements.len(), &mut self.report)
         } else {
             section.real(key.name, &mut self.report).map(|number| vec![number])

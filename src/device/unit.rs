@@ -15,6 +15,26 @@ pub enum Unit {
     Microvolt,
     /// Forces.
     Newton,
+    /// Instants and time constants.
+    Second,
+    /// Lags of labels.
+    Millisecond,
+    /// Delays of channels.
+    Microsecond,
+    /// The mains.
+    Hertz,
+    /// Cycles of load.
+    Cycle,
+    /// Temperatures.
+    Celsius,
+    /// Slopes of zeros by temperature.
+    MicrovoltPerKelvin,
+    /// Curvatures of zeros by temperature.
+    MicrovoltPerKelvin2,
+    /// Relative changes of gains by temperature.
+    PerKelvin,
+    /// Drifts of zeros.
+    MicrovoltPerHour,
     /// Ratios and factors.
     One,
     /// A resistance as a share of the bridge's R.
@@ -31,6 +51,16 @@ impl Unit {
             Self::Volt => "V",
             Self::Microvolt => "uV",
             Self::Newton => "N",
+            Self::Second => "s",
+            Self::Millisecond => "ms",
+            Self::Microsecond => "us",
+            Self::Hertz => "Hz",
+            Self::Cycle => "cycles",
+            Self::Celsius => "degC",
+            Self::MicrovoltPerKelvin => "uV/K",
+            Self::MicrovoltPerKelvin2 => "uV/K2",
+            Self::PerKelvin => "1/K",
+            Self::MicrovoltPerHour => "uV/h",
             Self::One => "",
             Self::BridgeR => "R",
         }
@@ -42,17 +72,30 @@ impl Unit {
             Self::Millimetre => &[("metres", 1e3), ("micrometres", 1e-3), ("centimetres", 10.0)],
             Self::Megapascal => &[("gigapascals", 1e3), ("pascals", 1e-6), ("kilopascals", 1e-3)],
             Self::Volt => &[("millivolts", 1e-3), ("microvolts", 1e-6)],
-            Self::Microvolt => &[("nanovolts", 1e-3)],
+            Self::Microvolt => &[("millivolts", 1e3), ("volts", 1e6), ("nanovolts", 1e-3)],
             Self::Newton => &[("millinewtons", 1e-3), ("kilonewtons", 1e3)],
+            Self::Second => &[("milliseconds", 1e-3), ("microseconds", 1e-6)],
+            Self::Millisecond => &[("microseconds", 1e-3)],
+            Self::Microsecond => &[("nanoseconds", 1e-3)],
+            Self::Hertz => &[("kilohertz", 1e3), ("millihertz", 1e-3)],
+            Self::Cycle => &[("thousands", 1e3), ("millions", 1e6)],
+            Self::MicrovoltPerKelvin => &[("microvolts per 10 K", 0.1), ("nanovolts per kelvin", 1e-3)],
+            Self::PerKelvin => &[("percent per kelvin", 1e-2), ("parts per million and kelvin", 1e-6)],
+            Self::MicrovoltPerHour => &[("microvolts per day", 1.0 / 24.0), ("nanovolts per hour", 1e-3)],
             Self::One => &[("percent", 1e-2)],
             // Radians are small numbers, so no range tells them; `possible` does by where the modules stand.
             // And what an ohm is of the bridge's R is not known.
-            Self::Degree | Self::BridgeR => &[],
+            // Kelvins differ from degrees by a sum, not by a factor.
+            Self::Degree | Self::BridgeR | Self::Celsius | Self::MicrovoltPerKelvin2 => &[],
         }
     }
 
     /// The unit that was probably meant by a number outside `low` to `high`, and the number in this unit.
     pub(super) fn meant(self, value: f64, low: f64, high: f64) -> Option<(&'static str, f64)> {
+        if self == Self::Celsius {
+            let celsius = rounded(value - 273.15);
+            return (low..=high).contains(&celsius).then_some(("kelvins", celsius));
+        }
         let converted = self.mistaken_for().iter().map(|(unit, factor)| (*unit, rounded(value * factor)));
         // One percent and less is nobody's mistake: whoever writes 1 means 1.
         let is_small = |unit, value: f64| value == 0.0 || unit == "percent" && value.abs() <= 0.01;
@@ -87,6 +130,8 @@ mod tests {
         assert_eq!(meant(Unit::One, 60.0), Some(("percent", 0.6)));
         assert_eq!(meant(Unit::Millimetre, -1.0), None);
         assert_eq!(meant(Unit::Degree, 400.0), None);
+        assert_eq!(meant(Unit::Celsius, 275.15), Some(("kelvins", 2.0)));
+        assert_eq!(meant(Unit::Celsius, 25.0), None);
         assert_eq!(Unit::Megapascal.meant(193.0, 1_200.0, 1e6), Some(("gigapascals", 193_000.0)));
         assert_eq!(Unit::Megapascal.meant(1.93e11, 1_200.0, 1e6), Some(("pascals", 193_000.0)));
         assert_eq!(Unit::Microvolt.meant(0.0, 1.0, 2.0), None, "zero is zero in any unit");

@@ -1,6 +1,6 @@
 //! From a [`Device`] to a device file's text.
 
-use super::imperfection::KINDS;
+use super::imperfection;
 use super::lines::{assignment, lines, quoted};
 use super::schema::{DIRECTIONS, GAUGE, GAUGE_NAMES, MATERIALS, REPORTED, SCHEMA, TABLES, Table};
 use super::{Device, Gauge};
@@ -33,12 +33,11 @@ impl Device {
             text += "\n# What was measured on hardware; nothing is computed from it.\n[reported]\n";
             text += &lines(&REPORTED, reported);
         }
-        KINDS.iter().for_each(|kind| text += &(kind.write)(self));
-        text
+        text + &imperfection::text(self)
     }
 
     /// The lines of a table that are no numbers of the device.
-    fn words(&self, table: &Table) -> String {
+    fn words(&self, table: &Table<Self>) -> String {
         let line = |word: &&str| match *word {
             "count" => format!("count = {MODULES}\n"),
             "channel_order" => format!("channel_order = {CHANNEL_NAMES:?}\n"),
@@ -48,7 +47,7 @@ impl Device {
         table.words.iter().map(line).collect()
     }
 
-    fn material(&self, table: &Table) -> String {
+    fn material(&self, table: &Table<Self>) -> String {
         let numbers: Vec<_> = table.keys.iter().map(|key| assignment(key, self)).collect();
         let key = table.path.trim_start_matches("material.");
         format!("{key} = {{ {} }}\n", numbers.join(", "))

@@ -1,6 +1,7 @@
 //! Typed reads from a table of the text; every failed read is reported at its place.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use toml::Spanned;
@@ -155,7 +156,22 @@ impl<'t> Section<'t> {
         report: &mut Report<'_>,
     ) -> Option<Vec<Placed<T>>> {
         let wanted = format!("a list of {count} numbers");
-        self.list(key, count, &wanted, as_real, report)
+        self.list(key, count..=count, &wanted, as_real, report)
+    }
+
+    /// The same, or the one number that stands there instead of a list.
+    pub(crate) fn reals_or_one<T: Real>(
+        &self,
+        key: &str,
+        count: usize,
+        report: &mut Report<'_>,
+    ) -> Option<Vec<Placed<T>>> {
+        let value = self.get(key)?;
+        if let Some(number) = as_real(value.get_ref()) {
+            return Some(vec![Placed { value: number, at: value.span().start }]);
+        }
+        let wanted = format!("a number or a list of {count}");
+        self.list(key, count..=count, &wanted, as_real, report)
     }
 
     /// The `count` texts in the list under `key`; `None` where it is absent, and where it is no such list
@@ -167,14 +183,28 @@ impl<'t> Section<'t> {
         report: &mut Report<'_>,
     ) -> Option<Vec<Placed<&'t str>>> {
         let wanted = format!("a list of {count} texts in quotation marks");
-        self.list(key, count, &wanted, |value| value.as_str(), report)
+        self.list(key, count..=count, &wanted, |value| value.as_str(), report)
     }
 
-    /// The list under `key`, which must be as `wanted` says; `item` reads one of its `count` values.
+    /// What the words in the list under `key` stand for, which are one at least and no more than there are `words`;
+    /// `None` where it is absent, and where it is no such list or has another word (reported).
+    pub(crate) fn words<T: Copy>(
+        &self,
+        key: &str,
+        words: &[(&'static str, T)],
+        report: &mut Report<'_>,
+    ) -> Option<Vec<Placed<T>>> {
+        let most = words.len();
+        let wanted = format!("a list of 1 to {most} texts in quotation marks");
+        let texts = self.list(key, 1..=most, &wanted, |value| value.as_str(), report)?;
+        texts.into_iter().map(|text| meant(key, text, words, report)).collect()
+    }
+
+    /// The list under `key`, which must be as `wanted` says; `item` reads one of its values.
     fn list<T>(
         &self,
         key: &str,
-        count: usize,
+        count: RangeInclusive<usize>,
         wanted: &str,
         item: impl Fn(&'t DeValue<'t>) -> Option<T>,
         report: &mut Report<'_>,
@@ -185,10 +215,10 @@ impl<'t> Section<'t> {
             Some(Placed { value: item(value.get_ref())?, at: value.span().start })
         };
         let mut items = Vec::new();
-        for value in list.iter().take(count) {
+        for value in list.iter().take(*count.end()) {
             items.push(read(value).or_else(|| wrong_type(key, value, wanted, report))?);
         }
-        if list.len() == count {
+        if count.contains(&list.len()) {
             return Some(items);
         }
         report.error(value.span().start, format!("\"{key}\" must be {wanted}, not of {}", list.len()), "");
@@ -254,22 +284,8 @@ impl<'t> Section<'t> {
         words: &[(&'static str, T)],
         report: &mut Report<'_>,
     ) -> Option<Placed<T>> {
-        let Placed { value: text, at } = self.text(key, report)?;
-        if let Some((_, value)) = words.iter().find(|(word, _)| *word == text) {
-            return Some(Placed { value: *value, at });
-        }
-        let known = words.iter().map(|(word, _)| *word);
-        let help = spelling::nearest(text, known.clone()).map_or_else(
-            || {
-                format!(
-                    "write one of: {}",
-                    known.map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
-                )
-            },
-            |word| format!("did you mean \"{word}\"?"),
-        );
-        report.error(at, format!("\"{key}\" cannot be {}", quoted(text)), help);
-        None
+        let text = self.text(key, report)?;
+        meant(key, text, words, report)
     }
 
     /// The table under `key`, named `title`, with its `known` keys; `None` where it is absent, and where it
@@ -309,6 +325,30 @@ impl<'t> Section<'t> {
         }
         tables
     }
+}
+
+/// What a text under `key` stands for; `None` (and a report) if it is none of `words`.
+fn meant<T: Copy>(
+    key: &str,
+    Placed { value: text, at }: Placed<&str>,
+    words: &[(&'static str, T)],
+    report: &mut Report<'_>,
+) -> Option<Placed<T>> {
+    if let Some((_, value)) = words.iter().find(|(word, _)| *word == text) {
+        return Some(Placed { value: *value, at });
+    }
+    let known = words.iter().map(|(word, _)| *word);
+    let help = spelling::nearest(text, known.clone()).map_or_else(
+        || {
+            format!(
+                "write one of: {}",
+                known.map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
+            )
+        },
+        |word| format!("did you mean \"{word}\"?"),
+    );
+    report.error(at, format!("\"{key}\" cannot be {}", quoted(text)), help);
+    None
 }
 
 /// Integers count as numbers, too: nobody should have to write `2.0` for 2 N.

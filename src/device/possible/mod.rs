@@ -11,6 +11,8 @@ use super::unit::shown;
 use super::{Device, Direction, Gauge};
 use crate::quantity::MODULES;
 
+mod behaviour;
+
 /// Modules that stand closer than this are meant to stand elsewhere.
 const CLOSE_DEG: f64 = 30.0;
 /// Lengths differ by more than this if they differ; sums of decimal fractions are off by less.
@@ -27,6 +29,7 @@ pub(super) fn check(device: &Device, reading: &mut Reading<'_>) {
     check_outline(device, &mut finding);
     check_tilt(device, &mut finding);
     check_contact(device, &mut finding);
+    behaviour::check(&device.behaviour, &mut finding);
 }
 
 struct Finding<'r, 't> {
@@ -262,9 +265,11 @@ fn check_contact(device: &Device, finding: &mut Finding<'_, '_>) {
             rounded(contact.max_centre_radius_mm + contact.patch_radius_mm),
             rounded(plate_mm)
         );
-        let is_wide = contact.patch_radius_mm > contact.max_centre_radius_mm;
-        let names = ["contact.max_centre_radius_mm", "contact.patch_radius_mm"];
-        finding.refuse(&[names[usize::from(is_wide)]], message, help);
+        let mut names = ["contact.max_centre_radius_mm", "contact.patch_radius_mm"];
+        if contact.patch_radius_mm > contact.max_centre_radius_mm {
+            names.reverse();
+        }
+        finding.refuse(&names, message, help);
     }
 }
 

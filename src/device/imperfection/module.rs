@@ -1,27 +1,13 @@
-//! Tables that say how a pad differs from the drawn one, in a device file or in a file laid over a device.
-//!
-//! A new kind of table is a new entry of [`KINDS`]: both files then know, read and write it.
+//! `[[module]]`: how one module differs from the nominal one.
 
-use super::lines::{line, quoted};
-use super::reading::Reading;
-use super::schema::{MODULE, SIDES};
-use super::{Device, Module};
+use crate::device::lines::{lines_unlike, quoted};
+use crate::device::reading::Reading;
+use crate::device::schema::{MODULE, SIDES};
+use crate::device::{Device, Module};
 use crate::quantity::MODULES;
 use crate::toml_text::section::{Bounds, Placed, Section};
 
-/// One kind of table.
-pub(super) struct Kind {
-    /// Its header.
-    pub(super) table: &'static str,
-    /// Reads what the text's root has of it over the device.
-    pub(super) read: fn(&Section<'_>, &mut Device, &mut Reading<'_>),
-    /// The text of what a device has of it; empty where that is nothing.
-    pub(super) write: fn(&Device) -> String,
-}
-
-pub(super) static KINDS: [Kind; 1] = [Kind { table: "module", read: read_modules, write: write_modules }];
-
-fn read_modules(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
+pub(super) fn read(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
     let known: Vec<_> =
         ["index", "frame_open"].into_iter().chain(MODULE.iter().map(|key| key.name)).collect();
     // One more than there can be: that one repeats an index.
@@ -59,7 +45,7 @@ fn read_index(
     Some(index as usize)
 }
 
-fn write_modules(device: &Device) -> String {
+pub(super) fn text(device: &Device) -> String {
     let numbered = (0..).zip(&device.modules).filter(|(_, module)| **module != Module::NOMINAL);
     numbered
         .map(|(index, module)| format!("\n[[module]]\nindex = {index}\n{}", module_lines(module)))
@@ -68,10 +54,8 @@ fn write_modules(device: &Device) -> String {
 
 /// The lines in which the module differs from the nominal one.
 fn module_lines(module: &Module) -> String {
-    let differs = |get: fn(&Module) -> &[f64]| get(module) != get(&Module::NOMINAL);
-    let numbers = MODULE.iter().filter(|key| differs(key.access.get)).map(|key| line(key, module));
     let open = SIDES.iter().filter(|(_, side)| module.frame_open == Some(*side));
     let open = open
         .map(|(word, _)| format!("frame_open = {} # the side where its frame is missing\n", quoted(word)));
-    numbers.chain(open).collect()
+    [lines_unlike(&MODULE, module, &Module::NOMINAL)].into_iter().chain(open).collect()
 }

@@ -9,6 +9,7 @@ use std::slice;
 
 use super::unit::Unit;
 use super::{Device, Direction, Gauge, Module, Reported, Side};
+use crate::quantity::CHANNELS;
 
 /// What a number changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +18,8 @@ pub enum Effect {
     Field,
     /// What is made of the field's signals: gains and offsets.
     Readout,
+    /// What comes and goes in time, and what the measuring rig adds: see [`Behaviour`](super::behaviour::Behaviour).
+    Behaviour,
     /// Nothing that is computed.
     Nothing,
 }
@@ -42,13 +45,13 @@ pub(super) struct Access<T: 'static> {
     pub(super) get_mut: fn(&mut T) -> &mut [f64],
 }
 
-/// A table that every device file has.
-pub(super) struct Table {
+/// A table that stands once in a file and describes a `T`.
+pub(super) struct Table<T: 'static> {
     /// Its header.
     pub(super) path: &'static str,
-    /// What it holds beside numbers.
+    /// What it holds beside numbers of the `T`.
     pub(super) words: &'static [&'static str],
-    pub(super) keys: &'static [Key<Device>],
+    pub(super) keys: &'static [Key<T>],
 }
 
 /// The schema that is read and written.
@@ -146,10 +149,17 @@ impl<T> Key<T> {
         self.elements = elements;
         self
     }
+
+    /// Whether a single number may stand for the whole list: for all channels.
+    pub(super) const fn takes_one_for_all(&self) -> bool {
+        self.elements.len() == CHANNELS
+    }
 }
 
+pub(super) mod behaviour;
+
 /// The tables that stand once in the file and hold numbers, without the materials.
-pub(super) static TABLES: [Table; 6] = [
+pub(super) static TABLES: [Table<Device>; 6] = [
     Table {
         path: "plate",
         words: &[],
@@ -215,13 +225,7 @@ pub(super) static TABLES: [Table; 6] = [
         path: "contact",
         words: &[],
         keys: &[
-            Key::new(
-                "patch_radius_mm",
-                MM,
-                (0.05, 20.0),
-                one!(contact.patch_radius_mm),
-                "the radius of the disc on which a contact presses evenly",
-            ),
+            PATCH_RADIUS,
             Key::new(
                 "max_centre_radius_mm",
                 MM,
@@ -240,6 +244,17 @@ pub(super) static TABLES: [Table; 6] = [
         ],
     },
 ];
+
+const PATCH_RADIUS: Key<Device> = Key::new(
+    "patch_radius_mm",
+    MM,
+    (0.05, 20.0),
+    one!(contact.patch_radius_mm),
+    "the radius of the disc on which a contact presses evenly",
+);
+
+/// The number of `[contact]` that `[finger]` may write, too: a finger is a contact.
+pub(super) static PATCH: [Key<Device>; 1] = [PATCH_RADIUS];
 
 static STACK: [Key<Device>; 11] = [
     Key::new(
@@ -286,7 +301,7 @@ static STACK: [Key<Device>; 11] = [
 ];
 
 /// The entries of `[material]`.
-pub(super) static MATERIALS: [Table; 7] = [
+pub(super) static MATERIALS: [Table<Device>; 7] = [
     material!(plate, (1_200.0, 1e6), Field, "the plate"),
     material!(pick, (500.0, 400_000.0), Field, "the posts"),
     material!(fpc, (100.0, 50_000.0), Field, "the flexible circuit"),

@@ -1,0 +1,192 @@
+//! The twin carries out a plan: labels as a reference would write them, channels as the pad would read, and the truth.
+//!
+//! A row without trial is a static sample: lift, rest, press, hold, read the mean of a second. Rows of one trial are one
+//! approach, read row by row at their times. The clock goes on over all of it, as do creep, friction and drift.
+
+use super::hand::Hand;
+use super::pad::{Circumstances, TwinPad};
+use super::rig::Stage;
+use crate::device::Device;
+use crate::field::PadField;
+use crate::measured::{Approach, Label, Row, Table};
+use crate::quantity::{CHANNELS, Contact};
+
+/// How often the pad is read, where the plan has no times: the authors' earlier pad gave 40 to 50 samples a second.
+pub const RATE_HZ: f64 = 45.0;
+/// Readings whose mean is a static sample: those of a second.
+const READINGS: u32 = 45;
+/// How long the pad rests between two contacts.
+const REST_S: f64 = 2.0;
+/// How long a load takes to come or to go.
+const RAMP_S: f64 = 0.5;
+/// How long a static load is held before it is read, where the plan does not say.
+const DWELL_S: f64 = 1.0;
+/// How long the pad waits at a new temperature.
+const SOAK_S: f64 = 1800.0;
+/// How long a cycle of load takes that the plan only counts.
+const CYCLE_S: f64 = 1.0;
+const UNTOUCHED: Label = Label { x_mm: 0.0, y_mm: 0.0, fx_n: 0.0, fy_n: 0.0, fz_n: 0.0 };
+
+/// What came of a plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// The plan's rows with times, written labels and channels.
+    pub table: Table,
+    /// The true contact of each row.
+    pub truth: Vec<Label>,
+}
+
+/// Carries out a plan on the pad of `device` whose field is `field`, with what the seed draws.
+pub fn carry_out(plan: &Table, device: &Device, field: &PadField, seed: u64) -> Measurement {
+    let mut bench = Bench::new(device, field, seed);
+    let mut measurement = Measurement {
+        table: Table { rows: Vec::with_capacity(plan.rows.len()), ..plan.clone() },
+        truth: Vec::with_capacity(plan.rows.len()),
+    };
+    for rows in plan.rows.chunk_by(|one, next| one.trial.is_some() && one.trial == next.trial) {
+        match rows {
+            [row] if row.trial.is_none() => bench.static_sample(row, &mut measurement),
+            rows => bench.series(rows, &mut measurement),
+        }
+    }
+    measurement
+}
+
+struct Bench {
+    pad: TwinPad,
+    hand: Hand,
+    stage: Stage,
+    around: Circumstances,
+    reference_c: f64,
+    full_scale_n: f64,
+    lag_s: f64,
+    at_s: f64,
+}
+
+impl Bench {
+    fn new(device: &Device, field: &PadField, seed: u64) -> Self {
+        let behaviour = &device.behaviour;
+        let reference_c = behaviour.thermal.reference_c;
+        Self {
+            pad: TwinPad::new(device, field, seed),
+            hand: Hand::new(behaviour.finger, seed),
+            stage: Stage::new(behaviour.rig, seed),
+            around: Circumstances { temperature_c: reference_c, cycles: 0.0 },
+            reference_c,
+            full_scale_n: device.contact.full_scale_n,
+            lag_s: behaviour.rig.label_lag_ms * 1e-3,
+            at_s: 0.0,
+        }
+    }
+
+    /// The true contact and the channels `after_s` later, when this contact is meant.
+    fn touch(&mut self, after_s: f64, meant: &Label) -> (Label, [f64; CHANNELS]) {
+        self.at_s += after_s;
+        let truth = self.hand.hold(after_s, &self.stage.truth(meant).into());
+        (label(&truth), self.pad.read(after_s, &truth, &self.around))
+    }
+
+    /// Lifts, takes the circumstances of the row, and comes down on its contact anew.
+    fn come_to(&mut self, row: &Row) {
+        self.touch(RAMP_S, &UNTOUCHED);
+        let temperature_c = row.temp_c.unwrap_or(self.reference_c);
+        if temperature_c != self.around.temperature_c {
+            self.around.temperature_c = temperature_c;
+            self.touch(SOAK_S, &UNTOUCHED);
+        }
+        let cycles =
+            row.cycle.unwrap_or_else(|| self.around.cycles + f64::from(u8::from(is_loaded(&row.label))));
+        let counted_s = CYCLE_S * (cycles - self.around.cycles - 1.0).max(0.0);
+        self.around.cycles = cycles;
+        let planned_s = row.t_s.map_or(0.0, |t_s| t_s - self.at_s - RAMP_S);
+        self.touch(REST_S.max(counted_s).max(planned_s), &UNTOUCHED);
+        self.stage.approach();
+    }
+
+    fn static_sample(&mut self, row: &Row, into: &mut Measurement) {
+        self.come_to(row);
+        if row.approach == Some(Approach::Unloading) {
+            self.touch(RAMP_S, &self.overloaded(&row.label));
+        }
+        self.touch(RAMP_S, &row.label);
+        self.touch(row.dwell_s.unwrap_or(DWELL_S), &row.label);
+        let (mut truth, mut mean_uv) = (UNTOUCHED, [0.0; CHANNELS]);
+        for _ in 0..READINGS {
+            let (contact, uv) = self.touch(1.0 / RATE_HZ, &row.label);
+            truth = plus(&truth, &contact, 1.0 / f64::from(READINGS));
+            mean_uv.iter_mut().zip(uv).for_each(|(mean, uv)| *mean += uv / f64::from(READINGS));
+        }
+        let written = self.stage.written(&row.label, &truth);
+        into.table.rows.push(Row { t_s: Some(self.at_s), label: written, uv: Some(mean_uv), ..*row });
+        into.truth.push(truth);
+    }
+
+    /// The load from which a static one is reached downwards.
+    fn overloaded(&self, meant: &Label) -> Label {
+        let force_n = libm::hypot(libm::hypot(meant.fx_n, meant.fy_n), meant.fz_n);
+        let factor = if force_n > 0.0 { (self.full_scale_n / force_n).max(1.2) } else { 1.0 };
+        Label { fx_n: factor * meant.fx_n, fy_n: factor * meant.fy_n, fz_n: factor * meant.fz_n, ..*meant }
+    }
+
+    fn series(&mut self, rows: &[Row], into: &mut Measurement) {
+        let Some(first) = rows.first() else { return };
+        self.come_to(first);
+        if is_loaded(&first.label) {
+            self.touch(RAMP_S, &first.label);
+            self.touch(first.dwell_s.unwrap_or(DWELL_S), &first.label);
+        }
+        let begins_at = into.truth.len();
+        let mut before_s = first.t_s;
+        for row in rows {
+            let after_s = row.t_s.zip(before_s).map_or(1.0 / RATE_HZ, |(t_s, before_s)| t_s - before_s);
+            before_s = row.t_s;
+            let (truth, uv) = self.touch(after_s.max(0.0), &row.label);
+            into.table.rows.push(Row { t_s: Some(self.at_s), uv: Some(uv), ..*row });
+            into.truth.push(truth);
+        }
+        let (rows, truths) = (into.table.rows.split_at_mut(begins_at).1, into.truth.split_at(begins_at).1);
+        self.write_labels(rows, truths);
+    }
+
+    /// Labels of a series: what the reference wrote, which was true the label's lag ago.
+    fn write_labels(&mut self, rows: &mut [Row], truths: &[Label]) {
+        let times: Vec<f64> = rows.iter().map(|row| row.t_s.unwrap_or(0.0)).collect();
+        let meant: Vec<Label> = rows.iter().map(|row| row.label).collect();
+        for (row, at_s) in rows.iter_mut().zip(&times) {
+            let at_s = at_s - self.lag_s;
+            row.label = self.stage.written(&at(&times, &meant, at_s), &at(&times, truths, at_s));
+        }
+    }
+}
+
+fn is_loaded(label: &Label) -> bool {
+    [label.fx_n, label.fy_n, label.fz_n].iter().any(|force_n| *force_n != 0.0)
+}
+
+fn label(contact: &Contact) -> Label {
+    let [x_mm, y_mm, fx_n, fy_n, fz_n] =
+        [contact.x_mm, contact.y_mm, contact.fx_n, contact.fy_n, contact.fz_n].map(f64::from);
+    Label { x_mm, y_mm, fx_n, fy_n, fz_n }
+}
+
+/// `sum` and a multiple of another contact.
+fn plus(sum: &Label, other: &Label, share: f64) -> Label {
+    Label {
+        x_mm: sum.x_mm + share * other.x_mm,
+        y_mm: sum.y_mm + share * other.y_mm,
+        fx_n: sum.fx_n + share * other.fx_n,
+        fy_n: sum.fy_n + share * other.fy_n,
+        fz_n: sum.fz_n + share * other.fz_n,
+    }
+}
+
+/// A series at a time: between its values, evenly; before and after them, the nearest.
+fn at(times: &[f64], values: &[Label], at_s: f64) -> Label {
+    let later = times.partition_point(|time_s| *time_s < at_s).min(values.len() - 1);
+    let before = later.saturating_sub(1);
+    let share = (at_s - times[before]) / (times[later] - times[before]);
+    if !(0.0..1.0).contains(&share) {
+        return values[if at_s < times[before] { before } else { later }];
+    }
+    plus(&plus(&UNTOUCHED, &values[before], 1.0 - share), &values[later], share)
+}

@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::rows::{
-    Reading, Zeros, is_ordinary, is_same_place, is_unloaded, is_usual, less, loads, readings, resultant_n,
-    usual_temperature_c,
+    Reading, Zeros, by_place, is_ordinary, is_same_place, is_unloaded, is_usual, less, loads, readings,
+    resultant_n, usual_temperature_c,
 };
 use super::thermal::STEP_C;
 use super::{Decode, Needs, filter};
@@ -14,9 +14,9 @@ use crate::quantity::{CHANNELS, Contact};
 /// Forces so near are the same contact again.
 const SAME_FORCE_N: f64 = 0.15;
 
-const NEEDED: &str = "static loads with unloaded rows in the same session";
+const NEEDED: &str = "static loads, with unloaded rows";
 const NEEDED_WARM: &str = "static loads of the same places and forces at two temperatures (temp_c), 5 °C apart, with \
-                           unloaded rows at the usual one in the same session";
+                           unloaded rows at the usual one";
 
 /// Least temperature change from the usual one.
 const CHANGE_C: f64 = 5.0;
@@ -73,20 +73,33 @@ impl Difference {
     }
 }
 
-/// Errors over all static loads of a pad that is as good as new, at the usual temperature, tared.
+/// Errors over the static loads of a pad that is as good as new, at the usual temperature, tared. A contact that comes
+/// again counts once, by its first row.
 ///
 /// # Errors
 /// No such rows, or no decoder.
 pub fn errors(table: &Table, decode: Option<Decode>) -> Result<DecodedErrors, Needs> {
     let is_ordinary = is_ordinary(table);
     let found = readings(table, &Zeros::of(table)).into_iter().filter(|reading| is_ordinary(reading.row));
-    let found: Vec<Reading> = found.collect();
+    let places = by_place(found.collect(), |reading| &reading.row.label);
+    let found: Vec<Reading> = places.into_iter().flat_map(different).collect();
     if found.is_empty() {
         return Err(Needs::Rows(NEEDED));
     }
     let decode = decode.ok_or(Needs::Decoder)?;
     let differences = found.iter().map(|reading| Difference::of(&decode(&reading.uv), &reading.row.label));
     Ok(summary(&differences.collect::<Vec<_>>()))
+}
+
+/// The first reading of each force at a place.
+fn different(place: Vec<Reading>) -> Vec<Reading> {
+    let mut kept: Vec<Reading> = Vec::new();
+    for reading in place {
+        if !kept.iter().any(|known| is_same_contact(&known.row.label, &reading.row.label)) {
+            kept.push(reading);
+        }
+    }
+    kept
 }
 
 fn summary(differences: &[Difference]) -> DecodedErrors {
@@ -122,7 +135,7 @@ pub fn drift(table: &Table, decode: Option<Decode>) -> Result<DecodedDrift, Need
         .iter()
         .filter_map(|load| {
             let steps = (load.row.temp_c? - usual_c).abs() / STEP_C;
-            let same = usual.iter().find(|one| is_same_contact(one.row, load.row))?;
+            let same = usual.iter().find(|one| is_same_contact(&one.row.label, &load.row.label))?;
             (steps * STEP_C >= CHANGE_C).then_some((load, same, steps))
         })
         .collect();
@@ -148,16 +161,22 @@ fn increase(compared: &[(Difference, Difference, f64)]) -> DecodedDrift {
 }
 
 fn drifted(table: &Table, usual_c: f64) -> Vec<Drifted<'_>> {
-    let zero_uv = |session: Option<usize>| {
-        let zeros = table.rows.iter().filter(|row| {
-            row.trial.is_none() && row.session == session && is_unloaded(&row.label) && is_near(row, usual_c)
-        });
-        let zeros: Vec<_> = zeros.filter_map(|row| row.uv).collect();
-        (!zeros.is_empty()).then(|| filter::mean(&zeros))
+    let is_zero = |row: &&Row| row.trial.is_none() && is_unloaded(&row.label) && is_near(row, usual_c);
+    let zeros: Vec<(Option<usize>, [f64; CHANNELS])> =
+        table.rows.iter().filter(is_zero).filter_map(|row| Some((row.session, row.uv?))).collect();
+    let all: Vec<_> = zeros.iter().map(|(_, uv)| *uv).collect();
+    // A session without zeros of its own has those of all.
+    let zero_uv = |wanted: Option<usize>| {
+        let own = zeros.iter().filter(|(session, _)| *session == wanted).map(|(_, uv)| *uv);
+        let own: Vec<_> = own.collect();
+        filter::mean(if own.is_empty() { &all } else { &own })
     };
+    if all.is_empty() {
+        return Vec::new();
+    }
     let sessions = [None].into_iter().chain((0..table.sessions.len()).map(Some));
     let zeros: Vec<_> = sessions.map(|session| (session, zero_uv(session))).collect();
-    let zero_of = |row: &Row| zeros.iter().find(|(session, _)| *session == row.session)?.1;
+    let zero_of = |row: &Row| zeros.iter().find(|(session, _)| *session == row.session).map(|(_, uv)| *uv);
     loads(table).filter_map(|(_, row)| Some(Drifted { row, uv: less(&row.uv?, &zero_of(row)?) })).collect()
 }
 
@@ -165,10 +184,9 @@ fn is_near(row: &Row, usual_c: f64) -> bool {
     row.temp_c.is_some() && is_usual(row.temp_c, Some(usual_c))
 }
 
-fn is_same_contact(one: &Row, other: &Row) -> bool {
-    let (a, b) = (&one.label, &other.label);
-    let apart_n = (a.fx_n - b.fx_n).hypot(a.fy_n - b.fy_n).hypot(a.fz_n - b.fz_n);
-    one.session == other.session && is_same_place(a, b) && apart_n <= SAME_FORCE_N
+fn is_same_contact(one: &Label, other: &Label) -> bool {
+    let apart_n = (one.fx_n - other.fx_n).hypot(one.fy_n - other.fy_n).hypot(one.fz_n - other.fz_n);
+    is_same_place(one, other) && apart_n <= SAME_FORCE_N
 }
 
 #[cfg(test)]
@@ -198,7 +216,13 @@ mod tests {
     #[test]
     fn errors_are_those_that_were_put_in() {
         let off = [3.0, -4.0, 0.3, 0.3, 0.4];
-        let rows = [zero(25.0), contact(LABEL, off, 25.0), contact(LABEL, off.map(|off| -off), 25.0)];
+        let elsewhere = Label { x_mm: 9.0, ..LABEL };
+        let rows = [
+            zero(25.0),
+            contact(LABEL, off, 25.0),
+            contact(elsewhere, off.map(|off| -off), 25.0),
+            contact(LABEL, [1.0; 5], 25.0),
+        ];
         let found = errors(&table(rows), Some(&decode)).unwrap();
         let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-5, "{found} {expected}");
         near(found.force_rmse_n[0], 0.3);

@@ -22,8 +22,7 @@ const LEAST_SHARE: f64 = 0.01;
 /// Without zeros the loads at a place must differ by so much.
 const LOAD_RANGE_N: f64 = 1.0;
 
-const NEEDED: &str = "static presses of 1 N without shear at ten places or more, with unloaded rows in the same session \
-                      or several loads at each place";
+const NEEDED: &str = "static presses of 1 N without shear at ten places or more, with unloaded rows or several loads at each place";
 
 /// Mean of |measured − simulated| / |simulated|, over places and channels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -6,18 +6,7 @@ use crate::quantity::CHANNELS;
 
 /// A static row without anything else known.
 pub(super) fn row(label: Label, uv: [f64; CHANNELS]) -> Row {
-    Row {
-        line: 0,
-        trial: None,
-        session: None,
-        t_s: None,
-        temp_c: None,
-        cycle: None,
-        dwell_s: None,
-        approach: None,
-        label,
-        uv: Some(uv),
-    }
+    Row { uv: Some(uv), ..Row::of(label) }
 }
 
 /// No load; all channels read `uv`.
@@ -38,7 +27,7 @@ pub(super) fn table(rows: impl IntoIterator<Item = Row>) -> Table {
         (0..count).map(|index| index.to_string()).collect()
     };
     let (trials, sessions) = (names(|row| row.trial), names(|row| row.session));
-    Table { rows, trials, sessions }
+    Table { rows, trials, sessions, ..Table::default() }
 }
 
 /// Samples of trial `trial`, `rate_hz` a second: the label and what all channels read, by time.

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::output::sum_uv;
 use super::rows::{is_load, is_press};
-use super::series::{self, Sample, duration_s, mean_fz_n, mean_sum_uv};
+use super::series::{self, Sample, mean_fz_n, mean_sum_uv};
 use super::statistics::{deviation, mean};
 use super::{FULL_SCALE_N, Needs, filter};
 use crate::measured::Table;
@@ -38,12 +38,10 @@ pub fn of_task(table: &Table) -> Result<[Held; 3], Needs> {
 }
 
 fn task(trial: &[Sample]) -> Option<[Held; 3]> {
-    let plateaus = series::plateaus(trial);
-    let is_held = |part: &&&[Sample], load_n: f64| {
-        let is_press = part.first().is_some_and(|sample| is_press(&sample.label));
-        is_press && duration_s(part) >= HELD_S && is_load(mean_fz_n(part), load_n)
-    };
-    let held = |load_n: f64| plateaus.iter().find(|part| is_held(part, load_n)).copied();
+    let presses =
+        series::held(trial, HELD_S).filter(|part| part.first().is_some_and(|sample| is_press(&sample.label)));
+    let presses: Vec<&[Sample]> = presses.collect();
+    let held = |load_n: f64| presses.iter().find(|part| is_load(mean_fz_n(part), load_n)).copied();
     let [one, three, full] = LOADS_N.map(held);
     let (one, three, full) = (one?, three?, full?);
     let uv_per_n = mean_sum_uv(full) / mean_fz_n(full);

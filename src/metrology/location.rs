@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::rows::{by_place, is_load, is_press};
-use super::series::{self, Sample, duration_s, mean_fz_n};
+use super::series::{self, Sample, mean_fz_n};
 use super::statistics::deviation;
 use super::{Decode, Needs, filter};
 use crate::measured::{Label, Table};
@@ -38,23 +38,19 @@ pub struct LocationSpread {
 /// One of the loads is not held for 8 s at that place, or there is no decoder.
 pub fn spreads(table: &Table, decode: Option<Decode>) -> Result<[LocationSpread; 4], Needs> {
     let trials = series::all(table);
-    let plateaus: Vec<&[Sample]> = trials.iter().flat_map(|trial| series::plateaus(trial)).collect();
-    let held = plateaus.into_iter().filter(|part| is_held_press(part)).collect();
-    let places = by_place(held, |part| first_label(part));
+    let held = trials.iter().flat_map(|trial| series::held(trial, HELD_S));
+    let presses: Vec<&[Sample]> = held.filter(|part| is_press(first_label(part))).collect();
+    let places = by_place(presses, |part| first_label(part));
     let found = places.into_iter().find_map(|place| at_each_load(&place)).ok_or(Needs::Rows(NEEDED))?;
     let decode = decode.ok_or(Needs::Decoder)?;
     let index = [0, 1, 2, 3];
     Ok(index.map(|index| spread(LOADS_N[index], found[index], decode)))
 }
 
-/// Samples are there wherever it is called.
-fn first_label<'s>(part: &&'s [Sample]) -> &'s Label {
+/// A part has samples; the label of none would be nowhere.
+fn first_label(part: &[Sample]) -> &Label {
     const NOWHERE: Label = Label { x_mm: f64::NAN, y_mm: f64::NAN, fx_n: 0.0, fy_n: 0.0, fz_n: 0.0 };
     part.first().map_or(&NOWHERE, |sample| &sample.label)
-}
-
-fn is_held_press(part: &[Sample]) -> bool {
-    duration_s(part) >= HELD_S && is_press(first_label(&part))
 }
 
 fn at_each_load<'s>(place: &[&'s [Sample]]) -> Option<[&'s [Sample]; 4]> {

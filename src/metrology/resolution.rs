@@ -46,10 +46,10 @@ pub struct Resolution {
 /// No load is held for 30 s.
 pub fn smallest_step(table: &Table) -> Result<Resolution, Needs> {
     let trials = series::all(table);
-    let plateaus = trials.iter().flat_map(|trial| series::plateaus(trial));
-    let loaded = plateaus.filter(|part| part.first().is_some_and(|sample| !is_unloaded(&sample.label)));
+    let held = trials.iter().flat_map(|trial| series::held(trial, HELD_S));
+    let loaded = held.filter(|part| part.first().is_some_and(|sample| !is_unloaded(&sample.label)));
     let longest = loaded.max_by(|a, b| duration_s(a).total_cmp(&duration_s(b)));
-    longest.filter(|part| duration_s(part) >= HELD_S).map(of_plateau).ok_or(Needs::Rows(NEEDED))
+    longest.map(of_plateau).ok_or(Needs::Rows(NEEDED))
 }
 
 fn of_plateau(samples: &[Sample]) -> Resolution {

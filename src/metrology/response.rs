@@ -13,6 +13,9 @@ use crate::measured::Table;
 /// The least step.
 const STEP_N: f64 = 0.5;
 
+/// So much of a step comes from one sample to the next; the parts of a ramp differ as well, but not so.
+const AT_ONCE: f64 = 0.8;
+
 /// The load must stay so long before and after a step.
 const STAY_S: f64 = 1.0;
 
@@ -82,7 +85,12 @@ fn steps(trial: &[Sample]) -> Vec<Step> {
     for pair in plateaus.windows(2) {
         start += pair[0].len();
         let stays = pair.iter().all(|part| duration_s(part) >= STAY_S);
-        if stays && mean_fz_n(pair[1]) - mean_fz_n(pair[0]) >= STEP_N {
+        let step_n = mean_fz_n(pair[1]) - mean_fz_n(pair[0]);
+        let jump_n = pair[0]
+            .last()
+            .zip(pair[1].first())
+            .map_or(0.0, |(last, first)| first.label.fz_n - last.label.fz_n);
+        if stays && step_n >= STEP_N && jump_n >= AT_ONCE * step_n {
             found.extend(step(trial, start, pair[1].len()));
         }
     }
@@ -180,7 +188,7 @@ mod tests {
 
     #[test]
     fn it_says_what_it_needs() {
-        let ramp = table(series(0, RATE_HZ, 10.0, |t_s| (press((t_s - 3.0).clamp(0.0, 4.0)), t_s)));
+        let ramp = table(series(0, RATE_HZ, 40.0, |t_s| (press(0.2 * (t_s - 3.0).clamp(0.0, 25.0)), t_s)));
         let short = table(series(0, RATE_HZ, 2.5, |t_s| (press(if t_s < 2.0 { 0.0 } else { 1.0 }), t_s)));
         for table in [Table::default(), ramp, short] {
             assert_eq!(to_steps(&table), Err(Needs::Rows(NEEDED)));

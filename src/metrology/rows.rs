@@ -50,13 +50,9 @@ pub(super) fn is_same_place(one: &Label, other: &Label) -> bool {
     (one.x_mm - other.x_mm).hypot(one.y_mm - other.y_mm) <= SAME_PLACE_MM
 }
 
-/// Whether rows have a common zero: one session, one temperature as far as it is known.
-fn share_zero(one: &Row, other: &Row) -> bool {
-    let same_temperature = match (one.temp_c, other.temp_c) {
-        (Some(one), Some(other)) => (one - other).abs() <= SAME_TEMPERATURE_C,
-        _ => true,
-    };
-    one.session == other.session && same_temperature
+/// Whether rows are of one temperature, as far as it is known.
+fn is_same_temperature(one: &Row, other: &Row) -> bool {
+    one.temp_c.zip(other.temp_c).is_none_or(|(one, other)| (one - other).abs() <= SAME_TEMPERATURE_C)
 }
 
 /// What the channels read without load, by the unloaded static rows around a row.
@@ -77,12 +73,18 @@ impl<'t> Zeros<'t> {
         self.unloaded.is_empty()
     }
 
-    /// The zero at the row with this index: between the nearest unloaded rows before and after it that share its zero,
-    /// by its place among them; that of the only one where there is one; `None` where there is none.
+    /// The zero at the row with this index: between the nearest unloaded rows before and after it of its temperature,
+    /// by its place among them; that of the only one where there is one; `None` where there is none. Rows of its own
+    /// session come first; a session without any, as where zeros are a session of their own, has those of all.
     pub(super) fn at(&self, index: usize) -> Option<[f64; CHANNELS]> {
         let row = self.table.rows.get(index)?;
+        self.between(index, |zero| zero.session == row.session && is_same_temperature(row, zero))
+            .or_else(|| self.between(index, |zero| is_same_temperature(row, zero)))
+    }
+
+    fn between(&self, index: usize, is_shared: impl Fn(&Row) -> bool) -> Option<[f64; CHANNELS]> {
         let (before, after) = self.unloaded.split_at(self.unloaded.partition_point(|at| *at < index));
-        let shared = |at: &&usize| self.table.rows.get(**at).is_some_and(|zero| share_zero(row, zero));
+        let shared = |at: &&usize| self.table.rows.get(**at).is_some_and(&is_shared);
         let before = before.iter().rev().find(shared).copied();
         let after = after.iter().find(shared).copied();
         let [first, last] = [before.or(after)?, after.or(before)?];
@@ -182,13 +184,21 @@ mod tests {
     }
 
     #[test]
-    fn only_zeros_of_the_same_session_and_temperature_count() {
+    fn zeros_of_the_same_session_and_temperature_come_first() {
         let at =
             |session, temp_c, uv: f64| Row { session: Some(session), temp_c: Some(temp_c), ..unloaded(uv) };
         let load = Row { session: Some(0), temp_c: Some(25.2), ..pressed(1.0, 0.0) };
         let table = table([at(0, 25.0, 7.0), at(1, 25.0, 1.0), at(0, 35.0, 2.0), load, at(1, 25.0, 3.0)]);
         assert_eq!(Zeros::of(&table).at(3), Some([7.0; CHANNELS]));
         assert_eq!(Zeros::of(&table).at(99), None);
+    }
+
+    #[test]
+    fn zeros_may_be_a_session_of_their_own() {
+        let in_session = |session, row: Row| Row { session: Some(session), ..row };
+        let rows = [unloaded(4.0), pressed(1.0, 0.0), unloaded(8.0)];
+        let table = table([0, 1, 0].into_iter().zip(rows).map(|(session, row)| in_session(session, row)));
+        assert_eq!(Zeros::of(&table).at(1), Some([6.0; CHANNELS]));
     }
 
     #[test]

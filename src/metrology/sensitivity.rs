@@ -12,7 +12,7 @@ use crate::quantity::CHANNELS;
 /// A place so near the centre is the centre.
 const CENTRE_MM: f64 = 1.0;
 
-const NEEDED: &str = "static presses without shear, with unloaded rows in the same session";
+const NEEDED: &str = "static presses without shear, with unloaded rows";
 
 /// µV per newton pressing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -6,8 +6,10 @@ use super::rows::{Zeros, is_same_place, is_unloaded, less};
 use crate::measured::{Label, Row, Table};
 use crate::quantity::CHANNELS;
 
-/// A load is constant as long as each part of it stays this close to its mean.
+/// A load is constant as long as each part of it stays so close to its mean, and as a share of its press: references
+/// are noisy, and fingers tremble in proportion.
 const CONSTANT_N: f64 = 0.1;
+const CONSTANT_SHARE: f64 = 0.05;
 
 /// One sample of a trial.
 #[derive(Clone, Copy, Debug)]
@@ -52,12 +54,24 @@ pub(super) fn plateaus(samples: &[Sample]) -> Vec<&[Sample]> {
     parts
 }
 
+/// The parts in which a load is held for so long: plateaus whose halves do not differ, unlike those of a slow ramp.
+pub(super) fn held(samples: &[Sample], seconds: f64) -> impl Iterator<Item = &[Sample]> {
+    let long = plateaus(samples).into_iter().filter(move |part| duration_s(part) >= seconds);
+    long.filter(|part| {
+        let (first, second) = part.split_at(part.len() / 2);
+        let level_n = mean_fz_n(part).abs();
+        (mean_fz_n(first) - mean_fz_n(second)).abs() <= 0.5 * (CONSTANT_N + CONSTANT_SHARE * level_n)
+    })
+}
+
 /// How many samples from the first one on hold its load; at least one.
 fn constant(samples: &[Sample]) -> usize {
     let mut sums = [0.0; 3];
     for (count, sample) in samples.iter().enumerate() {
         let force_n = [sample.label.fx_n, sample.label.fy_n, sample.label.fz_n];
-        let stays = (0..3).all(|axis| (force_n[axis] - sums[axis] / count as f64).abs() <= CONSTANT_N);
+        let held_n = sums.map(|sum| sum / count as f64);
+        let off_n = CONSTANT_N + CONSTANT_SHARE * held_n[2].abs();
+        let stays = (0..3).all(|axis| (force_n[axis] - held_n[axis]).abs() <= off_n);
         if count > 0 && !(stays && is_same_place(&samples[0].label, &sample.label)) {
             return count;
         }
@@ -100,14 +114,30 @@ mod tests {
     }
 
     #[test]
-    fn steps_part_a_trial_and_ramps_have_no_long_part() {
+    fn steps_part_a_trial() {
         let stairs = table(series(0, 45.0, 6.0, |t_s| (press((t_s / 2.0).floor()), 0.0)));
         let trial = &all(&stairs)[0];
         let levels: Vec<f64> = plateaus(trial).into_iter().map(mean_fz_n).collect();
         assert_eq!(levels, [0.0, 1.0, 2.0]);
         let ramp = table(series(0, 45.0, 10.0, |t_s| (press(0.5 * t_s), 0.0)));
         let parts = all(&ramp);
-        assert!(plateaus(&parts[0]).into_iter().all(|part| duration_s(part) < 1.0));
         assert_eq!(plateaus(&parts[0]).iter().map(|part| part.len()).sum::<usize>(), 450);
+    }
+
+    #[test]
+    fn a_slow_ramp_holds_nothing() {
+        for seconds in [10.0, 40.0, 400.0] {
+            let ramp = table(series(0, 45.0, seconds, |t_s| (press(5.0 * t_s / seconds), 0.0)));
+            // The last part may be cut short where the ramp ends.
+            assert!(held(&all(&ramp)[0], 0.05 * seconds).count() <= 1, "{seconds}");
+        }
+        // A tremor of 2 % is no ramp.
+        let trembling = |t_s: f64| press(5.0 + 0.1 * (7.0 * t_s).sin() + 0.05 * (31.0 * t_s).sin());
+        let rows = series(0, 45.0, 10.0, |t_s| (trembling(t_s), 0.0));
+        let held_s: Vec<f64> = all(&table([unloaded(0.0)].into_iter().chain(rows)))
+            .iter()
+            .flat_map(|trial| held(trial, 5.0).map(duration_s).collect::<Vec<_>>())
+            .collect();
+        assert!(held_s.len() == 1 && held_s[0] > 9.9, "{held_s:?}");
     }
 }

@@ -9,13 +9,15 @@ use super::{Failure, text_file};
 use crate::device::Device;
 use crate::toml_text::diag::Diagnostic;
 
+const PAPER: &str = include_str!("../../models/imperfections/paper.toml");
+
 /// Which pad; flattened into the arguments of each verb that simulates or decodes.
 #[derive(Debug, Args)]
 pub(super) struct Pad {
     /// A device file; without it the nominal pad, whose file is models/sstid.toml.
     #[arg(long, value_name = "FILE")]
     device: Option<PathBuf>,
-    /// A file of [[module]] tables that say how this pad differs from the device.
+    /// A file of tables that say how this pad differs from the device: models/README.md.
     #[arg(long, value_name = "FILE")]
     imperfections: Option<PathBuf>,
 }
@@ -30,6 +32,11 @@ impl Pad {
         }
     }
 
+    /// The pad of the twin: where no file says which, the nominal one with the paper's imperfections.
+    pub(super) fn read_imperfect(&self) -> Result<Device, Failure> {
+        if self.device.is_none() && self.imperfections.is_none() { Ok(paper()) } else { self.read() }
+    }
+
     /// Reads the files. What is wrong with them makes them unusable, and all of it is told.
     pub(super) fn read(&self) -> Result<Device, Failure> {
         let device = match &self.device {
@@ -41,6 +48,15 @@ impl Pad {
             None => Ok(device),
         }
     }
+}
+
+/// The nominal pad with the imperfections in `models/imperfections/paper.toml`.
+#[expect(clippy::expect_used, reason = "the file is part of the program and a test reads it")]
+fn paper() -> Device {
+    Device::nominal()
+        .with_imperfections(PAPER)
+        .0
+        .expect("models/imperfections/paper.toml fits the nominal pad")
 }
 
 fn read(
@@ -99,6 +115,14 @@ mod tests {
         let both = given(Some(&thicker), Some(moved)).unwrap();
         assert_eq!((both.plate.thickness_mm, both.modules[0].radial_mm), (1.15, -0.7));
         assert_eq!(given(None, Some(moved)).unwrap().plate, nominal.plate);
+    }
+
+    #[test]
+    fn the_twin_is_the_papers_unless_files_say_otherwise() {
+        let pad = |arguments: &[&str]| Verb::parse_from(arguments).pad.read_imperfect().unwrap();
+        assert_eq!(pad(&["verb"]), paper());
+        assert_ne!(paper(), Device::nominal());
+        assert_eq!(pad(&["verb", "--device", "models/sstid.toml"]), Device::nominal());
     }
 
     #[test]

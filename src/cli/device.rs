@@ -17,7 +17,8 @@ pub(super) struct Pad {
     /// A device file; without it the nominal pad, whose file is models/sstid.toml.
     #[arg(long, value_name = "FILE")]
     device: Option<PathBuf>,
-    /// A file of tables that say how this pad differs from the device: models/README.md.
+    /// A file of tables that say how this pad differs from the device (models/README.md), or paper: those that come out
+    /// as the paper's figures.
     #[arg(long, value_name = "FILE")]
     imperfections: Option<PathBuf>,
 }
@@ -32,9 +33,14 @@ impl Pad {
         }
     }
 
+    /// Whether a file says which pad it is.
+    pub(super) const fn is_given(&self) -> bool {
+        self.device.is_some() || self.imperfections.is_some()
+    }
+
     /// The pad of the twin: where no file says which, the nominal one with the paper's imperfections.
     pub(super) fn read_imperfect(&self) -> Result<Device, Failure> {
-        if self.device.is_none() && self.imperfections.is_none() { Ok(paper()) } else { self.read() }
+        if self.is_given() { self.read() } else { Ok(paper()) }
     }
 
     /// Reads the files. What is wrong with them makes them unusable, and all of it is told.
@@ -44,6 +50,9 @@ impl Pad {
             None => Device::nominal(),
         };
         match &self.imperfections {
+            Some(name) if name.as_os_str() == "paper" => {
+                read_text("imperfections", "paper", PAPER, |text| device.with_imperfections(text))
+            }
             Some(path) => read(path, "imperfections", |text| device.with_imperfections(text)),
             None => Ok(device),
         }
@@ -68,9 +77,19 @@ fn read(
     let text = text_file::read(path).map_err(|why| {
         Failure::Unusable(format!("{what} {file} cannot be read: {why}; name another file"))
     })?;
-    let (device, found) = device(&text);
+    read_text(what, &file, &text, device)
+}
+
+/// Reads a text, which people call `file`.
+fn read_text(
+    what: &str,
+    file: &str,
+    text: &str,
+    device: impl Fn(&str) -> (Option<Device>, Vec<Diagnostic>),
+) -> Result<Device, Failure> {
+    let (device, found) = device(text);
     device.ok_or_else(|| {
-        let told: Vec<_> = found.iter().map(|finding| finding.render(&file)).collect();
+        let told: Vec<_> = found.iter().map(|finding| finding.render(file)).collect();
         Failure::Unusable(format!("{what} {file} cannot be used\n{}", told.join("\n")))
     })
 }
@@ -123,6 +142,7 @@ mod tests {
         assert_eq!(pad(&["verb"]), paper());
         assert_ne!(paper(), Device::nominal());
         assert_eq!(pad(&["verb", "--device", "models/sstid.toml"]), Device::nominal());
+        assert_eq!(Verb::parse_from(["verb", "--imperfections", "paper"]).pad.read().unwrap(), paper());
     }
 
     #[test]

@@ -22,6 +22,7 @@ pub mod mechanics;
 pub mod output;
 pub mod pipeline;
 pub mod plot;
+pub mod protocol;
 pub mod quantity;
 mod random;
 pub mod readout;

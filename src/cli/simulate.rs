@@ -18,7 +18,7 @@ use serde::Serialize;
 use super::device::Pad;
 use super::field_cache::field_of;
 use super::summary::{Report, Summary};
-use super::written::{create, is_same, is_stdout, stdout, written_over};
+use super::written::{both_print, create, is_same, is_stdout, stdout, written_over};
 use super::{Failure, print_json, say, tables};
 use crate::dataset;
 use crate::device::Device;
@@ -106,7 +106,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { out, folders, json, .. } = arguments;
     let prints_table = out.as_deref().is_some_and(is_stdout);
     if *json && prints_table {
-        return Err(Failure::Unusable("--json and --out - both print: let --out name a file".into()));
+        return Err(both_print());
     }
     let device = arguments.pad.read()?;
     tables::within_the_rim(folders.at, &device.contact)

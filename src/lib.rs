@@ -23,6 +23,7 @@ pub mod metrology;
 pub mod output;
 pub mod pipeline;
 pub mod plot;
+pub mod protocol;
 pub mod quantity;
 mod random;
 pub mod readout;

@@ -46,6 +46,17 @@ impl SplitMix64 {
         steps / (1_u32 << 24) as f32
     }
 
+    /// Puts these in an order of which each is as likely as any other.
+    ///
+    /// Source: D. E. Knuth, *The Art of Computer Programming*, volume 2, algorithm 3.4.2 P.
+    pub(crate) fn shuffle<T>(&mut self, items: &mut [T]) {
+        for index in (1..items.len()).rev() {
+            // The high half of a product of 64 bits each: below `index + 1`.
+            let other = (u128::from(self.next_bits()) * (index as u128 + 1)) >> u64::BITS;
+            items.swap(index, other as usize);
+        }
+    }
+
     /// Mean 0, standard deviation 1, never beyond ±6: the sum of twelve uniform numbers, which comes close
     /// enough to the normal distribution and needs no transcendental function.
     pub(crate) fn normal(&mut self) -> f32 {
@@ -91,6 +102,19 @@ mod tests {
         assert!((fourth - 2.9).abs() < 0.1, "{fourth}");
         let (mean, square, _) = moments(&mut || random.uniform());
         assert!(mean.abs() < 0.01 && (square - 1.0 / 3.0).abs() < 0.01, "{mean} {square}");
+    }
+
+    #[test]
+    fn every_order_comes_as_often_as_any_other() {
+        let mut random = SplitMix64::new(5);
+        let mut counts = std::collections::BTreeMap::new();
+        for _ in 0..24_000 {
+            let mut items = [0, 1, 2, 3];
+            random.shuffle(&mut items);
+            *counts.entry(items).or_insert(0_i32) += 1;
+        }
+        // Five standard deviations of 1000 expected.
+        assert!(counts.len() == 24 && counts.values().all(|count| (count - 1000).abs() < 158), "{counts:?}");
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex};
 use clap::Args;
 use serde::Serialize;
 
+use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, Output, Plan, bridge, open_virtual, play};
 use super::screen::Screen;
@@ -33,6 +34,8 @@ pub(super) struct Arguments {
     /// A profile's name or file.
     #[arg(long, default_value = "super-mario")]
     profile: String,
+    #[command(flatten)]
+    device: Pad,
     /// Where events go: auto (a virtual gamepad, else the screen), uinput, x11, log:FILE, none.
     #[arg(long, default_value = "auto")]
     output: Output,
@@ -125,7 +128,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let seen = Seen::default();
     let witness = Witness { sink, seen: Arc::clone(&seen) };
     let (mut bridge, _running) = bridge(Plan {
-        pad: open_virtual(script)?,
+        pad: open_virtual(&arguments.device, script)?,
         sink: Box::new(witness),
         profile_name: arguments.profile.clone(),
         profile_text: text,

@@ -9,13 +9,16 @@ use super::{Failure, text_file};
 use crate::device::Device;
 use crate::toml_text::diag::Diagnostic;
 
+const PAPER: &str = include_str!("../../models/imperfections/paper.toml");
+
 /// Which pad; flattened into the arguments of each verb that simulates or decodes.
 #[derive(Debug, Args)]
 pub(super) struct Pad {
     /// A device file; without it the nominal pad, whose file is models/sstid.toml.
     #[arg(long, value_name = "FILE")]
     device: Option<PathBuf>,
-    /// A file of [[module]] tables that say how this pad differs from the device.
+    /// A file of tables that say how this pad differs from the device (models/README.md), or paper: those that come out
+    /// as the paper's figures.
     #[arg(long, value_name = "FILE")]
     imperfections: Option<PathBuf>,
 }
@@ -30,6 +33,16 @@ impl Pad {
         }
     }
 
+    /// Whether a file says which pad it is.
+    pub(super) const fn is_given(&self) -> bool {
+        self.device.is_some() || self.imperfections.is_some()
+    }
+
+    /// The pad of the twin: where no file says which, the nominal one with the paper's imperfections.
+    pub(super) fn read_imperfect(&self) -> Result<Device, Failure> {
+        if self.is_given() { self.read() } else { Ok(paper()) }
+    }
+
     /// Reads the files. What is wrong with them makes them unusable, and all of it is told.
     pub(super) fn read(&self) -> Result<Device, Failure> {
         let device = match &self.device {
@@ -37,10 +50,22 @@ impl Pad {
             None => Device::nominal(),
         };
         match &self.imperfections {
+            Some(name) if name.as_os_str() == "paper" => {
+                read_text("imperfections", "paper", PAPER, |text| device.with_imperfections(text))
+            }
             Some(path) => read(path, "imperfections", |text| device.with_imperfections(text)),
             None => Ok(device),
         }
     }
+}
+
+/// The nominal pad with the imperfections in `models/imperfections/paper.toml`.
+#[expect(clippy::expect_used, reason = "the file is part of the program and a test reads it")]
+fn paper() -> Device {
+    Device::nominal()
+        .with_imperfections(PAPER)
+        .0
+        .expect("models/imperfections/paper.toml fits the nominal pad")
 }
 
 fn read(
@@ -52,9 +77,19 @@ fn read(
     let text = text_file::read(path).map_err(|why| {
         Failure::Unusable(format!("{what} {file} cannot be read: {why}; name another file"))
     })?;
-    let (device, found) = device(&text);
+    read_text(what, &file, &text, device)
+}
+
+/// Reads a text, which people call `file`.
+fn read_text(
+    what: &str,
+    file: &str,
+    text: &str,
+    device: impl Fn(&str) -> (Option<Device>, Vec<Diagnostic>),
+) -> Result<Device, Failure> {
+    let (device, found) = device(text);
     device.ok_or_else(|| {
-        let told: Vec<_> = found.iter().map(|finding| finding.render(&file)).collect();
+        let told: Vec<_> = found.iter().map(|finding| finding.render(file)).collect();
         Failure::Unusable(format!("{what} {file} cannot be used\n{}", told.join("\n")))
     })
 }
@@ -99,6 +134,15 @@ mod tests {
         let both = given(Some(&thicker), Some(moved)).unwrap();
         assert_eq!((both.plate.thickness_mm, both.modules[0].radial_mm), (1.15, -0.7));
         assert_eq!(given(None, Some(moved)).unwrap().plate, nominal.plate);
+    }
+
+    #[test]
+    fn the_twin_is_the_papers_unless_files_say_otherwise() {
+        let pad = |arguments: &[&str]| Verb::parse_from(arguments).pad.read_imperfect().unwrap();
+        assert_eq!(pad(&["verb"]), paper());
+        assert_ne!(paper(), Device::nominal());
+        assert_eq!(pad(&["verb", "--device", "models/sstid.toml"]), Device::nominal());
+        assert_eq!(Verb::parse_from(["verb", "--imperfections", "paper"]).pad.read().unwrap(), paper());
     }
 
     #[test]

@@ -11,6 +11,7 @@ use clap::Args;
 use firmware_proto::command::Command;
 use serde::Serialize;
 
+use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, OpenedPad, Output, Plan, bridge, open_pad, play};
 use super::written::stdout;
@@ -39,6 +40,8 @@ pub(super) struct Arguments {
     /// The pad: virtual, serial:PATH[@BAUD], capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
+    #[command(flatten)]
+    device: Pad,
     /// A profile's name or file.
     #[arg(long, default_value = "super-mario")]
     profile: String,
@@ -81,7 +84,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { pad, profile, output, .. } = arguments;
     Files { pad, profile, output, capture: None }.check()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
-    let pad = open_pad(&arguments.pad, &profile, Patience::Limited)?;
+    let pad = open_pad(&arguments.pad, &arguments.device, &profile, Patience::Limited)?;
     let timing = Timing::default();
     let calls = Shared::default();
     let sink = TimedSink { sink: open_sink(&arguments.output)?, timing: timing.clone() };

@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     #[arg(allow_hyphen_values = true)]
     threshold: f64,
     /// Noise of each channel, standard deviation in microvolts.
-    #[arg(long, value_name = "UV", default_value_t = NOISE_UV, value_parser = parse_noise)]
+    #[arg(long, value_name = "UV", default_value_t = NOISE_RMS_UV, value_parser = parse_noise)]
     #[arg(allow_hyphen_values = true)]
     noise_uv: f64,
     /// The swarm's seed; the same seed gives the same answer.
@@ -55,9 +55,6 @@ pub(super) struct Arguments {
     #[arg(long)]
     json: bool,
 }
-
-/// That of the virtual pad, which plays such presses. It only scales the location errors.
-const NOISE_UV: f64 = NOISE_RMS_UV as f64;
 
 /// More than the bridges' whole range.
 const NOISE_MAX_UV: f64 = 1e6;

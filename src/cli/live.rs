@@ -8,6 +8,8 @@ use std::str::FromStr;
 
 use rustix::event::{Timespec, poll};
 
+use super::device::Pad;
+use super::field_cache::field_of;
 use super::{Failure, profile};
 use crate::bridge::clock::Clock;
 use crate::bridge::keeper::{Patience, Reopen};
@@ -120,14 +122,19 @@ impl OpenedPad {
     }
 }
 
-/// Opens the pad at `address`. The virtual pad plays a script made for `profile`.
+/// Opens the pad at `address`. The virtual pad is `pad` and plays a script made for `profile`.
 pub(super) fn open_pad(
     address: &PadAddress,
+    pad: &Pad,
     profile: &Profile,
     patience: Patience,
 ) -> Result<OpenedPad, Failure> {
     match address {
-        PadAddress::Virtual => open_virtual(Script::for_profile(profile, VIRTUAL_SCRIPT_US)),
+        PadAddress::Virtual => open_virtual(pad, Script::for_profile(profile, VIRTUAL_SCRIPT_US)),
+        _ if pad.is_given() => Err(Failure::Unusable(
+            "--device and --imperfections say what the virtual pad is: add --pad virtual, or leave them out"
+                .into(),
+        )),
         PadAddress::Capture { file } => open_capture(file),
         PadAddress::Auto { .. } | PadAddress::Hid { .. } | PadAddress::Serial { .. } => {
             open_device(address.clone(), patience)
@@ -166,8 +173,14 @@ fn wait(time: Timespec) {
 }
 
 /// Starts a virtual pad that plays `script` and opens its terminal like any pad's port.
-pub(super) fn open_virtual(script: Script) -> Result<OpenedPad, Failure> {
-    let virtual_pad = PadOnTerminal::start(VirtualPad::new(script, VIRTUAL_SEED))?;
+pub(super) fn open_virtual(pad: &Pad, script: Script) -> Result<OpenedPad, Failure> {
+    let virtual_pad = if pad.is_given() {
+        let device = pad.read()?;
+        VirtualPad::of(script, &device, &field_of(&device)?, VIRTUAL_SEED)
+    } else {
+        VirtualPad::new(script, VIRTUAL_SEED)
+    };
+    let virtual_pad = PadOnTerminal::start(virtual_pad)?;
     let terminal =
         PadAddress::Serial { path: virtual_pad.path().to_owned(), baud: firmware_proto::DEFAULT_BAUD };
     let opened = open_device(terminal, Patience::Limited)?;

@@ -21,6 +21,7 @@ mod pictures;
 mod profile;
 #[cfg(feature = "simulator")]
 mod progress;
+mod protocol;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod record;
 mod replay;
@@ -79,6 +80,8 @@ enum Verb {
     Latency(latency::Arguments),
     /// Say what the channels read for given contacts, or for the paper's dataset.
     Simulate(simulate::Arguments),
+    /// Write a measuring plan: the paper's, or the recommended one.
+    Protocol(protocol::Arguments),
     /// List, show and check profiles.
     Profile(profile::Arguments),
     /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
@@ -121,6 +124,7 @@ pub fn run() -> ExitCode {
         #[cfg(all(feature = "live", target_os = "linux"))]
         Verb::Latency(arguments) => latency::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
+        Verb::Protocol(arguments) => protocol::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
         Verb::Layout(arguments) => layout::run(&arguments),
     };

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, Output, Plan, Waits, bridge, create_capture, open_pad, patience, play};
 use super::written::Named;
@@ -22,6 +23,8 @@ pub(super) struct Arguments {
     /// The pad: virtual, serial:PATH[@BAUD], capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
+    #[command(flatten)]
+    device: Pad,
     /// A profile's name or file; it is kept in the capture.
     #[arg(long, default_value = "super-mario")]
     profile: String,
@@ -43,7 +46,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let sink = arguments.output.open()?;
     let patience = patience(&arguments.pad, Waits::NotAsked);
-    let pad = open_pad(&arguments.pad, &profile, patience)?.with_faults(arguments.faults)?;
+    let pad =
+        open_pad(&arguments.pad, &arguments.device, &profile, patience)?.with_faults(arguments.faults)?;
     let place = capture.display().to_string();
     let capture = Named::new(create_capture(capture)?, place.clone());
     say(format_args!("recording {} in {place}", arguments.pad));

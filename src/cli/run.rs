@@ -4,6 +4,7 @@ use std::io::{self, IsTerminal};
 
 use clap::Args;
 
+use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, Output, Plan, Waits, bridge, open_pad, patience, play};
 use super::screen::Screen;
@@ -24,6 +25,8 @@ pub(super) struct Arguments {
     /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.
     #[arg(long)]
     wait: bool,
+    #[command(flatten)]
+    device: Pad,
     /// A profile's name or file.
     #[arg(long, default_value = "super-mario")]
     profile: String,
@@ -45,7 +48,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let patience = patience(&arguments.pad, if arguments.wait { Waits::Asked } else { Waits::NotAsked });
     let sink = arguments.output.open()?;
-    let pad = open_pad(&arguments.pad, &profile, patience)?.with_faults(arguments.faults)?;
+    let pad =
+        open_pad(&arguments.pad, &arguments.device, &profile, patience)?.with_faults(arguments.faults)?;
     let title = format!("{} → {} → {}", arguments.pad, profile.name, sink.describe());
     // The live picture has the title and the state; without one they are told in words.
     let audience = if io::stdout().is_terminal() { Audience::Nobody } else { Audience::Stderr };

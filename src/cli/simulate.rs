@@ -18,10 +18,10 @@ use serde::Serialize;
 use super::device::Pad;
 use super::field_cache::field_of;
 use super::summary::{Report, Summary};
-use super::written::{create, is_same, is_stdout, stdout, written_over};
+use super::written::{both_print, create, is_same, is_stdout, stdout, written_over};
 use super::{Failure, print_json, say, tables};
 use crate::dataset;
-use crate::device::{Device, Patch};
+use crate::device::Device;
 use crate::field::PadField;
 use crate::measured::columns::{Column, Kind};
 use crate::measured::write::Writer;
@@ -29,9 +29,6 @@ use crate::measured::{Label, Row, Table};
 use crate::quantity::Contact;
 use crate::readout::Readout;
 use crate::twin::bridges;
-
-/// Places are often written to two decimals; so rounded, one on the rim may lie this far beyond it.
-const RIM_TOLERANCE_MM: f64 = 0.01;
 
 /// Arguments of `tactpad simulate`.
 #[derive(Debug, Args)]
@@ -109,10 +106,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { out, folders, json, .. } = arguments;
     let prints_table = out.as_deref().is_some_and(is_stdout);
     if *json && prints_table {
-        return Err(Failure::Unusable("--json and --out - both print: let --out name a file".into()));
+        return Err(both_print());
     }
     let device = arguments.pad.read()?;
-    on_the_plate(folders.at, &device.contact)
+    tables::within_the_rim(folders.at, &device.contact)
         .map_err(|why| Failure::Unusable(format!("--at {},{}: {why}", folders.at[0], folders.at[1])))?;
     let table = out.as_ref().map(|out| table(arguments, out, &device)).transpose()?;
     let outcome = Outcome { table, files: folders.fill(&device)? };
@@ -188,36 +185,10 @@ fn contacts(arguments: &Arguments, out: &Path, device: &Device) -> Result<Table,
     let Arguments { source: Source { contacts, dataset }, seed, .. } = arguments;
     match (contacts, dataset) {
         (Some(path), _) if is_same(path, out) => Err(written_over(out, "is the table of contacts")),
-        (Some(path), _) => read(path, device),
+        (Some(path), _) => tables::on_the_plate(path, Kind::Contacts, device),
         (None, Some(Dataset::Paper)) => Ok(drawn(&dataset::paper(&device.contact, *seed))),
         (None, None) => Err(Failure::Unusable("give --contacts or --dataset".into())),
     }
-}
-
-/// Reads a table of contacts, all of which must be on the plate.
-fn read(path: &Path, device: &Device) -> Result<Table, Failure> {
-    let contacts = tables::read(path, Kind::Contacts, 0.5 * device.plate.diameter_mm)?;
-    for Row { line, label, .. } in &contacts.rows {
-        on_the_plate([label.x_mm, label.y_mm], &device.contact)
-            .map_err(|why| Failure::Unusable(format!("{}:{line}: {why}", path.display())))?;
-    }
-    Ok(contacts)
-}
-
-/// Refuses a contact whose patch would reach over the plate's rim.
-///
-/// The field ends there. Taking such a contact at the rim would write a row whose place and channels do not belong
-/// together, and a decoder would learn it.
-fn on_the_plate([x_mm, y_mm]: [f64; 2], patch: &Patch) -> Result<(), String> {
-    let radius_mm = x_mm.hypot(y_mm);
-    let Patch { patch_radius_mm, max_centre_radius_mm, .. } = patch;
-    if radius_mm <= max_centre_radius_mm + RIM_TOLERANCE_MM {
-        return Ok(());
-    }
-    Err(format!(
-        "the contact is {radius_mm:.2} mm from the centre, and a finger of {patch_radius_mm} mm radius stays on the \
-         plate up to {max_centre_radius_mm} mm; move it or leave it out"
-    ))
 }
 
 /// Drawn contacts as a table.
@@ -307,18 +278,6 @@ mod tests {
             for (wanted_uv, other_uv) in wanted_uv.into_iter().zip(other_uv) {
                 assert!((wanted_uv - other_uv).abs() < 0.002, "{wanted_uv} {other_uv}");
             }
-        }
-    }
-
-    #[test]
-    fn contacts_end_where_the_patch_would_leave_the_plate() {
-        let patch = Device::nominal().contact;
-        for place in [[0.0, 0.0], [29.0, 0.0], [0.0, -29.009], [20.51, 20.51]] {
-            assert_eq!(on_the_plate(place, &patch), Ok(()));
-        }
-        for place in [[29.011, 0.0], [-20.52, 20.52], [30.0, 30.0]] {
-            let why = on_the_plate(place, &patch).unwrap_err();
-            assert!(why.starts_with("the contact is ") && why.contains("up to 29 mm"), "{why}");
         }
     }
 }

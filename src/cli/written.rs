@@ -58,6 +58,11 @@ pub(super) fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+/// Refuses two documents on standard output.
+pub(super) fn both_print() -> Failure {
+    Failure::Unusable("--json and --out - both print: let --out name a file".into())
+}
+
 /// Refuses to write over what is needed; `what` says what it is.
 pub(super) fn written_over(written: &Path, what: &str) -> Failure {
     Failure::Unusable(format!("{} {what} and would be written over: name another file", written.display()))

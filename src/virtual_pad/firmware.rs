@@ -8,10 +8,12 @@ use firmware_proto::link::{CommandReceiver, encode_message};
 use firmware_proto::sample::Sample;
 use firmware_proto::{ENCODED_MAX, RATE_MAX_HZ, RATE_MIN_HZ};
 
+use crate::device::Device;
 use crate::field::PadField;
-use crate::influence::InfluenceField;
 use crate::quantity::CHANNELS;
-use crate::virtual_pad::front_end::{CONVERTER, FrontEnd};
+use crate::twin::hand::Hand;
+use crate::twin::pad::{Circumstances, TwinPad};
+use crate::virtual_pad::front_end::{self, CONVERTER};
 use crate::virtual_pad::script::Script;
 
 /// The serial number that the virtual pad tells.
@@ -24,17 +26,19 @@ pub const RATE_DEFAULT_HZ: u16 = 1000;
 pub const SAMPLES_PER_EMIT_MAX: usize = RATE_MAX_HZ as usize;
 
 const REPLIES_MAX: usize = 16;
-const TEMPERATURE_CENTI_C: i16 = 2500;
 
 /// A pad in memory. Pad time starts at 0 with the script.
 ///
 /// Bytes from the host go in by [`receive`](Self::receive); [`emit`](Self::emit) gives the bytes for the
-/// host. Its board stays at 25 °C, and its channels keep their zero.
+/// host. Its board stays at the temperature at which its zeros are known.
 #[derive(Clone, Debug)]
 pub struct VirtualPad {
     script: Script,
-    field: InfluenceField,
-    front_end: FrontEnd,
+    hand: Hand,
+    pad: TwinPad,
+    around: Circumstances,
+    /// Pad time of the last sample.
+    read_us: u64,
     identity: Identity,
     schedule: Schedule,
     sequence: u32,
@@ -59,13 +63,21 @@ impl Schedule {
 }
 
 impl VirtualPad {
-    /// A pad on which `script` is played. `seed` decides the channels' offsets and noise.
-    #[expect(clippy::expect_used, reason = "the serial number is a constant and a test reads it")]
+    /// The nominal pad, on which `script` is played. `seed` decides the channels' offsets and noise.
     pub fn new(script: Script, seed: u64) -> Self {
+        Self::of(script, &front_end::ordinary(seed), &PadField::nominal(), seed)
+    }
+
+    /// The pad of `device`, whose field is `field`, on which `script` is played. `seed` decides what is random.
+    #[expect(clippy::expect_used, reason = "the serial number is a constant and a test reads it")]
+    pub fn of(script: Script, device: &Device, field: &PadField, seed: u64) -> Self {
+        let temperature_c = device.behaviour.thermal.reference_c;
         Self {
             script,
-            field: PadField::nominal().signals,
-            front_end: FrontEnd::new(seed),
+            hand: Hand::new(device.behaviour.finger, seed),
+            pad: TwinPad::new(device, field, seed),
+            around: Circumstances { temperature_c, cycles: 0.0 },
+            read_us: 0,
             identity: Identity {
                 serial_number: SerialNumber::from_ascii(SERIAL_NUMBER)
                     .expect("it is short and visible ASCII"),
@@ -141,15 +153,18 @@ impl VirtualPad {
 
     fn take_sample(&mut self) -> Sample {
         let time_us = self.due_us();
-        let strain = self.field.strain_uv(&self.script.contact_at(time_us));
-        let (counts, mut status) = self.front_end.convert(&strain);
+        let after_s = time_us.saturating_sub(self.read_us) as f64 * 1e-6;
+        self.read_us = time_us;
+        let contact = self.hand.hold(after_s, &self.script.contact_at(time_us));
+        let (counts, mut status) = front_end::convert(&self.pad.read(after_s, &contact, &self.around));
         if std::mem::take(&mut self.restarted) {
             status = status.with_restarted();
         }
         let sequence = self.sequence;
         self.sequence = sequence.wrapping_add(1);
         self.schedule.taken = self.schedule.taken.saturating_add(1);
-        Sample { sequence, time_us, counts, temperature_centi_c: TEMPERATURE_CENTI_C, status }
+        let temperature_centi_c = (100.0 * self.around.temperature_c).round() as i16;
+        Sample { sequence, time_us, counts, temperature_centi_c, status }
     }
 }
 

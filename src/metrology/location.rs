@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::rows::{by_place, is_load, is_press};
-use super::series::{self, Sample, mean_fz_n};
+use super::series::{self, Sample, mean_label};
 use super::statistics::deviation;
 use super::{Decode, Needs, filter};
 use crate::measured::{Label, Table};
@@ -39,22 +39,17 @@ pub struct LocationSpread {
 pub fn spreads(table: &Table, decode: Option<Decode>) -> Result<[LocationSpread; 4], Needs> {
     let trials = series::all(table);
     let held = trials.iter().flat_map(|trial| series::held(trial, HELD_S));
-    let presses: Vec<&[Sample]> = held.filter(|part| is_press(first_label(part))).collect();
-    let places = by_place(presses, |part| first_label(part));
-    let found = places.into_iter().find_map(|place| at_each_load(&place)).ok_or(Needs::Rows(NEEDED))?;
+    let labelled = held.map(|part| (mean_label(part), part));
+    let places = by_place(labelled.filter(|(label, _)| is_press(label)).collect(), |(label, _)| label);
+    let found = places.iter().find_map(|place| at_each_load(place)).ok_or(Needs::Rows(NEEDED))?;
     let decode = decode.ok_or(Needs::Decoder)?;
     let index = [0, 1, 2, 3];
     Ok(index.map(|index| spread(LOADS_N[index], found[index], decode)))
 }
 
-/// A part has samples; the label of none would be nowhere.
-fn first_label(part: &[Sample]) -> &Label {
-    const NOWHERE: Label = Label { x_mm: f64::NAN, y_mm: f64::NAN, fx_n: 0.0, fy_n: 0.0, fz_n: 0.0 };
-    part.first().map_or(&NOWHERE, |sample| &sample.label)
-}
-
-fn at_each_load<'s>(place: &[&'s [Sample]]) -> Option<[&'s [Sample]; 4]> {
-    let held = |load_n: f64| place.iter().find(|part| is_load(mean_fz_n(part), load_n)).copied();
+fn at_each_load<'s>(place: &[(Label, &'s [Sample])]) -> Option<[&'s [Sample]; 4]> {
+    let held =
+        |load_n: f64| place.iter().find(|(label, _)| is_load(label.fz_n, load_n)).map(|(_, part)| *part);
     let [a, b, c, d] = LOADS_N.map(held);
     Some([a?, b?, c?, d?])
 }

@@ -8,12 +8,16 @@
 
 pub mod ageing;
 pub mod decoded;
+pub mod drawing;
 pub mod fem;
 pub mod figures;
 pub mod holding;
 pub mod hysteresis;
+pub mod lines;
 pub mod location;
+pub mod procedures;
 pub mod repeatability;
+pub mod report;
 pub mod resolution;
 pub mod response;
 pub mod sensitivity;

@@ -47,7 +47,7 @@ pub struct Resolution {
 pub fn smallest_step(table: &Table) -> Result<Resolution, Needs> {
     let trials = series::all(table);
     let held = trials.iter().flat_map(|trial| series::held(trial, HELD_S));
-    let loaded = held.filter(|part| part.first().is_some_and(|sample| !is_unloaded(&sample.label)));
+    let loaded = held.filter(|part| !is_unloaded(&series::mean_label(part)));
     let longest = loaded.max_by(|a, b| duration_s(a).total_cmp(&duration_s(b)));
     longest.map(of_plateau).ok_or(Needs::Rows(NEEDED))
 }

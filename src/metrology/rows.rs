@@ -7,7 +7,8 @@ use crate::quantity::CHANNELS;
 /// Labels below this are no load: a reference for 100 N is not closer to its own zero.
 const UNLOADED_N: f64 = 0.1;
 
-/// Largest shear of a pure press, as a share of it: what a reference that is tilted by 3° writes.
+/// Largest shear of a pure press: what a reference writes whose zero is off by the first and that is tilted by 3°.
+const PRESS_SHEAR_N: f64 = 0.05;
 const PRESS_SHEAR_SHARE: f64 = 0.05;
 
 /// How far a load may be from the one that is looked for, as a share of it.
@@ -37,7 +38,8 @@ pub(super) fn is_unloaded(label: &Label) -> bool {
 
 /// Whether it is a load without shear worth mentioning.
 pub(super) fn is_press(label: &Label) -> bool {
-    !is_unloaded(label) && label.fx_n.hypot(label.fy_n) <= PRESS_SHEAR_SHARE * label.fz_n
+    let shear_n = label.fx_n.hypot(label.fy_n);
+    !is_unloaded(label) && label.fz_n > 0.0 && shear_n <= PRESS_SHEAR_N + PRESS_SHEAR_SHARE * label.fz_n
 }
 
 /// Whether a load is the one that is looked for.
@@ -170,7 +172,7 @@ mod tests {
     fn kinds_of_labels_are_told_apart() {
         let label = |fx_n, fz_n| Label { fx_n, fz_n, ..Label::default() };
         assert!(is_unloaded(&label(0.05, -0.05)) && !is_unloaded(&label(0.0, 0.5)));
-        assert!(is_press(&label(0.04, 1.0)) && !is_press(&label(0.1, 1.0)) && !is_press(&label(0.0, -1.0)));
+        assert!(is_press(&label(0.09, 1.0)) && !is_press(&label(0.11, 1.0)) && !is_press(&label(0.0, -1.0)));
         assert!(is_load(0.95, 1.0) && is_load(1.05, 1.0) && !is_load(1.2, 1.0));
         assert!(!is_press(&label(f64::NAN, 1.0)) && !is_load(f64::NAN, 1.0));
     }

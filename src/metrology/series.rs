@@ -85,9 +85,23 @@ pub(super) fn duration_s(samples: &[Sample]) -> f64 {
     samples.first().zip(samples.last()).map_or(0.0, |(first, last)| last.t_s - first.t_s)
 }
 
+/// Mean label; not a number without samples.
+pub(super) fn mean_label(samples: &[Sample]) -> Label {
+    let mean = |of: fn(&Label) -> f64| {
+        samples.iter().map(|sample| of(&sample.label)).sum::<f64>() / samples.len() as f64
+    };
+    Label {
+        x_mm: mean(|label| label.x_mm),
+        y_mm: mean(|label| label.y_mm),
+        fx_n: mean(|label| label.fx_n),
+        fy_n: mean(|label| label.fy_n),
+        fz_n: mean(|label| label.fz_n),
+    }
+}
+
 /// Mean labelled press; not a number without samples.
 pub(super) fn mean_fz_n(samples: &[Sample]) -> f64 {
-    samples.iter().map(|sample| sample.label.fz_n).sum::<f64>() / samples.len() as f64
+    mean_label(samples).fz_n
 }
 
 /// Mean sum of the z channels; not a number without samples.

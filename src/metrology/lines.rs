@@ -2,6 +2,7 @@
 
 use super::Needs;
 use super::figures::Figures;
+use super::resolution::Resolution;
 
 /// A published figure must be met within so many percent.
 const BOUND_PERCENT: f64 = 15.0;
@@ -101,6 +102,10 @@ pub const LINES: &[Line] = &[
     other("thermal_nonlinearity", "thermal drift: off its line", "%", |f| {
         of(&f.thermal_drift, |d| 100.0 * d.nonlinearity_share)
     }),
+    other("resolution_unloaded", "force resolution, from no load", "mN", |f| {
+        let step_n = |found: &Resolution| found.unloaded_step_n.ok_or(Needs::Rows(UNLOADED));
+        Ok(1e3 * f.resolution.as_ref().map_err(|needs| *needs).and_then(step_n)?)
+    }),
     other("resolution_without_drift", "force resolution, drift removed", "mN", |f| {
         of(&f.resolution, |r| 1e3 * r.without_drift_n)
     }),
@@ -131,6 +136,8 @@ pub const LINES: &[Line] = &[
         of(&f.force_holding, |h| 1e3 * h[2].deviation_n)
     }),
 ];
+
+const UNLOADED: &str = "a trial without load for 30 s or longer";
 
 type Value = fn(&Figures) -> Result<f64, Needs>;
 

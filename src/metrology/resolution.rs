@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::Needs;
 use super::output::sum_uv;
 use super::rows::is_unloaded;
-use super::series::{self, Sample, duration_s, mean_fz_n, mean_sum_uv};
+use super::series::{self, Sample, duration_s, mean_label, mean_sum_uv};
 use super::statistics::{Line, deviation};
 use crate::measured::Table;
 
@@ -30,6 +30,8 @@ pub struct Resolution {
     pub step_n: f64,
     /// By what is left of the means beside a straight line.
     pub without_drift_n: f64,
+    /// From no load at all, by the means as they are, where a trial has no load for as long.
+    pub unloaded_step_n: Option<f64>,
     /// The load that was held.
     pub load_n: f64,
     /// How many means.
@@ -46,27 +48,44 @@ pub struct Resolution {
 /// No load is held for 30 s.
 pub fn smallest_step(table: &Table) -> Result<Resolution, Needs> {
     let trials = series::all(table);
-    let held = trials.iter().flat_map(|trial| series::held(trial, HELD_S));
-    let loaded = held.filter(|part| !is_unloaded(&series::mean_label(part)));
-    let longest = loaded.max_by(|a, b| duration_s(a).total_cmp(&duration_s(b)));
-    longest.map(of_plateau).ok_or(Needs::Rows(NEEDED))
+    let held: Vec<&[Sample]> = trials.iter().flat_map(|trial| series::held(trial, HELD_S)).collect();
+    let (unloaded, loaded): (Vec<&[Sample]>, Vec<&[Sample]>) =
+        held.into_iter().partition(|part| is_unloaded(&mean_label(part)));
+    longest(&loaded).map(|load| of_plateau(load, longest(&unloaded))).ok_or(Needs::Rows(NEEDED))
 }
 
-fn of_plateau(samples: &[Sample]) -> Resolution {
-    let uv_per_n = mean_sum_uv(samples) / mean_fz_n(samples);
-    let means: Vec<[f64; 2]> = seconds(samples).map(|(t_s, sum_uv)| [t_s, sum_uv / uv_per_n]).collect();
+fn longest<'s>(parts: &[&'s [Sample]]) -> Option<&'s [Sample]> {
+    parts.iter().max_by(|a, b| duration_s(a).total_cmp(&duration_s(b))).copied()
+}
+
+fn of_plateau(load: &[Sample], unloaded: Option<&[Sample]>) -> Resolution {
+    let load_n = mean_label(load).fz_n;
+    let uv_per_n = mean_sum_uv(load) / load_n;
+    let means = means(load, uv_per_n);
     let line = Line::through(&means);
-    let outputs_n: Vec<f64> = means.iter().map(|[_, output_n]| *output_n).collect();
-    let beside: Vec<f64> = means.iter().map(|[t_s, output_n]| output_n - line.at(*t_s)).collect();
-    // Two numbers of the line were found from the means, and one of them is the mean itself.
+    let beside: Vec<[f64; 2]> =
+        means.iter().map(|[t_s, output_n]| [*t_s, output_n - line.at(*t_s)]).collect();
+    // A line was found from the means, which takes one more of their number than their mean alone.
     let count = means.len() as f64;
     let freedom = ((count - 1.0) / (count - 2.0)).sqrt();
     Resolution {
-        step_n: (FALSE_ALARM + POWER) * deviation(&outputs_n),
-        without_drift_n: (FALSE_ALARM + POWER) * deviation(&beside) * freedom,
-        load_n: mean_fz_n(samples),
+        step_n: step_n(&means),
+        without_drift_n: step_n(&beside) * freedom,
+        unloaded_step_n: unloaded.map(|samples| step_n(&self::means(samples, uv_per_n))),
+        load_n,
         means: means.len(),
     }
+}
+
+/// The step that is told from the scatter of these means.
+fn step_n(means: &[[f64; 2]]) -> f64 {
+    let outputs_n: Vec<f64> = means.iter().map(|[_, output_n]| *output_n).collect();
+    (FALSE_ALARM + POWER) * deviation(&outputs_n)
+}
+
+/// Start and mean output of each whole second.
+fn means(samples: &[Sample], uv_per_n: f64) -> Vec<[f64; 2]> {
+    seconds(samples).map(|(t_s, sum_uv)| [t_s, sum_uv / uv_per_n]).collect()
 }
 
 /// Start and mean of each whole second, in µV.
@@ -126,6 +145,18 @@ mod tests {
         // The output is calibrated with the drift, 0.3 % on average.
         assert!((found.step_n / expected - 1.0).abs() < 0.005, "{found:?} {expected}");
         assert!(found.without_drift_n < 1e-3 * found.step_n, "{found:?}");
+    }
+
+    #[test]
+    fn the_unloaded_output_is_calibrated_at_the_load() {
+        // Means that alternate by ±1 µV in each of the three z channels, against 2100 µV per newton.
+        let waves = series(1, RATE_HZ, 60.5, |t_s| {
+            (press(0.0), if (t_s as u32).is_multiple_of(2) { 1.0 } else { -1.0 })
+        });
+        let found = smallest_step(&table(held(60.0, 0.0, 0.0).into_iter().chain(waves))).unwrap();
+        let expected = 3.605 * (3.0 / 2100.0) * (60.0_f64 / 59.0).sqrt();
+        assert!((found.unloaded_step_n.unwrap() / expected - 1.0).abs() < 1e-6, "{found:?} {expected}");
+        assert_eq!(smallest_step(&table(held(60.0, 0.0, 0.0))).unwrap().unloaded_step_n, None);
     }
 
     #[test]

@@ -29,8 +29,8 @@ pub struct Ageing {
     pub curve: Vec<[f64; 2]>,
 }
 
-/// The change of the output per newton from a new pad to the first readings with 50,000 cycles or more, at the place
-/// whose readings reach that far.
+/// The change of the output per newton from a new pad to the first readings with 50,000 cycles or more, at
+/// the place whose readings reach that far.
 ///
 /// # Errors
 /// No place with both.

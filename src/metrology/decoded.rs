@@ -15,8 +15,8 @@ use crate::quantity::{CHANNELS, Contact};
 const SAME_FORCE_N: f64 = 0.15;
 
 const NEEDED: &str = "static loads, with unloaded rows";
-const NEEDED_WARM: &str = "static loads of the same places and forces at two temperatures (temp_c), 5 °C apart, with \
-                           unloaded rows at the usual one";
+const NEEDED_WARM: &str = "static loads of the same places and forces at two temperatures (temp_c), 5 °C \
+                           apart, with unloaded rows at the usual one";
 
 /// Least temperature change from the usual one.
 const CHANGE_C: f64 = 5.0;
@@ -73,8 +73,8 @@ impl Difference {
     }
 }
 
-/// Errors over the static loads of a pad that is as good as new, at the usual temperature, tared. A contact that comes
-/// again counts once, by its first row.
+/// Errors over the static loads of a pad that is as good as new, at the usual temperature, tared. A contact
+/// that comes again counts once, by its first row.
 ///
 /// # Errors
 /// No such rows, or no decoder.
@@ -116,36 +116,48 @@ fn summary(differences: &[Difference]) -> DecodedErrors {
     }
 }
 
+/// A load, and the same contact at the usual temperature.
+struct Pair<'d, 't> {
+    load: &'d Drifted<'t>,
+    same: &'d Drifted<'t>,
+    /// How many times 10 °C lie between.
+    steps: f64,
+}
+
 /// A static load, tared by what its session reads unloaded at the usual temperature.
 struct Drifted<'t> {
     row: &'t Row,
     uv: [f64; CHANNELS],
 }
 
-/// The increase of the errors when the pad is warmer or colder than when it was tared, per 10 °C. Each contact is
-/// compared with the same place and force at the usual temperature.
+/// The increase of the errors when the pad is warmer or colder than when it was tared, per 10 °C. Each
+/// contact is compared with the same place and force at the usual temperature.
 ///
 /// # Errors
 /// No such pairs, or no decoder.
 pub fn drift(table: &Table, decode: Option<Decode>) -> Result<DecodedDrift, Needs> {
     let usual_c = usual_temperature_c(table).ok_or(Needs::Rows(NEEDED_WARM))?;
-    let (usual, other): (Vec<Drifted>, Vec<Drifted>) =
-        drifted(table, usual_c).into_iter().partition(|load| is_usual(load.row.temp_c, Some(usual_c)));
-    let pairs: Vec<(&Drifted, &Drifted, f64)> = other
-        .iter()
-        .filter_map(|load| {
-            let steps = (load.row.temp_c? - usual_c).abs() / STEP_C;
-            let same = usual.iter().find(|one| is_same_contact(&one.row.label, &load.row.label))?;
-            (steps * STEP_C >= CHANGE_C).then_some((load, same, steps))
-        })
-        .collect();
+    let places = by_place(drifted(table, usual_c), |load| &load.row.label);
+    let pairs: Vec<Pair> = places.iter().flat_map(|place| pairs(place, usual_c)).collect();
     if pairs.is_empty() {
         return Err(Needs::Rows(NEEDED_WARM));
     }
     let decode = decode.ok_or(Needs::Decoder)?;
     let error = |load: &Drifted| Difference::of(&decode(&load.uv), &load.row.label);
-    let compared = pairs.iter().map(|(load, same, steps)| (error(load), error(same), *steps));
+    let compared = pairs.iter().map(|pair| (error(pair.load), error(pair.same), pair.steps));
     Ok(increase(&compared.collect::<Vec<_>>()))
+}
+
+/// Pairs of the loads at one place.
+fn pairs<'d, 't>(place: &'d [Drifted<'t>], usual_c: f64) -> Vec<Pair<'d, 't>> {
+    let (usual, other): (Vec<&Drifted>, Vec<&Drifted>) =
+        place.iter().partition(|load| is_usual(load.row.temp_c, Some(usual_c)));
+    let pair = |load: &&'d Drifted<'t>| {
+        let change_c = (load.row.temp_c? - usual_c).abs();
+        let same = usual.iter().find(|one| is_same_contact(&one.row.label, &load.row.label))?;
+        (change_c >= CHANGE_C).then_some(Pair { load, same, steps: change_c / STEP_C })
+    };
+    other.iter().filter_map(pair).collect()
 }
 
 fn increase(compared: &[(Difference, Difference, f64)]) -> DecodedDrift {

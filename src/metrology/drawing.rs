@@ -19,14 +19,14 @@ const HEIGHT: f64 = 420.0;
 /// Loads are drawn as means over so much.
 const LOAD_BIN_N: f64 = 0.25;
 
-/// What is told apart: forces of loops, so many to a newton.
+/// Points of a loop to a newton.
 const LOOP_POINTS_PER_N: f64 = 5.0;
 
 /// A load, with what it adds to the channels.
 type Load = (Label, [f64; CHANNELS]);
 
-/// Simulated and measured channels of a module over the force, after the paper's Figure 4: at the place with the most
-/// different presses, of the module that reads most there. `None` where no place has three.
+/// Simulated and measured channels of a module over the force, after the paper's Figure 4: at the place with
+/// the most different presses, of the module that reads most there. `None` where no place has three.
 pub fn by_force(table: &Table, signals: &InfluenceField) -> Option<Chart> {
     let places = static_loads(table).into_iter().chain(loading_trials(table)).map(binned);
     let steps = places.max_by_key(Vec::len).filter(|steps| steps.len() >= 3)?;
@@ -109,11 +109,19 @@ pub fn by_place_decoded(spreads: &[LocationSpread]) -> Chart {
         let name = format!("{} N: {:.2} mm", spread.load_n, spread.spread_mm);
         series(name, values, SeriesLook::Points)
     };
+    let series: Vec<Series> = spreads.iter().map(of_load).collect();
+    let all = series.iter().flat_map(|series| &series.values);
+    let farthest = all.flat_map(|value| [value.x.abs(), value.y.abs()]).fold(0.0, f64::max);
+    let Chart { x, y, .. } = chart("x from the mean in mm", "y from the mean in mm");
+    // Both sides show the same span, on a page that is about square.
+    let also = vec![-farthest, farthest];
     Chart {
         title: "Decoded places of a contact that stays".to_owned(),
-        series: spreads.iter().map(of_load).collect(),
+        series,
         width: HEIGHT,
-        ..chart("x from the mean in mm", "y from the mean in mm")
+        x: Side { also: also.clone(), ..x },
+        y: Side { also, ..y },
+        ..chart("", "")
     }
 }
 
@@ -170,5 +178,81 @@ fn chart(x: &str, y: &str) -> Chart {
         y: side(y),
         series: vec![],
         guides: vec![],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::{press, pressed, series as rows, table, unloaded};
+    use super::*;
+    use crate::influence::MAPS;
+    use crate::measured::Row;
+
+    /// Corners of the series with this name.
+    fn values<'c>(chart: &'c Chart, name: &str) -> &'c [Value] {
+        &chart.series.iter().find(|series| series.name == name).unwrap().values
+    }
+
+    #[test]
+    fn the_place_with_most_loads_is_drawn_beside_its_simulation() {
+        let signals = InfluenceField::sampled(5.0, 29.0, 30.0, |_| {
+            std::array::from_fn::<f64, MAPS, _>(|map| if map % 3 == 2 { 100.0 } else { 0.0 })
+        });
+        let off_centre = |fz_n: f64, uv: f64| {
+            let row = pressed(fz_n, uv);
+            Row { label: Label { x_mm: 9.0, ..row.label }, ..row }
+        };
+        let few = [off_centre(1.0, 20.0), off_centre(2.0, 40.0)];
+        let ramp = rows(0, 45.0, 12.0, |t_s| {
+            (press((t_s - 1.0).clamp(0.0, 5.0)), 7.0 + 90.0 * (t_s - 1.0).clamp(0.0, 5.0))
+        });
+        let chart = by_force(&table([unloaded(7.0)].into_iter().chain(few).chain(ramp)), &signals).unwrap();
+        assert_eq!(chart.title, "Simulation and measurement at 0.0, 0.0 mm");
+        let (measured, simulated) = (values(&chart, "m2z measured"), values(&chart, "m2z simulated"));
+        assert_eq!(measured.len(), 21);
+        for (measured, simulated) in measured.iter().zip(simulated) {
+            // The start of the ramp, below 0.1 N, counts as its zero.
+            assert!((measured.y - 90.0 * measured.x).abs() < 2.0, "{measured:?}");
+            assert!((simulated.y - 100.0 * simulated.x).abs() < 1e-3, "{simulated:?}");
+        }
+        assert!(by_force(&table([unloaded(0.0), pressed(1.0, 1.0)]), &signals).is_none());
+    }
+
+    #[test]
+    fn places_are_drawn_from_their_mean() {
+        let places_mm = vec![[10.0, 5.0], [12.0, 5.0], [11.0, 8.0]];
+        let spread = LocationSpread { load_n: 0.5, spread_mm: 2.0, places_mm };
+        let chart = by_place_decoded(&[spread]);
+        let found: Vec<[f64; 2]> =
+            values(&chart, "0.5 N: 2.00 mm").iter().map(|value| [value.x, value.y]).collect();
+        assert_eq!(found, [[-1.0, -1.0], [1.0, -1.0], [0.0, 2.0]]);
+    }
+
+    #[test]
+    fn a_loop_is_drawn_as_what_it_adds() {
+        let branch =
+            |added_n: f64| (0..100).map(|k| [0.05 * f64::from(k), 0.05 * f64::from(k) + added_n]).collect();
+        let hysteresis =
+            Hysteresis { share: 0.031, trials: 10, loading: branch(-0.01), unloading: branch(0.02) };
+        let chart = by_loop(&hysteresis);
+        assert_eq!(chart.title, "Hysteresis: 3.1 % of 5 N");
+        assert!(values(&chart, "loading").iter().all(|value| (value.y + 10.0).abs() < 1e-9));
+        assert!(values(&chart, "unloading").iter().all(|value| (value.y - 20.0).abs() < 1e-9));
+        assert_eq!(values(&chart, "loading").len(), 26);
+    }
+
+    #[test]
+    fn cycles_and_temperatures_are_drawn_as_they_are() {
+        let ageing = Ageing { change_share: -0.19, curve: vec![[0.0, 0.0], [50_000.0, -0.19]] };
+        assert_eq!(by_cycles(&ageing).series[0].values, [Value::new(1.0, 0.0), Value::new(50_001.0, -19.0)]);
+        let readings = vec![(-10.0, [1.0; CHANNELS]), (50.0, [2.0; CHANNELS])];
+        let drift = ThermalDrift {
+            uv_per_10_c: 0.0,
+            slope_uv_per_c: [0.0; CHANNELS],
+            nonlinearity_share: 0.0,
+            readings,
+        };
+        assert_eq!(values(&by_temperature(&drift), "m2z"), [Value::new(-10.0, 1.0), Value::new(50.0, 2.0)]);
+        assert_eq!(by_temperature(&drift).series.len(), CHANNELS);
     }
 }

@@ -22,7 +22,8 @@ const LEAST_SHARE: f64 = 0.01;
 /// Without zeros the loads at a place must differ by so much.
 const LOAD_RANGE_N: f64 = 1.0;
 
-const NEEDED: &str = "static presses of 1 N without shear at ten places or more, with unloaded rows or several loads at each place";
+const NEEDED: &str = "static presses of 1 N without shear at ten places or more, with unloaded rows or several \
+                      loads at each place";
 
 /// Mean of |measured − simulated| / |simulated|, over places and channels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -41,11 +42,12 @@ struct Pair {
     simulated_uv: [f64; CHANNELS],
 }
 
-/// Compares static presses of 1 N with the `signals` of a simulated pad (µV/N) at the labelled place and force.
+/// Compares static presses of 1 N with the `signals` of a simulated pad (µV/N) at the labelled place and
+/// force.
 ///
-/// Channels whose simulated reading is below 1 % of the largest one of their kind (z; x and y), over all places, are
-/// left out. Readings at one place count once, as their mean. Without any unloaded static row, the slope over the
-/// loads at a place takes the place of the tared reading.
+/// Channels whose simulated reading is below 1 % of the largest one of their kind (z; x and y), over all
+/// places, are left out. Readings at one place count once, as their mean. Without any unloaded static row,
+/// the slope over the loads at a place takes the place of the tared reading.
 ///
 /// # Errors
 /// Fewer than ten places.
@@ -141,7 +143,8 @@ mod tests {
         InfluenceField::sampled(1.0, 29.0, 30.0, maps)
     }
 
-    /// A press whose z channels read 11 % more and whose x and y channels read 32 % less than simulated, beside 50 µV.
+    /// A press whose z channels read 11 % more and whose x and y channels read 32 % less than simulated,
+    /// beside 50 µV.
     fn faulty(place: usize, fz_n: f64) -> Row {
         let label = Label { x_mm: place as f64, fz_n, ..Label::default() };
         let gain = |channel: usize| match channel {

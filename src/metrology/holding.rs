@@ -28,8 +28,8 @@ pub struct Held {
     pub deviation_n: f64,
 }
 
-/// The first trial that holds all three loads. The output stands behind the mean filter of 6 and is calibrated at the
-/// 5 N of the trial itself, so its error there is zero but for the filter's start.
+/// The first trial that holds all three loads. The output stands behind the mean filter of 6 and is
+/// calibrated at the 5 N of the trial itself, so its error there is zero but for the filter's start.
 ///
 /// # Errors
 /// No such trial.

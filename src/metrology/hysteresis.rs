@@ -26,7 +26,8 @@ const NEEDED: &str = "trials that load one place from below 0.5 N to above 4.5 N
 /// The loop of loading and unloading.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Hysteresis {
-    /// Largest difference of the branches at 1, 2, 3, 4 N, as a share of the output at 5 N; the mean over the trials.
+    /// Largest difference of the branches at 1, 2, 3, 4 N, as a share of the output at 5 N; the mean over the
+    /// trials.
     pub share: f64,
     /// How many trials.
     pub trials: usize,
@@ -44,8 +45,8 @@ struct Loop {
     unloading: Vec<[f64; 2]>,
 }
 
-/// The mean over the trials that go up to full scale and down again at one place. The output is calibrated at each
-/// trial's own largest load.
+/// The mean over the trials that go up to full scale and down again at one place. The output is calibrated at
+/// each trial's own largest load.
 ///
 /// # Errors
 /// No such trial.
@@ -93,7 +94,8 @@ impl Loop {
     }
 }
 
-/// What a branch reads at a force: by a line through the samples near it, else between the two samples around it.
+/// What a branch reads at a force: by a line through the samples near it, else between the two samples around
+/// it.
 fn at(branch: &[[f64; 2]], level_n: f64) -> f64 {
     let near: Vec<[f64; 2]> =
         branch.iter().filter(|[fz_n, _]| (fz_n - level_n).abs() <= NEAR_N).copied().collect();
@@ -115,7 +117,8 @@ mod tests {
     use super::*;
     use crate::measured::{Label, Row};
 
-    /// A triangle up and down, after a second of rest. The way down reads `gap_n` more at 2 N, less at other forces.
+    /// A triangle up and down, after a second of rest. The way down reads `gap_n` more at 2 N, less at other
+    /// forces.
     fn triangle(trial: usize, gap_n: f64, rate_hz: f64) -> impl Iterator<Item = Row> {
         series(trial, rate_hz, 22.0, move |t_s| {
             let fz_n = (5.0 - 0.5 * (11.0 - t_s).abs()).max(0.0);

@@ -31,8 +31,9 @@ pub struct LocationSpread {
     pub places_mm: Vec<[f64; 2]>,
 }
 
-/// The spread at each of [`LOADS_N`], over the first 10 s of the held load, decoded after the mean filter of 6. It is
-/// looked for where most of the loads are held; of several trials with one load the first one counts.
+/// The spread at each of [`LOADS_N`], over the first 10 s of the held load, decoded after the mean filter of
+/// 6. It is looked for where most of the loads are held; of several trials with one load the first one
+/// counts.
 ///
 /// # Errors
 /// One of the loads is not held for 8 s at that place, or there is no decoder.
@@ -72,8 +73,8 @@ mod tests {
     use crate::measured::Row;
     use crate::quantity::{CHANNELS, Contact};
 
-    /// Channels 0 and 1 are x and y in µm times the load, channel 2 the load in mN: x goes round with a period of 24
-    /// samples, y with one of 48.
+    /// Channels 0 and 1 are x and y in µm times the load, channel 2 the load in mN: x goes round with a
+    /// period of 24 samples, y with one of 48.
     fn held(trial: usize, fz_n: f64, seconds: f64) -> Vec<Row> {
         let label = move |t_s: f64| press(if t_s < 1.0 { 0.0 } else { fz_n });
         let rows = series(trial, 48.0, seconds + 1.0, |t_s| (label(t_s), 0.0));

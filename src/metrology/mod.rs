@@ -1,8 +1,8 @@
 //! The paper's figures of merit, found in a table of measured contacts.
 //!
-//! Each figure looks for the rows that it can be made from by what they hold, never by the name of a session or trial,
-//! so it is found in any file that has such rows. Where they are missing it says what it needs. `docs/metrology.md`
-//! defines every figure.
+//! Each figure looks for the rows that it can be made from by what they hold, never by the name of a session
+//! or trial, so it is found in any file that has such rows. Where they are missing it says what it needs.
+//! `docs/metrology.md` defines every figure.
 //!
 //! Source: Wu et al., *Sensors* 2026, 26(4), 1378, sections 2.4 and 3.1, Tables 3 and 4, Figures 4 and 8–10.
 

@@ -1,7 +1,7 @@
 //! The pad's output without a decoder: the sum of the three z channels.
 //!
-//! The plate is held by the three modules, so their z channels share a press between them. The shares depend a little on
-//! the place; at one place the sum is proportional to the force.
+//! The plate is held by the three modules, so their z channels share a press between them. The shares depend
+//! a little on the place; at one place the sum is proportional to the force.
 
 use crate::quantity::{CHANNELS, MODULES};
 

@@ -1,7 +1,8 @@
 //! The procedures by which the paper's figures are measured, as one plan.
 //!
-//! The paper gives loads, places and counts, where it says anything; rates, durations and the order are ours, and
-//! `docs/metrology.md` tells them apart. Sessions name the procedures for people: nothing looks for them by name.
+//! The paper gives loads, places and counts, where it says anything; rates, durations and the order are ours,
+//! and `docs/metrology.md` tells them apart. Sessions name the procedures for people: nothing looks for them
+//! by name.
 
 use crate::device::Patch;
 use crate::measured::{Label, Row, Table};
@@ -58,8 +59,8 @@ const RINGS_MM: [f64; 2] = [10.0, 20.0];
 /// How long a static load is held before it is read.
 const DWELL_S: f64 = 2.0;
 
-/// All procedures, one after the other. The endurance test is the last one and begins with a new pad: its cycles count
-/// from zero.
+/// All procedures, one after the other. The endurance test is the last one and begins with a new pad: its
+/// cycles count from zero.
 pub fn plan(patch: &Patch) -> Table {
     let mut plan = Plan { table: Table::default(), temp_c: ROOM_C };
     plan.repeatability();
@@ -285,7 +286,8 @@ mod tests {
     #[test]
     fn a_pad_with_the_published_faults_has_the_published_figures() {
         for entry in found().iter().filter(|entry| entry.paper.is_some() && entry.mean.is_some()) {
-            // The friction's gap and the rest of the loop share a trial's calibration; the others are as exact.
+            // The friction's gap and the rest of the loop share a trial's calibration; the others are as
+            // exact.
             assert!(entry.difference_percent.unwrap().abs() < 2.0, "{entry:?}");
             assert_eq!(entry.status, Status::Inside);
         }

@@ -34,8 +34,8 @@ struct Cycle {
 
 /// The dispersion of the output under presses of 5 N at one place, at the place with the most of them.
 ///
-/// Static rows count first, each tared by the unloaded rows around it; where they are too few, trials, each by its rows
-/// at the largest load.
+/// Static rows count first, each tared by the unloaded rows around it; where they are too few, trials, each
+/// by its rows at the largest load.
 ///
 /// # Errors
 /// Fewer than ten cycles.

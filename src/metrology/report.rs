@@ -109,7 +109,8 @@ impl Line {
         }
     }
 
-    /// Whether it may be in conflict, and this shows it: fitted alone it is still outside, or others leave their bounds.
+    /// Whether it may be in conflict, and this shows it: fitted alone it is still outside, or others leave
+    /// their bounds.
     fn is_shown_by(&self, conflict: &Conflict) -> bool {
         let leaves = |leaving: &Leaving| {
             let line = LINES.iter().find(|line| line.key == leaving.row);

@@ -40,9 +40,9 @@ pub struct Resolution {
 
 /// The smallest step of the longest constant load.
 ///
-/// A 1 s mean scatters around the load's output by its standard deviation s. It is called a step where it is off by more
-/// than 1.960 s; a true step of (1.960 + 1.645) s is off by more than that in 95 % of the means. The baseline is taken
-/// as known. The output is calibrated at the load itself.
+/// A 1 s mean scatters around the load's output by its standard deviation s. It is called a step where it is
+/// off by more than 1.960 s; a true step of (1.960 + 1.645) s is off by more than that in 95 % of the means.
+/// The baseline is taken as known. The output is calibrated at the load itself.
 ///
 /// # Errors
 /// No load is held for 30 s.
@@ -111,7 +111,8 @@ mod tests {
 
     const RATE_HZ: f64 = 45.0;
 
-    /// 1 N for a long time after a second without load, white noise of `noise_n` in the output, a drift per second.
+    /// 1 N for a long time after a second without load, white noise of `noise_n` in the output, a drift per
+    /// second.
     fn held(seconds: f64, noise_n: f64, drift_n_per_s: f64) -> Vec<Row> {
         let mut random = SplitMix64::new(5);
         let label = |t_s: f64| press(if t_s < 1.0 { 0.0 } else { 1.0 });

@@ -25,8 +25,8 @@ const LOOKED_S: f64 = 0.5;
 /// Frequencies are tried in steps of this share of the sampling rate.
 const FREQUENCY_SHARE: f64 = 1e-4;
 
-const NEEDED: &str = "a trial with a step of load of 0.5 N or more from one sample to the next, held for 1 s before and \
-                      after, and unloaded rows";
+const NEEDED: &str = "a trial with a step of load of 0.5 N or more from one sample to the next, held for 1 s \
+                      before and after, and unloaded rows";
 
 /// The stream's answer to a step of load, behind the mean filter of 6.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -35,7 +35,8 @@ pub struct StepResponse {
     pub delay_ms: f64,
     /// From 10 to 90 % of the output's step.
     pub rise_ms: f64,
-    /// Where the response of the stream, the filter included, falls to 1/√2. Half the sampling rate if it does not.
+    /// Where the response of the stream, the filter included, falls to 1/√2. Half the sampling rate if it
+    /// does not.
     pub bandwidth_hz: f64,
     /// Samples per second.
     pub rate_hz: f64,
@@ -72,7 +73,8 @@ pub fn to_steps(table: &Table) -> Result<StepResponse, Needs> {
 /// Samples of a response before its step.
 const BEFORE: usize = filter::WINDOW;
 
-/// One step: the filtered output from 0 to 1, from [`BEFORE`] samples before the first one with the new label on.
+/// One step: the filtered output from 0 to 1, from [`BEFORE`] samples before the first one with the new label
+/// on.
 struct Step {
     response: Vec<f64>,
     interval_s: f64,
@@ -162,7 +164,8 @@ mod tests {
     fn the_filter_alone_gives_its_own_figures() {
         let found = to_steps(&table(stepped(0.0))).unwrap();
         let interval_ms = 1e3 / RATE_HZ;
-        // y climbs by 1/6 each sample: 10 % at 0.6 samples, 50 % at 3, 90 % at 5.4; the label's half is at 0.5.
+        // y climbs by 1/6 each sample: 10 % at 0.6 samples, 50 % at 3, 90 % at 5.4; the label's half is at
+        // 0.5.
         assert!((found.delay_ms - 2.5 * interval_ms).abs() < 1e-6, "{found:?}");
         assert!((found.rise_ms - 4.8 * interval_ms).abs() < 1e-6, "{found:?}");
         // sin(6πf/fs) = 6/√2 · sin(πf/fs) at f = 0.07477 fs.

@@ -1,5 +1,7 @@
 //! Which rows of a table are of what kind, and what their channels read without load.
 
+use std::collections::BTreeMap;
+
 use super::statistics::median;
 use crate::measured::{Label, Row, Table};
 use crate::quantity::CHANNELS;
@@ -7,7 +9,8 @@ use crate::quantity::CHANNELS;
 /// Labels below this are no load: a reference for 100 N is not closer to its own zero.
 const UNLOADED_N: f64 = 0.1;
 
-/// Largest shear of a pure press: what a reference writes whose zero is off by the first and that is tilted by 3°.
+/// Largest shear of a pure press: what a reference writes whose zero is off by the first and that is tilted
+/// by 3°.
 const PRESS_SHEAR_N: f64 = 0.05;
 const PRESS_SHEAR_SHARE: f64 = 0.05;
 
@@ -75,9 +78,10 @@ impl<'t> Zeros<'t> {
         self.unloaded.is_empty()
     }
 
-    /// The zero at the row with this index: between the nearest unloaded rows before and after it of its temperature,
-    /// by its place among them; that of the only one where there is one; `None` where there is none. Rows of its own
-    /// session come first; a session without any, as where zeros are a session of their own, has those of all.
+    /// The zero at the row with this index: between the nearest unloaded rows before and after it of its
+    /// temperature, by its place among them; that of the only one where there is one; `None` where there is
+    /// none. Rows of its own session come first; a session without any, as where zeros are a session of their
+    /// own, has those of all.
     pub(super) fn at(&self, index: usize) -> Option<[f64; CHANNELS]> {
         let row = self.table.rows.get(index)?;
         self.between(index, |zero| zero.session == row.session && is_same_temperature(row, zero))
@@ -151,21 +155,37 @@ pub(super) fn is_ordinary(table: &Table) -> impl Fn(&Row) -> bool + use<> {
 /// Sorts items by their place, in the order in which the places first appear.
 pub(super) fn by_place<T>(items: Vec<T>, label: impl Fn(&T) -> &Label) -> Vec<Vec<T>> {
     let mut places: Vec<Vec<T>> = Vec::new();
+    // Places by the square of the plate that their first item lies in: near ones are in the squares around.
+    let mut squares: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
     for item in items {
-        let known = places
-            .iter_mut()
-            .find(|place| place.first().is_some_and(|first| is_same_place(label(first), label(&item))));
-        match known {
+        let [column, row] = square(label(&item));
+        let around = (column - 1..=column + 1).flat_map(|x| (row - 1..=row + 1).map(move |y| [x, y]));
+        let near = around.filter_map(|square| squares.get(&square)).flatten();
+        let is_same = |place: &&usize| {
+            let first = places.get(**place).and_then(|place| place.first());
+            first.is_some_and(|first| is_same_place(label(first), label(&item)))
+        };
+        let known = near.filter(is_same).min().copied();
+        match known.and_then(|known| places.get_mut(known)) {
             Some(place) => place.push(item),
-            None => places.push(vec![item]),
+            None => {
+                squares.entry([column, row]).or_default().push(places.len());
+                places.push(vec![item]);
+            }
         }
     }
     places
 }
 
+/// The square of the plate, as wide as a place, in which a label lies.
+fn square(label: &Label) -> [i64; 2] {
+    // Far from the ends of the integers, so that its neighbours are some, too.
+    [label.x_mm, label.y_mm].map(|mm| (mm / SAME_PLACE_MM).floor().clamp(-1e15, 1e15) as i64)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::fixture::{pressed, row, table, unloaded};
+    use super::super::fixture::{pressed, table, unloaded};
     use super::*;
 
     #[test]
@@ -222,8 +242,11 @@ mod tests {
     #[test]
     fn places_are_collected() {
         let at = |x_mm| Label { x_mm, ..Label::default() };
-        let places = by_place(vec![at(0.0), at(5.0), at(0.05)], |label| label);
-        assert_eq!(places.iter().map(Vec::len).collect::<Vec<_>>(), [2, 1]);
-        assert_eq!(row(Label::default(), [0.0; CHANNELS]).trial, None);
+        // −0.04 and 0.05 lie in two squares.
+        let labels = [0.0, 5.0, 0.05, -0.04, 5.2, f64::NAN, f64::INFINITY, -1e300].map(at);
+        let places = by_place(labels.to_vec(), |label| label);
+        assert_eq!(places.iter().map(Vec::len).collect::<Vec<_>>(), [3, 1, 1, 1, 1, 1]);
+        let many: Vec<Label> = (0..200_000).map(|k| at(0.3 * f64::from(k))).collect();
+        assert_eq!(by_place(many, |label| label).len(), 200_000);
     }
 }

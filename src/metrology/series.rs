@@ -6,8 +6,8 @@ use super::rows::{Zeros, is_same_place, is_unloaded, less};
 use crate::measured::{Label, Row, Table};
 use crate::quantity::CHANNELS;
 
-/// A load is constant as long as each part of it stays so close to its mean, and as a share of its press: references
-/// are noisy, and fingers tremble in proportion.
+/// A load is constant as long as each part of it stays so close to its mean, and as a share of its press:
+/// references are noisy, and fingers tremble in proportion.
 const CONSTANT_N: f64 = 0.1;
 const CONSTANT_SHARE: f64 = 0.05;
 
@@ -20,7 +20,8 @@ pub(super) struct Sample {
     pub(super) uv: [f64; CHANNELS],
 }
 
-/// The trials with times, channels and a zero: their own unloaded start, else the unloaded static rows around them.
+/// The trials with times, channels and a zero: their own unloaded start, else the unloaded static rows around
+/// them.
 pub(super) fn all(table: &Table) -> Vec<Vec<Sample>> {
     let zeros = Zeros::of(table);
     let mut trials: Vec<Vec<(usize, &Row)>> = vec![Vec::new(); table.trials.len()];
@@ -54,7 +55,8 @@ pub(super) fn plateaus(samples: &[Sample]) -> Vec<&[Sample]> {
     parts
 }
 
-/// The parts in which a load is held for so long: plateaus whose halves do not differ, unlike those of a slow ramp.
+/// The parts in which a load is held for so long: plateaus whose halves do not differ, unlike those of a slow
+/// ramp.
 pub(super) fn held(samples: &[Sample], seconds: f64) -> impl Iterator<Item = &[Sample]> {
     let long = plateaus(samples).into_iter().filter(move |part| duration_s(part) >= seconds);
     long.filter(|part| {

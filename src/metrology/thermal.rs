@@ -23,8 +23,8 @@ pub struct ThermalDrift {
     pub uv_per_10_c: f64,
     /// The slope of each channel.
     pub slope_uv_per_c: [f64; CHANNELS],
-    /// The largest distance of a temperature's mean reading from the channel's line, as a share of the line's whole
-    /// change; the mean over the channels.
+    /// The largest distance of a temperature's mean reading from the channel's line, as a share of the line's
+    /// whole change; the mean over the channels.
     pub nonlinearity_share: f64,
     /// Temperatures and the channels' mean change there, from the middle of the lines; for the plot.
     #[serde(skip)]
@@ -156,8 +156,8 @@ mod tests {
 
     #[test]
     fn a_parabola_is_told() {
-        // About the middle, 20 °C: (1 + 40c)(T − 20) + c (T − 20)², whose largest distance from its line at ±30 °C is
-        // c (900 − 400).
+        // About the middle, 20 °C: (1 + 40c)(T − 20) + c (T − 20)², whose largest distance from its line at
+        // ±30 °C is c (900 − 400).
         let c = 1e-3;
         let found = drift(&table(TEMPERATURES_C.map(|temp_c| at(temp_c, None, c)))).unwrap();
         let expected = c * 500.0 / ((1.0 + 40.0 * c) * 60.0);

@@ -321,6 +321,33 @@ fn the_example_of_the_reference_can_be_laid_over_the_nominal_device() {
 }
 
 #[test]
+fn the_shipped_imperfections_can_be_laid_over_the_nominal_device() {
+    let nominal = Device::nominal();
+    let paths = tomls("models/imperfections");
+    assert!(paths.len() >= 4);
+    for path in paths {
+        let (device, found) = nominal.with_imperfections(&fs::read_to_string(&path).unwrap());
+        assert_eq!(found, vec![], "{}", path.display());
+        assert!(device.is_some_and(|device| device != nominal), "{} changes nothing", path.display());
+    }
+}
+
+#[test]
+fn the_siblings_gains_are_its_published_sensitivities_over_simulated_ones() {
+    let text = include_str!("../models/imperfections/gains.toml");
+    let device = Device::nominal().with_imperfections(text).0.unwrap();
+    let measured = [[794.0, 864.0, 276.0], [808.0, 819.0, 329.0], [799.0, 863.0, 278.0]];
+    for (module, measured) in device.modules.iter().zip(measured) {
+        for ((gain, measured), simulated) in module.gain.iter().zip(measured).zip([629.0, 649.0, 331.0]) {
+            assert!(
+                (gain - measured / simulated).abs() <= 0.0005 + 1e-12,
+                "{gain}: {measured} / {simulated}"
+            );
+        }
+    }
+}
+
+#[test]
 #[expect(clippy::disallowed_methods, reason = "what is tested is the time that it takes")]
 fn checking_is_bounded_whatever_the_text() {
     let table = |head: &str| {

@@ -19,6 +19,7 @@ pub mod mapping;
 pub mod measured;
 #[cfg(feature = "simulator")]
 pub mod mechanics;
+pub mod metrology;
 pub mod output;
 pub mod pipeline;
 pub mod plot;

@@ -43,12 +43,16 @@ impl Pad {
         if self.is_given() { self.read() } else { Ok(paper()) }
     }
 
+    /// Reads the device alone, without imperfections.
+    pub(super) fn designed(&self) -> Result<Device, Failure> {
+        self.device
+            .as_ref()
+            .map_or_else(|| Ok(Device::nominal()), |path| read(path, "device", Device::from_toml))
+    }
+
     /// Reads the files. What is wrong with them makes them unusable, and all of it is told.
     pub(super) fn read(&self) -> Result<Device, Failure> {
-        let device = match &self.device {
-            Some(path) => read(path, "device", Device::from_toml)?,
-            None => Device::nominal(),
-        };
+        let device = self.designed()?;
         match &self.imperfections {
             Some(name) if name.as_os_str() == "paper" => {
                 read_text("imperfections", "paper", PAPER, |text| device.with_imperfections(text))

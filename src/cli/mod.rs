@@ -17,9 +17,9 @@ mod latency;
 mod layout;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod live;
+mod metrology;
 mod pictures;
 mod profile;
-#[cfg(feature = "simulator")]
 mod progress;
 mod protocol;
 #[cfg(all(feature = "live", target_os = "linux"))]
@@ -89,6 +89,8 @@ enum Verb {
     Profile(profile::Arguments),
     /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
     Layout(layout::Arguments),
+    /// Find the paper's figures of merit, of the twin or of a measured file.
+    Metrology(metrology::Arguments),
 }
 
 /// Why a verb did not do what was asked.
@@ -131,6 +133,7 @@ pub fn run() -> ExitCode {
         Verb::Twin(arguments) => twin::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
         Verb::Layout(arguments) => layout::run(&arguments),
+        Verb::Metrology(arguments) => metrology::run(&arguments),
     };
     let (code, message) = match outcome {
         Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,

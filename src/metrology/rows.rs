@@ -1,0 +1,229 @@
+//! Which rows of a table are of what kind, and what their channels read without load.
+
+use super::statistics::median;
+use crate::measured::{Label, Row, Table};
+use crate::quantity::CHANNELS;
+
+/// Labels below this are no load: a reference for 100 N is not closer to its own zero.
+const UNLOADED_N: f64 = 0.1;
+
+/// Largest shear of a pure press: what a reference writes whose zero is off by the first and that is tilted by 3°.
+const PRESS_SHEAR_N: f64 = 0.05;
+const PRESS_SHEAR_SHARE: f64 = 0.05;
+
+/// How far a load may be from the one that is looked for, as a share of it.
+const LOAD_SHARE: f64 = 0.1;
+
+/// Places closer than this are the same.
+const SAME_PLACE_MM: f64 = 0.1;
+
+/// Temperatures closer than this have a common zero.
+const SAME_TEMPERATURE_C: f64 = 1.0;
+
+/// Rows are of the usual temperature if they are as close to it.
+const USUAL_TEMPERATURE_C: f64 = 2.5;
+
+/// A pad with fewer cycles than this more than the least one in the table is as good as new.
+const FRESH_CYCLES: f64 = 1_000.0;
+
+/// Magnitude of a labelled force.
+pub(super) fn resultant_n(label: &Label) -> f64 {
+    label.fx_n.hypot(label.fy_n).hypot(label.fz_n)
+}
+
+/// Whether nothing touches the pad.
+pub(super) fn is_unloaded(label: &Label) -> bool {
+    resultant_n(label) <= UNLOADED_N
+}
+
+/// Whether it is a load without shear worth mentioning.
+pub(super) fn is_press(label: &Label) -> bool {
+    let shear_n = label.fx_n.hypot(label.fy_n);
+    !is_unloaded(label) && label.fz_n > 0.0 && shear_n <= PRESS_SHEAR_N + PRESS_SHEAR_SHARE * label.fz_n
+}
+
+/// Whether a load is the one that is looked for.
+pub(super) fn is_load(fz_n: f64, wanted_n: f64) -> bool {
+    (fz_n - wanted_n).abs() <= LOAD_SHARE * wanted_n
+}
+
+/// Whether both labels are of one place.
+pub(super) fn is_same_place(one: &Label, other: &Label) -> bool {
+    (one.x_mm - other.x_mm).hypot(one.y_mm - other.y_mm) <= SAME_PLACE_MM
+}
+
+/// Whether rows are of one temperature, as far as it is known.
+fn is_same_temperature(one: &Row, other: &Row) -> bool {
+    one.temp_c.zip(other.temp_c).is_none_or(|(one, other)| (one - other).abs() <= SAME_TEMPERATURE_C)
+}
+
+/// What the channels read without load, by the unloaded static rows around a row.
+pub(super) struct Zeros<'t> {
+    table: &'t Table,
+    /// Indices of the unloaded static rows with channels.
+    unloaded: Vec<usize>,
+}
+
+impl<'t> Zeros<'t> {
+    pub(super) fn of(table: &'t Table) -> Self {
+        let is_zero = |row: &Row| row.trial.is_none() && row.uv.is_some() && is_unloaded(&row.label);
+        let rows = table.rows.iter().enumerate();
+        Self { table, unloaded: rows.filter(|(_, row)| is_zero(row)).map(|(index, _)| index).collect() }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.unloaded.is_empty()
+    }
+
+    /// The zero at the row with this index: between the nearest unloaded rows before and after it of its temperature,
+    /// by its place among them; that of the only one where there is one; `None` where there is none. Rows of its own
+    /// session come first; a session without any, as where zeros are a session of their own, has those of all.
+    pub(super) fn at(&self, index: usize) -> Option<[f64; CHANNELS]> {
+        let row = self.table.rows.get(index)?;
+        self.between(index, |zero| zero.session == row.session && is_same_temperature(row, zero))
+            .or_else(|| self.between(index, |zero| is_same_temperature(row, zero)))
+    }
+
+    fn between(&self, index: usize, is_shared: impl Fn(&Row) -> bool) -> Option<[f64; CHANNELS]> {
+        let (before, after) = self.unloaded.split_at(self.unloaded.partition_point(|at| *at < index));
+        let shared = |at: &&usize| self.table.rows.get(**at).is_some_and(&is_shared);
+        let before = before.iter().rev().find(shared).copied();
+        let after = after.iter().find(shared).copied();
+        let [first, last] = [before.or(after)?, after.or(before)?];
+        let reads = |at: usize| self.table.rows.get(at).and_then(|zero| zero.uv);
+        let (from, to) = (reads(first)?, reads(last)?);
+        let share = if last > first { (index - first) as f64 / (last - first) as f64 } else { 0.0 };
+        Some(std::array::from_fn(|channel| from[channel] + share * (to[channel] - from[channel])))
+    }
+
+    /// What the channels of a row read beyond their zero; `None` without channels or zero.
+    pub(super) fn tared(&self, index: usize) -> Option<[f64; CHANNELS]> {
+        let uv = self.table.rows.get(index)?.uv?;
+        Some(less(&uv, &self.at(index)?))
+    }
+}
+
+/// Channel by channel.
+pub(super) fn less(uv: &[f64; CHANNELS], zero_uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+    std::array::from_fn(|channel| uv[channel] - zero_uv[channel])
+}
+
+/// A static load and what it adds to the channels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reading<'t> {
+    pub(super) row: &'t Row,
+    /// Beyond the zero.
+    pub(super) uv: [f64; CHANNELS],
+}
+
+/// The static loads for which a zero is known.
+pub(super) fn readings<'t>(table: &'t Table, zeros: &Zeros) -> Vec<Reading<'t>> {
+    let tared = |(index, row)| Some(Reading { row, uv: zeros.tared(index)? });
+    loads(table).filter_map(tared).collect()
+}
+
+/// The static loads that have channels, with their indices.
+pub(super) fn loads(table: &Table) -> impl Iterator<Item = (usize, &Row)> {
+    let is_load = |row: &Row| row.trial.is_none() && row.uv.is_some() && !is_unloaded(&row.label);
+    table.rows.iter().enumerate().filter(move |(_, row)| is_load(row))
+}
+
+/// The temperature of most static loads; `None` where none is known.
+pub(super) fn usual_temperature_c(table: &Table) -> Option<f64> {
+    median(loads(table).filter_map(|(_, row)| row.temp_c))
+}
+
+/// Whether a temperature is the usual one, as far as both are known.
+pub(super) fn is_usual(temp_c: Option<f64>, usual_c: Option<f64>) -> bool {
+    match (temp_c, usual_c) {
+        (Some(temp_c), Some(usual_c)) => (temp_c - usual_c).abs() <= USUAL_TEMPERATURE_C,
+        _ => true,
+    }
+}
+
+/// Picks the rows of a pad that is as good as new, at the usual temperature.
+pub(super) fn is_ordinary(table: &Table) -> impl Fn(&Row) -> bool + use<> {
+    let usual_c = usual_temperature_c(table);
+    let least = loads(table).filter_map(|(_, row)| row.cycle).fold(f64::INFINITY, f64::min);
+    move |row| is_usual(row.temp_c, usual_c) && row.cycle.is_none_or(|cycle| cycle < least + FRESH_CYCLES)
+}
+
+/// Sorts items by their place, in the order in which the places first appear.
+pub(super) fn by_place<T>(items: Vec<T>, label: impl Fn(&T) -> &Label) -> Vec<Vec<T>> {
+    let mut places: Vec<Vec<T>> = Vec::new();
+    for item in items {
+        let known = places
+            .iter_mut()
+            .find(|place| place.first().is_some_and(|first| is_same_place(label(first), label(&item))));
+        match known {
+            Some(place) => place.push(item),
+            None => places.push(vec![item]),
+        }
+    }
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::{pressed, row, table, unloaded};
+    use super::*;
+
+    #[test]
+    fn kinds_of_labels_are_told_apart() {
+        let label = |fx_n, fz_n| Label { fx_n, fz_n, ..Label::default() };
+        assert!(is_unloaded(&label(0.05, -0.05)) && !is_unloaded(&label(0.0, 0.5)));
+        assert!(is_press(&label(0.09, 1.0)) && !is_press(&label(0.11, 1.0)) && !is_press(&label(0.0, -1.0)));
+        assert!(is_load(0.95, 1.0) && is_load(1.05, 1.0) && !is_load(1.2, 1.0));
+        assert!(!is_press(&label(f64::NAN, 1.0)) && !is_load(f64::NAN, 1.0));
+    }
+
+    #[test]
+    fn a_zero_lies_between_its_neighbours() {
+        let table = table([unloaded(10.0), pressed(1.0, 0.0), pressed(1.0, 0.0), unloaded(40.0)]);
+        let zeros = Zeros::of(&table);
+        assert_eq!((zeros.at(1).unwrap()[0], zeros.at(2).unwrap()[8]), (20.0, 30.0));
+        assert_eq!(zeros.tared(1).unwrap()[0], -20.0);
+    }
+
+    #[test]
+    fn zeros_of_the_same_session_and_temperature_come_first() {
+        let at =
+            |session, temp_c, uv: f64| Row { session: Some(session), temp_c: Some(temp_c), ..unloaded(uv) };
+        let load = Row { session: Some(0), temp_c: Some(25.2), ..pressed(1.0, 0.0) };
+        let table = table([at(0, 25.0, 7.0), at(1, 25.0, 1.0), at(0, 35.0, 2.0), load, at(1, 25.0, 3.0)]);
+        assert_eq!(Zeros::of(&table).at(3), Some([7.0; CHANNELS]));
+        assert_eq!(Zeros::of(&table).at(99), None);
+    }
+
+    #[test]
+    fn zeros_may_be_a_session_of_their_own() {
+        let in_session = |session, row: Row| Row { session: Some(session), ..row };
+        let rows = [unloaded(4.0), pressed(1.0, 0.0), unloaded(8.0)];
+        let table = table([0, 1, 0].into_iter().zip(rows).map(|(session, row)| in_session(session, row)));
+        assert_eq!(Zeros::of(&table).at(1), Some([6.0; CHANNELS]));
+    }
+
+    #[test]
+    fn warm_and_worn_rows_are_not_ordinary() {
+        let with = |temp_c, cycle| Row { temp_c, cycle, ..pressed(1.0, 0.0) };
+        let rows = [
+            with(Some(25.0), Some(100.0)),
+            with(Some(26.0), None),
+            with(None, Some(900.0)),
+            with(Some(35.0), None),
+            with(Some(25.0), Some(50_000.0)),
+        ];
+        let table = table(rows);
+        let is_ordinary = is_ordinary(&table);
+        let kept: Vec<bool> = table.rows.iter().map(is_ordinary).collect();
+        assert_eq!(kept, [true, true, true, false, false]);
+    }
+
+    #[test]
+    fn places_are_collected() {
+        let at = |x_mm| Label { x_mm, ..Label::default() };
+        let places = by_place(vec![at(0.0), at(5.0), at(0.05)], |label| label);
+        assert_eq!(places.iter().map(Vec::len).collect::<Vec<_>>(), [2, 1]);
+        assert_eq!(row(Label::default(), [0.0; CHANNELS]).trial, None);
+    }
+}

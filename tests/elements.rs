@@ -12,6 +12,9 @@ mod clamped_plate;
 #[path = "elements/convergence.rs"]
 mod convergence;
 #[cfg(test)]
+#[path = "elements/debonding.rs"]
+mod debonding;
+#[cfg(test)]
 #[path = "elements/manufactured.rs"]
 mod manufactured;
 #[cfg(test)]

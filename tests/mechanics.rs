@@ -26,6 +26,7 @@ fn pad(device: &Device) -> Pad {
 /// A pad without any symmetry.
 fn crooked() -> Device {
     let text = "[[module]]\nindex = 0\nradial_mm = -0.7\ntangential_mm = 0.9\nfilm_e_factor = 1.1\n\
+                debonded_share = 0.3\ndebonded_side = \"+y\"\n\
                 [[module]]\nindex = 1\nrotation_deg = -25\ntilt_radial_deg = 2\ntilt_tangential_deg = -3\n\
                 [[module]]\nindex = 2\nframe_open = \"-x\"\nbond_e_factor = 0.5\n";
     Device::nominal().with_imperfections(text).0.unwrap()

@@ -19,7 +19,7 @@ use crate::measured::write;
 use crate::metrology::figures::{Evidence, Figures};
 use crate::metrology::report::{Entry, entries};
 use crate::metrology::{drawing, procedures};
-use crate::twin::{drawn, measurement};
+use crate::twin::measurement;
 
 /// Arguments of `tactpad metrology`.
 #[derive(Debug, Args)]
@@ -116,7 +116,7 @@ fn of_twin(arguments: &Arguments) -> Result<Report, Failure> {
     let (mut all, mut files) = (Vec::new(), Vec::new());
     for seed in arguments.seeds.clone() {
         progress.step(format_args!("measuring the twin with seed {seed} of {}", arguments.seeds.end()));
-        let table = measurement::carry_out(&plan, &drawn(&device, seed), &field, seed).table;
+        let table = measurement::carry_out(&plan, &device, &field, seed).table;
         let evidence =
             Evidence { table: &table, signals: &nominal.signals, decoder: None, simulation_network: None };
         let figures = Figures::of(&evidence);

@@ -35,6 +35,7 @@ mod simulate;
 mod summary;
 mod tables;
 mod text_file;
+mod twin;
 mod written;
 
 use std::io::{self, Write};
@@ -82,6 +83,8 @@ enum Verb {
     Simulate(simulate::Arguments),
     /// Write a measuring plan: the paper's, or the recommended one.
     Protocol(protocol::Arguments),
+    /// Make measured-like data with the imperfect virtual pad.
+    Twin(twin::Arguments),
     /// List, show and check profiles.
     Profile(profile::Arguments),
     /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
@@ -127,6 +130,7 @@ pub fn run() -> ExitCode {
         Verb::Latency(arguments) => latency::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Protocol(arguments) => protocol::run(&arguments),
+        Verb::Twin(arguments) => twin::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
         Verb::Layout(arguments) => layout::run(&arguments),
         Verb::Metrology(arguments) => metrology::run(&arguments),

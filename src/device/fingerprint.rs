@@ -8,7 +8,8 @@ use super::schema::{DIRECTIONS, Effect, GAUGE_NAMES, SIDES};
 
 impl Device {
     /// The text that [`Self::fingerprint`] is taken from: a line `name = value` for each parameter whose effect is
-    /// [`Effect::Field`], in the order of [`Parameter::all`], then the gauges' directions and the open frames.
+    /// [`Effect::Field`], in the order of [`Parameter::all`], then the gauges' directions, the open frames and the sides where bonds have come
+    /// off.
     ///
     /// Values are the shortest decimals that read back equal, so two texts are equal exactly if all these values
     /// are. It holds neither the device's name, gains and offsets, nor how the bridges' signals are read out.
@@ -23,8 +24,11 @@ impl Device {
             let _ = writeln!(text, "gauge.{name}.direction = {}", word.map_or("", |(word, _)| word));
         }
         for (index, module) in self.modules.iter().enumerate() {
-            let word = SIDES.iter().find(|(_, side)| Some(*side) == module.frame_open);
-            let _ = writeln!(text, "module.{index}.frame_open = {}", word.map_or("none", |(word, _)| word));
+            let debonded_side = module.debonded().map(|(side, _)| side);
+            for (key, side) in [("frame_open", module.frame_open), ("debonded_side", debonded_side)] {
+                let word = SIDES.iter().find(|(_, named)| Some(*named) == side);
+                let _ = writeln!(text, "module.{index}.{key} = {}", word.map_or("none", |(word, _)| word));
+            }
         }
         text
     }
@@ -73,6 +77,11 @@ mod tests {
         };
         assert!(differs(|device| device.gauges[6].direction = crate::device::Direction::Y));
         assert!(differs(|device| device.modules[1].frame_open = Some(Side::PlusX)));
+        assert!(differs(|device| {
+            device.modules[2].debonded_side = Some(Side::PlusX);
+            device.modules[2].debonded_share = 0.2;
+        }));
+        assert!(!differs(|device| device.modules[2].debonded_side = Some(Side::PlusX)), "of a whole bond");
         assert!(!differs(|device| device.name.push('!')));
         assert!(!differs(|device| device.circuit.bridge_nonlinearity = true));
         assert!(!differs(|device| device.modules[0].radial_mm = -0.0));

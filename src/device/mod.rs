@@ -261,7 +261,7 @@ pub struct Module {
     pub frame_open: Option<Side>,
     /// Share of the bond's area that has come off, from `debonded_side` inwards.
     pub debonded_share: f64,
-    /// Where the bond has come off.
+    /// Where the bond has come off; in a device that was read, there is a side exactly if there is a share.
     pub debonded_side: Option<Side>,
     /// Factors of the three signals x, y, z.
     pub gain: [f64; 3],
@@ -286,6 +286,11 @@ impl Module {
         gain: [1.0; 3],
         offset_uv: [0.0; 3],
     };
+
+    /// Where its bond has come off, and over which share of the bond's area; `None` where it is whole.
+    pub fn debonded(&self) -> Option<(Side, f64)> {
+        self.debonded_side.map(|side| (side, self.debonded_share)).filter(|(_, share)| *share > 0.0)
+    }
 }
 
 #[cfg(test)]

@@ -218,10 +218,10 @@ mod tests {
     fn each_parameter_is_a_number_of_its_own() {
         let nominal = Device::nominal();
         let count = Parameter::all().count();
-        // Of the pad: 2 + 4 + 11 + 2 + 1 + 3 and seven materials' 2; seven gauges' 5; three modules' 8 and two lists.
+        // Of the pad: 2 + 4 + 11 + 2 + 1 + 3 and seven materials' 2; seven gauges' 5; three modules' 9 and two lists.
         // Of its behaviour, by table: some numbers, and nine for each list of channels.
         let behaviour = (3 + 27) + (2 + 9) + (1 + 36) + (1 + 9) + (2 + 9) + 4 + 14;
-        assert_eq!(count, 23 + 14 + 35 + 42 + behaviour);
+        assert_eq!(count, 23 + 14 + 35 + 45 + behaviour);
         for changed in Parameter::all() {
             assert_eq!(changed.name().parse(), Ok(changed));
             let mut device = nominal.clone();

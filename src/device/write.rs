@@ -89,6 +89,7 @@ mod tests {
         device.circuit.bridge_nonlinearity = true;
         device.gauges[6].direction = Direction::Y;
         device.modules[1].frame_open = Some(Side::MinusY);
+        device.modules.iter_mut().for_each(|module| module.debonded_side = Some(Side::PlusX));
         device.contact.max_centre_radius_mm = 20.0;
         device.reported = device.reported.map(|it| Reported { force_resolution_n: 0.1 + 0.2, ..it });
         let (read, found) = Device::from_toml(&device.to_toml());

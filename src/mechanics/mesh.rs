@@ -101,6 +101,8 @@ pub struct Fineness {
     pub plane: Grading,
     /// Across the layers.
     pub height: Grading,
+    /// Along x or y, by the distance from where a bond ends that has come off in part.
+    pub debonded: Sizing,
 }
 
 impl Fineness {
@@ -118,11 +120,16 @@ impl Fineness {
             film_at_frame: Sizing { finest_mm: 0.05, growth: 1.5, coarsest_mm: 0.2 },
             frame: Sizing { finest_mm: 0.03, growth: 0.7, coarsest_mm: 0.2 },
         },
+        debonded: Sizing { finest_mm: 0.02, growth: 1.5, coarsest_mm: 0.6 },
     };
 
     /// The same grading with every size multiplied by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
-        Self { plane: self.plane.scaled(factor), height: self.height.scaled(factor) }
+        Self {
+            plane: self.plane.scaled(factor),
+            height: self.height.scaled(factor),
+            debonded: self.debonded.scaled(factor),
+        }
     }
 }
 
@@ -151,13 +158,18 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Meshes a module.
-    pub fn of(stack: &Stack, gauges: &[Gauge], open: Option<Side>, fineness: Fineness) -> Self {
-        let lines_mm =
-            [lines_x(stack, gauges, fineness), lines_y(stack, gauges, fineness), lines_z(stack, fineness)];
+    /// Meshes a module of the device.
+    pub fn of(device: &Device, module: &Module, fineness: Fineness) -> Self {
+        let [x, y] = [0, 1].map(|axis| plane_lines(device, module, axis, fineness));
+        Self::on([x, y, lines_z(&device.stack, fineness)], &device.stack, module)
+    }
+
+    /// The bricks of a module on given ascending grid lines along x, y and z: what fills the middle of a cell fills the
+    /// cell.
+    pub fn on(lines_mm: [Vec<f64>; 3], stack: &Stack, module: &Module) -> Self {
         Self::filled(lines_mm, |[x, y, z]| {
             let layer = layer_at(stack, z);
-            occupied(stack, open, layer, x, y).then_some(layer)
+            occupied(stack, module, layer, [x, y]).then_some(layer)
         })
     }
 
@@ -248,28 +260,46 @@ pub fn half_sizes_mm(gauge: &Gauge) -> [f64; 2] {
     }
 }
 
-fn lines_x(stack: &Stack, gauges: &[Gauge], fineness: Fineness) -> Vec<f64> {
-    let outline = [stack.post_length_x_mm, stack.film_length_x_mm].map(|length| length / 2.0);
-    let gauges = gauges.iter().map(|gauge| (gauge.x_mm, half_sizes_mm(gauge)[0]));
-    plane_lines(outline, stack.frame_width_mm, gauges, fineness.plane)
+/// Half the sizes along x and y of the post, of the frame's window and of the film.
+fn half_outlines_mm(stack: &Stack) -> [[f64; 2]; 3] {
+    let film = [stack.film_length_x_mm / 2.0, stack.film_width_y_mm / 2.0];
+    let window = film.map(|half| half - stack.frame_width_mm);
+    [[stack.post_length_x_mm / 2.0, stack.post_width_y_mm / 2.0], window, film]
 }
 
-fn lines_y(stack: &Stack, gauges: &[Gauge], fineness: Fineness) -> Vec<f64> {
-    let outline = [stack.post_width_y_mm, stack.film_width_y_mm].map(|width| width / 2.0);
-    let gauges = gauges.iter().map(|gauge| (gauge.y_mm, half_sizes_mm(gauge)[1]));
-    plane_lines(outline, stack.frame_width_mm, gauges, fineness.plane)
+/// The axis that a side lies along, and the side's sign on it.
+const fn facing(side: Side) -> (usize, f64) {
+    match side {
+        Side::PlusX => (0, 1.0),
+        Side::MinusX => (0, -1.0),
+        Side::PlusY => (1, 1.0),
+        Side::MinusY => (1, -1.0),
+    }
 }
 
-fn plane_lines(
-    [post, film]: [f64; 2],
-    frame_width: f64,
-    gauges: impl Iterator<Item = (f64, f64)>,
-    grading: Grading,
-) -> Vec<f64> {
-    let window = film - frame_width;
-    let mut lines: Vec<f64> = [post, window, film].into_iter().flat_map(|at| [-at, at]).collect();
-    lines.extend(gauges.flat_map(|(centre, half)| [centre - half, centre + half]));
-    graded(&lines, |at| grading.at(at.abs() - post, at.abs() - window))
+/// The side from which a bond has come off, as its axis and sign, and how far towards it the rest reaches.
+fn bond_rest(stack: &Stack, module: &Module) -> Option<(usize, f64, f64)> {
+    let (side, share) = module.debonded()?;
+    let ((axis, sign), [post, ..]) = (facing(side), half_outlines_mm(stack));
+    Some((axis, sign, post[axis] * (1.0 - 2.0 * share)))
+}
+
+/// Grid lines along x (axis 0) or y.
+fn plane_lines(device: &Device, module: &Module, axis: usize, fineness: Fineness) -> Vec<f64> {
+    let outlines = half_outlines_mm(&device.stack).map(|half| half[axis]);
+    let mut lines: Vec<f64> = outlines.into_iter().flat_map(|at| [-at, at]).collect();
+    for gauge in &device.gauges {
+        let (centre, half) = ([gauge.x_mm, gauge.y_mm][axis], half_sizes_mm(gauge)[axis]);
+        lines.extend([centre - half, centre + half]);
+    }
+    let rest = bond_rest(&device.stack, module).filter(|rest| rest.0 == axis);
+    let bond_end = rest.map(|(_, sign, reach)| sign * reach);
+    lines.extend(bond_end);
+    let [post, window, _] = outlines;
+    graded(&lines, |at| {
+        let size = fineness.plane.at(at.abs() - post, at.abs() - window);
+        bond_end.map_or(size, |end| size.min(fineness.debonded.at((at - end).abs())))
+    })
 }
 
 fn lines_z(stack: &Stack, fineness: Fineness) -> Vec<f64> {
@@ -292,24 +322,19 @@ fn layer_at(stack: &Stack, z_mm: f64) -> Layer {
 }
 
 /// Whether a layer fills the column at a place of the module's plane.
-fn occupied(stack: &Stack, open: Option<Side>, layer: Layer, x_mm: f64, y_mm: f64) -> bool {
+fn occupied(stack: &Stack, module: &Module, layer: Layer, place_mm: [f64; 2]) -> bool {
+    let [post, window, _] = half_outlines_mm(stack);
+    let within = |half: [f64; 2]| place_mm[0].abs() < half[0] && place_mm[1].abs() < half[1];
     match layer {
         Layer::Frame => {
-            let half_x = stack.film_length_x_mm / 2.0 - stack.frame_width_mm;
-            let half_y = stack.film_width_y_mm / 2.0 - stack.frame_width_mm;
-            let in_window = x_mm.abs() < half_x && y_mm.abs() < half_y;
-            let missing = match open {
-                None => false,
-                Some(Side::PlusX) => x_mm > half_x,
-                Some(Side::MinusX) => x_mm < -half_x,
-                Some(Side::PlusY) => y_mm > half_y,
-                Some(Side::MinusY) => y_mm < -half_y,
-            };
-            !in_window && !missing
+            let is_open = |(axis, sign): (usize, f64)| sign * place_mm[axis] > window[axis];
+            !within(window) && !module.frame_open.map(facing).is_some_and(is_open)
         }
         Layer::Pi | Layer::Adh | Layer::Fpc => true,
-        Layer::Post | Layer::Bond => {
-            x_mm.abs() < stack.post_length_x_mm / 2.0 && y_mm.abs() < stack.post_width_y_mm / 2.0
+        Layer::Post => within(post),
+        Layer::Bond => {
+            let is_off = |(axis, sign, reach): (usize, f64, f64)| sign * place_mm[axis] > reach;
+            within(post) && !bond_rest(stack, module).is_some_and(is_off)
         }
     }
 }

@@ -26,12 +26,12 @@ use super::pad::{Pad, add, springs};
 use super::plate::Rigidity;
 use super::superelement::{LayerDerivatives, Superelement};
 
-/// The numbers whose derivatives the model knows: the keys of `[[module]]` tables that change the mechanics, the
-/// modules' radius, the plate's thickness, the layers' thicknesses and the moduli. For any other number, solve again.
+/// The numbers whose derivatives the model knows: the keys of `[[module]]` tables that change the mechanics, but not
+/// the debonding, which takes elements away; the modules' radius, the plate's thickness, the layers' thicknesses and the moduli. For any other number, solve again.
 pub fn known() -> impl Iterator<Item = Parameter> {
     Parameter::all().filter(|parameter| {
         let name = parameter.name();
-        let is_listed = parameter.module().is_some()
+        let is_listed = (parameter.module().is_some() && !name.ends_with(".debonded_share"))
             || ["modules.centre_radius_mm", "plate.thickness_mm", "stack.post_height_mm"].contains(&name)
             || (name.starts_with("stack.") && name.ends_with("_thickness_mm"))
             || (name.starts_with("material.") && name.ends_with(".e_mpa"));

@@ -35,6 +35,7 @@ struct Blueprint {
     gauges: Vec<Gauge>,
     materials: [Material; Layer::ALL.len()],
     open: Option<Side>,
+    debonded: Option<(Side, f64)>,
 }
 
 impl Blueprint {
@@ -45,6 +46,7 @@ impl Blueprint {
             gauges: device.gauges.to_vec(),
             materials: Layer::ALL.map(|layer| layer.material(device, state)),
             open: state.frame_open,
+            debonded: state.debonded(),
         }
     }
 }

@@ -59,6 +59,8 @@ struct Bench {
     around: Circumstances,
     reference_c: f64,
     full_scale_n: f64,
+    /// The farthest contact's distance from the axis.
+    reach_mm: f32,
     lag_s: f64,
     at_s: f64,
 }
@@ -74,6 +76,7 @@ impl Bench {
             around: Circumstances { temperature_c: reference_c, cycles: 0.0 },
             reference_c,
             full_scale_n: device.contact.full_scale_n,
+            reach_mm: device.contact.max_centre_radius_mm as f32,
             lag_s: behaviour.rig.label_lag_ms * 1e-3,
             at_s: 0.0,
         }
@@ -82,8 +85,16 @@ impl Bench {
     /// The true contact and the channels `after_s` later, when this contact is meant.
     fn touch(&mut self, after_s: f64, meant: &Label) -> (Label, [f64; CHANNELS]) {
         self.at_s += after_s;
-        let truth = self.hand.hold(after_s, &self.stage.truth(meant).into());
+        let held = self.hand.hold(after_s, &self.stage.truth(meant).into());
+        let truth = self.kept(held);
         (label(&truth), self.pad.read(after_s, &truth, &self.around))
+    }
+
+    /// The contact on the plate: an indenter does not press beyond the rim.
+    fn kept(&self, contact: Contact) -> Contact {
+        let beyond = libm::hypotf(contact.x_mm, contact.y_mm) / self.reach_mm;
+        let [x_mm, y_mm] = [contact.x_mm, contact.y_mm].map(|mm| mm / beyond.max(1.0));
+        Contact { x_mm, y_mm, ..contact }
     }
 
     /// Lifts, takes the circumstances of the row, and comes down on its contact anew.
@@ -117,8 +128,13 @@ impl Bench {
             mean_uv.iter_mut().zip(uv).for_each(|(mean, uv)| *mean += uv / f64::from(READINGS));
         }
         let written = self.stage.written(&row.label, &truth);
-        into.table.rows.push(Row { t_s: Some(self.at_s), label: written, uv: Some(mean_uv), ..*row });
-        into.truth.push(truth);
+        into.table.rows.push(Row {
+            t_s: Some(whole_micros(self.at_s)),
+            label: rounded(&written),
+            uv: Some(mean_uv),
+            ..*row
+        });
+        into.truth.push(rounded(&truth));
     }
 
     /// The load from which a static one is reached downwards.
@@ -141,8 +157,8 @@ impl Bench {
             let after_s = row.t_s.zip(before_s).map_or(1.0 / RATE_HZ, |(t_s, before_s)| t_s - before_s);
             before_s = row.t_s;
             let (truth, uv) = self.touch(after_s.max(0.0), &row.label);
-            into.table.rows.push(Row { t_s: Some(self.at_s), uv: Some(uv), ..*row });
-            into.truth.push(truth);
+            into.table.rows.push(Row { t_s: Some(whole_micros(self.at_s)), uv: Some(uv), ..*row });
+            into.truth.push(rounded(&truth));
         }
         let (rows, truths) = (into.table.rows.split_at_mut(begins_at).1, into.truth.split_at(begins_at).1);
         self.write_labels(rows, truths);
@@ -154,9 +170,20 @@ impl Bench {
         let meant: Vec<Label> = rows.iter().map(|row| row.label).collect();
         for (row, at_s) in rows.iter_mut().zip(&times) {
             let at_s = at_s - self.lag_s;
-            row.label = self.stage.written(&at(&times, &meant, at_s), &at(&times, truths, at_s));
+            row.label = rounded(&self.stage.written(&at(&times, &meant, at_s), &at(&times, truths, at_s)));
         }
     }
+}
+
+/// To whole millionths: further digits would say nothing and fill a file.
+fn whole_micros(number: f64) -> f64 {
+    libm::round(number * 1e6) / 1e6
+}
+
+fn rounded(label: &Label) -> Label {
+    let [x_mm, y_mm, fx_n, fy_n, fz_n] =
+        [label.x_mm, label.y_mm, label.fx_n, label.fy_n, label.fz_n].map(whole_micros);
+    Label { x_mm, y_mm, fx_n, fy_n, fz_n }
 }
 
 fn is_loaded(label: &Label) -> bool {

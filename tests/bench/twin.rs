@@ -1,5 +1,5 @@
 //! The twin: a second of stream at 1 kHz, with everything that it can get wrong. Real time would be a second.
-#![expect(clippy::expect_used, missing_docs, reason = "a benchmark may stop at what it did not expect")]
+#![expect(clippy::expect_used, reason = "a benchmark may stop at what it did not expect")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use tactpad::device::Device;

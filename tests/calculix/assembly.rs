@@ -172,7 +172,7 @@ impl<'d> Assembly<'d> {
     /// Puts a module under the plate.
     fn stand(&mut self, index: usize, pose: Pose, fineness: Fineness) {
         let module = &self.device.modules[index];
-        let mesh = Mesh::of(&self.device.stack, &self.device.gauges, module.frame_open, fineness);
+        let mesh = Mesh::of(self.device, module, fineness);
         let standing = Standing { mesh, pose, first: self.nodes };
         let place_mm = |node| standing.place_mm(node, self.device.plate.thickness_mm);
         self.nodes += standing.mesh.lattice.len();

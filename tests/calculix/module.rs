@@ -48,6 +48,12 @@ fn module_with_an_open_frame_and_other_moduli() {
     compare("open at +x, other moduli", module);
 }
 
+#[test]
+fn module_that_has_come_off_the_plate_on_a_side() {
+    let module = Module { debonded_side: Some(Side::MinusY), debonded_share: 0.35, ..Module::NOMINAL };
+    compare("debonded from -y", module);
+}
+
 fn compare(name: &str, module: Module) {
     if !require("ccx", "apt-get install calculix-ccx") {
         return;

@@ -9,11 +9,11 @@ use tactpad::mechanics::system::gathered;
 use super::body::Vector;
 
 /// What is shown here holds on any mesh.
-fn fineness() -> Fineness {
+pub(super) fn fineness() -> Fineness {
     Fineness::STANDARD.scaled(3.0)
 }
 
-fn superelement(device: &Device, module: &Module) -> Superelement {
+pub(super) fn superelement(device: &Device, module: &Module) -> Superelement {
     Solution::of(device, module, fineness()).unwrap().superelement()
 }
 
@@ -101,7 +101,7 @@ fn mirrored(strain: usize, axis: usize) -> usize {
 }
 
 /// Asserts that `other` is `one` in a mirror that turns an axis round.
-fn assert_mirrored(one: &Superelement, other: &Superelement, axis: usize) {
+pub(super) fn assert_mirrored(one: &Superelement, other: &Superelement, axis: usize) {
     let scale = [largest(one.stiffness.as_flattened()), largest(one.strains.as_flattened())];
     for k in 0..MODES {
         for j in 0..MODES {

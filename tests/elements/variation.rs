@@ -14,7 +14,7 @@ const STEP: f64 = 1e-3;
 const ERROR_MAX: f64 = 1e-5;
 
 fn mesh(device: &Device) -> Mesh {
-    Mesh::of(&device.stack, &device.gauges, MODULE.frame_open, Fineness::STANDARD.scaled(3.5))
+    Mesh::of(device, &MODULE, Fineness::STANDARD.scaled(3.5))
 }
 
 fn solved(device: &Device, mesh: Mesh) -> Superelement {

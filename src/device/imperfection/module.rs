@@ -8,8 +8,10 @@ use crate::quantity::MODULES;
 use crate::toml_text::section::{Bounds, Placed, Section};
 
 pub(super) fn read(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
-    let known: Vec<_> =
-        ["index", "frame_open"].into_iter().chain(MODULE.iter().map(|key| key.name)).collect();
+    let known: Vec<_> = ["index", "frame_open", "debonded_side"]
+        .into_iter()
+        .chain(MODULE.iter().map(|key| key.name))
+        .collect();
     // One more than there can be: that one repeats an index.
     let tables = root.tables("module", &known, MODULES + 1, &mut reading.report);
     let mut described = [false; MODULES];
@@ -22,6 +24,24 @@ pub(super) fn read(root: &Section<'_>, device: &mut Device, reading: &mut Readin
         if let Some(side) = table.word("frame_open", &SIDES, &mut reading.report) {
             module.frame_open = Some(side.value);
         }
+        read_debonding(table, module, reading);
+    }
+}
+
+/// Reads where the bond has come off; share and side say nothing without each other.
+fn read_debonding(table: &Section<'_>, module: &mut Module, reading: &mut Reading<'_>) {
+    if let Some(side) = table.word("debonded_side", &SIDES, &mut reading.report) {
+        module.debonded_side = Some(side.value);
+    }
+    if module.debonded_share > 0.0 && module.debonded_side.is_none() {
+        let help = "write debonded_side = \"+x\", \"-x\", \"+y\" or \"-y\", where the bond has come off";
+        table.require("debonded_side", help, &mut reading.report);
+    }
+    if module.debonded_share == 0.0 && module.debonded_side.is_some() {
+        let help = "write how much of the bond's area has come off, 0.5 for half of it; 0 for a whole bond";
+        table.require("debonded_share", help, &mut reading.report);
+        // A whole bond has no such side.
+        module.debonded_side = None;
     }
 }
 
@@ -54,8 +74,13 @@ pub(super) fn text(device: &Device) -> String {
 
 /// The lines in which the module differs from the nominal one.
 fn module_lines(module: &Module) -> String {
-    let open = SIDES.iter().filter(|(_, side)| module.frame_open == Some(*side));
-    let open = open
-        .map(|(word, _)| format!("frame_open = {} # the side where its frame is missing\n", quoted(word)));
-    [lines_unlike(&MODULE, module, &Module::NOMINAL)].into_iter().chain(open).collect()
+    let sides = [
+        ("frame_open", module.frame_open, "the side where its frame is missing"),
+        ("debonded_side", module.debonded_side, "the side where its bond has come off"),
+    ];
+    let word = |wanted| SIDES.iter().find(|(_, side)| Some(*side) == wanted);
+    let sides = sides.into_iter().filter_map(|(key, side, meaning)| {
+        word(side).map(|(word, _)| format!("{key} = {} # {meaning}\n", quoted(word)))
+    });
+    lines_unlike(&MODULE, module, &Module::NOMINAL) + &sides.collect::<String>()
 }

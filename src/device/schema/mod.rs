@@ -363,7 +363,7 @@ pub(super) static REPORTED: [Key<Reported>; 4] = [
 ];
 
 /// The numbers of a `[[module]]` table; each may be absent.
-pub(super) static MODULE: [Key<Module>; 10] = [
+pub(super) static MODULE: [Key<Module>; 11] = [
     Key::new("radial_mm", MM, SHIFT_MM, one!(radial_mm), "its displacement outwards"),
     Key::new("tangential_mm", MM, SHIFT_MM, one!(tangential_mm), "its displacement counter-clockwise"),
     Key::new(
@@ -395,6 +395,13 @@ pub(super) static MODULE: [Key<Module>; 10] = [
         STIFFNESS,
         one!(film_e_factor),
         "the factor of its PI's, ADH's and FPC's moduli",
+    ),
+    Key::new(
+        "debonded_share",
+        RATIO,
+        (0.0, 0.9),
+        one!(debonded_share),
+        "the share of its bond's area that has come off",
     ),
     Key::<Module>::new("gain", RATIO, (-10.0, 10.0), list!(gain), "the factors of its signals x, y, z")
         .listed(&AXES)

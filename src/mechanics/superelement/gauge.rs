@@ -76,7 +76,7 @@ impl<'m> Underside<'m> {
 
 #[cfg(test)]
 mod tests {
-    use crate::device::Device;
+    use crate::device::{Device, Module};
     use crate::mechanics::mesh::Fineness;
 
     use super::*;
@@ -85,7 +85,7 @@ mod tests {
     /// parabolas the centre.
     fn assert_strains(displacement: impl Fn([f64; 3]) -> [f64; 3], strain: impl Fn([f64; 2]) -> [f64; 2]) {
         let device = Device::nominal();
-        let mesh = Mesh::of(&device.stack, &device.gauges, None, Fineness::STANDARD.scaled(2.5));
+        let mesh = Mesh::of(&device, &Module::NOMINAL, Fineness::STANDARD.scaled(2.5));
         let weights = gauge_weights(&mesh, &device.gauges);
         for (index, weights) in weights.iter().enumerate() {
             let gauge = &device.gauges[index / 2];

@@ -90,7 +90,7 @@ impl<'d> Solution<'d> {
     /// # Errors
     /// What the solver says about memory or a stiffness that is not positive definite.
     pub fn of(device: &'d Device, module: &'d Module, fineness: Fineness) -> Result<Self, SolveError> {
-        let mesh = Mesh::of(&device.stack, &device.gauges, module.frame_open, fineness);
+        let mesh = Mesh::of(device, module, fineness);
         Self::on(mesh, device, module)
     }
 

@@ -1,0 +1,113 @@
+//! `tactpad twin`: measured-like data from the imperfect virtual pad.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::device::Pad;
+use super::field_cache::field_of;
+use super::written::{create, is_same, is_stdout, stdout, written_over};
+use super::{Failure, print_json, say, tables};
+use crate::device::Device;
+use crate::measured::columns::Kind;
+use crate::measured::{Row, Table, write};
+use crate::protocol;
+use crate::twin::measurement::{Measurement, carry_out};
+
+/// Said with everything that the twin makes.
+pub(super) const NUMERICAL: &str = "a numerical twin: no hardware was measured";
+
+/// Arguments of `tactpad twin`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: tactpad twin --plan paper --seed 1 --out measured.csv --truth truth.csv\n\n\
+                        Without --device and --imperfections the pad has those that come out as the paper's figures."
+)]
+pub(super) struct Arguments {
+    /// What is measured: paper or recommended, as `tactpad protocol` writes them, or a file of the same form.
+    #[arg(long, value_name = "PLAN")]
+    plan: PathBuf,
+    #[command(flatten)]
+    pad: Pad,
+    /// Draws what is random: the same seed gives the same file.
+    #[arg(long, default_value = "0")]
+    seed: u64,
+    /// The measured CSV to write; a file that is there is replaced, and - is standard output.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// The true contacts, row for row, which no rig would know.
+    #[arg(long, value_name = "FILE")]
+    truth: Option<PathBuf>,
+    /// Print one JSON document: what was made.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was made.
+#[derive(Serialize)]
+struct Outcome {
+    rows: usize,
+    trials: usize,
+    seconds: f64,
+    twin: &'static str,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { plan, pad, seed, out, truth, json } = arguments;
+    if *json && is_stdout(out) {
+        return Err(Failure::Unusable("--json and --out - both print: let --out name a file".into()));
+    }
+    for written in [Some(out), truth.as_ref()].into_iter().flatten() {
+        pad.spare(written)?;
+        if is_same(plan, written) {
+            return Err(written_over(written, "is the plan"));
+        }
+    }
+    if truth.as_ref().is_some_and(|truth| is_same(truth, out)) {
+        return Err(Failure::Unusable("--out and --truth name one file; name two".into()));
+    }
+    let device = pad.read_imperfect()?;
+    let plan = planned(plan, &device, *seed)?;
+    let measurement = carry_out(&plan, &device, &field_of(&device)?, *seed);
+    write::table(create(out)?, &measurement.table)?;
+    if let Some(truth) = truth {
+        write::table(create(truth)?, &true_contacts(&measurement))?;
+    }
+    report(&measurement, *json, is_stdout(out))
+}
+
+/// The plan of this name, or in this file.
+fn planned(plan: &Path, device: &Device, seed: u64) -> Result<Table, Failure> {
+    match plan.to_str() {
+        Some("paper") => Ok(protocol::paper::plan(&device.contact)),
+        Some("recommended") => Ok(protocol::recommended::plan(&device.contact, seed)),
+        _ => tables::on_the_plate(plan, Kind::Plan, device),
+    }
+}
+
+/// The truth as a table of contacts.
+fn true_contacts(measurement: &Measurement) -> Table {
+    let rows = measurement.table.rows.iter().zip(&measurement.truth);
+    Table {
+        rows: rows.map(|(row, truth)| Row { t_s: row.t_s, ..Row::of(*truth) }).collect(),
+        ..Table::default()
+    }
+}
+
+fn report(measurement: &Measurement, json: bool, prints_table: bool) -> Result<(), Failure> {
+    let Table { rows, trials, .. } = &measurement.table;
+    let seconds = rows.last().and_then(|row| row.t_s).unwrap_or_default();
+    let outcome = Outcome { rows: rows.len(), trials: trials.len(), seconds, twin: NUMERICAL };
+    if json {
+        return print_json(&outcome);
+    }
+    let Outcome { rows, trials, .. } = outcome;
+    let told = format!("{rows} rows, {trials} time series, {seconds:.0} s on the pad's clock; {NUMERICAL}");
+    if prints_table {
+        say(told);
+        return Ok(());
+    }
+    use std::io::Write as _;
+    Ok(writeln!(stdout(), "{told}")?)
+}

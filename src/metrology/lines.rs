@@ -81,7 +81,8 @@ pub const LINES: &[Line] = &[
     firm("repeatability", "repeatability, of 5 N", "%", 1.3, |f| of(&f.repeatability, |r| 100.0 * r.share)),
     firm("hysteresis", "hysteresis, of 5 N", "%", 3.1, |f| of(&f.hysteresis, |h| 100.0 * h.share)),
     contestable("resolution", "force resolution, 1 s means", "mN", 5.0, |f| {
-        of(&f.resolution, |r| 1e3 * r.step_n)
+        let step_n = |found: &Resolution| found.unloaded_step_n.ok_or(Needs::Rows(UNLOADED));
+        Ok(1e3 * f.resolution.as_ref().map_err(|needs| *needs).and_then(step_n)?)
     }),
     firm("ageing", "change after 50,000 cycles of 1 N", "%", 19.0, |f| {
         of(&f.ageing, |a| 100.0 * a.change_share.abs())
@@ -102,11 +103,10 @@ pub const LINES: &[Line] = &[
     other("thermal_nonlinearity", "thermal drift: off its line", "%", |f| {
         of(&f.thermal_drift, |d| 100.0 * d.nonlinearity_share)
     }),
-    other("resolution_unloaded", "force resolution, from no load", "mN", |f| {
-        let step_n = |found: &Resolution| found.unloaded_step_n.ok_or(Needs::Rows(UNLOADED));
-        Ok(1e3 * f.resolution.as_ref().map_err(|needs| *needs).and_then(step_n)?)
+    other("resolution_loaded", "force resolution under a held load", "mN", |f| {
+        of(&f.resolution, |r| 1e3 * r.step_n)
     }),
-    other("resolution_without_drift", "force resolution, drift removed", "mN", |f| {
+    other("resolution_without_drift", "the same, drift removed", "mN", |f| {
         of(&f.resolution, |r| 1e3 * r.without_drift_n)
     }),
     other("sensitivity_z", "sensitivity, z channels, mean of all places", "µV/N", |f| {

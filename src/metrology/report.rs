@@ -136,8 +136,13 @@ mod tests {
         let signals = InfluenceField::sampled(5.0, 29.0, 30.0, |_| [0.0; MAPS]);
         let table = Table::default();
         let evidence = Evidence { table: &table, signals: &signals, decoder: None, simulation_network: None };
-        let resolution =
-            Resolution { step_n, without_drift_n: step_n, unloaded_step_n: None, load_n: 1.0, means: 60 };
+        let resolution = Resolution {
+            step_n,
+            without_drift_n: step_n,
+            unloaded_step_n: Some(step_n),
+            load_n: 1.0,
+            means: 60,
+        };
         Figures {
             resolution: Ok(resolution),
             ageing: Ok(Ageing { change_share, curve: vec![] }),

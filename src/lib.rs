@@ -20,6 +20,7 @@ pub mod measured;
 #[cfg(feature = "simulator")]
 pub mod mechanics;
 pub mod metrology;
+pub mod network;
 pub mod output;
 pub mod pipeline;
 pub mod plot;
@@ -28,6 +29,7 @@ pub mod quantity;
 mod random;
 pub mod readout;
 pub mod replay;
+pub mod scdf;
 pub mod signal;
 pub mod spelling;
 pub mod time;

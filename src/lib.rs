@@ -3,6 +3,7 @@
 //! The way of the data is one line: bytes → sample → raw channels → strain → contact → intents → output events.
 //! `ARCHITECTURE.md` tells where each step lives and which rules hold between them.
 
+pub mod calibration;
 pub mod capture;
 pub mod cli;
 pub mod contact;
@@ -14,6 +15,7 @@ pub mod health;
 pub mod influence;
 pub mod latency;
 pub mod layout;
+pub mod linear;
 pub mod link;
 pub mod mapping;
 pub mod measured;

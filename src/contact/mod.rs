@@ -1,5 +1,6 @@
 //! Where a contact is and how hard it presses, from strain.
 
+pub mod inverse;
 pub mod statics;
 pub mod touch;
 

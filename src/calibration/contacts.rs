@@ -1,0 +1,76 @@
+//! Measured contacts, with everything of the simulator's that does not change while a pad is calibrated.
+
+use super::model::{BACKGROUND_DEGREE, TERMS};
+use crate::field::{PadField, Sensitivity};
+use crate::measured::Row;
+use crate::quantity::{CHANNELS, Contact};
+use crate::zernike::{Jet, jets, norms};
+
+/// Per channel, what a unit force along each axis does.
+pub(super) type Maps = [[f64; 3]; CHANNELS];
+
+/// The simulator's field at a place.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    /// µV/N.
+    pub(super) gains: Maps,
+    /// µV/N per unit of each number that has a sensitivity.
+    pub(super) slopes: Vec<Maps>,
+    /// The background's polynomials, each with a root mean square of 1 over the plate.
+    pub(super) terms: [f64; TERMS],
+}
+
+/// One measured contact.
+#[derive(Clone, Debug)]
+pub(super) struct Measured {
+    pub(super) place: Place,
+    pub(super) force_n: [f64; 3],
+    /// Beyond the zero.
+    pub(super) uv: [f64; CHANNELS],
+}
+
+impl Place {
+    /// The field at a place in millimetres.
+    pub(super) fn of(
+        field: &PadField,
+        sensitivities: &[&Sensitivity],
+        plate_mm: f64,
+        place_mm: [f64; 2],
+    ) -> Self {
+        let share = place_mm.map(|mm| mm / plate_mm);
+        let degree =
+            sensitivities.iter().map(|it| degree_of(it.maps[0][0].coefficients.len())).max().unwrap_or(0);
+        let jets = jets(degree.max(BACKGROUND_DEGREE), share);
+        let slope =
+            |it: &&Sensitivity| it.maps.each_ref().map(|axes| axes.each_ref().map(|map| map.value(&jets)));
+        Self {
+            gains: field.signals.gains(place_mm[0] as f32, place_mm[1] as f32).value,
+            slopes: sensitivities.iter().map(slope).collect(),
+            terms: terms(&jets),
+        }
+    }
+}
+
+/// The degree of a polynomial with so many coefficients.
+fn degree_of(coefficients: usize) -> usize {
+    (0..).find(|degree| (degree + 1) * (degree + 2) / 2 >= coefficients).unwrap_or(0)
+}
+
+fn terms(jets: &[Jet]) -> [f64; TERMS] {
+    let norms = norms(BACKGROUND_DEGREE);
+    std::array::from_fn(|term| jets[term].value * (std::f64::consts::PI / norms[term]).sqrt())
+}
+
+impl Measured {
+    /// A tared row; `None` without channels.
+    pub(super) fn of(
+        field: &PadField,
+        sensitivities: &[&Sensitivity],
+        plate_mm: f64,
+        row: &Row,
+    ) -> Option<Self> {
+        let Contact { x_mm, y_mm, .. } = Contact::from(row.label);
+        let place = Place::of(field, sensitivities, plate_mm, [x_mm, y_mm].map(f64::from));
+        Some(Self { place, force_n: [row.label.fx_n, row.label.fy_n, row.label.fz_n], uv: row.uv? })
+    }
+}

@@ -1,0 +1,90 @@
+//! The channels' noise, from what a calibration leaves over: a part of its own and one that grows with the reading.
+
+use crate::contact::inverse::Noise;
+use crate::quantity::CHANNELS;
+
+/// What is known before: as much as so many readings of this noise.
+const KNOWN: f64 = 10.0;
+const ADDITIVE_UV: f64 = 8.0;
+const SHARE: f64 = 0.02;
+/// No pad is quieter.
+const ADDITIVE_MIN_UV: f64 = 0.5;
+const SHARE_MIN: f64 = 5e-4;
+/// So often the weights are taken anew.
+const ROUNDS: usize = 20;
+
+/// The noise before any measurement.
+pub(super) const BEFORE: Noise = Noise { additive_uv: [ADDITIVE_UV; CHANNELS], share: [SHARE; CHANNELS] };
+
+/// What a channel left over: its reading and the rest, both in µV.
+pub(super) type Rest = (f64, f64);
+
+/// The noise that these rests have. `freedom` is the part of the readings that the fitted numbers did not take up.
+///
+/// Squares of rests are a straight line over squares of readings; the line is fitted with weights from itself, as squares
+/// scatter in proportion to what they should be.
+pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS], freedom: f64) -> Noise {
+    let lines = rests.each_ref().map(|rests| line(rests, freedom.max(0.05)));
+    Noise {
+        additive_uv: lines.map(|[constant, _]| constant.sqrt().max(ADDITIVE_MIN_UV)),
+        share: lines.map(|[_, slope]| slope.sqrt().max(SHARE_MIN)),
+    }
+}
+
+fn line(rests: &[Rest], freedom: f64) -> [f64; 2] {
+    let (mut constant, mut slope) = (ADDITIVE_UV * ADDITIVE_UV, SHARE * SHARE);
+    let count = rests.len().max(1) as f64;
+    let typical = rests.iter().map(|(uv, _)| uv * uv).sum::<f64>() / count;
+    for _ in 0..ROUNDS {
+        let mut normal = [[0.0; 2]; 2];
+        let mut right = [0.0; 2];
+        let mut add = |square: f64, rest: f64, count: f64| {
+            let weight = count / (constant + slope * square).powi(2);
+            normal[0][0] += weight;
+            normal[0][1] += weight * square;
+            normal[1][1] += weight * square * square;
+            right[0] += weight * rest;
+            right[1] += weight * rest * square;
+        };
+        rests.iter().for_each(|(uv, rest)| add(uv * uv, rest * rest / freedom, 1.0));
+        // What was known: half of it at rest, half at a typical reading.
+        add(0.0, ADDITIVE_UV * ADDITIVE_UV, KNOWN / 2.0);
+        add(typical, ADDITIVE_UV * ADDITIVE_UV + SHARE * SHARE * typical, KNOWN / 2.0);
+        let determinant = normal[0][0] * normal[1][1] - normal[0][1] * normal[0][1];
+        let found = [
+            (normal[1][1] * right[0] - normal[0][1] * right[1]) / determinant,
+            (normal[0][0] * right[1] - normal[0][1] * right[0]) / determinant,
+        ];
+        if found.iter().all(|number| number.is_finite()) {
+            constant = found[0].max(ADDITIVE_MIN_UV * ADDITIVE_MIN_UV);
+            slope = found[1].max(SHARE_MIN * SHARE_MIN);
+        }
+    }
+    [constant, slope]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::SplitMix64;
+
+    #[test]
+    fn both_parts_are_found() {
+        let mut random = SplitMix64::new(1);
+        let mut rest = || {
+            let uv = 3000.0 * f64::from(random.uniform());
+            (uv, 12.0 * f64::from(random.normal()) + 0.015 * uv * f64::from(random.normal()))
+        };
+        let rests: [Vec<Rest>; CHANNELS] = std::array::from_fn(|_| (0..2000).map(|_| rest()).collect());
+        let Noise { additive_uv, share } = of_rests(&rests, 1.0);
+        assert!(additive_uv.iter().all(|uv| (uv / 12.0 - 1.0).abs() < 0.2), "{additive_uv:?}");
+        assert!(share.iter().all(|share| (share / 0.015 - 1.0).abs() < 0.1), "{share:?}");
+    }
+
+    #[test]
+    fn without_rests_it_is_what_was_known() {
+        let Noise { additive_uv, share } = of_rests(&[const { Vec::new() }; CHANNELS], 1.0);
+        assert!(additive_uv.iter().all(|uv| (uv - ADDITIVE_UV).abs() < 1.0), "{additive_uv:?}");
+        assert!(share.iter().all(|share| *share < 0.05), "{share:?}");
+    }
+}

@@ -1,0 +1,330 @@
+//! The inverse decoder: the contact whose channels, by the pad's influence field, come closest to the measured ones.
+//!
+//! At a fixed place the channels are linear in the force, s = G(x, y) F. So the best force for a place has a closed form,
+//! and only x and y are sought, by Gauss and Newton's method: a few steps from a start that is a linear function of the
+//! channels. Distances are counted in the channels' noise, so the result is the most likely contact, and the curvature
+//! there is the inverse of its covariance.
+//!
+//! Source: G. H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, for least squares whose variables separate.
+
+use crate::influence::{Gains, InfluenceField};
+use crate::linear::Factor;
+use crate::quantity::{CHANNELS, Contact, Strain};
+
+/// The unknowns: x, y in mm; Fx, Fy, Fz in N.
+pub const UNKNOWNS: usize = 5;
+
+/// Steps at most, the first one included.
+const STEPS_MAX: usize = 8;
+/// A step so small ends the search, in mm: the location error of any pad is larger.
+const STEP_END_MM: f64 = 2e-3;
+/// No step is longer.
+const STEP_MAX_MM: f64 = 12.0;
+/// Before anything is measured: places lie on the plate, forces are those of a finger. Standard deviations.
+const PLACE_MM: f64 = 20.0;
+const FORCE_N: f64 = 100.0;
+/// Rings and places on each from which the start is learnt.
+const RING_MM: f64 = 2.0;
+const RING_PLACES: usize = 36;
+
+/// How the channels scatter around the field's answer, as the decoder gets them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Standard deviation of each channel without load.
+    pub additive_uv: [f64; CHANNELS],
+    /// Standard deviation as a share of the channel's own reading.
+    pub share: [f64; CHANNELS],
+}
+
+impl Noise {
+    /// One over each channel's variance.
+    fn weights(&self, uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+        std::array::from_fn(|k| {
+            let (own, proportional) = (self.additive_uv[k], self.share[k] * uv[k]);
+            1.0 / (own * own + proportional * proportional)
+        })
+    }
+}
+
+/// The decoder.
+#[derive(Clone, Debug)]
+pub struct Inverse {
+    field: InfluenceField,
+    noise: Noise,
+    /// Fz, x Fz and y Fz as linear functions of the channels.
+    start: [[f64; CHANNELS]; 3],
+}
+
+/// What the channels say of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The most likely contact.
+    pub contact: Contact,
+    /// Covariance of x, y (mm), Fx, Fy, Fz (N), for the noise that the decoder was given.
+    pub covariance: [[f64; UNKNOWNS]; UNKNOWNS],
+    /// Sum of the squares of what the contact does not explain, in the channels' standard deviations. Of one contact on
+    /// the pad that the field describes it is about 4: nine channels, five unknowns.
+    pub misfit: f64,
+}
+
+/// A place with its best force.
+struct Trial {
+    place_mm: [f64; 2],
+    force_n: [f64; 3],
+    /// JᵀWJ with what was known before.
+    curvature: [[f64; UNKNOWNS]; UNKNOWNS],
+    /// JᵀW r with what was known before.
+    slope: [f64; UNKNOWNS],
+    misfit: f64,
+    cost: f64,
+}
+
+impl Inverse {
+    /// The decoder of a pad with this field, whose channels scatter so. Each channel must scatter.
+    pub fn new(field: InfluenceField, noise: Noise) -> Self {
+        let start = start_of(&field);
+        Self { field, noise, start }
+    }
+
+    /// The pad's field.
+    pub const fn field(&self) -> &InfluenceField {
+        &self.field
+    }
+
+    /// How the channels scatter.
+    pub const fn noise(&self) -> &Noise {
+        &self.noise
+    }
+
+    /// The contact that explains `strain` best. Without force it is in the middle. Strain that is not finite, or beyond
+    /// anything that a pad can read, is no contact.
+    pub fn decode(&self, strain: &Strain) -> Contact {
+        self.estimate(strain).map(|estimate| estimate.contact).unwrap_or_default()
+    }
+
+    /// The same with its uncertainty; `None` for strain that is not finite, or beyond anything that a pad can read.
+    pub fn estimate(&self, strain: &Strain) -> Option<Estimate> {
+        let uv = strain.uv.map(f64::from);
+        let weights = self.noise.weights(&uv);
+        let mut best = self.trial(self.started(&uv), &uv, &weights)?;
+        let mut shorter = 1.0;
+        for _ in 1..STEPS_MAX {
+            let step = best.step(shorter)?;
+            if libm::hypot(step[0], step[1]) < STEP_END_MM {
+                break;
+            }
+            let place_mm = self.within([best.place_mm[0] + step[0], best.place_mm[1] + step[1]]);
+            let next = self.trial(place_mm, &uv, &weights)?;
+            if next.cost < best.cost {
+                (best, shorter) = (next, 1.0);
+            } else {
+                shorter *= 0.25;
+            }
+        }
+        best.estimate()
+    }
+
+    /// Where the search begins.
+    fn started(&self, uv: &[f64; CHANNELS]) -> [f64; 2] {
+        let [fz, x_fz, y_fz] = self.start.map(|row| row.iter().zip(uv).map(|(a, uv)| a * uv).sum::<f64>());
+        let place_mm = [x_fz / fz, y_fz / fz];
+        if place_mm.iter().all(|mm| mm.is_finite()) { self.within(place_mm) } else { [0.0; 2] }
+    }
+
+    /// The nearest place that the field covers.
+    fn within(&self, [x_mm, y_mm]: [f64; 2]) -> [f64; 2] {
+        let share = f64::from(self.field.radius_mm()) / libm::hypot(x_mm, y_mm);
+        if share < 1.0 { [share * x_mm, share * y_mm] } else { [x_mm, y_mm] }
+    }
+
+    /// The best force at a place, and how the misfit changes around it.
+    fn trial(&self, place_mm: [f64; 2], uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> Option<Trial> {
+        let gains = self.field.gains(place_mm[0] as f32, place_mm[1] as f32);
+        let force_n = best_force(&gains, uv, weights)?;
+        let mut trial = Trial {
+            place_mm,
+            force_n,
+            curvature: known_before(),
+            slope: [0.0; UNKNOWNS],
+            misfit: 0.0,
+            cost: 0.0,
+        };
+        for k in 0..CHANNELS {
+            let moved = [dot(&gains.dx[k], &force_n), dot(&gains.dy[k], &force_n)];
+            let [fx, fy, fz] = gains.value[k];
+            let row = [moved[0], moved[1], fx, fy, fz];
+            let rest_uv = uv[k] - dot(&gains.value[k], &force_n);
+            trial.add(&row, rest_uv, weights[k]);
+        }
+        trial.cost = trial.misfit;
+        for (axis, mm) in place_mm.iter().enumerate() {
+            trial.slope[axis] -= mm / (PLACE_MM * PLACE_MM);
+            trial.cost += mm * mm / (PLACE_MM * PLACE_MM);
+        }
+        trial.cost.is_finite().then_some(trial)
+    }
+}
+
+impl Trial {
+    fn add(&mut self, row: &[f64; UNKNOWNS], rest_uv: f64, weight: f64) {
+        for (i, left) in row.iter().enumerate() {
+            self.slope[i] += weight * left * rest_uv;
+            for (j, right) in row.iter().enumerate().take(i + 1) {
+                self.curvature[i][j] += weight * left * right;
+            }
+        }
+        self.misfit += weight * rest_uv * rest_uv;
+    }
+
+    /// Gauss and Newton's step of the place, or a part of it.
+    fn step(&self, part: f64) -> Option<[f64; 2]> {
+        let [x_mm, y_mm, ..] = Factor::of(&self.curvature)?.solve(&self.slope);
+        let part = part * (STEP_MAX_MM / libm::hypot(x_mm, y_mm)).min(1.0);
+        (x_mm.is_finite() && y_mm.is_finite()).then_some([part * x_mm, part * y_mm])
+    }
+
+    fn estimate(&self) -> Option<Estimate> {
+        let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) =
+            (self.place_mm.map(|mm| mm as f32), self.force_n.map(|n| n as f32));
+        let contact = Contact { x_mm, y_mm, fx_n, fy_n, fz_n };
+        let is_finite = [x_mm, y_mm, fx_n, fy_n, fz_n].iter().all(|number| number.is_finite());
+        let covariance = Factor::of(&self.curvature)?.inverse();
+        is_finite.then_some(Estimate { contact, covariance, misfit: self.misfit })
+    }
+}
+
+/// One over the variances of what is known of any contact.
+fn known_before() -> [[f64; UNKNOWNS]; UNKNOWNS] {
+    let deviations = [PLACE_MM, PLACE_MM, FORCE_N, FORCE_N, FORCE_N];
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| if i == j { 1.0 / (deviations[i] * deviations[i]) } else { 0.0 })
+    })
+}
+
+/// The force that explains the channels best at the place of these gains.
+fn best_force(gains: &Gains, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> Option<[f64; 3]> {
+    let mut normal = [[0.0; 3]; 3];
+    let mut right = [0.0; 3];
+    for ((gain, uv), weight) in gains.value.iter().zip(uv).zip(weights) {
+        for (i, left) in gain.iter().enumerate() {
+            right[i] += weight * left * uv;
+            for (j, other) in gain.iter().enumerate().take(i + 1) {
+                normal[i][j] += weight * left * other;
+            }
+        }
+    }
+    (0..3).for_each(|i| normal[i][i] += 1.0 / (FORCE_N * FORCE_N));
+    Factor::of(&normal).map(|factor| factor.solve(&right))
+}
+
+fn dot(left: &[f64; 3], right: &[f64; 3]) -> f64 {
+    left[0] * right[0] + left[1] * right[1] + left[2] * right[2]
+}
+
+/// The linear functions of the channels that come closest to Fz, x Fz and y Fz over the plate.
+fn start_of(field: &InfluenceField) -> [[f64; CHANNELS]; 3] {
+    let mut normal = [[0.0; CHANNELS]; CHANNELS];
+    let mut right = [[0.0; CHANNELS]; 3];
+    let rings = (field.radius_mm() / RING_MM as f32) as usize;
+    for ring in 0..=rings {
+        for place in 0..RING_PLACES {
+            let angle = std::f64::consts::TAU * place as f64 / RING_PLACES as f64;
+            let radius_mm = RING_MM * ring as f64;
+            let (x_mm, y_mm) = (radius_mm * libm::cos(angle), radius_mm * libm::sin(angle));
+            let gains = field.gains(x_mm as f32, y_mm as f32).value;
+            for (axis, wanted) in [[0.0; 3], [0.0; 3], [1.0, x_mm, y_mm]].iter().enumerate() {
+                let uv: [f64; CHANNELS] = std::array::from_fn(|k| gains[k][axis]);
+                add_products(&uv, radius_mm + 1.0, wanted, &mut normal, &mut right);
+            }
+        }
+    }
+    let trace: f64 = (0..CHANNELS).map(|k| normal[k][k]).sum();
+    (0..CHANNELS).for_each(|k| normal[k][k] += 1e-9 * trace);
+    Factor::of(&normal).map_or([[0.0; CHANNELS]; 3], |factor| right.map(|right| factor.solve(&right)))
+}
+
+fn add_products(
+    uv: &[f64; CHANNELS],
+    weight: f64,
+    wanted: &[f64; 3],
+    normal: &mut [[f64; CHANNELS]; CHANNELS],
+    right: &mut [[f64; CHANNELS]; 3],
+) {
+    for (i, left) in uv.iter().enumerate() {
+        right.iter_mut().zip(wanted).for_each(|(right, wanted)| right[i] += weight * left * wanted);
+        normal[i].iter_mut().zip(uv).for_each(|(entry, other)| *entry += weight * left * other);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::OnceLock;
+
+    use super::*;
+    use crate::field::PadField;
+    use crate::random::SplitMix64;
+
+    const NOISE: Noise = Noise { additive_uv: [6.0; CHANNELS], share: [0.01; CHANNELS] };
+
+    fn decoder() -> &'static Inverse {
+        static DECODER: OnceLock<Inverse> = OnceLock::new();
+        DECODER.get_or_init(|| Inverse::new(PadField::nominal().signals, NOISE))
+    }
+
+    /// Contacts anywhere on the plate, with forces in a cone of 45° and more.
+    fn contacts(seed: u64, count: usize) -> Vec<Contact> {
+        let mut random = SplitMix64::new(seed);
+        let mut draw = || {
+            let [x_mm, y_mm] = [0; 2].map(|_| 20.0 * random.uniform());
+            let fz_n = 0.5 + 4.5 * random.fraction();
+            Contact { x_mm, y_mm, fx_n: fz_n * random.uniform(), fy_n: fz_n * random.uniform(), fz_n }
+        };
+        (0..count).map(|_| draw()).collect()
+    }
+
+    fn numbers(contact: &Contact) -> [f64; UNKNOWNS] {
+        [contact.x_mm, contact.y_mm, contact.fx_n, contact.fy_n, contact.fz_n].map(f64::from)
+    }
+
+    #[test]
+    fn what_the_field_reads_is_decoded_again() {
+        for contact in contacts(1, 5000) {
+            let found = decoder().estimate(&decoder().field().strain_uv(&contact)).unwrap();
+            let off = numbers(&found.contact).into_iter().zip(numbers(&contact));
+            let worst = off.map(|(found, wanted)| (found - wanted).abs()).fold(0.0, f64::max);
+            assert!(worst < 5e-3 && found.misfit < 1e-3, "{contact:?} {found:?}");
+        }
+    }
+
+    #[test]
+    fn errors_are_as_large_as_is_said() {
+        let mut random = SplitMix64::new(2);
+        let (mut squares, mut misfit, count) = ([0.0; UNKNOWNS], 0.0, 4000);
+        for contact in contacts(3, count) {
+            let mut strain = decoder().field().strain_uv(&contact);
+            for uv in &mut strain.uv {
+                *uv += 6.0 * random.normal() + 0.01 * *uv * random.normal();
+            }
+            let found = decoder().estimate(&strain).unwrap();
+            misfit += found.misfit / count as f64;
+            let off = numbers(&found.contact).into_iter().zip(numbers(&contact));
+            for (k, (found_k, wanted)) in off.enumerate() {
+                squares[k] += (found_k - wanted).powi(2) / found.covariance[k][k] / count as f64;
+            }
+        }
+        // Each error in its own standard deviation: 1. Four channels are more than the unknowns need.
+        assert!(squares.iter().all(|square| (square - 1.0).abs() < 0.12), "{squares:?}");
+        assert!((misfit - 4.0).abs() < 0.25, "{misfit}");
+    }
+
+    #[test]
+    fn without_force_it_is_in_the_middle_and_nonsense_is_nothing() {
+        let rest = decoder().decode(&Strain::default());
+        assert!(numbers(&rest).iter().all(|number| number.abs() < 1e-3), "{rest:?}");
+        for uv in [f32::NAN, f32::INFINITY, f32::MAX] {
+            let mut strain = Strain { uv: [100.0; CHANNELS] };
+            strain.uv[4] = uv;
+            assert!(numbers(&decoder().decode(&strain)).iter().all(|number| number.is_finite()), "{uv}");
+        }
+    }
+}

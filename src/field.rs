@@ -4,6 +4,7 @@
 
 use std::fmt;
 
+use crate::bytes::{Broken, Reader, push_text, sealed, unsealed};
 use crate::device::Device;
 use crate::device::parameter::Parameter;
 use crate::influence::{InfluenceField, MAPS};
@@ -82,16 +83,15 @@ impl PadField {
     /// # Errors
     /// Bytes that are not what [`Self::to_bytes`] wrote for an equal device.
     pub fn from_bytes(bytes: &[u8], device: &Device) -> Result<Self, FieldFileError> {
-        let body = bytes.strip_prefix(MAGIC).ok_or(FieldFileError::Version)?;
-        let (body, sum) = body.split_last_chunk::<8>().ok_or(FieldFileError::Damaged)?;
-        if u64::from_le_bytes(*sum) != checksum(body) {
-            return Err(FieldFileError::Damaged);
-        }
-        let mut reader = Reader { rest: body };
-        if reader.text().ok_or(FieldFileError::Damaged)? != device.field_text().as_bytes() {
+        let body = unsealed(MAGIC, bytes).map_err(|broken| match broken {
+            Broken::Magic => FieldFileError::Version,
+            Broken::Damaged => FieldFileError::Damaged,
+        })?;
+        let mut reader = FieldReader { from: Reader::new(body) };
+        if reader.from.text().ok_or(FieldFileError::Damaged)? != device.field_text().as_bytes() {
             return Err(FieldFileError::Device);
         }
-        reader.field().filter(|_| reader.rest.is_empty()).ok_or(FieldFileError::Damaged)
+        reader.field().filter(|_| reader.from.is_at_end()).ok_or(FieldFileError::Damaged)
     }
 
     /// The bytes of the field's file. Numbers are little-endian.
@@ -104,32 +104,17 @@ impl PadField {
     /// detail over the feet where a module moves.
     pub fn to_bytes(&self, device: &Device) -> Vec<u8> {
         let mut body = Vec::new();
-        write_text(&mut body, device.field_text().as_bytes());
-        for field in [&self.signals, &self.sums] {
-            let coefficients = field.coefficients();
-            body.extend([field.spacing_mm(), field.radius_mm()].iter().flat_map(|f| f.to_le_bytes()));
-            body.extend((coefficients.len() as u32).to_le_bytes());
-            body.extend(coefficients.iter().flat_map(|c| c.to_le_bytes()));
-        }
+        push_text(&mut body, device.field_text().as_bytes());
+        [&self.signals, &self.sums].into_iter().for_each(|field| field.write(&mut body));
         body.extend((self.sensitivities.len() as u32).to_le_bytes());
         for Sensitivity { parameter, maps } in &self.sensitivities {
-            write_text(&mut body, parameter.name().as_bytes());
+            push_text(&mut body, parameter.name().as_bytes());
             let degree = kept_degree(maps);
             body.extend((degree as u32).to_le_bytes());
             maps.iter().flatten().for_each(|map| write_map(&mut body, map, degree));
         }
-        let sum = checksum(&body);
-        [MAGIC, &body, &sum.to_le_bytes()].concat()
+        sealed(MAGIC, &body)
     }
-}
-
-fn checksum(bytes: &[u8]) -> u64 {
-    crate::device::fingerprint::fnv1a(bytes)
-}
-
-fn write_text(to: &mut Vec<u8>, text: &[u8]) {
-    to.extend((text.len() as u32).to_le_bytes());
-    to.extend(text);
 }
 
 /// The least degree to which the maps can be cut.
@@ -155,52 +140,21 @@ fn write_map(to: &mut Vec<u8>, map: &Polynomial, degree: usize) {
     to.extend(kept().flat_map(|c| steps(c).to_le_bytes()));
 }
 
-/// What is left of a file while it is read; `None` wherever it ends early or makes no sense.
-struct Reader<'b> {
-    rest: &'b [u8],
+/// Reads a field's file.
+struct FieldReader<'b> {
+    from: Reader<'b>,
 }
 
-impl<'b> Reader<'b> {
-    fn take(&mut self, length: usize) -> Option<&'b [u8]> {
-        let (taken, rest) = self.rest.split_at_checked(length)?;
-        self.rest = rest;
-        Some(taken)
-    }
-
-    fn number<const N: usize>(&mut self) -> Option<[u8; N]> {
-        self.take(N)?.first_chunk().copied()
-    }
-
-    fn float(&mut self) -> Option<f32> {
-        self.number().map(f32::from_le_bytes)
-    }
-
-    fn length(&mut self) -> Option<usize> {
-        self.number().map(|bytes| u32::from_le_bytes(bytes) as usize)
-    }
-
-    fn text(&mut self) -> Option<&'b [u8]> {
-        let length = self.length()?;
-        self.take(length)
-    }
-
+impl FieldReader<'_> {
     fn field(&mut self) -> Option<PadField> {
-        let (signals, sums) = (self.splines()?, self.splines()?);
-        let sensitivities = (0..self.length()?).map(|_| self.sensitivity()).collect::<Option<_>>()?;
+        let (signals, sums) = (InfluenceField::read(&mut self.from)?, InfluenceField::read(&mut self.from)?);
+        let sensitivities = (0..self.from.length()?).map(|_| self.sensitivity()).collect::<Option<_>>()?;
         Some(PadField { signals, sums, sensitivities })
     }
 
-    fn splines(&mut self) -> Option<InfluenceField> {
-        let (spacing_mm, radius_mm) = (self.float()?, self.float()?);
-        let length = self.length()?.checked_mul(4)?;
-        let coefficients: Vec<f32> =
-            self.take(length)?.as_chunks().0.iter().map(|c| f32::from_le_bytes(*c)).collect();
-        InfluenceField::from_coefficients(spacing_mm, radius_mm, &coefficients)
-    }
-
     fn sensitivity(&mut self) -> Option<Sensitivity> {
-        let parameter = std::str::from_utf8(self.text()?).ok()?.parse().ok()?;
-        let degree = self.length().filter(|degree| *degree <= DEGREE_MAX)?;
+        let parameter = std::str::from_utf8(self.from.text()?).ok()?.parse().ok()?;
+        let degree = self.from.length().filter(|degree| *degree <= DEGREE_MAX)?;
         let maps: Vec<Polynomial> = (0..MAPS).map(|_| self.map(degree)).collect::<Option<_>>()?;
         let mut maps = maps.into_iter();
         let none = || Polynomial { coefficients: Vec::new() };
@@ -209,8 +163,8 @@ impl<'b> Reader<'b> {
     }
 
     fn map(&mut self, degree: usize) -> Option<Polynomial> {
-        let scale = f64::from(self.float().filter(|scale| scale.is_finite())?);
-        let steps = self.take(2 * count(degree))?.as_chunks().0;
+        let scale = f64::from(self.from.float().filter(|scale| scale.is_finite())?);
+        let steps = self.from.take(2 * count(degree))?.as_chunks().0;
         Some(Polynomial {
             coefficients: steps.iter().map(|s| scale * f64::from(i16::from_le_bytes(*s))).collect(),
         })

@@ -5,6 +5,7 @@
 
 use std::f64::consts::SQRT_2;
 
+use crate::bytes::{Reader, push_floats};
 use crate::quantity::{CHANNELS, Contact, Strain};
 
 /// Maps of a field: for each channel one for Fx, Fy and Fz.
@@ -89,6 +90,18 @@ impl InfluenceField {
     /// The coefficients for [`Self::from_coefficients`].
     pub fn coefficients(&self) -> Vec<f32> {
         self.reached().flat_map(|index| self.nodes[index]).collect()
+    }
+
+    /// Writes spacing, radius and coefficients.
+    pub(crate) fn write(&self, to: &mut Vec<u8>) {
+        to.extend([self.spacing_mm, self.radius_mm].iter().flat_map(|mm| mm.to_le_bytes()));
+        push_floats(to, &self.coefficients());
+    }
+
+    /// Reads what [`Self::write`] wrote.
+    pub(crate) fn read(from: &mut Reader<'_>) -> Option<Self> {
+        let (spacing_mm, radius_mm) = (from.float()?, from.float()?);
+        Self::from_coefficients(spacing_mm, radius_mm, &from.floats()?)
     }
 
     /// Distance of the grid's lines.

@@ -3,6 +3,7 @@
 //! The way of the data is one line: bytes → sample → raw channels → strain → contact → intents → output events.
 //! `ARCHITECTURE.md` tells where each step lives and which rules hold between them.
 
+mod bytes;
 pub mod calibration;
 pub mod capture;
 pub mod cli;
@@ -10,6 +11,7 @@ pub mod contact;
 pub mod control;
 pub mod dataset;
 pub mod device;
+pub mod evaluation;
 pub mod field;
 pub mod health;
 pub mod influence;

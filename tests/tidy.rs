@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 /// Modules by row. A row imports only rows above it, never a sibling.
 const ROWS: &[&[&str]] = &[
-    &["time", "spelling", "random", "zernike", "linear"],
+    &["time", "spelling", "random", "zernike", "linear", "bytes"],
     &["quantity", "control", "health", "latency", "toml_text", "plot", "vtk"],
     &["capture", "link", "signal", "device", "influence", "mapping", "measured", "network"],
     &["contact", "output", "readout", "dataset", "field", "protocol"],
-    &["pipeline", "layout", "mechanics", "twin", "metrology", "calibration"],
+    &["pipeline", "layout", "mechanics", "twin", "metrology", "calibration", "evaluation"],
     &["replay", "scdf", "virtual_pad"],
     &["transport", "sink", "requests"],
     &["bridge"],

@@ -11,7 +11,7 @@ use crate::device::parameter::Parameter;
 use crate::field::{PadField, Sensitivity};
 use crate::influence::{InfluenceField, MAPS};
 use crate::linear::{LargeFactor, Symmetric};
-use crate::measured::{Table, zero};
+use crate::measured::Row;
 use crate::quantity::CHANNELS;
 
 /// Sizes of the background that are tried, as a share of each map.
@@ -39,21 +39,28 @@ pub struct Calibration {
 /// Why there is no calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FitError {
-    /// No row says what the untouched pad reads.
-    NoZero,
-    /// No row has a contact with channels.
-    NoContact,
+    /// There are fewer contacts than numbers to find.
+    TooFew {
+        /// There are so many.
+        contacts: usize,
+        /// It takes so many.
+        least: usize,
+    },
     /// The numbers are beyond anything that a pad can read.
     Senseless,
 }
 
 impl fmt::Display for FitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NoZero => "no row without force says what the untouched pad reads; measure some",
-            Self::NoContact => "no row has a contact and its nine channels; give a measured file",
-            Self::Senseless => "the channels are beyond anything that a pad can read",
-        })
+        match self {
+            Self::TooFew { contacts, least } => {
+                write!(
+                    f,
+                    "it takes {least} contacts with nine channels at least, and here are {contacts}; measure more"
+                )
+            }
+            Self::Senseless => f.write_str("the channels are beyond anything that a pad can read"),
+        }
     }
 }
 
@@ -66,15 +73,15 @@ impl Calibration {
     }
 }
 
-/// Calibrates the pad that a measured table is of. `field` is that of `device`, the pad as it is thought to be.
+/// Calibrates the pad that was measured. `field` is that of `device`, the pad as it is thought to be. Channels are relative
+/// to the untouched pad.
 ///
 /// # Errors
-/// A table without zeros, without contacts, or with senseless numbers.
-pub fn fit(table: &Table, device: &Device, field: &PadField) -> Result<Calibration, FitError> {
-    let tared = zero::tared(table).ok_or(FitError::NoZero)?;
-    let problem = Problem::of(&tared, device, field);
+/// No contact, or senseless numbers.
+pub fn fit(contacts: &[Row], device: &Device, field: &PadField) -> Result<Calibration, FitError> {
+    let problem = Problem::of(contacts, device, field);
     if problem.contacts.is_empty() {
-        return Err(FitError::NoContact);
+        return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
     let fits = BACKGROUNDS.iter().filter_map(|background| problem.fitted(*background));
     let best =
@@ -104,11 +111,10 @@ struct Fit {
 }
 
 impl<'f> Problem<'f> {
-    fn of(tared: &Table, device: &Device, field: &'f PadField) -> Self {
+    fn of(rows: &[Row], device: &Device, field: &'f PadField) -> Self {
         let is_free = |it: &&Sensitivity| it.parameter.module().is_some();
         let sensitivities: Vec<&Sensitivity> = field.sensitivities.iter().filter(is_free).collect();
         let plate_mm = device.plate.diameter_mm / 2.0;
-        let rows = zero::contacts(tared);
         let contacts =
             rows.iter().filter_map(|row| Measured::of(field, &sensitivities, plate_mm, row)).collect();
         let layout = Layout { physical: sensitivities.iter().map(|it| it.parameter).collect() };

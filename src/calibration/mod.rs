@@ -19,3 +19,4 @@ mod contacts;
 pub mod fit;
 mod model;
 mod noise;
+pub mod regression;

@@ -67,6 +67,18 @@ pub struct Estimate {
     pub misfit: f64,
 }
 
+impl Estimate {
+    /// How far another contact is from this one, squared, in standard deviations by the covariance; `None` if that has no
+    /// inverse.
+    pub fn distance_square(&self, other: &[f64; UNKNOWNS]) -> Option<f64> {
+        let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = self.contact;
+        let here = [x_mm, y_mm, fx_n, fy_n, fz_n].map(f64::from);
+        let off: [f64; UNKNOWNS] = std::array::from_fn(|k| other[k] - here[k]);
+        let solved = Factor::of(&self.covariance)?.solve(&off);
+        Some(off.iter().zip(solved).map(|(off, solved)| off * solved).sum())
+    }
+}
+
 /// A place with its best force.
 struct Trial {
     place_mm: [f64; 2],

@@ -1,10 +1,17 @@
 //! Where a contact is and how hard it presses, from strain.
 
+pub mod file;
 pub mod inverse;
+pub mod neighbours;
+pub mod regression;
 pub mod statics;
 pub mod touch;
 
+use crate::contact::inverse::Inverse;
+use crate::contact::neighbours::Neighbours;
+use crate::contact::regression::Regression;
 use crate::contact::statics::Statics;
+use crate::network::Network;
 use crate::quantity::{Contact, Strain};
 
 /// A way from strain to a contact.
@@ -12,6 +19,14 @@ use crate::quantity::{Contact, Strain};
 pub enum Decoder {
     /// The balance of forces and moments, with five numbers.
     Statics(Statics),
+    /// The pad's own field, inverted.
+    Inverse(Box<Inverse>),
+    /// Linear functions of the channels.
+    Regression(Box<Regression>),
+    /// The nearest contacts that were measured.
+    Neighbours(Neighbours),
+    /// The paper's network.
+    Network(Box<Network>),
 }
 
 impl Decoder {
@@ -24,6 +39,17 @@ impl Decoder {
     pub fn decode(&self, strain: &Strain) -> Contact {
         match self {
             Self::Statics(statics) => statics.decode(strain),
+            Self::Inverse(inverse) => inverse.decode(strain),
+            Self::Regression(regression) => regression.decode(strain),
+            Self::Neighbours(neighbours) => neighbours.decode(strain),
+            Self::Network(network) => by_network(network, strain),
         }
     }
+}
+
+fn by_network(network: &Network, strain: &Strain) -> Contact {
+    let numbers = network.decode(&strain.uv);
+    let [x_mm, y_mm, fx_n, fy_n, fz_n] = numbers;
+    let is_finite = numbers.iter().all(|number| number.is_finite());
+    if is_finite { Contact { x_mm, y_mm, fx_n, fy_n, fz_n } } else { Contact::default() }
 }

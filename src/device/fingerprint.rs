@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::Device;
 use super::parameter::Parameter;
 use super::schema::{DIRECTIONS, Effect, GAUGE_NAMES, SIDES};
+use crate::bytes::fnv1a;
 
 impl Device {
     /// The text that [`Self::fingerprint`] is taken from: a line `name = value` for each parameter whose effect is
@@ -41,24 +42,10 @@ impl Device {
     }
 }
 
-/// Source: G. Fowler, L. C. Noll, K.-P. Vo, D. Eastlake, "The FNV Non-Cryptographic Hash Algorithm", section 2.
-pub(crate) fn fnv1a(bytes: &[u8]) -> u64 {
-    const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
-    const PRIME: u64 = 0x0000_0100_0000_01b3;
-    bytes.iter().fold(OFFSET_BASIS, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(PRIME))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::device::Side;
-
-    #[test]
-    fn the_hash_gives_the_published_values() {
-        assert_eq!(fnv1a(b""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(fnv1a(b"a"), 0xaf63_dc4c_8601_ec8c);
-        assert_eq!(fnv1a(b"foobar"), 0x8594_4171_f739_67e8);
-    }
 
     #[test]
     fn it_changes_with_the_field_and_with_nothing_else() {

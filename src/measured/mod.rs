@@ -31,6 +31,13 @@ pub struct Label {
     pub fz_n: f64,
 }
 
+impl Label {
+    /// x, y, Fx, Fy, Fz.
+    pub const fn numbers(&self) -> [f64; 5] {
+        [self.x_mm, self.y_mm, self.fx_n, self.fy_n, self.fz_n]
+    }
+}
+
 /// How a static load is reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Approach {

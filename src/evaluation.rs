@@ -1,0 +1,107 @@
+//! How far a decoder's contacts are from those that were written down, or from the truth.
+
+use serde::Serialize;
+
+use crate::contact::Decoder;
+use crate::measured::{Label, Row};
+use crate::quantity::{Contact, Strain};
+
+/// Mean magnitude of the errors along one axis each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PerAxis {
+    /// Place.
+    pub x_mm: f64,
+    /// Place.
+    pub y_mm: f64,
+    /// Force.
+    pub fx_n: f64,
+    /// Force.
+    pub fy_n: f64,
+    /// Force.
+    pub fz_n: f64,
+}
+
+/// Errors over many contacts. MAE is the mean of the magnitudes of the component errors: x and y; Fx, Fy and Fz.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Errors {
+    /// How many contacts.
+    pub rows: usize,
+    /// Mean of |Δx| and |Δy|.
+    pub position_mae_mm: f64,
+    /// Mean distance.
+    pub position_mean_euclid_mm: f64,
+    /// Root of the mean square of the distance.
+    pub position_rmse_mm: f64,
+    /// Mean of |ΔFx|, |ΔFy| and |ΔFz|.
+    pub force_mae_n: f64,
+    /// Each axis on its own.
+    pub per_axis: PerAxis,
+}
+
+/// What the decoder makes of tared rows; a row without channels is no contact.
+pub fn decoded(decoder: &Decoder, rows: &[Row]) -> Vec<Contact> {
+    rows.iter().map(|row| decoder.decode(&strain(row))).collect()
+}
+
+/// A row's channels as a decoder takes them.
+pub fn strain(row: &Row) -> Strain {
+    Strain { uv: row.uv.unwrap_or_default().map(|uv| uv as f32) }
+}
+
+/// Compares contacts one by one; both lists are taken as long as the shorter.
+pub fn errors(found: &[Contact], wanted: &[Label]) -> Errors {
+    let mut errors = Errors { rows: found.len().min(wanted.len()), ..Errors::default() };
+    let count = errors.rows.max(1) as f64;
+    for (found, wanted) in found.iter().zip(wanted) {
+        let [x, y] = [f64::from(found.x_mm) - wanted.x_mm, f64::from(found.y_mm) - wanted.y_mm];
+        let force = [
+            f64::from(found.fx_n) - wanted.fx_n,
+            f64::from(found.fy_n) - wanted.fy_n,
+            f64::from(found.fz_n) - wanted.fz_n,
+        ];
+        let axes = &mut errors.per_axis;
+        let sums = [&mut axes.x_mm, &mut axes.y_mm, &mut axes.fx_n, &mut axes.fy_n, &mut axes.fz_n];
+        sums.into_iter()
+            .zip([x, y].into_iter().chain(force))
+            .for_each(|(sum, off)| *sum += off.abs() / count);
+        errors.position_mean_euclid_mm += x.hypot(y) / count;
+        errors.position_rmse_mm += (x * x + y * y) / count;
+    }
+    let PerAxis { x_mm, y_mm, fx_n, fy_n, fz_n } = errors.per_axis;
+    errors.position_mae_mm = (x_mm + y_mm) / 2.0;
+    errors.force_mae_n = (fx_n + fy_n + fz_n) / 3.0;
+    errors.position_rmse_mm = errors.position_rmse_mm.sqrt();
+    errors
+}
+
+/// χ² of five numbers below which 95 % of all cases lie.
+const CHI_SQUARE_95: f64 = 11.0705;
+
+/// The share of contacts that lie in the decoder's own 95 % regions; `None` for a decoder that states none.
+pub fn coverage95(decoder: &Decoder, rows: &[Row], wanted: &[Label]) -> Option<f64> {
+    let Decoder::Inverse(inverse) = decoder else { return None };
+    let covered = rows.iter().zip(wanted).filter(|(row, wanted)| {
+        let distance =
+            inverse.estimate(&strain(row)).and_then(|estimate| estimate.distance_square(&wanted.numbers()));
+        distance.is_some_and(|square| square <= CHI_SQUARE_95)
+    });
+    Some(covered.count() as f64 / rows.len().max(1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_figure_is_its_definition() {
+        let found = [Contact { x_mm: 3.0, y_mm: 4.0, fz_n: 1.0, ..Contact::default() }, Contact::default()];
+        let wanted = [Label::default(), Label { fx_n: 0.6, ..Label::default() }];
+        let errors = errors(&found, &wanted);
+        assert_eq!(errors.rows, 2);
+        assert_eq!(errors.position_mae_mm, (1.5 + 2.0) / 2.0);
+        assert_eq!(errors.position_mean_euclid_mm, 2.5);
+        assert!((errors.position_rmse_mm - 12.5_f64.sqrt()).abs() < 1e-12);
+        assert!((errors.force_mae_n - (0.3 + 0.5) / 3.0).abs() < 1e-12);
+        assert_eq!(errors.per_axis.fz_n, 0.5);
+    }
+}

@@ -19,6 +19,7 @@ pub mod mapping;
 pub mod measured;
 #[cfg(feature = "simulator")]
 pub mod mechanics;
+pub mod network;
 pub mod output;
 pub mod pipeline;
 pub mod plot;
@@ -27,6 +28,7 @@ pub mod quantity;
 mod random;
 pub mod readout;
 pub mod replay;
+pub mod scdf;
 pub mod signal;
 pub mod spelling;
 pub mod time;

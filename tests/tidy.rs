@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 const ROWS: &[&[&str]] = &[
     &["time", "spelling", "random", "zernike"],
     &["quantity", "control", "health", "latency", "toml_text", "plot", "vtk"],
-    &["capture", "link", "signal", "device", "influence", "mapping", "measured"],
+    &["capture", "link", "signal", "device", "influence", "mapping", "measured", "network"],
     &["contact", "output", "readout", "dataset", "field", "protocol"],
     &["pipeline", "layout", "mechanics", "twin", "metrology"],
-    &["replay", "virtual_pad"],
+    &["replay", "scdf", "virtual_pad"],
     &["transport", "sink", "requests"],
     &["bridge"],
     &["cli"],

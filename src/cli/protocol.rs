@@ -13,8 +13,9 @@ use super::device::Pad;
 use super::written::{both_print, create, is_stdout, stdout};
 use super::{Failure, pictures, print_json, say};
 use crate::device::Patch;
+use crate::measured::zero::ZERO;
 use crate::measured::{Row, Table, write};
-use crate::protocol::{self, REACH_S, ZERO};
+use crate::protocol::{self, REACH_S};
 
 /// Arguments of `tactpad protocol`.
 #[derive(Debug, Args)]

@@ -11,6 +11,7 @@ pub mod error;
 mod lines;
 pub mod read;
 pub mod write;
+pub mod zero;
 
 use self::columns::Column;
 use crate::quantity::{CHANNELS, Contact};

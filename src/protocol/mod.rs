@@ -8,10 +8,8 @@ pub mod recommended;
 
 use std::f64::consts::PI;
 
+use crate::measured::zero::ZERO;
 use crate::measured::{Approach, Label, Row, Table};
-
-/// The session of the zeros: nothing touches the pad.
-pub const ZERO: &str = "zero";
 
 /// What a rig needs to go to a contact and to load it, unless its user knows better.
 pub const REACH_S: f64 = 4.0;

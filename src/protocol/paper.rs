@@ -91,8 +91,8 @@ mod tests {
     use std::collections::{BTreeMap, BTreeSet};
 
     use super::*;
+    use crate::measured::zero::ZERO;
     use crate::measured::{Label, Row};
-    use crate::protocol::ZERO;
 
     const PATCH: Patch = Patch { patch_radius_mm: 1.0, max_centre_radius_mm: 29.0, full_scale_n: 5.0 };
 

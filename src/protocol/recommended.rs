@@ -148,7 +148,7 @@ mod tests {
 
     use super::*;
     use crate::measured::Row;
-    use crate::protocol::ZERO;
+    use crate::measured::zero::ZERO;
 
     const PATCH: Patch = Patch { patch_radius_mm: 1.0, max_centre_radius_mm: 29.0, full_scale_n: 5.0 };
 

@@ -3,11 +3,11 @@
 use super::distinct_places;
 use crate::device::Device;
 use crate::measured::Table;
+use crate::measured::zero::ZERO;
 use crate::plot::colour::Rgb;
 use crate::plot::figure::{Anchor, Figure, Ink, Stroke, Text};
 use crate::plot::plan::Plan;
 use crate::plot::shape::{Look, Shape};
-use crate::protocol::ZERO;
 
 const WIDTH: f64 = 460.0;
 const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);

@@ -1,0 +1,64 @@
+//! Adam: a step in which each parameter moves by about the rate, however large its gradient is.
+//!
+//! Source: D. P. Kingma and J. Ba, "Adam: a method for stochastic optimization", ICLR 2015, algorithm 1 with its
+//! constants.
+
+const MEAN_KEPT: f32 = 0.9;
+const SQUARE_KEPT: f32 = 0.999;
+const EPSILON: f32 = 1e-8;
+
+/// Running means of the gradients and of their squares.
+#[derive(Clone, Debug)]
+pub(super) struct Adam {
+    rate: f32,
+    mean: Vec<f32>,
+    square: Vec<f32>,
+    /// What the means still hold of the zeros that they began with.
+    mean_left: f64,
+    square_left: f64,
+}
+
+impl Adam {
+    pub(super) fn new(rate: f32, parameters: usize) -> Self {
+        Self {
+            rate,
+            mean: vec![0.0; parameters],
+            square: vec![0.0; parameters],
+            mean_left: 1.0,
+            square_left: 1.0,
+        }
+    }
+
+    /// Moves the parameters against their gradient.
+    pub(super) fn step(&mut self, parameters: &mut [f32], gradient: &[f32]) {
+        self.mean_left *= f64::from(MEAN_KEPT);
+        self.square_left *= f64::from(SQUARE_KEPT);
+        let rate = (f64::from(self.rate) / (1.0 - self.mean_left)) as f32;
+        let square_gain = (1.0 / (1.0 - self.square_left)) as f32;
+        let moments = self.mean.iter_mut().zip(&mut self.square);
+        for ((parameter, slope), (mean, square)) in parameters.iter_mut().zip(gradient).zip(moments) {
+            *mean = MEAN_KEPT * *mean + (1.0 - MEAN_KEPT) * slope;
+            *square = SQUARE_KEPT * *square + (1.0 - SQUARE_KEPT) * slope * slope;
+            *parameter -= rate * *mean / ((*square * square_gain).sqrt() + EPSILON);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_step_is_the_rate_and_the_way_leads_down() {
+        let mut adam = Adam::new(0.01, 2);
+        let mut parameters = [1.0, -3.0];
+        adam.step(&mut parameters, &[5.0, -0.001]);
+        assert!((parameters[0] - 0.99).abs() < 1e-6 && (parameters[1] + 2.99).abs() < 1e-6, "{parameters:?}");
+        // (p − 0.5)² is least at 0.5.
+        for _ in 0..2_000 {
+            let gradient = parameters.map(|p| 2.0 * (p - 0.5));
+            adam.step(&mut parameters, &gradient);
+        }
+        assert!(parameters.iter().all(|p| (p - 0.5).abs() < 1e-3), "{parameters:?}");
+    }
+}

@@ -1,0 +1,165 @@
+//! Forwards and backwards through a network, a batch of examples at once.
+
+use super::parameters::{Place, Shape};
+use super::product::{padded, product, transposed, transposed_product};
+use super::{Example, OUTPUTS};
+use crate::quantity::CHANNELS;
+
+/// Examples as the trainer holds them: standardised, row by row, padded to whole tiles.
+#[derive(Clone, Debug)]
+pub(super) struct Batch {
+    /// Examples, without what is padded.
+    pub(super) count: usize,
+    /// Of a row of inputs, and of one of targets.
+    widths: [usize; 2],
+    pub(super) inputs: Vec<f32>,
+    pub(super) targets: Vec<f32>,
+}
+
+impl Batch {
+    pub(super) fn empty(shape: &Shape) -> Self {
+        let ends =
+            [shape.layers.first().map(|place| place.inputs), shape.layers.last().map(|place| place.outputs)];
+        let widths = ends.map(Option::unwrap_or_default);
+        Self { count: 0, widths, inputs: Vec::new(), targets: Vec::new() }
+    }
+
+    /// Takes these examples instead of those before.
+    pub(super) fn fill(&mut self, examples: &[&Example]) {
+        self.count = examples.len();
+        for (matrix, width) in [&mut self.inputs, &mut self.targets].into_iter().zip(self.widths) {
+            matrix.clear();
+            matrix.resize(padded(self.count) * width, 0.0);
+        }
+        let [inputs, targets] = self.widths;
+        let rows = self.inputs.chunks_exact_mut(inputs).zip(self.targets.chunks_exact_mut(targets));
+        for ((inputs, targets), example) in rows.zip(examples) {
+            inputs[..CHANNELS].copy_from_slice(&example.uv);
+            targets[..OUTPUTS].copy_from_slice(&example.contact);
+        }
+    }
+}
+
+/// What goes through a network with one batch.
+#[derive(Clone, Debug)]
+pub(super) struct Pass {
+    shape: Shape,
+    /// After ReLU, of the input and of each layer; later how the loss follows what was before ReLU.
+    values: Vec<Vec<f32>>,
+}
+
+impl Pass {
+    pub(super) fn new(shape: &Shape) -> Self {
+        Self { shape: shape.clone(), values: vec![Vec::new(); shape.layers.len() + 1] }
+    }
+
+    /// Sends a batch through, and gives the sum of the squared errors over all outputs.
+    pub(super) fn forward(&mut self, parameters: &[f32], batch: &Batch) -> f64 {
+        let rows = padded(batch.count);
+        self.values[0].clone_from(&batch.inputs);
+        for (index, place) in self.shape.layers.iter().enumerate() {
+            let [before, after] = neighbours(&mut self.values, index);
+            after.resize(rows * place.outputs, 0.0);
+            product(after, before, &parameters[place.weights.clone()], [place.inputs, place.outputs]);
+            let is_last = index + 1 == self.shape.layers.len();
+            finish(after, &parameters[place.biases.clone()], is_last);
+        }
+        self.compare(batch)
+    }
+
+    /// Puts errors in place of the outputs; rows that are padded have none.
+    fn compare(&mut self, batch: &Batch) -> f64 {
+        let Some((outputs, place)) = self.values.last_mut().zip(self.shape.layers.last()) else { return 0.0 };
+        let (real, padding) = outputs.split_at_mut(batch.count * place.outputs);
+        real.iter_mut().zip(&batch.targets).for_each(|(value, target)| *value -= target);
+        padding.fill(0.0);
+        real.chunks(place.outputs)
+            .map(|row| f64::from(row.iter().map(|error| error * error).sum::<f32>()))
+            .sum()
+    }
+
+    /// The gradient of the sum of the batch's squared errors, after [`Self::forward`].
+    pub(super) fn backward(&mut self, parameters: &[f32], gradient: &mut [f32]) {
+        self.values.last_mut().into_iter().flatten().for_each(|error| *error *= 2.0);
+        for (index, place) in self.shape.layers.iter().enumerate().rev() {
+            let [before, after] = neighbours(&mut self.values, index);
+            let weights = &mut gradient[place.weights.clone()];
+            transposed_product(weights, before, after, [place.inputs, place.outputs]);
+            sum_rows(&mut gradient[place.biases.clone()], after);
+            if index > 0 {
+                back(before, after, &parameters[place.weights.clone()], place);
+            }
+        }
+    }
+}
+
+/// What goes into a layer and what comes out.
+fn neighbours(values: &mut [Vec<f32>], index: usize) -> [&mut Vec<f32>; 2] {
+    let (before, after) = values.split_at_mut(index + 1);
+    [&mut before[index], &mut after[0]]
+}
+
+/// Adds the biases; then ReLU, but for the last layer.
+fn finish(values: &mut [f32], biases: &[f32], is_last: bool) {
+    let least = if is_last { f32::NEG_INFINITY } else { 0.0 };
+    for row in values.chunks_exact_mut(biases.len()) {
+        row.iter_mut().zip(biases).for_each(|(value, bias)| *value = (*value + bias).max(least));
+    }
+}
+
+fn sum_rows(into: &mut [f32], rows: &[f32]) {
+    into.fill(0.0);
+    for row in rows.chunks_exact(into.len()) {
+        into.iter_mut().zip(row).for_each(|(sum, value)| *sum += value);
+    }
+}
+
+/// From the slopes after a layer to those before it; a neuron that is silent passes none.
+fn back(before: &mut [f32], after: &[f32], weights: &[f32], place: &Place) {
+    let mut slopes = vec![0.0; before.len()];
+    product(&mut slopes, after, &transposed(weights, place.outputs), [place.outputs, place.inputs]);
+    for (value, slope) in before.iter_mut().zip(slopes) {
+        *value = if *value > 0.0 { slope } else { 0.0 };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::{Network, Zero};
+    use crate::random::SplitMix64;
+
+    #[test]
+    fn gradients_are_the_differences_of_the_loss() {
+        let network = Network::untrained(&[13, 24], Zero::Tared, &[], 5);
+        let shape = Shape::of(&network);
+        let mut random = SplitMix64::new(8);
+        let mut draw = || Example {
+            uv: std::array::from_fn(|_| random.uniform()),
+            contact: std::array::from_fn(|_| random.uniform()),
+        };
+        let examples: Vec<Example> = (0..11).map(|_| draw()).collect();
+        let mut batch = Batch::empty(&shape);
+        batch.fill(&examples.iter().collect::<Vec<_>>());
+        let (mut parameters, mut pass) = (shape.pack(&network), Pass::new(&shape));
+        let mut gradient = vec![0.0; parameters.len()];
+        pass.forward(&parameters, &batch);
+        pass.backward(&parameters, &mut gradient);
+        let mut seen = 0;
+        for index in (0..parameters.len()).step_by(3) {
+            let here = parameters[index];
+            let mut loss = |at: f32| {
+                parameters[index] = at;
+                pass.forward(&parameters, &batch)
+            };
+            let step = 5e-4;
+            let difference = (loss(here + step) - loss(here - step)) / f64::from(2.0 * step);
+            parameters[index] = here;
+            assert!((difference - f64::from(gradient[index])).abs() < 0.02, "{index}: {difference}");
+            seen += usize::from(gradient[index].abs() > 0.1);
+        }
+        assert!(seen > 40, "{seen} gradients say something");
+        let padded_weight = shape.layers[0].weights.end - 1;
+        assert_eq!((parameters[padded_weight], gradient[padded_weight]), (0.0, 0.0));
+    }
+}

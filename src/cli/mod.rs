@@ -1,7 +1,9 @@
 //! The program's verbs, one file each. Errors are printed and exit codes chosen here and nowhere else.
 
+mod adapt;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod ctl;
+mod decoder_file;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod demo;
 mod device;
@@ -35,6 +37,7 @@ mod simulate;
 mod summary;
 mod tables;
 mod text_file;
+mod train;
 mod twin;
 mod written;
 
@@ -85,6 +88,10 @@ enum Verb {
     Protocol(protocol::Arguments),
     /// Make measured-like data with the imperfect virtual pad.
     Twin(twin::Arguments),
+    /// Train the paper's network on simulated contacts.
+    Train(train::Arguments),
+    /// Fit a decoder to a pad by measured contacts.
+    Adapt(adapt::Arguments),
     /// List, show and check profiles.
     Profile(profile::Arguments),
     /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
@@ -131,6 +138,8 @@ pub fn run() -> ExitCode {
         Verb::Simulate(arguments) => simulate::run(&arguments),
         Verb::Protocol(arguments) => protocol::run(&arguments),
         Verb::Twin(arguments) => twin::run(&arguments),
+        Verb::Train(arguments) => train::run(&arguments),
+        Verb::Adapt(arguments) => adapt::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
         Verb::Layout(arguments) => layout::run(&arguments),
         Verb::Metrology(arguments) => metrology::run(&arguments),

@@ -4,7 +4,7 @@
 //! temperature included. Rows of one trial are one time series in order; a row without trial is a static sample. A plan is
 //! the same table without channels.
 //!
-//! As a file a table is CSV: [`read`] and [`write`] turn texts into tables and back. Whoever calls opens the files.
+//! As a file a table is CSV: [`mod@read`] and [`mod@write`] turn texts into tables and back. Whoever calls opens the files.
 
 pub mod columns;
 pub mod error;

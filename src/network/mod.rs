@@ -1,13 +1,14 @@
 //! Multilayer perceptrons from nine channels to a contact: how they decode, how they learn, how they are kept.
 //!
 //! A [`Network`] is what the paper calls the SCDF's decoder: standardised channels, fully connected layers with ReLU
-//! between them, a linear output, and the contact out of standardised numbers. [`training`] fits one to examples.
-//! Which examples, and in which stages, is the business of `scdf`.
+//! between them, a linear output, and the contact out of standardised numbers. [`training`] fits one to examples,
+//! [`onnx`] writes and reads it. Which examples, and in which stages, is the business of `scdf`.
 //!
 //! Source: Wu et al., *Sensors* 2026, 26(4), 1378, section 2.5.
 
 mod adam;
 mod gradient;
+pub mod onnx;
 mod parameters;
 mod product;
 pub mod score;

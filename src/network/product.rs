@@ -55,14 +55,16 @@ fn strip(into: &mut [f32], panel: &[[f32; ROWS]], right: &[f32], columns: usize)
     }
 }
 
-/// `into` = `from`ᵀ; `from` has `columns` columns.
-pub(super) fn transpose(into: &mut [f32], from: &[f32], columns: usize) {
+/// The matrix of `columns` columns, turned.
+pub(super) fn transposed(from: &[f32], columns: usize) -> Vec<f32> {
     let rows = from.len() / columns;
+    let mut into = vec![0.0; from.len()];
     for (row, from) in from.chunks_exact(columns).enumerate() {
         for (column, value) in from.iter().enumerate() {
             into[column * rows + row] = *value;
         }
     }
+    into
 }
 
 #[cfg(test)]
@@ -90,8 +92,7 @@ mod tests {
         let mut found = vec![7.0; rows * columns];
         product(&mut found, &left, &right, [inner, columns]);
         assert_eq!(found, wanted);
-        let mut turned = vec![0.0; rows * inner];
-        transpose(&mut turned, &left, inner);
+        let turned = transposed(&left, inner);
         assert!(
             (0..rows).all(|row| (0..inner).all(|k| at(&turned, rows, k, row) == at(&left, inner, row, k)))
         );

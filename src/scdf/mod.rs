@@ -17,7 +17,7 @@ pub const HIDDEN: &[usize] = &[128, 128, 64];
 const RATE: f32 = 1e-3;
 
 /// The paper's "mini-batch"; it does not say how many.
-const BATCH: usize = 128;
+pub const BATCH: usize = 128;
 
 /// "Training converged within 300 epochs."
 const EPOCHS_MAX: usize = 300;

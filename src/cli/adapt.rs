@@ -1,0 +1,130 @@
+//! `tactpad adapt`: fits a decoder to a pad by measured contacts.
+
+mod scdf;
+
+use std::fmt;
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use super::device::Pad;
+use super::written::{both_print, is_same, is_stdout, stdout, written_over};
+use super::{Failure, print_json, say, tables};
+use crate::measured::columns::Kind;
+use crate::measured::{Row, Table, zero};
+use crate::network::Zero;
+
+/// Arguments of `tactpad adapt`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: tactpad adapt --method scdf --measured m.csv --from scdf.onnx --out mine.onnx"
+)]
+pub(super) struct Arguments {
+    /// How it is done.
+    #[arg(long, value_name = "METHOD")]
+    method: Method,
+    /// A CSV of measured contacts with all nine channels, raw.
+    ///
+    /// Where it has readings of the untouched pad (session zero, or all forces 0), channels are taken relative to them.
+    #[arg(long, value_name = "FILE")]
+    measured: PathBuf,
+    /// Take the first N contacts only.
+    #[arg(long, value_name = "N")]
+    rows: Option<usize>,
+    /// Draws what is random: the same seed gives the same file.
+    #[arg(long, default_value = "0")]
+    seed: u64,
+    /// The decoder to begin with; scdf needs one that train wrote.
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
+    /// The decoder to write; a file that is there is replaced, and - is standard output.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    #[command(flatten)]
+    pad: Pad,
+    /// Print one JSON document: what came of it.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Ways to fit a decoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Method {
+    /// Stage II of the paper's network: train it on, held to where it began.
+    Scdf,
+}
+
+/// Measured contacts as a method takes them.
+struct Contacts {
+    zero: Zero,
+    rows: Vec<Row>,
+}
+
+/// What came of it.
+#[derive(Serialize)]
+struct Outcome {
+    method: Method,
+    rows: usize,
+    /// Whether channels were taken relative to the untouched pad.
+    tared: bool,
+    #[serde(flatten)]
+    fit: scdf::Fit,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { method, out, json, .. } = arguments;
+    if *json && is_stdout(out) {
+        return Err(both_print());
+    }
+    arguments.spare()?;
+    let contacts = arguments.contacts()?;
+    let (rows, tared) = (contacts.rows.len(), contacts.zero == Zero::Tared);
+    let fit = match method {
+        Method::Scdf => scdf::adapt(arguments, &contacts)?,
+    };
+    let outcome = Outcome { method: *method, rows, tared, fit };
+    match (json, is_stdout(out)) {
+        (true, _) => print_json(&outcome),
+        (false, true) => {
+            say(&outcome);
+            Ok(())
+        }
+        (false, false) => Ok(writeln!(stdout(), "{outcome}\n{} is written", out.display())?),
+    }
+}
+
+impl Arguments {
+    /// Refuses to write over what is read. A decoder may be written over itself: it is read before.
+    fn spare(&self) -> Result<(), Failure> {
+        self.pad.spare(&self.out)?;
+        if is_same(&self.measured, &self.out) {
+            return Err(written_over(&self.out, "is the measured table"));
+        }
+        Ok(())
+    }
+
+    /// The contacts of the table, tared if it ever reads the untouched pad.
+    fn contacts(&self) -> Result<Contacts, Failure> {
+        let device = self.pad.read()?;
+        let table = tables::read(&self.measured, Kind::Measured, 0.5 * device.plate.diameter_mm)?;
+        let tared: Option<Table> = zero::tared(&table);
+        let zero = if tared.is_some() { Zero::Tared } else { Zero::Raw };
+        let mut rows = zero::contacts(&tared.unwrap_or(table));
+        rows.truncate(self.rows.unwrap_or(usize::MAX));
+        Ok(Contacts { zero, rows })
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let taken = if self.tared {
+            "relative to the untouched pad"
+        } else {
+            "raw, as the table has no reading of the untouched pad"
+        };
+        write!(f, "{} contacts, channels {taken}\n{}", self.rows, self.fit)
+    }
+}

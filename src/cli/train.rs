@@ -1,0 +1,124 @@
+//! `tactpad train`: stage I of the paper's decoder.
+
+mod drawing;
+
+use std::fmt;
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+
+use super::device::Pad;
+use super::field_cache::field_of;
+use super::progress::Progress;
+use super::written::{both_print, is_stdout, stdout};
+use super::{Failure, decoder_file, pictures, print_json, say};
+use crate::network::score::{Score, Scores};
+use crate::network::training::Epoch;
+use crate::scdf::HIDDEN;
+use crate::scdf::simulation::{PAPER, Pretrained, examples, pretrain};
+
+/// The five numbers of a contact.
+const NAMES: [&str; 5] = ["x", "y", "Fx", "Fy", "Fz"];
+
+/// Arguments of `tactpad train`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad train --seed 1 --out scdf.onnx --figures figures\n\n\
+                        It takes half a minute. Then adapt it to a pad: tactpad adapt --method scdf --from scdf.onnx")]
+pub(super) struct Arguments {
+    /// The network to write, as ONNX; a file that is there is replaced, and - is standard output.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Draws contacts, split, first weights and order: the same seed gives the same file.
+    #[arg(long, default_value = "0")]
+    seed: u64,
+    #[command(flatten)]
+    pad: Pad,
+    /// Write the figures train-loss and train-scatter-x to -fz into this folder, as SVG and PNG.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    /// Print one JSON document: scores on the test's contacts, the paper's beside them, and the loss of each epoch.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was learnt.
+#[derive(Serialize)]
+struct Outcome {
+    seed: u64,
+    widths: Vec<usize>,
+    parameters: usize,
+    /// Contacts that it was tested on.
+    test_rows: usize,
+    /// In standardised units.
+    test: Scores,
+    paper: Score,
+    validation_mse: f64,
+    curve: Vec<Epoch>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { out, seed, pad, figures, json } = arguments;
+    if *json && is_stdout(out) {
+        return Err(both_print());
+    }
+    pad.spare(out)?;
+    let device = pad.read()?;
+    let examples = examples(&device, &field_of(&device)?, *seed);
+    let pretrained = with_progress(|progress| {
+        pretrain(HIDDEN, examples, *seed, |Epoch { number, validation_mse, .. }| {
+            progress.step(format_args!("epoch {number}: mean squared error {validation_mse:.4}"));
+        })
+    });
+    decoder_file::write(out, &pretrained.trained.network)?;
+    if let Some(folder) = figures {
+        pictures::write(folder, "train-loss", &drawing::loss(&pretrained.trained.curve))?;
+        for (name, figure) in drawing::scatters(&pretrained) {
+            pictures::write(folder, &format!("train-scatter-{name}"), &figure)?;
+        }
+    }
+    let outcome = Outcome::of(&pretrained, *seed);
+    match (json, is_stdout(out)) {
+        (true, _) => print_json(&outcome),
+        (false, true) => {
+            say(&outcome);
+            Ok(())
+        }
+        (false, false) => Ok(writeln!(stdout(), "{outcome}\n{} is written", out.display())?),
+    }
+}
+
+fn with_progress<T>(work: impl FnOnce(&mut Progress) -> T) -> T {
+    work(&mut Progress::begin())
+}
+
+impl Outcome {
+    fn of(pretrained: &Pretrained, seed: u64) -> Self {
+        let Pretrained { trained, scores, test } = pretrained;
+        Self {
+            seed,
+            widths: trained.network.widths(),
+            parameters: trained.network.parameters(),
+            test_rows: test.len(),
+            test: *scores,
+            paper: PAPER,
+            validation_mse: trained.validation_mse,
+            curve: trained.curve.clone(),
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let widths: Vec<_> = self.widths.iter().map(usize::to_string).collect();
+        writeln!(f, "{}: {} weights, {} epochs", widths.join("-"), self.parameters, self.curve.len())?;
+        writeln!(f, "on {} contacts that it has not seen, in standardised units:", self.test_rows)?;
+        write!(f, "{:<6} {:>8} {:>8} {:>8}", "", "MSE", "MAE", "R²")?;
+        let rows = [("all", &self.test.all), ("paper", &self.paper)];
+        for (name, Score { mse, mae, r2 }) in rows.into_iter().chain(NAMES.into_iter().zip(&self.test.each)) {
+            write!(f, "\n{name:<6} {mse:>8.4} {mae:>8.4} {r2:>8.4}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,5 +1,6 @@
 //! `tactpad adapt`: fits a decoder to a pad by measured contacts.
 
+mod own;
 mod scdf;
 
 use std::fmt;
@@ -12,9 +13,11 @@ use serde::Serialize;
 use super::device::Pad;
 use super::written::{both_print, is_same, is_stdout, stdout, written_over};
 use super::{Failure, print_json, say, tables};
+use crate::device::Device;
 use crate::measured::columns::Kind;
 use crate::measured::{Row, Table, zero};
 use crate::network::Zero;
+use crate::random::SplitMix64;
 
 /// Arguments of `tactpad adapt`.
 #[derive(Debug, Args)]
@@ -30,7 +33,7 @@ pub(super) struct Arguments {
     /// Where it has readings of the untouched pad (session zero, or all forces 0), channels are taken relative to them.
     #[arg(long, value_name = "FILE")]
     measured: PathBuf,
-    /// Take the first N contacts only.
+    /// Take N of the contacts only, drawn by the seed.
     #[arg(long, value_name = "N")]
     rows: Option<usize>,
     /// Draws what is random: the same seed gives the same file.
@@ -55,6 +58,14 @@ pub(super) struct Arguments {
 enum Method {
     /// Stage II of the paper's network: train it on, held to where it began.
     Scdf,
+    /// The pad's own field, calibrated, and inverted for each reading.
+    Inverse,
+    /// Least squares from the channels to the forces and to x Fz and y Fz.
+    Wrench,
+    /// Least squares from the channels to the contact: a baseline.
+    Linear,
+    /// The mean of the five nearest contacts: a baseline.
+    Knn,
 }
 
 /// Measured contacts as a method takes them.
@@ -71,7 +82,15 @@ struct Outcome {
     /// Whether channels were taken relative to the untouched pad.
     tared: bool,
     #[serde(flatten)]
-    fit: scdf::Fit,
+    fit: Fit,
+}
+
+/// What each way found.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Fit {
+    Network(scdf::Fit),
+    Own(own::Fit),
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -80,10 +99,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(both_print());
     }
     arguments.spare()?;
-    let contacts = arguments.contacts()?;
+    let device = arguments.pad.read()?;
+    let contacts = arguments.contacts(&device)?;
     let (rows, tared) = (contacts.rows.len(), contacts.zero == Zero::Tared);
     let fit = match method {
-        Method::Scdf => scdf::adapt(arguments, &contacts)?,
+        Method::Scdf => Fit::Network(scdf::adapt(arguments, &contacts)?),
+        _ => Fit::Own(own::adapt(arguments, &device, &contacts)?),
     };
     let outcome = Outcome { method: *method, rows, tared, fit };
     match (json, is_stdout(out)) {
@@ -107,14 +128,25 @@ impl Arguments {
     }
 
     /// The contacts of the table, tared if it ever reads the untouched pad.
-    fn contacts(&self) -> Result<Contacts, Failure> {
-        let device = self.pad.read()?;
+    fn contacts(&self, device: &Device) -> Result<Contacts, Failure> {
         let table = tables::read(&self.measured, Kind::Measured, 0.5 * device.plate.diameter_mm)?;
         let tared: Option<Table> = zero::tared(&table);
         let zero = if tared.is_some() { Zero::Tared } else { Zero::Raw };
         let mut rows = zero::contacts(&tared.unwrap_or(table));
-        rows.truncate(self.rows.unwrap_or(usize::MAX));
+        if let Some(count) = self.rows {
+            SplitMix64::named(self.seed, "rows").shuffle(&mut rows);
+            rows.truncate(count);
+        }
         Ok(Contacts { zero, rows })
+    }
+}
+
+impl fmt::Display for Fit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Network(fit) => fit.fmt(f),
+            Self::Own(fit) => fit.fmt(f),
+        }
     }
 }
 

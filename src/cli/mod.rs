@@ -11,6 +11,7 @@ mod device;
 mod devices;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod doctor;
+mod evaluate;
 mod field_cache;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod files;
@@ -92,6 +93,8 @@ enum Verb {
     Train(train::Arguments),
     /// Fit a decoder to a pad by measured contacts.
     Adapt(adapt::Arguments),
+    /// Say how far a decoder's contacts are from measured ones, or from the truth.
+    Evaluate(evaluate::Arguments),
     /// List, show and check profiles.
     Profile(profile::Arguments),
     /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
@@ -140,6 +143,7 @@ pub fn run() -> ExitCode {
         Verb::Twin(arguments) => twin::run(&arguments),
         Verb::Train(arguments) => train::run(&arguments),
         Verb::Adapt(arguments) => adapt::run(&arguments),
+        Verb::Evaluate(arguments) => evaluate::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
         Verb::Layout(arguments) => layout::run(&arguments),
         Verb::Metrology(arguments) => metrology::run(&arguments),

@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             progress.step(format_args!("epoch {number}: mean squared error {validation_mse:.4}"));
         })
     });
-    decoder_file::write(out, &pretrained.trained.network)?;
+    decoder_file::write_network(out, &pretrained.trained.network)?;
     if let Some(folder) = figures {
         pictures::write(folder, "train-loss", &drawing::loss(&pretrained.trained.curve))?;
         for (name, figure) in drawing::scatters(&pretrained) {

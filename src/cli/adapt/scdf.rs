@@ -34,7 +34,7 @@ pub(super) fn adapt(arguments: &Arguments, contacts: &Contacts) -> Result<Fit, F
                 .into(),
         )
     })?;
-    let mut start = decoder_file::read(from)?;
+    let mut start = decoder_file::read_network(from)?;
     start.zero = contacts.zero;
     let mut progress = Progress::begin();
     let adapted = fit(&start, examples(&contacts.rows), arguments.seed, |beta, Epoch { number, .. }| {
@@ -43,7 +43,7 @@ pub(super) fn adapt(arguments: &Arguments, contacts: &Contacts) -> Result<Fit, F
     drop(progress);
     let adapted =
         adapted.map_err(|error| Failure::Unusable(format!("{}: {error}", arguments.measured.display())))?;
-    decoder_file::write(&arguments.out, &adapted.trained.network)?;
+    decoder_file::write_network(&arguments.out, &adapted.trained.network)?;
     Ok(Fit::of(adapted))
 }
 

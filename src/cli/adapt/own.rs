@@ -1,0 +1,103 @@
+//! The methods whose decoders are files of the program's own: `inverse`, `wrench`, `linear`, `knn`.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::{Arguments, Contacts, Method};
+use crate::calibration::fit::{Calibration, FitError, fit};
+use crate::calibration::regression::{neighbours, regression};
+use crate::cli::field_cache::field_of;
+use crate::cli::{Failure, decoder_file};
+use crate::contact::Decoder;
+use crate::contact::regression::Target;
+use crate::device::Device;
+use crate::network::Zero;
+use crate::quantity::{CHANNEL_NAMES, CHANNELS};
+
+/// What was found about the pad.
+#[derive(Default, Serialize)]
+pub(super) struct Fit {
+    /// What the inverse decoder's calibration found; nothing for the other methods.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pad: Option<Pad>,
+}
+
+#[derive(Serialize)]
+struct Pad {
+    gain: [f64; CHANNELS],
+    noise_uv: [f64; CHANNELS],
+    noise_share: [f64; CHANNELS],
+    background_share: f64,
+    parameters: Vec<Found>,
+}
+
+/// How much a number of the device differs from the device's own.
+#[derive(Serialize)]
+struct Found {
+    name: &'static str,
+    change: f64,
+    deviation: f64,
+}
+
+/// Fits the decoder and writes it.
+pub(super) fn adapt(arguments: &Arguments, device: &Device, contacts: &Contacts) -> Result<Fit, Failure> {
+    if contacts.zero == Zero::Raw {
+        return Err(refused(
+            arguments,
+            &"no row without force says what the untouched pad reads; measure some",
+        ));
+    }
+    let reach_mm = device.contact.max_centre_radius_mm;
+    let unusable = |error: FitError| refused(arguments, &error);
+    let (decoder, found) = match arguments.method {
+        Method::Inverse => {
+            let calibration = fit(&contacts.rows, device, &field_of(device)?).map_err(unusable)?;
+            (Decoder::Inverse(Box::new(calibration.decoder())), Fit { pad: Some(Pad::of(&calibration)) })
+        }
+        Method::Knn => (Decoder::Neighbours(neighbours(&contacts.rows).map_err(unusable)?), Fit::default()),
+        Method::Wrench | Method::Linear | Method::Scdf => {
+            let target = if arguments.method == Method::Wrench { Target::Wrench } else { Target::Contact };
+            let fitted = regression(&contacts.rows, target, reach_mm).map_err(unusable)?;
+            (Decoder::Regression(Box::new(fitted)), Fit::default())
+        }
+    };
+    let note = format!("{} contacts of {}", contacts.rows.len(), arguments.measured.display());
+    decoder_file::write(&arguments.out, &decoder.to_bytes(&note).unwrap_or_default())?;
+    Ok(found)
+}
+
+fn refused(arguments: &Arguments, why: &dyn fmt::Display) -> Failure {
+    Failure::Unusable(format!("{}: {why}", arguments.measured.display()))
+}
+
+impl Pad {
+    fn of(calibration: &Calibration) -> Self {
+        let found = |(parameter, change, deviation): &(_, f64, f64)| {
+            let parameter: &crate::device::parameter::Parameter = parameter;
+            Found { name: parameter.name(), change: *change, deviation: *deviation }
+        };
+        Self {
+            gain: calibration.gain,
+            noise_uv: calibration.noise.additive_uv,
+            noise_share: calibration.noise.share,
+            background_share: calibration.background,
+            parameters: calibration.physical.iter().map(found).collect(),
+        }
+    }
+}
+
+impl fmt::Display for Fit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(pad) = &self.pad else { return f.write_str("fitted") };
+        writeln!(f, "channel   gain  noise µV  noise %")?;
+        for (k, name) in CHANNEL_NAMES.iter().enumerate() {
+            let share = 100.0 * pad.noise_share[k];
+            writeln!(f, "{name:<7} {:>6.3} {:>9.1} {share:>8.2}", pad.gain[k], pad.noise_uv[k])?;
+        }
+        for Found { name, change, deviation } in &pad.parameters {
+            writeln!(f, "{name:<30} {change:>+8.3} ± {deviation:.3}")?;
+        }
+        write!(f, "smooth background: {:.1} % of each map", 100.0 * pad.background_share)
+    }
+}

@@ -13,12 +13,14 @@ use super::field_cache::field_of;
 use super::progress::Progress;
 use super::tables::read;
 use super::written::{create, is_stdout};
-use super::{Failure, pictures, print_json};
+use super::{Failure, decoder_file, pictures, print_json};
+use crate::contact::Decoder;
 use crate::measured::columns::Kind;
 use crate::measured::write;
 use crate::metrology::figures::{Evidence, Figures};
 use crate::metrology::report::{Entry, entries};
-use crate::metrology::{drawing, procedures};
+use crate::metrology::{Decode, drawing, procedures};
+use crate::quantity::{CHANNELS, Strain};
 use crate::twin::measurement;
 
 /// Arguments of `tactpad metrology`.
@@ -35,6 +37,9 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "A-B", default_value = "1-10", value_parser = parse_seeds)]
     #[arg(conflicts_with = "measured")]
     seeds: RangeInclusive<u64>,
+    /// A decoder that `adapt` or `train` wrote, for the figures that need one.
+    #[arg(long, value_name = "FILE")]
+    decoder: Option<PathBuf>,
     /// Write the plots into this folder, as SVG and PNG: those of the first seed.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -90,8 +95,11 @@ fn of_file(arguments: &Arguments, path: &Path) -> Result<Report, Failure> {
     let device = arguments.pad.read()?;
     let table = read(path, Kind::Measured, 0.5 * device.plate.diameter_mm)?;
     let field = field_of(&device)?;
+    let decoder = decoder(arguments)?;
+    let decode = decoder.as_ref().map(|it| |uv: &[f64; CHANNELS]| it.decode(&strain(uv)));
+    let decode = decode.as_ref().map(|decode| decode as Decode);
     let evidence =
-        Evidence { table: &table, signals: &field.signals, decoder: None, simulation_network: None };
+        Evidence { table: &table, signals: &field.signals, decoder: decode, simulation_network: None };
     let figures = Figures::of(&evidence);
     let plots = plots(arguments, &evidence, &figures)?;
     let statement = format!(
@@ -112,13 +120,16 @@ fn of_twin(arguments: &Arguments) -> Result<Report, Failure> {
     let (designed, device) = (arguments.pad.designed()?, arguments.pad.read_imperfect()?);
     let (nominal, field) = (field_of(&designed)?, field_of(&device)?);
     let plan = procedures::plan(&device.contact);
+    let decoder = decoder(arguments)?;
+    let decode = decoder.as_ref().map(|it| |uv: &[f64; CHANNELS]| it.decode(&strain(uv)));
+    let decode = decode.as_ref().map(|decode| decode as Decode);
     let mut progress = Progress::begin();
     let (mut all, mut files) = (Vec::new(), Vec::new());
     for seed in arguments.seeds.clone() {
         progress.step(format_args!("measuring the twin with seed {seed} of {}", arguments.seeds.end()));
         let table = measurement::carry_out(&plan, &device, &field, seed).table;
         let evidence =
-            Evidence { table: &table, signals: &nominal.signals, decoder: None, simulation_network: None };
+            Evidence { table: &table, signals: &nominal.signals, decoder: decode, simulation_network: None };
         let figures = Figures::of(&evidence);
         if all.is_empty() {
             files = plots(arguments, &evidence, &figures)?;
@@ -133,6 +144,14 @@ fn of_twin(arguments: &Arguments) -> Result<Report, Failure> {
         figures: all,
         plots: files,
     })
+}
+
+fn decoder(arguments: &Arguments) -> Result<Option<Decoder>, Failure> {
+    arguments.decoder.as_deref().map(decoder_file::read).transpose()
+}
+
+fn strain(uv: &[f64; CHANNELS]) -> Strain {
+    Strain { uv: uv.map(|uv| uv as f32) }
 }
 
 /// Writes the plots that the figures allow, and says their names.

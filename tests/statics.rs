@@ -213,7 +213,6 @@ fn assert_forces(statics: &Statics, places: &[Place], force: [f64; 3], bounds: [
     for (axis, (component, bound)) in components.iter().zip(bounds).enumerate() {
         let off = |p: &Place| (f64::from(component(&p.decoded(statics, force))) - force[axis]).abs();
         let (mean, worst) = mean_and_worst(places.iter().map(off));
-        println!("axis {axis}: {mean:.4} {worst:.4}");
         assert!(mean < bound.0 && worst < bound.1, "axis {axis}: {mean} {worst}");
     }
 }

@@ -1,7 +1,9 @@
 //! The channels' noise, from what a calibration leaves over: a part of its own and one that grows with the reading.
 
-use crate::contact::inverse::Noise;
-use crate::quantity::CHANNELS;
+use crate::contact::friction::NO_FRICTION;
+use crate::contact::inverse::{Inverse, Noise};
+use crate::influence::InfluenceField;
+use crate::quantity::{CHANNELS, Strain};
 
 /// What is known before: as much as so many readings of this noise.
 const KNOWN: f64 = 10.0;
@@ -12,9 +14,12 @@ const ADDITIVE_MIN_UV: f64 = 0.5;
 const SHARE_MIN: f64 = 5e-4;
 /// So often the weights are taken anew.
 const ROUNDS: usize = 20;
+const REDUNDANCY_ROUNDS: usize = 25;
+/// Numbers never take up more of the readings than all but this part.
+const FREEDOM_MIN: f64 = 0.05;
 
 /// The noise before any measurement.
-pub(super) const BEFORE: Noise = Noise { additive_uv: [ADDITIVE_UV; CHANNELS], share: [SHARE; CHANNELS] };
+pub(super) const BEFORE: Noise = Noise::of_channels([ADDITIVE_UV; CHANNELS], [SHARE; CHANNELS]);
 
 /// What a channel left over: its reading and the rest, both in µV.
 pub(super) type Rest = (f64, f64);
@@ -24,11 +29,33 @@ pub(super) type Rest = (f64, f64);
 /// Squares of rests are a straight line over squares of readings; the line is fitted with weights from itself, as squares
 /// scatter in proportion to what they should be.
 pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS], freedom: f64) -> Noise {
-    let lines = rests.each_ref().map(|rests| line(rests, freedom.max(0.05)));
-    Noise {
-        additive_uv: lines.map(|[constant, _]| constant.sqrt().max(ADDITIVE_MIN_UV)),
-        share: lines.map(|[_, slope]| slope.sqrt().max(SHARE_MIN)),
+    let lines = rests.each_ref().map(|rests| line(rests, freedom.max(FREEDOM_MIN)));
+    Noise::of_channels(
+        lines.map(|[constant, _]| constant.sqrt().max(ADDITIVE_MIN_UV)),
+        lines.map(|[_, slope]| slope.sqrt().max(SHARE_MIN)),
+    )
+}
+
+/// The noise by which nine channels disagree about five unknowns. What was written down plays no part in it, so its errors
+/// are not taken for noise. `noise` is a guess; `freedom` as in [`of_rests`].
+///
+/// Of a contact's noise only the part beside its five unknowns is seen; of the other part the expectation is known (A. P.
+/// Dempster, N. M. Laird, D. B. Rubin, J. R. Statist. Soc. B 39 (1977) 1).
+pub(super) fn of_redundancy(field: &InfluenceField, noise: Noise, strains: &[Strain], freedom: f64) -> Noise {
+    let mut decoder = Inverse::new(field.clone(), noise, NO_FRICTION);
+    for _ in 0..REDUNDANCY_ROUNDS {
+        let mut rests = [const { Vec::new() }; CHANNELS];
+        for strain in strains {
+            let Some(estimate) = decoder.estimate(strain) else { continue };
+            for (channel, rests) in rests.iter_mut().enumerate() {
+                let (seen, hidden) = decoder.left_over(channel, strain, &estimate);
+                let square = seen * seen / freedom.max(FREEDOM_MIN) + hidden;
+                rests.push((f64::from(strain.uv[channel]), square.sqrt()));
+            }
+        }
+        decoder = decoder.with_noise(of_rests(&rests, 1.0));
     }
+    *decoder.noise()
 }
 
 fn line(rests: &[Rest], freedom: f64) -> [f64; 2] {
@@ -76,14 +103,14 @@ mod tests {
             (uv, 12.0 * f64::from(random.normal()) + 0.015 * uv * f64::from(random.normal()))
         };
         let rests: [Vec<Rest>; CHANNELS] = std::array::from_fn(|_| (0..2000).map(|_| rest()).collect());
-        let Noise { additive_uv, share } = of_rests(&rests, 1.0);
+        let Noise { additive_uv, share, .. } = of_rests(&rests, 1.0);
         assert!(additive_uv.iter().all(|uv| (uv / 12.0 - 1.0).abs() < 0.2), "{additive_uv:?}");
         assert!(share.iter().all(|share| (share / 0.015 - 1.0).abs() < 0.1), "{share:?}");
     }
 
     #[test]
     fn without_rests_it_is_what_was_known() {
-        let Noise { additive_uv, share } = of_rests(&[const { Vec::new() }; CHANNELS], 1.0);
+        let Noise { additive_uv, share, .. } = of_rests(&[const { Vec::new() }; CHANNELS], 1.0);
         assert!(additive_uv.iter().all(|uv| (uv - ADDITIVE_UV).abs() < 1.0), "{additive_uv:?}");
         assert!(share.iter().all(|share| *share < 0.05), "{share:?}");
     }

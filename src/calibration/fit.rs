@@ -78,9 +78,12 @@ impl Calibration {
         let Fit { settings, values, .. } = fit;
         let field = problem.corrected(values);
         let friction = Layout::friction(values, &settings.thresholds_uv);
-        let noise = noise::of_redundancy(&field, fit.noise, &problem.freed(&friction), fit.freedom);
+        let contacts = problem.freed(&friction);
+        let noise = noise::of_redundancy(&field, fit.noise, &contacts, fit.freedom);
+        let noise = Noise { field_uv_per_n: problem.doubt_uv_per_n(fit), ..noise };
+        let decoder = Inverse::new(field.clone(), noise, friction);
         Self {
-            noise: Noise { field_uv_per_n: problem.doubt_uv_per_n(fit), ..noise },
+            noise: Noise { gain: noise::common_gain(&decoder, &contacts), ..noise },
             field,
             gain: std::array::from_fn(|channel| Layout::gain(values, channel)),
             physical: problem.physical(fit),

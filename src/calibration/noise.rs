@@ -3,7 +3,8 @@
 use crate::contact::friction::NO_FRICTION;
 use crate::contact::inverse::{Inverse, Noise};
 use crate::influence::InfluenceField;
-use crate::quantity::{CHANNELS, Strain};
+use crate::linear::Factor;
+use crate::quantity::{CHANNELS, Contact, Strain};
 
 /// What is known before: as much as so many readings of this noise.
 const KNOWN: f64 = 10.0;
@@ -41,11 +42,16 @@ pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS], freedom: f64) -> Noise {
 ///
 /// Of a contact's noise only the part beside its five unknowns is seen; of the other part the expectation is known (A. P.
 /// Dempster, N. M. Laird, D. B. Rubin, J. R. Statist. Soc. B 39 (1977) 1).
-pub(super) fn of_redundancy(field: &InfluenceField, noise: Noise, strains: &[Strain], freedom: f64) -> Noise {
+pub(super) fn of_redundancy(
+    field: &InfluenceField,
+    noise: Noise,
+    contacts: &[(Strain, [f64; 3])],
+    freedom: f64,
+) -> Noise {
     let mut decoder = Inverse::new(field.clone(), noise, NO_FRICTION);
     for _ in 0..REDUNDANCY_ROUNDS {
         let mut rests = [const { Vec::new() }; CHANNELS];
-        for strain in strains {
+        for (strain, _) in contacts {
             let Some(estimate) = decoder.estimate(strain) else { continue };
             for (channel, rests) in rests.iter_mut().enumerate() {
                 let (seen, hidden) = decoder.left_over(channel, strain, &estimate);
@@ -56,6 +62,45 @@ pub(super) fn of_redundancy(field: &InfluenceField, noise: Noise, strains: &[Str
         decoder = decoder.with_noise(of_rests(&rests, 1.0));
     }
     *decoder.noise()
+}
+
+/// How much the gain of all channels together changes from contact to contact, as a standard deviation: wear and warmth
+/// do that, and channels do not disagree about it. It is what the written forces differ by in their own direction beyond
+/// the decoder's noise, in proportion to them; the reference's own noise does not grow with the force.
+pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])]) -> f64 {
+    let mut normal = [[0.0; 2]; 2];
+    let mut right = [0.0; 2];
+    for (strain, written_n) in contacts {
+        let Some((force_n, off_n, variance)) = off_along_force(decoder, strain, written_n) else { continue };
+        let weight = 1.0 / (variance * variance);
+        let excess = off_n * off_n - variance;
+        for (i, left) in [1.0, force_n * force_n].into_iter().enumerate() {
+            normal[i][0] += weight * left;
+            normal[i][1] += weight * left * force_n * force_n;
+            right[i] += weight * left * excess;
+        }
+    }
+    let constant = |slope: f64| (right[0] - normal[0][1] * slope) / normal[0][0];
+    let free = Factor::of(&normal).map_or([0.0; 2], |factor| factor.solve(&right));
+    let slope = if constant(free[1]) < 0.0 { right[1] / normal[1][1] } else { free[1] };
+    if slope > 0.0 { slope.sqrt() } else { 0.0 }
+}
+
+/// The decoded force, how far the written one is from it along it, and the variance of that by the decoder.
+fn off_along_force(decoder: &Inverse, strain: &Strain, written_n: &[f64; 3]) -> Option<(f64, f64, f64)> {
+    let estimate = decoder.estimate(strain)?;
+    let Contact { fx_n, fy_n, fz_n, .. } = estimate.contact;
+    let decoded_n = [fx_n, fy_n, fz_n].map(f64::from);
+    let force_n = decoded_n.iter().map(|n| n * n).sum::<f64>().sqrt();
+    let along = decoded_n.map(|n| n / force_n);
+    let written_n: f64 = along.iter().zip(written_n).map(|(along, n)| along * n).sum();
+    let mut variance = 0.0;
+    for (i, left) in along.iter().enumerate() {
+        for (j, right) in along.iter().enumerate() {
+            variance += left * right * estimate.covariance[2 + i][2 + j];
+        }
+    }
+    (variance > 0.0).then_some((force_n, written_n - force_n, variance))
 }
 
 fn line(rests: &[Rest], freedom: f64) -> [f64; 2] {

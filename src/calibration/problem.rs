@@ -279,11 +279,14 @@ impl<'f> Problem<'f> {
         0.5 * sum
     }
 
-    /// The contacts' channels without this friction.
-    pub(super) fn freed(&self, friction: &Friction) -> Vec<Strain> {
+    /// The contacts' channels without this friction, and the written forces.
+    pub(super) fn freed(&self, friction: &Friction) -> Vec<(Strain, [f64; 3])> {
         let freed = self.recording.freed(friction);
-        let rows = self.contacts.iter().filter_map(|(at, _)| freed.rows.get(*at)?.uv);
-        rows.map(|uv| Strain { uv: uv.map(|uv| uv as f32) }).collect()
+        let contact = |(at, it): &(usize, Measured)| {
+            let uv = freed.rows.get(*at)?.uv?;
+            Some((Strain { uv: uv.map(|uv| uv as f32) }, it.force_n))
+        };
+        self.contacts.iter().filter_map(contact).collect()
     }
 
     /// How unsure each channel of the pad's own field is, for a force of 1 N: the mean over the plate, and over forces of

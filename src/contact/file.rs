@@ -50,10 +50,11 @@ impl Decoder {
         match self {
             Self::Inverse(inverse) => {
                 begin(INVERSE);
-                let Noise { additive_uv, share, field_uv_per_n } = inverse.noise();
+                let Noise { additive_uv, share, field_uv_per_n, gain } = inverse.noise();
                 let friction = inverse.friction().iter();
                 let friction = friction.flat_map(|play| play.threshold_uv.iter().chain(&play.share));
-                let numbers = additive_uv.iter().chain(share).chain(field_uv_per_n).chain(friction);
+                let numbers =
+                    additive_uv.iter().chain(share).chain(field_uv_per_n).chain([gain]).chain(friction);
                 body.extend(numbers.flat_map(|number| number.to_le_bytes()));
                 inverse.field().write(&mut body);
             }
@@ -103,10 +104,11 @@ fn read_inverse(from: &mut Reader<'_>) -> Option<Inverse> {
     for number in additive_uv.iter_mut().chain(&mut share).chain(&mut field_uv_per_n) {
         *number = from.double().filter(|number| number.is_finite() && *number >= 0.0)?;
     }
+    let gain = from.double().filter(|number| number.is_finite() && *number >= 0.0)?;
     let friction = read_friction(from)?;
     let scatters = additive_uv.iter().all(|uv| *uv > 0.0);
     let field = InfluenceField::read(from)?;
-    scatters.then(|| Inverse::new(field, Noise { additive_uv, share, field_uv_per_n }, friction))
+    scatters.then(|| Inverse::new(field, Noise { additive_uv, share, field_uv_per_n, gain }, friction))
 }
 
 fn read_friction(from: &mut Reader<'_>) -> Option<Friction> {

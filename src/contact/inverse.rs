@@ -37,12 +37,14 @@ pub struct Noise {
     pub share: [f64; CHANNELS],
     /// Standard deviation of what the field says of a force of 1 N.
     pub field_uv_per_n: [f64; CHANNELS],
+    /// Standard deviation of a gain that all channels share.
+    pub gain: f64,
 }
 
 impl Noise {
     /// Channels that scatter so around a field that is certain.
     pub const fn of_channels(additive_uv: [f64; CHANNELS], share: [f64; CHANNELS]) -> Self {
-        Self { additive_uv, share, field_uv_per_n: [0.0; CHANNELS] }
+        Self { additive_uv, share, field_uv_per_n: [0.0; CHANNELS], gain: 0.0 }
     }
 
     /// One over each channel's variance.
@@ -149,7 +151,7 @@ impl Inverse {
                 shorter *= 0.25;
             }
         }
-        best.estimate()
+        best.estimate(self.noise.gain)
     }
 
     /// What an estimate leaves of a channel, in µV, and the variance of what it took up of the channel's noise.
@@ -222,12 +224,16 @@ impl Trial {
         (x_mm.is_finite() && y_mm.is_finite()).then_some([part * x_mm, part * y_mm])
     }
 
-    fn estimate(&self) -> Option<Estimate> {
+    /// `gain` scatters all channels together: it moves no place, and each force in proportion.
+    fn estimate(&self, gain: f64) -> Option<Estimate> {
         let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) =
             (self.place_mm.map(|mm| mm as f32), self.force_n.map(|n| n as f32));
         let contact = Contact { x_mm, y_mm, fx_n, fy_n, fz_n };
         let is_finite = [x_mm, y_mm, fx_n, fy_n, fz_n].iter().all(|number| number.is_finite());
-        let covariance = Factor::of(&self.curvature)?.inverse();
+        let mut covariance = Factor::of(&self.curvature)?.inverse();
+        for (line, left) in covariance[2..].iter_mut().zip(self.force_n) {
+            line[2..].iter_mut().zip(self.force_n).for_each(|(entry, n)| *entry += gain * gain * left * n);
+        }
         is_finite.then_some(Estimate { contact, covariance, misfit: self.misfit })
     }
 }

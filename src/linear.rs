@@ -22,13 +22,24 @@ impl<const N: usize> Factor<N> {
         Some(Self { lower })
     }
 
-    /// The x with A x = b.
-    pub fn solve(&self, right: &[f64; N]) -> [f64; N] {
+    /// The x with L x = b. Its square is b′ A⁻¹ b.
+    pub fn solve_lower(&self, right: &[f64; N]) -> [f64; N] {
         let mut x = *right;
         for row in 0..N {
             let sum: f64 = (0..row).map(|k| self.lower[row][k] * x[k]).sum();
             x[row] = (x[row] - sum) / self.lower[row][row];
         }
+        x
+    }
+
+    /// ln det A.
+    pub fn log_determinant(&self) -> f64 {
+        (0..N).map(|row| 2.0 * libm::log(self.lower[row][row])).sum()
+    }
+
+    /// The x with A x = b.
+    pub fn solve(&self, right: &[f64; N]) -> [f64; N] {
+        let mut x = self.solve_lower(right);
         for row in (0..N).rev() {
             let sum: f64 = (row + 1..N).map(|k| self.lower[k][row] * x[k]).sum();
             x[row] = (x[row] - sum) / self.lower[row][row];
@@ -77,6 +88,17 @@ impl Symmetric {
             let line = &mut self.rows[row * self.size..][..self.size];
             for (column, right) in &entries[..=index] {
                 line[*column] += weight * left * right;
+            }
+        }
+    }
+
+    /// Takes v vᵀ away for each of these vectors, which have few zeros.
+    pub fn subtract_squares(&mut self, vectors: &[Vec<f64>]) {
+        for row in 0..self.size {
+            let line = &mut self.rows[row * self.size..][..=row];
+            for vector in vectors {
+                let left = vector[row];
+                line.iter_mut().zip(vector).for_each(|(entry, right)| *entry -= left * right);
             }
         }
     }
@@ -204,6 +226,8 @@ mod tests {
         }
         let half = large.clone();
         large.add(&half);
+        large.subtract_squares(&[b.to_vec()]);
+        large.add_product(1.0, &b);
         let factor = large.factorised().unwrap();
         assert!(factor.solve(&b).iter().zip(small.solve(&b)).all(|(one, other)| (one - other).abs() < 1e-8));
         let inverse = small.inverse();

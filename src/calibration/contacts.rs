@@ -16,6 +16,8 @@ pub(super) type Maps = [[f64; 3]; CHANNELS];
 pub(super) struct Place {
     /// µV/N.
     pub(super) gains: Maps,
+    /// µV/N per mm of x and of y.
+    pub(super) along: [Maps; 2],
     /// µV/N per unit of each number that has a sensitivity.
     pub(super) slopes: Vec<Maps>,
     /// The background's polynomials, each with a root mean square of 1 over the plate.
@@ -47,8 +49,10 @@ impl Place {
         let jets = jets(degree.max(BACKGROUND_DEGREE), share);
         let slope =
             |it: &&Sensitivity| it.maps.each_ref().map(|axes| axes.each_ref().map(|map| map.value(&jets)));
+        let gains = field.signals.gains(place_mm[0] as f32, place_mm[1] as f32);
         Self {
-            gains: field.signals.gains(place_mm[0] as f32, place_mm[1] as f32).value,
+            gains: gains.value,
+            along: [gains.dx, gains.dy],
             slopes: sensitivities.iter().map(slope).collect(),
             terms: terms(&jets),
         }

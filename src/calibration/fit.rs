@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use rayon::prelude::*;
+
 use super::model::Layout;
 use super::noise;
 use super::problem::{Fit, Problem, Settings};
@@ -80,8 +82,7 @@ impl Calibration {
         let field = problem.corrected(values);
         let friction = Layout::friction(values, &settings.thresholds_uv);
         let contacts = problem.freed(&friction);
-        let noise = noise::of_redundancy(&field, fit.noise, &contacts, fit.freedom);
-        let noise = noise::with_doubts(&field, noise, &problem.doubts(fit));
+        let noise = noise::with_doubts(&field, fit.scatter.noise, &problem.doubts(fit));
         let decoder = Inverse::new(field.clone(), noise, friction);
         Self {
             noise: Noise { gain: noise::common_gain(&decoder, &contacts), ..noise },
@@ -117,12 +118,10 @@ pub fn fit(
     }
     let plain = with_friction(&problem).ok_or(FitError::Senseless)?;
     let problem = problem.with_background();
-    let fits = BACKGROUNDS.iter().filter_map(|background| {
-        let settings = Settings { background: *background, ..plain.settings };
-        problem.clone().fitted(settings, Some(&plain))
+    let best = most_probable(BACKGROUNDS.to_vec(), |background| {
+        problem.clone().fitted(Settings { background, ..plain.settings }, Some(&plain))
     });
-    let best =
-        fits.max_by(|one, other| one.evidence.total_cmp(&other.evidence)).ok_or(FitError::Senseless)?;
+    let best = best.ok_or(FitError::Senseless)?;
     Ok(Calibration::of(&problem, &best))
 }
 
@@ -145,15 +144,20 @@ fn with_friction(problem: &Problem<'_>) -> Option<Fit> {
 }
 
 /// The threshold of the largest evidence: on a coarse scale first, then by ever smaller steps around the best.
-fn searched(play: usize, tried: impl Fn(f64) -> Option<Fit>) -> Option<Fit> {
-    let better = |one: &Fit, other: &Fit| one.evidence.total_cmp(&other.evidence);
+fn searched(play: usize, tried: impl Fn(f64) -> Option<Fit> + Sync) -> Option<Fit> {
     let coarse = (0..THRESHOLDS).map(|step| THRESHOLD_MIN_UV * THRESHOLD_RATIO.powi(step));
-    let mut best = coarse.filter_map(&tried).max_by(better)?;
+    let mut best = most_probable(coarse.collect(), &tried)?;
     for halving in 1..=HALVINGS {
         let factor = THRESHOLD_RATIO.powf(0.5_f64.powi(halving));
         let centre_uv = best.settings.thresholds_uv[play];
-        let around = [centre_uv / factor, centre_uv * factor].into_iter().filter_map(&tried);
-        best = around.chain([best.clone()]).max_by(better)?;
+        let around = most_probable(vec![centre_uv / factor, centre_uv * factor], &tried);
+        best = around.filter(|around| around.evidence > best.evidence).unwrap_or(best);
     }
     Some(best)
+}
+
+/// Tries settings side by side; of equally probable ones the last.
+fn most_probable(settings: Vec<f64>, tried: impl Fn(f64) -> Option<Fit> + Sync) -> Option<Fit> {
+    let fits: Vec<Fit> = settings.into_par_iter().filter_map(tried).collect();
+    fits.into_iter().max_by(|one, other| one.evidence.total_cmp(&other.evidence))
 }

@@ -21,3 +21,4 @@ mod model;
 mod noise;
 mod problem;
 pub mod regression;
+mod scatter;

@@ -3,6 +3,7 @@
 use super::contacts::{Maps, Measured, Place};
 use crate::contact::friction::{Friction, PLAYS, Play};
 use crate::contact::recording::Lags;
+use crate::contact::uncertainty::UNKNOWNS;
 use crate::device::parameter::Parameter;
 use crate::device::unit::Unit;
 use crate::quantity::CHANNELS;
@@ -152,6 +153,23 @@ impl Layout {
     /// What a contact does to the channels but for friction, beyond their zeros.
     pub(super) fn loaded_uv(&self, values: &[f64], scale: &Maps, contact: &Measured) -> [f64; CHANNELS] {
         self.maps(values, scale, &contact.place).map(|map| loaded(&map, &contact.force_n))
+    }
+
+    /// How the channels change with x, y, Fx, Fy, Fz; with the place, as on the simulated pad.
+    pub(super) fn slopes(
+        &self,
+        values: &[f64],
+        scale: &Maps,
+        contact: &Measured,
+    ) -> [[f64; UNKNOWNS]; CHANNELS] {
+        let maps = self.maps(values, scale, &contact.place);
+        let along = |channel: usize, axis: usize| {
+            Self::gain(values, channel) * loaded(&contact.place.along[axis][channel], &contact.force_n)
+        };
+        std::array::from_fn(|channel| {
+            let [fx, fy, fz] = maps[channel];
+            [along(channel, 0), along(channel, 1), fx, fy, fz]
+        })
     }
 
     /// What the channels read at a contact, and how each reading changes with each number: (channel, µV, slopes).

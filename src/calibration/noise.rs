@@ -12,14 +12,14 @@ use crate::quantity::{CHANNELS, Contact, Strain};
 const KNOWN: f64 = 10.0;
 const ADDITIVE_UV: f64 = 8.0;
 const SHARE: f64 = 0.02;
+/// Of a gain that all channels share; known before as if so many contacts had told it.
+const GAIN: f64 = 0.006;
+const GAIN_KNOWN: f64 = 30.0;
 /// No pad is quieter.
 const ADDITIVE_MIN_UV: f64 = 0.5;
 const SHARE_MIN: f64 = 5e-4;
 /// So often the weights are taken anew.
 const ROUNDS: usize = 20;
-const REDUNDANCY_ROUNDS: usize = 25;
-/// Numbers never take up more of the readings than all but this part.
-const FREEDOM_MIN: f64 = 0.05;
 
 /// The noise before any measurement.
 pub(super) const BEFORE: Noise = Noise::of_channels([ADDITIVE_UV; CHANNELS], [SHARE; CHANNELS]);
@@ -27,43 +27,16 @@ pub(super) const BEFORE: Noise = Noise::of_channels([ADDITIVE_UV; CHANNELS], [SH
 /// What a channel left over: its reading and the rest, both in µV.
 pub(super) type Rest = (f64, f64);
 
-/// The noise that these rests have. `freedom` is the part of the readings that the fitted numbers did not take up.
+/// The noise that these rests have.
 ///
 /// Squares of rests are a straight line over squares of readings; the line is fitted with weights from itself, as squares
 /// scatter in proportion to what they should be.
-pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS], freedom: f64) -> Noise {
-    let lines = rests.each_ref().map(|rests| line(rests, freedom.max(FREEDOM_MIN)));
+pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS]) -> Noise {
+    let lines = rests.each_ref().map(|rests| line(rests));
     Noise::of_channels(
         lines.map(|[constant, _]| constant.sqrt().max(ADDITIVE_MIN_UV)),
         lines.map(|[_, slope]| slope.sqrt().max(SHARE_MIN)),
     )
-}
-
-/// The noise by which nine channels disagree about five unknowns. What was written down plays no part in it, so its errors
-/// are not taken for noise. `noise` is a guess; `freedom` as in [`of_rests`].
-///
-/// Of a contact's noise only the part beside its five unknowns is seen; of the other part the expectation is known (A. P.
-/// Dempster, N. M. Laird, D. B. Rubin, J. R. Statist. Soc. B 39 (1977) 1).
-pub(super) fn of_redundancy(
-    field: &InfluenceField,
-    noise: Noise,
-    contacts: &[(Strain, [f64; 3])],
-    freedom: f64,
-) -> Noise {
-    let mut decoder = Inverse::new(field.clone(), noise, NO_FRICTION);
-    for _ in 0..REDUNDANCY_ROUNDS {
-        let mut rests = [const { Vec::new() }; CHANNELS];
-        for (strain, _) in contacts {
-            let Some(estimate) = decoder.estimate(strain) else { continue };
-            for (channel, rests) in rests.iter_mut().enumerate() {
-                let (seen, hidden) = decoder.left_over(channel, strain, &estimate);
-                let square = seen * seen / freedom.max(FREEDOM_MIN) + hidden;
-                rests.push((f64::from(strain.uv[channel]), square.sqrt()));
-            }
-        }
-        decoder = decoder.with_noise(of_rests(&rests, 1.0));
-    }
-    *decoder.noise()
 }
 
 /// The noise with what the field does not know: the mean over these contacts of what it leaves open about each channel, and
@@ -121,7 +94,8 @@ pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])]) ->
     let constant = |slope: f64| (right[0] - normal[0][1] * slope) / normal[0][0];
     let free = Factor::of(&normal).map_or([0.0; 2], |factor| factor.solve(&right));
     let slope = if constant(free[1]) < 0.0 { right[1] / normal[1][1] } else { free[1] };
-    if slope > 0.0 { slope.sqrt() } else { 0.0 }
+    let (count, slope) = (contacts.len() as f64, if slope.is_finite() { slope.max(0.0) } else { 0.0 });
+    ((count * slope + GAIN_KNOWN * GAIN * GAIN) / (count + GAIN_KNOWN)).sqrt()
 }
 
 /// The decoded force, how far the written one is from it along it, and the variance of that by the decoder.
@@ -141,7 +115,7 @@ fn off_along_force(decoder: &Inverse, strain: &Strain, written_n: &[f64; 3]) -> 
     (variance > 0.0).then_some((force_n, written_n - force_n, variance))
 }
 
-fn line(rests: &[Rest], freedom: f64) -> [f64; 2] {
+fn line(rests: &[Rest]) -> [f64; 2] {
     let (mut constant, mut slope) = (ADDITIVE_UV * ADDITIVE_UV, SHARE * SHARE);
     let count = rests.len().max(1) as f64;
     let typical = rests.iter().map(|(uv, _)| uv * uv).sum::<f64>() / count;
@@ -156,7 +130,7 @@ fn line(rests: &[Rest], freedom: f64) -> [f64; 2] {
             right[0] += weight * rest;
             right[1] += weight * rest * square;
         };
-        rests.iter().for_each(|(uv, rest)| add(uv * uv, rest * rest / freedom, 1.0));
+        rests.iter().for_each(|(uv, rest)| add(uv * uv, rest * rest, 1.0));
         // What was known: half of it at rest, half at a typical reading.
         add(0.0, ADDITIVE_UV * ADDITIVE_UV, KNOWN / 2.0);
         add(typical, ADDITIVE_UV * ADDITIVE_UV + SHARE * SHARE * typical, KNOWN / 2.0);
@@ -186,14 +160,14 @@ mod tests {
             (uv, 12.0 * f64::from(random.normal()) + 0.015 * uv * f64::from(random.normal()))
         };
         let rests: [Vec<Rest>; CHANNELS] = std::array::from_fn(|_| (0..2000).map(|_| rest()).collect());
-        let Noise { additive_uv, share, .. } = of_rests(&rests, 1.0);
+        let Noise { additive_uv, share, .. } = of_rests(&rests);
         assert!(additive_uv.iter().all(|uv| (uv / 12.0 - 1.0).abs() < 0.2), "{additive_uv:?}");
         assert!(share.iter().all(|share| (share / 0.015 - 1.0).abs() < 0.1), "{share:?}");
     }
 
     #[test]
     fn without_rests_it_is_what_was_known() {
-        let Noise { additive_uv, share, .. } = of_rests(&[const { Vec::new() }; CHANNELS], 1.0);
+        let Noise { additive_uv, share, .. } = of_rests(&[const { Vec::new() }; CHANNELS]);
         assert!(additive_uv.iter().all(|uv| (uv - ADDITIVE_UV).abs() < 1.0), "{additive_uv:?}");
         assert!(share.iter().all(|share| *share < 0.05), "{share:?}");
     }

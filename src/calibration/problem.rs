@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 
 use super::contacts::{Maps, Measured, Place};
 use super::model::{Layout, TERMS};
-use super::noise::{self, Rest};
+use super::scatter::{Residual, Scatter};
 use crate::contact::friction::{Friction, PLAYS};
 use crate::contact::recording::{Lags, Recording};
-use crate::contact::uncertainty::Noise;
+use crate::contact::uncertainty::UNKNOWNS;
 use crate::device::Device;
 use crate::device::parameter::Parameter;
 use crate::field::{PadField, Sensitivity};
@@ -24,6 +24,8 @@ const EVIDENCE_END: f64 = 0.3;
 const DOUBT_N: f64 = 2.5;
 /// Places that stand for the whole plate.
 const PLACES: u32 = 60;
+/// Numbers never take up more of the readings than all but this part.
+const FREEDOM_MIN: f64 = 0.05;
 /// How much the zero of a channel drifts between two readings, at least, and before anything is measured.
 const DRIFT_MIN_UV: f64 = 1.0;
 const DRIFT_UV: f64 = 10.0;
@@ -70,11 +72,9 @@ pub(super) struct Settings {
 pub(super) struct Fit {
     pub(super) settings: Settings,
     pub(super) values: Vec<f64>,
-    pub(super) noise: Noise,
+    pub(super) scatter: Scatter,
     drift_uv: [f64; CHANNELS],
     factor: LargeFactor,
-    /// Which part of the readings the numbers did not take up.
-    pub(super) freedom: f64,
     /// ln of the probability of what was measured, but for a constant.
     pub(super) evidence: f64,
 }
@@ -104,14 +104,17 @@ impl<'f> Problem<'f> {
         };
         let contacts = rows.iter().filter_map(measured).collect();
         let zeros: Vec<_> = recording.zeros().collect();
-        let jump = |[(first, before), (second, after)]: &[(usize, [f64; CHANNELS]); 2]| Jump {
-            rows: [*first, *second],
-            change_uv: std::array::from_fn(|k| after[k] - before[k]),
-            lags: [[0.0; CHANNELS]; PLAYS],
-        };
+        let jump =
+            |((first, before), (second, after)): (&(usize, [f64; CHANNELS]), &(usize, [f64; CHANNELS]))| {
+                Jump {
+                    rows: [*first, *second],
+                    change_uv: std::array::from_fn(|k| after[k] - before[k]),
+                    lags: [[0.0; CHANNELS]; PLAYS],
+                }
+            };
         let layout = Layout { physical: sensitivities.iter().map(|it| it.parameter).collect(), terms: 0 };
         Self {
-            jumps: zeros.array_windows().map(jump).collect(),
+            jumps: zeros.iter().zip(zeros.iter().skip(1)).map(jump).collect(),
             field,
             recording,
             sensitivities,
@@ -140,29 +143,25 @@ impl<'f> Problem<'f> {
         let before = self.layout.nominal();
         let precisions = self.layout.precisions(settings.background);
         let mut values = before.clone();
-        let (mut noise, mut drift_uv) = (noise::BEFORE, [DRIFT_UV; CHANNELS]);
+        let (mut scatter, mut drift_uv) = (Scatter::BEFORE, [DRIFT_UV; CHANNELS]);
         if let Some(start) = start {
             values.iter_mut().zip(&start.values).for_each(|(value, start)| *value = *start);
-            (noise, drift_uv) = (start.noise, start.drift_uv);
+            (scatter, drift_uv) = (start.scatter, start.drift_uv);
         }
         let mut found: Option<Fit> = None;
         for _ in 0..STEPS_MAX {
             self.walk(&values, &settings);
-            let step = self.step(&values, &noise, &drift_uv, &before, &precisions)?;
+            let step = self.step(&values, &scatter, &drift_uv, &before, &precisions)?;
             values.iter_mut().zip(&step.change).for_each(|(value, change)| *value += change);
-            let (rests, freedom) = (self.rests(&values), self.freedom(&precisions, &step.factor));
-            let evidence = self.evidence(&values, &noise, &drift_uv, &before, &precisions, &step.factor);
+            let (residuals, freedom) = (self.residuals(&values), self.freedom(&precisions, &step.factor));
+            let mut evidence = Self::evidence(&residuals, &scatter)?;
+            evidence += self.jumps_evidence(&values, &drift_uv) - 0.5 * step.factor.log_determinant();
+            evidence += prior(&values, &before, &precisions);
             let gain = found.as_ref().map_or(f64::INFINITY, |before| (evidence - before.evidence).abs());
-            found = Some(Fit {
-                settings,
-                values: values.clone(),
-                noise,
-                drift_uv,
-                factor: step.factor,
-                freedom,
-                evidence,
-            });
-            noise = noise::of_rests(&rests, freedom);
+            let values_now = values.clone();
+            found =
+                Some(Fit { settings, values: values_now, scatter, drift_uv, factor: step.factor, evidence });
+            scatter = scatter.seen(&residuals, freedom);
             drift_uv = self.drift_uv(&values);
             if gain < EVIDENCE_END {
                 break;
@@ -195,7 +194,7 @@ impl<'f> Problem<'f> {
     fn step(
         &self,
         values: &[f64],
-        noise: &Noise,
+        scatter: &Scatter,
         drift_uv: &[f64; CHANNELS],
         before: &[f64],
         precisions: &[f64],
@@ -204,7 +203,10 @@ impl<'f> Problem<'f> {
         let mut right: Vec<f64> =
             precisions.iter().zip(before.iter().zip(values)).map(|(p, (b, v))| p * (b - v)).collect();
         precisions.iter().enumerate().for_each(|(at, precision)| normal.add_diagonal(at, *precision));
-        self.each(values, noise, drift_uv, |_, _, rest, variance, slopes| {
+        for (_, contact) in &self.contacts {
+            self.add_contact(values, scatter, contact, &mut normal, &mut right)?;
+        }
+        self.each_jump(values, drift_uv, |_, rest, variance, slopes| {
             normal.add_product(1.0 / variance, slopes);
             right.iter_mut().zip(slopes).for_each(|(right, slope)| *right += slope * rest / variance);
         });
@@ -212,28 +214,59 @@ impl<'f> Problem<'f> {
         Some(Step { change: factor.solve(&right), factor })
     }
 
-    /// Everything that was measured: whether it is a contact, the channel, what it leaves over and its variance, and the
-    /// slopes.
-    fn each(
+    fn add_contact(
         &self,
         values: &[f64],
-        noise: &Noise,
-        drift_uv: &[f64; CHANNELS],
-        mut then: impl FnMut(Option<f64>, usize, f64, f64, &[f64]),
-    ) {
-        for (_, contact) in &self.contacts {
-            self.layout.readings(values, &self.scale, contact, |channel, uv, slopes| {
-                let read_uv = contact.uv[channel];
-                then(Some(read_uv), channel, read_uv - uv, variance(noise, channel, read_uv), slopes);
-            });
+        scatter: &Scatter,
+        contact: &Measured,
+        normal: &mut Symmetric,
+        right: &mut [f64],
+    ) -> Option<()> {
+        let residual = self.residual(values, contact);
+        let worth = scatter.worth(&residual)?;
+        let mut taken = vec![vec![0.0; right.len()]; UNKNOWNS];
+        self.layout.readings(values, &self.scale, contact, |channel, _, slopes| {
+            let weight = worth.weights[channel];
+            normal.add_product(weight, slopes);
+            let weighted = weight * residual.rest_uv[channel];
+            right.iter_mut().zip(slopes).for_each(|(right, slope)| *right += weighted * slope);
+            for (sum, taken) in taken.iter_mut().zip(&worth.taken) {
+                sum.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum += taken[channel] * slope);
+            }
+        });
+        for (sum, taken) in taken.iter().zip(&worth.taken) {
+            let rest: f64 = taken.iter().zip(&residual.rest_uv).map(|(taken, rest)| taken * rest).sum();
+            right.iter_mut().zip(sum).for_each(|(right, sum)| *right -= sum * rest);
         }
+        normal.subtract_squares(&taken);
+        Some(())
+    }
+
+    fn residual(&self, values: &[f64], contact: &Measured) -> Residual {
+        let mut rest_uv = contact.uv;
+        self.layout.readings(values, &self.scale, contact, |channel, uv, _| rest_uv[channel] -= uv);
+        let slopes = self.layout.slopes(values, &self.scale, contact);
+        Residual { uv: contact.uv, rest_uv, slopes }
+    }
+
+    fn residuals(&self, values: &[f64]) -> Vec<Residual> {
+        self.contacts.iter().map(|(_, contact)| self.residual(values, contact)).collect()
+    }
+
+    /// Every jump of a zero: the channel, what friction leaves over of it, the variance of that, the slopes.
+    fn each_jump(
+        &self,
+        values: &[f64],
+        drift_uv: &[f64; CHANNELS],
+        mut then: impl FnMut(usize, f64, f64, &[f64]),
+    ) {
         let mut slopes = vec![0.0; self.layout.size()];
         for Jump { change_uv, lags, .. } in &self.jumps {
             for channel in 0..CHANNELS {
                 slopes.fill(0.0);
                 let rest = change_uv[channel] - Layout::lagged(values, channel, lags, &mut slopes);
                 let drift = drift_uv[channel].max(JUMP_PART * rest.abs());
-                then(None, channel, rest, drift * drift, &slopes);
+                then(channel, rest, drift * drift, &slopes);
             }
         }
     }
@@ -242,26 +275,13 @@ impl<'f> Problem<'f> {
     fn freedom(&self, precisions: &[f64], factor: &LargeFactor) -> f64 {
         let variances = factor.inverse_diagonal();
         let taken: f64 = precisions.iter().zip(variances).map(|(before, after)| 1.0 - before * after).sum();
-        1.0 - taken / (CHANNELS * self.contacts.len()) as f64
-    }
-
-    /// What the channels leave over.
-    fn rests(&self, values: &[f64]) -> [Vec<Rest>; CHANNELS] {
-        let mut rests = [const { Vec::new() }; CHANNELS];
-        self.each(values, &noise::BEFORE, &[DRIFT_UV; CHANNELS], |read_uv, channel, rest, _, _| {
-            rests[channel].extend(read_uv.map(|uv| (uv, rest)));
-        });
-        rests
+        (1.0 - taken / (CHANNELS * self.contacts.len()) as f64).max(FREEDOM_MIN)
     }
 
     /// How much each channel's zero drifts from one reading to the next: the median of what friction does not explain.
     fn drift_uv(&self, values: &[f64]) -> [f64; CHANNELS] {
         let mut rests = [const { Vec::new() }; CHANNELS];
-        self.each(values, &noise::BEFORE, &[DRIFT_UV; CHANNELS], |read_uv, channel, rest, _, _| {
-            if read_uv.is_none() {
-                rests[channel].push(rest.abs());
-            }
-        });
+        self.each_jump(values, &[DRIFT_UV; CHANNELS], |channel, rest, _, _| rests[channel].push(rest.abs()));
         rests.map(|mut rests| {
             rests.sort_by(f64::total_cmp);
             // Of a normal number the median magnitude is 0.6745 of its standard deviation.
@@ -269,23 +289,20 @@ impl<'f> Problem<'f> {
         })
     }
 
-    fn evidence(
-        &self,
-        values: &[f64],
-        noise: &Noise,
-        drift_uv: &[f64; CHANNELS],
-        before: &[f64],
-        precisions: &[f64],
-        factor: &LargeFactor,
-    ) -> f64 {
-        let mut sum = -factor.log_determinant();
-        for (precision, (before, value)) in precisions.iter().zip(before.iter().zip(values)) {
-            sum += precision.ln() - precision * (before - value).powi(2);
-        }
-        self.each(values, noise, drift_uv, |_, _, rest, variance, _| {
-            sum -= rest * rest / variance + variance.ln();
+    /// ln of the probability of the contacts, but for a constant.
+    fn evidence(residuals: &[Residual], scatter: &Scatter) -> Option<f64> {
+        let cost = |residual| Some(scatter.worth(residual)?.cost(&residual.rest_uv));
+        let costs: Option<Vec<f64>> = residuals.iter().map(cost).collect();
+        Some(-0.5 * costs?.iter().sum::<f64>())
+    }
+
+    /// The same of the untouched pad.
+    fn jumps_evidence(&self, values: &[f64], drift_uv: &[f64; CHANNELS]) -> f64 {
+        let mut cost = 0.0;
+        self.each_jump(values, drift_uv, |_, rest, variance, _| {
+            cost += rest * rest / variance + variance.ln()
         });
-        0.5 * sum
+        -0.5 * cost
     }
 
     /// The contacts' channels without this friction, and the written forces.
@@ -340,8 +357,12 @@ impl<'f> Problem<'f> {
     }
 }
 
-fn variance(noise: &Noise, channel: usize, uv: f64) -> f64 {
-    noise.additive_uv[channel].powi(2) + (noise.share[channel] * uv).powi(2)
+/// ln of the probability of the numbers before anything is measured, but for a constant.
+fn prior(values: &[f64], before: &[f64], precisions: &[f64]) -> f64 {
+    let number = |(precision, (before, value)): (&f64, (&f64, &f64))| {
+        precision.ln() - precision * (before - value).powi(2)
+    };
+    0.5 * precisions.iter().zip(before.iter().zip(values)).map(number).sum::<f64>()
 }
 
 fn products<T>(all: &[T], product: impl Fn(&T, &T) -> f64) -> [[f64; CHANNELS]; CHANNELS] {

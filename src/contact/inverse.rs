@@ -126,21 +126,6 @@ impl Inverse {
         Linear::of(&rows, &variances.weights(), &known_before())
     }
 
-    /// What an estimate leaves of a channel, in µV, and the variance of what it took up of the channel's noise.
-    pub fn left_over(&self, channel: usize, strain: &Strain, estimate: &Estimate) -> (f64, f64) {
-        let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = estimate.contact;
-        let (gains, force_n) = (self.field.gains(x_mm, y_mm), [fx_n, fy_n, fz_n].map(f64::from));
-        let row = slopes(&gains, channel, &force_n);
-        let taken = estimate.covariance.map(|line| line.iter().zip(&row).map(|(a, b)| a * b).sum::<f64>());
-        let hidden = row.iter().zip(taken).map(|(row, taken)| row * taken).sum();
-        (f64::from(strain.uv[channel]) - dot(&gains.value[channel], &force_n), hidden)
-    }
-
-    /// The same decoder for other noise.
-    pub fn with_noise(self, noise: Noise) -> Self {
-        Self { noise, ..self }
-    }
-
     /// Where the search begins.
     fn started(&self, place_mm: [f64; 2]) -> [f64; 2] {
         if place_mm.iter().all(|mm| mm.is_finite()) { self.within(place_mm) } else { [0.0; 2] }

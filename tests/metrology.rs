@@ -11,13 +11,21 @@ use tactpad::device::Device;
 use tactpad::measured::columns::Kind;
 use tactpad::measured::read;
 use tactpad::metrology::procedures;
+use tactpad::network::{Example, Network, Zero, onnx};
 
 /// Solves the twin's pad once, so that tests that run side by side find it kept.
 fn solved() {
     static SOLVED: Once = Once::new();
     SOLVED.call_once(|| {
         let mut first = Command::new(env!("CARGO_BIN_EXE_tactpad"));
-        assert!(first.args(["metrology", "--seeds", "1"]).stdout(Stdio::null()).status().unwrap().success());
+        assert!(
+            first
+                .args(["metrology", "--seeds", "1", "--no-network"])
+                .stdout(Stdio::null())
+                .status()
+                .unwrap()
+                .success()
+        );
     });
 }
 
@@ -87,11 +95,11 @@ fn a_measured_file_gives_what_its_rows_allow() {
 #[test]
 fn the_twin_says_that_it_is_one_and_repeats_itself() {
     let folder = tempfile::tempdir().unwrap();
-    let first = text(&metrology(folder.path(), "--seeds 3-4"));
+    let first = text(&metrology(folder.path(), "--seeds 3-4 --no-network"));
     assert_eq!(first.lines().next(), Some("A numerical twin of the pad; no hardware was measured."));
-    assert_eq!(first, text(&metrology(folder.path(), "--seeds 3-4")));
-    assert_ne!(first, text(&metrology(folder.path(), "--seeds 5-6")));
-    let report = json(folder.path(), "--seeds 3-4");
+    assert_eq!(first, text(&metrology(folder.path(), "--seeds 3-4 --no-network")));
+    assert_ne!(first, text(&metrology(folder.path(), "--seeds 5-6 --no-network")));
+    let report = json(folder.path(), "--seeds 3-4 --no-network");
     assert_eq!(report["figures"].as_array().unwrap().len(), 2);
     for row in report["rows"].as_array().unwrap() {
         let needs = row["needs"].as_str().unwrap_or("needs a decoder");
@@ -99,22 +107,60 @@ fn the_twin_says_that_it_is_one_and_repeats_itself() {
     }
 }
 
+/// The published rows that have this status.
+fn published<'v>(report: &'v Value, status: &str) -> Vec<&'v str> {
+    let rows = report["rows"].as_array().unwrap().iter();
+    let of_status = rows.filter(|row| !row["paper"].is_null() && row["status"] == status);
+    of_status.map(|row| row["key"].as_str().unwrap()).collect()
+}
+
+/// It trains the paper's network, and adapts it to ten pads: half a minute on two processors.
 #[test]
 fn the_papers_figures_come_out() {
     let folder = tempfile::tempdir().unwrap();
     let report = json(folder.path(), "--seeds 1-10");
-    let published = |row: &&Value| !row["paper"].is_null() && row["status"] != "open";
-    let rows: Vec<&Value> = report["rows"].as_array().unwrap().iter().filter(published).collect();
-    assert_eq!(rows.len(), 7, "those that need no decoder");
-    assert!(rows.iter().all(|row| row["status"] == "inside"), "{rows:#?}");
-    assert!(rows.iter().all(|row| row["spread"].as_f64().unwrap() > 0.0));
+    assert_eq!(published(&report, "inside").len(), 16, "{:#}", report["rows"]);
+    assert_eq!(published(&report, "conflict"), ["decoded_drift_place"]);
+    let shown = &row(&report, "decoded_drift_place")["conflict"]["leaving"];
+    assert_eq!(shown[0]["row"], "decoded_drift_fz");
+    assert!(report["rows"].as_array().unwrap().iter().all(|row| row["spread"].as_f64().unwrap() > 0.0));
+}
+
+#[test]
+fn without_a_network_those_rows_stay_open_that_need_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = json(folder.path(), "--seeds 1-2 --no-network");
+    let firm = ["fem_z", "fem_xy", "thermal_drift", "repeatability", "hysteresis", "resolution", "ageing"];
+    assert_eq!(published(&report, "open").len(), 10);
+    assert!(firm.iter().all(|key| row(&report, key)["mean"].is_number()), "{:#}", report["rows"]);
+}
+
+/// A small network of nobody's pad: enough to see which figures are made with it.
+#[test]
+fn a_network_from_a_file_is_tried_raw_and_a_raw_one_is_no_decoder() {
+    let folder = tempfile::tempdir().unwrap();
+    let contact = |uv: f32| Example { uv: [uv; 9], contact: [uv; 5] };
+    let mut network = Network::untrained(&[4], Zero::Tared, &[contact(0.0), contact(5.0)], 1);
+    fs::write(folder.path().join("n.onnx"), onnx::write(&network)).unwrap();
+    fs::write(folder.path().join("m.csv"), measured()).unwrap();
+    let report = json(folder.path(), "--measured m.csv --network n.onnx");
+    assert!(row(&report, "simulation_place")["mean"].is_number());
+    assert_eq!(row(&report, "rmse_fz")["needs"], "needs a decoder");
+    let report = json(folder.path(), "--measured m.csv --decoder n.onnx");
+    assert!(row(&report, "rmse_fz")["mean"].is_number());
+    assert_eq!(row(&report, "simulation_place")["status"], "open");
+    network.zero = Zero::Raw;
+    fs::write(folder.path().join("raw.onnx"), onnx::write(&network)).unwrap();
+    let refused = metrology(folder.path(), "--measured m.csv --decoder raw.onnx");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("a network of raw channels"));
 }
 
 #[test]
 fn an_ideal_pad_has_no_faults() {
     let folder = tempfile::tempdir().unwrap();
     let device = concat!(env!("CARGO_MANIFEST_DIR"), "/models/sstid.toml");
-    let report = json(folder.path(), &format!("--seeds 1 --device {device}"));
+    let report = json(folder.path(), &format!("--seeds 1 --no-network --device {device}"));
     for key in ["fem_z", "fem_xy", "thermal_drift", "repeatability", "hysteresis", "resolution", "ageing"] {
         // Fields are kept as single precision.
         assert!(row(&report, key)["mean"].as_f64().unwrap().abs() < 1e-3, "{key}");
@@ -124,7 +170,7 @@ fn an_ideal_pad_has_no_faults() {
 #[test]
 fn plots_are_written_for_what_was_found() {
     let folder = tempfile::tempdir().unwrap();
-    text(&metrology(folder.path(), "--seeds 1 --figures plots"));
+    text(&metrology(folder.path(), "--seeds 1 --no-network --figures plots"));
     for name in ["force", "temperature", "hysteresis", "ageing"] {
         for ending in ["svg", "png"] {
             assert!(

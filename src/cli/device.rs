@@ -43,6 +43,11 @@ impl Pad {
         if self.is_given() { self.read() } else { Ok(paper()) }
     }
 
+    /// Whether the twin's pad is the one of `models/imperfections/paper.toml`.
+    pub(super) fn is_papers(&self) -> Result<bool, Failure> {
+        Ok(self.read_imperfect()? == paper())
+    }
+
     /// Reads the device alone, without imperfections.
     pub(super) fn designed(&self) -> Result<Device, Failure> {
         self.device

@@ -1,26 +1,32 @@
 //! `tactpad metrology`: the paper's figures of merit, of the twin or of a measured file.
 
+mod decoders;
 mod tables;
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 use clap::Args;
+use rayon::prelude::*;
 use serde::Serialize;
+
+use self::decoders::{Decoders, by};
 
 use super::device::Pad;
 use super::field_cache::field_of;
 use super::progress::Progress;
 use super::tables::read;
 use super::written::{create, is_stdout};
-use super::{Failure, decoder_file, pictures, print_json};
-use crate::contact::Decoder;
+use super::{Failure, pictures, print_json};
+use crate::device::Device;
+use crate::field::PadField;
 use crate::measured::columns::Kind;
-use crate::measured::write;
-use crate::metrology::figures::{Evidence, Figures};
+use crate::measured::{Table, write};
+use crate::metrology::figures::{Evidence, Figures, Simulation};
 use crate::metrology::report::{Entry, entries};
-use crate::metrology::{Decode, drawing, procedures};
-use crate::quantity::{CHANNELS, Strain};
+use crate::metrology::{Decode, conflicts, drawing, procedures};
+use crate::protocol;
 use crate::twin::measurement;
 
 /// Arguments of `tactpad metrology`.
@@ -37,9 +43,17 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "A-B", default_value = "1-10", value_parser = parse_seeds)]
     #[arg(conflicts_with = "measured")]
     seeds: RangeInclusive<u64>,
-    /// A decoder that `adapt` or `train` wrote, for the figures that need one.
+    /// A decoder that adapt wrote, for the figures that need one.
+    ///
+    /// Without it the paper's network is adapted to each of the twin's pads, by 648 contacts of its own.
     #[arg(long, value_name = "FILE")]
     decoder: Option<PathBuf>,
+    /// The paper's network as train wrote it. Without it and --decoder one is trained for the twin: half a minute.
+    #[arg(long, value_name = "FILE")]
+    network: Option<PathBuf>,
+    /// Leave open what needs a network: nothing is trained.
+    #[arg(long, conflicts_with_all = ["network", "decoder"])]
+    no_network: bool,
     /// Write the plots into this folder, as SVG and PNG: those of the first seed.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -95,11 +109,15 @@ fn of_file(arguments: &Arguments, path: &Path) -> Result<Report, Failure> {
     let device = arguments.pad.read()?;
     let table = read(path, Kind::Measured, 0.5 * device.plate.diameter_mm)?;
     let field = field_of(&device)?;
-    let decoder = decoder(arguments)?;
-    let decode = decoder.as_ref().map(|it| |uv: &[f64; CHANNELS]| it.decode(&strain(uv)));
-    let decode = decode.as_ref().map(|decode| decode as Decode);
-    let evidence =
-        Evidence { table: &table, signals: &field.signals, decoder: decode, simulation_network: None };
+    let decoders = Decoders::given(arguments)?;
+    let simulation = decoders.simulation();
+    let (given, simulation) = (decoders.given.as_ref().map(by), simulation.as_ref().map(by));
+    let evidence = Evidence {
+        table: &table,
+        signals: &field.signals,
+        decoder: given.as_ref().map(|decode| decode as Decode),
+        simulation: simulation.as_ref().map(|decode| Simulation { contacts: &table, decode }),
+    };
     let figures = Figures::of(&evidence);
     let plots = plots(arguments, &evidence, &figures)?;
     let statement = format!(
@@ -115,43 +133,71 @@ fn of_file(arguments: &Arguments, path: &Path) -> Result<Report, Failure> {
     })
 }
 
-/// The figures of the twin. The pad that it is compared with is the device without imperfections.
+/// What the twin's pads have in common.
+struct Bench<'a> {
+    arguments: &'a Arguments,
+    device: Device,
+    field: PadField,
+    /// The field of the pad without imperfections, with which the others are compared.
+    nominal: PadField,
+    decoders: Decoders,
+}
+
+/// The figures of the twin.
 fn of_twin(arguments: &Arguments) -> Result<Report, Failure> {
     let (designed, device) = (arguments.pad.designed()?, arguments.pad.read_imperfect()?);
     let (nominal, field) = (field_of(&designed)?, field_of(&device)?);
-    let plan = procedures::plan(&device.contact);
-    let decoder = decoder(arguments)?;
-    let decode = decoder.as_ref().map(|it| |uv: &[f64; CHANNELS]| it.decode(&strain(uv)));
-    let decode = decode.as_ref().map(|decode| decode as Decode);
-    let mut progress = Progress::begin();
-    let (mut all, mut files) = (Vec::new(), Vec::new());
-    for seed in arguments.seeds.clone() {
-        progress.step(format_args!("measuring the twin with seed {seed} of {}", arguments.seeds.end()));
-        let table = measurement::carry_out(&plan, &device, &field, seed).table;
-        let evidence =
-            Evidence { table: &table, signals: &nominal.signals, decoder: decode, simulation_network: None };
-        let figures = Figures::of(&evidence);
-        if all.is_empty() {
-            files = plots(arguments, &evidence, &figures)?;
-        }
-        all.push(figures);
-    }
-    let statement = "A numerical twin of the pad; no hardware was measured.".to_owned();
+    let decoders = Decoders::given_or_trained(arguments, &designed, &nominal)?;
+    let bench = Bench { arguments, device, field, nominal, decoders };
+    let seeds: Vec<u64> = arguments.seeds.clone().collect();
+    let (figures, plots): (Vec<Figures>, Vec<Vec<String>>) = bench.all(&seeds)?.into_iter().unzip();
+    let conflicts = if arguments.pad.is_papers()? { conflicts::all() } else { Vec::new() };
     Ok(Report {
-        statement,
-        seeds: arguments.seeds.clone().collect(),
-        rows: entries(&all, &[]),
-        figures: all,
-        plots: files,
+        statement: "A numerical twin of the pad; no hardware was measured.".to_owned(),
+        seeds,
+        rows: entries(&figures, &conflicts),
+        figures,
+        plots: plots.concat(),
     })
 }
 
-fn decoder(arguments: &Arguments) -> Result<Option<Decoder>, Failure> {
-    arguments.decoder.as_deref().map(decoder_file::read).transpose()
-}
+impl Bench<'_> {
+    /// The figures of each pad, and the plots' files.
+    fn all(&self, seeds: &[u64]) -> Result<Vec<(Figures, Vec<String>)>, Failure> {
+        let progress = Mutex::new((Progress::begin(), 0));
+        let of_pad = |seed: &u64| {
+            let found = self.of_pad(*seed);
+            if let Ok((progress, done)) = progress.lock().as_deref_mut() {
+                *done += 1;
+                progress.step(format_args!("{done} of the twin's {} pads are measured", seeds.len()));
+            }
+            found
+        };
+        seeds.par_iter().map(of_pad).collect()
+    }
 
-fn strain(uv: &[f64; CHANNELS]) -> Strain {
-    Strain { uv: uv.map(|uv| uv as f32) }
+    /// The pad of this seed goes through the procedures. The network learns from, and is tried with, contacts of the
+    /// paper's own plan, measured apart.
+    fn of_pad(&self, seed: u64) -> Result<(Figures, Vec<String>), Failure> {
+        let table = self.measured(&procedures::plan(&self.device.contact), seed);
+        let contacts = self.measured(&protocol::paper::plan(&self.device.contact), seed);
+        let (judged, simulation) = (self.decoders.judged(&contacts, seed), self.decoders.simulation());
+        let (judged, simulation) = (judged.as_ref().map(by), simulation.as_ref().map(by));
+        let evidence = Evidence {
+            table: &table,
+            signals: &self.nominal.signals,
+            decoder: judged.as_ref().map(|decode| decode as Decode),
+            simulation: simulation.as_ref().map(|decode| Simulation { contacts: &contacts, decode }),
+        };
+        let figures = Figures::of(&evidence);
+        let is_drawn = seed == *self.arguments.seeds.start();
+        let plots = if is_drawn { plots(self.arguments, &evidence, &figures)? } else { Vec::new() };
+        Ok((figures, plots))
+    }
+
+    fn measured(&self, plan: &Table, seed: u64) -> Table {
+        measurement::carry_out(plan, &self.device, &self.field, seed).table
+    }
 }
 
 /// Writes the plots that the figures allow, and says their names.

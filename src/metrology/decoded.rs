@@ -15,6 +15,7 @@ use crate::quantity::{CHANNELS, Contact};
 const SAME_FORCE_N: f64 = 0.15;
 
 const NEEDED: &str = "static loads, with unloaded rows";
+const NEEDED_RAW: &str = "static loads";
 const NEEDED_WARM: &str = "static loads of the same places and forces at two temperatures (temp_c), 5 °C \
                            apart, with unloaded rows at the usual one";
 
@@ -79,12 +80,30 @@ impl Difference {
 /// # Errors
 /// No such rows, or no decoder.
 pub fn errors(table: &Table, decode: Option<Decode>) -> Result<DecodedErrors, Needs> {
+    over(table, readings(table, &Zeros::of(table)), NEEDED, decode)
+}
+
+/// The same for a decoder of raw channels, from which nothing is taken off.
+///
+/// # Errors
+/// As for [`errors`].
+pub fn raw_errors(table: &Table, decode: Option<Decode>) -> Result<DecodedErrors, Needs> {
+    let raw = loads(table).filter_map(|(_, row)| Some(Reading { row, uv: row.uv? }));
+    over(table, raw.collect(), NEEDED_RAW, decode)
+}
+
+fn over(
+    table: &Table,
+    found: Vec<Reading>,
+    needed: &'static str,
+    decode: Option<Decode>,
+) -> Result<DecodedErrors, Needs> {
     let is_ordinary = is_ordinary(table);
-    let found = readings(table, &Zeros::of(table)).into_iter().filter(|reading| is_ordinary(reading.row));
+    let found = found.into_iter().filter(|reading| is_ordinary(reading.row));
     let places = by_place(found.collect(), |reading| &reading.row.label);
     let found: Vec<Reading> = places.into_iter().flat_map(different).collect();
     if found.is_empty() {
-        return Err(Needs::Rows(NEEDED));
+        return Err(Needs::Rows(needed));
     }
     let decode = decode.ok_or(Needs::Decoder)?;
     let differences = found.iter().map(|reading| Difference::of(&decode(&reading.uv), &reading.row.label));
@@ -246,6 +265,16 @@ mod tests {
             [1.0_f64, -1.0].map(|sign| (0.3_f64).hypot(3.0 + sign * 0.3).hypot(4.0 + sign * 0.4) - 5.0);
         near(found.resultant_rmse_n, ((more * more + less * less) / 2.0).sqrt());
         assert_eq!(found.contacts, 2);
+    }
+
+    #[test]
+    fn raw_errors_keep_the_zero() {
+        let found = raw_errors(&table([contact(LABEL, [0.0; 5], 25.0)]), Some(&decode)).unwrap();
+        assert!(
+            (found.place_mae_mm - 0.07).abs() < 1e-5 && (found.force_mae_n - 0.07).abs() < 1e-5,
+            "{found:?}"
+        );
+        assert_eq!(raw_errors(&table([zero(25.0)]), Some(&decode)), Err(Needs::Rows(NEEDED_RAW)));
     }
 
     #[test]

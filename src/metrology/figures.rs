@@ -26,8 +26,17 @@ pub struct Evidence<'e> {
     pub signals: &'e InfluenceField,
     /// The decoder whose contacts are judged.
     pub decoder: Option<Decode<'e>>,
-    /// The paper's network, trained on the simulation alone.
-    pub simulation_network: Option<Decode<'e>>,
+    /// The paper's network, trained on the simulation alone, and its contacts.
+    pub simulation: Option<Simulation<'e>>,
+}
+
+/// The network that never saw a measured contact. The paper takes no zero anywhere, so its channels are raw.
+#[derive(Clone, Copy)]
+pub struct Simulation<'e> {
+    /// The contacts that it is tried with.
+    pub contacts: &'e Table,
+    /// Contact from the nine channels in µV as they were measured.
+    pub decode: Decode<'e>,
 }
 
 /// Every figure, or what it needs.
@@ -77,8 +86,7 @@ pub struct Figures {
 impl Figures {
     /// Looks for every figure.
     pub fn of(evidence: &Evidence) -> Self {
-        let Evidence { table, signals, decoder, simulation_network } = *evidence;
-        let simulation_only = decoded::errors(table, simulation_network);
+        let Evidence { table, signals, decoder, simulation } = *evidence;
         Self {
             fem: against_pad(table, signals),
             thermal_drift: thermal::drift(table),
@@ -88,10 +96,9 @@ impl Figures {
             hysteresis: of_loops(table),
             resolution: smallest_step(table),
             ageing: after_cycles(table),
-            simulation_only: simulation_only.map_err(|needs| match needs {
-                Needs::Decoder => Needs::SimulationNetwork,
-                needs => needs,
-            }),
+            simulation_only: simulation
+                .ok_or(Needs::SimulationNetwork)
+                .and_then(|it| decoded::raw_errors(it.contacts, Some(it.decode))),
             decoded: decoded::errors(table, decoder),
             sensitivity: of_channels(table),
             step_response: to_steps(table),

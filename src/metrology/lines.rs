@@ -87,14 +87,14 @@ pub const LINES: &[Line] = &[
     firm("ageing", "change after 50,000 cycles of 1 N", "%", 19.0, |f| {
         of(&f.ageing, |a| 100.0 * a.change_share.abs())
     }),
-    network("simulation_place", "network on simulation alone: place", "mm", 10.2, |f| {
-        of(&f.simulation_only, |e| e.place_mae_mm)
+    network("simulation_place", "network on simulation alone: distance", "mm", 10.2, |f| {
+        of(&f.simulation_only, |e| e.place_distance_mm)
     }),
     network("simulation_force", "network on simulation alone: force", "N", 0.51, |f| {
         of(&f.simulation_only, |e| e.force_mae_n)
     }),
-    other("simulation_distance", "network on simulation alone: distance", "mm", |f| {
-        of(&f.simulation_only, |e| e.place_distance_mm)
+    other("simulation_axis", "network on simulation alone: x, y", "mm", |f| {
+        of(&f.simulation_only, |e| e.place_mae_mm)
     }),
     other("rmse_fx", "RMSE of Fx", "N", |f| of(&f.decoded, |e| e.force_rmse_n[0])),
     other("rmse_fy", "RMSE of Fy", "N", |f| of(&f.decoded, |e| e.force_rmse_n[1])),

@@ -7,6 +7,7 @@
 //! Source: Wu et al., *Sensors* 2026, 26(4), 1378, sections 2.4 and 3.1, Tables 3 and 4, Figures 4 and 8–10.
 
 pub mod ageing;
+pub mod conflicts;
 pub mod decoded;
 pub mod drawing;
 pub mod fem;

@@ -281,7 +281,7 @@ mod tests {
 
     fn found() -> Vec<Entry> {
         let (table, signals) = (measured(&plan(&PATCH)), signals());
-        let evidence = Evidence { table: &table, signals: &signals, decoder: None, simulation_network: None };
+        let evidence = Evidence { table: &table, signals: &signals, decoder: None, simulation: None };
         entries(&[Figures::of(&evidence)], &[])
     }
 

@@ -111,7 +111,7 @@ impl Line {
 
     /// Whether it may be in conflict, and this shows it: fitted alone it is still outside, or others leave
     /// their bounds.
-    fn is_shown_by(&self, conflict: &Conflict) -> bool {
+    pub(super) fn is_shown_by(&self, conflict: &Conflict) -> bool {
         let leaves = |leaving: &Leaving| {
             let line = LINES.iter().find(|line| line.key == leaving.row);
             line.and_then(|line| line.published).is_some_and(|published| !published.holds(leaving.value))
@@ -135,7 +135,7 @@ mod tests {
     fn figures(step_n: f64, change_share: f64) -> Figures {
         let signals = InfluenceField::sampled(5.0, 29.0, 30.0, |_| [0.0; MAPS]);
         let table = Table::default();
-        let evidence = Evidence { table: &table, signals: &signals, decoder: None, simulation_network: None };
+        let evidence = Evidence { table: &table, signals: &signals, decoder: None, simulation: None };
         let resolution = Resolution {
             step_n,
             without_drift_n: step_n,

@@ -18,8 +18,8 @@ const STRIP_HEIGHT: f64 = 150.0;
 /// The first strip has title and legend besides.
 const HEAD: f64 = 40.0;
 
-/// Contacts whose mean is a point of the error over the force.
-const MEANS: usize = 8;
+/// Errors are drawn as means over so much force.
+const FORCE_BIN_N: f64 = 0.5;
 
 /// A decoder with what it made of the unseen contacts.
 pub type Outcome<'j> = (&'j Entry, &'j Judged);
@@ -60,34 +60,37 @@ fn off(found: f32, truth: f64) -> f64 {
 
 /// Error against calibration samples: position beside force.
 pub fn by_samples(unseen: &Unseen, outcomes: &[Outcome<'_>]) -> Figure {
-    beside(
-        &format!("Error by calibration samples, unseen contacts of the {} plan", unseen.plan),
-        |quantity| {
-            let line = |name: &str, is_in: &dyn Fn(&Entry) -> bool| {
-                let measured =
-                    outcomes.iter().filter(|(entry, _)| entry.samples.measured() > 0 && is_in(entry));
-                let values = measured.map(|(entry, judged)| [samples(entry), (quantity.judged)(judged)]);
-                series(name, SeriesLook::LineAndPoints, values)
-            };
-            let of =
-                |method: Method| line(method.name(), &|entry| entry.method == method && entry.is_drawn());
-            let by_load =
-                |entry: &Entry| entry.method == Method::Network && (!entry.is_drawn() || entry.has_all());
-            let papers = outcomes.iter().filter(|(entry, _)| entry.samples.measured() > 0);
-            let papers = papers
-                .filter_map(|(entry, _)| Some([samples(entry), (quantity.paper)(entry.paper.as_ref()?)]));
-            let mut all = [Method::Network, Method::Knn, Method::Linear, Method::Wrench, Method::Inverse]
-                .map(of)
-                .to_vec();
-            all.push(line("network, normal loads first", &by_load));
-            all.push(series("the paper: network; at 648 also knn and linear", SeriesLook::Points, papers));
-            Chart {
-                series: all,
-                guides: guides(unseen, outcomes, quantity),
-                ..chart("measured contacts that it learnt from", quantity.label, Scale::Log10)
-            }
-        },
-    )
+    // What learnt from no measured contact has no place on a logarithmic axis.
+    let measured: Vec<Outcome<'_>> =
+        outcomes.iter().copied().filter(|(entry, _)| entry.samples.measured() > 0).collect();
+    let title = format!("Error by calibration samples, unseen contacts of the {} plan", unseen.plan);
+    beside(&title, |quantity| {
+        let axes = chart("measured contacts that it learnt from", quantity.label, Scale::Log10);
+        Chart {
+            series: curves(&measured, quantity),
+            guides: guides(unseen, outcomes, quantity),
+            x: Side { also: vec![10.0, 1000.0], ..axes.x },
+            ..axes
+        }
+    })
+}
+
+/// A curve for each method, the network's by kinds of load, and the paper's points.
+fn curves(measured: &[Outcome<'_>], quantity: &Quantity) -> Vec<Series> {
+    let curve = |name: &str, is_in: &dyn Fn(&Entry) -> bool| {
+        let values = measured.iter().filter(|(entry, _)| is_in(entry));
+        let values = values.map(|(entry, judged)| [samples(entry), (quantity.judged)(judged)]);
+        series(name, SeriesLook::LineAndPoints, values)
+    };
+    let of = |method: Method| curve(method.name(), &|entry| entry.method == method && entry.is_drawn());
+    let by_load = |entry: &Entry| entry.method == Method::Network && (!entry.is_drawn() || entry.has_all());
+    let papers = measured.iter().filter_map(|(entry, _)| Some((entry, entry.paper.as_ref()?)));
+    let papers = papers.map(|(entry, paper)| [samples(entry), (quantity.paper)(paper)]);
+    let methods = [Method::Network, Method::Knn, Method::Linear, Method::Wrench, Method::Inverse];
+    let mut curves = methods.map(of).to_vec();
+    curves.push(curve("network, normal loads first", &by_load));
+    curves.push(series("the paper: network; at 648 also knn and linear", SeriesLook::Points, papers));
+    curves
 }
 
 fn samples(entry: &Entry) -> f64 {
@@ -107,7 +110,8 @@ fn guides(unseen: &Unseen, outcomes: &[Outcome<'_>], quantity: &Quantity) -> Vec
 /// Error against the contact's force, of the decoders that learnt from the whole plan: position beside force.
 pub fn by_force(unseen: &Unseen, outcomes: &[Outcome<'_>]) -> Figure {
     let order = in_order_of_force(unseen.truths());
-    let parts: Vec<&[usize]> = order.chunks(order.len().div_ceil(MEANS).max(1)).collect();
+    let bin = |index: &usize| (resultant_n(&unseen.truths()[*index]) / FORCE_BIN_N).round();
+    let parts: Vec<&[usize]> = order.chunk_by(|one, next| bin(one) == bin(next)).collect();
     let truths = |part: &[usize]| part.iter().map(|index| unseen.truths()[*index]).collect::<Vec<_>>();
     let force_n = |part: &[usize]| mean(part.iter().map(|index| resultant_n(&unseen.truths()[*index])));
     beside(&format!("Error by force, unseen contacts of the {} plan", unseen.plan), |quantity| {

@@ -7,17 +7,17 @@ use rayon::prelude::*;
 
 use super::Subject;
 use super::entries::{Entry, Method, Samples};
+use super::tared::Tared;
 use crate::calibration::fit::{FitError, fit};
 use crate::calibration::regression::{neighbours, regression};
 use crate::contact::Decoder;
 use crate::contact::regression::Target;
-use crate::measured::{Label, Row, Table, zero};
+use crate::measured::{Label, Row};
 use crate::network::{Example, Network};
 use crate::protocol;
 use crate::random::SplitMix64;
 use crate::scdf::adaptation::{self, TooFew, adapt};
 use crate::scdf::simulation;
-use crate::twin::measurement::carry_out;
 
 /// Why a decoder cannot be fitted.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,8 +55,8 @@ struct Known<'p> {
     /// After stage I.
     network: &'p Network,
     simulated: Vec<Row>,
-    /// The paper's plan, carried out on the pad; tared.
-    measured: Table,
+    /// The paper's plan.
+    measured: Tared,
 }
 
 /// Fits all decoders, as many at once as there are processors. `network` is that of stage I, for tared channels. `report`
@@ -82,17 +82,15 @@ pub fn decoders(
 
 impl<'p> Known<'p> {
     fn of(subject: Subject<'p>, network: &'p Network) -> Self {
-        let (designed, actual) = (subject.designed, subject.actual);
+        let designed = subject.designed;
         let simulated = simulation::examples(designed.device, designed.field, subject.seed);
-        let plan = protocol::paper::plan(&actual.device.contact);
-        let table = carry_out(&plan, actual.device, actual.field, subject.seed).table;
-        // The paper's plan begins with the untouched pad.
-        let measured = zero::tared(&table).unwrap_or(table);
+        let plan = protocol::paper::plan(&subject.actual.device.contact);
+        let measured = Tared::of(&subject, &plan, subject.seed);
         Self { subject, network, simulated: simulated.iter().map(row).collect(), measured }
     }
 
     fn rows(&self, samples: Samples) -> Vec<Row> {
-        let contacts = || zero::contacts(&self.measured);
+        let contacts = || self.measured.of_contacts(self.measured.rows());
         match samples {
             Samples::Simulated => self.simulated.clone(),
             Samples::First(count) => contacts().into_iter().take(count).collect(),

@@ -12,6 +12,7 @@ pub mod entries;
 pub mod fitting;
 pub mod maps;
 pub mod regions;
+pub mod tared;
 pub mod unseen;
 
 use crate::device::Device;

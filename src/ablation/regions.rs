@@ -5,11 +5,11 @@
 use std::f64::consts::TAU;
 
 use super::Subject;
+use super::tared::Tared;
 use crate::contact::Decoder;
-use crate::evaluation;
 use crate::measured::{Label, Row, Table, zero};
 use crate::quantity::Contact;
-use crate::twin::measurement::{Measurement, RATE_HZ, carry_out};
+use crate::twin::measurement::RATE_HZ;
 
 /// The regions in the paper's order, and their directions from the middle, counter-clockwise from +x.
 pub const REGIONS: [(&str, f64); 6] = [
@@ -36,12 +36,10 @@ const PRESS_SHARE: f64 = 0.6;
 /// Of the press.
 const SHEAR_SHARE: f64 = 0.35;
 
-/// The six touches on the pad.
+/// The six touches on the pad, and readings of the untouched pad before and after them.
 #[derive(Clone, Debug)]
 pub struct Touches {
-    /// Tared; static readings of the untouched pad before and after them.
-    rows: Vec<Row>,
-    truths: Vec<Label>,
+    tared: Tared,
 }
 
 /// A moment of the touches.
@@ -58,19 +56,16 @@ pub struct Moment {
 impl Touches {
     /// Presses the pad.
     pub fn of(subject: &Subject<'_>) -> Self {
-        let device = subject.actual.device;
-        let plan = plan(device.contact.max_centre_radius_mm, device.contact.full_scale_n);
-        let Measurement { table, truth } = carry_out(&plan, device, subject.actual.field, subject.seed);
-        let rows = zero::tared(&table).map_or_else(Vec::new, |tared| tared.rows);
-        Self { rows, truths: truth }
+        let patch = &subject.actual.device.contact;
+        let plan = plan(patch.max_centre_radius_mm, patch.full_scale_n);
+        Self { tared: Tared::of(subject, &plan, subject.seed) }
     }
 
     /// What a decoder says of them, moment by moment.
     pub fn decoded(&self, decoder: &Decoder) -> Vec<Moment> {
-        let found = evaluation::decoded(decoder, &self.rows);
-        let moments =
-            self.rows.iter().zip(&self.truths).zip(found).filter(|((row, _), _)| row.trial.is_some());
-        let moments = moments.enumerate();
+        let found = self.tared.decoded(decoder);
+        let moments = self.tared.rows().iter().zip(self.tared.truths()).zip(found);
+        let moments = moments.filter(|((row, _), _)| row.trial.is_some()).enumerate();
         moments
             .map(|(index, ((_, truth), found))| Moment { t_s: index as f64 / RATE_HZ, truth: *truth, found })
             .collect()

@@ -3,13 +3,13 @@
 use serde::Serialize;
 
 use super::Subject;
+use super::tared::Tared;
 use crate::contact::Decoder;
 use crate::evaluation::{self, Errors, PerAxis};
-use crate::measured::{Label, Row, Table, zero};
+use crate::measured::{Label, Row, Table};
 use crate::protocol::{paper, recommended};
 use crate::quantity::{Contact, Strain};
 use crate::twin::bound::{Bound, Reading};
-use crate::twin::measurement::{Measurement, carry_out};
 
 /// Static contacts of the pad with their truths.
 #[derive(Clone, Debug)]
@@ -18,7 +18,8 @@ pub struct Unseen {
     pub plan: &'static str,
     /// What drew them.
     pub seed: u64,
-    /// Tared.
+    tared: Tared,
+    /// The contacts among its rows.
     rows: Vec<Row>,
     truths: Vec<Label>,
     bound: Bound,
@@ -62,13 +63,10 @@ pub fn unseen(subject: &Subject<'_>) -> [Unseen; 2] {
 impl Unseen {
     /// Carries out a plan, which must read the untouched pad.
     pub fn of(subject: &Subject<'_>, plan: &'static str, contacts: &Table, seed: u64) -> Self {
-        let (device, field) = (subject.actual.device, subject.actual.field);
-        let Measurement { mut table, truth } = carry_out(contacts, device, field, seed);
-        // Lines tell which truth belongs to which row.
-        table.rows.iter_mut().zip(1..).for_each(|(row, line)| row.line = line);
-        let rows = zero::tared(&table).map_or_else(Vec::new, |tared| zero::contacts(&tared));
-        let truths = rows.iter().filter_map(|row| truth.get(row.line - 1).copied()).collect();
-        Self { plan, seed, rows, truths, bound: Bound::new(device, field, seed) }
+        let tared = Tared::of(subject, contacts, seed);
+        let (rows, truths) = (tared.of_contacts(tared.rows()), tared.of_contacts(tared.truths()));
+        let bound = Bound::new(subject.actual.device, subject.actual.field, seed);
+        Self { plan, seed, tared, rows, truths, bound }
     }
 
     /// The true contacts.
@@ -93,7 +91,7 @@ impl Unseen {
 
     /// Decodes all of them.
     pub fn judged(&self, decoder: &Decoder) -> Judged {
-        let found = evaluation::decoded(decoder, &self.rows);
+        let found = self.tared.of_contacts(&self.tared.decoded(decoder));
         let labels: Vec<Label> = self.rows.iter().map(|row| row.label).collect();
         Judged {
             by_truth: evaluation::errors(&found, &self.truths),

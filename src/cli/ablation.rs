@@ -99,6 +99,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = arguments.out.as_deref().filter(|path| path.exists() && !path.is_dir()) {
         return Err(Failure::Unusable(format!("{} is no folder; name another", path.display())));
     }
+    let network = arguments.network.as_deref().map(tared_network).transpose()?;
     let (designed, device) = (arguments.pad.designed()?, arguments.pad.read_imperfect()?);
     let (nominal, field) = (field_of(&designed)?, field_of(&device)?);
     let subject = Subject {
@@ -107,10 +108,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         seed: arguments.seed,
     };
     let mut progress = Progress::begin();
-    let network = match &arguments.network {
-        Some(path) => tared_network(path)?,
-        None => trained(&subject, &mut progress),
-    };
+    let network = network.unwrap_or_else(|| trained(&subject, &mut progress));
     let trials = Trials::of(&subject, &network, progress)?;
     let files = match &arguments.out {
         Some(folder) => plots::write(folder, &subject, &trials)?,
@@ -144,7 +142,7 @@ fn trained(subject: &Subject<'_>, progress: &mut Progress) -> Network {
     let Subject { designed, seed, .. } = *subject;
     let examples = examples(designed.device, designed.field, seed);
     let report = |Epoch { number, .. }: &Epoch| {
-        progress.step(format_args!("training the network on simulated contacts: epoch {number} of 300"));
+        progress.step(format_args!("training the network on simulated contacts: epoch {number}"));
     };
     pretrain(HIDDEN, examples, seed, report).trained.network
 }

@@ -1,12 +1,15 @@
 //! Where a contact is and how hard it presses, from strain.
 
 pub mod file;
+pub mod friction;
 pub mod inverse;
 pub mod neighbours;
+pub mod recording;
 pub mod regression;
 pub mod statics;
 pub mod touch;
 
+use crate::contact::friction::{Friction, NO_FRICTION};
 use crate::contact::inverse::Inverse;
 use crate::contact::neighbours::Neighbours;
 use crate::contact::regression::Regression;
@@ -33,6 +36,14 @@ impl Decoder {
     /// The decoder that is inside the program.
     pub fn shipped() -> Self {
         Self::Statics(Statics::nominal())
+    }
+
+    /// What the decoder wants taken off its channels, as they remember earlier loads.
+    pub const fn friction(&self) -> &Friction {
+        match self {
+            Self::Inverse(inverse) => inverse.friction(),
+            _ => &NO_FRICTION,
+        }
     }
 
     /// The contact that explains `strain`. Always finite; see the decoder in question for degenerate input.

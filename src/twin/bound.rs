@@ -125,6 +125,7 @@ fn variance_of_mean(time_s: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::friction::NO_FRICTION;
     use crate::contact::inverse::{Inverse, Noise};
     use crate::quantity::Strain;
 
@@ -142,7 +143,8 @@ mod tests {
         let bound = Bound::new(&device, &field, 1);
         let decoder = Inverse::new(
             field.signals.clone(),
-            Noise { additive_uv: [8.0; CHANNELS], share: [0.01; CHANNELS] },
+            Noise::of_channels([8.0; CHANNELS], [0.01; CHANNELS]),
+            NO_FRICTION,
         );
         for (x_mm, y_mm, fx_n) in [(0.0, 0.0, 0.5), (12.0, -5.0, 0.0), (-20.0, 18.0, -1.0)] {
             let contact = Label { x_mm, y_mm, fx_n, fy_n: 0.3, fz_n: 4.0 };

@@ -10,15 +10,15 @@ use serde_json::Value;
 use tactpad::ablation::entries::{Entry, Method, Samples};
 use tactpad::ablation::fitting::{Reason, Unfitted, decoders};
 use tactpad::ablation::regions::{REGIONS, Touches};
-use tactpad::ablation::unseen::{Unseen, unseen};
+use tactpad::ablation::unseen::unseen;
 use tactpad::ablation::{Pad, Subject};
 use tactpad::calibration::fit::FitError;
 use tactpad::contact::Decoder;
+use tactpad::contact::friction::NO_FRICTION;
 use tactpad::contact::inverse::{Inverse, Noise};
 use tactpad::device::Device;
 use tactpad::field::PadField;
 use tactpad::network::{Network, Zero, onnx};
-use tactpad::protocol;
 use tactpad::quantity::CHANNELS;
 use tactpad::scdf::adaptation::TooFew;
 use tactpad::scdf::simulation::{examples, pretrain};
@@ -50,8 +50,8 @@ const fn entry(method: Method, samples: Samples) -> Entry {
 
 /// The decoder that knows the pad and its noise.
 fn ideal(additive_uv: f64, share: f64) -> Decoder {
-    let noise = Noise { additive_uv: [additive_uv; CHANNELS], share: [share; CHANNELS] };
-    Decoder::Inverse(Box::new(Inverse::new(field().signals.clone(), noise)))
+    let noise = Noise::of_channels([additive_uv; CHANNELS], [share; CHANNELS]);
+    Decoder::Inverse(Box::new(Inverse::new(field().signals.clone(), noise, NO_FRICTION)))
 }
 
 #[test]
@@ -77,8 +77,8 @@ fn errors_against_labels_hold_the_rigs_own() {
     let nominal = Device::nominal();
     let mut shifted = nominal.clone();
     shifted.behaviour.rig.stage_x_mm = 0.6;
-    let plan = protocol::recommended::plan(&nominal.contact, 3);
-    let judged = Unseen::of(&subject(&nominal, &shifted), "recommended", &plan, 3).judged(&ideal(1.0, 0.001));
+    let [_, recommended] = unseen(&subject(&nominal, &shifted));
+    let judged = recommended.judged(&ideal(1.0, 0.001));
     assert!(judged.by_truth.position_mae_mm < 0.02, "{:?}", judged.by_truth);
     // On the rim the pad keeps contacts, so not all are off by the whole step.
     assert!((judged.by_labels.per_axis.x_mm - 0.6).abs() < 0.03, "{:?}", judged.by_labels);

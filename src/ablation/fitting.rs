@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::Subject;
+use super::carried_out::CarriedOut;
 use super::entries::{Entry, Method, Samples};
-use super::tared::Tared;
+use super::{Pad, Subject};
 use crate::calibration::fit::{FitError, fit};
 use crate::calibration::regression::{neighbours, regression};
 use crate::contact::Decoder;
@@ -56,7 +56,7 @@ struct Known<'p> {
     network: &'p Network,
     simulated: Vec<Row>,
     /// The paper's plan.
-    measured: Tared,
+    measured: CarriedOut,
 }
 
 /// Fits all decoders, as many at once as there are processors. `network` is that of stage I, for tared channels. `report`
@@ -85,36 +85,47 @@ impl<'p> Known<'p> {
         let designed = subject.designed;
         let simulated = simulation::examples(designed.device, designed.field, subject.seed);
         let plan = protocol::paper::plan(&subject.actual.device.contact);
-        let measured = Tared::of(&subject, &plan, subject.seed);
+        let measured = CarriedOut::of(&subject, &plan, subject.seed);
         Self { subject, network, simulated: simulated.iter().map(row).collect(), measured }
     }
 
-    fn rows(&self, samples: Samples) -> Vec<Row> {
-        let contacts = || self.measured.of_contacts(self.measured.rows());
+    /// Places of the measured contacts.
+    fn places(&self, samples: Samples) -> Vec<usize> {
+        let contacts = || self.measured.recording.contacts();
         match samples {
-            Samples::Simulated => self.simulated.clone(),
+            Samples::Simulated => Vec::new(),
             Samples::First(count) => contacts().into_iter().take(count).collect(),
             Samples::Drawn(count) => drawn(contacts(), count, self.subject.seed),
         }
     }
 
+    fn rows(&self, samples: Samples) -> Vec<Row> {
+        match samples {
+            Samples::Simulated => self.simulated.clone(),
+            _ => self.places(samples).iter().map(|at| self.measured.recording.tared().rows[*at]).collect(),
+        }
+    }
+
     fn decoder(&self, entry: &Entry) -> Result<Decoder, Reason> {
-        let rows = self.rows(entry.samples);
-        let designed = self.subject.designed;
+        let rows = || self.rows(entry.samples);
         let fitted = match entry.method {
             Method::Statics => Ok(Decoder::shipped()),
             Method::Network if entry.samples == Samples::Simulated => {
                 Ok(Decoder::Network(Box::new(self.network.clone())))
             }
-            Method::Network => return self.adapted(&rows).map_err(Reason::Network),
-            Method::Knn => neighbours(&rows).map(Decoder::Neighbours),
-            Method::Linear => self.regression(&rows, Target::Contact),
-            Method::Wrench => self.regression(&rows, Target::Wrench),
-            Method::Inverse => {
-                fit(&rows, designed.device, designed.field).map(|it| Decoder::Inverse(Box::new(it.decoder())))
-            }
+            Method::Network => return self.adapted(&rows()).map_err(Reason::Network),
+            Method::Knn => neighbours(&rows()).map(Decoder::Neighbours),
+            Method::Linear => self.regression(&rows(), Target::Contact),
+            Method::Wrench => self.regression(&rows(), Target::Wrench),
+            Method::Inverse => self.inverse(&self.places(entry.samples)),
         };
         fitted.map_err(Reason::Calibration)
+    }
+
+    fn inverse(&self, places: &[usize]) -> Result<Decoder, FitError> {
+        let Pad { device, field } = self.subject.designed;
+        let calibration = fit(&self.measured.recording, places, device, field)?;
+        Ok(Decoder::Inverse(Box::new(calibration.decoder())))
     }
 
     fn adapted(&self, rows: &[Row]) -> Result<Decoder, TooFew> {
@@ -129,13 +140,13 @@ impl<'p> Known<'p> {
     }
 }
 
-/// So many of the rows; all of them stay in their order.
-fn drawn(mut rows: Vec<Row>, count: usize, seed: u64) -> Vec<Row> {
-    if count < rows.len() {
-        SplitMix64::named(seed, "rows").shuffle(&mut rows);
-        rows.truncate(count);
+/// So many of the places; all of them stay in their order.
+fn drawn(mut places: Vec<usize>, count: usize, seed: u64) -> Vec<usize> {
+    if count < places.len() {
+        SplitMix64::named(seed, "rows").shuffle(&mut places);
+        places.truncate(count);
     }
-    rows
+    places
 }
 
 fn row(example: &Example) -> Row {

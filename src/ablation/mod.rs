@@ -7,12 +7,12 @@
 //! Rows are drawn as `adapt --rows` draws them, and seeds are passed on as they are: each row can be made again with
 //! `train`, `twin`, `adapt` and `evaluate`.
 
+mod carried_out;
 pub mod drawing;
 pub mod entries;
 pub mod fitting;
 pub mod maps;
 pub mod regions;
-pub mod tared;
 pub mod unseen;
 
 use crate::device::Device;

@@ -5,8 +5,9 @@
 use std::f64::consts::TAU;
 
 use super::Subject;
-use super::tared::Tared;
+use super::carried_out::CarriedOut;
 use crate::contact::Decoder;
+use crate::evaluation;
 use crate::measured::{Label, Row, Table, zero};
 use crate::quantity::Contact;
 use crate::twin::measurement::RATE_HZ;
@@ -39,7 +40,7 @@ const SHEAR_SHARE: f64 = 0.35;
 /// The six touches on the pad, and readings of the untouched pad before and after them.
 #[derive(Clone, Debug)]
 pub struct Touches {
-    tared: Tared,
+    carried_out: CarriedOut,
 }
 
 /// A moment of the touches.
@@ -58,13 +59,14 @@ impl Touches {
     pub fn of(subject: &Subject<'_>) -> Self {
         let patch = &subject.actual.device.contact;
         let plan = plan(patch.max_centre_radius_mm, patch.full_scale_n);
-        Self { tared: Tared::of(subject, &plan, subject.seed) }
+        Self { carried_out: CarriedOut::of(subject, &plan, subject.seed) }
     }
 
     /// What a decoder says of them, moment by moment.
     pub fn decoded(&self, decoder: &Decoder) -> Vec<Moment> {
-        let found = self.tared.decoded(decoder);
-        let moments = self.tared.rows().iter().zip(self.tared.truths()).zip(found);
+        let rows = self.carried_out.taken(decoder);
+        let found = evaluation::decoded(decoder, &rows);
+        let moments = rows.iter().zip(&self.carried_out.truths).zip(found);
         let moments = moments.filter(|((row, _), _)| row.trial.is_some()).enumerate();
         moments
             .map(|(index, ((_, truth), found))| Moment { t_s: index as f64 / RATE_HZ, truth: *truth, found })

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::Subject;
-use super::tared::Tared;
+use super::carried_out::CarriedOut;
 use crate::contact::Decoder;
 use crate::evaluation::{self, Errors, PerAxis};
 use crate::measured::{Label, Row, Table};
@@ -18,9 +18,10 @@ pub struct Unseen {
     pub plan: &'static str,
     /// What drew them.
     pub seed: u64,
-    tared: Tared,
-    /// The contacts among its rows.
-    rows: Vec<Row>,
+    carried_out: CarriedOut,
+    /// Places of the contacts among its rows.
+    contacts: Vec<usize>,
+    /// Theirs.
     truths: Vec<Label>,
     bound: Bound,
 }
@@ -61,12 +62,12 @@ pub fn unseen(subject: &Subject<'_>) -> [Unseen; 2] {
 }
 
 impl Unseen {
-    /// Carries out a plan, which must read the untouched pad.
-    pub fn of(subject: &Subject<'_>, plan: &'static str, contacts: &Table, seed: u64) -> Self {
-        let tared = Tared::of(subject, contacts, seed);
-        let (rows, truths) = (tared.of_contacts(tared.rows()), tared.of_contacts(tared.truths()));
+    fn of(subject: &Subject<'_>, plan: &'static str, contacts: &Table, seed: u64) -> Self {
+        let carried_out = CarriedOut::of(subject, contacts, seed);
+        let contacts = carried_out.recording.contacts();
+        let truths = contacts.iter().map(|at| carried_out.truths[*at]).collect();
         let bound = Bound::new(subject.actual.device, subject.actual.field, seed);
-        Self { plan, seed, tared, rows, truths, bound }
+        Self { plan, seed, carried_out, contacts, truths, bound }
     }
 
     /// The true contacts.
@@ -84,20 +85,26 @@ impl Unseen {
         }
     }
 
-    /// The channels, as a decoder takes them.
-    pub fn strains(&self) -> impl Iterator<Item = Strain> + '_ {
-        self.rows.iter().map(evaluation::strain)
+    /// The channels of the contacts, as this decoder takes them.
+    pub fn strains(&self, decoder: &Decoder) -> Vec<Strain> {
+        self.rows(decoder).iter().map(evaluation::strain).collect()
     }
 
     /// Decodes all of them.
     pub fn judged(&self, decoder: &Decoder) -> Judged {
-        let found = self.tared.of_contacts(&self.tared.decoded(decoder));
-        let labels: Vec<Label> = self.rows.iter().map(|row| row.label).collect();
+        let rows = self.rows(decoder);
+        let found = evaluation::decoded(decoder, &rows);
+        let labels: Vec<Label> = rows.iter().map(|row| row.label).collect();
         Judged {
             by_truth: evaluation::errors(&found, &self.truths),
             by_labels: evaluation::errors(&found, &labels),
-            coverage95: evaluation::coverage95(decoder, &self.rows, &self.truths),
+            coverage95: evaluation::coverage95(decoder, &rows, &self.truths),
             found,
         }
+    }
+
+    fn rows(&self, decoder: &Decoder) -> Vec<Row> {
+        let taken = self.carried_out.taken(decoder);
+        self.contacts.iter().map(|at| taken[*at]).collect()
     }
 }

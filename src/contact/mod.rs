@@ -8,6 +8,7 @@ pub mod recording;
 pub mod regression;
 pub mod statics;
 pub mod touch;
+pub mod uncertainty;
 
 use crate::contact::friction::{Friction, NO_FRICTION};
 use crate::contact::inverse::Inverse;

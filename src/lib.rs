@@ -3,6 +3,7 @@
 //! The way of the data is one line: bytes → sample → raw channels → strain → contact → intents → output events.
 //! `ARCHITECTURE.md` tells where each step lives and which rules hold between them.
 
+pub mod ablation;
 mod bytes;
 pub mod calibration;
 pub mod capture;

@@ -11,7 +11,7 @@ const ROWS: &[&[&str]] = &[
     &["contact", "output", "readout", "dataset", "field", "protocol"],
     &["pipeline", "layout", "mechanics", "twin", "metrology", "calibration", "evaluation"],
     &["replay", "scdf", "virtual_pad"],
-    &["transport", "sink", "requests"],
+    &["transport", "sink", "requests", "ablation"],
     &["bridge"],
     &["cli"],
 ];

@@ -144,7 +144,7 @@ fn with_friction(problem: &Problem<'_>) -> Option<Fit> {
 }
 
 /// The threshold of the largest evidence: on a coarse scale first, then by ever smaller steps around the best.
-fn searched(play: usize, tried: impl Fn(f64) -> Option<Fit> + Sync) -> Option<Fit> {
+fn searched(play: usize, tried: impl Fn(f64) -> Option<Fit> + Send + Sync) -> Option<Fit> {
     let coarse = (0..THRESHOLDS).map(|step| THRESHOLD_MIN_UV * THRESHOLD_RATIO.powi(step));
     let mut best = most_probable(coarse.collect(), &tried)?;
     for halving in 1..=HALVINGS {
@@ -157,7 +157,7 @@ fn searched(play: usize, tried: impl Fn(f64) -> Option<Fit> + Sync) -> Option<Fi
 }
 
 /// Tries settings side by side; of equally probable ones the last.
-fn most_probable(settings: Vec<f64>, tried: impl Fn(f64) -> Option<Fit> + Sync) -> Option<Fit> {
+fn most_probable(settings: Vec<f64>, tried: impl Fn(f64) -> Option<Fit> + Send + Sync) -> Option<Fit> {
     let fits: Vec<Fit> = settings.into_par_iter().filter_map(tried).collect();
     fits.into_iter().max_by(|one, other| one.evidence.total_cmp(&other.evidence))
 }

@@ -32,6 +32,9 @@ const DRIFT_UV: f64 = 10.0;
 /// A jump of the zero counts as a drift of this part of it at least: temperature may have changed.
 const JUMP_PART: f64 = 1.0 / 3.0;
 
+/// A reading of the untouched pad: its row, and the channels.
+type Zero = (usize, [f64; CHANNELS]);
+
 /// What is fitted, and to what.
 #[derive(Clone)]
 pub(super) struct Problem<'f> {
@@ -103,15 +106,12 @@ impl<'f> Problem<'f> {
             Some((*at, Measured::of(field, &sensitivities, plate_mm, row)?))
         };
         let contacts = rows.iter().filter_map(measured).collect();
-        let zeros: Vec<_> = recording.zeros().collect();
-        let jump =
-            |((first, before), (second, after)): (&(usize, [f64; CHANNELS]), &(usize, [f64; CHANNELS]))| {
-                Jump {
-                    rows: [*first, *second],
-                    change_uv: std::array::from_fn(|k| after[k] - before[k]),
-                    lags: [[0.0; CHANNELS]; PLAYS],
-                }
-            };
+        let zeros: Vec<Zero> = recording.zeros().collect();
+        let jump = |((first, before), (second, after)): (&Zero, &Zero)| Jump {
+            rows: [*first, *second],
+            change_uv: std::array::from_fn(|k| after[k] - before[k]),
+            lags: [[0.0; CHANNELS]; PLAYS],
+        };
         let layout = Layout { physical: sensitivities.iter().map(|it| it.parameter).collect(), terms: 0 };
         Self {
             jumps: zeros.iter().zip(zeros.iter().skip(1)).map(jump).collect(),
@@ -300,7 +300,7 @@ impl<'f> Problem<'f> {
     fn jumps_evidence(&self, values: &[f64], drift_uv: &[f64; CHANNELS]) -> f64 {
         let mut cost = 0.0;
         self.each_jump(values, drift_uv, |_, rest, variance, _| {
-            cost += rest * rest / variance + variance.ln()
+            cost += rest * rest / variance + variance.ln();
         });
         -0.5 * cost
     }

@@ -94,7 +94,7 @@ struct Outcome {
 #[serde(untagged)]
 enum Fit {
     Network(scdf::Fit),
-    Own(own::Fit),
+    Own(Box<own::Fit>),
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -108,7 +108,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (rows, tared) = (contacts.rows.len(), contacts.recording.is_some());
     let fit = match method {
         Method::Scdf => Fit::Network(scdf::adapt(arguments, &contacts)?),
-        _ => Fit::Own(own::adapt(arguments, &device, &contacts)?),
+        _ => Fit::Own(Box::new(own::adapt(arguments, &device, &contacts)?)),
     };
     let outcome = Outcome { method: *method, rows, tared, fit };
     match (json, is_stdout(out)) {
@@ -141,7 +141,7 @@ impl Arguments {
         }
         let recording = Recording::of(table.clone(), device.contact.full_scale_n);
         let taken = recording.as_ref().map_or(&table, Recording::tared);
-        let rows = places.iter().filter_map(|at| taken.rows.get(*at).copied()).collect();
+        let rows = taken.rows_at(&places);
         Ok(Contacts { recording, places, rows })
     }
 }

@@ -14,7 +14,7 @@ use crate::contact::recording::Recording;
 use crate::device::Device;
 use crate::evaluation::{self, Errors};
 use crate::measured::columns::Kind;
-use crate::measured::{Label, Row, Table, zero};
+use crate::measured::{Label, Table, zero};
 use crate::network::Zero;
 
 /// Arguments of `tactpad evaluate`.
@@ -99,7 +99,7 @@ fn taken(decoder: &Decoder, table: &Table, device: &Device) -> Option<Table> {
 
 fn report(decoder: &Decoder, taken: &Table, truth: Option<&Table>) -> Report {
     let places = zero::contacts(taken);
-    let rows: Vec<Row> = places.iter().map(|at| taken.rows[*at]).collect();
+    let rows = taken.rows_at(&places);
     let found = evaluation::decoded(decoder, &rows);
     let labels: Vec<Label> = rows.iter().map(|row| row.label).collect();
     let by_truth = |truth: &Table| {

@@ -1,5 +1,6 @@
 //! The program's verbs, one file each. Errors are printed and exit codes chosen here and nowhere else.
 
+mod ablation;
 mod adapt;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod ctl;
@@ -95,6 +96,8 @@ enum Verb {
     Adapt(adapt::Arguments),
     /// Say how far a decoder's contacts are from measured ones, or from the truth.
     Evaluate(evaluate::Arguments),
+    /// Compare all decoders on the twin: the paper's Table 3, and what the noise allows.
+    Ablation(ablation::Arguments),
     /// List, show and check profiles.
     Profile(profile::Arguments),
     /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
@@ -144,6 +147,7 @@ pub fn run() -> ExitCode {
         Verb::Train(arguments) => train::run(&arguments),
         Verb::Adapt(arguments) => adapt::run(&arguments),
         Verb::Evaluate(arguments) => evaluate::run(&arguments),
+        Verb::Ablation(arguments) => ablation::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
         Verb::Layout(arguments) => layout::run(&arguments),
         Verb::Metrology(arguments) => metrology::run(&arguments),

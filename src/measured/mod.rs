@@ -131,6 +131,11 @@ pub struct Others {
 }
 
 impl Table {
+    /// The rows at these places, in this order; none for a place beyond the last.
+    pub fn rows_at(&self, places: &[usize]) -> Vec<Row> {
+        places.iter().filter_map(|at| self.rows.get(*at).copied()).collect()
+    }
+
     /// The columns that any row has a value for, in the order of a file.
     pub fn columns(&self) -> Vec<Column> {
         let any = |has: fn(&Row) -> bool| self.rows.iter().any(has);

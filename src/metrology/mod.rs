@@ -22,6 +22,7 @@ pub mod report;
 pub mod resolution;
 pub mod response;
 pub mod sensitivity;
+pub mod table3;
 pub mod thermal;
 
 mod filter;

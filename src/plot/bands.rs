@@ -34,6 +34,24 @@ impl Bands {
         Self { labels, colours: (0..count).map(|k| ColourMap::Sequential.at(share(k))).collect(), edges }
     }
 
+    /// Bands with edges 1, 1.5, 2, 3, 5, 7, 10, 15, … over a span of positive values: for fields that differ by orders.
+    /// Where the span is none, the decade up to 1; at most three decades, the highest.
+    pub fn sequential_decades(span: Option<[f64; 2]>) -> Self {
+        let [low, high] = span
+            .filter(|[low, high]| *low > 0.0 && low <= high && drawable(&[*low, *high]))
+            .unwrap_or([0.1, 1.0]);
+        let power = scale::power_of_ten(high);
+        let all = (-3..=1).flat_map(|decade| DECADE.map(|step| step * power * 10.0_f64.powi(decade)));
+        let all: Vec<f64> = all.collect();
+        let last = all.iter().position(|&edge| edge >= high * (1.0 - 1e-9)).unwrap_or(all.len() - 1).max(1);
+        let first = all.iter().rposition(|&edge| edge <= low * (1.0 + 1e-9)).unwrap_or(0).min(last - 1);
+        let edges = all[first..=last].to_vec();
+        let labels = edges.iter().map(|&edge| scale::label(edge, edge)).collect();
+        let count = edges.len() - 1;
+        let share = |k: usize| k as f64 / (count.max(2) - 1) as f64;
+        Self { labels, colours: (0..count).map(|k| ColourMap::Sequential.at(share(k))).collect(), edges }
+    }
+
     /// Equal bands with round edges on both sides of zero, about `per_side` on each, up to `largest`.
     pub fn diverging(largest: f64, per_side: usize) -> Self {
         let largest = if largest > 0.0 && drawable(&[0.0, largest]) { largest } else { 1.0 };
@@ -90,6 +108,8 @@ mod tests {
     fn edges_are_round_and_hold_the_span() {
         let bands = Bands::sequential(Some([0.13, 2.2]), 10);
         assert_eq!(labels(&bands), "0 0.25 0.50 0.75 1.00 1.25 1.50 1.75 2.00 2.25");
+        let bands = Bands::sequential_decades(Some([0.16, 2.1]));
+        assert_eq!(labels(&bands), "0.15 0.2 0.3 0.5 0.7 1 1.5 2 3");
         let bands = Bands::diverging(237.0, 3);
         assert_eq!(labels(&bands), "−300 −200 −100 0 100 200 300");
         let bands = Bands::diverging_decades(2400.0, 1);
@@ -117,9 +137,12 @@ mod tests {
             assert!(bands.edges.is_sorted_by(|a, b| a < b) && !bands.colours.is_empty(), "{bands:?}");
         }
         for largest in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-200] {
-            for bands in
-                [Bands::diverging(largest, usize::MAX), Bands::diverging_decades(largest, usize::MAX)]
-            {
+            let decades = Bands::sequential_decades(Some([largest, largest]));
+            for bands in [
+                Bands::diverging(largest, usize::MAX),
+                Bands::diverging_decades(largest, usize::MAX),
+                decades,
+            ] {
                 assert!(bands.edges.is_sorted_by(|a, b| a < b), "{bands:?}");
                 assert!((1..200).contains(&bands.colours.len()));
             }

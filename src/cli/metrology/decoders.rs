@@ -70,7 +70,8 @@ impl Decoders {
         }
         let mut start = self.simulation.clone()?;
         start.zero = Zero::Tared;
-        let known = adaptation::examples(&zero::contacts(&zero::tared(contacts)?));
+        let tared = zero::tared(contacts)?;
+        let known = adaptation::examples(&tared.rows_at(&zero::contacts(&tared)));
         let adapted = adapt(&start, known, seed, |_, _| ()).ok()?;
         Some(Decoder::Network(Box::new(adapted.trained.network)))
     }

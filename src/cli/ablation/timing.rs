@@ -1,0 +1,25 @@
+//! How long a decode takes. The clock belongs to the live bridge.
+
+use crate::ablation::unseen::Unseen;
+use crate::contact::Decoder;
+
+/// Median time of one decode over all unseen contacts, in microseconds.
+#[cfg(all(feature = "live", target_os = "linux"))]
+pub(super) fn median_us(decoder: &Decoder, unseen: &[Unseen]) -> Option<f64> {
+    use crate::bridge::clock::Clock;
+    use crate::latency::Durations;
+
+    let mut durations = Durations::new();
+    let clock = Clock::start();
+    for strain in unseen.iter().flat_map(|table| table.strains(decoder)) {
+        let begun = clock.now();
+        std::hint::black_box(decoder.decode(std::hint::black_box(&strain)));
+        durations.record_ns(clock.now().as_ns() - begun.as_ns());
+    }
+    (!durations.is_empty()).then(|| durations.percentiles().p50)
+}
+
+#[cfg(not(all(feature = "live", target_os = "linux")))]
+pub(super) fn median_us(_decoder: &Decoder, _unseen: &[Unseen]) -> Option<f64> {
+    None
+}

@@ -19,6 +19,11 @@ use rustix::fs::{CWD, FileType, Mode, OFlags, mknodat, open};
 use rustix::process::{Pid, Signal, kill_process};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use tactpad::capture::{CallRef, CaptureWriter};
+use tactpad::contact::file as decoder_file;
+use tactpad::mapping::shipped;
+use tactpad::network::{Network, Zero, onnx};
+use tactpad::time::HostInstant;
 use tempfile::TempDir;
 
 /// The program, with backtraces on, so that a panic shows.
@@ -315,6 +320,53 @@ fn contacts_that_are_no_table_of_numbers_are_refused_with_file_and_line() {
 }
 
 #[test]
+fn a_decoder_that_cannot_play_is_refused() {
+    let network = |zero| onnx::write(&Network::untrained(&[4], zero, &[], 1));
+    let own = decoder_file::MAGIC;
+    let statics = fs::read_to_string("models/statics.toml").unwrap();
+    for (bytes, words) in [
+        (network(Zero::Raw), &["pad's offset in them", "rows without force"][..]),
+        (network(Zero::Tared)[..40].to_vec(), &["no ONNX model", "export it again"]),
+        (vec![], &["no ONNX model"]),
+        (own.to_vec(), &["is damaged", "tactpad adapt"]),
+        (b"tactpad decoder 0\nwhatever".to_vec(), &["statics model: line 1", "adapt or train"]),
+        (statics.replace("contact_height", "height").into(), &["statics model: line", "models/statics.toml"]),
+        (vec![b'a'; 16_000_001], &["larger than 16 MB"]),
+    ] {
+        let (_folder, path) = with_file("my.decoder", &bytes);
+        let path = path.to_str().unwrap();
+        for line in [
+            "run --pad virtual --output none --decoder",
+            "demo --decoder",
+            "record /no-such-folder/game.cap --decoder",
+            "latency --decoder",
+        ] {
+            let words: Vec<_> = [&[path, "cannot be read"], words].concat();
+            refuses_line(&format!("{line} {path}"), &words);
+        }
+    }
+    refuses_line("demo --decoder nope", &["decoder nope", "No such file"]);
+    refuses_line("demo --decoder /tmp", &["/tmp", "it is no file"]);
+    refuses_line("replay --contacts any.csv --profile contra --decoder scdf", &["decoded already"]);
+}
+
+#[test]
+fn a_capture_whose_decoder_cannot_be_read_says_so() {
+    let mut bytes = Vec::new();
+    let mut writer = CaptureWriter::new(&mut bytes).unwrap();
+    for call in
+        [CallRef::Decoder(b"\x01"), CallRef::Profile(shipped::text("contra").unwrap()), CallRef::Timeout]
+    {
+        writer.write(HostInstant::default(), call).unwrap();
+    }
+    let (_folder, path) = with_file("game.cap", &bytes);
+    let path = path.to_str().unwrap();
+    refuses_line(&format!("replay {path}"), &[path, "a decoder that cannot be read", "--decoder"]);
+    let chosen = tactpad().args(["replay", path, "--decoder", "statics"]).output().unwrap();
+    assert_eq!(chosen.status.code(), Some(0), "{}", said(&chosen));
+}
+
+#[test]
 fn a_time_that_is_none_is_refused_before_a_file_is_touched() {
     let (_folder, path) = with_file("old", b"precious");
     let old = path.to_str().unwrap();
@@ -357,6 +409,8 @@ fn a_file_that_is_read_is_not_written_over() {
         format!("latency --pad capture:{game} --output log:{game}"),
         format!("record {mine} --profile {mine}"),
         format!("demo --profile {mine} --output log:{mine}"),
+        format!("record {mine} --decoder {mine}"),
+        format!("run --pad virtual --decoder {game} --output log:{}", soft.display()),
         format!("record {0} --output log:{0}", new.display()),
     ] {
         refuses_line(&line, &["would be written over", "name another file"]);
@@ -410,6 +464,7 @@ fn arguments_that_are_no_text_are_refused() {
         vec!["run".into(), "--pad".into(), strange("serial:")],
         vec!["run".into(), "--pad".into(), "virtual".into(), "--output".into(), strange("")],
         vec!["run".into(), "--pad".into(), "virtual".into(), "--profile".into(), strange("")],
+        vec!["run".into(), "--pad".into(), "virtual".into(), "--decoder".into(), strange("")],
         vec!["replay".into(), strange("/no-such-folder/")],
         vec!["profile".into(), "check".into(), strange("")],
     ] {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::decoder_file::Choice;
 use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, Output, Plan, Waits, bridge, create_capture, open_pad, patience, play};
@@ -25,9 +26,11 @@ pub(super) struct Arguments {
     pad: PadAddress,
     #[command(flatten)]
     device: Pad,
-    /// A profile's name or file; it is kept in the capture.
+    /// A profile's name or file; it is kept in the capture, and so is the decoder.
     #[arg(long, default_value = "super-mario")]
     profile: String,
+    #[command(flatten)]
+    decoder: Choice,
     /// Where events go meanwhile: auto, uinput, x11, log:FILE, none.
     #[arg(long, default_value = "none")]
     output: Output,
@@ -41,8 +44,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { capture, pad, profile, output, .. } = arguments;
-    Files { pad, profile, output, capture: Some(capture) }.check()?;
+    let Arguments { capture, pad, profile, output, decoder, .. } = arguments;
+    Files { pad, profile, output, decoder: decoder.file(), capture: Some(capture) }.check()?;
+    let decoder = decoder.read()?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let sink = arguments.output.open()?;
     let patience = patience(&arguments.pad, Waits::NotAsked);
@@ -58,6 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         profile_text: text,
         profile,
         choice: arguments.output.choice(),
+        decoder,
         record: Some(Box::new(capture)),
         seconds: arguments.seconds,
         patience,

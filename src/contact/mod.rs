@@ -3,15 +3,17 @@
 pub mod file;
 pub mod inverse;
 pub mod neighbours;
+pub mod read;
 pub mod regression;
+pub mod shipped;
 pub mod statics;
 pub mod touch;
 
 use crate::contact::inverse::Inverse;
 use crate::contact::neighbours::Neighbours;
-use crate::contact::regression::Regression;
+use crate::contact::regression::{Regression, Target};
 use crate::contact::statics::Statics;
-use crate::network::Network;
+use crate::network::{Network, Zero};
 use crate::quantity::{Contact, Strain};
 
 /// A way from strain to a contact.
@@ -30,9 +32,24 @@ pub enum Decoder {
 }
 
 impl Decoder {
-    /// The decoder that is inside the program.
-    pub fn shipped() -> Self {
-        Self::Statics(Statics::nominal())
+    /// What people call it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Statics(_) => "statics",
+            Self::Inverse(_) => "inverse",
+            Self::Regression(regression) if regression.target == Target::Wrench => "wrench",
+            Self::Regression(_) => "linear",
+            Self::Neighbours(_) => "knn",
+            Self::Network(_) => "network",
+        }
+    }
+
+    /// What it takes: all but some networks take channels relative to the untouched pad.
+    pub fn zero(&self) -> Zero {
+        match self {
+            Self::Network(network) => network.zero,
+            _ => Zero::Tared,
+        }
     }
 
     /// The contact that explains `strain`. Always finite; see the decoder in question for degenerate input.

@@ -13,7 +13,9 @@ use crate::contact::inverse::Inverse;
 use crate::contact::neighbours::Neighbours;
 use crate::contact::regression::{Regression, Target};
 use crate::contact::statics::Statics;
-use crate::network::{Network, Zero};
+#[cfg(feature = "foreign-onnx")]
+use crate::network::foreign::Foreign;
+use crate::network::{Network, OUTPUTS, Zero};
 use crate::quantity::{Contact, Strain};
 
 /// A way from strain to a contact.
@@ -29,6 +31,9 @@ pub enum Decoder {
     Neighbours(Neighbours),
     /// The paper's network.
     Network(Box<Network>),
+    /// A network that tract runs.
+    #[cfg(feature = "foreign-onnx")]
+    Foreign(Foreign),
 }
 
 impl Decoder {
@@ -41,6 +46,8 @@ impl Decoder {
             Self::Regression(_) => "linear",
             Self::Neighbours(_) => "knn",
             Self::Network(_) => "network",
+            #[cfg(feature = "foreign-onnx")]
+            Self::Foreign(_) => "foreign network",
         }
     }
 
@@ -48,6 +55,8 @@ impl Decoder {
     pub fn zero(&self) -> Zero {
         match self {
             Self::Network(network) => network.zero,
+            #[cfg(feature = "foreign-onnx")]
+            Self::Foreign(network) => network.zero,
             _ => Zero::Tared,
         }
     }
@@ -59,13 +68,15 @@ impl Decoder {
             Self::Inverse(inverse) => inverse.decode(strain),
             Self::Regression(regression) => regression.decode(strain),
             Self::Neighbours(neighbours) => neighbours.decode(strain),
-            Self::Network(network) => by_network(network, strain),
+            Self::Network(network) => contact(network.decode(&strain.uv)),
+            #[cfg(feature = "foreign-onnx")]
+            Self::Foreign(network) => contact(network.decode(&strain.uv)),
         }
     }
 }
 
-fn by_network(network: &Network, strain: &Strain) -> Contact {
-    let numbers = network.decode(&strain.uv);
+/// A network's numbers; where one is none, no contact.
+fn contact(numbers: [f32; OUTPUTS]) -> Contact {
     let [x_mm, y_mm, fx_n, fy_n, fz_n] = numbers;
     let is_finite = numbers.iter().all(|number| number.is_finite());
     if is_finite { Contact { x_mm, y_mm, fx_n, fy_n, fz_n } } else { Contact::default() }

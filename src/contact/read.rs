@@ -5,8 +5,10 @@ use std::fmt;
 use super::Decoder;
 use super::file::{DecoderFileError, MAGIC};
 use super::statics::{ModelError, Statics, StaticsModel};
+use crate::network::Zero;
+#[cfg(feature = "foreign-onnx")]
+use crate::network::foreign::Foreign;
 use crate::network::onnx::{self, OnnxError};
-use crate::network::{Network, Zero};
 
 /// Why bytes are no decoder that can be used. As text: what is wrong, and the way out.
 #[derive(Debug, PartialEq, Eq)]
@@ -74,10 +76,11 @@ fn statics(text: &str) -> Result<Decoder, ModelError> {
     StaticsModel::from_toml(text).and_then(Statics::new).map(Decoder::Statics)
 }
 
+/// A perceptron; with the feature for it, what else tract can run.
 fn network(bytes: &[u8]) -> Result<Decoder, OnnxError> {
-    onnx::read(bytes).map(by_network)
-}
-
-fn by_network(network: Network) -> Decoder {
-    Decoder::Network(Box::new(network))
+    match onnx::read(bytes) {
+        #[cfg(feature = "foreign-onnx")]
+        Err(OnnxError::Unsupported(_) | OnnxError::Shape(_)) => Foreign::read(bytes).map(Decoder::Foreign),
+        read => read.map(|network| Decoder::Network(Box::new(network))),
+    }
 }

@@ -22,36 +22,23 @@ pub(super) struct Choice {
     decoder: Option<String>,
 }
 
-/// A decoder that is to play.
-#[derive(Clone, Debug)]
-pub(super) struct Chosen {
-    pub(super) decoder: Decoder,
-    /// As people are told of it.
-    pub(super) name: String,
-    /// What captures keep of it; nothing for the statics that are inside the program.
-    pub(super) bytes: Option<Vec<u8>>,
-}
-
 impl Choice {
-    /// The file that is read, if it is one.
-    pub(super) fn file(&self) -> Option<&Path> {
-        self.decoder.as_deref().filter(|name| shipped::bytes(name).is_none()).map(Path::new)
-    }
-
     /// Whether one was chosen.
     pub(super) const fn is_given(&self) -> bool {
         self.decoder.is_some()
     }
 
-    /// Reads it.
-    pub(super) fn read(&self) -> Result<Chosen, Failure> {
-        let name = self.decoder.as_deref().unwrap_or(shipped::STATICS);
-        let path = Path::new(name);
+    /// What was chosen, or plays anyway.
+    pub(super) fn name(&self) -> &str {
+        self.decoder.as_deref().unwrap_or(shipped::STATICS)
+    }
+
+    /// Reads a decoder that can play, and its bytes.
+    pub(super) fn read(&self) -> Result<(Decoder, Vec<u8>), Failure> {
+        let path = Path::new(self.name());
         let bytes = bytes(path).map_err(|why| unusable(path, &why))?;
         let decoder = read::playing(&bytes).map_err(|error| unusable(path, &error.to_string()))?;
-        let kind = decoder.name();
-        let name = if name == kind { name.into() } else { format!("{kind} ({name})") };
-        Ok(Chosen { decoder, bytes: Some(bytes).filter(|_| name != shipped::STATICS), name })
+        Ok((decoder, bytes))
     }
 }
 

@@ -7,13 +7,14 @@ use std::sync::{Arc, Mutex};
 use clap::Args;
 use serde::Serialize;
 
+use super::chosen::Chosen;
 use super::decoder_file::Choice;
 use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, Output, Plan, bridge, open_virtual, play};
 use super::screen::Screen;
 use super::written::stdout;
-use super::{Failure, if_read, print_json, profile, say, seconds};
+use super::{Failure, chosen, if_read, print_json, profile, say, seconds};
 use crate::bridge::keeper::Patience;
 use crate::bridge::{Bridge, Ending};
 use crate::control::{Code, Device, OutputEvent};
@@ -119,8 +120,9 @@ impl Sink for Witness {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { profile, output, decoder, .. } = arguments;
-    Files { pad: &PadAddress::Virtual, profile, output, decoder: decoder.file(), capture: None }.check()?;
-    let decoder = decoder.read()?;
+    Files { pad: &PadAddress::Virtual, profile, output, decoder: chosen::file(decoder), capture: None }
+        .check()?;
+    let decoder = Chosen::read(decoder)?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let script = Script::for_profile(&profile, (arguments.seconds * 1e6) as u64);
     let expected = script.expected().to_vec();

@@ -11,12 +11,13 @@ use clap::Args;
 use firmware_proto::command::Command;
 use serde::Serialize;
 
+use super::chosen::Chosen;
 use super::decoder_file::Choice;
 use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, OpenedPad, Output, Plan, bridge, open_pad, play};
 use super::written::stdout;
-use super::{Failure, print_json, profile, say, seconds};
+use super::{Failure, chosen, print_json, profile, say, seconds};
 use crate::bridge::clock::Clock;
 use crate::bridge::keeper::Patience;
 use crate::capture::{CallRef, CaptureReader};
@@ -84,8 +85,8 @@ struct Policy {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { pad, profile, output, decoder, .. } = arguments;
-    Files { pad, profile, output, decoder: decoder.file(), capture: None }.check()?;
-    let decoder = decoder.read()?;
+    Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
+    let decoder = Chosen::read(decoder)?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let pad = open_pad(&arguments.pad, &arguments.device, &profile, Patience::Limited)?;
     let timing = Timing::default();

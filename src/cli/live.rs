@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 use rustix::event::{Timespec, poll};
 
-use super::decoder_file::Chosen;
+use super::chosen::Chosen;
 use super::device::Pad;
 use super::field_cache::field_of;
 use super::{Failure, profile};

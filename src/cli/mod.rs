@@ -2,6 +2,8 @@
 
 mod adapt;
 #[cfg(all(feature = "live", target_os = "linux"))]
+mod chosen;
+#[cfg(all(feature = "live", target_os = "linux"))]
 mod ctl;
 mod decoder_file;
 #[cfg(all(feature = "live", target_os = "linux"))]

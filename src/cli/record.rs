@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::chosen::Chosen;
 use super::decoder_file::Choice;
 use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, Output, Plan, Waits, bridge, create_capture, open_pad, patience, play};
 use super::written::Named;
-use super::{Failure, ctl, profile, say, seconds};
+use super::{Failure, chosen, ctl, profile, say, seconds};
 use crate::transport::address::PadAddress;
 use crate::transport::fault::FaultPlan;
 
@@ -45,8 +46,8 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { capture, pad, profile, output, decoder, .. } = arguments;
-    Files { pad, profile, output, decoder: decoder.file(), capture: Some(capture) }.check()?;
-    let decoder = decoder.read()?;
+    Files { pad, profile, output, decoder: chosen::file(decoder), capture: Some(capture) }.check()?;
+    let decoder = Chosen::read(decoder)?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let sink = arguments.output.open()?;
     let patience = patience(&arguments.pad, Waits::NotAsked);

@@ -113,7 +113,7 @@ fn playing(path: &Path, chosen: &Choice, recorded: Option<Vec<u8>>) -> Result<De
                  it, or choose a decoder with --decoder"
             ))
         }),
-        _ => Ok(chosen.read()?.decoder),
+        _ => Ok(chosen.read()?.0),
     }
 }
 

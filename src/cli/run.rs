@@ -4,12 +4,13 @@ use std::io::{self, IsTerminal};
 
 use clap::Args;
 
+use super::chosen::Chosen;
 use super::decoder_file::Choice;
 use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, Output, Plan, Waits, bridge, open_pad, patience, play};
 use super::screen::Screen;
-use super::{Failure, ctl, profile, say, seconds};
+use super::{Failure, chosen, ctl, profile, say, seconds};
 use crate::bridge::Ending;
 use crate::transport::address::PadAddress;
 use crate::transport::fault::FaultPlan;
@@ -47,8 +48,8 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { pad, profile, output, decoder, .. } = arguments;
-    Files { pad, profile, output, decoder: decoder.file(), capture: None }.check()?;
-    let decoder = decoder.read()?;
+    Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
+    let decoder = Chosen::read(decoder)?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let patience = patience(&arguments.pad, if arguments.wait { Waits::Asked } else { Waits::NotAsked });
     let sink = arguments.output.open()?;

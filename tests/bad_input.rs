@@ -366,6 +366,108 @@ fn a_capture_whose_decoder_cannot_be_read_says_so() {
     assert_eq!(chosen.status.code(), Some(0), "{}", said(&chosen));
 }
 
+/// A measured table of an untouched pad and `contacts` presses, its cells changed.
+fn measured(contacts: usize, change: impl Fn(usize, &mut Vec<String>)) -> Vec<u8> {
+    let names =
+        "session,x_mm,y_mm,fx_n,fy_n,fz_n,m0x_uv,m0y_uv,m0z_uv,m1x_uv,m1y_uv,m1z_uv,m2x_uv,m2y_uv,m2z_uv";
+    let press = |k: usize| {
+        let uv: Vec<_> = (1..=9).map(|channel| (channel * k * k % 101).to_string()).collect();
+        format!("press,{},{},0,0,{},{}", k % 20, k % 13, 1 + k % 5, uv.join(","))
+    };
+    let rows = [names.to_owned(), "zero,0,0,0,0,0,0,0,0,0,0,0,0,0,0".into()];
+    let rows = rows.into_iter().chain((0..contacts).map(press)).enumerate().map(|(line, row)| {
+        let mut cells = row.split(',').map(str::to_owned).collect();
+        change(line + 1, &mut cells);
+        cells.join(",") + "\n"
+    });
+    rows.collect::<String>().into()
+}
+
+/// The verbs that read a measured table.
+const TAKERS: [&str; 7] = [
+    "adapt --method inverse --out never --measured",
+    "adapt --method wrench --out never --measured",
+    "adapt --method linear --out never --measured",
+    "adapt --method knn --out never --measured",
+    "adapt --method scdf --from scdf --out never --measured",
+    "evaluate --measured",
+    "evaluate --decoder scdf --measured",
+];
+
+#[test]
+fn measured_contacts_that_lack_something_are_refused_with_file_and_line() {
+    let without = |from: usize, count: usize| {
+        measured(20, |_, cells| {
+            cells.drain(from..from + count);
+        })
+    };
+    let cell = |text: &'static str| {
+        measured(20, move |line, cells| {
+            if line == 7 {
+                cells[10] = text.into()
+            }
+        })
+    };
+    for (table, line, words) in [
+        (without(6, 9), 1, &["no column is a channel", "m0x_uv to m2z_uv"][..]),
+        (without(11, 1), 1, &["no column is named m1z_uv", "all nine channels"]),
+        (without(8, 2), 1, &["no column is named m0z_uv, m1x_uv"]),
+        (without(5, 1), 1, &["no column is named fz_n", "expected is"]),
+        (without(1, 2), 1, &["no column is named x_mm, y_mm"]),
+        (cell("NaN"), 7, &["m1y_uv is \"NaN\", which is not a number"]),
+        (cell("-inf"), 7, &["m1y_uv is \"-inf\", which is not a number"]),
+        (cell(""), 7, &["m1y_uv is empty", "leave the row out"]),
+        (cell("1e9"), 7, &["m1y_uv is 1e9, and"]),
+        (cell("1,2"), 7, &["16 values where the header names 15 columns"]),
+        (
+            measured(0, |line, cells| {
+                if line > 1 {
+                    cells.clear()
+                }
+            }),
+            2,
+            &["no contact follows"],
+        ),
+    ] {
+        let (_folder, path) = with_file("m.csv", &table);
+        let path = path.to_str().unwrap();
+        let place = format!("{path}:{line}: ");
+        let words: Vec<_> = [&[place.as_str()], words].concat();
+        TAKERS.iter().for_each(|taker| refuses_line(&format!("{taker} {path}"), &words));
+    }
+    assert!(!Path::new("never").exists());
+}
+
+#[test]
+fn fits_to_fewer_contacts_than_they_have_numbers_are_refused() {
+    for (method, least) in [("wrench", 10), ("linear", 10), ("knn", 5), ("scdf --from scdf", 10)] {
+        let (_folder, path) = with_file("m.csv", &measured(least - 1, |_, _| ()));
+        let path = path.to_str().unwrap();
+        let (most, least) = ((least - 1).to_string(), format!("{least} contacts"));
+        let line = format!("adapt --method {method} --out never --measured {path}");
+        refuses_line(&line, &[path, &least, &most, "measure more"]);
+    }
+    let untared = measured(20, |line, cells| {
+        if line == 2 {
+            cells[5] = "1".into()
+        }
+    });
+    let (_folder, path) = with_file("m.csv", &untared);
+    let path = path.to_str().unwrap();
+    refuses_line(&format!("evaluate --measured {path}"), &[path, "no row without force", "measure some"]);
+    assert!(!Path::new("never").exists());
+}
+
+#[test]
+fn a_truth_of_other_rows_is_refused() {
+    let (_folder, path) = with_file("m.csv", &measured(20, |_, _| ()));
+    let (_folder_of_truth, truth) = with_file("t.csv", b"x_mm,y_mm,fx_n,fy_n,fz_n\n0,0,0,0,1\n");
+    let (path, truth) = (path.to_str().unwrap(), truth.to_str().unwrap());
+    let line = format!("evaluate --measured {path} --truth");
+    refuses_line(&format!("{line} {truth}"), &[path, "21 rows", "its truth 1", "of one run"]);
+    refuses_line(&format!("{line} /no-such.csv"), &["/no-such.csv", "cannot be read"]);
+}
+
 #[test]
 fn a_time_that_is_none_is_refused_before_a_file_is_touched() {
     let (_folder, path) = with_file("old", b"precious");

@@ -110,13 +110,19 @@ pub struct LargeFactor {
 }
 
 impl LargeFactor {
-    /// The x with A x = b. `right` has as many numbers as the matrix rows.
-    pub fn solve(&self, right: &[f64]) -> Vec<f64> {
+    /// The x with L x = b.
+    fn solve_lower(&self, right: &[f64]) -> Vec<f64> {
         let mut x = right.to_vec();
         for row in 0..self.size {
             let line = &self.lower[row * self.size..][..=row];
             x[row] = (x[row] - dot(&line[..row], &x[..row])) / line[row];
         }
+        x
+    }
+
+    /// The x with A x = b. `right` has as many numbers as the matrix rows.
+    pub fn solve(&self, right: &[f64]) -> Vec<f64> {
+        let mut x = self.solve_lower(right);
         for row in (0..self.size).rev() {
             let line = &self.lower[row * self.size..][..=row];
             x[row] /= line[row];
@@ -124,6 +130,11 @@ impl LargeFactor {
             x[..row].iter_mut().zip(line).for_each(|(x, factor)| *x -= factor * value);
         }
         x
+    }
+
+    /// v′ A⁻¹ v.
+    pub fn inverse_form(&self, vector: &[f64]) -> f64 {
+        self.solve_lower(vector).iter().map(|x| x * x).sum()
     }
 
     /// The diagonal of the inverse of A.
@@ -203,6 +214,8 @@ mod tests {
         let inverse = small.inverse();
         let diagonal = factor.inverse_diagonal();
         assert!((0..9).all(|k| (diagonal[k] / inverse[k][k] - 1.0).abs() < 1e-8));
+        let form: f64 = b.iter().zip(small.solve(&b)).map(|(b, x)| b * x).sum();
+        assert!((factor.inverse_form(&b) - form).abs() < 1e-8);
         let determinant: f64 = (0..9).map(|k| small.lower[k][k].powi(2)).product();
         assert!((factor.log_determinant() - determinant.ln()).abs() < 1e-9);
     }

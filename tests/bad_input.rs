@@ -329,7 +329,8 @@ fn a_decoder_that_cannot_play_is_refused() {
         (network(Zero::Tared)[..40].to_vec(), &["no ONNX model", "export it again"]),
         (vec![], &["no ONNX model"]),
         (own.to_vec(), &["is damaged", "tactpad adapt"]),
-        (b"tactpad decoder 0\nwhatever".to_vec(), &["statics model: line 1", "adapt or train"]),
+        (b"tactpad decoder 1\nwhatever".to_vec(), &["no decoder file of this version", "tactpad adapt"]),
+        (b"x_mm,y_mm\n1,2\n".to_vec(), &["statics model: line 1", "adapt or train"]),
         (statics.replace("contact_height", "height").into(), &["statics model: line", "models/statics.toml"]),
         (vec![b'a'; 16_000_001], &["larger than 16 MB"]),
     ] {
@@ -404,7 +405,7 @@ fn measured_contacts_that_lack_something_are_refused_with_file_and_line() {
     let cell = |text: &'static str| {
         measured(20, move |line, cells| {
             if line == 7 {
-                cells[10] = text.into()
+                cells[10] = text.into();
             }
         })
     };
@@ -422,7 +423,7 @@ fn measured_contacts_that_lack_something_are_refused_with_file_and_line() {
         (
             measured(0, |line, cells| {
                 if line > 1 {
-                    cells.clear()
+                    cells.clear();
                 }
             }),
             2,
@@ -449,7 +450,7 @@ fn fits_to_fewer_contacts_than_they_have_numbers_are_refused() {
     }
     let untared = measured(20, |line, cells| {
         if line == 2 {
-            cells[5] = "1".into()
+            (cells[0], cells[5]) = ("press".into(), "1".into());
         }
     });
     let (_folder, path) = with_file("m.csv", &untared);

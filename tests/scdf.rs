@@ -98,7 +98,8 @@ fn adapt_writes_a_network_that_fits_the_measured_pad_better() {
     let mine = onnx::read(&bytes).unwrap();
     let table = fs::read(folder.join("m.csv")).unwrap();
     let table = zero::tared(&read::table(&table[..], Kind::Measured, 30.0).unwrap()).unwrap();
-    let pad = adaptation::examples(&zero::contacts(&table));
+    let rows: Vec<_> = zero::contacts(&table).iter().map(|at| table.rows[*at]).collect();
+    let pad = adaptation::examples(&rows);
     let [before, after] = [small(), &mine].map(|network| Scores::of(network, &pad).all.mse);
     assert!(after < 0.5 * before, "{before} {after}");
 }

@@ -1,6 +1,8 @@
 //! Measured contacts, with everything of the simulator's that does not change while a pad is calibrated.
 
 use super::model::{BACKGROUND_DEGREE, TERMS};
+use crate::contact::friction::PLAYS;
+use crate::contact::recording::Lags;
 use crate::field::{PadField, Sensitivity};
 use crate::measured::Row;
 use crate::quantity::{CHANNELS, Contact};
@@ -27,6 +29,8 @@ pub(super) struct Measured {
     pub(super) force_n: [f64; 3],
     /// Beyond the zero.
     pub(super) uv: [f64; CHANNELS],
+    /// What friction made of the way here; it follows the numbers.
+    pub(super) lags: Lags,
 }
 
 impl Place {
@@ -62,6 +66,11 @@ fn terms(jets: &[Jet]) -> [f64; TERMS] {
 }
 
 impl Measured {
+    /// What is measured where nothing is.
+    pub(super) const fn unmeasured(place: Place, force_n: [f64; 3]) -> Self {
+        Self { place, force_n, uv: [0.0; CHANNELS], lags: [[0.0; CHANNELS]; PLAYS] }
+    }
+
     /// A tared row; `None` without channels.
     pub(super) fn of(
         field: &PadField,
@@ -71,6 +80,11 @@ impl Measured {
     ) -> Option<Self> {
         let Contact { x_mm, y_mm, .. } = Contact::from(row.label);
         let place = Place::of(field, sensitivities, plate_mm, [x_mm, y_mm].map(f64::from));
-        Some(Self { place, force_n: [row.label.fx_n, row.label.fy_n, row.label.fz_n], uv: row.uv? })
+        Some(Self {
+            place,
+            force_n: [row.label.fx_n, row.label.fy_n, row.label.fz_n],
+            uv: row.uv?,
+            lags: [[0.0; CHANNELS]; PLAYS],
+        })
     }
 }

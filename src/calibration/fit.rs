@@ -2,22 +2,27 @@
 
 use std::fmt;
 
-use super::contacts::{Maps, Measured, Place};
 use super::model::Layout;
-use super::noise::{self, Rest};
+use super::noise;
+use super::problem::{Fit, Problem, Settings};
+use crate::contact::friction::{Friction, PLAYS};
 use crate::contact::inverse::{Inverse, Noise};
+use crate::contact::recording::Recording;
 use crate::device::Device;
 use crate::device::parameter::Parameter;
-use crate::field::{PadField, Sensitivity};
-use crate::influence::{InfluenceField, MAPS};
-use crate::linear::{LargeFactor, Symmetric};
-use crate::measured::Row;
+use crate::field::PadField;
+use crate::influence::InfluenceField;
 use crate::quantity::CHANNELS;
 
 /// Sizes of the background that are tried, as a share of each map.
 const BACKGROUNDS: [f64; 5] = [1e-6, 0.004, 0.01, 0.025, 0.06];
-/// Steps for each size; the channels are nearly linear in the numbers.
-const STEPS: usize = 4;
+/// Thresholds of play operators that are tried, each this much larger than the one before.
+const THRESHOLD_MIN_UV: f64 = 40.0;
+const THRESHOLD_RATIO: f64 = 1.6;
+const THRESHOLDS: i32 = 11;
+const HALVINGS: i32 = 3;
+/// A play operator must make what was measured so much more probable; ln.
+const EVIDENCE_GAIN: f64 = 15.0;
 
 /// A calibrated pad.
 #[derive(Clone, Debug)]
@@ -32,6 +37,8 @@ pub struct Calibration {
     pub physical: Vec<(Parameter, f64, f64)>,
     /// Size of the smooth background, as a share of each map.
     pub background: f64,
+    /// What the channels remember of earlier loads.
+    pub friction: Friction,
     /// Contacts that it was fitted to.
     pub contacts: usize,
 }
@@ -67,198 +74,85 @@ impl fmt::Display for FitError {
 impl std::error::Error for FitError {}
 
 impl Calibration {
+    fn of(problem: &Problem<'_>, fit: &Fit) -> Self {
+        let Fit { settings, values, .. } = fit;
+        let field = problem.corrected(values);
+        let friction = Layout::friction(values, &settings.thresholds_uv);
+        let contacts = problem.freed(&friction);
+        let noise = noise::of_redundancy(&field, fit.noise, &contacts, fit.freedom);
+        let noise = Noise { field_uv_per_n: problem.doubt_uv_per_n(fit), ..noise };
+        let decoder = Inverse::new(field.clone(), noise, friction);
+        Self {
+            noise: Noise { gain: noise::common_gain(&decoder, &contacts), ..noise },
+            field,
+            gain: std::array::from_fn(|channel| Layout::gain(values, channel)),
+            physical: problem.physical(fit),
+            background: settings.background,
+            friction,
+            contacts: problem.contacts(),
+        }
+    }
+
     /// The decoder of this pad.
     pub fn decoder(&self) -> Inverse {
-        Inverse::new(self.field.clone(), self.noise)
+        Inverse::new(self.field.clone(), self.noise, self.friction)
     }
 }
 
-/// Calibrates the pad that was measured. `field` is that of `device`, the pad as it is thought to be. Channels are relative
-/// to the untouched pad.
+/// Calibrates the pad that was measured, by these rows of a recording. `field` is that of `device`, the pad as it is thought
+/// to be.
 ///
 /// # Errors
 /// No contact, or senseless numbers.
-pub fn fit(contacts: &[Row], device: &Device, field: &PadField) -> Result<Calibration, FitError> {
-    let problem = Problem::of(contacts, device, field);
-    if problem.contacts.is_empty() {
+pub fn fit(
+    recording: &Recording,
+    rows: &[usize],
+    device: &Device,
+    field: &PadField,
+) -> Result<Calibration, FitError> {
+    let problem = Problem::of(recording, rows, device, field);
+    if problem.contacts() == 0 {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
-    let fits = BACKGROUNDS.iter().filter_map(|background| problem.fitted(*background));
+    let plain = with_friction(&problem).ok_or(FitError::Senseless)?;
+    let problem = problem.with_background();
+    let fits = BACKGROUNDS.iter().filter_map(|background| {
+        let settings = Settings { background: *background, ..plain.settings };
+        problem.clone().fitted(settings, Some(&plain))
+    });
     let best =
         fits.max_by(|one, other| one.evidence.total_cmp(&other.evidence)).ok_or(FitError::Senseless)?;
-    Ok(problem.calibration(&best))
+    Ok(Calibration::of(&problem, &best))
 }
 
-/// What is fitted.
-struct Problem<'f> {
-    field: &'f PadField,
-    sensitivities: Vec<&'f Sensitivity>,
-    layout: Layout,
-    contacts: Vec<Measured>,
-    /// Root mean square of each map over the plate.
-    scale: Maps,
-    plate_mm: f64,
-    reach_mm: f64,
+/// The numbers without a background, and with as many play operators as make what was measured more probable.
+fn with_friction(problem: &Problem<'_>) -> Option<Fit> {
+    let none = Settings { background: 0.0, thresholds_uv: [0.0; PLAYS] };
+    let mut best = problem.clone().fitted(none, None)?;
+    for play in 0..PLAYS {
+        let found = searched(play, |threshold_uv| {
+            let mut settings = best.settings;
+            settings.thresholds_uv[play] = threshold_uv;
+            problem.clone().fitted(settings, Some(&best))
+        });
+        match found {
+            Some(found) if found.evidence > best.evidence + EVIDENCE_GAIN => best = found,
+            _ => break,
+        }
+    }
+    Some(best)
 }
 
-/// The numbers for one size of the background.
-struct Fit {
-    background: f64,
-    values: Vec<f64>,
-    noise: Noise,
-    factor: LargeFactor,
-    evidence: f64,
-}
-
-impl<'f> Problem<'f> {
-    fn of(rows: &[Row], device: &Device, field: &'f PadField) -> Self {
-        let is_free = |it: &&Sensitivity| it.parameter.module().is_some();
-        let sensitivities: Vec<&Sensitivity> = field.sensitivities.iter().filter(is_free).collect();
-        let plate_mm = device.plate.diameter_mm / 2.0;
-        let contacts =
-            rows.iter().filter_map(|row| Measured::of(field, &sensitivities, plate_mm, row)).collect();
-        let layout = Layout { physical: sensitivities.iter().map(|it| it.parameter).collect() };
-        let reach_mm = f64::from(field.signals.radius_mm());
-        Self { field, sensitivities, layout, contacts, scale: scale(&field.signals), plate_mm, reach_mm }
+/// The threshold of the largest evidence: on a coarse scale first, then by ever smaller steps around the best.
+fn searched(play: usize, tried: impl Fn(f64) -> Option<Fit>) -> Option<Fit> {
+    let better = |one: &Fit, other: &Fit| one.evidence.total_cmp(&other.evidence);
+    let coarse = (0..THRESHOLDS).map(|step| THRESHOLD_MIN_UV * THRESHOLD_RATIO.powi(step));
+    let mut best = coarse.filter_map(&tried).max_by(better)?;
+    for halving in 1..=HALVINGS {
+        let factor = THRESHOLD_RATIO.powf(0.5_f64.powi(halving));
+        let centre_uv = best.settings.thresholds_uv[play];
+        let around = [centre_uv / factor, centre_uv * factor].into_iter().filter_map(&tried);
+        best = around.chain([best.clone()]).max_by(better)?;
     }
-
-    /// `None` where the numbers make no sense.
-    fn fitted(&self, background: f64) -> Option<Fit> {
-        let (before, precisions) = (self.layout.nominal(), self.layout.precisions(background));
-        let (mut values, mut noise) = (before.clone(), noise::BEFORE);
-        let mut found = None;
-        for _ in 0..STEPS {
-            let step = self.step(&values, &noise, &before, &precisions)?;
-            values.iter_mut().zip(&step.change).for_each(|(value, change)| *value += change);
-            let (rests, freedom) = (self.rests(&values), self.freedom(&precisions, &step.factor));
-            let evidence = self.evidence(&values, &noise, &before, &precisions, &step.factor);
-            let used = noise;
-            noise = noise::of_rests(&rests, freedom);
-            found =
-                Some(Fit { background, values: values.clone(), noise: used, factor: step.factor, evidence });
-        }
-        found.filter(|fit| fit.values.iter().all(|value| value.is_finite()))
-    }
-
-    fn step(&self, values: &[f64], noise: &Noise, before: &[f64], precisions: &[f64]) -> Option<Step> {
-        let mut normal = Symmetric::zeros(self.layout.size());
-        let mut right: Vec<f64> =
-            precisions.iter().zip(before.iter().zip(values)).map(|(p, (b, v))| p * (b - v)).collect();
-        precisions.iter().enumerate().for_each(|(at, precision)| normal.add_diagonal(at, *precision));
-        for contact in &self.contacts {
-            self.layout.readings(values, &self.scale, contact, |channel, uv, slopes| {
-                let weight = 1.0 / variance(noise, channel, contact.uv[channel]);
-                let rest = contact.uv[channel] - uv;
-                normal.add_product(weight, slopes);
-                right.iter_mut().zip(slopes).for_each(|(right, slope)| *right += weight * slope * rest);
-            });
-        }
-        let factor = normal.factorised()?;
-        Some(Step { change: factor.solve(&right), factor })
-    }
-
-    /// Which part of the readings the fitted numbers did not take up.
-    fn freedom(&self, precisions: &[f64], factor: &LargeFactor) -> f64 {
-        let variances = factor.inverse_diagonal();
-        let taken: f64 = precisions.iter().zip(variances).map(|(before, after)| 1.0 - before * after).sum();
-        1.0 - taken / (CHANNELS * self.contacts.len()) as f64
-    }
-
-    /// What the channels leave over.
-    fn rests(&self, values: &[f64]) -> [Vec<Rest>; CHANNELS] {
-        let mut rests = [const { Vec::new() }; CHANNELS];
-        for contact in &self.contacts {
-            self.layout.readings(values, &self.scale, contact, |channel, uv, _| {
-                rests[channel].push((contact.uv[channel], contact.uv[channel] - uv));
-            });
-        }
-        rests
-    }
-
-    /// ln of the probability of the measured channels, but for a constant.
-    fn evidence(
-        &self,
-        values: &[f64],
-        noise: &Noise,
-        before: &[f64],
-        precisions: &[f64],
-        factor: &LargeFactor,
-    ) -> f64 {
-        let mut sum = -factor.log_determinant();
-        for (precision, (before, value)) in precisions.iter().zip(before.iter().zip(values)) {
-            sum += precision.ln() - precision * (before - value).powi(2);
-        }
-        for contact in &self.contacts {
-            self.layout.readings(values, &self.scale, contact, |channel, uv, _| {
-                let variance = variance(noise, channel, contact.uv[channel]);
-                sum -= (contact.uv[channel] - uv).powi(2) / variance + variance.ln();
-            });
-        }
-        0.5 * sum
-    }
-
-    fn calibration(&self, fit: &Fit) -> Calibration {
-        let Fit { background, values, noise, factor, .. } = fit;
-        let first = values.len() - 3 * CHANNELS * super::model::TERMS - self.layout.physical.len();
-        let deviation = |at: usize| {
-            let mut unit = vec![0.0; values.len()];
-            unit[at] = 1.0;
-            factor.solve(&unit)[at].sqrt()
-        };
-        let physical = self.layout.physical.iter().enumerate();
-        Calibration {
-            field: self.corrected(values),
-            noise: *noise,
-            gain: std::array::from_fn(|channel| Layout::gain(values, channel)),
-            physical: physical
-                .map(|(index, it)| (*it, values[first + index], deviation(first + index)))
-                .collect(),
-            background: *background,
-            contacts: self.contacts.len(),
-        }
-    }
-
-    /// The pad's own field.
-    fn corrected(&self, values: &[f64]) -> InfluenceField {
-        let signals = &self.field.signals;
-        InfluenceField::sampled(f64::from(signals.spacing_mm()), self.reach_mm, self.reach_mm, |place_mm| {
-            let place = Place::of(self.field, &self.sensitivities, self.plate_mm, place_mm);
-            let maps = self.layout.maps(values, &self.scale, &place);
-            std::array::from_fn::<f64, MAPS, _>(|map| maps[map / 3][map % 3])
-        })
-    }
-}
-
-/// A step of the numbers, and the factor of their curvature.
-struct Step {
-    change: Vec<f64>,
-    factor: LargeFactor,
-}
-
-fn variance(noise: &Noise, channel: usize, uv: f64) -> f64 {
-    noise.additive_uv[channel].powi(2) + (noise.share[channel] * uv).powi(2)
-}
-
-/// Root mean square of each map over the plate; of a map that is small beside its channel's others, a fifth of theirs.
-fn scale(signals: &InfluenceField) -> Maps {
-    const RINGS: usize = 14;
-    const PLACES: usize = 24;
-    let mut squares = [[0.0; 3]; CHANNELS];
-    let mut area = 0.0;
-    for ring in 0..RINGS {
-        let radius = f64::from(signals.radius_mm()) * (ring as f64 + 0.5) / RINGS as f64;
-        for place in 0..PLACES {
-            let angle = std::f64::consts::TAU * place as f64 / PLACES as f64;
-            let gains = signals.gains((radius * angle.cos()) as f32, (radius * angle.sin()) as f32).value;
-            for (square, gain) in squares.as_flattened_mut().iter_mut().zip(gains.as_flattened()) {
-                *square += radius * gain * gain;
-            }
-            area += radius;
-        }
-    }
-    squares.map(|axes| {
-        let roots = axes.map(|square: f64| (square / area).sqrt());
-        let largest = roots.iter().copied().fold(0.0, f64::max);
-        roots.map(|root| root.max(0.2 * largest))
-    })
+    Some(best)
 }

@@ -19,4 +19,5 @@ mod contacts;
 pub mod fit;
 mod model;
 mod noise;
+mod problem;
 pub mod regression;

@@ -1,6 +1,8 @@
 //! The numbers in which a pad may differ, what they do to the channels, and what is known of them before.
 
 use super::contacts::{Maps, Measured, Place};
+use crate::contact::friction::{Friction, PLAYS, Play};
+use crate::contact::recording::Lags;
 use crate::device::parameter::Parameter;
 use crate::device::unit::Unit;
 use crate::quantity::CHANNELS;
@@ -21,26 +23,35 @@ const STIFFNESS: f64 = 0.3;
 const CROSSTALK: f64 = 0.02;
 /// What is left of a zero that was taken off.
 const ZERO_UV: f64 = 20.0;
+/// Of a play operator in all channels, and how much a channel differs from the others.
+const FRICTION: f64 = 0.05;
+const FRICTION_OWN: f64 = 0.02;
+/// No play operator has a larger share. A negative one corrects another.
+const SHARE_MAX: f64 = 0.25;
 
-/// The numbers by kind, one after the other in a vector: zeros, gains, crosstalk (into, from), physical numbers, background
-/// (channel, force, polynomial).
+/// The numbers by kind, one after the other in a vector: zeros, gains, crosstalk (into, from), friction (shares of all
+/// channels; what each channel differs by), physical numbers, background (channel, force, polynomial).
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub(super) physical: Vec<Parameter>,
+    /// Polynomials of the background for each channel and force: 0 or [`TERMS`].
+    pub(super) terms: usize,
 }
 
 const ZEROS: usize = 0;
 const GAINS: usize = ZEROS + CHANNELS;
 const CROSSTALKS: usize = GAINS + CHANNELS;
-const PHYSICAL: usize = CROSSTALKS + CHANNELS * CHANNELS;
+const SHARES: usize = CROSSTALKS + CHANNELS * CHANNELS;
+const OWN_SHARES: usize = SHARES + PLAYS;
+const PHYSICAL: usize = OWN_SHARES + PLAYS * CHANNELS;
 
 impl Layout {
     pub(super) const fn size(&self) -> usize {
-        self.background(0, 0) + 3 * CHANNELS * TERMS
+        self.background(0, 0) + 3 * CHANNELS * self.terms
     }
 
     const fn background(&self, channel: usize, axis: usize) -> usize {
-        PHYSICAL + self.physical.len() + (3 * channel + axis) * TERMS
+        PHYSICAL + self.physical.len() + (3 * channel + axis) * self.terms
     }
 
     /// The nominal pad.
@@ -56,9 +67,11 @@ impl Layout {
         let mut deviations = vec![0.0; self.size()];
         deviations[ZEROS..GAINS].fill(ZERO_UV);
         deviations[GAINS..CROSSTALKS].fill(GAIN);
-        for (index, deviation) in deviations[CROSSTALKS..PHYSICAL].iter_mut().enumerate() {
+        for (index, deviation) in deviations[CROSSTALKS..SHARES].iter_mut().enumerate() {
             *deviation = if index / CHANNELS == index % CHANNELS { 0.0 } else { CROSSTALK };
         }
+        deviations[SHARES..OWN_SHARES].fill(FRICTION);
+        deviations[OWN_SHARES..PHYSICAL].fill(FRICTION_OWN);
         for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
             *deviation = match parameter.unit() {
                 Unit::Millimetre => SHIFT_MM,
@@ -77,6 +90,34 @@ impl Layout {
 
     pub(super) fn gain(values: &[f64], channel: usize) -> f64 {
         values[GAINS + channel]
+    }
+
+    /// The friction of these numbers, if its play operators have these thresholds in strains, before gains.
+    pub(super) fn friction(values: &[f64], thresholds_uv: &[f64; PLAYS]) -> Friction {
+        std::array::from_fn(|play| Play {
+            threshold_uv: std::array::from_fn(|k| thresholds_uv[play] * Self::gain(values, k).abs()),
+            share: std::array::from_fn(|k| Self::share(values, play, k).clamp(-SHARE_MAX, SHARE_MAX)),
+        })
+    }
+
+    fn share(values: &[f64], play: usize, channel: usize) -> f64 {
+        values[SHARES + play] + values[OWN_SHARES + play * CHANNELS + channel]
+    }
+
+    /// What lags add to a channel, and how that changes with the numbers of friction, which are set in `slopes`.
+    pub(super) fn lagged(values: &[f64], channel: usize, lags: &Lags, slopes: &mut [f64]) -> f64 {
+        let mut uv = 0.0;
+        for (play, lags) in lags.iter().enumerate() {
+            slopes[SHARES + play] = lags[channel];
+            slopes[OWN_SHARES + play * CHANNELS + channel] = lags[channel];
+            uv += Self::share(values, play, channel) * lags[channel];
+        }
+        uv
+    }
+
+    /// Where the physical numbers begin.
+    pub(super) const fn first_physical() -> usize {
+        PHYSICAL
     }
 
     /// µV/N of the strains at a place, before gains: the simulator's field and what differs.
@@ -108,6 +149,11 @@ impl Layout {
         })
     }
 
+    /// What a contact does to the channels but for friction, beyond their zeros.
+    pub(super) fn loaded_uv(&self, values: &[f64], scale: &Maps, contact: &Measured) -> [f64; CHANNELS] {
+        self.maps(values, scale, &contact.place).map(|map| loaded(&map, &contact.force_n))
+    }
+
     /// What the channels read at a contact, and how each reading changes with each number: (channel, µV, slopes).
     pub(super) fn readings(
         &self,
@@ -116,7 +162,7 @@ impl Layout {
         contact: &Measured,
         mut each: impl FnMut(usize, f64, &[f64]),
     ) {
-        let Measured { place, force_n, .. } = contact;
+        let Measured { place, force_n, lags, .. } = contact;
         let strained = self.strained(values, scale, place);
         let strains_uv = strained.map(|map| loaded(&map, force_n));
         let mut slopes = vec![0.0; self.size()];
@@ -137,7 +183,9 @@ impl Layout {
                 let terms = slopes[self.background(channel, axis)..].iter_mut().zip(&place.terms);
                 terms.for_each(|(slope, term)| *slope = factor * term);
             }
-            each(channel, values[ZEROS + channel] + gain * strains_uv[channel] + crosstalk_uv, &slopes);
+            let lagged_uv = Self::lagged(values, channel, lags, &mut slopes);
+            let uv = values[ZEROS + channel] + gain * strains_uv[channel] + crosstalk_uv + lagged_uv;
+            each(channel, uv, &slopes);
         }
     }
 }

@@ -1,7 +1,10 @@
 //! The channels' noise, from what a calibration leaves over: a part of its own and one that grows with the reading.
 
-use crate::contact::inverse::Noise;
-use crate::quantity::CHANNELS;
+use crate::contact::friction::NO_FRICTION;
+use crate::contact::inverse::{Inverse, Noise};
+use crate::influence::InfluenceField;
+use crate::linear::Factor;
+use crate::quantity::{CHANNELS, Contact, Strain};
 
 /// What is known before: as much as so many readings of this noise.
 const KNOWN: f64 = 10.0;
@@ -12,9 +15,12 @@ const ADDITIVE_MIN_UV: f64 = 0.5;
 const SHARE_MIN: f64 = 5e-4;
 /// So often the weights are taken anew.
 const ROUNDS: usize = 20;
+const REDUNDANCY_ROUNDS: usize = 25;
+/// Numbers never take up more of the readings than all but this part.
+const FREEDOM_MIN: f64 = 0.05;
 
 /// The noise before any measurement.
-pub(super) const BEFORE: Noise = Noise { additive_uv: [ADDITIVE_UV; CHANNELS], share: [SHARE; CHANNELS] };
+pub(super) const BEFORE: Noise = Noise::of_channels([ADDITIVE_UV; CHANNELS], [SHARE; CHANNELS]);
 
 /// What a channel left over: its reading and the rest, both in µV.
 pub(super) type Rest = (f64, f64);
@@ -24,11 +30,77 @@ pub(super) type Rest = (f64, f64);
 /// Squares of rests are a straight line over squares of readings; the line is fitted with weights from itself, as squares
 /// scatter in proportion to what they should be.
 pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS], freedom: f64) -> Noise {
-    let lines = rests.each_ref().map(|rests| line(rests, freedom.max(0.05)));
-    Noise {
-        additive_uv: lines.map(|[constant, _]| constant.sqrt().max(ADDITIVE_MIN_UV)),
-        share: lines.map(|[_, slope]| slope.sqrt().max(SHARE_MIN)),
+    let lines = rests.each_ref().map(|rests| line(rests, freedom.max(FREEDOM_MIN)));
+    Noise::of_channels(
+        lines.map(|[constant, _]| constant.sqrt().max(ADDITIVE_MIN_UV)),
+        lines.map(|[_, slope]| slope.sqrt().max(SHARE_MIN)),
+    )
+}
+
+/// The noise by which nine channels disagree about five unknowns. What was written down plays no part in it, so its errors
+/// are not taken for noise. `noise` is a guess; `freedom` as in [`of_rests`].
+///
+/// Of a contact's noise only the part beside its five unknowns is seen; of the other part the expectation is known (A. P.
+/// Dempster, N. M. Laird, D. B. Rubin, J. R. Statist. Soc. B 39 (1977) 1).
+pub(super) fn of_redundancy(
+    field: &InfluenceField,
+    noise: Noise,
+    contacts: &[(Strain, [f64; 3])],
+    freedom: f64,
+) -> Noise {
+    let mut decoder = Inverse::new(field.clone(), noise, NO_FRICTION);
+    for _ in 0..REDUNDANCY_ROUNDS {
+        let mut rests = [const { Vec::new() }; CHANNELS];
+        for (strain, _) in contacts {
+            let Some(estimate) = decoder.estimate(strain) else { continue };
+            for (channel, rests) in rests.iter_mut().enumerate() {
+                let (seen, hidden) = decoder.left_over(channel, strain, &estimate);
+                let square = seen * seen / freedom.max(FREEDOM_MIN) + hidden;
+                rests.push((f64::from(strain.uv[channel]), square.sqrt()));
+            }
+        }
+        decoder = decoder.with_noise(of_rests(&rests, 1.0));
     }
+    *decoder.noise()
+}
+
+/// How much the gain of all channels together changes from contact to contact, as a standard deviation: wear and warmth
+/// do that, and channels do not disagree about it. It is what the written forces differ by in their own direction beyond
+/// the decoder's noise, in proportion to them; the reference's own noise does not grow with the force.
+pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])]) -> f64 {
+    let mut normal = [[0.0; 2]; 2];
+    let mut right = [0.0; 2];
+    for (strain, written_n) in contacts {
+        let Some((force_n, off_n, variance)) = off_along_force(decoder, strain, written_n) else { continue };
+        let weight = 1.0 / (variance * variance);
+        let excess = off_n * off_n - variance;
+        for (i, left) in [1.0, force_n * force_n].into_iter().enumerate() {
+            normal[i][0] += weight * left;
+            normal[i][1] += weight * left * force_n * force_n;
+            right[i] += weight * left * excess;
+        }
+    }
+    let constant = |slope: f64| (right[0] - normal[0][1] * slope) / normal[0][0];
+    let free = Factor::of(&normal).map_or([0.0; 2], |factor| factor.solve(&right));
+    let slope = if constant(free[1]) < 0.0 { right[1] / normal[1][1] } else { free[1] };
+    if slope > 0.0 { slope.sqrt() } else { 0.0 }
+}
+
+/// The decoded force, how far the written one is from it along it, and the variance of that by the decoder.
+fn off_along_force(decoder: &Inverse, strain: &Strain, written_n: &[f64; 3]) -> Option<(f64, f64, f64)> {
+    let estimate = decoder.estimate(strain)?;
+    let Contact { fx_n, fy_n, fz_n, .. } = estimate.contact;
+    let decoded_n = [fx_n, fy_n, fz_n].map(f64::from);
+    let force_n = decoded_n.iter().map(|n| n * n).sum::<f64>().sqrt();
+    let along = decoded_n.map(|n| n / force_n);
+    let written_n: f64 = along.iter().zip(written_n).map(|(along, n)| along * n).sum();
+    let mut variance = 0.0;
+    for (i, left) in along.iter().enumerate() {
+        for (j, right) in along.iter().enumerate() {
+            variance += left * right * estimate.covariance[2 + i][2 + j];
+        }
+    }
+    (variance > 0.0).then_some((force_n, written_n - force_n, variance))
 }
 
 fn line(rests: &[Rest], freedom: f64) -> [f64; 2] {
@@ -76,14 +148,14 @@ mod tests {
             (uv, 12.0 * f64::from(random.normal()) + 0.015 * uv * f64::from(random.normal()))
         };
         let rests: [Vec<Rest>; CHANNELS] = std::array::from_fn(|_| (0..2000).map(|_| rest()).collect());
-        let Noise { additive_uv, share } = of_rests(&rests, 1.0);
+        let Noise { additive_uv, share, .. } = of_rests(&rests, 1.0);
         assert!(additive_uv.iter().all(|uv| (uv / 12.0 - 1.0).abs() < 0.2), "{additive_uv:?}");
         assert!(share.iter().all(|share| (share / 0.015 - 1.0).abs() < 0.1), "{share:?}");
     }
 
     #[test]
     fn without_rests_it_is_what_was_known() {
-        let Noise { additive_uv, share } = of_rests(&[const { Vec::new() }; CHANNELS], 1.0);
+        let Noise { additive_uv, share, .. } = of_rests(&[const { Vec::new() }; CHANNELS], 1.0);
         assert!(additive_uv.iter().all(|uv| (uv - ADDITIVE_UV).abs() < 1.0), "{additive_uv:?}");
         assert!(share.iter().all(|share| *share < 0.05), "{share:?}");
     }

@@ -13,10 +13,10 @@ use serde::Serialize;
 use super::device::Pad;
 use super::written::{both_print, is_same, is_stdout, stdout, written_over};
 use super::{Failure, print_json, say, tables};
+use crate::contact::recording::Recording;
 use crate::device::Device;
 use crate::measured::columns::Kind;
-use crate::measured::{Row, Table, zero};
-use crate::network::Zero;
+use crate::measured::{Row, zero};
 use crate::random::SplitMix64;
 
 /// Arguments of `tactpad adapt`.
@@ -70,7 +70,11 @@ enum Method {
 
 /// Measured contacts as a method takes them.
 struct Contacts {
-    zero: Zero,
+    /// The whole table, if it ever reads the untouched pad.
+    recording: Option<Recording>,
+    /// Places of the contacts that are fitted to.
+    places: Vec<usize>,
+    /// These contacts, relative to the untouched pad if that was ever read.
     rows: Vec<Row>,
 }
 
@@ -101,7 +105,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.spare()?;
     let device = arguments.pad.read()?;
     let contacts = arguments.contacts(&device)?;
-    let (rows, tared) = (contacts.rows.len(), contacts.zero == Zero::Tared);
+    let (rows, tared) = (contacts.rows.len(), contacts.recording.is_some());
     let fit = match method {
         Method::Scdf => Fit::Network(scdf::adapt(arguments, &contacts)?),
         _ => Fit::Own(own::adapt(arguments, &device, &contacts)?),
@@ -130,14 +134,15 @@ impl Arguments {
     /// The contacts of the table, tared if it ever reads the untouched pad.
     fn contacts(&self, device: &Device) -> Result<Contacts, Failure> {
         let table = tables::read(&self.measured, Kind::Measured, 0.5 * device.plate.diameter_mm)?;
-        let tared: Option<Table> = zero::tared(&table);
-        let zero = if tared.is_some() { Zero::Tared } else { Zero::Raw };
-        let mut rows = zero::contacts(&tared.unwrap_or(table));
+        let mut places = zero::contacts(&table);
         if let Some(count) = self.rows {
-            SplitMix64::named(self.seed, "rows").shuffle(&mut rows);
-            rows.truncate(count);
+            SplitMix64::named(self.seed, "rows").shuffle(&mut places);
+            places.truncate(count);
         }
-        Ok(Contacts { zero, rows })
+        let recording = Recording::of(table.clone(), device.contact.full_scale_n);
+        let taken = recording.as_ref().map_or(&table, Recording::tared);
+        let rows = places.iter().filter_map(|at| taken.rows.get(*at).copied()).collect();
+        Ok(Contacts { recording, places, rows })
     }
 }
 

@@ -10,6 +10,8 @@ use super::device::Pad;
 use super::written::stdout;
 use super::{Failure, decoder_file, print_json, tables};
 use crate::contact::Decoder;
+use crate::contact::recording::Recording;
+use crate::device::Device;
 use crate::evaluation::{self, Errors};
 use crate::measured::columns::Kind;
 use crate::measured::{Label, Row, Table, zero};
@@ -68,13 +70,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "{measured} has {rows} rows, and its truth {truths}: give both of one run"
         )));
     }
-    let tared = taken(&decoder, &table).ok_or_else(|| {
+    let taken = taken(&decoder, &table, &device).ok_or_else(|| {
         Failure::Unusable(format!(
             "{}: no row without force says what the untouched pad reads; measure some",
             measured.display()
         ))
     })?;
-    let report = report(&decoder, &tared, truth.as_ref());
+    let report = report(&decoder, &taken, truth.as_ref());
     if report.by_labels.rows == 0 {
         return Err(Failure::Unusable(format!(
             "{}: no row has a contact and its nine channels",
@@ -84,33 +86,30 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if *json { print_json(&report) } else { print(&report) }
 }
 
-/// The table as the decoder takes it: relative to the untouched pad, unless it learnt otherwise.
-fn taken(decoder: &Decoder, table: &Table) -> Option<Table> {
+/// The table as the decoder takes it: relative to the untouched pad, unless it learnt otherwise, and free of friction.
+fn taken(decoder: &Decoder, table: &Table, device: &Device) -> Option<Table> {
     match decoder {
         Decoder::Network(network) if network.zero == Zero::Raw => Some(table.clone()),
-        _ => zero::tared(table),
+        _ => {
+            let recording = Recording::of(table.clone(), device.contact.full_scale_n)?;
+            Some(recording.freed(decoder.friction()))
+        }
     }
 }
 
-fn report(decoder: &Decoder, tared: &Table, truth: Option<&Table>) -> Report {
-    let rows = zero::contacts(tared);
+fn report(decoder: &Decoder, taken: &Table, truth: Option<&Table>) -> Report {
+    let places = zero::contacts(taken);
+    let rows: Vec<Row> = places.iter().map(|at| taken.rows[*at]).collect();
     let found = evaluation::decoded(decoder, &rows);
     let labels: Vec<Label> = rows.iter().map(|row| row.label).collect();
     let by_truth = |truth: &Table| {
-        let truths = true_contacts(&rows, tared, truth);
+        let truths: Vec<Label> = places.iter().map(|at| truth.rows[*at].label).collect();
         ByTruth {
             errors: evaluation::errors(&found, &truths),
             coverage95: evaluation::coverage95(decoder, &rows, &truths),
         }
     };
     Report { by_labels: evaluation::errors(&found, &labels), truth: truth.map(by_truth) }
-}
-
-/// The truths of these rows, which are some of the table's.
-fn true_contacts(rows: &[Row], table: &Table, truth: &Table) -> Vec<Label> {
-    let mut wanted = rows.iter().map(|row| row.line).peekable();
-    let pairs = table.rows.iter().zip(&truth.rows);
-    pairs.filter(|(row, _)| wanted.next_if_eq(&row.line).is_some()).map(|(_, truth)| truth.label).collect()
 }
 
 fn print(report: &Report) -> Result<(), Failure> {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::Decoder;
+use super::friction::{Friction, NO_FRICTION};
 use super::inverse::{Inverse, Noise};
 use super::neighbours::{Known, Neighbours};
 use super::regression::{Regression, Target};
@@ -11,7 +12,7 @@ use crate::influence::InfluenceField;
 use crate::quantity::{CHANNELS, Contact};
 
 /// First bytes of a file; the number grows with every change of the form.
-pub const MAGIC: &[u8] = b"tactpad decoder 1\n";
+pub const MAGIC: &[u8] = b"tactpad decoder 2\n";
 
 const INVERSE: &[u8] = b"inverse";
 const LINEAR: &[u8] = b"linear";
@@ -49,8 +50,12 @@ impl Decoder {
         match self {
             Self::Inverse(inverse) => {
                 begin(INVERSE);
-                let Noise { additive_uv, share } = inverse.noise();
-                body.extend(additive_uv.iter().chain(share).flat_map(|number| number.to_le_bytes()));
+                let Noise { additive_uv, share, field_uv_per_n, gain } = inverse.noise();
+                let friction = inverse.friction().iter();
+                let friction = friction.flat_map(|play| play.threshold_uv.iter().chain(&play.share));
+                let numbers =
+                    additive_uv.iter().chain(share).chain(field_uv_per_n).chain([gain]).chain(friction);
+                body.extend(numbers.flat_map(|number| number.to_le_bytes()));
                 inverse.field().write(&mut body);
             }
             Self::Regression(regression) => {
@@ -97,13 +102,29 @@ fn read(from: &mut Reader<'_>) -> Option<(Decoder, String)> {
 }
 
 fn read_inverse(from: &mut Reader<'_>) -> Option<Inverse> {
-    let [mut additive_uv, mut share] = [[0.0; CHANNELS]; 2];
-    for number in additive_uv.iter_mut().chain(&mut share) {
+    let [mut additive_uv, mut share, mut field_uv_per_n] = [[0.0; CHANNELS]; 3];
+    for number in additive_uv.iter_mut().chain(&mut share).chain(&mut field_uv_per_n) {
         *number = from.double().filter(|number| number.is_finite() && *number >= 0.0)?;
     }
+    let gain = from.double().filter(|number| number.is_finite() && *number >= 0.0)?;
+    let friction = read_friction(from)?;
     let scatters = additive_uv.iter().all(|uv| *uv > 0.0);
     let field = InfluenceField::read(from)?;
-    scatters.then(|| Inverse::new(field, Noise { additive_uv, share }))
+    scatters.then(|| Inverse::new(field, Noise { additive_uv, share, field_uv_per_n, gain }, friction))
+}
+
+fn read_friction(from: &mut Reader<'_>) -> Option<Friction> {
+    let mut friction = NO_FRICTION;
+    for play in &mut friction {
+        for number in &mut play.threshold_uv {
+            *number = from.double().filter(|number| number.is_finite() && *number >= 0.0)?;
+        }
+        for number in &mut play.share {
+            *number = from.double().filter(|number| number.is_finite())?;
+        }
+    }
+    let shares = |channel: usize| friction.iter().map(|play| play.share[channel].abs()).sum::<f64>();
+    (0..CHANNELS).all(|channel| shares(channel) < 1.0).then_some(friction)
 }
 
 fn read_regression(from: &mut Reader<'_>, target: Target) -> Option<Regression> {
@@ -144,14 +165,14 @@ mod tests {
     use crate::quantity::Strain;
 
     fn decoders() -> Vec<Decoder> {
-        let noise = Noise { additive_uv: [5.0; CHANNELS], share: [0.01; CHANNELS] };
+        let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
         let mut functions = [[1e-3; CHANNELS + 1]; 5];
         functions[4][2] = 2e-3;
         let regression =
             |target| Decoder::Regression(Box::new(Regression { target, functions, reach_mm: 29.0 }));
         let known = Known { channels: [1.0; CHANNELS], contact: Contact { fz_n: 2.0, ..Contact::default() } };
         vec![
-            Decoder::Inverse(Box::new(Inverse::new(PadField::nominal().signals, noise))),
+            Decoder::Inverse(Box::new(Inverse::new(PadField::nominal().signals, noise, NO_FRICTION))),
             regression(Target::Wrench),
             regression(Target::Contact),
             Decoder::Neighbours(Neighbours { deviation_uv: [300.0; CHANNELS], known: vec![known; 7] }),

@@ -7,6 +7,7 @@
 //!
 //! Source: G. H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, for least squares whose variables separate.
 
+use super::friction::Friction;
 use crate::influence::{Gains, InfluenceField};
 use crate::linear::Factor;
 use crate::quantity::{CHANNELS, Contact, Strain};
@@ -34,14 +35,23 @@ pub struct Noise {
     pub additive_uv: [f64; CHANNELS],
     /// Standard deviation as a share of the channel's own reading.
     pub share: [f64; CHANNELS],
+    /// Standard deviation of what the field says of a force of 1 N.
+    pub field_uv_per_n: [f64; CHANNELS],
+    /// Standard deviation of a gain that all channels share.
+    pub gain: f64,
 }
 
 impl Noise {
+    /// Channels that scatter so around a field that is certain.
+    pub const fn of_channels(additive_uv: [f64; CHANNELS], share: [f64; CHANNELS]) -> Self {
+        Self { additive_uv, share, field_uv_per_n: [0.0; CHANNELS], gain: 0.0 }
+    }
+
     /// One over each channel's variance.
-    fn weights(&self, uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+    fn weights(&self, uv: &[f64; CHANNELS], force_n: f64) -> [f64; CHANNELS] {
         std::array::from_fn(|k| {
-            let (own, proportional) = (self.additive_uv[k], self.share[k] * uv[k]);
-            1.0 / (own * own + proportional * proportional)
+            let parts = [self.additive_uv[k], self.share[k] * uv[k], self.field_uv_per_n[k] * force_n];
+            1.0 / dot(&parts, &parts)
         })
     }
 }
@@ -51,6 +61,7 @@ impl Noise {
 pub struct Inverse {
     field: InfluenceField,
     noise: Noise,
+    friction: Friction,
     /// Fz, x Fz and y Fz as linear functions of the channels.
     start: [[f64; CHANNELS]; 3],
 }
@@ -92,15 +103,21 @@ struct Trial {
 }
 
 impl Inverse {
-    /// The decoder of a pad with this field, whose channels scatter so. Each channel must scatter.
-    pub fn new(field: InfluenceField, noise: Noise) -> Self {
+    /// The decoder of a pad with this field, whose channels scatter so. Each channel must scatter. The friction is not the
+    /// decoder's own work: it takes strains that are free of it.
+    pub fn new(field: InfluenceField, noise: Noise, friction: Friction) -> Self {
         let start = start_of(&field);
-        Self { field, noise, start }
+        Self { field, noise, friction, start }
     }
 
     /// The pad's field.
     pub const fn field(&self) -> &InfluenceField {
         &self.field
+    }
+
+    /// What the channels remember of earlier loads.
+    pub const fn friction(&self) -> &Friction {
+        &self.friction
     }
 
     /// How the channels scatter.
@@ -117,8 +134,9 @@ impl Inverse {
     /// The same with its uncertainty; `None` for strain that is not finite, or beyond anything that a pad can read.
     pub fn estimate(&self, strain: &Strain) -> Option<Estimate> {
         let uv = strain.uv.map(f64::from);
-        let weights = self.noise.weights(&uv);
-        let mut best = self.trial(self.started(&uv), &uv, &weights)?;
+        let [fz_n, x_fz, y_fz] = self.start.map(|row| row.iter().zip(&uv).map(|(a, uv)| a * uv).sum());
+        let weights = self.noise.weights(&uv, fz_n);
+        let mut best = self.trial(self.started([x_fz / fz_n, y_fz / fz_n]), &uv, &weights)?;
         let mut shorter = 1.0;
         for _ in 1..STEPS_MAX {
             let step = best.step(shorter)?;
@@ -133,13 +151,26 @@ impl Inverse {
                 shorter *= 0.25;
             }
         }
-        best.estimate()
+        best.estimate(self.noise.gain)
+    }
+
+    /// What an estimate leaves of a channel, in µV, and the variance of what it took up of the channel's noise.
+    pub fn left_over(&self, channel: usize, strain: &Strain, estimate: &Estimate) -> (f64, f64) {
+        let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = estimate.contact;
+        let (gains, force_n) = (self.field.gains(x_mm, y_mm), [fx_n, fy_n, fz_n].map(f64::from));
+        let row = slopes(&gains, channel, &force_n);
+        let taken = estimate.covariance.map(|line| line.iter().zip(&row).map(|(a, b)| a * b).sum::<f64>());
+        let hidden = row.iter().zip(taken).map(|(row, taken)| row * taken).sum();
+        (f64::from(strain.uv[channel]) - dot(&gains.value[channel], &force_n), hidden)
+    }
+
+    /// The same decoder for other noise.
+    pub fn with_noise(self, noise: Noise) -> Self {
+        Self { noise, ..self }
     }
 
     /// Where the search begins.
-    fn started(&self, uv: &[f64; CHANNELS]) -> [f64; 2] {
-        let [fz, x_fz, y_fz] = self.start.map(|row| row.iter().zip(uv).map(|(a, uv)| a * uv).sum::<f64>());
-        let place_mm = [x_fz / fz, y_fz / fz];
+    fn started(&self, place_mm: [f64; 2]) -> [f64; 2] {
         if place_mm.iter().all(|mm| mm.is_finite()) { self.within(place_mm) } else { [0.0; 2] }
     }
 
@@ -162,9 +193,7 @@ impl Inverse {
             cost: 0.0,
         };
         for k in 0..CHANNELS {
-            let moved = [dot(&gains.dx[k], &force_n), dot(&gains.dy[k], &force_n)];
-            let [fx, fy, fz] = gains.value[k];
-            let row = [moved[0], moved[1], fx, fy, fz];
+            let row = slopes(&gains, k, &force_n);
             let rest_uv = uv[k] - dot(&gains.value[k], &force_n);
             trial.add(&row, rest_uv, weights[k]);
         }
@@ -195,12 +224,16 @@ impl Trial {
         (x_mm.is_finite() && y_mm.is_finite()).then_some([part * x_mm, part * y_mm])
     }
 
-    fn estimate(&self) -> Option<Estimate> {
+    /// `gain` scatters all channels together: it moves no place, and each force in proportion.
+    fn estimate(&self, gain: f64) -> Option<Estimate> {
         let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) =
             (self.place_mm.map(|mm| mm as f32), self.force_n.map(|n| n as f32));
         let contact = Contact { x_mm, y_mm, fx_n, fy_n, fz_n };
         let is_finite = [x_mm, y_mm, fx_n, fy_n, fz_n].iter().all(|number| number.is_finite());
-        let covariance = Factor::of(&self.curvature)?.inverse();
+        let mut covariance = Factor::of(&self.curvature)?.inverse();
+        for (line, left) in covariance[2..].iter_mut().zip(self.force_n) {
+            line[2..].iter_mut().zip(self.force_n).for_each(|(entry, n)| *entry += gain * gain * left * n);
+        }
         is_finite.then_some(Estimate { contact, covariance, misfit: self.misfit })
     }
 }
@@ -227,6 +260,12 @@ fn best_force(gains: &Gains, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) ->
     }
     (0..3).for_each(|i| normal[i][i] += 1.0 / (FORCE_N * FORCE_N));
     Factor::of(&normal).map(|factor| factor.solve(&right))
+}
+
+/// How a channel changes with x, y, Fx, Fy, Fz.
+fn slopes(gains: &Gains, channel: usize, force_n: &[f64; 3]) -> [f64; UNKNOWNS] {
+    let [fx, fy, fz] = gains.value[channel];
+    [dot(&gains.dx[channel], force_n), dot(&gains.dy[channel], force_n), fx, fy, fz]
 }
 
 fn dot(left: &[f64; 3], right: &[f64; 3]) -> f64 {
@@ -273,14 +312,15 @@ mod tests {
     use std::sync::OnceLock;
 
     use super::*;
+    use crate::contact::friction::NO_FRICTION;
     use crate::field::PadField;
     use crate::random::SplitMix64;
 
-    const NOISE: Noise = Noise { additive_uv: [6.0; CHANNELS], share: [0.01; CHANNELS] };
+    const NOISE: Noise = Noise::of_channels([6.0; CHANNELS], [0.01; CHANNELS]);
 
     fn decoder() -> &'static Inverse {
         static DECODER: OnceLock<Inverse> = OnceLock::new();
-        DECODER.get_or_init(|| Inverse::new(PadField::nominal().signals, NOISE))
+        DECODER.get_or_init(|| Inverse::new(PadField::nominal().signals, NOISE, NO_FRICTION))
     }
 
     /// Contacts anywhere on the plate, with forces in a cone of 45° and more.

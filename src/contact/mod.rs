@@ -1,14 +1,17 @@
 //! Where a contact is and how hard it presses, from strain.
 
 pub mod file;
+pub mod friction;
 pub mod inverse;
 pub mod neighbours;
 pub mod read;
+pub mod recording;
 pub mod regression;
 pub mod shipped;
 pub mod statics;
 pub mod touch;
 
+use crate::contact::friction::{Friction, NO_FRICTION};
 use crate::contact::inverse::Inverse;
 use crate::contact::neighbours::Neighbours;
 use crate::contact::regression::{Regression, Target};
@@ -58,6 +61,14 @@ impl Decoder {
             #[cfg(feature = "foreign-onnx")]
             Self::Foreign(network) => network.zero,
             _ => Zero::Tared,
+        }
+    }
+
+    /// What the decoder wants taken off its channels, as they remember earlier loads.
+    pub const fn friction(&self) -> &Friction {
+        match self {
+            Self::Inverse(inverse) => inverse.friction(),
+            _ => &NO_FRICTION,
         }
     }
 

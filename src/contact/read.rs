@@ -3,12 +3,15 @@
 use std::fmt;
 
 use super::Decoder;
-use super::file::{DecoderFileError, MAGIC};
+use super::file::DecoderFileError;
 use super::statics::{ModelError, Statics, StaticsModel};
 use crate::network::Zero;
 #[cfg(feature = "foreign-onnx")]
 use crate::network::foreign::Foreign;
 use crate::network::onnx::{self, OnnxError};
+
+/// How files of the program's own begin, of whatever version.
+const OWN: &[u8] = b"tactpad decoder ";
 
 /// Why bytes are no decoder that can be used. As text: what is wrong, and the way out.
 #[derive(Debug, PartialEq, Eq)]
@@ -46,7 +49,7 @@ impl std::error::Error for Unreadable {}
 /// # Errors
 /// Bytes that are none.
 pub fn decoder(bytes: &[u8]) -> Result<Decoder, Unreadable> {
-    if bytes.starts_with(MAGIC) {
+    if bytes.starts_with(OWN) {
         return Decoder::from_bytes(bytes).map(|(decoder, _)| decoder).map_err(Unreadable::Own);
     }
     match text(bytes) {

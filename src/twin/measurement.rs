@@ -14,7 +14,7 @@ use crate::quantity::{CHANNELS, Contact};
 /// How often the pad is read, where the plan has no times: the authors' earlier pad gave 40 to 50 samples a second.
 pub const RATE_HZ: f64 = 45.0;
 /// Readings whose mean is a static sample: those of a second.
-const READINGS: u32 = 45;
+pub(super) const READINGS: u32 = 45;
 /// How long the pad rests between two contacts.
 const REST_S: f64 = 2.0;
 /// How long a load takes to come or to go.

@@ -11,6 +11,7 @@ use crate::quantity::{CHANNELS, Contact};
 use crate::random::SplitMix64;
 use crate::readout::Bridges;
 
+pub mod bound;
 mod delay;
 pub mod hand;
 pub mod measurement;

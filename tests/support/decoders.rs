@@ -1,6 +1,7 @@
 //! One decoder of each kind, fitted to the nominal pad.
 
 use tactpad::calibration::regression::{neighbours, regression};
+use tactpad::contact::friction::NO_FRICTION;
 use tactpad::contact::inverse::{Inverse, Noise};
 use tactpad::contact::regression::Target;
 use tactpad::contact::{Decoder, read, shipped};
@@ -18,14 +19,14 @@ pub(crate) fn each() -> Vec<(&'static str, Decoder)> {
     let rows: Vec<Row> = (0..CONTACTS).map(|index| row(&field, index)).collect();
     let fitted = |target| regression(&rows, target, 29.0).map(|found| Decoder::Regression(Box::new(found)));
     let of_the_program = |name| shipped::bytes(name).and_then(|bytes| read::playing(bytes).ok());
-    let noise = Noise { additive_uv: [5.0; CHANNELS], share: [0.01; CHANNELS] };
+    let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let decoders = [
         of_the_program("statics"),
         fitted(Target::Wrench).ok(),
         fitted(Target::Contact).ok(),
         neighbours(&rows).map(Decoder::Neighbours).ok(),
         of_the_program("scdf"),
-        Some(Decoder::Inverse(Box::new(Inverse::new(field, noise)))),
+        Some(Decoder::Inverse(Box::new(Inverse::new(field, noise, NO_FRICTION)))),
     ];
     let decoders: Vec<_> = decoders.into_iter().flatten().map(|decoder| (decoder.name(), decoder)).collect();
     assert_eq!(decoders.len(), 6, "each was made");

@@ -10,9 +10,9 @@ use crate::calibration::regression::{neighbours, regression};
 use crate::cli::field_cache::field_of;
 use crate::cli::{Failure, decoder_file};
 use crate::contact::Decoder;
+use crate::contact::friction::Play;
 use crate::contact::regression::Target;
 use crate::device::Device;
-use crate::network::Zero;
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
 
 /// What was found about the pad.
@@ -29,7 +29,15 @@ struct Pad {
     noise_uv: [f64; CHANNELS],
     noise_share: [f64; CHANNELS],
     background_share: f64,
+    /// Play operators: threshold and share, as means over the channels.
+    friction: Vec<Friction>,
     parameters: Vec<Found>,
+}
+
+#[derive(Serialize)]
+struct Friction {
+    threshold_uv: f64,
+    share: f64,
 }
 
 /// How much a number of the device differs from the device's own.
@@ -42,27 +50,27 @@ struct Found {
 
 /// Fits the decoder and writes it.
 pub(super) fn adapt(arguments: &Arguments, device: &Device, contacts: &Contacts) -> Result<Fit, Failure> {
-    if contacts.zero == Zero::Raw {
+    let Contacts { recording: Some(recording), places, rows } = contacts else {
         return Err(refused(
             arguments,
             &"no row without force says what the untouched pad reads; measure some",
         ));
-    }
+    };
     let reach_mm = device.contact.max_centre_radius_mm;
     let unusable = |error: FitError| refused(arguments, &error);
     let (decoder, found) = match arguments.method {
         Method::Inverse => {
-            let calibration = fit(&contacts.rows, device, &field_of(device)?).map_err(unusable)?;
+            let calibration = fit(recording, places, device, &field_of(device)?).map_err(unusable)?;
             (Decoder::Inverse(Box::new(calibration.decoder())), Fit { pad: Some(Pad::of(&calibration)) })
         }
-        Method::Knn => (Decoder::Neighbours(neighbours(&contacts.rows).map_err(unusable)?), Fit::default()),
+        Method::Knn => (Decoder::Neighbours(neighbours(rows).map_err(unusable)?), Fit::default()),
         Method::Wrench | Method::Linear | Method::Scdf => {
             let target = if arguments.method == Method::Wrench { Target::Wrench } else { Target::Contact };
-            let fitted = regression(&contacts.rows, target, reach_mm).map_err(unusable)?;
+            let fitted = regression(rows, target, reach_mm).map_err(unusable)?;
             (Decoder::Regression(Box::new(fitted)), Fit::default())
         }
     };
-    let note = format!("{} contacts of {}", contacts.rows.len(), arguments.measured.display());
+    let note = format!("{} contacts of {}", rows.len(), arguments.measured.display());
     decoder_file::write(&arguments.out, &decoder.to_bytes(&note).unwrap_or_default())?;
     Ok(found)
 }
@@ -77,7 +85,11 @@ impl Pad {
             let parameter: &crate::device::parameter::Parameter = parameter;
             Found { name: parameter.name(), change: *change, deviation: *deviation }
         };
+        let mean = |numbers: &[f64; CHANNELS]| numbers.iter().sum::<f64>() / CHANNELS as f64;
+        let friction =
+            |play: &Play| Friction { threshold_uv: mean(&play.threshold_uv), share: mean(&play.share) };
         Self {
+            friction: calibration.friction.iter().map(friction).filter(|it| it.share > 0.0).collect(),
             gain: calibration.gain,
             noise_uv: calibration.noise.additive_uv,
             noise_share: calibration.noise.share,
@@ -97,6 +109,9 @@ impl fmt::Display for Fit {
         }
         for Found { name, change, deviation } in &pad.parameters {
             writeln!(f, "{name:<30} {change:>+8.3} ± {deviation:.3}")?;
+        }
+        for Friction { threshold_uv, share } in &pad.friction {
+            writeln!(f, "friction: {:.2} % of what is beyond {threshold_uv:.0} µV", 100.0 * share)?;
         }
         write!(f, "smooth background: {:.1} % of each map", 100.0 * pad.background_share)
     }

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::{Arguments, Contacts};
 use crate::cli::progress::Progress;
 use crate::cli::{Failure, decoder_file};
+use crate::network::Zero;
 use crate::network::training::Epoch;
 use crate::scdf::adaptation::{Adapted, adapt as fit, examples};
 
@@ -35,7 +36,7 @@ pub(super) fn adapt(arguments: &Arguments, contacts: &Contacts) -> Result<Fit, F
         )
     })?;
     let mut start = decoder_file::read_network(from)?;
-    start.zero = contacts.zero;
+    start.zero = if contacts.recording.is_some() { Zero::Tared } else { Zero::Raw };
     let mut progress = Progress::begin();
     let adapted = fit(&start, examples(&contacts.rows), arguments.seed, |beta, Epoch { number, .. }| {
         progress.step(format_args!("β = {beta}: epoch {number}"));

@@ -1,0 +1,360 @@
+//! The least-squares problem of a calibration: how far the numbers are from explaining what was measured.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use super::contacts::{Maps, Measured, Place};
+use super::model::{Layout, TERMS};
+use super::noise::{self, Rest};
+use crate::contact::friction::{Friction, PLAYS};
+use crate::contact::inverse::Noise;
+use crate::contact::recording::{Lags, Recording};
+use crate::device::Device;
+use crate::device::parameter::Parameter;
+use crate::field::{PadField, Sensitivity};
+use crate::influence::{InfluenceField, MAPS};
+use crate::linear::{LargeFactor, Symmetric};
+use crate::quantity::{CHANNELS, Strain};
+
+/// Steps of a fit at most; the channels are nearly linear in the numbers.
+const STEPS_MAX: usize = 12;
+/// A step that changes the evidence by less is the last.
+const EVIDENCE_END: f64 = 0.3;
+/// Places that stand for the whole plate.
+const PLACES: u32 = 60;
+/// How much the zero of a channel drifts between two readings, at least, and before anything is measured.
+const DRIFT_MIN_UV: f64 = 1.0;
+const DRIFT_UV: f64 = 10.0;
+/// A jump of the zero counts as a drift of this part of it at least: temperature may have changed.
+const JUMP_PART: f64 = 1.0 / 3.0;
+
+/// What is fitted, and to what.
+#[derive(Clone)]
+pub(super) struct Problem<'f> {
+    field: &'f PadField,
+    recording: &'f Recording,
+    sensitivities: Vec<&'f Sensitivity>,
+    pub(super) layout: Layout,
+    /// Rows of the recording, and what was measured in them.
+    contacts: Vec<(usize, Measured)>,
+    /// From one reading of the untouched pad to the next.
+    jumps: Vec<Jump>,
+    /// Root mean square of each map over the plate.
+    scale: Maps,
+    plate_mm: f64,
+    reach_mm: f64,
+}
+
+/// The untouched pad at two times.
+#[derive(Clone)]
+struct Jump {
+    rows: [usize; 2],
+    change_uv: [f64; CHANNELS],
+    /// What friction made of the way between.
+    lags: Lags,
+}
+
+/// What is taken for granted while the numbers are fitted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Settings {
+    /// Size of the background, as a share of each map.
+    pub(super) background: f64,
+    /// Of the play operators, in strains before gains; one of zero does nothing.
+    pub(super) thresholds_uv: [f64; PLAYS],
+}
+
+/// The numbers for some settings.
+#[derive(Clone, Debug)]
+pub(super) struct Fit {
+    pub(super) settings: Settings,
+    pub(super) values: Vec<f64>,
+    pub(super) noise: Noise,
+    drift_uv: [f64; CHANNELS],
+    factor: LargeFactor,
+    /// Which part of the readings the numbers did not take up.
+    pub(super) freedom: f64,
+    /// ln of the probability of what was measured, but for a constant.
+    pub(super) evidence: f64,
+}
+
+/// A step of the numbers, and the factor of their curvature.
+struct Step {
+    change: Vec<f64>,
+    factor: LargeFactor,
+}
+
+impl<'f> Problem<'f> {
+    /// `rows` are the contacts to fit to; all others only tell what was before. Without polynomials for a background.
+    pub(super) fn of(recording: &'f Recording, rows: &[usize], device: &Device, field: &'f PadField) -> Self {
+        let is_free = |it: &&Sensitivity| it.parameter.module().is_some();
+        let sensitivities: Vec<&Sensitivity> = field.sensitivities.iter().filter(is_free).collect();
+        let plate_mm = device.plate.diameter_mm / 2.0;
+        let measured = |at: &usize| {
+            let row = recording.tared().rows.get(*at)?;
+            Some((*at, Measured::of(field, &sensitivities, plate_mm, row)?))
+        };
+        let contacts = rows.iter().filter_map(measured).collect();
+        let zeros: Vec<_> = recording.zeros().collect();
+        let jump = |[(first, before), (second, after)]: &[(usize, [f64; CHANNELS]); 2]| Jump {
+            rows: [*first, *second],
+            change_uv: std::array::from_fn(|k| after[k] - before[k]),
+            lags: [[0.0; CHANNELS]; PLAYS],
+        };
+        let layout = Layout { physical: sensitivities.iter().map(|it| it.parameter).collect(), terms: 0 };
+        Self {
+            jumps: zeros.array_windows().map(jump).collect(),
+            field,
+            recording,
+            sensitivities,
+            layout,
+            contacts,
+            scale: scale(&field.signals),
+            plate_mm,
+            reach_mm: f64::from(field.signals.radius_mm()),
+        }
+    }
+
+    /// How many contacts there are.
+    pub(super) const fn contacts(&self) -> usize {
+        self.contacts.len()
+    }
+
+    /// The same with polynomials for a background.
+    pub(super) fn with_background(mut self) -> Self {
+        self.layout.terms = TERMS;
+        self
+    }
+
+    /// The most probable numbers. The search begins at `start`, or at the pad as it is thought to be. `None` where the
+    /// numbers make no sense.
+    pub(super) fn fitted(mut self, settings: Settings, start: Option<&Fit>) -> Option<Fit> {
+        let before = self.layout.nominal();
+        let precisions = self.layout.precisions(settings.background);
+        let mut values = before.clone();
+        let (mut noise, mut drift_uv) = (noise::BEFORE, [DRIFT_UV; CHANNELS]);
+        if let Some(start) = start {
+            values.iter_mut().zip(&start.values).for_each(|(value, start)| *value = *start);
+            (noise, drift_uv) = (start.noise, start.drift_uv);
+        }
+        let mut found: Option<Fit> = None;
+        for _ in 0..STEPS_MAX {
+            self.walk(&values, &settings);
+            let step = self.step(&values, &noise, &drift_uv, &before, &precisions)?;
+            values.iter_mut().zip(&step.change).for_each(|(value, change)| *value += change);
+            let (rests, freedom) = (self.rests(&values), self.freedom(&precisions, &step.factor));
+            let evidence = self.evidence(&values, &noise, &drift_uv, &before, &precisions, &step.factor);
+            let gain = found.as_ref().map_or(f64::INFINITY, |before| (evidence - before.evidence).abs());
+            found = Some(Fit {
+                settings,
+                values: values.clone(),
+                noise,
+                drift_uv,
+                factor: step.factor,
+                freedom,
+                evidence,
+            });
+            noise = noise::of_rests(&rests, freedom);
+            drift_uv = self.drift_uv(&values);
+            if gain < EVIDENCE_END {
+                break;
+            }
+        }
+        found.filter(|fit| fit.values.iter().all(|value| value.is_finite()))
+    }
+
+    /// Takes the lags of these numbers' friction.
+    fn walk(&mut self, values: &[f64], settings: &Settings) {
+        if settings.thresholds_uv == [0.0; PLAYS] {
+            return;
+        }
+        let strain = |(at, it): &(usize, Measured)| (*at, self.layout.loaded_uv(values, &self.scale, it));
+        let strains: BTreeMap<usize, [f64; CHANNELS]> = self.contacts.iter().map(strain).collect();
+        let friction = Layout::friction(values, &settings.thresholds_uv);
+        let states = self.recording.states(&friction, |at| strains.get(&at).copied());
+        let lags = self.recording.lags(&states);
+        for (at, contact) in &mut self.contacts {
+            contact.lags = lags[*at];
+        }
+        for Jump { rows: [first, second], lags, .. } in &mut self.jumps {
+            let (first, second) = (&states[*first], &states[*second]);
+            *lags = std::array::from_fn(|play| {
+                std::array::from_fn(|channel| second[play][channel] - first[play][channel])
+            });
+        }
+    }
+
+    fn step(
+        &self,
+        values: &[f64],
+        noise: &Noise,
+        drift_uv: &[f64; CHANNELS],
+        before: &[f64],
+        precisions: &[f64],
+    ) -> Option<Step> {
+        let mut normal = Symmetric::zeros(self.layout.size());
+        let mut right: Vec<f64> =
+            precisions.iter().zip(before.iter().zip(values)).map(|(p, (b, v))| p * (b - v)).collect();
+        precisions.iter().enumerate().for_each(|(at, precision)| normal.add_diagonal(at, *precision));
+        self.each(values, noise, drift_uv, |_, _, rest, variance, slopes| {
+            normal.add_product(1.0 / variance, slopes);
+            right.iter_mut().zip(slopes).for_each(|(right, slope)| *right += slope * rest / variance);
+        });
+        let factor = normal.factorised()?;
+        Some(Step { change: factor.solve(&right), factor })
+    }
+
+    /// Everything that was measured: whether it is a contact, the channel, what it leaves over and its variance, and the
+    /// slopes.
+    fn each(
+        &self,
+        values: &[f64],
+        noise: &Noise,
+        drift_uv: &[f64; CHANNELS],
+        mut then: impl FnMut(Option<f64>, usize, f64, f64, &[f64]),
+    ) {
+        for (_, contact) in &self.contacts {
+            self.layout.readings(values, &self.scale, contact, |channel, uv, slopes| {
+                let read_uv = contact.uv[channel];
+                then(Some(read_uv), channel, read_uv - uv, variance(noise, channel, read_uv), slopes);
+            });
+        }
+        let mut slopes = vec![0.0; self.layout.size()];
+        for Jump { change_uv, lags, .. } in &self.jumps {
+            for channel in 0..CHANNELS {
+                slopes.fill(0.0);
+                let rest = change_uv[channel] - Layout::lagged(values, channel, lags, &mut slopes);
+                let drift = drift_uv[channel].max(JUMP_PART * rest.abs());
+                then(None, channel, rest, drift * drift, &slopes);
+            }
+        }
+    }
+
+    /// Which part of the readings the fitted numbers did not take up.
+    fn freedom(&self, precisions: &[f64], factor: &LargeFactor) -> f64 {
+        let variances = factor.inverse_diagonal();
+        let taken: f64 = precisions.iter().zip(variances).map(|(before, after)| 1.0 - before * after).sum();
+        1.0 - taken / (CHANNELS * self.contacts.len()) as f64
+    }
+
+    /// What the channels leave over.
+    fn rests(&self, values: &[f64]) -> [Vec<Rest>; CHANNELS] {
+        let mut rests = [const { Vec::new() }; CHANNELS];
+        self.each(values, &noise::BEFORE, &[DRIFT_UV; CHANNELS], |read_uv, channel, rest, _, _| {
+            rests[channel].extend(read_uv.map(|uv| (uv, rest)));
+        });
+        rests
+    }
+
+    /// How much each channel's zero drifts from one reading to the next: the median of what friction does not explain.
+    fn drift_uv(&self, values: &[f64]) -> [f64; CHANNELS] {
+        let mut rests = [const { Vec::new() }; CHANNELS];
+        self.each(values, &noise::BEFORE, &[DRIFT_UV; CHANNELS], |read_uv, channel, rest, _, _| {
+            if read_uv.is_none() {
+                rests[channel].push(rest.abs());
+            }
+        });
+        rests.map(|mut rests| {
+            rests.sort_by(f64::total_cmp);
+            // Of a normal number the median magnitude is 0.6745 of its standard deviation.
+            rests.get(rests.len() / 2).map_or(DRIFT_UV, |median| (median / 0.6745).max(DRIFT_MIN_UV))
+        })
+    }
+
+    fn evidence(
+        &self,
+        values: &[f64],
+        noise: &Noise,
+        drift_uv: &[f64; CHANNELS],
+        before: &[f64],
+        precisions: &[f64],
+        factor: &LargeFactor,
+    ) -> f64 {
+        let mut sum = -factor.log_determinant();
+        for (precision, (before, value)) in precisions.iter().zip(before.iter().zip(values)) {
+            sum += precision.ln() - precision * (before - value).powi(2);
+        }
+        self.each(values, noise, drift_uv, |_, _, rest, variance, _| {
+            sum -= rest * rest / variance + variance.ln();
+        });
+        0.5 * sum
+    }
+
+    /// The contacts' channels without this friction, and the written forces.
+    pub(super) fn freed(&self, friction: &Friction) -> Vec<(Strain, [f64; 3])> {
+        let freed = self.recording.freed(friction);
+        let contact = |(at, it): &(usize, Measured)| {
+            let uv = freed.rows.get(*at)?.uv?;
+            Some((Strain { uv: uv.map(|uv| uv as f32) }, it.force_n))
+        };
+        self.contacts.iter().filter_map(contact).collect()
+    }
+
+    /// How unsure each channel of the pad's own field is, for a force of 1 N: the mean over the plate, and over forces of
+    /// which a fifth is shear.
+    pub(super) fn doubt_uv_per_n(&self, fit: &Fit) -> [f64; CHANNELS] {
+        let mut sums = [0.0; CHANNELS];
+        for place_mm in places(self.reach_mm) {
+            let place = Place::of(self.field, &self.sensitivities, self.plate_mm, place_mm);
+            for (force_n, weight) in [([1.0, 0.0, 0.0], 0.1), ([0.0, 1.0, 0.0], 0.1), ([0.0, 0.0, 1.0], 0.8)]
+            {
+                let contact = Measured::unmeasured(place.clone(), force_n);
+                self.layout.readings(&fit.values, &self.scale, &contact, |channel, _, slopes| {
+                    sums[channel] += weight * fit.factor.inverse_form(slopes);
+                });
+            }
+        }
+        sums.map(|sum| (sum / f64::from(PLACES)).sqrt())
+    }
+
+    /// The physical numbers: value and standard deviation.
+    pub(super) fn physical(&self, fit: &Fit) -> Vec<(Parameter, f64, f64)> {
+        let deviation = |at: usize| {
+            let mut unit = vec![0.0; fit.values.len()];
+            unit[at] = 1.0;
+            fit.factor.solve(&unit)[at].sqrt()
+        };
+        let numbers = self.layout.physical.iter().zip(Layout::first_physical()..);
+        numbers.map(|(parameter, at)| (*parameter, fit.values[at], deviation(at))).collect()
+    }
+
+    /// The pad's own field.
+    pub(super) fn corrected(&self, values: &[f64]) -> InfluenceField {
+        let signals = &self.field.signals;
+        InfluenceField::sampled(f64::from(signals.spacing_mm()), self.reach_mm, self.reach_mm, |place_mm| {
+            let place = Place::of(self.field, &self.sensitivities, self.plate_mm, place_mm);
+            let maps = self.layout.maps(values, &self.scale, &place);
+            std::array::from_fn::<f64, MAPS, _>(|map| maps[map / 3][map % 3])
+        })
+    }
+}
+
+fn variance(noise: &Noise, channel: usize, uv: f64) -> f64 {
+    noise.additive_uv[channel].powi(2) + (noise.share[channel] * uv).powi(2)
+}
+
+/// Places all over the plate.
+fn places(reach_mm: f64) -> impl Iterator<Item = [f64; 2]> {
+    // Vogel's spiral: each place has as much of the plate as any other.
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    (0..PLACES).map(move |place| {
+        let place = f64::from(place);
+        let radius_mm = reach_mm * ((place + 0.5) / f64::from(PLACES)).sqrt();
+        [radius_mm * (golden * place).cos(), radius_mm * (golden * place).sin()]
+    })
+}
+
+/// Root mean square of each map over the plate; of a map that is small beside its channel's others, a fifth of theirs.
+fn scale(signals: &InfluenceField) -> Maps {
+    let mut squares = [[0.0; 3]; CHANNELS];
+    for [x_mm, y_mm] in places(f64::from(signals.radius_mm())) {
+        let gains = signals.gains(x_mm as f32, y_mm as f32).value;
+        for (square, gain) in squares.as_flattened_mut().iter_mut().zip(gains.as_flattened()) {
+            *square += gain * gain / f64::from(PLACES);
+        }
+    }
+    squares.map(|axes| {
+        let roots = axes.map(f64::sqrt);
+        let largest = roots.iter().copied().fold(0.0, f64::max);
+        roots.map(|root| root.max(0.2 * largest))
+    })
+}

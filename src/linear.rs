@@ -110,8 +110,8 @@ pub struct LargeFactor {
 }
 
 impl LargeFactor {
-    /// The x with L x = b.
-    fn solve_lower(&self, right: &[f64]) -> Vec<f64> {
+    /// The x with L x = b. Its square is b′ A⁻¹ b.
+    pub fn solve_lower(&self, right: &[f64]) -> Vec<f64> {
         let mut x = right.to_vec();
         for row in 0..self.size {
             let line = &self.lower[row * self.size..][..=row];
@@ -130,11 +130,6 @@ impl LargeFactor {
             x[..row].iter_mut().zip(line).for_each(|(x, factor)| *x -= factor * value);
         }
         x
-    }
-
-    /// v′ A⁻¹ v.
-    pub fn inverse_form(&self, vector: &[f64]) -> f64 {
-        self.solve_lower(vector).iter().map(|x| x * x).sum()
     }
 
     /// The diagonal of the inverse of A.
@@ -215,7 +210,8 @@ mod tests {
         let diagonal = factor.inverse_diagonal();
         assert!((0..9).all(|k| (diagonal[k] / inverse[k][k] - 1.0).abs() < 1e-8));
         let form: f64 = b.iter().zip(small.solve(&b)).map(|(b, x)| b * x).sum();
-        assert!((factor.inverse_form(&b) - form).abs() < 1e-8);
+        let half: f64 = factor.solve_lower(&b).iter().map(|x| x * x).sum();
+        assert!((half - form).abs() < 1e-8);
         let determinant: f64 = (0..9).map(|k| small.lower[k][k].powi(2)).product();
         assert!((factor.log_determinant() - determinant.ln()).abs() < 1e-9);
     }

@@ -6,8 +6,9 @@ use super::model::Layout;
 use super::noise;
 use super::problem::{Fit, Problem, Settings};
 use crate::contact::friction::{Friction, PLAYS};
-use crate::contact::inverse::{Inverse, Noise};
+use crate::contact::inverse::Inverse;
 use crate::contact::recording::Recording;
+use crate::contact::uncertainty::Noise;
 use crate::device::Device;
 use crate::device::parameter::Parameter;
 use crate::field::PadField;
@@ -80,7 +81,7 @@ impl Calibration {
         let friction = Layout::friction(values, &settings.thresholds_uv);
         let contacts = problem.freed(&friction);
         let noise = noise::of_redundancy(&field, fit.noise, &contacts, fit.freedom);
-        let noise = Noise { field_uv_per_n: problem.doubt_uv_per_n(fit), ..noise };
+        let noise = noise::with_doubts(&field, noise, &problem.doubts(fit));
         let decoder = Inverse::new(field.clone(), noise, friction);
         Self {
             noise: Noise { gain: noise::common_gain(&decoder, &contacts), ..noise },

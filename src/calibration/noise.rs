@@ -1,7 +1,9 @@
 //! The channels' noise, from what a calibration leaves over: a part of its own and one that grows with the reading.
 
+use super::problem::Doubt;
 use crate::contact::friction::NO_FRICTION;
-use crate::contact::inverse::{Inverse, Noise};
+use crate::contact::inverse::Inverse;
+use crate::contact::uncertainty::Noise;
 use crate::influence::InfluenceField;
 use crate::linear::Factor;
 use crate::quantity::{CHANNELS, Contact, Strain};
@@ -64,6 +66,42 @@ pub(super) fn of_redundancy(
     *decoder.noise()
 }
 
+/// The noise with what the field does not know: the mean over these contacts of what it leaves open about each channel, and
+/// of what that does to what is decoded.
+pub(super) fn with_doubts(field: &InfluenceField, noise: Noise, doubts: &[Doubt]) -> Noise {
+    let count = doubts.len().max(1) as f64;
+    let channel = |k: usize| {
+        let per_n2 = |it: &Doubt| it.uv2[k][k] / square(&it.force_n);
+        (doubts.iter().map(per_n2).sum::<f64>() / count).sqrt()
+    };
+    let noise = Noise { field_uv_per_n: std::array::from_fn(channel), ..noise };
+    let decoder = Inverse::new(field.clone(), noise, NO_FRICTION);
+    let mut by_field = noise.by_field;
+    for Doubt { place_mm, force_n, uv2 } in doubts {
+        let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) = (place_mm.map(|mm| mm as f32), force_n.map(|n| n as f32));
+        let Some(response) = decoder.response(&Contact { x_mm, y_mm, fx_n, fy_n, fz_n }) else { continue };
+        let whole_n = square(force_n).sqrt();
+        let scale = [1.0, 1.0, whole_n, whole_n, whole_n];
+        for (i, line) in by_field.iter_mut().enumerate() {
+            for (j, entry) in line.iter_mut().enumerate() {
+                *entry += form(&response[i], uv2, &response[j]) / (scale[i] * scale[j] * count);
+            }
+        }
+    }
+    Noise { by_field, ..noise }
+}
+
+fn square(force_n: &[f64; 3]) -> f64 {
+    force_n.iter().map(|n| n * n).sum()
+}
+
+fn form(left: &[f64; CHANNELS], matrix: &[[f64; CHANNELS]; CHANNELS], right: &[f64; CHANNELS]) -> f64 {
+    let line = |(left, line): (&f64, &[f64; CHANNELS])| {
+        left * line.iter().zip(right).map(|(entry, right)| entry * right).sum::<f64>()
+    };
+    left.iter().zip(matrix).map(line).sum()
+}
+
 /// How much the gain of all channels together changes from contact to contact, as a standard deviation: wear and warmth
 /// do that, and channels do not disagree about it. It is what the written forces differ by in their own direction beyond
 /// the decoder's noise, in proportion to them; the reference's own noise does not grow with the force.
@@ -91,7 +129,7 @@ fn off_along_force(decoder: &Inverse, strain: &Strain, written_n: &[f64; 3]) -> 
     let estimate = decoder.estimate(strain)?;
     let Contact { fx_n, fy_n, fz_n, .. } = estimate.contact;
     let decoded_n = [fx_n, fy_n, fz_n].map(f64::from);
-    let force_n = decoded_n.iter().map(|n| n * n).sum::<f64>().sqrt();
+    let force_n = square(&decoded_n).sqrt();
     let along = decoded_n.map(|n| n / force_n);
     let written_n: f64 = along.iter().zip(written_n).map(|(along, n)| along * n).sum();
     let mut variance = 0.0;

@@ -7,8 +7,8 @@ use super::contacts::{Maps, Measured, Place};
 use super::model::{Layout, TERMS};
 use super::noise::{self, Rest};
 use crate::contact::friction::{Friction, PLAYS};
-use crate::contact::inverse::Noise;
 use crate::contact::recording::{Lags, Recording};
+use crate::contact::uncertainty::Noise;
 use crate::device::Device;
 use crate::device::parameter::Parameter;
 use crate::field::{PadField, Sensitivity};
@@ -20,6 +20,8 @@ use crate::quantity::{CHANNELS, Strain};
 const STEPS_MAX: usize = 12;
 /// A step that changes the evidence by less is the last.
 const EVIDENCE_END: f64 = 0.3;
+/// A force at which the field's doubt is looked at: half of full scale.
+const DOUBT_N: f64 = 2.5;
 /// Places that stand for the whole plate.
 const PLACES: u32 = 60;
 /// How much the zero of a channel drifts between two readings, at least, and before anything is measured.
@@ -75,6 +77,13 @@ pub(super) struct Fit {
     pub(super) freedom: f64,
     /// ln of the probability of what was measured, but for a constant.
     pub(super) evidence: f64,
+}
+
+/// The covariance of the channels, in µV², that comes from what the fitted numbers leave open about a contact.
+pub(super) struct Doubt {
+    pub(super) place_mm: [f64; 2],
+    pub(super) force_n: [f64; 3],
+    pub(super) uv2: [[f64; CHANNELS]; CHANNELS],
 }
 
 /// A step of the numbers, and the factor of their curvature.
@@ -289,21 +298,24 @@ impl<'f> Problem<'f> {
         self.contacts.iter().filter_map(contact).collect()
     }
 
-    /// How unsure each channel of the pad's own field is, for a force of 1 N: the mean over the plate, and over forces of
-    /// which a fifth is shear.
-    pub(super) fn doubt_uv_per_n(&self, fit: &Fit) -> [f64; CHANNELS] {
-        let mut sums = [0.0; CHANNELS];
-        for place_mm in places(self.reach_mm) {
+    /// What the fitted numbers leave open about contacts all over the plate, of which a part is shear.
+    pub(super) fn doubts(&self, fit: &Fit) -> Vec<Doubt> {
+        let shear_n = 0.4 * DOUBT_N;
+        let forces_n = [[shear_n, 0.0, DOUBT_N], [0.0, shear_n, DOUBT_N], [-shear_n, -shear_n, DOUBT_N]];
+        let doubt = |place_mm: [f64; 2]| {
             let place = Place::of(self.field, &self.sensitivities, self.plate_mm, place_mm);
-            for (force_n, weight) in [([1.0, 0.0, 0.0], 0.1), ([0.0, 1.0, 0.0], 0.1), ([0.0, 0.0, 1.0], 0.8)]
-            {
+            forces_n.map(|force_n| {
                 let contact = Measured::unmeasured(place.clone(), force_n);
-                self.layout.readings(&fit.values, &self.scale, &contact, |channel, _, slopes| {
-                    sums[channel] += weight * fit.factor.inverse_form(slopes);
+                let mut halves = Vec::with_capacity(CHANNELS);
+                self.layout.readings(&fit.values, &self.scale, &contact, |_, _, slopes| {
+                    halves.push(fit.factor.solve_lower(slopes));
                 });
-            }
-        }
-        sums.map(|sum| (sum / f64::from(PLACES)).sqrt())
+                let product =
+                    |one: &Vec<f64>, other: &Vec<f64>| one.iter().zip(other).map(|(a, b)| a * b).sum();
+                Doubt { place_mm, force_n, uv2: products(&halves, product) }
+            })
+        };
+        places(self.reach_mm).flat_map(doubt).collect()
     }
 
     /// The physical numbers: value and standard deviation.
@@ -330,6 +342,10 @@ impl<'f> Problem<'f> {
 
 fn variance(noise: &Noise, channel: usize, uv: f64) -> f64 {
     noise.additive_uv[channel].powi(2) + (noise.share[channel] * uv).powi(2)
+}
+
+fn products<T>(all: &[T], product: impl Fn(&T, &T) -> f64) -> [[f64; CHANNELS]; CHANNELS] {
+    std::array::from_fn(|i| std::array::from_fn(|j| product(&all[i], &all[j])))
 }
 
 /// Places all over the plate.

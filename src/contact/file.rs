@@ -4,9 +4,10 @@ use std::fmt;
 
 use super::Decoder;
 use super::friction::{Friction, NO_FRICTION};
-use super::inverse::{Inverse, Noise};
+use super::inverse::Inverse;
 use super::neighbours::{Known, Neighbours};
 use super::regression::{Regression, Target};
+use super::uncertainty::Noise;
 use crate::bytes::{Broken, Reader, push_floats, push_text, sealed, unsealed};
 use crate::influence::InfluenceField;
 use crate::quantity::{CHANNELS, Contact};
@@ -50,11 +51,16 @@ impl Decoder {
         match self {
             Self::Inverse(inverse) => {
                 begin(INVERSE);
-                let Noise { additive_uv, share, field_uv_per_n, gain } = inverse.noise();
+                let Noise { additive_uv, share, field_uv_per_n, gain, by_field } = inverse.noise();
                 let friction = inverse.friction().iter();
                 let friction = friction.flat_map(|play| play.threshold_uv.iter().chain(&play.share));
-                let numbers =
-                    additive_uv.iter().chain(share).chain(field_uv_per_n).chain([gain]).chain(friction);
+                let numbers = additive_uv
+                    .iter()
+                    .chain(share)
+                    .chain(field_uv_per_n)
+                    .chain([gain])
+                    .chain(by_field.as_flattened())
+                    .chain(friction);
                 body.extend(numbers.flat_map(|number| number.to_le_bytes()));
                 inverse.field().write(&mut body);
             }
@@ -107,10 +113,15 @@ fn read_inverse(from: &mut Reader<'_>) -> Option<Inverse> {
         *number = from.double().filter(|number| number.is_finite() && *number >= 0.0)?;
     }
     let gain = from.double().filter(|number| number.is_finite() && *number >= 0.0)?;
+    let mut by_field = [[0.0; _]; _];
+    for number in by_field.as_flattened_mut() {
+        *number = from.double().filter(|number| number.is_finite())?;
+    }
     let friction = read_friction(from)?;
     let scatters = additive_uv.iter().all(|uv| *uv > 0.0);
     let field = InfluenceField::read(from)?;
-    scatters.then(|| Inverse::new(field, Noise { additive_uv, share, field_uv_per_n, gain }, friction))
+    scatters
+        .then(|| Inverse::new(field, Noise { additive_uv, share, field_uv_per_n, gain, by_field }, friction))
 }
 
 fn read_friction(from: &mut Reader<'_>) -> Option<Friction> {

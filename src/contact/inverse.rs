@@ -8,12 +8,10 @@
 //! Source: G. H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, for least squares whose variables separate.
 
 use super::friction::Friction;
+use super::uncertainty::{Estimate, Linear, Noise, UNKNOWNS, Variances};
 use crate::influence::{Gains, InfluenceField};
 use crate::linear::Factor;
 use crate::quantity::{CHANNELS, Contact, Strain};
-
-/// The unknowns: x, y in mm; Fx, Fy, Fz in N.
-pub const UNKNOWNS: usize = 5;
 
 /// Steps at most, the first one included.
 const STEPS_MAX: usize = 8;
@@ -28,34 +26,6 @@ const FORCE_N: f64 = 100.0;
 const RING_MM: f64 = 2.0;
 const RING_PLACES: usize = 36;
 
-/// How the channels scatter around the field's answer, as the decoder gets them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Noise {
-    /// Standard deviation of each channel without load.
-    pub additive_uv: [f64; CHANNELS],
-    /// Standard deviation as a share of the channel's own reading.
-    pub share: [f64; CHANNELS],
-    /// Standard deviation of what the field says of a force of 1 N.
-    pub field_uv_per_n: [f64; CHANNELS],
-    /// Standard deviation of a gain that all channels share.
-    pub gain: f64,
-}
-
-impl Noise {
-    /// Channels that scatter so around a field that is certain.
-    pub const fn of_channels(additive_uv: [f64; CHANNELS], share: [f64; CHANNELS]) -> Self {
-        Self { additive_uv, share, field_uv_per_n: [0.0; CHANNELS], gain: 0.0 }
-    }
-
-    /// One over each channel's variance.
-    fn weights(&self, uv: &[f64; CHANNELS], force_n: f64) -> [f64; CHANNELS] {
-        std::array::from_fn(|k| {
-            let parts = [self.additive_uv[k], self.share[k] * uv[k], self.field_uv_per_n[k] * force_n];
-            1.0 / dot(&parts, &parts)
-        })
-    }
-}
-
 /// The decoder.
 #[derive(Clone, Debug)]
 pub struct Inverse {
@@ -64,30 +34,6 @@ pub struct Inverse {
     friction: Friction,
     /// Fz, x Fz and y Fz as linear functions of the channels.
     start: [[f64; CHANNELS]; 3],
-}
-
-/// What the channels say of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// The most likely contact.
-    pub contact: Contact,
-    /// Covariance of x, y (mm), Fx, Fy, Fz (N), for the noise that the decoder was given.
-    pub covariance: [[f64; UNKNOWNS]; UNKNOWNS],
-    /// Sum of the squares of what the contact does not explain, in the channels' standard deviations. Of one contact on
-    /// the pad that the field describes it is about 4: nine channels, five unknowns.
-    pub misfit: f64,
-}
-
-impl Estimate {
-    /// How far another contact is from this one, squared, in standard deviations by the covariance; `None` if that has no
-    /// inverse.
-    pub fn distance_square(&self, other: &[f64; UNKNOWNS]) -> Option<f64> {
-        let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = self.contact;
-        let here = [x_mm, y_mm, fx_n, fy_n, fz_n].map(f64::from);
-        let off: [f64; UNKNOWNS] = std::array::from_fn(|k| other[k] - here[k]);
-        let solved = Factor::of(&self.covariance)?.solve(&off);
-        Some(off.iter().zip(solved).map(|(off, solved)| off * solved).sum())
-    }
 }
 
 /// A place with its best force.
@@ -128,14 +74,34 @@ impl Inverse {
     /// The contact that explains `strain` best. Without force it is in the middle. Strain that is not finite, or beyond
     /// anything that a pad can read, is no contact.
     pub fn decode(&self, strain: &Strain) -> Contact {
-        self.estimate(strain).map(|estimate| estimate.contact).unwrap_or_default()
+        self.searched(strain).map(|(trial, _)| trial.contact()).filter(is_finite).unwrap_or_default()
     }
 
     /// The same with its uncertainty; `None` for strain that is not finite, or beyond anything that a pad can read.
     pub fn estimate(&self, strain: &Strain) -> Option<Estimate> {
+        let (trial, variances) = self.searched(strain)?;
+        let linear = self.linear(trial.place_mm, trial.force_n, &variances)?;
+        let covariance = linear.covariance(&self.noise, &variances, &trial.force_n);
+        let contact = Some(trial.contact()).filter(is_finite)?;
+        Some(Estimate { contact, covariance, misfit: trial.misfit })
+    }
+
+    /// How the estimate of a contact follows the nine channels, per microvolt; `None` where it does not.
+    pub fn response(&self, contact: &Contact) -> Option<[[f64; CHANNELS]; UNKNOWNS]> {
+        let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = *contact;
+        let uv = self.field.strain_uv(contact).uv.map(f64::from);
+        let variances = self.noise.variances(&uv, f64::from(fz_n));
+        let linear =
+            self.linear([x_mm, y_mm].map(f64::from), [fx_n, fy_n, fz_n].map(f64::from), &variances)?;
+        Some(linear.response)
+    }
+
+    /// The place of the least cost with its force, and the variances of the channels.
+    fn searched(&self, strain: &Strain) -> Option<(Trial, Variances)> {
         let uv = strain.uv.map(f64::from);
         let [fz_n, x_fz, y_fz] = self.start.map(|row| row.iter().zip(&uv).map(|(a, uv)| a * uv).sum());
-        let weights = self.noise.weights(&uv, fz_n);
+        let variances = self.noise.variances(&uv, fz_n);
+        let weights = variances.weights();
         let mut best = self.trial(self.started([x_fz / fz_n, y_fz / fz_n]), &uv, &weights)?;
         let mut shorter = 1.0;
         for _ in 1..STEPS_MAX {
@@ -151,7 +117,13 @@ impl Inverse {
                 shorter *= 0.25;
             }
         }
-        best.estimate(self.noise.gain)
+        Some((best, variances))
+    }
+
+    fn linear(&self, place_mm: [f64; 2], force_n: [f64; 3], variances: &Variances) -> Option<Linear> {
+        let gains = self.field.gains(place_mm[0] as f32, place_mm[1] as f32);
+        let rows = std::array::from_fn(|channel| slopes(&gains, channel, &force_n));
+        Linear::of(&rows, &variances.weights(), &known_before())
     }
 
     /// What an estimate leaves of a channel, in µV, and the variance of what it took up of the channel's noise.
@@ -224,18 +196,16 @@ impl Trial {
         (x_mm.is_finite() && y_mm.is_finite()).then_some([part * x_mm, part * y_mm])
     }
 
-    /// `gain` scatters all channels together: it moves no place, and each force in proportion.
-    fn estimate(&self, gain: f64) -> Option<Estimate> {
+    fn contact(&self) -> Contact {
         let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) =
             (self.place_mm.map(|mm| mm as f32), self.force_n.map(|n| n as f32));
-        let contact = Contact { x_mm, y_mm, fx_n, fy_n, fz_n };
-        let is_finite = [x_mm, y_mm, fx_n, fy_n, fz_n].iter().all(|number| number.is_finite());
-        let mut covariance = Factor::of(&self.curvature)?.inverse();
-        for (line, left) in covariance[2..].iter_mut().zip(self.force_n) {
-            line[2..].iter_mut().zip(self.force_n).for_each(|(entry, n)| *entry += gain * gain * left * n);
-        }
-        is_finite.then_some(Estimate { contact, covariance, misfit: self.misfit })
+        Contact { x_mm, y_mm, fx_n, fy_n, fz_n }
     }
+}
+
+const fn is_finite(contact: &Contact) -> bool {
+    let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = *contact;
+    x_mm.is_finite() && y_mm.is_finite() && fx_n.is_finite() && fy_n.is_finite() && fz_n.is_finite()
 }
 
 /// One over the variances of what is known of any contact.

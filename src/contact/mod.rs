@@ -10,6 +10,7 @@ pub mod regression;
 pub mod shipped;
 pub mod statics;
 pub mod touch;
+pub mod uncertainty;
 
 use crate::contact::friction::{Friction, NO_FRICTION};
 use crate::contact::inverse::Inverse;

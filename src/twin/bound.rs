@@ -126,7 +126,8 @@ fn variance_of_mean(time_s: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::contact::friction::NO_FRICTION;
-    use crate::contact::inverse::{Inverse, Noise};
+    use crate::contact::inverse::Inverse;
+    use crate::contact::uncertainty::Noise;
     use crate::quantity::Strain;
 
     fn noisy(share_time_s: f64) -> Device {

@@ -1,0 +1,141 @@
+//! How sure a decoded contact is: the channels' noise, and what a calibration does not know.
+
+use crate::linear::Factor;
+use crate::quantity::{CHANNELS, Contact};
+
+/// The unknowns: x, y in mm; Fx, Fy, Fz in N.
+pub const UNKNOWNS: usize = 5;
+
+/// A symmetric matrix over the unknowns.
+pub type Covariance = [[f64; UNKNOWNS]; UNKNOWNS];
+
+/// How the channels scatter around the field's answer, as the decoder gets them, and how unsure the field is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Standard deviation of each channel without load.
+    pub additive_uv: [f64; CHANNELS],
+    /// Standard deviation as a share of the channel's own reading.
+    pub share: [f64; CHANNELS],
+    /// Standard deviation of what the field says of a force of 1 N.
+    pub field_uv_per_n: [f64; CHANNELS],
+    /// Standard deviation of a gain that all channels share.
+    pub gain: f64,
+    /// Covariance of what the field's errors do to x, y (mm), and to Fx, Fy, Fz as shares of the whole force.
+    pub by_field: Covariance,
+}
+
+/// Variances of the channels at one reading.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Variances {
+    /// The reading's own noise.
+    noise: [f64; CHANNELS],
+    /// What the field does not know.
+    field: [f64; CHANNELS],
+}
+
+/// What the channels say of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The most likely contact.
+    pub contact: Contact,
+    /// Covariance of x, y (mm), Fx, Fy, Fz (N), for the noise that the decoder was given.
+    pub covariance: Covariance,
+    /// Sum of the squares of what the contact does not explain, in the channels' standard deviations. Of one contact on
+    /// the pad that the field describes it is about 4: nine channels, five unknowns.
+    pub misfit: f64,
+}
+
+/// The estimate's dependence on the channels around a contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Linear {
+    /// Of the unknowns by the channels, per microvolt.
+    pub(super) response: [[f64; CHANNELS]; UNKNOWNS],
+    /// What is left of what was known before.
+    before: Covariance,
+}
+
+impl Noise {
+    /// Channels that scatter so around a field that is certain.
+    pub const fn of_channels(additive_uv: [f64; CHANNELS], share: [f64; CHANNELS]) -> Self {
+        Self {
+            additive_uv,
+            share,
+            field_uv_per_n: [0.0; CHANNELS],
+            gain: 0.0,
+            by_field: [[0.0; UNKNOWNS]; UNKNOWNS],
+        }
+    }
+
+    /// For these readings, under about this force.
+    pub(super) fn variances(&self, uv: &[f64; CHANNELS], force_n: f64) -> Variances {
+        let square = |number: f64| number * number;
+        Variances {
+            noise: std::array::from_fn(|k| square(self.additive_uv[k]) + square(self.share[k] * uv[k])),
+            field: self.field_uv_per_n.map(|uv_per_n| square(uv_per_n * force_n)),
+        }
+    }
+}
+
+impl Variances {
+    /// One over each channel's variance.
+    pub(super) fn weights(&self) -> [f64; CHANNELS] {
+        std::array::from_fn(|k| 1.0 / (self.noise[k] + self.field[k]))
+    }
+}
+
+impl Estimate {
+    /// How far another contact is from this one, squared, in standard deviations by the covariance; `None` if that has no
+    /// inverse.
+    pub fn distance_square(&self, other: &[f64; UNKNOWNS]) -> Option<f64> {
+        let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = self.contact;
+        let here = [x_mm, y_mm, fx_n, fy_n, fz_n].map(f64::from);
+        let off: [f64; UNKNOWNS] = std::array::from_fn(|k| other[k] - here[k]);
+        let solved = Factor::of(&self.covariance)?.solve(&off);
+        Some(off.iter().zip(solved).map(|(off, solved)| off * solved).sum())
+    }
+}
+
+impl Linear {
+    /// `rows` are the slopes of the channels, `known` one over the covariance before anything is measured.
+    pub(super) fn of(
+        rows: &[[f64; UNKNOWNS]; CHANNELS],
+        weights: &[f64; CHANNELS],
+        known: &Covariance,
+    ) -> Option<Self> {
+        let mut curvature = *known;
+        for (row, weight) in rows.iter().zip(weights) {
+            for (line, left) in curvature.iter_mut().zip(row) {
+                line.iter_mut().zip(row).for_each(|(entry, right)| *entry += weight * left * right);
+            }
+        }
+        let inverse = Factor::of(&curvature)?.inverse();
+        let response = std::array::from_fn(|i| {
+            std::array::from_fn(|k| {
+                weights[k] * inverse[i].iter().zip(&rows[k]).map(|(a, b)| a * b).sum::<f64>()
+            })
+        });
+        let before = std::array::from_fn(|i| {
+            std::array::from_fn(|j| (0..UNKNOWNS).map(|k| inverse[i][k] * known[k][k] * inverse[k][j]).sum())
+        });
+        Some(Self { response, before })
+    }
+
+    /// Covariance of an estimate with this force.
+    pub(super) fn covariance(&self, noise: &Noise, variances: &Variances, force_n: &[f64; 3]) -> Covariance {
+        let [fx_n, fy_n, fz_n] = *force_n;
+        let whole_n = libm::sqrt(fx_n * fx_n + fy_n * fy_n + fz_n * fz_n);
+        let scale = [1.0, 1.0, whole_n, whole_n, whole_n];
+        let along = [0.0, 0.0, fx_n, fy_n, fz_n].map(|n| noise.gain * n);
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let by_noise: f64 = (0..CHANNELS)
+                    .map(|k| self.response[i][k] * variances.noise[k] * self.response[j][k])
+                    .sum();
+                by_noise
+                    + self.before[i][j]
+                    + scale[i] * noise.by_field[i][j] * scale[j]
+                    + along[i] * along[j]
+            })
+        })
+    }
+}

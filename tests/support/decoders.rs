@@ -2,8 +2,9 @@
 
 use tactpad::calibration::regression::{neighbours, regression};
 use tactpad::contact::friction::NO_FRICTION;
-use tactpad::contact::inverse::{Inverse, Noise};
+use tactpad::contact::inverse::Inverse;
 use tactpad::contact::regression::Target;
+use tactpad::contact::uncertainty::Noise;
 use tactpad::contact::{Decoder, read, shipped};
 use tactpad::field::PadField;
 use tactpad::influence::InfluenceField;

@@ -6,10 +6,12 @@
 //! |---|---|
 //! | 1 | kind |
 //! | 8 | host time in nanoseconds |
-//! | 4 | length n of the payload, up to 1 MiB |
+//! | 4 | length n of the payload, up to 16 MiB |
 //! | 4 | checksum of the previous entry's payload checksum (0 for the first entry) and of the fields above |
-//! | n | payload: the pad's bytes, or a profile's text |
+//! | n | payload: the pad's bytes, a profile's text, or a decoder's file |
 //! | 4 | checksum of the head's checksum and of the payload |
+//!
+//! A capture begins with its decoder, if it was another one than statics as it is inside the program, and its profile.
 //!
 //! Checksums are the wire's CRC-32. Each covers the one before it, so an entry that is missing, doubled or moved is
 //! damage, too. The head has its own, so that a damaged length is not taken for the end of the file. A recorder that
@@ -25,7 +27,7 @@ use crate::time::HostInstant;
 const MAGIC: &[u8] = b"tactpad capture 1\n";
 
 /// Longer payloads are not written by any recorder.
-const PAYLOAD_BYTES_MAX: u32 = 1 << 20;
+const PAYLOAD_BYTES_MAX: u32 = 1 << 24;
 
 /// Kind, host time and length.
 const FIELDS_BYTES: usize = 13;
@@ -58,10 +60,12 @@ pub enum CallKind {
     ReleaseAll,
     /// The zero was to be measured again.
     Retare,
-    /// Another profile, as its TOML text, for the output it names; the first call of a capture.
+    /// Another profile, as its TOML text, for the output it names; a capture's first one is what it begins with.
     Profile(String),
     /// The same, for the keyboard whatever output it names.
     KeyboardProfile(String),
+    /// The decoder that plays, as its file has it; stands before everything else or nowhere.
+    Decoder(Vec<u8>),
 }
 
 /// Why a capture cannot be read.
@@ -69,8 +73,8 @@ pub enum CallKind {
 pub enum CaptureError {
     /// It does not begin like one.
     NotACapture,
-    /// A checksum is wrong, an entry is of no known kind or impossibly long, or carries bytes where its kind has
-    /// none: the file is damaged, or from a newer program. All entries before it were given.
+    /// A checksum is wrong, an entry is of no known kind or impossibly long, carries bytes where its kind has none, or
+    /// is a decoder in the middle: the file is damaged, or from a newer program. All entries before it were given.
     Damaged {
         /// Byte offset of the entry.
         offset: u64,
@@ -80,7 +84,7 @@ pub enum CaptureError {
         /// Byte offset of the entry.
         offset: u64,
     },
-    /// It ends, or is cut off, before the first call but that of its profile.
+    /// It ends, or is cut off, before the first call but those of its decoder and profile.
     NoPlay,
     /// The file cannot be read.
     Io(io::Error),
@@ -125,11 +129,11 @@ impl<W: Write> CaptureWriter<W> {
     /// Adds one call.
     ///
     /// # Errors
-    /// The call cannot be written, or what it carries is longer than 1 MiB.
+    /// The call cannot be written, or what it carries is longer than 16 MiB.
     pub fn write(&mut self, now: HostInstant, call: CallRef<'_>) -> io::Result<()> {
         let payload = call.payload();
         let length = u32::try_from(payload.len()).ok().filter(|length| *length <= PAYLOAD_BYTES_MAX);
-        let length = length.ok_or_else(|| io::Error::other("a call carries more than 1 MiB"))?;
+        let length = length.ok_or_else(|| io::Error::other("a call carries more than 16 MiB"))?;
         self.entry.clear();
         self.entry.push(call.kind());
         self.entry.extend_from_slice(&now.as_ns().to_le_bytes());
@@ -177,6 +181,8 @@ pub enum CallRef<'a> {
     Profile(&'a str),
     /// See [`CallKind::KeyboardProfile`].
     KeyboardProfile(&'a str),
+    /// See [`CallKind::Decoder`].
+    Decoder(&'a [u8]),
 }
 
 impl CallRef<'_> {
@@ -191,12 +197,13 @@ impl CallRef<'_> {
             Self::Retare => 6,
             Self::Profile(_) => 7,
             Self::KeyboardProfile(_) => 8,
+            Self::Decoder(_) => 9,
         }
     }
 
     const fn payload(&self) -> &[u8] {
         match self {
-            Self::Bytes(bytes) => bytes,
+            Self::Bytes(bytes) | Self::Decoder(bytes) => bytes,
             Self::Profile(text) | Self::KeyboardProfile(text) => text.as_bytes(),
             _ => &[],
         }
@@ -205,7 +212,7 @@ impl CallRef<'_> {
 
 impl CallKind {
     fn from_entry(kind: u8, bytes: Vec<u8>) -> Option<Self> {
-        let carries_bytes = matches!(kind, 0 | 7 | 8);
+        let carries_bytes = matches!(kind, 0 | 7..=9);
         if !carries_bytes && !bytes.is_empty() {
             return None;
         }
@@ -219,8 +226,14 @@ impl CallKind {
             6 => Some(Self::Retare),
             7 => String::from_utf8(bytes).ok().map(Self::Profile),
             8 => String::from_utf8(bytes).ok().map(Self::KeyboardProfile),
+            9 => Some(Self::Decoder(bytes)),
             _ => None,
         }
+    }
+
+    /// Whether it is more than what a capture begins with.
+    const fn is_play(&self) -> bool {
+        !matches!(self, Self::Profile(_) | Self::KeyboardProfile(_) | Self::Decoder(_))
     }
 
     /// The same call, borrowed.
@@ -235,6 +248,7 @@ impl CallKind {
             Self::Retare => CallRef::Retare,
             Self::Profile(text) => CallRef::Profile(text),
             Self::KeyboardProfile(text) => CallRef::KeyboardProfile(text),
+            Self::Decoder(bytes) => CallRef::Decoder(bytes),
         }
     }
 }
@@ -273,7 +287,9 @@ impl<R: Read> CaptureReader<R> {
         self.chain = u32::from_le_bytes(checksum_of_payload);
         self.offset += (HEAD_BYTES + CHECKSUM_BYTES) as u64 + u64::from(length);
         let sound = chained(checksum, &payload) == self.chain;
-        let kind = CallKind::from_entry(kind, payload).filter(|_| sound);
+        let is_first = offset == MAGIC.len() as u64;
+        let kind = CallKind::from_entry(kind, payload)
+            .filter(|kind| sound && (is_first || !matches!(kind, CallKind::Decoder(_))));
         Ok(Some(Call { now, kind: kind.ok_or(CaptureError::Damaged { offset })? }))
     }
 
@@ -328,8 +344,7 @@ impl<R: Read> Iterator for CaptureReader<R> {
             entry => entry,
         };
         match &entry {
-            Some(Ok(Call { kind: CallKind::Profile(_) | CallKind::KeyboardProfile(_), .. })) => {}
-            Some(Ok(_)) => self.plays = true,
+            Some(Ok(call)) => self.plays |= call.kind.is_play(),
             _ => self.ended = true,
         }
         entry
@@ -356,6 +371,7 @@ mod tests {
 
     fn calls() -> Vec<Call> {
         let kinds = [
+            CallKind::Decoder(vec![0, 255, 10]),
             CallKind::Profile("name = \"é\"".into()),
             CallKind::Bytes((0..=255).collect()),
             CallKind::Timeout,
@@ -367,7 +383,7 @@ mod tests {
             CallKind::KeyboardProfile(String::new()),
             CallKind::Bytes(Vec::new()),
         ];
-        let nows = [0, 1, 2, 3, 4, 5, 6, 7, 1 << 40, u64::MAX];
+        let nows = [0, 0, 1, 2, 3, 4, 5, 6, 7, 1 << 40, u64::MAX];
         kinds.into_iter().zip(nows).map(|(kind, ns)| Call { now: HostInstant::from_ns(ns), kind }).collect()
     }
 
@@ -397,11 +413,11 @@ mod tests {
                 calls().iter().zip(&entries).take(whole).all(|(call, entry)| entry.as_ref().unwrap() == call)
             );
             match &entries[whole..] {
-                [] => assert!(offsets().contains(&(end as u64)) && whole > 1),
+                [] => assert!(offsets().contains(&(end as u64)) && whole > 2),
                 [Err(CaptureError::CutOff { offset })] => {
-                    assert_eq!((*offset, whole > 1), (offsets()[whole], true));
+                    assert_eq!((*offset, whole > 2), (offsets()[whole], true));
                 }
-                [Err(CaptureError::NoPlay)] => assert!(whole <= 1),
+                [Err(CaptureError::NoPlay)] => assert!(whole <= 2),
                 rest => panic!("{rest:?}"),
             }
         }
@@ -461,7 +477,7 @@ mod tests {
         let [before, entry, after] = [&bytes[..second], &bytes[second..third], &bytes[third..]];
         is_damaged_at(&[before, after].concat(), offsets[1], "missing");
         is_damaged_at(&[before, entry, entry, after].concat(), offsets[2], "doubled");
-        is_damaged_at(&[&bytes[..], &bytes[first..second]].concat(), offsets[10], "two captures in one");
+        is_damaged_at(&[&bytes[..], &bytes[first..second]].concat(), offsets[11], "two captures in one");
         is_damaged_at(&[MAGIC, &[99; 200]].concat(), offsets[0], "noise");
     }
 
@@ -476,14 +492,24 @@ mod tests {
     }
 
     #[test]
+    fn a_decoder_stands_first_or_the_file_is_damaged() {
+        let mut writer = CaptureWriter::new(Vec::new()).unwrap();
+        for call in [CallRef::Decoder(b"one"), CallRef::Profile(""), CallRef::Decoder(b"two")] {
+            writer.write(HostInstant::default(), call).unwrap();
+        }
+        let read: Vec<_> = CaptureReader::new(&writer.to[..]).unwrap().collect();
+        assert!(matches!(&read[..], [Ok(_), Ok(_), Err(CaptureError::Damaged { .. })]), "{read:?}");
+    }
+
+    #[test]
     fn bytes_where_a_call_has_none_are_damage() {
-        for kind in 0..=9_u8 {
+        for kind in 0..=10_u8 {
             let fields = [&[kind; 1][..], &[0; 8], &[1, 0, 0, 0]].concat();
             let head = chained(0, &fields);
             let ends = [head, chained(head, b"x")].map(u32::to_le_bytes);
             let file = [MAGIC, &fields, &ends[0], b"x", &ends[1]].concat();
             let entry = CaptureReader::new(&file[..]).unwrap().next().unwrap();
-            assert_eq!(entry.is_ok(), [0, 7, 8].contains(&kind), "kind {kind}");
+            assert_eq!(entry.is_ok(), [0, 7, 8, 9].contains(&kind), "kind {kind}");
         }
     }
 }

@@ -38,6 +38,8 @@ pub fn make_call<P: Probe, E>(
         CallRef::Retare => pipeline.retare(now),
         CallRef::Profile(text) => set_profile(pipeline, now, text, OutputChoice::AsWritten),
         CallRef::KeyboardProfile(text) => set_profile(pipeline, now, text, OutputChoice::Keyboard),
+        // A capture begins with it: whoever made the pipeline has read it.
+        CallRef::Decoder(_) => return Ok(()),
     }
     deliver_events(pipeline, &mut deliver)
 }

@@ -6,9 +6,9 @@ use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
+use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::Duration;
 
@@ -98,6 +98,8 @@ pub struct Requests {
     flags: Vec<(Arc<AtomicBool>, Request)>,
     queue: Receiver<Asked>,
     ask: Sender<Asked>,
+    /// Held while a client gets its answer.
+    answering: Arc<Mutex<()>>,
     socket: Option<PathBuf>,
 }
 
@@ -118,7 +120,7 @@ impl Requests {
             flags.push((flag, request));
         }
         let (ask, queue) = channel();
-        Ok(Self { woken, wake, flags, queue, ask, socket: None })
+        Ok(Self { woken, wake, flags, queue, ask, answering: Arc::default(), socket: None })
     }
 
     /// Listens at `path` too. A socket that nobody listens at any more is taken over.
@@ -134,10 +136,11 @@ impl Requests {
         fs::set_permissions(path, Permissions::from_mode(0o600))?;
         self.socket = Some(path.to_owned());
         let (ask, wake) = (self.ask.clone(), self.wake.try_clone()?);
+        let answering = Arc::clone(&self.answering);
         thread::Builder::new().name("control".into()).spawn(move || {
             for client in listener.incoming().flatten() {
                 // A client that misbehaves harms nobody but itself.
-                let _ = serve(client, &ask, &wake);
+                let _ = serve(client, &ask, &wake, &answering);
             }
         })?;
         Ok(())
@@ -161,13 +164,21 @@ impl Requests {
 
 impl Drop for Requests {
     fn drop(&mut self) {
+        // Who asked the bridge to end still gets the answer; the process takes the control thread with it.
+        while self.queue.try_recv().is_ok() {}
+        drop(self.answering.lock());
         if let Some(socket) = &self.socket {
             let _ = fs::remove_file(socket);
         }
     }
 }
 
-fn serve(client: UnixStream, ask: &Sender<Asked>, mut wake: &UnixStream) -> io::Result<()> {
+fn serve(
+    client: UnixStream,
+    ask: &Sender<Asked>,
+    mut wake: &UnixStream,
+    answering: &Mutex<()>,
+) -> io::Result<()> {
     client.set_read_timeout(Some(CLIENT_LIMIT))?;
     client.set_write_timeout(Some(CLIENT_LIMIT))?;
     let mut line = String::new();
@@ -176,6 +187,7 @@ fn serve(client: UnixStream, ask: &Sender<Asked>, mut wake: &UnixStream) -> io::
         return writeln!(&client, r#"{{"ok":false,"error":"unknown request"}}"#);
     };
     let (answer, answered) = sync_channel(1);
+    let _answering = answering.lock();
     let asked = Asked { request, answer: Some(answer) };
     ask.send(asked).map_err(|_| io::Error::from(io::ErrorKind::BrokenPipe))?;
     wake.write_all(&[1])?;

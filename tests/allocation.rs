@@ -1,10 +1,14 @@
 //! The live core allocates nothing after it was made.
 
+#[path = "support/decoders.rs"]
+mod decoders;
+
 use tactpad::contact::Decoder;
 use tactpad::field::PadField;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::shipped;
 use tactpad::pipeline::{NoProbe, Pipeline};
+use tactpad::quantity::{CHANNELS, Contact, Strain};
 use tactpad::time::HostInstant;
 use tactpad::virtual_pad::firmware::VirtualPad;
 use tactpad::virtual_pad::script::Script;
@@ -46,6 +50,37 @@ fn plays_without_allocating(name: &str) {
     });
     assert!(events > 30 && pipeline.health().frames_damaged > 3, "{events} events, {:?}", pipeline.health());
     assert_eq!(allocated.count_total, 0, "{name}");
+}
+
+/// Channels of presses, and such as no pad gives.
+fn strains() -> Vec<Strain> {
+    let field = PadField::nominal().signals;
+    let press = |index: u16| {
+        let (x_mm, y_mm) = (f32::from(index % 31) - 15.0, f32::from(index / 31) - 5.0);
+        field.strain_uv(&Contact { x_mm, y_mm, fz_n: f32::from(index % 7), ..Contact::default() })
+    };
+    let odd = [0.0, -0.0, 1e-40, 1e6, -1e30, f32::MAX, f32::INFINITY, f32::NAN];
+    let all = odd.map(|uv| Strain { uv: [uv; CHANNELS] });
+    let one = odd.map(|uv| Strain { uv: std::array::from_fn(|k| if k == 4 { uv } else { 200.0 }) });
+    (0..300).map(press).chain(all).chain(one).collect()
+}
+
+#[test]
+fn every_decoder_decodes_anything_without_allocating_and_gives_finite_numbers() {
+    let strains = strains();
+    for (name, decoder) in decoders::each() {
+        let mut all_finite = true;
+        let mut pressed = 0;
+        let allocated = allocation_counter::measure(|| {
+            for strain in &strains {
+                let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = decoder.decode(strain);
+                all_finite &= [x_mm, y_mm, fx_n, fy_n, fz_n].iter().all(|number| number.is_finite());
+                pressed += u32::from(fz_n > 0.5);
+            }
+        });
+        assert!(all_finite && pressed > 200, "{name}: {pressed} presses");
+        assert_eq!(allocated.count_total, 0, "{name}");
+    }
 }
 
 #[test]

@@ -81,6 +81,7 @@ fn a_bridge_is_asked_paused_changed_and_ended() {
         status["state"] == "playing" && status["held"] != Value::Array(vec![])
     });
     assert_eq!((&status["pad"], &status["profile"]), (&"VIRTUAL-0001".into(), &"Super Mario".into()));
+    assert_eq!(status["decoder"], "statics");
     assert_eq!(status["health"]["frames_lost"], 0);
 
     assert!(bridge.ctl("pause").status.success());
@@ -110,9 +111,14 @@ fn a_bridge_is_asked_paused_changed_and_ended() {
 
 #[test]
 fn a_bridge_without_a_pad_waits_and_says_so() {
-    let bridge = Running::start(&["--pad", "serial:pad", "--wait"]);
-    bridge.await_status("waits", |status| status["state"] == "waiting");
+    let bridge = Running::start(&["--pad", "serial:pad", "--wait", "--decoder", "scdf"]);
+    let status = bridge.await_status("waits", |status| status["state"] == "waiting");
     bridge.await_status("says so", |_| bridge.told().contains("waiting for the pad"));
+    assert_eq!(status["decoder"], "network (scdf)");
+    let listed = bridge.ctl("status").stdout;
+    assert!(String::from_utf8_lossy(&listed).contains("decoder  network (scdf)"));
+    let found = Running::program(bridge.folder.path()).arg("doctor").output().unwrap().stdout;
+    assert!(String::from_utf8_lossy(&found).contains("decoder network (scdf)"));
 }
 
 #[test]

@@ -2,9 +2,15 @@
 #![cfg(all(feature = "live", target_os = "linux"))]
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
-use std::fs;
+#[path = "support/decoders.rs"]
+mod decoders;
+
+use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Output};
+use std::thread;
+
+use tactpad::capture::{CallKind, CaptureReader};
 
 fn tactpad(arguments: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_tactpad")).args(arguments).current_dir(folder).output().unwrap()
@@ -34,6 +40,48 @@ fn a_recording_replays_byte_for_byte_and_plays_as_a_pad() {
         text.lines().map(|line| line.split("\"device\"").nth(1).unwrap().to_owned()).collect()
     };
     assert_eq!(codes(&again), codes(&live));
+}
+
+/// Plays with a decoder, and sees that the capture holds it and replays to the same events.
+fn plays_and_replays(folder: &Path, name: &str, file: Option<&[u8]>) {
+    let path = format!("{name}.decoder");
+    let chosen = if file.is_some() { path.as_str() } else { name };
+    file.into_iter().for_each(|bytes| fs::write(folder.join(&path), bytes).unwrap());
+    let [capture, log] = ["cap", "log"].map(|kind| format!("{name}.{kind}"));
+    let output = format!("log:{log}");
+    let arguments = ["record", &capture, "--seconds", "3", "--decoder", chosen, "--output", &output];
+    let recorded = tactpad(&arguments, folder);
+    assert!(recorded.status.success(), "{name}: {}", String::from_utf8_lossy(&recorded.stderr));
+    // Only the capture is needed.
+    let _ = fs::remove_file(folder.join(&path));
+    let live = fs::read_to_string(folder.join(&log)).unwrap();
+    let again = String::from_utf8(tactpad(&["replay", &capture], folder).stdout).unwrap();
+    assert!(lines(live.as_bytes()) >= 2, "{name}: {live}");
+    assert_eq!(again, live, "{name}");
+    let mut calls = CaptureReader::new(File::open(folder.join(&capture)).unwrap()).unwrap();
+    let held = match calls.next().unwrap().unwrap().kind {
+        CallKind::Decoder(bytes) => Some(bytes),
+        _ => None,
+    };
+    assert_eq!(held.is_some(), name != "statics", "{name}");
+    assert!(file.is_none() || held.as_deref() == file, "{name}");
+}
+
+#[test]
+fn a_recording_with_any_decoder_holds_it_and_replays_byte_for_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    thread::scope(|scope| {
+        for (name, decoder) in decoders::each() {
+            let file = decoder.to_bytes("nominal pad");
+            let name = if name == "network" { "scdf" } else { name };
+            scope.spawn(move || plays_and_replays(folder, name, file.as_deref()));
+        }
+    });
+    let own = tactpad(&["replay", "linear.cap"], folder).stdout;
+    let otherwise = tactpad(&["replay", "linear.cap", "--decoder", "statics"], folder).stdout;
+    assert_eq!(otherwise, tactpad(&["replay", "linear.cap", "--decoder", "statics"], folder).stdout);
+    assert!(own != otherwise && lines(&otherwise) >= 2, "another decoder gives other events");
 }
 
 #[test]

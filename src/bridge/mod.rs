@@ -52,6 +52,8 @@ pub type ProfileReader = Box<dyn FnMut(Option<&str>) -> Result<ReadProfile, Stri
 pub struct Parts {
     /// The pipeline, with its profile.
     pub pipeline: Pipeline,
+    /// What people call its decoder.
+    pub decoder: String,
     /// The pad, opened once already so that errors were told.
     pub pad: Option<Box<dyn Transport>>,
     /// Opens the pad again after it was unplugged; `None` for a pad that ends, as a capture does.
@@ -88,6 +90,7 @@ pub enum Ending {
 /// The running bridge.
 pub struct Bridge {
     pipeline: Pipeline,
+    decoder: String,
     keeper: Keeper,
     sink: Box<dyn Sink>,
     requests: Requests,
@@ -125,6 +128,7 @@ impl Bridge {
         };
         Self {
             pipeline: parts.pipeline,
+            decoder: parts.decoder,
             keeper,
             sink: parts.sink,
             requests: parts.requests,
@@ -328,6 +332,7 @@ impl Bridge {
             state: self.state(),
             pad: self.pipeline.identity().map(|identity| identity.serial_number.as_str()),
             profile: &self.pipeline.profile().name,
+            decoder: &self.decoder,
             output: self.sink.describe(),
             contact: self.pipeline.contact().copied(),
             held: self.pipeline.held().map(|level| level.code.to_string()).collect(),

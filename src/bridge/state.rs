@@ -114,6 +114,7 @@ pub(super) struct Status<'a> {
     pub(super) state: State,
     pub(super) pad: Option<&'a str>,
     pub(super) profile: &'a str,
+    pub(super) decoder: &'a str,
     pub(super) output: String,
     pub(super) contact: Option<Contact>,
     pub(super) held: Vec<String>,

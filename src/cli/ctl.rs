@@ -100,6 +100,7 @@ fn print_status(status: &Value) -> io::Result<()> {
     writeln!(out, "state    {}", text("state"))?;
     writeln!(out, "pad      {}", text("pad"))?;
     writeln!(out, "profile  {}", text("profile"))?;
+    writeln!(out, "decoder  {}", text("decoder"))?;
     writeln!(out, "output   {}", text("output"))?;
     let held = status.get("held").and_then(Value::as_array).into_iter().flatten();
     writeln!(out, "held     {}", held.filter_map(Value::as_str).collect::<Vec<_>>().join(" "))?;

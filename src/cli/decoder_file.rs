@@ -1,27 +1,51 @@
-//! Decoders as files.
+//! Decoders as files, or by the names of those that are inside the program.
 
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 
+use clap::Args;
+
 use super::Failure;
 use super::written::{create, reason};
-use crate::contact::Decoder;
-use crate::contact::file::MAGIC;
+use crate::contact::{Decoder, read, shipped};
 use crate::network::{Network, onnx};
 
-/// Far more than any decoder needs.
+/// Far more than any decoder needs, and no more than a capture's entry holds.
 const BYTES_MAX: u64 = 16_000_000;
+
+/// The decoder of a verb that plays.
+#[derive(Debug, Args)]
+pub(super) struct Choice {
+    /// What turns channels into a contact: a file that adapt or train wrote, statics, or scdf.
+    #[arg(long, value_name = "NAME|FILE")]
+    decoder: Option<String>,
+}
+
+impl Choice {
+    /// Whether one was chosen.
+    pub(super) const fn is_given(&self) -> bool {
+        self.decoder.is_some()
+    }
+
+    /// What was chosen, or plays anyway.
+    pub(super) fn name(&self) -> &str {
+        self.decoder.as_deref().unwrap_or(shipped::STATICS)
+    }
+
+    /// Reads a decoder that can play, and its bytes.
+    pub(super) fn read(&self) -> Result<(Decoder, Vec<u8>), Failure> {
+        let path = Path::new(self.name());
+        let bytes = bytes(path).map_err(|why| unusable(path, &why))?;
+        let decoder = read::playing(&bytes).map_err(|error| unusable(path, &error.to_string()))?;
+        Ok((decoder, bytes))
+    }
+}
 
 /// Reads any decoder.
 pub(super) fn read(path: &Path) -> Result<Decoder, Failure> {
     let bytes = bytes(path).map_err(|why| unusable(path, &why))?;
-    if bytes.starts_with(MAGIC) {
-        let read = Decoder::from_bytes(&bytes);
-        return read.map(|(decoder, _)| decoder).map_err(|error| unusable(path, &format!("it {error}")));
-    }
-    let network = onnx::read(&bytes).map_err(|error| unusable(path, &error.to_string()))?;
-    Ok(Decoder::Network(Box::new(network)))
+    read::decoder(&bytes).map_err(|error| unusable(path, &error.to_string()))
 }
 
 /// Reads a network.
@@ -42,7 +66,11 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     Ok(file.flush()?)
 }
 
+/// What a name or a file stands for. A file of a shipped decoder's name is meant by `./NAME`.
 fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    if let Some(bytes) = path.to_str().and_then(shipped::bytes) {
+        return Ok(bytes.into());
+    }
     let file = File::open(path).map_err(|error| reason(&error))?;
     if !file.metadata().is_ok_and(|file| file.is_file()) {
         return Err("it is no file; name one that train or adapt wrote".into());

@@ -7,12 +7,14 @@ use std::sync::{Arc, Mutex};
 use clap::Args;
 use serde::Serialize;
 
+use super::chosen::Chosen;
+use super::decoder_file::Choice;
 use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, Output, Plan, bridge, open_virtual, play};
 use super::screen::Screen;
 use super::written::stdout;
-use super::{Failure, if_read, print_json, profile, say, seconds};
+use super::{Failure, chosen, if_read, print_json, profile, say, seconds};
 use crate::bridge::keeper::Patience;
 use crate::bridge::{Bridge, Ending};
 use crate::control::{Code, Device, OutputEvent};
@@ -34,6 +36,8 @@ pub(super) struct Arguments {
     /// A profile's name or file.
     #[arg(long, default_value = "super-mario")]
     profile: String,
+    #[command(flatten)]
+    decoder: Choice,
     #[command(flatten)]
     device: Pad,
     /// Where events go: auto (a virtual gamepad, else the screen), uinput, x11, log:FILE, none.
@@ -115,8 +119,10 @@ impl Sink for Witness {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { profile, output, .. } = arguments;
-    Files { pad: &PadAddress::Virtual, profile, output, capture: None }.check()?;
+    let Arguments { profile, output, decoder, .. } = arguments;
+    Files { pad: &PadAddress::Virtual, profile, output, decoder: chosen::file(decoder), capture: None }
+        .check()?;
+    let decoder = Chosen::read(decoder)?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let script = Script::for_profile(&profile, (arguments.seconds * 1e6) as u64);
     let expected = script.expected().to_vec();
@@ -134,6 +140,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         profile_text: text,
         profile,
         choice: arguments.output.choice(),
+        decoder,
         record: None,
         seconds: Some(arguments.seconds),
         patience: Patience::Limited,

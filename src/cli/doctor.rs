@@ -8,6 +8,7 @@ use std::path::Path;
 use clap::Args;
 use rustix::fs::{Access, access};
 use serde::Serialize;
+use serde_json::Value;
 
 use super::written::stdout;
 use super::{Failure, ctl, if_read, print_json};
@@ -244,9 +245,16 @@ fn check_session(variable: impl Fn(&str) -> Option<String>) -> Vec<Check> {
 
 fn check_bridge() -> Check {
     match ask(&ctl::socket_path(), "status") {
-        Ok(_) => Check::note("bridge", "one is running: tactpad ctl status"),
+        Ok(status) => Check::note("bridge", bridge_message(&status)),
         Err(_) => Check::note("bridge", "none is running"),
     }
+}
+
+/// The status of a bridge in a sentence.
+fn bridge_message(status: &str) -> String {
+    let status: Value = serde_json::from_str(status).unwrap_or_default();
+    let text = |key: &str| status.get(key).and_then(Value::as_str).unwrap_or("unknown");
+    format!("one is running, profile {}, decoder {}: tactpad ctl status", text("profile"), text("decoder"))
 }
 
 #[cfg(test)]

@@ -16,6 +16,8 @@ pub(super) struct Files<'a> {
     pub(super) pad: &'a PadAddress,
     pub(super) profile: &'a str,
     pub(super) output: &'a Output,
+    /// The decoder that is read.
+    pub(super) decoder: Option<&'a Path>,
     /// The capture that is written.
     pub(super) capture: Option<&'a Path>,
 }
@@ -39,7 +41,12 @@ impl Files<'_> {
         };
         let profile = shipped::text(self.profile).is_none().then(|| Path::new(self.profile));
         for written in [self.capture, log].into_iter().flatten() {
-            for (read, what) in [(source, "is what is played"), (profile, "is the profile")] {
+            let read = [
+                (source, "is what is played"),
+                (profile, "is the profile"),
+                (self.decoder, "is the decoder"),
+            ];
+            for (read, what) in read {
                 if read.is_some_and(|read| is_same(read, written)) {
                     return Err(written_over(written, what));
                 }

@@ -11,15 +11,16 @@ use clap::Args;
 use firmware_proto::command::Command;
 use serde::Serialize;
 
+use super::chosen::Chosen;
+use super::decoder_file::Choice;
 use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, OpenedPad, Output, Plan, bridge, open_pad, play};
 use super::written::stdout;
-use super::{Failure, print_json, profile, say, seconds};
+use super::{Failure, chosen, print_json, profile, say, seconds};
 use crate::bridge::clock::Clock;
 use crate::bridge::keeper::Patience;
 use crate::capture::{CallRef, CaptureReader};
-use crate::contact::Decoder;
 use crate::control::{Device, OutputEvent};
 use crate::latency::{Durations, Percentiles};
 use crate::mapping::profile::{Action, Profile};
@@ -45,6 +46,8 @@ pub(super) struct Arguments {
     /// A profile's name or file.
     #[arg(long, default_value = "super-mario")]
     profile: String,
+    #[command(flatten)]
+    decoder: Choice,
     /// Where events go: auto (a virtual gamepad, else nowhere), uinput, x11, log:FILE, none.
     #[arg(long, default_value = "auto")]
     output: Output,
@@ -81,14 +84,17 @@ struct Policy {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { pad, profile, output, .. } = arguments;
-    Files { pad, profile, output, capture: None }.check()?;
+    let Arguments { pad, profile, output, decoder, .. } = arguments;
+    Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
+    let decoder = Chosen::read(decoder)?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let pad = open_pad(&arguments.pad, &arguments.device, &profile, Patience::Limited)?;
     let timing = Timing::default();
     let calls = Shared::default();
     let sink = TimedSink { sink: open_sink(&arguments.output)?, timing: timing.clone() };
-    say(format_args!("{} → {} for {} s", arguments.pad, sink.describe(), arguments.seconds));
+    let way = format!("{} → {} → {}", arguments.pad, decoder.name, sink.describe());
+    say(format_args!("{way} for {} s", arguments.seconds));
+    let replayed = decoder.decoder.clone();
     let (mut bridge, _running) = bridge(Plan {
         pad: timed(pad, &timing),
         sink: Box::new(sink),
@@ -96,6 +102,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         profile_text: text,
         profile: profile.clone(),
         choice: arguments.output.choice(),
+        decoder,
         record: Some(Box::new(calls.clone())),
         seconds: Some(arguments.seconds),
         patience: Patience::Limited,
@@ -104,7 +111,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     play(&mut bridge, &arguments.pad)?;
     let mut stages = timing.taken();
-    let period_us = replay_timed(&calls.taken(), profile.clone(), &mut stages)?;
+    let period_us = replay_timed(&calls.taken(), Pipeline::new(replayed, profile.clone()), &mut stages)?;
     let report = Report {
         samples: bridge.health().samples,
         writes: bridge.latency().len(),
@@ -154,14 +161,20 @@ fn policy(profile: &Profile, period_us: u64) -> Policy {
 }
 
 /// Makes the recorded calls again with a clock inside. Returns the samples' period.
-fn replay_timed(calls: &[u8], profile: Profile, stages: &mut Stages<Durations>) -> Result<u64, Failure> {
-    let mut pipeline = Pipeline::new(Decoder::shipped(), profile);
+fn replay_timed(
+    calls: &[u8],
+    mut pipeline: Pipeline,
+    stages: &mut Stages<Durations>,
+) -> Result<u64, Failure> {
     let mut probe = Stopwatch { clock: Clock::start(), last: HostInstant::default(), stages };
     let reader = CaptureReader::new(calls).map_err(|error| Failure::Failed(error.to_string()))?;
     let (mut first, mut last) = (None, HostInstant::default());
     for call in reader {
         let call = call.map_err(|error| Failure::Failed(error.to_string()))?;
-        if matches!(call.kind.as_ref(), CallRef::Profile(_) | CallRef::KeyboardProfile(_)) {
+        if matches!(
+            call.kind.as_ref(),
+            CallRef::Decoder(_) | CallRef::Profile(_) | CallRef::KeyboardProfile(_)
+        ) {
             continue;
         }
         first.get_or_insert(call.now);

@@ -8,6 +8,7 @@ use std::str::FromStr;
 
 use rustix::event::{Timespec, poll};
 
+use super::chosen::Chosen;
 use super::device::Pad;
 use super::field_cache::field_of;
 use super::{Failure, profile};
@@ -15,7 +16,6 @@ use crate::bridge::clock::Clock;
 use crate::bridge::keeper::{Patience, Reopen};
 use crate::bridge::{Bridge, BridgeError, Ending, Parts, ReadProfile};
 use crate::capture::{CallKind, CallRef, CaptureReader, CaptureWriter};
-use crate::contact::Decoder;
 use crate::mapping::check::OutputChoice;
 use crate::mapping::profile::Profile;
 use crate::pipeline::{Pipeline, Refusal};
@@ -213,6 +213,7 @@ pub(super) struct Plan {
     pub(super) profile_text: String,
     pub(super) profile: Profile,
     pub(super) choice: OutputChoice,
+    pub(super) decoder: Chosen,
     pub(super) record: Option<Box<dyn Write>>,
     pub(super) seconds: Option<f64>,
     pub(super) patience: Patience,
@@ -243,9 +244,11 @@ pub(super) fn bridge(plan: Plan) -> Result<(Bridge, RunningPad), Failure> {
     let now = clock.now();
     let Plan { pad: OpenedPad { pad, opener, _virtual_pad }, profile_text, choice, audience, .. } = plan;
     let mut profile_name = plan.profile_name;
-    let recorder = plan.record.map(|to| begin_capture(to, now, &profile_text, choice)).transpose()?;
+    let begin = |to| begin_capture(to, now, plan.decoder.bytes.as_deref(), &profile_text, choice);
+    let recorder = plan.record.map(begin).transpose()?;
     let parts = Parts {
-        pipeline: Pipeline::new(Decoder::shipped(), plan.profile),
+        pipeline: Pipeline::new(plan.decoder.decoder, plan.profile),
+        decoder: plan.decoder.name,
         pad,
         opener,
         sink: plan.sink,
@@ -279,14 +282,16 @@ pub(super) fn create_capture(path: &Path) -> Result<Box<dyn Write>, Failure> {
     }
 }
 
-/// Begins a capture with the profile, so that it replays without another word.
+/// Begins a capture with decoder and profile, so that it replays without another word.
 fn begin_capture(
     to: Box<dyn Write>,
     now: HostInstant,
+    decoder: Option<&[u8]>,
     text: &str,
     choice: OutputChoice,
 ) -> io::Result<CaptureWriter<Box<dyn Write>>> {
     let mut recorder = CaptureWriter::new(to)?;
+    decoder.map_or(Ok(()), |bytes| recorder.write(now, CallRef::Decoder(bytes)))?;
     let call = match choice {
         OutputChoice::AsWritten => CallRef::Profile(text),
         OutputChoice::Keyboard => CallRef::KeyboardProfile(text),

@@ -3,6 +3,8 @@
 mod ablation;
 mod adapt;
 #[cfg(all(feature = "live", target_os = "linux"))]
+mod chosen;
+#[cfg(all(feature = "live", target_os = "linux"))]
 mod ctl;
 mod decoder_file;
 #[cfg(all(feature = "live", target_os = "linux"))]

@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::chosen::Chosen;
+use super::decoder_file::Choice;
 use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, Output, Plan, Waits, bridge, create_capture, open_pad, patience, play};
 use super::written::Named;
-use super::{Failure, ctl, profile, say, seconds};
+use super::{Failure, chosen, ctl, profile, say, seconds};
 use crate::transport::address::PadAddress;
 use crate::transport::fault::FaultPlan;
 
@@ -25,9 +27,11 @@ pub(super) struct Arguments {
     pad: PadAddress,
     #[command(flatten)]
     device: Pad,
-    /// A profile's name or file; it is kept in the capture.
+    /// A profile's name or file; it is kept in the capture, and so is the decoder.
     #[arg(long, default_value = "super-mario")]
     profile: String,
+    #[command(flatten)]
+    decoder: Choice,
     /// Where events go meanwhile: auto, uinput, x11, log:FILE, none.
     #[arg(long, default_value = "none")]
     output: Output,
@@ -41,8 +45,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { capture, pad, profile, output, .. } = arguments;
-    Files { pad, profile, output, capture: Some(capture) }.check()?;
+    let Arguments { capture, pad, profile, output, decoder, .. } = arguments;
+    Files { pad, profile, output, decoder: chosen::file(decoder), capture: Some(capture) }.check()?;
+    let decoder = Chosen::read(decoder)?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let sink = arguments.output.open()?;
     let patience = patience(&arguments.pad, Waits::NotAsked);
@@ -58,6 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         profile_text: text,
         profile,
         choice: arguments.output.choice(),
+        decoder,
         record: Some(Box::new(capture)),
         seconds: arguments.seconds,
         patience,

@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::decoder_file::Choice;
 use super::written::stdout;
 use super::{Failure, if_read, profile, say, tables};
 use crate::capture::{CallKind, CaptureError, CaptureReader};
-use crate::contact::Decoder;
+use crate::contact::{Decoder, read};
 use crate::mapping::check::{self, OutputChoice};
 use crate::mapping::engine::Engine;
 use crate::mapping::profile::Profile;
@@ -44,6 +45,9 @@ pub(super) struct Arguments {
     /// A profile's name or file. Without it a capture replays with the one it was recorded with.
     #[arg(long)]
     profile: Option<String>,
+    /// Without it a capture replays with the one it was recorded with.
+    #[command(flatten)]
+    decoder: Choice,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -51,23 +55,36 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let chosen = chosen.transpose()?.map(|(_, profile)| profile);
     let mut log = BufWriter::new(stdout());
     match (&arguments.capture, &arguments.contacts, chosen) {
-        (Some(path), _, chosen) => replay_capture(path, chosen, &mut log)?,
+        (Some(path), _, chosen) => replay_capture(path, chosen, &arguments.decoder, &mut log)?,
+        (None, Some(_), _) if arguments.decoder.is_given() => {
+            return Err(Failure::Unusable("--contacts are decoded already: leave out --decoder".into()));
+        }
         (None, Some(path), Some(profile)) => replay_contacts(path, profile, &mut log)?,
         _ => return Err(Failure::Unusable("give a capture, or --contacts and --profile".into())),
     }
     Ok(log.flush()?)
 }
 
-fn replay_capture(path: &Path, chosen: Option<Profile>, log: &mut impl Write) -> Result<(), Failure> {
+fn replay_capture(
+    path: &Path,
+    chosen: Option<Profile>,
+    decoder: &Choice,
+    log: &mut impl Write,
+) -> Result<(), Failure> {
     let unusable = |error: CaptureError| Failure::Unusable(format!("{} {error}", path.display()));
     let file = File::open(path).map_err(|error| unusable(CaptureError::Io(error)))?;
     let mut calls = CaptureReader::new(BufReader::new(file)).map_err(unusable)?;
-    let first = calls.next().ok_or_else(|| unusable(CaptureError::NoPlay))?.map_err(unusable)?;
+    let mut next = || calls.next().ok_or_else(|| unusable(CaptureError::NoPlay))?.map_err(unusable);
+    let mut first = next()?;
+    let mut recorded = None;
+    if let CallKind::Decoder(bytes) = first.kind {
+        (recorded, first) = (Some(bytes), next()?);
+    }
     let keeps_profile = chosen.is_none();
     let profile = chosen.or_else(|| recorded_profile(&first.kind)).ok_or_else(|| {
         Failure::Unusable(format!("{} names no usable profile; choose one with --profile", path.display()))
     })?;
-    let mut pipeline = Pipeline::new(Decoder::shipped(), profile);
+    let mut pipeline = Pipeline::new(playing(path, decoder, recorded)?, profile);
     let first = recorded_profile(&first.kind).is_none().then_some(Ok(first));
     for call in first.into_iter().chain(calls) {
         match call {
@@ -84,6 +101,20 @@ fn replay_capture(path: &Path, chosen: Option<Profile>, log: &mut impl Write) ->
         }
     }
     Ok(())
+}
+
+/// The decoder that is chosen, else the recorded one, else the one of captures that hold none.
+fn playing(path: &Path, chosen: &Choice, recorded: Option<Vec<u8>>) -> Result<Decoder, Failure> {
+    match recorded {
+        Some(bytes) if !chosen.is_given() => read::playing(&bytes).map_err(|why| {
+            let path = path.display();
+            Failure::Unusable(format!(
+                "{path} was recorded with a decoder that cannot be read: {why}; replay it with the tactpad that recorded \
+                 it, or choose a decoder with --decoder"
+            ))
+        }),
+        _ => Ok(chosen.read()?.0),
+    }
 }
 
 fn recorded_profile(call: &CallKind) -> Option<Profile> {

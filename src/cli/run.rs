@@ -4,11 +4,13 @@ use std::io::{self, IsTerminal};
 
 use clap::Args;
 
+use super::chosen::Chosen;
+use super::decoder_file::Choice;
 use super::device::Pad;
 use super::files::Files;
 use super::live::{Audience, Output, Plan, Waits, bridge, open_pad, patience, play};
 use super::screen::Screen;
-use super::{Failure, ctl, profile, say, seconds};
+use super::{Failure, chosen, ctl, profile, say, seconds};
 use crate::bridge::Ending;
 use crate::transport::address::PadAddress;
 use crate::transport::fault::FaultPlan;
@@ -30,6 +32,8 @@ pub(super) struct Arguments {
     /// A profile's name or file.
     #[arg(long, default_value = "super-mario")]
     profile: String,
+    #[command(flatten)]
+    decoder: Choice,
     /// Where events go: auto, uinput, x11, log:FILE, none.
     #[arg(long, default_value = "auto")]
     output: Output,
@@ -43,14 +47,15 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { pad, profile, output, .. } = arguments;
-    Files { pad, profile, output, capture: None }.check()?;
+    let Arguments { pad, profile, output, decoder, .. } = arguments;
+    Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
+    let decoder = Chosen::read(decoder)?;
     let (text, profile) = profile::read(&arguments.profile, arguments.output.choice())?;
     let patience = patience(&arguments.pad, if arguments.wait { Waits::Asked } else { Waits::NotAsked });
     let sink = arguments.output.open()?;
     let pad =
         open_pad(&arguments.pad, &arguments.device, &profile, patience)?.with_faults(arguments.faults)?;
-    let title = format!("{} → {} → {}", arguments.pad, profile.name, sink.describe());
+    let title = format!("{} → {} → {} → {}", arguments.pad, decoder.name, profile.name, sink.describe());
     // The live picture has the title and the state; without one they are told in words.
     let audience = if io::stdout().is_terminal() { Audience::Nobody } else { Audience::Stderr };
     audience.tell(&title);
@@ -61,6 +66,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         profile_text: text,
         profile,
         choice: arguments.output.choice(),
+        decoder,
         record: None,
         seconds: arguments.seconds,
         patience,

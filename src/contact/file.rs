@@ -75,6 +75,8 @@ impl Decoder {
                 push_neighbours(&mut body, neighbours);
             }
             Self::Statics(_) | Self::Network(_) => return None,
+            #[cfg(feature = "foreign-onnx")]
+            Self::Foreign(_) => return None,
         }
         Some(sealed(MAGIC, &body))
     }

@@ -4,8 +4,10 @@ pub mod file;
 pub mod friction;
 pub mod inverse;
 pub mod neighbours;
+pub mod read;
 pub mod recording;
 pub mod regression;
+pub mod shipped;
 pub mod statics;
 pub mod touch;
 pub mod uncertainty;
@@ -13,9 +15,11 @@ pub mod uncertainty;
 use crate::contact::friction::{Friction, NO_FRICTION};
 use crate::contact::inverse::Inverse;
 use crate::contact::neighbours::Neighbours;
-use crate::contact::regression::Regression;
+use crate::contact::regression::{Regression, Target};
 use crate::contact::statics::Statics;
-use crate::network::Network;
+#[cfg(feature = "foreign-onnx")]
+use crate::network::foreign::Foreign;
+use crate::network::{Network, OUTPUTS, Zero};
 use crate::quantity::{Contact, Strain};
 
 /// A way from strain to a contact.
@@ -31,12 +35,34 @@ pub enum Decoder {
     Neighbours(Neighbours),
     /// The paper's network.
     Network(Box<Network>),
+    /// A network that tract runs.
+    #[cfg(feature = "foreign-onnx")]
+    Foreign(Foreign),
 }
 
 impl Decoder {
-    /// The decoder that is inside the program.
-    pub fn shipped() -> Self {
-        Self::Statics(Statics::nominal())
+    /// What people call it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Statics(_) => "statics",
+            Self::Inverse(_) => "inverse",
+            Self::Regression(regression) if regression.target == Target::Wrench => "wrench",
+            Self::Regression(_) => "linear",
+            Self::Neighbours(_) => "knn",
+            Self::Network(_) => "network",
+            #[cfg(feature = "foreign-onnx")]
+            Self::Foreign(_) => "foreign network",
+        }
+    }
+
+    /// What it takes: all but some networks take channels relative to the untouched pad.
+    pub fn zero(&self) -> Zero {
+        match self {
+            Self::Network(network) => network.zero,
+            #[cfg(feature = "foreign-onnx")]
+            Self::Foreign(network) => network.zero,
+            _ => Zero::Tared,
+        }
     }
 
     /// What the decoder wants taken off its channels, as they remember earlier loads.
@@ -54,13 +80,15 @@ impl Decoder {
             Self::Inverse(inverse) => inverse.decode(strain),
             Self::Regression(regression) => regression.decode(strain),
             Self::Neighbours(neighbours) => neighbours.decode(strain),
-            Self::Network(network) => by_network(network, strain),
+            Self::Network(network) => contact(network.decode(&strain.uv)),
+            #[cfg(feature = "foreign-onnx")]
+            Self::Foreign(network) => contact(network.decode(&strain.uv)),
         }
     }
 }
 
-fn by_network(network: &Network, strain: &Strain) -> Contact {
-    let numbers = network.decode(&strain.uv);
+/// A network's numbers; where one is none, no contact.
+fn contact(numbers: [f32; OUTPUTS]) -> Contact {
     let [x_mm, y_mm, fx_n, fy_n, fz_n] = numbers;
     let is_finite = numbers.iter().all(|number| number.is_finite());
     if is_finite { Contact { x_mm, y_mm, fx_n, fy_n, fz_n } } else { Contact::default() }

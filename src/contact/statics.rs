@@ -19,7 +19,8 @@ use crate::quantity::{Contact, MODULES, Strain};
 /// 2026, 26(4), 1378).
 pub const FORCE_RESOLUTION_N: f32 = 0.005;
 
-const NOMINAL: &str = include_str!("../../models/statics.toml");
+/// The nominal pad's numbers as their file has them.
+pub(super) const NOMINAL: &str = include_str!("../../models/statics.toml");
 
 /// The decoder's numbers, as they stand in `models/statics.toml`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

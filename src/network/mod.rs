@@ -7,6 +7,8 @@
 //! Source: Wu et al., *Sensors* 2026, 26(4), 1378, section 2.5.
 
 mod adam;
+#[cfg(feature = "foreign-onnx")]
+pub mod foreign;
 mod gradient;
 pub mod onnx;
 mod parameters;

@@ -70,9 +70,6 @@ fn live(criterion: &mut Criterion) {
     group.finish();
     let field = PadField::nominal().signals;
     let contact = Contact { x_mm: 11.3, y_mm: -7.9, fx_n: 0.4, fy_n: -0.2, fz_n: 2.0 };
-    let strain = field.strain_uv(&contact);
-    let decoder = Decoder::shipped();
-    criterion.bench_function("statics", |bencher| bencher.iter(|| decoder.decode(black_box(&strain))));
     criterion
         .bench_function("influence field", |bencher| bencher.iter(|| field.strain_uv(black_box(&contact))));
 }

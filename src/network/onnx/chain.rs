@@ -2,12 +2,9 @@
 
 use super::OnnxError;
 use super::graph::{Graph, Node};
-use super::tensor::Tensor;
+use super::tensor::{FLOAT, Tensor};
+use crate::network::Layer;
 use crate::network::product::transposed;
-use crate::network::{LAYERS_MAX, Layer};
-
-/// Scalers, and MatMul, Add, Relu and Identity of each layer.
-const NODES_MAX: usize = 4 + 4 * LAYERS_MAX;
 
 /// What happens to a row of numbers.
 #[derive(Debug)]
@@ -20,6 +17,13 @@ pub(super) enum Step {
     Rectify,
 }
 
+impl Step {
+    /// Whether it changes each number by itself.
+    pub(super) const fn is_scaler(&self) -> bool {
+        !matches!(self, Self::Connect(_) | Self::Rectify)
+    }
+}
+
 /// The steps from the graph's input to its output.
 pub(super) fn steps(graph: &Graph<'_>) -> Result<Vec<Step>, OnnxError> {
     // Older files list their tensors among the inputs.
@@ -27,12 +31,9 @@ pub(super) fn steps(graph: &Graph<'_>) -> Result<Vec<Step>, OnnxError> {
     let (Some(mut last), None) = (inputs.next().copied(), inputs.next()) else {
         return Err(OnnxError::Shape("it has not one input".into()));
     };
-    if graph.nodes.len() > NODES_MAX {
-        return Err(OnnxError::Unsupported(format!("it has more than {NODES_MAX} steps")));
-    }
     let mut steps = Vec::new();
     for node in &graph.nodes {
-        if node.operator != b"Identity" {
+        if !is_nothing(node) {
             steps.push(step(node, last, graph)?);
         } else if node.takes != [last] {
             return Err(unsupported(node, "takes something else than the step before it gives"));
@@ -43,6 +44,16 @@ pub(super) fn steps(graph: &Graph<'_>) -> Result<Vec<Step>, OnnxError> {
         Ok(steps)
     } else {
         Err(OnnxError::Shape("its last step is not its one output".into()))
+    }
+}
+
+/// Whether rows of floats go through unchanged.
+fn is_nothing(node: &Node<'_>) -> bool {
+    match node.operator {
+        b"Identity" => true,
+        b"Cast" => node.whole(b"to", 0) == FLOAT,
+        b"Flatten" => node.whole(b"axis", 1) == 1,
+        _ => false,
     }
 }
 
@@ -64,7 +75,7 @@ fn step(node: &Node<'_>, last: &[u8], graph: &Graph<'_>) -> Result<Step, OnnxErr
         b"Div" => row().map(Step::Divide),
         b"Mul" => row().map(Step::Multiply),
         b"Add" => row().map(Step::Add),
-        b"Relu" => Ok(Step::Rectify),
+        b"Relu" if tensors.is_empty() => Ok(Step::Rectify),
         b"Gemm" | b"MatMul" => layer(node, &tensors).map(Step::Connect),
         _ => Err(wrong("is no step of a perceptron")),
     }
@@ -72,14 +83,14 @@ fn step(node: &Node<'_>, last: &[u8], graph: &Graph<'_>) -> Result<Step, OnnxErr
 
 fn layer(node: &Node<'_>, tensors: &[&Tensor]) -> Result<Layer, OnnxError> {
     let wrong = |why| unsupported(node, why);
-    if node.is_set(b"transA") || node.float(b"alpha", 1.0) != 1.0 || node.float(b"beta", 1.0) != 1.0 {
+    if node.whole(b"transA", 0) != 0 || node.float(b"alpha", 1.0) != 1.0 || node.float(b"beta", 1.0) != 1.0 {
         return Err(wrong("is scaled, or turns what it takes"));
     }
     let (Some(weights), None) = (tensors.first(), tensors.get(2)) else {
         return Err(wrong("takes not weights and biases"));
     };
     let [rows, columns] = weights.matrix().ok_or_else(|| wrong("has weights that are no matrix"))?;
-    let is_turned = node.is_set(b"transB");
+    let is_turned = node.whole(b"transB", 0) != 0;
     let outputs = if is_turned { rows } else { columns };
     let biases = match tensors.get(1) {
         Some(biases) => biases.row().ok_or_else(|| wrong("has biases that are no row"))?.to_vec(),

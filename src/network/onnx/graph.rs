@@ -5,7 +5,11 @@ use std::collections::BTreeMap;
 use super::tensor::Tensor;
 use super::wire::{Fields, Value};
 use super::{CHANNELS_KEY, OnnxError};
-use crate::network::Zero;
+use crate::network::{LAYERS_MAX, Zero};
+
+/// The steps of the deepest perceptron, and as many constants that stand as nodes. Each may copy a tensor, so that more
+/// would take memory that the file does not justify.
+const NODES_MAX: usize = 8 * LAYERS_MAX;
 
 /// What is read of a model.
 #[derive(Debug)]
@@ -40,14 +44,12 @@ impl<'b> Graph<'b> {
     /// Reads a ModelProto.
     pub(super) fn read(model: &'b [u8]) -> Result<Self, OnnxError> {
         let mut graph = None;
-        let mut zero = Zero::Tared;
         for field in Fields::of(model) {
-            match field.ok_or(OnnxError::Damaged)? {
-                (7, Value::Bytes(bytes)) => graph = Some(bytes),
-                (14, Value::Bytes(property)) => zero = zero_of(property)?.unwrap_or(zero),
-                _ => {}
+            if let (7, Value::Bytes(bytes)) = field.ok_or(OnnxError::Damaged)? {
+                graph = Some(bytes);
             }
         }
+        let zero = zero(model)?;
         let mut read =
             Self { zero, nodes: vec![], tensors: BTreeMap::new(), inputs: vec![], outputs: vec![] };
         read.fill(graph.ok_or(OnnxError::Damaged)?)?;
@@ -56,27 +58,48 @@ impl<'b> Graph<'b> {
 
     /// Reads a GraphProto.
     fn fill(&mut self, graph: &'b [u8]) -> Result<(), OnnxError> {
+        let mut nodes = Vec::new();
         for field in Fields::of(graph) {
             match field.ok_or(OnnxError::Damaged)? {
-                (1, Value::Bytes(bytes)) => self.add(Node::read(bytes)?)?,
+                (1, Value::Bytes(bytes)) => nodes.push(Node::read(bytes)?),
                 (5, Value::Bytes(bytes)) => self.tensors.extend([Tensor::read(bytes)?]),
                 (11, Value::Bytes(bytes)) => self.inputs.push(text_field(bytes, 1)?),
                 (12, Value::Bytes(bytes)) => self.outputs.push(text_field(bytes, 1)?),
                 _ => {}
             }
         }
+        if nodes.len() > NODES_MAX {
+            return Err(OnnxError::Unsupported(format!("it has more than {NODES_MAX} nodes")));
+        }
+        // Tensors stand behind the nodes that take them.
+        nodes.into_iter().try_for_each(|node| self.add(node))
+    }
+
+    /// Takes a node; what it makes of constants alone is a tensor.
+    fn add(&mut self, node: Node<'b>) -> Result<(), OnnxError> {
+        match self.constant(&node)? {
+            Some(tensor) => {
+                self.tensors.insert(node.gives, tensor);
+            }
+            None => self.nodes.push(node),
+        }
         Ok(())
     }
 
-    /// A node, or a tensor that is written as one.
-    fn add(&mut self, node: Node<'b>) -> Result<(), OnnxError> {
-        match node.attributes.iter().find_map(|attribute| attribute.tensor) {
-            Some(tensor) if node.operator == b"Constant" => {
-                self.tensors.insert(node.gives, Tensor::read(tensor)?.1);
-            }
-            _ => self.nodes.push(node),
-        }
-        Ok(())
+    /// The tensor that a node writes out, names anew or turns.
+    fn constant(&self, node: &Node<'b>) -> Result<Option<Tensor>, OnnxError> {
+        let taken = || node.takes.first().and_then(|name| self.tensors.get(name));
+        Ok(match node.operator {
+            b"Constant" => match node.attributes.iter().find_map(|attribute| attribute.tensor) {
+                Some(tensor) => Some(Tensor::read(tensor)?.1),
+                None => {
+                    node.attribute(b"value_float").and_then(|attribute| attribute.float).map(Tensor::scalar)
+                }
+            },
+            b"Identity" => taken().cloned(),
+            b"Transpose" => taken().and_then(Tensor::transposed),
+            _ => None,
+        })
     }
 }
 
@@ -100,9 +123,9 @@ impl<'b> Node<'b> {
         self.attribute(name).and_then(|attribute| attribute.float).unwrap_or(otherwise)
     }
 
-    /// Whether a constant is written and not zero.
-    pub(super) fn is_set(&self, name: &[u8]) -> bool {
-        self.attribute(name).and_then(|attribute| attribute.whole).is_some_and(|whole| whole != 0)
+    /// The same for a whole number.
+    pub(super) fn whole(&self, name: &[u8], otherwise: u64) -> u64 {
+        self.attribute(name).and_then(|attribute| attribute.whole).unwrap_or(otherwise)
     }
 
     fn attribute(&self, name: &[u8]) -> Option<&Attribute<'b>> {
@@ -124,6 +147,17 @@ impl<'b> Attribute<'b> {
         }
         Ok(attribute)
     }
+}
+
+/// What a ModelProto says that it takes; tared channels if it says nothing.
+pub(super) fn zero(model: &[u8]) -> Result<Zero, OnnxError> {
+    let mut zero = Zero::Tared;
+    for field in Fields::of(model) {
+        if let (14, Value::Bytes(property)) = field.ok_or(OnnxError::Damaged)? {
+            zero = zero_of(property)?.unwrap_or(zero);
+        }
+    }
+    Ok(zero)
 }
 
 /// What a property of the model says about its channels, if it says that.

@@ -16,6 +16,8 @@ mod write;
 use std::fmt;
 
 use super::Network;
+#[cfg(feature = "foreign-onnx")]
+use super::Zero;
 
 /// Where a file says what it takes; `tared` or `raw`. A file of others, which says nothing, takes tared channels.
 const CHANNELS_KEY: &str = "tactpad.channels";
@@ -31,6 +33,9 @@ pub enum OnnxError {
     Unsupported(String),
     /// It is a perceptron, but not one from nine channels to five numbers: how.
     Shape(String),
+    /// A model that is no perceptron, and that tract does not run, either: what it says.
+    #[cfg(feature = "foreign-onnx")]
+    Foreign(String),
     /// A weight that is not finite, or a scaler that divides by zero.
     NotANumber,
 }
@@ -46,9 +51,12 @@ impl fmt::Display for OnnxError {
             }
             Self::Unsupported(what) => write!(
                 f,
-                "{what}; only a chain of fully connected layers in 32-bit floats is read: Sub, Div, then Gemm (or \
-                 MatMul and Add) and Relu by turns, then Mul, Add"
+                "{what}; only a chain of fully connected layers in 32-bit floats is read: scalers, then Gemm (or MatMul \
+                 and Add) and Relu by turns, then scalers. Other graphs need a tactpad that was built with \
+                 --features foreign-onnx"
             ),
+            #[cfg(feature = "foreign-onnx")]
+            Self::Foreign(what) => write!(f, "tract cannot run it: {what}"),
             Self::Shape(what) => write!(f, "{what}; a decoder takes 9 channels and gives x, y, Fx, Fy, Fz"),
             Self::NotANumber => {
                 f.write_str("it holds a weight that is not finite, or divides by zero; train it again")
@@ -62,6 +70,15 @@ impl std::error::Error for OnnxError {}
 /// The bytes of a network's ONNX file; equal networks give equal bytes.
 pub fn write(network: &Network) -> Vec<u8> {
     write::model(network)
+}
+
+/// What a model takes, as it says itself.
+///
+/// # Errors
+/// Bytes that are no model.
+#[cfg(feature = "foreign-onnx")]
+pub(super) fn zero(bytes: &[u8]) -> Result<Zero, OnnxError> {
+    graph::zero(bytes)
 }
 
 /// Reads a network; what [`write`](fn@write) wrote reads as the same again, bit by bit.

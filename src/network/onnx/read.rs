@@ -1,5 +1,6 @@
 //! The way in: from a chain of steps to a network.
 
+use std::array::from_fn;
 use std::iter::Peekable;
 use std::vec::IntoIter;
 
@@ -15,39 +16,79 @@ type Rest = Peekable<IntoIter<Step>>;
 pub(super) fn network(bytes: &[u8]) -> Result<Network, OnnxError> {
     let graph = Graph::read(bytes)?;
     let mut rest = steps(&graph)?.into_iter().peekable();
-    let input = Scaler {
-        mean: row(&mut rest, |step| if let Step::Subtract(row) = step { Some(row) } else { None }, 0.0)?,
-        deviation: row(&mut rest, |step| if let Step::Divide(row) = step { Some(row) } else { None }, 1.0)?,
-    };
+    let input = Scaling::of(&mut rest)?.before()?;
     let layers = layers(&mut rest)?;
-    let output = Scaler {
-        deviation: row(&mut rest, |step| if let Step::Multiply(row) = step { Some(row) } else { None }, 1.0)?,
-        mean: row(&mut rest, added, 0.0)?,
-    };
+    let output = Scaling::of(&mut rest)?.after()?;
     if rest.next().is_some() {
         return Err(OnnxError::Unsupported("its steps come in another order".into()));
-    }
-    if input.deviation.iter().chain(&output.deviation).any(|deviation| *deviation == 0.0) {
-        return Err(OnnxError::NotANumber);
     }
     Ok(Network { zero: graph.zero, input, layers, output })
 }
 
-fn added(step: &Step) -> Option<&Vec<f32>> {
-    if let Step::Add(row) = step { Some(row) } else { None }
+/// What scalers in a row do to each number: factor · number + shift. In doubles, so that each pair of floats that a
+/// scaler is written with comes out as it went in.
+struct Scaling<const N: usize> {
+    factor: [f64; N],
+    shift: [f64; N],
 }
 
-/// The next step's row, if it is the step in question; else a row that changes nothing.
-fn row<const N: usize>(
-    rest: &mut Rest,
-    of: impl Fn(&Step) -> Option<&Vec<f32>>,
-    otherwise: f32,
-) -> Result<[f32; N], OnnxError> {
-    let Some(found) = rest.peek().and_then(of) else { return Ok([otherwise; N]) };
-    let row = found.as_slice().try_into();
-    let row = row.map_err(|_| OnnxError::Shape(format!("it scales {} numbers, not {N}", found.len())))?;
-    rest.next();
-    Ok(row)
+impl<const N: usize> Scaling<N> {
+    /// Takes the scalers that come next, in whatever order; none change nothing.
+    fn of(rest: &mut Rest) -> Result<Self, OnnxError> {
+        let mut scaling = Self { factor: [1.0; N], shift: [0.0; N] };
+        while let Some(step) = rest.next_if(Step::is_scaler) {
+            match &step {
+                Step::Subtract(row) => scaling.apply(row, |number, by| *number -= by, Part::Shift)?,
+                Step::Add(row) => scaling.apply(row, |number, by| *number += by, Part::Shift)?,
+                Step::Divide(row) => scaling.apply(row, |number, by| *number /= by, Part::Both)?,
+                Step::Multiply(row) => scaling.apply(row, |number, by| *number *= by, Part::Both)?,
+                Step::Connect(_) | Step::Rectify => {}
+            }
+        }
+        Ok(scaling)
+    }
+
+    fn apply(&mut self, row: &[f32], change: fn(&mut f64, f64), part: Part) -> Result<(), OnnxError> {
+        let row: [f64; N] = match *row {
+            [one] => [one.into(); N],
+            _ => <[f32; N]>::try_from(row)
+                .map_err(|_| OnnxError::Shape(format!("it scales {} numbers, not {N}", row.len())))?
+                .map(f64::from),
+        };
+        let factors = if part == Part::Both { &mut self.factor[..] } else { &mut [] };
+        factors.iter_mut().zip(row).for_each(|(factor, by)| change(factor, by));
+        self.shift.iter_mut().zip(row).for_each(|(shift, by)| change(shift, by));
+        Ok(())
+    }
+
+    /// As a scaler of what goes in: (number − mean) / deviation.
+    fn before(&self) -> Result<Scaler<N>, OnnxError> {
+        scaler(from_fn(|k| -self.shift[k] / self.factor[k]), self.factor.map(f64::recip))
+    }
+
+    /// As a scaler of what comes out: number · deviation + mean.
+    fn after(&self) -> Result<Scaler<N>, OnnxError> {
+        scaler(self.shift, self.factor)
+    }
+}
+
+/// What a scaler changes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Part {
+    Shift,
+    Both,
+}
+
+fn scaler<const N: usize>(mean: [f64; N], deviation: [f64; N]) -> Result<Scaler<N>, OnnxError> {
+    let [mean, deviation] = [mean, deviation].map(|row| row.map(|number| number as f32));
+    // A mean of −0 would be written so and be another file.
+    let mean = mean.map(|mean| mean + 0.0);
+    let is_sound = mean.iter().all(|mean| mean.is_finite()) && deviation.iter().all(|it| it.is_normal());
+    if is_sound { Ok(Scaler { mean, deviation }) } else { Err(OnnxError::NotANumber) }
+}
+
+fn added(step: &Step) -> Option<&Vec<f32>> {
+    if let Step::Add(row) = step { Some(row) } else { None }
 }
 
 fn layers(rest: &mut Rest) -> Result<Vec<Layer>, OnnxError> {

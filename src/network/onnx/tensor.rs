@@ -3,8 +3,10 @@
 use super::OnnxError;
 use super::wire::{Fields, Value, varint};
 use crate::network::WIDTH_MAX;
+use crate::network::product::transposed;
 
-const FLOAT: u64 = 1;
+/// 32-bit floats.
+pub(super) const FLOAT: u64 = 1;
 const EXTERNAL: u64 = 1;
 
 /// More sides than any tensor of a perceptron has.
@@ -48,6 +50,18 @@ impl Tensor {
         }
     }
 
+    /// A number that stands for a row of any length.
+    pub(super) fn scalar(number: f32) -> Self {
+        Self { sides: Vec::new(), numbers: vec![number] }
+    }
+
+    /// A matrix turned, `None` for anything else.
+    pub(super) fn transposed(&self) -> Option<Self> {
+        let [rows, columns] = self.matrix()?;
+        let numbers = if rows * columns == 0 { Vec::new() } else { transposed(&self.numbers, columns) };
+        Some(Self { sides: vec![columns, rows], numbers })
+    }
+
     fn push_side(&mut self, side: u64) -> Result<(), OnnxError> {
         let side = usize::try_from(side).map_err(|_| OnnxError::Damaged)?;
         self.sides.push(side);
@@ -69,9 +83,9 @@ impl Tensor {
         }
     }
 
-    /// The numbers of a row, `[n]` or `[1, n]`.
+    /// The numbers of a row, `[n]` or `[1, n]`, or the one that stands for a row.
     pub(super) fn row(&self) -> Option<&[f32]> {
-        let (_, leading) = self.sides.split_last()?;
+        let leading = self.sides.split_last().map_or(&[][..], |(_, leading)| leading);
         leading.iter().all(|side| *side == 1).then_some(&self.numbers)
     }
 

@@ -2,5 +2,6 @@
 
 pub mod body;
 pub mod captured;
+pub mod decoded;
 pub mod rig;
 pub mod step;

@@ -1,0 +1,50 @@
+//! One decoder of each kind, fitted to the nominal pad.
+
+use tactpad::calibration::regression::{neighbours, regression};
+use tactpad::contact::friction::NO_FRICTION;
+use tactpad::contact::inverse::Inverse;
+use tactpad::contact::regression::Target;
+use tactpad::contact::uncertainty::Noise;
+use tactpad::contact::{Decoder, read, shipped};
+use tactpad::field::PadField;
+use tactpad::influence::InfluenceField;
+use tactpad::measured::{Label, Row};
+use tactpad::quantity::CHANNELS;
+
+/// Contacts that the fitted ones know; the paper has as many.
+const CONTACTS: u32 = 648;
+
+/// The decoder and its name.
+pub(crate) fn each() -> Vec<(&'static str, Decoder)> {
+    let field = PadField::nominal().signals;
+    let rows: Vec<Row> = (0..CONTACTS).map(|index| row(&field, index)).collect();
+    let fitted = |target| regression(&rows, target, 29.0).map(|found| Decoder::Regression(Box::new(found)));
+    let of_the_program = |name| shipped::bytes(name).and_then(|bytes| read::playing(bytes).ok());
+    let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
+    let decoders = [
+        of_the_program("statics"),
+        fitted(Target::Wrench).ok(),
+        fitted(Target::Contact).ok(),
+        neighbours(&rows).map(Decoder::Neighbours).ok(),
+        of_the_program("scdf"),
+        Some(Decoder::Inverse(Box::new(Inverse::new(field, noise, NO_FRICTION)))),
+    ];
+    let decoders: Vec<_> = decoders.into_iter().flatten().map(|decoder| (decoder.name(), decoder)).collect();
+    assert_eq!(decoders.len(), 6, "each was made");
+    decoders
+}
+
+/// A press on a spiral over the plate.
+fn row(field: &InfluenceField, index: u32) -> Row {
+    let turn = f64::from(index) * 2.4;
+    let radius_mm = 29.0 * (f64::from(index) / f64::from(CONTACTS)).sqrt();
+    let label = Label {
+        x_mm: radius_mm * libm::cos(turn),
+        y_mm: radius_mm * libm::sin(turn),
+        fx_n: libm::sin(3.0 * turn),
+        fy_n: libm::cos(5.0 * turn),
+        fz_n: 0.5 + f64::from(index % 10) / 2.0,
+    };
+    let uv = field.strain_uv(&label.into()).uv.map(f64::from);
+    Row { uv: Some(uv), ..Row::of(label) }
+}

@@ -12,6 +12,8 @@ use crate::quantity::{CHANNELS, Contact, Strain};
 const KNOWN: f64 = 10.0;
 const ADDITIVE_UV: f64 = 8.0;
 const SHARE: f64 = 0.02;
+/// Pads of one kind have the same gauges and amplifiers; their noise is alike to some ten percent, as fifty readings tell.
+const KNOWN_OF_KIN: f64 = 50.0;
 /// Of a gain that all channels share; known before as if so many contacts had told it.
 const GAIN: f64 = 0.006;
 const GAIN_KNOWN: f64 = 30.0;
@@ -22,7 +24,26 @@ const SHARE_MIN: f64 = 5e-4;
 const ROUNDS: usize = 20;
 
 /// The noise before any measurement.
-pub(super) const BEFORE: Noise = Noise::of_channels([ADDITIVE_UV; CHANNELS], [SHARE; CHANNELS]);
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Known {
+    pub(super) noise: Noise,
+    /// As much as so many readings tell.
+    readings: f64,
+}
+
+impl Known {
+    /// Of a pad of which nothing is known.
+    pub(super) const SIMULATED: Self = Self {
+        noise: Noise { gain: GAIN, ..Noise::of_channels([ADDITIVE_UV; CHANNELS], [SHARE; CHANNELS]) },
+        readings: KNOWN,
+    };
+
+    /// Of a pad of the same kind as one with this noise.
+    pub(super) const fn of_kin(noise: &Noise) -> Self {
+        let Noise { additive_uv, share, gain, .. } = *noise;
+        Self { noise: Noise { gain, ..Noise::of_channels(additive_uv, share) }, readings: KNOWN_OF_KIN }
+    }
+}
 
 /// What a channel left over: its reading and the rest, both in µV.
 pub(super) type Rest = (f64, f64);
@@ -31,8 +52,10 @@ pub(super) type Rest = (f64, f64);
 ///
 /// Squares of rests are a straight line over squares of readings; the line is fitted with weights from itself, as squares
 /// scatter in proportion to what they should be.
-pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS]) -> Noise {
-    let lines = rests.each_ref().map(|rests| line(rests));
+pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS], known: &Known) -> Noise {
+    let lines: [[f64; 2]; CHANNELS] = std::array::from_fn(|k| {
+        line(&rests[k], known.noise.additive_uv[k].powi(2), known.noise.share[k].powi(2), known.readings)
+    });
     Noise::of_channels(
         lines.map(|[constant, _]| constant.sqrt().max(ADDITIVE_MIN_UV)),
         lines.map(|[_, slope]| slope.sqrt().max(SHARE_MIN)),
@@ -78,7 +101,7 @@ fn form(left: &[f64; CHANNELS], matrix: &[[f64; CHANNELS]; CHANNELS], right: &[f
 /// How much the gain of all channels together changes from contact to contact, as a standard deviation: wear and warmth
 /// do that, and channels do not disagree about it. It is what the written forces differ by in their own direction beyond
 /// the decoder's noise, in proportion to them; the reference's own noise does not grow with the force.
-pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])]) -> f64 {
+pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])], known: &Known) -> f64 {
     let mut normal = [[0.0; 2]; 2];
     let mut right = [0.0; 2];
     for (strain, written_n) in contacts {
@@ -95,7 +118,7 @@ pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])]) ->
     let free = Factor::of(&normal).map_or([0.0; 2], |factor| factor.solve(&right));
     let slope = if constant(free[1]) < 0.0 { right[1] / normal[1][1] } else { free[1] };
     let (count, slope) = (contacts.len() as f64, if slope.is_finite() { slope.max(0.0) } else { 0.0 });
-    ((count * slope + GAIN_KNOWN * GAIN * GAIN) / (count + GAIN_KNOWN)).sqrt()
+    ((count * slope + GAIN_KNOWN * known.noise.gain.powi(2)) / (count + GAIN_KNOWN)).sqrt()
 }
 
 /// The decoded force, how far the written one is from it along it, and the variance of that by the decoder.
@@ -115,8 +138,9 @@ fn off_along_force(decoder: &Inverse, strain: &Strain, written_n: &[f64; 3]) -> 
     (variance > 0.0).then_some((force_n, written_n - force_n, variance))
 }
 
-fn line(rests: &[Rest]) -> [f64; 2] {
-    let (mut constant, mut slope) = (ADDITIVE_UV * ADDITIVE_UV, SHARE * SHARE);
+/// The line of squares; before, its constant and slope are known as well as so many readings tell them.
+fn line(rests: &[Rest], known_uv2: f64, known_slope: f64, known_readings: f64) -> [f64; 2] {
+    let (mut constant, mut slope) = (known_uv2, known_slope);
     let count = rests.len().max(1) as f64;
     let typical = rests.iter().map(|(uv, _)| uv * uv).sum::<f64>() / count;
     for _ in 0..ROUNDS {
@@ -132,8 +156,8 @@ fn line(rests: &[Rest]) -> [f64; 2] {
         };
         rests.iter().for_each(|(uv, rest)| add(uv * uv, rest * rest, 1.0));
         // What was known: half of it at rest, half at a typical reading.
-        add(0.0, ADDITIVE_UV * ADDITIVE_UV, KNOWN / 2.0);
-        add(typical, ADDITIVE_UV * ADDITIVE_UV + SHARE * SHARE * typical, KNOWN / 2.0);
+        add(0.0, known_uv2, known_readings / 2.0);
+        add(typical, known_uv2 + known_slope * typical, known_readings / 2.0);
         let determinant = normal[0][0] * normal[1][1] - normal[0][1] * normal[0][1];
         let found = [
             (normal[1][1] * right[0] - normal[0][1] * right[1]) / determinant,
@@ -160,14 +184,14 @@ mod tests {
             (uv, 12.0 * f64::from(random.normal()) + 0.015 * uv * f64::from(random.normal()))
         };
         let rests: [Vec<Rest>; CHANNELS] = std::array::from_fn(|_| (0..2000).map(|_| rest()).collect());
-        let Noise { additive_uv, share, .. } = of_rests(&rests);
+        let Noise { additive_uv, share, .. } = of_rests(&rests, &Known::SIMULATED);
         assert!(additive_uv.iter().all(|uv| (uv / 12.0 - 1.0).abs() < 0.2), "{additive_uv:?}");
         assert!(share.iter().all(|share| (share / 0.015 - 1.0).abs() < 0.1), "{share:?}");
     }
 
     #[test]
     fn without_rests_it_is_what_was_known() {
-        let Noise { additive_uv, share, .. } = of_rests(&[const { Vec::new() }; CHANNELS]);
+        let Noise { additive_uv, share, .. } = of_rests(&[const { Vec::new() }; CHANNELS], &Known::SIMULATED);
         assert!(additive_uv.iter().all(|uv| (uv - ADDITIVE_UV).abs() < 1.0), "{additive_uv:?}");
         assert!(share.iter().all(|share| *share < 0.05), "{share:?}");
     }

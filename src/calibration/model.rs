@@ -22,6 +22,9 @@ const TURN_DEG: f64 = 2.0;
 const STIFFNESS: f64 = 0.3;
 /// Of the other channel's microvolts.
 const CROSSTALK: f64 = 0.02;
+/// Half the mean square of the distance at which a contact's force acts from its place, along each axis: an indenter of
+/// another size, or a finger that is not still.
+const BLUR_MM2: f64 = 0.5;
 /// What is left of a zero that was taken off.
 const ZERO_UV: f64 = 20.0;
 /// Of a play operator in all channels, and how much a channel differs from the others.
@@ -31,7 +34,7 @@ const FRICTION_OWN: f64 = 0.02;
 const SHARE_MAX: f64 = 0.25;
 
 /// The numbers by kind, one after the other in a vector: zeros, gains, crosstalk (into, from), friction (shares of all
-/// channels; what each channel differs by), physical numbers, background (channel, force, polynomial).
+/// channels; what each channel differs by), blur, physical numbers, background (channel, force, polynomial).
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub(super) physical: Vec<Parameter>,
@@ -44,7 +47,8 @@ const GAINS: usize = ZEROS + CHANNELS;
 const CROSSTALKS: usize = GAINS + CHANNELS;
 const SHARES: usize = CROSSTALKS + CHANNELS * CHANNELS;
 const OWN_SHARES: usize = SHARES + PLAYS;
-const PHYSICAL: usize = OWN_SHARES + PLAYS * CHANNELS;
+const BLUR: usize = OWN_SHARES + PLAYS * CHANNELS;
+const PHYSICAL: usize = BLUR + 1;
 
 impl Layout {
     pub(super) const fn size(&self) -> usize {
@@ -72,7 +76,8 @@ impl Layout {
             *deviation = if index / CHANNELS == index % CHANNELS { 0.0 } else { CROSSTALK };
         }
         deviations[SHARES..OWN_SHARES].fill(FRICTION);
-        deviations[OWN_SHARES..PHYSICAL].fill(FRICTION_OWN);
+        deviations[OWN_SHARES..BLUR].fill(FRICTION_OWN);
+        deviations[BLUR] = BLUR_MM2;
         for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
             *deviation = match parameter.unit() {
                 Unit::Millimetre => SHIFT_MM,
@@ -124,6 +129,9 @@ impl Layout {
     /// µV/N of the strains at a place, before gains: the simulator's field and what differs.
     fn strained(&self, values: &[f64], scale: &Maps, place: &Place) -> Maps {
         let mut maps = place.gains;
+        for (map, bent) in maps.as_flattened_mut().iter_mut().zip(place.bent.as_flattened()) {
+            *map += values[BLUR] * bent;
+        }
         for (value, slope) in values[PHYSICAL..].iter().zip(&place.slopes) {
             for (map, slope) in maps.as_flattened_mut().iter_mut().zip(slope.as_flattened()) {
                 *map += value * slope;
@@ -193,6 +201,7 @@ impl Layout {
             slopes[GAINS + channel] = strains_uv[channel];
             slopes[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&strains_uv);
             slopes[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
+            slopes[BLUR] = gain * loaded(&place.bent[channel], force_n);
             for (slope, maps) in slopes[PHYSICAL..].iter_mut().zip(&place.slopes) {
                 *slope = gain * loaded(&maps[channel], force_n);
             }

@@ -35,6 +35,7 @@ mod random;
 pub mod readout;
 pub mod replay;
 pub mod scdf;
+pub mod shipped;
 pub mod signal;
 pub mod spelling;
 pub mod time;

@@ -3,7 +3,6 @@
 #[path = "support/decoders.rs"]
 mod decoders;
 
-use tactpad::contact::Decoder;
 use tactpad::field::PadField;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::shipped;
@@ -24,7 +23,7 @@ fn plays_without_allocating(name: &str) {
     let read = shipped::text(name).and_then(|text| check::read(text, OutputChoice::AsWritten).0);
     let Some(profile) = read else { panic!("{name} is in order") };
     let mut pad = VirtualPad::new(Script::for_profile(&profile, 10_000_000), 3);
-    let mut pipeline = Pipeline::new(Decoder::shipped(), profile);
+    let mut pipeline = Pipeline::new(tactpad::shipped::decoder(), profile);
     let mut bytes = Vec::new();
     for _ in 0..2 {
         pad.emit(10_000_000, &mut bytes);

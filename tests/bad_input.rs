@@ -215,7 +215,8 @@ fn a_capture_that_is_none_is_refused() {
 fn a_capture_cut_off_or_followed_by_other_data_says_so_and_gives_what_it_holds() {
     let (_folder, path) = with_file("game.cap", b"");
     let name = path.to_str().unwrap();
-    let recorded = tactpad().args(["record", name, "--seconds", "2"]).output().unwrap();
+    let line = ["record", name, "--seconds", "2", "--decoder", "statics"];
+    let recorded = tactpad().args(line).output().unwrap();
     assert_eq!(recorded.status.code(), Some(0), "{}", said(&recorded));
     let whole = tactpad().args(["replay", name]).output().unwrap();
     let bytes = fs::read(&path).unwrap();
@@ -245,7 +246,8 @@ fn a_capture_cut_off_or_followed_by_other_data_says_so_and_gives_what_it_holds()
 fn a_damaged_capture_gives_what_is_before_the_damage_and_says_where() {
     let (_folder, path) = with_file("game.cap", b"");
     let name = path.to_str().unwrap();
-    let recorded = tactpad().args(["record", name, "--seconds", "2"]).output().unwrap();
+    let line = ["record", name, "--seconds", "2", "--decoder", "statics"];
+    let recorded = tactpad().args(line).output().unwrap();
     assert_eq!(recorded.status.code(), Some(0), "{}", said(&recorded));
     let whole = tactpad().args(["replay", name]).output().unwrap().stdout;
     let mut bytes = fs::read(&path).unwrap();

@@ -1,6 +1,7 @@
 //! Calibration from measured contacts, on pads whose truth is known: the inverse decoder beside what needs no physics.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 
+use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 use tactpad::calibration::fit::{Calibration, fit};
@@ -12,9 +13,11 @@ use tactpad::device::Device;
 use tactpad::device::behaviour::{Crosstalk, Play};
 use tactpad::evaluation::{Errors, coverage95, decoded, errors};
 use tactpad::field::PadField;
+use tactpad::influence::{InfluenceField, MAPS};
 use tactpad::measured::{Label, Row, Table};
 use tactpad::protocol;
 use tactpad::quantity::CHANNELS;
+use tactpad::twin::bound::{Bound, Reading};
 use tactpad::twin::measurement::{Measurement, carry_out};
 
 fn field() -> &'static PadField {
@@ -44,7 +47,11 @@ struct Measured {
 
 impl Measured {
     fn of(device: &Device, plan: &Table, seed: u64) -> Self {
-        let Measurement { table, truth: truths } = carry_out(plan, device, field(), seed);
+        Self::on(field(), device, plan, seed)
+    }
+
+    fn on(field: &PadField, device: &Device, plan: &Table, seed: u64) -> Self {
+        let Measurement { table, truth: truths } = carry_out(plan, device, field, seed);
         Self { recording: Recording::of(table, device.contact.full_scale_n).unwrap(), truths }
     }
 
@@ -99,6 +106,13 @@ fn errors_of(decoder: &Decoder, measured: &Measured) -> Errors {
     errors(&decoded(decoder, &rows), &truths)
 }
 
+/// Errors of place and force beside the least that the pad's noise allows.
+fn beyond_bound(device: &Device, errors: &Errors, measured: &Measured) -> [f64; 2] {
+    let contacts: Vec<Label> = measured.recording.contacts().iter().map(|at| measured.truths[*at]).collect();
+    let [x_mm, y_mm, fx_n, fy_n, fz_n] = Bound::new(device, field(), 1).expected(&contacts, Reading::Mean);
+    [2.0 * errors.position_mae_mm / (x_mm + y_mm), 3.0 * errors.force_mae_n / (fx_n + fy_n + fz_n)]
+}
+
 #[test]
 fn the_inverse_is_several_times_better_than_what_needs_no_physics() {
     let device = pad();
@@ -115,7 +129,11 @@ fn the_inverse_is_several_times_better_than_what_needs_no_physics() {
         let share = if count == 20 { 0.6 } else { 1.0 };
         assert!(by_inverse.position_mae_mm < share * by_wrench.position_mae_mm);
         assert!(by_inverse.force_mae_n < 0.6 * by_wrench.force_mae_n);
-        assert!(by_inverse.position_mae_mm < 0.3);
+        let [place, force] = beyond_bound(&device, &by_inverse, &unseen);
+        println!("inverse, {count}: {place:.2} and {force:.2} of the least that the noise allows");
+        if count > 73 {
+            assert!(place < 1.3 && force < 1.3);
+        }
     }
     let rows = measured.rows(648);
     let linear = Decoder::Regression(Box::new(regression(&rows, Target::Contact, 29.0).unwrap()));
@@ -169,4 +187,65 @@ fn another_pad_of_the_kind_needs_twenty_contacts() {
     println!("20: {few:?}\n648: {all:?}");
     assert!(few.position_mae_mm < 1.5 * all.position_mae_mm);
     assert!(few.force_mae_n < 1.5 * all.force_mae_n);
+}
+
+/// The nominal field with faults that a calibration has no number for: a stage that is turned by 1° and long by 1 %, a plate
+/// that bends more towards one side, and waves of 1.5 % of each channel.
+fn faulty(seed: u32) -> PadField {
+    let nominal = field();
+    let mut draws = 1000 * seed;
+    // Kronecker's sequence of the golden ratio.
+    let mut fraction = || {
+        draws += 1;
+        (f64::from(draws) * 0.618_033_988_749_894_9).fract()
+    };
+    let signals = &nominal.signals;
+    let size = |map: usize| {
+        let places =
+            (-28..=28).flat_map(|x| (-28..=28).map(move |y| (x, y))).filter(|(x, y)| x * x + y * y < 29 * 29);
+        let squares: Vec<f64> =
+            places.map(|(x, y)| signals.gains(x as f32, y as f32).value[map / 3][map % 3].powi(2)).collect();
+        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+    };
+    let mut wave = || {
+        let (angle, length_mm) = (TAU * fraction(), 25.0 + 30.0 * fraction());
+        [TAU * angle.cos() / length_mm, TAU * angle.sin() / length_mm, TAU * fraction()]
+    };
+    let waves: Vec<[[f64; 3]; 3]> = (0..MAPS).map(|_| [wave(), wave(), wave()]).collect();
+    let sizes: Vec<f64> = (0..MAPS).map(size).collect();
+    let (sin, cos) = 1.0_f64.to_radians().sin_cos();
+    let wrong = InfluenceField::sampled(f64::from(signals.spacing_mm()), 29.0, 29.0, |[x, y]| {
+        let (turned_x, turned_y) = (1.01 * (cos * x - sin * y), 1.01 * (sin * x + cos * y));
+        let gains = signals.gains(turned_x as f32, turned_y as f32).value;
+        std::array::from_fn::<f64, MAPS, _>(|map| {
+            let ripple: f64 = waves[map].iter().map(|[kx, ky, phase]| (kx * x + ky * y + phase).sin()).sum();
+            gains[map / 3][map % 3] * (1.0 + 0.03 * x / 29.0)
+                + 0.015 * sizes[map] * ripple * (2.0_f64 / 3.0).sqrt()
+        })
+    });
+    PadField { signals: wrong, sums: nominal.sums.clone(), sensitivities: Vec::new() }
+}
+
+#[test]
+fn faults_that_it_has_no_number_for_do_not_make_it_worse_than_a_wrench() {
+    let mut device = pad();
+    device.behaviour.noise.additive_uv = [10.0; CHANNELS];
+    device.behaviour.hysteresis = vec![Play { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.03 }];
+    for seed in [1, 2] {
+        let field = faulty(seed);
+        let measured = Measured::on(&field, &device, &protocol::paper::plan(&device.contact), 1);
+        let unseen = Measured::on(&field, &device, &protocol::recommended::plan(&device.contact, 9), 2);
+        for (count, share) in [(20, 1.0), (648, 0.75)] {
+            let [by_inverse, by_wrench] =
+                [inverse(&measured, count), wrench(&measured, count)].map(|it| errors_of(&it, &unseen));
+            let [place, force] = [
+                by_inverse.position_mae_mm / by_wrench.position_mae_mm,
+                by_inverse.force_mae_n / by_wrench.force_mae_n,
+            ];
+            println!(
+                "seed {seed}, {count} contacts: {place:.2} and {force:.2} of the wrench's; {by_inverse:?}"
+            );
+            assert!(place < share && force < share, "{place} {force}");
+        }
+    }
 }

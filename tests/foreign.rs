@@ -2,10 +2,11 @@
 #![cfg(feature = "foreign-onnx")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
 
-use tactpad::contact::{Decoder, read, shipped};
+use tactpad::contact::{Decoder, read};
 use tactpad::network::foreign::Foreign;
 use tactpad::network::{Network, Zero, onnx};
 use tactpad::quantity::{CHANNELS, Contact, Strain};
+use tactpad::shipped;
 
 const RESIDUAL: &[u8] = include_bytes!("network/residual.onnx");
 
@@ -37,7 +38,7 @@ fn what_is_no_chain_decodes_again_and_again() {
 
 #[test]
 fn tract_gives_what_the_program_gives_for_the_shipped_network() {
-    let bytes = shipped::bytes("scdf").unwrap();
+    let bytes = shipped::bytes("scdf").unwrap().into_owned();
     let (ours, theirs) = (onnx::read(bytes).unwrap(), Foreign::read(bytes).unwrap());
     let full_scale = [20.0_f32, 20.0, 2.0, 2.0, 5.0];
     for place in 0..500_u16 {

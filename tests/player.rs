@@ -4,7 +4,6 @@
 use firmware_proto::ENCODED_MAX;
 use firmware_proto::command::Command;
 use firmware_proto::link::encode_command;
-use tactpad::contact::Decoder;
 use tactpad::control::{Code, Device};
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::profile::Profile;
@@ -19,7 +18,7 @@ const DURATION_US: u64 = 10_000_000;
 /// The events of a noisy pad that plays the script, and how far the pointer went: right, left, down, up.
 fn play(profile: Profile, script: Script, seed: u64) -> (Vec<(Device, Code, i32)>, [i32; 4]) {
     let mut pad = VirtualPad::new(script, seed);
-    let mut pipeline = Pipeline::new(Decoder::shipped(), profile);
+    let mut pipeline = Pipeline::new(tactpad::shipped::decoder(), profile);
     let mut question = [0; ENCODED_MAX];
     let length = encode_command(&Command::Identify, &mut question);
     pad.receive(&question[..length]);

@@ -9,7 +9,7 @@ const ROWS: &[&[&str]] = &[
     &["quantity", "control", "health", "latency", "toml_text", "plot", "vtk"],
     &["capture", "link", "signal", "device", "influence", "mapping", "measured", "network"],
     &["contact", "output", "readout", "dataset", "field", "protocol"],
-    &["pipeline", "layout", "mechanics", "twin", "metrology", "calibration", "evaluation"],
+    &["pipeline", "layout", "mechanics", "twin", "metrology", "calibration", "evaluation", "shipped"],
     &["replay", "scdf", "virtual_pad"],
     &["transport", "sink", "requests", "ablation"],
     &["bridge"],

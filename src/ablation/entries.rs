@@ -80,6 +80,7 @@ pub const ENTRIES: &[Entry] = &[
     entry(Method::Wrench, Samples::Drawn(216)),
     entry(Method::Wrench, Samples::Drawn(CONTACTS)),
     entry(Method::Statics, Samples::Simulated),
+    entry(Method::Inverse, Samples::Simulated),
     entry(Method::Inverse, Samples::Drawn(20)),
     entry(Method::Inverse, Samples::Drawn(73)),
     entry(Method::Inverse, Samples::Drawn(216)),

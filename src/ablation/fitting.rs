@@ -18,6 +18,7 @@ use crate::protocol;
 use crate::random::SplitMix64;
 use crate::scdf::adaptation::{self, TooFew, adapt};
 use crate::scdf::simulation;
+use crate::shipped;
 
 /// Why a decoder cannot be fitted.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,7 +110,7 @@ impl<'p> Known<'p> {
     fn decoder(&self, entry: &Entry) -> Result<Decoder, Reason> {
         let rows = || self.rows(entry.samples);
         let fitted = match entry.method {
-            Method::Statics => Ok(Decoder::shipped()),
+            Method::Statics => Ok(shipped::statics()),
             Method::Network if entry.samples == Samples::Simulated => {
                 Ok(Decoder::Network(Box::new(self.network.clone())))
             }
@@ -117,6 +118,9 @@ impl<'p> Known<'p> {
             Method::Knn => neighbours(&rows()).map(Decoder::Neighbours),
             Method::Linear => self.regression(&rows(), Target::Contact),
             Method::Wrench => self.regression(&rows(), Target::Wrench),
+            Method::Inverse if entry.samples == Samples::Simulated => {
+                Ok(shipped::uncalibrated(self.subject.designed.field.signals.clone()))
+            }
             Method::Inverse => self.inverse(&self.places(entry.samples)),
         };
         fitted.map_err(Reason::Calibration)

@@ -4,9 +4,13 @@ use super::model::{BACKGROUND_DEGREE, TERMS};
 use crate::contact::friction::PLAYS;
 use crate::contact::recording::Lags;
 use crate::field::{PadField, Sensitivity};
+use crate::influence::InfluenceField;
 use crate::measured::Row;
 use crate::quantity::{CHANNELS, Contact};
 use crate::zernike::{Jet, jets, norms};
+
+/// Half the way over which a second derivative is taken.
+const BEND_MM: f64 = 0.5;
 
 /// Per channel, what a unit force along each axis does.
 pub(super) type Maps = [[f64; 3]; CHANNELS];
@@ -18,6 +22,8 @@ pub(super) struct Place {
     pub(super) gains: Maps,
     /// µV/N per mm of x and of y.
     pub(super) along: [Maps; 2],
+    /// The sum of their second derivatives by x and y, µV/N per mm².
+    pub(super) bent: Maps,
     /// µV/N per unit of each number that has a sensitivity.
     pub(super) slopes: Vec<Maps>,
     /// The background's polynomials, each with a root mean square of 1 over the plate.
@@ -53,10 +59,28 @@ impl Place {
         Self {
             gains: gains.value,
             along: [gains.dx, gains.dy],
+            bent: bent(&field.signals, place_mm),
             slopes: sensitivities.iter().map(slope).collect(),
             terms: terms(&jets),
         }
     }
+}
+
+/// The Laplacian of the maps.
+fn bent(signals: &InfluenceField, [x_mm, y_mm]: [f64; 2]) -> Maps {
+    // The field is held at its rim: beyond it there is no curvature, so that is taken a little inwards.
+    let share = (f64::from(signals.radius_mm()) - BEND_MM) / libm::hypot(x_mm, y_mm);
+    let [x_mm, y_mm] = [x_mm, y_mm].map(|mm| share.min(1.0) * mm);
+    let at = |x_mm: f64, y_mm: f64| signals.gains(x_mm as f32, y_mm as f32);
+    let (right, left) = (at(x_mm + BEND_MM, y_mm), at(x_mm - BEND_MM, y_mm));
+    let (above, below) = (at(x_mm, y_mm + BEND_MM), at(x_mm, y_mm - BEND_MM));
+    std::array::from_fn(|channel| {
+        std::array::from_fn(|axis| {
+            let by_x = right.dx[channel][axis] - left.dx[channel][axis];
+            let by_y = above.dy[channel][axis] - below.dy[channel][axis];
+            (by_x + by_y) / (2.0 * BEND_MM)
+        })
+    })
 }
 
 /// The degree of a polynomial with so many coefficients.

@@ -16,13 +16,16 @@ pub(super) const TERMS: usize = (BACKGROUND_DEGREE + 1) * (BACKGROUND_DEGREE + 2
 
 /// Standard deviations before anything is measured. Gains: the authors' earlier pad has 0.83 to 1.33.
 const GAIN: f64 = 0.3;
+/// Half the mean square of the distance at which a contact's force acts from its place, along each axis: an indenter of
+/// another size, or a finger that is not still.
+const BLUR_MM2: f64 = 0.5;
 /// Of a play operator in all channels.
 const FRICTION: f64 = 0.05;
 /// No play operator has a larger share. A negative one corrects another.
 const SHARE_MAX: f64 = 0.25;
 
 /// The numbers by kind, one after the other in a vector: zeros, gains, crosstalk (into, from), friction (shares of all
-/// channels; what each channel differs by), physical numbers, background (channel, force, polynomial).
+/// channels; what each channel differs by), blur, physical numbers, background (channel, force, polynomial).
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub(super) physical: Vec<Parameter>,
@@ -35,7 +38,8 @@ const GAINS: usize = ZEROS + CHANNELS;
 const CROSSTALKS: usize = GAINS + CHANNELS;
 const SHARES: usize = CROSSTALKS + CHANNELS * CHANNELS;
 const OWN_SHARES: usize = SHARES + PLAYS;
-const PHYSICAL: usize = OWN_SHARES + PLAYS * CHANNELS;
+const BLUR: usize = OWN_SHARES + PLAYS * CHANNELS;
+const PHYSICAL: usize = BLUR + 1;
 
 impl Layout {
     pub(super) const fn size(&self) -> usize {
@@ -69,7 +73,8 @@ impl Layout {
             *deviation = if index / CHANNELS == index % CHANNELS { 0.0 } else { spread.of(Kind::Crosstalk) };
         }
         deviations[SHARES..OWN_SHARES].fill(FRICTION);
-        deviations[OWN_SHARES..PHYSICAL].fill(spread.of(Kind::OwnFriction));
+        deviations[OWN_SHARES..BLUR].fill(spread.of(Kind::OwnFriction));
+        deviations[BLUR] = BLUR_MM2;
         for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
             *deviation = spread.of(Kind::of(*parameter));
         }
@@ -86,7 +91,7 @@ impl Layout {
     pub(super) fn kinds(&self) -> impl Iterator<Item = (Kind, usize)> {
         let between = (0..CHANNELS * CHANNELS).filter(|index| index / CHANNELS != index % CHANNELS);
         let physical = self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (Kind::of(*it), at));
-        let own = (OWN_SHARES..PHYSICAL).map(|at| (Kind::OwnFriction, at));
+        let own = (OWN_SHARES..BLUR).map(|at| (Kind::OwnFriction, at));
         let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, at));
         zeros.chain(between.map(|index| (Kind::Crosstalk, CROSSTALKS + index))).chain(own).chain(physical)
     }
@@ -126,6 +131,9 @@ impl Layout {
     /// µV/N of the strains at a place, before gains: the simulator's field and what differs.
     fn strained(&self, values: &[f64], scale: &Maps, place: &Place) -> Maps {
         let mut maps = place.gains;
+        for (map, bent) in maps.as_flattened_mut().iter_mut().zip(place.bent.as_flattened()) {
+            *map += values[BLUR] * bent;
+        }
         for (value, slope) in values[PHYSICAL..].iter().zip(&place.slopes) {
             for (map, slope) in maps.as_flattened_mut().iter_mut().zip(slope.as_flattened()) {
                 *map += value * slope;
@@ -195,6 +203,7 @@ impl Layout {
             slopes[GAINS + channel] = strains_uv[channel];
             slopes[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&strains_uv);
             slopes[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
+            slopes[BLUR] = gain * loaded(&place.bent[channel], force_n);
             for (slope, maps) in slopes[PHYSICAL..].iter_mut().zip(&place.slopes) {
                 *slope = gain * loaded(&maps[channel], force_n);
             }

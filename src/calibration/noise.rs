@@ -17,11 +17,14 @@ const KNOWN_OF_KIN: f64 = 50.0;
 /// Of a gain that all channels share; known before as if so many contacts had told it.
 const GAIN: f64 = 0.006;
 const GAIN_KNOWN: f64 = 30.0;
+const FORCE_UV_PER_N: f64 = 1.0;
+/// How many parts noise has.
+const PARTS: usize = 3;
 /// No pad is quieter.
 const ADDITIVE_MIN_UV: f64 = 0.5;
 const SHARE_MIN: f64 = 5e-4;
 /// So often the weights are taken anew.
-const ROUNDS: usize = 20;
+const ROUNDS: usize = 40;
 
 /// The noise before any measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,32 +37,59 @@ pub(super) struct Known {
 impl Known {
     /// Of a pad of which nothing is known.
     pub(super) const SIMULATED: Self = Self {
-        noise: Noise { gain: GAIN, ..Noise::of_channels([ADDITIVE_UV; CHANNELS], [SHARE; CHANNELS]) },
+        noise: Noise {
+            gain: GAIN,
+            force_uv_per_n: [FORCE_UV_PER_N; CHANNELS],
+            ..Noise::of_channels([ADDITIVE_UV; CHANNELS], [SHARE; CHANNELS])
+        },
         readings: KNOWN,
     };
 
     /// Of a pad of the same kind as one with this noise.
     pub(super) const fn of_kin(noise: &Noise) -> Self {
-        let Noise { additive_uv, share, gain, .. } = *noise;
-        Self { noise: Noise { gain, ..Noise::of_channels(additive_uv, share) }, readings: KNOWN_OF_KIN }
+        let Noise { additive_uv, share, force_uv_per_n, gain, .. } = *noise;
+        let noise = Noise { force_uv_per_n, gain, ..Noise::of_channels(additive_uv, share) };
+        Self { noise, readings: KNOWN_OF_KIN }
+    }
+
+    /// Squares of a channel's parts.
+    fn parts(&self, channel: usize) -> [f64; PARTS] {
+        let Noise { additive_uv, share, force_uv_per_n, .. } = &self.noise;
+        [additive_uv, share, force_uv_per_n].map(|deviations| deviations[channel].powi(2))
     }
 }
 
-/// What a channel left over: its reading and the rest, both in µV.
-pub(super) type Rest = (f64, f64);
+/// What a channel left over.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rest {
+    /// Its reading.
+    pub(super) uv: f64,
+    /// The force of the contact.
+    pub(super) force_n: f64,
+    /// The expected square of what is left over.
+    pub(super) square_uv2: f64,
+}
 
-/// The noise that these rests have.
-///
-/// Squares of rests are a straight line over squares of readings; the line is fitted with weights from itself, as squares
-/// scatter in proportion to what they should be.
+/// The noise that these rests have: their squares are a sum of a constant, a part of the square of the reading and one of
+/// the square of the force, none of them negative. Squares scatter in proportion to what they should be, so the sum is
+/// fitted with weights from itself.
 pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS], known: &Known) -> Noise {
-    let lines: [[f64; 2]; CHANNELS] = std::array::from_fn(|k| {
-        line(&rests[k], known.noise.additive_uv[k].powi(2), known.noise.share[k].powi(2), known.readings)
-    });
-    Noise::of_channels(
-        lines.map(|[constant, _]| constant.sqrt().max(ADDITIVE_MIN_UV)),
-        lines.map(|[_, slope]| slope.sqrt().max(SHARE_MIN)),
-    )
+    let parts: [[f64; PARTS]; CHANNELS] =
+        std::array::from_fn(|k| parts(&rests[k], &known.parts(k), known.readings).map(f64::sqrt));
+    let mut noise = Noise::of_channels(
+        parts.map(|[own, ..]| own.max(ADDITIVE_MIN_UV)),
+        parts.map(|[_, share, _]| share.max(SHARE_MIN)),
+    );
+    noise.force_uv_per_n = parts.map(|[.., force]| force);
+    noise
+}
+
+/// The noise with that of the zeros, which change by so much from one reading of the untouched pad to the next. All contacts
+/// between two readings share their errors, so a calibration takes a part of them for the pad's.
+pub(super) fn with_zeros(noise: Noise, drift_uv: &[f64; CHANNELS]) -> Noise {
+    // A change has the variance of two zeros, and between two zeros two thirds of that of one are left.
+    let variance = |k: usize| noise.additive_uv[k].powi(2) + drift_uv[k].powi(2) / 3.0;
+    Noise { additive_uv: std::array::from_fn(|k| variance(k).sqrt()), ..noise }
 }
 
 /// The noise with what the field does not know: the mean over these contacts of what it leaves open about each channel, and
@@ -138,37 +168,35 @@ fn off_along_force(decoder: &Inverse, strain: &Strain, written_n: &[f64; 3]) -> 
     (variance > 0.0).then_some((force_n, written_n - force_n, variance))
 }
 
-/// The line of squares; before, its constant and slope are known as well as so many readings tell them.
-fn line(rests: &[Rest], known_uv2: f64, known_slope: f64, known_readings: f64) -> [f64; 2] {
-    let (mut constant, mut slope) = (known_uv2, known_slope);
+/// Squares of the parts; before, they are known as well as so many readings tell.
+fn parts(rests: &[Rest], before: &[f64; PARTS], readings: f64) -> [f64; PARTS] {
     let count = rests.len().max(1) as f64;
-    let typical = rests.iter().map(|(uv, _)| uv * uv).sum::<f64>() / count;
-    for _ in 0..ROUNDS {
-        let mut normal = [[0.0; 2]; 2];
-        let mut right = [0.0; 2];
-        let mut add = |square: f64, rest: f64, count: f64| {
-            let weight = count / (constant + slope * square).powi(2);
-            normal[0][0] += weight;
-            normal[0][1] += weight * square;
-            normal[1][1] += weight * square * square;
-            right[0] += weight * rest;
-            right[1] += weight * rest * square;
-        };
-        rests.iter().for_each(|(uv, rest)| add(uv * uv, rest * rest, 1.0));
-        // What was known: half of it at rest, half at a typical reading.
-        add(0.0, known_uv2, known_readings / 2.0);
-        add(typical, known_uv2 + known_slope * typical, known_readings / 2.0);
-        let determinant = normal[0][0] * normal[1][1] - normal[0][1] * normal[0][1];
-        let found = [
-            (normal[1][1] * right[0] - normal[0][1] * right[1]) / determinant,
-            (normal[0][0] * right[1] - normal[0][1] * right[0]) / determinant,
-        ];
-        if found.iter().all(|number| number.is_finite()) {
-            constant = found[0].max(ADDITIVE_MIN_UV * ADDITIVE_MIN_UV);
-            slope = found[1].max(SHARE_MIN * SHARE_MIN);
+    let typical = |of: fn(&Rest) -> f64| rests.iter().map(|rest| of(rest).powi(2)).sum::<f64>() / count;
+    let (uv2, n2) = (typical(|rest| rest.uv), typical(|rest| rest.force_n));
+    let measured = rests.iter().map(|it| ([1.0, it.uv * it.uv, it.force_n * it.force_n], it.square_uv2, 1.0));
+    // What was known: half of it at rest, half at a typical reading.
+    let known = [[1.0, 0.0, 0.0], [1.0, uv2, n2]];
+    let known = known.map(|terms| (terms, sum(&terms, before), readings / 2.0));
+    let all: Vec<([f64; PARTS], f64, f64)> = measured.chain(known).collect();
+    (0..ROUNDS).fold(*before, |parts, _| improved(&parts, &all))
+}
+
+/// A round of D. D. Lee's and H. S. Seung's rule (Nature 401 (1999) 788), under which no part ever becomes negative.
+fn improved(parts: &[f64; PARTS], all: &[([f64; PARTS], f64, f64)]) -> [f64; PARTS] {
+    let [mut wanted, mut found] = [[0.0; PARTS]; 2];
+    for (terms, square, count) in all {
+        let expected = sum(terms, parts).max(ADDITIVE_MIN_UV * ADDITIVE_MIN_UV);
+        let weight = count / (expected * expected);
+        for (k, term) in terms.iter().enumerate() {
+            wanted[k] += weight * term * square;
+            found[k] += weight * term * expected;
         }
     }
-    [constant, slope]
+    std::array::from_fn(|k| if found[k] > 0.0 { parts[k] * wanted[k] / found[k] } else { parts[k] })
+}
+
+fn sum(terms: &[f64; PARTS], parts: &[f64; PARTS]) -> f64 {
+    terms.iter().zip(parts).map(|(term, part)| term * part).sum()
 }
 
 #[cfg(test)]
@@ -177,16 +205,19 @@ mod tests {
     use crate::random::SplitMix64;
 
     #[test]
-    fn both_parts_are_found() {
+    fn all_parts_are_found() {
         let mut random = SplitMix64::new(1);
         let mut rest = || {
-            let uv = 3000.0 * f64::from(random.uniform());
-            (uv, 12.0 * f64::from(random.normal()) + 0.015 * uv * f64::from(random.normal()))
+            let (uv, force_n) = (3000.0 * f64::from(random.uniform()), 5.0 * f64::from(random.fraction()));
+            let parts = [12.0, 0.015 * uv, 8.0 * force_n];
+            let rest_uv: f64 = parts.iter().map(|part| part * f64::from(random.normal())).sum();
+            Rest { uv, force_n, square_uv2: rest_uv * rest_uv }
         };
-        let rests: [Vec<Rest>; CHANNELS] = std::array::from_fn(|_| (0..2000).map(|_| rest()).collect());
-        let Noise { additive_uv, share, .. } = of_rests(&rests, &Known::SIMULATED);
-        assert!(additive_uv.iter().all(|uv| (uv / 12.0 - 1.0).abs() < 0.2), "{additive_uv:?}");
-        assert!(share.iter().all(|share| (share / 0.015 - 1.0).abs() < 0.1), "{share:?}");
+        let rests: [Vec<Rest>; CHANNELS] = std::array::from_fn(|_| (0..3000).map(|_| rest()).collect());
+        let Noise { additive_uv, share, force_uv_per_n, .. } = of_rests(&rests, &Known::SIMULATED);
+        assert!(additive_uv.iter().all(|uv| (uv / 12.0 - 1.0).abs() < 0.25), "{additive_uv:?}");
+        assert!(share.iter().all(|share| (share / 0.015 - 1.0).abs() < 0.2), "{share:?}");
+        assert!(force_uv_per_n.iter().all(|uv| (uv / 8.0 - 1.0).abs() < 0.3), "{force_uv_per_n:?}");
     }
 
     #[test]

@@ -80,7 +80,7 @@ pub(super) struct Fit {
     pub(super) values: Vec<f64>,
     pub(super) scatter: Scatter,
     pub(super) spread: Spread,
-    drift_uv: [f64; CHANNELS],
+    pub(super) drift_uv: [f64; CHANNELS],
     factor: LargeFactor,
     /// ln of the probability of what was measured, but for a constant.
     pub(super) evidence: f64,
@@ -261,7 +261,9 @@ impl<'f> Problem<'f> {
         let mut rest_uv = contact.uv;
         self.layout.readings(values, &self.scale, contact, |channel, uv, _| rest_uv[channel] -= uv);
         let slopes = self.layout.slopes(values, &self.scale, contact);
-        Residual { uv: contact.uv, rest_uv, slopes }
+        let [fx_n, fy_n, fz_n] = contact.force_n;
+        let force_n = libm::hypot(libm::hypot(fx_n, fy_n), fz_n);
+        Residual { uv: contact.uv, force_n, rest_uv, slopes }
     }
 
     fn residuals(&self, values: &[f64]) -> Vec<Residual> {

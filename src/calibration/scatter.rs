@@ -38,6 +38,8 @@ pub(super) struct Scatter {
 pub(super) struct Residual {
     /// Its channels.
     pub(super) uv: [f64; CHANNELS],
+    /// Its force.
+    pub(super) force_n: f64,
     /// What the model leaves over.
     pub(super) rest_uv: [f64; CHANNELS],
     /// How each channel changes with x, y, Fx, Fy, Fz.
@@ -80,14 +82,13 @@ impl Scatter {
         Factor::of(&curvature)
     }
 
-    fn variances(&self, uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
-        let Noise { additive_uv, share, .. } = &self.noise;
-        std::array::from_fn(|k| additive_uv[k].powi(2) + (share[k] * uv[k]).powi(2))
+    fn variances(&self, residual: &Residual) -> [f64; CHANNELS] {
+        self.noise.variances(&residual.uv, residual.force_n).noise
     }
 
     /// `None` where the numbers make no sense.
     pub(super) fn worth(&self, residual: &Residual) -> Option<Worth> {
-        let variances = self.variances(&residual.uv);
+        let variances = self.variances(residual);
         let weights = variances.map(|variance| 1.0 / variance);
         let told = self.told(residual, &weights)?;
         let mut taken = [[0.0; CHANNELS]; UNKNOWNS];
@@ -110,7 +111,7 @@ impl Scatter {
         let mut rests: [Vec<Rest>; CHANNELS] = [const { Vec::new() }; CHANNELS];
         let mut squares = [2.0 * KNOWN * PLACE_MM * PLACE_MM, 3.0 * KNOWN * FORCE_N * FORCE_N];
         for residual in residuals {
-            let weights = self.variances(&residual.uv).map(|variance| 1.0 / variance);
+            let weights = self.variances(residual).map(|variance| 1.0 / variance);
             let Some(told) = self.told(residual, &weights) else { continue };
             let hidden = told.inverse();
             let differences = told.solve(&weighted(residual, &weights));
@@ -120,8 +121,9 @@ impl Scatter {
             for (channel, row) in residual.slopes.iter().enumerate() {
                 let rest = residual.rest_uv[channel] - dot(row, &differences);
                 let lines = hidden.map(|line| dot(&line, row));
-                let square = rest * rest / freedom + dot(row, &lines);
-                rests[channel].push((residual.uv[channel], square.sqrt()));
+                let square_uv2 = rest * rest / freedom + dot(row, &lines);
+                let Residual { uv, force_n, .. } = *residual;
+                rests[channel].push(Rest { uv: uv[channel], force_n, square_uv2 });
             }
         }
         let count = residuals.len() as f64 + KNOWN;
@@ -171,7 +173,7 @@ mod tests {
             let uv = [0; CHANNELS].map(|_| normal(1000.0));
             let noise = |uv: f64, normal: &mut dyn FnMut(f64) -> f64| normal(5.0) + uv * normal(0.02);
             let rest_uv = std::array::from_fn(|k| noise(uv[k], &mut normal) + dot(&slopes[k], &differences));
-            Residual { uv, rest_uv, slopes }
+            Residual { uv, force_n: 0.0, rest_uv, slopes }
         };
         (0..1500).map(|_| residual()).collect()
     }
@@ -193,7 +195,7 @@ mod tests {
         let residual = &residuals(0.1, 0.02)[0];
         let scatter = Scatter::before(Known::SIMULATED);
         let worth = scatter.worth(residual).unwrap();
-        let variances = scatter.variances(&residual.uv);
+        let variances = scatter.variances(residual);
         let label = scatter.precisions().map(|precision| 1.0 / precision);
         let covariance: [[f64; CHANNELS]; CHANNELS] = std::array::from_fn(|i| {
             std::array::from_fn(|j| {

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use super::Failure;
 use super::decoder_file::Choice;
-use crate::contact::{Decoder, shipped};
+use crate::contact::Decoder;
+use crate::shipped;
 
 /// A decoder that is to play.
 #[derive(Clone, Debug)]
@@ -28,5 +29,5 @@ impl Chosen {
 
 /// The file that is read, if it is one.
 pub(super) fn file(choice: &Choice) -> Option<&Path> {
-    Some(choice.name()).filter(|name| shipped::bytes(name).is_none()).map(Path::new)
+    Some(choice.name()).filter(|name| !shipped::is_known(name)).map(Path::new)
 }

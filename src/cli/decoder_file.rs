@@ -8,8 +8,9 @@ use clap::Args;
 
 use super::Failure;
 use super::written::{create, reason};
-use crate::contact::{Decoder, read, shipped};
+use crate::contact::{Decoder, read};
 use crate::network::{Network, onnx};
+use crate::shipped;
 
 /// Far more than any decoder needs, and no more than a capture's entry holds.
 const BYTES_MAX: u64 = 16_000_000;
@@ -17,7 +18,7 @@ const BYTES_MAX: u64 = 16_000_000;
 /// The decoder of a verb that plays.
 #[derive(Debug, Args)]
 pub(super) struct Choice {
-    /// What turns channels into a contact: a file that adapt or train wrote, statics, or scdf.
+    /// What turns channels into a contact: a file that adapt or train wrote, inverse (the default), statics, or scdf.
     #[arg(long, value_name = "NAME|FILE")]
     decoder: Option<String>,
 }
@@ -30,7 +31,7 @@ impl Choice {
 
     /// What was chosen, or plays anyway.
     pub(super) fn name(&self) -> &str {
-        self.decoder.as_deref().unwrap_or(shipped::STATICS)
+        self.decoder.as_deref().unwrap_or(shipped::DEFAULT)
     }
 
     /// Reads a decoder that can play, and its bytes.
@@ -69,7 +70,7 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// What a name or a file stands for. A file of a shipped decoder's name is meant by `./NAME`.
 fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     if let Some(bytes) = path.to_str().and_then(shipped::bytes) {
-        return Ok(bytes.into());
+        return Ok(bytes.into_owned());
     }
     let file = File::open(path).map_err(|error| reason(&error))?;
     if !file.metadata().is_ok_and(|file| file.is_file()) {

@@ -16,6 +16,7 @@ use crate::evaluation::{self, Errors};
 use crate::measured::columns::Kind;
 use crate::measured::{Label, Table, zero};
 use crate::network::Zero;
+use crate::shipped;
 
 /// Arguments of `tactpad evaluate`.
 #[derive(Debug, Args)]
@@ -59,7 +60,7 @@ struct ByTruth {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { decoder, measured, truth, pad, json } = arguments;
     let device = pad.read()?;
-    let decoder = decoder.as_deref().map_or_else(|| Ok(Decoder::shipped()), decoder_file::read)?;
+    let decoder = decoder.as_deref().map_or_else(|| Ok(shipped::decoder()), decoder_file::read)?;
     let table = tables::read(measured, Kind::Measured, device.plate.diameter_mm)?;
     let truth =
         truth.as_ref().map(|path| tables::read(path, Kind::Plan, device.plate.diameter_mm)).transpose()?;

@@ -20,6 +20,7 @@ use crate::output::ledger::{Edges, Ledger};
 use crate::pipeline::{NoProbe, Pipeline};
 use crate::quantity::Contact;
 use crate::replay::make_call;
+use crate::shipped;
 use crate::time::StreamInstant;
 
 /// The plate of the pads that profiles are made for.
@@ -103,7 +104,7 @@ fn replay_capture(
     Ok(())
 }
 
-/// The decoder that is chosen, else the recorded one, else the one of captures that hold none.
+/// The decoder that is chosen, else the recorded one; captures that hold none were recorded with statics.
 fn playing(path: &Path, chosen: &Choice, recorded: Option<Vec<u8>>) -> Result<Decoder, Failure> {
     match recorded {
         Some(bytes) if !chosen.is_given() => read::playing(&bytes).map_err(|why| {
@@ -113,6 +114,7 @@ fn playing(path: &Path, chosen: &Choice, recorded: Option<Vec<u8>>) -> Result<De
                  it, or choose a decoder with --decoder"
             ))
         }),
+        None if !chosen.is_given() => Ok(shipped::statics()),
         _ => Ok(chosen.read()?.0),
     }
 }

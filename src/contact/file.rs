@@ -51,16 +51,9 @@ impl Decoder {
         match self {
             Self::Inverse(inverse) => {
                 begin(INVERSE);
-                let Noise { additive_uv, share, field_uv_per_n, gain, by_field } = inverse.noise();
+                push_noise(&mut body, inverse.noise());
                 let friction = inverse.friction().iter();
-                let friction = friction.flat_map(|play| play.threshold_uv.iter().chain(&play.share));
-                let numbers = additive_uv
-                    .iter()
-                    .chain(share)
-                    .chain(field_uv_per_n)
-                    .chain([gain])
-                    .chain(by_field.as_flattened())
-                    .chain(friction);
+                let numbers = friction.flat_map(|play| play.threshold_uv.iter().chain(&play.share));
                 body.extend(numbers.flat_map(|number| number.to_le_bytes()));
                 inverse.field().write(&mut body);
             }
@@ -108,20 +101,29 @@ fn read(from: &mut Reader<'_>) -> Option<(Decoder, String)> {
 }
 
 fn read_inverse(from: &mut Reader<'_>) -> Option<Inverse> {
-    let [mut additive_uv, mut share, mut field_uv_per_n] = [[0.0; CHANNELS]; 3];
-    for number in additive_uv.iter_mut().chain(&mut share).chain(&mut field_uv_per_n) {
+    let (noise, friction) = (read_noise(from)?, read_friction(from)?);
+    Some(Inverse::new(InfluenceField::read(from)?, noise, friction))
+}
+
+fn push_noise(to: &mut Vec<u8>, noise: &Noise) {
+    let Noise { additive_uv, share, force_uv_per_n, field_uv_per_n, gain, by_field } = noise;
+    let channels = [additive_uv, share, force_uv_per_n, field_uv_per_n];
+    let numbers = channels.into_iter().flatten().chain([gain]).chain(by_field.as_flattened());
+    to.extend(numbers.flat_map(|number| number.to_le_bytes()));
+}
+
+fn read_noise(from: &mut Reader<'_>) -> Option<Noise> {
+    let mut noise = Noise::of_channels([0.0; CHANNELS], [0.0; CHANNELS]);
+    let Noise { additive_uv, share, force_uv_per_n, field_uv_per_n, gain, by_field } = &mut noise;
+    let channels = [additive_uv, share, force_uv_per_n, field_uv_per_n];
+    for number in channels.into_iter().flatten().chain([gain]) {
         *number = from.double().filter(|number| number.is_finite() && *number >= 0.0)?;
     }
-    let gain = from.double().filter(|number| number.is_finite() && *number >= 0.0)?;
-    let mut by_field = [[0.0; _]; _];
     for number in by_field.as_flattened_mut() {
         *number = from.double().filter(|number| number.is_finite())?;
     }
-    let friction = read_friction(from)?;
-    let scatters = additive_uv.iter().all(|uv| *uv > 0.0);
-    let field = InfluenceField::read(from)?;
-    scatters
-        .then(|| Inverse::new(field, Noise { additive_uv, share, field_uv_per_n, gain, by_field }, friction))
+    let scatters = noise.additive_uv.iter().all(|uv| *uv > 0.0);
+    scatters.then_some(noise)
 }
 
 fn read_friction(from: &mut Reader<'_>) -> Option<Friction> {
@@ -172,6 +174,7 @@ fn read_neighbours(from: &mut Reader<'_>) -> Option<Neighbours> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::statics::Statics;
     use crate::field::PadField;
     use crate::quantity::Strain;
 
@@ -198,7 +201,7 @@ mod tests {
             assert_eq!(note, "a note");
             assert_eq!(again.decode(&strain), decoder.decode(&strain));
         }
-        assert!(Decoder::shipped().to_bytes("").is_none());
+        assert!(Decoder::Statics(Statics::nominal()).to_bytes("").is_none());
     }
 
     #[test]

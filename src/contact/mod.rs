@@ -7,7 +7,6 @@ pub mod neighbours;
 pub mod read;
 pub mod recording;
 pub mod regression;
-pub mod shipped;
 pub mod statics;
 pub mod touch;
 pub mod uncertainty;

@@ -20,7 +20,7 @@ use crate::quantity::{Contact, MODULES, Strain};
 pub const FORCE_RESOLUTION_N: f32 = 0.005;
 
 /// The nominal pad's numbers as their file has them.
-pub(super) const NOMINAL: &str = include_str!("../../models/statics.toml");
+pub const NOMINAL: &str = include_str!("../../models/statics.toml");
 
 /// The decoder's numbers, as they stand in `models/statics.toml`.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

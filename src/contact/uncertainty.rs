@@ -16,6 +16,8 @@ pub struct Noise {
     pub additive_uv: [f64; CHANNELS],
     /// Standard deviation as a share of the channel's own reading.
     pub share: [f64; CHANNELS],
+    /// Standard deviation of what grows with the force alone: a finger that is not still.
+    pub force_uv_per_n: [f64; CHANNELS],
     /// Standard deviation of what the field says of a force of 1 N.
     pub field_uv_per_n: [f64; CHANNELS],
     /// Standard deviation of a gain that all channels share.
@@ -26,11 +28,11 @@ pub struct Noise {
 
 /// Variances of the channels at one reading.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Variances {
+pub struct Variances {
     /// The reading's own noise.
-    noise: [f64; CHANNELS],
+    pub noise: [f64; CHANNELS],
     /// What the field does not know.
-    field: [f64; CHANNELS],
+    pub field: [f64; CHANNELS],
 }
 
 /// What the channels say of a contact.
@@ -60,6 +62,7 @@ impl Noise {
         Self {
             additive_uv,
             share,
+            force_uv_per_n: [0.0; CHANNELS],
             field_uv_per_n: [0.0; CHANNELS],
             gain: 0.0,
             by_field: [[0.0; UNKNOWNS]; UNKNOWNS],
@@ -67,10 +70,14 @@ impl Noise {
     }
 
     /// For these readings, under about this force.
-    pub(super) fn variances(&self, uv: &[f64; CHANNELS], force_n: f64) -> Variances {
+    pub fn variances(&self, uv: &[f64; CHANNELS], force_n: f64) -> Variances {
         let square = |number: f64| number * number;
+        let noise = |k: usize| {
+            let (own, force) = (self.share[k] * uv[k], self.force_uv_per_n[k] * force_n);
+            square(self.additive_uv[k]) + square(own) + square(force)
+        };
         Variances {
-            noise: std::array::from_fn(|k| square(self.additive_uv[k]) + square(self.share[k] * uv[k])),
+            noise: std::array::from_fn(noise),
             field: self.field_uv_per_n.map(|uv_per_n| square(uv_per_n * force_n)),
         }
     }

@@ -54,7 +54,7 @@ fn decode(criterion: &mut Criterion) {
     #[cfg(feature = "foreign-onnx")]
     {
         use tactpad::network::foreign::Foreign;
-        let network = tactpad::contact::shipped::bytes("scdf").and_then(|bytes| Foreign::read(bytes).ok());
+        let network = tactpad::shipped::bytes("scdf").and_then(|bytes| Foreign::read(&bytes).ok());
         let Some(network) = network else { panic!("tract runs the shipped network") };
         group.bench_function("tract", |bencher| bencher.iter(|| network.decode(black_box(&strain.uv))));
     }

@@ -7,7 +7,6 @@ use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
-use tactpad::contact::Decoder;
 use tactpad::field::PadField;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::shipped;
@@ -51,7 +50,7 @@ fn feed(pipeline: &mut Pipeline, frames: &[Vec<u8>]) -> usize {
 fn rested() -> Pipeline {
     let profile = shipped::text("super-mario").and_then(|text| check::read(text, OutputChoice::AsWritten).0);
     let Some(profile) = profile else { panic!("super-mario is in order") };
-    let mut pipeline = Pipeline::new(Decoder::shipped(), profile);
+    let mut pipeline = Pipeline::new(tactpad::shipped::decoder(), profile);
     feed(&mut pipeline, &frames(0));
     pipeline
 }

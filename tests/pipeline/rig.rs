@@ -4,7 +4,6 @@ use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
-use tactpad::contact::Decoder;
 use tactpad::control::{Code, Device};
 use tactpad::field::PadField;
 use tactpad::influence::InfluenceField;
@@ -47,7 +46,7 @@ impl Rig {
     /// A rig whose pad has no noise and has just been plugged in.
     pub(crate) fn new(profile: Profile) -> Self {
         Self {
-            pipeline: Pipeline::new(Decoder::shipped(), profile),
+            pipeline: Pipeline::new(tactpad::shipped::decoder(), profile),
             field: PadField::nominal().signals,
             now_us: 0,
             sequence: 0,

@@ -5,11 +5,12 @@ use tactpad::contact::friction::NO_FRICTION;
 use tactpad::contact::inverse::Inverse;
 use tactpad::contact::regression::Target;
 use tactpad::contact::uncertainty::Noise;
-use tactpad::contact::{Decoder, read, shipped};
+use tactpad::contact::{Decoder, read};
 use tactpad::field::PadField;
 use tactpad::influence::InfluenceField;
 use tactpad::measured::{Label, Row};
 use tactpad::quantity::CHANNELS;
+use tactpad::shipped;
 
 /// Contacts that the fitted ones know; the paper has as many.
 const CONTACTS: u32 = 648;
@@ -19,7 +20,7 @@ pub(crate) fn each() -> Vec<(&'static str, Decoder)> {
     let field = PadField::nominal().signals;
     let rows: Vec<Row> = (0..CONTACTS).map(|index| row(&field, index)).collect();
     let fitted = |target| regression(&rows, target, 29.0).map(|found| Decoder::Regression(Box::new(found)));
-    let of_the_program = |name| shipped::bytes(name).and_then(|bytes| read::playing(bytes).ok());
+    let of_the_program = |name| shipped::bytes(name).and_then(|bytes| read::playing(&bytes).ok());
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let decoders = [
         of_the_program("statics"),

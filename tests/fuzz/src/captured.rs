@@ -4,7 +4,6 @@ use std::convert::Infallible;
 
 use firmware_proto::crc::crc32;
 use tactpad::capture::{Call, CaptureReader, CaptureWriter};
-use tactpad::contact::Decoder;
 use tactpad::control::OutputEvent;
 use tactpad::pipeline::{NoProbe, Pipeline};
 use tactpad::replay::make_call;
@@ -51,7 +50,7 @@ pub fn written(calls: &[Call]) -> Vec<u8> {
 
 /// The events of `calls`. Their times may even run back, as no recorder's do.
 pub fn replayed(calls: &[Call]) -> Vec<OutputEvent> {
-    let mut pipeline = Pipeline::new(Decoder::shipped(), first_profile());
+    let mut pipeline = Pipeline::new(tactpad::shipped::decoder(), first_profile());
     let mut all = Vec::new();
     for call in calls {
         let made = make_call(&mut pipeline, call.now, call.kind.as_ref(), &mut NoProbe, |events| {

@@ -9,7 +9,6 @@ use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
 use tactpad::capture::CallRef;
-use tactpad::contact::Decoder;
 use tactpad::control::{Code, Device, OutputEvent};
 use tactpad::field::PadField;
 use tactpad::influence::InfluenceField;
@@ -65,7 +64,7 @@ impl Default for Rig {
 impl Rig {
     /// A rig whose pad has just been plugged in.
     pub fn new(profile: Profile) -> Self {
-        let pipeline = Pipeline::new(Decoder::shipped(), profile);
+        let pipeline = Pipeline::new(tactpad::shipped::decoder(), profile);
         let now = HostInstant::from_ns(1_000_000_000);
         Self {
             pipeline,

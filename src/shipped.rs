@@ -1,0 +1,77 @@
+//! The decoders that are inside the program.
+
+use std::borrow::Cow;
+
+use crate::contact::Decoder;
+use crate::contact::friction::NO_FRICTION;
+use crate::contact::inverse::Inverse;
+use crate::contact::statics::{NOMINAL, Statics};
+use crate::contact::uncertainty::Noise;
+use crate::field::PadField;
+use crate::influence::InfluenceField;
+use crate::quantity::CHANNELS;
+
+/// Plays unless another one is asked for: of those that know no pad but the nominal one, it is nearest to the truth.
+/// `docs/ablation.md` has the figures.
+pub const DEFAULT: &str = "inverse";
+/// What captures without a decoder were made with.
+pub const STATICS: &str = "statics";
+/// The paper's network after its stage I.
+const SCDF: &str = "scdf";
+
+/// How far a pad's channels are from those of the nominal one, as a share of each: gains of a pad made by hand.
+const PAD_SHARE: f64 = 0.1;
+/// Of a single reading; mains are in it.
+const READING_UV: f64 = 10.0;
+
+/// The decoder that plays unless another one is asked for.
+pub fn decoder() -> Decoder {
+    uncalibrated(PadField::nominal().signals)
+}
+
+/// The inverse decoder of a pad that was never measured, by the field that the simulator gives it.
+pub fn uncalibrated(field: InfluenceField) -> Decoder {
+    let noise = Noise::of_channels([READING_UV; CHANNELS], [PAD_SHARE; CHANNELS]);
+    Decoder::Inverse(Box::new(Inverse::new(field, noise, NO_FRICTION)))
+}
+
+/// The decoder by statics.
+pub fn statics() -> Decoder {
+    Decoder::Statics(Statics::nominal())
+}
+
+/// Whether there is a decoder of this name.
+pub fn is_known(name: &str) -> bool {
+    [DEFAULT, STATICS, SCDF].contains(&name)
+}
+
+/// The file of the decoder `name`, or `None` if there is none of that name.
+pub fn bytes(name: &str) -> Option<Cow<'static, [u8]>> {
+    match name {
+        DEFAULT => decoder().to_bytes("the nominal pad").map(Cow::Owned),
+        STATICS => Some(Cow::Borrowed(NOMINAL.as_bytes())),
+        SCDF => Some(Cow::Borrowed(include_bytes!("../models/scdf.onnx"))),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::read;
+    use crate::quantity::Strain;
+
+    #[test]
+    fn each_plays_and_inverse_is_the_one_that_is_not_asked_for() {
+        let strain = Strain { uv: std::array::from_fn(|k| 300.0 - 55.0 * k as f32) };
+        let decoded = |name: &str| {
+            let decoder = read::playing(&bytes(name).unwrap()).unwrap();
+            (decoder.name(), decoder.decode(&strain))
+        };
+        assert_eq!(decoded(DEFAULT), ("inverse", decoder().decode(&strain)));
+        assert_eq!(decoded(STATICS), ("statics", statics().decode(&strain)));
+        assert_eq!(decoded(SCDF).0, "network");
+        assert!([DEFAULT, STATICS, SCDF].iter().all(|name| is_known(name)));
+        assert!(!is_known("nope") && bytes("nope").is_none());
+    }
+}

@@ -442,6 +442,30 @@ fn measured_contacts_that_lack_something_are_refused_with_file_and_line() {
 }
 
 #[test]
+fn what_adapt_cannot_begin_with_or_join_is_said() {
+    let (_folder, tared) = with_file("m.csv", &measured(20, |_, _| ()));
+    let tared = tared.to_str().unwrap();
+    for method in ["wrench", "linear", "knn"] {
+        let line = format!("adapt --method {method} --from scdf --out never --measured {tared}");
+        refuses_line(&line, &["--from is for inverse and scdf", "measured contacts alone"]);
+    }
+    let line = format!("adapt --method inverse --from statics --out never --measured {tared}");
+    refuses_line(&line, &["--from statics is a statics decoder", "adapt --method inverse"]);
+    let line = format!("adapt --method inverse --rows 0 --out never --measured {tared}");
+    refuses_line(&line, &[tared, "1 contacts", "measure more"]);
+    let pressed = measured(20, |line, cells| {
+        if line == 2 {
+            (cells[0], cells[5]) = ("press".into(), "1".into());
+        }
+    });
+    let (_folder, raw) = with_file("raw.csv", &pressed);
+    let raw = raw.to_str().unwrap();
+    let line = format!("adapt --method wrench --out never --measured {tared} --measured {raw}");
+    refuses_line(&line, &[tared, raw, "1 of these 2 tables read the untouched pad"]);
+    assert!(!Path::new("never").exists());
+}
+
+#[test]
 fn fits_to_fewer_contacts_than_they_have_numbers_are_refused() {
     for (method, least) in [("wrench", 10), ("linear", 10), ("knn", 5), ("scdf --from scdf", 10)] {
         let (_folder, path) = with_file("m.csv", &measured(least - 1, |_, _| ()));

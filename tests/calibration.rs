@@ -15,6 +15,7 @@ use tactpad::evaluation::{Errors, coverage95, decoded, errors};
 use tactpad::field::PadField;
 use tactpad::influence::{InfluenceField, MAPS};
 use tactpad::measured::{Label, Row, Table};
+use tactpad::network::Zero;
 use tactpad::protocol;
 use tactpad::quantity::CHANNELS;
 use tactpad::twin::bound::{Bound, Reading};
@@ -98,7 +99,9 @@ fn inverse(measured: &Measured, count: usize) -> Decoder {
 }
 
 fn wrench(measured: &Measured, count: usize) -> Decoder {
-    Decoder::Regression(Box::new(regression(&measured.rows(count), Target::Wrench, 29.0).unwrap()))
+    Decoder::Regression(Box::new(
+        regression(&measured.rows(count), Zero::Tared, Target::Wrench, 29.0).unwrap(),
+    ))
 }
 
 fn errors_of(decoder: &Decoder, measured: &Measured) -> Errors {
@@ -136,9 +139,10 @@ fn the_inverse_is_several_times_better_than_what_needs_no_physics() {
         }
     }
     let rows = measured.rows(648);
-    let linear = Decoder::Regression(Box::new(regression(&rows, Target::Contact, 29.0).unwrap()));
+    let linear =
+        Decoder::Regression(Box::new(regression(&rows, Zero::Tared, Target::Contact, 29.0).unwrap()));
     said("linear", &errors_of(&linear, &unseen));
-    said("neighbours", &errors_of(&Decoder::Neighbours(neighbours(&rows).unwrap()), &unseen));
+    said("neighbours", &errors_of(&Decoder::Neighbours(neighbours(&rows, Zero::Tared).unwrap()), &unseen));
 }
 
 #[test]
@@ -248,4 +252,85 @@ fn faults_that_it_has_no_number_for_do_not_make_it_worse_than_a_wrench() {
             assert!(place < share && force < share, "{place} {force}");
         }
     }
+}
+
+#[test]
+fn a_pad_whose_zeros_nobody_read_is_calibrated_all_the_same() {
+    let mut device = pad();
+    device.behaviour.noise.additive_uv = [10.0; CHANNELS];
+    device.behaviour.hysteresis = vec![Play { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.05 }];
+    let mut plan = protocol::paper::plan(&device.contact);
+    plan.rows.retain(|row| row.label.fz_n > 0.0);
+    let Measurement { table, .. } = carry_out(&plan, &device, field(), 1);
+    assert!(Recording::of(table.clone(), device.contact.full_scale_n).is_none());
+    let recording = Recording::raw(table, device.contact.full_scale_n);
+    let rows = recording.contacts();
+    for (count, allowed_uv) in [(20, 25.0), (648, 8.0)] {
+        let few: Vec<usize> = (0..count).map(|index| rows[index * 251 % rows.len()]).collect();
+        let calibration = fit(&recording, &few, &Device::nominal(), field(), None).unwrap();
+        let found_uv = calibration.zero_uv.unwrap();
+        println!("{count}: {found_uv:.0?}");
+        let offsets = device.modules.iter().flat_map(|module| module.offset_uv);
+        assert!(found_uv.iter().zip(offsets).all(|(found, offset)| (found - offset).abs() < allowed_uv));
+        let decoder = Decoder::Inverse(Box::new(calibration.decoder()));
+        let errors = errors_of(&decoder, &Measured::unseen(&device));
+        println!("{count}: {errors:?}");
+        assert!(errors.position_mae_mm < 0.3 && errors.force_mae_n < 0.04);
+    }
+}
+
+/// What the twin measures at these temperatures, one after the other.
+fn warmed(device: &Device, plan: &Table, temperatures: &[f64], seed: u64) -> Measured {
+    let mut plan = plan.clone();
+    let length = plan.rows.len().div_ceil(temperatures.len());
+    for (rows, temp_c) in plan.rows.chunks_mut(length).zip(temperatures) {
+        rows.iter_mut().for_each(|row| row.temp_c = Some(*temp_c));
+    }
+    Measured::of(device, &plan, seed)
+}
+
+#[test]
+fn two_recordings_tell_how_it_follows_the_temperature() {
+    let mut device = pad();
+    device.behaviour.noise.additive_uv = [10.0; CHANNELS];
+    let thermal = &mut device.behaviour.thermal;
+    thermal.zero_uv_per_c = std::array::from_fn(|k| 30.0 + 10.0 * k as f64);
+    thermal.gain_per_c = std::array::from_fn(|k| 2e-4 + 1e-4 * k as f64);
+    let truly = *thermal;
+    let plan = protocol::paper::plan(&device.contact);
+    let [cool, warm] = [25.0, 40.0].map(|temp_c| warmed(&device, &plan, &[temp_c], 1).recording);
+    let once = fit(&cool, &cool.contacts(), &Device::nominal(), field(), None).unwrap();
+    assert!(once.warmth.is_none());
+    let both = cool.then(warm);
+    let calibration = fit(&both, &both.contacts(), &Device::nominal(), field(), None).unwrap();
+    let found = calibration.warmth.unwrap();
+    let near = |found: &[f64], deviations: [f64; CHANNELS], truly: [f64; CHANNELS], allowed: f64| {
+        let numbers = found.iter().zip(deviations).zip(truly);
+        numbers
+            .into_iter()
+            .all(|((found, deviation), truly)| (found - truly).abs() < 4.0 * deviation && deviation < allowed)
+    };
+    println!("{found:?}");
+    assert!(near(&found.thermal.zero_uv_per_c, found.zero_deviation.unwrap(), truly.zero_uv_per_c, 2.0));
+    assert!(near(&found.thermal.gain_per_c, found.gain_deviation.unwrap(), truly.gain_per_c, 1e-4));
+    // Other temperatures, and the untouched pad is read at the first of them alone.
+    let mut plan = protocol::paper::plan(&device.contact);
+    let mut at = 0..;
+    plan.rows.retain(|row| at.next() == Some(0) || row.label.fz_n > 0.0);
+    let unseen = warmed(&device, &plan, &[20.0, 32.0, 45.0], 5);
+    let places = unseen.recording.contacts();
+    let errors_with = |decoder: &Decoder| {
+        let mut taken = unseen.recording.clone();
+        if let Some(thermal) = decoder.thermal() {
+            taken = taken.at_reference(thermal);
+        }
+        let rows = taken.freed(decoder.friction()).rows_at(&places);
+        let truths: Vec<Label> = places.iter().map(|at| unseen.truths[*at]).collect();
+        errors(&decoded(decoder, &rows), &truths)
+    };
+    let [with, without] =
+        [&calibration, &once].map(|it| errors_with(&Decoder::Inverse(Box::new(it.decoder()))));
+    println!("with {with:?}\nwithout {without:?}");
+    assert!(with.position_mae_mm < 0.3 && with.force_mae_n < 0.04);
+    assert!(without.position_mae_mm > 1.0 && without.force_mae_n > 0.2);
 }

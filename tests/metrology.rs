@@ -153,7 +153,7 @@ fn a_network_from_a_file_is_tried_raw_and_a_raw_one_is_no_decoder() {
     fs::write(folder.path().join("raw.onnx"), onnx::write(&network)).unwrap();
     let refused = metrology(folder.path(), "--measured m.csv --decoder raw.onnx");
     assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8(refused.stderr).unwrap().contains("a network of raw channels"));
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("takes raw channels"));
 }
 
 #[test]

@@ -13,7 +13,7 @@ use crate::calibration::regression::{neighbours, regression};
 use crate::contact::Decoder;
 use crate::contact::regression::Target;
 use crate::measured::{Label, Row};
-use crate::network::{Example, Network};
+use crate::network::{Example, Network, Zero};
 use crate::protocol;
 use crate::random::SplitMix64;
 use crate::scdf::adaptation::{self, TooFew, adapt};
@@ -115,7 +115,7 @@ impl<'p> Known<'p> {
                 Ok(Decoder::Network(Box::new(self.network.clone())))
             }
             Method::Network => return self.adapted(&rows()).map_err(Reason::Network),
-            Method::Knn => neighbours(&rows()).map(Decoder::Neighbours),
+            Method::Knn => neighbours(&rows(), Zero::Tared).map(Decoder::Neighbours),
             Method::Linear => self.regression(&rows(), Target::Contact),
             Method::Wrench => self.regression(&rows(), Target::Wrench),
             Method::Inverse if entry.samples == Samples::Simulated => {
@@ -140,7 +140,7 @@ impl<'p> Known<'p> {
 
     fn regression(&self, rows: &[Row], target: Target) -> Result<Decoder, FitError> {
         let reach_mm = self.subject.designed.device.contact.max_centre_radius_mm;
-        regression(rows, target, reach_mm).map(|it| Decoder::Regression(Box::new(it)))
+        regression(rows, Zero::Tared, target, reach_mm).map(|it| Decoder::Regression(Box::new(it)))
     }
 }
 

@@ -37,6 +37,8 @@ pub(super) struct Measured {
     pub(super) force_n: [f64; 3],
     /// Beyond the zero.
     pub(super) uv: [f64; CHANNELS],
+    /// Above the reference temperature; zero where it is not known.
+    pub(super) above_c: f64,
     /// What friction made of the way here; it follows the numbers.
     pub(super) lags: Lags,
 }
@@ -96,7 +98,7 @@ fn terms(jets: &[Jet]) -> [f64; TERMS] {
 impl Measured {
     /// What is measured where nothing is.
     pub(super) const fn unmeasured(place: Place, force_n: [f64; 3]) -> Self {
-        Self { place, force_n, uv: [0.0; CHANNELS], lags: [[0.0; CHANNELS]; PLAYS] }
+        Self { place, force_n, uv: [0.0; CHANNELS], above_c: 0.0, lags: [[0.0; CHANNELS]; PLAYS] }
     }
 
     /// A tared row; `None` without channels.
@@ -105,6 +107,7 @@ impl Measured {
         sensitivities: &[&Sensitivity],
         plate_mm: f64,
         row: &Row,
+        reference_c: Option<f64>,
     ) -> Option<Self> {
         let Contact { x_mm, y_mm, .. } = Contact::from(row.label);
         let place = Place::of(field, sensitivities, plate_mm, [x_mm, y_mm].map(f64::from));
@@ -112,6 +115,7 @@ impl Measured {
             place,
             force_n: [row.label.fx_n, row.label.fy_n, row.label.fz_n],
             uv: row.uv?,
+            above_c: row.temp_c.zip(reference_c).map_or(0.0, |(temp_c, reference_c)| temp_c - reference_c),
             lags: [[0.0; CHANNELS]; PLAYS],
         })
     }

@@ -7,7 +7,9 @@ use rayon::prelude::*;
 use super::before::Before;
 use super::model::Layout;
 use super::noise;
+use super::prepared::Prepared;
 use super::problem::{Fit, Problem, Settings};
+use super::warmth::Warmth;
 use crate::contact::friction::{Friction, PLAYS};
 use crate::contact::inverse::Inverse;
 use crate::contact::recording::Recording;
@@ -47,6 +49,10 @@ pub struct Calibration {
     pub from_earlier: bool,
     /// What the channels remember of earlier loads.
     pub friction: Friction,
+    /// What the untouched pad reads; none if the recording reads it itself.
+    pub zero_uv: Option<[f64; CHANNELS]>,
+    /// How the pad follows the temperature; none if it was measured at one.
+    pub warmth: Option<Warmth>,
     /// Contacts that it was fitted to.
     pub contacts: usize,
 }
@@ -87,11 +93,11 @@ impl fmt::Display for FitError {
 impl std::error::Error for FitError {}
 
 impl Calibration {
-    fn of(problem: &Problem<'_>, fit: &Fit, from_earlier: bool) -> Self {
+    fn of(prepared: &Prepared, problem: &Problem<'_>, fit: &Fit, from_earlier: bool) -> Self {
         let Fit { settings, values, .. } = fit;
         let field = problem.corrected(values);
         let friction = Layout::friction(values, &settings.thresholds_uv);
-        let contacts = problem.freed(&friction);
+        let contacts = problem.freed(values, &friction);
         let noise = noise::with_zeros(fit.scatter.noise, &fit.drift_uv);
         let noise = noise::with_doubts(&field, noise, &problem.doubts(fit));
         let decoder = Inverse::new(field.clone(), noise, friction);
@@ -103,6 +109,8 @@ impl Calibration {
             background: settings.background,
             from_earlier,
             friction,
+            zero_uv: prepared.zero_uv(fit),
+            warmth: prepared.warmth(fit),
             contacts: problem.contacts(),
         }
     }
@@ -110,6 +118,7 @@ impl Calibration {
     /// The decoder of this pad.
     pub fn decoder(&self) -> Inverse {
         Inverse::new(self.field.clone(), self.noise, self.friction)
+            .of_pad(self.zero_uv, self.warmth.map(|warmth| warmth.thermal))
     }
 }
 
@@ -132,12 +141,16 @@ pub fn fit(
     if earlier.is_some_and(|it| (it.field().radius_mm() - radius_mm).abs() > PLATE_TOLERANCE_MM) {
         return Err(FitError::OtherPlate);
     }
+    if rows.is_empty() {
+        return Err(FitError::TooFew { contacts: 0, least: 1 });
+    }
+    let prepared = Prepared::of(recording, rows, device, field)?;
     let mut best: Option<(f64, Calibration)> = None;
     for Thought { before, handicap, from_earlier } in thoughts(field, earlier) {
-        let (problem, found) = calibrated(recording, rows, device, &before)?;
+        let (problem, found) = calibrated(&prepared, rows, device, &before)?;
         let evidence = found.evidence - handicap;
         if best.as_ref().is_none_or(|(before, _)| evidence > *before) {
-            best = Some((evidence, Calibration::of(&problem, &found, from_earlier)));
+            best = Some((evidence, Calibration::of(&prepared, &problem, &found, from_earlier)));
         }
     }
     best.map(|(_, calibration)| calibration).ok_or(FitError::Senseless)
@@ -165,12 +178,12 @@ fn thoughts(field: &PadField, earlier: Option<&Inverse>) -> Vec<Thought> {
 
 /// The problem of these contacts for a pad of which so much is known, and its most probable numbers.
 fn calibrated<'b>(
-    recording: &'b Recording,
+    prepared: &'b Prepared,
     rows: &[usize],
     device: &Device,
     before: &'b Before,
 ) -> Result<(Problem<'b>, Fit), FitError> {
-    let problem = Problem::of(recording, rows, device, before);
+    let problem = Problem::of(prepared, rows, device, before);
     if problem.contacts() == 0 {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }

@@ -21,11 +21,14 @@ const GAIN: f64 = 0.3;
 const BLUR_MM2: f64 = 0.5;
 /// Of a play operator in all channels.
 const FRICTION: f64 = 0.05;
+/// Of a gain, per degree: adhesive and polyimide soften by a thousandth.
+const GAIN_PER_C: f64 = 1e-3;
 /// No play operator has a larger share. A negative one corrects another.
 const SHARE_MAX: f64 = 0.25;
 
 /// The numbers by kind, one after the other in a vector: zeros, gains, crosstalk (into, from), friction (shares of all
-/// channels; what each channel differs by), blur, physical numbers, background (channel, force, polynomial).
+/// channels; what each channel differs by), blur, changes of the gains
+/// by temperature, physical numbers, background (channel, force, polynomial).
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub(super) physical: Vec<Parameter>,
@@ -39,7 +42,8 @@ const CROSSTALKS: usize = GAINS + CHANNELS;
 const SHARES: usize = CROSSTALKS + CHANNELS * CHANNELS;
 const OWN_SHARES: usize = SHARES + PLAYS;
 const BLUR: usize = OWN_SHARES + PLAYS * CHANNELS;
-const PHYSICAL: usize = BLUR + 1;
+const WARMTH: usize = BLUR + 1;
+const PHYSICAL: usize = WARMTH + CHANNELS;
 
 impl Layout {
     pub(super) const fn size(&self) -> usize {
@@ -75,6 +79,7 @@ impl Layout {
         deviations[SHARES..OWN_SHARES].fill(FRICTION);
         deviations[OWN_SHARES..BLUR].fill(spread.of(Kind::OwnFriction));
         deviations[BLUR] = BLUR_MM2;
+        deviations[WARMTH..PHYSICAL].fill(GAIN_PER_C);
         for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
             *deviation = spread.of(Kind::of(*parameter));
         }
@@ -121,6 +126,16 @@ impl Layout {
             uv += Self::share(values, play, channel) * lags[channel];
         }
         uv
+    }
+
+    /// What is left of the zeros.
+    pub(super) fn zeros(values: &[f64]) -> [f64; CHANNELS] {
+        std::array::from_fn(|channel| values[ZEROS + channel])
+    }
+
+    /// Where the gains' changes by temperature begin, per degree.
+    pub(super) const fn first_warmth() -> usize {
+        WARMTH
     }
 
     /// Where the physical numbers begin.
@@ -190,17 +205,19 @@ impl Layout {
         contact: &Measured,
         mut each: impl FnMut(usize, f64, &[f64]),
     ) {
-        let Measured { place, force_n, lags, .. } = contact;
+        let Measured { place, force_n, lags, above_c, .. } = contact;
         let strained = self.strained(values, scale, place);
         let strains_uv = strained.map(|map| loaded(&map, force_n));
         let mut slopes = vec![0.0; self.size()];
         for channel in 0..CHANNELS {
             slopes.fill(0.0);
-            let gain = Self::gain(values, channel);
+            let warmed = 1.0 + values[WARMTH + channel] * above_c;
+            let gain = warmed * Self::gain(values, channel);
             let shares = &values[CROSSTALKS + channel * CHANNELS..][..CHANNELS];
             let crosstalk_uv: f64 = shares.iter().zip(strains_uv).map(|(share, uv)| share * uv).sum();
             slopes[ZEROS + channel] = 1.0;
-            slopes[GAINS + channel] = strains_uv[channel];
+            slopes[GAINS + channel] = warmed * strains_uv[channel];
+            slopes[WARMTH + channel] = above_c * Self::gain(values, channel) * strains_uv[channel];
             slopes[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&strains_uv);
             slopes[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
             slopes[BLUR] = gain * loaded(&place.bent[channel], force_n);

@@ -7,10 +7,12 @@ use super::before::Before;
 use super::contacts::{Maps, Measured, Place};
 use super::model::{Layout, TERMS};
 use super::noise::Known;
+use super::prepared::Prepared;
 use super::scatter::{Residual, Scatter};
 use super::spread::Spread;
 use crate::contact::friction::{Friction, PLAYS};
-use crate::contact::recording::{Lags, Recording};
+use crate::contact::recording::{Lags, Recording, Untouched};
+use crate::contact::thermal::Thermal;
 use crate::contact::uncertainty::UNKNOWNS;
 use crate::device::Device;
 use crate::device::parameter::Parameter;
@@ -35,14 +37,12 @@ const DRIFT_UV: f64 = 10.0;
 /// A jump of the zero counts as a drift of this part of it at least: temperature may have changed.
 const JUMP_PART: f64 = 1.0 / 3.0;
 
-/// A reading of the untouched pad: its row, and the channels.
-type Zero = (usize, [f64; CHANNELS]);
-
 /// What is fitted, and to what.
 #[derive(Clone)]
 pub(super) struct Problem<'f> {
     before: &'f Before,
     recording: &'f Recording,
+    reference_c: Option<f64>,
     sensitivities: Vec<&'f Sensitivity>,
     pub(super) layout: Layout,
     /// Rows of the recording, and what was measured in them.
@@ -93,6 +93,15 @@ pub(super) struct Doubt {
     pub(super) uv2: [[f64; CHANNELS]; CHANNELS],
 }
 
+impl Fit {
+    /// The standard deviation of a number.
+    pub(super) fn deviation(&self, at: usize) -> f64 {
+        let mut unit = vec![0.0; self.values.len()];
+        unit[at] = 1.0;
+        self.factor.solve(&unit)[at].sqrt()
+    }
+}
+
 /// A step of the numbers, and the factor of their curvature.
 struct Step {
     change: Vec<f64>,
@@ -101,27 +110,24 @@ struct Step {
 
 impl<'f> Problem<'f> {
     /// `rows` are the contacts to fit to; all others only tell what was before. Without polynomials for a background.
-    pub(super) fn of(recording: &'f Recording, rows: &[usize], device: &Device, before: &'f Before) -> Self {
+    pub(super) fn of(prepared: &'f Prepared, rows: &[usize], device: &Device, before: &'f Before) -> Self {
+        let Prepared { recording, warmth, .. } = prepared;
+        let reference_c = warmth.map(|warmth| warmth.thermal.reference_c);
         let field = &before.field;
         let is_free = |it: &&Sensitivity| it.parameter.module().is_some();
         let sensitivities: Vec<&Sensitivity> = field.sensitivities.iter().filter(is_free).collect();
         let plate_mm = device.plate.diameter_mm / 2.0;
         let measured = |at: &usize| {
             let row = recording.tared().rows.get(*at)?;
-            Some((*at, Measured::of(field, &sensitivities, plate_mm, row)?))
+            Some((*at, Measured::of(field, &sensitivities, plate_mm, row, reference_c)?))
         };
         let contacts = rows.iter().filter_map(measured).collect();
-        let zeros: Vec<Zero> = recording.zeros().collect();
-        let jump = |((first, before), (second, after)): (&Zero, &Zero)| Jump {
-            rows: [*first, *second],
-            change_uv: std::array::from_fn(|k| after[k] - before[k]),
-            lags: [[0.0; CHANNELS]; PLAYS],
-        };
         let layout = Layout { physical: sensitivities.iter().map(|it| it.parameter).collect(), terms: 0 };
         Self {
-            jumps: zeros.iter().zip(zeros.iter().skip(1)).map(jump).collect(),
+            jumps: recording.zeros().flat_map(jumps).collect(),
             before,
             recording,
+            reference_c,
             sensitivities,
             layout,
             contacts,
@@ -153,7 +159,7 @@ impl<'f> Problem<'f> {
         let before = self.layout.before(self.before);
         let mut values = before.clone();
         let (mut scatter, mut drift_uv) = (Scatter::before(self.before.noise), [DRIFT_UV; CHANNELS]);
-        let mut spread = Spread::BEFORE;
+        let mut spread = if self.recording.is_tared() { Spread::TARED } else { Spread::RAW };
         if let Some(start) = start {
             values.iter_mut().zip(&start.values).for_each(|(value, start)| *value = *start);
             (scatter, drift_uv, spread) = (start.scatter, start.drift_uv, start.spread);
@@ -322,8 +328,14 @@ impl<'f> Problem<'f> {
     }
 
     /// The contacts' channels without this friction, and the written forces.
-    pub(super) fn freed(&self, friction: &Friction) -> Vec<(Strain, [f64; 3])> {
-        let freed = self.recording.freed(friction);
+    pub(super) fn freed(&self, values: &[f64], friction: &Friction) -> Vec<(Strain, [f64; 3])> {
+        let mut recording = self.recording.clone().less(&Layout::zeros(values));
+        if let Some(reference_c) = self.reference_c {
+            let gain_per_c = std::array::from_fn(|channel| values[Layout::first_warmth() + channel]);
+            let zero_uv_per_c = [0.0; CHANNELS];
+            recording = recording.at_reference(&Thermal { reference_c, zero_uv_per_c, gain_per_c });
+        }
+        let freed = recording.freed(friction);
         let contact = |(at, it): &(usize, Measured)| {
             let uv = freed.rows.get(*at)?.uv?;
             Some((Strain { uv: uv.map(|uv| uv as f32) }, it.force_n))
@@ -353,13 +365,8 @@ impl<'f> Problem<'f> {
 
     /// The physical numbers: value and standard deviation.
     pub(super) fn physical(&self, fit: &Fit) -> Vec<(Parameter, f64, f64)> {
-        let deviation = |at: usize| {
-            let mut unit = vec![0.0; fit.values.len()];
-            unit[at] = 1.0;
-            fit.factor.solve(&unit)[at].sqrt()
-        };
         let numbers = self.layout.physical.iter().zip(Layout::first_physical()..);
-        numbers.map(|(parameter, at)| (*parameter, fit.values[at], deviation(at))).collect()
+        numbers.map(|(parameter, at)| (*parameter, fit.values[at], fit.deviation(at))).collect()
     }
 
     /// The pad's own field.
@@ -371,6 +378,16 @@ impl<'f> Problem<'f> {
             std::array::from_fn::<f64, MAPS, _>(|map| maps[map / 3][map % 3])
         })
     }
+}
+
+/// From each reading of the untouched pad to the next.
+fn jumps(zeros: Vec<Untouched>) -> Vec<Jump> {
+    let jump = |((first, before), (second, after)): (&Untouched, &Untouched)| Jump {
+        rows: [*first, *second],
+        change_uv: std::array::from_fn(|k| after[k] - before[k]),
+        lags: [[0.0; CHANNELS]; PLAYS],
+    };
+    zeros.iter().zip(zeros.iter().skip(1)).map(jump).collect()
 }
 
 /// ln of the probability of the numbers before anything is measured, but for a constant.

@@ -4,15 +4,16 @@ use crate::contact::neighbours::{Known, NEIGHBOURS, Neighbours};
 use crate::contact::regression::{Regression, TERMS, Target};
 use crate::linear::Factor;
 use crate::measured::Row;
+use crate::network::Zero;
 use crate::quantity::CHANNELS;
 
 use super::fit::FitError;
 
-/// Fits linear functions. `reach_mm` is how far from the axis a contact can be.
+/// Fits linear functions. `zero` is what the rows' channels are relative to, `reach_mm` is how far from the axis a contact can be.
 ///
 /// # Errors
 /// Fewer contacts than functions have terms.
-pub fn regression(rows: &[Row], target: Target, reach_mm: f64) -> Result<Regression, FitError> {
+pub fn regression(rows: &[Row], zero: Zero, target: Target, reach_mm: f64) -> Result<Regression, FitError> {
     enough(rows, TERMS)?;
     let mut normal = [[0.0; TERMS]; TERMS];
     let mut right = [[0.0; TERMS]; 5];
@@ -36,14 +37,14 @@ pub fn regression(rows: &[Row], target: Target, reach_mm: f64) -> Result<Regress
         let solved = factor.solve(&std::array::from_fn(|k| right[k] / scale[k]));
         std::array::from_fn(|k| solved[k] / scale[k])
     });
-    Ok(Regression { target, functions, reach_mm })
+    Ok(Regression { zero, target, functions, reach_mm })
 }
 
-/// Keeps the contacts as neighbours.
+/// Keeps the contacts as neighbours. `zero` is what their channels are relative to.
 ///
 /// # Errors
 /// Fewer contacts than neighbours are asked.
-pub fn neighbours(rows: &[Row]) -> Result<Neighbours, FitError> {
+pub fn neighbours(rows: &[Row], zero: Zero) -> Result<Neighbours, FitError> {
     enough(rows, NEIGHBOURS)?;
     let channels: Vec<[f64; CHANNELS]> = rows.iter().filter_map(|row| row.uv).collect();
     let count = channels.len().max(1) as f64;
@@ -57,7 +58,7 @@ pub fn neighbours(rows: &[Row]) -> Result<Neighbours, FitError> {
         let channels = std::array::from_fn(|k| uv[k] as f32 / deviation_uv[k]);
         Some(Known { channels, contact: row.label.into() })
     };
-    Ok(Neighbours { deviation_uv, known: rows.iter().filter_map(known).collect() })
+    Ok(Neighbours { zero, deviation_uv, known: rows.iter().filter_map(known).collect() })
 }
 
 fn enough(rows: &[Row], least: usize) -> Result<(), FitError> {

@@ -30,13 +30,19 @@ const TURN_DEG: f64 = 2.0;
 const STIFFNESS: f64 = 0.3;
 const CROSSTALK: f64 = 0.02;
 const ZERO_UV: f64 = 20.0;
+/// Of bridges that nobody balanced: some tenths of a percent of a gauge.
+const RAW_ZERO_UV: f64 = 2000.0;
 const FRICTION_OWN: f64 = 0.02;
 /// They are known as well as so many numbers of that size tell.
 const KNOWN: f64 = 4.0;
 
 /// Standard deviations, by kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Spread([f64; KINDS]);
+pub(super) struct Spread {
+    deviations: [f64; KINDS],
+    /// What was thought of them.
+    before: [f64; KINDS],
+}
 
 impl Kind {
     /// The kind of a module's number.
@@ -50,22 +56,29 @@ impl Kind {
 }
 
 impl Spread {
-    /// Before any measurement.
-    pub(super) const BEFORE: Self = Self([SHIFT_MM, TURN_DEG, STIFFNESS, CROSSTALK, ZERO_UV, FRICTION_OWN]);
+    /// Before any measurement, where zeros are taken off.
+    pub(super) const TARED: Self = Self::with_zeros(ZERO_UV);
+    /// Before any measurement, where they are not.
+    pub(super) const RAW: Self = Self::with_zeros(RAW_ZERO_UV);
+
+    const fn with_zeros(zero_uv: f64) -> Self {
+        let before = [SHIFT_MM, TURN_DEG, STIFFNESS, CROSSTALK, zero_uv, FRICTION_OWN];
+        Self { deviations: before, before }
+    }
 
     /// The standard deviation of a kind.
     pub(super) const fn of(&self, kind: Kind) -> f64 {
-        self.0[kind as usize]
+        self.deviations[kind as usize]
     }
 
     /// The spread that these numbers have: kind, difference from what was thought, variance that is left.
     pub(super) fn seen(&self, numbers: impl Iterator<Item = (Kind, f64, f64)>) -> Self {
-        let mut squares = Self::BEFORE.0.map(|deviation| KNOWN * deviation * deviation);
+        let mut squares = self.before.map(|deviation| KNOWN * deviation * deviation);
         let mut counts = [KNOWN; KINDS];
         for (kind, difference, variance) in numbers {
             squares[kind as usize] += difference * difference;
             counts[kind as usize] += (1.0 - variance / self.of(kind).powi(2)).clamp(0.0, 1.0);
         }
-        Self(std::array::from_fn(|kind| (squares[kind] / counts[kind]).sqrt()))
+        Self { deviations: std::array::from_fn(|kind| (squares[kind] / counts[kind]).sqrt()), ..*self }
     }
 }

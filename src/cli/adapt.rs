@@ -15,8 +15,9 @@ use super::written::{both_print, is_same, is_stdout, stdout, written_over};
 use super::{Failure, print_json, say, tables};
 use crate::contact::recording::Recording;
 use crate::device::Device;
+use crate::measured::Row;
 use crate::measured::columns::Kind;
-use crate::measured::{Row, zero};
+use crate::network::Zero;
 use crate::random::SplitMix64;
 
 /// Arguments of `tactpad adapt`.
@@ -30,9 +31,10 @@ pub(super) struct Arguments {
     method: Method,
     /// A CSV of measured contacts with all nine channels, raw.
     ///
-    /// Where it has readings of the untouched pad (session zero, or all forces 0), channels are taken relative to them.
-    #[arg(long, value_name = "FILE")]
-    measured: PathBuf,
+    /// Where it has readings of the untouched pad (session zero, or all forces 0), channels are taken relative to them. Given
+    /// several times, the tables are read one after the other, each with its own zeros.
+    #[arg(long, value_name = "FILE", required = true)]
+    measured: Vec<PathBuf>,
     /// Take N of the contacts only, drawn by the seed.
     #[arg(long, value_name = "N")]
     rows: Option<usize>,
@@ -72,11 +74,11 @@ enum Method {
 
 /// Measured contacts as a method takes them.
 struct Contacts {
-    /// The whole table, if it ever reads the untouched pad.
-    recording: Option<Recording>,
+    /// The whole tables.
+    recording: Recording,
     /// Places of the contacts that are fitted to.
     places: Vec<usize>,
-    /// These contacts, relative to the untouched pad if that was ever read.
+    /// These contacts, relative to what the channels are taken relative to.
     rows: Vec<Row>,
 }
 
@@ -107,7 +109,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.spare()?;
     let device = arguments.pad.read()?;
     let contacts = arguments.contacts(&device)?;
-    let (rows, tared) = (contacts.rows.len(), contacts.recording.is_some());
+    let (rows, tared) = (contacts.rows.len(), contacts.recording.is_tared());
     let fit = match method {
         Method::Scdf => Fit::Network(scdf::adapt(arguments, &contacts)?),
         _ => Fit::Own(Box::new(own::adapt(arguments, &device, &contacts)?)),
@@ -127,24 +129,51 @@ impl Arguments {
     /// Refuses to write over what is read. A decoder may be written over itself: it is read before.
     fn spare(&self) -> Result<(), Failure> {
         self.pad.spare(&self.out)?;
-        if is_same(&self.measured, &self.out) {
+        if self.measured.iter().any(|measured| is_same(measured, &self.out)) {
             return Err(written_over(&self.out, "is the measured table"));
         }
         Ok(())
     }
 
-    /// The contacts of the table, tared if it ever reads the untouched pad.
+    /// The contacts of the tables, tared if they read the untouched pad.
     fn contacts(&self, device: &Device) -> Result<Contacts, Failure> {
-        let table = tables::read(&self.measured, Kind::Measured, 0.5 * device.plate.diameter_mm)?;
-        let mut places = zero::contacts(&table);
+        let recordings = self.measured.iter().map(|path| {
+            let table = tables::read(path, Kind::Measured, 0.5 * device.plate.diameter_mm)?;
+            let full_scale_n = device.contact.full_scale_n;
+            Ok(Recording::of(table.clone(), full_scale_n)
+                .unwrap_or_else(|| Recording::raw(table, full_scale_n)))
+        });
+        let recordings = recordings.collect::<Result<Vec<Recording>, Failure>>()?;
+        let tared = recordings.iter().filter(|recording| recording.is_tared()).count();
+        if tared != 0 && tared != recordings.len() {
+            return Err(Failure::Unusable(format!(
+                "{}: {tared} of these {} tables read the untouched pad; give those that do, or those that do not",
+                self.measured_names(),
+                recordings.len()
+            )));
+        }
+        let recording = recordings.into_iter().reduce(Recording::then);
+        let recording = recording.ok_or_else(|| Failure::Unusable("adapt needs --measured".into()))?;
+        let mut places = recording.contacts();
         if let Some(count) = self.rows {
             SplitMix64::named(self.seed, "rows").shuffle(&mut places);
             places.truncate(count);
         }
-        let recording = Recording::of(table.clone(), device.contact.full_scale_n);
-        let taken = recording.as_ref().map_or(&table, Recording::tared);
-        let rows = taken.rows_at(&places);
+        let rows = recording.tared().rows_at(&places);
         Ok(Contacts { recording, places, rows })
+    }
+
+    /// The measured tables, for people.
+    fn measured_names(&self) -> String {
+        let names: Vec<String> = self.measured.iter().map(|path| path.display().to_string()).collect();
+        names.join(", ")
+    }
+}
+
+impl Contacts {
+    /// What the rows' channels are relative to.
+    fn zero(&self) -> Zero {
+        if self.recording.is_tared() { Zero::Tared } else { Zero::Raw }
     }
 }
 

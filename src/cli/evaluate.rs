@@ -73,7 +73,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let taken = taken(&decoder, &table, &device).ok_or_else(|| {
         Failure::Unusable(format!(
-            "{}: no row without force says what the untouched pad reads; measure some",
+            "{}: no row without force says what the untouched pad reads, and neither does the decoder; measure some, or \
+             adapt a decoder to a table without such rows",
             measured.display()
         ))
     })?;
@@ -87,15 +88,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if *json { print_json(&report) } else { print(&report) }
 }
 
-/// The table as the decoder takes it: relative to the untouched pad, unless it learnt otherwise, and free of friction.
+/// The table as the decoder takes it: raw if it learnt so; else relative to the untouched pad, free of friction, and as it
+/// were at the decoder's temperature. `None` if nothing says what the untouched pad reads.
 fn taken(decoder: &Decoder, table: &Table, device: &Device) -> Option<Table> {
-    match decoder {
-        Decoder::Network(network) if network.zero == Zero::Raw => Some(table.clone()),
-        _ => {
-            let recording = Recording::of(table.clone(), device.contact.full_scale_n)?;
-            Some(recording.freed(decoder.friction()))
-        }
+    if decoder.zero() == Zero::Raw {
+        return Some(table.clone());
     }
+    let full_scale_n = device.contact.full_scale_n;
+    let raw = || Recording::raw(table.clone(), full_scale_n);
+    let recording = Recording::of(table.clone(), full_scale_n)
+        .or_else(|| decoder.zero_uv().map(|zero_uv| raw().less(zero_uv)))?;
+    let recording = match decoder.thermal() {
+        Some(thermal) => recording.at_reference(thermal),
+        None => recording,
+    };
+    Some(recording.freed(decoder.friction()))
 }
 
 fn report(decoder: &Decoder, taken: &Table, truth: Option<&Table>) -> Report {

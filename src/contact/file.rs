@@ -7,13 +7,15 @@ use super::friction::{Friction, NO_FRICTION};
 use super::inverse::Inverse;
 use super::neighbours::{Known, Neighbours};
 use super::regression::{Regression, Target};
+use super::thermal::Thermal;
 use super::uncertainty::Noise;
 use crate::bytes::{Broken, Reader, push_floats, push_text, sealed, unsealed};
 use crate::influence::InfluenceField;
+use crate::network::Zero;
 use crate::quantity::{CHANNELS, Contact};
 
 /// First bytes of a file; the number grows with every change of the form.
-pub const MAGIC: &[u8] = b"tactpad decoder 2\n";
+pub const MAGIC: &[u8] = b"tactpad decoder 3\n";
 
 const INVERSE: &[u8] = b"inverse";
 const LINEAR: &[u8] = b"linear";
@@ -55,16 +57,19 @@ impl Decoder {
                 let friction = inverse.friction().iter();
                 let numbers = friction.flat_map(|play| play.threshold_uv.iter().chain(&play.share));
                 body.extend(numbers.flat_map(|number| number.to_le_bytes()));
+                push_pad(&mut body, inverse);
                 inverse.field().write(&mut body);
             }
             Self::Regression(regression) => {
-                let Regression { target, functions, reach_mm } = regression.as_ref();
+                let Regression { zero, target, functions, reach_mm } = regression.as_ref();
                 begin(if *target == Target::Wrench { WRENCH } else { LINEAR });
+                push_text(&mut body, zero.name().as_bytes());
                 let numbers = functions.as_flattened().iter().chain([reach_mm]);
                 body.extend(numbers.flat_map(|number| number.to_le_bytes()));
             }
             Self::Neighbours(neighbours) => {
                 begin(NEIGHBOURS);
+                push_text(&mut body, neighbours.zero.name().as_bytes());
                 push_neighbours(&mut body, neighbours);
             }
             Self::Statics(_) | Self::Network(_) => return None,
@@ -102,7 +107,52 @@ fn read(from: &mut Reader<'_>) -> Option<(Decoder, String)> {
 
 fn read_inverse(from: &mut Reader<'_>) -> Option<Inverse> {
     let (noise, friction) = (read_noise(from)?, read_friction(from)?);
-    Some(Inverse::new(InfluenceField::read(from)?, noise, friction))
+    let zero_uv = read_option(from, read_channels)?;
+    let thermal = read_option(from, read_thermal)?;
+    Some(Inverse::new(InfluenceField::read(from)?, noise, friction).of_pad(zero_uv, thermal))
+}
+
+/// What a pad has that not every decoder knows: each begins with how many there are of it.
+fn push_pad(to: &mut Vec<u8>, inverse: &Inverse) {
+    let mut push = |numbers: &[f64]| to.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    push(&[f64::from(u8::from(inverse.zero_uv().is_some()))]);
+    push(inverse.zero_uv().map_or(&[], |zero_uv| &zero_uv[..]));
+    push(&[f64::from(u8::from(inverse.thermal().is_some()))]);
+    if let Some(Thermal { reference_c, zero_uv_per_c, gain_per_c }) = inverse.thermal() {
+        push(&[*reference_c]);
+        push(zero_uv_per_c);
+        push(gain_per_c);
+    }
+}
+
+/// `None` for damaged bytes.
+fn read_option<T>(from: &mut Reader<'_>, read: fn(&mut Reader<'_>) -> Option<T>) -> Option<Option<T>> {
+    match from.double()? {
+        0.0 => Some(None),
+        1.0 => read(from).map(Some),
+        _ => None,
+    }
+}
+
+fn read_channels(from: &mut Reader<'_>) -> Option<[f64; CHANNELS]> {
+    let mut channels = [0.0; CHANNELS];
+    for number in &mut channels {
+        *number = from.double().filter(|number| number.is_finite())?;
+    }
+    Some(channels)
+}
+
+fn read_thermal(from: &mut Reader<'_>) -> Option<Thermal> {
+    Some(Thermal {
+        reference_c: from.double().filter(|temp_c| temp_c.is_finite())?,
+        zero_uv_per_c: read_channels(from)?,
+        gain_per_c: read_channels(from)?,
+    })
+}
+
+fn read_zero(from: &mut Reader<'_>) -> Option<Zero> {
+    let name = from.text()?;
+    [Zero::Tared, Zero::Raw].into_iter().find(|zero| zero.name().as_bytes() == name)
 }
 
 fn push_noise(to: &mut Vec<u8>, noise: &Noise) {
@@ -141,7 +191,8 @@ fn read_friction(from: &mut Reader<'_>) -> Option<Friction> {
 }
 
 fn read_regression(from: &mut Reader<'_>, target: Target) -> Option<Regression> {
-    let mut regression = Regression { target, functions: [[0.0; _]; 5], reach_mm: 0.0 };
+    let zero = read_zero(from)?;
+    let mut regression = Regression { zero, target, functions: [[0.0; _]; 5], reach_mm: 0.0 };
     for number in regression.functions.as_flattened_mut().iter_mut().chain([&mut regression.reach_mm]) {
         *number = from.double().filter(|number| number.is_finite())?;
     }
@@ -158,6 +209,7 @@ fn push_neighbours(to: &mut Vec<u8>, neighbours: &Neighbours) {
 }
 
 fn read_neighbours(from: &mut Reader<'_>) -> Option<Neighbours> {
+    let zero = read_zero(from)?;
     let deviation_uv = from.floats()?.try_into().ok()?;
     let numbers = from.floats()?;
     let (rows, rest) = numbers.as_chunks::<{ CHANNELS + 5 }>();
@@ -168,7 +220,7 @@ fn read_neighbours(from: &mut Reader<'_>) -> Option<Neighbours> {
     };
     let known: Vec<Known> = rows.iter().map(known).collect::<Option<_>>()?;
     let is_sound = rest.is_empty() && numbers.iter().all(|number| number.is_finite()) && !known.is_empty();
-    is_sound.then_some(Neighbours { deviation_uv, known })
+    is_sound.then_some(Neighbours { zero, deviation_uv, known })
 }
 
 #[cfg(test)]
@@ -182,14 +234,19 @@ mod tests {
         let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
         let mut functions = [[1e-3; CHANNELS + 1]; 5];
         functions[4][2] = 2e-3;
-        let regression =
-            |target| Decoder::Regression(Box::new(Regression { target, functions, reach_mm: 29.0 }));
+        let regression = |target| {
+            Decoder::Regression(Box::new(Regression { zero: Zero::Raw, target, functions, reach_mm: 29.0 }))
+        };
         let known = Known { channels: [1.0; CHANNELS], contact: Contact { fz_n: 2.0, ..Contact::default() } };
         vec![
             Decoder::Inverse(Box::new(Inverse::new(PadField::nominal().signals, noise, NO_FRICTION))),
             regression(Target::Wrench),
             regression(Target::Contact),
-            Decoder::Neighbours(Neighbours { deviation_uv: [300.0; CHANNELS], known: vec![known; 7] }),
+            Decoder::Neighbours(Neighbours {
+                zero: Zero::Tared,
+                deviation_uv: [300.0; CHANNELS],
+                known: vec![known; 7],
+            }),
         ]
     }
 

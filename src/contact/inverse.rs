@@ -8,6 +8,7 @@
 //! Source: G. H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, for least squares whose variables separate.
 
 use super::friction::Friction;
+use super::thermal::Thermal;
 use super::uncertainty::{Estimate, Linear, Noise, UNKNOWNS, Variances};
 use crate::influence::{Gains, InfluenceField};
 use crate::linear::Factor;
@@ -32,6 +33,8 @@ pub struct Inverse {
     field: InfluenceField,
     noise: Noise,
     friction: Friction,
+    zero_uv: Option<[f64; CHANNELS]>,
+    thermal: Option<Thermal>,
     /// Fz, x Fz and y Fz as linear functions of the channels.
     start: [[f64; CHANNELS]; 3],
 }
@@ -53,7 +56,24 @@ impl Inverse {
     /// decoder's own work: it takes strains that are free of it.
     pub fn new(field: InfluenceField, noise: Noise, friction: Friction) -> Self {
         let start = start_of(&field);
-        Self { field, noise, friction, start }
+        Self { field, noise, friction, zero_uv: None, thermal: None, start }
+    }
+
+    /// The decoder of a pad of which more is known. Neither is the decoder's own work: strains come without the zero, and as
+    /// at the reference temperature.
+    #[must_use]
+    pub fn of_pad(self, zero_uv: Option<[f64; CHANNELS]>, thermal: Option<Thermal>) -> Self {
+        Self { zero_uv, thermal, ..self }
+    }
+
+    /// What the untouched pad reads, if it was calibrated by a table that never reads it.
+    pub const fn zero_uv(&self) -> Option<&[f64; CHANNELS]> {
+        self.zero_uv.as_ref()
+    }
+
+    /// How the channels follow the temperature, if it was calibrated at several.
+    pub const fn thermal(&self) -> Option<&Thermal> {
+        self.thermal.as_ref()
     }
 
     /// The pad's field.

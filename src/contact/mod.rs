@@ -8,6 +8,7 @@ pub mod read;
 pub mod recording;
 pub mod regression;
 pub mod statics;
+pub mod thermal;
 pub mod touch;
 pub mod uncertainty;
 
@@ -16,10 +17,11 @@ use crate::contact::inverse::Inverse;
 use crate::contact::neighbours::Neighbours;
 use crate::contact::regression::{Regression, Target};
 use crate::contact::statics::Statics;
+use crate::contact::thermal::Thermal;
 #[cfg(feature = "foreign-onnx")]
 use crate::network::foreign::Foreign;
 use crate::network::{Network, OUTPUTS, Zero};
-use crate::quantity::{Contact, Strain};
+use crate::quantity::{CHANNELS, Contact, Strain};
 
 /// A way from strain to a contact.
 #[derive(Clone, Debug)]
@@ -54,13 +56,16 @@ impl Decoder {
         }
     }
 
-    /// What it takes: all but some networks take channels relative to the untouched pad.
+    /// What it takes: channels relative to the untouched pad, but for one that was made by a table that never reads it. The
+    /// inverse decoder takes them relative even then, as it knows what to take off.
     pub fn zero(&self) -> Zero {
         match self {
             Self::Network(network) => network.zero,
             #[cfg(feature = "foreign-onnx")]
             Self::Foreign(network) => network.zero,
-            _ => Zero::Tared,
+            Self::Regression(regression) => regression.zero,
+            Self::Neighbours(neighbours) => neighbours.zero,
+            Self::Statics(_) | Self::Inverse(_) => Zero::Tared,
         }
     }
 
@@ -69,6 +74,22 @@ impl Decoder {
         match self {
             Self::Inverse(inverse) => inverse.friction(),
             _ => &NO_FRICTION,
+        }
+    }
+
+    /// What the untouched pad reads, if the decoder knows.
+    pub const fn zero_uv(&self) -> Option<&[f64; CHANNELS]> {
+        match self {
+            Self::Inverse(inverse) => inverse.zero_uv(),
+            _ => None,
+        }
+    }
+
+    /// How the decoder's pad follows the temperature, if it knows.
+    pub const fn thermal(&self) -> Option<&Thermal> {
+        match self {
+            Self::Inverse(inverse) => inverse.thermal(),
+            _ => None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! The mean of the nearest contacts that were measured (K nearest neighbours, K = 5): a baseline of the paper's Table 3.
 
+use crate::network::Zero;
 use crate::quantity::{CHANNELS, Contact, Strain};
 
 /// How many neighbours; the paper's.
@@ -8,7 +9,7 @@ pub const NEIGHBOURS: usize = 5;
 /// A contact that was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
-    /// Channels beyond their zeros, in standard deviations over all contacts.
+    /// Channels, in standard deviations over all contacts.
     pub channels: [f32; CHANNELS],
     /// What was written down.
     pub contact: Contact,
@@ -17,6 +18,8 @@ pub struct Known {
 /// The contacts, and how channels are made comparable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbours {
+    /// What the channels are taken relative to.
+    pub zero: Zero,
     /// µV per standard deviation.
     pub deviation_uv: [f32; CHANNELS],
     /// At least one.
@@ -65,12 +68,16 @@ mod tests {
         };
         let mut deviation_uv = [1.0; CHANNELS];
         deviation_uv[3] = 100.0;
-        let neighbours = Neighbours { deviation_uv, known: (0..20).map(known).collect() };
+        let zero = Zero::Tared;
+        let neighbours = Neighbours { zero, deviation_uv, known: (0..20).map(known).collect() };
         let mut strain = Strain::default();
         strain.uv[3] = 1010.0;
         assert_eq!(neighbours.decode(&strain).fz_n, 10.0, "8 to 12");
         strain.uv[4] = f32::NAN;
         assert_eq!(neighbours.decode(&strain), Contact::default());
-        assert_eq!(Neighbours { deviation_uv, known: vec![] }.decode(&Strain::default()), Contact::default());
+        assert_eq!(
+            Neighbours { zero, deviation_uv, known: vec![] }.decode(&Strain::default()),
+            Contact::default()
+        );
     }
 }

@@ -22,7 +22,7 @@ pub enum Unreadable {
     Network(OnnxError),
     /// Numbers of statics that are incomplete or impossible.
     Statics(ModelError),
-    /// A network that learnt raw channels, where the zero is taken off them.
+    /// A decoder that learnt raw channels, where the zero is taken off them.
     TakesRaw,
 }
 
@@ -61,7 +61,7 @@ pub fn decoder(bytes: &[u8]) -> Result<Decoder, Unreadable> {
 /// Reads a decoder that can play: one that takes channels relative to the untouched pad, as the bridge has them.
 ///
 /// # Errors
-/// Bytes that are none, or a network that takes raw channels.
+/// Bytes that are none, or a decoder that takes raw channels.
 pub fn playing(bytes: &[u8]) -> Result<Decoder, Unreadable> {
     match decoder(bytes)? {
         decoder if decoder.zero() == Zero::Raw => Err(Unreadable::TakesRaw),

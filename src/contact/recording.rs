@@ -1,10 +1,11 @@
-//! A table of contacts as a decoder takes it: relative to the untouched pad, and free of what earlier contacts left behind.
+//! Tables of contacts as a decoder takes them: relative to the untouched pad, and free of what earlier contacts left behind.
 //!
-//! Rows are read in their order, as friction depends on it. Before each static sample the pad was released, and one that
-//! is reached by unloading came from full scale. What friction does to the readings of the untouched pad is in the zeros,
-//! so it is taken off them, too.
+//! Rows are read in their order, as friction depends on it; each table begins at rest. Before each static sample the pad was
+//! released, and one that is reached by unloading came from full scale. What friction does to the readings of the untouched
+//! pad is in the zeros, so it is taken off them, too.
 
 use super::friction::{Friction, History, PLAYS};
+use super::thermal::Thermal;
 use crate::measured::zero::{self, Zeros};
 use crate::measured::{Approach, Row, Table};
 use crate::quantity::CHANNELS;
@@ -17,38 +18,113 @@ const OVERLOAD_MIN: f64 = 1.2;
 /// For each play operator and channel: its state beside the strain, relative to the same of the untouched pad.
 pub type Lags = [[f64; CHANNELS]; PLAYS];
 
-/// A table that reads the untouched pad now and then.
+/// A reading of the untouched pad: its row, and the channels.
+pub type Untouched = (usize, [f64; CHANNELS]);
+
+/// Tables, one after the other.
 #[derive(Clone, Debug)]
 pub struct Recording {
+    /// All rows; of names only those of the first table.
     tared: Table,
-    raw: Table,
-    zeros: Zeros,
+    parts: Vec<Part>,
     full_scale_n: f64,
+}
+
+/// A table of the recording.
+#[derive(Clone, Debug)]
+struct Part {
+    /// Its first row in the recording.
+    first: usize,
+    rows: usize,
+    /// None in a table that never reads the untouched pad: there, channels are raw, or less a zero that is known otherwise.
+    zeros: Option<Zeros>,
+    /// What the untouched pad reads in the rows of the zeros.
+    readings: Vec<Untouched>,
+    /// Places of what a decoder is fitted to, from the part's first row on.
+    contacts: Vec<usize>,
 }
 
 impl Recording {
     /// `None` if the table never reads the untouched pad. `full_scale_n` is the pad's largest force.
     pub fn of(raw: Table, full_scale_n: f64) -> Option<Self> {
         let (zeros, tared) = (Zeros::of(&raw)?, zero::tared(&raw)?);
-        Some(Self { tared, raw, zeros, full_scale_n })
+        let readings = zeros.rows().iter().filter_map(|at| Some((*at, raw.rows.get(*at)?.uv?))).collect();
+        let (rows, contacts) = (raw.rows.len(), zero::contacts(&raw));
+        let part = Part { first: 0, rows, zeros: Some(zeros), readings, contacts };
+        Some(Self { tared, parts: vec![part], full_scale_n })
     }
 
-    /// The table relative to the untouched pad.
+    /// A table that need not read the untouched pad. Its channels stay raw.
+    pub fn raw(raw: Table, full_scale_n: f64) -> Self {
+        let (rows, contacts) = (raw.rows.len(), zero::contacts(&raw));
+        let part = Part { first: 0, rows, zeros: None, readings: Vec::new(), contacts };
+        Self { tared: raw, parts: vec![part], full_scale_n }
+    }
+
+    /// This recording, and then another one.
+    #[must_use]
+    pub fn then(mut self, other: Self) -> Self {
+        let rows = self.tared.rows.len();
+        // Trials of two tables are never the same one, whatever their indices are.
+        self.tared.rows.extend(other.tared.rows);
+        let moved = |part: Part| Part { first: part.first + rows, ..part };
+        self.parts.extend(other.parts.into_iter().map(moved));
+        self
+    }
+
+    /// Less what the untouched pad reads, where that is known otherwise than from the tables.
+    #[must_use]
+    pub fn less(mut self, zero_uv: &[f64; CHANNELS]) -> Self {
+        for uv in self.tared.rows.iter_mut().filter_map(|row| row.uv.as_mut()) {
+            uv.iter_mut().zip(zero_uv).for_each(|(uv, zero_uv)| *uv -= zero_uv);
+        }
+        self
+    }
+
+    /// As it were at the reference temperature, where rows have their temperature. Between two readings of the untouched pad
+    /// the zero then follows the temperature.
+    #[must_use]
+    pub fn at_reference(mut self, thermal: &Thermal) -> Self {
+        for part in &mut self.parts {
+            let rows = &mut self.tared.rows[part.first..][..part.rows];
+            let temperatures: Vec<Option<f64>> = rows.iter().map(|row| row.temp_c).collect();
+            let zero_uv = |at: usize| thermal.zero_uv(temperatures[at]);
+            for (at, row) in rows.iter_mut().enumerate() {
+                let taken_uv = part.zeros.as_ref().map_or([0.0; CHANNELS], |zeros| zeros.at(at, zero_uv));
+                let (here_uv, gain) = (zero_uv(at), thermal.gain(row.temp_c));
+                for (k, uv) in row.uv.iter_mut().flatten().enumerate() {
+                    *uv = (*uv - here_uv[k] + taken_uv[k]) / gain[k];
+                }
+            }
+            for (at, uv) in &mut part.readings {
+                uv.iter_mut().zip(zero_uv(*at)).for_each(|(uv, zero_uv)| *uv -= zero_uv);
+            }
+        }
+        self
+    }
+
+    /// The tables relative to the untouched pad.
     pub const fn tared(&self) -> &Table {
         &self.tared
     }
 
+    /// Whether each table reads the untouched pad.
+    pub fn is_tared(&self) -> bool {
+        self.parts.iter().all(|part| part.zeros.is_some())
+    }
+
     /// Places of the rows that a decoder is fitted to.
     pub fn contacts(&self) -> Vec<usize> {
-        zero::contacts(&self.raw)
+        self.parts.iter().flat_map(|part| part.contacts.iter().map(|at| part.first + at)).collect()
     }
 
-    /// The raw readings of the untouched pad, with their places.
-    pub fn zeros(&self) -> impl Iterator<Item = (usize, [f64; CHANNELS])> {
-        self.zeros.rows().iter().filter_map(|at| Some((*at, self.raw.rows.get(*at)?.uv?)))
+    /// The raw readings of the untouched pad, with their places; for each table on its own.
+    pub fn zeros(&self) -> impl Iterator<Item = Vec<Untouched>> {
+        let moved = |part: &Part| part.readings.iter().map(|(at, uv)| (part.first + at, *uv)).collect();
+        self.parts.iter().map(moved)
     }
 
-    /// The table relative to the untouched pad and without friction.
+    /// The tables relative to the untouched pad and without friction.
     pub fn freed(&self, friction: &Friction) -> Table {
         let mut freed = self.tared.clone();
         let lags = self.lags(&self.states(friction, |_| None));
@@ -71,7 +147,11 @@ impl Recording {
     /// These states relative to those of the untouched pad. What friction added to a row's tared channels is the sum of
     /// shares times this.
     pub fn lags(&self, states: &[Lags]) -> Vec<Lags> {
-        (0..states.len()).map(|at| self.relative(states, at)).collect()
+        let relative = |part: &Part| -> Vec<Lags> {
+            let states = &states[part.first..][..part.rows];
+            (0..part.rows).map(|at| part.relative(states, at)).collect()
+        };
+        self.parts.iter().flat_map(relative).collect()
     }
 
     /// The states if these lags are taken off the channels.
@@ -81,12 +161,23 @@ impl Recording {
         lags: &[Lags],
         known: impl Fn(usize) -> Option<[f64; CHANNELS]>,
     ) -> Vec<Lags> {
+        let known: &dyn Fn(usize) -> Option<[f64; CHANNELS]> = &known;
+        self.parts.iter().flat_map(|part| self.walk_part(part, friction, lags, known)).collect()
+    }
+
+    fn walk_part(
+        &self,
+        part: &Part,
+        friction: &Friction,
+        lags: &[Lags],
+        known: &dyn Fn(usize) -> Option<[f64; CHANNELS]>,
+    ) -> Vec<Lags> {
         let mut history = History::default();
         let mut before: Option<usize> = None;
-        let mut states = Vec::with_capacity(lags.len());
-        for (at, (row, lags)) in self.tared.rows.iter().zip(lags).enumerate() {
-            let is_zero = self.zeros.rows().binary_search(&at).is_ok();
-            let read_uv = || row.uv.filter(|_| !is_zero).map(|uv| without(uv, friction, lags));
+        let mut states = Vec::with_capacity(part.rows);
+        for at in part.first..part.first + part.rows {
+            let (row, lags) = (&self.tared.rows[at], &lags[at]);
+            let read_uv = || row.uv.filter(|_| !part.is_zero(at)).map(|uv| without(uv, friction, lags));
             let free_uv = known(at).or_else(read_uv).unwrap_or_default();
             if row.trial.is_none() || row.trial != before {
                 history.follow(friction, &[0.0; CHANNELS]);
@@ -102,13 +193,6 @@ impl Recording {
         states
     }
 
-    fn relative(&self, states: &[Lags], at: usize) -> Lags {
-        std::array::from_fn(|play| {
-            let zero_uv = self.zeros.at(at, |zero| states[zero][play]);
-            std::array::from_fn(|channel| states[at][play][channel] - zero_uv[channel])
-        })
-    }
-
     /// The load from which a row's load was reached, beside it.
     fn overload(&self, row: &Row) -> f64 {
         let [_, _, fx_n, fy_n, fz_n] = row.label.numbers();
@@ -117,8 +201,67 @@ impl Recording {
     }
 }
 
+impl Part {
+    fn is_zero(&self, at: usize) -> bool {
+        let rows = self.zeros.as_ref().map_or(&[][..], Zeros::rows);
+        rows.binary_search(&(at - self.first)).is_ok()
+    }
+
+    /// A state relative to that of the untouched pad, which without its reading is one at rest.
+    fn relative(&self, states: &[Lags], at: usize) -> Lags {
+        std::array::from_fn(|play| {
+            let zero_uv =
+                self.zeros.as_ref().map_or([0.0; CHANNELS], |zeros| zeros.at(at, |zero| states[zero][play]));
+            std::array::from_fn(|channel| states[at][play][channel] - zero_uv[channel])
+        })
+    }
+}
+
 fn without(uv: [f64; CHANNELS], friction: &Friction, lags: &Lags) -> [f64; CHANNELS] {
     std::array::from_fn(|k| {
         uv[k] - friction.iter().zip(lags).map(|(play, lags)| play.share[k] * lags[k]).sum::<f64>()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::friction::Play;
+    use crate::measured::Label;
+
+    /// Rows of (Fz, µV).
+    fn table(rows: &[(f64, f64)]) -> Table {
+        let row = |(fz_n, uv): &(f64, f64)| Row {
+            uv: Some([*uv; CHANNELS]),
+            ..Row::of(Label { fz_n: *fz_n, ..Label::default() })
+        };
+        Table { rows: rows.iter().map(row).collect(), ..Table::default() }
+    }
+
+    #[test]
+    fn each_table_has_its_own_zeros_and_begins_at_rest() {
+        let play = Play { threshold_uv: [100.0; CHANNELS], share: [0.1; CHANNELS] };
+        let friction = [play, Play::NONE];
+        let tables = [table(&[(0.0, 10.0), (4.0, 2000.0)]), table(&[(1.0, 600.0), (0.0, 90.0)])];
+        let recordings = tables.map(|table| Recording::of(table, 5.0).unwrap());
+        let alone: Vec<Row> = recordings.iter().flat_map(|it| it.freed(&friction).rows).collect();
+        let [first, second] = recordings;
+        let joined = first.then(second);
+        assert_eq!(joined.freed(&friction).rows, alone);
+        assert_eq!(joined.contacts(), [1, 2]);
+        assert_eq!(joined.zeros().map(|zeros| zeros[0].0).collect::<Vec<_>>(), [0, 3]);
+    }
+
+    #[test]
+    fn the_zero_follows_the_temperature_and_gains_divide() {
+        let mut table = table(&[(0.0, 100.0), (2.0, 1500.0)]);
+        (table.rows[0].temp_c, table.rows[1].temp_c) = (Some(20.0), Some(30.0));
+        let thermal =
+            Thermal { reference_c: 25.0, zero_uv_per_c: [40.0; CHANNELS], gain_per_c: [0.01; CHANNELS] };
+        let first = |recording: Recording| recording.at_reference(&thermal).tared().rows[1].uv.unwrap()[0];
+        // 1500 − (100 + 400), and five degrees above the reference.
+        assert!((first(Recording::of(table.clone(), 5.0).unwrap()) - 1000.0 / 1.05).abs() < 1e-9);
+        // The zero at the reference is 300.
+        assert!((first(Recording::raw(table, 5.0).less(&[300.0; CHANNELS])) - 1000.0 / 1.05).abs() < 1e-9);
+    }
 }

@@ -5,6 +5,7 @@
 //! the physics, since shear apart the moments about the plate's axes are what the modules' loads add up to.
 
 use crate::contact::statics::FORCE_RESOLUTION_N;
+use crate::network::Zero;
 use crate::quantity::{CHANNELS, Contact, Strain};
 
 /// Terms of each function: nine channels and a constant.
@@ -22,6 +23,8 @@ pub enum Target {
 /// Five linear functions of the channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regression {
+    /// What the channels are taken relative to.
+    pub zero: Zero,
     /// What they give.
     pub target: Target,
     /// Factors of the channels in µV, then the constant; mm, N·mm and N.
@@ -60,7 +63,7 @@ mod tests {
         let mut functions = [[0.0; TERMS]; 5];
         (functions[0][0], functions[1][1], functions[4][2]) = (0.1, 0.2, 0.001);
         functions[3][CHANNELS] = 0.5;
-        Regression { target, functions, reach_mm: 29.0 }
+        Regression { zero: Zero::Tared, target, functions, reach_mm: 29.0 }
     }
 
     #[test]

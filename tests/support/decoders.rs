@@ -9,6 +9,7 @@ use tactpad::contact::{Decoder, read};
 use tactpad::field::PadField;
 use tactpad::influence::InfluenceField;
 use tactpad::measured::{Label, Row};
+use tactpad::network::Zero;
 use tactpad::quantity::CHANNELS;
 use tactpad::shipped;
 
@@ -19,14 +20,16 @@ const CONTACTS: u32 = 648;
 pub(crate) fn each() -> Vec<(&'static str, Decoder)> {
     let field = PadField::nominal().signals;
     let rows: Vec<Row> = (0..CONTACTS).map(|index| row(&field, index)).collect();
-    let fitted = |target| regression(&rows, target, 29.0).map(|found| Decoder::Regression(Box::new(found)));
+    let fitted = |target| {
+        regression(&rows, Zero::Tared, target, 29.0).map(|found| Decoder::Regression(Box::new(found)))
+    };
     let of_the_program = |name| shipped::bytes(name).and_then(|bytes| read::playing(&bytes).ok());
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let decoders = [
         of_the_program("statics"),
         fitted(Target::Wrench).ok(),
         fitted(Target::Contact).ok(),
-        neighbours(&rows).map(Decoder::Neighbours).ok(),
+        neighbours(&rows, Zero::Tared).map(Decoder::Neighbours).ok(),
         of_the_program("scdf"),
         Some(Decoder::Inverse(Box::new(Inverse::new(field, noise, NO_FRICTION)))),
     ];

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::{Arguments, Contacts, Method};
 use crate::calibration::fit::{Calibration, FitError, fit};
 use crate::calibration::regression::{neighbours, regression};
+use crate::calibration::warmth::Warmth;
 use crate::cli::field_cache::field_of;
 use crate::cli::{Failure, decoder_file};
 use crate::contact::Decoder;
@@ -33,8 +34,24 @@ struct Pad {
     /// Play operators: threshold and share, as means over the channels.
     friction: Vec<Friction>,
     parameters: Vec<Found>,
+    /// What the untouched pad reads, where no row reads it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    zero_uv: Option<[f64; CHANNELS]>,
+    /// How channels follow the temperature, where it was measured at several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    thermal: Option<FoundThermal>,
     /// Whether the field of `--from` was nearer than the simulated one.
     field_from_earlier: bool,
+}
+
+/// Coefficients per degree; null where nothing tells them.
+#[derive(Serialize)]
+struct FoundThermal {
+    reference_c: f64,
+    zero_uv_per_c: Option<[f64; CHANNELS]>,
+    zero_deviation: Option<[f64; CHANNELS]>,
+    gain_per_c: Option<[f64; CHANNELS]>,
+    gain_deviation: Option<[f64; CHANNELS]>,
 }
 
 #[derive(Serialize)]
@@ -53,12 +70,7 @@ struct Found {
 
 /// Fits the decoder and writes it.
 pub(super) fn adapt(arguments: &Arguments, device: &Device, contacts: &Contacts) -> Result<Fit, Failure> {
-    let Contacts { recording: Some(recording), places, rows } = contacts else {
-        return Err(refused(
-            arguments,
-            &"no row without force says what the untouched pad reads; measure some",
-        ));
-    };
+    let Contacts { recording, places, rows } = contacts;
     if arguments.from.is_some() && arguments.method != Method::Inverse {
         return Err(Failure::Unusable(
             "--from is for inverse and scdf; wrench, linear and knn are made of the measured contacts alone"
@@ -74,14 +86,16 @@ pub(super) fn adapt(arguments: &Arguments, device: &Device, contacts: &Contacts)
             let calibration = fit(recording, places, device, &field, earlier.as_ref()).map_err(unusable)?;
             (Decoder::Inverse(Box::new(calibration.decoder())), Fit { pad: Some(Pad::of(&calibration)) })
         }
-        Method::Knn => (Decoder::Neighbours(neighbours(rows).map_err(unusable)?), Fit::default()),
+        Method::Knn => {
+            (Decoder::Neighbours(neighbours(rows, contacts.zero()).map_err(unusable)?), Fit::default())
+        }
         Method::Wrench | Method::Linear | Method::Scdf => {
             let target = if arguments.method == Method::Wrench { Target::Wrench } else { Target::Contact };
-            let fitted = regression(rows, target, reach_mm).map_err(unusable)?;
+            let fitted = regression(rows, contacts.zero(), target, reach_mm).map_err(unusable)?;
             (Decoder::Regression(Box::new(fitted)), Fit::default())
         }
     };
-    let note = format!("{} contacts of {}", rows.len(), arguments.measured.display());
+    let note = format!("{} contacts of {}", rows.len(), arguments.measured_names());
     decoder_file::write(&arguments.out, &decoder.to_bytes(&note).unwrap_or_default())?;
     Ok(found)
 }
@@ -100,7 +114,7 @@ fn earlier(arguments: &Arguments) -> Result<Option<Inverse>, Failure> {
 }
 
 fn refused(arguments: &Arguments, why: &dyn fmt::Display) -> Failure {
-    Failure::Unusable(format!("{}: {why}", arguments.measured.display()))
+    Failure::Unusable(format!("{}: {why}", arguments.measured_names()))
 }
 
 impl Pad {
@@ -118,9 +132,43 @@ impl Pad {
             noise_uv: calibration.noise.additive_uv,
             noise_share: calibration.noise.share,
             background_share: calibration.background,
+            zero_uv: calibration.zero_uv,
+            thermal: calibration.warmth.as_ref().map(FoundThermal::of),
             field_from_earlier: calibration.from_earlier,
             parameters: calibration.physical.iter().map(found).collect(),
         }
+    }
+}
+
+impl FoundThermal {
+    fn of(warmth: &Warmth) -> Self {
+        let Warmth { thermal, zero_deviation, gain_deviation } = *warmth;
+        Self {
+            reference_c: thermal.reference_c,
+            zero_uv_per_c: zero_deviation.map(|_| thermal.zero_uv_per_c),
+            zero_deviation,
+            gain_per_c: gain_deviation.map(|_| thermal.gain_per_c),
+            gain_deviation,
+        }
+    }
+}
+
+impl fmt::Display for FoundThermal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { reference_c, zero_uv_per_c, zero_deviation, gain_per_c, gain_deviation } = self;
+        writeln!(f, "channel  zero µV/°C  gain %/°C, around {reference_c:.1} °C")?;
+        let text =
+            |found: &Option<[f64; CHANNELS]>, deviation: &Option<[f64; CHANNELS]>, k: usize, unit: f64| {
+                found.zip(*deviation).map_or_else(
+                    || "not told".into(),
+                    |(found, deviation)| format!("{:+.3} ± {:.3}", unit * found[k], unit * deviation[k]),
+                )
+            };
+        for (k, name) in CHANNEL_NAMES.iter().enumerate() {
+            let zero = text(zero_uv_per_c, zero_deviation, k, 1.0);
+            writeln!(f, "{name:<7} {zero}  {}", text(gain_per_c, gain_deviation, k, 100.0))?;
+        }
+        Ok(())
     }
 }
 
@@ -137,6 +185,12 @@ impl fmt::Display for Fit {
         }
         for Friction { threshold_uv, share } in &pad.friction {
             writeln!(f, "friction: {:.2} % of what is beyond {threshold_uv:.0} µV", 100.0 * share)?;
+        }
+        if let Some(zero_uv) = &pad.zero_uv {
+            writeln!(f, "untouched: {zero_uv:.0?} µV, told by the contacts")?;
+        }
+        if let Some(thermal) = &pad.thermal {
+            thermal.fmt(f)?;
         }
         write!(f, "smooth background: {:.1} % of each map", 100.0 * pad.background_share)?;
         if pad.field_from_earlier { write!(f, ", beside the earlier pad's field") } else { Ok(()) }

@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::{Arguments, Contacts};
 use crate::cli::progress::Progress;
 use crate::cli::{Failure, decoder_file};
-use crate::network::Zero;
 use crate::network::training::Epoch;
 use crate::scdf::adaptation::{Adapted, adapt as fit, examples};
 
@@ -36,14 +35,14 @@ pub(super) fn adapt(arguments: &Arguments, contacts: &Contacts) -> Result<Fit, F
         )
     })?;
     let mut start = decoder_file::read_network(from)?;
-    start.zero = if contacts.recording.is_some() { Zero::Tared } else { Zero::Raw };
+    start.zero = contacts.zero();
     let mut progress = Progress::begin();
     let adapted = fit(&start, examples(&contacts.rows), arguments.seed, |beta, Epoch { number, .. }| {
         progress.step(format_args!("β = {beta}: epoch {number}"));
     });
     drop(progress);
     let adapted =
-        adapted.map_err(|error| Failure::Unusable(format!("{}: {error}", arguments.measured.display())))?;
+        adapted.map_err(|error| Failure::Unusable(format!("{}: {error}", arguments.measured_names())))?;
     decoder_file::write_network(&arguments.out, &adapted.trained.network)?;
     Ok(Fit::of(adapted))
 }

@@ -29,9 +29,9 @@ impl Decoders {
     /// Those that are given as files.
     pub(super) fn given(arguments: &Arguments) -> Result<Self, Failure> {
         let given = arguments.decoder.as_deref().map(decoder_file::read).transpose()?;
-        if matches!(&given, Some(Decoder::Network(network)) if network.zero == Zero::Raw) {
+        if given.as_ref().is_some_and(|decoder| decoder.zero() == Zero::Raw) {
             return Err(Failure::Unusable(
-                "--decoder is a network of raw channels, and zeros are taken off here: adapt it with a file that has \
+                "--decoder takes raw channels, and zeros are taken off here: adapt it with a file that has \
                  rows without force"
                     .into(),
             ));

@@ -109,7 +109,7 @@ fn value(name: &str, width: usize) -> Vec<u8> {
 
 impl Zero {
     /// As files write it.
-    pub(super) const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Tared => "tared",
             Self::Raw => "raw",

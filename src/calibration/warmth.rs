@@ -1,0 +1,80 @@
+//! How a pad follows the temperature, as far as its measured contacts tell.
+//!
+//! Zeros: a straight line through the readings of the untouched pad. Gains: numbers of the fit.
+
+use crate::contact::recording::Recording;
+use crate::contact::thermal::Thermal;
+use crate::measured::Row;
+use crate::quantity::CHANNELS;
+
+/// Temperatures that lie closer together tell nothing.
+const SPAN_MIN_C: f64 = 1.0;
+
+/// Coefficients, and how sure they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Warmth {
+    /// What was found; zero where nothing tells it.
+    pub thermal: Thermal,
+    /// Standard deviations of the zeros' coefficients, µV/°C; none if the untouched pad was read at one temperature.
+    pub zero_deviation: Option<[f64; CHANNELS]>,
+    /// Standard deviations of the gains' coefficients, 1/°C; none if contacts were measured at one temperature.
+    pub gain_deviation: Option<[f64; CHANNELS]>,
+}
+
+impl Warmth {
+    /// The zeros' coefficients. `None` for a recording at one temperature, or at none.
+    pub(super) fn of_zeros(recording: &Recording) -> Option<Self> {
+        let rows = &recording.tared().rows;
+        let temperatures: Vec<f64> = rows.iter().filter_map(|row| row.temp_c).collect();
+        if !are_apart(&temperatures) {
+            return None;
+        }
+        let readings: Vec<(f64, [f64; CHANNELS])> =
+            recording.zeros().flatten().filter_map(|(at, uv)| Some((rows[at].temp_c?, uv))).collect();
+        let lines = lines(&readings);
+        let thermal = Thermal {
+            reference_c: mean(temperatures.iter().copied()),
+            zero_uv_per_c: lines.map_or([0.0; CHANNELS], |lines| lines.map(|[slope, _]| slope)),
+            gain_per_c: [0.0; CHANNELS],
+        };
+        let zero_deviation = lines.map(|lines| lines.map(|[_, deviation]| deviation));
+        Some(Self { thermal, zero_deviation, gain_deviation: None })
+    }
+
+    /// Whether contacts tell how gains follow the temperature.
+    pub(super) fn is_told_by<'r>(rows: impl Iterator<Item = &'r Row>) -> bool {
+        are_apart(&rows.filter_map(|row| row.temp_c).collect::<Vec<f64>>())
+    }
+}
+
+fn are_apart(temperatures: &[f64]) -> bool {
+    let (low, high) = temperatures
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), it| (it.min(low), it.max(high)));
+    high - low >= SPAN_MIN_C
+}
+
+fn mean(numbers: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = numbers.len().max(1) as f64;
+    numbers.sum::<f64>() / count
+}
+
+/// For each channel the slope over the temperature, and its standard deviation by what the line leaves over.
+fn lines(readings: &[(f64, [f64; CHANNELS])]) -> Option<[[f64; 2]; CHANNELS]> {
+    let temperatures: Vec<f64> = readings.iter().map(|(temp_c, _)| *temp_c).collect();
+    // Two numbers to find, and what is left over to judge them by.
+    if !are_apart(&temperatures) || readings.len() < 3 {
+        return None;
+    }
+    let middle_c = mean(temperatures.iter().copied());
+    let square: f64 = temperatures.iter().map(|temp_c| (temp_c - middle_c).powi(2)).sum();
+    Some(std::array::from_fn(|k| {
+        let middle_uv = mean(readings.iter().map(|(_, uv)| uv[k]));
+        let slope =
+            readings.iter().map(|(temp_c, uv)| (temp_c - middle_c) * (uv[k] - middle_uv)).sum::<f64>()
+                / square;
+        let rest = |(temp_c, uv): &(f64, [f64; CHANNELS])| uv[k] - middle_uv - slope * (temp_c - middle_c);
+        let rests: f64 = readings.iter().map(|reading| rest(reading).powi(2)).sum();
+        [slope, (rests / (readings.len() - 2) as f64 / square).sqrt()]
+    }))
+}

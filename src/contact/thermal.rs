@@ -1,0 +1,46 @@
+//! How a pad's channels follow the temperature: zeros by so many microvolts, gains by such a share, per degree.
+
+use crate::quantity::CHANNELS;
+
+/// Straight lines through a reference temperature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thermal {
+    /// Where nothing is to be corrected.
+    pub reference_c: f64,
+    /// Change of each channel's zero.
+    pub zero_uv_per_c: [f64; CHANNELS],
+    /// Relative change of each channel's gain.
+    pub gain_per_c: [f64; CHANNELS],
+}
+
+impl Thermal {
+    /// What the zeros differ by from those at the reference. Where the temperature is not known it is taken for the reference.
+    pub fn zero_uv(&self, temp_c: Option<f64>) -> [f64; CHANNELS] {
+        let above_c = self.above_c(temp_c);
+        self.zero_uv_per_c.map(|uv_per_c| uv_per_c * above_c)
+    }
+
+    /// What the channels beyond their zeros are multiplied by.
+    pub fn gain(&self, temp_c: Option<f64>) -> [f64; CHANNELS] {
+        let above_c = self.above_c(temp_c);
+        self.gain_per_c.map(|per_c| 1.0 + per_c * above_c)
+    }
+
+    fn above_c(&self, temp_c: Option<f64>) -> f64 {
+        temp_c.map_or(0.0, |temp_c| temp_c - self.reference_c)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_go_through_the_reference() {
+        let thermal =
+            Thermal { reference_c: 25.0, zero_uv_per_c: [40.0; CHANNELS], gain_per_c: [-1e-3; CHANNELS] };
+        assert_eq!(thermal.zero_uv(Some(30.0)), [200.0; CHANNELS]);
+        assert_eq!(thermal.gain(Some(15.0)), [1.01; CHANNELS]);
+        assert_eq!((thermal.zero_uv(None), thermal.gain(None)), ([0.0; CHANNELS], [1.0; CHANNELS]));
+    }
+}

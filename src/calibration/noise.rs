@@ -15,6 +15,8 @@ const SHARE: f64 = 0.02;
 /// Of a gain that all channels share; known before as if so many contacts had told it.
 const GAIN: f64 = 0.006;
 const GAIN_KNOWN: f64 = 30.0;
+/// How much it changes from one recording to another, which none of them shows: creep under longer loads, wear, warmth.
+const GAIN_BETWEEN: f64 = 0.008;
 const FORCE_UV_PER_N: f64 = 1.0;
 /// How many parts noise has.
 const PARTS: usize = 3;
@@ -115,7 +117,8 @@ pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])]) ->
     let free = Factor::of(&normal).map_or([0.0; 2], |factor| factor.solve(&right));
     let slope = if constant(free[1]) < 0.0 { right[1] / normal[1][1] } else { free[1] };
     let (count, slope) = (contacts.len() as f64, if slope.is_finite() { slope.max(0.0) } else { 0.0 });
-    ((count * slope + GAIN_KNOWN * GAIN * GAIN) / (count + GAIN_KNOWN)).sqrt()
+    let within = (count * slope + GAIN_KNOWN * GAIN * GAIN) / (count + GAIN_KNOWN);
+    (within + GAIN_BETWEEN * GAIN_BETWEEN).sqrt()
 }
 
 /// The decoded force, how far the written one is from it along it, and the variance of that by the decoder.

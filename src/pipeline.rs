@@ -11,6 +11,7 @@ use firmware_proto::identity::Identity;
 use firmware_proto::sample::Sample;
 
 use crate::contact::Decoder;
+use crate::contact::relief::Relief;
 use crate::contact::touch::{Touch, TouchState};
 use crate::control::OutputEvent;
 use crate::health::Health;
@@ -84,6 +85,7 @@ pub enum Refusal {
 pub struct Pipeline {
     link: Link,
     signal: Signal,
+    relief: Relief,
     decoder: Decoder,
     touch: Touch,
     engine: Engine,
@@ -107,6 +109,7 @@ impl Pipeline {
         Self {
             link: Link::new(),
             signal: Signal::new(profile.filter_samples),
+            relief: Relief::of(decoder.friction()),
             decoder,
             touch: Touch::new(),
             ledger: Ledger::new(&profile),
@@ -156,6 +159,7 @@ impl Pipeline {
         self.lose(now);
         (self.identity, self.refusal) = (None, None);
         self.signal.forget_pad();
+        self.relief = Relief::of(self.decoder.friction());
     }
 
     /// Host time of the next deadline; `None` if nothing is due before something else happens.
@@ -280,12 +284,15 @@ impl Pipeline {
     }
 
     fn handle_sample<P: Probe>(&mut self, sample: &Sample, probe: &mut P) {
-        match self.signal.condition(self.at, sample, self.touch.is_touched(), &mut self.health) {
+        let (touched, rest) = (self.touch.is_touched(), self.relief.rest());
+        match self.signal.condition(self.at, sample, touched, &rest, &mut self.health) {
             Conditioned::Strain(strain) => {
+                let strain = self.relief.freed(&strain);
                 let contact = self.decoder.decode(&strain);
                 probe.mark(Stage::Contact);
                 self.phase = Phase::Playing;
                 let touched = self.handle_touch(&contact);
+                self.relief.follow(touched.then_some(&strain));
                 self.map(touched.then_some(contact));
             }
             Conditioned::Taring => {
@@ -305,6 +312,8 @@ impl Pipeline {
             TouchState::Idle => false,
             TouchState::Drifted => {
                 self.signal.retare();
+                // What was followed from a wrong zero is wrong, too.
+                self.relief = Relief::of(self.decoder.friction());
                 false
             }
         }
@@ -315,6 +324,7 @@ impl Pipeline {
             // It may tell other numbers of itself now.
             self.identity = None;
             self.signal.restart();
+            self.relief.doubt();
             self.touch = Touch::new();
         }
         self.signal.clear_filter();
@@ -329,6 +339,7 @@ impl Pipeline {
             Some(scale) => {
                 self.refusal = None;
                 self.signal.set_scale(scale);
+                self.relief.doubt();
             }
             None => self.refusal = Some(Refusal::Unsuitable(*identity)),
         }
@@ -369,6 +380,7 @@ impl Pipeline {
         self.phase = Phase::Waiting;
         self.touch.end();
         self.signal.clear_filter();
+        self.relief.doubt();
         self.distrust();
     }
 

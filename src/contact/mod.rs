@@ -7,6 +7,7 @@ pub mod neighbours;
 pub mod read;
 pub mod recording;
 pub mod regression;
+pub mod relief;
 pub mod shipped;
 pub mod statics;
 pub mod touch;

@@ -13,6 +13,7 @@ use firmware_proto::sample::Sample;
 use crate::contact::Decoder;
 use crate::contact::relief::Relief;
 use crate::contact::touch::{Touch, TouchState};
+use crate::contact::watch::{Warning, Watch};
 use crate::control::OutputEvent;
 use crate::health::Health;
 use crate::link::{Fault, Link, LinkEvent};
@@ -88,6 +89,7 @@ pub struct Pipeline {
     relief: Relief,
     decoder: Decoder,
     touch: Touch,
+    watch: Watch,
     engine: Engine,
     ledger: Ledger,
     health: Health,
@@ -110,6 +112,7 @@ impl Pipeline {
             link: Link::new(),
             signal: Signal::new(profile.filter_samples),
             relief: Relief::of(decoder.friction()),
+            watch: Watch::new(decoder.inverse()),
             decoder,
             touch: Touch::new(),
             ledger: Ledger::new(&profile),
@@ -160,6 +163,7 @@ impl Pipeline {
         (self.identity, self.refusal) = (None, None);
         self.signal.forget_pad();
         self.relief = Relief::of(self.decoder.friction());
+        self.watch = Watch::new(self.decoder.inverse());
     }
 
     /// Host time of the next deadline; `None` if nothing is due before something else happens.
@@ -228,6 +232,11 @@ impl Pipeline {
         self.contact.as_ref()
     }
 
+    /// What the player should know of the touch at hand or the last one; only the inverse decoder tells it.
+    pub const fn warning(&self) -> Option<Warning> {
+        self.watch.warning()
+    }
+
     /// What is held now.
     pub fn held(&self) -> impl Iterator<Item = Level> + '_ {
         self.ledger.held()
@@ -288,15 +297,19 @@ impl Pipeline {
         match self.signal.condition(self.at, sample, touched, &rest, &mut self.health) {
             Conditioned::Strain(strain) => {
                 let strain = self.relief.freed(&strain);
-                let contact = self.decoder.decode(&strain);
+                let (contact, explained) = self.decoder.explain(&strain);
                 probe.mark(Stage::Contact);
                 self.phase = Phase::Playing;
                 let touched = self.handle_touch(&contact);
                 self.relief.follow(touched.then_some(&strain));
+                if let Some((explained, inverse)) = explained.zip(self.decoder.inverse()) {
+                    self.watch.see(self.at, &strain, &explained, touched, inverse, &mut self.health);
+                }
                 self.map(touched.then_some(contact));
             }
             Conditioned::Taring => {
                 self.phase = Phase::Taring;
+                self.watch.interrupt();
                 self.map(None);
             }
             Conditioned::Faulty => {
@@ -361,6 +374,7 @@ impl Pipeline {
 
     /// Ends the contact without believing it: presses are forgotten, everything is released at once.
     fn distrust(&mut self) {
+        self.watch.interrupt();
         self.contact = None;
         self.engine.cancel();
         self.ledger.release_all(self.at, &mut self.edges);

@@ -57,7 +57,7 @@ fn presses(seed: u32, count: u32) -> Vec<Contact> {
 fn errors(played: &mut Played, presses: &[Contact]) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for press in presses {
-        let found = played.press(press, 300).unwrap();
+        let found = played.press(&[*press], 300).unwrap();
         played.rest(150 + 7 * (press.fz_n * 10.0) as u64);
         let off = |a: f32, b: f32| f64::from((a - b).abs());
         sums[0] += (off(found.x_mm, press.x_mm) + off(found.y_mm, press.y_mm)) / 2.0;
@@ -91,7 +91,7 @@ fn a_pad_that_was_pressed_before_it_was_tared_is_soon_known() {
     let used = |played: &mut Played| {
         // Nobody listens while it is used: the pipeline hears it from here on.
         for press in presses(7, 20) {
-            played.press(&press, 300);
+            played.press(&[press], 300);
         }
         played.rest(600);
         let now = HostInstant::default().plus_us(1_000 * played.now_ms);
@@ -107,9 +107,9 @@ fn a_zero_taken_under_a_finger_leaves_nothing() {
     let tared_under_a_finger = |played: &mut Played| {
         let finger = Contact { x_mm: 5.0, y_mm: -8.0, fz_n: 3.0, ..Contact::default() };
         played.rest(600);
-        played.press(&finger, 300);
+        played.press(&[finger], 300);
         played.pipeline.retare(HostInstant::default().plus_us(1_000 * played.now_ms));
-        played.press(&finger, 1_500);
+        played.press(&[finger], 1_500);
         // The wrong zero is a pull now, and is taken anew.
         played.rest(3_000);
         errors(played, &presses(9, 10));
@@ -122,7 +122,7 @@ fn the_reference_does_not_drift_over_faults_pauses_and_idle_minutes() {
     let troubled = |played: &mut Played| {
         played.rest(600);
         for (index, press) in presses(5, 30).iter().enumerate() {
-            played.press(press, 300);
+            played.press(&[*press], 300);
             let now = HostInstant::default().plus_us(1_000 * played.now_ms);
             match index % 3 {
                 0 => drop(played.pipeline.handle_bytes(now, &[1, 2, 3, 0], &mut tactpad::pipeline::NoProbe)),

@@ -10,8 +10,9 @@ use tactpad::field::PadField;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::shipped;
 use tactpad::pipeline::{NoProbe, Pipeline};
-use tactpad::quantity::{CHANNELS, Contact};
+use tactpad::quantity::Contact;
 use tactpad::time::HostInstant;
+use tactpad::twin::hand::Hand;
 use tactpad::twin::pad::{Circumstances, TwinPad};
 
 /// Microvolts per count of a pad that does not identify itself.
@@ -23,6 +24,7 @@ const RAMP_MS: u64 = 40;
 pub(crate) struct Played {
     pub(crate) pipeline: Pipeline,
     pad: TwinPad,
+    hands: [Hand; 2],
     around: Circumstances,
     pub(crate) now_ms: u64,
     sequence: u32,
@@ -35,19 +37,18 @@ impl Played {
         Self {
             pipeline: Pipeline::new(decoder, profile),
             pad: TwinPad::new(device, field, seed),
+            hands: [seed, seed + 1_000].map(|seed| Hand::new(device.behaviour.finger, seed)),
             around: Circumstances { temperature_c: device.behaviour.thermal.reference_c, cycles: 0.0 },
             now_ms: 0,
             sequence: 0,
         }
     }
 
-    /// Fingers stay so for a millisecond: their channels are those of the first, moved on by what `others` add.
-    pub(crate) fn millisecond(&mut self, contact: &Contact) {
-        let uv = self.pad.read(1e-3, contact, &self.around);
-        self.send(&uv);
-    }
-
-    pub(crate) fn send(&mut self, uv: &[f64; CHANNELS]) {
+    /// Fingers press so for a millisecond.
+    pub(crate) fn millisecond(&mut self, contacts: &[Contact]) {
+        let hands = self.hands.iter_mut().zip(contacts);
+        let held: Vec<Contact> = hands.map(|(hand, contact)| hand.hold(1e-3, contact)).collect();
+        let uv = self.pad.read_all(1e-3, &held, &self.around);
         self.now_ms += 1;
         self.sequence = self.sequence.wrapping_add(1);
         let sample = Sample {
@@ -67,24 +68,23 @@ impl Played {
     }
 
     pub(crate) fn rest(&mut self, ms: u64) {
-        (0..ms).for_each(|_| self.millisecond(&Contact::default()));
+        (0..ms).for_each(|_| self.millisecond(&[]));
     }
 
     /// A press with its ramps, which are part of `ms`; the decoded contact in its middle.
-    pub(crate) fn press(&mut self, contact: &Contact, ms: u64) -> Option<Contact> {
+    pub(crate) fn press(&mut self, contacts: &[Contact], ms: u64) -> Option<Contact> {
         let mut found = None;
         for at_ms in 0..ms {
             let level = (at_ms.min(ms - at_ms) as f32 / RAMP_MS as f32).min(1.0);
-            let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = *contact;
-            self.millisecond(&Contact {
-                x_mm,
-                y_mm,
-                fx_n: level * fx_n,
-                fy_n: level * fy_n,
-                fz_n: level * fz_n,
-            });
+            let pressed: Vec<Contact> = contacts.iter().map(|contact| scaled(contact, level)).collect();
+            self.millisecond(&pressed);
             found = if at_ms == ms / 2 { self.pipeline.contact().copied() } else { found };
         }
         found
     }
+}
+
+fn scaled(contact: &Contact, level: f32) -> Contact {
+    let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = *contact;
+    Contact { x_mm, y_mm, fx_n: level * fx_n, fy_n: level * fy_n, fz_n: level * fz_n }
 }

@@ -105,7 +105,7 @@ fn part(index: u32, step: f64) -> f32 {
 
 fn press(index: u32, [radius, angle, force]: [f64; 3], shear: f32) -> Contact {
     let radius_mm = REACH_MM * part(index, radius).sqrt();
-    let (sin, cos) = (std::f32::consts::TAU * part(index, angle)).sin_cos();
+    let (sin, cos) = libm::sincosf(std::f32::consts::TAU * part(index, angle));
     let fz_n = LEAST_N + 2.0 * part(index, force);
     let along = |step: f64| shear * fz_n * (2.0 * part(index, step) - 1.0);
     Contact {
@@ -124,7 +124,7 @@ fn pairs(count: u32, force: Option<f32>) -> Vec<[Contact; 2]> {
         pair.map(|steps| press(index, steps, 0.0)).map(|it| Contact { fz_n: force.unwrap_or(it.fz_n), ..it })
     };
     let is_apart =
-        |[one, other]: &[Contact; 2]| (one.x_mm - other.x_mm).hypot(one.y_mm - other.y_mm) >= APART_MM;
+        |[one, other]: &[Contact; 2]| libm::hypotf(one.x_mm - other.x_mm, one.y_mm - other.y_mm) >= APART_MM;
     (1..).map(pair).filter(is_apart).take(count as usize).collect()
 }
 

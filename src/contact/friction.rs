@@ -11,8 +11,11 @@ use crate::quantity::CHANNELS;
 /// How many play operators a channel has.
 pub const PLAYS: usize = 2;
 
-/// Rounds in which the strain without friction is found. Each leaves a part of the error that is the sum of the shares.
+/// Rounds at most in which the strain without friction is found. Each leaves a part of the error that is the sum of the
+/// shares.
 const ROUNDS: usize = 12;
+/// A round that changes less is the last.
+const ROUND_END_UV: f64 = 1e-7;
 
 /// One play operator in each channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +74,12 @@ impl History {
                 let state = pulled(states[channel], free_uv, play.threshold_uv[channel]);
                 play.share[channel] * (state - free_uv)
             };
-            free_uv = read_uv - self.state_uv.iter().zip(friction).map(added_uv).sum::<f64>();
+            let next_uv = read_uv - self.state_uv.iter().zip(friction).map(added_uv).sum::<f64>();
+            let change_uv = (next_uv - free_uv).abs();
+            free_uv = next_uv;
+            if change_uv < ROUND_END_UV {
+                break;
+            }
         }
         free_uv
     }

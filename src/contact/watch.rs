@@ -33,6 +33,9 @@ const REST_MAX: f64 = 11.34;
 /// A silent channel reads less than so many standard deviations.
 const SILENT: f64 = 3.0;
 
+/// One that was thought to be silent and reads more than so many is not: what leaks from other channels is less.
+const ANSWERS: f64 = 10.0;
+
 /// The decoder's own noise counts as so many blocks before the first.
 const SCATTER_KNOWN: f64 = 4.0;
 
@@ -247,10 +250,9 @@ impl Watch {
             (self.judged, self.touches) = (true, self.touches << 1);
         }
         let weights = weights(inverse, mean, &self.scatter_uv2);
+        self.silent = self.silent.filter(|&channel| reads(channel, &mean.uv, &weights) < ANSWERS);
         match judge(inverse, mean, &weights) {
-            Finding::Fine => {
-                self.silent = self.silent.filter(|&channel| is_silent(channel, &mean.uv, &weights));
-            }
+            Finding::Fine => {}
             Finding::Silent(channel) => {
                 health.channels_silent += u64::from(self.silent != Some(channel));
                 self.silent = Some(channel);
@@ -295,7 +297,7 @@ fn judge(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -> Finding {
 /// The channel that reads nothing, and without which one finger explains the others.
 fn silent(inverse: &Inverse, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> Option<usize> {
     let mut best = (REST_MAX, None);
-    for channel in (0..CHANNELS).filter(|&channel| is_silent(channel, uv, weights)) {
+    for channel in (0..CHANNELS).filter(|&channel| reads(channel, uv, weights) < SILENT) {
         let mut others = *weights;
         others[channel] = 0.0;
         if let Some(misfit) = inverse.least_misfit(uv, &others).filter(|misfit| *misfit < best.0) {
@@ -305,8 +307,9 @@ fn silent(inverse: &Inverse, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) ->
     best.1
 }
 
-fn is_silent(channel: usize, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> bool {
-    uv[channel] * uv[channel] * weights[channel] < SILENT * SILENT
+/// How far a channel is from reading nothing, in standard deviations.
+fn reads(channel: usize, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> f64 {
+    uv[channel].abs() * libm::sqrt(weights[channel])
 }
 
 #[cfg(test)]
@@ -380,6 +383,13 @@ mod tests {
         assert_eq!((seen.health.channels_silent, seen.health.second_fingers), (1, 0));
         seen.dead = None;
         assert_eq!(seen.touch(&ONE, 300), None);
+    }
+
+    #[test]
+    fn two_fingers_that_pass_for_a_dead_channel_do_not_hide_the_next_ones() {
+        let mut seen = Seen::new();
+        seen.watch.silent = Some(2);
+        assert_eq!(seen.touch(&TWO, 300), Some(Warning::SecondFinger));
     }
 
     #[test]

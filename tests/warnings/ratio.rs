@@ -74,7 +74,7 @@ impl Ratio {
         let grid = Grid::over_disc(reach_mm, 51, |x_mm, y_mm| self.least(x_mm as f32, y_mm as f32));
         println!("least misfit of a pair, over the plate: {:.1?}", grid.span());
         let bands = Bands::sequential_decades(grid.span());
-        let label = "misfit of one finger, without noise; the warning's threshold is 23.5".into();
+        let label = "misfit of one finger".into();
         let plan = Plan {
             title: "The pair of 0.5 N that is hardest to see, by one finger's place".into(),
             x: [-reach_mm, reach_mm],
@@ -96,8 +96,8 @@ impl Ratio {
         for partner in 0..PARTNERS_AROUND * PARTNER_RINGS {
             let radius_mm = REACH_MM * (partner / PARTNERS_AROUND + 1) as f32 / PARTNER_RINGS as f32;
             let angle = std::f32::consts::TAU * (partner % PARTNERS_AROUND) as f32 / PARTNERS_AROUND as f32;
-            let (px_mm, py_mm) = (radius_mm * angle.cos(), radius_mm * angle.sin());
-            if (px_mm - x_mm).hypot(py_mm - y_mm) >= APART_MM {
+            let (px_mm, py_mm) = (radius_mm * libm::cosf(angle), radius_mm * libm::sinf(angle));
+            if libm::hypotf(px_mm - x_mm, py_mm - y_mm) >= APART_MM {
                 let there = finger(px_mm, py_mm);
                 let both = std::array::from_fn(|k| here[k] + there[k]);
                 least = least.min(self.misfit(&Strain { uv: both }));

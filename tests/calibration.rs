@@ -72,7 +72,14 @@ impl Measured {
     }
 
     fn inverse(&self, count: usize) -> Calibration {
-        fit(&self.recording, &self.some(count), &Device::nominal(), field()).unwrap()
+        fit(&self.recording, &self.some(count), &Device::nominal(), field(), None).unwrap()
+    }
+
+    /// The same, begun with another pad's decoder.
+    fn from(&self, count: usize, earlier: &Decoder) -> Decoder {
+        let Decoder::Inverse(earlier) = earlier else { panic!("only an inverse decoder tells of its pad") };
+        let found = fit(&self.recording, &self.some(count), &Device::nominal(), field(), Some(earlier));
+        Decoder::Inverse(Box::new(found.unwrap().decoder()))
     }
 
     fn rows(&self, count: usize) -> Vec<Row> {
@@ -164,6 +171,22 @@ fn friction_is_found_and_taken_off() {
         assert!(by_inverse.position_mae_mm < 0.5 * by_wrench.position_mae_mm, "{by_inverse:?}");
         assert!(by_inverse.force_mae_n < 0.4 * by_wrench.force_mae_n, "{by_inverse:?}");
     }
+}
+
+#[test]
+fn another_pad_of_the_kind_needs_twenty_contacts() {
+    let mut other = pad();
+    for (k, gain) in other.modules.iter_mut().flat_map(|module| &mut module.gain).enumerate() {
+        *gain *= 1.0 + 0.1 * [1.0, -0.4, 0.2, -1.3, 0.6, 0.9, -0.7, -0.2, 1.1][k];
+    }
+    other.behaviour.crosstalk = vec![Crosstalk { channel: 1, with: 8, share: -0.015 }];
+    let earlier = inverse(&Measured::calibration(&pad()), 648);
+    let (measured, unseen) = (Measured::calibration(&other), Measured::unseen(&other));
+    let [few, all] =
+        [measured.from(20, &earlier), inverse(&measured, 648)].map(|decoder| errors_of(&decoder, &unseen));
+    println!("20: {few:?}\n648: {all:?}");
+    assert!(few.position_mae_mm < 1.5 * all.position_mae_mm);
+    assert!(few.force_mae_n < 1.5 * all.force_mae_n);
 }
 
 /// The nominal field with faults that a calibration has no number for: a stage that is turned by 1° and long by 1 %, a plate

@@ -128,7 +128,7 @@ impl<'p> Known<'p> {
 
     fn inverse(&self, places: &[usize]) -> Result<Decoder, FitError> {
         let Pad { device, field } = self.subject.designed;
-        let calibration = fit(&self.measured.recording, places, device, field)?;
+        let calibration = fit(&self.measured.recording, places, device, field, None)?;
         Ok(Decoder::Inverse(Box::new(calibration.decoder())))
     }
 

@@ -4,6 +4,7 @@ use std::fmt;
 
 use rayon::prelude::*;
 
+use super::before::Before;
 use super::model::Layout;
 use super::noise;
 use super::problem::{Fit, Problem, Settings};
@@ -26,6 +27,8 @@ const THRESHOLDS: i32 = 11;
 const HALVINGS: i32 = 3;
 /// A play operator must make what was measured so much more probable; ln.
 const EVIDENCE_GAIN: f64 = 15.0;
+/// Plates that differ by less are of one kind.
+const PLATE_TOLERANCE_MM: f32 = 0.1;
 
 /// A calibrated pad.
 #[derive(Clone, Debug)]
@@ -40,6 +43,8 @@ pub struct Calibration {
     pub physical: Vec<(Parameter, f64, f64)>,
     /// Size of the smooth background, as a share of each map.
     pub background: f64,
+    /// Whether another pad's field explains the contacts better than the simulated one.
+    pub from_earlier: bool,
     /// What the channels remember of earlier loads.
     pub friction: Friction,
     /// Contacts that it was fitted to.
@@ -56,6 +61,8 @@ pub enum FitError {
         /// It takes so many.
         least: usize,
     },
+    /// The earlier decoder is of a pad with another plate.
+    OtherPlate,
     /// The numbers are beyond anything that a pad can read.
     Senseless,
 }
@@ -69,6 +76,9 @@ impl fmt::Display for FitError {
                     "it takes {least} contacts with nine channels at least, and here are {contacts}; measure more"
                 )
             }
+            Self::OtherPlate => {
+                f.write_str("the earlier decoder is of a pad with another plate; begin without it")
+            }
             Self::Senseless => f.write_str("the channels are beyond anything that a pad can read"),
         }
     }
@@ -77,7 +87,7 @@ impl fmt::Display for FitError {
 impl std::error::Error for FitError {}
 
 impl Calibration {
-    fn of(problem: &Problem<'_>, fit: &Fit) -> Self {
+    fn of(problem: &Problem<'_>, fit: &Fit, from_earlier: bool) -> Self {
         let Fit { settings, values, .. } = fit;
         let field = problem.corrected(values);
         let friction = Layout::friction(values, &settings.thresholds_uv);
@@ -86,11 +96,12 @@ impl Calibration {
         let noise = noise::with_doubts(&field, noise, &problem.doubts(fit));
         let decoder = Inverse::new(field.clone(), noise, friction);
         Self {
-            noise: Noise { gain: noise::common_gain(&decoder, &contacts), ..noise },
+            noise: Noise { gain: noise::common_gain(&decoder, &contacts, problem.known_noise()), ..noise },
             field,
             gain: std::array::from_fn(|channel| Layout::gain(values, channel)),
             physical: problem.physical(fit),
             background: settings.background,
+            from_earlier,
             friction,
             contacts: problem.contacts(),
         }
@@ -105,38 +116,87 @@ impl Calibration {
 /// Calibrates the pad that was measured, by these rows of a recording. `field` is that of `device`, the pad as it is thought
 /// to be.
 ///
+/// With the decoder of an earlier pad of the same kind its gains, friction and noise are what is thought of this one, and its
+/// field may be, too. What is thought is for the contacts to say: that which makes them most probable.
+///
 /// # Errors
-/// No contact, or senseless numbers.
+/// No contact, another kind of pad, or senseless numbers.
 pub fn fit(
     recording: &Recording,
     rows: &[usize],
     device: &Device,
     field: &PadField,
+    earlier: Option<&Inverse>,
 ) -> Result<Calibration, FitError> {
-    let problem = Problem::of(recording, rows, device, field);
+    let radius_mm = field.signals.radius_mm();
+    if earlier.is_some_and(|it| (it.field().radius_mm() - radius_mm).abs() > PLATE_TOLERANCE_MM) {
+        return Err(FitError::OtherPlate);
+    }
+    let mut best: Option<(f64, Calibration)> = None;
+    for Thought { before, handicap, from_earlier } in thoughts(field, earlier) {
+        let (problem, found) = calibrated(recording, rows, device, &before)?;
+        let evidence = found.evidence - handicap;
+        if best.as_ref().is_none_or(|(before, _)| evidence > *before) {
+            best = Some((evidence, Calibration::of(&problem, &found, from_earlier)));
+        }
+    }
+    best.map(|(_, calibration)| calibration).ok_or(FitError::Senseless)
+}
+
+/// What a pad may be like.
+struct Thought {
+    before: Before,
+    /// By how much it must make what was measured more probable; ln.
+    handicap: f64,
+    /// Whether its field is another pad's.
+    from_earlier: bool,
+}
+
+fn thoughts(field: &PadField, earlier: Option<&Inverse>) -> Vec<Thought> {
+    let thought = |before, handicap, from_earlier| Thought { before, handicap, from_earlier };
+    let Some(earlier) = earlier else { return vec![thought(Before::simulated(field), 0.0, false)] };
+    vec![
+        thought(Before::made_like(field, earlier), 0.0, false),
+        thought(Before::like(field, earlier), 0.0, true),
+        // Where less is thought of the noise, it can follow the contacts more closely.
+        thought(Before::simulated(field), EVIDENCE_GAIN, false),
+    ]
+}
+
+/// The problem of these contacts for a pad of which so much is known, and its most probable numbers.
+fn calibrated<'b>(
+    recording: &'b Recording,
+    rows: &[usize],
+    device: &Device,
+    before: &'b Before,
+) -> Result<(Problem<'b>, Fit), FitError> {
+    let problem = Problem::of(recording, rows, device, before);
     if problem.contacts() == 0 {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
-    let plain = with_friction(&problem).ok_or(FitError::Senseless)?;
+    let plain = with_friction(&problem, before.thresholds_uv).ok_or(FitError::Senseless)?;
     let problem = problem.with_background();
     let best = most_probable(BACKGROUNDS.to_vec(), |background| {
         problem.clone().fitted(Settings { background, ..plain.settings }, Some(&plain))
     });
-    let best = best.ok_or(FitError::Senseless)?;
-    Ok(Calibration::of(&problem, &best))
+    Ok((problem, best.ok_or(FitError::Senseless)?))
 }
 
-/// The numbers without a background, and with as many play operators as make what was measured more probable.
-fn with_friction(problem: &Problem<'_>) -> Option<Fit> {
-    let none = Settings { background: 0.0, thresholds_uv: [0.0; PLAYS] };
-    let mut best = problem.clone().fitted(none, None)?;
-    for play in 0..PLAYS {
-        let found = searched(play, |threshold_uv| {
+/// The numbers without a background, and with as many play operators as make what was measured more probable. Those of which
+/// thresholds are known are only looked for around them.
+fn with_friction(problem: &Problem<'_>, thresholds_uv: [f64; PLAYS]) -> Option<Fit> {
+    let mut best = problem.clone().fitted(Settings { background: 0.0, thresholds_uv }, None)?;
+    for (play, known_uv) in thresholds_uv.into_iter().enumerate() {
+        let tried = |threshold_uv| {
             let mut settings = best.settings;
             settings.thresholds_uv[play] = threshold_uv;
             problem.clone().fitted(settings, Some(&best))
-        });
-        match found {
+        };
+        if known_uv > 0.0 {
+            best = refined(play, best.clone(), &tried);
+            continue;
+        }
+        match searched(play, tried) {
             Some(found) if found.evidence > best.evidence + EVIDENCE_GAIN => best = found,
             _ => break,
         }
@@ -147,14 +207,19 @@ fn with_friction(problem: &Problem<'_>) -> Option<Fit> {
 /// The threshold of the largest evidence: on a coarse scale first, then by ever smaller steps around the best.
 fn searched(play: usize, tried: impl Fn(f64) -> Option<Fit> + Send + Sync) -> Option<Fit> {
     let coarse = (0..THRESHOLDS).map(|step| THRESHOLD_MIN_UV * THRESHOLD_RATIO.powi(step));
-    let mut best = most_probable(coarse.collect(), &tried)?;
+    let best = most_probable(coarse.collect(), &tried)?;
+    Some(refined(play, best, &tried))
+}
+
+/// By ever smaller steps around the best.
+fn refined(play: usize, mut best: Fit, tried: &(impl Fn(f64) -> Option<Fit> + Send + Sync)) -> Fit {
     for halving in 1..=HALVINGS {
         let factor = THRESHOLD_RATIO.powf(0.5_f64.powi(halving));
         let centre_uv = best.settings.thresholds_uv[play];
-        let around = most_probable(vec![centre_uv / factor, centre_uv * factor], &tried);
+        let around = most_probable(vec![centre_uv / factor, centre_uv * factor], tried);
         best = around.filter(|around| around.evidence > best.evidence).unwrap_or(best);
     }
-    Some(best)
+    best
 }
 
 /// Tries settings side by side; of equally probable ones the last.

@@ -15,6 +15,7 @@
 //! Source: C. M. Bishop, Pattern Recognition and Machine Learning, section 3.5 (evidence); the model of a discrepancy
 //! beside physical parameters is M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425.
 
+mod before;
 mod contacts;
 pub mod fit;
 mod model;
@@ -22,3 +23,4 @@ mod noise;
 mod problem;
 pub mod regression;
 mod scatter;
+mod spread;

@@ -1,11 +1,12 @@
 //! The numbers in which a pad may differ, what they do to the channels, and what is known of them before.
 
+use super::before::Before;
 use super::contacts::{Maps, Measured, Place};
+use super::spread::{Kind, Spread};
 use crate::contact::friction::{Friction, PLAYS, Play};
 use crate::contact::recording::Lags;
 use crate::contact::uncertainty::UNKNOWNS;
 use crate::device::parameter::Parameter;
-use crate::device::unit::Unit;
 use crate::quantity::CHANNELS;
 
 /// Degree of the background's polynomials: features of some 10 mm.
@@ -15,21 +16,11 @@ pub(super) const TERMS: usize = (BACKGROUND_DEGREE + 1) * (BACKGROUND_DEGREE + 2
 
 /// Standard deviations before anything is measured. Gains: the authors' earlier pad has 0.83 to 1.33.
 const GAIN: f64 = 0.3;
-/// Assembled by hand.
-const SHIFT_MM: f64 = 0.3;
-const TURN_DEG: f64 = 2.0;
-/// Of a modulus.
-const STIFFNESS: f64 = 0.3;
-/// Of the other channel's microvolts.
-const CROSSTALK: f64 = 0.02;
 /// Half the mean square of the distance at which a contact's force acts from its place, along each axis: an indenter of
 /// another size, or a finger that is not still.
 const BLUR_MM2: f64 = 0.5;
-/// What is left of a zero that was taken off.
-const ZERO_UV: f64 = 20.0;
-/// Of a play operator in all channels, and how much a channel differs from the others.
+/// Of a play operator in all channels.
 const FRICTION: f64 = 0.05;
-const FRICTION_OWN: f64 = 0.02;
 /// No play operator has a larger share. A negative one corrects another.
 const SHARE_MAX: f64 = 0.25;
 
@@ -59,31 +50,33 @@ impl Layout {
         PHYSICAL + self.physical.len() + (3 * channel + axis) * self.terms
     }
 
-    /// The nominal pad.
-    pub(super) fn nominal(&self) -> Vec<f64> {
+    /// The numbers of a pad of which no more is known.
+    pub(super) fn before(&self, before: &Before) -> Vec<f64> {
         let mut values = vec![0.0; self.size()];
-        values[GAINS..GAINS + CHANNELS].fill(1.0);
+        values[GAINS..CROSSTALKS].copy_from_slice(&before.gain);
+        for (play, shares) in before.shares.iter().enumerate() {
+            values[SHARES + play] = shares.iter().sum::<f64>() / CHANNELS as f64;
+            for (channel, share) in shares.iter().enumerate() {
+                values[OWN_SHARES + play * CHANNELS + channel] = share - values[SHARES + play];
+            }
+        }
         values
     }
 
     /// One over the variances before anything is measured. `background` is the standard deviation of the field's smooth
     /// error, as a share of each map's root mean square `scale`; zero: no background.
-    pub(super) fn precisions(&self, background: f64) -> Vec<f64> {
+    pub(super) fn precisions(&self, background: f64, spread: &Spread) -> Vec<f64> {
         let mut deviations = vec![0.0; self.size()];
-        deviations[ZEROS..GAINS].fill(ZERO_UV);
+        deviations[ZEROS..GAINS].fill(spread.of(Kind::Zero));
         deviations[GAINS..CROSSTALKS].fill(GAIN);
         for (index, deviation) in deviations[CROSSTALKS..SHARES].iter_mut().enumerate() {
-            *deviation = if index / CHANNELS == index % CHANNELS { 0.0 } else { CROSSTALK };
+            *deviation = if index / CHANNELS == index % CHANNELS { 0.0 } else { spread.of(Kind::Crosstalk) };
         }
         deviations[SHARES..OWN_SHARES].fill(FRICTION);
-        deviations[OWN_SHARES..BLUR].fill(FRICTION_OWN);
+        deviations[OWN_SHARES..BLUR].fill(spread.of(Kind::OwnFriction));
         deviations[BLUR] = BLUR_MM2;
         for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
-            *deviation = match parameter.unit() {
-                Unit::Millimetre => SHIFT_MM,
-                Unit::Degree => TURN_DEG,
-                _ => STIFFNESS,
-            };
+            *deviation = spread.of(Kind::of(*parameter));
         }
         let shares: Vec<f64> =
             (0..=BACKGROUND_DEGREE).flat_map(|n| std::iter::repeat_n(share(n), n + 1)).collect();
@@ -92,6 +85,15 @@ impl Layout {
         }
         // What cannot differ is held so firmly that no measurement moves it.
         deviations.iter().map(|deviation| 1.0 / deviation.max(1e-9).powi(2)).collect()
+    }
+
+    /// Where the numbers stand that are of a kind with others.
+    pub(super) fn kinds(&self) -> impl Iterator<Item = (Kind, usize)> {
+        let between = (0..CHANNELS * CHANNELS).filter(|index| index / CHANNELS != index % CHANNELS);
+        let physical = self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (Kind::of(*it), at));
+        let own = (OWN_SHARES..BLUR).map(|at| (Kind::OwnFriction, at));
+        let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, at));
+        zeros.chain(between.map(|index| (Kind::Crosstalk, CROSSTALKS + index))).chain(own).chain(physical)
     }
 
     pub(super) fn gain(values: &[f64], channel: usize) -> f64 {

@@ -12,6 +12,8 @@ use crate::quantity::{CHANNELS, Contact, Strain};
 const KNOWN: f64 = 10.0;
 const ADDITIVE_UV: f64 = 8.0;
 const SHARE: f64 = 0.02;
+/// Pads of one kind have the same gauges and amplifiers; their noise is alike to some ten percent, as fifty readings tell.
+const KNOWN_OF_KIN: f64 = 50.0;
 /// Of a gain that all channels share; known before as if so many contacts had told it.
 const GAIN: f64 = 0.006;
 const GAIN_KNOWN: f64 = 30.0;
@@ -27,7 +29,37 @@ const SHARE_MIN: f64 = 5e-4;
 const ROUNDS: usize = 40;
 
 /// The noise before any measurement.
-pub(super) const BEFORE: Noise = Noise::of_channels([ADDITIVE_UV; CHANNELS], [SHARE; CHANNELS]);
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Known {
+    pub(super) noise: Noise,
+    /// As much as so many readings tell.
+    readings: f64,
+}
+
+impl Known {
+    /// Of a pad of which nothing is known.
+    pub(super) const SIMULATED: Self = Self {
+        noise: Noise {
+            gain: GAIN,
+            force_uv_per_n: [FORCE_UV_PER_N; CHANNELS],
+            ..Noise::of_channels([ADDITIVE_UV; CHANNELS], [SHARE; CHANNELS])
+        },
+        readings: KNOWN,
+    };
+
+    /// Of a pad of the same kind as one with this noise.
+    pub(super) const fn of_kin(noise: &Noise) -> Self {
+        let Noise { additive_uv, share, force_uv_per_n, gain, .. } = *noise;
+        let noise = Noise { force_uv_per_n, gain, ..Noise::of_channels(additive_uv, share) };
+        Self { noise, readings: KNOWN_OF_KIN }
+    }
+
+    /// Squares of a channel's parts.
+    fn parts(&self, channel: usize) -> [f64; PARTS] {
+        let Noise { additive_uv, share, force_uv_per_n, .. } = &self.noise;
+        [additive_uv, share, force_uv_per_n].map(|deviations| deviations[channel].powi(2))
+    }
+}
 
 /// What a channel left over.
 #[derive(Clone, Copy, Debug)]
@@ -43,8 +75,9 @@ pub(super) struct Rest {
 /// The noise that these rests have: their squares are a sum of a constant, a part of the square of the reading and one of
 /// the square of the force, none of them negative. Squares scatter in proportion to what they should be, so the sum is
 /// fitted with weights from itself.
-pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS]) -> Noise {
-    let parts = rests.each_ref().map(|rests| parts(rests).map(f64::sqrt));
+pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS], known: &Known) -> Noise {
+    let parts: [[f64; PARTS]; CHANNELS] =
+        std::array::from_fn(|k| parts(&rests[k], &known.parts(k), known.readings).map(f64::sqrt));
     let mut noise = Noise::of_channels(
         parts.map(|[own, ..]| own.max(ADDITIVE_MIN_UV)),
         parts.map(|[_, share, _]| share.max(SHARE_MIN)),
@@ -100,7 +133,7 @@ fn form(left: &[f64; CHANNELS], matrix: &[[f64; CHANNELS]; CHANNELS], right: &[f
 /// How much the gain of all channels together changes from contact to contact, as a standard deviation: wear and warmth
 /// do that, and channels do not disagree about it. It is what the written forces differ by in their own direction beyond
 /// the decoder's noise, in proportion to them; the reference's own noise does not grow with the force.
-pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])]) -> f64 {
+pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])], known: &Known) -> f64 {
     let mut normal = [[0.0; 2]; 2];
     let mut right = [0.0; 2];
     for (strain, written_n) in contacts {
@@ -117,7 +150,7 @@ pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])]) ->
     let free = Factor::of(&normal).map_or([0.0; 2], |factor| factor.solve(&right));
     let slope = if constant(free[1]) < 0.0 { right[1] / normal[1][1] } else { free[1] };
     let (count, slope) = (contacts.len() as f64, if slope.is_finite() { slope.max(0.0) } else { 0.0 });
-    let within = (count * slope + GAIN_KNOWN * GAIN * GAIN) / (count + GAIN_KNOWN);
+    let within = (count * slope + GAIN_KNOWN * known.noise.gain.powi(2)) / (count + GAIN_KNOWN);
     (within + GAIN_BETWEEN * GAIN_BETWEEN).sqrt()
 }
 
@@ -138,17 +171,17 @@ fn off_along_force(decoder: &Inverse, strain: &Strain, written_n: &[f64; 3]) -> 
     (variance > 0.0).then_some((force_n, written_n - force_n, variance))
 }
 
-fn parts(rests: &[Rest]) -> [f64; PARTS] {
+/// Squares of the parts; before, they are known as well as so many readings tell.
+fn parts(rests: &[Rest], before: &[f64; PARTS], readings: f64) -> [f64; PARTS] {
     let count = rests.len().max(1) as f64;
     let typical = |of: fn(&Rest) -> f64| rests.iter().map(|rest| of(rest).powi(2)).sum::<f64>() / count;
     let (uv2, n2) = (typical(|rest| rest.uv), typical(|rest| rest.force_n));
-    let before = [ADDITIVE_UV, SHARE, FORCE_UV_PER_N].map(|deviation| deviation * deviation);
     let measured = rests.iter().map(|it| ([1.0, it.uv * it.uv, it.force_n * it.force_n], it.square_uv2, 1.0));
     // What was known: half of it at rest, half at a typical reading.
     let known = [[1.0, 0.0, 0.0], [1.0, uv2, n2]];
-    let known = known.map(|terms| (terms, sum(&terms, &before), KNOWN / 2.0));
+    let known = known.map(|terms| (terms, sum(&terms, before), readings / 2.0));
     let all: Vec<([f64; PARTS], f64, f64)> = measured.chain(known).collect();
-    (0..ROUNDS).fold(before, |parts, _| improved(&parts, &all))
+    (0..ROUNDS).fold(*before, |parts, _| improved(&parts, &all))
 }
 
 /// A round of D. D. Lee's and H. S. Seung's rule (Nature 401 (1999) 788), under which no part ever becomes negative.
@@ -184,7 +217,7 @@ mod tests {
             Rest { uv, force_n, square_uv2: rest_uv * rest_uv }
         };
         let rests: [Vec<Rest>; CHANNELS] = std::array::from_fn(|_| (0..3000).map(|_| rest()).collect());
-        let Noise { additive_uv, share, force_uv_per_n, .. } = of_rests(&rests);
+        let Noise { additive_uv, share, force_uv_per_n, .. } = of_rests(&rests, &Known::SIMULATED);
         assert!(additive_uv.iter().all(|uv| (uv / 12.0 - 1.0).abs() < 0.25), "{additive_uv:?}");
         assert!(share.iter().all(|share| (share / 0.015 - 1.0).abs() < 0.2), "{share:?}");
         assert!(force_uv_per_n.iter().all(|uv| (uv / 8.0 - 1.0).abs() < 0.3), "{force_uv_per_n:?}");
@@ -192,7 +225,7 @@ mod tests {
 
     #[test]
     fn without_rests_it_is_what_was_known() {
-        let Noise { additive_uv, share, .. } = of_rests(&[const { Vec::new() }; CHANNELS]);
+        let Noise { additive_uv, share, .. } = of_rests(&[const { Vec::new() }; CHANNELS], &Known::SIMULATED);
         assert!(additive_uv.iter().all(|uv| (uv - ADDITIVE_UV).abs() < 1.0), "{additive_uv:?}");
         assert!(share.iter().all(|share| *share < 0.05), "{share:?}");
     }

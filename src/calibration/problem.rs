@@ -3,15 +3,18 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+use super::before::Before;
 use super::contacts::{Maps, Measured, Place};
 use super::model::{Layout, TERMS};
+use super::noise::Known;
 use super::scatter::{Residual, Scatter};
+use super::spread::Spread;
 use crate::contact::friction::{Friction, PLAYS};
 use crate::contact::recording::{Lags, Recording};
 use crate::contact::uncertainty::UNKNOWNS;
 use crate::device::Device;
 use crate::device::parameter::Parameter;
-use crate::field::{PadField, Sensitivity};
+use crate::field::Sensitivity;
 use crate::influence::{InfluenceField, MAPS};
 use crate::linear::{LargeFactor, Symmetric};
 use crate::quantity::{CHANNELS, Strain};
@@ -38,7 +41,7 @@ type Zero = (usize, [f64; CHANNELS]);
 /// What is fitted, and to what.
 #[derive(Clone)]
 pub(super) struct Problem<'f> {
-    field: &'f PadField,
+    before: &'f Before,
     recording: &'f Recording,
     sensitivities: Vec<&'f Sensitivity>,
     pub(super) layout: Layout,
@@ -76,6 +79,7 @@ pub(super) struct Fit {
     pub(super) settings: Settings,
     pub(super) values: Vec<f64>,
     pub(super) scatter: Scatter,
+    pub(super) spread: Spread,
     pub(super) drift_uv: [f64; CHANNELS],
     factor: LargeFactor,
     /// ln of the probability of what was measured, but for a constant.
@@ -97,7 +101,8 @@ struct Step {
 
 impl<'f> Problem<'f> {
     /// `rows` are the contacts to fit to; all others only tell what was before. Without polynomials for a background.
-    pub(super) fn of(recording: &'f Recording, rows: &[usize], device: &Device, field: &'f PadField) -> Self {
+    pub(super) fn of(recording: &'f Recording, rows: &[usize], device: &Device, before: &'f Before) -> Self {
+        let field = &before.field;
         let is_free = |it: &&Sensitivity| it.parameter.module().is_some();
         let sensitivities: Vec<&Sensitivity> = field.sensitivities.iter().filter(is_free).collect();
         let plate_mm = device.plate.diameter_mm / 2.0;
@@ -115,7 +120,7 @@ impl<'f> Problem<'f> {
         let layout = Layout { physical: sensitivities.iter().map(|it| it.parameter).collect(), terms: 0 };
         Self {
             jumps: zeros.iter().zip(zeros.iter().skip(1)).map(jump).collect(),
-            field,
+            before,
             recording,
             sensitivities,
             layout,
@@ -131,6 +136,11 @@ impl<'f> Problem<'f> {
         self.contacts.len()
     }
 
+    /// What was known of the channels' noise.
+    pub(super) const fn known_noise(&self) -> &Known {
+        &self.before.noise
+    }
+
     /// The same with polynomials for a background.
     pub(super) fn with_background(mut self) -> Self {
         self.layout.terms = TERMS;
@@ -140,27 +150,32 @@ impl<'f> Problem<'f> {
     /// The most probable numbers. The search begins at `start`, or at the pad as it is thought to be. `None` where the
     /// numbers make no sense.
     pub(super) fn fitted(mut self, settings: Settings, start: Option<&Fit>) -> Option<Fit> {
-        let before = self.layout.nominal();
-        let precisions = self.layout.precisions(settings.background);
+        let before = self.layout.before(self.before);
         let mut values = before.clone();
-        let (mut scatter, mut drift_uv) = (Scatter::BEFORE, [DRIFT_UV; CHANNELS]);
+        let (mut scatter, mut drift_uv) = (Scatter::before(self.before.noise), [DRIFT_UV; CHANNELS]);
+        let mut spread = Spread::BEFORE;
         if let Some(start) = start {
             values.iter_mut().zip(&start.values).for_each(|(value, start)| *value = *start);
-            (scatter, drift_uv) = (start.scatter, start.drift_uv);
+            (scatter, drift_uv, spread) = (start.scatter, start.drift_uv, start.spread);
         }
         let mut found: Option<Fit> = None;
         for _ in 0..STEPS_MAX {
+            let precisions = self.layout.precisions(settings.background, &spread);
             self.walk(&values, &settings);
             let step = self.step(&values, &scatter, &drift_uv, &before, &precisions)?;
             values.iter_mut().zip(&step.change).for_each(|(value, change)| *value += change);
-            let (residuals, freedom) = (self.residuals(&values), self.freedom(&precisions, &step.factor));
+            let residuals = self.residuals(&values);
+            let variances = step.factor.inverse_diagonal();
+            let freedom = self.freedom(&precisions, &variances);
             let mut evidence = Self::evidence(&residuals, &scatter)?;
             evidence += self.jumps_evidence(&values, &drift_uv) - 0.5 * step.factor.log_determinant();
             evidence += prior(&values, &before, &precisions);
             let gain = found.as_ref().map_or(f64::INFINITY, |before| (evidence - before.evidence).abs());
             let values_now = values.clone();
-            found =
-                Some(Fit { settings, values: values_now, scatter, drift_uv, factor: step.factor, evidence });
+            let factor = step.factor;
+            found = Some(Fit { settings, values: values_now, scatter, spread, drift_uv, factor, evidence });
+            spread = spread
+                .seen(self.layout.kinds().map(|(kind, at)| (kind, values[at] - before[at], variances[at])));
             scatter = scatter.seen(&residuals, freedom);
             drift_uv = self.drift_uv(&values);
             if gain < EVIDENCE_END {
@@ -274,8 +289,7 @@ impl<'f> Problem<'f> {
     }
 
     /// Which part of the readings the fitted numbers did not take up.
-    fn freedom(&self, precisions: &[f64], factor: &LargeFactor) -> f64 {
-        let variances = factor.inverse_diagonal();
+    fn freedom(&self, precisions: &[f64], variances: &[f64]) -> f64 {
         let taken: f64 = precisions.iter().zip(variances).map(|(before, after)| 1.0 - before * after).sum();
         (1.0 - taken / (CHANNELS * self.contacts.len()) as f64).max(FREEDOM_MIN)
     }
@@ -322,7 +336,7 @@ impl<'f> Problem<'f> {
         let shear_n = 0.4 * DOUBT_N;
         let forces_n = [[shear_n, 0.0, DOUBT_N], [0.0, shear_n, DOUBT_N], [-shear_n, -shear_n, DOUBT_N]];
         let doubt = |place_mm: [f64; 2]| {
-            let place = Place::of(self.field, &self.sensitivities, self.plate_mm, place_mm);
+            let place = Place::of(&self.before.field, &self.sensitivities, self.plate_mm, place_mm);
             forces_n.map(|force_n| {
                 let contact = Measured::unmeasured(place.clone(), force_n);
                 let mut halves = Vec::with_capacity(CHANNELS);
@@ -350,9 +364,9 @@ impl<'f> Problem<'f> {
 
     /// The pad's own field.
     pub(super) fn corrected(&self, values: &[f64]) -> InfluenceField {
-        let signals = &self.field.signals;
+        let signals = &self.before.field.signals;
         InfluenceField::sampled(f64::from(signals.spacing_mm()), self.reach_mm, self.reach_mm, |place_mm| {
-            let place = Place::of(self.field, &self.sensitivities, self.plate_mm, place_mm);
+            let place = Place::of(&self.before.field, &self.sensitivities, self.plate_mm, place_mm);
             let maps = self.layout.maps(values, &self.scale, &place);
             std::array::from_fn::<f64, MAPS, _>(|map| maps[map / 3][map % 3])
         })
@@ -372,7 +386,7 @@ fn products<T>(all: &[T], product: impl Fn(&T, &T) -> f64) -> [[f64; CHANNELS]; 
 }
 
 /// Places all over the plate.
-fn places(reach_mm: f64) -> impl Iterator<Item = [f64; 2]> {
+pub(super) fn places(reach_mm: f64) -> impl Iterator<Item = [f64; 2]> {
     // Vogel's spiral: each place has as much of the plate as any other.
     let golden = PI * (3.0 - 5.0_f64.sqrt());
     (0..PLACES).map(move |place| {

@@ -5,7 +5,7 @@
 //! taken for a noisy pad, nor the other way round. Sizes are found by expectation and maximisation (A. P. Dempster, N. M.
 //! Laird, D. B. Rubin, J. R. Statist. Soc. B 39 (1977) 1).
 
-use super::noise::{self, Rest};
+use super::noise::{self, Known, Rest};
 use crate::contact::uncertainty::{Noise, UNKNOWNS};
 use crate::linear::Factor;
 use crate::quantity::CHANNELS;
@@ -29,6 +29,8 @@ pub(super) struct Scatter {
     place_mm: f64,
     /// Of each written force around the true one.
     force_n: f64,
+    /// What was known of the channels.
+    known: Known,
 }
 
 /// A contact beside the model.
@@ -56,7 +58,9 @@ pub(super) struct Worth {
 
 impl Scatter {
     /// Before any measurement.
-    pub(super) const BEFORE: Self = Self { noise: noise::BEFORE, place_mm: PLACE_MM, force_n: FORCE_N };
+    pub(super) const fn before(known: Known) -> Self {
+        Self { noise: known.noise, place_mm: PLACE_MM, force_n: FORCE_N, known }
+    }
 
     /// One over the variances of the label.
     fn precisions(&self) -> [f64; UNKNOWNS] {
@@ -124,7 +128,8 @@ impl Scatter {
         }
         let count = residuals.len() as f64 + KNOWN;
         Self {
-            noise: noise::of_rests(&rests),
+            noise: noise::of_rests(&rests, &self.known),
+            known: self.known,
             place_mm: (squares[0] / (2.0 * count)).sqrt().max(PLACE_MIN_MM),
             force_n: (squares[1] / (3.0 * count)).sqrt().max(FORCE_MIN_N),
         }
@@ -176,7 +181,8 @@ mod tests {
     #[test]
     fn noise_and_bad_labels_are_told_apart() {
         for (place_mm, force_n) in [(0.1, 0.02), (0.6, 0.02), (0.02, 0.1)] {
-            let found = (0..10).fold(Scatter::BEFORE, |it, _| it.seen(&residuals(place_mm, force_n), 1.0));
+            let found = (0..10)
+                .fold(Scatter::before(Known::SIMULATED), |it, _| it.seen(&residuals(place_mm, force_n), 1.0));
             assert!((found.place_mm / place_mm - 1.0).abs() < 0.3, "{place_mm}: {found:?}");
             assert!((found.force_n / force_n - 1.0).abs() < 0.3, "{force_n}: {found:?}");
             assert!(found.noise.additive_uv.iter().all(|uv| (uv / 5.0 - 1.0).abs() < 0.35), "{found:?}");
@@ -187,7 +193,7 @@ mod tests {
     #[test]
     fn what_a_residual_is_worth_is_its_inverse_covariance() {
         let residual = &residuals(0.1, 0.02)[0];
-        let scatter = Scatter::BEFORE;
+        let scatter = Scatter::before(Known::SIMULATED);
         let worth = scatter.worth(residual).unwrap();
         let variances = scatter.variances(residual);
         let label = scatter.precisions().map(|precision| 1.0 / precision);

@@ -39,7 +39,9 @@ pub(super) struct Arguments {
     /// Draws what is random: the same seed gives the same file.
     #[arg(long, default_value = "0")]
     seed: u64,
-    /// The decoder to begin with; scdf needs one that train wrote.
+    /// The decoder to begin with: for scdf what train wrote, for inverse another pad's inverse decoder.
+    ///
+    /// scdf needs one. To inverse it tells what pads of one kind share, so that fewer contacts are enough.
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
     /// The decoder to write; a file that is there is replaced, and - is standard output.

@@ -11,6 +11,7 @@ use crate::cli::field_cache::field_of;
 use crate::cli::{Failure, decoder_file};
 use crate::contact::Decoder;
 use crate::contact::friction::Play;
+use crate::contact::inverse::Inverse;
 use crate::contact::regression::Target;
 use crate::device::Device;
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
@@ -32,6 +33,8 @@ struct Pad {
     /// Play operators: threshold and share, as means over the channels.
     friction: Vec<Friction>,
     parameters: Vec<Found>,
+    /// Whether the field of `--from` was nearer than the simulated one.
+    field_from_earlier: bool,
 }
 
 #[derive(Serialize)]
@@ -56,11 +59,19 @@ pub(super) fn adapt(arguments: &Arguments, device: &Device, contacts: &Contacts)
             &"no row without force says what the untouched pad reads; measure some",
         ));
     };
+    if arguments.from.is_some() && arguments.method != Method::Inverse {
+        return Err(Failure::Unusable(
+            "--from is for inverse and scdf; wrench, linear and knn are made of the measured contacts alone"
+                .into(),
+        ));
+    }
     let reach_mm = device.contact.max_centre_radius_mm;
     let unusable = |error: FitError| refused(arguments, &error);
     let (decoder, found) = match arguments.method {
         Method::Inverse => {
-            let calibration = fit(recording, places, device, &field_of(device)?).map_err(unusable)?;
+            let earlier = earlier(arguments)?;
+            let field = field_of(device)?;
+            let calibration = fit(recording, places, device, &field, earlier.as_ref()).map_err(unusable)?;
             (Decoder::Inverse(Box::new(calibration.decoder())), Fit { pad: Some(Pad::of(&calibration)) })
         }
         Method::Knn => (Decoder::Neighbours(neighbours(rows).map_err(unusable)?), Fit::default()),
@@ -73,6 +84,19 @@ pub(super) fn adapt(arguments: &Arguments, device: &Device, contacts: &Contacts)
     let note = format!("{} contacts of {}", rows.len(), arguments.measured.display());
     decoder_file::write(&arguments.out, &decoder.to_bytes(&note).unwrap_or_default())?;
     Ok(found)
+}
+
+/// The other pad's decoder to begin with, if there is one.
+fn earlier(arguments: &Arguments) -> Result<Option<Inverse>, Failure> {
+    let Some(path) = &arguments.from else { return Ok(None) };
+    match decoder_file::read(path)? {
+        Decoder::Inverse(inverse) => Ok(Some(*inverse)),
+        other => Err(Failure::Unusable(format!(
+            "--from {} is a {} decoder; inverse begins with one that adapt --method inverse wrote",
+            path.display(),
+            other.name()
+        ))),
+    }
 }
 
 fn refused(arguments: &Arguments, why: &dyn fmt::Display) -> Failure {
@@ -94,6 +118,7 @@ impl Pad {
             noise_uv: calibration.noise.additive_uv,
             noise_share: calibration.noise.share,
             background_share: calibration.background,
+            field_from_earlier: calibration.from_earlier,
             parameters: calibration.physical.iter().map(found).collect(),
         }
     }
@@ -113,6 +138,7 @@ impl fmt::Display for Fit {
         for Friction { threshold_uv, share } in &pad.friction {
             writeln!(f, "friction: {:.2} % of what is beyond {threshold_uv:.0} µV", 100.0 * share)?;
         }
-        write!(f, "smooth background: {:.1} % of each map", 100.0 * pad.background_share)
+        write!(f, "smooth background: {:.1} % of each map", 100.0 * pad.background_share)?;
+        if pad.field_from_earlier { write!(f, ", beside the earlier pad's field") } else { Ok(()) }
     }
 }

@@ -59,7 +59,7 @@ fn pad() -> &'static Pad {
         let field = if study().is_some() { computed(&device) } else { nominal.clone() };
         let measured = carry_out(&protocol::paper::plan(&device.contact), &device, &field, 1);
         let recording = Recording::of(measured.table, device.contact.full_scale_n).unwrap();
-        let inverse = fit(&recording, &recording.contacts(), &designed, &nominal).unwrap().decoder();
+        let inverse = fit(&recording, &recording.contacts(), &designed, &nominal, None).unwrap().decoder();
         Pad { device, field, decoder: Decoder::Inverse(Box::new(inverse)) }
     })
 }

@@ -92,7 +92,7 @@ impl Calibration {
         let field = problem.corrected(values);
         let friction = Layout::friction(values, &settings.thresholds_uv);
         let contacts = problem.freed(&friction);
-        let noise = noise::with_zeros(fit.scatter.noise, &fit.drift_uv);
+        let noise = noise::with_zeros(fit.scatter.noise, &fit.drift_uv, &friction);
         let noise = noise::with_doubts(&field, noise, &problem.doubts(fit));
         let decoder = Inverse::new(field.clone(), noise, friction);
         Self {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::contact::Decoder;
+use crate::contact::{Decoder, watch};
 use crate::measured::{Label, Row};
 use crate::quantity::{Contact, Strain};
 
@@ -86,6 +86,13 @@ pub fn coverage95(decoder: &Decoder, rows: &[Row], wanted: &[Label]) -> Option<f
         distance.is_some_and(|square| square <= CHI_SQUARE_95)
     });
     Some(covered.count() as f64 / rows.len().max(1) as f64)
+}
+
+/// The share of rows that the decoder would warn of in play; `None` for one that does not warn.
+pub fn warned(decoder: &Decoder, rows: &[Row]) -> Option<f64> {
+    let inverse = decoder.inverse()?;
+    let warned = rows.iter().filter(|row| watch::warns(inverse, &strain(row)) == Some(true));
+    Some(warned.count() as f64 / rows.len().max(1) as f64)
 }
 
 #[cfg(test)]

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// Counts since the pipeline was made. Every count but `samples`, `contacts` and `frames_unknown` ends a contact.
+/// Counts since the pipeline was made. Every count but `samples`, `contacts`, `frames_unknown`, `second_fingers` and
+/// `channels_silent` ends a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Health {
     /// Samples decoded.
@@ -31,4 +32,8 @@ pub struct Health {
     pub channels_stuck: u64,
     /// Samples flagged with a supply fault.
     pub supply_faults: u64,
+    /// Touches that are not one finger on the calibrated pad; they are played all the same.
+    pub second_fingers: u64,
+    /// Times a channel did not answer to the load.
+    pub channels_silent: u64,
 }

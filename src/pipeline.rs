@@ -11,7 +11,9 @@ use firmware_proto::identity::Identity;
 use firmware_proto::sample::Sample;
 
 use crate::contact::Decoder;
+use crate::contact::relief::Relief;
 use crate::contact::touch::{Touch, TouchState};
+use crate::contact::watch::{Warning, Watch};
 use crate::control::OutputEvent;
 use crate::health::Health;
 use crate::link::{Fault, Link, LinkEvent};
@@ -84,8 +86,10 @@ pub enum Refusal {
 pub struct Pipeline {
     link: Link,
     signal: Signal,
+    relief: Relief,
     decoder: Decoder,
     touch: Touch,
+    watch: Watch,
     engine: Engine,
     ledger: Ledger,
     health: Health,
@@ -107,6 +111,8 @@ impl Pipeline {
         Self {
             link: Link::new(),
             signal: Signal::new(profile.filter_samples),
+            relief: Relief::of(decoder.friction()),
+            watch: Watch::new(decoder.inverse()),
             decoder,
             touch: Touch::new(),
             ledger: Ledger::new(&profile),
@@ -156,6 +162,8 @@ impl Pipeline {
         self.lose(now);
         (self.identity, self.refusal) = (None, None);
         self.signal.forget_pad();
+        self.relief = Relief::of(self.decoder.friction());
+        self.watch = Watch::new(self.decoder.inverse());
     }
 
     /// Host time of the next deadline; `None` if nothing is due before something else happens.
@@ -224,6 +232,11 @@ impl Pipeline {
         self.contact.as_ref()
     }
 
+    /// What the player should know of the touch at hand or the last one; only the inverse decoder tells it.
+    pub const fn warning(&self) -> Option<Warning> {
+        self.watch.warning()
+    }
+
     /// What is held now.
     pub fn held(&self) -> impl Iterator<Item = Level> + '_ {
         self.ledger.held()
@@ -280,16 +293,23 @@ impl Pipeline {
     }
 
     fn handle_sample<P: Probe>(&mut self, sample: &Sample, probe: &mut P) {
-        match self.signal.condition(self.at, sample, self.touch.is_touched(), &mut self.health) {
+        let (touched, rest) = (self.touch.is_touched(), self.relief.rest());
+        match self.signal.condition(self.at, sample, touched, &rest, &mut self.health) {
             Conditioned::Strain(strain) => {
-                let contact = self.decoder.decode(&strain);
+                let strain = self.relief.freed(&strain);
+                let (contact, explained) = self.decoder.explain(&strain);
                 probe.mark(Stage::Contact);
                 self.phase = Phase::Playing;
                 let touched = self.handle_touch(&contact);
+                self.relief.follow(touched.then_some(&strain));
+                if let Some((explained, inverse)) = explained.zip(self.decoder.inverse()) {
+                    self.watch.see(self.at, &strain, &explained, touched, inverse, &mut self.health);
+                }
                 self.map(touched.then_some(contact));
             }
             Conditioned::Taring => {
                 self.phase = Phase::Taring;
+                self.watch.interrupt();
                 self.map(None);
             }
             Conditioned::Faulty => {
@@ -305,6 +325,8 @@ impl Pipeline {
             TouchState::Idle => false,
             TouchState::Drifted => {
                 self.signal.retare();
+                // What was followed from a wrong zero is wrong, too.
+                self.relief = Relief::of(self.decoder.friction());
                 false
             }
         }
@@ -315,6 +337,7 @@ impl Pipeline {
             // It may tell other numbers of itself now.
             self.identity = None;
             self.signal.restart();
+            self.relief.doubt();
             self.touch = Touch::new();
         }
         self.signal.clear_filter();
@@ -329,6 +352,7 @@ impl Pipeline {
             Some(scale) => {
                 self.refusal = None;
                 self.signal.set_scale(scale);
+                self.relief.doubt();
             }
             None => self.refusal = Some(Refusal::Unsuitable(*identity)),
         }
@@ -350,6 +374,7 @@ impl Pipeline {
 
     /// Ends the contact without believing it: presses are forgotten, everything is released at once.
     fn distrust(&mut self) {
+        self.watch.interrupt();
         self.contact = None;
         self.engine.cancel();
         self.ledger.release_all(self.at, &mut self.edges);
@@ -369,6 +394,7 @@ impl Pipeline {
         self.phase = Phase::Waiting;
         self.touch.end();
         self.signal.clear_filter();
+        self.relief.doubt();
         self.distrust();
     }
 

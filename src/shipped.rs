@@ -21,6 +21,10 @@ const SCDF: &str = "scdf";
 
 /// How far a pad's channels are from those of the nominal one, as a share of each: gains of a pad made by hand.
 const PAD_SHARE: f64 = 0.1;
+/// How far all its channels are together: the authors' earlier pad has gains of 0.83 to 1.33.
+const PAD_GAIN: f64 = 0.2;
+/// How far a place is moved by gains that differ.
+const PLACE_MM: f64 = 1.0;
 /// Of a single reading; mains are in it.
 const READING_UV: f64 = 10.0;
 
@@ -31,7 +35,11 @@ pub fn decoder() -> Decoder {
 
 /// The inverse decoder of a pad that was never measured, by the field that the simulator gives it.
 pub fn uncalibrated(field: InfluenceField) -> Decoder {
-    let noise = Noise::of_channels([READING_UV; CHANNELS], [PAD_SHARE; CHANNELS]);
+    let mut noise = Noise::of_channels([READING_UV; CHANNELS], [PAD_SHARE; CHANNELS]);
+    noise.gain = PAD_GAIN;
+    for (k, line) in noise.by_field.iter_mut().enumerate() {
+        line[k] = if k < 2 { PLACE_MM * PLACE_MM } else { PAD_SHARE * PAD_SHARE };
+    }
     Decoder::Inverse(Box::new(Inverse::new(field, noise, NO_FRICTION)))
 }
 

@@ -3,7 +3,13 @@
 #[path = "support/decoders.rs"]
 mod decoders;
 
+use tactpad::contact::Decoder;
+use tactpad::contact::friction::{PLAYS, Play};
+use tactpad::contact::inverse::Inverse;
+use tactpad::contact::uncertainty::Noise;
+use tactpad::device::Device;
 use tactpad::field::PadField;
+use tactpad::health::Health;
 use tactpad::mapping::check::{self, OutputChoice};
 use tactpad::mapping::shipped;
 use tactpad::pipeline::{NoProbe, Pipeline};
@@ -15,15 +21,29 @@ use tactpad::virtual_pad::script::Script;
 #[test]
 fn ten_seconds_of_play_allocate_nothing() {
     for name in ["contra", "pointer"] {
-        plays_without_allocating(name);
+        plays_without_allocating(name, tactpad::shipped::decoder(), &Device::nominal());
     }
 }
 
-fn plays_without_allocating(name: &str) {
+#[test]
+fn friction_and_warnings_allocate_nothing() {
+    let play = Play { threshold_uv: [300.0; CHANNELS], share: [0.03; CHANNELS] };
+    let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
+    let inverse = Inverse::new(PadField::nominal().signals, noise, [play; PLAYS]);
+    let mut device = Device::nominal();
+    device.modules[1].gain[2] = 0.0;
+    let health = plays_without_allocating("contra", Decoder::Inverse(Box::new(inverse)), &device);
+    assert_eq!(health.channels_silent, 1, "{health:?}");
+}
+
+fn plays_without_allocating(name: &str, decoder: Decoder, device: &Device) -> Health {
     let read = shipped::text(name).and_then(|text| check::read(text, OutputChoice::AsWritten).0);
     let Some(profile) = read else { panic!("{name} is in order") };
-    let mut pad = VirtualPad::new(Script::for_profile(&profile, 10_000_000), 3);
-    let mut pipeline = Pipeline::new(tactpad::shipped::decoder(), profile);
+    let script = Script::for_profile(&profile, 10_000_000);
+    let mut device = device.clone();
+    device.behaviour.noise.additive_uv = [6.0; CHANNELS];
+    let mut pad = VirtualPad::of(script, &device, &PadField::nominal(), 3);
+    let mut pipeline = Pipeline::new(decoder, profile);
     let mut bytes = Vec::new();
     for _ in 0..2 {
         pad.emit(10_000_000, &mut bytes);
@@ -49,6 +69,7 @@ fn plays_without_allocating(name: &str) {
     });
     assert!(events > 30 && pipeline.health().frames_damaged > 3, "{events} events, {:?}", pipeline.health());
     assert_eq!(allocated.count_total, 0, "{name}");
+    *pipeline.health()
 }
 
 /// Channels of presses, and such as no pad gives.

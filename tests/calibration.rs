@@ -255,6 +255,23 @@ fn faults_that_it_has_no_number_for_do_not_make_it_worse_than_a_wrench() {
 }
 
 #[test]
+fn what_pads_share_beyond_the_simulation_is_taken_over() {
+    let mut device = pad();
+    device.behaviour.noise.additive_uv = [10.0; CHANNELS];
+    let field = faulty(3);
+    let plan = protocol::paper::plan(&device.contact);
+    let earlier = inverse(&Measured::on(&field, &device, &plan, 1), 648);
+    device.modules[1].gain = [1.1, 0.9, 1.2];
+    let measured = Measured::on(&field, &device, &plan, 3);
+    let unseen = Measured::on(&field, &device, &protocol::recommended::plan(&device.contact, 9), 2);
+    let [with, without] =
+        [measured.from(20, &earlier), inverse(&measured, 20)].map(|decoder| errors_of(&decoder, &unseen));
+    println!("with {with:?}\nwithout {without:?}");
+    assert!(with.position_mae_mm < 0.6 * without.position_mae_mm);
+    assert!(with.force_mae_n < 0.6 * without.force_mae_n);
+}
+
+#[test]
 fn a_pad_whose_zeros_nobody_read_is_calibrated_all_the_same() {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];

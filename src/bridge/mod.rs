@@ -12,6 +12,7 @@ use std::sync::{Arc, Mutex};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::capture::{CallRef, CaptureWriter};
+use crate::contact::watch::Warning;
 use crate::control::Device;
 use crate::health::Health;
 use crate::latency::{Durations, Percentiles};
@@ -101,6 +102,8 @@ pub struct Bridge {
     clock: Clock,
     latency: Durations,
     herald: Herald,
+    /// The lasting warning that was told last.
+    warned: Option<Warning>,
     snapshot: Arc<Mutex<Snapshot>>,
     snapshot_at: HostInstant,
     held_at_end: usize,
@@ -122,6 +125,7 @@ impl Bridge {
             state: State::of(&parts.pipeline, keeper.absence()),
             contact: None,
             held: Vec::new(),
+            warning: None,
             health: Health::default(),
             latency: Percentiles::default(),
             at: now,
@@ -139,6 +143,7 @@ impl Bridge {
             clock: parts.clock,
             latency: Durations::new(),
             herald: Herald::new(now),
+            warned: None,
             snapshot: Arc::new(Mutex::new(snapshot)),
             snapshot_at: now,
             held_at_end: 0,
@@ -336,6 +341,7 @@ impl Bridge {
             output: self.sink.describe(),
             contact: self.pipeline.contact().copied(),
             held: self.pipeline.held().map(|level| level.code.to_string()).collect(),
+            warning: self.pipeline.warning(),
             health: *self.pipeline.health(),
             latency_us: self.latency.percentiles(),
         };
@@ -352,11 +358,17 @@ impl Bridge {
         if let Some(state) = self.herald.hear(now, state) {
             (self.tell)(state.sentence());
         }
+        let warning = self.pipeline.warning();
+        if let Some(lasting) = warning.filter(|warning| warning.lasts() && self.warned != Some(*warning)) {
+            self.warned = warning;
+            (self.tell)(&lasting.to_string());
+        }
         if let Ok(mut snapshot) = self.snapshot.try_lock() {
             snapshot.state = state;
             snapshot.contact = self.pipeline.contact().copied();
             snapshot.held.clear();
             snapshot.held.extend(self.pipeline.held());
+            snapshot.warning = warning;
             snapshot.health = *self.pipeline.health();
             snapshot.latency = self.latency.percentiles();
             snapshot.at = now;

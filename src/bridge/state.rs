@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::keeper::Absence;
+use crate::contact::watch::Warning;
 use crate::health::Health;
 use crate::latency::Percentiles;
 use crate::mapping::intent::Level;
@@ -100,6 +101,8 @@ pub struct Snapshot {
     pub contact: Option<Contact>,
     /// What is held.
     pub held: Vec<Level>,
+    /// What the player should know of the touches.
+    pub warning: Option<Warning>,
     /// What went wrong so far.
     pub health: Health,
     /// From bytes readable to write returned.
@@ -118,6 +121,7 @@ pub(super) struct Status<'a> {
     pub(super) output: String,
     pub(super) contact: Option<Contact>,
     pub(super) held: Vec<String>,
+    pub(super) warning: Option<Warning>,
     pub(super) health: Health,
     pub(super) latency_us: Percentiles,
 }

@@ -27,7 +27,7 @@ const THRESHOLD_MIN_UV: f64 = 40.0;
 const THRESHOLD_RATIO: f64 = 1.6;
 const THRESHOLDS: i32 = 11;
 const HALVINGS: i32 = 3;
-/// A play operator must make what was measured so much more probable; ln.
+/// What is not thought at first (a play operator, another pad's field) must make what was measured so much more probable; ln.
 const EVIDENCE_GAIN: f64 = 15.0;
 /// Plates that differ by less are of one kind.
 const PLATE_TOLERANCE_MM: f32 = 0.1;
@@ -98,7 +98,7 @@ impl Calibration {
         let field = problem.corrected(values);
         let friction = Layout::friction(values, &settings.thresholds_uv);
         let contacts = problem.freed(values, &friction);
-        let noise = noise::with_zeros(fit.scatter.noise, &fit.drift_uv);
+        let noise = noise::with_zeros(fit.scatter.noise, &fit.drift_uv, &friction);
         let noise = noise::with_doubts(&field, noise, &problem.doubts(fit));
         let decoder = Inverse::new(field.clone(), noise, friction);
         Self {
@@ -126,7 +126,7 @@ impl Calibration {
 /// to be.
 ///
 /// With the decoder of an earlier pad of the same kind its gains, friction and noise are what is thought of this one, and its
-/// field may be, too. What is thought is for the contacts to say: that which makes them most probable.
+/// field may be, too, if the contacts say so by far.
 ///
 /// # Errors
 /// No contact, another kind of pad, or senseless numbers.
@@ -170,7 +170,8 @@ fn thoughts(field: &PadField, earlier: Option<&Inverse>) -> Vec<Thought> {
     let Some(earlier) = earlier else { return vec![thought(Before::simulated(field), 0.0, false)] };
     vec![
         thought(Before::made_like(field, earlier), 0.0, false),
-        thought(Before::like(field, earlier), 0.0, true),
+        // Few contacts are near to another pad's field by chance.
+        thought(Before::like(field, earlier), EVIDENCE_GAIN, true),
         // Where less is thought of the noise, it can follow the contacts more closely.
         thought(Before::simulated(field), EVIDENCE_GAIN, false),
     ]

@@ -1,7 +1,7 @@
 //! The channels' noise, from what a calibration leaves over: a part of its own and one that grows with the reading.
 
 use super::problem::Doubt;
-use crate::contact::friction::NO_FRICTION;
+use crate::contact::friction::{Friction, NO_FRICTION};
 use crate::contact::inverse::Inverse;
 use crate::contact::uncertainty::Noise;
 use crate::influence::InfluenceField;
@@ -17,6 +17,11 @@ const KNOWN_OF_KIN: f64 = 50.0;
 /// Of a gain that all channels share; known before as if so many contacts had told it.
 const GAIN: f64 = 0.006;
 const GAIN_KNOWN: f64 = 30.0;
+/// How much it changes from one recording to another, which none of them shows: creep under longer loads, wear, warmth.
+const GAIN_BETWEEN: f64 = 0.005;
+/// How far the state of a play operator is known from means of a second, as a part of what it keeps at rest: a finger that
+/// is not still pushes it further than the mean shows.
+const FRICTION_DOUBT: f64 = 0.08;
 const FORCE_UV_PER_N: f64 = 1.0;
 /// How many parts noise has.
 const PARTS: usize = 3;
@@ -85,10 +90,14 @@ pub(super) fn of_rests(rests: &[Vec<Rest>; CHANNELS], known: &Known) -> Noise {
 }
 
 /// The noise with that of the zeros, which change by so much from one reading of the untouched pad to the next. All contacts
-/// between two readings share their errors, so a calibration takes a part of them for the pad's.
-pub(super) fn with_zeros(noise: Noise, drift_uv: &[f64; CHANNELS]) -> Noise {
+/// between two readings share their errors, so a calibration takes a part of them for the pad's. What is not known of the
+/// friction's states counts like that of the zeros.
+pub(super) fn with_zeros(noise: Noise, drift_uv: &[f64; CHANNELS], friction: &Friction) -> Noise {
+    let kept_uv = |k: usize| friction.iter().map(|play| play.share[k] * play.threshold_uv[k]).sum::<f64>();
     // A change has the variance of two zeros, and between two zeros two thirds of that of one are left.
-    let variance = |k: usize| noise.additive_uv[k].powi(2) + drift_uv[k].powi(2) / 3.0;
+    let variance = |k: usize| {
+        noise.additive_uv[k].powi(2) + drift_uv[k].powi(2) / 3.0 + (FRICTION_DOUBT * kept_uv(k)).powi(2)
+    };
     Noise { additive_uv: std::array::from_fn(|k| variance(k).sqrt()), ..noise }
 }
 
@@ -148,7 +157,8 @@ pub(super) fn common_gain(decoder: &Inverse, contacts: &[(Strain, [f64; 3])], kn
     let free = Factor::of(&normal).map_or([0.0; 2], |factor| factor.solve(&right));
     let slope = if constant(free[1]) < 0.0 { right[1] / normal[1][1] } else { free[1] };
     let (count, slope) = (contacts.len() as f64, if slope.is_finite() { slope.max(0.0) } else { 0.0 });
-    ((count * slope + GAIN_KNOWN * known.noise.gain.powi(2)) / (count + GAIN_KNOWN)).sqrt()
+    let within = (count * slope + GAIN_KNOWN * known.noise.gain.powi(2)) / (count + GAIN_KNOWN);
+    (within + GAIN_BETWEEN * GAIN_BETWEEN).sqrt()
 }
 
 /// The decoded force, how far the written one is from it along it, and the variance of that by the decoder.

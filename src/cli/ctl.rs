@@ -104,10 +104,25 @@ fn print_status(status: &Value) -> io::Result<()> {
     writeln!(out, "output   {}", text("output"))?;
     let held = status.get("held").and_then(Value::as_array).into_iter().flatten();
     writeln!(out, "held     {}", held.filter_map(Value::as_str).collect::<Vec<_>>().join(" "))?;
+    if let Some(warning) = warning(status) {
+        writeln!(out, "warning  {warning}")?;
+    }
     for (name, count) in status.get("health").and_then(Value::as_object).into_iter().flatten() {
         if count.as_u64() != Some(0) {
             writeln!(out, "{name:<18} {count}")?;
         }
     }
     Ok(())
+}
+
+/// What a status warns of, in a few words.
+pub(super) fn warning(status: &Value) -> Option<String> {
+    let warning = status.get("warning")?;
+    let text = |key: &str| warning.get(key).and_then(Value::as_str);
+    Some(match (text("kind")?, text("channel")) {
+        ("silent_channel", Some(channel)) => format!("channel {channel} does not answer to the load"),
+        ("other_pad", _) => "most touches do not fit the decoder: it may be another pad's".into(),
+        ("second_finger", _) => "the last touch was not one finger".into(),
+        (kind, _) => kind.to_owned(),
+    })
 }

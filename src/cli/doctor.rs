@@ -254,7 +254,9 @@ fn check_bridge() -> Check {
 fn bridge_message(status: &str) -> String {
     let status: Value = serde_json::from_str(status).unwrap_or_default();
     let text = |key: &str| status.get(key).and_then(Value::as_str).unwrap_or("unknown");
-    format!("one is running, profile {}, decoder {}: tactpad ctl status", text("profile"), text("decoder"))
+    let warning = ctl::warning(&status).map(|warning| format!(" ({warning})")).unwrap_or_default();
+    let (profile, decoder) = (text("profile"), text("decoder"));
+    format!("one is running, profile {profile}, decoder {decoder}{warning}: tactpad ctl status")
 }
 
 #[cfg(test)]
@@ -266,6 +268,13 @@ mod tests {
         let file = Path::new(RULES_FILE).file_name().unwrap().to_str().unwrap();
         assert!(number(file).unwrap() < SEAT_NUMBER);
         assert_eq!(RULES.matches("TAG+=\"uaccess\"").count(), 3);
+    }
+
+    #[test]
+    fn what_a_bridge_warns_of_is_told() {
+        let message = bridge_message(r#"{"warning": {"kind": "silent_channel", "channel": "m1z"}}"#);
+        assert!(message.contains("channel m1z does not answer"), "{message}");
+        assert!(!bridge_message(r#"{"warning": null}"#).contains('('));
     }
 
     #[test]

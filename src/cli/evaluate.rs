@@ -45,6 +45,8 @@ pub(super) struct Arguments {
 struct Report {
     #[serde(flatten)]
     by_labels: Errors,
+    /// Share of the rows that are not one finger on the decoder's pad; null for a decoder that does not warn.
+    warned: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     truth: Option<ByTruth>,
 }
@@ -117,7 +119,11 @@ fn report(decoder: &Decoder, taken: &Table, truth: Option<&Table>) -> Report {
             coverage95: evaluation::coverage95(decoder, &rows, &truths),
         }
     };
-    Report { by_labels: evaluation::errors(&found, &labels), truth: truth.map(by_truth) }
+    Report {
+        by_labels: evaluation::errors(&found, &labels),
+        warned: evaluation::warned(decoder, &rows),
+        truth: truth.map(by_truth),
+    }
 }
 
 fn print(report: &Report) -> Result<(), Failure> {
@@ -137,6 +143,9 @@ fn print(report: &Report) -> Result<(), Failure> {
         if let Some(coverage95) = truth.coverage95 {
             writeln!(to, "{:.1} % of the truths lie in the decoder's 95 % regions", 100.0 * coverage95)?;
         }
+    }
+    if let Some(warned) = report.warned {
+        writeln!(to, "{:.1} % of the contacts are not one finger on the decoder's pad", 100.0 * warned)?;
     }
     Ok(())
 }

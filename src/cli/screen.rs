@@ -108,6 +108,7 @@ fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
         ),
         format!("read to written  p50 {:.0} µs   p99 {:.0} µs", latency.p50, latency.p99),
     ];
+    facts.extend(seen.warning.map(|warning| format!("! {warning}")));
     facts.extend(events.iter().rev().take(ROWS - facts.len()).map(|event| format!("  {event}")));
     facts
 }

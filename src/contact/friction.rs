@@ -11,8 +11,11 @@ use crate::quantity::CHANNELS;
 /// How many play operators a channel has.
 pub const PLAYS: usize = 2;
 
-/// Rounds in which the strain without friction is found. Each leaves a part of the error that is the sum of the shares.
+/// Rounds at most in which the strain without friction is found. Each leaves a part of the error that is the sum of the
+/// shares.
 const ROUNDS: usize = 12;
+/// A round that changes less is the last.
+const ROUND_END_UV: f64 = 1e-7;
 
 /// One play operator in each channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,11 +54,9 @@ impl History {
         }
     }
 
-    /// The strains without friction when the channels have come to these readings.
-    pub fn freed(&mut self, friction: &Friction, read_uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
-        let free_uv = std::array::from_fn(|channel| self.free_uv(friction, channel, read_uv[channel]));
-        self.follow(friction, &free_uv);
-        free_uv
+    /// The strains without friction when the channels have come to these readings. The states do not follow by that.
+    pub fn freed(&self, friction: &Friction, read_uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+        std::array::from_fn(|channel| self.free_uv(friction, channel, read_uv[channel]))
     }
 
     /// What friction adds to the readings of these strains.
@@ -73,7 +74,12 @@ impl History {
                 let state = pulled(states[channel], free_uv, play.threshold_uv[channel]);
                 play.share[channel] * (state - free_uv)
             };
-            free_uv = read_uv - self.state_uv.iter().zip(friction).map(added_uv).sum::<f64>();
+            let next_uv = read_uv - self.state_uv.iter().zip(friction).map(added_uv).sum::<f64>();
+            let change_uv = (next_uv - free_uv).abs();
+            free_uv = next_uv;
+            if change_uv < ROUND_END_UV {
+                break;
+            }
         }
         free_uv
     }
@@ -107,6 +113,7 @@ mod tests {
             let added = pad.added_uv(&friction(), &strains);
             let read = std::array::from_fn(|channel| strains[channel] + added[channel]);
             let freed = found.freed(&friction(), &read);
+            found.follow(&friction(), &freed);
             let off =
                 freed.iter().zip(strains).map(|(freed, strain)| (freed - strain).abs()).fold(0.0, f64::max);
             assert!(off < 1e-6, "{off}");
@@ -124,7 +131,7 @@ mod tests {
 
     #[test]
     fn without_friction_channels_are_what_they_are() {
-        let mut history = History::default();
+        let history = History::default();
         assert_eq!(history.freed(&NO_FRICTION, &[123.0; CHANNELS]), [123.0; CHANNELS]);
         assert_eq!(history.added_uv(&NO_FRICTION, &[123.0; CHANNELS]), [0.0; CHANNELS]);
     }

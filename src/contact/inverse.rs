@@ -47,8 +47,18 @@ struct Trial {
     curvature: [[f64; UNKNOWNS]; UNKNOWNS],
     /// JᵀW r with what was known before.
     slope: [f64; UNKNOWNS],
+    left_uv: [f64; CHANNELS],
     misfit: f64,
     cost: f64,
+}
+
+/// A contact and what it does not explain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Explained {
+    /// The most likely contact.
+    pub contact: Contact,
+    /// What each channel reads beyond what the contact makes it read.
+    pub left_uv: [f64; CHANNELS],
 }
 
 impl Inverse {
@@ -94,7 +104,19 @@ impl Inverse {
     /// The contact that explains `strain` best. Without force it is in the middle. Strain that is not finite, or beyond
     /// anything that a pad can read, is no contact.
     pub fn decode(&self, strain: &Strain) -> Contact {
-        self.searched(strain).map(|(trial, _)| trial.contact()).filter(is_finite).unwrap_or_default()
+        self.explain(strain).map(|explained| explained.contact).unwrap_or_default()
+    }
+
+    /// The same with what it leaves over; `None` for strain that is not finite, or beyond anything that a pad can read.
+    pub fn explain(&self, strain: &Strain) -> Option<Explained> {
+        let (trial, _) = self.searched(strain)?;
+        let contact = Some(trial.contact()).filter(is_finite)?;
+        Some(Explained { contact, left_uv: trial.left_uv })
+    }
+
+    /// Sum of the squares of what the best contact leaves over of these channels, where each counts by its weight.
+    pub(super) fn least_misfit(&self, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> Option<f64> {
+        self.best(uv, weights).map(|trial| trial.misfit)
     }
 
     /// The same with its uncertainty; `None` for strain that is not finite, or beyond anything that a pad can read.
@@ -119,10 +141,14 @@ impl Inverse {
     /// The place of the least cost with its force, and the variances of the channels.
     fn searched(&self, strain: &Strain) -> Option<(Trial, Variances)> {
         let uv = strain.uv.map(f64::from);
-        let [fz_n, x_fz, y_fz] = self.start.map(|row| row.iter().zip(&uv).map(|(a, uv)| a * uv).sum());
+        let [fz_n, ..] = self.started(&uv);
         let variances = self.noise.variances(&uv, fz_n);
-        let weights = variances.weights();
-        let mut best = self.trial(self.started([x_fz / fz_n, y_fz / fz_n]), &uv, &weights)?;
+        Some((self.best(&uv, &variances.weights())?, variances))
+    }
+
+    fn best(&self, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> Option<Trial> {
+        let [fz_n, x_fz, y_fz] = self.started(uv);
+        let mut best = self.trial(self.sensible([x_fz / fz_n, y_fz / fz_n]), uv, weights)?;
         let mut shorter = 1.0;
         for _ in 1..STEPS_MAX {
             let step = best.step(shorter)?;
@@ -130,14 +156,19 @@ impl Inverse {
                 break;
             }
             let place_mm = self.within([best.place_mm[0] + step[0], best.place_mm[1] + step[1]]);
-            let next = self.trial(place_mm, &uv, &weights)?;
+            let next = self.trial(place_mm, uv, weights)?;
             if next.cost < best.cost {
                 (best, shorter) = (next, 1.0);
             } else {
                 shorter *= 0.25;
             }
         }
-        Some((best, variances))
+        Some(best)
+    }
+
+    /// About Fz, x Fz and y Fz.
+    fn started(&self, uv: &[f64; CHANNELS]) -> [f64; 3] {
+        self.start.map(|row| row.iter().zip(uv).map(|(a, uv)| a * uv).sum())
     }
 
     fn linear(&self, place_mm: [f64; 2], force_n: [f64; 3], variances: &Variances) -> Option<Linear> {
@@ -147,7 +178,7 @@ impl Inverse {
     }
 
     /// Where the search begins.
-    fn started(&self, place_mm: [f64; 2]) -> [f64; 2] {
+    fn sensible(&self, place_mm: [f64; 2]) -> [f64; 2] {
         if place_mm.iter().all(|mm| mm.is_finite()) { self.within(place_mm) } else { [0.0; 2] }
     }
 
@@ -166,13 +197,14 @@ impl Inverse {
             force_n,
             curvature: known_before(),
             slope: [0.0; UNKNOWNS],
+            left_uv: [0.0; CHANNELS],
             misfit: 0.0,
             cost: 0.0,
         };
         for k in 0..CHANNELS {
             let row = slopes(&gains, k, &force_n);
-            let rest_uv = uv[k] - dot(&gains.value[k], &force_n);
-            trial.add(&row, rest_uv, weights[k]);
+            trial.left_uv[k] = uv[k] - dot(&gains.value[k], &force_n);
+            trial.add(&row, trial.left_uv[k], weights[k]);
         }
         trial.cost = trial.misfit;
         for (axis, mm) in place_mm.iter().enumerate() {
@@ -184,14 +216,14 @@ impl Inverse {
 }
 
 impl Trial {
-    fn add(&mut self, row: &[f64; UNKNOWNS], rest_uv: f64, weight: f64) {
+    fn add(&mut self, row: &[f64; UNKNOWNS], left_uv: f64, weight: f64) {
         for (i, left) in row.iter().enumerate() {
-            self.slope[i] += weight * left * rest_uv;
+            self.slope[i] += weight * left * left_uv;
             for (j, right) in row.iter().enumerate().take(i + 1) {
                 self.curvature[i][j] += weight * left * right;
             }
         }
-        self.misfit += weight * rest_uv * rest_uv;
+        self.misfit += weight * left_uv * left_uv;
     }
 
     /// Gauss and Newton's step of the place, or a part of it.

@@ -7,13 +7,15 @@ pub mod neighbours;
 pub mod read;
 pub mod recording;
 pub mod regression;
+pub mod relief;
 pub mod statics;
 pub mod thermal;
 pub mod touch;
 pub mod uncertainty;
+pub mod watch;
 
 use crate::contact::friction::{Friction, NO_FRICTION};
-use crate::contact::inverse::Inverse;
+use crate::contact::inverse::{Explained, Inverse};
 use crate::contact::neighbours::Neighbours;
 use crate::contact::regression::{Regression, Target};
 use crate::contact::statics::Statics;
@@ -56,6 +58,14 @@ impl Decoder {
         }
     }
 
+    /// The decoder that knows what each channel should read, if it is that.
+    pub const fn inverse(&self) -> Option<&Inverse> {
+        match self {
+            Self::Inverse(inverse) => Some(inverse),
+            _ => None,
+        }
+    }
+
     /// What it takes: channels relative to the untouched pad, but for one that was made by a table that never reads it. The
     /// inverse decoder takes them relative even then, as it knows what to take off.
     pub fn zero(&self) -> Zero {
@@ -90,6 +100,17 @@ impl Decoder {
         match self {
             Self::Inverse(inverse) => inverse.thermal(),
             _ => None,
+        }
+    }
+
+    /// The contact that explains `strain`, and what it leaves over, if the decoder knows what each channel should read.
+    pub fn explain(&self, strain: &Strain) -> (Contact, Option<Explained>) {
+        match self {
+            Self::Inverse(inverse) => {
+                let explained = inverse.explain(strain);
+                (explained.map(|explained| explained.contact).unwrap_or_default(), explained)
+            }
+            _ => (self.decode(strain), None),
         }
     }
 

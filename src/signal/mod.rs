@@ -16,7 +16,7 @@ use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
 use fault::ChannelFaults;
 use filter::MeanFilter;
-use tare::Tare;
+use tare::{Rest, Tare};
 
 /// What a count means: told by the pad's identity, or the protocol's default.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,12 +114,14 @@ impl Signal {
         self.filter.clear();
     }
 
-    /// Conditions one sample. `touched` says whether a contact is under way: the zero is followed only while not.
+    /// Conditions one sample. `touched` says whether a contact is under way: the zero is followed only while not. `rest` is
+    /// what the pad reads then.
     pub fn condition(
         &mut self,
         at: StreamInstant,
         sample: &Sample,
         touched: bool,
+        rest: &Rest,
         health: &mut Health,
     ) -> Conditioned {
         if self.faults.check(sample, self.scale.count_bits, health) {
@@ -129,11 +131,11 @@ impl Signal {
         let mean = self.filter.push(&sample.counts);
         if self.tare.is_known() {
             let raw_uv = mean.map(|counts| counts * self.scale.uv_per_count);
-            let uv = self.tare.apply(at, &raw_uv, touched);
+            let uv = self.tare.apply(at, &raw_uv, touched, rest);
             return Conditioned::Strain(Strain { uv });
         }
         let raw_uv: [f64; CHANNELS] = sample.counts.map(|count| f64::from(count) * self.scale.uv_per_count);
-        if self.tare.measure(at, &raw_uv) {
+        if self.tare.measure(at, &raw_uv, rest) {
             self.faults.forget_rest();
         }
         if self.tare.is_known() {

@@ -16,13 +16,36 @@ const REST_UV: f64 = 40.0;
 /// as a press; short against warming up, which drifts by about 30 µV per kelvin (Sensors 2026, 26, 1378, Figure 8).
 const FOLLOW_S: f64 = 20.0;
 
+/// Where the zero was taken of a pad whose friction was not known, and now it is known, the zero is found within about
+/// this time instead. Long against a period of the mains.
+const SETTLE_S: f64 = 0.3;
+
+/// A zero that is known as well as this is settled: less than a tenth of a pad's noise.
+const SETTLED_UV: f64 = 1.0;
+
 /// A gap in the stream counts as no longer than this: the period of the slowest pad.
 const FOLLOW_GAP_MAX_US: u64 = 10_000;
+
+/// What the untouched pad reads beside its zero: what earlier presses left behind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    /// For each channel, as far as it is known.
+    pub uv: [f64; CHANNELS],
+    /// How far off that may be.
+    pub doubt_uv: [f64; CHANNELS],
+}
+
+impl Rest {
+    /// Of a pad that remembers nothing.
+    pub const NONE: Self = Self { uv: [0.0; CHANNELS], doubt_uv: [0.0; CHANNELS] };
+}
 
 /// The zero of the pad, once known.
 #[derive(Clone, Debug)]
 pub struct Tare {
     zero_uv: Option<[f64; CHANNELS]>,
+    /// How far off the zero may be, as the rest was not known.
+    doubt_uv: [f64; CHANNELS],
     followed_at: StreamInstant,
     block_began: Option<StreamInstant>,
     block_sums: [f64; CHANNELS],
@@ -41,6 +64,7 @@ impl Tare {
     pub const fn new() -> Self {
         Self {
             zero_uv: None,
+            doubt_uv: [0.0; CHANNELS],
             followed_at: StreamInstant::from_us(0),
             block_began: None,
             block_sums: [0.0; CHANNELS],
@@ -56,7 +80,7 @@ impl Tare {
 
     /// Takes a raw sample (µV) towards the first zero. Samples until the pad has lain still for three blocks. True if
     /// the blocks so far show that it did not.
-    pub fn measure(&mut self, at: StreamInstant, raw_uv: &[f64; CHANNELS]) -> bool {
+    pub fn measure(&mut self, at: StreamInstant, raw_uv: &[f64; CHANNELS], rest: &Rest) -> bool {
         let began = *self.block_began.get_or_insert(at);
         for (sum, raw) in self.block_sums.iter_mut().zip(raw_uv) {
             *sum += raw;
@@ -64,28 +88,40 @@ impl Tare {
         self.block_samples += 1;
         let closes = at.us_since(began) >= BLOCK_US;
         if closes {
-            self.close_block(at);
+            self.close_block(at, rest);
         }
         closes && self.zero_uv.is_none() && self.block_means.iter().all(Option::is_some)
     }
 
-    /// Raw microvolts relative to the zero. Follows the zero if nothing touches the pad.
-    pub fn apply(&mut self, at: StreamInstant, raw_uv: &[f64; CHANNELS], touched: bool) -> [f32; CHANNELS] {
-        let mut strain_uv = [0.0; CHANNELS];
-        if let Some(zero_uv) = &mut self.zero_uv {
-            // Nothing is known of a gap: a finger may have come meanwhile.
-            let elapsed_s = at.us_since(self.followed_at).min(FOLLOW_GAP_MAX_US) as f64 * 1e-6;
-            let share = if touched { 0.0 } else { (elapsed_s / FOLLOW_S).min(1.0) };
-            for ((strain, zero), &raw) in strain_uv.iter_mut().zip(zero_uv.iter_mut()).zip(raw_uv) {
-                *zero += (raw - *zero) * share;
-                *strain = (raw - *zero) as f32;
-            }
-            self.followed_at = at;
+    /// Raw microvolts relative to the zero. Follows the zero if nothing touches the pad, which then reads `rest`.
+    pub fn apply(
+        &mut self,
+        at: StreamInstant,
+        raw_uv: &[f64; CHANNELS],
+        touched: bool,
+        rest: &Rest,
+    ) -> [f32; CHANNELS] {
+        // Nothing is known of a gap: a finger may have come meanwhile.
+        let elapsed_s = at.us_since(self.followed_at).min(FOLLOW_GAP_MAX_US) as f64 * 1e-6;
+        self.followed_at = at;
+        if !touched {
+            self.follow(elapsed_s, raw_uv, rest);
         }
-        strain_uv
+        let zero_uv = self.zero_uv.unwrap_or(*raw_uv);
+        std::array::from_fn(|k| (raw_uv[k] - zero_uv[k]) as f32)
     }
 
-    fn close_block(&mut self, at: StreamInstant) {
+    fn follow(&mut self, elapsed_s: f64, raw_uv: &[f64; CHANNELS], rest: &Rest) {
+        let Some(zero_uv) = &mut self.zero_uv else { return };
+        for (k, (zero, doubt)) in zero_uv.iter_mut().zip(&mut self.doubt_uv).enumerate() {
+            let is_settled = *doubt - rest.doubt_uv[k] < SETTLED_UV;
+            let share = (elapsed_s / if is_settled { FOLLOW_S } else { SETTLE_S }).min(1.0);
+            *zero += (raw_uv[k] - rest.uv[k] - *zero) * share;
+            *doubt += (rest.doubt_uv[k] - *doubt) * share;
+        }
+    }
+
+    fn close_block(&mut self, at: StreamInstant, rest: &Rest) {
         let samples = f64::from(self.block_samples);
         self.block_means.rotate_left(1);
         if let Some(newest) = self.block_means.last_mut() {
@@ -94,7 +130,8 @@ impl Tare {
         self.block_sums = [0.0; CHANNELS];
         self.block_samples = 0;
         self.block_began = Some(at);
-        self.zero_uv = rest_mean(&self.block_means);
+        self.zero_uv = rest_mean(&self.block_means).map(|mean| std::array::from_fn(|k| mean[k] - rest.uv[k]));
+        self.doubt_uv = rest.doubt_uv;
         self.followed_at = at;
     }
 }
@@ -123,7 +160,7 @@ mod tests {
     /// Feeds `raw_uv(t_ms)` in all channels every millisecond; the time at which the zero was known, in ms.
     fn known_at_ms(tare: &mut Tare, raw_uv: impl Fn(u64) -> f64) -> Option<u64> {
         (0..5_000).find(|&ms| {
-            tare.measure(StreamInstant::from_us(ms * 1_000), &[raw_uv(ms); CHANNELS]);
+            tare.measure(StreamInstant::from_us(ms * 1_000), &[raw_uv(ms); CHANNELS], &Rest::NONE);
             tare.is_known()
         })
     }
@@ -134,7 +171,7 @@ mod tests {
         assert!(
             known_at_ms(&mut tare, |ms| 1_500.0 + if ms % 2 == 0 { 30.0 } else { -30.0 }).unwrap() <= 400
         );
-        let strain_uv = tare.apply(StreamInstant::from_us(500_000), &[1_600.0; CHANNELS], true);
+        let strain_uv = tare.apply(StreamInstant::from_us(500_000), &[1_600.0; CHANNELS], true, &Rest::NONE);
         assert!(strain_uv.iter().all(|uv| (uv - 100.0).abs() < 1.0));
     }
 
@@ -151,7 +188,12 @@ mod tests {
             let mut tare = Tare::new();
             known_at_ms(&mut tare, |_| 0.0);
             let strain_uv = (0..20_000).map(|ms| {
-                tare.apply(StreamInstant::from_us(500_000 + ms * 1_000), &[100.0; CHANNELS], touched)[0]
+                tare.apply(
+                    StreamInstant::from_us(500_000 + ms * 1_000),
+                    &[100.0; CHANNELS],
+                    touched,
+                    &Rest::NONE,
+                )[0]
             });
             let last_uv = strain_uv.last().unwrap();
             assert!((last_uv - expected_uv).abs() < 2.0, "{last_uv} µV is not {expected_uv} µV");
@@ -162,7 +204,8 @@ mod tests {
     fn a_load_that_came_during_a_gap_is_no_drift() {
         let mut tare = Tare::new();
         known_at_ms(&mut tare, |_| 0.0);
-        let strain_uv = tare.apply(StreamInstant::from_us(60_000_000), &[1_000.0; CHANNELS], false);
+        let strain_uv =
+            tare.apply(StreamInstant::from_us(60_000_000), &[1_000.0; CHANNELS], false, &Rest::NONE);
         assert!(strain_uv[0] > 999.0, "{} µV", strain_uv[0]);
     }
 
@@ -170,9 +213,29 @@ mod tests {
     fn a_slow_pad_is_tared_too() {
         let mut tare = Tare::new();
         let known = (0..50).find(|&i| {
-            tare.measure(StreamInstant::from_us(i * 10_000), &[7.0; CHANNELS]);
+            tare.measure(StreamInstant::from_us(i * 10_000), &[7.0; CHANNELS], &Rest::NONE);
             tare.is_known()
         });
         assert!(known.unwrap() * 10 <= 500);
+    }
+
+    #[test]
+    fn what_is_left_behind_is_not_taken_for_the_zero_and_what_was_is_mended_soon() {
+        let rest = |uv, doubt_uv| Rest { uv: [uv; CHANNELS], doubt_uv: [doubt_uv; CHANNELS] };
+        let mut tare = Tare::new();
+        // A pad with 30 µV of friction, of which nothing is known yet.
+        for ms in 0..500 {
+            tare.measure(StreamInstant::from_us(ms * 1_000), &[130.0; CHANNELS], &rest(0.0, 50.0));
+        }
+        let mut reads_uv = |ms: std::ops::Range<u64>, rest: Rest| {
+            let mut uv = 0.0;
+            for ms in ms {
+                uv = tare.apply(StreamInstant::from_us(ms * 1_000), &[130.0; CHANNELS], false, &rest)[4];
+            }
+            uv
+        };
+        assert!(reads_uv(500..1_500, rest(0.0, 50.0)).abs() < 1e-3, "nothing new");
+        assert!((reads_uv(1_500..3_000, rest(30.0, 0.0)) - 30.0).abs() < 1.0, "now it is known");
+        assert!((reads_uv(3_000..20_000, rest(30.0, 0.0)) - 30.0).abs() < 1.0, "and stays");
     }
 }

@@ -33,6 +33,16 @@ pub fn drawn(device: &Device, seed: u64) -> Device {
     device
 }
 
+/// What the bridges carry for several contacts at once: the pad is linear in their forces.
+pub fn bridges_of(field: &PadField, contacts: &[Contact]) -> Bridges {
+    let mut sum = Bridges { signal_uv: [0.0; CHANNELS], sum_uv: [0.0; CHANNELS] };
+    for Bridges { signal_uv, sum_uv } in contacts.iter().map(|contact| bridges(field, contact)) {
+        sum.signal_uv.iter_mut().zip(signal_uv).for_each(|(sum, uv)| *sum += uv);
+        sum.sum_uv.iter_mut().zip(sum_uv).for_each(|(sum, uv)| *sum += uv);
+    }
+    sum
+}
+
 /// What the bridges carry for a contact.
 pub fn bridges(field: &PadField, contact: &Contact) -> Bridges {
     Bridges {

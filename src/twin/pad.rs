@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::bridges;
+use super::bridges_of;
 use super::delay::Delay;
 use super::memory::Memory;
 use super::noise::{Lasting, Walk};
@@ -74,8 +74,18 @@ impl TwinPad {
     /// Between the two the strains went evenly. A contact beyond the field's radius, or one that is not finite, reads as
     /// [`InfluenceField::strain_uv`](crate::influence::InfluenceField::strain_uv) says.
     pub fn read(&mut self, after_s: f64, contact: &Contact, around: &Circumstances) -> [f64; CHANNELS] {
+        self.read_all(after_s, std::slice::from_ref(contact), around)
+    }
+
+    /// The same of several fingers.
+    pub fn read_all(
+        &mut self,
+        after_s: f64,
+        contacts: &[Contact],
+        around: &Circumstances,
+    ) -> [f64; CHANNELS] {
         self.at_s += after_s;
-        let strain_uv = self.readout.strain_uv(&bridges(&self.field, contact));
+        let strain_uv = self.readout.strain_uv(&bridges_of(&self.field, contacts));
         let remembered_uv = self.memory.follow(after_s, &strain_uv);
         let aged_uv =
             std::array::from_fn(|channel| self.left(channel, around.cycles) * remembered_uv[channel]);

@@ -8,9 +8,17 @@ mod decoders;
 
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::{Bencher, Criterion, criterion_group, criterion_main};
+use tactpad::contact::friction::{PLAYS, Play};
+use tactpad::contact::inverse::Inverse;
+use tactpad::contact::relief::Relief;
+use tactpad::contact::uncertainty::Noise;
+use tactpad::contact::watch::Watch;
 use tactpad::field::PadField;
-use tactpad::quantity::{CHANNELS, Contact};
+use tactpad::health::Health;
+use tactpad::influence::InfluenceField;
+use tactpad::quantity::{CHANNELS, Contact, Strain};
+use tactpad::time::StreamInstant;
 
 /// Neurons of the shipped network.
 const WIDTHS: [usize; 5] = [CHANNELS, 128, 128, 64, 5];
@@ -42,6 +50,25 @@ fn plain(layers: &[Layer], channels: &[f32; CHANNELS]) -> [f32; 5] {
     std::array::from_fn(|k| from[k])
 }
 
+/// What the pipeline does with the inverse decoder's channels, all of it, while a finger presses.
+fn live(bencher: &mut Bencher<'_>, field: &InfluenceField, strain: &Strain) {
+    let play = Play { threshold_uv: [800.0; CHANNELS], share: [0.03; CHANNELS] };
+    let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
+    let inverse = Inverse::new(field.clone(), noise, [play; PLAYS]);
+    let (mut relief, mut watch) = (Relief::of(inverse.friction()), Watch::new(Some(&inverse)));
+    let (mut health, mut at) = (Health::default(), StreamInstant::default());
+    bencher.iter(|| {
+        at = at.plus_us(1_000);
+        let free = relief.freed(black_box(strain));
+        let explained = inverse.explain(&free);
+        relief.follow(Some(&free));
+        if let Some(explained) = &explained {
+            watch.see(at, &free, explained, true, &inverse, &mut health);
+        }
+        (explained, relief.rest())
+    });
+}
+
 fn decode(criterion: &mut Criterion) {
     let field = PadField::nominal().signals;
     let strain = field.strain_uv(&Contact { x_mm: 11.3, y_mm: -7.9, fx_n: 0.4, fy_n: -0.2, fz_n: 2.0 });
@@ -49,6 +76,7 @@ fn decode(criterion: &mut Criterion) {
     for (name, decoder) in decoders::each() {
         group.bench_function(name, |bencher| bencher.iter(|| decoder.decode(black_box(&strain))));
     }
+    group.bench_function("inverse, friction taken off", |bencher| live(bencher, &field, &strain));
     let layers = layers();
     group.bench_function("plain loop", |bencher| bencher.iter(|| plain(&layers, black_box(&strain.uv))));
     #[cfg(feature = "foreign-onnx")]

@@ -1,0 +1,111 @@
+//! Friction taken off in play.
+//!
+//! A table of contacts is whole before it is decoded; in play nothing is known but what came so far. Two things help.
+//! While nothing touches the pad its strain is zero, so the play operators stay where the last press left them, and what
+//! they make the pad read then is known: the zero is followed around that. And where the operators are when play begins is
+//! not known, but each press narrows it down: it is followed from both ends of what it can be, and once the two have met,
+//! the zero that was taken before is mended (see [`Rest`]).
+
+use super::friction::{Friction, History, NO_FRICTION};
+use crate::quantity::{CHANNELS, Strain};
+use crate::signal::tare::Rest;
+
+/// What a pad remembers, followed sample by sample. There is no time in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Relief {
+    friction: Friction,
+    is_none: bool,
+    likely: History,
+    /// From the lowest and the highest states that there can be.
+    ends: [History; 2],
+}
+
+impl Relief {
+    /// Of a pad of which nothing is known yet; it is thought never to have been pressed.
+    pub fn of(friction: &Friction) -> Self {
+        let mut relief = Self {
+            friction: *friction,
+            is_none: *friction == NO_FRICTION,
+            likely: History::default(),
+            ends: [History::default(); 2],
+        };
+        relief.doubt();
+        relief
+    }
+
+    /// What happened meanwhile is not known: the states may be anywhere, and are thought to be where they were.
+    pub fn doubt(&mut self) {
+        for (end, sign) in self.ends.iter_mut().zip([-1.0, 1.0]) {
+            end.state_uv = self.friction.map(|play| play.threshold_uv.map(|uv| sign * uv));
+        }
+    }
+
+    /// What the untouched pad reads now beside its zero.
+    pub fn rest(&self) -> Rest {
+        if self.is_none {
+            return Rest::NONE;
+        }
+        let [low, high] = &self.ends;
+        let doubt_uv = |k: usize| {
+            let plays = self.friction.iter().zip(low.state_uv.iter().zip(&high.state_uv));
+            plays.map(|(play, (low, high))| play.share[k].abs() * (high[k] - low[k]) / 2.0).sum()
+        };
+        Rest {
+            uv: self.likely.added_uv(&self.friction, &[0.0; CHANNELS]),
+            doubt_uv: std::array::from_fn(doubt_uv),
+        }
+    }
+
+    /// What these channels would read without friction.
+    pub fn freed(&self, strain: &Strain) -> Strain {
+        if self.is_none {
+            return *strain;
+        }
+        let free_uv = self.likely.freed(&self.friction, &strain.uv.map(f64::from));
+        Strain { uv: free_uv.map(|uv| uv as f32) }
+    }
+
+    /// Goes on to a strain without friction; `None` if nothing touches the pad.
+    pub fn follow(&mut self, free: Option<&Strain>) {
+        if self.is_none {
+            return;
+        }
+        let free_uv = free.map_or([0.0; CHANNELS], |free| free.uv.map(f64::from));
+        self.likely.follow(&self.friction, &free_uv);
+        self.ends.iter_mut().for_each(|end| end.follow(&self.friction, &free_uv));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::friction::Play;
+
+    const FRICTION: Friction =
+        [Play { threshold_uv: [800.0; CHANNELS], share: [0.0625; CHANNELS] }, Play::NONE];
+
+    #[test]
+    fn a_press_says_where_friction_is() {
+        let mut relief = Relief::of(&FRICTION);
+        assert_eq!(relief.rest(), Rest { uv: [0.0; CHANNELS], doubt_uv: [50.0; CHANNELS] });
+        let mut known = |press_uv: f32| {
+            relief.follow(Some(&Strain { uv: [press_uv; CHANNELS] }));
+            relief.follow(None);
+            (relief.rest().uv[0], relief.rest().doubt_uv[0])
+        };
+        assert_eq!(known(400.0), (0.0, 37.5), "a weak one says a little");
+        assert_eq!(known(1200.0), (25.0, 12.5), "a firmer one more");
+        assert_eq!(known(3000.0), (50.0, 0.0), "a strong one all");
+        assert_eq!(known(-1200.0), (-25.0, 0.0), "which stays so");
+        relief.doubt();
+        assert_eq!(relief.rest(), Rest { uv: [-25.0; CHANNELS], doubt_uv: [50.0; CHANNELS] });
+    }
+
+    #[test]
+    fn a_pad_without_friction_passes() {
+        let mut relief = Relief::of(&NO_FRICTION);
+        let strain = Strain { uv: [0.1; CHANNELS] };
+        relief.follow(Some(&strain));
+        assert_eq!((relief.freed(&strain), relief.rest()), (strain, Rest::NONE));
+    }
+}

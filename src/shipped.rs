@@ -11,10 +11,9 @@ use crate::field::PadField;
 use crate::influence::InfluenceField;
 use crate::quantity::CHANNELS;
 
-/// Plays unless another one is asked for: of those that know no pad but the nominal one, it is nearest to the truth.
-/// `docs/ablation.md` has the figures.
-pub const DEFAULT: &str = "inverse";
-/// What captures without a decoder were made with.
+/// Of those that know no pad but the nominal one, it is nearest to the truth: `docs/decoding.md` has the figures.
+pub const INVERSE: &str = "inverse";
+/// Plays unless another one is asked for; captures without a decoder were made with it.
 pub const STATICS: &str = "statics";
 /// The paper's network after its stage I.
 const SCDF: &str = "scdf";
@@ -28,7 +27,7 @@ const PLACE_MM: f64 = 1.0;
 /// Of a single reading; mains are in it.
 const READING_UV: f64 = 10.0;
 
-/// The decoder that plays unless another one is asked for.
+/// The inverse decoder of the nominal pad.
 pub fn decoder() -> Decoder {
     uncalibrated(PadField::nominal().signals)
 }
@@ -50,13 +49,13 @@ pub fn statics() -> Decoder {
 
 /// Whether there is a decoder of this name.
 pub fn is_known(name: &str) -> bool {
-    [DEFAULT, STATICS, SCDF].contains(&name)
+    [INVERSE, STATICS, SCDF].contains(&name)
 }
 
 /// The file of the decoder `name`, or `None` if there is none of that name.
 pub fn bytes(name: &str) -> Option<Cow<'static, [u8]>> {
     match name {
-        DEFAULT => decoder().to_bytes("the nominal pad").map(Cow::Owned),
+        INVERSE => decoder().to_bytes("the nominal pad").map(Cow::Owned),
         STATICS => Some(Cow::Borrowed(NOMINAL.as_bytes())),
         SCDF => Some(Cow::Borrowed(include_bytes!("../models/scdf.onnx"))),
         _ => None,
@@ -70,16 +69,16 @@ mod tests {
     use crate::quantity::Strain;
 
     #[test]
-    fn each_plays_and_inverse_is_the_one_that_is_not_asked_for() {
+    fn each_plays_by_its_name() {
         let strain = Strain { uv: std::array::from_fn(|k| 300.0 - 55.0 * k as f32) };
         let decoded = |name: &str| {
             let decoder = read::playing(&bytes(name).unwrap()).unwrap();
             (decoder.name(), decoder.decode(&strain))
         };
-        assert_eq!(decoded(DEFAULT), ("inverse", decoder().decode(&strain)));
+        assert_eq!(decoded(INVERSE), ("inverse", decoder().decode(&strain)));
         assert_eq!(decoded(STATICS), ("statics", statics().decode(&strain)));
         assert_eq!(decoded(SCDF).0, "network");
-        assert!([DEFAULT, STATICS, SCDF].iter().all(|name| is_known(name)));
+        assert!([INVERSE, STATICS, SCDF].iter().all(|name| is_known(name)));
         assert!(!is_known("nope") && bytes("nope").is_none());
     }
 }

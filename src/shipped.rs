@@ -11,15 +11,18 @@ use crate::field::PadField;
 use crate::influence::InfluenceField;
 use crate::quantity::CHANNELS;
 
-/// Of those that know no pad but the nominal one, it is nearest to the truth: `docs/decoding.md` has the figures.
+/// Plays unless another one is asked for: of those that know no pad but the nominal one, it is nearest to the truth.
+/// `docs/decoding.md` has the figures.
 pub const INVERSE: &str = "inverse";
-/// Plays unless another one is asked for; captures without a decoder were made with it.
+/// What captures without a decoder were made with.
 pub const STATICS: &str = "statics";
 /// The paper's network after its stage I.
 const SCDF: &str = "scdf";
 
 /// How far a pad's channels are from those of the nominal one, as a share of each: gains of a pad made by hand.
 const PAD_SHARE: f64 = 0.1;
+/// What a channel takes over from the others: 2 % of what a z channel reads of a newton over its module.
+const CROSSTALK_UV_PER_N: f64 = 20.0;
 /// How far all its channels are together: the authors' earlier pad has gains of 0.83 to 1.33.
 const PAD_GAIN: f64 = 0.2;
 /// How far a place is moved by gains that differ.
@@ -27,7 +30,7 @@ const PLACE_MM: f64 = 1.0;
 /// Of a single reading; mains are in it.
 const READING_UV: f64 = 10.0;
 
-/// The inverse decoder of the nominal pad.
+/// The decoder that plays unless another one is asked for: the inverse one of the nominal pad.
 pub fn decoder() -> Decoder {
     uncalibrated(PadField::nominal().signals)
 }
@@ -36,6 +39,7 @@ pub fn decoder() -> Decoder {
 pub fn uncalibrated(field: InfluenceField) -> Decoder {
     let mut noise = Noise::of_channels([READING_UV; CHANNELS], [PAD_SHARE; CHANNELS]);
     noise.gain = PAD_GAIN;
+    noise.force_uv_per_n = [CROSSTALK_UV_PER_N; CHANNELS];
     for (k, line) in noise.by_field.iter_mut().enumerate() {
         line[k] = if k < 2 { PLACE_MM * PLACE_MM } else { PAD_SHARE * PAD_SHARE };
     }

@@ -81,7 +81,7 @@ fn a_bridge_is_asked_paused_changed_and_ended() {
         status["state"] == "playing" && status["held"] != Value::Array(vec![])
     });
     assert_eq!((&status["pad"], &status["profile"]), (&"VIRTUAL-0001".into(), &"Super Mario".into()));
-    assert_eq!(status["decoder"], "statics");
+    assert_eq!(status["decoder"], "inverse");
     assert_eq!(status["health"]["frames_lost"], 0);
 
     assert!(bridge.ctl("pause").status.success());

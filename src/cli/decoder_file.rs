@@ -18,7 +18,7 @@ const BYTES_MAX: u64 = 16_000_000;
 /// The decoder of a verb that plays.
 #[derive(Debug, Args)]
 pub(super) struct Choice {
-    /// What turns channels into a contact: a file that adapt or train wrote, statics (the default), inverse, or scdf.
+    /// What turns channels into a contact: a file that adapt or train wrote, inverse (the default), statics, or scdf.
     #[arg(long, value_name = "NAME|FILE")]
     decoder: Option<String>,
 }
@@ -31,7 +31,7 @@ impl Choice {
 
     /// What was chosen, or plays anyway.
     pub(super) fn name(&self) -> &str {
-        self.decoder.as_deref().unwrap_or(shipped::STATICS)
+        self.decoder.as_deref().unwrap_or(shipped::INVERSE)
     }
 
     /// Reads a decoder that can play, and its bytes.

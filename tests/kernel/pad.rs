@@ -1,22 +1,22 @@
 //! A pad at the other end of a pseudo-terminal, with a finger that the test moves.
 
 use std::os::fd::{AsFd, OwnedFd};
+use std::sync::LazyLock;
 
 use rustix::fs::{Mode, OFlags};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use tactpad::field::PadField;
+use tactpad::quantity::Contact;
 
 use crate::clock::{MS, monotonic_ns, readable_before, stamp_ns};
 use crate::wire::sample_frame;
 
-/// Microvolts of a module's z channel per newton on that module.
-const MODULE_UV_PER_N: f64 = 1_887.0;
-
 /// A pad that says nothing of its converter has counts of 0.01 µV.
 const COUNTS_PER_UV: f64 = 100.0;
 
-/// Distance of the modules from the centre.
-const MODULE_RADIUS_MM: f64 = 20.0;
+/// Of the nominal pad; reading it takes longer than a sample.
+static FIELD: LazyLock<PadField> = LazyLock::new(PadField::nominal);
 
 /// A finger on the plate: where, and how hard it presses.
 #[derive(Clone, Copy)]
@@ -42,19 +42,14 @@ pub(crate) const PRESS: Touch = Touch { fz_n: 3.0, ..NONE };
 pub(crate) const PRESS_RIGHT: Touch = Touch { fz_n: 3.0, ..RIGHT };
 
 impl Touch {
-    /// The nine counts: three supports of a rigid plate share the force by the lever rule, and nothing pushes sideways.
+    /// The nine counts of the nominal pad. Nothing pushes sideways.
+    #[expect(clippy::cast_possible_truncation, reason = "a finger's counts fit in 24 bits")]
     pub(crate) fn counts(self) -> [i32; 9] {
-        let mut counts = [0; 9];
-        for (module, angle_deg) in [0.0_f64, 120.0, 240.0].into_iter().enumerate() {
-            let (sin, cos) = angle_deg.to_radians().sin_cos();
-            let lever_mm = self.x_mm * cos + self.y_mm * sin;
-            let load_n = self.fz_n * (1.0 + 2.0 * lever_mm / MODULE_RADIUS_MM) / 3.0;
-            let count = (load_n * MODULE_UV_PER_N * COUNTS_PER_UV).round();
-            #[expect(clippy::cast_possible_truncation, reason = "a finger's counts fit in 24 bits")]
-            let count = count as i32;
-            counts[3 * module + 2] = count;
-        }
-        counts
+        let Self { x_mm, y_mm, fz_n } = self;
+        let [x_mm, y_mm, fz_n] = [x_mm, y_mm, fz_n].map(|number| number as f32);
+        let contact = Contact { x_mm, y_mm, fz_n, ..Contact::default() };
+        let strain = FIELD.signals.strain_uv(&contact);
+        strain.uv.map(|uv| (f64::from(uv) * COUNTS_PER_UV).round() as i32)
     }
 }
 
@@ -93,6 +88,7 @@ impl Pad {
         let mut mode = tcgetattr(&far_end).expect("its mode");
         mode.make_raw();
         tcsetattr(&far_end, OptionalActions::Now, &mode).expect("raw mode");
+        LazyLock::force(&FIELD);
         let started_ns = monotonic_ns();
         Self { line, _far_end: far_end, path, sequence: 0, started_ns, time_ms: 0, last_write_ns: 0 }
     }

@@ -27,20 +27,24 @@ enum {
     /* The converter: 24 bits, 0.01 uV per count at the bridge. */
     COUNT_BITS = 24,
     PICOVOLTS_PER_COUNT = 10000,
-    /* A module answers to 1 N through its post with 1887 uV. */
-    COUNTS_PER_MN = 189,
+    COUNTS_PER_UV = 100,
     NOISE_COUNTS = 600,
     REST_MS = 1000,
     /* A press: the finger comes down, stays and leaves, then the pad rests. */
     RAMP_MS = 20,
     PRESS_MS = 300,
-    PERIOD_MS = 500,
-    MODULES = 3
+    PERIOD_MS = 500
 };
 
-/* What each press in turn puts on the three modules, in millinewtons: at each module, between them, in the middle. */
-static const int32_t presses_mn[][MODULES] = {
-    {1500, 0, 0}, {0, 1500, 0}, {0, 0, 1500}, {800, 800, 0}, {0, 800, 800}, {800, 0, 800}, {1000, 1000, 1000},
+/* What the nominal pad reads of each press in turn, in uV: 1.5 N on each post, 1.6 N between them, 3 N in the middle. */
+static const int16_t presses_uv[][TACTPAD_CHANNELS] = {
+    {0, -673, 2833, -21, 336, 7, 21, 336, 7},
+    {21, 336, 7, 0, -673, 2833, -21, 336, 7},
+    {-21, 336, 7, 21, 336, 7, 0, -673, 2833},
+    {-30, -105, 1513, 30, -105, 1513, 0, 474, 11},
+    {0, 474, 11, -30, -105, 1513, 30, -105, 1513},
+    {30, -105, 1513, 0, 474, 11, -30, -105, 1513},
+    {0, 206, 1899, 0, 206, 1899, 0, 206, 1899},
 };
 
 static uint16_t rate_hz = 1000;
@@ -101,10 +105,10 @@ void board_adc_read(int32_t counts[TACTPAD_CHANNELS], int16_t *temperature_centi
         counts[channel] = noise_counts();
     if (now_ms >= REST_MS) {
         uint64_t period = (now_ms - REST_MS) / PERIOD_MS;
-        const int32_t *loads_mn = presses_mn[period % (sizeof presses_mn / sizeof *presses_mn)];
+        const int16_t *uv = presses_uv[period % (sizeof presses_uv / sizeof *presses_uv)];
         int32_t parts = weight((now_ms - REST_MS) % PERIOD_MS);
-        for (int module = 0; module < MODULES; module++)
-            counts[3 * module + 2] += loads_mn[module] * COUNTS_PER_MN / RAMP_MS * parts;
+        for (int channel = 0; channel < TACTPAD_CHANNELS; channel++)
+            counts[channel] += uv[channel] * COUNTS_PER_UV / RAMP_MS * parts;
     }
     *temperature_centi_c = 2500;
     *status = 0;

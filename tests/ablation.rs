@@ -46,7 +46,7 @@ fn network() -> &'static Network {
 }
 
 const fn entry(method: Method, samples: Samples) -> Entry {
-    Entry { method, samples, paper: None }
+    Entry { method, samples, paper: None, conflict: None }
 }
 
 /// The decoder that knows the pad and its noise.

@@ -94,7 +94,7 @@ impl<'p> Known<'p> {
     fn places(&self, samples: Samples) -> Vec<usize> {
         let contacts = || self.measured.recording.contacts();
         match samples {
-            Samples::Simulated => Vec::new(),
+            Samples::Simulated | Samples::Untared => Vec::new(),
             Samples::First(count) => contacts().into_iter().take(count).collect(),
             Samples::Drawn(count) => drawn(contacts(), count, self.subject.seed),
         }
@@ -102,7 +102,7 @@ impl<'p> Known<'p> {
 
     fn rows(&self, samples: Samples) -> Vec<Row> {
         match samples {
-            Samples::Simulated => self.simulated.clone(),
+            Samples::Simulated | Samples::Untared => self.simulated.clone(),
             _ => self.places(samples).iter().map(|at| self.measured.recording.tared().rows[*at]).collect(),
         }
     }
@@ -113,6 +113,11 @@ impl<'p> Known<'p> {
             Method::Statics => Ok(shipped::statics()),
             Method::Network if entry.samples == Samples::Simulated => {
                 Ok(Decoder::Network(Box::new(self.network.clone())))
+            }
+            Method::Network if entry.samples == Samples::Untared => {
+                let mut network = self.network.clone();
+                network.zero = Zero::Raw;
+                Ok(Decoder::Network(Box::new(network)))
             }
             Method::Network => return self.adapted(&rows()).map_err(Reason::Network),
             Method::Knn => neighbours(&rows(), Zero::Tared).map(Decoder::Neighbours),

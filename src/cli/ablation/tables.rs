@@ -7,6 +7,7 @@ use super::{Report, Row, Tried};
 use crate::cli::Failure;
 use crate::cli::written::{create, stdout};
 use crate::evaluation::{Errors, PerAxis};
+use crate::metrology::table3::PublishedErrors;
 
 pub(super) fn print(report: &Report) -> io::Result<()> {
     write(&mut stdout(), report)
@@ -23,6 +24,7 @@ fn write(out: &mut impl Write, report: &Report) -> io::Result<()> {
     for table in 0..tables {
         write_table(out, &report.rows, table)?;
     }
+    write_conflicts(out, &report.rows)?;
     report.files.iter().try_for_each(|file| writeln!(out, "{file} is written"))
 }
 
@@ -44,15 +46,38 @@ fn write_table(out: &mut impl Write, rows: &[Row], table: usize) -> io::Result<(
     tried.into_iter().try_for_each(|(row, tried)| write_row(out, row, tried))
 }
 
+/// What is published and no pad reaches.
+fn write_conflicts(out: &mut impl Write, rows: &[Row]) -> io::Result<()> {
+    let conflict = |row: &Row| Some((row.entry.to_string(), row.entry.paper?, row.entry.conflict?));
+    let conflicts: Vec<_> = rows.iter().filter_map(conflict).collect();
+    if conflicts.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "\n* Conflicts with the paper's other figures. As far off as a pad may be, the network comes to"
+    )?;
+    for (name, paper, reached) in conflicts {
+        let PublishedErrors { position_mae_mm, force_mae_n } = reached;
+        writeln!(
+            out,
+            "  {name:<23} {position_mae_mm:.2} mm {force_mae_n:.3} N in place of {:.2} mm {:.2} N",
+            paper.position_mae_mm, paper.force_mae_n
+        )?;
+    }
+    writeln!(out, "  and then it is off in other figures: docs/network.md. Its mm are the distance.")
+}
+
 fn write_row(out: &mut impl Write, row: &Row, tried: &Tried) -> io::Result<()> {
     let optional = |value: Option<f64>, decimals: usize| {
         value.map_or_else(|| "–".to_owned(), |value| format!("{value:.decimals$}"))
     };
     let paper = row.entry.paper;
+    let mark = if row.entry.conflict.is_some() { "*" } else { "" };
     write!(
         out,
         "{:<23} {:>6} {:>6}",
-        row.entry.to_string(),
+        format!("{}{mark}", row.entry),
         optional(paper.map(|paper| paper.position_mae_mm), 2),
         optional(paper.map(|paper| paper.force_mae_n), 2)
     )?;

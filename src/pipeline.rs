@@ -111,7 +111,7 @@ impl Pipeline {
         Self {
             link: Link::new(),
             signal: Signal::new(profile.filter_samples),
-            relief: Relief::of(decoder.friction()),
+            relief: Relief::of(decoder.friction(), decoder.creep()),
             watch: Watch::new(decoder.inverse()),
             decoder,
             touch: Touch::new(),
@@ -162,7 +162,7 @@ impl Pipeline {
         self.lose(now);
         (self.identity, self.refusal) = (None, None);
         self.signal.forget_pad();
-        self.relief = Relief::of(self.decoder.friction());
+        self.relief = Relief::of(self.decoder.friction(), self.decoder.creep());
         self.watch = Watch::new(self.decoder.inverse());
     }
 
@@ -301,7 +301,7 @@ impl Pipeline {
                 probe.mark(Stage::Contact);
                 self.phase = Phase::Playing;
                 let touched = self.handle_touch(&contact);
-                self.relief.follow(touched.then_some(&strain));
+                self.relief.follow(self.at, touched.then_some(&strain));
                 if let Some((explained, inverse)) = explained.zip(self.decoder.inverse()) {
                     self.watch.see(self.at, &strain, &explained, touched, inverse, &mut self.health);
                 }
@@ -326,7 +326,7 @@ impl Pipeline {
             TouchState::Drifted => {
                 self.signal.retare();
                 // What was followed from a wrong zero is wrong, too.
-                self.relief = Relief::of(self.decoder.friction());
+                self.relief = Relief::of(self.decoder.friction(), self.decoder.creep());
                 false
             }
         }

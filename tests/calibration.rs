@@ -7,10 +7,11 @@ use std::sync::OnceLock;
 use tactpad::calibration::fit::{Calibration, fit};
 use tactpad::calibration::regression::{neighbours, regression};
 use tactpad::contact::Decoder;
+use tactpad::contact::creep::NO_CREEP;
 use tactpad::contact::recording::Recording;
 use tactpad::contact::regression::Target;
 use tactpad::device::Device;
-use tactpad::device::behaviour::{Crosstalk, Play};
+use tactpad::device::behaviour::{Crosstalk, Play, Prony};
 use tactpad::evaluation::{Errors, coverage95, decoded, errors};
 use tactpad::field::PadField;
 use tactpad::influence::{InfluenceField, MAPS};
@@ -89,7 +90,7 @@ impl Measured {
 
     /// Contacts as the decoder takes them, and their truths.
     fn taken(&self, decoder: &Decoder) -> (Vec<Row>, Vec<Label>) {
-        let freed = self.recording.freed(decoder.friction());
+        let freed = self.recording.taken(decoder);
         self.recording.contacts().iter().map(|at| (freed.rows[*at], self.truths[*at])).unzip()
     }
 }
@@ -307,6 +308,22 @@ fn warmed(device: &Device, plan: &Table, temperatures: &[f64], seed: u64) -> Mea
 }
 
 #[test]
+fn creep_is_found_where_there_is_some() {
+    let mut device = pad();
+    device.behaviour.noise.additive_uv = [10.0; CHANNELS];
+    let contacts = 100;
+    let creep_of = |device: &Device| Measured::unseen(device).inverse(contacts).creep;
+    assert_eq!(creep_of(&device), NO_CREEP);
+    device.behaviour.creep = vec![Prony { channels: [true; CHANNELS], time_s: 8.0, share: 0.008 }];
+    let found = creep_of(&device);
+    // What 20 s add to 2 s, the plan's dwells.
+    let grown = |time_s: f64, share: f64| share * ((-2.0 / time_s).exp() - (-20.0 / time_s).exp());
+    println!("{found:?}");
+    let grown = [grown(found.time_s, found.share), grown(8.0, 0.008)];
+    assert!((grown[0] / grown[1] - 1.0).abs() < 0.3, "{found:?}");
+}
+
+#[test]
 fn two_recordings_tell_how_it_follows_the_temperature() {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
@@ -337,11 +354,7 @@ fn two_recordings_tell_how_it_follows_the_temperature() {
     let unseen = warmed(&device, &plan, &[20.0, 32.0, 45.0], 5);
     let places = unseen.recording.contacts();
     let errors_with = |decoder: &Decoder| {
-        let mut taken = unseen.recording.clone();
-        if let Some(thermal) = decoder.thermal() {
-            taken = taken.at_reference(thermal);
-        }
-        let rows = taken.freed(decoder.friction()).rows_at(&places);
+        let rows = unseen.recording.taken(decoder).rows_at(&places);
         let truths: Vec<Label> = places.iter().map(|at| unseen.truths[*at]).collect();
         errors(&decoded(decoder, &rows), &truths)
     };

@@ -30,7 +30,7 @@ impl CarriedOut {
     pub(super) fn taken(&self, decoder: &Decoder) -> Vec<Row> {
         match decoder.zero() {
             Zero::Raw => self.raw.clone(),
-            Zero::Tared => self.recording.freed(decoder.friction()).rows,
+            Zero::Tared => self.recording.taken(decoder).rows,
         }
     }
 }

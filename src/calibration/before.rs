@@ -3,6 +3,7 @@
 use super::contacts::Maps;
 use super::noise::Known;
 use super::problem::places;
+use crate::contact::creep::{Creep, NO_CREEP};
 use crate::contact::friction::{Friction, NO_FRICTION, PLAYS};
 use crate::contact::inverse::Inverse;
 use crate::field::PadField;
@@ -22,6 +23,7 @@ pub(super) struct Before {
     pub(super) thresholds_uv: [f64; PLAYS],
     /// Of each play operator in each channel.
     pub(super) shares: [[f64; CHANNELS]; PLAYS],
+    pub(super) creep: Creep,
     /// How the channels scatter.
     pub(super) noise: Known,
 }
@@ -35,7 +37,9 @@ impl Before {
     /// A pad with the simulated field, and with the gains, the friction and the noise of another pad of its kind.
     pub(super) fn made_like(field: &PadField, earlier: &Inverse) -> Self {
         let gain = gains(&field.signals, earlier.field());
-        Self::with_friction(field.clone(), gain, earlier.friction(), Known::of_kin(earlier.noise()))
+        let noise = Known::of_kin(earlier.noise());
+        let before = Self::with_friction(field.clone(), gain, earlier.friction(), noise);
+        Self { creep: *earlier.creep(), ..before }
     }
 
     /// A pad with the field of another one as well. That field is taken apart: its gains, and the strains before them.
@@ -59,6 +63,7 @@ impl Before {
         Self {
             thresholds_uv: std::array::from_fn(threshold_uv),
             shares: friction.map(|play| play.share),
+            creep: NO_CREEP,
             field,
             gain,
             noise,

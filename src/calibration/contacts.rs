@@ -41,6 +41,8 @@ pub(super) struct Measured {
     pub(super) above_c: f64,
     /// What friction made of the way here; it follows the numbers.
     pub(super) lags: Lags,
+    /// How far the channels had crept.
+    pub(super) crept_uv: [f64; CHANNELS],
 }
 
 impl Place {
@@ -98,7 +100,14 @@ fn terms(jets: &[Jet]) -> [f64; TERMS] {
 impl Measured {
     /// What is measured where nothing is.
     pub(super) const fn unmeasured(place: Place, force_n: [f64; 3]) -> Self {
-        Self { place, force_n, uv: [0.0; CHANNELS], above_c: 0.0, lags: [[0.0; CHANNELS]; PLAYS] }
+        Self {
+            place,
+            force_n,
+            uv: [0.0; CHANNELS],
+            above_c: 0.0,
+            lags: [[0.0; CHANNELS]; PLAYS],
+            crept_uv: [0.0; CHANNELS],
+        }
     }
 
     /// A tared row; `None` without channels.
@@ -117,6 +126,7 @@ impl Measured {
             uv: row.uv?,
             above_c: row.temp_c.zip(reference_c).map_or(0.0, |(temp_c, reference_c)| temp_c - reference_c),
             lags: [[0.0; CHANNELS]; PLAYS],
+            crept_uv: [0.0; CHANNELS],
         })
     }
 }

@@ -10,7 +10,8 @@ use super::noise;
 use super::prepared::Prepared;
 use super::problem::{Fit, Problem, Settings};
 use super::warmth::Warmth;
-use crate::contact::friction::{Friction, PLAYS};
+use crate::contact::creep::Creep;
+use crate::contact::friction::Friction;
 use crate::contact::inverse::Inverse;
 use crate::contact::recording::Recording;
 use crate::contact::uncertainty::Noise;
@@ -27,7 +28,9 @@ const THRESHOLD_MIN_UV: f64 = 40.0;
 const THRESHOLD_RATIO: f64 = 1.6;
 const THRESHOLDS: i32 = 11;
 const HALVINGS: i32 = 3;
-/// What is not thought at first (a play operator, another pad's field) must make what was measured so much more probable; ln.
+/// Relaxation times that are tried: between the length of a press and that of a pause.
+const CREEP_TIMES_S: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
+/// What is not thought at first (a play operator, creep, another pad's field) must make what was measured so much more probable; ln.
 const EVIDENCE_GAIN: f64 = 15.0;
 /// Plates that differ by less are of one kind.
 const PLATE_TOLERANCE_MM: f32 = 0.1;
@@ -49,6 +52,8 @@ pub struct Calibration {
     pub from_earlier: bool,
     /// What the channels remember of earlier loads.
     pub friction: Friction,
+    /// How the channels creep.
+    pub creep: Creep,
     /// What the untouched pad reads; none if the recording reads it itself.
     pub zero_uv: Option<[f64; CHANNELS]>,
     /// How the pad follows the temperature; none if it was measured at one.
@@ -97,7 +102,8 @@ impl Calibration {
         let Fit { settings, values, .. } = fit;
         let field = problem.corrected(values);
         let friction = Layout::friction(values, &settings.thresholds_uv);
-        let contacts = problem.freed(values, &friction);
+        let creep = Layout::creep(values, settings.creep_time_s);
+        let contacts = problem.freed(values, &friction, &creep);
         let noise = noise::with_zeros(fit.scatter.noise, &fit.drift_uv, &friction);
         let noise = noise::with_doubts(&field, noise, &problem.doubts(fit));
         let decoder = Inverse::new(field.clone(), noise, friction);
@@ -109,6 +115,7 @@ impl Calibration {
             background: settings.background,
             from_earlier,
             friction,
+            creep,
             zero_uv: prepared.zero_uv(fit),
             warmth: prepared.warmth(fit),
             contacts: problem.contacts(),
@@ -117,8 +124,11 @@ impl Calibration {
 
     /// The decoder of this pad.
     pub fn decoder(&self) -> Inverse {
-        Inverse::new(self.field.clone(), self.noise, self.friction)
-            .of_pad(self.zero_uv, self.warmth.map(|warmth| warmth.thermal))
+        Inverse::new(self.field.clone(), self.noise, self.friction).of_pad(
+            self.zero_uv,
+            self.warmth.map(|warmth| warmth.thermal),
+            self.creep,
+        )
     }
 }
 
@@ -188,7 +198,8 @@ fn calibrated<'b>(
     if problem.contacts() == 0 {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
-    let plain = with_friction(&problem, before.thresholds_uv).ok_or(FitError::Senseless)?;
+    let plain = with_friction(&problem, before).ok_or(FitError::Senseless)?;
+    let plain = with_creep(&problem, plain);
     let problem = problem.with_background();
     let best = most_probable(BACKGROUNDS.to_vec(), |background| {
         problem.clone().fitted(Settings { background, ..plain.settings }, Some(&plain))
@@ -198,8 +209,9 @@ fn calibrated<'b>(
 
 /// The numbers without a background, and with as many play operators as make what was measured more probable. Those of which
 /// thresholds are known are only looked for around them.
-fn with_friction(problem: &Problem<'_>, thresholds_uv: [f64; PLAYS]) -> Option<Fit> {
-    let mut best = problem.clone().fitted(Settings { background: 0.0, thresholds_uv }, None)?;
+fn with_friction(problem: &Problem<'_>, before: &Before) -> Option<Fit> {
+    let Before { thresholds_uv, creep: Creep { time_s: creep_time_s, .. }, .. } = *before;
+    let mut best = problem.clone().fitted(Settings { background: 0.0, thresholds_uv, creep_time_s }, None)?;
     for (play, known_uv) in thresholds_uv.into_iter().enumerate() {
         let tried = |threshold_uv| {
             let mut settings = best.settings;
@@ -216,6 +228,14 @@ fn with_friction(problem: &Problem<'_>, thresholds_uv: [f64; PLAYS]) -> Option<F
         }
     }
     Some(best)
+}
+
+/// The same with creep, if that makes what was measured so much more probable.
+fn with_creep(problem: &Problem<'_>, best: Fit) -> Fit {
+    let found = most_probable(CREEP_TIMES_S.to_vec(), |creep_time_s| {
+        problem.clone().fitted(Settings { creep_time_s, ..best.settings }, Some(&best))
+    });
+    found.filter(|found| found.evidence > best.evidence + EVIDENCE_GAIN).unwrap_or(best)
 }
 
 /// The threshold of the largest evidence: on a coarse scale first, then by ever smaller steps around the best.

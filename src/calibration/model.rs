@@ -3,6 +3,7 @@
 use super::before::Before;
 use super::contacts::{Maps, Measured, Place};
 use super::spread::{Kind, Spread};
+use crate::contact::creep::{Creep, NO_CREEP};
 use crate::contact::friction::{Friction, PLAYS, Play};
 use crate::contact::recording::Lags;
 use crate::contact::uncertainty::UNKNOWNS;
@@ -21,14 +22,16 @@ const GAIN: f64 = 0.3;
 const BLUR_MM2: f64 = 0.5;
 /// Of a play operator in all channels.
 const FRICTION: f64 = 0.05;
+/// Of what creeps in the end, as a share of a load: adhesive and polyimide.
+const CREEP_SHARE: f64 = 0.01;
 /// Of a gain, per degree: adhesive and polyimide soften by a thousandth.
 const GAIN_PER_C: f64 = 1e-3;
 /// No play operator has a larger share. A negative one corrects another.
 const SHARE_MAX: f64 = 0.25;
 
 /// The numbers by kind, one after the other in a vector: zeros, gains, crosstalk (into, from), friction (shares of all
-/// channels; what each channel differs by), blur, changes of the gains
-/// by temperature, physical numbers, background (channel, force, polynomial).
+/// channels; what each channel differs by), creep, blur, changes of the gains by temperature, physical numbers, background
+/// (channel, force, polynomial).
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub(super) physical: Vec<Parameter>,
@@ -41,7 +44,8 @@ const GAINS: usize = ZEROS + CHANNELS;
 const CROSSTALKS: usize = GAINS + CHANNELS;
 const SHARES: usize = CROSSTALKS + CHANNELS * CHANNELS;
 const OWN_SHARES: usize = SHARES + PLAYS;
-const BLUR: usize = OWN_SHARES + PLAYS * CHANNELS;
+const CREEP: usize = OWN_SHARES + PLAYS * CHANNELS;
+const BLUR: usize = CREEP + 1;
 const WARMTH: usize = BLUR + 1;
 const PHYSICAL: usize = WARMTH + CHANNELS;
 
@@ -64,6 +68,7 @@ impl Layout {
                 values[OWN_SHARES + play * CHANNELS + channel] = share - values[SHARES + play];
             }
         }
+        values[CREEP] = before.creep.share;
         values
     }
 
@@ -77,7 +82,8 @@ impl Layout {
             *deviation = if index / CHANNELS == index % CHANNELS { 0.0 } else { spread.of(Kind::Crosstalk) };
         }
         deviations[SHARES..OWN_SHARES].fill(FRICTION);
-        deviations[OWN_SHARES..BLUR].fill(spread.of(Kind::OwnFriction));
+        deviations[OWN_SHARES..CREEP].fill(spread.of(Kind::OwnFriction));
+        deviations[CREEP] = CREEP_SHARE;
         deviations[BLUR] = BLUR_MM2;
         deviations[WARMTH..PHYSICAL].fill(GAIN_PER_C);
         for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
@@ -96,7 +102,7 @@ impl Layout {
     pub(super) fn kinds(&self) -> impl Iterator<Item = (Kind, usize)> {
         let between = (0..CHANNELS * CHANNELS).filter(|index| index / CHANNELS != index % CHANNELS);
         let physical = self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (Kind::of(*it), at));
-        let own = (OWN_SHARES..BLUR).map(|at| (Kind::OwnFriction, at));
+        let own = (OWN_SHARES..CREEP).map(|at| (Kind::OwnFriction, at));
         let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, at));
         zeros.chain(between.map(|index| (Kind::Crosstalk, CROSSTALKS + index))).chain(own).chain(physical)
     }
@@ -113,13 +119,29 @@ impl Layout {
         })
     }
 
+    /// How much the channels creep by these numbers.
+    pub(super) fn creep(values: &[f64], time_s: f64) -> Creep {
+        if time_s == 0.0 {
+            return NO_CREEP;
+        }
+        Creep { time_s, share: values[CREEP].clamp(-SHARE_MAX, SHARE_MAX) }
+    }
+
     fn share(values: &[f64], play: usize, channel: usize) -> f64 {
         values[SHARES + play] + values[OWN_SHARES + play * CHANNELS + channel]
     }
 
-    /// What lags add to a channel, and how that changes with the numbers of friction, which are set in `slopes`.
-    pub(super) fn lagged(values: &[f64], channel: usize, lags: &Lags, slopes: &mut [f64]) -> f64 {
-        let mut uv = 0.0;
+    /// What the past adds to a channel, and how that changes with the numbers of friction and creep, which are set in
+    /// `slopes`.
+    pub(super) fn remembered(
+        values: &[f64],
+        channel: usize,
+        lags: &Lags,
+        crept_uv: &[f64; CHANNELS],
+        slopes: &mut [f64],
+    ) -> f64 {
+        slopes[CREEP] = crept_uv[channel];
+        let mut uv = values[CREEP] * crept_uv[channel];
         for (play, lags) in lags.iter().enumerate() {
             slopes[SHARES + play] = lags[channel];
             slopes[OWN_SHARES + play * CHANNELS + channel] = lags[channel];
@@ -205,7 +227,7 @@ impl Layout {
         contact: &Measured,
         mut each: impl FnMut(usize, f64, &[f64]),
     ) {
-        let Measured { place, force_n, lags, above_c, .. } = contact;
+        let Measured { place, force_n, lags, crept_uv, above_c, .. } = contact;
         let strained = self.strained(values, scale, place);
         let strains_uv = strained.map(|map| loaded(&map, force_n));
         let mut slopes = vec![0.0; self.size()];
@@ -229,8 +251,8 @@ impl Layout {
                 let terms = slopes[self.background(channel, axis)..].iter_mut().zip(&place.terms);
                 terms.for_each(|(slope, term)| *slope = factor * term);
             }
-            let lagged_uv = Self::lagged(values, channel, lags, &mut slopes);
-            let uv = values[ZEROS + channel] + gain * strains_uv[channel] + crosstalk_uv + lagged_uv;
+            let remembered_uv = Self::remembered(values, channel, lags, crept_uv, &mut slopes);
+            let uv = values[ZEROS + channel] + gain * strains_uv[channel] + crosstalk_uv + remembered_uv;
             each(channel, uv, &slopes);
         }
     }

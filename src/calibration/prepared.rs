@@ -42,7 +42,7 @@ impl Prepared {
         }
         // Friction and noise go with what is beyond the zeros, so these have to be known about before anything else.
         let before = Before::simulated(field);
-        let plain = Settings { background: 0.0, thresholds_uv: [0.0; PLAYS] };
+        let plain = Settings { background: 0.0, thresholds_uv: [0.0; PLAYS], creep_time_s: 0.0 };
         let fit = Problem::of(&prepared, rows, device, &before).fitted(plain, None);
         let zero_uv = Layout::zeros(&fit.ok_or(FitError::Senseless)?.values);
         Ok(Self { recording: prepared.recording.less(&zero_uv), zero_uv: Some(zero_uv), ..prepared })

@@ -10,6 +10,7 @@ use super::noise::Known;
 use super::prepared::Prepared;
 use super::scatter::{Residual, Scatter};
 use super::spread::Spread;
+use crate::contact::creep::Creep;
 use crate::contact::friction::{Friction, PLAYS};
 use crate::contact::recording::{Lags, Recording, Untouched};
 use crate::contact::thermal::Thermal;
@@ -62,6 +63,8 @@ struct Jump {
     change_uv: [f64; CHANNELS],
     /// What friction made of the way between.
     lags: Lags,
+    /// How far the channels crept.
+    crept_uv: [f64; CHANNELS],
 }
 
 /// What is taken for granted while the numbers are fitted.
@@ -71,6 +74,8 @@ pub(super) struct Settings {
     pub(super) background: f64,
     /// Of the play operators, in strains before gains; one of zero does nothing.
     pub(super) thresholds_uv: [f64; PLAYS],
+    /// Relaxation time; zero: no creep.
+    pub(super) creep_time_s: f64,
 }
 
 /// The numbers for some settings.
@@ -193,22 +198,36 @@ impl<'f> Problem<'f> {
 
     /// Takes the lags of these numbers' friction.
     fn walk(&mut self, values: &[f64], settings: &Settings) {
-        if settings.thresholds_uv == [0.0; PLAYS] {
+        if settings.thresholds_uv == [0.0; PLAYS] && settings.creep_time_s == 0.0 {
             return;
         }
         let strain = |(at, it): &(usize, Measured)| (*at, self.layout.loaded_uv(values, &self.scale, it));
         let strains: BTreeMap<usize, [f64; CHANNELS]> = self.contacts.iter().map(strain).collect();
+        self.creep(settings.creep_time_s, &strains);
         let friction = Layout::friction(values, &settings.thresholds_uv);
         let states = self.recording.states(&friction, |at| strains.get(&at).copied());
-        let lags = self.recording.lags(&states);
+        let lags = self.recording.relative(&states);
         for (at, contact) in &mut self.contacts {
             contact.lags = lags[*at];
         }
         for Jump { rows: [first, second], lags, .. } in &mut self.jumps {
             let (first, second) = (&states[*first], &states[*second]);
-            *lags = std::array::from_fn(|play| {
-                std::array::from_fn(|channel| second[play][channel] - first[play][channel])
-            });
+            *lags = std::array::from_fn(|play| change(&first[play], &second[play]));
+        }
+    }
+
+    /// How far the channels had crept.
+    fn creep(&mut self, time_s: f64, strains: &BTreeMap<usize, [f64; CHANNELS]>) {
+        if time_s == 0.0 {
+            return;
+        }
+        let states = self.recording.crept(time_s, |at| strains.get(&at).copied());
+        let relative = self.recording.relative(&states);
+        for (at, contact) in &mut self.contacts {
+            [contact.crept_uv] = relative[*at];
+        }
+        for Jump { rows: [first, second], crept_uv, .. } in &mut self.jumps {
+            *crept_uv = change(&states[*first][0], &states[*second][0]);
         }
     }
 
@@ -284,10 +303,11 @@ impl<'f> Problem<'f> {
         mut then: impl FnMut(usize, f64, f64, &[f64]),
     ) {
         let mut slopes = vec![0.0; self.layout.size()];
-        for Jump { change_uv, lags, .. } in &self.jumps {
+        for Jump { change_uv, lags, crept_uv, .. } in &self.jumps {
             for channel in 0..CHANNELS {
                 slopes.fill(0.0);
-                let rest = change_uv[channel] - Layout::lagged(values, channel, lags, &mut slopes);
+                let remembered_uv = Layout::remembered(values, channel, lags, crept_uv, &mut slopes);
+                let rest = change_uv[channel] - remembered_uv;
                 let drift = drift_uv[channel].max(JUMP_PART * rest.abs());
                 then(channel, rest, drift * drift, &slopes);
             }
@@ -327,15 +347,20 @@ impl<'f> Problem<'f> {
         -0.5 * cost
     }
 
-    /// The contacts' channels without this friction, and the written forces.
-    pub(super) fn freed(&self, values: &[f64], friction: &Friction) -> Vec<(Strain, [f64; 3])> {
+    /// The contacts' channels without creep and this friction, and the written forces.
+    pub(super) fn freed(
+        &self,
+        values: &[f64],
+        friction: &Friction,
+        creep: &Creep,
+    ) -> Vec<(Strain, [f64; 3])> {
         let mut recording = self.recording.clone().less(&Layout::zeros(values));
         if let Some(reference_c) = self.reference_c {
             let gain_per_c = std::array::from_fn(|channel| values[Layout::first_warmth() + channel]);
             let zero_uv_per_c = [0.0; CHANNELS];
             recording = recording.at_reference(&Thermal { reference_c, zero_uv_per_c, gain_per_c });
         }
-        let freed = recording.freed(friction);
+        let freed = recording.without_creep(creep).freed(friction);
         let contact = |(at, it): &(usize, Measured)| {
             let uv = freed.rows.get(*at)?.uv?;
             Some((Strain { uv: uv.map(|uv| uv as f32) }, it.force_n))
@@ -386,8 +411,14 @@ fn jumps(zeros: Vec<Untouched>) -> Vec<Jump> {
         rows: [*first, *second],
         change_uv: std::array::from_fn(|k| after[k] - before[k]),
         lags: [[0.0; CHANNELS]; PLAYS],
+        crept_uv: [0.0; CHANNELS],
     };
     zeros.iter().zip(zeros.iter().skip(1)).map(jump).collect()
+}
+
+/// From one state to another.
+fn change(from: &[f64; CHANNELS], to: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+    std::array::from_fn(|k| to[k] - from[k])
 }
 
 /// ln of the probability of the numbers before anything is measured, but for a constant.

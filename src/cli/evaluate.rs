@@ -100,11 +100,7 @@ fn taken(decoder: &Decoder, table: &Table, device: &Device) -> Option<Table> {
     let raw = || Recording::raw(table.clone(), full_scale_n);
     let recording = Recording::of(table.clone(), full_scale_n)
         .or_else(|| decoder.zero_uv().map(|zero_uv| raw().less(zero_uv)))?;
-    let recording = match decoder.thermal() {
-        Some(thermal) => recording.at_reference(thermal),
-        None => recording,
-    };
-    Some(recording.freed(decoder.friction()))
+    Some(recording.taken(decoder))
 }
 
 fn report(decoder: &Decoder, taken: &Table, truth: Option<&Table>) -> Report {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::Decoder;
+use super::creep::Creep;
 use super::friction::{Friction, NO_FRICTION};
 use super::inverse::Inverse;
 use super::neighbours::{Known, Neighbours};
@@ -109,10 +110,11 @@ fn read_inverse(from: &mut Reader<'_>) -> Option<Inverse> {
     let (noise, friction) = (read_noise(from)?, read_friction(from)?);
     let zero_uv = read_option(from, read_channels)?;
     let thermal = read_option(from, read_thermal)?;
-    Some(Inverse::new(InfluenceField::read(from)?, noise, friction).of_pad(zero_uv, thermal))
+    let creep = read_creep(from)?;
+    Some(Inverse::new(InfluenceField::read(from)?, noise, friction).of_pad(zero_uv, thermal, creep))
 }
 
-/// What a pad has that not every decoder knows: each begins with how many there are of it.
+/// What a pad has that not every decoder knows. What may be missing begins with how many there are of it.
 fn push_pad(to: &mut Vec<u8>, inverse: &Inverse) {
     let mut push = |numbers: &[f64]| to.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
     push(&[f64::from(u8::from(inverse.zero_uv().is_some()))]);
@@ -123,6 +125,8 @@ fn push_pad(to: &mut Vec<u8>, inverse: &Inverse) {
         push(zero_uv_per_c);
         push(gain_per_c);
     }
+    let Creep { time_s, share } = *inverse.creep();
+    push(&[time_s, share]);
 }
 
 /// `None` for damaged bytes.
@@ -147,6 +151,13 @@ fn read_thermal(from: &mut Reader<'_>) -> Option<Thermal> {
         reference_c: from.double().filter(|temp_c| temp_c.is_finite())?,
         zero_uv_per_c: read_channels(from)?,
         gain_per_c: read_channels(from)?,
+    })
+}
+
+fn read_creep(from: &mut Reader<'_>) -> Option<Creep> {
+    Some(Creep {
+        time_s: from.double().filter(|time_s| time_s.is_finite() && *time_s >= 0.0)?,
+        share: from.double().filter(|share| share.abs() < 1.0)?,
     })
 }
 

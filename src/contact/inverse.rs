@@ -7,6 +7,7 @@
 //!
 //! Source: G. H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, for least squares whose variables separate.
 
+use super::creep::{Creep, NO_CREEP};
 use super::friction::Friction;
 use super::thermal::Thermal;
 use super::uncertainty::{Estimate, Linear, Noise, UNKNOWNS, Variances};
@@ -35,6 +36,7 @@ pub struct Inverse {
     friction: Friction,
     zero_uv: Option<[f64; CHANNELS]>,
     thermal: Option<Thermal>,
+    creep: Creep,
     /// Fz, x Fz and y Fz as linear functions of the channels.
     start: [[f64; CHANNELS]; 3],
 }
@@ -66,14 +68,19 @@ impl Inverse {
     /// decoder's own work: it takes strains that are free of it.
     pub fn new(field: InfluenceField, noise: Noise, friction: Friction) -> Self {
         let start = start_of(&field);
-        Self { field, noise, friction, zero_uv: None, thermal: None, start }
+        Self { field, noise, friction, zero_uv: None, thermal: None, creep: NO_CREEP, start }
     }
 
-    /// The decoder of a pad of which more is known. Neither is the decoder's own work: strains come without the zero, and as
-    /// at the reference temperature.
+    /// The decoder of a pad of which more is known. None of it is the decoder's own work: strains come without the zero and
+    /// without creep, and as at the reference temperature.
     #[must_use]
-    pub fn of_pad(self, zero_uv: Option<[f64; CHANNELS]>, thermal: Option<Thermal>) -> Self {
-        Self { zero_uv, thermal, ..self }
+    pub fn of_pad(self, zero_uv: Option<[f64; CHANNELS]>, thermal: Option<Thermal>, creep: Creep) -> Self {
+        Self { zero_uv, thermal, creep, ..self }
+    }
+
+    /// How much the channels creep.
+    pub const fn creep(&self) -> &Creep {
+        &self.creep
     }
 
     /// What the untouched pad reads, if it was calibrated by a table that never reads it.

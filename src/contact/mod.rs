@@ -1,5 +1,6 @@
 //! Where a contact is and how hard it presses, from strain.
 
+pub mod creep;
 pub mod file;
 pub mod friction;
 pub mod inverse;
@@ -14,6 +15,7 @@ pub mod touch;
 pub mod uncertainty;
 pub mod watch;
 
+use crate::contact::creep::{Creep, NO_CREEP};
 use crate::contact::friction::{Friction, NO_FRICTION};
 use crate::contact::inverse::{Explained, Inverse};
 use crate::contact::neighbours::Neighbours;
@@ -84,6 +86,14 @@ impl Decoder {
         match self {
             Self::Inverse(inverse) => inverse.friction(),
             _ => &NO_FRICTION,
+        }
+    }
+
+    /// How much the decoder's pad creeps, which is to be taken off its channels, too.
+    pub const fn creep(&self) -> &Creep {
+        match self {
+            Self::Inverse(inverse) => inverse.creep(),
+            _ => &NO_CREEP,
         }
     }
 

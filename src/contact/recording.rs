@@ -4,6 +4,8 @@
 //! released, and one that is reached by unloading came from full scale. What friction does to the readings of the untouched
 //! pad is in the zeros, so it is taken off them, too.
 
+use super::Decoder;
+use super::creep::{Creep, Crept, NO_CREEP};
 use super::friction::{Friction, History, PLAYS};
 use super::thermal::Thermal;
 use crate::measured::zero::{self, Zeros};
@@ -14,6 +16,9 @@ use crate::quantity::CHANNELS;
 const ROUNDS: usize = 4;
 /// A static load that is reached downwards comes from full scale, and from this much more than itself at least.
 const OVERLOAD_MIN: f64 = 1.2;
+
+/// How long a static load is read. Its time is the end of that.
+const READING_S: f64 = 1.0;
 
 /// For each play operator and channel: its state beside the strain, relative to the same of the untouched pad.
 pub type Lags = [[f64; CHANNELS]; PLAYS];
@@ -124,10 +129,75 @@ impl Recording {
         self.parts.iter().map(moved)
     }
 
+    /// Without creep.
+    #[must_use]
+    pub fn without_creep(mut self, creep: &Creep) -> Self {
+        if *creep == NO_CREEP {
+            return self;
+        }
+        let crept = self.relative(&self.crept(creep.time_s, |_| None));
+        for (row, [state_uv]) in self.tared.rows.iter_mut().zip(crept) {
+            let added_uv = Crept { state_uv }.added_uv(creep);
+            row.uv.iter_mut().flatten().zip(added_uv).for_each(|(uv, added_uv)| *uv -= added_uv);
+        }
+        self
+    }
+
+    /// The tables as a decoder takes them that knows its pad: at its temperature, without creep and friction.
+    pub fn taken(&self, decoder: &Decoder) -> Table {
+        let recording = match decoder.thermal() {
+            Some(thermal) => self.clone().at_reference(thermal),
+            None => self.clone(),
+        };
+        recording.without_creep(decoder.creep()).freed(decoder.friction())
+    }
+
+    /// How far each row's channels have crept with this relaxation time. Loads are held for their dwell, and what they leave
+    /// behind fades until the next one; where rows have no times, it has faded. Strains are those of `known`, else the row's
+    /// channels.
+    pub fn crept(
+        &self,
+        time_s: f64,
+        known: impl Fn(usize) -> Option<[f64; CHANNELS]>,
+    ) -> Vec<[[f64; CHANNELS]; 1]> {
+        let known: &dyn Fn(usize) -> Option<[f64; CHANNELS]> = &known;
+        self.parts.iter().flat_map(|part| self.crept_part(part, time_s, known)).collect()
+    }
+
+    fn crept_part(
+        &self,
+        part: &Part,
+        time_s: f64,
+        known: &dyn Fn(usize) -> Option<[f64; CHANNELS]>,
+    ) -> Vec<[[f64; CHANNELS]; 1]> {
+        let mut crept = Crept::default();
+        let mut before: Option<&Row> = None;
+        let mut follow = |at: usize| {
+            let row = &self.tared.rows[at];
+            let passed_s = before.and_then(|before| Some(row.t_s? - before.t_s?)).filter(|s| *s >= 0.0);
+            let goes_on = row.trial.is_some() && before.is_some_and(|before| before.trial == row.trial);
+            let read_s = if goes_on { 0.0 } else { READING_S / 2.0 };
+            let held_s = if goes_on { passed_s } else { row.dwell_s }.unwrap_or(0.0) + read_s;
+            match passed_s {
+                Some(passed_s) => crept.hold(&[0.0; CHANNELS], passed_s - held_s - read_s, time_s),
+                None if !goes_on => crept = Crept::default(),
+                None => {}
+            }
+            let read_uv = || row.uv.filter(|_| !part.is_zero(at));
+            let strain_uv = known(at).or_else(read_uv).unwrap_or_default();
+            crept.hold(&strain_uv, held_s, time_s);
+            let state_uv = crept.state_uv;
+            crept.hold(&strain_uv, read_s, time_s);
+            before = Some(row);
+            [state_uv]
+        };
+        (part.first..part.first + part.rows).map(&mut follow).collect()
+    }
+
     /// The tables relative to the untouched pad and without friction.
     pub fn freed(&self, friction: &Friction) -> Table {
         let mut freed = self.tared.clone();
-        let lags = self.lags(&self.states(friction, |_| None));
+        let lags = self.relative(&self.states(friction, |_| None));
         for (row, lags) in freed.rows.iter_mut().zip(lags) {
             row.uv = row.uv.map(|uv| without(uv, friction, &lags));
         }
@@ -139,15 +209,15 @@ impl Recording {
     pub fn states(&self, friction: &Friction, known: impl Fn(usize) -> Option<[f64; CHANNELS]>) -> Vec<Lags> {
         let mut states = vec![[[0.0; CHANNELS]; PLAYS]; self.tared.rows.len()];
         for _ in 0..ROUNDS {
-            states = self.walk(friction, &self.lags(&states), &known);
+            states = self.walk(friction, &self.relative(&states), &known);
         }
         states
     }
 
-    /// These states relative to those of the untouched pad. What friction added to a row's tared channels is the sum of
-    /// shares times this.
-    pub fn lags(&self, states: &[Lags]) -> Vec<Lags> {
-        let relative = |part: &Part| -> Vec<Lags> {
+    /// These states relative to those of the untouched pad. What friction or creep added to a row's tared channels is the sum
+    /// of shares times this.
+    pub fn relative<const N: usize>(&self, states: &[[[f64; CHANNELS]; N]]) -> Vec<[[f64; CHANNELS]; N]> {
+        let relative = |part: &Part| -> Vec<[[f64; CHANNELS]; N]> {
             let states = &states[part.first..][..part.rows];
             (0..part.rows).map(|at| part.relative(states, at)).collect()
         };
@@ -208,11 +278,11 @@ impl Part {
     }
 
     /// A state relative to that of the untouched pad, which without its reading is one at rest.
-    fn relative(&self, states: &[Lags], at: usize) -> Lags {
-        std::array::from_fn(|play| {
+    fn relative<const N: usize>(&self, states: &[[[f64; CHANNELS]; N]], at: usize) -> [[f64; CHANNELS]; N] {
+        std::array::from_fn(|term| {
             let zero_uv =
-                self.zeros.as_ref().map_or([0.0; CHANNELS], |zeros| zeros.at(at, |zero| states[zero][play]));
-            std::array::from_fn(|channel| states[at][play][channel] - zero_uv[channel])
+                self.zeros.as_ref().map_or([0.0; CHANNELS], |zeros| zeros.at(at, |zero| states[zero][term]));
+            std::array::from_fn(|channel| states[at][term][channel] - zero_uv[channel])
         })
     }
 }

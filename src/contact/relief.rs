@@ -1,4 +1,4 @@
-//! Friction taken off in play.
+//! Friction and creep taken off in play.
 //!
 //! A table of contacts is whole before it is decoded; in play nothing is known but what came so far. Two things help.
 //! While nothing touches the pad its strain is zero, so the play operators stay where the last press left them, and what
@@ -6,28 +6,37 @@
 //! not known, but each press narrows it down: it is followed from both ends of what it can be, and once the two have met,
 //! the zero that was taken before is mended (see [`Rest`]).
 
+use super::creep::{Creep, Crept, NO_CREEP};
 use super::friction::{Friction, History, NO_FRICTION};
 use crate::quantity::{CHANNELS, Strain};
 use crate::signal::tare::Rest;
+use crate::time::StreamInstant;
 
-/// What a pad remembers, followed sample by sample. There is no time in it.
+/// What a pad remembers, followed sample by sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Relief {
     friction: Friction,
+    creep: Creep,
     is_none: bool,
     likely: History,
     /// From the lowest and the highest states that there can be.
     ends: [History; 2],
+    crept: Crept,
+    /// Of the sample before.
+    at: Option<StreamInstant>,
 }
 
 impl Relief {
     /// Of a pad of which nothing is known yet; it is thought never to have been pressed.
-    pub fn of(friction: &Friction) -> Self {
+    pub fn of(friction: &Friction, creep: &Creep) -> Self {
         let mut relief = Self {
             friction: *friction,
-            is_none: *friction == NO_FRICTION,
+            creep: *creep,
+            is_none: *friction == NO_FRICTION && *creep == NO_CREEP,
             likely: History::default(),
             ends: [History::default(); 2],
+            crept: Crept::default(),
+            at: None,
         };
         relief.doubt();
         relief
@@ -50,27 +59,31 @@ impl Relief {
             let plays = self.friction.iter().zip(low.state_uv.iter().zip(&high.state_uv));
             plays.map(|(play, (low, high))| play.share[k].abs() * (high[k] - low[k]) / 2.0).sum()
         };
-        Rest {
-            uv: self.likely.added_uv(&self.friction, &[0.0; CHANNELS]),
-            doubt_uv: std::array::from_fn(doubt_uv),
-        }
+        let (lag_uv, crept_uv) =
+            (self.likely.added_uv(&self.friction, &[0.0; CHANNELS]), self.crept.added_uv(&self.creep));
+        Rest { uv: std::array::from_fn(|k| lag_uv[k] + crept_uv[k]), doubt_uv: std::array::from_fn(doubt_uv) }
     }
 
-    /// What these channels would read without friction.
+    /// What these channels would read without friction and creep.
     pub fn freed(&self, strain: &Strain) -> Strain {
         if self.is_none {
             return *strain;
         }
-        let free_uv = self.likely.freed(&self.friction, &strain.uv.map(f64::from));
+        let crept_uv = self.crept.added_uv(&self.creep);
+        let read_uv = std::array::from_fn(|k| f64::from(strain.uv[k]) - crept_uv[k]);
+        let free_uv = self.likely.freed(&self.friction, &read_uv);
         Strain { uv: free_uv.map(|uv| uv as f32) }
     }
 
-    /// Goes on to a strain without friction; `None` if nothing touches the pad.
-    pub fn follow(&mut self, free: Option<&Strain>) {
+    /// Goes on to a strain without friction and creep, at this time; `None` if nothing touches the pad.
+    pub fn follow(&mut self, at: StreamInstant, free: Option<&Strain>) {
         if self.is_none {
             return;
         }
+        let passed_us = self.at.map_or(0, |before| at.us_since(before));
+        self.at = Some(at);
         let free_uv = free.map_or([0.0; CHANNELS], |free| free.uv.map(f64::from));
+        self.crept.hold(&free_uv, passed_us as f64 * 1e-6, self.creep.time_s);
         self.likely.follow(&self.friction, &free_uv);
         self.ends.iter_mut().for_each(|end| end.follow(&self.friction, &free_uv));
     }
@@ -86,11 +99,11 @@ mod tests {
 
     #[test]
     fn a_press_says_where_friction_is() {
-        let mut relief = Relief::of(&FRICTION);
+        let mut relief = Relief::of(&FRICTION, &NO_CREEP);
         assert_eq!(relief.rest(), Rest { uv: [0.0; CHANNELS], doubt_uv: [50.0; CHANNELS] });
         let mut known = |press_uv: f32| {
-            relief.follow(Some(&Strain { uv: [press_uv; CHANNELS] }));
-            relief.follow(None);
+            relief.follow(StreamInstant::default(), Some(&Strain { uv: [press_uv; CHANNELS] }));
+            relief.follow(StreamInstant::default(), None);
             (relief.rest().uv[0], relief.rest().doubt_uv[0])
         };
         assert_eq!(known(400.0), (0.0, 37.5), "a weak one says a little");
@@ -102,10 +115,29 @@ mod tests {
     }
 
     #[test]
+    fn a_long_press_does_not_creep_and_leaves_nothing() {
+        let creep = Creep { time_s: 8.0, share: 0.01 };
+        let (mut relief, mut pad) = (Relief::of(&NO_FRICTION, &creep), Crept::default());
+        let mut at = StreamInstant::default();
+        for ms in 0..60_000 {
+            let pressed_uv = if (5_000..35_000).contains(&ms) { 2000.0 } else { 0.0 };
+            let read_uv = pressed_uv + pad.added_uv(&creep)[0];
+            let free = relief.freed(&Strain { uv: [read_uv as f32; CHANNELS] });
+            assert!((f64::from(free.uv[0]) - pressed_uv).abs() < 0.05, "{ms} ms: {}", free.uv[0]);
+            if ms == 35_500 {
+                assert!((relief.rest().uv[0] - read_uv).abs() < 0.05 && read_uv > 15.0, "{read_uv}");
+            }
+            relief.follow(at, (pressed_uv > 0.0).then_some(&free));
+            pad.hold(&[pressed_uv; CHANNELS], 1e-3, creep.time_s);
+            at = at.plus_us(1_000);
+        }
+    }
+
+    #[test]
     fn a_pad_without_friction_passes() {
-        let mut relief = Relief::of(&NO_FRICTION);
+        let mut relief = Relief::of(&NO_FRICTION, &NO_CREEP);
         let strain = Strain { uv: [0.1; CHANNELS] };
-        relief.follow(Some(&strain));
+        relief.follow(StreamInstant::default(), Some(&strain));
         assert_eq!((relief.freed(&strain), relief.rest()), (strain, Rest::NONE));
     }
 }

@@ -55,13 +55,14 @@ fn live(bencher: &mut Bencher<'_>, field: &InfluenceField, strain: &Strain) {
     let play = Play { threshold_uv: [800.0; CHANNELS], share: [0.03; CHANNELS] };
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let inverse = Inverse::new(field.clone(), noise, [play; PLAYS]);
-    let (mut relief, mut watch) = (Relief::of(inverse.friction()), Watch::new(Some(&inverse)));
+    let (mut relief, mut watch) =
+        (Relief::of(inverse.friction(), inverse.creep()), Watch::new(Some(&inverse)));
     let (mut health, mut at) = (Health::default(), StreamInstant::default());
     bencher.iter(|| {
         at = at.plus_us(1_000);
         let free = relief.freed(black_box(strain));
         let explained = inverse.explain(&free);
-        relief.follow(Some(&free));
+        relief.follow(at, Some(&free));
         if let Some(explained) = &explained {
             watch.see(at, &free, explained, true, &inverse, &mut health);
         }

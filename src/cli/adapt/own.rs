@@ -11,6 +11,7 @@ use crate::calibration::warmth::Warmth;
 use crate::cli::field_cache::field_of;
 use crate::cli::{Failure, decoder_file};
 use crate::contact::Decoder;
+use crate::contact::creep::{Creep, NO_CREEP};
 use crate::contact::friction::Play;
 use crate::contact::inverse::Inverse;
 use crate::contact::regression::Target;
@@ -33,6 +34,8 @@ struct Pad {
     background_share: f64,
     /// Play operators: threshold and share, as means over the channels.
     friction: Vec<Friction>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    creep: Option<FoundCreep>,
     parameters: Vec<Found>,
     /// What the untouched pad reads, where no row reads it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -57,6 +60,13 @@ struct FoundThermal {
 #[derive(Serialize)]
 struct Friction {
     threshold_uv: f64,
+    share: f64,
+}
+
+/// What a load adds to itself in the end.
+#[derive(Clone, Copy, Serialize)]
+struct FoundCreep {
+    time_s: f64,
     share: f64,
 }
 
@@ -128,6 +138,7 @@ impl Pad {
             |play: &Play| Friction { threshold_uv: mean(&play.threshold_uv), share: mean(&play.share) };
         Self {
             friction: calibration.friction.iter().map(friction).filter(|it| it.share > 0.0).collect(),
+            creep: FoundCreep::of(&calibration.creep),
             gain: calibration.gain,
             noise_uv: calibration.noise.additive_uv,
             noise_share: calibration.noise.share,
@@ -137,6 +148,13 @@ impl Pad {
             field_from_earlier: calibration.from_earlier,
             parameters: calibration.physical.iter().map(found).collect(),
         }
+    }
+}
+
+impl FoundCreep {
+    fn of(creep: &Creep) -> Option<Self> {
+        let Creep { time_s, share } = *creep;
+        (*creep != NO_CREEP).then_some(Self { time_s, share })
     }
 }
 
@@ -185,6 +203,9 @@ impl fmt::Display for Fit {
         }
         for Friction { threshold_uv, share } in &pad.friction {
             writeln!(f, "friction: {:.2} % of what is beyond {threshold_uv:.0} µV", 100.0 * share)?;
+        }
+        if let Some(FoundCreep { time_s, share }) = pad.creep {
+            writeln!(f, "creep: {:+.2} % of a load, with a relaxation time of {time_s} s", 100.0 * share)?;
         }
         if let Some(zero_uv) = &pad.zero_uv {
             writeln!(f, "untouched: {zero_uv:.0?} µV, told by the contacts")?;

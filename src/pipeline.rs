@@ -12,6 +12,7 @@ use firmware_proto::sample::Sample;
 
 use crate::contact::Decoder;
 use crate::contact::relief::Relief;
+use crate::contact::thermometer::Thermometer;
 use crate::contact::touch::{Touch, TouchState};
 use crate::contact::watch::{Warning, Watch};
 use crate::control::OutputEvent;
@@ -87,6 +88,7 @@ pub struct Pipeline {
     link: Link,
     signal: Signal,
     relief: Relief,
+    thermometer: Thermometer,
     decoder: Decoder,
     touch: Touch,
     watch: Watch,
@@ -112,6 +114,7 @@ impl Pipeline {
             link: Link::new(),
             signal: Signal::new(profile.filter_samples),
             relief: Relief::of(decoder.friction(), decoder.creep()),
+            thermometer: Thermometer::of(decoder.thermal()),
             watch: Watch::new(decoder.inverse()),
             decoder,
             touch: Touch::new(),
@@ -163,6 +166,7 @@ impl Pipeline {
         (self.identity, self.refusal) = (None, None);
         self.signal.forget_pad();
         self.relief = Relief::of(self.decoder.friction(), self.decoder.creep());
+        self.thermometer = Thermometer::of(self.decoder.thermal());
         self.watch = Watch::new(self.decoder.inverse());
     }
 
@@ -294,9 +298,11 @@ impl Pipeline {
 
     fn handle_sample<P: Probe>(&mut self, sample: &Sample, probe: &mut P) {
         let (touched, rest) = (self.touch.is_touched(), self.relief.rest());
-        match self.signal.condition(self.at, sample, touched, &rest, &mut self.health) {
+        self.thermometer.follow(self.at, sample, touched);
+        let added_uv = self.thermometer.added_uv();
+        match self.signal.condition(self.at, sample, touched, &rest, &added_uv, &mut self.health) {
             Conditioned::Strain(strain) => {
-                let strain = self.relief.freed(&strain);
+                let strain = self.relief.freed(&self.thermometer.at_reference(&strain));
                 let (contact, explained) = self.decoder.explain(&strain);
                 probe.mark(Stage::Contact);
                 self.phase = Phase::Playing;

@@ -6,6 +6,7 @@ mod decoders;
 use tactpad::contact::Decoder;
 use tactpad::contact::friction::{PLAYS, Play};
 use tactpad::contact::inverse::Inverse;
+use tactpad::contact::thermal::Thermal;
 use tactpad::contact::uncertainty::Noise;
 use tactpad::device::Device;
 use tactpad::field::PadField;
@@ -26,10 +27,12 @@ fn ten_seconds_of_play_allocate_nothing() {
 }
 
 #[test]
-fn friction_and_warnings_allocate_nothing() {
+fn friction_warmth_and_warnings_allocate_nothing() {
     let play = Play { threshold_uv: [300.0; CHANNELS], share: [0.03; CHANNELS] };
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
-    let inverse = Inverse::new(PadField::nominal().signals, noise, [play; PLAYS]);
+    let thermal =
+        Thermal { reference_c: 20.0, zero_uv_per_c: [50.0; CHANNELS], gain_per_c: [-5e-4; CHANNELS] };
+    let inverse = Inverse::new(PadField::nominal().signals, noise, [play; PLAYS]).of_pad(None, Some(thermal));
     let mut device = Device::nominal();
     device.modules[1].gain[2] = 0.0;
     let health = plays_without_allocating("contra", Decoder::Inverse(Box::new(inverse)), &device);

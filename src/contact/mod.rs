@@ -11,6 +11,7 @@ pub mod regression;
 pub mod relief;
 pub mod statics;
 pub mod thermal;
+pub mod thermometer;
 pub mod touch;
 pub mod uncertainty;
 pub mod watch;

@@ -115,27 +115,29 @@ impl Signal {
     }
 
     /// Conditions one sample. `touched` says whether a contact is under way: the zero is followed only while not. `rest` is
-    /// what the pad reads then.
+    /// what the pad reads then, and `added_uv` what is known to be added to the channels at any time: it is taken off first.
     pub fn condition(
         &mut self,
         at: StreamInstant,
         sample: &Sample,
         touched: bool,
         rest: &Rest,
+        added_uv: &[f64; CHANNELS],
         health: &mut Health,
     ) -> Conditioned {
         if self.faults.check(sample, self.scale.count_bits, health) {
             self.filter.clear();
             return Conditioned::Faulty;
         }
+        let uv_per_count = self.scale.uv_per_count;
+        let raw_uv =
+            |counts: [f64; CHANNELS]| std::array::from_fn(|k| counts[k] * uv_per_count - added_uv[k]);
         let mean = self.filter.push(&sample.counts);
         if self.tare.is_known() {
-            let raw_uv = mean.map(|counts| counts * self.scale.uv_per_count);
-            let uv = self.tare.apply(at, &raw_uv, touched, rest);
+            let uv = self.tare.apply(at, &raw_uv(mean), touched, rest);
             return Conditioned::Strain(Strain { uv });
         }
-        let raw_uv: [f64; CHANNELS] = sample.counts.map(|count| f64::from(count) * self.scale.uv_per_count);
-        if self.tare.measure(at, &raw_uv, rest) {
+        if self.tare.measure(at, &raw_uv(sample.counts.map(f64::from)), rest) {
             self.faults.forget_rest();
         }
         if self.tare.is_known() {

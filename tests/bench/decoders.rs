@@ -9,9 +9,13 @@ mod decoders;
 use std::hint::black_box;
 
 use criterion::{Bencher, Criterion, criterion_group, criterion_main};
+use firmware_proto::sample::{Sample, Status};
+use tactpad::contact::creep::Creep;
 use tactpad::contact::friction::{PLAYS, Play};
 use tactpad::contact::inverse::Inverse;
 use tactpad::contact::relief::Relief;
+use tactpad::contact::thermal::Thermal;
+use tactpad::contact::thermometer::Thermometer;
 use tactpad::contact::uncertainty::Noise;
 use tactpad::contact::watch::Watch;
 use tactpad::field::PadField;
@@ -55,12 +59,24 @@ fn live(bencher: &mut Bencher<'_>, field: &InfluenceField, strain: &Strain) {
     let play = Play { threshold_uv: [800.0; CHANNELS], share: [0.03; CHANNELS] };
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let inverse = Inverse::new(field.clone(), noise, [play; PLAYS]);
-    let (mut relief, mut watch) =
-        (Relief::of(inverse.friction(), inverse.creep()), Watch::new(Some(&inverse)));
+    let creep = Creep { time_s: 8.0, share: 0.01 };
+    let (mut relief, mut watch) = (Relief::of(inverse.friction(), &creep), Watch::new(Some(&inverse)));
+    let thermal =
+        Thermal { reference_c: 20.0, zero_uv_per_c: [50.0; CHANNELS], gain_per_c: [-5e-4; CHANNELS] };
+    let mut thermometer = Thermometer::of(Some(&thermal));
+    let sample = Sample {
+        sequence: 0,
+        time_us: 0,
+        counts: [0; CHANNELS],
+        temperature_centi_c: 2_500,
+        status: Status::OK,
+    };
     let (mut health, mut at) = (Health::default(), StreamInstant::default());
     bencher.iter(|| {
         at = at.plus_us(1_000);
-        let free = relief.freed(black_box(strain));
+        thermometer.follow(at, black_box(&sample), true);
+        black_box(thermometer.added_uv());
+        let free = relief.freed(&thermometer.at_reference(black_box(strain)));
         let explained = inverse.explain(&free);
         relief.follow(at, Some(&free));
         if let Some(explained) = &explained {
@@ -77,7 +93,7 @@ fn decode(criterion: &mut Criterion) {
     for (name, decoder) in decoders::each() {
         group.bench_function(name, |bencher| bencher.iter(|| decoder.decode(black_box(&strain))));
     }
-    group.bench_function("inverse, friction taken off", |bencher| live(bencher, &field, &strain));
+    group.bench_function("inverse, all of the live path", |bencher| live(bencher, &field, &strain));
     let layers = layers();
     group.bench_function("plain loop", |bencher| bencher.iter(|| plain(&layers, black_box(&strain.uv))));
     #[cfg(feature = "foreign-onnx")]

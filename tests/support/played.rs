@@ -25,7 +25,9 @@ pub(crate) struct Played {
     pub(crate) pipeline: Pipeline,
     pad: TwinPad,
     hands: [Hand; 2],
-    around: Circumstances,
+    pub(crate) around: Circumstances,
+    /// What the pad tells of its temperature; nothing if it does not know.
+    pub(crate) told_c: fn(f64) -> Option<f64>,
     pub(crate) now_ms: u64,
     sequence: u32,
 }
@@ -39,6 +41,7 @@ impl Played {
             pad: TwinPad::new(device, field, seed),
             hands: [seed, seed + 1_000].map(|seed| Hand::new(device.behaviour.finger, seed)),
             around: Circumstances { temperature_c: device.behaviour.thermal.reference_c, cycles: 0.0 },
+            told_c: Some,
             now_ms: 0,
             sequence: 0,
         }
@@ -46,25 +49,32 @@ impl Played {
 
     /// Fingers press so for a millisecond.
     pub(crate) fn millisecond(&mut self, contacts: &[Contact]) {
+        let frame = self.frame(contacts);
+        let now = HostInstant::default().plus_us(1_000 * self.now_ms);
+        let mut rest = &frame[..];
+        while !rest.is_empty() {
+            rest = &rest[self.pipeline.handle_bytes(now, rest, &mut NoProbe)..];
+        }
+    }
+
+    /// The same; what the pad sends is not heard yet.
+    pub(crate) fn frame(&mut self, contacts: &[Contact]) -> Vec<u8> {
         let hands = self.hands.iter_mut().zip(contacts);
         let held: Vec<Contact> = hands.map(|(hand, contact)| hand.hold(1e-3, contact)).collect();
         let uv = self.pad.read_all(1e-3, &held, &self.around);
         self.now_ms += 1;
         self.sequence = self.sequence.wrapping_add(1);
+        let told_c = (self.told_c)(self.around.temperature_c);
         let sample = Sample {
             sequence: self.sequence,
             time_us: 1_000 * self.now_ms,
             counts: uv.map(|uv| (uv / UV_PER_COUNT).round() as i32),
-            temperature_centi_c: 2_500,
-            status: Status::OK,
+            temperature_centi_c: (100.0 * told_c.unwrap_or_default()).round() as i16,
+            status: told_c.map_or(Status::OK.with_temperature_invalid(), |_| Status::OK),
         };
         let mut frame = [0; ENCODED_MAX];
         let length = encode_message(&Message::Sample(sample), &mut frame);
-        let now = HostInstant::default().plus_us(1_000 * self.now_ms);
-        let mut rest = &frame[..length];
-        while !rest.is_empty() {
-            rest = &rest[self.pipeline.handle_bytes(now, rest, &mut NoProbe)..];
-        }
+        frame[..length].to_vec()
     }
 
     pub(crate) fn rest(&mut self, ms: u64) {

@@ -33,7 +33,7 @@ const FINGER: Contact = Contact { x_mm: 6.0, y_mm: -9.0, fx_n: 0.2, fy_n: 0.1, f
 fn decoder(thermal: Option<Thermal>) -> Decoder {
     let noise = Noise::of_channels([3.0; CHANNELS], [0.002; CHANNELS]);
     let inverse = Inverse::new(PadField::nominal().signals, noise, NO_FRICTION);
-    Decoder::Inverse(Box::new(inverse.of_pad(None, thermal)))
+    Decoder::Inverse(Box::new(inverse.of_pad(None, thermal, NO_CREEP)))
 }
 
 /// A pad that was tared at 25 °C.

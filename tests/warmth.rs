@@ -8,6 +8,7 @@ use std::convert::Infallible;
 
 use played::Played;
 use tactpad::capture::{CallKind, CallRef, CaptureReader, CaptureWriter};
+use tactpad::contact::creep::NO_CREEP;
 use tactpad::contact::friction::NO_FRICTION;
 use tactpad::contact::inverse::Inverse;
 use tactpad::contact::thermal::Thermal;

@@ -4,6 +4,7 @@
 mod decoders;
 
 use tactpad::contact::Decoder;
+use tactpad::contact::creep::Creep;
 use tactpad::contact::friction::{PLAYS, Play};
 use tactpad::contact::inverse::Inverse;
 use tactpad::contact::thermal::Thermal;
@@ -32,7 +33,9 @@ fn friction_warmth_and_warnings_allocate_nothing() {
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let thermal =
         Thermal { reference_c: 20.0, zero_uv_per_c: [50.0; CHANNELS], gain_per_c: [-5e-4; CHANNELS] };
-    let inverse = Inverse::new(PadField::nominal().signals, noise, [play; PLAYS]).of_pad(None, Some(thermal));
+    let creep = Creep { time_s: 8.0, share: 0.01 };
+    let inverse =
+        Inverse::new(PadField::nominal().signals, noise, [play; PLAYS]).of_pad(None, Some(thermal), creep);
     let mut device = Device::nominal();
     device.modules[1].gain[2] = 0.0;
     let health = plays_without_allocating("contra", Decoder::Inverse(Box::new(inverse)), &device);

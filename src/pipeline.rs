@@ -315,11 +315,13 @@ impl Pipeline {
             }
             Conditioned::Taring => {
                 self.phase = Phase::Taring;
+                self.relief.wait(self.at);
                 self.watch.interrupt();
                 self.map(None);
             }
             Conditioned::Faulty => {
                 self.phase = Phase::Faulty;
+                self.relief.wait(self.at);
                 self.distrust();
             }
         }

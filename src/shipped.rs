@@ -21,7 +21,7 @@ const SCDF: &str = "scdf";
 
 /// How far a pad's channels are from those of the nominal one, as a share of each: gains of a pad made by hand.
 const PAD_SHARE: f64 = 0.1;
-/// What a channel takes over from the others: 2 % of what a z channel reads of a newton over its module.
+/// What a channel takes over from the others: 1 % of what a z channel reads of a newton over its module.
 const CROSSTALK_UV_PER_N: f64 = 20.0;
 /// How far all its channels are together: the authors' earlier pad has gains of 0.83 to 1.33.
 const PAD_GAIN: f64 = 0.2;

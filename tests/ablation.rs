@@ -181,8 +181,22 @@ fn rows_are_what_twin_adapt_and_evaluate_give() {
             assert_eq!(found.is_some(), method == "inverse");
         }
     }
+    untared(folder, &report);
     assert_eq!(row(&report, "network", "648")["paper"]["position_mae_mm"], 1.97);
     what_is_written(folder, &report);
+}
+
+/// The network of stage I on channels as they are.
+fn untared(folder: &Path, report: &Value) {
+    let mut raw = network().clone();
+    raw.zero = Zero::Raw;
+    fs::write(folder.join("raw.onnx"), onnx::write(&raw)).unwrap();
+    let line = "evaluate --decoder raw.onnx --measured paper.csv --truth paper-truth.csv --json";
+    assert_same(
+        &row(report, "network", "untared")["unseen"][0]["truth"],
+        &document(folder, line)["truth"],
+        "untared",
+    );
 }
 
 fn what_is_written(folder: &Path, report: &Value) {

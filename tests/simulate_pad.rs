@@ -1,4 +1,5 @@
 //! `tactpad simulate` on pads other than the nominal one, and the cache of their fields.
+#![cfg(feature = "simulator")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
 
 use std::fs;

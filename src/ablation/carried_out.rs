@@ -4,13 +4,11 @@ use super::Subject;
 use crate::contact::Decoder;
 use crate::contact::recording::Recording;
 use crate::measured::{Label, Row, Table};
-use crate::network::Zero;
 use crate::twin::measurement::{Measurement, carry_out};
 
 /// What was measured, and what was true, row for row.
 #[derive(Clone, Debug)]
 pub(super) struct CarriedOut {
-    raw: Vec<Row>,
     pub(super) recording: Recording,
     pub(super) truths: Vec<Label>,
 }
@@ -21,16 +19,12 @@ impl CarriedOut {
     pub(super) fn of(subject: &Subject<'_>, plan: &Table, seed: u64) -> Self {
         let pad = subject.actual;
         let Measurement { table, truth } = carry_out(plan, pad.device, pad.field, seed);
-        let raw = table.rows.clone();
         let recording = Recording::of(table, pad.device.contact.full_scale_n);
-        Self { raw, recording: recording.expect("a plan begins with the untouched pad"), truths: truth }
+        Self { recording: recording.expect("a plan begins with the untouched pad"), truths: truth }
     }
 
     /// All rows as the decoder takes them.
     pub(super) fn taken(&self, decoder: &Decoder) -> Vec<Row> {
-        match decoder.zero() {
-            Zero::Raw => self.raw.clone(),
-            Zero::Tared => self.recording.taken(decoder).rows,
-        }
+        self.recording.taken(decoder).rows
     }
 }

@@ -163,7 +163,8 @@ pub fn fit(
             best = Some((evidence, Calibration::of(&prepared, &problem, &found, from_earlier)));
         }
     }
-    best.map(|(_, calibration)| calibration).ok_or(FitError::Senseless)
+    let is_sound = |it: &Calibration| it.warmth.is_none_or(|warmth| warmth.thermal.is_sound());
+    best.map(|(_, calibration)| calibration).filter(is_sound).ok_or(FitError::Senseless)
 }
 
 /// What a pad may be like.

@@ -197,7 +197,7 @@ impl Layout {
         })
     }
 
-    /// What a contact does to the channels but for friction, beyond their zeros.
+    /// What a contact does to the channels but for friction and creep, beyond their zeros.
     pub(super) fn loaded_uv(&self, values: &[f64], scale: &Maps, contact: &Measured) -> [f64; CHANNELS] {
         self.maps(values, scale, &contact.place).map(|map| loaded(&map, &contact.force_n))
     }

@@ -196,7 +196,7 @@ impl<'f> Problem<'f> {
         found.filter(|fit| fit.values.iter().all(|value| value.is_finite()))
     }
 
-    /// Takes the lags of these numbers' friction.
+    /// Takes what friction and creep made of the way, by these numbers.
     fn walk(&mut self, values: &[f64], settings: &Settings) {
         if settings.thresholds_uv == [0.0; PLAYS] && settings.creep_time_s == 0.0 {
             return;
@@ -295,7 +295,7 @@ impl<'f> Problem<'f> {
         self.contacts.iter().map(|(_, contact)| self.residual(values, contact)).collect()
     }
 
-    /// Every jump of a zero: the channel, what friction leaves over of it, the variance of that, the slopes.
+    /// Every jump of a zero: the channel, what friction and creep leave over of it, the variance of that, the slopes.
     fn each_jump(
         &self,
         values: &[f64],
@@ -320,7 +320,7 @@ impl<'f> Problem<'f> {
         (1.0 - taken / (CHANNELS * self.contacts.len()) as f64).max(FREEDOM_MIN)
     }
 
-    /// How much each channel's zero drifts from one reading to the next: the median of what friction does not explain.
+    /// How much each channel's zero drifts from one reading to the next: the median of what friction and creep do not explain.
     fn drift_uv(&self, values: &[f64]) -> [f64; CHANNELS] {
         let mut rests = [const { Vec::new() }; CHANNELS];
         self.each_jump(values, &[DRIFT_UV; CHANNELS], |channel, rest, _, _| rests[channel].push(rest.abs()));

@@ -90,16 +90,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if *json { print_json(&report) } else { print(&report) }
 }
 
-/// The table as the decoder takes it: raw if it learnt so; else relative to the untouched pad, free of friction, and as it
-/// were at the decoder's temperature. `None` if nothing says what the untouched pad reads.
+/// The table as the decoder takes it. `None` if nothing says what the untouched pad reads, and the decoder has to know.
 fn taken(decoder: &Decoder, table: &Table, device: &Device) -> Option<Table> {
-    if decoder.zero() == Zero::Raw {
-        return Some(table.clone());
-    }
     let full_scale_n = device.contact.full_scale_n;
     let raw = || Recording::raw(table.clone(), full_scale_n);
     let recording = Recording::of(table.clone(), full_scale_n)
-        .or_else(|| decoder.zero_uv().map(|zero_uv| raw().less(zero_uv)))?;
+        .or_else(|| decoder.zero_uv().map(|zero_uv| raw().less(zero_uv)))
+        .or_else(|| (decoder.zero() == Zero::Raw).then(raw))?;
     Some(recording.taken(decoder))
 }
 

@@ -16,7 +16,7 @@ use crate::network::Zero;
 use crate::quantity::{CHANNELS, Contact};
 
 /// First bytes of a file; the number grows with every change of the form.
-pub const MAGIC: &[u8] = b"tactpad decoder 3\n";
+pub const MAGIC: &[u8] = b"tactpad decoder 4\n";
 
 const INVERSE: &[u8] = b"inverse";
 const LINEAR: &[u8] = b"linear";
@@ -147,11 +147,12 @@ fn read_channels(from: &mut Reader<'_>) -> Option<[f64; CHANNELS]> {
 }
 
 fn read_thermal(from: &mut Reader<'_>) -> Option<Thermal> {
-    Some(Thermal {
-        reference_c: from.double().filter(|temp_c| temp_c.is_finite())?,
+    let thermal = Thermal {
+        reference_c: from.double()?,
         zero_uv_per_c: read_channels(from)?,
         gain_per_c: read_channels(from)?,
-    })
+    };
+    Some(thermal).filter(Thermal::is_sound)
 }
 
 fn read_creep(from: &mut Reader<'_>) -> Option<Creep> {

@@ -9,16 +9,14 @@ use super::creep::{Creep, Crept, NO_CREEP};
 use super::friction::{Friction, History, PLAYS};
 use super::thermal::Thermal;
 use crate::measured::zero::{self, Zeros};
-use crate::measured::{Approach, Row, Table};
+use crate::measured::{Approach, DWELL_S, READ_S, Row, Table};
+use crate::network::Zero;
 use crate::quantity::CHANNELS;
 
 /// Rounds in which strains and what friction does to them are made to agree.
 const ROUNDS: usize = 4;
 /// A static load that is reached downwards comes from full scale, and from this much more than itself at least.
 const OVERLOAD_MIN: f64 = 1.2;
-
-/// How long a static load is read. Its time is the end of that.
-const READING_S: f64 = 1.0;
 
 /// For each play operator and channel: its state beside the strain, relative to the same of the untouched pad.
 pub type Lags = [[f64; CHANNELS]; PLAYS];
@@ -29,7 +27,8 @@ pub type Untouched = (usize, [f64; CHANNELS]);
 /// Tables, one after the other.
 #[derive(Clone, Debug)]
 pub struct Recording {
-    /// All rows; of names only those of the first table.
+    /// All rows, as they were measured; of names only those of the first table.
+    raw: Table,
     tared: Table,
     parts: Vec<Part>,
     full_scale_n: f64,
@@ -49,6 +48,33 @@ struct Part {
     contacts: Vec<usize>,
 }
 
+/// How long a row's load is held before the middle of its reading and after, and how long the pad rests before; `None`: nobody
+/// knows, so long.
+struct Stay {
+    rest_s: Option<f64>,
+    before_s: f64,
+    after_s: f64,
+}
+
+impl Stay {
+    fn of(row: &Row, before: Option<&Row>) -> Self {
+        let passed_s = before.and_then(|before| Some(row.t_s? - before.t_s?)).filter(|s| *s >= 0.0);
+        if row.trial.is_some() && before.is_some_and(|before| before.trial == row.trial) {
+            return Self { rest_s: Some(0.0), before_s: passed_s.unwrap_or(0.0), after_s: 0.0 };
+        }
+        let (dwell_s, read_s) =
+            (row.dwell_s.unwrap_or(DWELL_S), if row.trial.is_none() { READ_S } else { 0.0 });
+        let held_s = dwell_s + read_s;
+        // No load is held for longer than there was time.
+        let share = passed_s.map_or(1.0, |passed_s| (passed_s / held_s.max(f64::MIN_POSITIVE)).min(1.0));
+        Self {
+            rest_s: passed_s.map(|passed_s| passed_s - share * held_s),
+            before_s: share * (dwell_s + read_s / 2.0),
+            after_s: share * read_s / 2.0,
+        }
+    }
+}
+
 impl Recording {
     /// `None` if the table never reads the untouched pad. `full_scale_n` is the pad's largest force.
     pub fn of(raw: Table, full_scale_n: f64) -> Option<Self> {
@@ -56,14 +82,14 @@ impl Recording {
         let readings = zeros.rows().iter().filter_map(|at| Some((*at, raw.rows.get(*at)?.uv?))).collect();
         let (rows, contacts) = (raw.rows.len(), zero::contacts(&raw));
         let part = Part { first: 0, rows, zeros: Some(zeros), readings, contacts };
-        Some(Self { tared, parts: vec![part], full_scale_n })
+        Some(Self { raw, tared, parts: vec![part], full_scale_n })
     }
 
     /// A table that need not read the untouched pad. Its channels stay raw.
     pub fn raw(raw: Table, full_scale_n: f64) -> Self {
         let (rows, contacts) = (raw.rows.len(), zero::contacts(&raw));
         let part = Part { first: 0, rows, zeros: None, readings: Vec::new(), contacts };
-        Self { tared: raw, parts: vec![part], full_scale_n }
+        Self { tared: raw.clone(), raw, parts: vec![part], full_scale_n }
     }
 
     /// This recording, and then another one.
@@ -71,6 +97,7 @@ impl Recording {
     pub fn then(mut self, other: Self) -> Self {
         let rows = self.tared.rows.len();
         // Trials of two tables are never the same one, whatever their indices are.
+        self.raw.rows.extend(other.raw.rows);
         self.tared.rows.extend(other.tared.rows);
         let moved = |part: Part| Part { first: part.first + rows, ..part };
         self.parts.extend(other.parts.into_iter().map(moved));
@@ -135,16 +162,30 @@ impl Recording {
         if *creep == NO_CREEP {
             return self;
         }
-        let crept = self.relative(&self.crept(creep.time_s, |_| None));
-        for (row, [state_uv]) in self.tared.rows.iter_mut().zip(crept) {
-            let added_uv = Crept { state_uv }.added_uv(creep);
-            row.uv.iter_mut().flatten().zip(added_uv).for_each(|(uv, added_uv)| *uv -= added_uv);
+        // What is crept to is the strain without creep, so the second round is nearer.
+        let mut free: Vec<Option<[f64; CHANNELS]>> = self.tared.rows.iter().map(|row| row.uv).collect();
+        for _ in 0..2 {
+            let known = |at: usize| free[at].filter(|_| !self.is_zero(at));
+            let crept = self.relative(&self.crept(creep.time_s, known));
+            let without = |(row, [state_uv]): (&Row, [[f64; CHANNELS]; 1])| {
+                let added_uv = Crept { state_uv }.added_uv(creep);
+                row.uv.map(|uv| std::array::from_fn(|k| uv[k] - added_uv[k]))
+            };
+            free = self.tared.rows.iter().zip(crept).map(without).collect();
         }
+        self.tared.rows.iter_mut().zip(free).for_each(|(row, uv)| row.uv = uv);
         self
     }
 
-    /// The tables as a decoder takes them that knows its pad: at its temperature, without creep and friction.
+    fn is_zero(&self, at: usize) -> bool {
+        self.parts.iter().any(|part| (part.first..part.first + part.rows).contains(&at) && part.is_zero(at))
+    }
+
+    /// The tables as a decoder takes them: raw if it learnt so, else at its pad's temperature, without creep and friction.
     pub fn taken(&self, decoder: &Decoder) -> Table {
+        if decoder.zero() == Zero::Raw {
+            return self.raw.clone();
+        }
         let recording = match decoder.thermal() {
             Some(thermal) => self.clone().at_reference(thermal),
             None => self.clone(),
@@ -174,21 +215,16 @@ impl Recording {
         let mut before: Option<&Row> = None;
         let mut follow = |at: usize| {
             let row = &self.tared.rows[at];
-            let passed_s = before.and_then(|before| Some(row.t_s? - before.t_s?)).filter(|s| *s >= 0.0);
-            let goes_on = row.trial.is_some() && before.is_some_and(|before| before.trial == row.trial);
-            let read_s = if goes_on { 0.0 } else { READING_S / 2.0 };
-            let held_s = if goes_on { passed_s } else { row.dwell_s }.unwrap_or(0.0) + read_s;
-            match passed_s {
-                Some(passed_s) => crept.hold(&[0.0; CHANNELS], passed_s - held_s - read_s, time_s),
-                None if !goes_on => crept = Crept::default(),
-                None => {}
+            let Stay { rest_s, before_s, after_s } = Stay::of(row, before.replace(row));
+            match rest_s {
+                Some(rest_s) => crept.hold(&[0.0; CHANNELS], rest_s, time_s),
+                None => crept = Crept::default(),
             }
             let read_uv = || row.uv.filter(|_| !part.is_zero(at));
             let strain_uv = known(at).or_else(read_uv).unwrap_or_default();
-            crept.hold(&strain_uv, held_s, time_s);
+            crept.hold(&strain_uv, before_s, time_s);
             let state_uv = crept.state_uv;
-            crept.hold(&strain_uv, read_s, time_s);
-            before = Some(row);
+            crept.hold(&strain_uv, after_s, time_s);
             [state_uv]
         };
         (part.first..part.first + part.rows).map(&mut follow).collect()

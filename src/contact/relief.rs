@@ -12,6 +12,9 @@ use crate::quantity::{CHANNELS, Strain};
 use crate::signal::tare::Rest;
 use crate::time::StreamInstant;
 
+/// So long without a sample is a silence: a finger that is there after it need not have been there all the time.
+const SILENCE_US: u64 = 100_000;
+
 /// What a pad remembers, followed sample by sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Relief {
@@ -75,17 +78,30 @@ impl Relief {
         Strain { uv: free_uv.map(|uv| uv as f32) }
     }
 
+    /// Time passes until then, in which nobody knows the strain: what has crept fades.
+    pub fn wait(&mut self, at: StreamInstant) {
+        let waited_us = self.passed_us(at);
+        self.crept.hold(&[0.0; CHANNELS], waited_us as f64 * 1e-6, self.creep.time_s);
+    }
+
     /// Goes on to a strain without friction and creep, at this time; `None` if nothing touches the pad.
     pub fn follow(&mut self, at: StreamInstant, free: Option<&Strain>) {
         if self.is_none {
             return;
         }
-        let passed_us = self.at.map_or(0, |before| at.us_since(before));
-        self.at = Some(at);
+        if self.at.is_none_or(|before| at.us_since(before) > SILENCE_US) {
+            self.wait(at);
+        }
+        let passed_us = self.passed_us(at);
         let free_uv = free.map_or([0.0; CHANNELS], |free| free.uv.map(f64::from));
         self.crept.hold(&free_uv, passed_us as f64 * 1e-6, self.creep.time_s);
         self.likely.follow(&self.friction, &free_uv);
         self.ends.iter_mut().for_each(|end| end.follow(&self.friction, &free_uv));
+    }
+
+    /// Since the last time that was told.
+    fn passed_us(&mut self, at: StreamInstant) -> u64 {
+        self.at.replace(at).map_or(0, |before| at.us_since(before))
     }
 }
 

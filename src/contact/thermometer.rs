@@ -10,7 +10,7 @@
 
 use firmware_proto::sample::Sample;
 
-use super::thermal::Thermal;
+use super::thermal::{SENSIBLE_C, Thermal};
 use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
 
@@ -23,8 +23,14 @@ const FASTEST_C_PER_S: f64 = 1.0;
 /// Readings that stay away for so long do not come back: from there on their changes are followed.
 const AWAY_US: u64 = 1_000_000;
 
-/// Electronics of industrial grade work in this range. Beyond it the thermometer is at fault, not the pad.
-const SENSIBLE_C: std::ops::RangeInclusive<f64> = -40.0..=85.0;
+/// So long without a sample is a silence. The zero does not follow anything then either, so a change over it counts whole.
+const SILENCE_US: u64 = 100_000;
+
+/// After a silence readings that agree for so long are taken: contacts are not believed before 50 ms anyway.
+const AWAKE_US: u64 = 40_000;
+
+/// Of an untouched pad the zero follows its readings. After so long without a temperature it has done so without us.
+const ZERO_FOLLOWS_US: u64 = 3_000_000;
 
 /// Followed sample by sample.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +44,12 @@ pub struct Thermometer {
     /// The temperature of the gains; `None` before the pad lay untouched with a known one.
     gains_at_c: Option<f64>,
     at: StreamInstant,
-    /// When the reading was last one that can be.
+    /// When a reading was last taken, and what has passed since then: without samples, and untouched.
     near_at: StreamInstant,
+    silent_us: u64,
+    untold_us: u64,
+    /// Readings far from what is followed, and since when.
+    away: Option<(f64, StreamInstant)>,
 }
 
 impl Thermometer {
@@ -53,6 +63,9 @@ impl Thermometer {
             gains_at_c: None,
             at: start,
             near_at: start,
+            silent_us: 0,
+            untold_us: 0,
+            away: None,
         }
     }
 
@@ -61,25 +74,52 @@ impl Thermometer {
         if self.thermal.is_none() {
             return;
         }
-        // While no samples come the zero is not followed either, so a change over a gap counts whole.
-        let gap_s = at.us_since(self.at) as f64 * 1e-6;
+        let passed_us = at.us_since(self.at);
         self.at = at;
-        let Some(read_c) = reading_c(sample) else { return };
-        let smooth_c = self.smooth_c.get_or_insert(read_c);
-        let apart_c = read_c - *smooth_c;
-        if apart_c.abs() <= FASTEST_C_PER_S * (SMOOTH_S + gap_s) {
-            let elapsed_s = at.us_since(self.near_at) as f64 * 1e-6;
-            let step_c = apart_c * (elapsed_s / SMOOTH_S).min(1.0);
-            *smooth_c += step_c;
-            self.followed_c += step_c;
-            self.gains_at_c = self.gains_at_c.map(|temp_c| temp_c + step_c);
-            self.near_at = at;
-        } else if at.us_since(self.near_at) > AWAY_US {
-            *smooth_c = read_c;
-            self.near_at = at;
+        if passed_us > SILENCE_US {
+            self.silent_us += passed_us;
+        } else if !touched {
+            self.untold_us += passed_us;
+        }
+        if let Some(read_c) = reading_c(sample) {
+            self.take(read_c);
         }
         if !touched {
             self.gains_at_c = self.smooth_c;
+        }
+    }
+
+    fn take(&mut self, read_c: f64) {
+        let smooth_c = *self.smooth_c.get_or_insert(read_c);
+        let apart_c = read_c - smooth_c;
+        let is_near = apart_c.abs() <= FASTEST_C_PER_S * SMOOTH_S;
+        if !is_near && !self.stays(read_c) {
+            return;
+        }
+        let elapsed_s = self.at.us_since(self.near_at) as f64 * 1e-6;
+        let silent_s = self.silent_us as f64 * 1e-6;
+        let can_be = is_near || (silent_s > 0.0 && apart_c.abs() <= FASTEST_C_PER_S * (SMOOTH_S + silent_s));
+        let is_followed = can_be && self.untold_us < ZERO_FOLLOWS_US;
+        let share = if is_near && is_followed { (elapsed_s / SMOOTH_S).min(1.0) } else { 1.0 };
+        let step_c = share * apart_c;
+        self.smooth_c = Some(if share < 1.0 { smooth_c + step_c } else { read_c });
+        if is_followed {
+            self.followed_c += step_c;
+            self.gains_at_c = self.gains_at_c.map(|temp_c| temp_c + step_c);
+        }
+        (self.near_at, self.silent_us, self.untold_us, self.away) = (self.at, 0, 0, None);
+    }
+
+    /// Whether readings far away have been the same for long enough.
+    fn stays(&mut self, read_c: f64) -> bool {
+        match self.away {
+            Some((away_c, since)) if (read_c - away_c).abs() <= FASTEST_C_PER_S * SMOOTH_S => {
+                self.at.us_since(since) >= if self.silent_us > 0 { AWAKE_US } else { AWAY_US }
+            }
+            _ => {
+                self.away = Some((read_c, self.at));
+                false
+            }
         }
     }
 
@@ -98,7 +138,7 @@ impl Thermometer {
     }
 }
 
-/// `None` if the pad does not know, or tells what cannot be.
+/// `None` if the pad does not know, or tells what cannot be: then the thermometer is at fault.
 fn reading_c(sample: &Sample) -> Option<f64> {
     let read_c = f64::from(sample.temperature_centi_c) * 1e-2;
     (!sample.status.temperature_invalid() && SENSIBLE_C.contains(&read_c)).then_some(read_c)
@@ -209,7 +249,30 @@ mod tests {
         let mut played = Played::new();
         played.reads(500, false, |_| Some(35.0));
         played.at = played.at.plus_us(60_000_000);
+        assert_near(played.reads(99, false, |_| None), 0.0, 0.0);
+        assert_near(played.reads(40, false, |_| Some(20.0)), 0.0, 0.0);
         assert_near(played.reads(1, false, |_| Some(20.0)), -15.0, 1e-9);
+    }
+
+    #[test]
+    fn a_thermometer_that_awakes_with_nonsense_moves_nothing() {
+        let mut played = Played::new();
+        played.reads(500, false, |_| Some(25.0));
+        played.at = played.at.plus_us(60_000_000);
+        assert_near(played.reads(40, false, |_| Some(0.0)), 0.0, 0.0);
+        assert_near(played.reads(60_000, false, |_| Some(25.0)), 0.0, 0.0);
+    }
+
+    #[test]
+    fn what_the_zero_has_followed_is_not_followed_again() {
+        let mut played = Played::new();
+        played.reads(500, false, |_| Some(30.0));
+        assert_near(played.reads(60_000, false, |_| None), 0.0, 0.0);
+        assert_near(played.reads(5_000, false, |_| Some(30.9)), 0.0, 0.0);
+        assert_near(played.reads(10_000, false, |_| Some(31.4)), 0.5, 0.01);
+        // Under a finger the zero stays, so a change that can be counts.
+        assert_near(played.reads(60_000, true, |_| None), 0.5, 0.01);
+        assert_near(played.reads(5_000, true, |_| Some(32.3)), 1.4, 0.01);
     }
 
     #[test]

@@ -16,6 +16,11 @@ pub mod zero;
 use self::columns::Column;
 use crate::quantity::{CHANNELS, Contact};
 
+/// How long a static load is held before it is read, where a row does not say.
+pub const DWELL_S: f64 = 1.0;
+/// How long it is read: its channels are the means of that, and its time is the end.
+pub const READ_S: f64 = 1.0;
+
 /// What was written down about a contact: place and force on the plate, not the truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Label {

@@ -8,7 +8,7 @@ use super::pad::{Circumstances, TwinPad};
 use super::rig::Stage;
 use crate::device::Device;
 use crate::field::PadField;
-use crate::measured::{Approach, Label, Row, Table};
+use crate::measured::{Approach, DWELL_S, Label, Row, Table};
 use crate::quantity::{CHANNELS, Contact};
 
 /// How often the pad is read, where the plan has no times: the authors' earlier pad gave 40 to 50 samples a second.
@@ -19,8 +19,6 @@ pub(super) const READINGS: u32 = 45;
 const REST_S: f64 = 2.0;
 /// How long a load takes to come or to go.
 const RAMP_S: f64 = 0.5;
-/// How long a static load is held before it is read, where the plan does not say.
-const DWELL_S: f64 = 1.0;
 /// How long the pad waits at a new temperature.
 const SOAK_S: f64 = 1800.0;
 /// How long a cycle of load takes that the plan only counts.

@@ -62,15 +62,13 @@ impl Stay {
         if row.trial.is_some() && before.is_some_and(|before| before.trial == row.trial) {
             return Self { rest_s: Some(0.0), before_s: passed_s.unwrap_or(0.0), after_s: 0.0 };
         }
-        let (dwell_s, read_s) =
-            (row.dwell_s.unwrap_or(DWELL_S), if row.trial.is_none() { READ_S } else { 0.0 });
-        let held_s = dwell_s + read_s;
-        // No load is held for longer than there was time.
-        let share = passed_s.map_or(1.0, |passed_s| (passed_s / held_s.max(f64::MIN_POSITIVE)).min(1.0));
+        let read_s = if row.trial.is_none() { READ_S } else { 0.0 };
+        // Times in which the dwell has no room are no times of this kind: some count rows.
+        let rest_s = passed_s.zip(row.dwell_s).map(|(passed_s, dwell_s)| passed_s - dwell_s - read_s);
         Self {
-            rest_s: passed_s.map(|passed_s| passed_s - share * held_s),
-            before_s: share * (dwell_s + read_s / 2.0),
-            after_s: share * read_s / 2.0,
+            rest_s: rest_s.filter(|rest_s| *rest_s >= 0.0),
+            before_s: row.dwell_s.unwrap_or(DWELL_S) + read_s / 2.0,
+            after_s: read_s / 2.0,
         }
     }
 }

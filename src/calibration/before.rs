@@ -2,7 +2,7 @@
 
 use super::contacts::Maps;
 use super::noise::Known;
-use super::problem::places;
+use super::plate::places;
 use crate::contact::creep::{Creep, NO_CREEP};
 use crate::contact::friction::{Friction, NO_FRICTION, PLAYS};
 use crate::contact::inverse::Inverse;

@@ -1,6 +1,5 @@
 //! Measured contacts, with everything of the simulator's that does not change while a pad is calibrated.
 
-use super::model::{BACKGROUND_DEGREE, TERMS};
 use crate::contact::friction::PLAYS;
 use crate::contact::recording::Lags;
 use crate::field::{PadField, Sensitivity};
@@ -8,6 +7,11 @@ use crate::influence::InfluenceField;
 use crate::measured::Row;
 use crate::quantity::{CHANNELS, Contact};
 use crate::zernike::{Jet, jets, norms};
+
+/// Degree of the background's polynomials: features of some 10 mm.
+pub(super) const BACKGROUND_DEGREE: usize = 5;
+/// How many polynomials that are.
+pub(super) const TERMS: usize = (BACKGROUND_DEGREE + 1) * (BACKGROUND_DEGREE + 2) / 2;
 
 /// Half the way over which a second derivative is taken.
 const BEND_MM: f64 = 0.5;

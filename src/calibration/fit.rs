@@ -154,7 +154,7 @@ pub fn fit(
     if rows.is_empty() {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
-    let prepared = Prepared::of(recording, rows, device, field)?;
+    let prepared = Prepared::of(recording, rows, device, field).ok_or(FitError::Senseless)?;
     let mut best: Option<(f64, Calibration)> = None;
     for Thought { before, handicap, from_earlier } in thoughts(field, earlier) {
         let (problem, found) = calibrated(&prepared, rows, device, &before)?;
@@ -195,7 +195,7 @@ fn calibrated<'b>(
     device: &Device,
     before: &'b Before,
 ) -> Result<(Problem<'b>, Fit), FitError> {
-    let problem = Problem::of(prepared, rows, device, before);
+    let problem = prepared.problem(rows, device, before);
     if problem.contacts() == 0 {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }

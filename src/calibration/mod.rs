@@ -20,6 +20,7 @@ mod contacts;
 pub mod fit;
 mod model;
 mod noise;
+mod plate;
 mod prepared;
 mod problem;
 pub mod regression;

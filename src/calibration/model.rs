@@ -1,7 +1,7 @@
 //! The numbers in which a pad may differ, what they do to the channels, and what is known of them before.
 
 use super::before::Before;
-use super::contacts::{Maps, Measured, Place};
+use super::contacts::{BACKGROUND_DEGREE, Maps, Measured, Place, TERMS};
 use super::spread::{Kind, Spread};
 use crate::contact::creep::{Creep, NO_CREEP};
 use crate::contact::friction::{Friction, PLAYS, Play};
@@ -9,11 +9,6 @@ use crate::contact::recording::Lags;
 use crate::contact::uncertainty::UNKNOWNS;
 use crate::device::parameter::Parameter;
 use crate::quantity::CHANNELS;
-
-/// Degree of the background's polynomials: features of some 10 mm.
-pub(super) const BACKGROUND_DEGREE: usize = 5;
-/// How many polynomials that are.
-pub(super) const TERMS: usize = (BACKGROUND_DEGREE + 1) * (BACKGROUND_DEGREE + 2) / 2;
 
 /// Standard deviations before anything is measured. Gains: the authors' earlier pad has 0.83 to 1.33.
 const GAIN: f64 = 0.3;

@@ -1,6 +1,5 @@
 //! The channels' noise, from what a calibration leaves over: a part of its own and one that grows with the reading.
 
-use super::problem::Doubt;
 use crate::contact::friction::{Friction, NO_FRICTION};
 use crate::contact::inverse::Inverse;
 use crate::contact::uncertainty::Noise;
@@ -17,7 +16,7 @@ const KNOWN_OF_KIN: f64 = 50.0;
 /// Of a gain that all channels share; known before as if so many contacts had told it.
 const GAIN: f64 = 0.006;
 const GAIN_KNOWN: f64 = 30.0;
-/// How much it changes from one recording to another, which none of them shows: creep under longer loads, wear, warmth.
+/// How much it changes from one recording to another, which none of them shows: wear, warmth.
 const GAIN_BETWEEN: f64 = 0.005;
 /// How far the state of a play operator is known from means of a second, as a part of what it keeps at rest: a finger that
 /// is not still pushes it further than the mean shows.
@@ -30,6 +29,13 @@ const ADDITIVE_MIN_UV: f64 = 0.5;
 const SHARE_MIN: f64 = 5e-4;
 /// So often the weights are taken anew.
 const ROUNDS: usize = 40;
+
+/// The covariance of the channels, in µV², that comes from what the fitted numbers leave open about a contact.
+pub(super) struct Doubt {
+    pub(super) place_mm: [f64; 2],
+    pub(super) force_n: [f64; 3],
+    pub(super) uv2: [[f64; CHANNELS]; CHANNELS],
+}
 
 /// The noise before any measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]

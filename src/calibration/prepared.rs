@@ -1,7 +1,6 @@
 //! A recording as the fit takes it: what follows the temperature is off the zeros, and so are zeros that nobody read.
 
 use super::before::Before;
-use super::fit::FitError;
 use super::model::Layout;
 use super::problem::{Fit, Problem, Settings};
 use super::warmth::Warmth;
@@ -15,9 +14,9 @@ use crate::quantity::CHANNELS;
 /// The recording, and what was taken off.
 #[derive(Clone, Debug)]
 pub(super) struct Prepared {
-    pub(super) recording: Recording,
+    recording: Recording,
     /// Coefficients by temperature; those of the gains are for the fit to find.
-    pub(super) warmth: Option<Warmth>,
+    warmth: Option<Warmth>,
     /// Zeros that the contacts themselves tell, for a recording that never reads the untouched pad.
     zero_uv: Option<[f64; CHANNELS]>,
     /// Whether the contacts that are fitted to tell the gains' coefficients.
@@ -25,12 +24,13 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
+    /// `None` where the numbers make no sense.
     pub(super) fn of(
         recording: &Recording,
         rows: &[usize],
         device: &Device,
         field: &PadField,
-    ) -> Result<Self, FitError> {
+    ) -> Option<Self> {
         let warmth = Warmth::of_zeros(recording);
         let recording = warmth
             .map_or_else(|| recording.clone(), |warmth| recording.clone().at_reference(&warmth.thermal));
@@ -38,14 +38,20 @@ impl Prepared {
         let tells_gains = Warmth::is_told_by(contacts);
         let prepared = Self { recording, warmth, zero_uv: None, tells_gains };
         if prepared.recording.is_tared() {
-            return Ok(prepared);
+            return Some(prepared);
         }
         // Friction and noise go with what is beyond the zeros, so these have to be known about before anything else.
         let before = Before::simulated(field);
         let plain = Settings { background: 0.0, thresholds_uv: [0.0; PLAYS], creep_time_s: 0.0 };
-        let fit = Problem::of(&prepared, rows, device, &before).fitted(plain, None);
-        let zero_uv = Layout::zeros(&fit.ok_or(FitError::Senseless)?.values);
-        Ok(Self { recording: prepared.recording.less(&zero_uv), zero_uv: Some(zero_uv), ..prepared })
+        let fit = prepared.problem(rows, device, &before).fitted(plain, None);
+        let zero_uv = Layout::zeros(&fit?.values);
+        Some(Self { recording: prepared.recording.less(&zero_uv), zero_uv: Some(zero_uv), ..prepared })
+    }
+
+    /// What there is to fit to these contacts.
+    pub(super) fn problem<'p>(&'p self, rows: &[usize], device: &Device, before: &'p Before) -> Problem<'p> {
+        let reference_c = self.warmth.map(|warmth| warmth.thermal.reference_c);
+        Problem::of(&self.recording, reference_c, rows, device, before)
     }
 
     /// The zeros with what a fit has still found of them.

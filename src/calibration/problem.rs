@@ -1,13 +1,12 @@
 //! The least-squares problem of a calibration: how far the numbers are from explaining what was measured.
 
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
 
 use super::before::Before;
-use super::contacts::{Maps, Measured, Place};
-use super::model::{Layout, TERMS};
-use super::noise::Known;
-use super::prepared::Prepared;
+use super::contacts::{Maps, Measured, Place, TERMS};
+use super::model::Layout;
+use super::noise::{Doubt, Known};
+use super::plate::{places, scale};
 use super::scatter::{Residual, Scatter};
 use super::spread::Spread;
 use crate::contact::creep::Creep;
@@ -28,8 +27,6 @@ const STEPS_MAX: usize = 12;
 const EVIDENCE_END: f64 = 0.3;
 /// A force at which the field's doubt is looked at: half of full scale.
 const DOUBT_N: f64 = 2.5;
-/// Places that stand for the whole plate.
-const PLACES: u32 = 60;
 /// Numbers never take up more of the readings than all but this part.
 const FREEDOM_MIN: f64 = 0.05;
 /// How much the zero of a channel drifts between two readings, at least, and before anything is measured.
@@ -91,13 +88,6 @@ pub(super) struct Fit {
     pub(super) evidence: f64,
 }
 
-/// The covariance of the channels, in µV², that comes from what the fitted numbers leave open about a contact.
-pub(super) struct Doubt {
-    pub(super) place_mm: [f64; 2],
-    pub(super) force_n: [f64; 3],
-    pub(super) uv2: [[f64; CHANNELS]; CHANNELS],
-}
-
 impl Fit {
     /// The standard deviation of a number.
     pub(super) fn deviation(&self, at: usize) -> f64 {
@@ -115,9 +105,13 @@ struct Step {
 
 impl<'f> Problem<'f> {
     /// `rows` are the contacts to fit to; all others only tell what was before. Without polynomials for a background.
-    pub(super) fn of(prepared: &'f Prepared, rows: &[usize], device: &Device, before: &'f Before) -> Self {
-        let Prepared { recording, warmth, .. } = prepared;
-        let reference_c = warmth.map(|warmth| warmth.thermal.reference_c);
+    pub(super) fn of(
+        recording: &'f Recording,
+        reference_c: Option<f64>,
+        rows: &[usize],
+        device: &Device,
+        before: &'f Before,
+    ) -> Self {
         let field = &before.field;
         let is_free = |it: &&Sensitivity| it.parameter.module().is_some();
         let sensitivities: Vec<&Sensitivity> = field.sensitivities.iter().filter(is_free).collect();
@@ -431,31 +425,4 @@ fn prior(values: &[f64], before: &[f64], precisions: &[f64]) -> f64 {
 
 fn products<T>(all: &[T], product: impl Fn(&T, &T) -> f64) -> [[f64; CHANNELS]; CHANNELS] {
     std::array::from_fn(|i| std::array::from_fn(|j| product(&all[i], &all[j])))
-}
-
-/// Places all over the plate.
-pub(super) fn places(reach_mm: f64) -> impl Iterator<Item = [f64; 2]> {
-    // Vogel's spiral: each place has as much of the plate as any other.
-    let golden = PI * (3.0 - 5.0_f64.sqrt());
-    (0..PLACES).map(move |place| {
-        let place = f64::from(place);
-        let radius_mm = reach_mm * ((place + 0.5) / f64::from(PLACES)).sqrt();
-        [radius_mm * (golden * place).cos(), radius_mm * (golden * place).sin()]
-    })
-}
-
-/// Root mean square of each map over the plate; of a map that is small beside its channel's others, a fifth of theirs.
-fn scale(signals: &InfluenceField) -> Maps {
-    let mut squares = [[0.0; 3]; CHANNELS];
-    for [x_mm, y_mm] in places(f64::from(signals.radius_mm())) {
-        let gains = signals.gains(x_mm as f32, y_mm as f32).value;
-        for (square, gain) in squares.as_flattened_mut().iter_mut().zip(gains.as_flattened()) {
-            *square += gain * gain / f64::from(PLACES);
-        }
-    }
-    squares.map(|axes| {
-        let roots = axes.map(f64::sqrt);
-        let largest = roots.iter().copied().fold(0.0, f64::max);
-        roots.map(|root| root.max(0.2 * largest))
-    })
 }

@@ -110,10 +110,10 @@ fn guides(unseen: &Unseen, outcomes: &[Outcome<'_>], quantity: &Quantity) -> Vec
 /// Error against the contact's force, of the decoders that learnt from the whole plan: position beside force.
 pub fn by_force(unseen: &Unseen, outcomes: &[Outcome<'_>]) -> Figure {
     let order = in_order_of_force(unseen.truths());
-    let bin = |index: &usize| (resultant_n(&unseen.truths()[*index]) / FORCE_BIN_N).round();
+    let bin = |index: &usize| (unseen.truths()[*index].resultant_n() / FORCE_BIN_N).round();
     let parts: Vec<&[usize]> = order.chunk_by(|one, next| bin(one) == bin(next)).collect();
     let truths = |part: &[usize]| part.iter().map(|index| unseen.truths()[*index]).collect::<Vec<_>>();
-    let force_n = |part: &[usize]| mean(part.iter().map(|index| resultant_n(&unseen.truths()[*index])));
+    let force_n = |part: &[usize]| mean(part.iter().map(|index| unseen.truths()[*index].resultant_n()));
     beside(&format!("Error by force, unseen contacts of the {} plan", unseen.plan), |quantity| {
         let line = |(entry, judged): &Outcome<'_>| {
             let error = |index: &usize| (quantity.of)(&judged.found[*index], &unseen.truths()[*index]);
@@ -132,12 +132,8 @@ pub fn by_force(unseen: &Unseen, outcomes: &[Outcome<'_>]) -> Figure {
 
 fn in_order_of_force(truths: &[Label]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..truths.len()).collect();
-    order.sort_by(|one, other| resultant_n(&truths[*one]).total_cmp(&resultant_n(&truths[*other])));
+    order.sort_by(|one, other| truths[*one].resultant_n().total_cmp(&truths[*other].resultant_n()));
     order
-}
-
-fn resultant_n(label: &Label) -> f64 {
-    label.fx_n.hypot(label.fy_n).hypot(label.fz_n)
 }
 
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {

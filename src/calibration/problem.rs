@@ -407,7 +407,7 @@ fn jumps(zeros: Vec<Untouched>) -> Vec<Jump> {
         lags: [[0.0; CHANNELS]; PLAYS],
         crept_uv: [0.0; CHANNELS],
     };
-    zeros.iter().zip(zeros.iter().skip(1)).map(jump).collect()
+    zeros.iter().zip(zeros.get(1..).unwrap_or_default()).map(jump).collect()
 }
 
 /// From one state to another.

@@ -15,8 +15,6 @@ use crate::quantity::CHANNELS;
 
 /// Rounds in which strains and what friction does to them are made to agree.
 const ROUNDS: usize = 4;
-/// A static load that is reached downwards comes from full scale, and from this much more than itself at least.
-const OVERLOAD_MIN: f64 = 1.2;
 
 /// For each play operator and channel: its state beside the strain, relative to the same of the untouched pad.
 pub type Lags = [[f64; CHANNELS]; PLAYS];
@@ -287,7 +285,7 @@ impl Recording {
                 history.follow(friction, &[0.0; CHANNELS]);
             }
             if row.trial.is_none() && row.approach == Some(Approach::Unloading) {
-                let factor = self.overload(row);
+                let factor = row.label.overload(self.full_scale_n);
                 history.follow(friction, &free_uv.map(|uv| factor * uv));
             }
             history.follow(friction, &free_uv);
@@ -295,13 +293,6 @@ impl Recording {
             states.push(history.state_uv.map(|states| std::array::from_fn(|k| states[k] - free_uv[k])));
         }
         states
-    }
-
-    /// The load from which a row's load was reached, beside it.
-    fn overload(&self, row: &Row) -> f64 {
-        let [_, _, fx_n, fy_n, fz_n] = row.label.numbers();
-        let force_n = libm::hypot(libm::hypot(fx_n, fy_n), fz_n);
-        if force_n > 0.0 { (self.full_scale_n / force_n).max(OVERLOAD_MIN) } else { 1.0 }
     }
 }
 

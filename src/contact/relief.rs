@@ -13,7 +13,7 @@ use crate::signal::tare::Rest;
 use crate::time::StreamInstant;
 
 /// So long without a sample is a silence: a finger that is there after it need not have been there all the time.
-const SILENCE_US: u64 = 100_000;
+pub(super) const SILENCE_US: u64 = 100_000;
 
 /// What a pad remembers, followed sample by sample.
 #[derive(Clone, Copy, Debug)]

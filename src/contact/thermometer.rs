@@ -10,6 +10,7 @@
 
 use firmware_proto::sample::Sample;
 
+use super::relief::SILENCE_US;
 use super::thermal::{SENSIBLE_C, Thermal};
 use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
@@ -22,9 +23,6 @@ const FASTEST_C_PER_S: f64 = 1.0;
 
 /// Readings that stay away for so long do not come back: from there on their changes are followed.
 const AWAY_US: u64 = 1_000_000;
-
-/// So long without a sample is a silence. The zero does not follow anything then either, so a change over it counts whole.
-const SILENCE_US: u64 = 100_000;
 
 /// After a silence readings that agree for so long are taken: contacts are not believed before 50 ms anyway.
 const AWAKE_US: u64 = 40_000;
@@ -76,6 +74,7 @@ impl Thermometer {
         }
         let passed_us = at.us_since(self.at);
         self.at = at;
+        // In a silence the zero does not follow anything either, so a change over it counts whole.
         if passed_us > SILENCE_US {
             self.silent_us += passed_us;
         } else if !touched {

@@ -20,6 +20,8 @@ use crate::quantity::{CHANNELS, Contact};
 pub const DWELL_S: f64 = 1.0;
 /// How long it is read: its channels are the means of that, and its time is the end.
 pub const READ_S: f64 = 1.0;
+/// A load that is reached downwards comes from this much more than itself at least.
+const OVERLOAD_MIN: f64 = 1.2;
 
 /// What was written down about a contact: place and force on the plate, not the truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,6 +42,17 @@ impl Label {
     /// x, y, Fx, Fy, Fz.
     pub const fn numbers(&self) -> [f64; 5] {
         [self.x_mm, self.y_mm, self.fx_n, self.fy_n, self.fz_n]
+    }
+
+    /// The magnitude of the force.
+    pub fn resultant_n(&self) -> f64 {
+        libm::hypot(libm::hypot(self.fx_n, self.fy_n), self.fz_n)
+    }
+
+    /// From how many times this load it is reached downwards: from full scale, but for the largest loads. Nothing is from nothing.
+    pub fn overload(&self, full_scale_n: f64) -> f64 {
+        let force_n = self.resultant_n();
+        if force_n > 0.0 { (full_scale_n / force_n).max(OVERLOAD_MIN) } else { 1.0 }
     }
 }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::rows::{
     Reading, Zeros, by_place, is_ordinary, is_same_place, is_unloaded, is_usual, less, loads, readings,
-    resultant_n, usual_temperature_c,
+    usual_temperature_c,
 };
 use super::thermal::STEP_C;
 use super::{Decode, Needs, filter};
@@ -65,7 +65,7 @@ impl Difference {
         Self {
             force_n: [fx_n - label.fx_n, fy_n - label.fy_n, fz_n - label.fz_n],
             place_mm: [x_mm - label.x_mm, y_mm - label.y_mm],
-            resultant_n: fx_n.hypot(fy_n).hypot(fz_n) - resultant_n(label),
+            resultant_n: fx_n.hypot(fy_n).hypot(fz_n) - label.resultant_n(),
         }
     }
 

@@ -29,14 +29,9 @@ const USUAL_TEMPERATURE_C: f64 = 2.5;
 /// A pad with fewer cycles than this more than the least one in the table is as good as new.
 const FRESH_CYCLES: f64 = 1_000.0;
 
-/// Magnitude of a labelled force.
-pub(super) fn resultant_n(label: &Label) -> f64 {
-    label.fx_n.hypot(label.fy_n).hypot(label.fz_n)
-}
-
 /// Whether nothing touches the pad.
 pub(super) fn is_unloaded(label: &Label) -> bool {
-    resultant_n(label) <= UNLOADED_N
+    label.resultant_n() <= UNLOADED_N
 }
 
 /// Whether it is a load without shear worth mentioning.

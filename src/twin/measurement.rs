@@ -137,8 +137,7 @@ impl Bench {
 
     /// The load from which a static one is reached downwards.
     fn overloaded(&self, meant: &Label) -> Label {
-        let force_n = libm::hypot(libm::hypot(meant.fx_n, meant.fy_n), meant.fz_n);
-        let factor = if force_n > 0.0 { (self.full_scale_n / force_n).max(1.2) } else { 1.0 };
+        let factor = meant.overload(self.full_scale_n);
         Label { fx_n: factor * meant.fx_n, fy_n: factor * meant.fy_n, fz_n: factor * meant.fz_n, ..*meant }
     }
 

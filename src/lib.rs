@@ -1,55 +1,67 @@
 //! Turns a tactile disc with nine strain channels into a game controller.
 //!
 //! The way of the data is one line: bytes → sample → raw channels → strain → contact → intents → output events.
-//! `ARCHITECTURE.md` tells where each step lives and which rules hold between them.
+//! [`pipeline`] is that way, as a state machine without I/O and without a clock: the caller says what happened and when.
+//! Here a pad made of software plays; a real one's bytes come from a port, as they come.
+//!
+//! ```
+//! use tactpad::pipeline::call::Call;
+//! use tactpad::pipeline::mapping::{check::OutputChoice, read::ReadProfile, shipped as profiles};
+//! use tactpad::pipeline::{NoProbe, Pipeline, shipped};
+//! use tactpad::time::HostInstant;
+//! use tactpad::virtual_pad::{firmware::VirtualPad, script::Script};
+//!
+//! let text = profiles::text("super-mario").expect("a profile inside the program");
+//! let (profile, findings) = ReadProfile::read(text, OutputChoice::AsWritten);
+//! let profile = profile.ok_or(findings).expect("a profile without errors").profile().clone();
+//! let mut pad = VirtualPad::new(Script::for_profile(&profile, 4_000_000), 1);
+//! let mut pipeline = Pipeline::new(shipped::decoder(), profile);
+//! let (mut bytes, mut events) = (Vec::new(), Vec::new());
+//! for ms in 0..4_000 {
+//!     bytes.clear();
+//!     pad.emit(1_000 * ms, &mut bytes);
+//!     let mut call = Some(Call::Bytes(&bytes));
+//!     while let Some(next) = call {
+//!         call = pipeline.apply(HostInstant::from_ns(1_000_000 * ms), next, &mut NoProbe);
+//!         events.extend_from_slice(pipeline.events());
+//!     }
+//! }
+//! assert!(events.len() > 1 && pipeline.health().frames_lost == 0);
+//! ```
+//!
+//! # What there is
+//!
+//! | room | what it does | feature |
+//! |---|---|---|
+//! | [`pipeline`] | the live core, captures and replay | |
+//! | [`pad`], [`tables`], [`virtual_pad`] | device files, influence fields, the twin; measured tables; a pad made of software | |
+//! | [`network`], [`numeric`], [`toml_text`] | perceptrons; numerical methods; texts that people write | |
+//! | `plot` | figures | `plot` |
+//! | `lab` | calibration, evaluation, metrology and other studies | `lab` |
+//! | `mechanics` | the finite-element simulator | `simulator` |
+//! | `bridge` | ports, virtual devices and the loop between them (Linux) | `live` |
+//!
+//! The program `tactpad` itself is the feature `cli`. Without features five small dependencies are left.
+//! `examples/` has whole programs. `ARCHITECTURE.md` says which rules hold between the rooms.
 
-pub mod ablation;
 mod bytes;
-pub mod calibration;
-pub mod capture;
-pub mod cli;
-pub mod contact;
-pub mod control;
-pub mod dataset;
-pub mod device;
-pub mod evaluation;
-pub mod field;
-pub mod health;
-pub mod influence;
-pub mod latency;
-pub mod layout;
-pub mod linear;
-pub mod link;
-pub mod mapping;
-pub mod measured;
+#[cfg(feature = "lab")]
+pub mod lab;
 #[cfg(feature = "simulator")]
 pub mod mechanics;
-pub mod metrology;
 pub mod network;
-pub mod output;
+pub mod numeric;
+pub mod pad;
 pub mod pipeline;
+#[cfg(feature = "plot")]
 pub mod plot;
-pub mod protocol;
 pub mod quantity;
-mod random;
-pub mod readout;
-pub mod replay;
-pub mod scdf;
-pub mod shipped;
-pub mod signal;
-pub mod spelling;
+pub mod tables;
 pub mod time;
 pub mod toml_text;
-pub mod twin;
 pub mod virtual_pad;
-pub mod vtk;
-pub mod zernike;
 
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod bridge;
-#[cfg(all(feature = "live", target_os = "linux"))]
-pub mod requests;
-#[cfg(all(feature = "live", target_os = "linux"))]
-pub mod sink;
-#[cfg(all(feature = "live", target_os = "linux"))]
-pub mod transport;
+
+pub use firmware_proto;

@@ -1,8 +1,5 @@
 //! What a host asks of a pad, and how the pad answers.
 
-use crate::cursor::{Reader, Writer};
-use crate::frame::{Body, WireError};
-
 /// What a host asks of a pad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
@@ -21,9 +18,9 @@ pub enum Command {
 }
 
 impl Command {
-    const IDENTIFY: u8 = 0x81;
-    const SET_RATE: u8 = 0x82;
-    const BLINK: u8 = 0x83;
+    pub(crate) const IDENTIFY: u8 = 0x81;
+    pub(crate) const SET_RATE: u8 = 0x82;
+    pub(crate) const BLINK: u8 = 0x83;
 
     /// The command's kind byte, which its acknowledgement names.
     #[must_use]
@@ -33,30 +30,6 @@ impl Command {
             Self::SetRate { .. } => Self::SET_RATE,
             Self::Blink { .. } => Self::BLINK,
         }
-    }
-}
-
-impl Body for Command {
-    fn kind(&self) -> u8 {
-        Self::kind(self)
-    }
-
-    fn write_payload(&self, out: &mut Writer) {
-        match self {
-            Self::Identify => {}
-            Self::SetRate { rate_hz } => out.put(&rate_hz.to_le_bytes()),
-            Self::Blink { duration_ms } => out.put(&duration_ms.to_le_bytes()),
-        }
-    }
-
-    fn read_payload(kind: u8, payload: &mut Reader) -> Result<Self, WireError> {
-        let command = match kind {
-            Self::IDENTIFY => Some(Self::Identify),
-            Self::SET_RATE => payload.u16().map(|rate_hz| Self::SetRate { rate_hz }),
-            Self::BLINK => payload.u16().map(|duration_ms| Self::Blink { duration_ms }),
-            _ => return Err(WireError::UnknownKind(kind)),
-        };
-        command.ok_or(WireError::Damaged)
     }
 }
 

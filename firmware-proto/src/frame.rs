@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::PROTOCOL_VERSION;
-use crate::command::AckResult;
+use crate::command::{AckResult, Command};
 use crate::cursor::{Reader, Writer};
 use crate::identity::Identity;
 use crate::sample::Sample;
@@ -21,7 +21,7 @@ const _: () = assert!(Identity::PAYLOAD_LEN <= Sample::PAYLOAD_LEN);
 pub enum Message {
     /// One conversion of all channels, sent unasked at the pad's rate.
     Sample(Sample),
-    /// The answer to [`Command::Identify`](crate::command::Command::Identify).
+    /// The answer to [`Command::Identify`].
     Identity(Identity),
     /// The answer to any other command.
     Acknowledgement {
@@ -65,7 +65,7 @@ impl fmt::Display for WireError {
 
 impl core::error::Error for WireError {}
 
-/// One direction of the protocol: [`Message`] or [`Command`](crate::command::Command).
+/// One direction of the protocol: [`Message`] or [`Command`].
 pub(crate) trait Body: Sized {
     fn kind(&self) -> u8;
 
@@ -126,6 +126,30 @@ fn read_acknowledgement(payload: &mut Reader) -> Option<Message> {
     let command = payload.u8()?;
     let result = AckResult::from_byte(payload.u8()?)?;
     Some(Message::Acknowledgement { command, result })
+}
+
+impl Body for Command {
+    fn kind(&self) -> u8 {
+        Self::kind(self)
+    }
+
+    fn write_payload(&self, out: &mut Writer) {
+        match self {
+            Self::Identify => {}
+            Self::SetRate { rate_hz } => out.put(&rate_hz.to_le_bytes()),
+            Self::Blink { duration_ms } => out.put(&duration_ms.to_le_bytes()),
+        }
+    }
+
+    fn read_payload(kind: u8, payload: &mut Reader) -> Result<Self, WireError> {
+        let command = match kind {
+            Self::IDENTIFY => Some(Self::Identify),
+            Self::SET_RATE => payload.u16().map(|rate_hz| Self::SetRate { rate_hz }),
+            Self::BLINK => payload.u16().map(|duration_ms| Self::Blink { duration_ms }),
+            _ => return Err(WireError::UnknownKind(kind)),
+        };
+        command.ok_or(WireError::Damaged)
+    }
 }
 
 #[cfg(test)]

@@ -4,11 +4,12 @@ use std::io;
 
 use firmware_proto::command::Command;
 
-use super::BridgeError;
+use crate::bridge::error::BridgeError;
+use crate::bridge::opening::{OpenedPad, Patience};
+use crate::bridge::transport::Transport;
+use crate::bridge::transport::pads::PadError;
 use crate::pipeline::Pipeline;
 use crate::time::HostInstant;
-use crate::transport::Transport;
-use crate::transport::pads::PadError;
 
 /// A pad that has not sent one sound frame by then is no pad, or not there.
 const FIRST_FRAME_US: u64 = 3_000_000;
@@ -18,18 +19,6 @@ const REOPEN_US: u64 = 250_000;
 
 /// A pad that is still starting may miss a question: it is asked again after these times.
 const IDENTIFY_US: [u64; 3] = [0, 250_000, 1_000_000];
-
-/// Opens the pad, again and again if need be.
-pub type Reopen = Box<dyn FnMut() -> Result<Box<dyn Transport>, PadError>>;
-
-/// What to do about a pad that is not there at the start, or sends no sound frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Patience {
-    /// Give up with a sentence.
-    Limited,
-    /// Wait.
-    Endless,
-}
 
 /// Why there is no pad at the moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,8 +33,8 @@ pub(super) enum Absence {
 
 /// The pad, or the search for it.
 pub(super) struct Keeper {
-    pad: Option<Box<dyn Transport>>,
-    opener: Option<Reopen>,
+    /// The pad while there is one, and how to open it again.
+    opened: OpenedPad,
     patience: Patience,
     absence: Absence,
     opened_at: HostInstant,
@@ -61,16 +50,10 @@ pub(super) struct Keeper {
 }
 
 impl Keeper {
-    /// Keeps `pad`, opened just now. `opener` opens it again; a pad without one ends for good when it leaves.
-    pub(super) fn new(
-        pad: Option<Box<dyn Transport>>,
-        opener: Option<Reopen>,
-        patience: Patience,
-        now: HostInstant,
-    ) -> Self {
+    /// Keeps a pad that was opened just now. One that cannot be opened again ends for good when it leaves.
+    pub(super) const fn new(opened: OpenedPad, patience: Patience, now: HostInstant) -> Self {
         Self {
-            pad,
-            opener,
+            opened,
             patience,
             absence: Absence::Gone,
             opened_at: now,
@@ -85,17 +68,17 @@ impl Keeper {
 
     /// The pad, if there is one.
     pub(super) fn pad(&self) -> Option<&dyn Transport> {
-        self.pad.as_deref()
+        self.opened.pad.as_deref()
     }
 
     /// Why there is none; `None` while there is one.
     pub(super) fn absence(&self) -> Option<Absence> {
-        self.pad.is_none().then_some(self.absence)
+        self.opened.pad.is_none().then_some(self.absence)
     }
 
     /// Whether the pad comes back after it left.
     pub(super) const fn can_return(&self) -> bool {
-        self.opener.is_some()
+        self.opened.opener.is_some()
     }
 
     /// Reads once; `None` when nothing is there.
@@ -103,7 +86,7 @@ impl Keeper {
     /// # Errors
     /// The pad is gone.
     pub(super) fn read(&mut self, bytes: &mut [u8]) -> io::Result<Option<usize>> {
-        let Some(pad) = &mut self.pad else { return Ok(None) };
+        let Some(pad) = &mut self.opened.pad else { return Ok(None) };
         match pad.read(bytes) {
             Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
             Ok(read) => {
@@ -119,13 +102,13 @@ impl Keeper {
 
     /// The pad left: looks for it from now on.
     pub(super) fn lose(&mut self, now: HostInstant) {
-        (self.pad, self.absence, self.is_first) = (None, Absence::Gone, false);
+        (self.opened.pad, self.absence, self.is_first) = (None, Absence::Gone, false);
         self.reopen_at = now.plus_us(REOPEN_US);
     }
 
     /// Closes the pad for good.
     pub(super) fn close(&mut self) {
-        (self.pad, self.opener) = (None, None);
+        (self.opened.pad, self.opened.opener) = (None, None);
     }
 
     /// When [`Keeper::attend`] has something to do.
@@ -159,7 +142,7 @@ impl Keeper {
         }
         if self.identify_at(pipeline).is_some_and(|due| due <= now) {
             self.identify_asked += 1;
-            if let Some(pad) = &mut self.pad {
+            if let Some(pad) = &mut self.opened.pad {
                 // A pad that takes no commands is no error: it plays with the default scale.
                 let _ = pad.send(&Command::Identify);
             }
@@ -168,14 +151,14 @@ impl Keeper {
     }
 
     const fn reopens(&self) -> bool {
-        self.pad.is_none() && self.opener.is_some()
+        self.opened.pad.is_none() && self.opened.opener.is_some()
     }
 
     fn reopen(&mut self, now: HostInstant) {
         self.reopen_at = now.plus_us(REOPEN_US);
-        match self.opener.as_mut().map(|open| open()) {
+        match self.opened.opener.as_mut().map(|open| open()) {
             Some(Ok(pad)) => {
-                (self.pad, self.opened_at, self.asking_since) = (Some(pad), now, now);
+                (self.opened.pad, self.opened_at, self.asking_since) = (Some(pad), now, now);
                 self.identify_asked = 0;
             }
             Some(Err(PadError::Denied(_))) => self.absence = Absence::Denied,
@@ -185,14 +168,14 @@ impl Keeper {
     }
 
     fn identify_at(&self, pipeline: &Pipeline) -> Option<HostInstant> {
-        let asking = self.pad.is_some() && pipeline.identity().is_none();
+        let asking = self.opened.pad.is_some() && pipeline.identity().is_none();
         let due = IDENTIFY_US.get(self.identify_asked).filter(|_| asking)?;
         Some(self.asking_since.plus_us(*due))
     }
 
     /// Whether no pad has played yet and patience is limited. Later nothing that a pad does ends the bridge.
     fn is_unheard(&self, pipeline: &Pipeline) -> bool {
-        self.patience == Patience::Limited && self.pad.is_some() && pipeline.health().samples == 0
+        self.patience == Patience::Limited && self.opened.pad.is_some() && pipeline.health().samples == 0
     }
 
     fn why_not_a_pad(&self) -> String {

@@ -6,11 +6,12 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::Failure;
+use super::failure::Failure;
 use super::written::{create, reason};
-use crate::contact::{Decoder, read};
-use crate::network::{Network, onnx};
-use crate::shipped;
+use tactpad::network::{Network, onnx};
+use tactpad::pipeline::contact::read::Unreadable;
+use tactpad::pipeline::contact::{Decoder, read};
+use tactpad::pipeline::shipped;
 
 /// Far more than any decoder needs, and no more than a capture's entry holds.
 const BYTES_MAX: u64 = 16_000_000;
@@ -34,11 +35,14 @@ impl Choice {
         self.decoder.as_deref().unwrap_or(shipped::INVERSE)
     }
 
-    /// Reads a decoder that can play, and its bytes.
-    pub(super) fn read(&self) -> Result<(Decoder, Vec<u8>), Failure> {
+    /// The decoder, as `read` takes it from its bytes, and the bytes.
+    pub(super) fn read_by(
+        &self,
+        read: impl Fn(&[u8]) -> Result<Decoder, Unreadable>,
+    ) -> Result<(Decoder, Vec<u8>), Failure> {
         let path = Path::new(self.name());
         let bytes = bytes(path).map_err(|why| unusable(path, &why))?;
-        let decoder = read::playing(&bytes).map_err(|error| unusable(path, &error.to_string()))?;
+        let decoder = read(&bytes).map_err(|error| unusable(path, &error.to_string()))?;
         Ok((decoder, bytes))
     }
 }

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::failure::Failure;
+use super::text_file;
 use super::written::{is_same, written_over};
-use super::{Failure, text_file};
-use crate::device::Device;
-use crate::toml_text::diag::Diagnostic;
+use tactpad::pad::device::Device;
+use tactpad::toml_text::diag::Diagnostic;
 
 const PAPER: &str = include_str!("../../models/imperfections/paper.toml");
 

@@ -1,22 +1,17 @@
 //! `tactpad evaluate`: a decoder's errors on a measured file.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde::Serialize;
 
 use super::device::Pad;
-use super::written::stdout;
-use super::{Failure, decoder_file, print_json, tables};
-use crate::contact::Decoder;
-use crate::contact::recording::Recording;
-use crate::device::Device;
-use crate::evaluation::{self, Errors};
-use crate::measured::columns::Kind;
-use crate::measured::{Label, Table, zero};
-use crate::network::Zero;
-use crate::shipped;
+use super::failure::Failure;
+use super::written::{print_json, stdout};
+use super::{decoder_file, tables};
+use tactpad::lab::evaluation::{Errors, Evaluation, EvaluationError};
+use tactpad::pipeline::shipped;
+use tactpad::tables::measured::columns::Kind;
 
 /// Arguments of `tactpad evaluate`.
 #[derive(Debug, Args)]
@@ -40,86 +35,28 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// What is found.
-#[derive(Serialize)]
-struct Report {
-    #[serde(flatten)]
-    by_labels: Errors,
-    /// Share of the rows that are not one finger on the decoder's pad; null for a decoder that does not warn.
-    warned: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    truth: Option<ByTruth>,
-}
-
-#[derive(Serialize)]
-struct ByTruth {
-    #[serde(flatten)]
-    errors: Errors,
-    /// Share of the true contacts in the decoder's 95 % regions; null for a decoder without.
-    coverage95: Option<f64>,
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { decoder, measured, truth, pad, json } = arguments;
     let device = pad.read()?;
     let decoder = decoder.as_deref().map_or_else(|| Ok(shipped::decoder()), decoder_file::read)?;
-    let table = tables::read(measured, Kind::Measured, device.plate.diameter_mm)?;
-    let truth =
-        truth.as_ref().map(|path| tables::read(path, Kind::Plan, device.plate.diameter_mm)).transpose()?;
-    if let Some(truth) = truth.as_ref().filter(|truth| truth.rows.len() != table.rows.len()) {
-        let (rows, truths) = (table.rows.len(), truth.rows.len());
-        let measured = measured.display();
-        return Err(Failure::Unusable(format!(
-            "{measured} has {rows} rows, and its truth {truths}: give both of one run"
-        )));
-    }
-    let taken = taken(&decoder, &table, &device).ok_or_else(|| {
-        Failure::Unusable(format!(
-            "{}: no row without force says what the untouched pad reads, and neither does the decoder; measure some, or \
-             adapt a decoder to a table without such rows",
-            measured.display()
-        ))
-    })?;
-    let report = report(&decoder, &taken, truth.as_ref());
-    if report.by_labels.rows == 0 {
-        return Err(Failure::Unusable(format!(
-            "{}: no row has a contact and its nine channels",
-            measured.display()
-        )));
-    }
-    if *json { print_json(&report) } else { print(&report) }
+    let rim_mm = device.plate.radius_mm();
+    let table = tables::read(measured, Kind::Measured, rim_mm)?;
+    let truth = truth.as_ref().map(|path| tables::read(path, Kind::Plan, rim_mm)).transpose()?;
+    let evaluation = Evaluation::of(&decoder, &table, truth.as_ref(), device.contact.full_scale_n)
+        .map_err(|error| unusable(measured, &error))?;
+    if *json { print_json(&evaluation) } else { print(&evaluation) }
 }
 
-/// The table as the decoder takes it. `None` if nothing says what the untouched pad reads, and the decoder has to know.
-fn taken(decoder: &Decoder, table: &Table, device: &Device) -> Option<Table> {
-    let full_scale_n = device.contact.full_scale_n;
-    let raw = || Recording::raw(table.clone(), full_scale_n);
-    let recording = Recording::of(table.clone(), full_scale_n)
-        .or_else(|| decoder.zero_uv().map(|zero_uv| raw().less(zero_uv)))
-        .or_else(|| (decoder.zero() == Zero::Raw).then(raw))?;
-    Some(recording.taken(decoder))
+/// Why the measured file cannot be judged by; it is the sentence's subject, or its place.
+fn unusable(measured: &Path, error: &EvaluationError) -> Failure {
+    let measured = measured.display();
+    Failure::Unusable(match error {
+        EvaluationError::OtherRows { .. } => format!("{measured} {error}"),
+        _ => format!("{measured}: {error}"),
+    })
 }
 
-fn report(decoder: &Decoder, taken: &Table, truth: Option<&Table>) -> Report {
-    let places = zero::contacts(taken);
-    let rows = taken.rows_at(&places);
-    let found = evaluation::decoded(decoder, &rows);
-    let labels: Vec<Label> = rows.iter().map(|row| row.label).collect();
-    let by_truth = |truth: &Table| {
-        let truths: Vec<Label> = places.iter().map(|at| truth.rows[*at].label).collect();
-        ByTruth {
-            errors: evaluation::errors(&found, &truths),
-            coverage95: evaluation::coverage95(decoder, &rows, &truths),
-        }
-    };
-    Report {
-        by_labels: evaluation::errors(&found, &labels),
-        warned: evaluation::warned(decoder, &rows),
-        truth: truth.map(by_truth),
-    }
-}
-
-fn print(report: &Report) -> Result<(), Failure> {
+fn print(report: &Evaluation) -> Result<(), Failure> {
     let mut to = stdout();
     writeln!(to, "{} contacts", report.by_labels.rows)?;
     writeln!(to, "                 MAE mm  distance mm   RMSE mm   MAE N")?;
@@ -141,4 +78,50 @@ fn print(report: &Report) -> Result<(), Failure> {
         writeln!(to, "{:.1} % of the contacts are not one finger on the decoder's pad", 100.0 * warned)?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Verb {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    /// What comes of a measured row and its true contact at these x.
+    fn evaluated(measured_mm: f64, true_mm: f64) -> Result<(), Failure> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name).display().to_string();
+        let channels: String = tactpad::quantity::CHANNEL_NAMES.map(|name| format!(",{name}_uv")).concat();
+        let zeros = ",0".repeat(tactpad::quantity::CHANNELS);
+        let label = |x_mm: f64| format!("{x_mm},0,0,0,1");
+        let head = "x_mm,y_mm,fx_n,fy_n,fz_n";
+        fs::write(
+            path("m.csv"),
+            format!("{head}{channels}\n0,0,0,0,0{zeros}\n{}{zeros}\n", label(measured_mm)),
+        )
+        .unwrap();
+        fs::write(path("t.csv"), format!("{head}\n0,0,0,0,0\n{}\n", label(true_mm))).unwrap();
+        let line = ["evaluate", "--measured", &path("m.csv"), "--truth", &path("t.csv"), "--json"];
+        run(&Verb::parse_from(line).arguments)
+    }
+
+    #[test]
+    fn places_end_at_the_plates_rim() {
+        assert!(evaluated(29.9, -29.9).is_ok());
+        for (measured_mm, true_mm, file) in
+            [(30.1, 0.0, "m.csv:3"), (-59.0, 0.0, "m.csv:3"), (0.0, 30.1, "t.csv:3")]
+        {
+            let Err(Failure::Unusable(why)) = evaluated(measured_mm, true_mm) else {
+                panic!("{measured_mm} and {true_mm} mm pass")
+            };
+            assert!(why.contains(file) && why.contains("-30 to 30 mm"), "{why}");
+        }
+    }
 }

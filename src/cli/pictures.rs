@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use super::Failure;
+use super::failure::Failure;
 use super::written::reason;
-use crate::plot::figure::Figure;
-use crate::plot::{png, svg};
+use tactpad::plot::figure::Figure;
+use tactpad::plot::{png, svg};
 
 /// Picture elements per CSS pixel: sharp on any screen.
 const SCALE: f64 = 2.0;

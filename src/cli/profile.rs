@@ -6,12 +6,14 @@ use std::path::Path;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
-use super::written::stdout;
-use super::{Failure, if_read, print_json, text_file};
-use crate::mapping::check::{self, OutputChoice};
-use crate::mapping::profile::Profile;
-use crate::mapping::shipped;
-use crate::toml_text::diag::Diagnostic;
+use super::failure::{Failure, if_read};
+use super::text_file;
+use super::written::{print_json, stdout};
+use tactpad::pipeline::mapping::check::{self, OutputChoice};
+use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::read::ReadProfile;
+use tactpad::pipeline::mapping::shipped;
+use tactpad::toml_text::diag::Diagnostic;
 
 /// Arguments of `tactpad profile`.
 #[derive(Debug, Args)]
@@ -73,15 +75,14 @@ pub(super) fn text(profile: &str) -> Result<String, Failure> {
 }
 
 /// Reads a profile that is to be used. Warnings go to stderr; errors make it unusable.
-pub(super) fn read(profile: &str, output: OutputChoice) -> Result<(String, Profile), Failure> {
-    let text = text(profile)?;
-    let (read, diagnostics) = check::read(&text, output);
+pub(super) fn read(profile: &str, output: OutputChoice) -> Result<ReadProfile, Failure> {
+    let (read, diagnostics) = ReadProfile::read(&text(profile)?, output);
     let mut told: String = diagnostics.iter().map(|diagnostic| diagnostic.render(profile) + "\n").collect();
     match read {
         Some(read) => {
             // Where people cannot be warned, the profile still plays.
             let _ = io::stderr().write_all(told.as_bytes());
-            Ok((text, read))
+            Ok(read)
         }
         None => {
             told.insert_str(0, &format!("profile {profile} cannot be used\n"));

@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::quantity::{CHANNEL_NAMES, CHANNELS};
-use crate::readout::Bridges;
+use tactpad::pad::readout::Bridges;
+use tactpad::quantity::{CHANNEL_NAMES, CHANNELS};
 
 /// Sums over the rows of a table.
 #[derive(Debug, Default)]
@@ -58,10 +58,10 @@ impl Summary {
     }
 
     /// What the rows come to.
-    pub(super) fn report(&self) -> Report {
+    pub(super) fn report(&self) -> ChannelReport {
         let channels = CHANNEL_NAMES.into_iter().zip(&self.channels);
         let channels = channels.map(|(channel, sizes)| sizes.report(channel, self.rows));
-        Report { rows: self.rows, channels: channels.collect() }
+        ChannelReport { rows: self.rows, channels: channels.collect() }
     }
 }
 
@@ -86,7 +86,7 @@ impl Sizes {
 
 /// What a table comes to.
 #[derive(Debug, Serialize)]
-pub(super) struct Report {
+pub(super) struct ChannelReport {
     rows: usize,
     channels: Vec<Channel>,
 }
@@ -109,7 +109,7 @@ struct Nonlinearity {
     rms_percent: f64,
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for ChannelReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let contacts = if self.rows == 1 { "contact" } else { "contacts" };
         write!(f, "{} {contacts}\n{:<7} {:>11} {:>11}", self.rows, "µV", "max", "rms")?;
@@ -132,7 +132,7 @@ impl fmt::Display for Channel {
 mod tests {
     use super::*;
 
-    fn summary(rows: &[(f64, f64)]) -> Report {
+    fn summary(rows: &[(f64, f64)]) -> ChannelReport {
         let mut summary = Summary::default();
         for (signal_uv, sum_uv) in rows {
             let bridges = Bridges { signal_uv: [*signal_uv; CHANNELS], sum_uv: [*sum_uv; CHANNELS] };

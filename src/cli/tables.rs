@@ -4,20 +4,20 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use super::Failure;
+use super::failure::Failure;
 use super::written::reason;
-use crate::device::{Device, Patch};
-use crate::measured::Table;
-use crate::measured::columns::Kind;
-use crate::measured::error::{Fault, ReadError};
-use crate::measured::read;
+use tactpad::pad::device::{Device, Patch};
+use tactpad::tables::measured::Table;
+use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::error::{Fault, ReadError};
+use tactpad::tables::measured::read;
 
 /// Places are often written to two decimals; so rounded, one on the rim may lie this far beyond it.
 const RIM_TOLERANCE_MM: f64 = 0.01;
 
 /// Reads a table of contacts, all of which must be on the plate.
 pub(super) fn on_the_plate(path: &Path, kind: Kind, device: &Device) -> Result<Table, Failure> {
-    let contacts = read(path, kind, 0.5 * device.plate.diameter_mm)?;
+    let contacts = read(path, kind, device.plate.radius_mm())?;
     for row in &contacts.rows {
         within_the_rim([row.label.x_mm, row.label.y_mm], &device.contact)
             .map_err(|why| Failure::Unusable(format!("{}:{}: {why}", path.display(), row.line)))?;

@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::written::reason;
-use crate::toml_text::{self, TEXT_BYTES_MAX};
+use tactpad::toml_text::{self, TEXT_BYTES_MAX};
 
 /// The text of a file, or why there is none.
 pub(super) fn read(path: &Path) -> Result<String, String> {

@@ -1,7 +1,5 @@
 //! `tactpad train`: stage I of the paper's decoder.
 
-mod drawing;
-
 use std::fmt;
 use std::io::Write;
 use std::path::PathBuf;
@@ -10,17 +8,16 @@ use clap::Args;
 use serde::Serialize;
 
 use super::device::Pad;
-use super::field_cache::field_of;
+use super::failure::Failure;
+use super::field::field_of;
 use super::progress::Progress;
-use super::written::{both_print, is_stdout, stdout};
-use super::{Failure, decoder_file, pictures, print_json, say};
-use crate::network::score::{Score, Scores};
-use crate::network::training::Epoch;
-use crate::scdf::HIDDEN;
-use crate::scdf::simulation::{PAPER, Pretrained, examples, pretrain};
-
-/// The five numbers of a contact.
-const NAMES: [&str; 5] = ["x", "y", "Fx", "Fy", "Fz"];
+use super::written::{both_print, is_stdout, print_json, say, stdout};
+use super::{decoder_file, pictures};
+use tactpad::lab::scdf::HIDDEN;
+use tactpad::lab::scdf::drawing::{self, NAMES};
+use tactpad::lab::scdf::simulation::{PAPER, Pretrained, examples, pretrain};
+use tactpad::network::training::Epoch;
+use tactpad::network::training::score::{Score, Scores};
 
 /// Arguments of `tactpad train`.
 #[derive(Debug, Args)]

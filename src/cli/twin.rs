@@ -6,14 +6,15 @@ use clap::Args;
 use serde::Serialize;
 
 use super::device::Pad;
-use super::field_cache::field_of;
-use super::written::{create, is_same, is_stdout, stdout, written_over};
-use super::{Failure, print_json, say, tables};
-use crate::device::Device;
-use crate::measured::columns::Kind;
-use crate::measured::{Row, Table, write};
-use crate::protocol;
-use crate::twin::measurement::{Measurement, carry_out};
+use super::failure::Failure;
+use super::field::field_of;
+use super::tables;
+use super::written::{create, is_same, is_stdout, print_json, say, stdout, written_over};
+use tactpad::lab::rig::measurement::{Measurement, carry_out};
+use tactpad::pad::device::Device;
+use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::{Row, Table, write};
+use tactpad::tables::plans;
 
 /// Said with everything that the twin makes.
 pub(super) const NUMERICAL: &str = "a numerical twin: no hardware was measured";
@@ -80,8 +81,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The plan of this name, or in this file.
 fn planned(plan: &Path, device: &Device, seed: u64) -> Result<Table, Failure> {
     match plan.to_str() {
-        Some("paper") => Ok(protocol::paper::plan(&device.contact)),
-        Some("recommended") => Ok(protocol::recommended::plan(&device.contact, seed)),
+        Some("paper") => Ok(plans::paper::plan(&device.contact)),
+        Some("recommended") => Ok(plans::recommended::plan(&device.contact, seed)),
         _ => tables::on_the_plate(plan, Kind::Plan, device),
     }
 }

@@ -1,10 +1,11 @@
 //! Output whose errors name where it was to go, and that spares the input.
 
+use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Stdout, Write};
 use std::path::{self, Path};
 
-use super::Failure;
+use super::failure::Failure;
 
 /// Writes to `to`, which people call `place`.
 pub(super) struct Named<W> {
@@ -15,6 +16,17 @@ pub(super) struct Named<W> {
 /// Standard output.
 pub(super) fn stdout() -> Named<Stdout> {
     Named::new(io::stdout(), "stdout".into())
+}
+
+/// Prints one JSON document to stdout.
+pub(super) fn print_json(document: &impl serde::Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string(document).map_err(|error| Failure::Failed(error.to_string()))?;
+    Ok(writeln!(stdout(), "{text}")?)
+}
+
+/// Says something to people beside the verb's output. What does not get out must not stop the verb.
+pub(super) fn say(line: impl fmt::Display) {
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 impl<W: Write> Named<W> {

@@ -13,7 +13,7 @@
 
 use std::sync::OnceLock;
 
-use crate::device::Material;
+use crate::pad::device::Material;
 
 /// Nodes of a brick.
 pub const NODES: usize = 20;
@@ -83,10 +83,12 @@ fn edge_factor(node: i8, place: f64) -> f64 {
 
 fn slope(node: [i8; 3], place: [f64; 3], axis: usize) -> f64 {
     let across: f64 = (0..3).filter(|a| *a != axis).map(|a| edge_factor(node[a], place[a])).product();
+    // Middle of an edge along ξ: −2ξ (1+ηηᵢ)(1+ζζᵢ)/4. Middle of another edge: ξᵢ/4 times the other two factors.
     let along = f64::from(node[axis]);
     if node.contains(&0) {
         return if node[axis] == 0 { -2.0 * place[axis] } else { along } * across / 4.0;
     }
+    // Corner: ξᵢ (1+ηηᵢ)(1+ζζᵢ)(2ξξᵢ+ηηᵢ+ζζᵢ−1)/8.
     let sum: f64 = (0..3).map(|a| f64::from(node[a]) * place[a]).sum();
     along * across * (sum - 2.0 + edge_factor(node[axis], place[axis])) / 8.0
 }
@@ -123,12 +125,14 @@ fn add_products(slopes: &[[f64; NODES]; 3], sums: &mut Gradients) {
 
 /// The weights of ∫ ∂ₐNᵢ ∂ᵦNⱼ of the reference cube in a box of the given size (mm): `[a][b]`.
 fn box_weights(size_mm: [f64; 3]) -> [[f64; 3]; 3] {
+    // dV = V/8 dξ dη dζ and ∂/∂x = 2/hₓ ∂/∂ξ, hence (V/8)(2/hₐ)(2/hᵦ).
     let volume: f64 = size_mm.iter().product();
     std::array::from_fn(|a| std::array::from_fn(|b| volume / (2.0 * size_mm[a] * size_mm[b])))
 }
 
 /// How [`box_weights`] change per millimetre of height.
 fn box_weights_per_height(size_mm: [f64; 3]) -> [[f64; 3]; 3] {
+    // A weight is proportional to h_z to the power p = 1 − δ(a, z) − δ(b, z): ∂/∂h_z = p weight/h_z.
     let weights = box_weights(size_mm);
     let vertical = |axis: usize| f64::from(u8::from(axis == 2));
     let power = |a: usize, b: usize| 1.0 - vertical(a) - vertical(b);

@@ -1,6 +1,6 @@
 //! A module when its foot moves: the displacements of its nodes and the strains between them.
 
-use crate::device::Material;
+use crate::pad::device::Material;
 
 use super::brick::{NODES, lame_mpa, slopes};
 use super::mesh::{Brick, Mesh};
@@ -112,8 +112,8 @@ pub fn von_mises_mpa(strain: &Strain, material: Material) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::{Device, Direction};
     use crate::mechanics::mesh::{Fineness, Layer, half_sizes_mm};
+    use crate::pad::device::{Device, Direction};
 
     fn shapes(device: &Device) -> (ModeShapes, crate::mechanics::superelement::Superelement) {
         let solution = Solution::of(device, &device.modules[0], Fineness::STANDARD.scaled(3.0)).unwrap();

@@ -2,7 +2,7 @@
 //!
 //! Source: A. George, Nested dissection of a regular finite element mesh, SIAM J. Numer. Anal. 10 (1973) 345.
 
-/// Groups of at most so many nodes are not cut further.
+/// Largest group of nodes that is not cut further.
 const LEAF_NODES: usize = 60;
 
 /// The nodes in elimination order.

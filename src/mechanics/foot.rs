@@ -2,8 +2,8 @@
 
 use faer::Mat;
 
-use crate::device::Device;
-use crate::zernike::{count, jets};
+use crate::numeric::zernike::{count, jets};
+use crate::pad::device::Device;
 
 use super::plate::FIELDS;
 use super::superelement::{FOOT_SHAPES, MODES, foot_shapes};

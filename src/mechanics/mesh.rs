@@ -4,7 +4,7 @@
 //! Module frame; z = 0 is the underside of the film (where the gauges are), the frame hangs below it, the post and
 //! the bond stand on it.
 
-use crate::device::{Device, Direction, Gauge, Material, Module, Side, Stack};
+use crate::pad::device::{Device, Direction, Gauge, Material, Module, Side, Stack};
 
 use super::brick::{CORNERS, NODES};
 use super::grid::{Sizing, graded};
@@ -73,7 +73,7 @@ pub struct Grading {
 }
 
 impl Grading {
-    /// The size at a place so far outside the post's edge and so far beyond the frame's (negative: before it).
+    /// The size at these distances outside the post's edge and beyond the frame's (negative: inside it).
     fn at(self, past_post_mm: f64, past_frame_mm: f64) -> f64 {
         if past_post_mm < 0.0 {
             self.post.at(-past_post_mm)

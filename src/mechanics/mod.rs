@@ -6,6 +6,7 @@ mod dissection;
 mod foot;
 pub mod grid;
 pub mod mesh;
+pub mod meshes;
 pub mod pad;
 pub mod plate;
 pub mod pressed;

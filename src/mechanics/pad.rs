@@ -16,10 +16,10 @@ use std::sync::Arc;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, MatRef};
 
-use crate::device::Device;
-use crate::field::ForceMaps;
+use crate::numeric::zernike::Polynomial;
+use crate::pad::device::Device;
+use crate::pad::field::ForceMaps;
 use crate::quantity::{CHANNELS, MODULES};
-use crate::zernike::Polynomial;
 
 use super::foot::Foot;
 use super::plate::{FIELDS, Plate, Rigidity, held};
@@ -104,7 +104,7 @@ impl Pad {
     /// u, v, w, R α, R β in millimetres.
     pub fn deflection(&self, place_mm: [f64; 2], axis: usize) -> [Polynomial; FIELDS] {
         let (radius, lever) = (self.radius_mm(), self.lever());
-        let jets = crate::zernike::jets(self.degree, place_mm.map(|mm| mm / radius));
+        let jets = crate::numeric::zernike::jets(self.degree, place_mm.map(|mm| mm / radius));
         let patch = self.device.contact.patch_radius_mm / radius;
         let mut load = Mat::zeros(self.plate.unknowns(), 1);
         let size = jets.len();
@@ -136,7 +136,7 @@ impl Pad {
     }
 
     fn radius_mm(&self) -> f64 {
-        self.device.plate.diameter_mm / 2.0
+        self.device.plate.radius_mm()
     }
 
     /// Height of the plate's top above its middle plane, in plate radii.
@@ -208,13 +208,13 @@ impl Pad {
 }
 
 pub(super) fn rigidity(device: &Device) -> Rigidity {
-    Rigidity::of(device.material.plate, device.plate.thickness_mm, device.plate.diameter_mm / 2.0)
+    Rigidity::of(device.material.plate, device.plate.thickness_mm, device.plate.radius_mm())
 }
 
 fn couplings(device: &Device, degree: usize) -> Mat<f64> {
     let Device { plate, .. } = device;
     let feet: [Mat<f64>; MODULES] = std::array::from_fn(|module| {
-        Foot::of(device, module).modes(degree, plate.diameter_mm / 2.0, plate.thickness_mm)
+        Foot::of(device, module).modes(degree, plate.radius_mm(), plate.thickness_mm)
     });
     let held = held(degree);
     Mat::from_fn(ROWS, feet[0].ncols(), |row, unknown| match feet.get(row / MODES) {

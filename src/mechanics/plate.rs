@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Each field is a polynomial over the disc (Ritz's method), w and the rotations of one degree, so that thin plates
-//! do not lock. The edge is free by itself. The unknowns are coefficients of [`crate::zernike`] polynomials in the
+//! do not lock. The edge is free by itself. The unknowns are coefficients of [`crate::numeric::zernike`] polynomials in the
 //! place divided by the plate's radius R, in five blocks: u, v, w, R α, R β, all in millimetres.
 //!
 //! **Blocks.** The plate is round, so its stiffness couples only motions that turn alike. Write U = u + iv and
@@ -20,7 +20,7 @@
 //! u,x + v,y = 2 Re ∂U/∂z        (u,x − v,y) + i (u,y + v,x) = 2 ∂U/∂z*        w,x + i w,y = 2 ∂w/∂z*
 //! ```
 //!
-//! and the rule for ∂/∂z in [`crate::zernike`] shows that orders l = 1 + J and l = 1 − J meet only each other and the
+//! and the rule for ∂/∂z in [`crate::numeric::zernike`] shows that orders l = 1 + J and l = 1 − J meet only each other and the
 //! waves of order J in w, real multiples apart from imaginary ones. All integrals are closed sums.
 //! Source: R. D. Mindlin, J. Appl. Mech. 18 (1951) 31; E. Reissner, J. Appl. Mech. 12 (1945) A69 for κ.
 
@@ -29,8 +29,8 @@ use std::f64::consts::PI;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
-use crate::device::Material;
-use crate::zernike::{Wave, count, index};
+use crate::numeric::zernike::{Wave, count, index};
+use crate::pad::device::Material;
 
 use super::system::SolveError;
 
@@ -150,6 +150,8 @@ impl Block {
 
     /// Energy of a pair of unknowns: an entry of the stiffness.
     fn entry(&self, a: Unknown, b: Unknown, rigidity: Rigidity) -> f64 {
+        // The plane energy is ½ D ((1+ν)/2 (u,x + v,y)² + (1−ν)/2 ((u,x − v,y)² + (u,y + v,x)²)), the first square `divergence`,
+        // the others `distortion`; shear adds ½ κGh |2 ∂w/∂z* + U|² with U = α + iβ.
         let plane = if self.first_field == 0 { rigidity.stretching } else { rigidity.bending };
         let shear = if self.first_field == 0 { 0.0 } else { rigidity.shear };
         match (a.kind, b.kind) {
@@ -349,7 +351,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use crate::zernike::{Polynomial, jets};
+    use crate::numeric::zernike::{Polynomial, jets};
 
     const DEGREE: usize = 40;
     const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3 };

@@ -2,14 +2,16 @@
 
 use std::sync::Arc;
 
+use crate::numeric::zernike::{Polynomial, jets};
+use crate::pad::device::Device;
 use crate::quantity::MODULES;
-use crate::zernike::{Polynomial, jets};
 
 use super::deformed::{Deformed, ModeShapes};
 use super::foot::Foot;
 use super::pad::Pad;
 use super::plate::FIELDS;
-use super::simulator::PLATE_DEGREE;
+use super::simulator::{PLATE_DEGREE, Simulator};
+use super::system::SolveError;
 
 /// A pad that is pressed with 1 N.
 pub struct PressedPad {
@@ -30,6 +32,21 @@ pub struct PlateMovement {
     pub rotation: [f64; 2],
 }
 
+impl Simulator {
+    /// The device's pad, pressed with 1 N at a place of the plate, with its modules inside.
+    ///
+    /// # Errors
+    /// As for [`Simulator::pad`].
+    pub fn pressed(&mut self, device: &Device, place_mm: [f64; 2]) -> Result<PressedPad, SolveError> {
+        let mut modules = Vec::with_capacity(MODULES);
+        for module in 0..MODULES {
+            modules.push(self.shapes(device, module)?);
+        }
+        let modules = [0, 1, 2].map(|module| Arc::clone(&modules[module]));
+        Ok(PressedPad::of(self.pad(device)?, modules, place_mm))
+    }
+}
+
 impl PressedPad {
     /// Presses a pad whose modules have these shapes; `place_mm` lies on the plate.
     pub fn of(pad: Pad, modules: [Arc<ModeShapes>; MODULES], place_mm: [f64; 2]) -> Self {
@@ -40,7 +57,7 @@ impl PressedPad {
     /// How the plate moves at a place of it.
     pub fn plate(&self, place_mm: [f64; 2]) -> PlateMovement {
         let plate = &self.pad.device.plate;
-        let radius_mm = plate.diameter_mm / 2.0;
+        let radius_mm = plate.radius_mm();
         let jets = jets(PLATE_DEGREE, place_mm.map(|mm| mm / radius_mm));
         let [u, v, w, a, b] = self.deflection.each_ref().map(|field| field.value(&jets));
         let rotation = [a / radius_mm, b / radius_mm];
@@ -90,9 +107,7 @@ impl ModuleFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::Device;
     use crate::mechanics::mesh::Fineness;
-    use crate::mechanics::simulator::Simulator;
 
     fn pressed(place_mm: [f64; 2]) -> PressedPad {
         let device = Device::nominal();

@@ -4,7 +4,7 @@
 //! excitation, the signals are δ (r1 − r2), δ (r3 − r4) and δ (r5 + r6 − r7); the bridges' sums, which make the exact
 //! voltages nonlinear, are δ (r1 + r2), δ (r3 + r4) and δ (r5 + r6 + r7). All in microvolts.
 
-use crate::device::{Device, GAUGES};
+use crate::pad::device::{Device, GAUGES};
 
 use super::superelement::{MODES, STRAINS, Superelement};
 

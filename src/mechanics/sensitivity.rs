@@ -14,11 +14,11 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use crate::device::Device;
-use crate::device::parameter::Parameter;
-use crate::device::schema::Effect;
-use crate::device::unit::Unit;
-use crate::field::Sensitivity;
+use crate::pad::device::Device;
+use crate::pad::device::parameter::Parameter;
+use crate::pad::device::schema::Effect;
+use crate::pad::device::unit::Unit;
+use crate::pad::field::Sensitivity;
 use crate::quantity::MODULES;
 
 use super::mesh::Layer;

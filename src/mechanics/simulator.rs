@@ -2,16 +2,15 @@
 
 use std::sync::Arc;
 
-use crate::device::{Device, Gauge, Material, Side, Stack};
-use crate::field::{ForceMaps, PadField, Sensitivity};
-use crate::influence::{InfluenceField, MAPS};
+use crate::numeric::zernike::jets;
+use crate::pad::device::{Device, Gauge, Material, Side, Stack};
+use crate::pad::field::{ForceMaps, PadField, Sensitivity};
+use crate::pad::influence::{InfluenceField, MAPS};
 use crate::quantity::{CHANNELS, MODULES};
-use crate::zernike::jets;
 
 use super::deformed::ModeShapes;
 use super::mesh::{Fineness, Layer};
 use super::pad::Pad;
-use super::pressed::PressedPad;
 use super::sensitivity::sensitivities;
 use super::superelement::{LayerDerivatives, Solution, Superelement};
 use super::system::SolveError;
@@ -117,19 +116,6 @@ impl Simulator {
         Ok(PadField { signals, sums, sensitivities })
     }
 
-    /// The device's pad, pressed with 1 N at a place of the plate, with its modules inside.
-    ///
-    /// # Errors
-    /// As for [`Self::pad`].
-    pub fn pressed(&mut self, device: &Device, place_mm: [f64; 2]) -> Result<PressedPad, SolveError> {
-        let mut modules = Vec::with_capacity(MODULES);
-        for module in 0..MODULES {
-            modules.push(self.shapes(device, module)?);
-        }
-        let modules = [0, 1, 2].map(|module| Arc::clone(&modules[module]));
-        Ok(PressedPad::of(self.pad(device)?, modules, place_mm))
-    }
-
     fn known(&self, blueprint: &Blueprint) -> Option<&Solved> {
         self.solved.iter().find(|solved| solved.blueprint == *blueprint)
     }
@@ -165,7 +151,7 @@ impl Simulator {
     }
 
     /// How a module moves with its foot.
-    fn shapes(&mut self, device: &Device, module: usize) -> Result<Arc<ModeShapes>, SolveError> {
+    pub(super) fn shapes(&mut self, device: &Device, module: usize) -> Result<Arc<ModeShapes>, SolveError> {
         let blueprint = Blueprint::of(device, module);
         if let Some(shapes) = self.known(&blueprint).and_then(|solved| solved.shapes.as_ref()) {
             return Ok(Arc::clone(shapes));
@@ -187,7 +173,7 @@ impl Simulator {
 
 /// Splines through the polynomials of a device's channels.
 pub fn splines(device: &Device, lines_per_radius: f64, maps: &[ForceMaps; CHANNELS]) -> InfluenceField {
-    let radius_mm = device.plate.diameter_mm / 2.0;
+    let radius_mm = device.plate.radius_mm();
     InfluenceField::sampled(
         radius_mm / lines_per_radius,
         device.contact.max_centre_radius_mm,

@@ -15,6 +15,7 @@ use super::mesh::{Brick, Mesh};
 
 /// Why a stiffness could not be factorised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SolveError {
     /// The memory for the factor is not there.
     OutOfMemory,

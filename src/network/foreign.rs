@@ -11,11 +11,12 @@ use tract_onnx::prelude::{
     DatumExt, Framework, InferenceModelExt, IntoRunnable, TValue, Tensor, TractResult, TypedSimpleState, tvec,
 };
 
-use super::onnx::{self, OnnxError};
+use super::onnx;
+use super::onnx::error::OnnxError;
 use super::{OUTPUTS, Zero};
 use crate::quantity::CHANNELS;
 
-/// What is told of an error: tract tells whole graphs.
+/// Longest part of an error's text: tract prints whole graphs.
 const TOLD_CHARACTERS: usize = 200;
 
 /// A network that tract runs. Clones share its state.

@@ -6,18 +6,15 @@
 //!
 //! Source: Wu et al., *Sensors* 2026, 26(4), 1378, section 2.5.
 
-mod adam;
 #[cfg(feature = "foreign-onnx")]
 pub mod foreign;
-mod gradient;
 pub mod onnx;
-mod parameters;
-mod product;
-pub mod score;
+#[cfg(feature = "lab")]
 pub mod training;
+mod transposed;
 
+use crate::numeric::random::SplitMix64;
 use crate::quantity::{CHANNELS, Contact};
-use crate::random::SplitMix64;
 
 /// Numbers of a contact: x, y, Fx, Fy, Fz.
 pub const OUTPUTS: usize = 5;
@@ -28,7 +25,7 @@ pub const WIDTH_MAX: usize = 512;
 /// Most layers with weights.
 pub const LAYERS_MAX: usize = 16;
 
-/// What the nine numbers are that a network was trained on.
+/// What the nine inputs of a network are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Zero {
     /// The untouched pad reads zero: channels minus their zeros.
@@ -37,7 +34,7 @@ pub enum Zero {
     Raw,
 }
 
-/// Numbers that make values even: (value − mean) / deviation.
+/// Standardisation: (value − mean)/deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaler<const N: usize> {
     /// Of each value over the examples.
@@ -89,6 +86,7 @@ impl<const N: usize> Scaler<N> {
                 values.clone().map(|value| of(k, f64::from(value[k]))).sum::<f64>() / count
             })
         };
+        // μ = Σ v/n, σ² = Σ (v − μ)²/n.
         let mean = sum(&|_, value| value);
         let square = sum(&|k, value| (value - mean[k]) * (value - mean[k]));
         let deviation = square.map(|square| if square > 0.0 { square.sqrt() as f32 } else { 1.0 });
@@ -116,8 +114,9 @@ impl Layer {
         Self { weights: draw(inputs * outputs), biases: draw(outputs) }
     }
 
-    /// Writes what the neurons say before any ReLU.
+    /// Writes z = Wᵀ a + b, the neurons' values without ReLU.
     fn apply(&self, from: &[f32], into: &mut [f32]) {
+        // zⱼ = bⱼ + Σᵢ aᵢ wᵢⱼ, one input after the other.
         into.copy_from_slice(&self.biases);
         for (value, weights) in from.iter().zip(self.weights.chunks_exact(self.biases.len())) {
             into.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += value * weight);

@@ -1,11 +1,11 @@
 //! Curves and points over two axes.
 
 use super::colour::Rgb;
-use super::figure::{Anchor, Circle, Ends, Figure, Ink, Mark, Path, Point, Stroke, Text};
-use super::legend;
+use super::figure::{Anchor, Figure, Ink, Path, Point, Stroke, Text};
+use super::legend::{self, Entry};
 use super::scale::{Axis, Scale};
 use super::style::{
-    AXIS, GRID, HALF_DIGIT, LABEL_SIZE, MARGIN, NUMBER_SIZE, QUIET, SMALL_SIZE, TEXT, TICK, TITLE_SIZE,
+    AXIS, GRID, HALF_DIGIT, LABEL_SIZE, MARGIN, NUMBER_SIZE, QUIET, SMALL_SIZE, TEXT, TICK, TITLE_SIZE, mark,
 };
 
 /// Curves and points over two axes, and lines across.
@@ -100,7 +100,6 @@ impl Value {
 
 const BOTTOM: f64 = 46.0;
 const CURVE: f64 = 1.6;
-const MARK: f64 = 3.2;
 const CAP: f64 = 3.0;
 const GUIDE_GAP: f64 = 4.0;
 
@@ -117,7 +116,7 @@ impl Chart {
         let title = [MARGIN, MARGIN + TITLE_SIZE];
         figure.text(Text::new(&self.title, title, TITLE_SIZE, TEXT).semi_bold());
         let top = MARGIN + if self.title.is_empty() { 0.0 } else { 2.0 * TITLE_SIZE };
-        let top = legend::draw(&mut figure, &self.series, [MARGIN, top]);
+        let top = legend::draw(&mut figure, &self.legend(), [MARGIN, top]);
         let field = self.field(top + NUMBER_SIZE);
         self.draw_axes(&mut figure, &field);
         let curves: Vec<Point> = self.series.iter().flat_map(|series| series.covered(&field)).collect();
@@ -126,6 +125,12 @@ impl Chart {
             series.draw(&mut figure, &field, index);
         }
         figure
+    }
+
+    /// The named series, with the numbers that give them their colours and marks.
+    fn legend(&self) -> Vec<Entry<'_>> {
+        let named = self.series.iter().enumerate().filter(|(_, series)| !series.name.is_empty());
+        named.map(|(index, series)| series.entry(index)).collect()
     }
 
     fn field(&self, top: f64) -> Field {
@@ -203,6 +208,12 @@ impl Guide {
 }
 
 impl Series {
+    /// How the legend shows it as the series with this number.
+    fn entry(&self, index: usize) -> Entry<'_> {
+        let stroke = self.look.stroke(Ink::opaque(Rgb::of_series(index)));
+        Entry { name: &self.name, stroke, mark: self.look.has_points().then_some(index) }
+    }
+
     /// Places along the curve and at the ends of the error bars.
     fn covered(&self, field: &Field) -> Vec<Point> {
         let place = |x: f64, y: f64| [field.x.at(x), field.y.at(y)];
@@ -234,7 +245,7 @@ impl Series {
 }
 
 impl SeriesLook {
-    pub(super) fn stroke(self, ink: Ink) -> Option<Stroke> {
+    fn stroke(self, ink: Ink) -> Option<Stroke> {
         let line = Stroke { ink, width: CURVE, dash: None };
         match self {
             Self::Line | Self::LineAndPoints => Some(line),
@@ -243,7 +254,7 @@ impl SeriesLook {
         }
     }
 
-    pub(super) fn has_points(self) -> bool {
+    fn has_points(self) -> bool {
         matches!(self, Self::Points | Self::LineAndPoints)
     }
 }
@@ -252,22 +263,4 @@ impl SeriesLook {
 fn error_bar([from, to]: [Point; 2]) -> [Vec<Point>; 3] {
     let cap = |[x, y]: Point| vec![[x - CAP, y], [x + CAP, y]];
     [vec![from, to], cap(from), cap(to)]
-}
-
-/// The mark of the series with this number: disc, square, diamond, triangles, by turns, with a white rim.
-pub(super) fn mark([x, y]: Point, index: usize) -> Mark {
-    let (fill, stroke) = (Some(Ink::opaque(Rgb::of_series(index))), Some(Stroke::solid(Rgb::WHITE, 0.8)));
-    let (corners, turn_deg, size) = match index % 5 {
-        0 => return Mark::Circle(Circle { centre: [x, y], radius: MARK, fill, stroke }),
-        1 => (4, 45.0, 1.2),
-        2 => (4, 0.0, 1.3),
-        3 => (3, -90.0, 1.35),
-        _ => (3, 90.0, 1.35),
-    };
-    let corner = |k: i32| {
-        let (sin, cos) = (f64::from(k) * 360.0 / f64::from(corners) + turn_deg).to_radians().sin_cos();
-        [x + MARK * size * cos, y + MARK * size * sin]
-    };
-    let lines = vec![(0..corners).map(corner).collect()];
-    Mark::Path(Path { lines, ends: Ends::Closed, fill, stroke })
 }

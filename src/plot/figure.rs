@@ -1,7 +1,6 @@
 //! What a figure is made of, before it is SVG or PNG.
 
 use super::colour::Rgb;
-use super::font;
 
 /// A place on the page in CSS pixels (1/96 inch): x right, y **down**, from the upper left corner.
 pub type Point = [f64; 2];
@@ -195,20 +194,6 @@ impl Text {
     pub fn turned(mut self, turn_deg: f64) -> Self {
         self.turn_deg = turn_deg;
         self
-    }
-
-    /// How long it is.
-    pub fn width(&self) -> f64 {
-        font::width(&self.text, self.size, self.weight)
-    }
-
-    /// How far its start is behind its place.
-    pub(super) fn offset(&self) -> f64 {
-        match self.anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => -0.5 * self.width(),
-            Anchor::End => -self.width(),
-        }
     }
 }
 

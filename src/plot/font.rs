@@ -5,7 +5,7 @@
 
 use std::sync::LazyLock;
 
-use super::figure::Weight;
+use super::figure::{Anchor, Text, Weight};
 
 /// Units of an outline per em.
 pub(super) const UNITS: f64 = 1000.0;
@@ -61,6 +61,22 @@ pub(super) fn lay_out(text: &str, weight: Weight) -> (Vec<Placed>, f64) {
 /// The width of `text` at this size.
 pub(super) fn width(text: &str, size: f64, weight: Weight) -> f64 {
     size * lay_out(text, weight).1
+}
+
+impl Text {
+    /// How long it is.
+    pub fn width(&self) -> f64 {
+        width(&self.text, self.size, self.weight)
+    }
+
+    /// How far its start is behind its place.
+    pub(super) fn offset(&self) -> f64 {
+        match self.anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => -0.5 * self.width(),
+            Anchor::End => -self.width(),
+        }
+    }
 }
 
 /// The characters that are drawn, each with its rise.

@@ -11,7 +11,7 @@
 //! | modules, regions, gauges, contact points | [`shape::Shape`] in a [`plan::Plan`] |
 //! | curves, points, error bars | [`chart::Chart`] |
 //!
-//! `tests/plot.rs` makes one of each kind.
+//! `tests/program/plot.rs` makes one of each kind.
 //!
 //! What cannot be drawn (values that are not finite, or not positive on a logarithmic axis) is left out; an empty
 //! figure is a frame with axes.
@@ -28,6 +28,7 @@ pub mod png;
 pub mod scale;
 pub mod shape;
 pub mod svg;
+pub mod vtk;
 
 mod colour_bar;
 mod contour;

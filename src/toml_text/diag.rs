@@ -56,7 +56,7 @@ impl Diagnostic {
 const FINDINGS_MAX: usize = 50;
 
 /// Findings about one text while it is read.
-pub(crate) struct Report<'t> {
+pub(crate) struct Findings<'t> {
     text: &'t str,
     found: Vec<Diagnostic>,
     broken_lines: Vec<usize>,
@@ -64,7 +64,7 @@ pub(crate) struct Report<'t> {
     dropped: Option<Severity>,
 }
 
-impl<'t> Report<'t> {
+impl<'t> Findings<'t> {
     pub(crate) const fn new(text: &'t str) -> Self {
         Self { text, found: Vec::new(), broken_lines: Vec::new(), dropped: None }
     }
@@ -189,11 +189,11 @@ mod tests {
 
     #[test]
     fn a_finding_renders_for_people_and_for_programs() {
-        let mut report = Report::new("a = 1\nb = 2\n");
-        report.warning(10, "late", "");
-        report.error(4, "early", "write 2");
-        assert!(report.failed());
-        let found = report.finish();
+        let mut findings = Findings::new("a = 1\nb = 2\n");
+        findings.warning(10, "late", "");
+        findings.error(4, "early", "write 2");
+        assert!(findings.failed());
+        let found = findings.finish();
         let lines: Vec<_> = found.iter().map(|finding| finding.render("p.toml")).collect();
         assert_eq!(lines, ["p.toml:1:5: error: early\n  help: write 2", "p.toml:2:5: warning: late"]);
         assert_eq!(
@@ -205,12 +205,12 @@ mod tests {
 
     #[test]
     fn a_line_that_cannot_be_parsed_is_reported_once() {
-        let mut report = Report::new("a =\nb = 2\n");
-        report.broken(3, "no value");
-        report.error(0, "echo", "");
-        report.misplaced(4, "c is missing", "");
-        report.error(8, "b is too small", "");
-        let messages: Vec<_> = report.finish().into_iter().map(|finding| finding.message).collect();
+        let mut findings = Findings::new("a =\nb = 2\n");
+        findings.broken(3, "no value");
+        findings.error(0, "echo", "");
+        findings.misplaced(4, "c is missing", "");
+        findings.error(8, "b is too small", "");
+        let messages: Vec<_> = findings.finish().into_iter().map(|finding| finding.message).collect();
         assert_eq!(messages, ["no value", "b is too small"]);
     }
 
@@ -218,11 +218,11 @@ mod tests {
     fn the_fifty_first_finding_closes_the_list() {
         let text = "\n".repeat(60);
         let noted = |warnings: usize, errors: usize| {
-            let mut report = Report::new(&text);
-            (0..warnings).for_each(|at| report.warning(at, "w", ""));
-            (warnings..warnings + errors).for_each(|at| report.error(at, "e", ""));
-            let failed = report.failed();
-            let found = report.finish();
+            let mut findings = Findings::new(&text);
+            (0..warnings).for_each(|at| findings.warning(at, "w", ""));
+            (warnings..warnings + errors).for_each(|at| findings.error(at, "e", ""));
+            let failed = findings.failed();
+            let found = findings.finish();
             let last = found.last().unwrap().clone();
             (found.len(), last.message.starts_with("and more"), last.severity, failed)
         };

@@ -7,8 +7,8 @@ use std::str::FromStr;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::diag::{Report, quoted, shortened};
-use crate::spelling;
+use super::diag::{Findings, quoted, shortened};
+use crate::toml_text::spelling;
 
 /// A value and the byte offset where it is written (or, for a default, where the table starts that lacks it).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,9 +64,9 @@ impl<'t> Section<'t> {
         tree: &'t Spanned<DeTable<'t>>,
         title: &str,
         known: &[&'static str],
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Self {
-        Self::closed(title.to_owned(), tree.span().start, tree.get_ref(), known, report)
+        Self::closed(title.to_owned(), tree.span().start, tree.get_ref(), known, findings)
     }
 
     fn get(&self, key: &str) -> Option<&'t Spanned<DeValue<'t>>> {
@@ -84,20 +84,20 @@ impl<'t> Section<'t> {
         at: usize,
         table: &'t DeTable<'t>,
         known: &[&'static str],
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Self {
         let mut section = Self { title, at, table, known: known.to_vec(), misspelt: Vec::new() };
         for key in table.keys().filter(|key| !known.contains(&key.get_ref().as_ref())) {
-            section.refuse(key, report);
+            section.refuse(key, findings);
             // A name is compared with all known ones, so a table full of strangers must not be.
-            if report.is_full() {
+            if findings.is_full() {
                 break;
             }
         }
         section
     }
 
-    fn refuse(&mut self, key: &Spanned<DeString<'_>>, report: &mut Report<'_>) {
+    fn refuse(&mut self, key: &Spanned<DeString<'_>>, findings: &mut Findings<'_>) {
         let name = key.get_ref().as_ref();
         let near = spelling::nearest(name, self.known.iter().copied());
         self.misspelt.extend(near);
@@ -105,35 +105,35 @@ impl<'t> Section<'t> {
             || format!("known here: {}", self.known.join(", ")),
             |word| format!("did you mean \"{word}\"?"),
         );
-        report.misplaced(key.span().start, format!("unknown key {} in {}", quoted(name), self.title), help);
+        findings.misplaced(key.span().start, format!("unknown key {} in {}", quoted(name), self.title), help);
     }
 
     /// Reports it if `key` is not there; `help` says what to write. A misspelt one is reported already.
-    pub(crate) fn require(&self, key: &'static str, help: &str, report: &mut Report<'_>) {
+    pub(crate) fn require(&self, key: &'static str, help: &str, findings: &mut Findings<'_>) {
         if self.get(key).is_none() && !self.misspelt.contains(&key) {
-            report.misplaced(self.at, format!("{} lacks \"{key}\"", self.title), help);
+            findings.misplaced(self.at, format!("{} lacks \"{key}\"", self.title), help);
         }
     }
 
     /// The number under `key`, whatever it is; `None` where it is absent, and where it is no number (which is
     /// reported).
-    pub(crate) fn real<T: Real>(&self, key: &str, report: &mut Report<'_>) -> Option<Placed<T>> {
+    pub(crate) fn real<T: Real>(&self, key: &str, findings: &mut Findings<'_>) -> Option<Placed<T>> {
         let value = self.get(key)?;
-        let number = as_real(value.get_ref()).or_else(|| wrong_type(key, value, "a number", report))?;
+        let number = as_real(value.get_ref()).or_else(|| wrong_type(key, value, "a number", findings))?;
         Some(Placed { value: number, at: value.span().start })
     }
 
-    /// The number under `key`; the default where there is none, `None` (and a report) where it is unusable.
+    /// The number under `key`; the default where there is none, `None` (and a finding) where it is unusable.
     pub(crate) fn number<T: Real>(
         &self,
         key: &str,
         bounds: Bounds<T>,
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Option<Placed<T>> {
         if self.get(key).is_none() {
             return Some(Placed { value: bounds.default, at: self.at });
         }
-        let Placed { value: number, at } = self.real::<T>(key, report)?;
+        let Placed { value: number, at } = self.real::<T>(key, findings)?;
         let Bounds { low, high, .. } = bounds;
         if (low..=high).contains(&number) {
             return Some(Placed { value: number, at });
@@ -143,7 +143,7 @@ impl<'t> Section<'t> {
         } else {
             format!("\"{key}\" must be {low} to {high}")
         };
-        report.error(at, message, "");
+        findings.error(at, message, "");
         None
     }
 
@@ -153,10 +153,10 @@ impl<'t> Section<'t> {
         &self,
         key: &str,
         count: usize,
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Option<Vec<Placed<T>>> {
         let wanted = format!("a list of {count} numbers");
-        self.list(key, count..=count, &wanted, as_real, report)
+        self.list(key, count..=count, &wanted, as_real, findings)
     }
 
     /// The same, or the one number that stands there instead of a list.
@@ -164,14 +164,14 @@ impl<'t> Section<'t> {
         &self,
         key: &str,
         count: usize,
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Option<Vec<Placed<T>>> {
         let value = self.get(key)?;
         if let Some(number) = as_real(value.get_ref()) {
             return Some(vec![Placed { value: number, at: value.span().start }]);
         }
         let wanted = format!("a number or a list of {count}");
-        self.list(key, count..=count, &wanted, as_real, report)
+        self.list(key, count..=count, &wanted, as_real, findings)
     }
 
     /// The `count` texts in the list under `key`; `None` where it is absent, and where it is no such list
@@ -180,10 +180,10 @@ impl<'t> Section<'t> {
         &self,
         key: &str,
         count: usize,
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Option<Vec<Placed<&'t str>>> {
         let wanted = format!("a list of {count} texts in quotation marks");
-        self.list(key, count..=count, &wanted, |value| value.as_str(), report)
+        self.list(key, count..=count, &wanted, |value| value.as_str(), findings)
     }
 
     /// What the words in the list under `key` stand for, which are one at least and no more than there are `words`;
@@ -192,12 +192,12 @@ impl<'t> Section<'t> {
         &self,
         key: &str,
         words: &[(&'static str, T)],
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Option<Vec<Placed<T>>> {
         let most = words.len();
         let wanted = format!("a list of 1 to {most} texts in quotation marks");
-        let texts = self.list(key, 1..=most, &wanted, |value| value.as_str(), report)?;
-        texts.into_iter().map(|text| meant(key, text, words, report)).collect()
+        let texts = self.list(key, 1..=most, &wanted, |value| value.as_str(), findings)?;
+        texts.into_iter().map(|text| meant(key, text, words, findings)).collect()
     }
 
     /// The list under `key`, which must be as `wanted` says; `item` reads one of its values.
@@ -207,42 +207,42 @@ impl<'t> Section<'t> {
         count: RangeInclusive<usize>,
         wanted: &str,
         item: impl Fn(&'t DeValue<'t>) -> Option<T>,
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Option<Vec<Placed<T>>> {
         let value = self.get(key)?;
-        let list = value.get_ref().as_array().or_else(|| wrong_type(key, value, wanted, report))?;
+        let list = value.get_ref().as_array().or_else(|| wrong_type(key, value, wanted, findings))?;
         let read = |value: &'t Spanned<DeValue<'t>>| {
             Some(Placed { value: item(value.get_ref())?, at: value.span().start })
         };
         let mut items = Vec::new();
         for value in list.iter().take(*count.end()) {
-            items.push(read(value).or_else(|| wrong_type(key, value, wanted, report))?);
+            items.push(read(value).or_else(|| wrong_type(key, value, wanted, findings))?);
         }
         if count.contains(&list.len()) {
             return Some(items);
         }
-        report.error(value.span().start, format!("\"{key}\" must be {wanted}, not of {}", list.len()), "");
+        findings.error(value.span().start, format!("\"{key}\" must be {wanted}, not of {}", list.len()), "");
         None
     }
 
     /// Whether the flag under `key` is set; `None` where it is absent, and where it is no flag (reported).
-    pub(crate) fn flag(&self, key: &str, report: &mut Report<'_>) -> Option<bool> {
+    pub(crate) fn flag(&self, key: &str, findings: &mut Findings<'_>) -> Option<bool> {
         let value = self.get(key)?;
-        value.get_ref().as_bool().or_else(|| wrong_type(key, value, "true or false", report))
+        value.get_ref().as_bool().or_else(|| wrong_type(key, value, "true or false", findings))
     }
 
-    /// The whole number under `key`; the default where there is none, `None` (and a report) where it is
+    /// The whole number under `key`; the default where there is none, `None` (and a finding) where it is
     /// unusable.
     pub(crate) fn whole(
         &self,
         key: &str,
         bounds: Bounds<u32>,
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Option<Placed<u32>> {
         let Some(value) = self.get(key) else { return Some(Placed { value: bounds.default, at: self.at }) };
         let at = value.span().start;
         let Some(number) = value.get_ref().as_integer() else {
-            return wrong_type(key, value, "a whole number", report);
+            return wrong_type(key, value, "a whole number", findings);
         };
         let Bounds { low, high, .. } = bounds;
         match u32::from_str_radix(number.as_str(), number.radix()) {
@@ -250,27 +250,27 @@ impl<'t> Section<'t> {
             _ => {
                 let allowed = if low == high { format!("{low}") } else { format!("{low} to {high}") };
                 let number = shortened(number.as_str());
-                report.error(at, format!("\"{key}\" is {number}; it must be {allowed}"), "");
+                findings.error(at, format!("\"{key}\" is {number}; it must be {allowed}"), "");
                 None
             }
         }
     }
 
     /// The text under `key`; `None` where it is absent, and where it is no text (which is reported).
-    pub(crate) fn text(&self, key: &str, report: &mut Report<'_>) -> Option<Placed<&'t str>> {
+    pub(crate) fn text(&self, key: &str, findings: &mut Findings<'_>) -> Option<Placed<&'t str>> {
         let value = self.get(key)?;
         match value.get_ref().as_str() {
             Some(text) => Some(Placed { value: text, at: value.span().start }),
-            None => wrong_type(key, value, "text in quotation marks", report),
+            None => wrong_type(key, value, "text in quotation marks", findings),
         }
     }
 
     /// The name for people under `key`; `None` where it is absent, and where it is no name (reported).
-    pub(crate) fn name(&self, key: &str, report: &mut Report<'_>) -> Option<&'t str> {
-        let Placed { value: name, at } = self.text(key, report)?;
+    pub(crate) fn name(&self, key: &str, findings: &mut Findings<'_>) -> Option<&'t str> {
+        let Placed { value: name, at } = self.text(key, findings)?;
         let length = name.chars().count();
         if name.trim().is_empty() || length > NAME_CHARS_MAX || name.chars().any(char::is_control) {
-            report.error(at, format!("\"{key}\" must be one line of 1 to {NAME_CHARS_MAX} characters"), "");
+            findings.error(at, format!("\"{key}\" must be one line of 1 to {NAME_CHARS_MAX} characters"), "");
             return None;
         }
         Some(name)
@@ -282,10 +282,10 @@ impl<'t> Section<'t> {
         &self,
         key: &str,
         words: &[(&'static str, T)],
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Option<Placed<T>> {
-        let text = self.text(key, report)?;
-        meant(key, text, words, report)
+        let text = self.text(key, findings)?;
+        meant(key, text, words, findings)
     }
 
     /// The table under `key`, named `title`, with its `known` keys; `None` where it is absent, and where it
@@ -295,11 +295,11 @@ impl<'t> Section<'t> {
         key: &str,
         title: String,
         known: &[&'static str],
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Option<Self> {
         let value = self.get(key)?;
-        let table = value.get_ref().as_table().or_else(|| wrong_type(key, value, "a table", report))?;
-        Some(Self::closed(title, value.span().start, table, known, report))
+        let table = value.get_ref().as_table().or_else(|| wrong_type(key, value, "a table", findings))?;
+        Some(Self::closed(title, value.span().start, table, known, findings))
     }
 
     /// The first tables `[[key]]` in the text's order, at most `limit`, each named after `key` and its number
@@ -309,30 +309,30 @@ impl<'t> Section<'t> {
         key: &str,
         known: &[&'static str],
         limit: usize,
-        report: &mut Report<'_>,
+        findings: &mut Findings<'_>,
     ) -> Vec<Self> {
         let Some(value) = self.get(key) else { return Vec::new() };
         let wanted = format!("a list of tables, each headed [[{key}]]");
-        let Some(list) = value.get_ref().as_array().or_else(|| wrong_type(key, value, &wanted, report))
+        let Some(list) = value.get_ref().as_array().or_else(|| wrong_type(key, value, &wanted, findings))
         else {
             return Vec::new();
         };
         let mut tables = Vec::new();
         for (number, entry) in (1..).zip(list.iter().take(limit)) {
             let (title, at) = (format!("{key} {number}"), entry.span().start);
-            let table = entry.get_ref().as_table().or_else(|| wrong_type(key, entry, &wanted, report));
-            tables.extend(table.map(|table| Self::closed(title, at, table, known, report)));
+            let table = entry.get_ref().as_table().or_else(|| wrong_type(key, entry, &wanted, findings));
+            tables.extend(table.map(|table| Self::closed(title, at, table, known, findings)));
         }
         tables
     }
 }
 
-/// What a text under `key` stands for; `None` (and a report) if it is none of `words`.
+/// What a text under `key` stands for; `None` (and a finding) if it is none of `words`.
 fn meant<T: Copy>(
     key: &str,
     Placed { value: text, at }: Placed<&str>,
     words: &[(&'static str, T)],
-    report: &mut Report<'_>,
+    findings: &mut Findings<'_>,
 ) -> Option<Placed<T>> {
     if let Some((_, value)) = words.iter().find(|(word, _)| *word == text) {
         return Some(Placed { value: *value, at });
@@ -347,7 +347,7 @@ fn meant<T: Copy>(
         },
         |word| format!("did you mean \"{word}\"?"),
     );
-    report.error(at, format!("\"{key}\" cannot be {}", quoted(text)), help);
+    findings.error(at, format!("\"{key}\" cannot be {}", quoted(text)), help);
     None
 }
 
@@ -367,7 +367,7 @@ fn wrong_type<T>(
     key: &str,
     value: &Spanned<DeValue<'_>>,
     wanted: &str,
-    report: &mut Report<'_>,
+    findings: &mut Findings<'_>,
 ) -> Option<T> {
     let kind = match value.get_ref() {
         DeValue::String(_) => "text",
@@ -378,6 +378,6 @@ fn wrong_type<T>(
         DeValue::Array(_) => "a list",
         DeValue::Table(_) => "a table",
     };
-    report.error(value.span().start, format!("\"{key}\" must be {wanted}, not {kind}"), "");
+    findings.error(value.span().start, format!("\"{key}\" must be {wanted}, not {kind}"), "");
     None
 }

@@ -8,11 +8,11 @@ use firmware_proto::link::{CommandReceiver, encode_message};
 use firmware_proto::sample::Sample;
 use firmware_proto::{ENCODED_MAX, RATE_MAX_HZ, RATE_MIN_HZ};
 
-use crate::device::Device;
-use crate::field::PadField;
+use crate::pad::device::Device;
+use crate::pad::field::PadField;
+use crate::pad::twin::hand::Hand;
+use crate::pad::twin::pad::{Circumstances, TwinPad};
 use crate::quantity::CHANNELS;
-use crate::twin::hand::Hand;
-use crate::twin::pad::{Circumstances, TwinPad};
 use crate::virtual_pad::front_end::{self, CONVERTER};
 use crate::virtual_pad::script::Script;
 

@@ -2,10 +2,10 @@
 
 use firmware_proto::sample::Status;
 
-use crate::device::Device;
+use crate::numeric::random::SplitMix64;
+use crate::pad::device::Device;
+use crate::pad::readout::Converter;
 use crate::quantity::CHANNELS;
-use crate::random::SplitMix64;
-use crate::readout::Converter;
 
 /// Full scale is ±20 mV. Unlike the wire's default, so that a host which does not ask for the scale reads wrong
 /// forces.
@@ -13,7 +13,7 @@ pub(super) const CONVERTER: Converter = Converter { picovolts_per_count: 2384, c
 
 const OFFSET_MAX_UV: f64 = 1500.0;
 /// Standard deviation of each channel's white noise.
-pub(crate) const NOISE_RMS_UV: f64 = 6.0;
+pub const NOISE_RMS_UV: f64 = 6.0;
 
 /// The nominal pad with the noise and the offsets that any pad has; the seed draws the offsets.
 pub(crate) fn ordinary(seed: u64) -> Device {

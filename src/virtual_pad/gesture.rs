@@ -2,8 +2,8 @@
 
 use arrayvec::ArrayVec;
 
-use crate::control::{Code, Device};
-use crate::mapping::profile::Binding;
+use crate::pipeline::control::{Code, OutputDevice};
+use crate::pipeline::mapping::profile::Binding;
 use crate::quantity::Contact;
 
 /// Two directions and one button.
@@ -60,7 +60,7 @@ impl Gesture {
     }
 
     /// The edges that the gesture means, in order: per step releases, presses, then the tap.
-    pub(super) fn expect(&self, expected: &mut Vec<(Device, Code, i32)>) {
+    pub(super) fn expect(&self, expected: &mut Vec<(OutputDevice, Code, i32)>) {
         let mut before = Held::new();
         for step in &self.steps {
             let released = before.iter().filter(|binding| !step.held.contains(binding));
@@ -78,10 +78,10 @@ mod tests {
     use super::*;
     use crate::virtual_pad::fixture::{EAST, HAT_X, HAT_Y, SOUTH};
 
-    const RIGHT: Binding = Binding { device: Device::Gamepad, code: HAT_X, value: 1 };
-    const LEFT: Binding = Binding { device: Device::Gamepad, code: HAT_X, value: -1 };
-    const UP: Binding = Binding { device: Device::Gamepad, code: HAT_Y, value: -1 };
-    const JUMP: Binding = Binding { device: Device::Gamepad, code: SOUTH, value: 1 };
+    const RIGHT: Binding = Binding { device: OutputDevice::Gamepad, code: HAT_X, value: 1 };
+    const LEFT: Binding = Binding { device: OutputDevice::Gamepad, code: HAT_X, value: -1 };
+    const UP: Binding = Binding { device: OutputDevice::Gamepad, code: HAT_Y, value: -1 };
+    const JUMP: Binding = Binding { device: OutputDevice::Gamepad, code: SOUTH, value: 1 };
 
     fn step(held: &[Binding], tapped: Option<Binding>) -> Step {
         let held = held.iter().copied().collect();
@@ -117,7 +117,7 @@ mod tests {
         assert!(consistent(&[step(&[UP], None), step(&[UP], Some(JUMP))]));
         assert!(!consistent(&[step(&[JUMP], None), step(&[], Some(JUMP))]));
         assert!(!consistent(&[step(
-            &[JUMP, Binding { device: Device::Gamepad, code: EAST, value: 1 }],
+            &[JUMP, Binding { device: OutputDevice::Gamepad, code: EAST, value: 1 }],
             Some(JUMP)
         )]));
     }

@@ -7,7 +7,7 @@
 pub mod firmware;
 #[cfg(test)]
 mod fixture;
-pub(crate) mod front_end;
+pub mod front_end;
 mod gesture;
 mod player;
 pub mod script;

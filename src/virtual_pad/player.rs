@@ -3,8 +3,8 @@
 //! Gestures are first made for every binding, then those go whose forces or places come too near to a
 //! threshold.
 
-use crate::contact::touch;
-use crate::mapping::profile::{Action, Binding, Button, Dpad, DpadMode, Force, Profile};
+use crate::pipeline::contact::touch;
+use crate::pipeline::mapping::profile::{Action, Binding, Button, Dpad, DpadMode, Force, Profile};
 use crate::quantity::Contact;
 use crate::virtual_pad::gesture::{Gesture, Held, Step};
 

@@ -1,7 +1,7 @@
 //! What the player does over time, and the events that a correct bridge makes of it.
 
-use crate::control::{Code, Device};
-use crate::mapping::profile::Profile;
+use crate::pipeline::control::{Code, OutputDevice};
+use crate::pipeline::mapping::profile::Profile;
 use crate::quantity::Contact;
 use crate::virtual_pad::gesture::Gesture;
 use crate::virtual_pad::player::gestures;
@@ -33,7 +33,7 @@ pub struct Keyframe {
 pub struct Script {
     keyframes: Vec<Keyframe>,
     contacts: usize,
-    expected: Vec<(Device, Code, i32)>,
+    expected: Vec<(OutputDevice, Code, i32)>,
 }
 
 impl Script {
@@ -79,7 +79,7 @@ impl Script {
 
     /// The events that a correct bridge emits, in order: device, control and new value. At the end nothing is
     /// held. How far the pointer moves is not among them: that depends on each sample's noise.
-    pub fn expected(&self) -> &[(Device, Code, i32)] {
+    pub fn expected(&self) -> &[(OutputDevice, Code, i32)] {
         &self.expected
     }
 
@@ -122,8 +122,8 @@ fn between(from: &Keyframe, to: &Keyframe, t_us: u64) -> Contact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::statics::Statics;
-    use crate::mapping::profile::{Action, Binding, Dpad, DpadMode, Force};
+    use crate::pipeline::contact::statics::Statics;
+    use crate::pipeline::mapping::profile::{Action, Binding, Dpad, DpadMode, Force};
     use crate::quantity::{CHANNELS, Strain};
     use crate::virtual_pad::firmware::VirtualPad;
     use crate::virtual_pad::fixture::{EAST, HAT_X, HAT_Y, SOUTH, messages, shipped_profiles};
@@ -165,7 +165,7 @@ mod tests {
             for wanted in [(HAT_X, 1), (HAT_X, -1), (HAT_Y, 1), (HAT_Y, -1), (SOUTH, 1), (EAST, 1)] {
                 assert!(edges.contains(&wanted), "{}: {wanted:?}", profile.name);
             }
-            assert!(script.expected().iter().all(|(device, ..)| *device == Device::Gamepad));
+            assert!(script.expected().iter().all(|(device, ..)| *device == OutputDevice::Gamepad));
             assert_balanced(&script);
         }
     }
@@ -306,7 +306,7 @@ mod tests {
     #[test]
     fn controls_that_share_a_key_stay_balanced() {
         let script = script_with(|profile| {
-            let shared = Binding { device: Device::Gamepad, code: SOUTH, value: 1 };
+            let shared = Binding { device: OutputDevice::Gamepad, code: SOUTH, value: 1 };
             dpad(profile).right = shared;
             dpad(profile).up = shared;
             dpad(profile).mode = DpadMode::EightWay;

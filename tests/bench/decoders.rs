@@ -10,17 +10,18 @@ use std::hint::black_box;
 
 use criterion::{Bencher, Criterion, criterion_group, criterion_main};
 use firmware_proto::sample::{Sample, Status};
-use tactpad::contact::creep::Creep;
-use tactpad::contact::friction::{PLAYS, Play};
-use tactpad::contact::inverse::Inverse;
-use tactpad::contact::relief::Relief;
-use tactpad::contact::thermal::Thermal;
-use tactpad::contact::thermometer::Thermometer;
-use tactpad::contact::uncertainty::Noise;
-use tactpad::contact::watch::Watch;
-use tactpad::field::PadField;
-use tactpad::health::Health;
-use tactpad::influence::InfluenceField;
+use tactpad::pad::field::PadField;
+use tactpad::pad::influence::InfluenceField;
+use tactpad::pipeline::compensation::Compensation;
+use tactpad::pipeline::compensation::creep::Creep;
+use tactpad::pipeline::compensation::hysteresis::{PLAYS, Play};
+use tactpad::pipeline::compensation::memory::Memory;
+use tactpad::pipeline::compensation::thermal::Thermal;
+use tactpad::pipeline::compensation::thermometer::Thermometer;
+use tactpad::pipeline::contact::inverse::Inverse;
+use tactpad::pipeline::contact::uncertainty::Noise;
+use tactpad::pipeline::contact::watch::Watch;
+use tactpad::pipeline::health::Health;
 use tactpad::quantity::{CHANNELS, Contact, Strain};
 use tactpad::time::StreamInstant;
 
@@ -58,12 +59,14 @@ fn plain(layers: &[Layer], channels: &[f32; CHANNELS]) -> [f32; 5] {
 fn live(bencher: &mut Bencher<'_>, field: &InfluenceField, strain: &Strain) {
     let play = Play { threshold_uv: [800.0; CHANNELS], share: [0.03; CHANNELS] };
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
-    let inverse = Inverse::new(field.clone(), noise, [play; PLAYS]);
+    let inverse = Inverse::new(field.clone(), noise);
     let creep = Creep { time_s: 8.0, share: 0.01 };
-    let (mut relief, mut watch) = (Relief::of(inverse.friction(), &creep), Watch::new(Some(&inverse)));
     let thermal =
         Thermal { reference_c: 20.0, zero_uv_per_c: [50.0; CHANNELS], gain_per_c: [-5e-4; CHANNELS] };
-    let mut thermometer = Thermometer::of(Some(&thermal));
+    let compensation =
+        Compensation { zero_uv: None, thermal: Some(thermal), creep, hysteresis: [play; PLAYS] };
+    let (mut memory, mut watch) = (Memory::of(&compensation), Watch::new(Some(&inverse)));
+    let mut thermometer = Thermometer::of(compensation.thermal);
     let sample = Sample {
         sequence: 0,
         time_us: 0,
@@ -76,13 +79,13 @@ fn live(bencher: &mut Bencher<'_>, field: &InfluenceField, strain: &Strain) {
         at = at.plus_us(1_000);
         thermometer.follow(at, black_box(&sample), true);
         black_box(thermometer.added_uv());
-        let free = relief.freed(&thermometer.at_reference(black_box(strain)));
+        let free = memory.freed(&thermometer.at_reference(black_box(strain)));
         let explained = inverse.explain(&free);
-        relief.follow(at, Some(&free));
+        memory.follow(at, Some(&free));
         if let Some(explained) = &explained {
             watch.see(at, &free, explained, true, &inverse, &mut health);
         }
-        (explained, relief.rest())
+        (explained, memory.rest())
     });
 }
 
@@ -99,7 +102,7 @@ fn decode(criterion: &mut Criterion) {
     #[cfg(feature = "foreign-onnx")]
     {
         use tactpad::network::foreign::Foreign;
-        let network = tactpad::shipped::bytes("scdf").and_then(|bytes| Foreign::read(&bytes).ok());
+        let network = tactpad::pipeline::shipped::bytes("scdf").and_then(|bytes| Foreign::read(&bytes).ok());
         let Some(network) = network else { panic!("tract runs the shipped network") };
         group.bench_function("tract", |bencher| bencher.iter(|| network.decode(black_box(&strain.uv))));
     }

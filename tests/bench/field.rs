@@ -9,10 +9,10 @@ use std::io::Write;
 use std::time::{Duration, Instant};
 
 use criterion::{Criterion, SamplingMode, criterion_group, criterion_main};
-use tactpad::device::Device;
-use tactpad::field::PadField;
 use tactpad::mechanics::mesh::Fineness;
 use tactpad::mechanics::simulator::Simulator;
+use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
 
 const NOMINAL: &[u8] = include_bytes!("../../models/sstid.field");
 const CONTACTS: u32 = 14_400;

@@ -7,9 +7,9 @@ use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
-use tactpad::field::PadField;
-use tactpad::mapping::check::{self, OutputChoice};
-use tactpad::mapping::shipped;
+use tactpad::pad::field::PadField;
+use tactpad::pipeline::mapping::check::{self, OutputChoice};
+use tactpad::pipeline::mapping::shipped;
 use tactpad::pipeline::{NoProbe, Pipeline};
 use tactpad::quantity::Contact;
 use tactpad::time::HostInstant;
@@ -50,7 +50,7 @@ fn feed(pipeline: &mut Pipeline, frames: &[Vec<u8>]) -> usize {
 fn rested() -> Pipeline {
     let profile = shipped::text("super-mario").and_then(|text| check::read(text, OutputChoice::AsWritten).0);
     let Some(profile) = profile else { panic!("super-mario is in order") };
-    let mut pipeline = Pipeline::new(tactpad::shipped::decoder(), profile);
+    let mut pipeline = Pipeline::new(tactpad::pipeline::shipped::decoder(), profile);
     feed(&mut pipeline, &frames(0));
     pipeline
 }

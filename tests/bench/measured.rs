@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "a bench that cannot set its scene fails")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use tactpad::measured::columns::Kind;
-use tactpad::measured::{Label, Row, Table, read, write};
+use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::{Label, Row, Table, read, write};
 
 const ROWS: usize = 600_000;
 

@@ -4,9 +4,9 @@
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use tactpad::device::{Device, Module};
 use tactpad::mechanics::mesh::Fineness;
 use tactpad::mechanics::superelement::Solution;
+use tactpad::pad::device::{Device, Module};
 
 /// Sizes of the elements in units of the program's.
 const LADDER: [f64; 4] = [2.8, 2.0, 1.4, 1.0];

@@ -1,11 +1,11 @@
 //! What an epoch of the paper's stage I costs: `cargo bench --bench network`. (A decode is in `tests/bench/decoders.rs`.)
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use tactpad::device::Device;
-use tactpad::field::PadField;
+use tactpad::lab::scdf::{BATCH, HIDDEN, simulation};
 use tactpad::network::training::{Schedule, split, train};
 use tactpad::network::{Network, Zero};
-use tactpad::scdf::{BATCH, HIDDEN, simulation};
+use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
 
 fn network(criterion: &mut Criterion) {
     let examples = simulation::examples(&Device::nominal(), &PadField::nominal(), 1);

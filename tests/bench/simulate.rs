@@ -6,8 +6,8 @@ use std::fs;
 use std::process::Command;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use tactpad::device::Device;
-use tactpad::field::PadField;
+use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
 
 fn dataset(criterion: &mut Criterion) {
     let Ok(folder) = tempfile::tempdir() else { panic!("a temporary folder is needed") };

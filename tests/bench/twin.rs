@@ -2,11 +2,11 @@
 #![expect(clippy::expect_used, reason = "a benchmark may stop at what it did not expect")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use tactpad::device::Device;
-use tactpad::field::PadField;
+use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
+use tactpad::pad::twin::hand::Hand;
+use tactpad::pad::twin::pad::{Circumstances, TwinPad};
 use tactpad::quantity::Contact;
-use tactpad::twin::hand::Hand;
-use tactpad::twin::pad::{Circumstances, TwinPad};
 
 const EVERYTHING: &str = include_str!("../../models/imperfections/paper.toml");
 

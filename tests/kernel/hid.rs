@@ -195,10 +195,10 @@ pub(crate) fn chosen_by_serial_number() {
     assert_eq!(played.reader.edges(), [("ABS_HAT0X", 1), ("ABS_HAT0X", 0)]);
 }
 
-/// Rounds of plugging in, pressing and pulling out: 10, or as many as `TACTPAD_REPLUG_ROUNDS` says.
+/// Rounds of plugging in, pressing and pulling out: 4, or as many as `TACTPAD_REPLUG_ROUNDS` says.
 pub(crate) fn replugged() {
     let rounds: u32 =
-        std::env::var("TACTPAD_REPLUG_ROUNDS").ok().and_then(|text| text.parse().ok()).unwrap_or(10);
+        std::env::var("TACTPAD_REPLUG_ROUNDS").ok().and_then(|text| text.parse().ok()).unwrap_or(4);
     let mut pad = HidPad::plug_in("HID-R");
     let mut played = start("auto", &mut pad);
     for round in 0..rounds {

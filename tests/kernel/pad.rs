@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use rustix::fs::{Mode, OFlags};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
-use tactpad::field::PadField;
+use tactpad::pad::field::PadField;
 use tactpad::quantity::Contact;
 
 use crate::clock::{MS, monotonic_ns, readable_before, stamp_ns};

@@ -4,12 +4,12 @@ use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
-use tactpad::control::{Code, Device};
-use tactpad::field::PadField;
-use tactpad::influence::InfluenceField;
-use tactpad::mapping::check::{self, OutputChoice};
-use tactpad::mapping::profile::Profile;
-use tactpad::mapping::shipped;
+use tactpad::pad::field::PadField;
+use tactpad::pad::influence::InfluenceField;
+use tactpad::pipeline::control::{Code, OutputDevice};
+use tactpad::pipeline::mapping::check::{self, OutputChoice};
+use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::shipped;
 use tactpad::pipeline::{NoProbe, Pipeline};
 use tactpad::quantity::Contact;
 use tactpad::time::HostInstant;
@@ -46,7 +46,7 @@ impl Rig {
     /// A rig whose pad has no noise and has just been plugged in.
     pub(crate) fn new(profile: Profile) -> Self {
         Self {
-            pipeline: Pipeline::new(tactpad::shipped::decoder(), profile),
+            pipeline: Pipeline::new(tactpad::pipeline::shipped::decoder(), profile),
             field: PadField::nominal().signals,
             now_us: 0,
             sequence: 0,
@@ -132,12 +132,12 @@ impl Rig {
     pub(crate) fn collect(&mut self) {
         for event in self.pipeline.events() {
             if let Code::Relative(axis) = event.code {
-                assert_eq!(event.device, Device::Pointer);
+                assert_eq!(event.device, OutputDevice::Pointer);
                 self.moved[usize::from(axis)] += event.value;
                 continue;
             }
             let is_pointers = matches!(event.code, Code::Key(0x110..=0x112));
-            assert_eq!(event.device, if is_pointers { Device::Pointer } else { Device::Gamepad });
+            assert_eq!(event.device, if is_pointers { OutputDevice::Pointer } else { OutputDevice::Gamepad });
             self.events.push((event.at.as_us() as f64 * 1e-3, event.code.to_string(), event.value));
         }
     }

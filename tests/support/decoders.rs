@@ -1,17 +1,16 @@
 //! One decoder of each kind, fitted to the nominal pad.
 
-use tactpad::calibration::regression::{neighbours, regression};
-use tactpad::contact::friction::NO_FRICTION;
-use tactpad::contact::inverse::Inverse;
-use tactpad::contact::regression::Target;
-use tactpad::contact::uncertainty::Noise;
-use tactpad::contact::{Decoder, read};
-use tactpad::field::PadField;
-use tactpad::influence::InfluenceField;
-use tactpad::measured::{Label, Row};
+use tactpad::lab::calibration::regression::{neighbours, regression};
 use tactpad::network::Zero;
+use tactpad::pad::field::PadField;
+use tactpad::pad::influence::InfluenceField;
+use tactpad::pipeline::contact::inverse::Inverse;
+use tactpad::pipeline::contact::regression::Target;
+use tactpad::pipeline::contact::uncertainty::Noise;
+use tactpad::pipeline::contact::{Decoder, read};
+use tactpad::pipeline::shipped;
 use tactpad::quantity::CHANNELS;
-use tactpad::shipped;
+use tactpad::tables::measured::{Label, Row};
 
 /// Contacts that the fitted ones know; the paper has as many.
 const CONTACTS: u32 = 648;
@@ -20,18 +19,16 @@ const CONTACTS: u32 = 648;
 pub(crate) fn each() -> Vec<(&'static str, Decoder)> {
     let field = PadField::nominal().signals;
     let rows: Vec<Row> = (0..CONTACTS).map(|index| row(&field, index)).collect();
-    let fitted = |target| {
-        regression(&rows, Zero::Tared, target, 29.0).map(|found| Decoder::Regression(Box::new(found)))
-    };
+    let fitted = |target| regression(&rows, Zero::Tared, target, 29.0).map(Decoder::from);
     let of_the_program = |name| shipped::bytes(name).and_then(|bytes| read::playing(&bytes).ok());
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let decoders = [
         of_the_program("statics"),
         fitted(Target::Wrench).ok(),
         fitted(Target::Contact).ok(),
-        neighbours(&rows, Zero::Tared).map(Decoder::Neighbours).ok(),
+        neighbours(&rows, Zero::Tared).map(Decoder::from).ok(),
         of_the_program("scdf"),
-        Some(Decoder::Inverse(Box::new(Inverse::new(field, noise, NO_FRICTION)))),
+        Some(Decoder::from(Inverse::new(field, noise))),
     ];
     let decoders: Vec<_> = decoders.into_iter().flatten().map(|decoder| (decoder.name(), decoder)).collect();
     assert_eq!(decoders.len(), 6, "each was made");

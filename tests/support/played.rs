@@ -4,16 +4,16 @@ use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
-use tactpad::contact::Decoder;
-use tactpad::device::Device;
-use tactpad::field::PadField;
-use tactpad::mapping::check::{self, OutputChoice};
-use tactpad::mapping::shipped;
+use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
+use tactpad::pad::twin::hand::Hand;
+use tactpad::pad::twin::pad::{Circumstances, TwinPad};
+use tactpad::pipeline::contact::Decoder;
+use tactpad::pipeline::mapping::check::{self, OutputChoice};
+use tactpad::pipeline::mapping::shipped;
 use tactpad::pipeline::{NoProbe, Pipeline};
 use tactpad::quantity::Contact;
 use tactpad::time::HostInstant;
-use tactpad::twin::hand::Hand;
-use tactpad::twin::pad::{Circumstances, TwinPad};
 
 /// Microvolts per count of a pad that does not identify itself.
 const UV_PER_COUNT: f64 = 0.01;

@@ -1,4 +1,9 @@
 //! Results of long proofs: dated files.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test may stop at what it did not expect, and says what it wrote"
+)]
 
 use std::fs;
 use std::path::Path;

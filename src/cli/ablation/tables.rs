@@ -3,17 +3,17 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Report, Row, Tried};
-use crate::cli::Failure;
+use super::report::{AblationReport, Row, Tried};
+use crate::cli::failure::Failure;
 use crate::cli::written::{create, stdout};
-use crate::evaluation::{Errors, PerAxis};
-use crate::metrology::table3::PublishedErrors;
+use tactpad::lab::evaluation::{Errors, PerAxis};
+use tactpad::lab::metrology::table3::PublishedErrors;
 
-pub(super) fn print(report: &Report) -> io::Result<()> {
+pub(super) fn print(report: &AblationReport) -> io::Result<()> {
     write(&mut stdout(), report)
 }
 
-fn write(out: &mut impl Write, report: &Report) -> io::Result<()> {
+fn write(out: &mut impl Write, report: &AblationReport) -> io::Result<()> {
     writeln!(out, "{}", report.statement)?;
     writeln!(
         out,

@@ -1,13 +1,13 @@
 //! How long a decode takes. The clock belongs to the live bridge.
 
-use crate::ablation::unseen::Unseen;
-use crate::contact::Decoder;
+use tactpad::lab::ablation::unseen::Unseen;
+use tactpad::pipeline::contact::Decoder;
 
 /// Median time of one decode over all unseen contacts, in microseconds.
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub(super) fn median_us(decoder: &Decoder, unseen: &[Unseen]) -> Option<f64> {
-    use crate::bridge::clock::Clock;
-    use crate::latency::Durations;
+    use tactpad::bridge::clock::Clock;
+    use tactpad::bridge::latency::Durations;
 
     let mut durations = Durations::new();
     let clock = Clock::start();

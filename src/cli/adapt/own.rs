@@ -1,22 +1,25 @@
 //! The methods whose decoders are files of the program's own: `inverse`, `wrench`, `linear`, `knn`.
 
 use std::fmt;
+use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Arguments, Contacts, Method};
-use crate::calibration::fit::{Calibration, FitError, fit};
-use crate::calibration::regression::{neighbours, regression};
-use crate::calibration::warmth::Warmth;
-use crate::cli::field_cache::field_of;
-use crate::cli::{Failure, decoder_file};
-use crate::contact::Decoder;
-use crate::contact::creep::{Creep, NO_CREEP};
-use crate::contact::friction::Play;
-use crate::contact::inverse::Inverse;
-use crate::contact::regression::Target;
-use crate::device::Device;
-use crate::quantity::{CHANNEL_NAMES, CHANNELS};
+use super::measured::Measured;
+use super::method::Method;
+use crate::cli::decoder_file;
+use crate::cli::failure::Failure;
+use crate::cli::field::field_of;
+use tactpad::lab::calibration::earlier::Earlier;
+use tactpad::lab::calibration::fit::Calibration;
+use tactpad::lab::calibration::thermal_fit::ThermalFit;
+use tactpad::numeric::statistics::mean;
+use tactpad::pad::device::Device;
+use tactpad::pipeline::compensation::creep::{Creep, NO_CREEP};
+use tactpad::pipeline::compensation::hysteresis::Play;
+use tactpad::pipeline::contact::Decoder;
+use tactpad::pipeline::contact::regression::Target;
+use tactpad::quantity::{CHANNEL_NAMES, CHANNELS};
 
 /// What was found about the pad.
 #[derive(Default, Serialize)]
@@ -33,7 +36,8 @@ struct Pad {
     noise_share: [f64; CHANNELS],
     background_share: f64,
     /// Play operators: threshold and share, as means over the channels.
-    friction: Vec<Friction>,
+    #[serde(rename = "friction")]
+    hysteresis: Vec<Hysteresis>,
     #[serde(skip_serializing_if = "Option::is_none")]
     creep: Option<FoundCreep>,
     parameters: Vec<Found>,
@@ -58,7 +62,7 @@ struct FoundThermal {
 }
 
 #[derive(Serialize)]
-struct Friction {
+struct Hysteresis {
     threshold_uv: f64,
     share: f64,
 }
@@ -78,73 +82,69 @@ struct Found {
     deviation: f64,
 }
 
-/// Fits the decoder and writes it.
-pub(super) fn adapt(arguments: &Arguments, device: &Device, contacts: &Contacts) -> Result<Fit, Failure> {
-    let Contacts { recording, places, rows } = contacts;
-    if arguments.from.is_some() && arguments.method != Method::Inverse {
+/// Fits the decoder.
+pub(super) fn adapt(
+    method: Method,
+    measured: &Measured,
+    from: Option<&Path>,
+    device: &Device,
+) -> Result<(Decoder, Fit), Failure> {
+    if from.is_some() && method != Method::Inverse {
         return Err(Failure::Unusable(
             "--from is for inverse and scdf; wrench, linear and knn are made of the measured contacts alone"
                 .into(),
         ));
     }
-    let reach_mm = device.contact.max_centre_radius_mm;
-    let unusable = |error: FitError| refused(arguments, &error);
-    let (decoder, found) = match arguments.method {
-        Method::Inverse => {
-            let earlier = earlier(arguments)?;
-            let field = field_of(device)?;
-            let calibration = fit(recording, places, device, &field, earlier.as_ref()).map_err(unusable)?;
-            (Decoder::Inverse(Box::new(calibration.decoder())), Fit { pad: Some(Pad::of(&calibration)) })
-        }
-        Method::Knn => {
-            (Decoder::Neighbours(neighbours(rows, contacts.zero()).map_err(unusable)?), Fit::default())
-        }
-        Method::Wrench | Method::Linear | Method::Scdf => {
-            let target = if arguments.method == Method::Wrench { Target::Wrench } else { Target::Contact };
-            let fitted = regression(rows, contacts.zero(), target, reach_mm).map_err(unusable)?;
-            (Decoder::Regression(Box::new(fitted)), Fit::default())
-        }
+    let (contacts, reach_mm) = (&measured.contacts, device.contact.max_centre_radius_mm);
+    let fitted = match method {
+        Method::Inverse => return calibrated(measured, from, device),
+        Method::Knn => contacts.neighbours(),
+        Method::Wrench => contacts.regression(Target::Wrench, reach_mm),
+        Method::Linear | Method::Scdf => contacts.regression(Target::Contact, reach_mm),
     };
-    let note = format!("{} contacts of {}", rows.len(), arguments.measured_names());
-    decoder_file::write(&arguments.out, &decoder.to_bytes(&note).unwrap_or_default())?;
-    Ok(found)
+    Ok((fitted.map_err(|error| measured.refused(error))?, Fit::default()))
 }
 
-/// The other pad's decoder to begin with, if there is one.
-fn earlier(arguments: &Arguments) -> Result<Option<Inverse>, Failure> {
-    let Some(path) = &arguments.from else { return Ok(None) };
-    match decoder_file::read(path)? {
-        Decoder::Inverse(inverse) => Ok(Some(*inverse)),
-        other => Err(Failure::Unusable(format!(
+fn calibrated(measured: &Measured, from: Option<&Path>, device: &Device) -> Result<(Decoder, Fit), Failure> {
+    let earlier = from.map(earlier).transpose()?;
+    let field = field_of(device)?;
+    let calibration = measured.contacts.calibration(device, &field, earlier.as_ref().and_then(Earlier::of));
+    let calibration = calibration.map_err(|error| measured.refused(error))?;
+    let found = Fit { pad: Some(Pad::of(&calibration)) };
+    Ok((calibration.decoder(), found))
+}
+
+/// The other pad's decoder to begin with.
+fn earlier(path: &Path) -> Result<Decoder, Failure> {
+    let decoder = decoder_file::read(path)?;
+    if Earlier::of(&decoder).is_none() {
+        return Err(Failure::Unusable(format!(
             "--from {} is a {} decoder; inverse begins with one that adapt --method inverse wrote",
             path.display(),
-            other.name()
-        ))),
+            decoder.name()
+        )));
     }
-}
-
-fn refused(arguments: &Arguments, why: &dyn fmt::Display) -> Failure {
-    Failure::Unusable(format!("{}: {why}", arguments.measured_names()))
+    Ok(decoder)
 }
 
 impl Pad {
     fn of(calibration: &Calibration) -> Self {
         let found = |(parameter, change, deviation): &(_, f64, f64)| {
-            let parameter: &crate::device::parameter::Parameter = parameter;
+            let parameter: &tactpad::pad::device::parameter::Parameter = parameter;
             Found { name: parameter.name(), change: *change, deviation: *deviation }
         };
-        let mean = |numbers: &[f64; CHANNELS]| numbers.iter().sum::<f64>() / CHANNELS as f64;
-        let friction =
-            |play: &Play| Friction { threshold_uv: mean(&play.threshold_uv), share: mean(&play.share) };
+        let hysteresis =
+            |play: &Play| Hysteresis { threshold_uv: mean(play.threshold_uv), share: mean(play.share) };
+        let compensation = &calibration.compensation;
         Self {
-            friction: calibration.friction.iter().map(friction).filter(|it| it.share > 0.0).collect(),
-            creep: FoundCreep::of(&calibration.creep),
+            hysteresis: compensation.hysteresis.iter().map(hysteresis).filter(|it| it.share > 0.0).collect(),
+            creep: FoundCreep::of(&compensation.creep),
             gain: calibration.gain,
             noise_uv: calibration.noise.additive_uv,
             noise_share: calibration.noise.share,
             background_share: calibration.background,
-            zero_uv: calibration.zero_uv,
-            thermal: calibration.warmth.as_ref().map(FoundThermal::of),
+            zero_uv: compensation.zero_uv,
+            thermal: calibration.thermal.as_ref().map(FoundThermal::of),
             field_from_earlier: calibration.from_earlier,
             parameters: calibration.physical.iter().map(found).collect(),
         }
@@ -159,13 +159,13 @@ impl FoundCreep {
 }
 
 impl FoundThermal {
-    fn of(warmth: &Warmth) -> Self {
-        let Warmth { thermal, zero_deviation, gain_deviation } = *warmth;
+    fn of(fit: &ThermalFit) -> Self {
+        let ThermalFit { coefficients, zero_deviation, gain_deviation } = *fit;
         Self {
-            reference_c: thermal.reference_c,
-            zero_uv_per_c: zero_deviation.map(|_| thermal.zero_uv_per_c),
+            reference_c: coefficients.reference_c,
+            zero_uv_per_c: zero_deviation.map(|_| coefficients.zero_uv_per_c),
             zero_deviation,
-            gain_per_c: gain_deviation.map(|_| thermal.gain_per_c),
+            gain_per_c: gain_deviation.map(|_| coefficients.gain_per_c),
             gain_deviation,
         }
     }
@@ -201,7 +201,7 @@ impl fmt::Display for Fit {
         for Found { name, change, deviation } in &pad.parameters {
             writeln!(f, "{name:<30} {change:>+8.3} ± {deviation:.3}")?;
         }
-        for Friction { threshold_uv, share } in &pad.friction {
+        for Hysteresis { threshold_uv, share } in &pad.hysteresis {
             writeln!(f, "friction: {:.2} % of what is beyond {threshold_uv:.0} µV", 100.0 * share)?;
         }
         if let Some(FoundCreep { time_s, share }) = pad.creep {

@@ -1,14 +1,17 @@
 //! `--method scdf`.
 
 use std::fmt;
+use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Arguments, Contacts};
+use super::measured::Measured;
+use crate::cli::decoder_file;
+use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
-use crate::cli::{Failure, decoder_file};
-use crate::network::training::Epoch;
-use crate::scdf::adaptation::{Adapted, adapt as fit, examples};
+use tactpad::lab::scdf::adaptation::Adapted;
+use tactpad::network::Network;
+use tactpad::network::training::Epoch;
 
 /// How the network took to the pad.
 #[derive(Serialize)]
@@ -26,25 +29,22 @@ struct Tried {
     validation_mse: f64,
 }
 
-/// Trains the network of `--from` on, and writes it.
-pub(super) fn adapt(arguments: &Arguments, contacts: &Contacts) -> Result<Fit, Failure> {
-    let from = arguments.from.as_ref().ok_or_else(|| {
+/// Trains the network of `--from` on.
+pub(super) fn adapt(measured: &Measured, from: Option<&Path>, seed: u64) -> Result<(Network, Fit), Failure> {
+    let from = from.ok_or_else(|| {
         Failure::Unusable(
             "--method scdf trains a network on: make one with tactpad train --out scdf.onnx, and give it as --from scdf.onnx"
                 .into(),
         )
     })?;
-    let mut start = decoder_file::read_network(from)?;
-    start.zero = contacts.zero();
+    let start = decoder_file::read_network(from)?;
     let mut progress = Progress::begin();
-    let adapted = fit(&start, examples(&contacts.rows), arguments.seed, |beta, Epoch { number, .. }| {
+    let adapted = measured.contacts.adapted(start, seed, |beta, Epoch { number, .. }| {
         progress.step(format_args!("β = {beta}: epoch {number}"));
     });
     drop(progress);
-    let adapted =
-        adapted.map_err(|error| Failure::Unusable(format!("{}: {error}", arguments.measured_names())))?;
-    decoder_file::write_network(&arguments.out, &adapted.trained.network)?;
-    Ok(Fit::of(adapted))
+    let adapted = adapted.map_err(|error| measured.refused(error))?;
+    Ok((adapted.trained.network.clone(), Fit::of(adapted)))
 }
 
 impl Fit {

@@ -2,19 +2,20 @@
 
 use std::io::{self, Write};
 
-use super::{AreaRow, Report, Simulated, SpacingReport};
+use super::report::LayoutReport;
 use crate::cli::written::stdout;
-use crate::layout::placement::Candidate;
-use crate::layout::published::Part;
+use tactpad::lab::layout::placement::Candidate;
+use tactpad::lab::layout::published::{AreaRow, Part};
+use tactpad::lab::layout::study::{Simulated, SpacingAnswers};
 
 /// A free distance is one whose range is longer than this share of it.
 const FREE: f64 = 1e-6;
 
-pub(super) fn print(report: &Report) -> io::Result<()> {
+pub(super) fn print(report: &LayoutReport) -> io::Result<()> {
     write(&mut stdout(), report)
 }
 
-fn write(out: &mut impl Write, report: &Report) -> io::Result<()> {
+fn write(out: &mut impl Write, report: &LayoutReport) -> io::Result<()> {
     if let Some(pad) = &report.simulated {
         write_isolines(out, pad)?;
         writeln!(out)?;
@@ -53,7 +54,7 @@ fn write_isolines(out: &mut impl Write, pad: &Simulated) -> io::Result<()> {
     Ok(())
 }
 
-fn write_spacing(out: &mut impl Write, spacing: &SpacingReport) -> io::Result<()> {
+fn write_spacing(out: &mut impl Write, spacing: &SpacingAnswers) -> io::Result<()> {
     let [r1, r2, r3] = spacing.radii_mm;
     writeln!(
         out,
@@ -158,13 +159,12 @@ fn write_parts(out: &mut impl Write, parts: &[Part], sum_usd: f64) -> io::Result
 
 #[cfg(test)]
 mod tests {
-    use super::super::area_rows;
     use super::*;
-    use crate::layout::placement::{Placement, Range, Search};
-    use crate::layout::precision::Precision;
-    use crate::layout::published::PARTS;
-    use crate::layout::region::Isoline;
-    use crate::layout::spacing::Spacing;
+    use tactpad::lab::layout::placement::{Placement, Range, Search};
+    use tactpad::lab::layout::precision::Precision;
+    use tactpad::lab::layout::published::{PARTS, area_rows};
+    use tactpad::lab::layout::region::Isoline;
+    use tactpad::lab::layout::spacing::Spacing;
 
     fn candidate(centre_radius_mm: f64, worst_mm: f64, largest_uv: f64) -> Candidate {
         let precision = Precision { worst_mm, worst_at_mm: [29.0, 0.0], rms_mm: 0.8 * worst_mm, largest_uv };
@@ -203,9 +203,9 @@ mod tests {
         distances_mm: [f64; 3],
         optimal_ranges_mm: [[f64; 2]; 3],
         simulated: Option<Simulated>,
-    ) -> Report {
+    ) -> LayoutReport {
         let answer = Spacing { distances_mm, area_mm2: 54.5 };
-        let spacing = SpacingReport {
+        let spacing = SpacingAnswers {
             radii_mm: [1.0, 3.0, 4.0],
             limits_mm: [1.0, 3.0, 1.0],
             swarm: answer,
@@ -214,10 +214,10 @@ mod tests {
             optimal_ranges_mm,
         };
         let area_per_channel = area_rows(60.0);
-        Report { seed: 1, spacing, simulated, area_per_channel, parts: PARTS, parts_usd: 15.0 }
+        LayoutReport { seed: 1, spacing, simulated, area_per_channel, parts: PARTS, parts_usd: 15.0 }
     }
 
-    fn text(report: &Report) -> String {
+    fn text(report: &LayoutReport) -> String {
         let mut bytes = Vec::new();
         write(&mut bytes, report).unwrap();
         String::from_utf8(bytes).unwrap()

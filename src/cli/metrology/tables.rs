@@ -2,15 +2,15 @@
 
 use std::io::{self, Write};
 
-use super::Report;
+use super::report::MetrologyReport;
 use crate::cli::written::stdout;
-use crate::metrology::report::{Conflict, Entry, Status};
+use tactpad::lab::metrology::report::{Conflict, Entry, Status};
 
-pub(super) fn print(report: &Report) -> io::Result<()> {
+pub(super) fn print(report: &MetrologyReport) -> io::Result<()> {
     write(&mut stdout(), report)
 }
 
-fn write(out: &mut impl Write, report: &Report) -> io::Result<()> {
+fn write(out: &mut impl Write, report: &MetrologyReport) -> io::Result<()> {
     writeln!(out, "{}", report.statement)?;
     if let [first, .., last] = report.seeds.as_slice() {
         writeln!(out, "Seeds {first} to {last}: mean and standard deviation.")?;
@@ -77,8 +77,8 @@ fn write_conflict(out: &mut impl Write, conflict: &Conflict) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::metrology::Needs;
-    use crate::metrology::report::Leaving;
+    use tactpad::lab::metrology::Needs;
+    use tactpad::lab::metrology::report::Leaving;
 
     fn entry(status: Status, mean: Option<f64>) -> Entry {
         Entry {
@@ -98,7 +98,8 @@ mod tests {
 
     fn text(rows: Vec<Entry>) -> String {
         let statement = "A numerical twin of the pad; no hardware was measured.".to_owned();
-        let report = Report { statement, seeds: vec![1, 2, 3], rows, figures: vec![], plots: vec![] };
+        let report =
+            MetrologyReport { statement, seeds: vec![1, 2, 3], rows, figures: vec![], plots: vec![] };
         let mut bytes = Vec::new();
         write(&mut bytes, &report).unwrap();
         String::from_utf8(bytes).unwrap()

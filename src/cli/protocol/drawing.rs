@@ -1,13 +1,13 @@
 //! Where a plan's contacts are.
 
-use super::distinct_places;
-use crate::device::Device;
-use crate::measured::Table;
-use crate::measured::zero::ZERO;
-use crate::plot::colour::Rgb;
-use crate::plot::figure::{Anchor, Figure, Ink, Stroke, Text};
-use crate::plot::plan::Plan;
-use crate::plot::shape::{Look, Shape};
+use tactpad::pad::device::Device;
+use tactpad::plot::colour::Rgb;
+use tactpad::plot::figure::{Anchor, Figure, Ink, Stroke, Text};
+use tactpad::plot::plan::Plan;
+use tactpad::plot::shape::{Look, Shape};
+use tactpad::tables::measured::Table;
+use tactpad::tables::measured::zero::ZERO;
+use tactpad::tables::plans::distinct_places;
 
 const WIDTH: f64 = 460.0;
 const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);
@@ -16,7 +16,7 @@ const NAME_SIZE: f64 = 12.0;
 
 /// The plate with the places of contacts, in the colours of their sessions, whose names stand below.
 pub(super) fn places(title: String, plan: &Table, device: &Device) -> Figure {
-    let rim_mm = 0.5 * device.plate.diameter_mm;
+    let rim_mm = device.plate.radius_mm();
     let circle =
         |radius: f64, stroke: Stroke| Shape::Circle { centre: [0.0; 2], radius, look: Look::line(stroke) };
     let dashed = Stroke::solid(DARK, 0.7).dashed(3.0, 3.0);

@@ -1,19 +1,19 @@
 //! `--figures`: the plate's deflection, the strain under a film, the 27 influence maps.
 
-use crate::device::{Device, GAUGES};
-use crate::field::PadField;
-use crate::influence::{InfluenceField, MAPS};
-use crate::mechanics::mesh::half_sizes_mm;
-use crate::mechanics::pressed::PressedPad;
-use crate::plot::bands::Bands;
-use crate::plot::colour::Rgb;
-use crate::plot::figure::{Ends, Figure, Ink, Stroke};
-use crate::plot::grid::Grid;
-use crate::plot::isoline::Isolines;
-use crate::plot::multiples::{Bars, Multiples};
-use crate::plot::plan::{Field, Plan};
-use crate::plot::shape::{Look, Shape};
-use crate::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
+use tactpad::mechanics::mesh::half_sizes_mm;
+use tactpad::mechanics::pressed::PressedPad;
+use tactpad::pad::device::{Device, GAUGES};
+use tactpad::pad::field::PadField;
+use tactpad::pad::influence::{InfluenceField, MAPS};
+use tactpad::plot::bands::Bands;
+use tactpad::plot::colour::Rgb;
+use tactpad::plot::figure::{Ends, Figure, Ink, Stroke};
+use tactpad::plot::grid::Grid;
+use tactpad::plot::isoline::Isolines;
+use tactpad::plot::multiples::{Bars, Multiples};
+use tactpad::plot::plan::{Field, Plan};
+use tactpad::plot::shape::{Look, Shape};
+use tactpad::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
 
 const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);
 
@@ -39,7 +39,8 @@ pub(super) fn of(pressed: &PressedPad, field: &PadField) -> Vec<(&'static str, F
 
 fn deflection(pressed: &PressedPad) -> Plan {
     let device = &pressed.pad.device;
-    let grid = Grid::over_disc(radius_mm(device), NODES, |x, y| -1e3 * pressed.plate([x, y]).top_mm[2]);
+    let grid =
+        Grid::over_disc(device.plate.radius_mm(), NODES, |x, y| -1e3 * pressed.plate([x, y]).top_mm[2]);
     let bands = Bands::diverging(grid.largest(), 8);
     let label = "down, µm".to_owned();
     let field = Field { grid, bands, isolines: Isolines::Labelled, label };
@@ -117,7 +118,7 @@ fn influence(device: &Device, signals: &InfluenceField) -> Multiples {
 }
 
 fn plate(title: String, device: &Device, field: Field, shapes: Vec<Shape>) -> Plan {
-    let radius_mm = radius_mm(device);
+    let radius_mm = device.plate.radius_mm();
     Plan {
         title,
         x: [-radius_mm, radius_mm],
@@ -141,10 +142,6 @@ fn films(device: &Device) -> Vec<Shape> {
 
 fn film_half_mm(device: &Device) -> [f64; 2] {
     [device.stack.film_length_x_mm / 2.0, device.stack.film_width_y_mm / 2.0]
-}
-
-fn radius_mm(device: &Device) -> f64 {
-    device.plate.diameter_mm / 2.0
 }
 
 fn load(pressed: &PressedPad) -> String {

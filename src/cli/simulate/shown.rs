@@ -3,25 +3,32 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{Folders, meshes, pictures};
-use crate::cli::Failure;
-use crate::cli::field_cache::{field_of, unsolved};
+use super::pictures;
+use crate::cli::failure::Failure;
+use crate::cli::field::field_of;
 use crate::cli::progress::Progress;
 use crate::cli::written::reason;
-use crate::device::Device;
-use crate::mechanics::mesh::Fineness;
-use crate::mechanics::pressed::PressedPad;
-use crate::mechanics::simulator::Simulator;
-use crate::plot::{png, svg};
-use crate::quantity::MODULES;
+use tactpad::lab::field_cache::FieldError;
+use tactpad::mechanics::mesh::Fineness;
+use tactpad::mechanics::meshes;
+use tactpad::mechanics::pressed::PressedPad;
+use tactpad::mechanics::simulator::Simulator;
+use tactpad::pad::device::Device;
+use tactpad::plot::{png, svg};
+use tactpad::quantity::MODULES;
 
 /// Pixels of a PNG per pixel of the figure: sharp on paper and on dense screens.
 const PNG_SCALE: f64 = 2.0;
 
-/// Writes everything that is wanted, and says which files these are.
-pub(super) fn write(device: &Device, Folders { figures, vtk, at }: &Folders) -> Result<Vec<String>, Failure> {
-    [figures, vtk].into_iter().flatten().try_for_each(|folder| make(folder))?;
-    let pressed = pressed(device, *at)?;
+/// Presses the device's pad at a place, writes figures and meshes into these folders, and says which files these are.
+pub(super) fn write(
+    device: &Device,
+    at_mm: [f64; 2],
+    figures: Option<&Path>,
+    vtk: Option<&Path>,
+) -> Result<Vec<String>, Failure> {
+    [figures, vtk].into_iter().flatten().try_for_each(make)?;
+    let pressed = pressed(device, at_mm)?;
     let mut written = Vec::new();
     if let Some(folder) = figures {
         write_figures(&pressed, folder, &mut written)?;
@@ -35,7 +42,9 @@ pub(super) fn write(device: &Device, Folders { figures, vtk, at }: &Folders) -> 
 fn pressed(device: &Device, at_mm: [f64; 2]) -> Result<PressedPad, Failure> {
     let mut progress = Progress::begin();
     progress.step("solving the pressed pad");
-    Simulator::new(Fineness::STANDARD).pressed(device, at_mm).map_err(|error| unsolved(&error))
+    Simulator::new(Fineness::STANDARD)
+        .pressed(device, at_mm)
+        .map_err(|error| FieldError::Unsolved(error).into())
 }
 
 fn write_figures(pressed: &PressedPad, folder: &Path, written: &mut Vec<PathBuf>) -> Result<(), Failure> {

@@ -48,6 +48,7 @@ impl Solution<'_> {
     /// A brick's stiffness per MPa of its layer's modulus and per mm of its layer's thickness.
     fn stiffness_slopes(&self, brick: &Brick) -> [Box<Stiffness>; 2] {
         let material = brick.layer.material(self.device, self.module);
+        // K is proportional to E. All bricks of a layer grow in proportion: ∂h/∂H = h/H for a layer of thickness H.
         let share = brick.size_mm[2] / brick.layer.thickness_mm(&self.device.stack);
         let mut per_mpa = box_stiffness(brick.size_mm, material);
         per_mpa.as_flattened_mut().iter_mut().for_each(|k| *k /= material.e_mpa);
@@ -58,6 +59,7 @@ impl Solution<'_> {
 
     /// Fields that the gauges' weights load, one column for each strain.
     fn adjoint(&self) -> Result<Mat<f64>, SolveError> {
+        // K z = w.
         let mut right = Mat::zeros(self.freedoms.unknowns(), STRAINS);
         for (column, weights) in gauge_weights(&self.mesh, &self.device.gauges).iter().enumerate() {
             for (node, axis, weight) in weights {
@@ -91,6 +93,7 @@ impl Solution<'_> {
 fn add_products(slope: &Stiffness, columns: &Mat<f64>, sum: &mut Products) {
     // The matrix is symmetric, so its rows may be read as columns.
     let slope = MatRef::from_column_major_slice(slope.as_flattened(), DOFS, DOFS);
+    // (u, z)ᵀ ∂K u.
     let mut forces = Mat::<f64>::zeros(DOFS, MODES);
     let fields = columns.subcols(0, MODES);
     matmul(&mut forces, Accum::Replace, slope, fields, 1.0, Par::Seq);
@@ -106,10 +109,10 @@ fn from_products(products: &Products) -> Superelement {
 
 #[cfg(test)]
 mod tests {
-    use crate::device::{Device, Module, Side};
     use crate::mechanics::mesh::Fineness;
     use crate::mechanics::superelement::stiffness_of;
     use crate::mechanics::system::add_holding_forces;
+    use crate::pad::device::{Device, Module, Side};
 
     use super::*;
 

@@ -1,15 +1,13 @@
 //! Gauges on the film's underside: mean strains as weights of displacements.
 
-use crate::device::{Direction, GAUGES, Gauge};
 use crate::mechanics::mesh::{Mesh, half_sizes_mm};
-
-use super::STRAINS;
+use crate::pad::device::{Direction, GAUGES, Gauge};
 
 /// A displacement's share in a strain: node, axis, weight in 1/mm.
 pub(super) type Weight = (usize, usize, f64);
 
 /// The mean strain along and across each gauge's grid.
-pub(super) fn gauge_weights(mesh: &Mesh, gauges: &[Gauge; GAUGES]) -> [Vec<Weight>; STRAINS] {
+pub(super) fn gauge_weights(mesh: &Mesh, gauges: &[Gauge; GAUGES]) -> [Vec<Weight>; 2 * GAUGES] {
     let underside = Underside::of(mesh);
     std::array::from_fn(|index| {
         let gauge = &gauges[index / 2];
@@ -76,8 +74,8 @@ impl<'m> Underside<'m> {
 
 #[cfg(test)]
 mod tests {
-    use crate::device::{Device, Module};
     use crate::mechanics::mesh::Fineness;
+    use crate::pad::device::{Device, Module};
 
     use super::*;
 

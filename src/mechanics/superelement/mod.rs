@@ -8,7 +8,7 @@
 
 use faer::Mat;
 
-use crate::device::{Device, GAUGES, Module};
+use crate::pad::device::{Device, GAUGES, Module};
 
 use super::brick::{DOFS, Stiffness, box_stiffness, forces};
 use super::mesh::{Brick, Fineness, Mesh};
@@ -157,6 +157,7 @@ impl<'d> Solution<'d> {
 
     /// Condenses the module to its modes.
     pub fn superelement(&self) -> Superelement {
+        // K = Tᵀ (K_tt T + K_tf u_f): forces on the top's nodes t under a unit of each mode, weighted by the modes' shapes T.
         let mut condensed = Superelement::ZERO;
         for brick in self.top_bricks() {
             let stiffness = stiffness_of(self.device, self.module, brick);
@@ -174,6 +175,7 @@ impl<'d> Solution<'d> {
         }
         for (row, gauge) in condensed.strains.iter_mut().zip(gauge_weights(&self.mesh, &self.device.gauges)) {
             for (mode, strain) in row.iter_mut().enumerate() {
+                // B = w·u with the gauge's weights w.
                 *strain = gauge.iter().map(|(node, axis, w)| w * self.displacement(*node, mode)[*axis]).sum();
             }
         }

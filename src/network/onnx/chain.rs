@@ -1,10 +1,10 @@
 //! A graph as a chain of steps, each of which takes what the one before gives.
 
-use super::OnnxError;
+use super::error::OnnxError;
 use super::graph::{Graph, Node};
 use super::tensor::{FLOAT, Tensor};
 use crate::network::Layer;
-use crate::network::product::transposed;
+use crate::network::transposed::transposed;
 
 /// What happens to a row of numbers.
 #[derive(Debug)]

@@ -2,14 +2,17 @@
 
 use std::collections::BTreeMap;
 
+use super::error::OnnxError;
 use super::tensor::Tensor;
 use super::wire::{Fields, Value};
-use super::{CHANNELS_KEY, OnnxError};
 use crate::network::{LAYERS_MAX, Zero};
 
 /// The steps of the deepest perceptron, and as many constants that stand as nodes. Each may copy a tensor, so that more
 /// would take memory that the file does not justify.
 const NODES_MAX: usize = 8 * LAYERS_MAX;
+
+/// Where a file says what it takes; `tared` or `raw`. A file of others, which says nothing, takes tared channels.
+pub(super) const CHANNELS_KEY: &str = "tactpad.channels";
 
 /// What is read of a model.
 #[derive(Debug)]

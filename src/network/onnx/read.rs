@@ -4,8 +4,8 @@ use std::array::from_fn;
 use std::iter::Peekable;
 use std::vec::IntoIter;
 
-use super::OnnxError;
 use super::chain::{Step, steps};
+use super::error::OnnxError;
 use super::graph::Graph;
 use crate::network::{LAYERS_MAX, Layer, Network, OUTPUTS, Scaler, WIDTH_MAX};
 use crate::quantity::CHANNELS;

@@ -1,9 +1,9 @@
 //! Numbers with their sides.
 
-use super::OnnxError;
+use super::error::OnnxError;
 use super::wire::{Fields, Value, varint};
 use crate::network::WIDTH_MAX;
-use crate::network::product::transposed;
+use crate::network::transposed::transposed;
 
 /// 32-bit floats.
 pub(super) const FLOAT: u64 = 1;

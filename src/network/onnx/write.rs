@@ -1,6 +1,6 @@
 //! The way out.
 
-use super::CHANNELS_KEY;
+use super::graph::CHANNELS_KEY;
 use super::wire::{push_bytes, push_number};
 use crate::network::{Network, OUTPUTS, Zero};
 use crate::quantity::CHANNELS;
@@ -87,7 +87,7 @@ fn tensor(name: &str, sides: &[usize], numbers: &[f32]) -> Vec<u8> {
     tensor
 }
 
-/// The type of an end of the graph: any number of rows of so many numbers.
+/// The type of an end of the graph: any number of rows of `width` numbers.
 fn value(name: &str, width: usize) -> Vec<u8> {
     let mut rows = Vec::new();
     push_bytes(&mut rows, 2, b"N");

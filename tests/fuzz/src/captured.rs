@@ -1,12 +1,11 @@
 //! Captures in memory: read, written, replayed.
 
-use std::convert::Infallible;
-
 use firmware_proto::crc::crc32;
-use tactpad::capture::{Call, CaptureReader, CaptureWriter};
-use tactpad::control::OutputEvent;
+use tactpad::pipeline::call::Call;
+use tactpad::pipeline::capture::reader::CaptureReader;
+use tactpad::pipeline::capture::writer::CaptureWriter;
+use tactpad::pipeline::control::OutputEvent;
 use tactpad::pipeline::{NoProbe, Pipeline};
-use tactpad::replay::make_call;
 
 use crate::rig::first_profile;
 
@@ -32,32 +31,50 @@ pub fn sealed(mut bare: &[u8]) -> Vec<u8> {
     file
 }
 
-/// The calls of a file up to the first error; none where it is no capture.
-pub fn calls(file: &[u8]) -> Vec<Call> {
-    let reader = CaptureReader::new(file).inspect_err(|error| assert!(!error.to_string().is_empty()));
-    reader.into_iter().flatten().map_while(Result::ok).collect()
+/// The capture in `file`, if it begins like one.
+fn opened(file: &[u8]) -> Option<CaptureReader<&[u8]>> {
+    CaptureReader::new(file).inspect_err(|error| assert!(!error.to_string().is_empty())).ok()
 }
 
-/// The file of `calls`.
-pub fn written(calls: &[Call]) -> Vec<u8> {
-    let mut file = Vec::new();
-    let mut writer = CaptureWriter::new(&mut file).unwrap();
-    for call in calls {
-        writer.write(call.now, call.kind.as_ref()).unwrap();
+/// What stands in a file up to the first error; none where it is no capture. Profiles stand there without their times,
+/// as a head has none.
+pub fn read(file: &[u8]) -> Vec<String> {
+    let Some(mut capture) = opened(file) else { return Vec::new() };
+    let head = capture.head();
+    let mut all: Vec<String> = head.decoder.iter().map(|decoder| format!("{decoder:?}")).collect();
+    all.extend(head.profile.iter().map(|profile| format!("{:?}", Call::Profile(profile))));
+    while let Some(Ok((now, call))) = capture.next_call() {
+        match call {
+            Call::Profile(_) => all.push(format!("{call:?}")),
+            _ => all.push(format!("{now:?} {call:?}")),
+        }
     }
-    file
+    all
 }
 
-/// The events of `calls`. Their times may even run back, as no recorder's do.
-pub fn replayed(calls: &[Call]) -> Vec<OutputEvent> {
-    let mut pipeline = Pipeline::new(tactpad::shipped::decoder(), first_profile());
+/// The file of what is read in `file` up to the first error.
+pub fn written(file: &[u8]) -> Vec<u8> {
+    let mut again = Vec::new();
+    let Some(mut capture) = opened(file) else { return again };
+    let mut writer = CaptureWriter::begin(&mut again, Default::default(), capture.head()).unwrap();
+    while let Some(Ok((now, call))) = capture.next_call() {
+        writer.write(now, call).unwrap();
+    }
+    drop(writer);
+    again
+}
+
+/// The events of a file up to the first error. Its times may even run back, as no recorder's do.
+pub fn replayed(file: &[u8]) -> Vec<OutputEvent> {
+    let mut pipeline = Pipeline::new(tactpad::pipeline::shipped::decoder(), first_profile());
     let mut all = Vec::new();
-    for call in calls {
-        let made = make_call(&mut pipeline, call.now, call.kind.as_ref(), &mut NoProbe, |events| {
-            all.extend_from_slice(events);
-            Ok::<_, Infallible>(())
-        });
-        assert!(made.is_ok());
+    let Some(mut capture) = opened(file) else { return all };
+    while let Some(Ok((now, call))) = capture.next_call() {
+        let mut left = Some(call);
+        while let Some(call) = left {
+            left = pipeline.apply(now, call, &mut NoProbe);
+            all.extend_from_slice(pipeline.events());
+        }
     }
     all
 }

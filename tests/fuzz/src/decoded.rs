@@ -1,7 +1,7 @@
 //! Decoders in memory, and what they make of anything.
 
-use tactpad::contact::Decoder;
-use tactpad::contact::file::MAGIC;
+use tactpad::pipeline::contact::Decoder;
+use tactpad::pipeline::contact::file::MAGIC;
 use tactpad::quantity::{CHANNELS, Contact, Strain};
 
 const KINDS: [&[u8]; 4] = [b"inverse", b"linear", b"wrench", b"knn"];

@@ -8,16 +8,16 @@ use firmware_proto::frame::Message;
 use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
-use tactpad::capture::CallRef;
-use tactpad::control::{Code, Device, OutputEvent};
-use tactpad::field::PadField;
-use tactpad::influence::InfluenceField;
-use tactpad::mapping::check::{self, OutputChoice};
-use tactpad::mapping::profile::Profile;
-use tactpad::mapping::shipped;
+use tactpad::pad::field::PadField;
+use tactpad::pad::influence::InfluenceField;
+use tactpad::pipeline::call::Call;
+use tactpad::pipeline::control::{Code, OutputDevice, OutputEvent};
+use tactpad::pipeline::mapping::check::{self, OutputChoice};
+use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::read::ReadProfile;
+use tactpad::pipeline::mapping::shipped;
 use tactpad::pipeline::{NoProbe, Phase, Pipeline};
 use tactpad::quantity::Contact;
-use tactpad::replay::make_call;
 use tactpad::time::{HostInstant, StreamInstant};
 
 use crate::body::framed;
@@ -40,7 +40,7 @@ pub struct Rig {
     pub now: HostInstant,
     sequence: u32,
     time_us: u64,
-    held: BTreeMap<(Device, Code), i32>,
+    held: BTreeMap<(OutputDevice, Code), i32>,
     newest: StreamInstant,
 }
 
@@ -64,7 +64,7 @@ impl Default for Rig {
 impl Rig {
     /// A rig whose pad has just been plugged in.
     pub fn new(profile: Profile) -> Self {
-        let pipeline = Pipeline::new(tactpad::shipped::decoder(), profile);
+        let pipeline = Pipeline::new(tactpad::pipeline::shipped::decoder(), profile);
         let now = HostInstant::from_ns(1_000_000_000);
         Self {
             pipeline,
@@ -84,8 +84,8 @@ impl Rig {
                 (0..20).for_each(|_| self.sample(&Finger { x: 0, y: 0, fx: 0, fy: 0, fz: 0 }, 25_000))
             }
             Step::Odd { finger, oddity } => self.odd(finger, *oddity),
-            Step::Bytes(bytes) => self.call(CallRef::Bytes(bytes)),
-            Step::Body(body) => self.call(CallRef::Bytes(&framed(body))),
+            Step::Bytes(bytes) => self.call(Call::Bytes(bytes)),
+            Step::Body(body) => self.call(Call::Bytes(&framed(body))),
             Step::Identity { channels, count_bits, picovolts_per_count } => {
                 self.send(&Message::Identity(Identity {
                     serial_number: SerialNumber::from_ascii("FUZZ").unwrap(),
@@ -96,15 +96,16 @@ impl Rig {
                 }));
             }
             Step::Silence { us, waking } => self.silence(u64::from(*us), *waking),
-            Step::Timeout => self.call(CallRef::Timeout),
-            Step::Unplugged => self.call(CallRef::Unplugged),
-            Step::Pause => self.call(CallRef::Pause),
-            Step::Resume => self.call(CallRef::Resume),
-            Step::ReleaseAll => self.call(CallRef::ReleaseAll),
-            Step::Retare => self.call(CallRef::Retare),
-            Step::Profile { number, keyboard: false } => self.call(CallRef::Profile(profile_text(*number))),
-            Step::Profile { number, keyboard: true } => {
-                self.call(CallRef::KeyboardProfile(profile_text(*number)))
+            Step::Timeout => self.call(Call::Timeout),
+            Step::Unplugged => self.call(Call::Unplugged),
+            Step::Pause => self.call(Call::Pause),
+            Step::Resume => self.call(Call::Resume),
+            Step::ReleaseAll => self.call(Call::ReleaseAll),
+            Step::Retare => self.call(Call::Retare),
+            Step::Profile { number, keyboard } => {
+                let output = if *keyboard { OutputChoice::Keyboard } else { OutputChoice::AsWritten };
+                let read = ReadProfile::read(profile_text(*number), output).0.unwrap();
+                self.call(Call::Profile(&read));
             }
         }
     }
@@ -123,19 +124,19 @@ impl Rig {
     /// After 80 ms without a sample nothing may be held, whatever was before.
     pub fn end(&mut self) {
         self.now = self.now.plus_us(200_000);
-        self.call(CallRef::Timeout);
+        self.call(Call::Timeout);
         assert!(self.held.is_empty(), "held after silence: {:?}", self.held);
         assert!(self.pipeline.held().next().is_none(), "a rate after silence");
     }
 
     /// Makes one call and checks what comes of it.
-    pub fn call(&mut self, call: CallRef<'_>) {
+    pub fn call(&mut self, call: Call<'_>) {
         let Self { pipeline, now, held, newest, .. } = self;
-        let taken = make_call(pipeline, *now, call, &mut NoProbe, |events| {
-            check_group(events, held, newest);
-            Ok::<_, std::convert::Infallible>(())
-        });
-        assert!(taken.is_ok());
+        let mut left = Some(call);
+        while let Some(call) = left {
+            left = pipeline.apply(*now, call, &mut NoProbe);
+            check_group(pipeline.events(), held, newest);
+        }
         self.check();
     }
 
@@ -167,7 +168,7 @@ impl Rig {
             if self.pipeline.poll_timeout().is_none_or(|due| due > self.now) {
                 return;
             }
-            self.call(CallRef::Timeout);
+            self.call(Call::Timeout);
         }
         panic!("always due: {:?} at {:?}", self.pipeline.poll_timeout(), self.now);
     }
@@ -200,14 +201,14 @@ impl Rig {
                 let mut frame = encoded(&Message::Sample(sample));
                 let place = usize::from(place) % frame.len();
                 frame[place] ^= 1 << (bit % 8);
-                return self.call(CallRef::Bytes(&frame));
+                return self.call(Call::Bytes(&frame));
             }
         }
         self.send(&Message::Sample(sample));
     }
 
     fn send(&mut self, message: &Message) {
-        self.call(CallRef::Bytes(&encoded(message)));
+        self.call(Call::Bytes(&encoded(message)));
     }
 }
 
@@ -225,7 +226,11 @@ fn contact(finger: &Finger) -> Contact {
 }
 
 /// A group is simultaneous: each control stands in it once, and always with a new value. Time does not run back.
-fn check_group(events: &[OutputEvent], held: &mut BTreeMap<(Device, Code), i32>, newest: &mut StreamInstant) {
+fn check_group(
+    events: &[OutputEvent],
+    held: &mut BTreeMap<(OutputDevice, Code), i32>,
+    newest: &mut StreamInstant,
+) {
     for (index, event) in events.iter().enumerate() {
         let control = (event.device, event.code);
         assert!(

@@ -2,8 +2,8 @@
 //! reads back as it is written.
 #![no_main]
 
-use tactpad::contact::{Decoder, read};
 use tactpad::network::onnx;
+use tactpad::pipeline::contact::{Method, read};
 use tactpad_fuzz::decoded::{contacts, sealed};
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
@@ -15,9 +15,9 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
                 continue;
             }
         };
-        let again = match &decoder {
-            Decoder::Network(network) => Some(onnx::write(network)),
-            decoder => decoder.to_bytes("a note"),
+        let again = match &decoder.method {
+            Method::Network(network) => Some(onnx::write(network)),
+            _ => decoder.to_bytes("a note"),
         };
         let again = again.map(|bytes| read::decoder(&bytes).unwrap());
         assert!(again.is_none_or(|again| contacts(&again) == contacts(&decoder)));

@@ -1,7 +1,7 @@
 //! Any text as a device and over one: no panic, a reason wherever there is none, and what is read is written back.
 #![no_main]
 
-use tactpad::device::Device;
+use tactpad::pad::device::Device;
 
 libfuzzer_sys::fuzz_target!(|text: &str| {
     for (device, found) in [Device::from_toml(text), Device::nominal().with_imperfections(text)] {

@@ -1,0 +1,66 @@
+//! What of the bridge's doings is told to people, and when.
+
+use crate::bridge::state::State;
+use crate::pipeline::contact::watch::Warning;
+use crate::time::HostInstant;
+
+/// Says a state when it has lasted, so that a flicker is not told.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Herald {
+    told: State,
+    candidate: State,
+    since: HostInstant,
+    /// The lasting warning that was told last.
+    warned: Option<Warning>,
+}
+
+/// A state that lasts this long is told.
+const LASTING_US: u64 = 1_000_000;
+
+impl Herald {
+    /// Nothing needs to be told while all is well.
+    pub(super) const fn new(now: HostInstant) -> Self {
+        Self { told: State::Playing, candidate: State::Playing, since: now, warned: None }
+    }
+
+    /// The state to tell now, if there is one.
+    pub(super) fn hear(&mut self, now: HostInstant, state: State) -> Option<State> {
+        if state != self.candidate {
+            (self.candidate, self.since) = (state, now);
+        }
+        let lasts = now.us_since(self.since) >= LASTING_US;
+        (lasts && state != self.told).then(|| {
+            self.told = state;
+            state
+        })
+    }
+
+    /// The warning to tell now, if there is one: each that lasts is told once.
+    pub(super) fn warn(&mut self, warning: Option<Warning>) -> Option<Warning> {
+        let lasting = warning.filter(|warning| warning.lasts() && self.warned != Some(*warning));
+        self.warned = lasting.or(self.warned);
+        lasting
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_lasts_is_told_and_only_once() {
+        let at = |ms: u64| HostInstant::default().plus_us(ms * 1_000);
+        let mut herald = Herald::new(at(0));
+        let mut told = Vec::new();
+        for ms in (0..6_000).step_by(40) {
+            let state = match ms {
+                0..2_000 if ms % 80 == 0 => State::Doubtful,
+                0..2_000 => State::Playing,
+                2_000..4_000 => State::Waiting,
+                _ => State::Playing,
+            };
+            told.extend(herald.hear(at(ms), state).map(|state| (ms, state)));
+        }
+        assert_eq!(told, [(3_000, State::Waiting), (5_000, State::Playing)]);
+    }
+}

@@ -1,0 +1,15 @@
+//! What a bridge needs of the program that it runs in.
+
+use crate::pipeline::mapping::read::ReadProfile;
+
+/// The program that a bridge runs in. It is called between two turns of the loop, so it should answer soon.
+pub trait Host {
+    /// Reads a profile: the named one, or the one in use again.
+    ///
+    /// # Errors
+    /// It cannot be used; the text is for people.
+    fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String>;
+
+    /// Tells people what the bridge is doing, when that changed.
+    fn tell(&mut self, line: &str);
+}

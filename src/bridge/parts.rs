@@ -1,0 +1,43 @@
+//! What a bridge is made of.
+
+use std::io::Write;
+
+use crate::bridge::host::Host;
+use crate::bridge::opening::{OpenedPad, Patience};
+use crate::bridge::requests::Requests;
+use crate::bridge::sink::Sink;
+use crate::pipeline::contact::Decoder;
+use crate::pipeline::mapping::read::ReadProfile;
+
+/// A decoder that is to play.
+#[derive(Clone, Debug)]
+pub struct PlayingDecoder {
+    /// The decoder itself.
+    pub decoder: Decoder,
+    /// What people call it.
+    pub name: String,
+    /// Its file, as captures keep it; `None` for the statics that are inside the program.
+    pub file: Option<Vec<u8>>,
+}
+
+/// What a bridge is made of.
+pub struct Parts {
+    /// The pad, opened once already so that errors were told.
+    pub pad: OpenedPad,
+    /// Whether to go on waiting for a pad that sends no sound frame.
+    pub patience: Patience,
+    /// What decodes.
+    pub decoder: PlayingDecoder,
+    /// What is played.
+    pub profile: ReadProfile,
+    /// Where events go.
+    pub sink: Box<dyn Sink>,
+    /// What people ask for.
+    pub requests: Requests,
+    /// The program around the bridge.
+    pub host: Box<dyn Host>,
+    /// Where calls are recorded.
+    pub record: Option<Box<dyn Write>>,
+    /// Ends the run after this time.
+    pub duration_us: Option<u64>,
+}

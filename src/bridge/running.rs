@@ -1,0 +1,421 @@
+//! The loop of a running bridge.
+
+use std::io;
+use std::sync::{Arc, Mutex};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use crate::bridge::clock::Clock;
+use crate::bridge::driver::{Driver, Recorder, prepare};
+use crate::bridge::error::BridgeError;
+use crate::bridge::herald::Herald;
+use crate::bridge::host::Host;
+use crate::bridge::keeper::Keeper;
+use crate::bridge::latency::Durations;
+use crate::bridge::parts::Parts;
+use crate::bridge::requests::{Asked, Request, Requests};
+use crate::bridge::snapshot::{Snapshot, Status, Uncertainty};
+use crate::bridge::state::State;
+use crate::pipeline::call::Call;
+use crate::pipeline::capture::head::Head;
+use crate::pipeline::capture::writer::CaptureWriter;
+use crate::pipeline::health::Health;
+use crate::pipeline::mapping::read::ReadProfile;
+use crate::pipeline::{Phase, Pipeline};
+use crate::time::HostInstant;
+
+/// The snapshot for screens is renewed this often while a pad is there; without one whenever the bridge wakes.
+const SNAPSHOT_US: u64 = 40_000;
+
+/// Why a run ended well.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// Somebody asked for it.
+    Asked,
+    /// Its time was over.
+    TimeOver,
+    /// The pad was a capture, and it ended.
+    CaptureEnded,
+}
+
+/// The running bridge.
+pub struct Bridge {
+    driver: Driver,
+    decoder: String,
+    keeper: Keeper,
+    requests: Requests,
+    host: Box<dyn Host>,
+    end_at: Option<HostInstant>,
+    herald: Herald,
+    snapshot: Arc<Mutex<Snapshot>>,
+    snapshot_at: HostInstant,
+    held_when_over: usize,
+    /// What the pad sent last.
+    bytes: [u8; 4096],
+}
+
+/// What woke the loop.
+#[derive(Clone, Copy, Debug)]
+struct Woken {
+    pad: bool,
+    request: bool,
+}
+
+impl Bridge {
+    /// A bridge that is ready to run. Its clock, and its capture if it records one, begin now.
+    ///
+    /// # Errors
+    /// The beginning of the capture cannot be written.
+    pub fn new(parts: Parts) -> io::Result<Self> {
+        let clock = Clock::start();
+        let now = clock.now();
+        let Parts { pad, patience, decoder, profile, sink, requests, host, record, duration_us } = parts;
+        let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
+        let head = Head { decoder: decoder.file, profile: Some(profile) };
+        let begin = |to| -> io::Result<Recorder> { CaptureWriter::begin(to, now, &head) };
+        let recorder = record.map(begin).transpose()?;
+        let driver = Driver { pipeline, sink, recorder, clock, latency: Durations::new() };
+        let keeper = Keeper::new(pad, patience, now);
+        let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, &decoder.name)));
+        Ok(Self {
+            driver,
+            decoder: decoder.name,
+            keeper,
+            requests,
+            host,
+            end_at: duration_us.map(|duration_us| now.plus_us(duration_us)),
+            herald: Herald::new(now),
+            snapshot,
+            snapshot_at: now,
+            held_when_over: 0,
+            bytes: [0; 4096],
+        })
+    }
+
+    /// The snapshot that screens read; it is renewed as long as somebody has it.
+    pub fn snapshot(&self) -> Arc<Mutex<Snapshot>> {
+        Arc::clone(&self.snapshot)
+    }
+
+    /// Durations from bytes readable to write returned, one per write.
+    pub const fn latency(&self) -> &Durations {
+        &self.driver.latency
+    }
+
+    /// What went wrong so far.
+    pub const fn health(&self) -> &Health {
+        self.driver.pipeline.health()
+    }
+
+    /// How many controls were held when the run ended, before they were released.
+    pub const fn held_when_over(&self) -> usize {
+        self.held_when_over
+    }
+
+    /// Plays until it is asked to end. Whatever the ending, everything held is released first.
+    ///
+    /// # Errors
+    /// See [`BridgeError`].
+    pub fn run(&mut self) -> Result<Ending, BridgeError> {
+        let ending = self.play();
+        self.held_when_over = self.driver.pipeline.held().count();
+        let released = self.driver.call(self.driver.clock.now(), Call::ReleaseAll);
+        // Before anything that takes time: a pad that nobody reads any more has to count what is not taken.
+        self.keeper.close();
+        self.driver.flush().map_err(BridgeError::Io)?;
+        released.and(ending)
+    }
+
+    fn play(&mut self) -> Result<Ending, BridgeError> {
+        prepare(self.driver.sink.as_mut(), self.driver.pipeline.profile())?;
+        let mut now = self.driver.clock.now();
+        loop {
+            // The deadline counts from the last wake-up: one clock read less, late by what the work took.
+            let woken = self.wait(now).map_err(BridgeError::Io)?;
+            now = self.driver.clock.now();
+            if let Some(ending) = self.turn(now, woken)? {
+                return Ok(ending);
+            }
+        }
+    }
+
+    /// Does what there is to do at `now`. The ending, if this was the last turn.
+    fn turn(&mut self, now: HostInstant, woken: Woken) -> Result<Option<Ending>, BridgeError> {
+        if woken.request && self.answer_requests(now)? {
+            return Ok(Some(Ending::Asked));
+        }
+        if woken.pad {
+            if self.read_pad(now)? {
+                return Ok(Some(Ending::CaptureEnded));
+            }
+        } else {
+            self.driver.call_if_due(now)?;
+        }
+        if self.end_at.is_some_and(|end_at| end_at <= now) {
+            return Ok(Some(Ending::TimeOver));
+        }
+        self.keeper.attend(now, &self.driver.pipeline)?;
+        self.publish(now);
+        Ok(None)
+    }
+
+    /// Sleeps until the pad, a request or a deadline.
+    fn wait(&self, now: HostInstant) -> io::Result<Woken> {
+        let timeout = self.next_deadline().map(|deadline| until(now, deadline));
+        let request = PollFd::from_borrowed_fd(self.requests.fd(), PollFlags::IN);
+        let Some(pad) = self.keeper.pad() else {
+            let mut fds = [request];
+            poll_once(&mut fds, timeout.as_ref())?;
+            return Ok(Woken { pad: false, request: is_woken(&fds[0]) });
+        };
+        let mut fds = [PollFd::from_borrowed_fd(pad.fd(), PollFlags::IN), request];
+        poll_once(&mut fds, timeout.as_ref())?;
+        Ok(Woken { pad: is_woken(&fds[0]), request: is_woken(&fds[1]) })
+    }
+
+    /// When there is something to do though nobody asks and no pad speaks.
+    fn next_deadline(&self) -> Option<HostInstant> {
+        let pipeline = &self.driver.pipeline;
+        // Without a pad the picture stands still but for what the keeper finds, and that wakes the loop anyway.
+        let publish = self.keeper.pad().map(|_| self.snapshot_at.plus_us(SNAPSHOT_US));
+        let deadlines = [self.end_at, pipeline.poll_timeout(), self.keeper.next_deadline(pipeline), publish];
+        deadlines.into_iter().flatten().min()
+    }
+
+    /// Reads once. True if the pad was a capture that ended.
+    fn read_pad(&mut self, now: HostInstant) -> Result<bool, BridgeError> {
+        match self.keeper.read(&mut self.bytes) {
+            Ok(Some(read)) => {
+                self.driver.call(now, Call::Bytes(self.bytes.get(..read).unwrap_or_default()))?;
+            }
+            Ok(None) => self.driver.call_if_due(now)?,
+            Err(_) => {
+                // Release first: closing a port can take time.
+                self.driver.call(now, Call::Unplugged)?;
+                self.keeper.lose(now);
+                return Ok(!self.keeper.can_return());
+            }
+        }
+        Ok(false)
+    }
+
+    /// True if somebody asks to end.
+    fn answer_requests(&mut self, now: HostInstant) -> Result<bool, BridgeError> {
+        while let Some(asked) = self.requests.take() {
+            if asked.request == Request::End {
+                asked.answer(done());
+                return Ok(true);
+            }
+            self.answer(now, &asked)?;
+        }
+        Ok(false)
+    }
+
+    fn answer(&mut self, now: HostInstant, asked: &Asked) -> Result<(), BridgeError> {
+        let answer = match &asked.request {
+            Request::Status => self.status(now),
+            Request::Profile(name) => self.change_profile(now, name.as_deref())?,
+            request => {
+                let call = match request {
+                    Request::ReleaseAll => Call::ReleaseAll,
+                    Request::Retare => Call::Retare,
+                    Request::Resume => Call::Resume,
+                    Request::TogglePause if self.driver.pipeline.phase() == Phase::Paused => Call::Resume,
+                    _ => Call::Pause,
+                };
+                self.driver.call(now, call)?;
+                done()
+            }
+        };
+        asked.answer(answer);
+        Ok(())
+    }
+
+    /// Goes over to another profile; one that cannot be used changes nothing.
+    fn change_profile(&mut self, now: HostInstant, name: Option<&str>) -> Result<String, BridgeError> {
+        match self.ready_profile(name) {
+            Ok(read) => {
+                self.host.tell(&format!("profile {}", read.profile().name));
+                self.driver.call(now, Call::Profile(&read))?;
+                Ok(done())
+            }
+            Err(error) => {
+                self.host.tell(&format!("{error}\nthe profile in use stays"));
+                Ok(serde_json::json!({"ok": false, "error": error}).to_string())
+            }
+        }
+    }
+
+    /// A profile whose devices are there; the error is for people.
+    fn ready_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
+        let read = self.host.read_profile(name)?;
+        match prepare(self.driver.sink.as_mut(), read.profile()) {
+            Ok(()) => Ok(read),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    fn look(&self, now: HostInstant) -> Snapshot {
+        look(now, &self.driver, &self.keeper, &self.decoder)
+    }
+
+    fn status(&self, now: HostInstant) -> String {
+        serde_json::to_string(&self.look(now).status).unwrap_or_else(|error| error.to_string())
+    }
+
+    /// Renews the snapshot, and tells a state that lasts.
+    fn publish(&mut self, now: HostInstant) {
+        if now.us_since(self.snapshot_at) < SNAPSHOT_US {
+            return;
+        }
+        self.snapshot_at = now;
+        if let Some(state) = self.herald.hear(now, state(&self.driver, &self.keeper)) {
+            self.host.tell(state.sentence());
+        }
+        if let Some(warning) = self.herald.warn(self.driver.pipeline.warning()) {
+            self.host.tell(&warning.to_string());
+        }
+        let is_shown = Arc::strong_count(&self.snapshot) > 1;
+        if is_shown && let Ok(mut snapshot) = self.snapshot.try_lock() {
+            *snapshot = self.look(now);
+        }
+    }
+}
+
+fn state(driver: &Driver, keeper: &Keeper) -> State {
+    State::of(&driver.pipeline, keeper.absence())
+}
+
+/// All that there is to see at `now`.
+fn look(now: HostInstant, driver: &Driver, keeper: &Keeper, decoder: &str) -> Snapshot {
+    let Driver { pipeline, sink, latency, .. } = driver;
+    let status = Status {
+        state: state(driver, keeper),
+        pad: pipeline.identity().map(|identity| identity.serial_number),
+        profile: pipeline.profile().name.clone(),
+        decoder: decoder.to_owned(),
+        output: sink.describe(),
+        contact: pipeline.contact().copied(),
+        held: pipeline.held().collect(),
+        warning: pipeline.warning(),
+        health: *pipeline.health(),
+        latency_us: latency.percentiles(),
+    };
+    let uncertainty = pipeline.estimate().as_ref().map(Uncertainty::of);
+    Snapshot { at: now, status, channels_uv: pipeline.strain().map(|strain| strain.uv), uncertainty }
+}
+
+fn done() -> String {
+    r#"{"ok":true}"#.into()
+}
+
+fn is_woken(fd: &PollFd<'_>) -> bool {
+    !fd.revents().is_empty()
+}
+
+fn until(now: HostInstant, deadline: HostInstant) -> Timespec {
+    let wait_ns = deadline.as_ns().saturating_sub(now.as_ns()).min(i64::MAX as u64);
+    Timespec { tv_sec: (wait_ns / 1_000_000_000) as i64, tv_nsec: (wait_ns % 1_000_000_000) as i64 }
+}
+
+/// Polls; a signal that interrupts it is seen through the requests' descriptor.
+fn poll_once(fds: &mut [PollFd<'_>], timeout: Option<&Timespec>) -> io::Result<()> {
+    match poll(fds, timeout) {
+        Ok(_) | Err(rustix::io::Errno::INTR) => Ok(()),
+        Err(error) => Err(error.into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+    use crate::bridge::opening::{OpenedPad, Patience};
+    use crate::bridge::parts::PlayingDecoder;
+    use crate::bridge::sink::null::NullSink;
+    use crate::bridge::transport::pads::PadError;
+    use crate::pipeline::mapping::check::OutputChoice;
+    use crate::pipeline::mapping::shipped as profiles;
+    use crate::pipeline::shipped;
+
+    /// Remembers what it was told.
+    #[derive(Clone, Default)]
+    struct Ear(Arc<Mutex<Vec<String>>>);
+
+    impl Host for Ear {
+        fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
+            let text = name.and_then(profiles::text).ok_or("there is none")?;
+            ReadProfile::read(text, OutputChoice::AsWritten).0.ok_or("it has errors".into())
+        }
+
+        fn tell(&mut self, line: &str) {
+            self.0.lock().unwrap().push(line.into());
+        }
+    }
+
+    /// A bridge whose pad never comes, what it tells, and how often it looked for the pad.
+    fn without_pad() -> (Bridge, Ear, Arc<AtomicUsize>) {
+        let (ear, looked) = (Ear::default(), Arc::new(AtomicUsize::new(0)));
+        let looking = Arc::clone(&looked);
+        let pad = OpenedPad::absent(Box::new(move || {
+            looking.fetch_add(1, Ordering::Relaxed);
+            Err(PadError::NotThere("no".into()))
+        }));
+        let bridge = Bridge::new(Parts {
+            pad,
+            patience: Patience::Endless,
+            decoder: PlayingDecoder { decoder: shipped::decoder(), name: "inverse".into(), file: None },
+            profile: ear.clone().read_profile(Some("contra")).unwrap(),
+            sink: Box::new(NullSink),
+            requests: Requests::new().unwrap(),
+            host: Box::new(ear.clone()),
+            record: None,
+            duration_us: None,
+        });
+        (bridge.unwrap(), ear, looked)
+    }
+
+    const ASLEEP: Woken = Woken { pad: false, request: false };
+
+    /// Lets the bridge wake when it wants to until `end`; how often it did.
+    fn wake_ups(bridge: &mut Bridge, end: HostInstant) -> usize {
+        let mut count = 0;
+        while let Some(now) = bridge.next_deadline().filter(|now| *now < end) {
+            assert_eq!(bridge.turn(now, ASLEEP).unwrap(), None);
+            count += 1;
+        }
+        count
+    }
+
+    #[test]
+    fn without_a_pad_it_wakes_at_most_five_times_a_second_and_still_looks_and_tells() {
+        let (mut bridge, ear, looked) = without_pad();
+        let snapshot = bridge.snapshot();
+        let begin = bridge.snapshot_at;
+        let count = wake_ups(&mut bridge, begin.plus_us(10_000_000));
+        assert!(count <= 50, "{count} times in ten seconds");
+        let looked = looked.load(Ordering::Relaxed);
+        assert!(looked >= 35, "it looked {looked} times");
+        assert_eq!(*ear.0.lock().unwrap(), ["waiting for the pad: plug it in"]);
+        assert!(snapshot.lock().unwrap().at >= begin.plus_us(9_000_000), "the picture is old");
+    }
+
+    #[test]
+    fn another_profile_is_taken_and_one_that_cannot_be_read_is_told() {
+        let (mut bridge, ear, _) = without_pad();
+        let now = bridge.snapshot_at;
+        assert_eq!(bridge.change_profile(now, Some("tetris")).unwrap(), done());
+        assert_eq!(bridge.look(now).status.profile, "Tetris");
+        let answer = bridge.change_profile(now, None).unwrap();
+        assert_eq!(answer, r#"{"error":"there is none","ok":false}"#);
+        assert_eq!(*ear.0.lock().unwrap(), ["profile Tetris", "there is none\nthe profile in use stays"]);
+    }
+
+    #[test]
+    fn a_program_ends_its_own_bridge_without_signals() {
+        let (mut bridge, ..) = without_pad();
+        bridge.requests.asker().unwrap().ask(Request::End).unwrap();
+        assert_eq!(bridge.run().unwrap(), Ending::Asked);
+    }
+}

@@ -1,0 +1,46 @@
+//! Where output events go.
+
+pub mod identity;
+pub mod log;
+pub mod null;
+pub mod uinput;
+pub mod witness;
+pub mod x11;
+
+use std::fmt;
+
+use crate::pipeline::control::{OutputDevice, OutputEvent};
+
+/// A place for output events.
+pub trait Sink {
+    /// Makes what `device` needs, so that the next write to it reaches readers. Does nothing if it is there
+    /// already.
+    ///
+    /// # Errors
+    /// The device cannot be made; the text says what would help.
+    fn prepare(&mut self, device: OutputDevice) -> Result<(), SinkError>;
+
+    /// Writes one group of simultaneous events: one system call per device, ended by one report.
+    ///
+    /// # Errors
+    /// The events did not get out.
+    fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError>;
+
+    /// One line for people: what this is and where its events arrive.
+    fn describe(&self) -> String;
+}
+
+/// Why a sink cannot take events.
+#[derive(Debug)]
+pub struct SinkError {
+    /// One sentence: what failed, where, and the way out.
+    pub message: String,
+}
+
+impl fmt::Display for SinkError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for SinkError {}

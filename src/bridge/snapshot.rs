@@ -1,0 +1,137 @@
+//! All that there is to show of a running bridge, as one value: for `ctl status`, for screens, for other programs.
+
+use firmware_proto::identity::SerialNumber;
+use serde::{Serialize, Serializer};
+
+use crate::bridge::latency::Percentiles;
+use crate::bridge::state::State;
+use crate::pipeline::contact::uncertainty::Estimate;
+use crate::pipeline::contact::watch::Warning;
+use crate::pipeline::health::Health;
+use crate::pipeline::mapping::intent::Level;
+use crate::quantity::{CHANNELS, Contact};
+use crate::time::HostInstant;
+
+/// A running bridge at one moment.
+#[derive(Clone, Debug, Serialize)]
+pub struct Snapshot {
+    /// Host time of the snapshot.
+    #[serde(rename = "at_s", serialize_with = "in_seconds")]
+    pub at: HostInstant,
+    /// What it is doing, and with what.
+    #[serde(flatten)]
+    pub status: Status,
+    /// The newest channels as the decoder got them, in the order of [`crate::quantity::CHANNEL_NAMES`]; `None` while
+    /// there are none that can be trusted.
+    pub channels_uv: Option<[f32; CHANNELS]>,
+    /// How sure the contact is, if there is one and the decoder knows.
+    pub uncertainty: Option<Uncertainty>,
+}
+
+/// What a bridge is doing, and with what; the answer to `ctl status`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Status {
+    /// What it is doing.
+    pub state: State,
+    /// The pad's serial number, if it told.
+    #[serde(serialize_with = "as_text")]
+    pub pad: Option<SerialNumber>,
+    /// The profile's name.
+    pub profile: String,
+    /// What people call the decoder.
+    pub decoder: String,
+    /// Where events go.
+    pub output: String,
+    /// The contact that is being mapped.
+    pub contact: Option<Contact>,
+    /// What is held; as text, the names of the controls.
+    #[serde(serialize_with = "by_name")]
+    pub held: Vec<Level>,
+    /// What the player should know of the touches.
+    pub warning: Option<Warning>,
+    /// What went wrong so far.
+    pub health: Health,
+    /// From bytes readable to write returned.
+    pub latency_us: Percentiles,
+}
+
+/// Standard deviations of a decoded contact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Uncertainty {
+    /// Of the place along x.
+    pub x_mm: f64,
+    /// Of the place along y.
+    pub y_mm: f64,
+    /// Of the force along x.
+    pub fx_n: f64,
+    /// Of the force along y.
+    pub fy_n: f64,
+    /// Of the normal force.
+    pub fz_n: f64,
+}
+
+impl Uncertainty {
+    /// The square roots of the covariance's diagonal.
+    pub(super) fn of(estimate: &Estimate) -> Self {
+        let covariance = &estimate.covariance;
+        let [x_mm, y_mm, fx_n, fy_n, fz_n] = std::array::from_fn(|k| covariance[k][k].sqrt());
+        Self { x_mm, y_mm, fx_n, fy_n, fz_n }
+    }
+}
+
+fn in_seconds<S: Serializer>(at: &HostInstant, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_f64(at.as_ns() as f64 * 1e-9)
+}
+
+fn as_text<S: Serializer>(number: &Option<SerialNumber>, to: S) -> Result<S::Ok, S::Error> {
+    number.as_ref().map(SerialNumber::as_str).serialize(to)
+}
+
+fn by_name<S: Serializer>(held: &[Level], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_seq(held.iter().map(|level| level.code.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::control::{Code, OutputDevice};
+
+    fn snapshot() -> Snapshot {
+        let held = Level { device: OutputDevice::Keyboard, code: Code::Key(103), value: 1 };
+        let status = Status {
+            state: State::Playing,
+            pad: SerialNumber::from_ascii("A-1"),
+            profile: "Contra".into(),
+            decoder: "inverse".into(),
+            output: "nowhere".into(),
+            contact: Some(Contact { x_mm: 0.1, fz_n: 2.0, ..Contact::default() }),
+            held: vec![held],
+            warning: None,
+            health: Health { samples: 7, ..Health::default() },
+            latency_us: Percentiles { p50: 12.5, ..Percentiles::default() },
+        };
+        let uncertainty = Uncertainty { x_mm: 0.25, y_mm: 0.25, fx_n: 0.5, fy_n: 0.5, fz_n: 1.0 };
+        let at = HostInstant::from_ns(1_500_000_000);
+        Snapshot { at, status, channels_uv: Some([1.5; CHANNELS]), uncertainty: Some(uncertainty) }
+    }
+
+    #[test]
+    fn the_status_keeps_its_keys_and_their_order() {
+        let text = serde_json::to_string(&snapshot().status).unwrap();
+        let expected = concat!(
+            r#"{"state":"playing","pad":"A-1","profile":"Contra","decoder":"inverse","output":"nowhere","#,
+            r#""contact":{"x_mm":0.1,"y_mm":0.0,"fx_n":0.0,"fy_n":0.0,"fz_n":2.0},"held":["KEY_UP"],"#,
+            r#""warning":null,"health":{"samples":7,"#
+        );
+        assert!(text.starts_with(expected), "{text}");
+        assert!(text.ends_with(r#""latency_us":{"p50":12.5,"p95":0.0,"p99":0.0,"max":0.0}}"#), "{text}");
+    }
+
+    #[test]
+    fn a_snapshot_is_the_status_and_what_was_measured_in_one_document() {
+        let document = serde_json::to_value(snapshot()).unwrap();
+        assert_eq!((&document["at_s"], &document["state"]), (&1.5.into(), &"playing".into()));
+        assert_eq!(document["channels_uv"].as_array().map(Vec::len), Some(CHANNELS));
+        assert_eq!(document["uncertainty"]["fz_n"], 1.0);
+    }
+}

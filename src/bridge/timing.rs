@@ -1,0 +1,236 @@
+//! Where the time goes between bytes readable and event written.
+//!
+//! Read and write are timed live, around the system calls. What happens between them comes from making the same calls
+//! again with a clock as the probe, so that the live figures carry no instruments.
+
+use std::io::{self, Write};
+use std::os::fd::BorrowedFd;
+use std::sync::{Arc, Mutex};
+
+use firmware_proto::command::Command;
+use serde::Serialize;
+
+use crate::bridge::clock::Clock;
+use crate::bridge::latency::{Durations, Percentiles};
+use crate::bridge::opening::OpenedPad;
+use crate::bridge::sink::{Sink, SinkError};
+use crate::bridge::transport::Transport;
+use crate::pipeline::call::Call;
+use crate::pipeline::capture::reader::{CaptureError, CaptureReader};
+use crate::pipeline::control::{OutputDevice, OutputEvent};
+use crate::pipeline::mapping::profile::{Action, Profile};
+use crate::pipeline::{Pipeline, Probe, Stage};
+use crate::time::HostInstant;
+
+/// One value for each stage: read and write are the system calls; decode ends with the contact, map with the events.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Stages<T> {
+    /// Taking the bytes from the system.
+    pub read: T,
+    /// From bytes to contact.
+    pub decode: T,
+    /// From contact to events.
+    pub map: T,
+    /// Giving the events to the system.
+    pub write: T,
+}
+
+/// What a timed run came to.
+#[derive(Clone, Debug)]
+pub struct Timed {
+    /// How long each stage takes.
+    pub stages_us: Stages<Percentiles>,
+    /// Mean time between samples; 0 if there were none.
+    pub period_us: u64,
+}
+
+/// Delays that a profile asks for; no part of the processing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Policy {
+    /// The mean filter's: half of its window.
+    pub filter: f64,
+    /// Until a press is long.
+    pub hold: f64,
+}
+
+impl Policy {
+    /// Delays in milliseconds of a profile whose samples are `period_us` apart.
+    pub fn of(profile: &Profile, period_us: u64) -> Self {
+        let window = profile.filter_samples.max(1);
+        let hold_us = profile.buttons.iter().map(|button| match button.action {
+            Action::TapHold { long_press_us, .. } => long_press_us,
+            Action::Hold(_) => 0,
+        });
+        Self {
+            filter: (window - 1) as f64 / 2.0 * period_us as f64 * 1e-3,
+            hold: hold_us.max().unwrap_or(0) as f64 * 1e-3,
+        }
+    }
+}
+
+/// Times the pad and the sink of a run that records into it.
+#[derive(Clone, Default)]
+pub struct Timing {
+    live: Live,
+    calls: Calls,
+}
+
+impl Timing {
+    /// The same pad; its reads are timed.
+    #[must_use]
+    pub fn pad(&self, mut opened: OpenedPad) -> OpenedPad {
+        let timed = |pad| Box::new(TimedPad { pad, live: self.live.clone() }) as Box<dyn Transport>;
+        opened.pad = opened.pad.take().map(timed);
+        opened
+    }
+
+    /// The same sink; its writes are timed.
+    #[must_use]
+    pub fn sink(&self, sink: Box<dyn Sink>) -> Box<dyn Sink> {
+        Box::new(TimedSink { sink, live: self.live.clone() })
+    }
+
+    /// Where the run has to be recorded.
+    pub fn record(&self) -> Box<dyn Write> {
+        Box::new(self.calls.clone())
+    }
+
+    /// How long the stages took. Makes the calls of the run again, so it takes as long as all of its decoding.
+    ///
+    /// # Errors
+    /// The run was not recorded here.
+    pub fn finish(&self, pipeline: Pipeline) -> Result<Timed, CaptureError> {
+        let mut stages = self.live.0.lock().map(|stages| stages.clone()).unwrap_or_default();
+        let calls = self.calls.0.lock().map(|calls| calls.clone()).unwrap_or_default();
+        let period_us = replay_timed(&calls, pipeline, &mut stages)?;
+        Ok(Timed { stages_us: stages.percentiles(), period_us })
+    }
+}
+
+/// Makes the recorded calls again with a clock inside. Returns the samples' period.
+fn replay_timed(
+    calls: &[u8],
+    mut pipeline: Pipeline,
+    stages: &mut Stages<Durations>,
+) -> Result<u64, CaptureError> {
+    let mut probe = Stopwatch { clock: Clock::start(), last: HostInstant::default(), stages };
+    let mut capture = CaptureReader::new(calls)?;
+    let (mut first, mut last) = (None, HostInstant::default());
+    while let Some(call) = capture.next_call() {
+        let (now, call) = call?;
+        first.get_or_insert(now);
+        last = now;
+        probe.last = probe.clock.now();
+        let mut left: Option<Call<'_>> = Some(call);
+        while let Some(call) = left {
+            left = pipeline.apply(now, call, &mut probe);
+        }
+    }
+    let samples = pipeline.health().samples.max(1);
+    Ok(last.us_since(first.unwrap_or_default()) / samples)
+}
+
+/// A probe that reads the clock at each stage.
+struct Stopwatch<'a> {
+    clock: Clock,
+    last: HostInstant,
+    stages: &'a mut Stages<Durations>,
+}
+
+impl Probe for Stopwatch<'_> {
+    fn mark(&mut self, stage: Stage) {
+        let now = self.clock.now();
+        let elapsed_ns = now.as_ns().saturating_sub(self.last.as_ns());
+        match stage {
+            // Unpacking is part of decoding: the time runs on.
+            Stage::Sample => return,
+            Stage::Contact => self.stages.decode.record_ns(elapsed_ns),
+            Stage::Events => self.stages.map.record_ns(elapsed_ns),
+        }
+        self.last = now;
+    }
+}
+
+impl Stages<Durations> {
+    fn percentiles(&self) -> Stages<Percentiles> {
+        Stages {
+            read: self.read.percentiles(),
+            decode: self.decode.percentiles(),
+            map: self.map.percentiles(),
+            write: self.write.percentiles(),
+        }
+    }
+}
+
+/// Durations of the system calls, shared by the timed pad and the timed sink.
+#[derive(Clone, Default)]
+struct Live(Arc<Mutex<Stages<Durations>>>);
+
+impl Live {
+    fn record(&self, stage: fn(&mut Stages<Durations>) -> &mut Durations, clock: &Clock) {
+        if let Ok(mut stages) = self.0.lock() {
+            stage(&mut stages).record_ns(clock.now().as_ns());
+        }
+    }
+}
+
+struct TimedPad {
+    pad: Box<dyn Transport>,
+    live: Live,
+}
+
+impl Transport for TimedPad {
+    fn fd(&self) -> BorrowedFd<'_> {
+        self.pad.fd()
+    }
+
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let clock = Clock::start();
+        let read = self.pad.read(bytes);
+        self.live.record(|stages| &mut stages.read, &clock);
+        read
+    }
+
+    fn send(&mut self, command: &Command) -> io::Result<()> {
+        self.pad.send(command)
+    }
+}
+
+struct TimedSink {
+    sink: Box<dyn Sink>,
+    live: Live,
+}
+
+impl Sink for TimedSink {
+    fn prepare(&mut self, device: OutputDevice) -> Result<(), SinkError> {
+        self.sink.prepare(device)
+    }
+
+    fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {
+        let clock = Clock::start();
+        let written = self.sink.write(group);
+        self.live.record(|stages| &mut stages.write, &clock);
+        written
+    }
+
+    fn describe(&self) -> String {
+        self.sink.describe()
+    }
+}
+
+/// A capture in memory.
+#[derive(Clone, Default)]
+struct Calls(Arc<Mutex<Vec<u8>>>);
+
+impl Write for Calls {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.0.lock() {
+            Ok(mut all) => all.write(bytes),
+            Err(_) => Err(io::ErrorKind::Other.into()),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

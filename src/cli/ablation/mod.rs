@@ -1,0 +1,121 @@
+//! `tactpad ablation`: all decoders on the twin, beside the paper's Table 3.
+
+mod report;
+mod tables;
+mod timing;
+
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+use clap::Args;
+
+use self::report::AblationReport;
+use super::device::Pad as PadFiles;
+use super::failure::Failure;
+use super::field::field_of;
+use super::progress::Progress;
+use super::twin::NUMERICAL;
+use super::written::print_json;
+use super::{decoder_file, pictures};
+use tactpad::lab::ablation::entries::ENTRIES;
+use tactpad::lab::ablation::trials::Trials;
+use tactpad::lab::ablation::{Pad, Subject};
+use tactpad::lab::scdf::HIDDEN;
+use tactpad::lab::scdf::simulation::{examples, pretrain};
+use tactpad::network::training::Epoch;
+use tactpad::network::{Network, Zero};
+use tactpad::plot::figure::Figure;
+
+/// Arguments of `tactpad ablation`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad ablation --seed 1 --out ablation\n\n\
+                  It takes one or two minutes. Without --device and --imperfections the pad has those that come out as the \
+                  paper's figures.")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    pad: PadFiles,
+    /// Draws what is random: the pad is calibrated with this seed; the contacts that are tried have the next two.
+    #[arg(long, default_value = "1")]
+    seed: u64,
+    /// A network that train wrote, of this pad without its imperfections; else one is trained.
+    #[arg(long, value_name = "FILE")]
+    network: Option<PathBuf>,
+    /// Write the table as CSV, and the plots as SVG and PNG, into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(path) = arguments.out.as_deref().filter(|path| path.exists() && !path.is_dir()) {
+        return Err(Failure::Unusable(format!("{} is no folder; name another", path.display())));
+    }
+    let network = arguments.network.as_deref().map(tared_network).transpose()?;
+    let (designed, device) = (arguments.pad.designed()?, arguments.pad.read_imperfect()?);
+    let (nominal, field) = (field_of(&designed)?, field_of(&device)?);
+    let subject = Subject {
+        designed: Pad { device: &designed, field: &nominal },
+        actual: Pad { device: &device, field: &field },
+        seed: arguments.seed,
+    };
+    let mut progress = Progress::begin();
+    let network = network.unwrap_or_else(|| trained(&subject, &mut progress));
+    let trials = trials(&subject, &network, progress)?;
+    let files = match &arguments.out {
+        Some(folder) => write_plots(folder, &trials.figures(&subject))?,
+        None => Vec::new(),
+    };
+    let mut report = AblationReport {
+        statement: format!("This is {NUMERICAL}."),
+        seed: arguments.seed,
+        rows: report::rows(&trials),
+        files,
+    };
+    if let Some(folder) = &arguments.out {
+        report.files.push(tables::write_csv(folder, &report.rows)?);
+    }
+    if arguments.json { print_json(&report) } else { Ok(tables::print(&report)?) }
+}
+
+/// Writes the plots, and says the names of their SVG files.
+fn write_plots(folder: &Path, figures: &[(String, Figure)]) -> Result<Vec<String>, Failure> {
+    let written = figures.iter().map(|(name, figure)| {
+        pictures::write(folder, name, figure)?;
+        Ok(folder.join(name).with_extension("svg").display().to_string())
+    });
+    written.collect()
+}
+
+/// A network of stage I from a file.
+fn tared_network(path: &Path) -> Result<Network, Failure> {
+    let network = decoder_file::read_network(path)?;
+    if network.zero == Zero::Tared {
+        return Ok(network);
+    }
+    Err(Failure::Unusable(format!(
+        "network {} takes raw channels, and here they are relative to the untouched pad: name one that tactpad train wrote",
+        path.display()
+    )))
+}
+
+fn trained(subject: &Subject<'_>, progress: &mut Progress) -> Network {
+    let Subject { designed, seed, .. } = *subject;
+    let examples = examples(designed.device, designed.field, seed);
+    let report = |Epoch { number, .. }: &Epoch| {
+        progress.step(format_args!("training the network on simulated contacts: epoch {number}"));
+    };
+    pretrain(HIDDEN, examples, seed, report).trained.network
+}
+
+fn trials(subject: &Subject<'_>, network: &Network, progress: Progress) -> Result<Trials, Failure> {
+    let progress = Mutex::new(progress);
+    let report = |done: usize| {
+        if let Ok(mut progress) = progress.lock() {
+            progress.step(format_args!("{done} of {} decoders are fitted", ENTRIES.len()));
+        }
+    };
+    report(0);
+    Trials::of(subject, network, report).map_err(|error| Failure::Failed(error.to_string()))
+}

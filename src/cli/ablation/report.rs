@@ -1,0 +1,77 @@
+//! What the verb prints.
+
+use serde::Serialize;
+
+use super::timing;
+use tactpad::lab::ablation::entries::{ENTRIES, Entry};
+use tactpad::lab::ablation::trials::Trials;
+use tactpad::lab::ablation::unseen::{Judged, Least, Unseen};
+use tactpad::lab::evaluation::Errors;
+
+/// Everything that the verb finds out.
+#[derive(Serialize)]
+pub(super) struct AblationReport {
+    /// Whose figures these are.
+    pub(super) statement: String,
+    /// What the decoders learnt from.
+    pub(super) seed: u64,
+    pub(super) rows: Vec<Row>,
+    /// Files that were written.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) files: Vec<String>,
+}
+
+/// A decoder and its errors.
+#[derive(Serialize)]
+pub(super) struct Row {
+    #[serde(flatten)]
+    pub(super) entry: Entry,
+    /// Median time of one decode, one processor; null where this program has no clock.
+    pub(super) decode_us: Option<f64>,
+    pub(super) unseen: Vec<Tried>,
+}
+
+/// Its errors on one table.
+#[derive(Clone, Copy, Serialize)]
+pub(super) struct Tried {
+    pub(super) plan: &'static str,
+    pub(super) seed: u64,
+    pub(super) contacts: usize,
+    /// Against the truth.
+    pub(super) truth: Errors,
+    /// Against what the rig wrote.
+    pub(super) labels: Errors,
+    /// Share of the truths in the decoder's 95 % regions; null for a decoder without.
+    pub(super) coverage95: Option<f64>,
+    /// The least that the twin's noise allows.
+    pub(super) bound: Least,
+}
+
+/// A row for each decoder. Decodes are timed here.
+pub(super) fn rows(trials: &Trials) -> Vec<Row> {
+    let row = |(index, entry): (usize, &Entry)| Row {
+        entry: *entry,
+        decode_us: timing::median_us(&trials.decoders[index], &trials.unseen),
+        unseen: trials
+            .unseen
+            .iter()
+            .zip(&trials.judged)
+            .map(|(it, judged)| Tried::of(it, &judged[index]))
+            .collect(),
+    };
+    ENTRIES.iter().enumerate().map(row).collect()
+}
+
+impl Tried {
+    fn of(unseen: &Unseen, judged: &Judged) -> Self {
+        Self {
+            plan: unseen.plan,
+            seed: unseen.seed,
+            contacts: unseen.truths().len(),
+            truth: judged.by_truth,
+            labels: judged.by_labels,
+            coverage95: judged.coverage95,
+            bound: unseen.least(unseen.truths()),
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! `tactpad adapt`: fits a decoder to a pad by measured contacts.
+
+mod measured;
+mod method;
+mod own;
+mod scdf;
+
+use std::fmt;
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+
+use self::measured::Measured;
+use self::method::Method;
+use super::decoder_file;
+use super::device::Pad;
+use super::failure::Failure;
+use super::written::{both_print, is_same, is_stdout, print_json, say, stdout, written_over};
+
+/// Arguments of `tactpad adapt`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: tactpad adapt --method scdf --measured m.csv --from scdf.onnx --out mine.onnx"
+)]
+pub(super) struct Arguments {
+    /// How it is done.
+    #[arg(long, value_name = "METHOD")]
+    method: Method,
+    /// A CSV of measured contacts with all nine channels, raw.
+    ///
+    /// Where it has readings of the untouched pad (session zero, or forces near 0), channels are taken relative to them. Given
+    /// several times, the tables are read one after the other, each with its own zeros.
+    #[arg(long, value_name = "FILE", required = true)]
+    measured: Vec<PathBuf>,
+    /// Take N of the contacts only, drawn by the seed.
+    #[arg(long, value_name = "N")]
+    rows: Option<usize>,
+    /// Draws what is random: the same seed gives the same file.
+    #[arg(long, default_value = "0")]
+    seed: u64,
+    /// The decoder to begin with: for scdf what train wrote, for inverse another pad's inverse decoder.
+    ///
+    /// scdf needs one. To inverse it tells what pads of one kind share, so that fewer contacts are enough.
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
+    /// The decoder to write; a file that is there is replaced, and - is standard output.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    #[command(flatten)]
+    pad: Pad,
+    /// Print one JSON document: what came of it.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What came of it.
+#[derive(Serialize)]
+struct Outcome {
+    method: Method,
+    rows: usize,
+    /// Whether channels were taken relative to the untouched pad.
+    tared: bool,
+    #[serde(flatten)]
+    fit: Fit,
+}
+
+/// What each way found.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Fit {
+    Network(scdf::Fit),
+    Own(Box<own::Fit>),
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { method, out, json, .. } = arguments;
+    if *json && is_stdout(out) {
+        return Err(both_print());
+    }
+    arguments.spare()?;
+    let device = arguments.pad.read()?;
+    let measured = Measured::read(&arguments.measured, &device, arguments.rows, arguments.seed)?;
+    let from = arguments.from.as_deref();
+    let fit = if *method == Method::Scdf {
+        let (network, fit) = scdf::adapt(&measured, from, arguments.seed)?;
+        decoder_file::write_network(out, &network)?;
+        Fit::Network(fit)
+    } else {
+        let (decoder, fit) = own::adapt(*method, &measured, from, &device)?;
+        let note = format!("{} contacts of {}", measured.contacts.count(), measured.names);
+        decoder_file::write(out, &decoder.to_bytes(&note).unwrap_or_default())?;
+        Fit::Own(Box::new(fit))
+    };
+    let (rows, tared) = (measured.contacts.count(), measured.contacts.is_tared());
+    let outcome = Outcome { method: *method, rows, tared, fit };
+    match (json, is_stdout(out)) {
+        (true, _) => print_json(&outcome),
+        (false, true) => {
+            say(&outcome);
+            Ok(())
+        }
+        (false, false) => Ok(writeln!(stdout(), "{outcome}\n{} is written", out.display())?),
+    }
+}
+
+impl Arguments {
+    /// Refuses to write over what is read. A decoder may be written over itself: it is read before.
+    fn spare(&self) -> Result<(), Failure> {
+        self.pad.spare(&self.out)?;
+        if self.measured.iter().any(|measured| is_same(measured, &self.out)) {
+            return Err(written_over(&self.out, "is the measured table"));
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Fit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Network(fit) => fit.fmt(f),
+            Self::Own(fit) => fit.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let taken = if self.tared {
+            "relative to the untouched pad"
+        } else {
+            "raw, as the table has no reading of the untouched pad"
+        };
+        write!(f, "{} contacts, channels {taken}\n{}", self.rows, self.fit)
+    }
+}

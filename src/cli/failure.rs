@@ -1,0 +1,28 @@
+//! How a verb ends that did not do what was asked: the message and the exit code.
+
+use std::io;
+
+/// Why a verb did not do what was asked.
+#[derive(Debug)]
+pub(super) enum Failure {
+    /// Arguments or input that cannot be used: exit 2.
+    Unusable(String),
+    /// It failed, or a check says no: exit 1.
+    Failed(String),
+    /// Nobody reads our output any more; nothing to say.
+    Unread,
+}
+
+impl From<io::Error> for Failure {
+    fn from(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::BrokenPipe { Self::Unread } else { Self::Failed(error.to_string()) }
+    }
+}
+
+/// What is printed on the way to a verdict: a reader that went away is no reason to skip the verdict.
+pub(super) fn if_read(printed: Result<(), Failure>) -> Result<(), Failure> {
+    match printed {
+        Err(Failure::Unread) => Ok(()),
+        printed => printed,
+    }
+}

@@ -1,0 +1,152 @@
+//! `tactpad layout`: where the three modules should stand, by the paper's rule and by the pad's mechanics.
+
+mod report;
+mod tables;
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use self::report::LayoutReport;
+use super::device::Pad;
+use super::failure::Failure;
+use super::pictures;
+#[cfg(feature = "simulator")]
+use super::progress::Progress;
+use super::written::print_json;
+use tactpad::lab::layout::drawing;
+use tactpad::lab::layout::published::{PARTS, Part, area_rows};
+use tactpad::lab::layout::region::THRESHOLD;
+use tactpad::lab::layout::spacing::Radii;
+use tactpad::lab::layout::study::{Simulated, SpacingAnswers, StudyError};
+use tactpad::pad::device::Device;
+use tactpad::quantity::MODULES;
+use tactpad::virtual_pad::front_end::NOISE_RMS_UV;
+
+/// Arguments of `tactpad layout`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad layout --figures figures")]
+#[group(skip)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    pad: Pad,
+    /// Radii of the modules' effective regions in millimetres: only the paper's rule for them, and no simulation.
+    #[arg(long, value_name = "R1,R2,R3", value_parser = parse_radii, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["threshold", "noise_uv", "figures", "imperfections"])]
+    radii: Option<Radii>,
+    /// Share of a press that a module must carry to count as effective.
+    #[arg(long, value_name = "SHARE", default_value_t = THRESHOLD, value_parser = parse_share)]
+    #[arg(allow_hyphen_values = true)]
+    threshold: f64,
+    /// Noise of each channel, standard deviation in microvolts.
+    #[arg(long, value_name = "UV", default_value_t = NOISE_RMS_UV, value_parser = parse_noise)]
+    #[arg(allow_hyphen_values = true)]
+    noise_uv: f64,
+    /// The swarm's seed; the same seed gives the same answer.
+    #[arg(long, default_value_t = 1, allow_hyphen_values = true)]
+    seed: u64,
+    /// Write the figures layout-scan and layout-regions into this folder, as SVG and PNG.
+    #[arg(long, value_name = "DIR")]
+    figures: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+/// More than the bridges' whole range.
+const NOISE_MAX_UV: f64 = 1e6;
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let device = arguments.pad.read()?;
+    let (spacing, simulated) = match &arguments.radii {
+        Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),
+        None => simulated(arguments, &device).map(|(spacing, pad)| (spacing, Some(pad)))?,
+    };
+    let report = LayoutReport {
+        seed: arguments.seed,
+        spacing,
+        area_per_channel: area_rows(device.plate.diameter_mm),
+        parts: PARTS,
+        parts_usd: PARTS.iter().map(Part::price_usd).sum(),
+        simulated,
+    };
+    if let (Some(folder), Some(pad)) = (&arguments.figures, &report.simulated) {
+        pictures::write(folder, "layout-scan", &drawing::scan(pad))?;
+        pictures::write(folder, "layout-regions", &drawing::regions(pad, &report.spacing, &device))?;
+    }
+    if arguments.json { print_json(&report) } else { Ok(tables::print(&report)?) }
+}
+
+/// The effective regions of the simulated pad, the paper's rule for them, and the search for better placements.
+#[cfg(feature = "simulator")]
+fn simulated(arguments: &Arguments, device: &Device) -> Result<(SpacingAnswers, Simulated), Failure> {
+    let Arguments { threshold, noise_uv, seed, .. } = *arguments;
+    let mut progress = Progress::begin();
+    Ok(Simulated::of(device, threshold, noise_uv, seed, |what| progress.step(what))?)
+}
+
+#[cfg(not(feature = "simulator"))]
+fn simulated(_arguments: &Arguments, _device: &Device) -> Result<(SpacingAnswers, Simulated), Failure> {
+    Err(Failure::Unusable(
+        "this program was built without the simulator: give the radii of the effective regions, as in \
+         --radii 33,33,33, or build it with the feature \"simulator\""
+            .into(),
+    ))
+}
+
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::NoRegion { .. } => Self::Unusable(error.to_string()),
+            _ => Self::Failed(error.to_string()),
+        }
+    }
+}
+
+fn parse_radii(text: &str) -> Result<Radii, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    let radii_mm = numbers.ok().and_then(|numbers| <[f64; MODULES]>::try_from(numbers).ok());
+    let radii_mm = radii_mm.ok_or("write three radii in millimetres with commas between, as in 30,30,36")?;
+    Radii::new(radii_mm).map_err(|error| error.to_string())
+}
+
+fn parse_share(text: &str) -> Result<f64, String> {
+    let share = text.trim().parse().unwrap_or(f64::NAN);
+    if share > 0.0 && share < 1.0 { Ok(share) } else { Err("write a share above 0 and below 1".into()) }
+}
+
+fn parse_noise(text: &str) -> Result<f64, String> {
+    let noise_uv = text.trim().parse().unwrap_or(f64::NAN);
+    if noise_uv > 0.0 && noise_uv <= NOISE_MAX_UV {
+        Ok(noise_uv)
+    } else {
+        Err(format!("write a number of microvolts above 0 and up to {NOISE_MAX_UV}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn radii_are_three_lengths() {
+        assert_eq!(parse_radii("30, 30.5,36").unwrap().mm(), [30.0, 30.5, 36.0]);
+        for text in ["", "30", "30,30", "30,30,30,30", "30;30;30", "a,b,c", "30,,30", "30,30,30,"] {
+            assert!(parse_radii(text).unwrap_err().contains("as in 30,30,36"), "{text}");
+        }
+        for text in ["30,0,30", "30,-1,30", "30,nan,30", "30,inf,30", "30,1e300,30"] {
+            assert!(parse_radii(text).unwrap_err().starts_with("R2 is "), "{text}");
+        }
+    }
+
+    #[test]
+    fn shares_and_noise_have_their_ranges() {
+        assert_eq!((parse_share("0.01"), parse_noise("6")), (Ok(0.01), Ok(6.0)));
+        for text in ["0", "1", "-0.1", "nan", "", "1%"] {
+            assert!(parse_share(text).is_err(), "{text}");
+        }
+        for text in ["0", "-6", "nan", "inf", "", "1e7"] {
+            assert!(parse_noise(text).is_err(), "{text}");
+        }
+    }
+}

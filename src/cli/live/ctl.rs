@@ -1,0 +1,128 @@
+//! `tactpad ctl`: talks to the running bridge.
+
+use std::env;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use serde_json::Value;
+
+use crate::cli::failure::Failure;
+use crate::cli::written::stdout;
+use tactpad::bridge::requests::ask;
+
+/// Arguments of `tactpad ctl`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad ctl profile tetris")]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    action: Action,
+    /// Print the bridge's answer, one JSON document.
+    #[arg(long, global = true)]
+    json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// What the bridge is doing.
+    Status,
+    /// Release everything and ignore the pad.
+    Pause,
+    /// Go on after a pause.
+    Resume,
+    /// Release everything at once, and go on.
+    Panic,
+    /// Measure the zero again; leave the pad untouched.
+    Tare,
+    /// Go over to another profile.
+    Profile {
+        /// A profile's name or file.
+        name: String,
+    },
+    /// End the bridge.
+    Quit,
+}
+
+/// Where a bridge listens: in the user's runtime folder, else in the folder for temporary files.
+pub(super) fn socket_path() -> PathBuf {
+    match env::var_os("XDG_RUNTIME_DIR").filter(|folder| Path::new(folder).is_dir()) {
+        Some(folder) => PathBuf::from(folder).join("tactpad.sock"),
+        None => env::temp_dir().join(format!("tactpad-{}.sock", rustix::process::getuid().as_raw())),
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let request = match &arguments.action {
+        Action::Status => "status".to_owned(),
+        Action::Pause => "pause".to_owned(),
+        Action::Resume => "resume".to_owned(),
+        Action::Panic => "panic".to_owned(),
+        Action::Tare => "tare".to_owned(),
+        Action::Quit => "quit".to_owned(),
+        Action::Profile { name } => format!("profile {}", absolute(name)?),
+    };
+    let path = socket_path();
+    let answer = ask(&path, &request).map_err(|error| {
+        Failure::Failed(format!(
+            "no bridge answers at {} ({error}): start one with `tactpad run`",
+            path.display()
+        ))
+    })?;
+    let document: Value =
+        serde_json::from_str(&answer).map_err(|error| Failure::Failed(error.to_string()))?;
+    if let Some(error) = document.get("error").and_then(Value::as_str) {
+        return Err(Failure::Unusable(error.to_owned()));
+    }
+    match arguments.action {
+        _ if arguments.json => Ok(writeln!(stdout(), "{answer}")?),
+        Action::Status => Ok(print_status(&document)?),
+        _ => Ok(()),
+    }
+}
+
+/// The bridge has a folder of its own: a file is named by its whole path.
+fn absolute(name: &str) -> Result<String, Failure> {
+    if name.contains('\n') {
+        return Err(Failure::Unusable("a profile's name has one line".into()));
+    }
+    if !Path::new(name).is_file() {
+        return Ok(name.to_owned());
+    }
+    let path = std::path::absolute(name)?;
+    path.into_os_string()
+        .into_string()
+        .map_err(|name| Failure::Unusable(format!("{} is no text", name.display())))
+}
+
+fn print_status(status: &Value) -> io::Result<()> {
+    let mut out = stdout();
+    let text = |key: &str| status.get(key).and_then(Value::as_str).unwrap_or("unknown").to_owned();
+    writeln!(out, "state    {}", text("state"))?;
+    writeln!(out, "pad      {}", text("pad"))?;
+    writeln!(out, "profile  {}", text("profile"))?;
+    writeln!(out, "decoder  {}", text("decoder"))?;
+    writeln!(out, "output   {}", text("output"))?;
+    let held = status.get("held").and_then(Value::as_array).into_iter().flatten();
+    writeln!(out, "held     {}", held.filter_map(Value::as_str).collect::<Vec<_>>().join(" "))?;
+    if let Some(warning) = warning(status) {
+        writeln!(out, "warning  {warning}")?;
+    }
+    for (name, count) in status.get("health").and_then(Value::as_object).into_iter().flatten() {
+        if count.as_u64() != Some(0) {
+            writeln!(out, "{name:<18} {count}")?;
+        }
+    }
+    Ok(())
+}
+
+/// What a status warns of, in a few words.
+pub(super) fn warning(status: &Value) -> Option<String> {
+    let warning = status.get("warning")?;
+    let text = |key: &str| warning.get(key).and_then(Value::as_str);
+    Some(match (text("kind")?, text("channel")) {
+        ("silent_channel", Some(channel)) => format!("channel {channel} does not answer to the load"),
+        ("other_pad", _) => "most touches do not fit the decoder: it may be another pad's".into(),
+        ("second_finger", _) => "the last touch was not one finger".into(),
+        (kind, _) => kind.to_owned(),
+    })
+}

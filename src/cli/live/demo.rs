@@ -1,0 +1,265 @@
+//! `tactpad demo`: the main job with nothing attached, and the proof that it went right.
+
+use std::io::{self, IsTerminal, Write};
+use std::sync::{Arc, Mutex};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::files::Files;
+use super::output::Output;
+use super::playing::{Audience, Terminal, microseconds, open_virtual, play, requests};
+use super::screen::Screen;
+use super::{chosen, seconds};
+use crate::cli::decoder_file::Choice;
+use crate::cli::device::Pad;
+use crate::cli::failure::{Failure, if_read};
+use crate::cli::profile;
+use crate::cli::written::{print_json, say, stdout};
+use tactpad::bridge::latency::Percentiles;
+use tactpad::bridge::opening::Patience;
+use tactpad::bridge::parts::Parts;
+use tactpad::bridge::running::{Bridge, Ending};
+use tactpad::bridge::sink::log::LogSink;
+use tactpad::bridge::sink::null::NullSink;
+use tactpad::bridge::sink::witness::{Account, Expected, Witness};
+use tactpad::bridge::sink::{Sink, uinput};
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::pipeline::control::{OutputDevice, OutputEvent};
+use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::virtual_pad::script::Script;
+
+/// Arguments of `tactpad demo`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad demo --seconds 10 --profile contra")]
+pub(crate) struct Arguments {
+    /// How long to play.
+    #[arg(long, default_value = "20", value_parser = seconds::parse, allow_hyphen_values = true)]
+    seconds: f64,
+    /// A profile's name or file.
+    #[arg(long, default_value = "super-mario")]
+    profile: String,
+    #[command(flatten)]
+    decoder: Choice,
+    #[command(flatten)]
+    device: Pad,
+    /// Where events go: auto (a virtual gamepad, else the screen), uinput, x11, log:FILE, none.
+    #[arg(long, default_value = "auto")]
+    output: Output,
+    /// Print one JSON document on stdout.
+    #[arg(long)]
+    json: bool,
+}
+
+/// No gesture of the player takes longer.
+const SECONDS_OF_A_GESTURE_MAX: u32 = 60;
+
+/// What the demo comes to.
+#[derive(Serialize)]
+struct Summary {
+    frames: u64,
+    frames_lost: u64,
+    contacts: u64,
+    downs: usize,
+    ups: usize,
+    pointer_moves: usize,
+    held_at_end: usize,
+    latency_us: Percentiles,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { profile, output, decoder, .. } = arguments;
+    Files { pad: &PadAddress::Virtual, profile, output, decoder: chosen::file(decoder), capture: None }
+        .check()?;
+    let decoder = chosen::read(decoder)?;
+    let profile = profile::read(profile, output.choice())?;
+    let script = script(profile.profile(), arguments.seconds)?;
+    let contacts = script.contacts() as u64;
+    let verdict = Verdict {
+        expected: script.expected().to_vec(),
+        contacts,
+        steered: profile.profile().pointer.is_some() && contacts > 0,
+    };
+    let name = profile.profile().name.clone();
+    let (sink, title) = open_sink(arguments, profile.profile())?;
+    if_read(tell(arguments, &title))?;
+    let witness = Witness::new(sink);
+    let seen = witness.seen();
+    let audience = Audience::Nobody;
+    let host = Terminal { profile: arguments.profile.clone(), output: output.choice(), audience };
+    let mut bridge = Bridge::new(Parts {
+        pad: open_virtual(&arguments.device, script)?,
+        patience: Patience::Limited,
+        decoder,
+        profile,
+        sink: Box::new(witness),
+        requests: requests(None, audience)?,
+        host: Box::new(host),
+        record: None,
+        duration_us: Some(microseconds(arguments.seconds)),
+    })?;
+    let screen = (!arguments.json).then(|| start_screen(format!("{name} on a virtual pad"), &bridge, &seen));
+    let played = play(&mut bridge, &PadAddress::Virtual);
+    drop(screen);
+    let ending = played?;
+    let seen = seen.lock().map(|seen| seen.clone()).unwrap_or_default();
+    if_read(report(arguments, &bridge, &seen))?;
+    verdict.check(ending, &seen, &bridge)?;
+    let events = seen.edges.len();
+    if_read(tell(
+        arguments,
+        &format!("all {events} events and {contacts} contacts are those that the player meant"),
+    ))
+}
+
+/// What the player plays. A time in which nothing can be played is refused, unless nothing ever can.
+fn script(profile: &Profile, seconds: f64) -> Result<Script, Failure> {
+    let script = Script::for_profile(profile, microseconds(seconds));
+    let plays =
+        |seconds: &u32| Script::for_profile(profile, microseconds(f64::from(*seconds))).contacts() > 0;
+    match (1..=SECONDS_OF_A_GESTURE_MAX).find(plays) {
+        Some(least) if script.contacts() == 0 => Err(Failure::Unusable(format!(
+            "--seconds {seconds} is too short for anything to be played: give it {least} or more"
+        ))),
+        _ => Ok(script),
+    }
+}
+
+/// What the script wants.
+struct Verdict {
+    expected: Vec<Expected>,
+    contacts: u64,
+    steered: bool,
+}
+
+impl Verdict {
+    fn check(&self, ending: Ending, seen: &Account, bridge: &Bridge) -> Result<(), Failure> {
+        if ending != Ending::TimeOver {
+            return Err(Failure::Failed("interrupted: the events were not compared with the script".into()));
+        }
+        seen.compare(&self.expected).map_err(Failure::Failed)?;
+        if self.steered && seen.pointer_moves == 0 {
+            return Err(Failure::Failed("the pointer did not move".into()));
+        }
+        check_end(bridge, self.contacts)
+    }
+}
+
+/// The sink, and the demo's first line: where events go, and what would bring a better place.
+fn open_sink(arguments: &Arguments, profile: &Profile) -> Result<(Box<dyn Sink>, String), Failure> {
+    if arguments.output != Output::Auto {
+        let sink = arguments.output.open()?;
+        let title = format!("Output: {} (asked for).", sink.describe());
+        return Ok((sink, title));
+    }
+    match uinput::available() {
+        _ if profile.uses(OutputDevice::Keyboard) => {
+            let title =
+                "Output: an event log, here. The profile types keys: for those ask with --output uinput.";
+            Ok((here(arguments), title.into()))
+        }
+        _ if profile.uses(OutputDevice::Pointer) => {
+            let title = "Output: an event log, here. The profile moves the pointer and clicks: for that ask with \
+                         --output uinput.";
+            Ok((here(arguments), title.into()))
+        }
+        Ok(()) => {
+            let sink = Output::Uinput.open()?;
+            Ok((sink, "Output: a virtual gamepad. Nothing better is to be had.".into()))
+        }
+        Err(error) => {
+            let title = format!("Output: an event log, here. For a virtual gamepad: {}", error.message);
+            Ok((here(arguments), title))
+        }
+    }
+}
+
+/// The event log on the screen: the live picture shows it, and without one it is lines on stdout.
+fn here(arguments: &Arguments) -> Box<dyn Sink> {
+    if arguments.json || io::stdout().is_terminal() {
+        Box::new(NullSink)
+    } else {
+        Box::new(LogSink::new(WhileRead(io::stdout()), "stdout".into()))
+    }
+}
+
+/// Writes as long as somebody reads. The demo goes on without a reader: its verdict is the exit code.
+struct WhileRead<W>(W);
+
+impl<W: Write> Write for WhileRead<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.0.write(bytes) {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(bytes.len()),
+            written => written,
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self.0.flush() {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            flushed => flushed,
+        }
+    }
+}
+
+/// What people read goes to stdout, or to stderr where stdout is for a program.
+fn tell(arguments: &Arguments, line: &str) -> Result<(), Failure> {
+    if arguments.json {
+        say(line);
+        return Ok(());
+    }
+    Ok(writeln!(stdout(), "{line}")?)
+}
+
+fn start_screen(title: String, bridge: &Bridge, seen: &Arc<Mutex<Account>>) -> Option<Screen> {
+    let seen = Arc::clone(seen);
+    Screen::start(title, bridge.snapshot(), move || {
+        let newest = seen.lock().map(|seen| seen.newest.clone());
+        newest.unwrap_or_default().iter().map(line).collect()
+    })
+}
+
+fn line(event: &OutputEvent) -> String {
+    format!("{:8.3} s  {} {:+}", event.at.as_us() as f64 * 1e-6, event.code, event.value)
+}
+
+fn report(arguments: &Arguments, bridge: &Bridge, seen: &Account) -> Result<(), Failure> {
+    let health = bridge.health();
+    let tally = seen.tally();
+    let summary = Summary {
+        frames: health.samples,
+        frames_lost: health.frames_lost + health.frames_damaged,
+        contacts: health.contacts,
+        downs: tally.downs,
+        ups: tally.ups,
+        pointer_moves: seen.pointer_moves,
+        held_at_end: tally.held,
+        latency_us: bridge.latency().percentiles(),
+    };
+    if arguments.json {
+        return print_json(&summary);
+    }
+    let Summary { frames, frames_lost, contacts, downs, ups, pointer_moves, held_at_end, latency_us } =
+        summary;
+    let Percentiles { p50, p95, p99, max } = latency_us;
+    writeln!(stdout(), "{frames} frames, {frames_lost} lost; {contacts} contacts")?;
+    writeln!(stdout(), "{downs} downs, {ups} ups, {held_at_end} held at the end")?;
+    if pointer_moves > 0 {
+        writeln!(stdout(), "{pointer_moves} moves of the pointer")?;
+    }
+    Ok(writeln!(
+        stdout(),
+        "bytes readable to event written: p50 {p50:.0} µs, p95 {p95:.0} µs, p99 {p99:.0} µs, max {max:.0} µs"
+    )?)
+}
+
+fn check_end(bridge: &Bridge, expected: u64) -> Result<(), Failure> {
+    let (contacts, held) = (bridge.health().contacts, bridge.held_when_over());
+    if held > 0 {
+        return Err(Failure::Failed(format!("{held} controls were still held when the time was over")));
+    }
+    if contacts == expected {
+        return Ok(());
+    }
+    Err(Failure::Failed(format!("{contacts} contacts where the script has {expected}")))
+}

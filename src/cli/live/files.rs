@@ -1,0 +1,87 @@
+//! The files of a live verb, checked while all of them are still whole.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use super::output::Output;
+use crate::cli::failure::Failure;
+use crate::cli::written::{is_same, say, written_over};
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::pipeline::capture::reader::{CaptureError, CaptureReader};
+use tactpad::pipeline::mapping::shipped;
+
+/// What a live verb reads and writes.
+pub(super) struct Files<'a> {
+    pub(super) pad: &'a PadAddress,
+    pub(super) profile: &'a str,
+    pub(super) output: &'a Output,
+    /// The decoder that is read.
+    pub(super) decoder: Option<&'a Path>,
+    /// The capture that is written.
+    pub(super) capture: Option<&'a Path>,
+}
+
+impl Files<'_> {
+    /// Refuses a capture that does not play to its end, and files that would be written over although they are
+    /// read, or are written twice. A capture that is only cut off is told about.
+    pub(super) fn check(&self) -> Result<(), Failure> {
+        let source = match self.pad {
+            PadAddress::Capture { file } => Some(file.as_path()),
+            _ => None,
+        };
+        self.keep_apart(source)?;
+        source.map_or(Ok(()), check_capture)
+    }
+
+    fn keep_apart(&self, source: Option<&Path>) -> Result<(), Failure> {
+        let log = match self.output {
+            Output::Log(path) => Some(path.as_path()),
+            _ => None,
+        };
+        let profile = shipped::text(self.profile).is_none().then(|| Path::new(self.profile));
+        for written in [self.capture, log].into_iter().flatten() {
+            let read = [
+                (source, "is what is played"),
+                (profile, "is the profile"),
+                (self.decoder, "is the decoder"),
+            ];
+            for (read, what) in read {
+                if read.is_some_and(|read| is_same(read, written)) {
+                    return Err(written_over(written, what));
+                }
+            }
+        }
+        match (self.capture, log) {
+            (Some(capture), Some(log)) if is_same(capture, log) => Err(written_over(log, "is the capture")),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Reads a capture to its end, if that does not use it up. What cannot even be opened is told by who opens it.
+fn check_capture(path: &Path) -> Result<(), Failure> {
+    let Some(file) = File::open(path).ok().filter(|file| file.metadata().is_ok_and(|file| file.is_file()))
+    else {
+        return Ok(());
+    };
+    let error = CaptureReader::new(BufReader::new(file)).map_or_else(Some, first_error);
+    match error {
+        None => Ok(()),
+        Some(error @ CaptureError::CutOff { .. }) => {
+            say(format_args!("{} {error}", path.display()));
+            Ok(())
+        }
+        Some(error) => Err(Failure::Unusable(format!("{} {error}", path.display()))),
+    }
+}
+
+/// What ends the capture too early. A pad that is played needs none of the profiles in it.
+fn first_error(mut capture: CaptureReader<BufReader<File>>) -> Option<CaptureError> {
+    loop {
+        match capture.next_call()? {
+            Ok(_) | Err(CaptureError::Profile { .. }) => {}
+            Err(error) => return Some(error),
+        }
+    }
+}

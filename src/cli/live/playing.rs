@@ -1,0 +1,161 @@
+//! What the live verbs share: which pad they play with, who is told, and how a run ends.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use crate::cli::device::Pad;
+use crate::cli::failure::Failure;
+use crate::cli::field::field_of;
+use crate::cli::profile;
+use tactpad::bridge::error::BridgeError;
+use tactpad::bridge::host::Host;
+use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
+use tactpad::bridge::requests::Requests;
+use tactpad::bridge::running::{Bridge, Ending};
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::pipeline::mapping::check::OutputChoice;
+use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::read::ReadProfile;
+use tactpad::virtual_pad::firmware::VirtualPad;
+use tactpad::virtual_pad::script::Script;
+
+/// The virtual pad of `run` and `record` plays this long, then rests.
+const VIRTUAL_SCRIPT_US: u64 = 3_600_000_000;
+
+/// The virtual pad's noise is the same each time.
+const VIRTUAL_SEED: u64 = 1;
+
+/// Opens the pad at `address`. The virtual pad is `pad` and plays a script made for `profile`.
+pub(super) fn open_pad(
+    address: &PadAddress,
+    pad: &Pad,
+    profile: &Profile,
+    patience: Patience,
+) -> Result<OpenedPad, Failure> {
+    let opened = match address {
+        PadAddress::Virtual => return open_virtual(pad, Script::for_profile(profile, VIRTUAL_SCRIPT_US)),
+        _ if pad.is_given() => {
+            return Err(Failure::Unusable(
+                "--device and --imperfections say what the virtual pad is: add --pad virtual, or leave them out"
+                    .into(),
+            ));
+        }
+        PadAddress::Capture { file } => OpenedPad::capture(file),
+        PadAddress::Auto { .. } | PadAddress::Hid { .. } | PadAddress::Serial { .. } => {
+            OpenedPad::device(address.clone(), patience)
+        }
+    };
+    opened.map_err(not_opened)
+}
+
+/// Starts a virtual pad that plays `script`.
+pub(super) fn open_virtual(pad: &Pad, script: Script) -> Result<OpenedPad, Failure> {
+    let virtual_pad = if pad.is_given() {
+        let device = pad.read()?;
+        VirtualPad::of(script, &device, &field_of(&device)?, VIRTUAL_SEED)
+    } else {
+        VirtualPad::new(script, VIRTUAL_SEED)
+    };
+    OpenedPad::simulated(virtual_pad).map_err(not_opened)
+}
+
+fn not_opened(error: OpenError) -> Failure {
+    match error {
+        OpenError::Io(error) => error.into(),
+        error => Failure::Unusable(error.to_string()),
+    }
+}
+
+/// How long to wait for a pad: `auto` always waits, a named one only if that is asked for.
+pub(super) fn patience(pad: &PadAddress, waits: Waits) -> Patience {
+    match (pad, waits) {
+        (PadAddress::Auto { .. }, _) | (_, Waits::Asked) => Patience::Endless,
+        (_, Waits::NotAsked) => Patience::Limited,
+    }
+}
+
+/// Whether `--wait` was given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Waits {
+    /// It was.
+    Asked,
+    /// It was not.
+    NotAsked,
+}
+
+/// The file of a capture.
+pub(super) fn create_capture(path: &Path) -> Result<Box<dyn Write>, Failure> {
+    match File::create(path) {
+        Ok(file) => Ok(Box::new(BufWriter::new(file))),
+        Err(error) => Err(Failure::Unusable(format!("{} cannot be written: {error}", path.display()))),
+    }
+}
+
+/// The program around a bridge that was started from a command line.
+pub(super) struct Terminal {
+    /// The profile that is read again when nobody names another one: its name or file.
+    pub(super) profile: String,
+    pub(super) output: OutputChoice,
+    pub(super) audience: Audience,
+}
+
+impl Host for Terminal {
+    fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
+        let chosen = name.unwrap_or(&self.profile).to_owned();
+        let read = profile::read(&chosen, self.output).map_err(|failure| match failure {
+            Failure::Unusable(message) | Failure::Failed(message) => message,
+            Failure::Unread => "nobody reads the warnings".into(),
+        })?;
+        // A profile that was chosen and can be used is the one to be read again.
+        self.profile = chosen;
+        Ok(read)
+    }
+
+    fn tell(&mut self, line: &str) {
+        self.audience.tell(line);
+    }
+}
+
+/// Who is told what the bridge is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Audience {
+    /// Somebody who reads stderr.
+    Stderr,
+    /// Nobody, or somebody who watches the screen.
+    Nobody,
+}
+
+impl Audience {
+    pub(super) fn tell(self, line: &str) {
+        if self == Self::Stderr {
+            // Where nobody reads, the bridge plays on.
+            let _ = writeln!(io::stderr(), "{line}");
+        }
+    }
+}
+
+/// Requests by signals and, where `socket` is given, through it. A second bridge plays without one.
+pub(super) fn requests(socket: Option<&Path>, audience: Audience) -> Result<Requests, Failure> {
+    let mut requests = Requests::new()?;
+    requests.catch_signals()?;
+    if let Some(path) = socket
+        && let Err(error) = requests.listen(path)
+    {
+        audience.tell(&format!("`tactpad ctl` does not reach this bridge: {} ({error})", path.display()));
+    }
+    Ok(requests)
+}
+
+/// A duration as the bridge has it.
+pub(super) fn microseconds(seconds: f64) -> u64 {
+    (seconds * 1e6) as u64
+}
+
+/// Runs the bridge and turns its errors into the program's.
+pub(super) fn play(bridge: &mut Bridge, address: &PadAddress) -> Result<Ending, Failure> {
+    bridge.run().map_err(|error| match error {
+        BridgeError::NotAPad(_) | BridgeError::Refused(_) => Failure::Unusable(format!("{address} {error}")),
+        error => Failure::Failed(error.to_string()),
+    })
+}

@@ -1,0 +1,81 @@
+//! `tactpad record`: plays like `run` and writes down every call, so that `replay` gives the same events.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::files::Files;
+use super::output::Output;
+use super::playing::{
+    Audience, Terminal, Waits, create_capture, microseconds, open_pad, patience, play, requests,
+};
+use super::{chosen, ctl, seconds};
+use crate::cli::decoder_file::Choice;
+use crate::cli::device::Pad;
+use crate::cli::failure::Failure;
+use crate::cli::profile;
+use crate::cli::written::{Named, say};
+use tactpad::bridge::parts::Parts;
+use tactpad::bridge::running::Bridge;
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::bridge::transport::fault::FaultPlan;
+
+/// Arguments of `tactpad record`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: tactpad record game.cap --pad serial:/dev/ttyACM0, then tactpad replay game.cap"
+)]
+pub(crate) struct Arguments {
+    /// The file to write.
+    capture: PathBuf,
+    /// The pad: virtual, serial:PATH[@BAUD], capture:FILE.
+    #[arg(long, value_name = "PAD", default_value = "virtual")]
+    pad: PadAddress,
+    #[command(flatten)]
+    device: Pad,
+    /// A profile's name or file; it is kept in the capture, and so is the decoder.
+    #[arg(long, default_value = "super-mario")]
+    profile: String,
+    #[command(flatten)]
+    decoder: Choice,
+    /// Where events go meanwhile: auto, uinput, x11, log:FILE, none.
+    #[arg(long, default_value = "none")]
+    output: Output,
+    /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
+    /// probability is per frame, and 0.001 where only a seed is given.
+    #[arg(long, value_name = "FAULTS")]
+    faults: Option<FaultPlan>,
+    /// End after this many seconds; without it Ctrl-C ends.
+    #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { capture, pad, profile, output, decoder, .. } = arguments;
+    Files { pad, profile, output, decoder: chosen::file(decoder), capture: Some(capture) }.check()?;
+    let decoder = chosen::read(decoder)?;
+    let profile = profile::read(profile, output.choice())?;
+    let sink = output.open()?;
+    let patience = patience(&arguments.pad, Waits::NotAsked);
+    let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
+    let opened = opened.with_faults(arguments.faults)?;
+    let place = capture.display().to_string();
+    let capture = Named::new(create_capture(capture)?, place.clone());
+    say(format_args!("recording {} in {place}", arguments.pad));
+    let audience = Audience::Stderr;
+    let host = Terminal { profile: arguments.profile.clone(), output: output.choice(), audience };
+    let mut bridge = Bridge::new(Parts {
+        pad: opened,
+        patience,
+        decoder,
+        profile,
+        sink,
+        requests: requests(Some(&ctl::socket_path()), audience)?,
+        host: Box::new(host),
+        record: Some(Box::new(capture)),
+        duration_us: arguments.seconds.map(microseconds),
+    })?;
+    play(&mut bridge, &arguments.pad)?;
+    say(format_args!("{} samples recorded", bridge.health().samples));
+    Ok(())
+}

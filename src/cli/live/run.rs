@@ -1,0 +1,86 @@
+//! `tactpad run`: the live bridge.
+
+use std::io::{self, IsTerminal};
+
+use clap::Args;
+
+use super::files::Files;
+use super::output::Output;
+use super::playing::{Audience, Terminal, Waits, microseconds, open_pad, patience, play, requests};
+use super::screen::Screen;
+use super::{chosen, ctl, seconds};
+use crate::cli::decoder_file::Choice;
+use crate::cli::device::Pad;
+use crate::cli::failure::Failure;
+use crate::cli::profile;
+use crate::cli::written::say;
+use tactpad::bridge::parts::Parts;
+use tactpad::bridge::running::{Bridge, Ending};
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::bridge::transport::fault::FaultPlan;
+
+/// Arguments of `tactpad run`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad run --pad serial:/dev/ttyACM0 --profile tetris\n\n\
+    `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on, SIGHUP reads the \
+    profile again.")]
+pub(crate) struct Arguments {
+    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], virtual, capture:FILE.
+    #[arg(long, value_name = "PAD", default_value = "auto")]
+    pad: PadAddress,
+    /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.
+    #[arg(long)]
+    wait: bool,
+    #[command(flatten)]
+    device: Pad,
+    /// A profile's name or file.
+    #[arg(long, default_value = "super-mario")]
+    profile: String,
+    #[command(flatten)]
+    decoder: Choice,
+    /// Where events go: auto, uinput, x11, log:FILE, none.
+    #[arg(long, default_value = "auto")]
+    output: Output,
+    /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
+    /// probability is per frame, and 0.001 where only a seed is given.
+    #[arg(long, value_name = "FAULTS")]
+    faults: Option<FaultPlan>,
+    /// End after this many seconds.
+    #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { pad, profile, output, decoder, .. } = arguments;
+    Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
+    let decoder = chosen::read(decoder)?;
+    let profile = profile::read(profile, output.choice())?;
+    let patience = patience(&arguments.pad, if arguments.wait { Waits::Asked } else { Waits::NotAsked });
+    let sink = output.open()?;
+    let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
+    let opened = opened.with_faults(arguments.faults)?;
+    let name = &profile.profile().name;
+    let title = format!("{} → {} → {name} → {}", arguments.pad, decoder.name, sink.describe());
+    // The live picture has the title and the state; without one they are told in words.
+    let audience = if io::stdout().is_terminal() { Audience::Nobody } else { Audience::Stderr };
+    audience.tell(&title);
+    let host = Terminal { profile: arguments.profile.clone(), output: output.choice(), audience };
+    let mut bridge = Bridge::new(Parts {
+        pad: opened,
+        patience,
+        decoder,
+        profile,
+        sink,
+        requests: requests(Some(&ctl::socket_path()), audience)?,
+        host: Box::new(host),
+        record: None,
+        duration_us: arguments.seconds.map(microseconds),
+    })?;
+    let screen = Screen::start(title, bridge.snapshot(), Vec::new);
+    let ending = play(&mut bridge, &arguments.pad);
+    drop(screen);
+    if ending? == Ending::CaptureEnded {
+        say("the capture has ended");
+    }
+    Ok(())
+}

@@ -1,0 +1,21 @@
+//! What the verb prints.
+
+use serde::Serialize;
+
+use tactpad::lab::metrology::figures::Figures;
+use tactpad::lab::metrology::report::Entry;
+
+/// Everything that the verb finds out.
+#[derive(Serialize)]
+pub(super) struct MetrologyReport {
+    /// Whose figures these are.
+    pub(super) statement: String,
+    /// None for a measured file.
+    pub(super) seeds: Vec<u64>,
+    pub(super) rows: Vec<Entry>,
+    /// All that was found, by seed.
+    pub(super) figures: Vec<Figures>,
+    /// Files of the plots.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) plots: Vec<String>,
+}

@@ -1,0 +1,30 @@
+//! A plan that was carried out on the pad.
+
+use super::Subject;
+use crate::lab::rig::measurement::{Measurement, carry_out};
+use crate::pipeline::contact::Decoder;
+use crate::tables::measured::{Label, Row, Table};
+use crate::tables::recording::Recording;
+
+/// What was measured, and what was true, row for row.
+#[derive(Clone, Debug)]
+pub(super) struct CarriedOut {
+    pub(super) recording: Recording,
+    pub(super) truths: Vec<Label>,
+}
+
+impl CarriedOut {
+    /// Carries out one of our own plans: all of them begin with the untouched pad.
+    #[expect(clippy::expect_used, reason = "no plan comes from outside, and tests carry out each of them")]
+    pub(super) fn of(subject: &Subject<'_>, plan: &Table, seed: u64) -> Self {
+        let pad = subject.actual;
+        let Measurement { table, truth } = carry_out(plan, pad.device, pad.field, seed);
+        let recording = Recording::of(table, pad.device.contact.full_scale_n);
+        Self { recording: recording.expect("a plan begins with the untouched pad"), truths: truth }
+    }
+
+    /// All rows as the decoder takes them.
+    pub(super) fn taken(&self, decoder: &Decoder) -> Vec<Row> {
+        self.recording.taken(decoder).rows
+    }
+}

@@ -1,0 +1,163 @@
+//! The decoders, each fitted to its samples.
+
+use std::fmt;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::carried_out::CarriedOut;
+use super::entries::{Entry, Method, Samples};
+use super::{Pad, Subject};
+use crate::lab::calibration::fit::{FitError, fit};
+use crate::lab::calibration::regression::{neighbours, regression};
+use crate::lab::scdf::adaptation::{self, TooFew, adapt};
+use crate::lab::scdf::simulation;
+use crate::network::{Example, Network, Zero};
+use crate::numeric::random::SplitMix64;
+use crate::pipeline::contact::Decoder;
+use crate::pipeline::contact::regression::Target;
+use crate::pipeline::shipped;
+use crate::tables::measured::{Label, Row};
+use crate::tables::plans;
+
+/// Why a decoder cannot be fitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unfitted {
+    /// Which.
+    pub entry: Entry,
+    /// Why.
+    pub why: Reason,
+}
+
+/// Why its samples did not make a decoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// They give no calibration.
+    Calibration(FitError),
+    /// They are too few for a network.
+    Network(TooFew),
+}
+
+impl fmt::Display for Unfitted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.entry)?;
+        match &self.why {
+            Reason::Calibration(error) => error.fmt(f),
+            Reason::Network(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for Unfitted {}
+
+/// Everything that a decoder can learn from.
+struct Known<'p> {
+    subject: Subject<'p>,
+    /// After stage I.
+    network: &'p Network,
+    simulated: Vec<Row>,
+    /// The paper's plan.
+    measured: CarriedOut,
+}
+
+/// Fits all decoders, as many at once as there are processors. `network` is that of stage I, for tared channels. `report`
+/// hears how many are done.
+///
+/// # Errors
+/// The first one that cannot be fitted.
+pub fn decoders(
+    subject: Subject<'_>,
+    network: &Network,
+    entries: &[Entry],
+    report: impl Fn(usize) + Sync,
+) -> Result<Vec<Decoder>, Unfitted> {
+    let known = Known::of(subject, network);
+    let done = AtomicUsize::new(0);
+    let fitted = |entry: &Entry| {
+        let decoder = known.decoder(entry).map_err(|why| Unfitted { entry: *entry, why })?;
+        report(done.fetch_add(1, Ordering::Relaxed) + 1);
+        Ok(decoder)
+    };
+    entries.par_iter().map(fitted).collect()
+}
+
+impl<'p> Known<'p> {
+    fn of(subject: Subject<'p>, network: &'p Network) -> Self {
+        let designed = subject.designed;
+        let simulated = simulation::examples(designed.device, designed.field, subject.seed);
+        let plan = plans::paper::plan(&subject.actual.device.contact);
+        let measured = CarriedOut::of(&subject, &plan, subject.seed);
+        Self { subject, network, simulated: simulated.iter().map(row).collect(), measured }
+    }
+
+    /// Places of the measured contacts.
+    fn places(&self, samples: Samples) -> Vec<usize> {
+        let contacts = || self.measured.recording.contacts();
+        match samples {
+            Samples::Simulated | Samples::Untared => Vec::new(),
+            Samples::First(count) => contacts().into_iter().take(count).collect(),
+            Samples::Drawn(count) => drawn(contacts(), count, self.subject.seed),
+        }
+    }
+
+    fn rows(&self, samples: Samples) -> Vec<Row> {
+        match samples {
+            Samples::Simulated | Samples::Untared => self.simulated.clone(),
+            _ => self.places(samples).iter().map(|at| self.measured.recording.tared().rows[*at]).collect(),
+        }
+    }
+
+    fn decoder(&self, entry: &Entry) -> Result<Decoder, Reason> {
+        let rows = || self.rows(entry.samples);
+        let fitted = match entry.method {
+            Method::Statics => Ok(shipped::statics()),
+            Method::Network if entry.samples == Samples::Simulated => Ok(self.network.clone().into()),
+            Method::Network if entry.samples == Samples::Untared => {
+                let mut network = self.network.clone();
+                network.zero = Zero::Raw;
+                Ok(network.into())
+            }
+            Method::Network => return self.adapted(&rows()).map_err(Reason::Network),
+            Method::Knn => neighbours(&rows(), Zero::Tared).map(Decoder::from),
+            Method::Linear => self.regression(&rows(), Target::Contact),
+            Method::Wrench => self.regression(&rows(), Target::Wrench),
+            Method::Inverse if entry.samples == Samples::Simulated => {
+                Ok(shipped::uncalibrated(self.subject.designed.field.signals.clone()))
+            }
+            Method::Inverse => self.inverse(&self.places(entry.samples)),
+        };
+        fitted.map_err(Reason::Calibration)
+    }
+
+    fn inverse(&self, places: &[usize]) -> Result<Decoder, FitError> {
+        let Pad { device, field } = self.subject.designed;
+        let calibration = fit(&self.measured.recording, places, device, field, None)?;
+        Ok(calibration.decoder())
+    }
+
+    fn adapted(&self, rows: &[Row]) -> Result<Decoder, TooFew> {
+        let examples = adaptation::examples(rows);
+        let adapted = adapt(self.network, examples, self.subject.seed, |_, _| ())?;
+        Ok(adapted.trained.network.into())
+    }
+
+    fn regression(&self, rows: &[Row], target: Target) -> Result<Decoder, FitError> {
+        let reach_mm = self.subject.designed.device.contact.max_centre_radius_mm;
+        regression(rows, Zero::Tared, target, reach_mm).map(Decoder::from)
+    }
+}
+
+/// `count` of the places, drawn from the seed; all of them stay in their order.
+fn drawn(mut places: Vec<usize>, count: usize, seed: u64) -> Vec<usize> {
+    if count < places.len() {
+        SplitMix64::named(seed, "rows").shuffle(&mut places);
+        places.truncate(count);
+    }
+    places
+}
+
+fn row(example: &Example) -> Row {
+    let [x_mm, y_mm, fx_n, fy_n, fz_n] = example.contact.map(f64::from);
+    let label = Label { x_mm, y_mm, fx_n, fy_n, fz_n };
+    Row { uv: Some(example.uv.map(f64::from)), ..Row::of(label) }
+}

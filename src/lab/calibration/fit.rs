@@ -1,0 +1,264 @@
+//! The fit: Gauss and Newton's method on all parameters, for several values of the hyperparameters; the evidence selects.
+//!
+//! Source: C. M. Bishop, Pattern Recognition and Machine Learning, section 3.4 (model comparison by the evidence).
+
+use std::fmt;
+
+use rayon::prelude::*;
+
+use super::earlier::Earlier;
+use super::model::Layout;
+use super::noise;
+use super::prepared::Prepared;
+use super::prior::Prior;
+use super::problem::{Fit, Problem, Settings};
+use super::thermal_fit::ThermalFit;
+use crate::pad::device::Device;
+use crate::pad::device::parameter::Parameter;
+use crate::pad::field::PadField;
+use crate::pad::influence::InfluenceField;
+use crate::pipeline::compensation::Compensation;
+use crate::pipeline::compensation::creep::Creep;
+use crate::pipeline::contact::Decoder;
+use crate::pipeline::contact::inverse::Inverse;
+use crate::pipeline::contact::uncertainty::Noise;
+use crate::quantity::CHANNELS;
+use crate::tables::recording::Recording;
+
+/// Prior standard deviations of the background that are tried, as a share of each map.
+const BACKGROUNDS: [f64; 5] = [1e-6, 0.004, 0.01, 0.025, 0.06];
+/// Thresholds of play operators that are tried: a geometric sequence, then halved steps of its exponent around the best.
+const THRESHOLD_MIN_UV: f64 = 40.0;
+const THRESHOLD_RATIO: f64 = 1.6;
+const THRESHOLDS: i32 = 11;
+const HALVINGS: i32 = 3;
+/// Relaxation times that are tried: between the length of a press and that of a pause.
+const CREEP_TIMES_S: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
+/// ln of the Bayes factor that a richer hypothesis (a play operator, creep, another pad's field) must exceed.
+const LOG_EVIDENCE_GAIN: f64 = 15.0;
+/// Plates that differ by less are of one kind.
+const PLATE_TOLERANCE_MM: f32 = 0.1;
+
+/// A calibrated pad.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// The pad's own field.
+    pub field: InfluenceField,
+    /// The channels' noise around it.
+    pub noise: Noise,
+    /// Each channel's gain.
+    pub gain: [f64; CHANNELS],
+    /// Poses and stiffnesses: parameter, value, posterior standard deviation.
+    pub physical: Vec<(Parameter, f64, f64)>,
+    /// Prior standard deviation of the smooth background that the evidence chose, as a share of each map.
+    pub background: f64,
+    /// Whether the prior is centred on another pad's field, not on the simulated one.
+    pub from_earlier: bool,
+    /// What is to be taken off the channels. It has a zero if the recording does not read the untouched pad itself.
+    pub compensation: Compensation,
+    /// Temperature coefficients; none if the pad was measured at one temperature.
+    pub thermal: Option<ThermalFit>,
+    /// Contacts that it was fitted to.
+    pub contacts: usize,
+}
+
+/// Why there is no calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FitError {
+    /// There are fewer contacts than the method needs.
+    TooFew {
+        /// Contacts with nine channels.
+        contacts: usize,
+        /// Contacts that it takes at least.
+        least: usize,
+    },
+    /// The earlier decoder is of a pad with another plate.
+    OtherPlate,
+    /// The readings are beyond anything that a pad can read: the normal equations have no solution.
+    Senseless,
+}
+
+impl fmt::Display for FitError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooFew { contacts, least } => {
+                write!(
+                    f,
+                    "it takes {least} contacts with nine channels at least, and here are {contacts}; measure more"
+                )
+            }
+            Self::OtherPlate => {
+                f.write_str("the earlier decoder is of a pad with another plate; begin without it")
+            }
+            Self::Senseless => f.write_str("the channels are beyond anything that a pad can read"),
+        }
+    }
+}
+
+impl std::error::Error for FitError {}
+
+impl Calibration {
+    fn of(prepared: &Prepared, problem: &Problem<'_>, fit: &Fit, from_earlier: bool) -> Self {
+        let Fit { settings, values, .. } = fit;
+        let field = problem.corrected(values);
+        let hysteresis = Layout::hysteresis(values, &settings.thresholds_uv);
+        let creep = Layout::creep(values, settings.creep_time_s);
+        let contacts = problem.compensated(values, &hysteresis, &creep);
+        // What the residuals do not show: drift of the zeros, hysteresis states, the field's posterior covariance.
+        let noise = noise::with_zeros(fit.estimates.noise_model.noise, &fit.estimates.drift_uv, &hysteresis);
+        let noise = noise::with_field_covariance(&field, noise, &problem.field_covariances(fit));
+        let decoder = Inverse::new(field.clone(), noise);
+        let (zero_uv, thermal_fit) = (prepared.zero_uv(fit), prepared.thermal(fit));
+        let thermal = thermal_fit.map(|fit| fit.coefficients);
+        Self {
+            noise: Noise { gain: noise::common_gain(&decoder, &contacts, problem.noise_prior()), ..noise },
+            field,
+            gain: std::array::from_fn(|channel| Layout::gain(values, channel)),
+            physical: problem.physical(fit),
+            background: settings.background,
+            from_earlier,
+            compensation: Compensation { zero_uv, thermal, creep, hysteresis },
+            thermal: thermal_fit,
+            contacts: problem.contacts(),
+        }
+    }
+
+    /// The decoder of this pad.
+    pub fn decoder(&self) -> Decoder {
+        Decoder::from(Inverse::new(self.field.clone(), self.noise)).compensated_by(self.compensation)
+    }
+}
+
+/// Calibrates the pad that was measured, by these rows of a recording. `field` is that of `device`, the
+/// nominal pad.
+///
+/// With the decoder of an earlier pad of the same kind its gains, hysteresis and noise are the prior of this one. So may be its
+/// field, and so may the simulated pad alone, where the contacts' evidence for it outweighs the prior odds.
+///
+/// # Errors
+/// No contact, another kind of pad, or readings beyond anything that a pad can read.
+pub fn fit(
+    recording: &Recording,
+    rows: &[usize],
+    device: &Device,
+    field: &PadField,
+    earlier: Option<Earlier<'_>>,
+) -> Result<Calibration, FitError> {
+    let radius_mm = field.signals.radius_mm();
+    if earlier.is_some_and(|it| (it.inverse.field().radius_mm() - radius_mm).abs() > PLATE_TOLERANCE_MM) {
+        return Err(FitError::OtherPlate);
+    }
+    if rows.is_empty() {
+        return Err(FitError::TooFew { contacts: 0, least: 1 });
+    }
+    let prepared = Prepared::of(recording, rows, device, field).ok_or(FitError::Senseless)?;
+    let mut best: Option<(f64, Calibration)> = None;
+    for Hypothesis { prior, log_prior_odds, from_earlier } in hypotheses(field, earlier) {
+        let (problem, found) = calibrated(&prepared, rows, device, &prior)?;
+        // ln p(H | y) = ln p(y | H) + ln p(H), but for a constant that all hypotheses share.
+        let log_probability = found.log_evidence + log_prior_odds;
+        if best.as_ref().is_none_or(|(largest, _)| log_probability > *largest) {
+            best = Some((log_probability, Calibration::of(&prepared, &problem, &found, from_earlier)));
+        }
+    }
+    let is_sound = |it: &Calibration| it.thermal.is_none_or(|fit| fit.coefficients.is_sound());
+    best.map(|(_, calibration)| calibration).filter(is_sound).ok_or(FitError::Senseless)
+}
+
+/// A prior that the pad may have been drawn from.
+struct Hypothesis {
+    prior: Prior,
+    /// ln of its prior probability over that of the first hypothesis. A negative one demands as much more evidence.
+    log_prior_odds: f64,
+    /// Whether it is centred on another pad's field.
+    from_earlier: bool,
+}
+
+fn hypotheses(field: &PadField, earlier: Option<Earlier<'_>>) -> Vec<Hypothesis> {
+    let hypothesis = |prior, log_prior_odds, from_earlier| Hypothesis { prior, log_prior_odds, from_earlier };
+    let Some(earlier) = earlier else { return vec![hypothesis(Prior::simulated(field), 0.0, false)] };
+    vec![
+        hypothesis(Prior::of_kind(field, &earlier), 0.0, false),
+        // Few contacts lie near another pad's field by chance.
+        hypothesis(Prior::centred_on(field, &earlier), -LOG_EVIDENCE_GAIN, true),
+        // Its noise prior is weaker, so its noise can follow the contacts more closely: that must not count as evidence.
+        hypothesis(Prior::simulated(field), -LOG_EVIDENCE_GAIN, false),
+    ]
+}
+
+/// The problem of these contacts under this prior, and its fit with the background of the largest evidence.
+fn calibrated<'b>(
+    prepared: &'b Prepared,
+    rows: &[usize],
+    device: &Device,
+    prior: &'b Prior,
+) -> Result<(Problem<'b>, Fit), FitError> {
+    let problem = prepared.problem(rows, device, prior);
+    if problem.contacts() == 0 {
+        return Err(FitError::TooFew { contacts: 0, least: 1 });
+    }
+    // The memory first, as a background would explain part of it; then the background's size with the memory's settings.
+    let plain = with_hysteresis(&problem, prior).ok_or(FitError::Senseless)?;
+    let plain = with_creep(&problem, plain);
+    let problem = problem.with_background();
+    let best = most_probable(BACKGROUNDS.to_vec(), |background| {
+        problem.clone().fitted(Settings { background, ..plain.settings }, Some(&plain))
+    });
+    Ok((problem, best.ok_or(FitError::Senseless)?))
+}
+
+/// The fit without a background, with as many play operators as the evidence asks for. Known thresholds are only refined.
+fn with_hysteresis(problem: &Problem<'_>, prior: &Prior) -> Option<Fit> {
+    let Prior { thresholds_uv, creep: Creep { time_s: creep_time_s, .. }, .. } = *prior;
+    let mut best = problem.clone().fitted(Settings { background: 0.0, thresholds_uv, creep_time_s }, None)?;
+    for (play, known_uv) in thresholds_uv.into_iter().enumerate() {
+        let tried = |threshold_uv| {
+            let mut settings = best.settings;
+            settings.thresholds_uv[play] = threshold_uv;
+            problem.clone().fitted(settings, Some(&best))
+        };
+        if known_uv > 0.0 {
+            best = refined(play, best.clone(), &tried);
+            continue;
+        }
+        match searched(play, tried) {
+            Some(found) if found.log_evidence > best.log_evidence + LOG_EVIDENCE_GAIN => best = found,
+            _ => break,
+        }
+    }
+    Some(best)
+}
+
+/// The same with creep, if the evidence asks for it.
+fn with_creep(problem: &Problem<'_>, best: Fit) -> Fit {
+    let found = most_probable(CREEP_TIMES_S.to_vec(), |creep_time_s| {
+        problem.clone().fitted(Settings { creep_time_s, ..best.settings }, Some(&best))
+    });
+    found.filter(|found| found.log_evidence > best.log_evidence + LOG_EVIDENCE_GAIN).unwrap_or(best)
+}
+
+/// The threshold of the largest evidence: on a coarse scale first, then by ever smaller steps around the best.
+fn searched(play: usize, tried: impl Fn(f64) -> Option<Fit> + Send + Sync) -> Option<Fit> {
+    // 40 µV · 1.6ᵏ: up to 4.4 mV.
+    let coarse = (0..THRESHOLDS).map(|step| THRESHOLD_MIN_UV * THRESHOLD_RATIO.powi(step));
+    let best = most_probable(coarse.collect(), &tried)?;
+    Some(refined(play, best, &tried))
+}
+
+/// The threshold of the largest evidence near the best one, by a factor ±½, ±¼, ±⅛ of a coarse step.
+fn refined(play: usize, mut best: Fit, tried: &(impl Fn(f64) -> Option<Fit> + Send + Sync)) -> Fit {
+    for halving in 1..=HALVINGS {
+        let factor = THRESHOLD_RATIO.powf(0.5_f64.powi(halving));
+        let centre_uv = best.settings.thresholds_uv[play];
+        let around = most_probable(vec![centre_uv / factor, centre_uv * factor], tried);
+        best = around.filter(|around| around.log_evidence > best.log_evidence).unwrap_or(best);
+    }
+    best
+}
+
+/// The fit of the largest evidence, tried in parallel; of equal ones the last.
+fn most_probable(settings: Vec<f64>, tried: impl Fn(f64) -> Option<Fit> + Send + Sync) -> Option<Fit> {
+    let fits: Vec<Fit> = settings.into_par_iter().filter_map(tried).collect();
+    fits.into_iter().max_by(|one, other| one.log_evidence.total_cmp(&other.log_evidence))
+}

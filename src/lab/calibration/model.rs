@@ -1,0 +1,292 @@
+//! The parameters in which a pad may differ from the nominal one, the model of the channels, and its prior.
+//!
+//! Channel k reads at a contact
+//!
+//! ```text
+//! sₖ = zₖ + (1 + αₖ ΔT) gₖ eₖ + Σₗ Xₖₗ eₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ,    eₖ = Σₐ Fₐ Eₖₐ(x, y)
+//! E = G + b ∇²G + Σⱼ pⱼ ∂G/∂pⱼ + background
+//! ```
+//!
+//! with zeros z, gains g and their temperature coefficients α, strains e before gains, crosstalk X, shares w and lags l of the
+//! play operators, creep's share c and state u, blur b, and physical parameters p. G is the simulator's field.
+
+use super::contacts::{BACKGROUND_DEGREE, Maps, Measured, Place, TERMS};
+use super::prior::Prior;
+use super::prior_deviations::{Kind, PriorDeviations};
+use crate::pad::device::parameter::Parameter;
+use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
+use crate::pipeline::compensation::hysteresis::{Hysteresis, PLAYS, Play};
+use crate::pipeline::contact::uncertainty::UNKNOWNS;
+use crate::quantity::CHANNELS;
+use crate::tables::recording::Lags;
+
+/// Prior standard deviations. Of gains: the authors' earlier pad has 0.83 to 1.33.
+const GAIN_DEVIATION: f64 = 0.3;
+/// Half the mean square of the distance at which a contact's force acts from its place, along each axis: an indenter of
+/// another size, or a finger that is not still.
+const BLUR_DEVIATION_MM2: f64 = 0.5;
+/// Of a play operator in all channels.
+const SHARE_DEVIATION: f64 = 0.05;
+/// Of creep's share of a load in the end: adhesive and polyimide.
+const CREEP_DEVIATION: f64 = 0.01;
+/// Of a gain, per degree: adhesive and polyimide soften by a thousandth.
+const GAIN_SLOPE_DEVIATION: f64 = 1e-3;
+/// Largest magnitude of a play operator's share. A negative one corrects another.
+const SHARE_MAX: f64 = 0.25;
+
+/// The parameter vector θ, by kind: zeros, gains, crosstalk (into, from), hysteresis (shares of all channels; each channel's
+/// difference), creep, blur, temperature coefficients of the gains, physical parameters, background (channel, force, polynomial).
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    pub(super) physical: Vec<Parameter>,
+    /// Polynomials of the background for each channel and force: 0 or [`TERMS`].
+    pub(super) terms: usize,
+}
+
+const ZEROS: usize = 0;
+const GAINS: usize = ZEROS + CHANNELS;
+const CROSSTALKS: usize = GAINS + CHANNELS;
+const SHARES: usize = CROSSTALKS + CHANNELS * CHANNELS;
+const OWN_SHARES: usize = SHARES + PLAYS;
+const CREEP: usize = OWN_SHARES + PLAYS * CHANNELS;
+const BLUR: usize = CREEP + 1;
+const GAIN_SLOPES: usize = BLUR + 1;
+const PHYSICAL: usize = GAIN_SLOPES + CHANNELS;
+
+impl Layout {
+    pub(super) const fn size(&self) -> usize {
+        self.background(0, 0) + 3 * CHANNELS * self.terms
+    }
+
+    const fn background(&self, channel: usize, axis: usize) -> usize {
+        PHYSICAL + self.physical.len() + (3 * channel + axis) * self.terms
+    }
+
+    /// The prior's mean m.
+    pub(super) fn prior_mean(&self, prior: &Prior) -> Vec<f64> {
+        let mut values = vec![0.0; self.size()];
+        values[GAINS..CROSSTALKS].copy_from_slice(&prior.gain);
+        for (play, shares) in prior.shares.iter().enumerate() {
+            // wᵢₖ = w̄ᵢ + (wᵢₖ − w̄ᵢ): the mean over the channels, and each channel's difference.
+            values[SHARES + play] = shares.iter().sum::<f64>() / CHANNELS as f64;
+            for (channel, share) in shares.iter().enumerate() {
+                values[OWN_SHARES + play * CHANNELS + channel] = share - values[SHARES + play];
+            }
+        }
+        values[CREEP] = prior.creep.share;
+        values
+    }
+
+    /// The diagonal P of the prior's precisions. `background` is the standard deviation of the field's smooth error, as a share of
+    /// each map's root mean square `scale`; zero: no background.
+    pub(super) fn precisions(&self, background: f64, prior_deviations: &PriorDeviations) -> Vec<f64> {
+        let mut deviations = vec![0.0; self.size()];
+        // P = 1/σ² with these σ, kind by kind.
+        deviations[ZEROS..GAINS].fill(prior_deviations.of(Kind::Zero));
+        deviations[GAINS..CROSSTALKS].fill(GAIN_DEVIATION);
+        // A channel has no crosstalk with itself.
+        for (index, deviation) in deviations[CROSSTALKS..SHARES].iter_mut().enumerate() {
+            *deviation =
+                if index / CHANNELS == index % CHANNELS { 0.0 } else { prior_deviations.of(Kind::Crosstalk) };
+        }
+        deviations[SHARES..OWN_SHARES].fill(SHARE_DEVIATION);
+        deviations[OWN_SHARES..CREEP].fill(prior_deviations.of(Kind::OwnHysteresis));
+        deviations[CREEP] = CREEP_DEVIATION;
+        deviations[BLUR] = BLUR_DEVIATION_MM2;
+        deviations[GAIN_SLOPES..PHYSICAL].fill(GAIN_SLOPE_DEVIATION);
+        for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
+            *deviation = prior_deviations.of(Kind::of(*parameter));
+        }
+        // One share for each of the n + 1 polynomials of degree n.
+        let shares: Vec<f64> =
+            (0..=BACKGROUND_DEGREE).flat_map(|n| std::iter::repeat_n(share(n), n + 1)).collect();
+        for terms in deviations[self.background(0, 0)..].chunks_exact_mut(TERMS) {
+            terms.iter_mut().zip(&shares).for_each(|(deviation, share)| *deviation = background * share);
+        }
+        // What cannot differ gets a precision that no measurement outweighs.
+        deviations.iter().map(|deviation| 1.0 / deviation.max(1e-9).powi(2)).collect()
+    }
+
+    /// Places of the parameters whose kinds share a prior standard deviation.
+    pub(super) fn kinds(&self) -> impl Iterator<Item = (Kind, usize)> {
+        let between = (0..CHANNELS * CHANNELS).filter(|index| index / CHANNELS != index % CHANNELS);
+        let physical = self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (Kind::of(*it), at));
+        let own = (OWN_SHARES..CREEP).map(|at| (Kind::OwnHysteresis, at));
+        let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, at));
+        zeros.chain(between.map(|index| (Kind::Crosstalk, CROSSTALKS + index))).chain(own).chain(physical)
+    }
+
+    pub(super) fn gain(values: &[f64], channel: usize) -> f64 {
+        values[GAINS + channel]
+    }
+
+    /// The hysteresis by these parameters. Thresholds are in strains before gains: rᵢₖ = thresholdᵢ |gₖ|.
+    pub(super) fn hysteresis(values: &[f64], thresholds_uv: &[f64; PLAYS]) -> Hysteresis {
+        std::array::from_fn(|play| Play {
+            threshold_uv: std::array::from_fn(|k| thresholds_uv[play] * Self::gain(values, k).abs()),
+            share: std::array::from_fn(|k| Self::share(values, play, k).clamp(-SHARE_MAX, SHARE_MAX)),
+        })
+    }
+
+    /// The creep by these parameters.
+    pub(super) fn creep(values: &[f64], time_s: f64) -> Creep {
+        if time_s == 0.0 {
+            return NO_CREEP;
+        }
+        Creep { time_s, share: values[CREEP].clamp(-SHARE_MAX, SHARE_MAX) }
+    }
+
+    fn share(values: &[f64], play: usize, channel: usize) -> f64 {
+        values[SHARES + play] + values[OWN_SHARES + play * CHANNELS + channel]
+    }
+
+    /// What earlier loads add to a channel, by lags l and creep states u. Its derivatives by the shares w and c are set in
+    /// `derivatives`.
+    pub(super) fn memory_uv(
+        values: &[f64],
+        channel: usize,
+        lags: &Lags,
+        crept_uv: &[f64; CHANNELS],
+        derivatives: &mut [f64],
+    ) -> f64 {
+        // Σᵢ wᵢₖ lᵢₖ + c uₖ, with ∂/∂wᵢₖ = lᵢₖ and ∂/∂c = uₖ.
+        derivatives[CREEP] = crept_uv[channel];
+        let mut uv = values[CREEP] * crept_uv[channel];
+        for (play, lags) in lags.iter().enumerate() {
+            derivatives[SHARES + play] = lags[channel];
+            derivatives[OWN_SHARES + play * CHANNELS + channel] = lags[channel];
+            uv += Self::share(values, play, channel) * lags[channel];
+        }
+        uv
+    }
+
+    /// The zeros z.
+    pub(super) fn zeros(values: &[f64]) -> [f64; CHANNELS] {
+        std::array::from_fn(|channel| values[ZEROS + channel])
+    }
+
+    /// Place of the first channel's temperature coefficient of gain, 1/°C.
+    pub(super) const fn first_gain_slope() -> usize {
+        GAIN_SLOPES
+    }
+
+    /// Place of the first physical parameter.
+    pub(super) const fn first_physical() -> usize {
+        PHYSICAL
+    }
+
+    /// The strain maps E at a place, µV/N before gains.
+    fn strain_maps(&self, values: &[f64], scale: &Maps, place: &Place) -> Maps {
+        // E = G + b ∇²G …
+        let mut maps = place.gains;
+        for (map, laplacian) in maps.as_flattened_mut().iter_mut().zip(place.laplacian.as_flattened()) {
+            *map += values[BLUR] * laplacian;
+        }
+        // … + Σⱼ pⱼ ∂G/∂pⱼ …
+        for (value, slope) in values[PHYSICAL..].iter().zip(&place.sensitivities) {
+            for (map, slope) in maps.as_flattened_mut().iter_mut().zip(slope.as_flattened()) {
+                *map += value * slope;
+            }
+        }
+        // … + scale Σₜ βₜ Uₜ(x, y), the background by its polynomials' coefficients β.
+        let background = values[self.background(0, 0)..].chunks_exact(TERMS);
+        for ((map, scale), terms) in
+            maps.as_flattened_mut().iter_mut().zip(scale.as_flattened()).zip(background)
+        {
+            *map += scale * terms.iter().zip(&place.terms).map(|(value, term)| value * term).sum::<f64>();
+        }
+        maps
+    }
+
+    /// The channels' maps at a place, µV/N.
+    pub(super) fn maps(&self, values: &[f64], scale: &Maps, place: &Place) -> Maps {
+        // gₖ Eₖₐ + Σₗ Xₖₗ Eₗₐ.
+        let strain_maps = self.strain_maps(values, scale, place);
+        std::array::from_fn(|into| {
+            std::array::from_fn(|axis| {
+                let own = Self::gain(values, into) * strain_maps[into][axis];
+                let others = &values[CROSSTALKS + into * CHANNELS..][..CHANNELS];
+                own + others.iter().zip(&strain_maps).map(|(share, from)| share * from[axis]).sum::<f64>()
+            })
+        })
+    }
+
+    /// The channels' signals under a contact's load alone: without zeros, hysteresis and creep.
+    pub(super) fn load_uv(&self, values: &[f64], scale: &Maps, contact: &Measured) -> [f64; CHANNELS] {
+        self.maps(values, scale, &contact.place).map(|map| response(&map, &contact.force_n))
+    }
+
+    /// The channels' derivatives by x, y (µV/mm), Fx, Fy, Fz (µV/N).
+    pub(super) fn label_jacobian(
+        &self,
+        values: &[f64],
+        scale: &Maps,
+        contact: &Measured,
+    ) -> [[f64; UNKNOWNS]; CHANNELS] {
+        let maps = self.maps(values, scale, &contact.place);
+        // By the place gₖ Σₐ Fₐ ∇Gₖₐ of the simulated pad, which is near enough for label errors; by the force the maps.
+        let by_place = |channel: usize, axis: usize| {
+            Self::gain(values, channel) * response(&contact.place.gradient[axis][channel], &contact.force_n)
+        };
+        std::array::from_fn(|channel| {
+            let [fx, fy, fz] = maps[channel];
+            [by_place(channel, 0), by_place(channel, 1), fx, fy, fz]
+        })
+    }
+
+    /// The model f(θ) of each channel at a contact and its derivatives ∂f/∂θ: calls `each` with channel, µV, derivatives.
+    pub(super) fn readings(
+        &self,
+        values: &[f64],
+        scale: &Maps,
+        contact: &Measured,
+        mut each: impl FnMut(usize, f64, &[f64]),
+    ) {
+        let Measured { place, force_n, lags, crept_uv, above_c, .. } = contact;
+        let strain_maps = self.strain_maps(values, scale, place);
+        let strains_uv = strain_maps.map(|map| response(&map, force_n));
+        let mut derivatives = vec![0.0; self.size()];
+        for channel in 0..CHANNELS {
+            derivatives.fill(0.0);
+            // h = (1 + αₖ ΔT) gₖ.
+            let thermal_gain = 1.0 + values[GAIN_SLOPES + channel] * above_c;
+            let gain = thermal_gain * Self::gain(values, channel);
+            let shares = &values[CROSSTALKS + channel * CHANNELS..][..CHANNELS];
+            let crosstalk_uv: f64 = shares.iter().zip(strains_uv).map(|(share, uv)| share * uv).sum();
+            // ∂/∂zₖ = 1, ∂/∂gₖ = (1 + αₖ ΔT) eₖ, ∂/∂αₖ = ΔT gₖ eₖ, ∂/∂Xₖₗ = eₗ.
+            derivatives[ZEROS + channel] = 1.0;
+            derivatives[GAINS + channel] = thermal_gain * strains_uv[channel];
+            derivatives[GAIN_SLOPES + channel] = above_c * Self::gain(values, channel) * strains_uv[channel];
+            derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&strains_uv);
+            derivatives[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
+            // ∂/∂b = h F·∇²Gₖ, ∂/∂pⱼ = h F·∂Gₖ/∂pⱼ, ∂/∂βₖₐₜ = h Fₐ scaleₖₐ Uₜ.
+            derivatives[BLUR] = gain * response(&place.laplacian[channel], force_n);
+            for (slope, maps) in derivatives[PHYSICAL..].iter_mut().zip(&place.sensitivities) {
+                *slope = gain * response(&maps[channel], force_n);
+            }
+            for axis in 0..3 {
+                let factor = gain * scale[channel][axis] * force_n[axis];
+                let terms = derivatives[self.background(channel, axis)..].iter_mut().zip(&place.terms);
+                terms.for_each(|(slope, term)| *slope = factor * term);
+            }
+            let memory_uv = Self::memory_uv(values, channel, lags, crept_uv, &mut derivatives);
+            // sₖ = zₖ + h eₖ + Σₗ Xₖₗ eₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ.
+            let uv = values[ZEROS + channel] + gain * strains_uv[channel] + crosstalk_uv + memory_uv;
+            each(channel, uv, &derivatives);
+        }
+    }
+}
+
+/// Prior standard deviation of a background polynomial of degree n, as a share of the whole background's. Finer features are
+/// smaller.
+fn share(n: usize) -> f64 {
+    // (1/(1 + n))/√(Σ (n + 1) (1/(1 + n))²): there are n + 1 polynomials of degree n, and all variances add up to 1.
+    let size = |n: usize| 1.0 / (1 + n) as f64;
+    let whole: f64 = (0..=BACKGROUND_DEGREE).map(|n| (n + 1) as f64 * size(n).powi(2)).sum();
+    size(n) / whole.sqrt()
+}
+
+/// Σₐ Fₐ Eₐ.
+fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
+    map.iter().zip(force_n).map(|(map, n)| map * n).sum()
+}

@@ -1,0 +1,78 @@
+//! A recording as the fit takes it: relative to zeros that follow the temperature, which are
+//! estimated where none was read.
+
+use super::model::Layout;
+use super::prior::Prior;
+use super::problem::{Fit, Problem, Settings};
+use super::thermal_fit::ThermalFit;
+use crate::pad::device::Device;
+use crate::pad::field::PadField;
+use crate::pipeline::compensation::hysteresis::PLAYS;
+use crate::pipeline::compensation::thermal::Thermal;
+use crate::quantity::CHANNELS;
+use crate::tables::recording::Recording;
+
+/// The recording, and what was taken off.
+#[derive(Clone, Debug)]
+pub(super) struct Prepared {
+    recording: Recording,
+    /// Temperature coefficients; those of the gains are for the fit to find.
+    thermal: Option<ThermalFit>,
+    /// Zeros by the contacts themselves, for a recording that never reads the untouched pad.
+    zero_uv: Option<[f64; CHANNELS]>,
+    /// Whether the contacts that are fitted to span enough temperatures for the gains' coefficients.
+    tells_gains: bool,
+}
+
+impl Prepared {
+    /// `None` where the zeros cannot be found, as the readings are beyond anything that a pad can read.
+    pub(super) fn of(
+        recording: &Recording,
+        rows: &[usize],
+        device: &Device,
+        field: &PadField,
+    ) -> Option<Self> {
+        let thermal = ThermalFit::of_zeros(recording);
+        let recording = thermal
+            .map_or_else(|| recording.clone(), |fit| recording.clone().at_reference(&fit.coefficients));
+        let contacts = rows.iter().filter_map(|at| recording.tared().rows.get(*at));
+        let tells_gains = ThermalFit::is_told_by(contacts);
+        let prepared = Self { recording, thermal, zero_uv: None, tells_gains };
+        if prepared.recording.is_tared() {
+            return Some(prepared);
+        }
+        // Hysteresis and noise go with what is beyond the zeros, so these have to be known about before anything else.
+        let prior = Prior::simulated(field);
+        let plain = Settings { background: 0.0, thresholds_uv: [0.0; PLAYS], creep_time_s: 0.0 };
+        let fit = prepared.problem(rows, device, &prior).fitted(plain, None);
+        let zero_uv = Layout::zeros(&fit?.values);
+        Some(Self { recording: prepared.recording.less(&zero_uv), zero_uv: Some(zero_uv), ..prepared })
+    }
+
+    /// The least-squares problem of these contacts under a prior.
+    pub(super) fn problem<'p>(&'p self, rows: &[usize], device: &Device, prior: &'p Prior) -> Problem<'p> {
+        let reference_c = self.thermal.map(|fit| fit.coefficients.reference_c);
+        Problem::of(&self.recording, reference_c, rows, device, prior)
+    }
+
+    /// The zeros, corrected by those of a fit.
+    pub(super) fn zero_uv(&self, fit: &Fit) -> Option<[f64; CHANNELS]> {
+        let remainder_uv = Layout::zeros(&fit.values);
+        self.zero_uv.map(|zero_uv| std::array::from_fn(|k| zero_uv[k] + remainder_uv[k]))
+    }
+
+    /// The temperature coefficients, completed by those of a fit.
+    pub(super) fn thermal(&self, fit: &Fit) -> Option<ThermalFit> {
+        let thermal = self.thermal?;
+        if !self.tells_gains {
+            return Some(thermal);
+        }
+        let at = |channel: usize| Layout::first_gain_slope() + channel;
+        let gain_per_c = std::array::from_fn(|channel| fit.values[at(channel)]);
+        Some(ThermalFit {
+            coefficients: Thermal { gain_per_c, ..thermal.coefficients },
+            gain_deviation: Some(std::array::from_fn(|channel| fit.deviation(at(channel)))),
+            ..thermal
+        })
+    }
+}

@@ -1,0 +1,136 @@
+//! Measured contacts as the ways to fit a decoder take them.
+
+use std::fmt;
+
+use crate::lab::calibration::earlier::Earlier;
+use crate::lab::calibration::fit::{Calibration, FitError, fit};
+use crate::lab::calibration::regression::{neighbours, regression};
+use crate::lab::scdf::adaptation::{Adapted, TooFew, adapt, examples};
+use crate::network::training::Epoch;
+use crate::network::{Network, Zero};
+use crate::numeric::random::SplitMix64;
+use crate::pad::device::Device;
+use crate::pad::field::PadField;
+use crate::pipeline::contact::Decoder;
+use crate::pipeline::contact::regression::Target;
+use crate::tables::measured::Row;
+use crate::tables::recording::Recording;
+
+/// The contacts of tables that were measured one after the other.
+#[derive(Clone, Debug)]
+pub struct Contacts {
+    /// The whole tables.
+    recording: Recording,
+    /// Places of the contacts that are fitted to.
+    places: Vec<usize>,
+    /// These contacts, relative to what the channels are taken relative to.
+    rows: Vec<Row>,
+}
+
+/// Why tables give no contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ContactsError {
+    /// There is no table.
+    NoTable,
+    /// Only some of them read the untouched pad.
+    PartlyTared {
+        /// So many do.
+        tared: usize,
+        /// Of so many.
+        tables: usize,
+    },
+}
+
+impl fmt::Display for ContactsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoTable => f.write_str("there is no table"),
+            Self::PartlyTared { tared, tables } => write!(
+                f,
+                "{tared} of these {tables} tables read the untouched pad; give those that do, or those that do not"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for ContactsError {}
+
+impl Contacts {
+    /// Joins the tables. With `count` only so many of their contacts are taken, drawn by the seed.
+    ///
+    /// # Errors
+    /// There is no table, or only some of them read the untouched pad.
+    pub fn of(recordings: Vec<Recording>, count: Option<usize>, seed: u64) -> Result<Self, ContactsError> {
+        let (tared, tables) = (recordings.iter().filter(|it| it.is_tared()).count(), recordings.len());
+        if tared != 0 && tared != tables {
+            return Err(ContactsError::PartlyTared { tared, tables });
+        }
+        let recording = recordings.into_iter().reduce(Recording::then).ok_or(ContactsError::NoTable)?;
+        let mut places = recording.contacts();
+        if let Some(count) = count {
+            SplitMix64::named(seed, "rows").shuffle(&mut places);
+            places.truncate(count);
+        }
+        let rows = recording.tared().rows_at(&places);
+        Ok(Self { recording, places, rows })
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether channels are relative to the untouched pad.
+    pub fn is_tared(&self) -> bool {
+        self.recording.is_tared()
+    }
+
+    /// What the channels are relative to.
+    pub fn zero(&self) -> Zero {
+        if self.is_tared() { Zero::Tared } else { Zero::Raw }
+    }
+
+    /// The pad's own field, calibrated. `field` is the device's; `earlier` what another pad's decoder tells of it.
+    ///
+    /// # Errors
+    /// The contacts give no calibration.
+    pub fn calibration(
+        &self,
+        device: &Device,
+        field: &PadField,
+        earlier: Option<Earlier<'_>>,
+    ) -> Result<Calibration, FitError> {
+        fit(&self.recording, &self.places, device, field, earlier)
+    }
+
+    /// The mean of the nearest contacts.
+    ///
+    /// # Errors
+    /// Too few contacts.
+    pub fn neighbours(&self) -> Result<Decoder, FitError> {
+        neighbours(&self.rows, self.zero()).map(Decoder::from)
+    }
+
+    /// Least squares from the channels to `target`; places are found up to `reach_mm` from the centre.
+    ///
+    /// # Errors
+    /// Too few contacts, or all alike.
+    pub fn regression(&self, target: Target, reach_mm: f64) -> Result<Decoder, FitError> {
+        regression(&self.rows, self.zero(), target, reach_mm).map(Decoder::from)
+    }
+
+    /// Stage II of the paper's network: `start` is trained on. `report` hears each β with its epochs.
+    ///
+    /// # Errors
+    /// Too few contacts.
+    pub fn adapted(
+        &self,
+        mut start: Network,
+        seed: u64,
+        report: impl FnMut(f32, &Epoch),
+    ) -> Result<Adapted, TooFew> {
+        start.zero = self.zero();
+        adapt(&start, examples(&self.rows), seed, report)
+    }
+}

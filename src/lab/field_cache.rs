@@ -1,0 +1,169 @@
+//! The fields of pads, kept from run to run: `$XDG_CACHE_HOME/tactpad`, else `$HOME/.cache/tactpad`.
+//!
+//! A file is named by its device's fingerprint and holds the numbers that the fingerprint is taken from, so a stale or
+//! damaged one is found out and replaced. The folder may be deleted at any time.
+
+use std::ffi::OsString;
+use std::fmt;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process;
+
+#[cfg(feature = "simulator")]
+use crate::mechanics::system::SolveError;
+use crate::pad::device::Device;
+use crate::pad::field::PadField;
+
+/// A pad's field, and whether the next run finds it.
+#[derive(Debug)]
+pub struct Obtained {
+    /// The field.
+    pub field: PadField,
+    /// The file in which it could not be kept, and why.
+    pub not_kept: Option<(PathBuf, io::Error)>,
+}
+
+/// Why there is no field.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum FieldError {
+    /// The pad's equations have no answer here.
+    #[cfg(feature = "simulator")]
+    Unsolved(SolveError),
+    /// It is not known yet, and this program cannot compute it.
+    #[cfg(not(feature = "simulator"))]
+    NoSimulator,
+}
+
+impl fmt::Display for FieldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            #[cfg(feature = "simulator")]
+            Self::Unsolved(error) => write!(f, "the pad cannot be computed: {error}"),
+            #[cfg(not(feature = "simulator"))]
+            Self::NoSimulator => f.write_str(
+                "this pad's field is not known yet, and this program was built without the simulator that computes it; \
+                 build it with the feature \"simulator\"",
+            ),
+        }
+    }
+}
+
+impl std::error::Error for FieldError {}
+
+/// The field of `device`: the program's own for the nominal pad, else the one that is kept, else computed and kept.
+///
+/// While it is computed, which takes some seconds, `progress` hears what is done.
+///
+/// # Errors
+/// The pad cannot be computed. A field that cannot be kept is no error.
+pub fn field_of(device: &Device, progress: impl FnMut(fmt::Arguments<'_>)) -> Result<Obtained, FieldError> {
+    if device.field_text() == Device::nominal().field_text() {
+        return Ok(Obtained { field: PadField::nominal(), not_kept: None });
+    }
+    let path = folder(|name| std::env::var_os(name)).map(|folder| folder.join(file_name(device)));
+    if let Some(field) = path.as_deref().and_then(|path| kept(path, device)) {
+        return Ok(Obtained { field, not_kept: None });
+    }
+    let computed = computed(device, progress)?;
+    let bytes = computed.to_bytes(device);
+    let not_kept = path.and_then(|path| Some((keep(&path, &bytes).err()?, path)));
+    // The file's sensitivities are rounded. What this run computes with is what the next one will find.
+    let field = PadField::from_bytes(&bytes, device).unwrap_or(computed);
+    Ok(Obtained { field, not_kept: not_kept.map(|(error, path)| (path, error)) })
+}
+
+/// Where fields are kept, by the environment's variables; the base must be an absolute path (XDG Base Directory
+/// Specification, version 0.8).
+fn folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+    let absolute = |name| variable(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let base = absolute("XDG_CACHE_HOME").or_else(|| absolute("HOME").map(|home| home.join(".cache")));
+    base.map(|base| base.join("tactpad"))
+}
+
+fn file_name(device: &Device) -> String {
+    format!("{:016x}.field", device.fingerprint())
+}
+
+/// A file that cannot be used is as good as none.
+fn kept(path: &Path, device: &Device) -> Option<PadField> {
+    PadField::from_bytes(&fs::read(path).ok()?, device).ok()
+}
+
+/// Writes a file that others see whole or not at all.
+fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let unfinished = path.with_extension(process::id().to_string());
+    let kept = fs::write(&unfinished, bytes).and_then(|()| fs::rename(&unfinished, path));
+    if kept.is_err() {
+        // It may not even be there.
+        let _ = fs::remove_file(&unfinished);
+    }
+    kept
+}
+
+#[cfg(feature = "simulator")]
+fn computed(device: &Device, mut progress: impl FnMut(fmt::Arguments<'_>)) -> Result<PadField, FieldError> {
+    use crate::mechanics::mesh::Fineness;
+    use crate::mechanics::simulator::Simulator;
+    use crate::quantity::MODULES;
+
+    let mut simulator = Simulator::new(Fineness::STANDARD);
+    for module in 0..MODULES {
+        progress(format_args!("computing the pad's field: module {} of {MODULES}", module + 1));
+        simulator.solve(device, module).map_err(FieldError::Unsolved)?;
+    }
+    progress(format_args!("computing the pad's field: plate"));
+    simulator.field(device).map_err(FieldError::Unsolved)
+}
+
+#[cfg(not(feature = "simulator"))]
+fn computed(_device: &Device, _progress: impl FnMut(fmt::Arguments<'_>)) -> Result<PadField, FieldError> {
+    Err(FieldError::NoSimulator)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder_for(variables: &[(&str, &str)]) -> Option<PathBuf> {
+        folder(|name| variables.iter().find(|(known, _)| *known == name).map(|(_, value)| value.into()))
+    }
+
+    #[test]
+    fn the_folder_is_the_users_cache() {
+        let wanted = |path: &str| Some(PathBuf::from(path));
+        assert_eq!(folder_for(&[("XDG_CACHE_HOME", "/c"), ("HOME", "/h")]), wanted("/c/tactpad"));
+        assert_eq!(folder_for(&[("HOME", "/h")]), wanted("/h/.cache/tactpad"));
+        assert_eq!(folder_for(&[("XDG_CACHE_HOME", ""), ("HOME", "/h")]), wanted("/h/.cache/tactpad"));
+        assert_eq!(folder_for(&[("XDG_CACHE_HOME", "c"), ("HOME", "")]), None);
+    }
+
+    #[test]
+    fn a_kept_file_reads_back_and_another_devices_does_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let (device, field) = (Device::nominal(), PadField::nominal());
+        let path = folder.path().join("new/folder").join(file_name(&device));
+        assert!(kept(&path, &device).is_none());
+        keep(&path, b"damaged").unwrap();
+        assert!(kept(&path, &device).is_none());
+        keep(&path, &field.to_bytes(&device)).unwrap();
+        assert!(kept(&path, &device).is_some_and(|read| read.signals == field.signals));
+        let mut other = device;
+        other.plate.thickness_mm = 1.5;
+        assert!(kept(&path, &other).is_none());
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "nothing unfinished is left");
+    }
+
+    #[test]
+    fn what_cannot_be_written_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let taken = folder.path().join("taken.field");
+        fs::create_dir_all(taken.join("full")).unwrap();
+        assert!(keep(&taken, b"bytes").is_err());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

@@ -1,0 +1,320 @@
+//! Errors of the decoded contacts, and what the temperature adds to them.
+
+use serde::Serialize;
+
+use super::rows::{
+    Reading, Zeros, by_place, is_ordinary, is_same_place, is_usual, less, loads, readings,
+    usual_temperature_c,
+};
+use super::thermal::STEP_C;
+use super::{Decode, Needs};
+use crate::numeric::statistics;
+use crate::quantity::{CHANNELS, Contact};
+use crate::tables::measured::zero::Untouched;
+use crate::tables::measured::{Label, Row, Table};
+
+/// Largest difference of forces that count as the same contact.
+const SAME_FORCE_N: f64 = 0.15;
+
+const NEEDED: &str = "static loads, with unloaded rows";
+const NEEDED_RAW: &str = "static loads";
+const NEEDED_WARM: &str = "static loads of the same places and forces at two temperatures (temp_c), 5 °C \
+                           apart, with unloaded rows at the usual one";
+
+/// Least temperature change from the usual one.
+const CHANGE_C: f64 = 5.0;
+
+/// Errors of decoded contacts against the labels.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DecodedErrors {
+    /// Root of the mean square, Fx, Fy, Fz.
+    pub force_rmse_n: [f64; 3],
+    /// The same of the resultant force.
+    pub resultant_rmse_n: f64,
+    /// Mean magnitude, over Fx, Fy and Fz.
+    pub force_mae_n: f64,
+    /// Mean magnitude, over x and y.
+    pub place_mae_mm: f64,
+    /// Mean distance.
+    pub place_distance_mm: f64,
+    /// Number of contacts.
+    pub contacts: usize,
+}
+
+/// Increase of the mean magnitude of the errors by a change of 10 °C.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DecodedDrift {
+    /// Fx, Fy, Fz.
+    pub force_n: [f64; 3],
+    /// Mean over x and y.
+    pub place_mm: f64,
+    /// Number of compared contacts.
+    pub contacts: usize,
+}
+
+/// Decoded minus labelled.
+#[derive(Clone, Copy)]
+struct Difference {
+    force_n: [f64; 3],
+    place_mm: [f64; 2],
+    resultant_n: f64,
+}
+
+impl Difference {
+    fn of(contact: &Contact, label: &Label) -> Self {
+        let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = *contact;
+        let [x_mm, y_mm, fx_n, fy_n, fz_n] = [x_mm, y_mm, fx_n, fy_n, fz_n].map(f64::from);
+        Self {
+            force_n: [fx_n - label.fx_n, fy_n - label.fy_n, fz_n - label.fz_n],
+            place_mm: [x_mm - label.x_mm, y_mm - label.y_mm],
+            resultant_n: fx_n.hypot(fy_n).hypot(fz_n) - label.resultant_n(),
+        }
+    }
+
+    fn place_magnitude_mm(&self) -> f64 {
+        0.5 * (self.place_mm[0].abs() + self.place_mm[1].abs())
+    }
+}
+
+/// Errors over the static loads of a pad that is as good as new, at the usual temperature, tared. A contact
+/// that comes again counts once, by its first row.
+///
+/// # Errors
+/// No such rows, or no decoder.
+pub fn errors(table: &Table, decode: Option<Decode>) -> Result<DecodedErrors, Needs> {
+    over(table, readings(table, &Zeros::of(table)), NEEDED, decode)
+}
+
+/// The same for a decoder of raw channels, from which nothing is taken off.
+///
+/// # Errors
+/// As for [`errors`].
+pub fn raw_errors(table: &Table, decode: Option<Decode>) -> Result<DecodedErrors, Needs> {
+    let raw = loads(table).filter_map(|(_, row)| Some(Reading { row, uv: row.uv? }));
+    over(table, raw.collect(), NEEDED_RAW, decode)
+}
+
+fn over(
+    table: &Table,
+    found: Vec<Reading>,
+    needed: &'static str,
+    decode: Option<Decode>,
+) -> Result<DecodedErrors, Needs> {
+    let is_ordinary = is_ordinary(table);
+    let found = found.into_iter().filter(|reading| is_ordinary(reading.row));
+    let places = by_place(found.collect(), |reading| &reading.row.label);
+    let found: Vec<Reading> = places.into_iter().flat_map(different).collect();
+    if found.is_empty() {
+        return Err(Needs::Rows(needed));
+    }
+    let decode = decode.ok_or(Needs::Decoder)?;
+    let differences = found.iter().map(|reading| Difference::of(&decode(&reading.uv), &reading.row.label));
+    Ok(summary(&differences.collect::<Vec<_>>()))
+}
+
+/// The first reading of each force at a place.
+fn different(place: Vec<Reading>) -> Vec<Reading> {
+    let mut kept: Vec<Reading> = Vec::new();
+    for reading in place {
+        if !kept.iter().any(|known| is_same_contact(&known.row.label, &reading.row.label)) {
+            kept.push(reading);
+        }
+    }
+    kept
+}
+
+fn summary(differences: &[Difference]) -> DecodedErrors {
+    let mean = |of: &dyn Fn(&Difference) -> f64| statistics::mean(differences.iter().map(of));
+    let rms = |of: &dyn Fn(&Difference) -> f64| statistics::rms(differences.iter().map(of));
+    DecodedErrors {
+        force_rmse_n: [0, 1, 2].map(|axis| rms(&|difference| difference.force_n[axis])),
+        resultant_rmse_n: rms(&|difference| difference.resultant_n),
+        force_mae_n: mean(&|difference| difference.force_n.map(f64::abs).iter().sum::<f64>() / 3.0),
+        place_mae_mm: mean(&Difference::place_magnitude_mm),
+        place_distance_mm: mean(&|difference| difference.place_mm[0].hypot(difference.place_mm[1])),
+        contacts: differences.len(),
+    }
+}
+
+/// A load, and the same contact at the usual temperature.
+struct Pair<'d, 't> {
+    load: &'d Drifted<'t>,
+    same: &'d Drifted<'t>,
+    /// The difference of temperatures in units of 10 °C.
+    steps: f64,
+}
+
+/// A static load, tared by what its session reads unloaded at the usual temperature.
+struct Drifted<'t> {
+    row: &'t Row,
+    uv: [f64; CHANNELS],
+}
+
+/// The increase of the errors when the pad is warmer or colder than when it was tared, per 10 °C. Each
+/// contact is compared with the same place and force at the usual temperature.
+///
+/// # Errors
+/// No such pairs, or no decoder.
+pub fn drift(table: &Table, decode: Option<Decode>) -> Result<DecodedDrift, Needs> {
+    let usual_c = usual_temperature_c(table).ok_or(Needs::Rows(NEEDED_WARM))?;
+    let places = by_place(drifted(table, usual_c), |load| &load.row.label);
+    let pairs: Vec<Pair> = places.iter().flat_map(|place| pairs(place, usual_c)).collect();
+    if pairs.is_empty() {
+        return Err(Needs::Rows(NEEDED_WARM));
+    }
+    let decode = decode.ok_or(Needs::Decoder)?;
+    let error = |load: &Drifted| Difference::of(&decode(&load.uv), &load.row.label);
+    let compared = pairs.iter().map(|pair| (error(pair.load), error(pair.same), pair.steps));
+    Ok(increase(&compared.collect::<Vec<_>>()))
+}
+
+/// Pairs of the loads at one place.
+fn pairs<'d, 't>(place: &'d [Drifted<'t>], usual_c: f64) -> Vec<Pair<'d, 't>> {
+    let (usual, other): (Vec<&Drifted>, Vec<&Drifted>) =
+        place.iter().partition(|load| is_usual(load.row.temp_c, Some(usual_c)));
+    let pair = |load: &&'d Drifted<'t>| {
+        let change_c = (load.row.temp_c? - usual_c).abs();
+        let same = usual.iter().find(|one| is_same_contact(&one.row.label, &load.row.label))?;
+        (change_c >= CHANGE_C).then_some(Pair { load, same, steps: change_c / STEP_C })
+    };
+    other.iter().filter_map(pair).collect()
+}
+
+fn increase(compared: &[(Difference, Difference, f64)]) -> DecodedDrift {
+    let mean = |of: &dyn Fn(&Difference) -> f64| {
+        statistics::mean(compared.iter().map(|(load, same, steps)| (of(load) - of(same)) / steps))
+    };
+    DecodedDrift {
+        force_n: [0, 1, 2].map(|axis| mean(&|difference| difference.force_n[axis].abs())),
+        place_mm: mean(&Difference::place_magnitude_mm),
+        contacts: compared.len(),
+    }
+}
+
+fn drifted(table: &Table, usual_c: f64) -> Vec<Drifted<'_>> {
+    let untouched = Untouched::unloaded(table);
+    let is_zero = |row: &&Row| row.trial.is_none() && untouched.is(row) && is_near(row, usual_c);
+    let zeros: Vec<(Option<usize>, [f64; CHANNELS])> =
+        table.rows.iter().filter(is_zero).filter_map(|row| Some((row.session, row.uv?))).collect();
+    let all: Vec<_> = zeros.iter().map(|(_, uv)| *uv).collect();
+    // A session without zeros of its own has those of all.
+    let zero_uv = |wanted: Option<usize>| {
+        let own = zeros.iter().filter(|(session, _)| *session == wanted).map(|(_, uv)| *uv);
+        let own: Vec<_> = own.collect();
+        statistics::mean_vector(if own.is_empty() { &all } else { &own })
+    };
+    if all.is_empty() {
+        return Vec::new();
+    }
+    let sessions = [None].into_iter().chain((0..table.sessions.len()).map(Some));
+    let zeros: Vec<_> = sessions.map(|session| (session, zero_uv(session))).collect();
+    let zero_of = |row: &Row| zeros.iter().find(|(session, _)| *session == row.session).map(|(_, uv)| *uv);
+    loads(table).filter_map(|(_, row)| Some(Drifted { row, uv: less(&row.uv?, &zero_of(row)?) })).collect()
+}
+
+fn is_near(row: &Row, usual_c: f64) -> bool {
+    row.temp_c.is_some() && is_usual(row.temp_c, Some(usual_c))
+}
+
+fn is_same_contact(one: &Label, other: &Label) -> bool {
+    let apart_n = (one.fx_n - other.fx_n).hypot(one.fy_n - other.fy_n).hypot(one.fz_n - other.fz_n);
+    is_same_place(one, other) && apart_n <= SAME_FORCE_N
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixture::{row, table};
+    use super::*;
+
+    /// Channels 0..5 are x, y in mm and the forces in N, each a thousandfold.
+    fn decode(uv: &[f64; CHANNELS]) -> Contact {
+        let [x_mm, y_mm, fx_n, fy_n, fz_n] = std::array::from_fn(|k| (uv[k] / 1e3) as f32);
+        Contact { x_mm, y_mm, fx_n, fy_n, fz_n }
+    }
+
+    /// A contact whose channels are off by `off` (x, y, fx, fy, fz), beside a zero of 70 µV.
+    fn contact(label: Label, off: [f64; 5], temp_c: f64) -> Row {
+        let truth = [label.x_mm, label.y_mm, label.fx_n, label.fy_n, label.fz_n];
+        let uv = |k: usize| 70.0 + if k < 5 { 1e3 * (truth[k] + off[k]) } else { 0.0 };
+        Row { temp_c: Some(temp_c), ..row(label, std::array::from_fn(uv)) }
+    }
+
+    fn zero(temp_c: f64) -> Row {
+        contact(Label::default(), [0.0; 5], temp_c)
+    }
+
+    const LABEL: Label = Label { x_mm: 3.0, y_mm: -4.0, fx_n: 0.0, fy_n: 3.0, fz_n: 4.0 };
+
+    #[test]
+    fn errors_are_those_that_were_put_in() {
+        let off = [3.0, -4.0, 0.3, 0.3, 0.4];
+        let elsewhere = Label { x_mm: 9.0, ..LABEL };
+        let rows = [
+            zero(25.0),
+            contact(LABEL, off, 25.0),
+            contact(elsewhere, off.map(|off| -off), 25.0),
+            contact(LABEL, [1.0; 5], 25.0),
+        ];
+        let found = errors(&table(rows), Some(&decode)).unwrap();
+        let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-5, "{found} {expected}");
+        near(found.force_rmse_n[0], 0.3);
+        near(found.force_rmse_n[2], 0.4);
+        near(found.force_mae_n, 1.0 / 3.0);
+        near(found.place_mae_mm, 3.5);
+        near(found.place_distance_mm, 5.0);
+        let [more, less] =
+            [1.0_f64, -1.0].map(|sign| (0.3_f64).hypot(3.0 + sign * 0.3).hypot(4.0 + sign * 0.4) - 5.0);
+        near(found.resultant_rmse_n, ((more * more + less * less) / 2.0).sqrt());
+        assert_eq!(found.contacts, 2);
+    }
+
+    #[test]
+    fn raw_errors_keep_the_zero() {
+        let found = raw_errors(&table([contact(LABEL, [0.0; 5], 25.0)]), Some(&decode)).unwrap();
+        assert!(
+            (found.place_mae_mm - 0.07).abs() < 1e-5 && (found.force_mae_n - 0.07).abs() < 1e-5,
+            "{found:?}"
+        );
+        assert_eq!(raw_errors(&table([zero(25.0)]), Some(&decode)), Err(Needs::Rows(NEEDED_RAW)));
+    }
+
+    #[test]
+    fn drift_is_the_increase_per_ten_degrees() {
+        let rows = [-20.0, 0.0, 10.0, 0.0, 0.0].map(|change_c: f64| {
+            let share = change_c.abs() / 10.0;
+            // Errors that are there anyway, and what the temperature adds.
+            let off = [
+                0.5 + 0.1 * share,
+                0.5 + 0.16 * share,
+                0.1 + 0.117 * share,
+                -0.1 - 0.102 * share,
+                0.191 * share,
+            ];
+            contact(LABEL, off, 25.0 + change_c)
+        });
+        // Unloaded rows at the other temperatures have drifted as well, and are not used.
+        let rows =
+            rows.into_iter().chain([zero(25.0), contact(Label::default(), [1.0, 0.0, 0.0, 0.0, 0.0], 35.0)]);
+        let found = drift(&table(rows), Some(&decode)).unwrap();
+        for (found, expected) in
+            found.force_n.into_iter().chain([found.place_mm]).zip([0.117, 0.102, 0.191, 0.13])
+        {
+            assert!((found - expected).abs() < 1e-5, "{found} {expected}");
+        }
+        assert_eq!(found.contacts, 2);
+    }
+
+    #[test]
+    fn it_says_what_it_needs() {
+        let untared = table([contact(LABEL, [0.0; 5], 25.0)]);
+        let cold = table([zero(25.0), contact(LABEL, [0.0; 5], 25.0)]);
+        for table in [Table::default(), untared] {
+            assert_eq!(errors(&table, Some(&decode)), Err(Needs::Rows(NEEDED)));
+            assert_eq!(drift(&table, Some(&decode)), Err(Needs::Rows(NEEDED_WARM)));
+        }
+        assert_eq!(drift(&cold, Some(&decode)), Err(Needs::Rows(NEEDED_WARM)));
+        assert_eq!(errors(&cold, None), Err(Needs::Decoder));
+        let both = table([zero(25.0), contact(LABEL, [0.0; 5], 25.0), contact(LABEL, [0.0; 5], 35.0)]);
+        assert_eq!(drift(&both, None), Err(Needs::Decoder));
+    }
+}

@@ -1,0 +1,11 @@
+//! The laboratory: what is computed offline from tables, pads and decoders. Nothing here runs while a game is played.
+
+pub mod ablation;
+pub mod calibration;
+pub mod contacts;
+pub mod evaluation;
+pub mod field_cache;
+pub mod layout;
+pub mod metrology;
+pub mod rig;
+pub mod scdf;

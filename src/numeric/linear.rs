@@ -1,0 +1,260 @@
+//! Symmetric positive definite systems: small ones of a known size, without allocation, and large ones.
+//!
+//! Both by Cholesky's factorisation, A = L Lᵀ (G. H. Golub, C. F. Van Loan, Matrix Computations, section 4.2).
+
+/// The factor L of a small matrix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Factor<const N: usize> {
+    lower: [[f64; N]; N],
+}
+
+impl<const N: usize> Factor<N> {
+    /// Factorises; only the lower triangle is read. `None` if the matrix is not positive definite, or not finite.
+    pub fn of(matrix: &[[f64; N]; N]) -> Option<Self> {
+        let mut lower = [[0.0; N]; N];
+        for row in 0..N {
+            for column in 0..=row {
+                // Lᵢⱼ = (Aᵢⱼ − Σₖ Lᵢₖ Lⱼₖ)/Lⱼⱼ over k < j, Lᵢᵢ = √(Aᵢᵢ − Σₖ Lᵢₖ²).
+                let sum: f64 = (0..column).map(|k| lower[row][k] * lower[column][k]).sum();
+                let rest = matrix[row][column] - sum;
+                lower[row][column] = if row == column { root(rest)? } else { rest / lower[column][column] };
+            }
+        }
+        Some(Self { lower })
+    }
+
+    /// The x with L x = b. Its square is bᵀ A⁻¹ b.
+    pub fn solve_lower(&self, right: &[f64; N]) -> [f64; N] {
+        // Forward substitution: xᵢ = (bᵢ − Σₖ Lᵢₖ xₖ)/Lᵢᵢ over k < i.
+        let mut x = *right;
+        for row in 0..N {
+            let sum: f64 = (0..row).map(|k| self.lower[row][k] * x[k]).sum();
+            x[row] = (x[row] - sum) / self.lower[row][row];
+        }
+        x
+    }
+
+    /// ln det A = 2 Σ ln Lᵢᵢ.
+    pub fn log_determinant(&self) -> f64 {
+        (0..N).map(|row| 2.0 * libm::log(self.lower[row][row])).sum()
+    }
+
+    /// The x with A x = b.
+    pub fn solve(&self, right: &[f64; N]) -> [f64; N] {
+        // Backward substitution of Lᵀ x = y: xᵢ = (yᵢ − Σₖ Lₖᵢ xₖ)/Lᵢᵢ over k > i.
+        let mut x = self.solve_lower(right);
+        for row in (0..N).rev() {
+            let sum: f64 = (row + 1..N).map(|k| self.lower[k][row] * x[k]).sum();
+            x[row] = (x[row] - sum) / self.lower[row][row];
+        }
+        x
+    }
+
+    /// The inverse of A.
+    pub fn inverse(&self) -> [[f64; N]; N] {
+        std::array::from_fn(|column| {
+            self.solve(&std::array::from_fn(|row| f64::from(u8::from(row == column))))
+        })
+    }
+}
+
+/// The root of a pivot; `None` if that is not positive and finite.
+fn root(pivot: f64) -> Option<f64> {
+    (pivot > 0.0 && pivot.is_finite()).then(|| libm::sqrt(pivot))
+}
+
+/// A large symmetric matrix, row by row; only its lower triangle is kept up to date.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Symmetric {
+    size: usize,
+    rows: Vec<f64>,
+}
+
+impl Symmetric {
+    /// A matrix of zeros.
+    pub fn zeros(size: usize) -> Self {
+        Self { size, rows: vec![0.0; size * size] }
+    }
+
+    /// Adds to a diagonal entry.
+    pub fn add_diagonal(&mut self, at: usize, value: f64) {
+        if let Some(entry) = self.rows.get_mut(at * self.size + at) {
+            *entry += value;
+        }
+    }
+
+    /// Adds weight · v vᵀ. Zeros of v cost nothing but a look.
+    pub fn add_product(&mut self, weight: f64, vector: &[f64]) {
+        let entries: Vec<(usize, f64)> =
+            vector.iter().copied().enumerate().filter(|(_, value)| *value != 0.0).collect();
+        for (index, (row, left)) in entries.iter().enumerate() {
+            let line = &mut self.rows[row * self.size..][..self.size];
+            for (column, right) in &entries[..=index] {
+                line[*column] += weight * left * right;
+            }
+        }
+    }
+
+    /// Subtracts v vᵀ for each of these vectors, which have few zeros.
+    pub fn subtract_squares(&mut self, vectors: &[Vec<f64>]) {
+        for row in 0..self.size {
+            let line = &mut self.rows[row * self.size..][..=row];
+            for vector in vectors {
+                let left = vector[row];
+                line.iter_mut().zip(vector).for_each(|(entry, right)| *entry -= left * right);
+            }
+        }
+    }
+
+    /// Adds another matrix.
+    pub fn add(&mut self, other: &Self) {
+        self.rows.iter_mut().zip(&other.rows).for_each(|(entry, other)| *entry += other);
+    }
+
+    /// Factorises in place; `None` if it is not positive definite.
+    pub fn factorised(mut self) -> Option<LargeFactor> {
+        let size = self.size;
+        for row in 0..size {
+            // Row by row, as in [`Factor::of`]; the rows above are done.
+            let (above, from_row) = self.rows.split_at_mut(row * size);
+            let line = &mut from_row[..size];
+            for column in 0..row {
+                let other = &above[column * size..][..=column];
+                line[column] = (line[column] - dot(&line[..column], &other[..column])) / other[column];
+            }
+            line[row] = root(line[row] - dot(&line[..row], &line[..row]))?;
+        }
+        Some(LargeFactor { size, lower: self.rows })
+    }
+}
+
+/// The factor L of a large matrix.
+#[derive(Clone, Debug)]
+pub struct LargeFactor {
+    size: usize,
+    lower: Vec<f64>,
+}
+
+impl LargeFactor {
+    /// The x with L x = b. Its square is bᵀ A⁻¹ b.
+    pub fn solve_lower(&self, right: &[f64]) -> Vec<f64> {
+        let mut x = right.to_vec();
+        for row in 0..self.size {
+            let line = &self.lower[row * self.size..][..=row];
+            x[row] = (x[row] - dot(&line[..row], &x[..row])) / line[row];
+        }
+        x
+    }
+
+    /// The x with A x = b. `right` has as many numbers as the matrix rows.
+    pub fn solve(&self, right: &[f64]) -> Vec<f64> {
+        // Backward substitution, column by column: once xᵢ is known, Lᵢₖ xᵢ is taken off all k < i.
+        let mut x = self.solve_lower(right);
+        for row in (0..self.size).rev() {
+            let line = &self.lower[row * self.size..][..=row];
+            x[row] /= line[row];
+            let value = x[row];
+            x[..row].iter_mut().zip(line).for_each(|(x, factor)| *x -= factor * value);
+        }
+        x
+    }
+
+    /// The diagonal of the inverse of A.
+    pub fn inverse_diagonal(&self) -> Vec<f64> {
+        // A⁻¹ = L⁻ᵀ L⁻¹, so (A⁻¹)ᵢᵢ is the square of column i of L⁻¹, whose entries above i are zero.
+        let mut column = vec![0.0; self.size];
+        let mut square = |at: usize| {
+            column[at..].fill(0.0);
+            column[at] = 1.0 / self.lower[at * self.size + at];
+            for row in at + 1..self.size {
+                let line = &self.lower[row * self.size..][..=row];
+                column[row] = -dot(&line[at..row], &column[at..row]) / line[row];
+            }
+            column[at..].iter().map(|entry| entry * entry).sum()
+        };
+        (0..self.size).map(&mut square).collect()
+    }
+
+    /// ln det A = 2 Σ ln Lᵢᵢ.
+    pub fn log_determinant(&self) -> f64 {
+        (0..self.size).map(|row| 2.0 * self.lower[row * self.size + row].ln()).sum()
+    }
+}
+
+/// Four sums side by side, so that the loop becomes vectors; the order is fixed.
+fn dot(left: &[f64], right: &[f64]) -> f64 {
+    let (left, right) = (left.as_chunks::<4>(), right.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (left, right) in left.0.iter().zip(right.0) {
+        sums.iter_mut().zip(left.iter().zip(right)).for_each(|(sum, (left, right))| *sum += left * right);
+    }
+    let rest: f64 = left.1.iter().zip(right.1).map(|(left, right)| left * right).sum();
+    sums.iter().sum::<f64>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::random::SplitMix64;
+
+    /// A random positive definite matrix.
+    fn matrix<const N: usize>(seed: u64) -> [[f64; N]; N] {
+        let mut random = SplitMix64::new(seed);
+        let factors: [[f64; N]; N] = [[0; N]; N].map(|row| row.map(|_| f64::from(random.uniform())));
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let product: f64 = factors[i].iter().zip(&factors[j]).map(|(a, b)| a * b).sum();
+                product + if i == j { 0.1 } else { 0.0 }
+            })
+        })
+    }
+
+    #[test]
+    fn solutions_solve() {
+        let (a, b) = (matrix::<5>(1), [1.0, -2.0, 3.0, 0.5, 7.0]);
+        let factor = Factor::of(&a).unwrap();
+        let x = factor.solve(&b);
+        let product = a.map(|row| row.iter().zip(x).map(|(a, x)| a * x).sum::<f64>());
+        assert!(product.iter().zip(b).all(|(found, wanted)| (found - wanted).abs() < 1e-9));
+        let inverse = factor.inverse();
+        let entry: f64 = (0..5).map(|k| a[2][k] * inverse[k][2]).sum();
+        assert!((entry - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn large_and_small_agree() {
+        let (a, b) = (matrix::<9>(2), [0.3, 1.0, -2.0, 3.0, 0.5, 7.0, 0.0, -1.0, 2.0]);
+        let mut large = Symmetric::zeros(9);
+        // A sum of products of the columns of its factor is the matrix.
+        let small = Factor::of(&a).unwrap();
+        for column in 0..9 {
+            let vector: Vec<f64> = small.lower.iter().map(|row| row[column]).collect();
+            large.add_product(0.5, &vector);
+        }
+        let half = large.clone();
+        large.add(&half);
+        large.subtract_squares(&[b.to_vec()]);
+        large.add_product(1.0, &b);
+        let factor = large.factorised().unwrap();
+        assert!(factor.solve(&b).iter().zip(small.solve(&b)).all(|(one, other)| (one - other).abs() < 1e-8));
+        let inverse = small.inverse();
+        let diagonal = factor.inverse_diagonal();
+        assert!((0..9).all(|k| (diagonal[k] / inverse[k][k] - 1.0).abs() < 1e-8));
+        let form: f64 = b.iter().zip(small.solve(&b)).map(|(b, x)| b * x).sum();
+        let half: f64 = factor.solve_lower(&b).iter().map(|x| x * x).sum();
+        assert!((half - form).abs() < 1e-8);
+        let determinant: f64 = (0..9).map(|k| small.lower[k][k].powi(2)).product();
+        assert!((factor.log_determinant() - determinant.ln()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_not_positive_definite_has_no_factor() {
+        assert_eq!(Factor::of(&[[1.0, 2.0], [2.0, 1.0]]), None);
+        assert_eq!(Factor::of(&[[f64::NAN]]), None);
+        let mut large = Symmetric::zeros(2);
+        assert!(large.clone().factorised().is_none());
+        large.add_diagonal(0, 1.0);
+        large.add_diagonal(1, 2.0);
+        assert!(large.factorised().is_some());
+    }
+}

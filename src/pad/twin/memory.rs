@@ -1,0 +1,156 @@
+//! Memory of the strains: hysteresis as play operators (Prandtl and Ishlinskii), creep as a Prony series.
+
+use crate::pad::device::behaviour::{Behaviour, Play, Prony};
+use crate::quantity::CHANNELS;
+
+/// The state of all play operators and Prony terms of a pad.
+#[derive(Clone, Debug)]
+pub(super) struct Memory {
+    plays: Vec<(Play, [f64; CHANNELS])>,
+    terms: Vec<(Prony, [f64; CHANNELS])>,
+    /// The strains last seen.
+    strain_uv: [f64; CHANNELS],
+}
+
+impl Memory {
+    /// A pad that was never touched.
+    pub(super) fn new(behaviour: &Behaviour) -> Self {
+        let Behaviour { hysteresis, creep, .. } = behaviour;
+        Self {
+            plays: hysteresis.iter().map(|play| (*play, [0.0; CHANNELS])).collect(),
+            terms: creep.iter().map(|term| (*term, [0.0; CHANNELS])).collect(),
+            strain_uv: [0.0; CHANNELS],
+        }
+    }
+
+    /// The strains with hysteresis and creep, when they went evenly from the last ones to these within `after_s`.
+    pub(super) fn follow(&mut self, after_s: f64, strain_uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+        let mut read_uv = *strain_uv;
+        for (play, states) in &mut self.plays {
+            for (channel, state) in
+                states.iter_mut().enumerate().filter(|(channel, _)| play.channels[*channel])
+            {
+                let strain = strain_uv[channel];
+                // Play operator: p ← min(max(p, e − r), e + r), adds w (p − e).
+                *state = state.clamp(strain - play.threshold_uv, strain + play.threshold_uv);
+                read_uv[channel] += play.share * (*state - strain);
+            }
+        }
+        for (term, states) in &mut self.terms {
+            // Prony term: the strain low-passed with τ, adds its share.
+            let kept = libm::exp(-after_s / term.time_s);
+            for (channel, state) in
+                states.iter_mut().enumerate().filter(|(channel, _)| term.channels[*channel])
+            {
+                let ends = [self.strain_uv[channel], strain_uv[channel]];
+                *state = low_passed(*state, ends, after_s / term.time_s, kept);
+                read_uv[channel] += term.share * *state;
+            }
+        }
+        self.strain_uv = *strain_uv;
+        read_uv
+    }
+}
+
+/// The state of a first-order low pass after `times` time constants in which its input went evenly between two values;
+/// `kept` is exp(−`times`).
+fn low_passed(state: f64, [from, to]: [f64; 2], times: f64, kept: f64) -> f64 {
+    if times <= 0.0 {
+        return state;
+    }
+    // The input is a ramp of slope v per time constant; the low pass follows it with the lag v, and what differs decays:
+    // y = to − v + (y₀ − from + v) exp(−times).
+    let lag = (to - from) / times;
+    to - lag + (state - from + lag) * kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [bool; CHANNELS] = [true; CHANNELS];
+
+    fn memory(hysteresis: Vec<Play>, creep: Vec<Prony>) -> Memory {
+        Memory::new(&Behaviour { hysteresis, creep, ..Behaviour::IDEAL })
+    }
+
+    fn reads(memory: &mut Memory, after_s: f64, strain_uv: f64) -> f64 {
+        memory.follow(after_s, &[strain_uv; CHANNELS])[0]
+    }
+
+    #[test]
+    fn a_prony_step_relaxes_to_its_plateau() {
+        let mut memory = memory(
+            vec![],
+            vec![
+                Prony { channels: ALL, time_s: 4.0, share: 0.1 },
+                Prony { channels: ALL, time_s: 40.0, share: 0.05 },
+            ],
+        );
+        assert_eq!(reads(&mut memory, 0.0, 1000.0), 1000.0, "a sudden load has not crept");
+        for step in 1..=600 {
+            let seconds = f64::from(step) * 0.5;
+            let wanted =
+                1000.0 + 100.0 * (1.0 - (-seconds / 4.0).exp()) + 50.0 * (1.0 - (-seconds / 40.0).exp());
+            assert!((reads(&mut memory, 0.5, 1000.0) - wanted).abs() < 1e-9, "{seconds} s");
+        }
+        assert!((reads(&mut memory, 1e6, 1000.0) - 1150.0).abs() < 1e-9);
+        assert!((reads(&mut memory, 0.0, 0.0) - 150.0).abs() < 1e-9, "what crept comes back slowly");
+    }
+
+    #[test]
+    fn a_ramp_creeps_the_same_in_one_step_as_in_many() {
+        let term = || memory(vec![], vec![Prony { channels: ALL, time_s: 0.7, share: 0.2 }]);
+        let (mut one, mut many) = (term(), term());
+        let whole = reads(&mut one, 2.0, 500.0);
+        let parts = (1..=1000).map(|part| reads(&mut many, 0.002, f64::from(part) * 0.5)).last().unwrap();
+        assert!((whole - parts).abs() < 1e-9, "{whole} {parts}");
+        // Of a ramp, a low pass reads the end less the rise within a time constant, once the start is forgotten.
+        let wanted = 500.0 + 0.2 * (500.0 - 250.0 * 0.7 * (1.0 - (-2.0_f64 / 0.7).exp()));
+        assert!((whole - wanted).abs() < 1e-9, "{whole} {wanted}");
+    }
+
+    #[test]
+    fn a_play_operator_closes_its_loop() {
+        let play = Play { channels: ALL, threshold_uv: 100.0, share: 0.25 };
+        let mut memory = memory(vec![play], vec![]);
+        let up = |level: i32| f64::from(level) * 10.0;
+        let loading: Vec<f64> = (0..=100).map(|level| reads(&mut memory, 0.01, up(level))).collect();
+        let unloading: Vec<f64> = (0..=100).rev().map(|level| reads(&mut memory, 0.01, up(level))).collect();
+        let again: Vec<f64> = (0..=100).map(|level| reads(&mut memory, 0.01, up(level))).collect();
+        assert_eq!(loading[100], 1000.0 - 25.0);
+        assert!(
+            unloading[20..=80]
+                .iter()
+                .zip(loading[20..=80].iter().rev())
+                .all(|(down, up)| (down - up - 50.0).abs() < 1e-9)
+        );
+        assert_eq!(again[100], loading[100], "the loop closes");
+        assert_eq!(unloading[100], 25.0, "what is left at rest");
+        // Its area is that of the parallelogram: twice the share's width over the stroke without the turns.
+        let area: f64 = unloading.iter().rev().zip(&again).map(|(down, up)| 10.0 * (down - up)).sum();
+        assert!((area - 50.0 * (1000.0 - 200.0)).abs() < 600.0, "{area}");
+    }
+
+    #[test]
+    fn rates_do_not_matter_to_friction() {
+        let play = Play { channels: ALL, threshold_uv: 30.0, share: 0.4 };
+        let (mut slow, mut fast) = (memory(vec![play], vec![]), memory(vec![play], vec![]));
+        for strain_uv in [0.0, 300.0, 120.0, 500.0, -40.0] {
+            assert_eq!(reads(&mut slow, 100.0, strain_uv), reads(&mut fast, 1e-3, strain_uv));
+        }
+    }
+
+    #[test]
+    fn channels_that_are_left_out_remember_nothing() {
+        let mut channels = ALL;
+        channels[4] = false;
+        let mut memory = memory(
+            vec![Play { channels, threshold_uv: 100.0, share: 0.5 }],
+            vec![Prony { channels, time_s: 1.0, share: 0.5 }],
+        );
+        let read_uv = memory.follow(10.0, &[1000.0; CHANNELS]);
+        assert_eq!(read_uv[4], 1000.0);
+        assert!(read_uv[3] != 1000.0 && read_uv[5] == read_uv[3]);
+    }
+}

@@ -1,0 +1,126 @@
+//! The pad in time: contact → nine channels, raw.
+
+use std::f64::consts::TAU;
+
+use super::bridges_of;
+use super::delay::Delay;
+use super::memory::Memory;
+use super::noise::{Lasting, Walk};
+use crate::numeric::random::SplitMix64;
+use crate::pad::device::Device;
+use crate::pad::device::behaviour::{Ageing, Behaviour, Mains, Noise, Sampling};
+use crate::pad::field::PadField;
+use crate::pad::readout::Readout;
+use crate::quantity::{CHANNELS, Contact};
+
+/// What surrounds a reading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circumstances {
+    /// Temperature of the pad.
+    pub temperature_c: f64,
+    /// Cycles of load that it has behind it.
+    pub cycles: f64,
+}
+
+/// A pad whose state goes on in time.
+#[derive(Clone, Debug)]
+pub struct TwinPad {
+    field: PadField,
+    readout: Readout,
+    ageing: Ageing,
+    noise: Noise,
+    mains: Mains,
+    sampling: Sampling,
+    memory: Memory,
+    delay: Delay,
+    relative: [Lasting; CHANNELS],
+    walks: [Walk; CHANNELS],
+    white: SplitMix64,
+    /// Where the mains began, in turns.
+    mains_phase: f64,
+    at_s: f64,
+}
+
+impl TwinPad {
+    /// A pad at rest. `field` is that of `device`, whose scatter is drawn from the seed.
+    pub fn new(device: &Device, field: &PadField, seed: u64) -> Self {
+        let device = super::drawn(device, seed);
+        let Behaviour { ageing, noise, mains, sampling, .. } = device.behaviour;
+        let mut starts = SplitMix64::named(seed, "channels");
+        let mut stream = || SplitMix64::new(starts.next_bits());
+        Self {
+            field: PadField {
+                signals: field.signals.clone(),
+                sums: field.sums.clone(),
+                sensitivities: Vec::new(),
+            },
+            readout: Readout::of(&device),
+            ageing,
+            noise,
+            mains,
+            sampling,
+            memory: Memory::new(&device.behaviour),
+            delay: Delay::new(sampling.skew_us),
+            relative: std::array::from_fn(|_| Lasting::new(stream(), noise.share_time_s)),
+            walks: std::array::from_fn(|_| Walk::new(stream())),
+            white: SplitMix64::named(seed, "white"),
+            mains_phase: f64::from(SplitMix64::named(seed, "mains").fraction()),
+            at_s: 0.0,
+        }
+    }
+
+    /// What the channels read `after_s` after the last reading, in microvolts: raw, not tared.
+    ///
+    /// Between the two the strains went evenly. A contact beyond the field's radius, or one that is not finite, reads as
+    /// [`InfluenceField::strain_uv`](crate::pad::influence::InfluenceField::strain_uv) says.
+    pub fn read(&mut self, after_s: f64, contact: &Contact, around: &Circumstances) -> [f64; CHANNELS] {
+        self.read_all(after_s, std::slice::from_ref(contact), around)
+    }
+
+    /// The same of several fingers.
+    pub fn read_all(
+        &mut self,
+        after_s: f64,
+        contacts: &[Contact],
+        around: &Circumstances,
+    ) -> [f64; CHANNELS] {
+        self.at_s += after_s;
+        let strain_uv = self.readout.strain_uv(&bridges_of(&self.field, contacts));
+        let remembered_uv = self.memory.follow(after_s, &strain_uv);
+        let aged_uv =
+            std::array::from_fn(|channel| self.left(channel, around.cycles) * remembered_uv[channel]);
+        let mut signal_uv = self.readout.signal_uv(&aged_uv, around.temperature_c);
+        for ((uv, relative), share) in signal_uv.iter_mut().zip(&mut self.relative).zip(self.noise.share) {
+            *uv *= 1.0 + share * relative.next(after_s);
+        }
+        let shown_uv = self.delay.show(self.at_s, signal_uv);
+        let zero_uv = self.readout.zero_uv(around.temperature_c);
+        std::array::from_fn(|channel| {
+            let added_uv = self.added_uv(channel, after_s);
+            self.converted(shown_uv[channel] + zero_uv[channel] + added_uv)
+        })
+    }
+
+    /// Share of a channel's strain that is left after these cycles of load.
+    fn left(&self, channel: usize, cycles: f64) -> f64 {
+        let Ageing { share, cycles: whole, onset_cycles } = &self.ageing;
+        1.0 - share[channel] * libm::log1p(cycles / onset_cycles) / libm::log1p(whole / onset_cycles)
+    }
+
+    /// Noise, drift and pickup.
+    fn added_uv(&mut self, channel: usize, after_s: f64) -> f64 {
+        let Noise { additive_uv, drift_uv_per_h, walk_uv, .. } = &self.noise;
+        let white_uv = additive_uv[channel] * f64::from(self.white.normal());
+        let walk_uv = walk_uv[channel] * self.walks[channel].next(after_s);
+        let sampled_s = self.at_s - self.sampling.skew_us[channel] * 1e-6;
+        let turns = self.mains_phase + self.mains.frequency_hz * sampled_s;
+        let mains_uv = self.mains.amplitude_uv[channel] * libm::sin(TAU * (turns - libm::floor(turns)));
+        white_uv + walk_uv + drift_uv_per_h[channel] * self.at_s / 3600.0 + mains_uv
+    }
+
+    fn converted(&self, uv: f64) -> f64 {
+        let Sampling { range_uv, step_uv, .. } = self.sampling;
+        let kept_uv = uv.clamp(-range_uv, range_uv);
+        if step_uv > 0.0 { libm::round(kept_uv / step_uv) * step_uv } else { kept_uv }
+    }
+}

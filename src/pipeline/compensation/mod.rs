@@ -1,0 +1,40 @@
+//! What a strain owes to something else than the contact at hand: earlier loads and the temperature.
+
+pub mod creep;
+pub mod hysteresis;
+pub mod memory;
+pub mod thermal;
+pub mod thermometer;
+
+use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
+use crate::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS};
+use crate::pipeline::compensation::thermal::Thermal;
+use crate::quantity::CHANNELS;
+
+/// What is known of a pad beside what a contact makes it read, so that it can be taken off. Any decoder can have one.
+///
+/// Channel by channel, a pad at temperature T reads
+///
+/// ```text
+/// r = z + β (T − T₀) + (1 + γ (T − T₀)) s,    s = e + w c + Σⱼ wⱼ (pⱼ − e)
+/// ```
+///
+/// where e is what the contact at hand makes it read, z the zero, β and γ the coefficients of [`Thermal`], c the state of
+/// [`Creep`] and pⱼ those of [`Hysteresis`]. A decoder takes e.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compensation {
+    /// z in µV: what the untouched pad reads at the reference temperature, if it was calibrated by a table that never
+    /// reads it. In play the zero is measured.
+    pub zero_uv: Option<[f64; CHANNELS]>,
+    /// How the channels follow the temperature, if it was calibrated at several.
+    pub thermal: Option<Thermal>,
+    /// How much the channels creep.
+    pub creep: Creep,
+    /// What the channels remember of earlier loads.
+    pub hysteresis: Hysteresis,
+}
+
+impl Compensation {
+    /// Of a pad of which nothing is known: nothing is taken off.
+    pub const NONE: Self = Self { zero_uv: None, thermal: None, creep: NO_CREEP, hysteresis: NO_HYSTERESIS };
+}

@@ -1,0 +1,153 @@
+//! The contact stage: from a sample to the contact that it shows, and what is left of it all when something interrupts.
+
+use firmware_proto::sample::Sample;
+
+use super::Decoder;
+use super::touch::{Touch, TouchState};
+use super::uncertainty::Estimate;
+use super::watch::{Warning, Watch};
+use crate::pipeline::compensation::memory::Memory;
+use crate::pipeline::compensation::thermometer::Thermometer;
+use crate::pipeline::health::Health;
+use crate::pipeline::interruption::{Cause, Effect, Effects};
+use crate::pipeline::probe::{Probe, Stage};
+use crate::pipeline::signal::{Conditioned, Scale, Signal};
+use crate::quantity::{Contact, Strain};
+use crate::time::StreamInstant;
+
+/// What a sample comes to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
+    /// The contact; `None` if nothing touches the pad.
+    Contact(Option<Contact>),
+    /// Nothing can be said yet: the zero is being measured.
+    Taring,
+    /// Nothing can be said: a channel cannot be trusted.
+    Faulty,
+}
+
+/// Signal, compensation, decoder, touch and watch:
+///
+/// ```text
+/// sample ─signal→ strain ─thermometer→ strain at T₀ ─memory→ e ─decoder→ contact ─touch→ touched or not ─watch→ warning
+///        less z           ÷ gain                    less the past
+/// ```
+///
+/// From the sample before, signal and thermometer know whether the pad was touched, signal also what warmth has added and what
+/// the past has left behind, and memory the e that it follows.
+#[derive(Clone, Debug)]
+pub struct ContactStage {
+    signal: Signal,
+    thermometer: Thermometer,
+    memory: Memory,
+    decoder: Decoder,
+    touch: Touch,
+    watch: Watch,
+    /// What was decoded last; `None` if the last sample could not be.
+    strain: Option<Strain>,
+}
+
+impl ContactStage {
+    /// A stage that has seen nothing: it measures its zero first. `filter_samples` is the mean filter's window.
+    pub fn new(decoder: Decoder, filter_samples: usize) -> Self {
+        Self {
+            signal: Signal::new(filter_samples),
+            thermometer: Thermometer::of(decoder.compensation.thermal),
+            memory: Memory::of(&decoder.compensation),
+            touch: Touch::new(),
+            watch: Watch::new(decoder.inverse()),
+            decoder,
+            strain: None,
+        }
+    }
+
+    /// The channels of the last sample as the decoder got them; `None` if they could not be trusted.
+    pub const fn strain(&self) -> Option<&Strain> {
+        self.strain.as_ref()
+    }
+
+    /// The contact of the last sample with its uncertainty, if the decoder knows. Decodes it anew.
+    pub fn estimate(&self) -> Option<Estimate> {
+        self.decoder.inverse()?.estimate(self.strain.as_ref()?)
+    }
+
+    /// What the player should know of the touch at hand or the last one; only the inverse decoder tells it.
+    pub const fn warning(&self) -> Option<Warning> {
+        self.watch.warning()
+    }
+
+    /// Changes the filter's window; it grows anew from one sample.
+    pub fn set_filter_samples(&mut self, filter_samples: usize) {
+        self.signal.set_filter_samples(filter_samples);
+    }
+
+    /// Takes the scale that a pad told; false if it was thought to be that anyway. It means an interruption, which the caller
+    /// tells.
+    pub fn set_scale(&mut self, scale: Scale) -> bool {
+        self.signal.set_scale(scale)
+    }
+
+    /// Takes the sample at `at`. Where it shows no contact, the caller tells the interruption.
+    pub fn take<P: Probe>(
+        &mut self,
+        at: StreamInstant,
+        sample: &Sample,
+        health: &mut Health,
+        probe: &mut P,
+    ) -> Reading {
+        let (touched, rest) = (self.touch.is_touched(), self.memory.rest());
+        self.thermometer.follow(at, sample, touched);
+        let added_uv = self.thermometer.added_uv();
+        self.strain = None;
+        match self.signal.condition(at, sample, touched, &rest, &added_uv, health) {
+            Conditioned::Strain(strain) => {
+                let strain = self.memory.freed(&self.thermometer.at_reference(&strain));
+                self.strain = Some(strain);
+                Reading::Contact(self.contact(at, &strain, health, probe))
+            }
+            Conditioned::Taring => {
+                self.memory.wait(at);
+                Reading::Taring
+            }
+            Conditioned::Faulty => {
+                self.memory.wait(at);
+                Reading::Faulty
+            }
+        }
+    }
+
+    /// The contact of a strain that is compensated.
+    fn contact<P: Probe>(
+        &mut self,
+        at: StreamInstant,
+        strain: &Strain,
+        health: &mut Health,
+        probe: &mut P,
+    ) -> Option<Contact> {
+        let (contact, explained) = self.decoder.explain(strain);
+        probe.mark(Stage::Contact);
+        let touch = self.touch.update(at, &contact);
+        if touch == TouchState::Drifted {
+            self.interrupt(Cause::Drifted);
+        }
+        let touched = touch == TouchState::Touched;
+        self.memory.follow(at, touched.then_some(strain));
+        if let Some((explained, inverse)) = explained.zip(self.decoder.inverse()) {
+            self.watch.see(at, strain, &explained, touched, inverse, health);
+        }
+        touched.then_some(contact)
+    }
+
+    /// Does to each part what [`Cause::effects`] says.
+    pub fn interrupt(&mut self, cause: Cause) {
+        let effects = cause.effects();
+        let Effects { memory, thermometer, touch, watch, .. } = effects;
+        self.signal.interrupt(&effects);
+        self.memory.interrupt(memory);
+        if thermometer == Effect::Forget {
+            self.thermometer = Thermometer::of(self.decoder.compensation.thermal);
+        }
+        self.touch.interrupt(touch);
+        self.watch.interrupt(watch, self.decoder.inverse());
+    }
+}

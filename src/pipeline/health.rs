@@ -1,0 +1,39 @@
+//! One record of everything that went wrong on the way from the pad.
+
+use serde::Serialize;
+
+/// Counts since the pipeline was made. Every count but `samples`, `contacts`, `frames_unknown`, `second_fingers` and
+/// `channels_silent` ends a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Health {
+    /// Samples decoded.
+    pub samples: u64,
+    /// Contacts begun.
+    pub contacts: u64,
+    /// Frames whose stuffing, length or checksum was wrong.
+    pub frames_damaged: u64,
+    /// Frames missing by sequence number.
+    pub frames_lost: u64,
+    /// Frames that came again or too late; dropped.
+    pub frames_repeated: u64,
+    /// Sound frames of a newer protocol version; the pad is refused.
+    pub frames_newer: u64,
+    /// Sound frames of a kind this version does not know; skipped.
+    pub frames_unknown: u64,
+    /// Pad clock steps backwards or by more than [`crate::pipeline::link::GAP_MAX_US`].
+    pub time_jumps: u64,
+    /// Pad restarts: a restart flag, or a sequence that began anew.
+    pub restarts: u64,
+    /// Times the link fell silent or the pad was unplugged.
+    pub links_lost: u64,
+    /// Times a channel reached the end of its range.
+    pub channels_saturated: u64,
+    /// Times a channel stopped changing while the others went on.
+    pub channels_stuck: u64,
+    /// Samples flagged with a supply fault.
+    pub supply_faults: u64,
+    /// Touches that are not one finger on the calibrated pad; they are played all the same.
+    pub second_fingers: u64,
+    /// Times a channel did not answer to the load.
+    pub channels_silent: u64,
+}

@@ -1,0 +1,145 @@
+//! What interrupts the stream of contacts, and what becomes of each part of the pipeline then: one table.
+
+use crate::pipeline::link::Fault;
+
+/// Why the stream of contacts does not just go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Cause {
+    /// The pad was unplugged: what comes next may be another one.
+    Unplugged,
+    /// The link fell silent; it is the same pad, and what happens to it meanwhile is not known.
+    Lost,
+    /// The pad began anew.
+    Restarted,
+    /// The pad identified itself, with another scale than was thought.
+    Rescaled,
+    /// The pad identified itself, with the scale that was thought.
+    Identified,
+    /// The pad identified itself with numbers that no pad of ours has.
+    Unsuitable,
+    /// The pad speaks a newer version of the protocol.
+    NewerVersion,
+    /// A frame was damaged, lost or repeated, or the pad's clock jumped.
+    Damaged,
+    /// A channel of this sample cannot be trusted.
+    Faulty,
+    /// The zero is being measured: this sample has none.
+    Taring,
+    /// What looks like a touch is a wrong zero.
+    Drifted,
+    /// The player has the zero measured again.
+    Retared,
+    /// The player paused, or released everything.
+    Released,
+}
+
+/// What becomes of a part of the pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// It goes on as if nothing had happened.
+    Keep,
+    /// What is under way ends. What was learnt stays, but is not certain any more.
+    Doubt,
+    /// It begins anew.
+    Forget,
+}
+
+/// What becomes of all parts. Scale, filter, zero and thermometer have nothing to doubt: they are kept or forgotten.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effects {
+    /// What a count means.
+    pub scale: Effect,
+    /// What was learnt of the raw channels; in doubt, what was learnt at rest is forgotten.
+    pub channels: Effect,
+    /// The mean filter.
+    pub filter: Effect,
+    /// What the untouched pad reads.
+    pub zero: Effect,
+    /// What the pad remembers of earlier loads; in doubt, it may be anything, and is thought to be what it was.
+    pub memory: Effect,
+    /// The temperature that is followed.
+    pub thermometer: Effect,
+    /// The touch; in doubt, it ends.
+    pub touch: Effect,
+    /// What is watched for warnings; in doubt, the stretch of time that was begun is not gone on with.
+    pub watch: Effect,
+    /// The contact that is mapped; in doubt, it ends, presses are forgotten, everything is released at once, and contacts
+    /// are not believed for a while.
+    pub contact: Effect,
+}
+
+impl Cause {
+    /// What becomes of each part.
+    #[rustfmt::skip]
+    pub const fn effects(self) -> Effects {
+        use Effect::{Doubt, Forget, Keep};
+        let [scale, channels, filter, zero, memory, thermometer, touch, watch, contact] = match self {
+            //                     scale   channels filter  zero    memory  thermo. touch   watch   contact
+            Self::Unplugged    => [Forget, Forget,  Forget, Forget, Forget, Forget, Doubt,  Forget, Doubt],
+            Self::Lost         => [Keep,   Keep,    Forget, Keep,   Doubt,  Keep,   Doubt,  Doubt,  Doubt],
+            Self::Restarted    => [Keep,   Forget,  Forget, Forget, Doubt,  Keep,   Forget, Doubt,  Doubt],
+            // The new scale is set; whatever was measured in the old one is of no use.
+            Self::Rescaled     => [Keep,   Forget,  Forget, Forget, Doubt,  Keep,   Forget, Doubt,  Doubt],
+            Self::Identified   => [Keep,   Keep,    Keep,   Keep,   Doubt,  Keep,   Forget, Doubt,  Doubt],
+            Self::Unsuitable   => [Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Forget, Doubt,  Doubt],
+            Self::NewerVersion => [Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt],
+            Self::Damaged      => [Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt],
+            Self::Faulty       => [Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt],
+            // There is no contact, which is certain: it is mapped as a lift.
+            Self::Taring       => [Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep],
+            // Memory that was followed from a wrong zero is wrong, too. The touch has begun anew by itself, and is lifted.
+            Self::Drifted      => [Keep,   Doubt,   Keep,   Forget, Forget, Keep,   Keep,   Keep,   Keep],
+            Self::Retared      => [Keep,   Doubt,   Keep,   Forget, Keep,   Keep,   Forget, Doubt,  Doubt],
+            Self::Released     => [Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt],
+        };
+        Effects { scale, channels, filter, zero, memory, thermometer, touch, watch, contact }
+    }
+}
+
+impl From<Fault> for Cause {
+    fn from(fault: Fault) -> Self {
+        if fault == Fault::Restarted { Self::Restarted } else { Self::Damaged }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Cause; 13] = [
+        Cause::Unplugged,
+        Cause::Lost,
+        Cause::Restarted,
+        Cause::Rescaled,
+        Cause::Identified,
+        Cause::Unsuitable,
+        Cause::NewerVersion,
+        Cause::Damaged,
+        Cause::Faulty,
+        Cause::Taring,
+        Cause::Drifted,
+        Cause::Retared,
+        Cause::Released,
+    ];
+
+    #[test]
+    fn what_cannot_be_doubted_is_kept_or_forgotten() {
+        for cause in ALL {
+            let Effects { scale, filter, zero, thermometer, .. } = cause.effects();
+            assert!(![scale, filter, zero, thermometer].contains(&Effect::Doubt), "{cause:?}");
+        }
+    }
+
+    #[test]
+    fn what_hangs_on_another_part_goes_with_it() {
+        for cause in ALL {
+            let Effects { scale, channels, zero, touch, watch, contact, .. } = cause.effects();
+            let keeps = |effect| effect == Effect::Keep;
+            assert!(keeps(scale) || !keeps(zero), "{cause:?}: a zero in another scale");
+            assert!(keeps(zero) || !keeps(channels), "{cause:?}: a pad at rest that has no zero");
+            assert!(keeps(touch) || !keeps(contact), "{cause:?}: a contact without a touch");
+            assert!(keeps(contact) || !keeps(watch), "{cause:?}: a contact that ended is watched");
+        }
+    }
+}

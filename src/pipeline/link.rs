@@ -1,0 +1,411 @@
+//! From bytes to samples in order, on one monotonic clock.
+//!
+//! Frames are unpacked by `firmware_proto`; here their sequence numbers and timestamps are checked, and the pad's
+//! clock becomes stream time. Nothing is repaired: what is missing or doubtful is told as a [`Fault`].
+
+use firmware_proto::frame::{Message, WireError};
+use firmware_proto::identity::Identity;
+use firmware_proto::link::MessageReceiver;
+use firmware_proto::sample::Sample;
+
+use crate::pipeline::health::Health;
+use crate::time::{HostInstant, StreamInstant};
+
+/// Without a sample for this long the link counts as lost. Everything is released then, well inside 100 ms.
+pub const SILENCE_MAX_US: u64 = 80_000;
+
+/// The longest step of the pad's clock between two samples that is not a jump: 10 periods of the slowest pad.
+pub const GAP_MAX_US: u64 = 100_000;
+
+/// The pace of the pad's clock is judged over this time.
+const PACE_US: u64 = 1_000_000;
+
+/// A frame this little behind the newest is an old one that came again; farther behind, the pad began anew.
+const REORDER_MAX: u32 = 64;
+
+/// Pad clocks beyond this are moved to zero, so that no sum of times overflows.
+const DEVICE_TIME_MAX_US: u64 = 1 << 62;
+
+/// Something about the link that makes the present contact untrustworthy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fault {
+    /// A frame did not survive the way.
+    Damaged,
+    /// Frames are missing before this one.
+    Lost,
+    /// A frame came again; it was dropped.
+    Repeated,
+    /// The pad's clock jumped.
+    TimeJump,
+    /// The pad began anew: its offsets may be different.
+    Restarted,
+}
+
+/// What the link has to say after a byte.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LinkEvent {
+    /// A sample at its stream time; a fault tells what happened on the way to it.
+    Sample {
+        /// Stream time of the sample; never earlier than the one before.
+        at: StreamInstant,
+        /// What the pad sent.
+        sample: Sample,
+        /// What was wrong between the last sample and this one.
+        fault: Option<Fault>,
+    },
+    /// A frame that brought no sample but ends the contact.
+    Fault(Fault),
+    /// The pad told who it is.
+    Identity(Identity),
+    /// A sound frame of a protocol version newer than ours.
+    NewerVersion(u8),
+}
+
+/// The receiving end of a pad's byte stream.
+#[derive(Clone, Debug)]
+pub struct Link {
+    receiver: MessageReceiver,
+    last: Option<Sample>,
+    clock: StreamClock,
+}
+
+impl Default for Link {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Link {
+    /// A link that has heard nothing yet.
+    pub fn new() -> Self {
+        Self { receiver: MessageReceiver::new(), last: None, clock: StreamClock::new() }
+    }
+
+    /// Takes one byte that came at `now`; counts what is wrong in `health`.
+    pub fn push(&mut self, now: HostInstant, byte: u8, health: &mut Health) -> Option<LinkEvent> {
+        match self.receiver.push(byte)? {
+            Ok(Message::Sample(sample)) => Some(self.order(now, sample, health)),
+            Ok(Message::Identity(identity)) => Some(LinkEvent::Identity(identity)),
+            Ok(Message::Acknowledgement { .. }) => None,
+            Err(WireError::NewerVersion(version)) => {
+                health.frames_newer += 1;
+                Some(LinkEvent::NewerVersion(version))
+            }
+            Err(WireError::UnknownKind(_)) => {
+                health.frames_unknown += 1;
+                None
+            }
+            Err(WireError::Damaged | WireError::TooLong) => {
+                health.frames_damaged += 1;
+                Some(LinkEvent::Fault(Fault::Damaged))
+            }
+        }
+    }
+
+    /// Stream time at host time `now`: the last sample's, advanced by the host's clock since.
+    pub fn stream_at(&self, now: HostInstant) -> StreamInstant {
+        self.clock.at(now)
+    }
+
+    /// Host time at which stream time reaches `at` if no sample comes before.
+    pub fn host_at(&self, at: StreamInstant) -> HostInstant {
+        self.clock.heard.plus_us(at.us_since(self.clock.last))
+    }
+
+    /// When the link counts as lost if no sample comes before; `None` while nothing is to be lost.
+    pub fn silent_at(&self) -> Option<HostInstant> {
+        self.last.map(|_| self.clock.heard.plus_us(SILENCE_MAX_US))
+    }
+
+    /// Forgets the running sequence: whatever comes next begins anew. Half a frame is forgotten too.
+    pub fn lose(&mut self, now: HostInstant) {
+        self.clock.advance(now);
+        self.last = None;
+        self.receiver = MessageReceiver::new();
+    }
+
+    fn order(&mut self, now: HostInstant, sample: Sample, health: &mut Health) -> LinkEvent {
+        let fault = match self.last {
+            None if self.clock.set && sample.status.restarted() => {
+                health.restarts += 1;
+                Some(Fault::Restarted)
+            }
+            None => None,
+            Some(last) => match step_between(&last, &sample) {
+                Step::Next => None,
+                Step::Again => {
+                    health.frames_repeated += 1;
+                    return LinkEvent::Fault(Fault::Repeated);
+                }
+                Step::Skipped(frames) => {
+                    health.frames_lost += u64::from(frames);
+                    Some(Fault::Lost)
+                }
+                Step::Anew => {
+                    health.restarts += 1;
+                    Some(Fault::Restarted)
+                }
+            },
+        };
+        let smooth =
+            self.clock.accept(now, sample.time_us, self.last.is_some() && fault != Some(Fault::Restarted));
+        self.last = Some(sample);
+        let fault = if smooth { fault } else { jumped(fault, health) };
+        LinkEvent::Sample { at: self.clock.last, sample, fault }
+    }
+}
+
+/// How one sample follows another by sequence number.
+enum Step {
+    Next,
+    Again,
+    Skipped(u32),
+    Anew,
+}
+
+fn step_between(last: &Sample, next: &Sample) -> Step {
+    if next.status.restarted() {
+        return if next == last { Step::Again } else { Step::Anew };
+    }
+    match next.sequence.wrapping_sub(last.sequence) {
+        0 => Step::Again,
+        1 => Step::Next,
+        ahead if ahead <= u32::MAX / 2 => Step::Skipped(ahead - 1),
+        behind if behind.wrapping_neg() <= REORDER_MAX && next.time_us <= last.time_us => Step::Again,
+        _ => Step::Anew,
+    }
+}
+
+/// A jump of the clock is told unless a graver fault explains it.
+fn jumped(fault: Option<Fault>, health: &mut Health) -> Option<Fault> {
+    health.time_jumps += 1;
+    fault.or(Some(Fault::TimeJump))
+}
+
+/// The pad's clock made monotonic and carried on by the host's clock while the pad is silent.
+#[derive(Clone, Copy, Debug)]
+struct StreamClock {
+    /// Added to device time, modulo 2^64, to give stream time.
+    offset_us: u64,
+    /// Stream time of the newest sample.
+    last: StreamInstant,
+    /// Host time at which it was heard.
+    heard: HostInstant,
+    /// False until the first sample, which sets the clock.
+    set: bool,
+    /// Where the present look at the pace began: host time and stream time.
+    pace_from: (HostInstant, StreamInstant),
+}
+
+impl StreamClock {
+    const fn new() -> Self {
+        Self {
+            offset_us: 0,
+            last: StreamInstant::from_us(0),
+            heard: HostInstant::from_ns(0),
+            set: false,
+            pace_from: (HostInstant::from_ns(0), StreamInstant::from_us(0)),
+        }
+    }
+
+    fn at(&self, now: HostInstant) -> StreamInstant {
+        self.last.plus_us(now.us_since(self.heard))
+    }
+
+    /// Lets stream time pass to `now` without a sample.
+    fn advance(&mut self, now: HostInstant) {
+        self.last = self.at(now);
+        self.heard = now;
+    }
+
+    /// Whether stream time goes at least half as fast as the host's. Times in a profile would never pass on a clock
+    /// that crawls: firmware that counts milliseconds for microseconds, say.
+    fn keeps_pace(&mut self, now: HostInstant, at: StreamInstant) -> bool {
+        let (host, stream) = self.pace_from;
+        let host_us = now.us_since(host);
+        if host_us < PACE_US {
+            return true;
+        }
+        self.pace_from = (now, at);
+        at.us_since(stream) >= host_us / 2
+    }
+
+    /// Takes a sample's device time. Returns false if the clock jumped and was joined anew; `continues` says whether
+    /// a running sequence gives something to jump from.
+    fn accept(&mut self, now: HostInstant, device_us: u64, continues: bool) -> bool {
+        let stream_us = device_us.wrapping_add(self.offset_us);
+        let smooth = stream_us > self.last.as_us() && stream_us - self.last.as_us() <= GAP_MAX_US;
+        if continues && smooth && self.keeps_pace(now, StreamInstant::from_us(stream_us)) {
+            self.last = StreamInstant::from_us(stream_us);
+            self.heard = now;
+            return true;
+        }
+        let joined_us = if self.set { self.at(now).as_us() } else { device_us.min(DEVICE_TIME_MAX_US) };
+        *self = Self {
+            offset_us: joined_us.wrapping_sub(device_us),
+            last: StreamInstant::from_us(joined_us),
+            heard: now,
+            set: true,
+            pace_from: (now, StreamInstant::from_us(joined_us)),
+        };
+        !continues
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware_proto::link::encode_message;
+    use firmware_proto::sample::Status;
+    use firmware_proto::{CHANNELS, ENCODED_MAX};
+
+    use super::*;
+
+    fn sample(sequence: u32, time_us: u64) -> Sample {
+        Sample { sequence, time_us, counts: [0; CHANNELS], temperature_centi_c: 2_000, status: Status::OK }
+    }
+
+    /// A link under test; frames arrive at the host times that the test gives.
+    struct Rig {
+        link: Link,
+        health: Health,
+    }
+
+    impl Rig {
+        fn new() -> Self {
+            Self { link: Link::new(), health: Health::default() }
+        }
+
+        fn bytes(&mut self, host_us: u64, bytes: &[u8]) -> Vec<LinkEvent> {
+            let now = HostInstant::default().plus_us(host_us);
+            bytes.iter().filter_map(|&byte| self.link.push(now, byte, &mut self.health)).collect()
+        }
+
+        /// Stream time and fault of one sample that arrives whole.
+        fn hear(&mut self, host_us: u64, sample: Sample) -> (Option<u64>, Option<Fault>) {
+            match self.bytes(host_us, &frame(sample))[..] {
+                [LinkEvent::Sample { at, fault, .. }] => (Some(at.as_us()), fault),
+                [LinkEvent::Fault(fault)] => (None, Some(fault)),
+                ref events => panic!("{events:?}"),
+            }
+        }
+    }
+
+    fn frame(sample: Sample) -> Vec<u8> {
+        let mut frame = [0; ENCODED_MAX];
+        let length = encode_message(&Message::Sample(sample), &mut frame);
+        frame[..length].to_vec()
+    }
+
+    #[test]
+    fn stream_time_is_the_pads_clock() {
+        let mut rig = Rig::new();
+        assert_eq!(rig.hear(1, sample(7, 5_000_000)), (Some(5_000_000), None));
+        assert_eq!(rig.hear(900, sample(8, 5_001_000)), (Some(5_001_000), None));
+        assert_eq!(rig.health, Health::default());
+    }
+
+    #[test]
+    fn missing_frames_are_counted_and_told() {
+        let mut rig = Rig::new();
+        rig.hear(0, sample(u32::MAX - 1, 0));
+        assert_eq!(rig.hear(5_000, sample(3, 5_000)), (Some(5_000), Some(Fault::Lost)));
+        assert_eq!(rig.health.frames_lost, 4);
+    }
+
+    #[test]
+    fn old_frames_are_dropped() {
+        let mut rig = Rig::new();
+        rig.hear(0, sample(100, 100_000));
+        assert_eq!(rig.hear(1, sample(100, 100_000)), (None, Some(Fault::Repeated)));
+        assert_eq!(rig.hear(2, sample(36, 36_000)), (None, Some(Fault::Repeated)));
+        assert_eq!(rig.hear(1_000, sample(101, 101_000)), (Some(101_000), None));
+        assert_eq!(rig.health.frames_repeated, 2);
+    }
+
+    #[test]
+    fn a_pad_that_begins_anew_goes_on_in_stream_time() {
+        let mut rig = Rig::new();
+        rig.hear(0, sample(50_000, 9_000_000));
+        assert_eq!(rig.hear(30_000, sample(0, 12)), (Some(9_030_000), Some(Fault::Restarted)));
+        assert_eq!(rig.hear(31_000, sample(1, 1_012)), (Some(9_031_000), None));
+        assert_eq!((rig.health.restarts, rig.health.time_jumps), (1, 0));
+    }
+
+    #[test]
+    fn jumps_of_the_pads_clock_are_bridged_by_the_hosts() {
+        for jump_us in [0, 1_999_999, 2_000_000, 2_101_001, u64::MAX] {
+            let mut rig = Rig::new();
+            rig.hear(0, sample(0, 2_000_000));
+            assert_eq!(
+                rig.hear(1_000, sample(1, jump_us)),
+                (Some(2_001_000), Some(Fault::TimeJump)),
+                "{jump_us}"
+            );
+            assert_eq!(rig.health.time_jumps, 1);
+        }
+    }
+
+    #[test]
+    fn the_longest_step_is_no_jump() {
+        let mut rig = Rig::new();
+        rig.hear(0, sample(0, 2_000_000));
+        assert_eq!(rig.hear(1, sample(1, 2_100_000)), (Some(2_100_000), None));
+    }
+
+    #[test]
+    fn a_clock_that_crawls_is_a_jump() {
+        let mut rig = Rig::new();
+        let fault = |ms: u64| rig.hear(ms * 1_000, sample(ms as u32, ms)).1;
+        let faults: Vec<_> = (0..1_100).filter_map(fault).collect();
+        assert_eq!(faults, [Fault::TimeJump]);
+    }
+
+    #[test]
+    fn a_restart_after_silence_is_told() {
+        let mut rig = Rig::new();
+        rig.hear(0, sample(500, 500_000));
+        rig.link.lose(HostInstant::default().plus_us(90_000));
+        let mut first = sample(0, 10);
+        first.status = Status::OK.with_restarted();
+        assert_eq!(rig.hear(150_000, first), (Some(650_000), Some(Fault::Restarted)));
+    }
+
+    #[test]
+    fn damage_is_told_and_the_next_frame_is_whole() {
+        let mut rig = Rig::new();
+        let mut damaged = frame(sample(1, 1_000));
+        damaged[20] ^= 4;
+        assert_eq!(rig.bytes(0, &damaged), [LinkEvent::Fault(Fault::Damaged)]);
+        assert_eq!(rig.hear(1, sample(2, 2_000)), (Some(2_000), None));
+        assert_eq!(rig.health.frames_damaged, 1);
+    }
+
+    #[test]
+    fn silence_is_due_only_after_a_sample() {
+        let mut rig = Rig::new();
+        assert_eq!(rig.link.silent_at(), None);
+        rig.hear(10_000, sample(0, 0));
+        assert_eq!(rig.link.silent_at(), Some(HostInstant::default().plus_us(10_000 + SILENCE_MAX_US)));
+        rig.link.lose(HostInstant::default().plus_us(90_000));
+        assert_eq!(rig.link.silent_at(), None);
+    }
+
+    #[test]
+    fn host_time_carries_stream_time_on() {
+        let mut rig = Rig::new();
+        rig.hear(1_000, sample(0, 500));
+        let later = HostInstant::default().plus_us(4_000);
+        assert_eq!(rig.link.stream_at(later), StreamInstant::from_us(3_500));
+        assert_eq!(rig.link.host_at(StreamInstant::from_us(3_500)), later);
+    }
+
+    #[test]
+    fn times_at_the_end_of_the_world_do_not_overflow() {
+        let mut rig = Rig::new();
+        rig.hear(0, sample(0, u64::MAX));
+        rig.hear(1, sample(1, u64::MAX - 5));
+        let (at, _) = rig.hear(2, sample(2, 0));
+        assert!(at.is_some_and(|at| at <= DEVICE_TIME_MAX_US + 2_000));
+    }
+}

@@ -1,0 +1,24 @@
+//! Intents: what should be held at this moment.
+
+use arrayvec::ArrayVec;
+
+use crate::pipeline::control::{Code, OutputDevice};
+
+/// The most controls a profile can hold at once.
+pub const LEVELS_MAX: usize = 16;
+
+/// One control that should be held at `value` now. A control that no level names is neutral.
+///
+/// A movement is held, too: as long as the level stands the pointer moves at that rate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Level {
+    /// The device it is held on.
+    pub device: OutputDevice,
+    /// The key or axis.
+    pub code: Code,
+    /// 1 for keys, a non-zero position for axes, a non-zero rate in counts per second for movements.
+    pub value: i32,
+}
+
+/// Everything that should be held now, each control at most once, in the profile's order.
+pub type Intents = ArrayVec<Level, LEVELS_MAX>;

@@ -1,0 +1,25 @@
+//! Ranges and defaults of a profile's numbers; `mappings/README.md` says them to people.
+
+use super::profile::POINTER_SPEED_MAX;
+use crate::toml_text::section::Bounds;
+
+pub(super) const FILTER_SAMPLES: Bounds<u32> = Bounds { low: 1, high: 64, default: 6 };
+pub(super) const MIN_PRESS_MS: Bounds<u32> = Bounds { low: 0, high: 1_000, default: 40 };
+pub(super) const LONG_PRESS_MS: Bounds<u32> = Bounds { low: 1, high: 10_000, default: 400 };
+/// The plate's radius is 30 mm; on its rim there is nothing left to steer with.
+pub(super) const CENTRE_RADIUS_MM: Bounds<f32> = Bounds { low: 2.0, high: 29.0, default: 8.0 };
+pub(super) const RADIUS_HYSTERESIS_MM: Bounds<f32> = Bounds { low: 0.0, high: 29.0, default: 1.5 };
+pub(super) const ROTATION_DEG: Bounds<f32> = Bounds { low: -180.0, high: 180.0, default: 0.0 };
+pub(super) const HYSTERESIS_DEG: Bounds<f32> = Bounds { low: 0.0, high: 45.0, default: 8.0 };
+pub(super) const DIAGONAL_DEG: Bounds<f32> = Bounds { low: 5.0, high: 85.0, default: 45.0 };
+pub(super) const STICKY_DIAGONAL_DEG: f32 = 30.0;
+pub(super) const FORCE_N: Bounds<f32> = Bounds { low: 0.05, high: 50.0, default: 0.3 };
+/// Default of a button's release force over its press force.
+pub(super) const RELEASE_SHARE: f32 = 0.7;
+/// Force that starts a direction, or the pointer, over the default of the force that ends it.
+pub(super) const RELEASE_RATIO: f32 = 1.5;
+pub(super) const POINTER_CENTRE_MM: Bounds<f32> = Bounds { default: 5.0, ..CENTRE_RADIUS_MM };
+pub(super) const FULL_RADIUS_MM: Bounds<f32> = Bounds { low: 3.0, high: 30.0, default: 24.0 };
+pub(super) const SPEED_COUNTS_PER_S: Bounds<f32> =
+    Bounds { low: 10.0, high: POINTER_SPEED_MAX as f32, default: 800.0 };
+pub(super) const CURVE: Bounds<f32> = Bounds { low: 1.0, high: 3.0, default: 2.0 };

@@ -1,0 +1,37 @@
+//! A profile together with the text that it was read from, so that it is read once: the text is what captures keep.
+
+use super::check::{self, OutputChoice};
+use super::profile::Profile;
+use crate::toml_text::diag::Diagnostic;
+
+/// A profile that can be used, and the text that says the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadProfile {
+    text: String,
+    output: OutputChoice,
+    profile: Profile,
+}
+
+impl ReadProfile {
+    /// Reads a profile; `None` if there is an error among the findings, see [`check::read`].
+    pub fn read(text: &str, output: OutputChoice) -> (Option<Self>, Vec<Diagnostic>) {
+        let (profile, diagnostics) = check::read(text, output);
+        let read = profile.map(|profile| Self { text: text.to_owned(), output, profile });
+        (read, diagnostics)
+    }
+
+    /// The TOML text, as it was written.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Which of its two sets of bindings was read.
+    pub const fn output(&self) -> OutputChoice {
+        self.output
+    }
+
+    /// What it says.
+    pub const fn profile(&self) -> &Profile {
+        &self.profile
+    }
+}

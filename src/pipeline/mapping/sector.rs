@@ -1,0 +1,294 @@
+//! Which direction a place on the plate means.
+
+use super::profile::{Dpad, DpadMode};
+use crate::quantity::Contact;
+
+/// One of eight directions, counted in steps of 45° counter-clockwise from right; odd ones are diagonals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Sector(u8);
+
+/// The horizontal part of a sector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Horizontal {
+    Left,
+    Right,
+}
+
+/// The vertical part of a sector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Vertical {
+    Up,
+    Down,
+}
+
+impl Sector {
+    const RIGHT: Self = Self(0);
+    const UP: Self = Self(2);
+    const LEFT: Self = Self(4);
+    const DOWN: Self = Self(6);
+
+    /// Left or right, if the sector has either.
+    pub(super) const fn horizontal(self) -> Option<Horizontal> {
+        match self.0 {
+            0 | 1 | 7 => Some(Horizontal::Right),
+            3..=5 => Some(Horizontal::Left),
+            _ => None,
+        }
+    }
+
+    /// Up or down, if the sector has either.
+    pub(super) const fn vertical(self) -> Option<Vertical> {
+        match self.0 {
+            1..=3 => Some(Vertical::Up),
+            5..=7 => Some(Vertical::Down),
+            _ => None,
+        }
+    }
+
+    const fn is_diagonal(self) -> bool {
+        self.0 % 2 == 1
+    }
+
+    /// Degrees, 0 to 180, between `angle_deg` and the middle of this sector.
+    fn distance_deg(self, angle_deg: f32) -> f32 {
+        wrapped(angle_deg - 45.0 * f32::from(self.0)).abs()
+    }
+
+    /// The right, upper, left or lower quarter of the plate; exactly on a diagonal it is right or left.
+    fn nearest_cardinal(angle_deg: f32) -> Self {
+        if Self::RIGHT.distance_deg(angle_deg) <= 45.0 {
+            Self::RIGHT
+        } else if Self::LEFT.distance_deg(angle_deg) <= 45.0 {
+            Self::LEFT
+        } else if Self::UP.distance_deg(angle_deg) < 90.0 {
+            Self::UP
+        } else {
+            Self::DOWN
+        }
+    }
+
+    fn nearest_diagonal(angle_deg: f32) -> Self {
+        let right = Self::RIGHT.distance_deg(angle_deg) < 90.0;
+        let up = Self::UP.distance_deg(angle_deg) < 90.0;
+        match (right, up) {
+            (true, true) => Self(1),
+            (false, true) => Self(3),
+            (false, false) => Self(5),
+            (true, false) => Self(7),
+        }
+    }
+}
+
+/// The direction of a finite contact, given the one that was held before it.
+///
+/// The gate (force and distance from the centre) has a start and an end threshold; see [`Dpad`].
+pub(super) fn follow(dpad: &Dpad, held: Option<Sector>, contact: &Contact) -> Option<Sector> {
+    let radius_mm = libm::hypotf(contact.x_mm, contact.y_mm);
+    let open = match held {
+        None => contact.fz_n >= dpad.min_force_n && radius_mm >= dpad.centre_radius_mm,
+        Some(_) => {
+            contact.fz_n >= dpad.release_force_n
+                && radius_mm >= dpad.centre_radius_mm - dpad.radius_hysteresis_mm
+        }
+    };
+    let angle_deg = libm::atan2f(contact.y_mm, contact.x_mm).to_degrees() - dpad.rotation_deg;
+    open.then(|| turn(dpad, held, wrapped(angle_deg)))
+}
+
+/// The sector for an angle from −180° to 180°, given the one held before.
+fn turn(dpad: &Dpad, held: Option<Sector>, angle_deg: f32) -> Sector {
+    let here = zone(dpad, angle_deg);
+    // A diagonal may be left over from a profile with other zones.
+    let Some(held) = held.filter(|held| dpad.mode == DpadMode::EightWay || !held.is_diagonal()) else {
+        return settled(dpad, here, angle_deg);
+    };
+    if held.distance_deg(angle_deg) <= half_width_deg(dpad, held) + dpad.hysteresis_deg {
+        return held;
+    }
+    // A diagonal on the far side of the plate is not beside the held direction: there it would steer
+    // backwards.
+    let beside = held.distance_deg(angle_deg) < 90.0;
+    if dpad.mode == DpadMode::FourWaySticky && here.is_diagonal() && beside {
+        return held;
+    }
+    settled(dpad, here, angle_deg)
+}
+
+/// What a touch that starts in `zone` means.
+fn settled(dpad: &Dpad, zone: Sector, angle_deg: f32) -> Sector {
+    match dpad.mode {
+        DpadMode::EightWay => zone,
+        DpadMode::FourWay | DpadMode::FourWaySticky => Sector::nearest_cardinal(angle_deg),
+    }
+}
+
+/// The zone that holds the angle; edges belong to the cardinal zone.
+fn zone(dpad: &Dpad, angle_deg: f32) -> Sector {
+    let cardinal = Sector::nearest_cardinal(angle_deg);
+    if cardinal.distance_deg(angle_deg) <= half_width_deg(dpad, cardinal) {
+        cardinal
+    } else {
+        Sector::nearest_diagonal(angle_deg)
+    }
+}
+
+fn half_width_deg(dpad: &Dpad, sector: Sector) -> f32 {
+    match (dpad.mode, sector.is_diagonal()) {
+        (DpadMode::FourWay, _) => 45.0,
+        (_, true) => dpad.diagonal_deg / 2.0,
+        (_, false) => 45.0 - dpad.diagonal_deg / 2.0,
+    }
+}
+
+/// The same angle between −180° and 180°, for one between −540° and 540°.
+fn wrapped(angle_deg: f32) -> f32 {
+    if angle_deg > 180.0 {
+        angle_deg - 360.0
+    } else if angle_deg < -180.0 {
+        angle_deg + 360.0
+    } else {
+        angle_deg
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::control::{Code, OutputDevice};
+    use crate::pipeline::mapping::profile::Binding;
+
+    const RIGHT_UP: Sector = Sector(1);
+
+    fn dpad(mode: DpadMode, diagonal_deg: f32) -> Dpad {
+        let unused = Binding { device: OutputDevice::Gamepad, code: Code::Key(1), value: 1 };
+        Dpad {
+            mode,
+            centre_radius_mm: 8.0,
+            radius_hysteresis_mm: 1.5,
+            diagonal_deg,
+            hysteresis_deg: if mode == DpadMode::FourWaySticky { 0.0 } else { 8.0 },
+            rotation_deg: 0.0,
+            min_force_n: 0.5,
+            release_force_n: 0.25,
+            up: unused,
+            down: unused,
+            left: unused,
+            right: unused,
+        }
+    }
+
+    #[test]
+    fn fresh_touches_take_the_zone_of_their_angle() {
+        let four = dpad(DpadMode::FourWay, 45.0);
+        let eight = dpad(DpadMode::EightWay, 40.0);
+        let sticky = dpad(DpadMode::FourWaySticky, 40.0);
+        for (angle, in_four, in_eight) in [
+            (0.0, 0, 0),
+            (25.0, 0, 0),
+            (25.1, 0, 1),
+            (45.0, 0, 1),
+            (45.1, 2, 1),
+            (64.9, 2, 1),
+            (65.0, 2, 2),
+            (115.0, 2, 2),
+            (115.1, 2, 3),
+            (134.9, 2, 3),
+            (135.0, 4, 3),
+            (155.0, 4, 4),
+            (180.0, 4, 4),
+            (-180.0, 4, 4),
+            (-154.9, 4, 5),
+            (-135.0, 4, 5),
+            (-134.9, 6, 5),
+            (-90.0, 6, 6),
+            (-45.1, 6, 7),
+            (-45.0, 0, 7),
+            (-25.1, 0, 7),
+            (-25.0, 0, 0),
+        ] {
+            assert_eq!(turn(&four, None, angle), Sector(in_four), "4way at {angle}");
+            assert_eq!(turn(&eight, None, angle), Sector(in_eight), "8way at {angle}");
+            assert_eq!(turn(&sticky, None, angle), Sector(in_four), "sticky at {angle}");
+        }
+    }
+
+    #[test]
+    fn a_held_direction_changes_only_past_the_hysteresis() {
+        let four = dpad(DpadMode::FourWay, 45.0);
+        assert_eq!(turn(&four, Some(Sector::RIGHT), 53.0), Sector::RIGHT, "exactly 8° past the edge");
+        assert_eq!(turn(&four, Some(Sector::RIGHT), 53.1), Sector::UP);
+        assert_eq!(turn(&four, Some(Sector::UP), 37.0), Sector::UP);
+        assert_eq!(turn(&four, Some(Sector::UP), 36.9), Sector::RIGHT);
+        assert_eq!(turn(&four, Some(Sector::LEFT), -127.0), Sector::LEFT, "across the ±180° seam");
+        assert_eq!(turn(&four, Some(Sector::LEFT), -126.9), Sector::DOWN);
+        let eight = dpad(DpadMode::EightWay, 40.0);
+        assert_eq!(turn(&eight, Some(Sector::RIGHT), 33.0), Sector::RIGHT);
+        assert_eq!(turn(&eight, Some(Sector::RIGHT), 33.1), RIGHT_UP);
+        assert_eq!(turn(&eight, Some(RIGHT_UP), 17.0), RIGHT_UP);
+        assert_eq!(turn(&eight, Some(RIGHT_UP), 16.9), Sector::RIGHT);
+    }
+
+    #[test]
+    fn sticky_diagonals_keep_the_last_direction_beside_them() {
+        let sticky = dpad(DpadMode::FourWaySticky, 40.0);
+        assert_eq!(turn(&sticky, Some(Sector::RIGHT), 64.9), Sector::RIGHT);
+        assert_eq!(turn(&sticky, Some(Sector::RIGHT), 65.0), Sector::UP);
+        assert_eq!(turn(&sticky, Some(Sector::UP), 25.1), Sector::UP);
+        assert_eq!(turn(&sticky, Some(Sector::UP), 25.0), Sector::RIGHT);
+        assert_eq!(
+            turn(&sticky, Some(Sector::RIGHT), 130.0),
+            Sector::UP,
+            "a diagonal that is not beside right"
+        );
+        let narrow = dpad(DpadMode::FourWaySticky, 6.0);
+        assert_eq!(turn(&narrow, Some(Sector::RIGHT), 47.9), Sector::RIGHT);
+        assert_eq!(turn(&narrow, Some(Sector::RIGHT), 48.1), Sector::UP);
+    }
+
+    #[test]
+    fn a_diagonal_left_over_from_another_profile_settles() {
+        assert_eq!(turn(&dpad(DpadMode::FourWay, 45.0), Some(RIGHT_UP), 46.0), Sector::UP);
+        assert_eq!(turn(&dpad(DpadMode::FourWaySticky, 30.0), Some(RIGHT_UP), 44.0), Sector::RIGHT);
+        assert_eq!(turn(&dpad(DpadMode::EightWay, 45.0), Some(RIGHT_UP), 70.0), RIGHT_UP);
+    }
+
+    #[test]
+    fn the_gate_starts_high_and_ends_low() {
+        let dpad = dpad(DpadMode::FourWay, 45.0);
+        let at = |x_mm, fz_n| Contact { x_mm, fz_n, ..Contact::default() };
+        for (held, x_mm, fz_n, open) in [
+            (None, 8.0, 0.5, true),
+            (None, 7.99, 0.5, false),
+            (None, 8.0, 0.49, false),
+            (Some(Sector::RIGHT), 6.5, 0.25, true),
+            (Some(Sector::RIGHT), 6.49, 0.25, false),
+            (Some(Sector::RIGHT), 6.5, 0.249, false),
+        ] {
+            assert_eq!(follow(&dpad, held, &at(x_mm, fz_n)).is_some(), open, "{held:?} {x_mm} mm {fz_n} N");
+        }
+    }
+
+    #[test]
+    fn rotation_turns_the_zones_counter_clockwise() {
+        for rotation_deg in [-180.0, -90.0, 90.0, 180.0] {
+            let dpad = Dpad { rotation_deg, ..dpad(DpadMode::FourWay, 45.0) };
+            let (x_mm, y_mm) =
+                (20.0 * libm::cosf(rotation_deg.to_radians()), 20.0 * libm::sinf(rotation_deg.to_radians()));
+            let contact = Contact { x_mm, y_mm, fz_n: 1.0, ..Contact::default() };
+            assert_eq!(follow(&dpad, None, &contact), Some(Sector::RIGHT), "{rotation_deg}");
+        }
+    }
+
+    #[test]
+    fn directions_of_a_sector() {
+        let shown = |k: u8| (Sector(k).horizontal(), Sector(k).vertical());
+        assert_eq!(shown(0), (Some(Horizontal::Right), None));
+        assert_eq!(shown(1), (Some(Horizontal::Right), Some(Vertical::Up)));
+        assert_eq!(shown(2), (None, Some(Vertical::Up)));
+        assert_eq!(shown(3), (Some(Horizontal::Left), Some(Vertical::Up)));
+        assert_eq!(shown(4), (Some(Horizontal::Left), None));
+        assert_eq!(shown(5), (Some(Horizontal::Left), Some(Vertical::Down)));
+        assert_eq!(shown(6), (None, Some(Vertical::Down)));
+        assert_eq!(shown(7), (Some(Horizontal::Right), Some(Vertical::Down)));
+    }
+}

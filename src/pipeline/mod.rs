@@ -1,0 +1,390 @@
+//! The live core: one state machine from pad bytes to output events.
+//!
+//! It does no I/O and reads no clock; after construction it neither allocates nor panics. The caller tells it what
+//! happened and when, in three kinds of calls: `handle_*` (the pad, the clock), mutators (the player), and getters.
+//! Host time must not go backwards between calls. The same calls give the same events, byte for byte.
+//!
+//! [`Pipeline::apply`] makes any of these calls, each as a [`call::Call`] that a capture can keep.
+//!
+//! After each call [`Pipeline::events`] holds what is to be emitted, and [`Pipeline::poll_timeout`] says when
+//! [`Pipeline::handle_timeout`] must be called if nothing else happens before.
+
+pub mod call;
+pub mod capture;
+pub mod compensation;
+pub mod contact;
+pub mod control;
+pub mod health;
+pub mod interruption;
+pub mod link;
+pub mod mapping;
+pub mod output;
+pub mod probe;
+pub mod refusal;
+pub mod replay;
+pub mod shipped;
+pub mod signal;
+
+use firmware_proto::identity::Identity;
+use firmware_proto::sample::Sample;
+
+use crate::pipeline::call::Call;
+use crate::pipeline::contact::Decoder;
+use crate::pipeline::contact::stage::{ContactStage, Reading};
+use crate::pipeline::contact::uncertainty::Estimate;
+use crate::pipeline::contact::watch::Warning;
+use crate::pipeline::control::OutputEvent;
+use crate::pipeline::health::Health;
+use crate::pipeline::interruption::{Cause, Effect};
+use crate::pipeline::link::{Fault, Link, LinkEvent};
+use crate::pipeline::mapping::engine::Engine;
+use crate::pipeline::mapping::intent::Level;
+use crate::pipeline::mapping::profile::Profile;
+use crate::pipeline::output::ledger::{Edges, Ledger};
+pub use crate::pipeline::probe::{NoProbe, Probe, Stage};
+use crate::pipeline::refusal::Refusal;
+use crate::pipeline::signal::Scale;
+use crate::quantity::{Contact, Strain};
+use crate::time::{HostInstant, StreamInstant};
+
+/// After a fault a contact is believed again when the stream has been sound for this long.
+pub const DISTRUST_US: u64 = 50_000;
+
+/// What the pipeline is doing, for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Phase {
+    /// No pad is heard.
+    Waiting,
+    /// The zero is being measured; the pad must lie untouched.
+    Taring,
+    /// Contacts become events.
+    Playing,
+    /// The line was at fault just now; contacts are not believed yet.
+    Doubtful,
+    /// A channel cannot be trusted.
+    Faulty,
+    /// The player paused.
+    Paused,
+    /// The pad cannot be played with.
+    Refused,
+}
+
+/// The state machine. See the module's text for how to drive it.
+#[derive(Debug)]
+pub struct Pipeline {
+    link: Link,
+    stage: ContactStage,
+    engine: Engine,
+    ledger: Ledger,
+    health: Health,
+    identity: Option<Identity>,
+    refusal: Option<Refusal>,
+    contact: Option<Contact>,
+    phase: Phase,
+    paused: bool,
+    /// Stream time of the newest event or sample; events never go back behind it.
+    at: StreamInstant,
+    /// From here on contacts are believed.
+    trusted_at: StreamInstant,
+    edges: Edges,
+}
+
+impl Pipeline {
+    /// A pipeline that has heard nothing and holds nothing.
+    pub fn new(decoder: Decoder, profile: Profile) -> Self {
+        Self {
+            link: Link::new(),
+            stage: ContactStage::new(decoder, profile.filter_samples),
+            ledger: Ledger::new(&profile),
+            engine: Engine::new(profile),
+            health: Health::default(),
+            identity: None,
+            refusal: None,
+            contact: None,
+            phase: Phase::Waiting,
+            paused: false,
+            at: StreamInstant::default(),
+            trusted_at: StreamInstant::default(),
+            edges: Edges::new(),
+        }
+    }
+
+    /// Makes one call at host time `now`. Bytes are taken up to the first events, see [`Pipeline::handle_bytes`]: emit
+    /// [`Pipeline::events`], then make the call that comes back, which carries the rest; `None` when all was taken.
+    #[must_use = "the rest of the bytes are still to be taken"]
+    pub fn apply<'a, P: Probe>(
+        &mut self,
+        now: HostInstant,
+        call: Call<'a>,
+        probe: &mut P,
+    ) -> Option<Call<'a>> {
+        match call {
+            // No byte, no call: not even the clock is looked at.
+            Call::Bytes([]) => self.edges.clear(),
+            Call::Bytes(bytes) => {
+                let taken = self.handle_bytes(now, bytes, probe);
+                return bytes.get(taken..).filter(|rest| !rest.is_empty()).map(Call::Bytes);
+            }
+            Call::Timeout => self.handle_timeout(now),
+            Call::Unplugged => self.handle_unplugged(now),
+            Call::Pause => self.pause(now),
+            Call::Resume => self.resume(),
+            Call::ReleaseAll => self.release_all(now),
+            Call::Retare => self.retare(now),
+            Call::Profile(read) => self.set_profile(now, read.profile().clone()),
+        }
+        None
+    }
+
+    /// Takes bytes that came from the pad by `now`. Returns how many it took: it stops as soon as there are events,
+    /// so that they get out first. Emit [`Pipeline::events`], then call again with the rest.
+    pub fn handle_bytes<P: Probe>(&mut self, now: HostInstant, bytes: &[u8], probe: &mut P) -> usize {
+        self.edges.clear();
+        for (index, &byte) in bytes.iter().enumerate() {
+            if let Some(event) = self.link.push(now, byte, &mut self.health) {
+                self.handle_link(now, &event, probe);
+                if !self.edges.is_empty() {
+                    return index + 1;
+                }
+            }
+        }
+        self.check_silence(now);
+        bytes.len()
+    }
+
+    /// Does what is due at `now`: releases what the minimum press held back, and everything if the pad is silent.
+    pub fn handle_timeout(&mut self, now: HostInstant) {
+        self.edges.clear();
+        // Silence first: what the minimum press held back must not go down only to come up in the same group.
+        self.check_silence(now);
+        if let Some(due) = self.ledger.next_due().filter(|&due| self.link.host_at(due) <= now) {
+            self.advance(due);
+            self.ledger.settle(self.at, &mut self.edges);
+        }
+    }
+
+    /// The pad was unplugged. Whatever comes next may be another pad: it identifies itself and is tared anew.
+    pub fn handle_unplugged(&mut self, now: HostInstant) {
+        self.edges.clear();
+        self.lose(now, Cause::Unplugged);
+        (self.identity, self.refusal) = (None, None);
+    }
+
+    /// Host time of the next deadline; `None` if nothing is due before something else happens.
+    pub fn poll_timeout(&self) -> Option<HostInstant> {
+        let release = self.ledger.next_due().map(|due| self.link.host_at(due));
+        [release, self.link.silent_at()].into_iter().flatten().min()
+    }
+
+    /// The events of the last call, simultaneous, releases first. Valid until the next call.
+    pub fn events(&self) -> &[OutputEvent] {
+        &self.edges
+    }
+
+    /// Releases everything and ignores contacts until [`Pipeline::resume`].
+    pub fn pause(&mut self, now: HostInstant) {
+        self.paused = true;
+        self.release_all(now);
+    }
+
+    /// Ends a pause. A finger that is on the pad begins a new contact.
+    pub fn resume(&mut self) {
+        self.edges.clear();
+        self.paused = false;
+    }
+
+    /// Releases everything at once. A finger that stays on the pad begins a new contact a moment later.
+    pub fn release_all(&mut self, now: HostInstant) {
+        self.edges.clear();
+        self.advance(self.link.stream_at(now));
+        self.interrupt(Cause::Released);
+    }
+
+    /// Measures the zero again; the pad must lie untouched.
+    pub fn retare(&mut self, now: HostInstant) {
+        self.edges.clear();
+        self.advance(self.link.stream_at(now));
+        self.interrupt(Cause::Retared);
+    }
+
+    /// Goes over to another profile: releases what it does not hold, keeps what both hold.
+    pub fn set_profile(&mut self, now: HostInstant, profile: Profile) {
+        self.edges.clear();
+        self.advance(self.link.stream_at(now));
+        self.ledger.change_profile(self.at, &profile, &mut self.edges);
+        self.stage.set_filter_samples(profile.filter_samples);
+        self.engine.replace_profile(profile);
+        // Without a contact nothing is stated, and the engine must not take that for a lift: see `map`.
+        if self.contact.is_some() {
+            let levels = self.engine.step(self.at, self.contact.as_ref());
+            self.ledger.update(self.at, &levels, &mut self.edges);
+        }
+    }
+
+    /// Whether a pad is being heard: a sample came and the link has not been lost since.
+    pub fn is_heard(&self) -> bool {
+        self.link.silent_at().is_some()
+    }
+
+    /// The profile in use.
+    pub const fn profile(&self) -> &Profile {
+        self.engine.profile()
+    }
+
+    /// The contact that is being mapped; `None` while there is none.
+    pub const fn contact(&self) -> Option<&Contact> {
+        self.contact.as_ref()
+    }
+
+    /// The channels of the newest sample as the decoder got them; `None` while there are none that can be trusted.
+    pub fn strain(&self) -> Option<&Strain> {
+        self.stage.strain().filter(|_| self.is_heard())
+    }
+
+    /// How sure the contact is that is being mapped, if there is one and the decoder knows. Decodes it anew.
+    pub fn estimate(&self) -> Option<Estimate> {
+        self.contact.and_then(|_| self.stage.estimate())
+    }
+
+    /// What the player should know of the touch at hand or the last one; only the inverse decoder tells it.
+    pub const fn warning(&self) -> Option<Warning> {
+        self.stage.warning()
+    }
+
+    /// What is held now.
+    pub fn held(&self) -> impl Iterator<Item = Level> + '_ {
+        self.ledger.held()
+    }
+
+    /// Everything that went wrong so far.
+    pub const fn health(&self) -> &Health {
+        &self.health
+    }
+
+    /// What the pad told of itself, if it did.
+    pub const fn identity(&self) -> Option<&Identity> {
+        self.identity.as_ref()
+    }
+
+    /// Why this pad cannot be played with, if so. Its samples are not mapped.
+    pub const fn refusal(&self) -> Option<&Refusal> {
+        self.refusal.as_ref()
+    }
+
+    /// What the pipeline is doing.
+    pub fn phase(&self) -> Phase {
+        match self.phase {
+            _ if self.paused => Phase::Paused,
+            _ if self.refusal.is_some() => Phase::Refused,
+            Phase::Playing if self.at < self.trusted_at => Phase::Doubtful,
+            phase => phase,
+        }
+    }
+
+    fn handle_link<P: Probe>(&mut self, now: HostInstant, event: &LinkEvent, probe: &mut P) {
+        match event {
+            LinkEvent::Sample { at, sample, fault } => {
+                probe.mark(Stage::Sample);
+                self.advance(*at);
+                self.health.samples += 1;
+                if let Some(fault) = fault {
+                    self.handle_fault(*fault);
+                }
+                self.handle_sample(sample, probe);
+                probe.mark(Stage::Events);
+            }
+            LinkEvent::Fault(fault) => {
+                self.advance(self.link.stream_at(now));
+                self.handle_fault(*fault);
+            }
+            LinkEvent::Identity(identity) => self.handle_identity(identity),
+            LinkEvent::NewerVersion(version) => {
+                self.refusal = Some(Refusal::NewerVersion(*version));
+                self.advance(self.link.stream_at(now));
+                self.interrupt(Cause::NewerVersion);
+            }
+        }
+    }
+
+    fn handle_sample<P: Probe>(&mut self, sample: &Sample, probe: &mut P) {
+        match self.stage.take(self.at, sample, &mut self.health, probe) {
+            Reading::Contact(contact) => {
+                self.phase = Phase::Playing;
+                self.map(contact);
+            }
+            Reading::Taring => {
+                self.phase = Phase::Taring;
+                self.interrupt(Cause::Taring);
+                self.map(None);
+            }
+            Reading::Faulty => {
+                self.phase = Phase::Faulty;
+                self.interrupt(Cause::Faulty);
+            }
+        }
+    }
+
+    fn handle_fault(&mut self, fault: Fault) {
+        if fault == Fault::Restarted {
+            // It may tell other numbers of itself now.
+            self.identity = None;
+        }
+        self.interrupt(fault.into());
+    }
+
+    fn handle_identity(&mut self, identity: &Identity) {
+        if self.identity.replace(*identity) == Some(*identity) {
+            return;
+        }
+        let scale = Scale::of(identity);
+        self.refusal = if scale.is_some() { None } else { Some(Refusal::Unsuitable(*identity)) };
+        let cause = match scale {
+            Some(scale) if self.stage.set_scale(scale) => Cause::Rescaled,
+            Some(_) => Cause::Identified,
+            None => Cause::Unsuitable,
+        };
+        self.interrupt(cause);
+    }
+
+    /// Maps the contact and settles with the ledger; does nothing while contacts are not believed.
+    fn map(&mut self, contact: Option<Contact>) {
+        if self.paused || self.refusal.is_some() || self.at < self.trusted_at {
+            // The engine is not told of a lift: a press that a fault cut short stays dead until it really ends.
+            return;
+        }
+        self.health.contacts += u64::from(contact.is_some() && self.contact.is_none());
+        self.contact = contact;
+        let levels = self.engine.step(self.at, self.contact.as_ref());
+        self.ledger.update(self.at, &levels, &mut self.edges);
+    }
+
+    /// Does to each part what [`Cause::effects`] says.
+    fn interrupt(&mut self, cause: Cause) {
+        self.stage.interrupt(cause);
+        if cause.effects().contact != Effect::Keep {
+            self.contact = None;
+            self.engine.cancel();
+            self.ledger.release_all(self.at, &mut self.edges);
+            self.trusted_at = self.at.plus_us(DISTRUST_US);
+        }
+    }
+
+    fn check_silence(&mut self, now: HostInstant) {
+        if self.link.silent_at().is_some_and(|silent_at| silent_at <= now) {
+            self.lose(now, Cause::Lost);
+        }
+    }
+
+    fn lose(&mut self, now: HostInstant, cause: Cause) {
+        self.health.links_lost += 1;
+        self.link.lose(now);
+        self.advance(self.link.stream_at(now));
+        self.phase = Phase::Waiting;
+        self.interrupt(cause);
+    }
+
+    fn advance(&mut self, at: StreamInstant) {
+        self.at = self.at.max(at);
+    }
+}

@@ -1,0 +1,142 @@
+//! From raw counts to strain: scale, channel faults, mean filter, tare.
+//!
+//! Raw counts carry the bridges' offsets, their drift and the sensor's faults. What leaves here is zero for an
+//! untouched pad, or nothing at all while the zero is not known or a channel cannot be trusted.
+
+pub mod fault;
+pub mod filter;
+pub mod tare;
+
+use firmware_proto::identity::Identity;
+use firmware_proto::sample::Sample;
+use firmware_proto::{DEFAULT_COUNT_BITS, DEFAULT_PICOVOLTS_PER_COUNT};
+
+use crate::pipeline::health::Health;
+use crate::pipeline::interruption::{Effect, Effects};
+use crate::quantity::{CHANNELS, Strain};
+use crate::time::StreamInstant;
+use fault::ChannelFaults;
+use filter::MeanFilter;
+use tare::{Rest, Tare};
+
+/// What a count means: told by the pad's identity, or the protocol's default.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// Microvolts at the bridge per count.
+    pub uv_per_count: f64,
+    /// Bits of a count; its range is ±2^(bits − 1).
+    pub count_bits: u8,
+}
+
+impl Scale {
+    /// The scale of a pad that does not tell one.
+    pub fn unidentified() -> Self {
+        Self::new(DEFAULT_PICOVOLTS_PER_COUNT, DEFAULT_COUNT_BITS)
+    }
+
+    /// The scale that a pad's identity states; `None` for one that the wire's specification does not allow.
+    pub fn of(identity: &Identity) -> Option<Self> {
+        let allowed = usize::from(identity.channels) == CHANNELS
+            && (DEFAULT_COUNT_BITS..=32).contains(&identity.count_bits)
+            && identity.picovolts_per_count > 0;
+        allowed.then(|| Self::new(identity.picovolts_per_count, identity.count_bits))
+    }
+
+    fn new(picovolts_per_count: u32, count_bits: u8) -> Self {
+        Self { uv_per_count: f64::from(picovolts_per_count) * 1e-6, count_bits }
+    }
+}
+
+/// What a sample comes to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Conditioned {
+    /// Strain relative to the untouched pad.
+    Strain(Strain),
+    /// The zero is being measured: the pad must lie untouched for a moment.
+    Taring,
+    /// A channel is at its limit, stuck, or without supply; nothing can be said about the contact.
+    Faulty,
+}
+
+/// The conditioning stage.
+#[derive(Clone, Debug)]
+pub struct Signal {
+    scale: Scale,
+    faults: ChannelFaults,
+    filter: MeanFilter,
+    tare: Tare,
+}
+
+impl Signal {
+    /// A stage that has seen nothing: it measures its zero first. `filter_samples` is the mean filter's window.
+    pub fn new(filter_samples: usize) -> Self {
+        Self {
+            scale: Scale::unidentified(),
+            faults: ChannelFaults::new(),
+            filter: MeanFilter::new(filter_samples),
+            tare: Tare::new(),
+        }
+    }
+
+    /// Changes the filter's window; it grows anew from one sample.
+    pub fn set_filter_samples(&mut self, filter_samples: usize) {
+        self.filter = MeanFilter::new(filter_samples);
+    }
+
+    /// Takes the scale of a pad that identified itself; false if it was that anyway. A different scale means a different zero,
+    /// so everything else is to be forgotten.
+    pub fn set_scale(&mut self, scale: Scale) -> bool {
+        std::mem::replace(&mut self.scale, scale) != scale
+    }
+
+    /// Without a filter's past nothing from before a fault mixes with what comes after; without a zero it is measured again.
+    pub fn interrupt(&mut self, effects: &Effects) {
+        let Effects { scale, channels, filter, zero, .. } = *effects;
+        if scale == Effect::Forget {
+            self.scale = Scale::unidentified();
+        }
+        match channels {
+            Effect::Keep => {}
+            Effect::Doubt => self.faults.forget_rest(),
+            Effect::Forget => self.faults = ChannelFaults::new(),
+        }
+        if filter == Effect::Forget {
+            self.filter.clear();
+        }
+        if zero == Effect::Forget {
+            self.tare = Tare::new();
+        }
+    }
+
+    /// Conditions one sample. `touched` says whether a contact is under way: the zero is followed only while not. `rest` is
+    /// what the pad reads then, and `added_uv` what is known to be added to the channels at any time: it is taken off first.
+    /// Where it gives no strain, the caller tells the interruption.
+    pub fn condition(
+        &mut self,
+        at: StreamInstant,
+        sample: &Sample,
+        touched: bool,
+        rest: &Rest,
+        added_uv: &[f64; CHANNELS],
+        health: &mut Health,
+    ) -> Conditioned {
+        if self.faults.check(sample, self.scale.count_bits, health) {
+            return Conditioned::Faulty;
+        }
+        let uv_per_count = self.scale.uv_per_count;
+        let raw_uv =
+            |counts: [f64; CHANNELS]| std::array::from_fn(|k| counts[k] * uv_per_count - added_uv[k]);
+        let mean = self.filter.push(&sample.counts);
+        if self.tare.is_known() {
+            let uv = self.tare.apply(at, &raw_uv(mean), touched, rest);
+            return Conditioned::Strain(Strain { uv });
+        }
+        if self.tare.measure(at, &raw_uv(sample.counts.map(f64::from)), rest) {
+            self.faults.forget_rest();
+        }
+        if self.tare.is_known() {
+            self.faults.learn();
+        }
+        Conditioned::Taring
+    }
+}

@@ -1,0 +1,252 @@
+//! Tables relative to the untouched pad.
+//!
+//! Channels are written raw. A pad's offset is larger than many a signal, and follows the temperature; so a table has
+//! rows in which nothing touches the pad, again and again. Between two of them the zero is taken to change evenly.
+//!
+//! # The rule
+//!
+//! *Untouched* is a static sample of the session [`ZERO`], or one whose forces are written as 0. A reference is noisy, so
+//! small forces may be none, too:
+//!
+//! - Figures of merit look at loads of 0.5 N and more. For them forces up to [`UNLOADED_N`] are none
+//!   ([`Untouched::unloaded`]).
+//! - A decoder is fitted to light contacts, too. For it such forces are none only if the table's loads stand apart from
+//!   them, the least one being three times as large or more ([`Untouched::of`]).
+//!
+//! The *zero of a row* lies between the readings of the two untouched rows around it, by their times where all rows have
+//! times, else by their places in the table; before the first and after the last it stays.
+//!
+//! - A decoder knows how the zero follows the temperature, or takes it to be constant: all untouched rows count
+//!   ([`Zeros::at`]).
+//! - Figures of merit do not know: untouched rows of the row's own temperature count, those of its own session first
+//!   ([`Zeros::alike`]).
+
+use super::{Row, Table};
+use crate::quantity::CHANNELS;
+
+/// The session of rows in which nothing touches the pad.
+pub const ZERO: &str = "zero";
+
+/// Forces up to this may be none: a reference for 100 N does not know its own zero better.
+pub const UNLOADED_N: f64 = 0.1;
+
+/// The least load over the largest force of the untouched rows.
+const APART: f64 = 3.0;
+
+/// Temperatures closer than this have a common zero.
+const SAME_TEMPERATURE_C: f64 = 1.0;
+
+/// Which rows of a table are untouched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Untouched {
+    /// The table's session [`ZERO`].
+    session: Option<usize>,
+    /// The largest force that is none.
+    force_max_n: f64,
+}
+
+/// The rows of a table in which nothing touches the pad, and where every row lies between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Zeros {
+    /// The table's untouched static rows with channels, in order; at least one.
+    rows: Vec<usize>,
+    /// Each row's time, or its place in the table.
+    places: Vec<f64>,
+}
+
+/// Places of the rows in which something presses: what a decoder is fitted to.
+///
+/// Static samples if the table has any, else the rows of its time series: a series has many rows of one contact. Rows
+/// without channels are none.
+pub fn contacts(table: &Table) -> Vec<usize> {
+    let untouched = Untouched::of(table);
+    let pressed = || {
+        let rows = table.rows.iter().enumerate();
+        rows.filter(|(_, row)| row.uv.is_some() && !untouched.is(row))
+    };
+    let samples: Vec<usize> = pressed().filter(|(_, row)| row.trial.is_none()).map(|(at, _)| at).collect();
+    if samples.is_empty() { pressed().map(|(at, _)| at).collect() } else { samples }
+}
+
+impl Untouched {
+    /// What figures of merit take as untouched.
+    pub fn unloaded(table: &Table) -> Self {
+        let session = table.sessions.iter().position(|name| name == ZERO);
+        Self { session, force_max_n: UNLOADED_N }
+    }
+
+    /// What a decoder takes as untouched.
+    pub fn of(table: &Table) -> Self {
+        let unloaded = Self::unloaded(table);
+        let by_name = Self { force_max_n: 0.0, ..unloaded };
+        let samples = table.rows.iter().filter(|row| row.trial.is_none() && !by_name.is(row));
+        let (mut light_n, mut load_n) = (0.0_f64, f64::INFINITY);
+        for force_n in samples.map(|row| row.label.resultant_n()) {
+            if force_n <= UNLOADED_N { light_n = light_n.max(force_n) } else { load_n = load_n.min(force_n) }
+        }
+        if load_n >= APART * light_n { unloaded } else { by_name }
+    }
+
+    /// Whether nothing touches the pad in this row.
+    pub fn is(&self, row: &Row) -> bool {
+        let is_named = row.session.is_some() && row.session == self.session;
+        is_named || row.label.resultant_n() <= self.force_max_n
+    }
+}
+
+impl Zeros {
+    /// Finds those that a decoder takes; `None` if the table never reads the untouched pad.
+    pub fn of(table: &Table) -> Option<Self> {
+        Self::by(table, &Untouched::of(table))
+    }
+
+    /// Finds those that are `untouched`; `None` if there is none.
+    pub fn by(table: &Table, untouched: &Untouched) -> Option<Self> {
+        let is_timed = table.rows.iter().all(|row| row.t_s.is_some());
+        let places = (0_u32..).zip(&table.rows);
+        let places = places.map(|(place, row)| row.t_s.filter(|_| is_timed).unwrap_or(f64::from(place)));
+        let is_zero = |row: &Row| row.trial.is_none() && row.uv.is_some() && untouched.is(row);
+        let rows: Vec<usize> =
+            (0..).zip(&table.rows).filter(|(_, row)| is_zero(row)).map(|(at, _)| at).collect();
+        (!rows.is_empty()).then(|| Self { rows, places: places.collect() })
+    }
+
+    /// The untouched rows, in order.
+    pub fn rows(&self) -> &[usize] {
+        &self.rows
+    }
+
+    /// What is to be taken off a row, if `value` is what is to be taken off the untouched rows.
+    ///
+    /// It lies between those of the two untouched rows around it.
+    pub fn at(&self, row: usize, value: impl Fn(usize) -> [f64; CHANNELS]) -> [f64; CHANNELS] {
+        self.between(row, |_| true, value).unwrap_or([0.0; CHANNELS])
+    }
+
+    /// What a row of `table` reads without load, by the untouched rows of its own temperature, as far as temperatures
+    /// are known. Those of its own session come first; a session without any, as where zeros are a session of their own,
+    /// has those of all. `None` where there is none.
+    pub fn alike(&self, table: &Table, row: usize) -> Option<[f64; CHANNELS]> {
+        let here = table.rows.get(row)?;
+        let is_as_warm = |zero: usize| is_same_temperature(here, &table.rows[zero]);
+        let is_of_session = |zero: usize| table.rows[zero].session == here.session;
+        let value = |zero: usize| table.rows[zero].uv.unwrap_or_default();
+        self.between(row, |zero| is_of_session(zero) && is_as_warm(zero), value)
+            .or_else(|| self.between(row, is_as_warm, value))
+    }
+
+    /// Between the nearest of those untouched rows that count.
+    fn between(
+        &self,
+        row: usize,
+        counts: impl Fn(usize) -> bool,
+        value: impl Fn(usize) -> [f64; CHANNELS],
+    ) -> Option<[f64; CHANNELS]> {
+        let (before, after) = self.rows.split_at(self.rows.partition_point(|zero| *zero < row));
+        let before = before.iter().rev().find(|zero| counts(**zero));
+        let after = after.iter().find(|zero| counts(**zero));
+        let (Some(before), Some(after)) = (before, after) else {
+            return before.or(after).map(|only| value(*only));
+        };
+        let [here, first, second] = [row, *before, *after].map(|row| self.places[row]);
+        // Clocks that start anew say nothing.
+        let share = if second > first { ((here - first) / (second - first)).clamp(0.0, 1.0) } else { 0.5 };
+        let (first, second) = (value(*before), value(*after));
+        Some(std::array::from_fn(|k| first[k] + share * (second[k] - first[k])))
+    }
+}
+
+/// Whether rows are of one temperature, as far as it is known.
+fn is_same_temperature(one: &Row, other: &Row) -> bool {
+    one.temp_c.zip(other.temp_c).is_none_or(|(one, other)| (one - other).abs() <= SAME_TEMPERATURE_C)
+}
+
+/// The table with its zero taken off the channels of each row; `None` if it never reads the untouched pad.
+pub fn tared(table: &Table) -> Option<Table> {
+    let zeros = Zeros::of(table)?;
+    let mut tared = table.clone();
+    for (at, row) in tared.rows.iter_mut().enumerate() {
+        let zero_uv = zeros.at(at, |zero| table.rows[zero].uv.unwrap_or_default());
+        row.uv.iter_mut().flatten().zip(zero_uv).for_each(|(uv, zero_uv)| *uv -= zero_uv);
+    }
+    Some(tared)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Label;
+    use super::*;
+
+    fn row(fz_n: f64, uv: f64) -> Row {
+        Row { uv: Some([uv; CHANNELS]), ..Row::of(Label { fz_n, ..Label::default() }) }
+    }
+
+    fn table(rows: Vec<Row>) -> Table {
+        Table { rows, sessions: vec![ZERO.into(), "spread".into()], ..Table::default() }
+    }
+
+    fn first_channel(table: &Table) -> Vec<f64> {
+        table.rows.iter().map(|row| row.uv.unwrap()[0]).collect()
+    }
+
+    #[test]
+    fn the_zero_goes_evenly_from_one_reading_to_the_next() {
+        let rows = vec![row(1.0, 100.0), row(0.0, 10.0), row(2.0, 200.0), row(0.0, 30.0), row(1.0, 100.0)];
+        assert_eq!(first_channel(&tared(&table(rows)).unwrap()), [90.0, 0.0, 180.0, 0.0, 70.0]);
+    }
+
+    #[test]
+    fn times_count_where_all_rows_have_them() {
+        let at = |t_s: f64, row: Row| Row { t_s: Some(t_s), ..row };
+        let mut rows = vec![at(0.0, row(0.0, 10.0)), at(30.0, row(2.0, 200.0)), at(40.0, row(0.0, 30.0))];
+        assert_eq!(first_channel(&tared(&table(rows.clone())).unwrap()), [0.0, 175.0, 0.0]);
+        rows[1].t_s = None;
+        assert_eq!(first_channel(&tared(&table(rows)).unwrap()), [0.0, 180.0, 0.0]);
+    }
+
+    #[test]
+    fn a_noisy_reference_does_not_hide_a_zero_and_a_series_is_none() {
+        let zero = Row { session: Some(0), ..row(0.004, 10.0) };
+        let released = Row { trial: Some(0), ..row(0.0, 50.0) };
+        let pressed = Row { session: Some(1), ..row(1.0, 100.0) };
+        let table = table(vec![zero, released, pressed]);
+        assert_eq!(first_channel(&tared(&table).unwrap()), [0.0, 40.0, 90.0]);
+        assert_eq!(contacts(&table), [2]);
+    }
+
+    #[test]
+    fn without_a_name_a_noisy_reference_reads_zeros_where_loads_stand_apart() {
+        let rows = vec![row(0.03, 10.0), row(0.5, 60.0), row(-0.02, 30.0)];
+        let noisy = table(rows.clone());
+        assert_eq!(first_channel(&tared(&noisy).unwrap()), [0.0, 40.0, 0.0]);
+        assert_eq!(contacts(&noisy), [1]);
+        // Contacts of all sizes: the lightest ones are none either.
+        let light = table([rows, vec![row(0.08, 20.0), row(0.15, 40.0)]].concat());
+        assert_eq!((tared(&light), contacts(&light).len()), (None, 5));
+        // But what is exactly 0 stays so.
+        assert_eq!(Zeros::by(&light, &Untouched::unloaded(&light)).unwrap().rows(), [0, 2, 3]);
+        let exact = table(vec![row(0.0, 10.0), row(0.08, 20.0), row(0.15, 40.0)]);
+        assert_eq!(first_channel(&tared(&exact).unwrap()), [0.0, 10.0, 30.0]);
+    }
+
+    #[test]
+    fn alike_are_zeros_of_one_temperature_and_session() {
+        let at = |session, temp_c, uv| Row { session: Some(session), temp_c: Some(temp_c), ..row(0.0, uv) };
+        let load = |session, temp_c| Row { session: Some(session), temp_c: Some(temp_c), ..row(1.0, 0.0) };
+        let rows =
+            vec![at(0, 25.0, 7.0), at(1, 25.0, 1.0), at(0, 35.0, 2.0), load(0, 25.2), at(1, 25.0, 3.0)];
+        let rows = [rows, vec![load(1, 35.5), load(1, 60.0)]].concat();
+        let table = Table { sessions: vec!["one".into(), "two".into()], ..table(rows) };
+        let zeros = Zeros::of(&table).unwrap();
+        let first = |row| zeros.alike(&table, row).map(|uv| uv[0]);
+        assert_eq!([first(3), first(5), first(6), first(99)], [Some(7.0), Some(2.0), None, None]);
+    }
+
+    #[test]
+    fn without_a_reading_of_the_untouched_pad_there_is_no_zero() {
+        let series = |row| Row { trial: Some(0), ..row };
+        let table = table(vec![series(row(1.0, 100.0)), series(row(0.0, 7.0))]);
+        assert_eq!(tared(&table), None);
+        assert_eq!(contacts(&table), [0], "a series alone is better than nothing");
+    }
+}

@@ -1,0 +1,6 @@
+//! Tables of contacts: measured ones, plans to measure by, and the paper's dataset.
+
+pub mod dataset;
+pub mod measured;
+pub mod plans;
+pub mod recording;

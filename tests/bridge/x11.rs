@@ -1,0 +1,294 @@
+//! Key presses and the pointer through a real X server, seen by an ordinary X client.
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+
+use tactpad::bridge::clock::Clock;
+use tactpad::bridge::latency::{Durations, Percentiles};
+use tactpad::bridge::sink::Sink;
+use tactpad::bridge::sink::x11::X11Sink;
+use tactpad::pipeline::control::{Code, OutputDevice, OutputEvent};
+use tactpad::time::StreamInstant;
+use x11rb::COPY_DEPTH_FROM_PARENT;
+use x11rb::connection::Connection;
+use x11rb::protocol::Event;
+use x11rb::protocol::xproto::{
+    AutoRepeatMode, ChangeKeyboardControlAux, ConnectionExt as _, CreateWindowAux, EventMask, InputFocus,
+    KeyButMask, WindowClass,
+};
+use x11rb::rust_connection::RustConnection;
+use x11rb::wrapper::ConnectionExt as _;
+
+use crate::support::require;
+
+const UP: u16 = 103;
+const LEFT: u16 = 105;
+const LEFT_SHIFT: u16 = 42;
+const Z: u16 = 44;
+const X: u16 = 45;
+
+/// An X server of this test alone, on a display that nobody else uses.
+struct Server {
+    process: Child,
+    display: String,
+}
+
+impl Server {
+    fn start() -> Self {
+        let mut command = Command::new("Xvfb");
+        command.args(["-displayfd", "1", "-screen", "0", "320x240x24", "-nolisten", "tcp", "-noreset"]);
+        let mut process = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut number = String::new();
+        // The server names its display once it takes connections.
+        BufReader::new(process.stdout.as_mut().unwrap()).read_line(&mut number).unwrap();
+        assert!(!number.trim().is_empty(), "Xvfb did not start");
+        Self { process, display: format!(":{}", number.trim()) }
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// A window that has the keyboard.
+struct Client {
+    connection: RustConnection,
+    first_key: u8,
+    symbols: Vec<Vec<u32>>,
+}
+
+impl Client {
+    fn open(display: &str) -> Self {
+        let (connection, screen) = x11rb::connect(Some(display)).unwrap();
+        let root = connection.setup().roots[screen].root;
+        let window = connection.generate_id().unwrap();
+        let mask = EventMask::KEY_PRESS
+            | EventMask::KEY_RELEASE
+            | EventMask::BUTTON_PRESS
+            | EventMask::BUTTON_RELEASE
+            | EventMask::POINTER_MOTION
+            | EventMask::EXPOSURE;
+        connection
+            .create_window(
+                COPY_DEPTH_FROM_PARENT,
+                window,
+                root,
+                0,
+                0,
+                100,
+                100,
+                0,
+                WindowClass::INPUT_OUTPUT,
+                0,
+                &CreateWindowAux::new().event_mask(mask),
+            )
+            .unwrap();
+        // Held keys would repeat where the machine is slow.
+        let steady = ChangeKeyboardControlAux::new().auto_repeat_mode(AutoRepeatMode::OFF);
+        connection.change_keyboard_control(&steady).unwrap();
+        connection.map_window(window).unwrap();
+        connection.flush().unwrap();
+        while !matches!(connection.wait_for_event().unwrap(), Event::Expose(_)) {}
+        connection.set_input_focus(InputFocus::POINTER_ROOT, window, x11rb::CURRENT_TIME).unwrap();
+        let first_key = connection.setup().min_keycode;
+        let count = connection.setup().max_keycode - first_key + 1;
+        let mapping = connection.get_keyboard_mapping(first_key, count).unwrap().reply().unwrap();
+        let symbols =
+            mapping.keysyms.chunks(mapping.keysyms_per_keycode.into()).map(<[u32]>::to_vec).collect();
+        Self { connection, first_key, symbols }
+    }
+
+    /// What has arrived since the last call: the symbol on the key, with Shift where it was held, and whether
+    /// it went down.
+    fn seen(&self) -> Vec<(u32, bool)> {
+        // The server has handled every key before it answers this.
+        self.connection.sync().unwrap();
+        let mut seen = Vec::new();
+        while let Some(event) = self.connection.poll_for_event().unwrap() {
+            let (event, down) = match event {
+                Event::KeyPress(event) => (event, true),
+                Event::KeyRelease(event) => (event, false),
+                _ => continue,
+            };
+            let column = usize::from(event.state.contains(KeyButMask::SHIFT));
+            seen.push((self.symbols[usize::from(event.detail - self.first_key)][column], down));
+        }
+        seen
+    }
+}
+
+/// What the pointer did on the client's window.
+#[derive(Debug, PartialEq, Eq)]
+enum Pointed {
+    /// It is at this place of the screen.
+    At(i16, i16),
+    /// The button of this number went down.
+    Down(u8),
+    /// It went up.
+    Up(u8),
+}
+
+impl Client {
+    /// What the pointer has done since the last call.
+    fn pointed(&self) -> Vec<Pointed> {
+        self.connection.sync().unwrap();
+        let mut seen = Vec::new();
+        while let Some(event) = self.connection.poll_for_event().unwrap() {
+            match event {
+                Event::MotionNotify(event) => seen.push(Pointed::At(event.root_x, event.root_y)),
+                Event::ButtonPress(event) => seen.push(Pointed::Down(event.detail)),
+                Event::ButtonRelease(event) => seen.push(Pointed::Up(event.detail)),
+                _ => {}
+            }
+        }
+        seen
+    }
+}
+
+fn event(key: u16, value: i32) -> OutputEvent {
+    OutputEvent { at: StreamInstant::from_us(0), device: OutputDevice::Keyboard, code: Code::Key(key), value }
+}
+
+fn pointer(code: Code, value: i32) -> OutputEvent {
+    OutputEvent { at: StreamInstant::from_us(0), device: OutputDevice::Pointer, code, value }
+}
+
+const SYMBOL_UP: u32 = 0xff52;
+const SYMBOL_LEFT: u32 = 0xff51;
+
+#[test]
+fn keys_reach_a_window_in_order() {
+    if !require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    let server = Server::start();
+    let client = Client::open(&server.display);
+    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    sink.prepare(OutputDevice::Keyboard).unwrap();
+    sink.write(&[event(UP, 1)]).unwrap();
+    sink.write(&[event(LEFT, 1), event(Z, 1)]).unwrap();
+    sink.write(&[event(UP, 0), event(Z, 0), event(X, 1)]).unwrap();
+    sink.write(&[event(X, 0), event(LEFT, 0)]).unwrap();
+    let (z, x) = (u32::from(b'z'), u32::from(b'x'));
+    let expected = [
+        (SYMBOL_UP, true),
+        (SYMBOL_LEFT, true),
+        (z, true),
+        (SYMBOL_UP, false),
+        (z, false),
+        (x, true),
+        (x, false),
+        (SYMBOL_LEFT, false),
+    ];
+    assert_eq!(client.seen(), expected);
+    sink.write(&[event(LEFT_SHIFT, 1)]).unwrap();
+    client.seen();
+    sink.write(&[event(Z, 1), event(Z, 0)]).unwrap();
+    assert_eq!(client.seen(), [(u32::from(b'Z'), true), (u32::from(b'Z'), false)]);
+}
+
+#[test]
+fn dropping_the_sink_releases_what_it_holds() {
+    if !require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    let server = Server::start();
+    let client = Client::open(&server.display);
+    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    sink.write(&[event(UP, 1), event(Z, 1), event(X, 1)]).unwrap();
+    sink.write(&[event(X, 0)]).unwrap();
+    client.seen();
+    drop(sink);
+    let mut released = client.seen();
+    released.sort_unstable();
+    assert_eq!(released, [(u32::from(b'z'), false), (SYMBOL_UP, false)]);
+}
+
+#[test]
+fn the_pointer_moves_and_clicks_where_it_is() {
+    if !require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    let server = Server::start();
+    let client = Client::open(&server.display);
+    let root = client.connection.setup().roots[0].root;
+    client.connection.warp_pointer(x11rb::NONE, root, 0, 0, 0, 0, 50, 40).unwrap();
+    client.pointed();
+    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    sink.prepare(OutputDevice::Pointer).unwrap();
+    let (x, y, left) = (Code::Relative(0), Code::Relative(1), Code::Key(0x110));
+    sink.write(&[pointer(x, 7), pointer(y, -3), pointer(left, 1)]).unwrap();
+    sink.write(&[pointer(x, -20), pointer(left, 0), pointer(Code::Key(0x111), 1)]).unwrap();
+    use Pointed::{At, Down, Up};
+    assert_eq!(client.pointed(), [At(57, 40), At(57, 37), Down(1), At(37, 37), Up(1), Down(3)]);
+    drop(sink);
+    assert_eq!(client.pointed(), [Up(3)], "what was held is released");
+}
+
+#[test]
+fn what_x_cannot_do_is_refused_before_a_key_goes_out() {
+    if !require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    let server = Server::start();
+    let client = Client::open(&server.display);
+    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    assert!(sink.prepare(OutputDevice::Gamepad).unwrap_err().message.contains("output = \"keyboard\""));
+    let hat = OutputEvent { device: OutputDevice::Gamepad, code: Code::Axis(0x11), ..event(0, -1) };
+    let bare = client.symbols.iter().position(|symbols| symbols.iter().all(|symbol| *symbol == 0)).unwrap();
+    assert_eq!(client.first_key, 8, "the kernel's key 0");
+    // 247 is the highest number that X has room for.
+    let wheel = pointer(Code::Relative(8), 1);
+    let moved_key = OutputEvent { code: Code::Relative(0), ..event(0, 1) };
+    let outside = [event(248, 1), event(0x110, 1), event(0x130, 1), event(u16::MAX, 1)];
+    for refused in [hat, event(0, 1), event(bare as u16, 1), wheel, moved_key].into_iter().chain(outside) {
+        let error = sink.write(&[event(Z, 1), refused]).unwrap_err();
+        assert!(error.message.contains("--output uinput"), "{error}");
+    }
+    assert_eq!(client.seen(), []);
+}
+
+#[test]
+fn missing_server_is_one_sentence() {
+    let error = X11Sink::open(Some(":65000")).err().unwrap();
+    assert!(error.message.contains(":65000") && error.message.contains("--output uinput"), "{error}");
+}
+
+/// The keys that the shipped profiles type.
+const PLAYED: [u16; 6] = [UP, 108, LEFT, 106, Z, X];
+
+/// Every key of every shipped profile, press and release in turn, as fast as the sink takes them.
+fn presses(count: usize) -> impl Iterator<Item = OutputEvent> {
+    let keys = PLAYED.into_iter().cycle().take(count);
+    keys.flat_map(|key| [event(key, 1), event(key, 0)])
+}
+
+#[test]
+fn two_thousand_presses_arrive_in_order_and_are_quick() {
+    if !require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    let server = Server::start();
+    let client = Client::open(&server.display);
+    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    let clock = Clock::start();
+    let mut calls = Durations::new();
+    for press in presses(2_000) {
+        let before = clock.now();
+        sink.write(&[press]).unwrap();
+        calls.record_ns(clock.now().as_ns() - before.as_ns());
+    }
+    let symbol = |event: &OutputEvent| match event.code {
+        Code::Key(key) => (client.symbols[usize::from(key)][0], event.value == 1),
+        other => panic!("{other} is no key"),
+    };
+    let expected: Vec<_> = presses(2_000).map(|event| symbol(&event)).collect();
+    assert_eq!(client.seen(), expected);
+    let Percentiles { p50, p99, max, .. } = calls.percentiles();
+    println!("a key call: p50 {p50:.0} µs, p99 {p99:.0} µs, max {max:.0} µs");
+    assert!(p50 <= 150.0, "p50 {p50} µs");
+}

@@ -1,0 +1,126 @@
+//! The bridge on a real Linux input stack.
+//!
+//! Every test boots a kernel of its own, runs its body inside as root, and leaves nothing behind; the host needs
+//! neither uinput nor rights. `tests/kernel/build-kernel.sh` makes the kernel. The latency test prints its numbers:
+//! `cargo test --release --test kernel latency -- --nocapture`.
+#![cfg(all(feature = "live", target_os = "linux"))]
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking and shows what it saw"
+)]
+
+mod bridge;
+mod clock;
+mod demo;
+mod guest;
+mod hid;
+mod joystick;
+mod latency;
+mod neutral;
+mod pad;
+mod playing;
+mod program;
+mod reader;
+mod sdl;
+#[path = "../support/mod.rs"]
+mod support;
+mod wire;
+
+use firmware_proto::frame::Message;
+use firmware_proto::link::MessageReceiver;
+use guest::in_guest;
+
+#[test]
+fn test_frames_are_what_the_protocol_crate_reads() {
+    let counts = [0, -1, 8_388_607, -8_388_608, 256, 0x0101_0101, 65_536, 254, -255];
+    for (sequence, time_us) in [(0, 0), (1, 1_000), (u32::MAX, u64::MAX)] {
+        let mut receiver = MessageReceiver::new();
+        let frame = wire::sample_frame(sequence, time_us, counts);
+        let messages: Vec<_> = frame.into_iter().filter_map(|byte| receiver.push(byte)).collect();
+        let [Ok(Message::Sample(sample))] = messages[..] else { panic!("not one sample: {messages:?}") };
+        assert_eq!((sample.sequence, sample.time_us, sample.counts), (sequence, time_us, counts));
+        assert_eq!(sample.status.restarted(), sequence == 0);
+    }
+}
+
+#[test]
+fn gamepad_is_an_xbox_360_pad_and_plays() {
+    in_guest("gamepad_is_an_xbox_360_pad_and_plays", playing::gamepad);
+}
+
+#[test]
+fn keyboard_is_a_device_of_its_own_and_plays() {
+    in_guest("keyboard_is_a_device_of_its_own_and_plays", playing::keyboard);
+}
+
+#[test]
+fn pointer_is_a_mouse_of_its_own_and_moves() {
+    in_guest("pointer_is_a_mouse_of_its_own_and_moves", playing::pointer);
+}
+
+#[test]
+fn sdl_sees_a_game_controller() {
+    if sdl::probe_is_there() {
+        in_guest("sdl_sees_a_game_controller", sdl::game_controller);
+    }
+}
+
+#[test]
+fn sigterm_releases_before_the_device_goes() {
+    in_guest("sigterm_releases_before_the_device_goes", neutral::after_sigterm);
+}
+
+#[test]
+fn sigkill_leaves_nothing_held() {
+    in_guest("sigkill_leaves_nothing_held", neutral::after_sigkill);
+}
+
+#[test]
+fn unplugging_releases_and_the_device_stays() {
+    in_guest("unplugging_releases_and_the_device_stays", neutral::after_unplugging);
+}
+
+#[test]
+fn silence_releases_and_the_device_stays() {
+    in_guest("silence_releases_and_the_device_stays", neutral::after_silence);
+}
+
+#[test]
+fn a_hid_pad_is_found_and_plays() {
+    in_guest("a_hid_pad_is_found_and_plays", hid::plays);
+}
+
+#[test]
+fn a_hid_pad_plays_what_sdl_sees() {
+    if sdl::probe_is_there() {
+        in_guest("a_hid_pad_plays_what_sdl_sees", hid::seen_by_sdl);
+    }
+}
+
+#[test]
+fn two_hid_pads_are_told_apart() {
+    in_guest("two_hid_pads_are_told_apart", hid::chosen_by_serial_number);
+}
+
+#[test]
+fn a_hid_pad_may_come_and_go() {
+    in_guest("a_hid_pad_may_come_and_go", hid::replugged);
+}
+
+#[test]
+fn demo_plays_on_uinput() {
+    in_guest("demo_plays_on_uinput", demo::plays_on_uinput);
+}
+
+#[test]
+fn demo_moves_the_pointer() {
+    in_guest("demo_moves_the_pointer", demo::moves_the_pointer);
+}
+
+#[test]
+fn latency_is_at_most_twice_an_echo() {
+    if program::compiled("echo", &[]) {
+        in_guest("latency_is_at_most_twice_an_echo", latency::against_an_echo);
+    }
+}

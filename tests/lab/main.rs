@@ -1,0 +1,15 @@
+//! What the laboratory finds out about a pad, from measured tables to decoders and figures of merit.
+
+mod ablation;
+mod calibration;
+#[cfg(feature = "foreign-onnx")]
+mod foreign;
+mod layout;
+mod measurement;
+mod metrology;
+mod models;
+mod network;
+mod onnxruntime;
+mod scdf;
+#[path = "../support/mod.rs"]
+mod support;

@@ -1,0 +1,6 @@
+//! The pad as files tell of it and as the twin plays it: devices, plans and measured tables, imperfections.
+
+mod device;
+mod measured;
+mod protocol;
+mod twin;

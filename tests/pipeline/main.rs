@@ -1,0 +1,17 @@
+//! The live core in virtual time: bytes and contacts go in, events come out.
+
+mod allocation;
+mod calls;
+#[path = "../support/decoders.rs"]
+mod decoders;
+mod diagnostics;
+mod hysteresis;
+mod mapping_properties;
+#[path = "../support/played.rs"]
+mod played;
+mod player;
+mod profile_reference;
+mod rig;
+mod timeline;
+mod warmth;
+mod warnings;

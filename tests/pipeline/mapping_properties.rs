@@ -1,0 +1,184 @@
+//! What holds for every profile and every contact.
+
+use proptest::prelude::{Just, Strategy, any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
+use tactpad::pipeline::control::Code;
+use tactpad::pipeline::mapping::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::engine::Engine;
+use tactpad::pipeline::mapping::intent::Intents;
+use tactpad::pipeline::mapping::profile::{POINTER_SPEED_MAX, Profile};
+use tactpad::pipeline::mapping::shipped;
+use tactpad::quantity::Contact;
+use tactpad::time::StreamInstant;
+
+/// Eight directions, the pointer, six buttons, some on the same controls: as much as can go wrong at once.
+const CROWDED: &str = r#"
+schema = 1
+name = "Crowded"
+output = "gamepad"
+[dpad]
+mode = "8way"
+rotation_deg = 170
+[dpad.keyboard]
+up = "KEY_Z"
+[pointer]
+speed_counts_per_s = 5000
+[[button]]
+force = "fz"
+press_n = 1
+tap = { pointer = "BTN_LEFT" }
+hold = { gamepad = "BTN_SOUTH", keyboard = "KEY_Z" }
+[[button]]
+force = "fz"
+press_n = 1
+out = { gamepad = "BTN_SOUTH", keyboard = "KEY_Z" }
+[[button]]
+force = "fx"
+press_n = 1
+tap = { gamepad = "BTN_SOUTH", keyboard = "KEY_Z" }
+hold = { gamepad = "BTN_EAST", keyboard = "KEY_X" }
+long_press_ms = 50
+[[button]]
+force = "-fx"
+press_n = 1
+out = { gamepad = "BTN_WEST", keyboard = "KEY_A" }
+[[button]]
+force = "fy"
+press_n = 1
+out = { gamepad = "BTN_NORTH", keyboard = "KEY_S" }
+[[button]]
+force = "-fy"
+press_n = 0.5
+tap = { gamepad = "BTN_TL", keyboard = "KEY_Q" }
+hold = { gamepad = "BTN_TL", keyboard = "KEY_W" }
+long_press_ms = 50
+"#;
+
+#[derive(Clone, Debug)]
+enum Call {
+    Step(Option<Contact>),
+    Cancel,
+    Replace(Box<Profile>),
+}
+
+fn profiles() -> impl Strategy<Value = Profile> {
+    let texts: Vec<_> = shipped::names().filter_map(shipped::text).chain([CROWDED]).collect();
+    let output = prop_oneof![Just(OutputChoice::AsWritten), Just(OutputChoice::Keyboard)];
+    (prop::sample::select(texts), output)
+        .prop_filter_map("a usable profile", |(text, output)| read(text, output).0)
+}
+
+fn contacts() -> impl Strategy<Value = Contact> {
+    let number = || prop_oneof![8 => -30.0f32..30.0, 4 => -3.0f32..3.0, 1 => prop::num::f32::ANY];
+    let fields = [number(), number(), number(), number(), number()];
+    fields.prop_map(|[x_mm, y_mm, fx_n, fy_n, fz_n]| Contact { x_mm, y_mm, fx_n, fy_n, fz_n })
+}
+
+fn calls() -> impl Strategy<Value = Vec<(u64, Call)>> {
+    let call = prop_oneof![
+        20 => contacts().prop_map(|contact| Call::Step(Some(contact))),
+        3 => Just(Call::Step(None)),
+        1 => Just(Call::Cancel),
+        1 => profiles().prop_map(|profile| Call::Replace(Box::new(profile))),
+    ];
+    prop::collection::vec((0..100_000u64, call), 1..60)
+}
+
+fn is_finite(contact: &Contact) -> bool {
+    [contact.x_mm, contact.y_mm, contact.fx_n, contact.fy_n, contact.fz_n].iter().all(|n| n.is_finite())
+}
+
+/// Levels that any game can take: each control once, values in range, all on devices that the profile uses.
+fn assert_sound(levels: &Intents, profile: &Profile) {
+    for (index, level) in levels.iter().enumerate() {
+        assert!(levels.iter().skip(index + 1).all(|other| other.code != level.code), "twice in {levels:?}");
+        assert!(profile.uses(level.device), "{level:?}");
+        match level.code {
+            Code::Relative(_) => {
+                assert!(level.value != 0 && level.value.abs() <= POINTER_SPEED_MAX, "{level:?}");
+            }
+            Code::Key(_) | Code::Axis(_) => assert!(level.value == 1 || level.value == -1, "{level:?}"),
+        }
+    }
+}
+
+#[test]
+fn the_crowded_profile_is_usable() {
+    let (profile, found) = read(CROWDED, OutputChoice::Keyboard);
+    assert!(profile.is_some(), "{found:?}");
+}
+
+proptest! {
+    #[test]
+    fn levels_are_sound_whatever_happens(profile in profiles(), calls in calls()) {
+        let mut engine = Engine::new(profile);
+        let mut us = 0;
+        let mut lifted = true;
+        for (pause_us, call) in calls {
+            us += pause_us;
+            match call {
+                Call::Step(contact) => {
+                    let levels = engine.step(StreamInstant::from_us(us), contact.as_ref());
+                    assert_sound(&levels, engine.profile());
+                    let unusable = contact.is_some_and(|contact| !is_finite(&contact));
+                    prop_assert!(levels.is_empty() || !unusable, "not a number gives {levels:?}");
+                    let held_by_nothing = lifted && contact.is_none() && !levels.is_empty();
+                    prop_assert!(!held_by_nothing, "nothing on the pad gives {levels:?}");
+                    lifted = contact.is_none();
+                }
+                Call::Cancel => {
+                    engine.cancel();
+                    lifted = true;
+                }
+                Call::Replace(profile) => engine.replace_profile(*profile),
+            }
+        }
+        engine.step(StreamInstant::from_us(us + 1), None);
+        prop_assert!(engine.step(StreamInstant::from_us(us + 2), None).is_empty());
+    }
+
+    #[test]
+    fn the_same_calls_give_the_same_levels(profile in profiles(), calls in calls()) {
+        let run = || {
+            let mut engine = Engine::new(profile.clone());
+            let mut all = Vec::new();
+            for (us, call) in calls.clone() {
+                match call {
+                    Call::Step(contact) => {
+                        all.push(engine.step(StreamInstant::from_us(us), contact.as_ref()));
+                    }
+                    Call::Cancel => engine.cancel(),
+                    Call::Replace(profile) => engine.replace_profile(*profile),
+                }
+            }
+            all
+        };
+        prop_assert_eq!(run(), run());
+    }
+
+    #[test]
+    fn any_text_is_read_without_a_panic(text in ".{0,200}") {
+        let (profile, found) = read(&text, OutputChoice::AsWritten);
+        prop_assert!(profile.is_some() || !found.is_empty());
+    }
+
+    #[test]
+    fn a_damaged_profile_is_read_without_a_panic(
+        name in prop::sample::select(shipped::names().collect::<Vec<_>>()),
+        at in any::<prop::sample::Index>(),
+        length in 0usize..40,
+        insert in r#"[\[\]{}="'.,#\n a-z0-9+-]{0,12}|nan|inf|\PC{0,4}"#,
+    ) {
+        let letters: Vec<char> = shipped::text(name).unwrap().chars().collect();
+        let start = at.index(letters.len());
+        let end = (start + length).min(letters.len());
+        let (before, after) = (letters[..start].iter().copied(), letters[end..].iter().copied());
+        let text: String = before.chain(insert.chars()).chain(after).collect();
+        let (profile, found) = read(&text, OutputChoice::Keyboard);
+        let lines = text.split('\n').count();
+        for finding in &found {
+            prop_assert!((1..=lines).contains(&finding.line), "{finding:?}");
+            prop_assert!(!finding.message.contains('\n'), "{finding:?}");
+        }
+        prop_assert!(profile.is_some() || !found.is_empty());
+    }
+}

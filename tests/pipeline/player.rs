@@ -1,0 +1,68 @@
+//! The scripted player means what the bridge understands: its own list of events, made from the gestures' meaning,
+//! against the events of the pipeline, on many noisy pads.
+
+use firmware_proto::ENCODED_MAX;
+use firmware_proto::command::Command;
+use firmware_proto::link::encode_command;
+use tactpad::pipeline::control::{Code, OutputDevice};
+use tactpad::pipeline::mapping::check::{self, OutputChoice};
+use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::{NoProbe, Pipeline};
+use tactpad::time::HostInstant;
+use tactpad::virtual_pad::firmware::VirtualPad;
+use tactpad::virtual_pad::script::Script;
+
+const DURATION_US: u64 = 10_000_000;
+
+/// The events of a noisy pad that plays the script, and how far the pointer went: right, left, down, up.
+fn play(profile: Profile, script: Script, seed: u64) -> (Vec<(OutputDevice, Code, i32)>, [i32; 4]) {
+    let mut pad = VirtualPad::new(script, seed);
+    let mut pipeline = Pipeline::new(tactpad::pipeline::shipped::decoder(), profile);
+    let mut question = [0; ENCODED_MAX];
+    let length = encode_command(&Command::Identify, &mut question);
+    pad.receive(&question[..length]);
+    let (mut seen, mut ways) = (Vec::new(), [0; 4]);
+    let mut bytes = Vec::new();
+    for ms in 1..=DURATION_US / 1_000 {
+        bytes.clear();
+        pad.emit(ms * 1_000, &mut bytes);
+        let mut rest = &bytes[..];
+        while !rest.is_empty() {
+            let now = HostInstant::default().plus_us(ms * 1_000);
+            let taken = pipeline.handle_bytes(now, rest, &mut NoProbe);
+            for event in pipeline.events() {
+                match event.code {
+                    Code::Relative(axis) => {
+                        ways[2 * usize::from(axis) + usize::from(event.value < 0)] += event.value.abs();
+                    }
+                    Code::Key(_) | Code::Axis(_) => seen.push((event.device, event.code, event.value)),
+                }
+            }
+            rest = &rest[taken..];
+        }
+    }
+    (seen, ways)
+}
+
+#[test]
+fn what_the_player_means_is_what_comes_out() {
+    for name in shipped::names() {
+        for output in [OutputChoice::AsWritten, OutputChoice::Keyboard] {
+            let read = shipped::text(name).and_then(|text| check::read(text, output).0);
+            let Some(profile) = read else { panic!("{name} is in order") };
+            let script = Script::for_profile(&profile, DURATION_US);
+            // On the way of the pointer there is no event to expect, only at its buttons.
+            let events = if profile.pointer.is_some() { 8 } else { 20 };
+            assert!(script.contacts() >= 10 && script.expected().len() >= events, "{name}");
+            for seed in 0..12 {
+                let (seen, ways) = play(profile.clone(), script.clone(), seed);
+                // At 16 mm the pointer has 268 counts per second, and the finger stays there for a tenth of one.
+                let steered = ways.iter().all(|&counts| counts > 26);
+                assert_eq!(steered, profile.pointer.is_some(), "{name}, seed {seed}: {ways:?}");
+                assert_eq!(steered, ways != [0; 4], "{name}, seed {seed}: {ways:?}");
+                assert_eq!(seen, script.expected(), "{name}, {output:?}, seed {seed}");
+            }
+        }
+    }
+}

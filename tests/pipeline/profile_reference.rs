@@ -1,0 +1,117 @@
+//! `mappings/README.md` is the reference of the profiles' language: what it shows and states must hold.
+
+use tactpad::pipeline::mapping::check::{OutputChoice, read};
+use tactpad::toml_text::diag::Diagnostic;
+
+/// The lines that a profile must have.
+const HEAD: &str = "schema = 1\nname = \"Test\"\noutput = \"gamepad\"\n";
+
+const REFERENCE: &str = include_str!("../../mappings/README.md");
+
+#[test]
+fn every_example_of_the_reference_is_a_profile() {
+    let text = REFERENCE;
+    let examples: Vec<_> =
+        text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert_eq!(examples.len(), 4);
+    for example in examples {
+        let whole = if example.contains("schema") { example.to_owned() } else { format!("{HEAD}{example}") };
+        let (profile, found) = read(&whole, OutputChoice::AsWritten);
+        assert_eq!((profile.is_some(), found), (true, vec![]), "{example}");
+    }
+}
+
+/// The number keys of the reference's tables: section heading, key, default, lowest, highest.
+fn documented_numbers() -> Vec<(String, String, Option<f32>, f32, f32)> {
+    let mut heading = String::new();
+    let mut rows = Vec::new();
+    for line in REFERENCE.lines() {
+        if line.starts_with('#') {
+            heading = line.to_owned();
+        }
+        let cells: Vec<_> = line.split('|').map(str::trim).collect();
+        let [_, key, default, allowed, ..] = cells.as_slice() else { continue };
+        let Some((low, high)) = allowed.split_once(" to ") else { continue };
+        if let (Ok(low), Ok(high)) = (low.parse(), high.parse()) {
+            rows.push((heading.clone(), key.trim_matches('`').to_owned(), default.parse().ok(), low, high));
+        }
+    }
+    rows
+}
+
+/// A profile with `line`, which may set `key`, in the table that `heading` documents.
+///
+/// A key that is bounded by another one gets that other one as a partner, so that only its own range matters.
+fn profile_with(heading: &str, key: &str, line: &str) -> String {
+    let (partner_table, partner) = match key {
+        "min_press_ms" => ("[[button]]", "long_press_ms = 10000"),
+        "long_press_ms" => ("itself", "min_press_ms = 0"),
+        "radius_hysteresis_mm" => ("[dpad]", "centre_radius_mm = 29"),
+        "diagonal_deg" => ("[dpad]", "mode = \"8way\"\nhysteresis_deg = 2"),
+        "release_force_n" if heading.contains("[dpad]") => ("[dpad]", "min_force_n = 50"),
+        "release_force_n" => ("[pointer]", "min_force_n = 50"),
+        "centre_radius_mm" if heading.contains("[pointer]") => ("[pointer]", "full_radius_mm = 30"),
+        "full_radius_mm" => ("[pointer]", "centre_radius_mm = 2"),
+        "release_n" => ("[[button]]", "press_n = 50"),
+        _ => ("", ""),
+    };
+    let lines_of = |table: &str| {
+        let line = if heading.contains(table) { line } else { "" };
+        let partner = if partner_table == table { partner } else { "" };
+        format!("{line}\n{partner}\n")
+    };
+    let (root, dpad, button) = (lines_of("itself"), lines_of("[dpad]"), lines_of("[[button]]"));
+    let pointer = lines_of("[pointer]");
+    let press = if key == "press_n" || key == "release_n" { "" } else { "press_n = 2" };
+    let tap = r#"tap = { gamepad = "BTN_A", keyboard = "KEY_Z" }"#;
+    let hold = r#"hold = { gamepad = "BTN_B", keyboard = "KEY_X" }"#;
+    format!(
+        "{HEAD}{root}[dpad]\n{dpad}[pointer]\n{pointer}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{button}"
+    )
+}
+
+#[test]
+fn the_reference_states_the_ranges_that_hold() {
+    let rows = documented_numbers();
+    assert_eq!(rows.len(), 18, "{rows:?}");
+    for (heading, key, _, low, high) in rows {
+        let errors = |value: f32| {
+            let text = profile_with(&heading, &key, &format!("{key} = {value}"));
+            let found = read(&text, OutputChoice::AsWritten).1;
+            let about_range = |finding: &Diagnostic| finding.message.contains("it must be");
+            (found.iter().filter(|finding| about_range(finding)).count(), found)
+        };
+        let step = if key.ends_with("_ms") || key == "filter_samples" { 1.0 } else { 0.01 };
+        for (value, wanted) in [(low - step, 1), (low, 0), (high, 0), (high + step, 1)] {
+            let (count, found) = errors(value);
+            assert_eq!(count, wanted, "{key} = {value}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn the_reference_states_the_defaults_that_hold() {
+    let mut checked = 0;
+    for (heading, key, default, ..) in documented_numbers() {
+        let Some(default) = default else { continue };
+        let read_with = |line: &str| read(&profile_with(&heading, &key, line), OutputChoice::AsWritten).0;
+        let written = read_with(&format!("{key} = {default}"));
+        assert!(written.is_some());
+        assert_eq!(written, read_with(""), "{key}");
+        checked += 1;
+    }
+    assert_eq!(checked, 14);
+}
+
+#[test]
+fn defaults_that_depend_on_other_keys() {
+    let text = format!(
+        "{HEAD}[dpad]\nmode = \"4way-sticky\"\nmin_force_n = 0.75\n[[button]]\nforce = \"fx\"\npress_n = 5\n\
+         out = {{ gamepad = \"BTN_A\", keyboard = \"KEY_Z\" }}\n"
+    );
+    let (profile, found) = read(&text, OutputChoice::AsWritten);
+    let profile = profile.unwrap_or_else(|| panic!("{found:?}"));
+    let dpad = profile.dpad.unwrap();
+    assert_eq!((dpad.diagonal_deg, dpad.release_force_n), (30.0, 0.5));
+    assert_eq!(profile.buttons[0].release_n, 3.5);
+}

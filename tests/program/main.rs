@@ -1,0 +1,14 @@
+//! The program as its users see it: what verbs print, what they refuse, the figures and files that they write.
+
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod bad_input;
+mod plot;
+mod simulate;
+#[cfg(feature = "simulator")]
+mod simulate_figures;
+#[cfg(feature = "simulator")]
+mod simulate_pad;
+#[path = "../support/mod.rs"]
+mod support;
+mod twin_verb;
+mod vtk;

@@ -9,7 +9,6 @@ use std::fs::{self, File};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
@@ -89,28 +88,34 @@ fn longest_stall_ms(said: &str) -> u64 {
     number.and_then(|number| number.parse().ok()).unwrap_or(0)
 }
 
+/// For how long this guest stood still so far, at most.
+static STOOD_STILL_MS: AtomicU64 = AtomicU64::new(0);
+
+/// By how much anything in the guest may have been late so far: a stall in full, and the millisecond it is rounded by.
+pub(crate) fn lateness_ms() -> u64 {
+    STOOD_STILL_MS.load(Ordering::Relaxed) + 1
+}
+
 /// Looks at the clock all the time, and tells at the end how long it was kept from that.
-struct StallWatch(Arc<AtomicU64>);
+struct StallWatch;
 
 impl StallWatch {
     fn start() -> Self {
-        let longest_ms = Arc::new(AtomicU64::new(0));
-        let noted = Arc::clone(&longest_ms);
         // It ends with the process.
-        thread::spawn(move || {
+        thread::spawn(|| {
             loop {
                 let deadline_ns = monotonic_ns() + WATCH_MS * MS;
                 wait_until(deadline_ns);
-                noted.fetch_max((monotonic_ns() - deadline_ns) / MS, Ordering::Relaxed);
+                STOOD_STILL_MS.fetch_max((monotonic_ns() - deadline_ns) / MS, Ordering::Relaxed);
             }
         });
-        Self(longest_ms)
+        Self
     }
 }
 
 impl Drop for StallWatch {
     fn drop(&mut self) {
-        println!("{STALL_SAID}{}", self.0.load(Ordering::Relaxed));
+        println!("{STALL_SAID}{}", STOOD_STILL_MS.load(Ordering::Relaxed));
     }
 }
 

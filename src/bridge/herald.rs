@@ -4,7 +4,7 @@ use crate::bridge::state::State;
 use crate::pipeline::contact::watch::Warning;
 use crate::time::HostInstant;
 
-/// Says a state when it has lasted, so that a flicker is not told.
+/// Says a state when it has lasted, so that a flicker is not told; but at once what the player must do.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Herald {
     told: State,
@@ -28,7 +28,8 @@ impl Herald {
         if state != self.candidate {
             (self.candidate, self.since) = (state, now);
         }
-        let lasts = now.us_since(self.since) >= LASTING_US;
+        // A lift may be all that there is of it, and a press that is not heard must not go without a word.
+        let lasts = state == State::Loaded || now.us_since(self.since) >= LASTING_US;
         (lasts && state != self.told).then(|| {
             self.told = state;
             state
@@ -62,5 +63,15 @@ mod tests {
             told.extend(herald.hear(at(ms), state).map(|state| (ms, state)));
         }
         assert_eq!(told, [(3_000, State::Waiting), (5_000, State::Playing)]);
+    }
+
+    #[test]
+    fn a_finger_in_the_way_is_told_at_once_and_once_however_often_it_comes() {
+        let at = |ms: u64| HostInstant::default().plus_us(ms * 1_000);
+        let mut herald = Herald::new(at(0));
+        let state = |ms: u64| if (ms / 200) % 2 == 0 { State::Taring } else { State::Loaded };
+        let told: Vec<_> =
+            (0..900).step_by(40).filter_map(|ms| Some((ms, herald.hear(at(ms), state(ms))?))).collect();
+        assert_eq!(told, [(200, State::Loaded)]);
     }
 }

@@ -19,6 +19,8 @@ pub enum State {
     Silent,
     /// The zero is being measured.
     Taring,
+    /// The zero cannot be measured: something lies on the pad.
+    Loaded,
     /// Contacts become events.
     Playing,
     /// Frames are lost, repeated or damaged, so that no contact is believed.
@@ -41,6 +43,7 @@ impl State {
             (Phase::Refused, None) => Self::Refused,
             (Phase::Waiting, None) => Self::Silent,
             (Phase::Taring, None) => Self::Taring,
+            (Phase::Loaded, None) => Self::Loaded,
             (Phase::Playing, None) => Self::Playing,
             (Phase::Doubtful, None) => Self::Doubtful,
             (Phase::Faulty, None) => Self::Faulty,
@@ -55,6 +58,7 @@ impl State {
             Self::Unclear => "unclear",
             Self::Silent => "silent",
             Self::Taring => "taring",
+            Self::Loaded => "loaded",
             Self::Playing => "playing",
             Self::Doubtful => "doubtful",
             Self::Faulty => "faulty",
@@ -75,6 +79,7 @@ impl State {
             }
             Self::Silent => "the pad sends nothing that can be read: check its power and its line",
             Self::Taring => "measuring the zero: leave the pad untouched for half a second",
+            Self::Loaded => "lift the finger: the zero is measured when nothing lies on the pad",
             Self::Playing => "playing",
             Self::Doubtful => "frames are lost, repeated or damaged, nothing is pressed: check the line",
             Self::Faulty => {

@@ -32,6 +32,8 @@ pub struct Health {
     pub channels_stuck: u64,
     /// Samples flagged with a supply fault.
     pub supply_faults: u64,
+    /// Times the zero turned out to have been measured with something on the pad.
+    pub zeros_loaded: u64,
     /// Touches that are not one finger on the calibrated pad; they are played all the same.
     pub second_fingers: u64,
     /// Times a channel did not answer to the load.

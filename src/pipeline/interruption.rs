@@ -28,6 +28,8 @@ pub enum Cause {
     Taring,
     /// What looks like a touch is a wrong zero.
     Drifted,
+    /// The zero was measured with something on the pad.
+    Loaded,
     /// The player has the zero measured again.
     Retared,
     /// The player paused, or released everything.
@@ -45,7 +47,7 @@ pub enum Effect {
     Forget,
 }
 
-/// What becomes of all parts. Scale, filter, zero and thermometer have nothing to doubt: they are kept or forgotten.
+/// What becomes of all parts. Scale, filter and thermometer have nothing to doubt: they are kept or forgotten.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {
     /// What a count means.
@@ -54,7 +56,7 @@ pub struct Effects {
     pub channels: Effect,
     /// The mean filter.
     pub filter: Effect,
-    /// What the untouched pad reads.
+    /// What the untouched pad reads; in doubt, it is less load than what was thought.
     pub zero: Effect,
     /// What the pad remembers of earlier loads; in doubt, it may be anything, and is thought to be what it was.
     pub memory: Effect,
@@ -90,6 +92,7 @@ impl Cause {
             Self::Taring       => [Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep],
             // Memory that was followed from a wrong zero is wrong, too. The touch has begun anew by itself, and is lifted.
             Self::Drifted      => [Keep,   Doubt,   Keep,   Forget, Forget, Keep,   Keep,   Keep,   Keep],
+            Self::Loaded       => [Keep,   Doubt,   Keep,   Doubt,  Forget, Keep,   Keep,   Doubt,  Keep],
             Self::Retared      => [Keep,   Doubt,   Keep,   Forget, Keep,   Keep,   Forget, Doubt,  Doubt],
             Self::Released     => [Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt],
         };
@@ -107,7 +110,7 @@ impl From<Fault> for Cause {
 mod tests {
     use super::*;
 
-    const ALL: [Cause; 13] = [
+    const ALL: [Cause; 14] = [
         Cause::Unplugged,
         Cause::Lost,
         Cause::Restarted,
@@ -119,6 +122,7 @@ mod tests {
         Cause::Faulty,
         Cause::Taring,
         Cause::Drifted,
+        Cause::Loaded,
         Cause::Retared,
         Cause::Released,
     ];
@@ -126,8 +130,8 @@ mod tests {
     #[test]
     fn what_cannot_be_doubted_is_kept_or_forgotten() {
         for cause in ALL {
-            let Effects { scale, filter, zero, thermometer, .. } = cause.effects();
-            assert!(![scale, filter, zero, thermometer].contains(&Effect::Doubt), "{cause:?}");
+            let Effects { scale, filter, thermometer, .. } = cause.effects();
+            assert!(![scale, filter, thermometer].contains(&Effect::Doubt), "{cause:?}");
         }
     }
 

@@ -58,6 +58,8 @@ pub enum Phase {
     Waiting,
     /// The zero is being measured; the pad must lie untouched.
     Taring,
+    /// The zero cannot be measured: something lies on the pad.
+    Loaded,
     /// Contacts become events.
     Playing,
     /// The line was at fault just now; contacts are not believed yet.
@@ -313,16 +315,19 @@ impl Pipeline {
                 self.phase = Phase::Playing;
                 self.map(contact);
             }
-            Reading::Taring => {
-                self.phase = Phase::Taring;
-                self.interrupt(Cause::Taring);
-                self.map(None);
-            }
+            Reading::Taring => self.tare(Phase::Taring),
+            Reading::Loaded => self.tare(Phase::Loaded),
             Reading::Faulty => {
                 self.phase = Phase::Faulty;
                 self.interrupt(Cause::Faulty);
             }
         }
+    }
+
+    fn tare(&mut self, phase: Phase) {
+        self.phase = phase;
+        self.interrupt(Cause::Taring);
+        self.map(None);
     }
 
     fn handle_fault(&mut self, fault: Fault) {

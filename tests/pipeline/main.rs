@@ -6,6 +6,7 @@ mod calls;
 mod decoders;
 mod diagnostics;
 mod hysteresis;
+mod loaded;
 mod mapping_properties;
 #[path = "../support/played.rs"]
 mod played;

@@ -172,6 +172,14 @@ impl Decoder {
             Method::Foreign(network) => contact(network.decode(&strain.uv)),
         }
     }
+
+    /// The normal force of a difference of strains, which may be a pull.
+    pub fn load_n(&self, strain: &Strain) -> f32 {
+        // A network has learnt presses only, but a pull is a press the other way round.
+        let pulled = Strain { uv: strain.uv.map(|uv| -uv) };
+        let (push_n, pull_n) = (self.decode(strain).fz_n, self.decode(&pulled).fz_n);
+        if push_n >= pull_n { push_n } else { -pull_n }
+    }
 }
 
 /// A network's numbers; where one is none, no contact.

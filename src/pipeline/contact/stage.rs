@@ -11,7 +11,7 @@ use crate::pipeline::compensation::thermometer::Thermometer;
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::{Cause, Effect, Effects};
 use crate::pipeline::probe::{Probe, Stage};
-use crate::pipeline::signal::{Conditioned, Scale, Signal};
+use crate::pipeline::signal::{Conditioned, PadState, Scale, Signal};
 use crate::quantity::{Contact, Strain};
 use crate::time::StreamInstant;
 
@@ -22,6 +22,8 @@ pub enum Reading {
     Contact(Option<Contact>),
     /// Nothing can be said yet: the zero is being measured.
     Taring,
+    /// Nothing can be said: the zero cannot be measured, as something lies on the pad.
+    Loaded,
     /// Nothing can be said: a channel cannot be trusted.
     Faulty,
 }
@@ -95,25 +97,31 @@ impl ContactStage {
         health: &mut Health,
         probe: &mut P,
     ) -> Reading {
-        let (touched, rest) = (self.touch.is_touched(), self.memory.rest());
+        let touched = self.touch.is_touched();
         self.thermometer.follow(at, sample, touched);
-        let added_uv = self.thermometer.added_uv();
+        let pad = PadState { touched, rest: self.memory.rest(), added_uv: self.thermometer.added_uv() };
         self.strain = None;
-        match self.signal.condition(at, sample, touched, &rest, &added_uv, health) {
+        let load_n = |strain: &Strain| self.decoder.load_n(strain);
+        match self.signal.condition(at, sample, &pad, load_n, health) {
             Conditioned::Strain(strain) => {
                 let strain = self.memory.freed(&self.thermometer.at_reference(&strain));
                 self.strain = Some(strain);
                 Reading::Contact(self.contact(at, &strain, health, probe))
             }
-            Conditioned::Taring => {
-                self.memory.wait(at);
-                Reading::Taring
+            Conditioned::Pulled => {
+                health.zeros_loaded += 1;
+                self.interrupt(Cause::Loaded);
+                self.wait(at, Reading::Loaded)
             }
-            Conditioned::Faulty => {
-                self.memory.wait(at);
-                Reading::Faulty
-            }
+            Conditioned::Taring => self.wait(at, Reading::Taring),
+            Conditioned::Loaded => self.wait(at, Reading::Loaded),
+            Conditioned::Faulty => self.wait(at, Reading::Faulty),
         }
+    }
+
+    fn wait(&mut self, at: StreamInstant, reading: Reading) -> Reading {
+        self.memory.wait(at);
+        reading
     }
 
     /// The contact of a strain that is compensated.

@@ -25,12 +25,6 @@ const GUARD_N: f32 = 0.30;
 /// … for this long is drift, not a finger.
 const GUARD_US: u64 = 10_000_000;
 
-/// A pull of more than this (nothing can pull at the plate) …
-const PULL_N: f32 = 0.10;
-
-/// … for this long means that the zero was taken under load.
-const PULL_US: u64 = 1_000_000;
-
 /// What the touch detector says of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TouchState {
@@ -38,7 +32,7 @@ pub enum TouchState {
     Idle,
     /// A finger is on the pad.
     Touched,
-    /// The zero is wrong: what looks like a touch, or a pull, is drift. Nothing touches the pad.
+    /// The zero is wrong: what looks like a touch is drift. Nothing touches the pad.
     Drifted,
 }
 
@@ -106,11 +100,9 @@ impl Touch {
     }
 
     fn judge(&mut self, at: StreamInstant, fz_n: f32) -> TouchState {
-        let (doubtful, patience_us) =
-            if self.touched { (fz_n < GUARD_N, GUARD_US) } else { (fz_n < -PULL_N, PULL_US) };
-        if !doubtful {
+        if !self.touched || fz_n >= GUARD_N {
             self.sound_at = at;
-        } else if at.us_since(self.sound_at) >= patience_us {
+        } else if at.us_since(self.sound_at) >= GUARD_US {
             *self = Self { last: at, sound_at: at, ..Self::new() };
             return TouchState::Drifted;
         }
@@ -169,13 +161,6 @@ mod tests {
     #[test]
     fn a_firm_press_may_last_for_ever() {
         assert!(states(&[0.31; 6_000]).iter().all(|&state| state == TouchState::Touched));
-    }
-
-    #[test]
-    fn a_pull_means_a_wrong_zero() {
-        let states = states(&[-0.2; 110]);
-        assert!(states[..99].iter().all(|&state| state == TouchState::Idle));
-        assert!(states.contains(&TouchState::Drifted));
     }
 
     #[test]

@@ -5,6 +5,7 @@
 
 pub mod fault;
 pub mod filter;
+pub mod stillness;
 pub mod tare;
 
 use firmware_proto::identity::Identity;
@@ -54,8 +55,23 @@ pub enum Conditioned {
     Strain(Strain),
     /// The zero is being measured: the pad must lie untouched for a moment.
     Taring,
+    /// The zero cannot be measured, as something lies on the pad.
+    Loaded,
+    /// The zero turned out to be a load: it is to be measured anew.
+    Pulled,
     /// A channel is at its limit, stuck, or without supply; nothing can be said about the contact.
     Faulty,
+}
+
+/// What is known of the pad before a sample comes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PadState {
+    /// Whether a contact is under way: the zero is followed only while not.
+    pub touched: bool,
+    /// What the pad reads while not.
+    pub rest: Rest,
+    /// What is added to the channels at any time (µV): it is taken off first.
+    pub added_uv: [f64; CHANNELS],
 }
 
 /// The conditioning stage.
@@ -103,21 +119,21 @@ impl Signal {
         if filter == Effect::Forget {
             self.filter.clear();
         }
-        if zero == Effect::Forget {
-            self.tare = Tare::new();
+        match zero {
+            Effect::Keep => {}
+            Effect::Doubt => self.tare.doubt(),
+            Effect::Forget => self.tare = Tare::new(),
         }
     }
 
-    /// Conditions one sample. `touched` says whether a contact is under way: the zero is followed only while not. `rest` is
-    /// what the pad reads then, and `added_uv` what is known to be added to the channels at any time: it is taken off first.
-    /// Where it gives no strain, the caller tells the interruption.
+    /// Conditions one sample. `load_n` is the normal force of a strain. Where it gives no strain, the caller tells the
+    /// interruption.
     pub fn condition(
         &mut self,
         at: StreamInstant,
         sample: &Sample,
-        touched: bool,
-        rest: &Rest,
-        added_uv: &[f64; CHANNELS],
+        pad: &PadState,
+        load_n: impl Fn(&Strain) -> f32,
         health: &mut Health,
     ) -> Conditioned {
         if self.faults.check(sample, self.scale.count_bits, health) {
@@ -125,18 +141,33 @@ impl Signal {
         }
         let uv_per_count = self.scale.uv_per_count;
         let raw_uv =
-            |counts: [f64; CHANNELS]| std::array::from_fn(|k| counts[k] * uv_per_count - added_uv[k]);
+            |counts: [f64; CHANNELS]| std::array::from_fn(|k| counts[k] * uv_per_count - pad.added_uv[k]);
         let mean = self.filter.push(&sample.counts);
+        let block_uv = self.tare.watch(at, &raw_uv(sample.counts.map(f64::from)));
         if self.tare.is_known() {
-            let uv = self.tare.apply(at, &raw_uv(mean), touched, rest);
-            return Conditioned::Strain(Strain { uv });
+            if block_uv.is_some_and(|uv| !pad.touched && self.tare.is_pulled(&uv, &pad.rest, &load_n)) {
+                return Conditioned::Pulled;
+            }
+            return Conditioned::Strain(self.tare.apply(at, &raw_uv(mean), pad.touched, &pad.rest));
         }
-        if self.tare.measure(at, &raw_uv(sample.counts.map(f64::from)), rest) {
+        if let Some(block_uv) = block_uv {
+            self.measure(at, &block_uv, &pad.rest, load_n);
+        }
+        if self.tare.is_loaded() { Conditioned::Loaded } else { Conditioned::Taring }
+    }
+
+    fn measure(
+        &mut self,
+        at: StreamInstant,
+        block_uv: &[f64; CHANNELS],
+        rest: &Rest,
+        load_n: impl Fn(&Strain) -> f32,
+    ) {
+        if self.tare.measure(at, block_uv, rest, load_n) {
             self.faults.forget_rest();
         }
         if self.tare.is_known() {
             self.faults.learn();
         }
-        Conditioned::Taring
     }
 }

@@ -1,16 +1,22 @@
 //! The zero of the nine channels: measured when the pad lies still, then followed slowly while nothing touches it.
+//!
+//! A finger may lie as still as the pad itself, and what the untouched pad reads is not known beforehand. But nothing can
+//! pull at the plate: of two readings the lower load is nearer to the zero. So a press is never the zero once a lower load
+//! has been seen, and a zero that turns out to be a load is measured anew.
 
-use crate::quantity::CHANNELS;
+use super::stillness::{STILL_UV, Stillness};
+use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
 
-/// The zero is the mean over this many blocks that agree; together with half a block of waiting under 0.5 s.
-const BLOCKS: usize = 3;
+/// Loads that differ by less may be the same.
+const SAME_N: f32 = 0.10;
 
-/// Length of a block of stream time: five periods of 50 Hz mains, six of 60 Hz.
-const BLOCK_US: u64 = 100_000;
+/// So many blocks in a row below the zero are no slip of a sample: what was taken for the zero was a load.
+const PULL_BLOCKS: u32 = 2;
 
-/// Blocks of a pad at rest agree within this; a finger of 0.03 N that comes or goes does not.
-const REST_UV: f64 = 40.0;
+/// The lowest reading counts so long, unless the pad reads it again: a pad that jumps once when it is switched on must be
+/// tared some time.
+const FLOOR_US: u64 = 5_000_000;
 
 /// While idle the zero follows with this time constant. Long, so that a press that grows at 0.01 N/s is still seen
 /// as a press; short against warming up, which drifts by about 30 µV per kelvin (Sensors 2026, 26, 1378, Figure 8).
@@ -40,6 +46,15 @@ impl Rest {
     pub const NONE: Self = Self { uv: [0.0; CHANNELS], doubt_uv: [0.0; CHANNELS] };
 }
 
+/// The lowest load that was seen since the zero is being measured. Nothing can pull at the plate, so the untouched pad is
+/// there or lower.
+#[derive(Clone, Copy, Debug)]
+struct Floor {
+    load_n: f32,
+    /// When it was read last.
+    at: StreamInstant,
+}
+
 /// The zero of the pad, once known.
 #[derive(Clone, Debug)]
 pub struct Tare {
@@ -47,10 +62,13 @@ pub struct Tare {
     /// How far off the zero may be, as the rest was not known.
     doubt_uv: [f64; CHANNELS],
     followed_at: StreamInstant,
-    block_began: Option<StreamInstant>,
-    block_sums: [f64; CHANNELS],
-    block_samples: u32,
-    block_means: [Option<[f64; CHANNELS]>; BLOCKS],
+    stillness: Stillness,
+    /// What loads are measured from while there is no zero: the first reading, or a zero that turned out to be a load.
+    reference_uv: Option<[f64; CHANNELS]>,
+    floor: Option<Floor>,
+    loaded: bool,
+    /// Blocks in a row below the zero.
+    pulls: u32,
 }
 
 impl Default for Tare {
@@ -66,10 +84,11 @@ impl Tare {
             zero_uv: None,
             doubt_uv: [0.0; CHANNELS],
             followed_at: StreamInstant::from_us(0),
-            block_began: None,
-            block_sums: [0.0; CHANNELS],
-            block_samples: 0,
-            block_means: [None; BLOCKS],
+            stillness: Stillness::new(),
+            reference_uv: None,
+            floor: None,
+            loaded: false,
+            pulls: 0,
         }
     }
 
@@ -78,19 +97,74 @@ impl Tare {
         self.zero_uv.is_some()
     }
 
-    /// Takes a raw sample (µV) towards the first zero. Samples until the pad has lain still for three blocks. True if
-    /// the blocks so far show that it did not.
-    pub fn measure(&mut self, at: StreamInstant, raw_uv: &[f64; CHANNELS], rest: &Rest) -> bool {
-        let began = *self.block_began.get_or_insert(at);
-        for (sum, raw) in self.block_sums.iter_mut().zip(raw_uv) {
-            *sum += raw;
+    /// Whether something lies on the pad, so that its zero cannot be measured.
+    pub const fn is_loaded(&self) -> bool {
+        self.loaded
+    }
+
+    /// The zero turned out to be a load. It is measured anew; the old one tells what is less load than that.
+    pub const fn doubt(&mut self) {
+        if let Some(zero_uv) = self.zero_uv.take() {
+            self.reference_uv = Some(zero_uv);
+            self.floor = None;
         }
-        self.block_samples += 1;
-        let closes = at.us_since(began) >= BLOCK_US;
-        if closes {
-            self.close_block(at, rest);
+        (self.loaded, self.pulls) = (true, 0);
+    }
+
+    /// Takes a raw sample (µV), with or without a zero: whether the pad lies still is watched all the time. The mean of the
+    /// block of samples that it closes, if it closes one.
+    pub fn watch(&mut self, at: StreamInstant, raw_uv: &[f64; CHANNELS]) -> Option<[f64; CHANNELS]> {
+        self.stillness.push(at, raw_uv)
+    }
+
+    /// Whether this block, of a pad that nothing touches, shows that the zero was a load: nothing can pull at the plate.
+    pub fn is_pulled(
+        &mut self,
+        block_uv: &[f64; CHANNELS],
+        rest: &Rest,
+        load_n: impl Fn(&Strain) -> f32,
+    ) -> bool {
+        let Some(zero_uv) = &self.zero_uv else { return false };
+        let strain = relative(block_uv, &std::array::from_fn(|k| zero_uv[k] + rest.uv[k]));
+        // At rest nothing needs to be decoded.
+        let stands = strain.uv.iter().all(|uv| f64::from(uv.abs()) <= STILL_UV);
+        self.pulls = if stands || load_n(&strain) >= -SAME_N { 0 } else { self.pulls + 1 };
+        self.pulls >= PULL_BLOCKS
+    }
+
+    /// Measures the zero when a block closes: the pad must lie still, at the lowest load that was seen. `load_n` is the
+    /// normal force of a difference of readings. True if the pad moved in this block.
+    pub fn measure(
+        &mut self,
+        at: StreamInstant,
+        block_uv: &[f64; CHANNELS],
+        rest: &Rest,
+        load_n: impl Fn(&Strain) -> f32,
+    ) -> bool {
+        let reference_uv = *self.reference_uv.get_or_insert(*block_uv);
+        let load_n = |uv: &[f64; CHANNELS]| load_n(&relative(uv, &reference_uv));
+        let floor_n = self.lower_floor(at, load_n(block_uv));
+        let mean_uv = self.stillness.mean_uv();
+        if let Some(mean_uv) = mean_uv.filter(|uv| load_n(uv) <= floor_n + SAME_N) {
+            self.zero_uv = Some(std::array::from_fn(|k| mean_uv[k] - rest.uv[k]));
+            self.doubt_uv = rest.doubt_uv;
+            self.followed_at = at;
+            (self.reference_uv, self.floor, self.loaded) = (None, None, false);
+        } else if self.stillness.is_full() {
+            self.loaded = true;
         }
-        closes && self.zero_uv.is_none() && self.block_means.iter().all(Option::is_some)
+        self.stillness.has_just_moved()
+    }
+
+    fn lower_floor(&mut self, at: StreamInstant, load_n: f32) -> f32 {
+        let standing = self.floor.filter(|floor| at.us_since(floor.at) <= FLOOR_US);
+        let floor = match standing {
+            Some(floor) if load_n > floor.load_n + SAME_N => floor,
+            Some(floor) => Floor { load_n: floor.load_n.min(load_n), at },
+            None => Floor { load_n, at },
+        };
+        self.floor = Some(floor);
+        floor.load_n
     }
 
     /// Raw microvolts relative to the zero. Follows the zero if nothing touches the pad, which then reads `rest`.
@@ -100,15 +174,14 @@ impl Tare {
         raw_uv: &[f64; CHANNELS],
         touched: bool,
         rest: &Rest,
-    ) -> [f32; CHANNELS] {
+    ) -> Strain {
         // Nothing is known of a gap: a finger may have come meanwhile.
         let elapsed_s = at.us_since(self.followed_at).min(FOLLOW_GAP_MAX_US) as f64 * 1e-6;
         self.followed_at = at;
         if !touched {
             self.follow(elapsed_s, raw_uv, rest);
         }
-        let zero_uv = self.zero_uv.unwrap_or(*raw_uv);
-        std::array::from_fn(|k| (raw_uv[k] - zero_uv[k]) as f32)
+        relative(raw_uv, &self.zero_uv.unwrap_or(*raw_uv))
     }
 
     fn follow(&mut self, elapsed_s: f64, raw_uv: &[f64; CHANNELS], rest: &Rest) {
@@ -121,66 +194,82 @@ impl Tare {
             *doubt += (rest.doubt_uv[k] - *doubt) * share;
         }
     }
-
-    fn close_block(&mut self, at: StreamInstant, rest: &Rest) {
-        let samples = f64::from(self.block_samples);
-        self.block_means.rotate_left(1);
-        if let Some(newest) = self.block_means.last_mut() {
-            *newest = Some(self.block_sums.map(|sum| sum / samples));
-        }
-        self.block_sums = [0.0; CHANNELS];
-        self.block_samples = 0;
-        self.block_began = Some(at);
-        self.zero_uv = rest_mean(&self.block_means).map(|mean| std::array::from_fn(|k| mean[k] - rest.uv[k]));
-        self.doubt_uv = rest.doubt_uv;
-        self.followed_at = at;
-    }
 }
 
-/// The mean of the blocks if all are there and every channel agrees within [`REST_UV`].
-fn rest_mean(blocks: &[Option<[f64; CHANNELS]>; BLOCKS]) -> Option<[f64; CHANNELS]> {
-    let mut mean_uv = [0.0; CHANNELS];
-    for (k, mean) in mean_uv.iter_mut().enumerate() {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for block in blocks {
-            let value = *block.as_ref()?.get(k)?;
-            (low, high) = (low.min(value), high.max(value));
-            *mean += value / BLOCKS as f64;
-        }
-        if high - low > REST_UV {
-            return None;
-        }
-    }
-    Some(mean_uv)
+/// What a reading differs from another.
+fn relative(uv: &[f64; CHANNELS], from_uv: &[f64; CHANNELS]) -> Strain {
+    Strain { uv: std::array::from_fn(|k| (uv[k] - from_uv[k]) as f32) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Channels that all change by so much are a newton.
+    const UV_PER_N: f32 = 1_000.0;
+
+    /// Feeds a reading of all channels towards a zero.
+    fn feed(tare: &mut Tare, ms: u64, uv: f64, rest: &Rest) {
+        let at = StreamInstant::from_us(ms * 1_000);
+        if let Some(block_uv) = tare.watch(at, &[uv; CHANNELS])
+            && !tare.is_known()
+        {
+            tare.measure(at, &block_uv, rest, |strain| strain.uv[0] / UV_PER_N);
+        }
+    }
+
     /// Feeds `raw_uv(t_ms)` in all channels every millisecond; the time at which the zero was known, in ms.
     fn known_at_ms(tare: &mut Tare, raw_uv: impl Fn(u64) -> f64) -> Option<u64> {
-        (0..5_000).find(|&ms| {
-            tare.measure(StreamInstant::from_us(ms * 1_000), &[raw_uv(ms); CHANNELS], &Rest::NONE);
+        (0..8_000).find(|&ms| {
+            feed(tare, ms, raw_uv(ms), &Rest::NONE);
             tare.is_known()
         })
     }
 
     #[test]
-    fn a_pad_at_rest_is_tared_within_half_a_second() {
+    fn a_pad_at_rest_is_tared_within_a_short_lift() {
         let mut tare = Tare::new();
         assert!(
-            known_at_ms(&mut tare, |ms| 1_500.0 + if ms % 2 == 0 { 30.0 } else { -30.0 }).unwrap() <= 400
+            known_at_ms(&mut tare, |ms| 1_500.0 + if ms % 2 == 0 { 30.0 } else { -30.0 }).unwrap() <= 200
         );
-        let strain_uv = tare.apply(StreamInstant::from_us(500_000), &[1_600.0; CHANNELS], true, &Rest::NONE);
-        assert!(strain_uv.iter().all(|uv| (uv - 100.0).abs() < 1.0));
+        let strain = tare.apply(StreamInstant::from_us(500_000), &[1_600.0; CHANNELS], true, &Rest::NONE);
+        assert!(strain.uv.iter().all(|uv| (uv - 100.0).abs() < 1.0));
     }
 
     #[test]
-    fn a_finger_that_comes_keeps_the_zero_unknown_until_it_lies_still() {
-        let ramp = |ms: u64| if ms < 2_000 { 400.0 * ms as f64 * 1e-3 } else { 0.0 };
+    fn a_finger_that_leaves_keeps_the_zero_unknown_until_the_pad_lies_still() {
+        let ramp = |ms: u64| 400.0 * (2_000.0 - ms.min(2_000) as f64) * 1e-3;
         let known_at_ms = known_at_ms(&mut Tare::new(), ramp).unwrap();
-        assert!((2_300..2_500).contains(&known_at_ms), "{known_at_ms} ms");
+        assert!((2_000..2_250).contains(&known_at_ms), "{known_at_ms} ms");
+    }
+
+    #[test]
+    fn a_still_press_after_a_lower_load_is_no_zero_until_it_is_the_lowest_for_long() {
+        // A finger comes after 100 ms, too soon for a zero, and stays.
+        let press = |until_ms: u64| move |ms: u64| if (100..until_ms).contains(&ms) { 800.0 } else { 0.0 };
+        let mut tare = Tare::new();
+        let known = known_at_ms(&mut tare, press(2_000)).unwrap();
+        assert!((2_150..2_250).contains(&known), "{known} ms");
+        assert!(!tare.is_loaded());
+        let known = known_at_ms(&mut Tare::new(), press(8_000)).unwrap();
+        assert!((5_100..5_200).contains(&known), "{known} ms");
+    }
+
+    #[test]
+    fn a_zero_under_load_is_measured_anew_at_rest_however_short_the_lifts_before() {
+        let mut tare = Tare::new();
+        assert!(known_at_ms(&mut tare, |_| 3_000.0).is_some());
+        tare.doubt();
+        // Lifts of 100 ms are too short; in between it is pressed as before, and lighter.
+        let load = |ms: u64| match ms {
+            0..100 | 600..700 | 1_200.. => 0.0,
+            100..600 => 3_000.0,
+            _ => 1_000.0,
+        };
+        let known = known_at_ms(&mut tare, |ms| load(ms)).unwrap();
+        assert!((1_350..1_450).contains(&known), "{known} ms");
+        let strain = tare.apply(StreamInstant::from_us(1_500_000), &[1_000.0; CHANNELS], true, &Rest::NONE);
+        assert!((strain.uv[4] - 1_000.0).abs() < 1e-3);
     }
 
     #[test]
@@ -194,9 +283,10 @@ mod tests {
                     &[100.0; CHANNELS],
                     touched,
                     &Rest::NONE,
-                )[0]
+                )
+                .uv[0]
             });
-            let last_uv = strain_uv.last().unwrap();
+            let last_uv = f64::from(strain_uv.last().unwrap());
             assert!((last_uv - expected_uv).abs() < 2.0, "{last_uv} µV is not {expected_uv} µV");
         }
     }
@@ -205,19 +295,18 @@ mod tests {
     fn a_load_that_came_during_a_gap_is_no_drift() {
         let mut tare = Tare::new();
         known_at_ms(&mut tare, |_| 0.0);
-        let strain_uv =
-            tare.apply(StreamInstant::from_us(60_000_000), &[1_000.0; CHANNELS], false, &Rest::NONE);
-        assert!(strain_uv[0] > 999.0, "{} µV", strain_uv[0]);
+        let strain = tare.apply(StreamInstant::from_us(60_000_000), &[1_000.0; CHANNELS], false, &Rest::NONE);
+        assert!(strain.uv[0] > 999.0, "{} µV", strain.uv[0]);
     }
 
     #[test]
     fn a_slow_pad_is_tared_too() {
         let mut tare = Tare::new();
         let known = (0..50).find(|&i| {
-            tare.measure(StreamInstant::from_us(i * 10_000), &[7.0; CHANNELS], &Rest::NONE);
+            feed(&mut tare, 10 * i, 7.0, &Rest::NONE);
             tare.is_known()
         });
-        assert!(known.unwrap() * 10 <= 500);
+        assert!(known.unwrap() * 10 <= 200);
     }
 
     #[test]
@@ -226,14 +315,15 @@ mod tests {
         let mut tare = Tare::new();
         // A pad with 30 µV of hysteresis, of which nothing is known yet.
         for ms in 0..500 {
-            tare.measure(StreamInstant::from_us(ms * 1_000), &[130.0; CHANNELS], &rest(0.0, 50.0));
+            feed(&mut tare, ms, 130.0, &rest(0.0, 50.0));
         }
         let mut reads_uv = |ms: std::ops::Range<u64>, rest: Rest| {
             let mut uv = 0.0;
             for ms in ms {
-                uv = tare.apply(StreamInstant::from_us(ms * 1_000), &[130.0; CHANNELS], false, &rest)[4];
+                let at = StreamInstant::from_us(ms * 1_000);
+                uv = tare.apply(at, &[130.0; CHANNELS], false, &rest).uv[4];
             }
-            uv
+            f64::from(uv)
         };
         assert!(reads_uv(500..1_500, rest(0.0, 50.0)).abs() < 1e-3, "nothing new");
         assert!((reads_uv(1_500..3_000, rest(30.0, 0.0)) - 30.0).abs() < 1.0, "now it is known");

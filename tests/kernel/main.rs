@@ -17,6 +17,7 @@ mod guest;
 mod hid;
 mod joystick;
 mod latency;
+mod loaded;
 mod neutral;
 mod pad;
 mod playing;
@@ -84,6 +85,11 @@ fn unplugging_releases_and_the_device_stays() {
 #[test]
 fn silence_releases_and_the_device_stays() {
     in_guest("silence_releases_and_the_device_stays", neutral::after_silence);
+}
+
+#[test]
+fn a_thumb_at_the_start_is_told_and_loses_no_press() {
+    in_guest("a_thumb_at_the_start_is_told_and_loses_no_press", loaded::thumb_at_the_start);
 }
 
 #[test]

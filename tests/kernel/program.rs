@@ -67,6 +67,11 @@ impl Running {
         self.child.stdout.take().expect("taken once")
     }
 
+    /// What it said on standard error so far.
+    pub(crate) fn complaints(&self) -> String {
+        fs::read_to_string(&self.complaints).expect("its file")
+    }
+
     pub(crate) fn has_ended(&mut self) -> bool {
         self.child.try_wait().expect("a child").is_some()
     }

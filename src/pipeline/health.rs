@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-/// Counts since the pipeline was made. Every count but `samples`, `contacts`, `frames_unknown`, `second_fingers` and
-/// `channels_silent` ends a contact.
+/// Counts since the pipeline was made. Every count but `samples`, `contacts`, `frames_newer`, `frames_unknown`,
+/// `second_fingers` and `channels_silent` ends a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Health {
     /// Samples decoded.
@@ -16,7 +16,7 @@ pub struct Health {
     pub frames_lost: u64,
     /// Frames that came again or too late; dropped.
     pub frames_repeated: u64,
-    /// Sound frames of a newer protocol version; the pad is refused.
+    /// Sound frames of a newer protocol version; skipped, and the pad is refused if it sends nothing else.
     pub frames_newer: u64,
     /// Sound frames of a kind this version does not know; skipped.
     pub frames_unknown: u64,

@@ -20,6 +20,10 @@ pub const GAP_MAX_US: u64 = 100_000;
 /// The pace of the pad's clock is judged over this time.
 const PACE_US: u64 = 1_000_000;
 
+/// A line that brings sound frames of a newer version and, for so long, nothing that is understood is a newer pad's. A single
+/// such frame is not: one damaged frame in 65,536 has a checksum that is right.
+pub const NEWER_US: u64 = 2_000_000;
+
 /// A frame this little behind the newest is an old one that came again; farther behind, the pad began anew.
 const REORDER_MAX: u32 = 64;
 
@@ -58,7 +62,7 @@ pub enum LinkEvent {
     Fault(Fault),
     /// The pad told who it is.
     Identity(Identity),
-    /// A sound frame of a protocol version newer than ours.
+    /// Sound frames of a protocol version newer than ours, and nothing else for [`NEWER_US`].
     NewerVersion(u8),
 }
 
@@ -68,6 +72,8 @@ pub struct Link {
     receiver: MessageReceiver,
     last: Option<Sample>,
     clock: StreamClock,
+    /// The first and the last of the frames of a newer version since something was understood.
+    newer: Option<[HostInstant; 2]>,
 }
 
 impl Default for Link {
@@ -79,18 +85,22 @@ impl Default for Link {
 impl Link {
     /// A link that has heard nothing yet.
     pub fn new() -> Self {
-        Self { receiver: MessageReceiver::new(), last: None, clock: StreamClock::new() }
+        Self { receiver: MessageReceiver::new(), last: None, clock: StreamClock::new(), newer: None }
     }
 
     /// Takes one byte that came at `now`; counts what is wrong in `health`.
     pub fn push(&mut self, now: HostInstant, byte: u8, health: &mut Health) -> Option<LinkEvent> {
-        match self.receiver.push(byte)? {
+        let message = self.receiver.push(byte)?;
+        if message.is_ok() {
+            self.newer = None;
+        }
+        match message {
             Ok(Message::Sample(sample)) => Some(self.order(now, sample, health)),
             Ok(Message::Identity(identity)) => Some(LinkEvent::Identity(identity)),
             Ok(Message::Acknowledgement { .. }) => None,
             Err(WireError::NewerVersion(version)) => {
                 health.frames_newer += 1;
-                Some(LinkEvent::NewerVersion(version))
+                self.speaks_newer(now).then_some(LinkEvent::NewerVersion(version))
             }
             Err(WireError::UnknownKind(_)) => {
                 health.frames_unknown += 1;
@@ -123,6 +133,15 @@ impl Link {
         self.clock.advance(now);
         self.last = None;
         self.receiver = MessageReceiver::new();
+    }
+
+    /// Takes a frame of a newer version; whether the line has brought nothing but such for long.
+    fn speaks_newer(&mut self, now: HostInstant) -> bool {
+        // After a pause it may be another pad's line.
+        let [first, last] = self.newer.unwrap_or([now; 2]);
+        let first = if now.us_since(last) < NEWER_US { first } else { now };
+        self.newer = Some([first, now]);
+        now.us_since(first) >= NEWER_US
     }
 
     fn order(&mut self, now: HostInstant, sample: Sample, health: &mut Health) -> LinkEvent {

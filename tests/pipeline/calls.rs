@@ -238,14 +238,43 @@ fn a_pad_that_tells_its_scale_is_believed() {
     assert_eq!(rig.pipeline.identity(), Some(&identity));
 }
 
+/// Version 2, kind 1, no payload; the checksum is sound.
+const NEWER: [u8; 8] = [0x07, 0x02, 0x01, 0xeb, 0x40, 0xe8, 0x04, 0x00];
+
 #[test]
-fn a_frame_of_a_newer_version_releases_everything() {
+fn frames_of_a_newer_version_among_others_are_counted_and_skipped() {
     let mut rig = holding_right();
-    // Version 2, kind 1, no payload; the checksum is sound.
-    rig.bytes(&[0x07, 0x02, 0x01, 0xeb, 0x40, 0xe8, 0x04, 0x00]);
-    rig.hold(RIGHT, 200);
+    for _ in 0..50 {
+        rig.bytes(&NEWER);
+        rig.hold(RIGHT, 100);
+    }
+    assert_eq!(rig.take_events(), Vec::<String>::new());
+    assert_eq!((rig.pipeline.refusal(), rig.pipeline.health().frames_newer), (None, 50));
+}
+
+#[test]
+fn a_pad_that_speaks_nothing_but_a_newer_version_is_refused() {
+    let mut rig = holding_right();
+    for seconds in [1.9, 0.2] {
+        assert_eq!(rig.pipeline.refusal(), None);
+        for _ in 0..(10.0 * seconds) as u32 {
+            rig.bytes(&NEWER);
+            rig.silence(100);
+        }
+    }
     assert_eq!(rig.take_events(), ["ABS_HAT0X=0"]);
+    rig.bytes(&NEWER);
     assert_eq!(rig.pipeline.refusal(), Some(&Refusal::NewerVersion(2)));
+}
+
+#[test]
+fn a_few_newer_frames_hours_apart_refuse_no_pad() {
+    let mut rig = Rig::new(profile("super-mario"));
+    for _ in 0..5 {
+        rig.bytes(&NEWER);
+        rig.silence(3_600_000);
+    }
+    assert_eq!((rig.pipeline.refusal(), rig.pipeline.health().frames_newer), (None, 5));
 }
 
 #[test]

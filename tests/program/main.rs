@@ -2,6 +2,8 @@
 
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod bad_input;
+#[cfg(feature = "simulator")]
+mod docs;
 mod plot;
 mod simulate;
 #[cfg(feature = "simulator")]

@@ -12,3 +12,4 @@ mod simulate_pad;
 mod support;
 mod twin_verb;
 mod vtk;
+mod written;

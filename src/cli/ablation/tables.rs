@@ -1,11 +1,11 @@
 //! The verb's table: for people, and as CSV.
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use super::report::{AblationReport, Row, Tried};
+use crate::cli::destination::Folder;
 use crate::cli::failure::Failure;
-use crate::cli::written::{create, stdout};
+use crate::cli::written::stdout;
 use tactpad::lab::evaluation::{Errors, PerAxis};
 use tactpad::lab::metrology::table3::PublishedErrors;
 
@@ -96,15 +96,11 @@ fn write_row(out: &mut impl Write, row: &Row, tried: &Tried) -> io::Result<()> {
 }
 
 /// A row for each decoder and each table of unseen contacts. Gives the file's name.
-pub(super) fn write_csv(folder: &Path, rows: &[Row]) -> Result<String, Failure> {
-    let path = folder.join("ablation.csv");
-    let mut out = create(&path)?;
-    writeln!(out, "{}", columns().join(","))?;
-    for (row, tried) in rows.iter().flat_map(|row| row.unseen.iter().map(move |tried| (row, tried))) {
-        writeln!(out, "{}", cells(row, tried).join(","))?;
-    }
-    out.flush()?;
-    Ok(path.display().to_string())
+pub(super) fn write_csv(folder: &Folder, rows: &[Row]) -> Result<String, Failure> {
+    let tried = rows.iter().flat_map(|row| row.unseen.iter().map(move |tried| (row, tried)));
+    let lines = std::iter::once(columns()).chain(tried.map(|(row, tried)| cells(row, tried)));
+    let text: String = lines.map(|cells| cells.join(",") + "\n").collect();
+    folder.write("ablation.csv", text.as_bytes())
 }
 
 fn columns() -> Vec<String> {

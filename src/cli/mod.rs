@@ -25,6 +25,7 @@ mod terminal;
 mod text_file;
 mod train;
 mod twin;
+mod wrapped;
 mod written;
 
 use std::process::ExitCode;
@@ -34,12 +35,9 @@ use clap::{CommandFactory, Parser, Subcommand};
 use self::failure::Failure;
 use self::written::say;
 
-/// Help is no wider than this.
-const HELP_COLUMNS: usize = 80;
-
 /// Turns a tactile disc with nine strain channels into a game controller.
 #[derive(Debug, Parser)]
-#[command(name = "tactpad", version, arg_required_else_help = true, max_term_width = HELP_COLUMNS)]
+#[command(name = "tactpad", version, arg_required_else_help = true, max_term_width = wrapped::COLUMNS)]
 #[command(after_help = "Try it with nothing attached: tactpad demo")]
 struct Arguments {
     #[command(subcommand)]
@@ -132,7 +130,7 @@ mod tests {
                 let example =
                     if name == "tactpad" { "tactpad demo".into() } else { format!("Example: {name}") };
                 assert!(help.contains(&example), "{name}: {help}");
-                let long = help.lines().find(|line| line.chars().count() > HELP_COLUMNS);
+                let long = help.lines().find(|line| line.chars().count() > wrapped::COLUMNS);
                 assert_eq!(long, None, "{name}");
             }
         }

@@ -2,6 +2,8 @@
 
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod bad_input;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod hints;
 mod plot;
 mod simulate;
 #[cfg(feature = "simulator")]
@@ -10,6 +12,8 @@ mod simulate_figures;
 mod simulate_pad;
 #[path = "../support/mod.rs"]
 mod support;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod terminal;
 mod twin_verb;
 mod vtk;
 mod written;

@@ -1,13 +1,14 @@
 //! Decoders as files, or by the names of those that are inside the program.
 
 use std::fs::File;
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::Path;
 
 use clap::Args;
 
+use super::destination::Destination;
 use super::failure::Failure;
-use super::written::{create, reason};
+use super::written::reason;
 use tactpad::network::{Network, onnx};
 use tactpad::pipeline::contact::read::Unreadable;
 use tactpad::pipeline::contact::{Decoder, read};
@@ -60,15 +61,8 @@ pub(super) fn read_network(path: &Path) -> Result<Network, Failure> {
 }
 
 /// Writes a network.
-pub(super) fn write_network(path: &Path, network: &Network) -> Result<(), Failure> {
-    write(path, &onnx::write(network))
-}
-
-/// Writes the bytes of a decoder.
-pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let mut file = create(path)?;
-    file.write_all(bytes)?;
-    Ok(file.flush()?)
+pub(super) fn write_network(to: &Destination, network: &Network) -> Result<(), Failure> {
+    to.write(&onnx::write(network))
 }
 
 /// What a name or a file stands for. A file of a shipped decoder's name is meant by `./NAME`.

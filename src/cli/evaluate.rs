@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::device::Pad;
 use super::failure::Failure;
+use super::progress::Progress;
 use super::written::{print_json, stdout};
 use super::{decoder_file, tables};
 use tactpad::lab::evaluation::{Errors, Evaluation, EvaluationError};
@@ -42,8 +43,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let rim_mm = device.plate.radius_mm();
     let table = tables::read(measured, Kind::Measured, rim_mm)?;
     let truth = truth.as_ref().map(|path| tables::read(path, Kind::Plan, rim_mm)).transpose()?;
+    let progress = Progress::begin("decoding the contacts");
     let evaluation = Evaluation::of(&decoder, &table, truth.as_ref(), device.contact.full_scale_n)
         .map_err(|error| unusable(measured, &error))?;
+    drop(progress);
     if *json { print_json(&evaluation) } else { print(&evaluation) }
 }
 

@@ -10,7 +10,9 @@ use tactpad::pad::field::PadField;
 /// The field of `device`, known or computed.
 pub(super) fn field_of(device: &Device) -> Result<PadField, Failure> {
     let mut progress = None;
-    let step = |what: std::fmt::Arguments<'_>| progress.get_or_insert_with(Progress::begin).step(what);
+    let step = |what: std::fmt::Arguments<'_>| {
+        progress.get_or_insert_with(|| Progress::begin(what)).step(what);
+    };
     let obtained = field_cache::field_of(device, step)?;
     // The line goes before anything else is said.
     drop(progress);

@@ -2,7 +2,9 @@
 
 mod ablation;
 mod adapt;
+mod completions;
 mod decoder_file;
+mod destination;
 mod device;
 mod evaluate;
 mod failure;
@@ -19,21 +21,23 @@ mod replay;
 mod simulate;
 mod summary;
 mod tables;
+mod terminal;
 mod text_file;
 mod train;
 mod twin;
+mod wrapped;
 mod written;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use self::failure::Failure;
 use self::written::say;
 
 /// Turns a tactile disc with nine strain channels into a game controller.
 #[derive(Debug, Parser)]
-#[command(name = "tactpad", version, arg_required_else_help = true)]
+#[command(name = "tactpad", version, arg_required_else_help = true, max_term_width = wrapped::COLUMNS)]
 #[command(after_help = "Try it with nothing attached: tactpad demo")]
 struct Arguments {
     #[command(subcommand)]
@@ -67,6 +71,8 @@ enum Verb {
     Layout(layout::Arguments),
     /// Find the paper's figures of merit, of the twin or of a measured file.
     Metrology(metrology::Arguments),
+    /// Print a shell's completions of verbs and options.
+    Completions(completions::Arguments),
 }
 
 /// Runs the program with the process's arguments.
@@ -85,6 +91,7 @@ pub(super) fn run() -> ExitCode {
         Verb::Profile(arguments) => profile::run(&arguments),
         Verb::Layout(arguments) => layout::run(&arguments),
         Verb::Metrology(arguments) => metrology::run(&arguments),
+        Verb::Completions(arguments) => completions::run(&arguments, &mut Arguments::command()),
     };
     let (code, message) = match outcome {
         Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,
@@ -94,4 +101,43 @@ pub(super) fn run() -> ExitCode {
     // Where even the error cannot be written, the exit code still tells.
     say(format_args!("tactpad: {message}"));
     ExitCode::from(code)
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Command;
+
+    use super::*;
+
+    /// The command and all below it, each under its whole name.
+    fn all(command: &Command, before: &str, into: &mut Vec<(String, Command)>) {
+        let name = format!("{before}{}", command.get_name());
+        for below in command.get_subcommands().filter(|below| below.get_name() != "help") {
+            all(below, &format!("{name} "), into);
+        }
+        into.push((name, command.clone()));
+    }
+
+    #[test]
+    fn each_help_has_an_example_and_no_line_that_is_too_long() {
+        let mut whole = Arguments::command();
+        whole.build();
+        let mut commands = Vec::new();
+        all(&whole, "", &mut commands);
+        assert!(commands.len() > 25, "{} commands", commands.len());
+        for (name, mut command) in commands {
+            for help in [command.render_help(), command.render_long_help()].map(|help| help.to_string()) {
+                let example =
+                    if name == "tactpad" { "tactpad demo".into() } else { format!("Example: {name}") };
+                assert!(help.contains(&example), "{name}: {help}");
+                let long = help.lines().find(|line| line.chars().count() > wrapped::COLUMNS);
+                assert_eq!(long, None, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn arguments_are_sound() {
+        Arguments::command().debug_assert();
+    }
 }

@@ -17,6 +17,7 @@ use tactpad::toml_text::diag::Diagnostic;
 
 /// Arguments of `tactpad profile`.
 #[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad profile check my-contra.toml")]
 pub(super) struct Arguments {
     #[command(subcommand)]
     action: Action,
@@ -25,13 +26,16 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Action {
     /// Names of the profiles that are inside the program.
+    #[command(after_help = "Example: tactpad profile list")]
     List,
-    /// Print a profile's text, to begin one's own with: tactpad profile show contra > my-contra.toml
+    /// Print a profile's text, to begin one's own with.
+    #[command(after_help = "Example: tactpad profile show contra > my-contra.toml")]
     Show {
         /// A name from `profile list`, or a file.
         profile: String,
     },
-    /// Say everything that is wrong with a profile: tactpad profile check my-contra.toml
+    /// Say everything that is wrong with a profile.
+    #[command(after_help = "Example: tactpad profile check my-contra.toml")]
     Check {
         /// A name from `profile list`, or a file.
         profile: String,

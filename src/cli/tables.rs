@@ -4,13 +4,14 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
+use super::destination::Destination;
 use super::failure::Failure;
 use super::written::reason;
 use tactpad::pad::device::{Device, Patch};
 use tactpad::tables::measured::Table;
 use tactpad::tables::measured::columns::Kind;
 use tactpad::tables::measured::error::{Fault, ReadError};
-use tactpad::tables::measured::read;
+use tactpad::tables::measured::{read, write};
 
 /// Places are often written to two decimals; so rounded, one on the rim may lie this far beyond it.
 const RIM_TOLERANCE_MM: f64 = 0.01;
@@ -46,6 +47,13 @@ pub(super) fn read(path: &Path, kind: Kind, place_max_mm: f64) -> Result<Table, 
     let refused = |error| refusal(path, kind, error);
     let file = File::open(path).map_err(|error| refused(ReadError { line: 1, fault: Fault::Io(error) }))?;
     read::table(BufReader::new(file), kind, place_max_mm).map_err(refused)
+}
+
+/// Writes a table.
+pub(super) fn write(to: &Destination, table: &Table) -> Result<(), Failure> {
+    let mut writing = to.begin()?;
+    write::table(&mut writing, table)?;
+    writing.finish()
 }
 
 fn refusal(path: &Path, kind: Kind, error: ReadError) -> Failure {

@@ -23,6 +23,9 @@ pub(super) fn read(path: &Path) -> Result<String, String> {
     if bytes.len() > TEXT_BYTES_MAX {
         return Err(toml_text::too_long());
     }
+    if toml_text::is_utf16(&bytes) {
+        return Err("it is UTF-16: save it as UTF-8".into());
+    }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes().iter().take(at).filter(|byte| **byte == b'\n').count();

@@ -7,15 +7,17 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
+use super::destination::{Destination, Folder};
 use super::device::Pad;
 use super::failure::Failure;
 use super::field::field_of;
 use super::progress::Progress;
 use super::written::{both_print, is_stdout, print_json, say, stdout};
 use super::{decoder_file, pictures};
-use tactpad::lab::scdf::HIDDEN;
 use tactpad::lab::scdf::drawing::{self, NAMES};
 use tactpad::lab::scdf::simulation::{PAPER, Pretrained, examples, pretrain};
+use tactpad::lab::scdf::{EPOCHS_MAX, HIDDEN};
+use tactpad::network::Example;
 use tactpad::network::training::Epoch;
 use tactpad::network::training::score::{Score, Scores};
 
@@ -58,18 +60,16 @@ struct Outcome {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { out, seed, pad, figures, json } = arguments;
     if *json && is_stdout(out) {
-        return Err(both_print());
+        return Err(both_print("--out -"));
     }
     pad.spare(out)?;
     let device = pad.read()?;
+    let to = Destination::of(out)?;
+    let folder = figures.as_deref().map(Folder::of).transpose()?;
     let examples = examples(&device, &field_of(&device)?, *seed);
-    let pretrained = with_progress(|progress| {
-        pretrain(HIDDEN, examples, *seed, |Epoch { number, validation_mse, .. }| {
-            progress.step(format_args!("epoch {number}: mean squared error {validation_mse:.4}"));
-        })
-    });
-    decoder_file::write_network(out, &pretrained.trained.network)?;
-    if let Some(folder) = figures {
+    let pretrained = trained(examples, *seed);
+    decoder_file::write_network(&to, &pretrained.trained.network)?;
+    if let Some(folder) = &folder {
         pictures::write(folder, "train-loss", &drawing::loss(&pretrained.trained.curve))?;
         for (name, figure) in drawing::scatters(&pretrained) {
             pictures::write(folder, &format!("train-scatter-{name}"), &figure)?;
@@ -86,8 +86,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-fn with_progress<T>(work: impl FnOnce(&mut Progress) -> T) -> T {
-    work(&mut Progress::begin())
+fn trained(examples: Vec<Example>, seed: u64) -> Pretrained {
+    let progress = Progress::begin("training the network");
+    pretrain(HIDDEN, examples, seed, |Epoch { number, validation_mse, .. }| {
+        let what = format_args!("epoch {number}: mean squared error {validation_mse:.4}");
+        progress.part(*number, EPOCHS_MAX, what);
+    })
 }
 
 impl Outcome {

@@ -5,15 +5,17 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde::Serialize;
 
+use super::destination::Destination;
 use super::device::Pad;
 use super::failure::Failure;
 use super::field::field_of;
+use super::progress::Progress;
 use super::tables;
-use super::written::{create, is_same, is_stdout, print_json, say, stdout, written_over};
+use super::written::{both_print, is_same, is_stdout, print_json, say, stdout, written_over};
 use tactpad::lab::rig::measurement::{Measurement, carry_out};
 use tactpad::pad::device::Device;
 use tactpad::tables::measured::columns::Kind;
-use tactpad::tables::measured::{Row, Table, write};
+use tactpad::tables::measured::{Row, Table};
 use tactpad::tables::plans;
 
 /// Said with everything that the twin makes.
@@ -57,7 +59,7 @@ struct Outcome {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { plan, pad, seed, out, truth, json } = arguments;
     if *json && is_stdout(out) {
-        return Err(Failure::Unusable("--json and --out - both print: let --out name a file".into()));
+        return Err(both_print("--out -"));
     }
     for written in [Some(out), truth.as_ref()].into_iter().flatten() {
         pad.spare(written)?;
@@ -70,10 +72,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let device = pad.read_imperfect()?;
     let plan = planned(plan, &device, *seed)?;
-    let measurement = carry_out(&plan, &device, &field_of(&device)?, *seed);
-    write::table(create(out)?, &measurement.table)?;
-    if let Some(truth) = truth {
-        write::table(create(truth)?, &true_contacts(&measurement))?;
+    let (to, truth_to) = (Destination::of(out)?, truth.as_deref().map(Destination::of).transpose()?);
+    let field = field_of(&device)?;
+    let progress = Progress::begin("carrying out the plan");
+    let measurement = carry_out(&plan, &device, &field, *seed);
+    drop(progress);
+    tables::write(&to, &measurement.table)?;
+    if let Some(to) = truth_to {
+        tables::write(&to, &true_contacts(&measurement))?;
     }
     report(&measurement, *json, is_stdout(out))
 }

@@ -1,7 +1,7 @@
 //! Output whose errors name where it was to go, and that spares the input.
 
 use std::fmt;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, Stdout, Write};
 use std::path::{self, Path};
 
@@ -35,6 +35,11 @@ impl<W: Write> Named<W> {
         Self { to, place }
     }
 
+    /// What was written to.
+    pub(super) fn into_inner(self) -> W {
+        self.to
+    }
+
     /// The error with the place and without the system's number; its kind stays.
     fn placed(&self, error: &io::Error) -> io::Error {
         io::Error::new(error.kind(), format!("cannot write {}: {}", self.place, reason(error)))
@@ -51,28 +56,15 @@ impl<W: Write> Write for Named<W> {
     }
 }
 
-/// A new file; one that is there already is replaced. `-` is standard output.
-pub(super) fn create(path: &Path) -> Result<Named<Box<dyn Write>>, Failure> {
-    if is_stdout(path) {
-        return Ok(Named::new(Box::new(io::stdout()), "stdout".into()));
-    }
-    match File::create(path) {
-        Ok(file) => Ok(Named::new(Box::new(file), path.display().to_string())),
-        Err(error) => {
-            let why = reason(&error);
-            Err(Failure::Unusable(format!("{} cannot be written: {why}; name another file", path.display())))
-        }
-    }
-}
-
 /// Whether output is to go to standard output.
 pub(super) fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Refuses two documents on standard output.
-pub(super) fn both_print() -> Failure {
-    Failure::Unusable("--json and --out - both print: let --out name a file".into())
+/// Refuses two documents on standard output, of which `option` asks for one.
+pub(super) fn both_print(option: &str) -> Failure {
+    let name = option.split(' ').next().unwrap_or(option);
+    Failure::Unusable(format!("--json and {option} both print: let {name} name a file"))
 }
 
 /// Refuses to write over what is needed; `what` says what it is.

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::lab::calibration::earlier::Earlier;
-use crate::lab::calibration::fit::{Calibration, FitError, fit};
+use crate::lab::calibration::fit::{Calibration, FitError, Report, fit_reported};
 use crate::lab::calibration::regression::{neighbours, regression};
 use crate::lab::scdf::adaptation::{Adapted, TooFew, adapt, examples};
 use crate::network::training::Epoch;
@@ -91,7 +91,8 @@ impl Contacts {
         if self.is_tared() { Zero::Tared } else { Zero::Raw }
     }
 
-    /// The pad's own field, calibrated. `field` is the device's; `earlier` what another pad's decoder tells of it.
+    /// The pad's own field, calibrated. `field` is the device's; `earlier` what another pad's decoder tells of it; `report`
+    /// hears how far it is.
     ///
     /// # Errors
     /// The contacts give no calibration.
@@ -100,8 +101,9 @@ impl Contacts {
         device: &Device,
         field: &PadField,
         earlier: Option<Earlier<'_>>,
+        report: Report<'_>,
     ) -> Result<Calibration, FitError> {
-        fit(&self.recording, &self.places, device, field, earlier)
+        fit_reported(&self.recording, &self.places, device, field, earlier, report)
     }
 
     /// The mean of the nearest contacts.

@@ -82,7 +82,11 @@ impl<'t> Findings<'t> {
         self.broken_lines.push(line);
         // A bare word is the usual slip, and the parser names what it took the word for.
         let is_word = message.contains("boolean") || message.contains("must be quoted");
-        let help = is_word.then(|| "text stands in quotation marks".to_owned());
+        let help = if is_word {
+            Some("text stands in quotation marks".to_owned())
+        } else {
+            decimal_comma(self.text, at).map(|number| format!("write a decimal point: {number}"))
+        };
         self.found.push(Diagnostic {
             severity: Severity::Error,
             message: message.to_owned(),
@@ -154,6 +158,16 @@ fn position(text: &str, at: usize) -> (usize, usize) {
         (1, 1),
         |(line, column), letter| if letter == '\n' { (line + 1, 1) } else { (line, column + 1) },
     )
+}
+
+/// The number whose decimal comma is at the byte offset `at`, with a point; `None` if there is none.
+fn decimal_comma(text: &str, at: usize) -> Option<String> {
+    let (before, after) = (text.get(..at)?, text.get(at..)?.strip_prefix(',')?);
+    let is_number = |letter: char| letter.is_ascii_digit() || "+-.".contains(letter);
+    let whole = before.get(before.trim_end_matches(is_number).len()..)?;
+    let digits = after.find(|letter: char| !letter.is_ascii_digit()).unwrap_or(after.len());
+    let fraction = after.get(..digits)?;
+    (!whole.is_empty() && digits > 0).then(|| format!("{whole}.{fraction}"))
 }
 
 /// `text` cut to a length that fits a sentence.

@@ -33,7 +33,75 @@ pub(crate) fn parse<'t>(
     }
     let (tree, faults) = DeTable::parse_recoverable(text);
     for fault in faults {
-        findings.broken(fault.span().map_or(0, |span| span.start), fault.message());
+        let span = fault.span().unwrap_or_default();
+        let message = match fault.message() {
+            "duplicate key" => doubled(text.get(span.clone())),
+            message => message.to_owned(),
+        };
+        findings.broken(span.start, &message);
     }
     Some(tree)
+}
+
+/// What is wrong where a key stands a second time.
+fn doubled(key: Option<&str>) -> String {
+    key.map_or_else(|| "duplicate key".to_owned(), |key| format!("duplicate key {}", diag::quoted(key)))
+}
+
+/// Whether the text is UTF-16, by its byte order mark or its zeros.
+pub fn is_utf16(bytes: &[u8]) -> bool {
+    match bytes {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => true,
+        [first, second, third, fourth, ..] => {
+            let zeros = [first, second, third, fourth].map(|byte| *byte == 0);
+            zeros == [false, true, false, true] || zeros == [true, false, true, false]
+        }
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::toml_text::diag::Diagnostic;
+
+    fn found(text: &str) -> Vec<Diagnostic> {
+        let mut findings = Findings::new(text);
+        parse(text, "", &mut findings);
+        findings.finish()
+    }
+
+    #[test]
+    fn a_decimal_comma_is_told_from_other_commas() {
+        for (text, wanted) in
+            [("press_n = 2,0\n", "2.0"), ("[dpad]\na = -12,75 # mm\n", "-12.75"), ("a = 0,5", "0.5")]
+        {
+            let [found] = &found(text)[..] else { panic!("{text}: {:?}", found(text)) };
+            assert_eq!(found.help, Some(format!("write a decimal point: {wanted}")), "{text}");
+        }
+        for text in ["a = 2,\n", "a = \"x\",1\n", "a = ,5\n"] {
+            assert!(found(text).iter().all(|found| found.help.is_none()), "{text}: {:?}", found(text));
+        }
+        assert_eq!(found("a = [1,0]\n"), []);
+    }
+
+    #[test]
+    fn a_doubled_key_is_named() {
+        for (text, name) in
+            [("name = 1\nname = 2\n", "name"), ("a = { b = 1, b = 2 }\n", "b"), ("[dpad]\n[dpad]\n", "dpad")]
+        {
+            let [found] = &found(text)[..] else { panic!("{text}: {:?}", found(text)) };
+            assert_eq!(found.message, format!("duplicate key \"{name}\""), "{text}");
+        }
+    }
+
+    #[test]
+    fn utf16_is_told_with_and_without_its_mark() {
+        for bytes in [&b"\xff\xfea\0"[..], b"\xfe\xff\0a", b"a\0b\0c\0", b"\0a\0b"] {
+            assert!(is_utf16(bytes), "{bytes:?}");
+        }
+        for bytes in [&b""[..], b"a", b"abcd", b"\xef\xbb\xbfa", b"a\0bc", "äö".as_bytes()] {
+            assert!(!is_utf16(bytes), "{bytes:?}");
+        }
+    }
 }

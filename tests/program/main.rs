@@ -4,6 +4,8 @@
 mod bad_input;
 #[cfg(feature = "simulator")]
 mod docs;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod hints;
 mod plot;
 mod simulate;
 #[cfg(feature = "simulator")]
@@ -12,5 +14,8 @@ mod simulate_figures;
 mod simulate_pad;
 #[path = "../support/mod.rs"]
 mod support;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod terminal;
 mod twin_verb;
 mod vtk;
+mod written;

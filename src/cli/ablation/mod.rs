@@ -5,11 +5,11 @@ mod tables;
 mod timing;
 
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 use clap::Args;
 
 use self::report::AblationReport;
+use super::destination::Folder;
 use super::device::Pad as PadFiles;
 use super::failure::Failure;
 use super::field::field_of;
@@ -20,8 +20,8 @@ use super::{decoder_file, pictures};
 use tactpad::lab::ablation::entries::ENTRIES;
 use tactpad::lab::ablation::trials::Trials;
 use tactpad::lab::ablation::{Pad, Subject};
-use tactpad::lab::scdf::HIDDEN;
 use tactpad::lab::scdf::simulation::{examples, pretrain};
+use tactpad::lab::scdf::{EPOCHS_MAX, HIDDEN};
 use tactpad::network::training::Epoch;
 use tactpad::network::{Network, Zero};
 use tactpad::plot::figure::Figure;
@@ -49,21 +49,18 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if let Some(path) = arguments.out.as_deref().filter(|path| path.exists() && !path.is_dir()) {
-        return Err(Failure::Unusable(format!("{} is no folder; name another", path.display())));
-    }
     let network = arguments.network.as_deref().map(tared_network).transpose()?;
     let (designed, device) = (arguments.pad.designed()?, arguments.pad.read_imperfect()?);
+    let folder = arguments.out.as_deref().map(Folder::of).transpose()?;
     let (nominal, field) = (field_of(&designed)?, field_of(&device)?);
     let subject = Subject {
         designed: Pad { device: &designed, field: &nominal },
         actual: Pad { device: &device, field: &field },
         seed: arguments.seed,
     };
-    let mut progress = Progress::begin();
-    let network = network.unwrap_or_else(|| trained(&subject, &mut progress));
-    let trials = trials(&subject, &network, progress)?;
-    let files = match &arguments.out {
+    let network = network.unwrap_or_else(|| trained(&subject));
+    let trials = trials(&subject, &network)?;
+    let files = match &folder {
         Some(folder) => write_plots(folder, &trials.figures(&subject))?,
         None => Vec::new(),
     };
@@ -73,18 +70,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         rows: report::rows(&trials),
         files,
     };
-    if let Some(folder) = &arguments.out {
+    if let Some(folder) = &folder {
         report.files.push(tables::write_csv(folder, &report.rows)?);
     }
     if arguments.json { print_json(&report) } else { Ok(tables::print(&report)?) }
 }
 
 /// Writes the plots, and says the names of their SVG files.
-fn write_plots(folder: &Path, figures: &[(String, Figure)]) -> Result<Vec<String>, Failure> {
-    let written = figures.iter().map(|(name, figure)| {
-        pictures::write(folder, name, figure)?;
-        Ok(folder.join(name).with_extension("svg").display().to_string())
-    });
+fn write_plots(folder: &Folder, figures: &[(String, Figure)]) -> Result<Vec<String>, Failure> {
+    let written =
+        figures.iter().map(|(name, figure)| pictures::write(folder, name, figure).map(|[svg, _]| svg));
     written.collect()
 }
 
@@ -100,21 +95,21 @@ fn tared_network(path: &Path) -> Result<Network, Failure> {
     )))
 }
 
-fn trained(subject: &Subject<'_>, progress: &mut Progress) -> Network {
+fn trained(subject: &Subject<'_>) -> Network {
     let Subject { designed, seed, .. } = *subject;
     let examples = examples(designed.device, designed.field, seed);
+    let progress = Progress::begin("training the network");
     let report = |Epoch { number, .. }: &Epoch| {
-        progress.step(format_args!("training the network on simulated contacts: epoch {number}"));
+        progress.part(*number, EPOCHS_MAX, format_args!("training the network: epoch {number}"));
     };
     pretrain(HIDDEN, examples, seed, report).trained.network
 }
 
-fn trials(subject: &Subject<'_>, network: &Network, progress: Progress) -> Result<Trials, Failure> {
-    let progress = Mutex::new(progress);
+fn trials(subject: &Subject<'_>, network: &Network) -> Result<Trials, Failure> {
+    let progress = Progress::begin("fitting the decoders");
     let report = |done: usize| {
-        if let Ok(mut progress) = progress.lock() {
-            progress.step(format_args!("{done} of {} decoders are fitted", ENTRIES.len()));
-        }
+        let what = format_args!("{done} of {} decoders are fitted", ENTRIES.len());
+        progress.part(done, ENTRIES.len(), what);
     };
     report(0);
     Trials::of(subject, network, report).map_err(|error| Failure::Failed(error.to_string()))

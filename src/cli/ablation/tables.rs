@@ -1,11 +1,11 @@
 //! The verb's table: for people, and as CSV.
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use super::report::{AblationReport, Row, Tried};
+use crate::cli::destination::Folder;
 use crate::cli::failure::Failure;
-use crate::cli::written::{create, stdout};
+use crate::cli::written::stdout;
 use tactpad::lab::evaluation::{Errors, PerAxis};
 use tactpad::lab::metrology::table3::PublishedErrors;
 
@@ -31,17 +31,19 @@ fn write(out: &mut impl Write, report: &AblationReport) -> io::Result<()> {
 fn write_table(out: &mut impl Write, rows: &[Row], table: usize) -> io::Result<()> {
     let tried: Vec<(&Row, &Tried)> =
         rows.iter().filter_map(|row| Some((row, row.unseen.get(table)?))).collect();
-    let Some((_, Tried { plan, seed, contacts, .. })) = tried.first() else { return Ok(()) };
+    let Some((_, Tried { plan, seed, contacts, bound, .. })) = tried.first() else { return Ok(()) };
     writeln!(out, "\n{contacts} unseen contacts: twin --plan {plan} --seed {seed}")?;
+    let (mm, n) = (bound.position_mae_mm, bound.force_mae_n);
+    writeln!(out, "The noise allows no less than {mm:.3} mm and {n:.4} N.\n")?;
     writeln!(
         out,
-        "{:<23} {:>13} {:>20} {:>20} {:>14} {:>6} {:>6}",
-        "", "the paper", "against the truth", "against the labels", "bound", "in", ""
+        "{:<22} {:>10} {:>17} {:>18} {:>4}",
+        "", "the paper", "against the truth", "against the labels", "in"
     )?;
     writeln!(
         out,
-        "{:<23} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>7} {:>6} {:>6} {:>6}",
-        "decoder", "mm", "N", "mm", "dist.", "N", "mm", "dist.", "N", "mm", "N", "95 %", "µs"
+        "{:<22} {:>5} {:>4} {:>5} {:>5} {:>5} {:>5} {:>5} {:>5} {:>5} {:>4}",
+        "decoder", "mm", "N", "mm", "dist.", "N", "mm", "dist.", "N", "95 %", "µs"
     )?;
     tried.into_iter().try_for_each(|(row, tried)| write_row(out, row, tried))
 }
@@ -76,35 +78,35 @@ fn write_row(out: &mut impl Write, row: &Row, tried: &Tried) -> io::Result<()> {
     let mark = if row.entry.conflict.is_some() { "*" } else { "" };
     write!(
         out,
-        "{:<23} {:>6} {:>6}",
+        "{:<22} {:>5} {:>4}",
         format!("{}{mark}", row.entry),
         optional(paper.map(|paper| paper.position_mae_mm), 2),
         optional(paper.map(|paper| paper.force_mae_n), 2)
     )?;
     for Errors { position_mae_mm, position_mean_euclid_mm, force_mae_n, .. } in [&tried.truth, &tried.labels]
     {
-        write!(out, " {position_mae_mm:>6.2} {position_mean_euclid_mm:>6.2} {force_mae_n:>6.3}")?;
+        let [place, distance] = [position_mae_mm, position_mean_euclid_mm].map(|mm| fitting(*mm, 2, 5));
+        write!(out, " {place:>5} {distance:>5} {:>5}", fitting(*force_mae_n, 3, 5))?;
     }
-    writeln!(
-        out,
-        " {:>7.3} {:>6.4} {:>6} {:>6}",
-        tried.bound.position_mae_mm,
-        tried.bound.force_mae_n,
-        optional(tried.coverage95.map(|share| 100.0 * share), 1),
-        optional(row.decode_us, 1)
-    )
+    let coverage = optional(tried.coverage95.map(|share| 100.0 * share), 1);
+    let decode = row.decode_us.map_or_else(|| "–".to_owned(), |us| fitting(us, 1, 4));
+    writeln!(out, " {coverage:>5} {decode:>4}")
+}
+
+/// The number with so many decimals, or fewer where `width` characters have no room for them.
+fn fitting(value: f64, decimals: usize, width: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let missing = text.len().saturating_sub(width);
+    // The point goes with the last of its decimals.
+    if missing == 0 { text } else { format!("{value:.*}", decimals.saturating_sub(missing)) }
 }
 
 /// A row for each decoder and each table of unseen contacts. Gives the file's name.
-pub(super) fn write_csv(folder: &Path, rows: &[Row]) -> Result<String, Failure> {
-    let path = folder.join("ablation.csv");
-    let mut out = create(&path)?;
-    writeln!(out, "{}", columns().join(","))?;
-    for (row, tried) in rows.iter().flat_map(|row| row.unseen.iter().map(move |tried| (row, tried))) {
-        writeln!(out, "{}", cells(row, tried).join(","))?;
-    }
-    out.flush()?;
-    Ok(path.display().to_string())
+pub(super) fn write_csv(folder: &Folder, rows: &[Row]) -> Result<String, Failure> {
+    let tried = rows.iter().flat_map(|row| row.unseen.iter().map(move |tried| (row, tried)));
+    let lines = std::iter::once(columns()).chain(tried.map(|(row, tried)| cells(row, tried)));
+    let text: String = lines.map(|cells| cells.join(",") + "\n").collect();
+    folder.write("ablation.csv", text.as_bytes())
 }
 
 fn columns() -> Vec<String> {
@@ -141,4 +143,16 @@ fn cells(row: &Row, tried: &Tried) -> Vec<String> {
     cells.extend([tried.bound.position_mae_mm, tried.bound.force_mae_n].map(|number| number.to_string()));
     cells.extend([tried.coverage95, row.decode_us].map(optional));
     cells
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_numbers_give_up_decimals() {
+        let texts = [(9.876, 2), (15.29, 2), (123.456, 2), (1234.5, 2), (0.516, 3), (12.3456, 3)];
+        let texts = texts.map(|(value, decimals)| fitting(value, decimals, 5));
+        assert_eq!(texts, ["9.88", "15.29", "123.5", "1234", "0.516", "12.35"]);
+    }
 }

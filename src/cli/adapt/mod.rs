@@ -15,6 +15,7 @@ use serde::Serialize;
 use self::measured::Measured;
 use self::method::Method;
 use super::decoder_file;
+use super::destination::Destination;
 use super::device::Pad;
 use super::failure::Failure;
 use super::written::{both_print, is_same, is_stdout, print_json, say, stdout, written_over};
@@ -35,7 +36,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE", required = true)]
     measured: Vec<PathBuf>,
     /// Take N of the contacts only, drawn by the seed.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse_rows, allow_hyphen_values = true)]
     rows: Option<usize>,
     /// Draws what is random: the same seed gives the same file.
     #[arg(long, default_value = "0")]
@@ -77,20 +78,21 @@ enum Fit {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { method, out, json, .. } = arguments;
     if *json && is_stdout(out) {
-        return Err(both_print());
+        return Err(both_print("--out -"));
     }
     arguments.spare()?;
     let device = arguments.pad.read()?;
     let measured = Measured::read(&arguments.measured, &device, arguments.rows, arguments.seed)?;
+    let to = Destination::of(out)?;
     let from = arguments.from.as_deref();
     let fit = if *method == Method::Scdf {
         let (network, fit) = scdf::adapt(&measured, from, arguments.seed)?;
-        decoder_file::write_network(out, &network)?;
+        decoder_file::write_network(&to, &network)?;
         Fit::Network(fit)
     } else {
         let (decoder, fit) = own::adapt(*method, &measured, from, &device)?;
         let note = format!("{} contacts of {}", measured.contacts.count(), measured.names);
-        decoder_file::write(out, &decoder.to_bytes(&note).unwrap_or_default())?;
+        to.write(&decoder.to_bytes(&note).unwrap_or_default())?;
         Fit::Own(Box::new(fit))
     };
     let (rows, tared) = (measured.contacts.count(), measured.contacts.is_tared());
@@ -103,6 +105,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         (false, false) => Ok(writeln!(stdout(), "{outcome}\n{} is written", out.display())?),
     }
+}
+
+fn parse_rows(text: &str) -> Result<usize, String> {
+    let rows = text.trim().parse().ok().filter(|rows| *rows > 0);
+    rows.ok_or_else(|| "write how many contacts to take, 1 or more; without --rows all are taken".into())
 }
 
 impl Arguments {

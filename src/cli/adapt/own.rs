@@ -10,6 +10,7 @@ use super::method::Method;
 use crate::cli::decoder_file;
 use crate::cli::failure::Failure;
 use crate::cli::field::field_of;
+use crate::cli::progress::Progress;
 use tactpad::lab::calibration::earlier::Earlier;
 use tactpad::lab::calibration::fit::Calibration;
 use tactpad::lab::calibration::thermal_fit::ThermalFit;
@@ -108,7 +109,11 @@ pub(super) fn adapt(
 fn calibrated(measured: &Measured, from: Option<&Path>, device: &Device) -> Result<(Decoder, Fit), Failure> {
     let earlier = from.map(earlier).transpose()?;
     let field = field_of(device)?;
-    let calibration = measured.contacts.calibration(device, &field, earlier.as_ref().and_then(Earlier::of));
+    let progress = Progress::begin("fitting the pad's field");
+    let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
+    let earlier = earlier.as_ref().and_then(Earlier::of);
+    let calibration = measured.contacts.calibration(device, &field, earlier, &report);
+    drop(progress);
     let calibration = calibration.map_err(|error| measured.refused(error))?;
     let found = Fit { pad: Some(Pad::of(&calibration)) };
     Ok((calibration.decoder(), found))

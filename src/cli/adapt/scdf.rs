@@ -9,7 +9,8 @@ use super::measured::Measured;
 use crate::cli::decoder_file;
 use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
-use tactpad::lab::scdf::adaptation::Adapted;
+use tactpad::lab::scdf::EPOCHS_MAX;
+use tactpad::lab::scdf::adaptation::{Adapted, BETAS};
 use tactpad::network::Network;
 use tactpad::network::training::Epoch;
 
@@ -38,9 +39,10 @@ pub(super) fn adapt(measured: &Measured, from: Option<&Path>, seed: u64) -> Resu
         )
     })?;
     let start = decoder_file::read_network(from)?;
-    let mut progress = Progress::begin();
+    let progress = Progress::begin("adapting the network");
     let adapted = measured.contacts.adapted(start, seed, |beta, Epoch { number, .. }| {
-        progress.step(format_args!("β = {beta}: epoch {number}"));
+        let before = BETAS.iter().position(|tried| *tried == beta).unwrap_or_default() * EPOCHS_MAX;
+        progress.part(before + number, BETAS.len() * EPOCHS_MAX, format_args!("β = {beta}: epoch {number}"));
     });
     drop(progress);
     let adapted = adapted.map_err(|error| measured.refused(error))?;

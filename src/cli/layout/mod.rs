@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use self::report::LayoutReport;
+use super::destination::Folder;
 use super::device::Pad;
 use super::failure::Failure;
 use super::pictures;
@@ -58,6 +59,7 @@ const NOISE_MAX_UV: f64 = 1e6;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let device = arguments.pad.read()?;
+    let folder = arguments.figures.as_deref().map(Folder::of).transpose()?;
     let (spacing, simulated) = match &arguments.radii {
         Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),
         None => simulated(arguments, &device).map(|(spacing, pad)| (spacing, Some(pad)))?,
@@ -70,7 +72,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         parts_usd: PARTS.iter().map(Part::price_usd).sum(),
         simulated,
     };
-    if let (Some(folder), Some(pad)) = (&arguments.figures, &report.simulated) {
+    if let (Some(folder), Some(pad)) = (&folder, &report.simulated) {
         pictures::write(folder, "layout-scan", &drawing::scan(pad))?;
         pictures::write(folder, "layout-regions", &drawing::regions(pad, &report.spacing, &device))?;
     }
@@ -81,7 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 #[cfg(feature = "simulator")]
 fn simulated(arguments: &Arguments, device: &Device) -> Result<(SpacingAnswers, Simulated), Failure> {
     let Arguments { threshold, noise_uv, seed, .. } = *arguments;
-    let mut progress = Progress::begin();
+    let progress = Progress::begin("solving the modules");
     Ok(Simulated::of(device, threshold, noise_uv, seed, |what| progress.step(what))?)
 }
 

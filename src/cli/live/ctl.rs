@@ -25,21 +25,28 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Action {
     /// What the bridge is doing.
+    #[command(after_help = "Example: tactpad ctl status --json")]
     Status,
     /// Release everything and ignore the pad.
+    #[command(after_help = "Example: tactpad ctl pause")]
     Pause,
     /// Go on after a pause.
+    #[command(after_help = "Example: tactpad ctl resume")]
     Resume,
     /// Release everything at once, and go on.
+    #[command(after_help = "Example: tactpad ctl panic")]
     Panic,
     /// Measure the zero again; leave the pad untouched.
+    #[command(after_help = "Example: tactpad ctl tare")]
     Tare,
     /// Go over to another profile.
+    #[command(after_help = "Example: tactpad ctl profile tetris")]
     Profile {
         /// A profile's name or file.
         name: String,
     },
     /// End the bridge.
+    #[command(after_help = "Example: tactpad ctl quit")]
     Quit,
 }
 

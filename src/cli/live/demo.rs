@@ -1,12 +1,13 @@
 //! `tactpad demo`: the main job with nothing attached, and the proof that it went right.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::sync::{Arc, Mutex};
 
 use clap::Args;
 use serde::Serialize;
 
 use super::files::Files;
+use super::newest::line;
 use super::output::Output;
 use super::playing::{Audience, Terminal, microseconds, open_virtual, play, requests};
 use super::screen::Screen;
@@ -15,17 +16,18 @@ use crate::cli::decoder_file::Choice;
 use crate::cli::device::Pad;
 use crate::cli::failure::{Failure, if_read};
 use crate::cli::profile;
+use crate::cli::terminal;
 use crate::cli::written::{print_json, say, stdout};
 use tactpad::bridge::latency::Percentiles;
 use tactpad::bridge::opening::Patience;
 use tactpad::bridge::parts::Parts;
 use tactpad::bridge::running::{Bridge, Ending};
+use tactpad::bridge::sink::Sink;
 use tactpad::bridge::sink::log::LogSink;
 use tactpad::bridge::sink::null::NullSink;
 use tactpad::bridge::sink::witness::{Account, Expected, Witness};
-use tactpad::bridge::sink::{Sink, uinput};
 use tactpad::bridge::transport::address::PadAddress;
-use tactpad::pipeline::control::{OutputDevice, OutputEvent};
+use tactpad::pipeline::control::OutputDevice;
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::virtual_pad::script::Script;
 
@@ -43,7 +45,7 @@ pub(crate) struct Arguments {
     decoder: Choice,
     #[command(flatten)]
     device: Pad,
-    /// Where events go: auto (a virtual gamepad, else the screen), uinput, x11, log:FILE, none.
+    /// Where events go: auto (a virtual gamepad, else the screen), uinput, x11, log:FILE (- is stdout), none.
     #[arg(long, default_value = "auto")]
     output: Output,
     /// Print one JSON document on stdout.
@@ -68,7 +70,8 @@ struct Summary {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { profile, output, decoder, .. } = arguments;
+    let Arguments { profile, output, decoder, json, .. } = arguments;
+    output.leaves_stdout(*json)?;
     Files { pad: &PadAddress::Virtual, profile, output, decoder: chosen::file(decoder), capture: None }
         .check()?;
     let decoder = chosen::read(decoder)?;
@@ -98,7 +101,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: None,
         duration_us: Some(microseconds(arguments.seconds)),
     })?;
-    let screen = (!arguments.json).then(|| start_screen(format!("{name} on a virtual pad"), &bridge, &seen));
+    let is_shown = !arguments.json && terminal::moves_cursor(&io::stdout()) && *output != Output::Stdout;
+    let screen = is_shown.then(|| start_screen(format!("{name} on a virtual pad"), &bridge, &seen));
     let played = play(&mut bridge, &PadAddress::Virtual);
     drop(screen);
     let ending = played?;
@@ -152,31 +156,23 @@ fn open_sink(arguments: &Arguments, profile: &Profile) -> Result<(Box<dyn Sink>,
         let title = format!("Output: {} (asked for).", sink.describe());
         return Ok((sink, title));
     }
-    match uinput::available() {
-        _ if profile.uses(OutputDevice::Keyboard) => {
-            let title =
-                "Output: an event log, here. The profile types keys: for those ask with --output uinput.";
-            Ok((here(arguments), title.into()))
-        }
-        _ if profile.uses(OutputDevice::Pointer) => {
-            let title = "Output: an event log, here. The profile moves the pointer and clicks: for that ask with \
-                         --output uinput.";
-            Ok((here(arguments), title.into()))
-        }
-        Ok(()) => {
-            let sink = Output::Uinput.open()?;
-            Ok((sink, "Output: a virtual gamepad. Nothing better is to be had.".into()))
-        }
-        Err(error) => {
-            let title = format!("Output: an event log, here. For a virtual gamepad: {}", error.message);
-            Ok((here(arguments), title))
-        }
+    if profile.uses(OutputDevice::Keyboard) {
+        let title = "Output: an event log, here. The profile types keys: for those ask with --output uinput.";
+        return Ok((here(arguments), title.into()));
     }
+    if profile.uses(OutputDevice::Pointer) {
+        let title = "Output: an event log, here. The profile moves the pointer and clicks: for that ask with \
+                     --output uinput.";
+        return Ok((here(arguments), title.into()));
+    }
+    let (sink, missing) = arguments.output.open_or(|| here(arguments))?;
+    let best = || "Output: a virtual gamepad. Nothing better is to be had.".into();
+    Ok((sink, missing.unwrap_or_else(best)))
 }
 
 /// The event log on the screen: the live picture shows it, and without one it is lines on stdout.
 fn here(arguments: &Arguments) -> Box<dyn Sink> {
-    if arguments.json || io::stdout().is_terminal() {
+    if arguments.json || terminal::moves_cursor(&io::stdout()) {
         Box::new(NullSink)
     } else {
         Box::new(LogSink::new(WhileRead(io::stdout()), "stdout".into()))
@@ -204,23 +200,19 @@ impl<W: Write> Write for WhileRead<W> {
 
 /// What people read goes to stdout, or to stderr where stdout is for a program.
 fn tell(arguments: &Arguments, line: &str) -> Result<(), Failure> {
-    if arguments.json {
+    if arguments.json || arguments.output == Output::Stdout {
         say(line);
         return Ok(());
     }
     Ok(writeln!(stdout(), "{line}")?)
 }
 
-fn start_screen(title: String, bridge: &Bridge, seen: &Arc<Mutex<Account>>) -> Option<Screen> {
+fn start_screen(title: String, bridge: &Bridge, seen: &Arc<Mutex<Account>>) -> Screen {
     let seen = Arc::clone(seen);
     Screen::start(title, bridge.snapshot(), move || {
         let newest = seen.lock().map(|seen| seen.newest.clone());
         newest.unwrap_or_default().iter().map(line).collect()
     })
-}
-
-fn line(event: &OutputEvent) -> String {
-    format!("{:8.3} s  {} {:+}", event.at.as_us() as f64 * 1e-6, event.code, event.value)
 }
 
 fn report(arguments: &Arguments, bridge: &Bridge, seen: &Account) -> Result<(), Failure> {
@@ -242,15 +234,15 @@ fn report(arguments: &Arguments, bridge: &Bridge, seen: &Account) -> Result<(), 
     let Summary { frames, frames_lost, contacts, downs, ups, pointer_moves, held_at_end, latency_us } =
         summary;
     let Percentiles { p50, p95, p99, max } = latency_us;
-    writeln!(stdout(), "{frames} frames, {frames_lost} lost; {contacts} contacts")?;
-    writeln!(stdout(), "{downs} downs, {ups} ups, {held_at_end} held at the end")?;
+    tell(arguments, &format!("{frames} frames, {frames_lost} lost; {contacts} contacts"))?;
+    tell(arguments, &format!("{downs} downs, {ups} ups, {held_at_end} held at the end"))?;
     if pointer_moves > 0 {
-        writeln!(stdout(), "{pointer_moves} moves of the pointer")?;
+        tell(arguments, &format!("{pointer_moves} moves of the pointer"))?;
     }
-    Ok(writeln!(
-        stdout(),
+    let times = format!(
         "bytes readable to event written: p50 {p50:.0} µs, p95 {p95:.0} µs, p99 {p99:.0} µs, max {max:.0} µs"
-    )?)
+    );
+    tell(arguments, &times)
 }
 
 fn check_end(bridge: &Bridge, expected: u64) -> Result<(), Failure> {

@@ -1,14 +1,14 @@
 //! The files of a live verb, checked while all of them are still whole.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
 
 use super::output::Output;
 use crate::cli::failure::Failure;
-use crate::cli::written::{is_same, say, written_over};
+use crate::cli::written::{is_same, is_stdout, say, written_over};
 use tactpad::bridge::transport::address::PadAddress;
-use tactpad::pipeline::capture::reader::{CaptureError, CaptureReader};
+use tactpad::pipeline::capture::reader::{self, CaptureError, CaptureReader};
 use tactpad::pipeline::mapping::shipped;
 
 /// What a live verb reads and writes.
@@ -31,6 +31,9 @@ impl Files<'_> {
             _ => None,
         };
         self.keep_apart(source)?;
+        if let Output::Log(log) = self.output {
+            keep_capture(log, "")?;
+        }
         source.map_or(Ok(()), check_capture)
     }
 
@@ -52,11 +55,24 @@ impl Files<'_> {
                 }
             }
         }
+        if self.capture.is_some_and(is_stdout) && *self.output == Output::Stdout {
+            return Err(Failure::Unusable("the capture and --output log:- both print: name a file".into()));
+        }
         match (self.capture, log) {
             (Some(capture), Some(log)) if is_same(capture, log) => Err(written_over(log, "is the capture")),
             _ => Ok(()),
         }
     }
+}
+
+/// Refuses to write over a capture; `way_out` goes on where another name is the first way out.
+pub(super) fn keep_capture(written: &Path, way_out: &str) -> Result<(), Failure> {
+    let is_file = |path: &Path| fs::metadata(path).is_ok_and(|it| it.is_file());
+    // Opening a pipe would wait for its other end.
+    if is_stdout(written) || !is_file(written) || !File::open(written).is_ok_and(reader::is_capture) {
+        return Ok(());
+    }
+    Err(Failure::Unusable(format!("{} is a capture: name another file{way_out}", written.display())))
 }
 
 /// Reads a capture to its end, if that does not use it up. What cannot even be opened is told by who opens it.

@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     /// How long to measure.
     #[arg(long, default_value = "10", value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: f64,
-    /// The pad: virtual, serial:PATH[@BAUD], capture:FILE.
+    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]
@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     profile: String,
     #[command(flatten)]
     decoder: Choice,
-    /// Where events go: auto (a virtual gamepad, else nowhere), uinput, x11, log:FILE, none.
+    /// Where events go: auto (a virtual gamepad, else nowhere), uinput, x11, log:FILE (- is stdout), none.
     #[arg(long, default_value = "auto")]
     output: Output,
     /// Print one JSON document.
@@ -58,7 +58,8 @@ struct LatencyReport {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { pad, profile, output, decoder, .. } = arguments;
+    let Arguments { pad, profile, output, decoder, json, .. } = arguments;
+    output.leaves_stdout(*json)?;
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
     let decoder = chosen::read(decoder)?;
     let profile = profile::read(profile, output.choice())?;
@@ -91,7 +92,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         end_to_end_us: bridge.latency().percentiles(),
         policy_ms: Policy::of(&played, timed.period_us),
     };
-    if arguments.json { print_json(&report) } else { Ok(print(&report)?) }
+    match output {
+        _ if arguments.json => print_json(&report),
+        Output::Stdout => Ok(print(&report, &mut io::stderr())?),
+        _ => Ok(print(&report, &mut stdout())?),
+    }
 }
 
 fn open_sink(output: &Output) -> Result<Box<dyn Sink>, Failure> {
@@ -101,8 +106,7 @@ fn open_sink(output: &Output) -> Result<Box<dyn Sink>, Failure> {
     }
 }
 
-fn print(report: &LatencyReport) -> io::Result<()> {
-    let mut out = stdout();
+fn print(report: &LatencyReport, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "{} samples, {} writes", report.samples, report.writes)?;
     writeln!(out, "{:<11} {:>9} {:>9} {:>9} {:>9}", "µs", "p50", "p95", "p99", "max")?;
     let Stages { read, decode, map, write } = &report.stages_us;

@@ -7,6 +7,7 @@ mod devices;
 mod doctor;
 mod files;
 mod latency;
+mod newest;
 mod output;
 mod playing;
 mod record;

@@ -1,11 +1,14 @@
 //! `--output`: where events are to go.
 
 use std::env;
+use std::io;
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use crate::cli::failure::Failure;
-use tactpad::bridge::sink::{Sink, log::LogSink, null::NullSink, uinput::UinputSink, x11::X11Sink};
+use crate::cli::written::both_print;
+use tactpad::bridge::sink::uinput::{self, UinputSink};
+use tactpad::bridge::sink::{Sink, SinkError, log::LogSink, null::NullSink, x11::X11Sink};
 use tactpad::pipeline::mapping::check::OutputChoice;
 
 /// Where events are to go.
@@ -19,6 +22,8 @@ pub(super) enum Output {
     X11,
     /// An event log in a file.
     Log(PathBuf),
+    /// An event log on standard output.
+    Stdout,
     /// Nowhere.
     None,
 }
@@ -28,6 +33,7 @@ impl FromStr for Output {
 
     fn from_str(text: &str) -> Result<Self, String> {
         match text.split_once(':') {
+            Some(("log", "-")) => Ok(Self::Stdout),
             Some(("log", path)) if !path.is_empty() => Ok(Self::Log(path.into())),
             None if text == "auto" => Ok(Self::Auto),
             None if text == "uinput" => Ok(Self::Uinput),
@@ -44,6 +50,11 @@ impl Output {
         if *self == Self::X11 { OutputChoice::Keyboard } else { OutputChoice::AsWritten }
     }
 
+    /// Refuses an output on standard output where `--json` prints there, too.
+    pub(super) fn leaves_stdout(&self, json: bool) -> Result<(), Failure> {
+        if json && *self == Self::Stdout { Err(both_print("--output log:-")) } else { Ok(()) }
+    }
+
     /// Opens the sink. `Auto` means the kernel's virtual devices; what else would do is said in the error.
     pub(super) fn open(&self) -> Result<Box<dyn Sink>, Failure> {
         match self {
@@ -55,9 +66,27 @@ impl Output {
             Self::Log(path) => {
                 Ok(Box::new(LogSink::create(path).map_err(|error| Failure::Unusable(error.message))?))
             }
+            Self::Stdout => Ok(Box::new(LogSink::new(io::stdout(), "stdout".into()))),
             Self::None => Ok(Box::new(NullSink)),
         }
     }
+
+    /// The same for people who watch: where `Auto` finds no virtual devices, `here` opens an event log, and the text
+    /// says what would bring a better output.
+    pub(super) fn open_or(
+        &self,
+        here: impl FnOnce() -> Box<dyn Sink>,
+    ) -> Result<(Box<dyn Sink>, Option<String>), Failure> {
+        match (self, uinput::available()) {
+            (Self::Auto, Err(error)) => Ok((here(), Some(missing(&error)))),
+            _ => Ok((self.open()?, None)),
+        }
+    }
+}
+
+/// What is told where an event log stands in for virtual devices.
+fn missing(error: &SinkError) -> String {
+    format!("Output: an event log, here. For a virtual gamepad: {}", error.message)
 }
 
 fn with_alternatives(message: &str) -> String {

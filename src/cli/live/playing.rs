@@ -8,6 +8,7 @@ use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::field::field_of;
 use crate::cli::profile;
+use crate::cli::written::{is_stdout, reason};
 use tactpad::bridge::error::BridgeError;
 use tactpad::bridge::host::Host;
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
@@ -84,11 +85,17 @@ pub(super) enum Waits {
     NotAsked,
 }
 
-/// The file of a capture.
+/// The file of a capture, which is written where it stands: what was recorded before a crash is there.
 pub(super) fn create_capture(path: &Path) -> Result<Box<dyn Write>, Failure> {
+    if is_stdout(path) {
+        return Ok(Box::new(BufWriter::new(io::stdout())));
+    }
     match File::create(path) {
         Ok(file) => Ok(Box::new(BufWriter::new(file))),
-        Err(error) => Err(Failure::Unusable(format!("{} cannot be written: {error}", path.display()))),
+        Err(error) => {
+            let (path, why) = (path.display(), reason(&error));
+            Err(Failure::Unusable(format!("{path} cannot be written: {why}; name another file")))
+        }
     }
 }
 

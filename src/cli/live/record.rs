@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::files::Files;
+use super::files::{self, Files};
+use super::newest::Newest;
 use super::output::Output;
 use super::playing::{
     Audience, Terminal, Waits, create_capture, microseconds, open_pad, patience, play, requests,
@@ -26,9 +27,12 @@ use tactpad::bridge::transport::fault::FaultPlan;
     after_help = "Example: tactpad record game.cap --pad serial:/dev/ttyACM0, then tactpad replay game.cap"
 )]
 pub(crate) struct Arguments {
-    /// The file to write.
+    /// The file to write; a capture that is there already is kept, and - is standard output.
     capture: PathBuf,
-    /// The pad: virtual, serial:PATH[@BAUD], capture:FILE.
+    /// Write over a capture that is there already.
+    #[arg(long)]
+    force: bool,
+    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]
@@ -38,7 +42,8 @@ pub(crate) struct Arguments {
     profile: String,
     #[command(flatten)]
     decoder: Choice,
-    /// Where events go meanwhile: auto, uinput, x11, log:FILE, none.
+    /// Where events go meanwhile: auto (virtual devices, else an event log here), uinput, x11, log:FILE (- is stdout),
+    /// none.
     #[arg(long, default_value = "none")]
     output: Output,
     /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
@@ -53,14 +58,20 @@ pub(crate) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { capture, pad, profile, output, decoder, .. } = arguments;
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: Some(capture) }.check()?;
+    if !arguments.force {
+        files::keep_capture(capture, ", or give --force to write over it")?;
+    }
     let decoder = chosen::read(decoder)?;
     let profile = profile::read(profile, output.choice())?;
-    let sink = output.open()?;
+    let (sink, missing) = output.open_or(|| Newest::default().sink(false))?;
     let patience = patience(&arguments.pad, Waits::NotAsked);
     let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
     let opened = opened.with_faults(arguments.faults)?;
     let place = capture.display().to_string();
     let capture = Named::new(create_capture(capture)?, place.clone());
+    if let Some(missing) = missing {
+        say(missing);
+    }
     say(format_args!("recording {} in {place}", arguments.pad));
     let audience = Audience::Stderr;
     let host = Terminal { profile: arguments.profile.clone(), output: output.choice(), audience };

@@ -1,10 +1,11 @@
 //! `tactpad run`: the live bridge.
 
-use std::io::{self, IsTerminal};
+use std::io;
 
 use clap::Args;
 
 use super::files::Files;
+use super::newest::Newest;
 use super::output::Output;
 use super::playing::{Audience, Terminal, Waits, microseconds, open_pad, patience, play, requests};
 use super::screen::Screen;
@@ -13,6 +14,7 @@ use crate::cli::decoder_file::Choice;
 use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::profile;
+use crate::cli::terminal;
 use crate::cli::written::say;
 use tactpad::bridge::parts::Parts;
 use tactpad::bridge::running::{Bridge, Ending};
@@ -38,7 +40,7 @@ pub(crate) struct Arguments {
     profile: String,
     #[command(flatten)]
     decoder: Choice,
-    /// Where events go: auto, uinput, x11, log:FILE, none.
+    /// Where events go: auto (virtual devices, else an event log here), uinput, x11, log:FILE (- is stdout), none.
     #[arg(long, default_value = "auto")]
     output: Output,
     /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
@@ -56,13 +58,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let decoder = chosen::read(decoder)?;
     let profile = profile::read(profile, output.choice())?;
     let patience = patience(&arguments.pad, if arguments.wait { Waits::Asked } else { Waits::NotAsked });
-    let sink = output.open()?;
+    let is_shown = *output != Output::Stdout && terminal::moves_cursor(&io::stdout());
+    let newest = Newest::default();
+    let (sink, missing) = output.open_or(|| newest.sink(is_shown))?;
     let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
     let opened = opened.with_faults(arguments.faults)?;
     let name = &profile.profile().name;
     let title = format!("{} → {} → {name} → {}", arguments.pad, decoder.name, sink.describe());
     // The live picture has the title and the state; without one they are told in words.
-    let audience = if io::stdout().is_terminal() { Audience::Nobody } else { Audience::Stderr };
+    let audience = if is_shown { Audience::Nobody } else { Audience::Stderr };
+    if let Some(missing) = missing {
+        say(missing);
+    }
     audience.tell(&title);
     let host = Terminal { profile: arguments.profile.clone(), output: output.choice(), audience };
     let mut bridge = Bridge::new(Parts {
@@ -76,7 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: None,
         duration_us: arguments.seconds.map(microseconds),
     })?;
-    let screen = Screen::start(title, bridge.snapshot(), Vec::new);
+    let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.lines()));
     let ending = play(&mut bridge, &arguments.pad);
     drop(screen);
     if ending? == Ending::CaptureEnded {

@@ -1,11 +1,13 @@
 //! The live state on a terminal: where the finger is, how hard it presses, what is held.
 
 use std::fmt::Write as _;
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
+
+use rustix::termios::tcgetwinsize;
 
 use tactpad::bridge::snapshot::{Snapshot, Status};
 use tactpad::pipeline::control::Code;
@@ -15,6 +17,10 @@ use tactpad::quantity::Contact;
 /// The picture of the plate: a character is about twice as high as wide.
 const COLUMNS: usize = 25;
 const ROWS: usize = 13;
+
+/// A terminal with less has no room for the plate beside the facts, or for all of it.
+const COLUMNS_WITH_PLATE: usize = 64;
+const ROWS_WITH_PLATE: usize = ROWS + 2;
 
 /// Radius of the plate.
 const PLATE_MM: f32 = 30.0;
@@ -31,28 +37,29 @@ pub(super) struct Screen {
 }
 
 impl Screen {
-    /// Starts drawing if stdout is a terminal. `events` gives the newest events, one line each.
+    /// Starts drawing on stdout, which must be a terminal. `events` gives the newest events, one line each.
     pub(super) fn start(
         title: String,
         snapshot: Arc<Mutex<Snapshot>>,
         events: impl Fn() -> Vec<String> + Send + 'static,
-    ) -> Option<Self> {
-        if !io::stdout().is_terminal() {
-            return None;
-        }
+    ) -> Self {
         let (stop, stopped) = channel::<()>();
         let thread = thread::spawn(move || {
-            let mut drawn_lines = 0;
+            let mut last = None;
             while stopped.recv_timeout(REFRESH) == Err(RecvTimeoutError::Timeout) {
                 let Ok(seen) = snapshot.lock().map(|seen| seen.clone()) else { return };
-                let picture = picture(&title, &seen, &events());
-                if redraw(&picture, drawn_lines).is_err() {
+                let size = Size::of_terminal();
+                let picture = Picture {
+                    size,
+                    lines: picture(&title, facts(&seen, &events()), seen.status.contact.as_ref(), size),
+                };
+                if draw(&picture.over(last.as_ref())).is_err() {
                     return;
                 }
-                drawn_lines = picture.lines().count();
+                last = Some(picture);
             }
         });
-        Some(Self { stop: Some(stop), thread: Some(thread) })
+        Self { stop: Some(stop), thread: Some(thread) }
     }
 }
 
@@ -66,28 +73,80 @@ impl Drop for Screen {
     }
 }
 
-/// Writes over the last picture.
-fn redraw(picture: &str, drawn_lines: usize) -> io::Result<()> {
-    let mut text = String::new();
-    if drawn_lines > 0 {
-        let _ = write!(text, "\x1b[{drawn_lines}A");
-    }
-    for line in picture.lines() {
-        let _ = write!(text, "{line}\x1b[K\r\n");
-    }
+fn draw(text: &str) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
     stdout.write_all(text.as_bytes())?;
     stdout.flush()
 }
 
-fn picture(title: &str, seen: &Snapshot, events: &[String]) -> String {
-    let beside = facts(seen, events);
-    let mut text = format!("{title}\n");
-    for (row, line) in plate(seen.status.contact.as_ref()).iter().enumerate() {
-        let fact = beside.get(row).map_or("", String::as_str);
-        let _ = writeln!(text, "{line}   {fact}");
+/// Characters of the terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Size {
+    columns: usize,
+    rows: usize,
+}
+
+impl Size {
+    /// Some terminals do not know theirs: they are taken for the usual ones.
+    fn of_terminal() -> Self {
+        let told = tcgetwinsize(io::stdout()).ok().filter(|told| told.ws_col > 0 && told.ws_row > 0);
+        told.map_or(Self { columns: 80, rows: 24 }, |told| Self {
+            columns: usize::from(told.ws_col),
+            rows: usize::from(told.ws_row),
+        })
     }
-    text
+
+    const fn has_room_for_the_plate(self) -> bool {
+        self.columns >= COLUMNS_WITH_PLATE && self.rows >= ROWS_WITH_PLATE
+    }
+}
+
+/// What is drawn, for a terminal of this size.
+struct Picture {
+    size: Size,
+    lines: Vec<String>,
+}
+
+impl Picture {
+    /// The characters that draw it over the last picture.
+    ///
+    /// No line wraps and the terminal never scrolls, else the way up to the first line would not be known. It is not known,
+    /// either, once the terminal has another size: then all that is seen is wiped.
+    fn over(&self, last: Option<&Self>) -> String {
+        const NO_WRAP: &str = "\x1b[?7l";
+        const WRAP: &str = "\x1b[?7h";
+        let mut text = match last {
+            Some(last) if last.size == self.size => format!("\x1b[{}A", last.lines.len()),
+            Some(_) => "\x1b[2J\x1b[H".to_owned(),
+            None => String::new(),
+        };
+        text.push_str(NO_WRAP);
+        for line in &self.lines {
+            let _ = write!(text, "\r{line}\x1b[K\r\n");
+        }
+        text.push_str(WRAP);
+        text
+    }
+}
+
+/// The lines of the picture that have room; one row stays for the cursor.
+fn picture(title: &str, beside: Vec<String>, contact: Option<&Contact>, size: Size) -> Vec<String> {
+    let lines: Vec<String> = if size.has_room_for_the_plate() {
+        let fact = |row: usize| beside.get(row).map_or("", String::as_str);
+        let plate = plate(contact);
+        plate.iter().enumerate().map(|(row, line)| format!("{line}   {}", fact(row))).collect()
+    } else {
+        beside
+    };
+    let all = std::iter::once(title).chain(lines.iter().map(String::as_str));
+    all.take(size.rows.saturating_sub(1).max(1)).map(|line| cut(line, size.columns)).collect()
+}
+
+/// The line without its end, if that has no room, and without what would move the cursor.
+fn cut(line: &str, columns: usize) -> String {
+    let plain = line.chars().map(|letter| if letter.is_control() { '\u{fffd}' } else { letter });
+    // Wiping the rest of a full line would take its last letter.
+    plain.take(columns.saturating_sub(1)).collect()
 }
 
 fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
@@ -178,6 +237,36 @@ mod tests {
             let drawn = plate(Some(&Contact { x_mm, y_mm, ..Contact::default() }));
             assert_eq!(drawn[row].chars().nth(column), Some('●'), "{x_mm} {y_mm}");
         }
+    }
+
+    fn lines(columns: usize, rows: usize) -> Vec<String> {
+        let title = format!("a title\n{}", "x".repeat(200));
+        picture(&title, vec!["e".repeat(200), "no contact".into()], None, Size { columns, rows })
+    }
+
+    #[test]
+    fn the_picture_has_room_in_any_terminal() {
+        for (columns, rows) in [(80, 24), (40, 10), (64, 15), (200, 60), (1, 1), (5, 2)] {
+            let lines = lines(columns, rows);
+            assert!(lines.len() < rows.max(2), "{columns} x {rows}: {lines:#?}");
+            let fits = |line: &String| line.chars().count() < columns && !line.contains(char::is_control);
+            assert!(lines.iter().all(fits), "{columns} x {rows}: {lines:#?}");
+        }
+        assert!(lines(80, 24).iter().any(|line| line.contains('→')), "the plate");
+        assert!(
+            lines(40, 10).iter().any(|line| line.contains("no contact")),
+            "the facts where the plate has no room"
+        );
+    }
+
+    #[test]
+    fn another_size_wipes_what_is_seen() {
+        let picture =
+            |columns| Picture { size: Size { columns, rows: 9 }, lines: vec!["a".into(), "b".into()] };
+        let (first, wider) = (picture(40), picture(41));
+        assert_eq!(first.over(None), "\x1b[?7l\ra\x1b[K\r\n\rb\x1b[K\r\n\x1b[?7h");
+        assert!(first.over(Some(&first)).starts_with("\x1b[2A"));
+        assert!(wider.over(Some(&first)).starts_with("\x1b[2J\x1b[H"));
     }
 
     #[test]

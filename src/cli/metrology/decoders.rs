@@ -6,6 +6,7 @@ use crate::cli::decoder_file;
 use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
 use tactpad::lab::metrology::decoders::Decoders;
+use tactpad::lab::scdf::EPOCHS_MAX;
 use tactpad::network::Zero;
 use tactpad::network::training::Epoch;
 use tactpad::pad::device::Device;
@@ -27,8 +28,9 @@ pub(super) fn given(decoder: Option<&Path>, network: Option<&Path>) -> Result<De
 
 /// Stage I, trained on `designed`.
 pub(super) fn trained(designed: &Device, nominal: &PadField) -> Decoders {
-    let mut progress = Progress::begin();
+    let progress = Progress::begin("training the paper's network on the simulation");
     Decoders::trained(designed, nominal, |Epoch { number, .. }| {
-        progress.step(format_args!("training the paper's network on the simulation: epoch {number}"));
+        let what = format_args!("training the paper's network on the simulation: epoch {number}");
+        progress.part(*number, EPOCHS_MAX, what);
     })
 }

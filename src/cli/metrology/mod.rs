@@ -6,25 +6,24 @@ mod tables;
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 use clap::Args;
 
 use self::report::MetrologyReport;
+use super::destination::{Destination, Folder};
 use super::device::Pad;
 use super::failure::Failure;
 use super::field::field_of;
 use super::pictures;
 use super::progress::Progress;
-use super::tables::read;
-use super::written::{create, is_stdout, print_json, say};
+use super::tables::{read, write};
+use super::written::{is_stdout, print_json, say};
 use tactpad::lab::metrology::bench::Bench;
 use tactpad::lab::metrology::decoders::{Decoders, by};
 use tactpad::lab::metrology::figures::{Evidence, Figures, Simulation};
 use tactpad::lab::metrology::report::entries;
 use tactpad::lab::metrology::{Decode, conflicts, drawing, procedures};
 use tactpad::tables::measured::columns::Kind;
-use tactpad::tables::measured::write;
 
 /// Arguments of `tactpad metrology`.
 #[derive(Debug, Args)]
@@ -79,7 +78,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn write_plan(arguments: &Arguments, path: &Path) -> Result<(), Failure> {
     arguments.pad.spare(path)?;
     let plan = procedures::plan(&arguments.pad.read()?.contact);
-    write::table(create(path)?, &plan)?;
+    write(&Destination::of(path)?, &plan)?;
     if !is_stdout(path) {
         say(format_args!("{} rows are written to {}", plan.rows.len(), path.display()));
     }
@@ -90,8 +89,9 @@ fn write_plan(arguments: &Arguments, path: &Path) -> Result<(), Failure> {
 fn of_file(arguments: &Arguments, path: &Path) -> Result<MetrologyReport, Failure> {
     let device = arguments.pad.read()?;
     let table = read(path, Kind::Measured, device.plate.radius_mm())?;
-    let field = field_of(&device)?;
     let decoders = arguments.decoders()?;
+    let folder = arguments.folder()?;
+    let field = field_of(&device)?;
     let simulation = decoders.simulation();
     let (given, simulation) = (decoders.given.as_ref().map(by), simulation.as_ref().map(by));
     let evidence = Evidence {
@@ -100,8 +100,10 @@ fn of_file(arguments: &Arguments, path: &Path) -> Result<MetrologyReport, Failur
         decoder: given.as_ref().map(|decode| decode as Decode),
         simulation: simulation.as_ref().map(|decode| Simulation { contacts: &table, decode }),
     };
+    let progress = Progress::begin("finding the figures of merit");
     let figures = Figures::of(&evidence);
-    let plots = plots(arguments, &evidence, &figures)?;
+    drop(progress);
+    let plots = plots(folder.as_ref(), &evidence, &figures)?;
     let statement = format!(
         "Figures of {}. Whose data these are, and whether hardware was measured, this program cannot know.",
         path.display()
@@ -118,8 +120,9 @@ fn of_file(arguments: &Arguments, path: &Path) -> Result<MetrologyReport, Failur
 /// The figures of the twin.
 fn of_twin(arguments: &Arguments) -> Result<MetrologyReport, Failure> {
     let (designed, device) = (arguments.pad.designed()?, arguments.pad.read_imperfect()?);
+    let (given, folder) = (arguments.decoders()?, arguments.folder()?);
     let (nominal, field) = (field_of(&designed)?, field_of(&device)?);
-    let decoders = match arguments.decoders()? {
+    let decoders = match given {
         Decoders { given: None, network: None } if !arguments.no_network => {
             decoders::trained(&designed, &nominal)
         }
@@ -127,14 +130,14 @@ fn of_twin(arguments: &Arguments) -> Result<MetrologyReport, Failure> {
     };
     let bench = Bench { device, field, nominal, decoders };
     let seeds: Vec<u64> = arguments.seeds.clone().collect();
-    let progress = Mutex::new(Progress::begin());
+    let progress = Progress::begin("measuring the twin's pads");
     let report = |done: usize| {
-        if let Ok(mut progress) = progress.lock() {
-            progress.step(format_args!("{done} of the twin's {} pads are measured", seeds.len()));
-        }
+        let what = format_args!("{done} of the twin's {} pads are measured", seeds.len());
+        progress.part(done, seeds.len(), what);
     };
+    report(0);
     let (figures, plots) =
-        bench.all(&seeds, |evidence, figures| plots(arguments, evidence, figures), report)?;
+        bench.all(&seeds, |evidence, figures| plots(folder.as_ref(), evidence, figures), report)?;
     // The line goes before anything is printed.
     drop(progress);
     let conflicts = if arguments.pad.is_papers()? { conflicts::all() } else { Vec::new() };
@@ -151,11 +154,16 @@ impl Arguments {
     fn decoders(&self) -> Result<Decoders, Failure> {
         decoders::given(self.decoder.as_deref(), self.network.as_deref())
     }
+
+    /// The folder of the plots.
+    fn folder(&self) -> Result<Option<Folder>, Failure> {
+        self.figures.as_deref().map(Folder::of).transpose()
+    }
 }
 
 /// Writes the plots that the figures allow, and says their names.
-fn plots(arguments: &Arguments, evidence: &Evidence, figures: &Figures) -> Result<Vec<String>, Failure> {
-    let Some(folder) = &arguments.figures else { return Ok(Vec::new()) };
+fn plots(folder: Option<&Folder>, evidence: &Evidence, figures: &Figures) -> Result<Vec<String>, Failure> {
+    let Some(folder) = folder else { return Ok(Vec::new()) };
     let charts = [
         ("metrology-force", drawing::by_force(evidence.table, evidence.signals)),
         ("metrology-temperature", figures.thermal_drift.as_ref().ok().map(drawing::by_temperature)),
@@ -166,8 +174,8 @@ fn plots(arguments: &Arguments, evidence: &Evidence, figures: &Figures) -> Resul
     let mut written = Vec::new();
     for (name, chart) in charts {
         if let Some(chart) = chart {
-            pictures::write(folder, name, &chart.figure())?;
-            written.push(folder.join(name).with_extension("svg").display().to_string());
+            let [svg, _] = pictures::write(folder, name, &chart.figure())?;
+            written.push(svg);
         }
     }
     Ok(written)

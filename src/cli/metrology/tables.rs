@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::report::MetrologyReport;
+use crate::cli::wrapped::{hanging, lines};
 use crate::cli::written::stdout;
 use tactpad::lab::metrology::report::{Conflict, Entry, Status};
 
@@ -10,18 +11,26 @@ pub(super) fn print(report: &MetrologyReport) -> io::Result<()> {
     write(&mut stdout(), report)
 }
 
+/// Longer names go on in a line of their own.
+const NAME_COLUMNS: usize = 35;
+
 fn write(out: &mut impl Write, report: &MetrologyReport) -> io::Result<()> {
-    writeln!(out, "{}", report.statement)?;
+    writeln!(out, "{}", hanging("", &report.statement))?;
     if let [first, .., last] = report.seeds.as_slice() {
         writeln!(out, "Seeds {first} to {last}: mean and standard deviation.")?;
     }
+    writeln!(out, "The difference from the paper, and the most that it may be, are in percent.\n")?;
     let found = if report.seeds.is_empty() { "found" } else { "twin" };
-    writeln!(
-        out,
-        "\n{:<46} {:>5} {:>8} {found:>9} {:>8} {:>8} {:>7}  status",
-        "figure", "unit", "paper", "±", "diff. %", "bound %"
-    )?;
-    report.rows.iter().try_for_each(|entry| write_entry(out, entry))?;
+    let heads = ["unit", "paper", found, "±", "diff.", "max", "status"].map(str::to_owned);
+    write_line(out, "figure", &heads)?;
+    let needs = needs(&report.rows);
+    report.rows.iter().try_for_each(|entry| write_entry(out, entry, &needs))?;
+    if !needs.is_empty() {
+        writeln!(out)?;
+    }
+    for (number, need) in (1..).zip(&needs) {
+        writeln!(out, "{}", hanging(&format!("open {number:<2} "), need))?;
+    }
     report.rows.iter().filter_map(|entry| entry.conflict.as_ref()).try_for_each(|conflict| {
         writeln!(out)?;
         write_conflict(out, conflict)
@@ -29,44 +38,69 @@ fn write(out: &mut impl Write, report: &MetrologyReport) -> io::Result<()> {
     report.plots.iter().try_for_each(|file| writeln!(out, "{file} is written, and the same as PNG"))
 }
 
-fn write_entry(out: &mut impl Write, entry: &Entry) -> io::Result<()> {
+/// What open figures need, each once, in their order.
+fn needs(rows: &[Entry]) -> Vec<String> {
+    let mut needs: Vec<String> = Vec::new();
+    for need in rows.iter().filter_map(|entry| entry.needs).map(|needs| needs.to_string()) {
+        if !needs.contains(&need) {
+            needs.push(need);
+        }
+    }
+    needs
+}
+
+fn write_entry(out: &mut impl Write, entry: &Entry, needs: &[String]) -> io::Result<()> {
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), significant);
     let percent = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.0}"));
-    let difference =
-        entry.difference_percent.map_or_else(String::new, |difference| format!("{difference:+.1}"));
-    writeln!(
-        out,
-        "{:<46} {:>5} {:>8} {:>9} {:>8} {difference:>8} {:>7}  {}",
-        entry.name,
-        entry.unit,
+    let cells = [
+        entry.unit.to_owned(),
         number(entry.paper),
         number(entry.mean),
         number(entry.spread),
+        entry.difference_percent.map_or_else(String::new, difference),
         percent(entry.bound_percent),
-        status(entry)
-    )
+        status(entry, needs),
+    ];
+    let mut lines = lines(entry.name, NAME_COLUMNS);
+    let last = lines.pop().unwrap_or_default();
+    lines.iter().try_for_each(|line| writeln!(out, "{line}"))?;
+    let indent = if lines.is_empty() { "" } else { "  " };
+    write_line(out, &format!("{indent}{last}"), &cells)
 }
 
-/// Three digits that count, or four decimals.
+fn write_line(out: &mut impl Write, name: &str, cells: &[String; 7]) -> io::Result<()> {
+    let [unit, paper, found, spread, difference, bound, status] = cells;
+    let numbers = format!("{unit:>4} {paper:>5} {found:>6} {spread:>6} {difference:>6} {bound:>3}");
+    writeln!(out, "{}", format!("{name:<NAME_COLUMNS$} {numbers} {status}").trim_end())
+}
+
+/// A tenth of a percent counts, unless it is far off.
+fn difference(percent: f64) -> String {
+    if percent.abs() < 1000.0 { format!("{percent:+.1}") } else { format!("{percent:+.0}") }
+}
+
+/// Three digits that count, or four decimals; three of them behind a minus.
 fn significant(value: f64) -> String {
     let digits = if value == 0.0 { 0.0 } else { value.abs().log10().floor() };
-    let decimals = (2.0 - digits).clamp(0.0, 4.0) as usize;
+    let most = if value < 0.0 { 3.0 } else { 4.0 };
+    let decimals = (2.0 - digits).clamp(0.0, most) as usize;
     format!("{value:.decimals$}")
 }
 
-fn status(entry: &Entry) -> String {
-    let needs = entry.needs.map_or_else(String::new, |needs| needs.to_string());
+fn status(entry: &Entry, needs: &[String]) -> String {
+    let needed = entry.needs.map(|needs| needs.to_string());
+    let number = needs.iter().position(|need| Some(need) == needed.as_ref());
     match entry.status {
         Status::Inside => "inside".into(),
         Status::Outside => "OUTSIDE".into(),
-        Status::Conflict => "conflict: see below".into(),
-        Status::Open => format!("open: {needs}"),
+        Status::Conflict => "conflict".into(),
+        Status::Open => number.map_or_else(|| "open".into(), |number| format!("open {}", number + 1)),
         Status::Unpublished => String::new(),
     }
 }
 
 fn write_conflict(out: &mut impl Write, conflict: &Conflict) -> io::Result<()> {
-    writeln!(out, "{} is in conflict: {}", conflict.row, conflict.reason)?;
+    writeln!(out, "{}", hanging("", &format!("{} is in conflict: {}", conflict.row, conflict.reason)))?;
     writeln!(out, "  fitted alone it reaches {}", significant(conflict.alone))?;
     conflict
         .leaving
@@ -77,6 +111,7 @@ fn write_conflict(out: &mut impl Write, conflict: &Conflict) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::wrapped::COLUMNS;
     use tactpad::lab::metrology::Needs;
     use tactpad::lab::metrology::report::Leaving;
 
@@ -117,9 +152,31 @@ mod tests {
     fn each_line_has_its_numbers_and_its_status() {
         let text = text(vec![entry(Status::Inside, Some(3.2)), entry(Status::Open, None)]);
         let words: Vec<Vec<&str>> =
-            text.lines().skip(4).map(|line| line.split_whitespace().collect()).collect();
+            text.lines().skip(5).map(|line| line.split_whitespace().collect()).collect();
         assert_eq!(words[0][4..], ["%", "3.10", "3.20", "0.123", "+3.2", "15", "inside"]);
-        assert_eq!(words[1][4..], ["%", "3.10", "–", "–", "15", "open:", "needs", "a", "decoder"]);
+        assert_eq!(words[1][4..], ["%", "3.10", "–", "–", "15", "open", "1"]);
+        assert!(text.contains("\nopen 1  needs a decoder\n"), "{text}");
+    }
+
+    #[test]
+    fn no_line_is_too_long() {
+        let far = |status, name| Entry {
+            name,
+            unit: "µV/N",
+            paper: Some(0.820),
+            mean: Some(-0.0006),
+            spread: Some(12_345.0),
+            difference_percent: Some(-12_345.6),
+            needs: Some(Needs::Rows(
+                "presses of many kinds, at many places, in many sessions, each of them measured twice",
+            )),
+            ..entry(status, None)
+        };
+        let name = "sensitivity, x, y channels, mean of all places";
+        let text =
+            text(vec![far(Status::Open, name), far(Status::Conflict, name), far(Status::Outside, "short")]);
+        assert!(text.lines().all(|line| line.chars().count() <= COLUMNS), "{text}");
+        assert!(text.contains("sensitivity, x, y channels, mean of\n  all places "), "{text}");
     }
 
     #[test]

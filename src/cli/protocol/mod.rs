@@ -9,13 +9,14 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
+use super::destination::{Destination, Folder};
 use super::device::Pad;
 use super::failure::Failure;
-use super::pictures;
-use super::written::{both_print, create, is_stdout, print_json, say, stdout};
+use super::written::{both_print, is_stdout, print_json, say, stdout};
+use super::{pictures, tables};
 use tactpad::pad::device::Patch;
+use tactpad::tables::measured::Table;
 use tactpad::tables::measured::zero::ZERO;
-use tactpad::tables::measured::{Table, write};
 use tactpad::tables::plans::{self, REACH_S, distinct_places};
 
 /// Arguments of `tactpad protocol`.
@@ -73,14 +74,16 @@ struct PlanReport {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { plan, seed, out, pad, figures, json } = arguments;
     if *json && is_stdout(out) {
-        return Err(both_print());
+        return Err(both_print("--out -"));
     }
     let device = pad.read()?;
     pad.spare(out)?;
+    let to = Destination::of(out)?;
+    let folder = figures.as_deref().map(Folder::of).transpose()?;
     let table = plan.table(&device.contact, *seed);
-    write::table(create(out)?, &table)?;
+    tables::write(&to, &table)?;
     let report = PlanReport::of(*plan, *seed, &table);
-    if let Some(folder) = figures {
+    if let Some(folder) = &folder {
         let name = format!("protocol-{}", plan.name());
         pictures::write(folder, &name, &drawing::places(report.title(), &table, &device))?;
     }

@@ -13,12 +13,14 @@ use std::path::{Path, PathBuf};
 use clap::{ArgGroup, Args, ValueEnum};
 use serde::Serialize;
 
+use super::destination::{Destination, Folder};
 use super::device::Pad;
 use super::failure::Failure;
 use super::field::field_of;
+use super::progress::Progress;
 use super::summary::{ChannelReport, Summary};
 use super::tables;
-use super::written::{both_print, create, is_same, is_stdout, print_json, say, stdout, written_over};
+use super::written::{both_print, is_same, is_stdout, print_json, say, stdout, written_over};
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::pad::readout::Readout;
@@ -105,13 +107,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { out, folders, json, .. } = arguments;
     let prints_table = out.as_deref().is_some_and(is_stdout);
     if *json && prints_table {
-        return Err(both_print());
+        return Err(both_print("--out -"));
     }
     let device = arguments.pad.read()?;
     tables::within_the_rim(folders.at, &device.contact)
         .map_err(|why| Failure::Unusable(format!("--at {},{}: {why}", folders.at[0], folders.at[1])))?;
-    let table = out.as_ref().map(|out| table(arguments, out, &device)).transpose()?;
-    let outcome = Outcome { table, files: folders.fill(&device)? };
+    let contacts = out.as_ref().map(|out| contacts(arguments, out, &device)).transpose()?;
+    let to = out.as_deref().map(Destination::of).transpose()?;
+    let [figures, vtk] = folders.tried()?;
+    let table = contacts.zip(to).map(|(contacts, to)| table(&contacts, &to, &device)).transpose()?;
+    let outcome = Outcome { table, files: folders.fill(&device, figures.as_ref(), vtk.as_ref())? };
     match (json, prints_table) {
         (true, _) => print_json(&outcome),
         (false, true) => {
@@ -123,13 +128,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 impl Folders {
+    /// The folders for figures and for meshes.
+    fn tried(&self) -> Result<[Option<Folder>; 2], Failure> {
+        let tried = |folder: &Option<PathBuf>| folder.as_deref().map(Folder::of).transpose();
+        Ok([tried(&self.figures)?, tried(&self.vtk)?])
+    }
+
     /// Writes what is wanted, and says which files these are.
-    fn fill(&self, device: &Device) -> Result<Vec<String>, Failure> {
-        if self.figures.is_none() && self.vtk.is_none() {
+    fn fill(
+        &self,
+        device: &Device,
+        figures: Option<&Folder>,
+        vtk: Option<&Folder>,
+    ) -> Result<Vec<String>, Failure> {
+        if figures.is_none() && vtk.is_none() {
             return Ok(Vec::new());
         }
         #[cfg(feature = "simulator")]
-        return shown::write(device, self.at, self.figures.as_deref(), self.vtk.as_deref());
+        return shown::fill(device, self.at, figures, vtk);
         #[cfg(not(feature = "simulator"))]
         Err(Failure::Failed(format!(
             "--figures and --vtk solve the pad {}, and this program was built without the simulator; build it with the \
@@ -154,12 +170,14 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// Writes the measured table of the contacts that were asked for.
-fn table(arguments: &Arguments, out: &Path, device: &Device) -> Result<ChannelReport, Failure> {
-    arguments.pad.spare(out)?;
-    let contacts = contacts(arguments, out, device)?;
+/// Writes the measured table of these contacts.
+fn table(contacts: &Table, to: &Destination, device: &Device) -> Result<ChannelReport, Failure> {
     let field = field_of(device)?;
-    Ok(measure(&contacts, &field, device, create(out)?)?)
+    let _progress = Progress::begin("computing the channels");
+    let mut writing = to.begin()?;
+    let report = measure(contacts, &field, device, &mut writing)?;
+    writing.finish()?;
+    Ok(report)
 }
 
 /// Writes what the channels read for each contact.
@@ -186,6 +204,7 @@ fn measure(
 
 /// The contacts that were asked for, all of them on the plate.
 fn contacts(arguments: &Arguments, out: &Path, device: &Device) -> Result<Table, Failure> {
+    arguments.pad.spare(out)?;
     let Arguments { source: Source { contacts, dataset }, seed, .. } = arguments;
     match (contacts, dataset) {
         (Some(path), _) if is_same(path, out) => Err(written_over(out, "is the table of contacts")),

@@ -3,6 +3,7 @@
 //! Source: C. M. Bishop, Pattern Recognition and Machine Learning, section 3.4 (model comparison by the evidence).
 
 use std::fmt;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
@@ -38,6 +39,37 @@ const CREEP_TIMES_S: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 const LOG_EVIDENCE_GAIN: f64 = 15.0;
 /// Plates that differ by less are of one kind.
 const PLATE_TOLERANCE_MM: f32 = 0.1;
+
+/// Hears how many fits of at most how many are done.
+pub type Report<'r> = &'r (dyn Fn(usize, usize) + Sync);
+
+/// Fits, counted.
+struct Counted<'r> {
+    done: AtomicUsize,
+    most: usize,
+    report: Report<'r>,
+}
+
+impl<'r> Counted<'r> {
+    /// As many as all hypotheses can ask for.
+    fn of(hypotheses: &[Hypothesis], report: Report<'r>) -> Self {
+        let refinements = 2 * HALVINGS as usize;
+        let search =
+            |known_uv: &f64| if *known_uv > 0.0 { refinements } else { THRESHOLDS as usize + refinements };
+        let of_one = |it: &Hypothesis| {
+            1 + it.prior.thresholds_uv.iter().map(search).sum::<usize>()
+                + CREEP_TIMES_S.len()
+                + BACKGROUNDS.len()
+        };
+        Self { done: AtomicUsize::new(0), most: hypotheses.iter().map(of_one).sum(), report }
+    }
+
+    fn fitted(&self, problem: &Problem<'_>, settings: Settings, from: Option<&Fit>) -> Option<Fit> {
+        let fit = problem.clone().fitted(settings, from);
+        (self.report)(self.done.fetch_add(1, Ordering::Relaxed) + 1, self.most);
+        fit
+    }
+}
 
 /// A calibrated pad.
 #[derive(Clone, Debug)]
@@ -145,6 +177,21 @@ pub fn fit(
     field: &PadField,
     earlier: Option<Earlier<'_>>,
 ) -> Result<Calibration, FitError> {
+    fit_reported(recording, rows, device, field, earlier, &|_, _| ())
+}
+
+/// [`fit`], and `report` hears how far it is.
+///
+/// # Errors
+/// The same.
+pub fn fit_reported(
+    recording: &Recording,
+    rows: &[usize],
+    device: &Device,
+    field: &PadField,
+    earlier: Option<Earlier<'_>>,
+    report: Report<'_>,
+) -> Result<Calibration, FitError> {
     let radius_mm = field.signals.radius_mm();
     if earlier.is_some_and(|it| (it.inverse.field().radius_mm() - radius_mm).abs() > PLATE_TOLERANCE_MM) {
         return Err(FitError::OtherPlate);
@@ -154,8 +201,10 @@ pub fn fit(
     }
     let prepared = Prepared::of(recording, rows, device, field).ok_or(FitError::Senseless)?;
     let mut best: Option<(f64, Calibration)> = None;
-    for Hypothesis { prior, log_prior_odds, from_earlier } in hypotheses(field, earlier) {
-        let (problem, found) = calibrated(&prepared, rows, device, &prior)?;
+    let hypotheses = hypotheses(field, earlier);
+    let counted = Counted::of(&hypotheses, report);
+    for Hypothesis { prior, log_prior_odds, from_earlier } in hypotheses {
+        let (problem, found) = calibrated(&prepared, rows, device, &prior, &counted)?;
         // ln p(H | y) = ln p(y | H) + ln p(H), but for a constant that all hypotheses share.
         let log_probability = found.log_evidence + log_prior_odds;
         if best.as_ref().is_none_or(|(largest, _)| log_probability > *largest) {
@@ -193,30 +242,32 @@ fn calibrated<'b>(
     rows: &[usize],
     device: &Device,
     prior: &'b Prior,
+    counted: &Counted<'_>,
 ) -> Result<(Problem<'b>, Fit), FitError> {
     let problem = prepared.problem(rows, device, prior);
     if problem.contacts() == 0 {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
     // The memory first, as a background would explain part of it; then the background's size with the memory's settings.
-    let plain = with_hysteresis(&problem, prior).ok_or(FitError::Senseless)?;
-    let plain = with_creep(&problem, plain);
+    let plain = with_hysteresis(&problem, prior, counted).ok_or(FitError::Senseless)?;
+    let plain = with_creep(&problem, plain, counted);
     let problem = problem.with_background();
     let best = most_probable(BACKGROUNDS.to_vec(), |background| {
-        problem.clone().fitted(Settings { background, ..plain.settings }, Some(&plain))
+        counted.fitted(&problem, Settings { background, ..plain.settings }, Some(&plain))
     });
     Ok((problem, best.ok_or(FitError::Senseless)?))
 }
 
 /// The fit without a background, with as many play operators as the evidence asks for. Known thresholds are only refined.
-fn with_hysteresis(problem: &Problem<'_>, prior: &Prior) -> Option<Fit> {
+fn with_hysteresis(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) -> Option<Fit> {
     let Prior { thresholds_uv, creep: Creep { time_s: creep_time_s, .. }, .. } = *prior;
-    let mut best = problem.clone().fitted(Settings { background: 0.0, thresholds_uv, creep_time_s }, None)?;
+    let mut best =
+        counted.fitted(problem, Settings { background: 0.0, thresholds_uv, creep_time_s }, None)?;
     for (play, known_uv) in thresholds_uv.into_iter().enumerate() {
         let tried = |threshold_uv| {
             let mut settings = best.settings;
             settings.thresholds_uv[play] = threshold_uv;
-            problem.clone().fitted(settings, Some(&best))
+            counted.fitted(problem, settings, Some(&best))
         };
         if known_uv > 0.0 {
             best = refined(play, best.clone(), &tried);
@@ -231,9 +282,9 @@ fn with_hysteresis(problem: &Problem<'_>, prior: &Prior) -> Option<Fit> {
 }
 
 /// The same with creep, if the evidence asks for it.
-fn with_creep(problem: &Problem<'_>, best: Fit) -> Fit {
+fn with_creep(problem: &Problem<'_>, best: Fit, counted: &Counted<'_>) -> Fit {
     let found = most_probable(CREEP_TIMES_S.to_vec(), |creep_time_s| {
-        problem.clone().fitted(Settings { creep_time_s, ..best.settings }, Some(&best))
+        counted.fitted(problem, Settings { creep_time_s, ..best.settings }, Some(&best))
     });
     found.filter(|found| found.log_evidence > best.log_evidence + LOG_EVIDENCE_GAIN).unwrap_or(best)
 }

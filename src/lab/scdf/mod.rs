@@ -21,7 +21,7 @@ const RATE: f32 = 1e-3;
 pub const BATCH: usize = 128;
 
 /// "Training converged within 300 epochs."
-const EPOCHS_MAX: usize = 300;
+pub const EPOCHS_MAX: usize = 300;
 
 /// One example in ten is held out for validation, in both stages.
 const VALIDATION_PART: usize = 10;

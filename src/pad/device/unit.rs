@@ -96,12 +96,21 @@ impl Unit {
             let celsius = rounded(value - 273.15);
             return (low..=high).contains(&celsius).then_some(("kelvins", celsius));
         }
-        let converted = self.mistaken_for().iter().map(|(unit, factor)| (*unit, rounded(value * factor)));
+        // Near zero there is room for any number in a smaller unit: only one that is far out tells its own.
+        let is_far = |factor: f64| {
+            low > 0.0 || factor > THOUSANDTH || value.abs() >= FAR_OUT * low.abs().max(high.abs())
+        };
+        let likely = self.mistaken_for().iter().filter(|(_, factor)| is_far(*factor));
+        let mut converted = likely.map(|(unit, factor)| (*unit, rounded(value * factor)));
         // One percent and less is nobody's mistake: whoever writes 1 means 1.
         let is_small = |unit, value: f64| value == 0.0 || unit == "percent" && value.abs() <= 0.01;
-        converted.into_iter().find(|(unit, value)| (low..=high).contains(value) && !is_small(*unit, *value))
+        converted.find(|(unit, value)| (low..=high).contains(value) && !is_small(*unit, *value))
     }
 }
+
+/// Smaller units than this are told by the number alone only if it is so many times beyond the range.
+const THOUSANDTH: f64 = 1e-3;
+const FAR_OUT: f64 = 10.0;
 
 /// `value` without the digits that a change of its unit leaves behind.
 fn rounded(value: f64) -> f64 {
@@ -130,6 +139,9 @@ mod tests {
         assert_eq!(meant(Unit::One, 60.0), Some(("percent", 0.6)));
         assert_eq!(meant(Unit::Millimetre, -1.0), None);
         assert_eq!(meant(Unit::Degree, 400.0), None);
+        let displaced = |value| Unit::Millimetre.meant(value, -10.0, 10.0);
+        assert_eq!([displaced(15.0), displaced(-99.0)], [None, None], "too far, and in millimetres");
+        assert_eq!(displaced(-700.0), Some(("micrometres", -0.7)));
         assert_eq!(meant(Unit::Celsius, 275.15), Some(("kelvins", 2.0)));
         assert_eq!(meant(Unit::Celsius, 25.0), None);
         assert_eq!(Unit::Megapascal.meant(193.0, 1_200.0, 1e6), Some(("gigapascals", 193_000.0)));

@@ -30,6 +30,8 @@ pub enum Fault {
     Io(io::Error),
     /// There is no line.
     Empty(Kind),
+    /// The text has two bytes for each character.
+    Utf16,
     /// A line that is longer than any row.
     LongLine,
     /// A quotation mark opens and does not close, or something follows the closing one.
@@ -104,6 +106,7 @@ impl fmt::Display for Fault {
         match self {
             Self::Io(error) => write!(f, "{error}"),
             Self::Empty(kind) => write!(f, "the file is empty; it begins with {}", Expected(*kind)),
+            Self::Utf16 => f.write_str("the table is UTF-16; save it as UTF-8"),
             Self::LongLine => f.write_str("the line is longer than 1 MB: this is no table of contacts"),
             Self::Quotation => f.write_str(
                 "a quotation mark does not close, or does not close the cell; write \"\" for one inside a text, and \

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::io::{BufRead, Read};
 
 use super::error::{Fault, ReadError};
+use crate::toml_text::is_utf16;
 
 /// A longer line is no row of a table; without a limit `/dev/zero` would be one endless line.
 pub(super) const LINE_BYTES_MAX: usize = 1 << 20;
@@ -34,6 +35,9 @@ impl<R: BufRead> Lines<R> {
             self.number += 1;
             if self.line.len() > LINE_BYTES_MAX {
                 return Err(self.error(Fault::LongLine));
+            }
+            if self.number == 1 && is_utf16(&self.line) {
+                return Err(self.error(Fault::Utf16));
             }
             if self.number == 1 && self.line.starts_with("\u{feff}".as_bytes()) {
                 self.line.drain(.."\u{feff}".len());

@@ -157,7 +157,7 @@ fn what_adapt_cannot_begin_with_or_join_is_said() {
     let line = format!("adapt --method inverse --from statics --out never --measured {tared}");
     refuses_line(&line, &["--from statics is a statics decoder", "adapt --method inverse"]);
     let line = format!("adapt --method inverse --rows 0 --out never --measured {tared}");
-    refuses_line(&line, &[tared, "1 contacts", "measure more"]);
+    refuses_line(&line, &["--rows", "1 or more", "without --rows all are taken"]);
     let pressed = measured(20, |line, cells| {
         if line == 2 {
             (cells[0], cells[5]) = ("press".into(), "1".into());

@@ -1,0 +1,55 @@
+//! An event log where people are: the newest events in the live picture, or lines on standard output.
+
+use std::collections::VecDeque;
+use std::io;
+use std::sync::{Arc, Mutex};
+
+use tactpad::bridge::sink::log::LogSink;
+use tactpad::bridge::sink::{Sink, SinkError};
+use tactpad::pipeline::control::{OutputDevice, OutputEvent};
+
+/// More have no room beside the plate.
+const NEWEST: usize = 8;
+
+/// What people call it.
+const PLACE: &str = "event log, here";
+
+/// The newest events, which a sink writes and a picture shows.
+#[derive(Clone, Default)]
+pub(super) struct Newest(Arc<Mutex<VecDeque<OutputEvent>>>);
+
+impl Newest {
+    /// A sink for them, where a picture shows them; else one that prints every event.
+    pub(super) fn sink(&self, is_shown: bool) -> Box<dyn Sink> {
+        if is_shown { Box::new(self.clone()) } else { Box::new(LogSink::new(io::stdout(), "stdout".into())) }
+    }
+
+    /// The events, one line each, the newest last.
+    pub(super) fn lines(&self) -> Vec<String> {
+        self.0.lock().map(|events| events.iter().map(line).collect()).unwrap_or_default()
+    }
+}
+
+impl Sink for Newest {
+    fn prepare(&mut self, _device: OutputDevice) -> Result<(), SinkError> {
+        Ok(())
+    }
+
+    fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {
+        if let Ok(mut events) = self.0.lock() {
+            events.extend(group);
+            let old = events.len().saturating_sub(NEWEST);
+            events.drain(..old);
+        }
+        Ok(())
+    }
+
+    fn describe(&self) -> String {
+        PLACE.into()
+    }
+}
+
+/// An event as a picture shows it.
+pub(super) fn line(event: &OutputEvent) -> String {
+    format!("{:8.3} s  {} {:+}", event.at.as_us() as f64 * 1e-6, event.code, event.value)
+}

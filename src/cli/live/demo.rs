@@ -86,7 +86,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let witness = Witness::new(sink);
     let seen = witness.seen();
     let audience = Audience::Nobody;
-    let host = Terminal { profile: arguments.profile.clone(), output: output.choice(), audience };
+    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
     let mut bridge = Bridge::new(Parts {
         pad: open_virtual(&arguments.device, script)?,
         patience: Patience::Limited,
@@ -156,12 +156,12 @@ fn open_sink(arguments: &Arguments, profile: &Profile) -> Result<(Box<dyn Sink>,
         _ if profile.uses(OutputDevice::Keyboard) => {
             let title =
                 "Output: an event log, here. The profile types keys: for those ask with --output uinput.";
-            Ok((here(arguments), title.into()))
+            Ok((here(arguments)?, title.into()))
         }
         _ if profile.uses(OutputDevice::Pointer) => {
             let title = "Output: an event log, here. The profile moves the pointer and clicks: for that ask with \
                          --output uinput.";
-            Ok((here(arguments), title.into()))
+            Ok((here(arguments)?, title.into()))
         }
         Ok(()) => {
             let sink = Output::Uinput.open()?;
@@ -169,18 +169,18 @@ fn open_sink(arguments: &Arguments, profile: &Profile) -> Result<(Box<dyn Sink>,
         }
         Err(error) => {
             let title = format!("Output: an event log, here. For a virtual gamepad: {}", error.message);
-            Ok((here(arguments), title))
+            Ok((here(arguments)?, title))
         }
     }
 }
 
 /// The event log on the screen: the live picture shows it, and without one it is lines on stdout.
-fn here(arguments: &Arguments) -> Box<dyn Sink> {
+fn here(arguments: &Arguments) -> Result<Box<dyn Sink>, Failure> {
     if arguments.json || io::stdout().is_terminal() {
-        Box::new(NullSink)
-    } else {
-        Box::new(LogSink::new(WhileRead(io::stdout()), "stdout".into()))
+        return Ok(Box::new(NullSink));
     }
+    let sink = LogSink::new(WhileRead(io::stdout()), "stdout".into());
+    Ok(Box::new(sink.map_err(|error| Failure::Failed(error.message))?))
 }
 
 /// Writes as long as somebody reads. The demo goes on without a reader: its verdict is the exit code.

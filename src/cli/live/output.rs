@@ -4,6 +4,7 @@ use std::env;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use super::playing::tell_of_waiting;
 use crate::cli::failure::Failure;
 use tactpad::bridge::sink::{Sink, log::LogSink, null::NullSink, uinput::UinputSink, x11::X11Sink};
 use tactpad::pipeline::mapping::check::OutputChoice;
@@ -53,7 +54,9 @@ impl Output {
             }
             Self::X11 => Ok(Box::new(X11Sink::open(None).map_err(|error| Failure::Unusable(error.message))?)),
             Self::Log(path) => {
-                Ok(Box::new(LogSink::create(path).map_err(|error| Failure::Unusable(error.message))?))
+                let sink = LogSink::create(path).map_err(|error| Failure::Unusable(error.message))?;
+                tell_of_waiting(path, sink.waits_for_reader());
+                Ok(Box::new(sink))
             }
             Self::None => Ok(Box::new(NullSink)),
         }

@@ -173,3 +173,54 @@ const fn is_no_answer(kind: io::ErrorKind) -> bool {
     use io::ErrorKind::{BrokenPipe, ConnectionReset, TimedOut, WouldBlock};
     matches!(kind, WouldBlock | TimedOut | BrokenPipe | ConnectionReset)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+
+    use super::*;
+
+    /// A server that nobody runs, and how to reach it.
+    fn server(folder: &Path) -> (Server, std::path::PathBuf) {
+        let path = folder.join("socket");
+        let (ask, _) = channel();
+        let wake = UnixStream::pair().unwrap().0;
+        let listener = UnixListener::bind(&path).unwrap();
+        (Server::new(listener, Asker { ask, wake }, Arc::default()).unwrap(), path)
+    }
+
+    /// What the client was answered; `None` if it was sent away.
+    fn answer(mut client: &UnixStream) -> Option<String> {
+        let mut answer = String::new();
+        client.read_to_string(&mut answer).ok().filter(|read| *read > 0).map(|_| answer)
+    }
+
+    #[test]
+    fn the_oldest_makes_room_and_is_answered_if_it_has_asked() {
+        let folder = tempfile::tempdir().unwrap();
+        let (mut server, path) = server(folder.path());
+        let clients: Vec<_> = (0..CLIENTS_MAX + 2).map(|_| UnixStream::connect(&path).unwrap()).collect();
+        writeln!(&clients[1], "what?").unwrap();
+        server.admit(HostInstant::default());
+        assert_eq!(server.clients.len(), CLIENTS_MAX);
+        assert_eq!(answer(&clients[0]), None);
+        assert!(answer(&clients[1]).unwrap().contains("unknown request"));
+    }
+
+    #[test]
+    fn who_says_nothing_or_too_much_is_sent_away() {
+        let folder = tempfile::tempdir().unwrap();
+        let (mut server, path) = server(folder.path());
+        let [silent, endless, slow] = std::array::from_fn(|_| UnixStream::connect(&path).unwrap());
+        (&endless).write_all(&[b'x'; REQUEST_BYTES_MAX + 1]).unwrap();
+        (&slow).write_all(b"stat").unwrap();
+        let start = HostInstant::default();
+        server.admit(start);
+        (0..3).for_each(|_| server.hear_next(start));
+        assert_eq!(server.clients.len(), 2, "the endless one is gone");
+        (0..2).for_each(|_| server.hear_next(start.plus_us(CLIENT_LIMIT_US)));
+        assert!(server.clients.is_empty());
+        drop(server);
+        assert!([silent, slow].iter().all(|client| answer(client).is_none()));
+    }
+}

@@ -23,7 +23,13 @@ const LASTING_US: u64 = 1_000_000;
 impl Herald {
     /// Nothing needs to be told while all is well.
     pub(super) const fn new(now: HostInstant) -> Self {
-        Self { told: State::Playing, candidate: State::Playing, since: now, warned: None, told_drops: (false, false) }
+        Self {
+            told: State::Playing,
+            candidate: State::Playing,
+            since: now,
+            warned: None,
+            told_drops: (false, false),
+        }
     }
 
     /// The state to tell now, if there is one.
@@ -50,11 +56,12 @@ impl Herald {
         let Drops { groups_dropped, calls_unrecorded } = drops;
         let now = (groups_dropped > 0, calls_unrecorded > 0);
         let before = std::mem::replace(&mut self.told_drops, now);
-        [(before.0 < now.0).then_some(GROUPS_DROPPED), (before.1 < now.1).then_some(CALLS_UNRECORDED)]
+        [(now.0 && !before.0).then_some(GROUPS_DROPPED), (now.1 && !before.1).then_some(CALLS_UNRECORDED)]
     }
 }
 
-const GROUPS_DROPPED: &str = "the event log is not read in time: groups of events are dropped and counted until it is";
+const GROUPS_DROPPED: &str =
+    "the event log is not read in time: groups of events are dropped and counted until it is";
 
 const CALLS_UNRECORDED: &str =
     "the capture ends here and says so: its file takes no more; playing goes on, and calls are counted";

@@ -89,3 +89,64 @@ impl Recorder {
         self.queue.waiting()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::{Receiver, channel};
+    use std::sync::{Arc, Mutex};
+
+    use super::*;
+    use crate::pipeline::capture::reader::{CaptureError, CaptureReader};
+
+    /// A file that takes nothing until the other end of the channel is gone.
+    struct Stalled(Receiver<()>, Arc<Mutex<Vec<u8>>>);
+
+    impl Write for Stalled {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let _ = self.0.recv();
+            self.1.lock().unwrap().extend_from_slice(bytes);
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    /// Records `calls` calls of 1 kB to a file that takes nothing meanwhile; the calls in it, and how they end.
+    fn recorded(calls: u64) -> (u64, Option<CaptureError>, u64) {
+        let ((takes, stalled), file) = (channel(), Arc::<Mutex<Vec<u8>>>::default());
+        let to = Box::new(Stalled(stalled, Arc::clone(&file)));
+        let mut recorder = Recorder::begin(to, HostInstant::default(), &Head::default()).unwrap();
+        for call in 0..calls {
+            recorder.write(HostInstant::from_ns(call), Call::Bytes(&[7; 1 << 10])).unwrap();
+        }
+        drop(takes);
+        recorder.settle().unwrap();
+        assert_eq!(recorder.waiting(), 0);
+        let file = file.lock().unwrap();
+        let mut capture = CaptureReader::new(&file[..]).unwrap();
+        let mut found = 0;
+        while let Some(call) = capture.next_call() {
+            match call {
+                Ok((now, _)) => assert_eq!(now, HostInstant::from_ns(found)),
+                Err(error) => return (found, Some(error), recorder.missed()),
+            }
+            found += 1;
+        }
+        (found, None, recorder.missed())
+    }
+
+    #[test]
+    fn a_file_that_stalls_for_a_while_misses_nothing() {
+        assert!(matches!(recorded(8_000), (8_000, None, 0)));
+    }
+
+    #[test]
+    fn a_file_that_stalls_for_too_long_ends_in_good_order_and_says_so() {
+        let (found, error, missed) = recorded(9_000);
+        assert!(matches!(error, Some(CaptureError::Missing { .. })), "{error:?}");
+        assert_eq!(found + missed, 9_000);
+        assert!(found > 7_000 && missed > 0, "{found}");
+    }
+}

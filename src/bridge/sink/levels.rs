@@ -32,10 +32,14 @@ impl Levels {
 
     /// The events that lead from here to `later`: releases first.
     pub(super) fn lead_to(&self, later: &Self) -> Vec<OutputEvent> {
-        let event = |(device, code): (OutputDevice, Code), value| OutputEvent { at: later.at, device, code, value };
+        let event =
+            |(device, code): (OutputDevice, Code), value| OutputEvent { at: later.at, device, code, value };
         let released = self.held.keys().filter(|control| !later.held.contains_key(control));
         let pressed = later.held.iter().filter(|(control, value)| self.held.get(control) != Some(value));
-        released.map(|control| event(*control, 0)).chain(pressed.map(|(control, value)| event(*control, *value))).collect()
+        released
+            .map(|control| event(*control, 0))
+            .chain(pressed.map(|(control, value)| event(*control, *value)))
+            .collect()
     }
 }
 
@@ -59,7 +63,7 @@ mod tests {
         levels.apply(&[event(south, 0, 2), event(hat, -1, 2), event(east, 1, 2)]);
         levels.apply(&[event(east, 0, 3), event(east, 1, 4)]);
         let way = before.lead_to(&levels);
-        assert_eq!(way, [event(south, 0, 4), event(hat, -1, 4), event(east, 1, 4)]);
+        assert_eq!(way, [event(south, 0, 4), event(east, 1, 4), event(hat, -1, 4)]);
         let mut there = before;
         there.apply(&way);
         assert_eq!(there, levels);

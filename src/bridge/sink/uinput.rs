@@ -166,7 +166,8 @@ impl Unit {
         }
         encode_report(&mut self.bytes);
         let device = self.device.as_fd();
-        write_all(|bytes| rustix::io::write(device, bytes), &self.bytes).map_err(|error| lost(self.name, &error))
+        write_all(|bytes| rustix::io::write(device, bytes), &self.bytes)
+            .map_err(|error| lost(self.name, &error))
     }
 }
 

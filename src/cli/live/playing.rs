@@ -94,7 +94,9 @@ pub(super) fn create_capture(path: &Path) -> Result<Destination, Failure> {
             tell_of_waiting(path, to.waits_for_reader());
             Ok(to)
         }
-        Err(error) => Err(Failure::Unusable(format!("{} cannot be written: {}", path.display(), reason(&error)))),
+        Err(error) => {
+            Err(Failure::Unusable(format!("{} cannot be written: {}", path.display(), reason(&error))))
+        }
     }
 }
 
@@ -173,7 +175,11 @@ pub(super) fn requests(socket: Option<&Path>, audience: Audience) -> Result<Requ
     if let Some(path) = socket
         && let Err(error) = requests.listen(path)
     {
-        audience.tell(&format!("`tactpad ctl` does not reach this bridge: {} ({})", path.display(), reason(&error)));
+        audience.tell(&format!(
+            "`tactpad ctl` does not reach this bridge: {} ({})",
+            path.display(),
+            reason(&error)
+        ));
     }
     Ok(requests)
 }
@@ -188,7 +194,9 @@ pub(super) fn play(bridge: &mut Bridge, address: &PadAddress) -> Result<Ending, 
     let ending = bridge.run();
     let Drops { groups_dropped, .. } = bridge.drops();
     if groups_dropped > 0 {
-        say(format_args!("{groups_dropped} groups of events are missing in the event log: it was not read in time"));
+        say(format_args!(
+            "{groups_dropped} groups of events are missing in the event log: it was not read in time"
+        ));
     }
     ending.map_err(|error| match error {
         BridgeError::NotAPad(_) | BridgeError::Refused(_) => Failure::Unusable(format!("{address} {error}")),

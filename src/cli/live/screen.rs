@@ -115,7 +115,8 @@ fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
     ];
     facts.extend(warning.map(|warning| format!("! {warning}")));
     facts.extend((drops.groups_dropped > 0).then(|| format!("! {} groups not logged", drops.groups_dropped)));
-    facts.extend(events.iter().rev().take(ROWS.saturating_sub(facts.len())).map(|event| format!("  {event}")));
+    facts
+        .extend(events.iter().rev().take(ROWS.saturating_sub(facts.len())).map(|event| format!("  {event}")));
     facts
 }
 

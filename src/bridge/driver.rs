@@ -1,20 +1,19 @@
 //! Drives the pipeline: makes a call, writes what comes of it, measures how long that took, records the call.
 
-use std::io::{self, Write};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::bridge::clock::Clock;
 use crate::bridge::error::BridgeError;
 use crate::bridge::latency::Durations;
+use crate::bridge::queue::Written;
+use crate::bridge::recorder::Recorder;
 use crate::bridge::sink::Sink;
+use crate::bridge::snapshot::Drops;
 use crate::pipeline::call::Call;
-use crate::pipeline::capture::writer::CaptureWriter;
 use crate::pipeline::control::OutputDevice;
 use crate::pipeline::mapping::profile::Profile;
 use crate::pipeline::{NoProbe, Pipeline};
 use crate::time::HostInstant;
-
-/// Where calls are recorded.
-pub(super) type Recorder = CaptureWriter<Box<dyn Write>>;
 
 /// The pipeline and all that follows its events.
 pub(super) struct Driver {
@@ -22,8 +21,8 @@ pub(super) struct Driver {
     pub(super) sink: Box<dyn Sink>,
     pub(super) recorder: Option<Recorder>,
     pub(super) clock: Clock,
-    /// From bytes readable to write returned, one per write.
-    pub(super) latency: Durations,
+    /// From bytes readable to events written, one per group. Some sinks write in a thread of their own.
+    pub(super) latency: Arc<Mutex<Durations>>,
 }
 
 impl Driver {
@@ -46,11 +45,11 @@ impl Driver {
         if events.is_empty() {
             return Ok(());
         }
-        self.sink.write(events).map_err(BridgeError::Sink)?;
-        if matches!(call, Call::Bytes(_)) {
-            self.latency.record_ns(self.clock.now().as_ns().saturating_sub(now.as_ns()));
+        match call {
+            Call::Bytes(_) => self.sink.write_then(events, timed(&self.latency, self.clock, now)),
+            _ => self.sink.write(events),
         }
-        Ok(())
+        .map_err(BridgeError::Sink)
     }
 
     /// Makes the call that is due at `now`, if one is.
@@ -61,10 +60,42 @@ impl Driver {
         }
     }
 
-    /// Hands everything recorded so far to the file.
-    pub(super) fn flush(&mut self) -> io::Result<()> {
-        self.recorder.as_mut().map_or(Ok(()), CaptureWriter::flush)
+    /// Waits a little until all events and calls are where they belong.
+    pub(super) fn settle(&mut self) -> Result<(), BridgeError> {
+        let sink = self.sink.settle().map_err(BridgeError::Sink);
+        let recorder = self.recorder.as_mut().map_or(Ok(()), Recorder::settle).map_err(BridgeError::Io);
+        sink.and(recorder)
     }
+
+    /// The durations from bytes readable to events written so far.
+    pub(super) fn latency(&self) -> MutexGuard<'_, Durations> {
+        self.latency.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What was dropped so far.
+    pub(super) fn drops(&self) -> Drops {
+        let calls_unrecorded = self.recorder.as_ref().map_or(0, Recorder::missed);
+        Drops { groups_dropped: self.sink.dropped(), calls_unrecorded }
+    }
+
+    /// What will have been dropped if nothing more is taken.
+    pub(super) fn drops_at_end(&self) -> Drops {
+        let Drops { groups_dropped, calls_unrecorded } = self.drops();
+        let calls_waiting = self.recorder.as_ref().map_or(0, Recorder::waiting);
+        Drops {
+            groups_dropped: groups_dropped + self.sink.waiting(),
+            calls_unrecorded: calls_unrecorded + calls_waiting,
+        }
+    }
+}
+
+/// Records, when the events of the bytes that were readable at `since` are out, how long that took.
+fn timed(latency: &Arc<Mutex<Durations>>, clock: Clock, since: HostInstant) -> Written {
+    let latency = Arc::clone(latency);
+    Box::new(move || {
+        let took_ns = clock.now().as_ns().saturating_sub(since.as_ns());
+        latency.lock().unwrap_or_else(PoisonError::into_inner).record_ns(took_ns);
+    })
 }
 
 /// Makes the devices that `profile` plays on.

@@ -1,5 +1,6 @@
 //! What of the bridge's doings is told to people, and when.
 
+use crate::bridge::snapshot::Drops;
 use crate::bridge::state::State;
 use crate::pipeline::contact::watch::Warning;
 use crate::time::HostInstant;
@@ -12,6 +13,8 @@ pub(super) struct Herald {
     since: HostInstant,
     /// The lasting warning that was told last.
     warned: Option<Warning>,
+    /// Whether it was told that groups are dropped, and that calls are not recorded.
+    told_drops: (bool, bool),
 }
 
 /// A state that lasts this long is told.
@@ -20,7 +23,13 @@ const LASTING_US: u64 = 1_000_000;
 impl Herald {
     /// Nothing needs to be told while all is well.
     pub(super) const fn new(now: HostInstant) -> Self {
-        Self { told: State::Playing, candidate: State::Playing, since: now, warned: None }
+        Self {
+            told: State::Playing,
+            candidate: State::Playing,
+            since: now,
+            warned: None,
+            told_drops: (false, false),
+        }
     }
 
     /// The state to tell now, if there is one.
@@ -42,11 +51,35 @@ impl Herald {
         self.warned = lasting.or(self.warned);
         lasting
     }
+
+    /// What to tell of things that nobody took in time: each kind is told once.
+    pub(super) fn drops(&mut self, drops: Drops) -> [Option<&'static str>; 2] {
+        let Drops { groups_dropped, calls_unrecorded } = drops;
+        let now = (groups_dropped > 0, calls_unrecorded > 0);
+        let before = std::mem::replace(&mut self.told_drops, now);
+        [(now.0 && !before.0).then_some(GROUPS_DROPPED), (now.1 && !before.1).then_some(CALLS_UNRECORDED)]
+    }
 }
+
+const GROUPS_DROPPED: &str =
+    "the event log is not read in time: groups of events are dropped and counted until it is";
+
+const CALLS_UNRECORDED: &str =
+    "the capture ends here and says so: its file takes no more; playing goes on, and calls are counted";
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_kind_of_drop_is_told_once() {
+        let mut herald = Herald::new(HostInstant::default());
+        let drops = [(0, 0), (1, 0), (5, 0), (5, 1), (6, 2)];
+        let told = drops.map(|(groups_dropped, calls_unrecorded)| {
+            herald.drops(Drops { groups_dropped, calls_unrecorded }).map(|line| line.is_some())
+        });
+        assert_eq!(told, [[false, false], [true, false], [false, false], [false, true], [false, false]]);
+    }
 
     #[test]
     fn only_what_lasts_is_told_and_only_once() {

@@ -6,6 +6,8 @@
 //! doing takes the `snapshot`.
 
 pub mod clock;
+pub mod control;
+pub mod destination;
 mod driver;
 pub mod error;
 mod herald;
@@ -14,8 +16,12 @@ mod keeper;
 pub mod latency;
 pub mod opening;
 pub mod parts;
+pub mod queue;
+mod recorder;
+pub mod request;
 pub mod requests;
 pub mod running;
+mod signals;
 pub mod sink;
 pub mod snapshot;
 pub mod state;

@@ -37,7 +37,7 @@ pub struct Parts {
     /// The program around the bridge.
     pub host: Box<dyn Host>,
     /// Where calls are recorded.
-    pub record: Option<Box<dyn Write>>,
+    pub record: Option<Box<dyn Write + Send>>,
     /// Ends the run after this time.
     pub duration_us: Option<u64>,
 }

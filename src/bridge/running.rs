@@ -1,24 +1,27 @@
 //! The loop of a running bridge.
 
 use std::io;
+use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::bridge::clock::Clock;
-use crate::bridge::driver::{Driver, Recorder, prepare};
+use crate::bridge::driver::{Driver, prepare};
 use crate::bridge::error::BridgeError;
 use crate::bridge::herald::Herald;
 use crate::bridge::host::Host;
 use crate::bridge::keeper::Keeper;
 use crate::bridge::latency::Durations;
 use crate::bridge::parts::Parts;
-use crate::bridge::requests::{Asked, Request, Requests};
-use crate::bridge::snapshot::{Snapshot, Status, Uncertainty};
+use crate::bridge::recorder::Recorder;
+use crate::bridge::request::{Asked, Request};
+use crate::bridge::requests::Requests;
+use crate::bridge::signals;
+use crate::bridge::snapshot::{BridgeHealth, Drops, Snapshot, Status, Uncertainty};
 use crate::bridge::state::State;
 use crate::pipeline::call::Call;
 use crate::pipeline::capture::head::Head;
-use crate::pipeline::capture::writer::CaptureWriter;
 use crate::pipeline::health::Health;
 use crate::pipeline::mapping::read::ReadProfile;
 use crate::pipeline::{Phase, Pipeline};
@@ -50,6 +53,7 @@ pub struct Bridge {
     snapshot: Arc<Mutex<Snapshot>>,
     snapshot_at: HostInstant,
     held_when_over: usize,
+    drops: Drops,
     /// What the pad sent last.
     bytes: [u8; 4096],
 }
@@ -72,9 +76,8 @@ impl Bridge {
         let Parts { pad, patience, decoder, profile, sink, requests, host, record, duration_us } = parts;
         let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
         let head = Head { decoder: decoder.file, profile: Some(profile) };
-        let begin = |to| -> io::Result<Recorder> { CaptureWriter::begin(to, now, &head) };
-        let recorder = record.map(begin).transpose()?;
-        let driver = Driver { pipeline, sink, recorder, clock, latency: Durations::new() };
+        let recorder = record.map(|to| Recorder::begin(to, now, &head)).transpose()?;
+        let driver = Driver { pipeline, sink, recorder, clock, latency: Arc::default() };
         let keeper = Keeper::new(pad, patience, now);
         let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, &decoder.name)));
         Ok(Self {
@@ -88,6 +91,7 @@ impl Bridge {
             snapshot,
             snapshot_at: now,
             held_when_over: 0,
+            drops: Drops::default(),
             bytes: [0; 4096],
         })
     }
@@ -97,9 +101,9 @@ impl Bridge {
         Arc::clone(&self.snapshot)
     }
 
-    /// Durations from bytes readable to write returned, one per write.
-    pub const fn latency(&self) -> &Durations {
-        &self.driver.latency
+    /// Durations from bytes readable to events written, one per group.
+    pub fn latency(&self) -> Durations {
+        self.driver.latency().clone()
     }
 
     /// What went wrong so far.
@@ -112,7 +116,13 @@ impl Bridge {
         self.held_when_over
     }
 
-    /// Plays until it is asked to end. Whatever the ending, everything held is released first.
+    /// What nobody had taken when the run ended.
+    pub const fn drops(&self) -> Drops {
+        self.drops
+    }
+
+    /// Plays until it is asked to end. Whatever the ending, everything held is released first. Logs and captures that take
+    /// nothing are waited for only a little.
     ///
     /// # Errors
     /// See [`BridgeError`].
@@ -122,8 +132,9 @@ impl Bridge {
         let released = self.driver.call(self.driver.clock.now(), Call::ReleaseAll);
         // Before anything that takes time: a pad that nobody reads any more has to count what is not taken.
         self.keeper.close();
-        self.driver.flush().map_err(BridgeError::Io)?;
-        released.and(ending)
+        let settled = self.driver.settle();
+        self.drops = self.driver.drops_at_end();
+        released.and(settled).and(ending)
     }
 
     fn play(&mut self) -> Result<Ending, BridgeError> {
@@ -141,8 +152,10 @@ impl Bridge {
 
     /// Does what there is to do at `now`. The ending, if this was the last turn.
     fn turn(&mut self, now: HostInstant, woken: Woken) -> Result<Option<Ending>, BridgeError> {
-        if woken.request && self.answer_requests(now)? {
-            return Ok(Some(Ending::Asked));
+        if woken.request
+            && let ControlFlow::Break(ending) = self.answer_requests(now)?
+        {
+            return Ok(ending);
         }
         if woken.pad {
             if self.read_pad(now)? {
@@ -199,16 +212,35 @@ impl Bridge {
         Ok(false)
     }
 
-    /// True if somebody asks to end.
-    fn answer_requests(&mut self, now: HostInstant) -> Result<bool, BridgeError> {
+    /// Breaks off the turn if somebody asks to end, or if the process was stopped: then `now` is long past.
+    fn answer_requests(&mut self, now: HostInstant) -> Result<ControlFlow<Option<Ending>>, BridgeError> {
         while let Some(asked) = self.requests.take() {
-            if asked.request == Request::End {
-                asked.answer(done());
-                return Ok(true);
+            match asked.request {
+                Request::End => {
+                    asked.answer(done());
+                    return Ok(ControlFlow::Break(Some(Ending::Asked)));
+                }
+                Request::Stop => {
+                    self.stop(now)?;
+                    return Ok(ControlFlow::Break(None));
+                }
+                _ => self.answer(now, &asked)?,
             }
-            self.answer(now, &asked)?;
         }
-        Ok(false)
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Releases everything and stops the process. Once that is continued, takes up the line again where it then is: what
+    /// the pad said meanwhile is old.
+    fn stop(&mut self, now: HostInstant) -> Result<(), BridgeError> {
+        self.driver.call(now, Call::ReleaseAll)?;
+        // Threads that write stop with the process.
+        self.driver.sink.settle().map_err(BridgeError::Sink)?;
+        signals::stop_process().map_err(BridgeError::Io)?;
+        let now = self.driver.clock.now();
+        self.driver.call_if_due(now)?;
+        self.keeper.skip(now, &mut self.bytes);
+        Ok(())
     }
 
     fn answer(&mut self, now: HostInstant, asked: &Asked) -> Result<(), BridgeError> {
@@ -275,6 +307,9 @@ impl Bridge {
         if let Some(warning) = self.herald.warn(self.driver.pipeline.warning()) {
             self.host.tell(&warning.to_string());
         }
+        for line in self.herald.drops(self.driver.drops()).into_iter().flatten() {
+            self.host.tell(line);
+        }
         let is_shown = Arc::strong_count(&self.snapshot) > 1;
         if is_shown && let Ok(mut snapshot) = self.snapshot.try_lock() {
             *snapshot = self.look(now);
@@ -288,7 +323,7 @@ fn state(driver: &Driver, keeper: &Keeper) -> State {
 
 /// All that there is to see at `now`.
 fn look(now: HostInstant, driver: &Driver, keeper: &Keeper, decoder: &str) -> Snapshot {
-    let Driver { pipeline, sink, latency, .. } = driver;
+    let Driver { pipeline, sink, .. } = driver;
     let status = Status {
         state: state(driver, keeper),
         pad: pipeline.identity().map(|identity| identity.serial_number),
@@ -298,8 +333,8 @@ fn look(now: HostInstant, driver: &Driver, keeper: &Keeper, decoder: &str) -> Sn
         contact: pipeline.contact().copied(),
         held: pipeline.held().collect(),
         warning: pipeline.warning(),
-        health: *pipeline.health(),
-        latency_us: latency.percentiles(),
+        health: BridgeHealth { pipeline: *pipeline.health(), drops: driver.drops() },
+        latency_us: driver.latency().percentiles(),
     };
     let uncertainty = pipeline.estimate().as_ref().map(Uncertainty::of);
     Snapshot { at: now, status, channels_uv: pipeline.strain().map(|strain| strain.uv), uncertainty }

@@ -50,9 +50,29 @@ pub struct Status {
     /// What the player should know of the touches.
     pub warning: Option<Warning>,
     /// What went wrong so far.
-    pub health: Health,
-    /// From bytes readable to write returned.
+    pub health: BridgeHealth,
+    /// From bytes readable to events written.
     pub latency_us: Percentiles,
+}
+
+/// Everything that went wrong, on the way from the pad and on the way out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct BridgeHealth {
+    /// On the way from the pad.
+    #[serde(flatten)]
+    pub pipeline: Health,
+    /// On the way out.
+    #[serde(flatten)]
+    pub drops: Drops,
+}
+
+/// What nobody took in time. The bridge waits for no log and for no capture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Drops {
+    /// Groups of events that are missing in the event log.
+    pub groups_dropped: u64,
+    /// Calls that are missing at the end of the capture.
+    pub calls_unrecorded: u64,
 }
 
 /// Standard deviations of a decoded contact.
@@ -107,7 +127,10 @@ mod tests {
             contact: Some(Contact { x_mm: 0.1, fz_n: 2.0, ..Contact::default() }),
             held: vec![held],
             warning: None,
-            health: Health { samples: 7, ..Health::default() },
+            health: BridgeHealth {
+                pipeline: Health { samples: 7, ..Health::default() },
+                drops: Drops { groups_dropped: 3, ..Drops::default() },
+            },
             latency_us: Percentiles { p50: 12.5, ..Percentiles::default() },
         };
         let uncertainty = Uncertainty { x_mm: 0.25, y_mm: 0.25, fx_n: 0.5, fy_n: 0.5, fz_n: 1.0 };
@@ -124,6 +147,7 @@ mod tests {
             r#""warning":null,"health":{"samples":7,"#
         );
         assert!(text.starts_with(expected), "{text}");
+        assert!(text.contains(r#","groups_dropped":3,"calls_unrecorded":0},"latency_us""#), "{text}");
         assert!(text.ends_with(r#""latency_us":{"p50":12.5,"p95":0.0,"p99":0.0,"max":0.0}}"#), "{text}");
     }
 

@@ -13,6 +13,7 @@ use serde::Serialize;
 use crate::bridge::clock::Clock;
 use crate::bridge::latency::{Durations, Percentiles};
 use crate::bridge::opening::OpenedPad;
+use crate::bridge::queue::Written;
 use crate::bridge::sink::{Sink, SinkError};
 use crate::bridge::transport::Transport;
 use crate::pipeline::call::Call;
@@ -91,7 +92,7 @@ impl Timing {
     }
 
     /// Where the run has to be recorded.
-    pub fn record(&self) -> Box<dyn Write> {
+    pub fn record(&self) -> Box<dyn Write + Send> {
         Box::new(self.calls.clone())
     }
 
@@ -207,10 +208,28 @@ impl Sink for TimedSink {
     }
 
     fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {
-        let clock = Clock::start();
-        let written = self.sink.write(group);
-        self.live.record(|stages| &mut stages.write, &clock);
-        written
+        self.write_then(group, Box::new(|| ()))
+    }
+
+    fn write_then(&mut self, group: &[OutputEvent], written: Written) -> Result<(), SinkError> {
+        let (clock, live) = (Clock::start(), self.live.clone());
+        let timed = move || {
+            live.record(|stages| &mut stages.write, &clock);
+            written();
+        };
+        self.sink.write_then(group, Box::new(timed))
+    }
+
+    fn settle(&mut self) -> Result<(), SinkError> {
+        self.sink.settle()
+    }
+
+    fn dropped(&self) -> u64 {
+        self.sink.dropped()
+    }
+
+    fn waiting(&self) -> u64 {
+        self.sink.waiting()
     }
 
     fn describe(&self) -> String {

@@ -14,13 +14,21 @@ mod decoders;
 #[cfg(feature = "live")]
 mod firmware;
 mod nostd;
+#[cfg(feature = "live")]
+mod presses;
 #[cfg(all(test, feature = "live"))]
 #[path = "../support/proof.rs"]
 mod proof;
 #[cfg(feature = "live")]
 mod replay;
 #[cfg(feature = "live")]
+mod running;
+#[cfg(feature = "live")]
+mod signals;
+#[cfg(feature = "live")]
 mod soak;
+#[cfg(feature = "live")]
+mod stalled;
 #[cfg(feature = "live")]
 mod stranger;
 #[path = "../support/mod.rs"]

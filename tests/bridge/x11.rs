@@ -29,13 +29,13 @@ const Z: u16 = 44;
 const X: u16 = 45;
 
 /// An X server of this test alone, on a display that nobody else uses.
-struct Server {
+pub(crate) struct Server {
     process: Child,
-    display: String,
+    pub(crate) display: String,
 }
 
 impl Server {
-    fn start() -> Self {
+    pub(crate) fn start() -> Self {
         let mut command = Command::new("Xvfb");
         command.args(["-displayfd", "1", "-screen", "0", "320x240x24", "-nolisten", "tcp", "-noreset"]);
         let mut process = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();

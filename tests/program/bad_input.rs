@@ -489,6 +489,29 @@ fn an_interrupted_demo_fails_even_if_nobody_reads() {
     }
 }
 
+#[test]
+fn a_demo_that_is_interrupted_while_a_key_is_held_counts_its_release() {
+    let folder = tempfile::tempdir().unwrap();
+    let fifo = folder.path().join("events");
+    mknodat(CWD, &fifo, FileType::Fifo, Mode::RWXU, 0).unwrap();
+    let mut demo = tactpad();
+    demo.args(["demo", "--json", "--seconds", "60", "--output", &format!("log:{}", fifo.display())]);
+    let demo = demo.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut events = BufReader::new(File::open(&fifo).unwrap());
+    let mut first = String::new();
+    // The player keeps what he presses first for much longer than a signal takes.
+    events.read_line(&mut first).unwrap();
+    kill_process(Pid::from_child(&demo), Signal::INT).unwrap();
+    let rest: Vec<String> = events.lines().map(Result::unwrap).collect();
+    let output = demo.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let count = |name: &str| summary[name].as_u64().unwrap();
+    assert!(!first.contains(r#""value":0}"#), "{first}");
+    assert!(rest.iter().all(|line| line.contains(r#""value":0}"#)), "only releases follow: {rest:?}");
+    assert_eq!((count("downs"), count("ups"), count("held_at_end")), (1, 1, 0), "{first}{rest:?}");
+}
+
 /// A pseudo-terminal: what a device on a serial line is to the program.
 struct Line {
     device: File,

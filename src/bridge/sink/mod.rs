@@ -1,6 +1,7 @@
 //! Where output events go.
 
 pub mod identity;
+mod levels;
 pub mod log;
 pub mod null;
 pub mod uinput;
@@ -9,6 +10,7 @@ pub mod x11;
 
 use std::fmt;
 
+use crate::bridge::queue::Written;
 use crate::pipeline::control::{OutputDevice, OutputEvent};
 
 /// A place for output events.
@@ -25,6 +27,34 @@ pub trait Sink {
     /// # Errors
     /// The events did not get out.
     fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError>;
+
+    /// The same, and calls `written` as soon as the events are out. Never, if they do not get out.
+    ///
+    /// # Errors
+    /// The events did not get out.
+    fn write_then(&mut self, group: &[OutputEvent], written: Written) -> Result<(), SinkError> {
+        self.write(group)?;
+        written();
+        Ok(())
+    }
+
+    /// Waits a little, half a second at most, until everything is out.
+    ///
+    /// # Errors
+    /// Events did not get out.
+    fn settle(&mut self) -> Result<(), SinkError> {
+        Ok(())
+    }
+
+    /// How many groups were dropped so far because nobody took them in time.
+    fn dropped(&self) -> u64 {
+        0
+    }
+
+    /// How many groups still wait to be taken.
+    fn waiting(&self) -> u64 {
+        0
+    }
 
     /// One line for people: what this is and where its events arrive.
     fn describe(&self) -> String;

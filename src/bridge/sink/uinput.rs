@@ -4,7 +4,7 @@
 //! its keys. It does not bring axes back to rest; dropping the sink does that.
 
 use std::io;
-use std::os::fd::{AsFd, BorrowedFd};
+use std::os::fd::AsFd;
 use std::path::{Path, PathBuf};
 
 use evdev::uinput::VirtualDevice;
@@ -165,7 +165,9 @@ impl Unit {
             encode(code, value, &mut self.bytes);
         }
         encode_report(&mut self.bytes);
-        write_all(self.device.as_fd(), &self.bytes).map_err(|error| lost(self.name, &error))
+        let device = self.device.as_fd();
+        write_all(|bytes| rustix::io::write(device, bytes), &self.bytes)
+            .map_err(|error| lost(self.name, &error))
     }
 }
 
@@ -181,11 +183,13 @@ impl Drop for Unit {
     }
 }
 
-fn write_all(to: BorrowedFd<'_>, bytes: &[u8]) -> Result<(), Errno> {
+/// Writes all of `bytes` by `write`. A device that takes none of them, or none now, is at fault: nothing is tried again.
+fn write_all(mut write: impl FnMut(&[u8]) -> Result<usize, Errno>, bytes: &[u8]) -> Result<(), Errno> {
     let mut rest = bytes;
     while !rest.is_empty() {
         // The kernel takes a whole group at once, unless a signal comes between two events.
-        match rustix::io::write(to, rest) {
+        match write(rest) {
+            Ok(0) => return Err(Errno::IO),
             Ok(count) => rest = rest.get(count..).unwrap_or_default(),
             Err(Errno::INTR) => {}
             Err(error) => return Err(error),
@@ -392,6 +396,20 @@ mod tests {
             None
         );
         assert_eq!(asked, 6);
+    }
+
+    #[test]
+    fn a_device_that_takes_nothing_is_an_error_and_is_not_asked_for_ever() {
+        for (answers, outcome) in [
+            (&[Ok(3), Err(Errno::INTR), Ok(5)][..], Ok(())),
+            (&[Ok(3), Ok(0)], Err(Errno::IO)),
+            (&[Ok(3), Err(Errno::AGAIN)], Err(Errno::AGAIN)),
+            (&[Err(Errno::NODEV)], Err(Errno::NODEV)),
+        ] {
+            let mut left = answers.iter();
+            assert_eq!(write_all(|_| *left.next().unwrap(), &[0; 8]), outcome, "{answers:?}");
+            assert_eq!(left.next(), None, "{answers:?}");
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex};
 
 use super::{Sink, SinkError};
+use crate::bridge::queue::Written;
 use crate::pipeline::control::{Code, OutputDevice, OutputEvent};
 
 /// The newest events that an account keeps of all.
@@ -116,11 +117,27 @@ impl Sink for Witness {
     }
 
     fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {
-        self.sink.write(group)?;
+        self.write_then(group, Box::new(|| ()))
+    }
+
+    fn write_then(&mut self, group: &[OutputEvent], written: Written) -> Result<(), SinkError> {
+        self.sink.write_then(group, written)?;
         if let Ok(mut seen) = self.seen.lock() {
             seen.extend(group);
         }
         Ok(())
+    }
+
+    fn settle(&mut self) -> Result<(), SinkError> {
+        self.sink.settle()
+    }
+
+    fn dropped(&self) -> u64 {
+        self.sink.dropped()
+    }
+
+    fn waiting(&self) -> u64 {
+        self.sink.waiting()
     }
 
     fn describe(&self) -> String {

@@ -8,8 +8,8 @@ use clap::{Args, Subcommand};
 use serde_json::Value;
 
 use crate::cli::failure::Failure;
-use crate::cli::written::stdout;
-use tactpad::bridge::requests::ask;
+use crate::cli::written::{reason, stdout};
+use tactpad::bridge::control::ask;
 
 /// Arguments of `tactpad ctl`.
 #[derive(Debug, Args)]
@@ -45,6 +45,8 @@ enum Action {
         /// A profile's name or file.
         name: String,
     },
+    /// Read the profile in use again, after it was changed.
+    Reload,
     /// End the bridge.
     #[command(after_help = "Example: tactpad ctl quit")]
     Quit,
@@ -65,16 +67,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Resume => "resume".to_owned(),
         Action::Panic => "panic".to_owned(),
         Action::Tare => "tare".to_owned(),
+        Action::Reload => "reload".to_owned(),
         Action::Quit => "quit".to_owned(),
         Action::Profile { name } => format!("profile {}", absolute(name)?),
     };
     let path = socket_path();
-    let answer = ask(&path, &request).map_err(|error| {
-        Failure::Failed(format!(
-            "no bridge answers at {} ({error}): start one with `tactpad run`",
-            path.display()
-        ))
-    })?;
+    let answer = ask(&path, &request).map_err(|error| Failure::Failed(no_answer(&path, &error)))?;
     let document: Value =
         serde_json::from_str(&answer).map_err(|error| Failure::Failed(error.to_string()))?;
     if let Some(error) = document.get("error").and_then(Value::as_str) {
@@ -84,6 +82,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         _ if arguments.json => Ok(writeln!(stdout(), "{answer}")?),
         Action::Status => Ok(print_status(&document)?),
         _ => Ok(()),
+    }
+}
+
+/// Why no bridge answers, and what to do about it.
+fn no_answer(path: &Path, error: &io::Error) -> String {
+    use io::ErrorKind::{ConnectionRefused, NotFound, TimedOut};
+    let path = path.display();
+    match error.kind() {
+        NotFound | ConnectionRefused => format!("no bridge answers at {path}: start one with `tactpad run`"),
+        TimedOut => format!(
+            "the bridge at {path} does not answer: if it was stopped (Ctrl-Z), continue it with `fg`; else end it and \
+             start one with `tactpad run`"
+        ),
+        _ => format!("the bridge at {path} cannot be asked: {}", reason(error)),
     }
 }
 

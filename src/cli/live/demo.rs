@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::files::Files;
 use super::newest::line;
-use super::output::Output;
+use super::output::{Output, log_to};
 use super::playing::{Audience, Terminal, microseconds, open_virtual, play, requests};
 use super::screen::Screen;
 use super::{chosen, seconds};
@@ -23,7 +23,6 @@ use tactpad::bridge::opening::Patience;
 use tactpad::bridge::parts::Parts;
 use tactpad::bridge::running::{Bridge, Ending};
 use tactpad::bridge::sink::Sink;
-use tactpad::bridge::sink::log::LogSink;
 use tactpad::bridge::sink::null::NullSink;
 use tactpad::bridge::sink::witness::{Account, Expected, Witness};
 use tactpad::bridge::transport::address::PadAddress;
@@ -89,7 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let witness = Witness::new(sink);
     let seen = witness.seen();
     let audience = Audience::Nobody;
-    let host = Terminal { profile: arguments.profile.clone(), output: output.choice(), audience };
+    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
     let mut bridge = Bridge::new(Parts {
         pad: open_virtual(&arguments.device, script)?,
         patience: Patience::Limited,
@@ -158,12 +157,12 @@ fn open_sink(arguments: &Arguments, profile: &Profile) -> Result<(Box<dyn Sink>,
     }
     if profile.uses(OutputDevice::Keyboard) {
         let title = "Output: an event log, here. The profile types keys: for those ask with --output uinput.";
-        return Ok((here(arguments), title.into()));
+        return Ok((here(arguments)?, title.into()));
     }
     if profile.uses(OutputDevice::Pointer) {
         let title = "Output: an event log, here. The profile moves the pointer and clicks: for that ask with \
                      --output uinput.";
-        return Ok((here(arguments), title.into()));
+        return Ok((here(arguments)?, title.into()));
     }
     let (sink, missing) = arguments.output.open_or(|| here(arguments))?;
     let best = || "Output: a virtual gamepad. Nothing better is to be had.".into();
@@ -171,12 +170,11 @@ fn open_sink(arguments: &Arguments, profile: &Profile) -> Result<(Box<dyn Sink>,
 }
 
 /// The event log on the screen: the live picture shows it, and without one it is lines on stdout.
-fn here(arguments: &Arguments) -> Box<dyn Sink> {
+fn here(arguments: &Arguments) -> Result<Box<dyn Sink>, Failure> {
     if arguments.json || terminal::moves_cursor(&io::stdout()) {
-        Box::new(NullSink)
-    } else {
-        Box::new(LogSink::new(WhileRead(io::stdout()), "stdout".into()))
+        return Ok(Box::new(NullSink));
     }
+    log_to(WhileRead(io::stdout()))
 }
 
 /// Writes as long as somebody reads. The demo goes on without a reader: its verdict is the exit code.

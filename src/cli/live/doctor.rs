@@ -13,7 +13,7 @@ use serde_json::Value;
 use super::ctl;
 use crate::cli::failure::{Failure, if_read};
 use crate::cli::written::{print_json, stdout};
-use tactpad::bridge::requests::ask;
+use tactpad::bridge::control::ask;
 use tactpad::bridge::sink::uinput;
 use tactpad::bridge::transport::pads::{self, FoundPad};
 
@@ -247,6 +247,10 @@ fn check_session(variable: impl Fn(&str) -> Option<String>) -> Vec<Check> {
 fn check_bridge() -> Check {
     match ask(&ctl::socket_path(), "status") {
         Ok(status) => Check::note("bridge", bridge_message(&status)),
+        Err(error) if error.kind() == io::ErrorKind::TimedOut => Check::note(
+            "bridge",
+            "one is there and does not answer: if it was stopped, continue it with `fg`",
+        ),
         Err(_) => Check::note("bridge", "none is running"),
     }
 }

@@ -84,7 +84,7 @@ fn check_capture(path: &Path) -> Result<(), Failure> {
     let error = CaptureReader::new(BufReader::new(file)).map_or_else(Some, first_error);
     match error {
         None => Ok(()),
-        Some(error @ CaptureError::CutOff { .. }) => {
+        Some(error @ (CaptureError::CutOff { .. } | CaptureError::Missing { .. })) => {
             say(format_args!("{} {error}", path.display()));
             Ok(())
         }

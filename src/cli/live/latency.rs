@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let played = profile.profile().clone();
     let pipeline = Pipeline::new(decoder.decoder.clone(), played.clone());
     let audience = Audience::Nobody;
-    let host = Terminal { profile: arguments.profile.clone(), output: output.choice(), audience };
+    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
     let mut bridge = Bridge::new(Parts {
         pad: timing.pad(opened),
         patience: Patience::Limited,

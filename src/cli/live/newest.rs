@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 use std::io;
 use std::sync::{Arc, Mutex};
 
-use tactpad::bridge::sink::log::LogSink;
+use super::output::log_to;
+use crate::cli::failure::Failure;
 use tactpad::bridge::sink::{Sink, SinkError};
 use tactpad::pipeline::control::{OutputDevice, OutputEvent};
 
@@ -20,8 +21,8 @@ pub(super) struct Newest(Arc<Mutex<VecDeque<OutputEvent>>>);
 
 impl Newest {
     /// A sink for them, where a picture shows them; else one that prints every event.
-    pub(super) fn sink(&self, is_shown: bool) -> Box<dyn Sink> {
-        if is_shown { Box::new(self.clone()) } else { Box::new(LogSink::new(io::stdout(), "stdout".into())) }
+    pub(super) fn sink(&self, is_shown: bool) -> Result<Box<dyn Sink>, Failure> {
+        if is_shown { Ok(Box::new(self.clone())) } else { log_to(io::stdout()) }
     }
 
     /// The events, one line each, the newest last.

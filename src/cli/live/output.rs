@@ -1,10 +1,11 @@
 //! `--output`: where events are to go.
 
 use std::env;
-use std::io;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use super::playing::tell_of_waiting;
 use crate::cli::failure::Failure;
 use crate::cli::written::both_print;
 use tactpad::bridge::sink::uinput::{self, UinputSink};
@@ -64,9 +65,11 @@ impl Output {
             }
             Self::X11 => Ok(Box::new(X11Sink::open(None).map_err(|error| Failure::Unusable(error.message))?)),
             Self::Log(path) => {
-                Ok(Box::new(LogSink::create(path).map_err(|error| Failure::Unusable(error.message))?))
+                let sink = LogSink::create(path).map_err(|error| Failure::Unusable(error.message))?;
+                tell_of_waiting(path, sink.waits_for_reader());
+                Ok(Box::new(sink))
             }
-            Self::Stdout => Ok(Box::new(LogSink::new(io::stdout(), "stdout".into()))),
+            Self::Stdout => log_to(io::stdout()),
             Self::None => Ok(Box::new(NullSink)),
         }
     }
@@ -75,13 +78,19 @@ impl Output {
     /// says what would bring a better output.
     pub(super) fn open_or(
         &self,
-        here: impl FnOnce() -> Box<dyn Sink>,
+        here: impl FnOnce() -> Result<Box<dyn Sink>, Failure>,
     ) -> Result<(Box<dyn Sink>, Option<String>), Failure> {
         match (self, uinput::available()) {
-            (Self::Auto, Err(error)) => Ok((here(), Some(missing(&error)))),
+            (Self::Auto, Err(error)) => Ok((here()?, Some(missing(&error)))),
             _ => Ok((self.open()?, None)),
         }
     }
+}
+
+/// An event log on standard output, or on what stands for it.
+pub(super) fn log_to(stdout: impl Write + Send + 'static) -> Result<Box<dyn Sink>, Failure> {
+    let sink = LogSink::new(stdout, "stdout".into());
+    Ok(Box::new(sink.map_err(|error| Failure::Failed(error.message))?))
 }
 
 /// What is told where an event log stands in for virtual devices.

@@ -1,19 +1,21 @@
 //! What the live verbs share: which pad they play with, who is told, and how a run ends.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::field::field_of;
 use crate::cli::profile;
-use crate::cli::written::{is_stdout, reason};
+use crate::cli::written::{is_stdout, reason, say};
+use tactpad::bridge::destination::Destination;
 use tactpad::bridge::error::BridgeError;
 use tactpad::bridge::host::Host;
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
+use tactpad::bridge::queue::{Group, Queue};
 use tactpad::bridge::requests::Requests;
 use tactpad::bridge::running::{Bridge, Ending};
+use tactpad::bridge::snapshot::Drops;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::profile::Profile;
@@ -85,13 +87,16 @@ pub(super) enum Waits {
     NotAsked,
 }
 
-/// The file of a capture, which is written where it stands: what was recorded before a crash is there.
-pub(super) fn create_capture(path: &Path) -> Result<Box<dyn Write>, Failure> {
+/// The file of a capture, which is written where it stands: what was recorded before a crash is there. Or the pipe.
+pub(super) fn create_capture(path: &Path) -> Result<Box<dyn Write + Send>, Failure> {
     if is_stdout(path) {
-        return Ok(Box::new(BufWriter::new(io::stdout())));
+        return Ok(Box::new(io::stdout()));
     }
-    match File::create(path) {
-        Ok(file) => Ok(Box::new(BufWriter::new(file))),
+    match Destination::create(path) {
+        Ok(to) => {
+            tell_of_waiting(path, to.waits_for_reader());
+            Ok(Box::new(to))
+        }
         Err(error) => {
             let (path, why) = (path.display(), reason(&error));
             Err(Failure::Unusable(format!("{path} cannot be written: {why}; name another file")))
@@ -99,12 +104,34 @@ pub(super) fn create_capture(path: &Path) -> Result<Box<dyn Write>, Failure> {
     }
 }
 
+/// Says that nobody reads a pipe yet.
+pub(super) fn tell_of_waiting(path: &Path, waits: bool) {
+    if waits {
+        say(format_args!("nobody reads the pipe {} yet: start its reader", path.display()));
+    }
+}
+
+/// What people are told may wait so long to be read.
+const TOLD_BYTES_MAX: usize = 16 << 10;
+
 /// The program around a bridge that was started from a command line.
 pub(super) struct Terminal {
     /// The profile that is read again when nobody names another one: its name or file.
-    pub(super) profile: String,
-    pub(super) output: OutputChoice,
-    pub(super) audience: Audience,
+    profile: String,
+    output: OutputChoice,
+    /// Stderr, if somebody reads it. A terminal that is held with Ctrl-S must not keep the bridge waiting.
+    told: Option<Queue>,
+}
+
+impl Terminal {
+    /// A bridge that plays `profile` for an output of this kind.
+    pub(super) fn new(profile: &str, output: OutputChoice, audience: Audience) -> io::Result<Self> {
+        let told = match audience {
+            Audience::Stderr => Some(Queue::start("told", io::stderr(), TOLD_BYTES_MAX)?),
+            Audience::Nobody => None,
+        };
+        Ok(Self { profile: profile.to_owned(), output, told })
+    }
 }
 
 impl Host for Terminal {
@@ -120,7 +147,10 @@ impl Host for Terminal {
     }
 
     fn tell(&mut self, line: &str) {
-        self.audience.tell(line);
+        if let Some(told) = &self.told {
+            // Where nobody reads, the bridge plays on.
+            let _ = told.push(Group { bytes: format!("{line}\n").into(), ..Group::default() });
+        }
     }
 }
 
@@ -149,7 +179,11 @@ pub(super) fn requests(socket: Option<&Path>, audience: Audience) -> Result<Requ
     if let Some(path) = socket
         && let Err(error) = requests.listen(path)
     {
-        audience.tell(&format!("`tactpad ctl` does not reach this bridge: {} ({error})", path.display()));
+        audience.tell(&format!(
+            "`tactpad ctl` does not reach this bridge: {} ({})",
+            path.display(),
+            reason(&error)
+        ));
     }
     Ok(requests)
 }
@@ -159,9 +193,16 @@ pub(super) fn microseconds(seconds: f64) -> u64 {
     (seconds * 1e6) as u64
 }
 
-/// Runs the bridge and turns its errors into the program's.
+/// Runs the bridge, turns its errors into the program's, and says what is missing in logs and captures.
 pub(super) fn play(bridge: &mut Bridge, address: &PadAddress) -> Result<Ending, Failure> {
-    bridge.run().map_err(|error| match error {
+    let ending = bridge.run();
+    let Drops { groups_dropped, .. } = bridge.drops();
+    if groups_dropped > 0 {
+        say(format_args!(
+            "{groups_dropped} groups of events are missing in the event log: it was not read in time"
+        ));
+    }
+    ending.map_err(|error| match error {
         BridgeError::NotAPad(_) | BridgeError::Refused(_) => Failure::Unusable(format!("{address} {error}")),
         error => Failure::Failed(error.to_string()),
     })

@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     say(format_args!("recording {} in {place}", arguments.pad));
     let audience = Audience::Stderr;
-    let host = Terminal { profile: arguments.profile.clone(), output: output.choice(), audience };
+    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
     let mut bridge = Bridge::new(Parts {
         pad: opened,
         patience,
@@ -87,6 +87,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         duration_us: arguments.seconds.map(microseconds),
     })?;
     play(&mut bridge, &arguments.pad)?;
-    say(format_args!("{} samples recorded", bridge.health().samples));
-    Ok(())
+    match bridge.drops().calls_unrecorded {
+        0 => {
+            say(format_args!("{} samples recorded", bridge.health().samples));
+            Ok(())
+        }
+        missing => Err(Failure::Failed(format!(
+            "{place} did not take what was recorded: its last {missing} calls are missing; record to a faster disk, or \
+             see that the pipe is read"
+        ))),
+    }
 }

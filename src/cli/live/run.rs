@@ -24,8 +24,8 @@ use tactpad::bridge::transport::fault::FaultPlan;
 /// Arguments of `tactpad run`.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tactpad run --pad serial:/dev/ttyACM0 --profile tetris\n\n\
-    `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on, SIGHUP reads the \
-    profile again.")]
+    `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on. It ends with its \
+    terminal, unless it was started with nohup; where it has none, SIGHUP reads the profile again.")]
 pub(crate) struct Arguments {
     /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], virtual, capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "auto")]
@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         say(missing);
     }
     audience.tell(&title);
-    let host = Terminal { profile: arguments.profile.clone(), output: output.choice(), audience };
+    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
     let mut bridge = Bridge::new(Parts {
         pad: opened,
         patience,

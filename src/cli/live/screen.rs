@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
-use std::thread::{self, JoinHandle};
+use std::thread;
 use std::time::Duration;
 
 use rustix::termios::tcgetwinsize;
 
-use tactpad::bridge::snapshot::{Snapshot, Status};
+use tactpad::bridge::snapshot::{BridgeHealth, Snapshot, Status};
 use tactpad::pipeline::control::Code;
 use tactpad::pipeline::mapping::intent::Level;
 use tactpad::quantity::Contact;
@@ -30,10 +30,14 @@ const FULL_SCALE_N: f32 = 5.0;
 
 const REFRESH: Duration = Duration::from_millis(50);
 
+/// The picture that is being drawn at the end may take so long.
+const LAST_PICTURE: Duration = Duration::from_millis(200);
+
 /// A screen that redraws itself until it is dropped.
 pub(super) struct Screen {
     stop: Option<Sender<()>>,
-    thread: Option<JoinHandle<()>>,
+    /// Ends with the drawing.
+    drawing: Receiver<()>,
 }
 
 impl Screen {
@@ -44,7 +48,9 @@ impl Screen {
         events: impl Fn() -> Vec<String> + Send + 'static,
     ) -> Self {
         let (stop, stopped) = channel::<()>();
-        let thread = thread::spawn(move || {
+        let (draws, drawing) = channel::<()>();
+        thread::spawn(move || {
+            let _draws = draws;
             let mut last = None;
             while stopped.recv_timeout(REFRESH) == Err(RecvTimeoutError::Timeout) {
                 let Ok(seen) = snapshot.lock().map(|seen| seen.clone()) else { return };
@@ -59,17 +65,15 @@ impl Screen {
                 last = Some(picture);
             }
         });
-        Self { stop: Some(stop), thread: Some(thread) }
+        Self { stop: Some(stop), drawing }
     }
 }
 
 impl Drop for Screen {
     fn drop(&mut self) {
         self.stop.take();
-        if let Some(thread) = self.thread.take() {
-            // A screen that broke has nothing more to say.
-            let _ = thread.join();
-        }
+        // A terminal that is held with Ctrl-S takes nothing: the picture is left as it is.
+        let _ = self.drawing.recv_timeout(LAST_PICTURE);
     }
 }
 
@@ -151,6 +155,7 @@ fn cut(line: &str, columns: usize) -> String {
 
 fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
     let Status { state, contact, held, warning, health, latency_us, .. } = &seen.status;
+    let BridgeHealth { pipeline, drops } = health;
     let forces = contact.unwrap_or_default();
     let mut facts = vec![
         format!("{:<9} {:6.1} s", state.word(), seen.at.as_ns() as f64 * 1e-9),
@@ -163,12 +168,14 @@ fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
         format!("held   {}", held.iter().map(level).collect::<Vec<_>>().join("  ")),
         format!(
             "frames {}   lost {}   damaged {}",
-            health.samples, health.frames_lost, health.frames_damaged
+            pipeline.samples, pipeline.frames_lost, pipeline.frames_damaged
         ),
         format!("read to written  p50 {:.0} µs   p99 {:.0} µs", latency_us.p50, latency_us.p99),
     ];
     facts.extend(warning.map(|warning| format!("! {warning}")));
-    facts.extend(events.iter().rev().take(ROWS - facts.len()).map(|event| format!("  {event}")));
+    facts.extend((drops.groups_dropped > 0).then(|| format!("! {} groups not logged", drops.groups_dropped)));
+    facts
+        .extend(events.iter().rev().take(ROWS.saturating_sub(facts.len())).map(|event| format!("  {event}")));
     facts
 }
 

@@ -32,10 +32,12 @@ pub(super) enum Kind {
     KeyboardProfile = 8,
     /// The payload is the decoder that plays, as its file has it; stands before everything else or nowhere.
     Decoder = 9,
+    /// The recording went on, but what follows is missing. Nothing stands behind it.
+    Missing = 10,
 }
 
 /// All kinds, each at the place of its number.
-const KINDS: [Kind; 10] = [
+const KINDS: [Kind; 11] = [
     Kind::Bytes,
     Kind::Timeout,
     Kind::Unplugged,
@@ -46,6 +48,7 @@ const KINDS: [Kind; 10] = [
     Kind::Profile,
     Kind::KeyboardProfile,
     Kind::Decoder,
+    Kind::Missing,
 ];
 
 impl Kind {
@@ -73,7 +76,7 @@ impl Kind {
 
     /// Whether it is more than what a capture begins with.
     pub(super) const fn is_play(self) -> bool {
-        !matches!(self, Self::Profile | Self::KeyboardProfile | Self::Decoder)
+        !matches!(self, Self::Profile | Self::KeyboardProfile | Self::Decoder | Self::Missing)
     }
 
     /// Whether `payload` may stand in it.
@@ -100,6 +103,6 @@ mod tests {
         for (number, kind) in KINDS.into_iter().enumerate() {
             assert_eq!((kind as usize, Kind::of(kind as u8)), (number, Some(kind)));
         }
-        assert_eq!(Kind::of(10), None);
+        assert_eq!(Kind::of(11), None);
     }
 }

@@ -15,7 +15,8 @@
 //!
 //! Checksums are the wire's CRC-32. Each covers the one before it, so an entry that is missing, doubled or moved is
 //! damage, too. The head has its own, so that a damaged length is not taken for the end of the file. A recorder that
-//! was killed leaves a file whose last entry may be cut off; everything before it is sound.
+//! was killed leaves a file whose last entry may be cut off; everything before it is sound. One whose file does not take
+//! calls in time ends the capture with an entry that says so.
 
 mod entry;
 pub mod head;

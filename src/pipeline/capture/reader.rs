@@ -26,6 +26,11 @@ pub enum CaptureError {
         /// Byte offset of the entry.
         offset: u64,
     },
+    /// The recording went on here, but its file did not take it. All entries before were given.
+    Missing {
+        /// Byte offset of the mark.
+        offset: u64,
+    },
     /// In the middle the player went over to a profile that this program cannot use. The calls behind it can still be
     /// read.
     Profile {
@@ -46,6 +51,10 @@ impl fmt::Display for CaptureError {
                 write!(f, "is damaged at byte {offset}, or written by a newer tactpad")
             }
             Self::CutOff { offset } => write!(f, "is cut off at byte {offset}; everything before was used"),
+            Self::Missing { offset } => write!(
+                f,
+                "ends at byte {offset} though the recording went on: its file took no more; everything before was used"
+            ),
             Self::Profile { offset } => write!(
                 f,
                 "goes over at byte {offset} to a profile that this tactpad cannot use; choose one with --profile"
@@ -127,6 +136,10 @@ impl<R: Read> CaptureReader<R> {
                 Call::Profile(read.ok_or(CaptureError::Profile { offset: entry.offset })?)
             }
             Kind::Decoder => return Err(CaptureError::Damaged { offset: entry.offset }),
+            Kind::Missing => {
+                self.entries.ended = true;
+                return Err(CaptureError::Missing { offset: entry.offset });
+            }
         };
         Ok((entry.now, call))
     }
@@ -344,6 +357,17 @@ mod tests {
                 Some(error) => panic!("{error:?}"),
             }
         }
+    }
+
+    #[test]
+    fn a_capture_whose_file_took_no_more_gives_its_calls_and_says_so() {
+        let mut writer = CaptureWriter::begin(Vec::new(), HostInstant::default(), &head()).unwrap();
+        with_calls(|now, call| writer.write(now, call).unwrap());
+        writer.write_missing(HostInstant::from_ns(u64::MAX)).unwrap();
+        let (calls, error) = read(writer.get_mut());
+        assert_eq!(calls, with_calls(shown));
+        let end = written().len() as u64;
+        assert!(matches!(error, Some(CaptureError::Missing { offset }) if offset == end), "{error:?}");
     }
 
     #[test]

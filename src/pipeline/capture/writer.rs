@@ -46,6 +46,19 @@ impl<W: Write> CaptureWriter<W> {
         self.write_entry(kind, now, payload)
     }
 
+    /// Ends the capture with a mark that what followed is missing: its file did not take calls as fast as they were made.
+    ///
+    /// # Errors
+    /// The mark cannot be written.
+    pub fn write_missing(&mut self, now: HostInstant) -> io::Result<()> {
+        self.write_entry(Kind::Missing, now, &[])
+    }
+
+    /// Where it is written to. What is taken from there is no less part of the capture.
+    pub const fn get_mut(&mut self) -> &mut W {
+        &mut self.to
+    }
+
     pub(super) fn write_entry(&mut self, kind: Kind, now: HostInstant, payload: &[u8]) -> io::Result<()> {
         let length = u32::try_from(payload.len()).ok().filter(|length| *length <= PAYLOAD_BYTES_MAX);
         let length = length.ok_or_else(|| io::Error::other("a call carries more than 16 MiB"))?;

@@ -1,0 +1,114 @@
+//! What can be asked of a running bridge, and by whom.
+
+use std::io::{self, Write};
+use std::os::unix::net::UnixStream;
+use std::sync::mpsc::{Sender, SyncSender};
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// Release everything and end.
+    End,
+    /// Release everything and stop the process, until it is continued.
+    Stop,
+    /// Release everything (the panic button) and go on.
+    ReleaseAll,
+    /// Release everything and ignore contacts.
+    Pause,
+    /// Go on.
+    Resume,
+    /// Pause, or go on.
+    TogglePause,
+    /// Measure the zero again.
+    Retare,
+    /// Go over to another profile; `None` reads the one in use again.
+    Profile(Option<String>),
+    /// Tell what the bridge is doing.
+    Status,
+}
+
+impl Request {
+    /// The request that a line of the control socket states.
+    pub(super) fn parse(line: &str) -> Option<Self> {
+        match line.trim_end_matches(['\r', '\n']).split_once(' ') {
+            Some(("profile", name)) if !name.is_empty() => Some(Self::Profile(Some(name.into()))),
+            Some(_) => None,
+            None => match line.trim_end() {
+                "status" => Some(Self::Status),
+                "pause" => Some(Self::Pause),
+                "resume" => Some(Self::Resume),
+                "panic" => Some(Self::ReleaseAll),
+                "tare" => Some(Self::Retare),
+                "reload" => Some(Self::Profile(None)),
+                "quit" => Some(Self::End),
+                _ => None,
+            },
+        }
+    }
+}
+
+/// A request and whoever waits for its answer.
+#[derive(Debug)]
+pub struct Asked {
+    /// What is asked for.
+    pub request: Request,
+    pub(super) answer: Option<SyncSender<String>>,
+}
+
+impl Asked {
+    /// A request that gets no answer.
+    pub(super) const fn unanswered(request: Request) -> Self {
+        Self { request, answer: None }
+    }
+
+    /// Answers with one line of JSON. A signal gets no answer.
+    pub fn answer(&self, line: String) {
+        if let Some(answer) = &self.answer {
+            // A client that went away needs no answer.
+            let _ = answer.try_send(line);
+        }
+    }
+}
+
+/// Asks the bridge from any thread of its program.
+#[derive(Debug)]
+pub struct Asker {
+    pub(super) ask: Sender<Asked>,
+    pub(super) wake: UnixStream,
+}
+
+impl Asker {
+    /// Asks, and does not wait for an answer.
+    ///
+    /// # Errors
+    /// The bridge has ended.
+    pub fn ask(&self, request: Request) -> io::Result<()> {
+        self.send(Asked::unanswered(request))
+    }
+
+    pub(super) fn send(&self, asked: Asked) -> io::Result<()> {
+        self.ask.send(asked).map_err(|_| io::Error::from(io::ErrorKind::BrokenPipe))?;
+        (&self.wake).write_all(&[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_state_requests() {
+        for (line, request) in [
+            ("status\n", Some(Request::Status)),
+            ("panic\r\n", Some(Request::ReleaseAll)),
+            ("reload\n", Some(Request::Profile(None))),
+            ("profile my game.toml\n", Some(Request::Profile(Some("my game.toml".into())))),
+            ("profile \n", None),
+            ("profile\n", None),
+            ("status now\n", None),
+            ("", None),
+        ] {
+            assert_eq!(Request::parse(line), request, "{line:?}");
+        }
+    }
+}

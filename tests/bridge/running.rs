@@ -1,0 +1,96 @@
+//! The running program, watched and signalled from outside.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
+
+use rustix::event::{PollFd, Timespec, poll};
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
+
+/// Lets 10 ms pass.
+fn pause() {
+    let pause = Timespec { tv_sec: 0, tv_nsec: 10_000_000 };
+    poll(&mut [] as &mut [PollFd<'_>; 0], Some(&pause)).unwrap();
+}
+
+/// Waits until `holds`, `limit_ms` at most by its own count of waits. Whether it came to hold.
+pub(crate) fn comes_true(limit_ms: u32, mut holds: impl FnMut() -> bool) -> bool {
+    (0..limit_ms / 10).any(|_| {
+        let found = holds();
+        if !found {
+            pause();
+        }
+        found
+    })
+}
+
+/// A program with a folder of its own, where its socket is and what it told.
+pub(crate) struct Running {
+    pub(crate) folder: tempfile::TempDir,
+    child: Child,
+}
+
+impl Running {
+    /// The program `name`, in `folder`.
+    pub(crate) fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
+        let mut program = Command::new(name);
+        program.current_dir(folder).env("XDG_RUNTIME_DIR", folder).stdin(Stdio::null()).stdout(Stdio::null());
+        program
+    }
+
+    /// Starts `command` in `folder`.
+    pub(crate) fn start(folder: tempfile::TempDir, mut command: Command) -> Self {
+        let told = fs::File::create(folder.path().join("told")).unwrap();
+        Self { child: command.stderr(told).spawn().unwrap(), folder }
+    }
+
+    pub(crate) fn told(&self) -> String {
+        fs::read_to_string(self.folder.path().join("told")).unwrap()
+    }
+
+    pub(crate) fn ctl(&self, request: &str) -> Output {
+        let mut ctl = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+        ctl.env("XDG_RUNTIME_DIR", self.folder.path()).arg("ctl").args(request.split(' ')).output().unwrap()
+    }
+
+    pub(crate) fn status(&self) -> Value {
+        serde_json::from_slice(&self.ctl("status --json").stdout).unwrap_or(Value::Null)
+    }
+
+    pub(crate) fn signal(&self, signal: Signal) {
+        kill_process(Pid::from_child(&self.child), signal).unwrap();
+    }
+
+    /// Whether it ends within so many milliseconds; and how.
+    pub(crate) fn ends_within(&mut self, limit_ms: u32) -> Option<ExitStatus> {
+        comes_true(limit_ms, || self.has_ended());
+        self.child.try_wait().unwrap()
+    }
+
+    pub(crate) fn has_ended(&mut self) -> bool {
+        self.child.try_wait().unwrap().is_some()
+    }
+
+    pub(crate) fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// The kernel's letter for what the process does: `T` is stopped.
+    pub(crate) fn state(&self) -> char {
+        let stat = fs::read_to_string(format!("/proc/{}/stat", self.id())).unwrap();
+        stat.rsplit(") ").next().and_then(|rest| rest.chars().next()).unwrap()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        if std::thread::panicking() {
+            let _ = std::io::Write::write_all(&mut std::io::stderr(), self.told().as_bytes());
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Readers that stall: a log or a capture that nobody takes must not keep the bridge from playing and from ending.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
+use std::collections::BTreeMap;
+use std::fs::{File, OpenOptions};
+use std::io::Read;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::{Path, PathBuf};
+
+use rustix::fs::{CWD, FileType, Mode, OFlags, mknodat};
+use rustix::pipe::fcntl_setpipe_size;
+use rustix::process::Signal;
+use serde_json::Value;
+
+use crate::running::{Running, comes_true};
+
+const TACTPAD: &str = env!("CARGO_BIN_EXE_tactpad");
+
+/// It is to end within a second; the machine may be slow.
+const END_LIMIT_MS: u32 = 1_500;
+
+fn make_pipe(folder: &Path) -> PathBuf {
+    let path = folder.join("pipe");
+    mknodat(CWD, &path, FileType::Fifo, Mode::RWXU, 0).unwrap();
+    path
+}
+
+/// A reader that takes nothing until it is told to, on a pipe that holds little.
+fn open_reader(path: &Path) -> File {
+    let flags = OFlags::NONBLOCK.bits().cast_signed();
+    let reader = OpenOptions::new().read(true).custom_flags(flags).open(path).unwrap();
+    fcntl_setpipe_size(&reader, 4_096).unwrap();
+    reader
+}
+
+fn start(folder: tempfile::TempDir, line: &str) -> Running {
+    let mut program = Running::program(TACTPAD, folder.path());
+    program.args(line.split(' '));
+    Running::start(folder, program)
+}
+
+/// What a reader of the log has read so far, and takes for held.
+#[derive(Default)]
+struct Log {
+    unfinished: Vec<u8>,
+    lines: usize,
+    held: BTreeMap<String, i64>,
+}
+
+impl Log {
+    /// Takes what is there. A control that is said to be what it already was is a surprise.
+    fn read(&mut self, reader: &mut File) {
+        let mut bytes = [0; 4_096];
+        while let Ok(read @ 1..) = reader.read(&mut bytes) {
+            self.unfinished.extend_from_slice(&bytes[..read]);
+            while let Some(end) = self.unfinished.iter().position(|byte| *byte == b'\n') {
+                let line: Vec<u8> = self.unfinished.drain(..=end).collect();
+                self.take(&serde_json::from_slice(&line).unwrap());
+            }
+        }
+    }
+
+    fn take(&mut self, line: &Value) {
+        let (code, value) = (line["code"].to_string(), line["value"].as_i64().unwrap());
+        self.lines += 1;
+        if !code.contains("REL_") {
+            assert_ne!(self.held.insert(code, value).unwrap_or(0), value, "{line} says what was said before");
+        }
+    }
+}
+
+#[test]
+fn a_log_that_is_not_read_loses_whole_groups_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = make_pipe(folder.path());
+    let mut reader = open_reader(&path);
+    let line = format!("run --pad virtual --profile pointer --output log:{}", path.display());
+    let mut bridge = start(folder, &line);
+    let dropped = |bridge: &Running| bridge.status()["health"]["groups_dropped"].as_u64();
+    assert!(comes_true(40_000, || dropped(&bridge) > Some(0)), "{}", bridge.status());
+    assert_eq!(bridge.status()["state"], "playing");
+    let told = |bridge: &Running| bridge.told().matches("the event log is not read in time").count();
+    assert!(comes_true(1_000, || told(&bridge) == 1), "{}", bridge.told());
+
+    let mut log = Log::default();
+    assert!(comes_true(5_000, || {
+        log.read(&mut reader);
+        log.lines > 1_000
+    }));
+    log.read(&mut reader);
+    let (counted, lines) = (dropped(&bridge), log.lines);
+    assert!(comes_true(5_000, || {
+        log.read(&mut reader);
+        log.lines > lines + 100
+    }));
+    assert_eq!(dropped(&bridge), counted, "who reads again loses nothing");
+
+    // In a second the pipe is full again.
+    let samples = |bridge: &Running| bridge.status()["health"]["samples"].as_u64().unwrap();
+    let later = samples(&bridge) + 1_000;
+    assert!(comes_true(5_000, || samples(&bridge) > later));
+    assert_eq!(told(&bridge), 1);
+    bridge.signal(Signal::TERM);
+    assert_eq!(
+        bridge.ends_within(END_LIMIT_MS).and_then(|status| status.code()),
+        Some(0),
+        "{}",
+        bridge.told()
+    );
+    log.read(&mut reader);
+    assert_eq!(log.unfinished, b"", "a line in part");
+}
+
+#[test]
+fn a_capture_that_is_not_read_does_not_hold_up_the_end_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = make_pipe(folder.path());
+    let _reader = open_reader(&path);
+    let mut bridge = start(folder, &format!("record {}", path.display()));
+    assert!(comes_true(10_000, || bridge.status()["health"]["samples"].as_u64() > Some(1_000)));
+    bridge.signal(Signal::TERM);
+    assert_eq!(
+        bridge.ends_within(END_LIMIT_MS).and_then(|status| status.code()),
+        Some(1),
+        "{}",
+        bridge.told()
+    );
+    assert!(bridge.told().contains("did not take what was recorded: its last"), "{}", bridge.told());
+}
+
+#[test]
+fn a_pipe_that_nobody_reads_is_not_waited_for() {
+    for verb in ["run --pad virtual --output log:", "record "] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = make_pipe(folder.path());
+        let mut bridge = start(folder, &format!("{verb}{}", path.display()));
+        assert!(comes_true(10_000, || bridge.status()["state"] == "playing"), "{verb}: {}", bridge.told());
+        assert!(bridge.told().contains("nobody reads the pipe"), "{verb}: {}", bridge.told());
+        bridge.signal(Signal::TERM);
+        assert!(bridge.ends_within(END_LIMIT_MS).is_some(), "{verb}: {}", bridge.told());
+    }
+}

@@ -1,5 +1,6 @@
 //! The program as its users see it: what verbs print, what they refuse, the figures and files that they write.
 
+mod adapt;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod bad_input;
 mod plot;

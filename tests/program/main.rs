@@ -3,6 +3,7 @@
 mod adapt;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod bad_input;
+mod networks;
 mod plot;
 mod simulate;
 #[cfg(feature = "simulator")]

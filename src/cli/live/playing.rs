@@ -1,13 +1,14 @@
 //! What the live verbs share: which pad they play with, who is told, and how a run ends.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::field::field_of;
 use crate::cli::profile;
+use crate::cli::written::say;
 use tactpad::bridge::error::BridgeError;
 use tactpad::bridge::host::Host;
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
@@ -130,7 +131,7 @@ impl Audience {
     pub(super) fn tell(self, line: &str) {
         if self == Self::Stderr {
             // Where nobody reads, the bridge plays on.
-            let _ = writeln!(io::stderr(), "{line}");
+            say(line);
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::cli::decoder_file::Choice;
 use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::profile;
-use crate::cli::written::say;
+use crate::cli::written::{printable, say};
 use tactpad::bridge::parts::Parts;
 use tactpad::bridge::running::{Bridge, Ending};
 use tactpad::bridge::transport::address::PadAddress;
@@ -61,6 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let opened = opened.with_faults(arguments.faults)?;
     let name = &profile.profile().name;
     let title = format!("{} → {} → {name} → {}", arguments.pad, decoder.name, sink.describe());
+    let title = printable(&title);
     // The live picture has the title and the state; without one they are told in words.
     let audience = if io::stdout().is_terminal() { Audience::Nobody } else { Audience::Stderr };
     audience.tell(&title);

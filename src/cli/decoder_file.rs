@@ -8,8 +8,9 @@ use clap::Args;
 
 use super::destination::Destination;
 use super::failure::Failure;
-use super::written::reason;
+use super::written::{reason, say};
 use tactpad::network::{Network, onnx};
+use tactpad::pipeline::contact::nominal::Misses;
 use tactpad::pipeline::contact::read::Unreadable;
 use tactpad::pipeline::contact::{Decoder, read};
 use tactpad::pipeline::shipped;
@@ -44,6 +45,7 @@ impl Choice {
         let path = Path::new(self.name());
         let bytes = bytes(path).map_err(|why| unusable(path, &why))?;
         let decoder = read(&bytes).map_err(|error| unusable(path, &error.to_string()))?;
+        say_doubts(path, &bytes, &decoder);
         Ok((decoder, bytes))
     }
 }
@@ -51,13 +53,26 @@ impl Choice {
 /// Reads any decoder.
 pub(super) fn read(path: &Path) -> Result<Decoder, Failure> {
     let bytes = bytes(path).map_err(|why| unusable(path, &why))?;
-    read::decoder(&bytes).map_err(|error| unusable(path, &error.to_string()))
+    let decoder = read::decoder(&bytes).map_err(|error| unusable(path, &error.to_string()))?;
+    say_doubts(path, &bytes, &decoder);
+    Ok(decoder)
+}
+
+/// Warns of a network that may be of another pad.
+fn say_doubts(path: &Path, bytes: &[u8], decoder: &Decoder) {
+    if let Some(Misses { place_mm, force_n, .. }) = read::doubts(bytes, decoder) {
+        say(format_args!(
+            "warning: decoder {}: it has no checksum of tactpad's, and misses presses of the nominal pad by {place_mm:.1} mm and \
+             {force_n:.2} N: it may be of another pad",
+            path.display()
+        ));
+    }
 }
 
 /// Reads a network.
 pub(super) fn read_network(path: &Path) -> Result<Network, Failure> {
     let bytes = bytes(path).map_err(|why| unusable(path, &why))?;
-    onnx::read(&bytes).map_err(|error| unusable(path, &error.to_string()))
+    read::perceptron(&bytes).map_err(|error| unusable(path, &error.to_string()))
 }
 
 /// Writes a network.

@@ -26,7 +26,16 @@ pub(super) fn print_json(document: &impl serde::Serialize) -> Result<(), Failure
 
 /// Says something to people beside the verb's output. What does not get out must not stop the verb.
 pub(super) fn say(line: impl fmt::Display) {
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{}", printable(&line.to_string()));
+}
+
+/// The text without what a terminal would obey: names in it may come from files and devices.
+pub(super) fn printable(text: &str) -> String {
+    let is_obeyed = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
+    let shown = |letter: char| {
+        if is_obeyed(letter) { letter.escape_default().to_string() } else { letter.to_string() }
+    };
+    text.chars().map(shown).collect()
 }
 
 impl<W: Write> Named<W> {

@@ -5,6 +5,7 @@ use std::fmt;
 use crate::lab::calibration::earlier::Earlier;
 use crate::lab::calibration::fit::{Calibration, FitError, Report, fit_reported};
 use crate::lab::calibration::regression::{neighbours, regression};
+use crate::lab::calibration::screening::{Fault, Unexplained, screened};
 use crate::lab::scdf::adaptation::{Adapted, TooFew, adapt, examples};
 use crate::network::training::Epoch;
 use crate::network::{Network, Zero};
@@ -89,6 +90,14 @@ impl Contacts {
     /// What the channels are relative to.
     pub fn zero(&self) -> Zero {
         if self.is_tared() { Zero::Tared } else { Zero::Raw }
+    }
+
+    /// Holds them against the device: `None` for contacts without a fault that shows.
+    ///
+    /// # Errors
+    /// No pad of this kind explains the channels, not even one with one fault.
+    pub fn screened(&self, device: &Device, field: &PadField) -> Result<Option<Fault>, Unexplained> {
+        screened(&self.rows, device, field)
     }
 
     /// The pad's own field, calibrated. `field` is the device's; `earlier` what another pad's decoder tells of it; `report`

@@ -86,5 +86,6 @@ impl Running {
 
 fn refused(why: &str) -> OnnxError {
     let line: String = why.split_whitespace().collect::<Vec<_>>().join(" ");
-    OnnxError::Foreign(line.chars().take(TOLD_CHARACTERS).collect())
+    // Names in it may hold what a terminal obeys.
+    OnnxError::Foreign(line.chars().take(TOLD_CHARACTERS).collect::<String>().escape_debug().to_string())
 }

@@ -78,6 +78,39 @@ fn replaced(bytes: &[u8], from: &[u8], to: &[u8]) -> Vec<u8> {
     bytes
 }
 
+/// The bytes of a file of ours as an earlier tactpad wrote them: its last property is left out.
+fn without_checksum(bytes: &[u8]) -> Vec<u8> {
+    let at = bytes.windows(KEY.len()).rposition(|window| window == KEY).unwrap();
+    // Before the key: the property's field and length, the key's field and length.
+    bytes[..at - 4].to_vec()
+}
+
+const KEY: &[u8] = b"tactpad.checksum";
+
+#[test]
+fn the_checksum_finds_every_flipped_bit_that_changes_anything() {
+    let network = network(&[6], Zero::Raw);
+    let bytes = onnx::write(&network);
+    let mut taken = 0;
+    for bit in 0..8 * bytes.len() {
+        let mut flipped = bytes.clone();
+        flipped[bit / 8] ^= 1 << (bit % 8);
+        if let Ok(read) = onnx::read(&flipped) {
+            assert_eq!(read, network, "bit {bit}");
+            taken += 1;
+        }
+    }
+    // In the name of the checksum itself: then the file is one without.
+    assert!(taken <= 8 * (KEY.len() + 4), "{taken} of {} flips are taken", 8 * bytes.len());
+    let mut longer = bytes.clone();
+    longer.extend_from_slice(&bytes);
+    assert_eq!(onnx::read(&longer), Err(OnnxError::Checksum));
+    assert!(onnx::read(&replaced(&bytes, b"raw", b"wet")) == Err(OnnxError::Checksum));
+    let earlier = without_checksum(&bytes);
+    assert_eq!(onnx::read(&earlier), Ok(network));
+    assert_eq!([&bytes, &earlier].map(|bytes| onnx::is_sealed(bytes)), [Ok(true), Ok(false)]);
+}
+
 #[test]
 fn other_models_are_refused_with_the_reason() {
     let told = |bytes: &[u8]| onnx::read(bytes).unwrap_err().to_string();
@@ -87,7 +120,8 @@ fn other_models_are_refused_with_the_reason() {
     assert!(told(&replaced(MATMUL, b"Relu", b"Sqrt")).contains("operator Sqrt"));
     let exotic = told(RESIDUAL);
     assert!(exotic.contains("operator Tanh") && exotic.contains("--features foreign-onnx"), "{exotic}");
-    let own = onnx::write(&network(&[4], Zero::Raw));
+    // What follows the checksum's sum is not asked for where there is none.
+    let own = without_checksum(&onnx::write(&network(&[4], Zero::Raw)));
     let weighty = told(&replaced(&own, b"Gemm", b"Relu"));
     assert!(weighty.contains("operator Relu"), "{weighty}");
     let divided = onnx::read(&replaced(TRANSLATED, &0.125_f32.to_le_bytes(), &[0; 4]));

@@ -1,11 +1,13 @@
 //! The program as its users see it: what verbs print, what they refuse, the figures and files that they write.
 
+mod adapt;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod bad_input;
 #[cfg(feature = "simulator")]
 mod docs;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod hints;
+mod networks;
 mod plot;
 mod simulate;
 #[cfg(feature = "simulator")]

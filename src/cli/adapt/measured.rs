@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use crate::cli::failure::Failure;
 use crate::cli::tables;
+use tactpad::lab::calibration::screening::Fault;
 use tactpad::lab::contacts::Contacts;
 use tactpad::pad::device::Device;
 use tactpad::tables::measured::columns::Kind;
@@ -32,6 +33,11 @@ impl Measured {
         let contacts = Contacts::of(recordings.collect(), rows, seed);
         let contacts = contacts.map_err(|error| Failure::Unusable(format!("{names}: {error}")))?;
         Ok(Self { contacts, names })
+    }
+
+    /// A decoder can be fitted to them, but a part of the pad is at fault.
+    pub(super) fn warning(&self, fault: Fault) -> String {
+        format!("{}: {fault}; mend it and measure again", self.names)
     }
 
     /// Nothing can be fitted to them.

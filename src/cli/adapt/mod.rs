@@ -18,6 +18,7 @@ use super::decoder_file;
 use super::destination::Destination;
 use super::device::Pad;
 use super::failure::Failure;
+use super::field::field_of;
 use super::written::{both_print, is_same, is_stdout, print_json, say, stdout, written_over};
 
 /// Arguments of `tactpad adapt`.
@@ -63,6 +64,8 @@ struct Outcome {
     rows: usize,
     /// Whether channels were taken relative to the untouched pad.
     tared: bool,
+    /// What is wrong with the pad that was measured, as far as it shows.
+    warnings: Vec<String>,
     #[serde(flatten)]
     fit: Fit,
 }
@@ -85,18 +88,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let measured = Measured::read(&arguments.measured, &device, arguments.rows, arguments.seed)?;
     let to = Destination::of(out)?;
     let from = arguments.from.as_deref();
+    let earlier = own::earlier(*method, from)?;
+    let field = field_of(&device)?;
+    let fault = measured.contacts.screened(&device, &field).map_err(|why| measured.refused(why))?;
     let fit = if *method == Method::Scdf {
         let (network, fit) = scdf::adapt(&measured, from, arguments.seed)?;
         decoder_file::write_network(&to, &network)?;
         Fit::Network(fit)
     } else {
-        let (decoder, fit) = own::adapt(*method, &measured, from, &device)?;
+        let (decoder, fit) = own::adapt(*method, &measured, earlier.as_ref(), (&device, &field))?;
         let note = format!("{} contacts of {}", measured.contacts.count(), measured.names);
         to.write(&decoder.to_bytes(&note).unwrap_or_default())?;
         Fit::Own(Box::new(fit))
     };
     let (rows, tared) = (measured.contacts.count(), measured.contacts.is_tared());
-    let outcome = Outcome { method: *method, rows, tared, fit };
+    let warnings: Vec<String> = fault.map(|fault| measured.warning(fault)).into_iter().collect();
+    warnings.iter().for_each(|warning| say(format_args!("warning: {warning}")));
+    let outcome = Outcome { method: *method, rows, tared, warnings, fit };
     match (json, is_stdout(out)) {
         (true, _) => print_json(&outcome),
         (false, true) => {

@@ -9,13 +9,13 @@ use super::measured::Measured;
 use super::method::Method;
 use crate::cli::decoder_file;
 use crate::cli::failure::Failure;
-use crate::cli::field::field_of;
 use crate::cli::progress::Progress;
 use tactpad::lab::calibration::earlier::Earlier;
 use tactpad::lab::calibration::fit::Calibration;
 use tactpad::lab::calibration::thermal_fit::ThermalFit;
 use tactpad::numeric::statistics::mean;
 use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
 use tactpad::pipeline::compensation::creep::{Creep, NO_CREEP};
 use tactpad::pipeline::compensation::hysteresis::Play;
 use tactpad::pipeline::contact::Decoder;
@@ -83,22 +83,28 @@ struct Found {
     deviation: f64,
 }
 
+/// The decoder of `--from`; none for a method that begins with none, or with a network.
+pub(super) fn earlier(method: Method, from: Option<&Path>) -> Result<Option<Decoder>, Failure> {
+    match (method, from) {
+        (Method::Inverse, Some(path)) => another_pads(path).map(Some),
+        (Method::Wrench | Method::Linear | Method::Knn, Some(_)) => Err(Failure::Unusable(
+            "--from is for inverse and scdf; wrench, linear and knn are made of the measured contacts alone"
+                .into(),
+        )),
+        (_, None) | (Method::Scdf, Some(_)) => Ok(None),
+    }
+}
+
 /// Fits the decoder.
 pub(super) fn adapt(
     method: Method,
     measured: &Measured,
-    from: Option<&Path>,
-    device: &Device,
+    earlier: Option<&Decoder>,
+    (device, field): (&Device, &PadField),
 ) -> Result<(Decoder, Fit), Failure> {
-    if from.is_some() && method != Method::Inverse {
-        return Err(Failure::Unusable(
-            "--from is for inverse and scdf; wrench, linear and knn are made of the measured contacts alone"
-                .into(),
-        ));
-    }
     let (contacts, reach_mm) = (&measured.contacts, device.contact.max_centre_radius_mm);
     let fitted = match method {
-        Method::Inverse => return calibrated(measured, from, device),
+        Method::Inverse => return calibrated(measured, earlier, (device, field)),
         Method::Knn => contacts.neighbours(),
         Method::Wrench => contacts.regression(Target::Wrench, reach_mm),
         Method::Linear | Method::Scdf => contacts.regression(Target::Contact, reach_mm),
@@ -106,13 +112,15 @@ pub(super) fn adapt(
     Ok((fitted.map_err(|error| measured.refused(error))?, Fit::default()))
 }
 
-fn calibrated(measured: &Measured, from: Option<&Path>, device: &Device) -> Result<(Decoder, Fit), Failure> {
-    let earlier = from.map(earlier).transpose()?;
-    let field = field_of(device)?;
+fn calibrated(
+    measured: &Measured,
+    earlier: Option<&Decoder>,
+    (device, field): (&Device, &PadField),
+) -> Result<(Decoder, Fit), Failure> {
     let progress = Progress::begin("fitting the pad's field");
     let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
-    let earlier = earlier.as_ref().and_then(Earlier::of);
-    let calibration = measured.contacts.calibration(device, &field, earlier, &report);
+    let earlier = earlier.and_then(Earlier::of);
+    let calibration = measured.contacts.calibration(device, field, earlier, &report);
     drop(progress);
     let calibration = calibration.map_err(|error| measured.refused(error))?;
     let found = Fit { pad: Some(Pad::of(&calibration)) };
@@ -120,7 +128,7 @@ fn calibrated(measured: &Measured, from: Option<&Path>, device: &Device) -> Resu
 }
 
 /// The other pad's decoder to begin with.
-fn earlier(path: &Path) -> Result<Decoder, Failure> {
+fn another_pads(path: &Path) -> Result<Decoder, Failure> {
     let decoder = decoder_file::read(path)?;
     if Earlier::of(&decoder).is_none() {
         return Err(Failure::Unusable(format!(

@@ -8,7 +8,7 @@ use clap::{Args, Subcommand};
 use serde_json::Value;
 
 use crate::cli::failure::Failure;
-use crate::cli::written::{reason, stdout};
+use crate::cli::written::{printable, reason, stdout};
 use tactpad::bridge::control::ask;
 
 /// Arguments of `tactpad ctl`.
@@ -115,7 +115,7 @@ fn absolute(name: &str) -> Result<String, Failure> {
 
 fn print_status(status: &Value) -> io::Result<()> {
     let mut out = stdout();
-    let text = |key: &str| status.get(key).and_then(Value::as_str).unwrap_or("unknown").to_owned();
+    let text = |key: &str| status.get(key).and_then(Value::as_str).map_or("unknown".into(), printable);
     writeln!(out, "state    {}", text("state"))?;
     writeln!(out, "pad      {}", text("pad"))?;
     writeln!(out, "profile  {}", text("profile"))?;

@@ -6,7 +6,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::cli::failure::Failure;
-use crate::cli::written::{print_json, stdout};
+use crate::cli::written::{print_json, printable, stdout};
 use tactpad::bridge::transport::pads::{Attachment, FoundPad, attached};
 
 /// Arguments of `tactpad devices`.
@@ -58,7 +58,7 @@ fn print(report: &DevicesReport) -> io::Result<()> {
         [] => writeln!(out, "no pad is attached; play without one: tactpad demo")?,
         pads => {
             for pad in pads {
-                writeln!(out, "pad   --pad {}   ({})", pad.address, pad.path)?;
+                writeln!(out, "pad   --pad {}   ({})", printable(&pad.address), pad.path)?;
             }
         }
     }

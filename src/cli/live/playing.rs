@@ -167,7 +167,7 @@ impl Audience {
     pub(super) fn tell(self, line: &str) {
         if self == Self::Stderr {
             // Where nobody reads, the bridge plays on.
-            let _ = writeln!(io::stderr(), "{line}");
+            say(line);
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::profile;
 use crate::cli::terminal;
-use crate::cli::written::say;
+use crate::cli::written::{printable, say};
 use tactpad::bridge::parts::Parts;
 use tactpad::bridge::running::{Bridge, Ending};
 use tactpad::bridge::transport::address::PadAddress;
@@ -65,6 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let opened = opened.with_faults(arguments.faults)?;
     let name = &profile.profile().name;
     let title = format!("{} → {} → {name} → {}", arguments.pad, decoder.name, sink.describe());
+    let title = printable(&title);
     // The live picture has the title and the state; without one they are told in words.
     let audience = if is_shown { Audience::Nobody } else { Audience::Stderr };
     if let Some(missing) = missing {

@@ -75,6 +75,11 @@ impl Place {
     }
 }
 
+/// Σₐ Fₐ Eₐ.
+pub(super) fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
+    map.iter().zip(force_n).map(|(map, n)| map * n).sum()
+}
+
 /// The Laplacian of the maps, ∇²G ≈ \[∂ₓG(x + h) − ∂ₓG(x − h) + ∂ᵧG(y + h) − ∂ᵧG(y − h)\]/2h.
 fn laplacian(signals: &InfluenceField, [x_mm, y_mm]: [f64; 2]) -> Maps {
     // The field is held at its rim: beyond it there is no curvature, so that is taken a little inwards.

@@ -10,7 +10,7 @@
 //! with zeros z, gains g and their temperature coefficients α, strains e before gains, crosstalk X, shares w and lags l of the
 //! play operators, creep's share c and state u, blur b, and physical parameters p. G is the simulator's field.
 
-use super::contacts::{BACKGROUND_DEGREE, Maps, Measured, Place, TERMS};
+use super::contacts::{BACKGROUND_DEGREE, Maps, Measured, Place, TERMS, response};
 use super::prior::Prior;
 use super::prior_deviations::{Kind, PriorDeviations};
 use crate::pad::device::parameter::Parameter;
@@ -21,7 +21,7 @@ use crate::quantity::CHANNELS;
 use crate::tables::recording::Lags;
 
 /// Prior standard deviations. Of gains: the authors' earlier pad has 0.83 to 1.33.
-const GAIN_DEVIATION: f64 = 0.3;
+pub(super) const GAIN_DEVIATION: f64 = 0.3;
 /// Half the mean square of the distance at which a contact's force acts from its place, along each axis: an indenter of
 /// another size, or a finger that is not still.
 const BLUR_DEVIATION_MM2: f64 = 0.5;
@@ -284,9 +284,4 @@ fn share(n: usize) -> f64 {
     let size = |n: usize| 1.0 / (1 + n) as f64;
     let whole: f64 = (0..=BACKGROUND_DEGREE).map(|n| (n + 1) as f64 * size(n).powi(2)).sum();
     size(n) / whole.sqrt()
-}
-
-/// Σₐ Fₐ Eₐ.
-fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
-    map.iter().zip(force_n).map(|(map, n)| map * n).sum()
 }

@@ -105,5 +105,6 @@ fn layer(node: &Node<'_>, tensors: &[&Tensor]) -> Result<Layer, OnnxError> {
 
 fn unsupported(node: &Node<'_>, why: &str) -> OnnxError {
     let operator: String = String::from_utf8_lossy(node.operator).chars().take(40).collect();
-    OnnxError::Unsupported(format!("an operator {operator} {why}"))
+    // A name may hold what a terminal obeys.
+    OnnxError::Unsupported(format!("an operator {} {why}", operator.escape_debug()))
 }

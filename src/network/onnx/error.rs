@@ -8,6 +8,10 @@ use std::fmt;
 pub enum OnnxError {
     /// The bytes are no ONNX model, or end early.
     Damaged,
+    /// Its checksum is not that of its bytes.
+    Checksum,
+    /// For a press of the nominal pad it gives a contact that is not finite, or farther and stronger than any.
+    Absurd,
     /// The weights are in another file.
     External,
     /// The model holds something else than a perceptron: what.
@@ -26,6 +30,14 @@ impl fmt::Display for OnnxError {
         match self {
             Self::Damaged => f.write_str(
                 "it is no ONNX model, or is damaged; make it with train or adapt, or export it again",
+            ),
+            Self::Checksum => f.write_str(
+                "its checksum is not that of its numbers: the file is damaged; make it anew with train or adapt, or, if it was \
+                 changed on purpose, take its property tactpad.checksum out",
+            ),
+            Self::Absurd => f.write_str(
+                "a press on the nominal pad would be beyond 300 mm or 100 N, or no number: it is damaged, or takes something \
+                 else than microvolts; export it again",
             ),
             Self::External => {
                 f.write_str("its weights are in another file; export it as one file (external_data=False)")

@@ -174,7 +174,7 @@ fn zero_of(property: &[u8]) -> Result<Option<Zero>, OnnxError> {
 }
 
 /// The bytes of a message's field; none are none.
-fn text_field(message: &[u8], number: u64) -> Result<&[u8], OnnxError> {
+pub(super) fn text_field(message: &[u8], number: u64) -> Result<&[u8], OnnxError> {
     let mut text = &[][..];
     for field in Fields::of(message) {
         match field.ok_or(OnnxError::Damaged)? {

@@ -31,6 +31,11 @@ impl<'b> Fields<'b> {
         Self { rest: message }
     }
 
+    /// How many bytes are not read yet.
+    pub(super) const fn left(&self) -> usize {
+        self.rest.len()
+    }
+
     fn take(&mut self, count: usize) -> Option<&'b [u8]> {
         let (taken, rest) = self.rest.split_at_checked(count)?;
         self.rest = rest;

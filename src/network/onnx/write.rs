@@ -1,5 +1,6 @@
 //! The way out.
 
+use super::checksum;
 use super::graph::CHANNELS_KEY;
 use super::wire::{push_bytes, push_number};
 use crate::network::{Network, OUTPUTS, Zero};
@@ -27,10 +28,8 @@ pub(super) fn model(network: &Network) -> Vec<u8> {
     push_bytes(&mut operators, 1, b"");
     push_number(&mut operators, 2, OPERATOR_SET);
     push_bytes(&mut model, 8, &operators);
-    let mut property = Vec::new();
-    push_bytes(&mut property, 1, CHANNELS_KEY.as_bytes());
-    push_bytes(&mut property, 2, network.zero.name().as_bytes());
-    push_bytes(&mut model, 14, &property);
+    checksum::push_property(&mut model, CHANNELS_KEY, network.zero.name());
+    checksum::push(&mut model);
     model
 }
 

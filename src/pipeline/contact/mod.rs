@@ -3,6 +3,7 @@
 pub mod file;
 pub mod inverse;
 pub mod neighbours;
+pub mod nominal;
 pub mod read;
 pub mod regression;
 pub mod stage;

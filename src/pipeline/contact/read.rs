@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-use super::Decoder;
 use super::file::DecoderFileError;
+use super::nominal::{self, Misses};
 use super::statics::{ModelError, Statics, StaticsModel};
-use crate::network::Zero;
+use super::{Decoder, Method};
 #[cfg(feature = "foreign-onnx")]
 use crate::network::foreign::Foreign;
-use crate::network::onnx;
 use crate::network::onnx::error::OnnxError;
+use crate::network::{Network, Zero, onnx};
 
 /// How files of the program's own begin, of whatever version.
 const OWN: &[u8] = b"tactpad decoder ";
@@ -100,11 +100,43 @@ fn statics(text: &str) -> Result<Decoder, ModelError> {
     StaticsModel::from_toml(text).and_then(Statics::new).map(Decoder::from)
 }
 
+/// Reads a perceptron.
+///
+/// # Errors
+/// Bytes that are none, a checksum that is wrong, or, without a checksum, contacts that no pad has.
+pub fn perceptron(bytes: &[u8]) -> Result<Network, OnnxError> {
+    let network = onnx::read(bytes)?;
+    let is_sound = onnx::is_sealed(bytes)? || nominal::misses(|uv| network.decode(uv)).is_some();
+    if is_sound { Ok(network) } else { Err(OnnxError::Absurd) }
+}
+
 /// A perceptron; with the feature for it, what else tract can run.
 fn network(bytes: &[u8]) -> Result<Decoder, OnnxError> {
-    match onnx::read(bytes) {
+    match perceptron(bytes) {
         #[cfg(feature = "foreign-onnx")]
-        Err(OnnxError::Unsupported(_) | OnnxError::Shape(_)) => Foreign::read(bytes).map(Decoder::from),
+        Err(OnnxError::Unsupported(_) | OnnxError::Shape(_)) => foreign(bytes),
         read => read.map(Decoder::from),
     }
+}
+
+#[cfg(feature = "foreign-onnx")]
+fn foreign(bytes: &[u8]) -> Result<Decoder, OnnxError> {
+    let network = Foreign::read(bytes)?;
+    nominal::misses(|uv| network.decode(uv)).ok_or(OnnxError::Absurd)?;
+    Ok(network.into())
+}
+
+/// How far a network without checksum is from presses of the nominal pad, if that is far: it may be of another pad. One that
+/// takes raw channels cannot be asked.
+pub fn doubts(bytes: &[u8], decoder: &Decoder) -> Option<Misses> {
+    if decoder.zero() == Zero::Raw || onnx::is_sealed(bytes) == Ok(true) {
+        return None;
+    }
+    let misses = match &decoder.method {
+        Method::Network(network) => nominal::misses(|uv| network.decode(uv)),
+        #[cfg(feature = "foreign-onnx")]
+        Method::Foreign(network) => nominal::misses(|uv| network.decode(uv)),
+        _ => None,
+    };
+    misses.filter(Misses::are_large)
 }

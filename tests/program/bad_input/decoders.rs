@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use tactpad::network::{Network, Zero, onnx};
+use tactpad::pad::field::PadField;
 use tactpad::pipeline::call::Call;
 use tactpad::pipeline::capture::head::Head;
 use tactpad::pipeline::capture::writer::CaptureWriter;
@@ -11,6 +12,7 @@ use tactpad::pipeline::contact::file as decoder_file;
 use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::read::ReadProfile;
 use tactpad::pipeline::mapping::shipped;
+use tactpad::quantity::Contact;
 use tactpad::time::HostInstant;
 
 use super::{refuses_line, said, tactpad, with_file};
@@ -78,9 +80,11 @@ fn a_capture_whose_decoder_cannot_be_read_says_so() {
 fn measured(contacts: usize, change: impl Fn(usize, &mut Vec<String>)) -> Vec<u8> {
     let names =
         "session,x_mm,y_mm,fx_n,fy_n,fz_n,m0x_uv,m0y_uv,m0z_uv,m1x_uv,m1y_uv,m1z_uv,m2x_uv,m2y_uv,m2z_uv";
+    let signals = PadField::nominal().signals;
     let press = |k: usize| {
-        let uv: Vec<_> = (1..=9).map(|channel| (channel * k * k % 101).to_string()).collect();
-        format!("press,{},{},0,0,{},{}", k % 20, k % 13, 1 + k % 5, uv.join(","))
+        let [x_mm, y_mm, fz_n] = [k % 20, k % 13, 1 + k % 5].map(|number| number as f32);
+        let uv = signals.strain_uv(&Contact { x_mm, y_mm, fz_n, ..Contact::default() }).uv;
+        format!("press,{x_mm},{y_mm},0,0,{fz_n},{}", uv.map(|uv| uv.to_string()).join(","))
     };
     let rows = [names.to_owned(), "zero,0,0,0,0,0,0,0,0,0,0,0,0,0,0".into()];
     let rows = rows.into_iter().chain((0..contacts).map(press)).enumerate().map(|(line, row)| {

@@ -11,8 +11,8 @@ use super::terminal;
 /// Something moves this often, however long a step takes.
 const TICK: Duration = Duration::from_millis(100);
 
-const WITHOUT_END: &str = "{spinner} {elapsed} {wide_msg}";
-const WITH_END: &str = "{spinner} {elapsed} [{bar:24}] {percent:>3} %  {wide_msg}";
+const WITHOUT_END: &str = "{spinner} {elapsed_precise} {wide_msg}";
+const WITH_END: &str = "{spinner} {elapsed_precise} [{bar:24}] {percent:>3} %  {wide_msg}";
 
 /// The line; it is wiped when this is dropped. Where standard error is no terminal, or a dumb one, nothing is written.
 #[derive(Debug)]

@@ -65,6 +65,9 @@ fn a_capture_is_not_written_over_unless_that_is_asked_for() {
     assert!(!folder.path().join("other.cap").exists());
     assert!(tactpad(folder.path(), "record game.cap --seconds 1 --force").status.success());
     assert!(tactpad(folder.path(), "replay game.cap").status.success());
+    // What holds no play is no loss.
+    fs::write(folder.path().join("empty.cap"), &first[..18]).unwrap();
+    assert!(tactpad(folder.path(), "record empty.cap --seconds 1").status.success());
     // An older log is no capture.
     fs::write(folder.path().join("log"), "{}\n").unwrap();
     assert!(tactpad(folder.path(), "demo --seconds 2 --output log:log").status.success());

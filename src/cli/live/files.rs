@@ -8,7 +8,7 @@ use super::output::Output;
 use crate::cli::failure::Failure;
 use crate::cli::written::{is_same, is_stdout, say, written_over};
 use tactpad::bridge::transport::address::PadAddress;
-use tactpad::pipeline::capture::reader::{self, CaptureError, CaptureReader};
+use tactpad::pipeline::capture::reader::{CaptureError, CaptureReader};
 use tactpad::pipeline::mapping::shipped;
 
 /// What a live verb reads and writes.
@@ -65,14 +65,22 @@ impl Files<'_> {
     }
 }
 
-/// Refuses to write over a capture; `way_out` goes on where another name is the first way out.
+/// Refuses to write over a capture that holds play; `way_out` goes on where another name is the first way out.
 pub(super) fn keep_capture(written: &Path, way_out: &str) -> Result<(), Failure> {
-    let is_file = |path: &Path| fs::metadata(path).is_ok_and(|it| it.is_file());
-    // Opening a pipe would wait for its other end.
-    if is_stdout(written) || !is_file(written) || !File::open(written).is_ok_and(reader::is_capture) {
+    if is_stdout(written) || !holds_play(written) {
         return Ok(());
     }
     Err(Failure::Unusable(format!("{} is a capture: name another file{way_out}", written.display())))
+}
+
+/// Whether it is a capture, be it damaged.
+fn holds_play(path: &Path) -> bool {
+    // Asked before it is opened: opening a pipe would wait for its other end.
+    let file = fs::metadata(path).is_ok_and(|it| it.is_file()).then(|| File::open(path).ok()).flatten();
+    let begun = file.map(|file| CaptureReader::new(BufReader::new(file)));
+    begun.is_some_and(|begun| {
+        !matches!(begun, Err(CaptureError::NotACapture | CaptureError::NoPlay | CaptureError::Io(_)))
+    })
 }
 
 /// Reads a capture to its end, if that does not use it up. What cannot even be opened is told by who opens it.

@@ -34,6 +34,9 @@ use tactpad::tables::measured::{Label, Row, Table};
 /// Arguments of `tactpad simulate`.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tactpad simulate --dataset paper --seed 1 --out paper.csv")]
+#[command(override_usage = "tactpad simulate [OPTIONS] --contacts C.csv --out S.csv\n       \
+                            tactpad simulate [OPTIONS] --dataset paper --out S.csv\n       \
+                            tactpad simulate [OPTIONS] [--figures DIR] [--vtk DIR] [--at X,Y]")]
 #[command(group = ArgGroup::new("wanted").args(["contacts", "dataset", "figures", "vtk"]).required(true).multiple(true))]
 #[group(skip)]
 pub(super) struct Arguments {

@@ -80,12 +80,6 @@ pub struct CaptureReader<R: Read> {
     profile: Option<ReadProfile>,
 }
 
-/// Whether it begins like a capture.
-pub fn is_capture(mut from: impl Read) -> bool {
-    let mut magic = [0; MAGIC.len()];
-    from.read_exact(&mut magic).is_ok() && magic == MAGIC
-}
-
 impl<R: Read> CaptureReader<R> {
     /// Begins to read: the head, and whether there is something to play.
     ///

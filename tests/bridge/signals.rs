@@ -180,7 +180,7 @@ fn without_a_terminal_a_hang_up_reloads_and_so_does_ctl() {
     let shown = String::from_utf8(shown.unwrap().stdout).unwrap();
     let mine = folder.path().join("mine.toml");
     let name = |name: &str| {
-        fs::write(&mine, shown.replace(r#"name = "Contra""#, &format!("name = \"{name}\""))).unwrap()
+        fs::write(&mine, shown.replace(r#"name = "Contra""#, &format!("name = \"{name}\""))).unwrap();
     };
     name("First");
     let mut program = Running::program("setsid", folder.path());

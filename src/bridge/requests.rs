@@ -42,19 +42,20 @@ impl Requests {
         Ok(Self { woken, wake, flags: Vec::new(), queue, ask, answering: Arc::default(), socket: None })
     }
 
-    /// Takes the process's signals as requests from now on. A program that has its own use for them does not call this.
+    /// Takes the process's signals, and the end of its terminal, as requests from now on. A program that has its own use for them does not call this.
     ///
     /// # Errors
     /// The system refuses to.
     pub fn catch_signals(&mut self) -> io::Result<()> {
-        for (signal, request) in Start::of_this_process().signals() {
+        let start = Start::of_this_process();
+        for (signal, request) in start.signals() {
             let flag = Arc::new(AtomicBool::new(false));
             // The flag first: when the descriptor wakes the loop, the flag already stands.
             flag::register(signal, Arc::clone(&flag))?;
             low_level::pipe::register(signal, self.wake.try_clone()?)?;
             self.flags.push((flag, request));
         }
-        Ok(())
+        start.watch_terminal(self.asker()?)
     }
 
     /// Asks this bridge from another thread.

@@ -1,12 +1,14 @@
-//! What each signal asks of a bridge: one table.
+//! What each signal asks of a bridge: one table. And the end of its terminal, which not every shell passes on as a signal.
 
 use std::fs::{self, File};
 use std::io;
+use std::thread;
 
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGSTOP, SIGTERM, SIGTSTP, SIGUSR1, SIGUSR2};
 use signal_hook::low_level;
 
-use crate::bridge::request::Request;
+use crate::bridge::request::{Asker, Request};
 
 /// What the process was started with, as far as it decides what signals mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,8 +23,23 @@ impl Start {
     /// What this process was started with, if nobody has changed it yet.
     pub(super) fn of_this_process() -> Self {
         let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-        // Without a controlling terminal there is no such device.
-        Self { has_terminal: File::open("/dev/tty").is_ok(), ignored: ignored(&status) }
+        Self { has_terminal: terminal().is_some(), ignored: ignored(&status) }
+    }
+
+    /// Asks the bridge to end when its terminal is gone, if it has one and is to end with it.
+    ///
+    /// # Errors
+    /// The system has no thread to give.
+    pub(super) fn watch_terminal(self, asker: Asker) -> io::Result<()> {
+        let ends = self.signals().any(|(signal, request)| signal == SIGHUP && request == Request::End);
+        if let Some(terminal) = terminal().filter(|_| ends) {
+            thread::Builder::new().name("terminal".into()).spawn(move || {
+                await_hang_up(&terminal);
+                // A bridge that has ended already needs not be asked.
+                let _ = asker.ask(Request::End);
+            })?;
+        }
+        Ok(())
     }
 
     /// The signals to catch, and what each asks for.
@@ -55,6 +72,25 @@ enum Ignored {
     Counts,
     /// It stays ignored: whoever started the bridge wants it so.
     Stays,
+}
+
+/// The controlling terminal; without one there is no such device.
+fn terminal() -> Option<File> {
+    File::open("/dev/tty").ok()
+}
+
+/// Not every terminal wakes those who wait for its end: it is looked at this often.
+const LOOK: Timespec = Timespec { tv_sec: 1, tv_nsec: 0 };
+
+fn await_hang_up(terminal: &File) {
+    loop {
+        let mut fds = [PollFd::new(terminal, PollFlags::empty())];
+        // A signal may break it off: then it is looked at again.
+        let _ = poll(&mut fds, Some(&LOOK));
+        if fds[0].revents().intersects(PollFlags::HUP | PollFlags::ERR) {
+            return;
+        }
+    }
 }
 
 /// The ignored signals in the text of `/proc/self/status`; none if it does not say.

@@ -87,7 +87,7 @@ fn replay_capture(
             Ok((_, Call::Profile(_))) | Err(CaptureError::Profile { .. }) if !keeps_profile => {}
             Ok((now, call)) => replay_call(&mut pipeline, now, call, log)?,
             Err(error @ (CaptureError::CutOff { .. } | CaptureError::Missing { .. })) => {
-                say(format_args!("{} {error}", path.display()))
+                say(format_args!("{} {error}", path.display()));
             }
             Err(error) => {
                 // The damage is the verdict, even where nobody reads the events before it.

@@ -125,6 +125,23 @@ fn a_closed_terminal_releases_and_ends_whatever_plays() {
 }
 
 #[test]
+fn a_bridge_in_the_background_ends_with_its_terminal_too() {
+    if !require("setsid", "apt-get install util-linux") {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let line = format!("set -m; {TACTPAD} run --pad virtual --output log:events & wait");
+    let (terminal, program) = on_a_terminal(folder.path(), &["sh", "-c", &line]);
+    let bridge = Running::start(folder, program);
+    assert!(comes_true(10_000, || bridge.status()["state"] == "playing"), "{}", bridge.told());
+    // The shell dies of it, and passes nothing on to a process group in the background.
+    drop(terminal);
+    let has_ended = comes_true(5_000, || bridge.ctl("status").status.code() == Some(1));
+    bridge.ctl("quit");
+    assert!(has_ended, "it plays on");
+}
+
+#[test]
 fn a_bridge_under_nohup_outlives_its_terminal() {
     if !require("setsid", "apt-get install util-linux") || !require("nohup", "apt-get install coreutils") {
         return;
@@ -163,7 +180,7 @@ fn without_a_terminal_a_hang_up_reloads_and_so_does_ctl() {
     let shown = String::from_utf8(shown.unwrap().stdout).unwrap();
     let mine = folder.path().join("mine.toml");
     let name = |name: &str| {
-        fs::write(&mine, shown.replace(r#"name = "Contra""#, &format!("name = \"{name}\""))).unwrap()
+        fs::write(&mine, shown.replace(r#"name = "Contra""#, &format!("name = \"{name}\""))).unwrap();
     };
     name("First");
     let mut program = Running::program("setsid", folder.path());

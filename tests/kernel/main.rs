@@ -73,6 +73,16 @@ fn sigterm_releases_before_the_device_goes() {
 }
 
 #[test]
+fn sigquit_releases_before_the_device_goes() {
+    in_guest("sigquit_releases_before_the_device_goes", neutral::after_sigquit);
+}
+
+#[test]
+fn sigtstp_releases_and_the_device_stays() {
+    in_guest("sigtstp_releases_and_the_device_stays", neutral::after_sigtstp);
+}
+
+#[test]
 fn sigkill_leaves_nothing_held() {
     in_guest("sigkill_leaves_nothing_held", neutral::after_sigkill);
 }

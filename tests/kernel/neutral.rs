@@ -21,13 +21,32 @@ const PICTURES_MAX: u64 = 300;
 
 /// Ended politely: a reader sees everything released before the device goes.
 pub(crate) fn after_sigterm() {
+    ended_by(Signal::TERM);
+}
+
+/// Ended with Ctrl-\: the same.
+pub(crate) fn after_sigquit() {
+    ended_by(Signal::QUIT);
+}
+
+fn ended_by(signal: Signal) {
     let mut bridge = holding();
-    read_to_the_end(&mut bridge, Signal::TERM);
+    read_to_the_end(&mut bridge, signal);
     let mut released = bridge.reader.edges();
     released.sort_unstable();
     assert_eq!(released, [("ABS_HAT0X", 0), ("BTN_EAST", 0)]);
     assert_eq!(bridge.program.wait(1_000).code(), Some(0));
     assert_eq!(find(KeyCode::BTN_SOUTH), None, "the device is gone");
+}
+
+/// Stopped with Ctrl-Z: everything is released first, the device stays, and the pad plays again when the bridge goes on.
+pub(crate) fn after_sigtstp() {
+    let mut bridge = holding();
+    let sent_ns = stamp_ns();
+    bridge.program.signal(Signal::TSTP);
+    check_neutral_since(sent_ns, &mut bridge.reader);
+    bridge.program.signal(Signal::CONT);
+    check_plays_again(&mut bridge);
 }
 
 /// Killed: the kernel removes the device and with it whatever was held.

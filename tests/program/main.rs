@@ -3,6 +3,8 @@
 mod adapt;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod bad_input;
+#[cfg(target_os = "linux")]
+mod large_tables;
 mod networks;
 mod plot;
 mod simulate;

@@ -107,43 +107,57 @@ impl Evaluation {
     /// There is nothing to compare, or nothing to compare it with.
     pub fn of(
         decoder: &Decoder,
-        table: &Table,
-        truth: Option<&Table>,
+        table: Table,
+        truth: Option<&[Label]>,
         full_scale_n: f64,
     ) -> Result<Self, EvaluationError> {
-        if let Some(truth) = truth.filter(|truth| truth.rows.len() != table.rows.len()) {
-            return Err(EvaluationError::OtherRows { rows: table.rows.len(), truths: truth.rows.len() });
+        if let Some(truth) = truth.filter(|truth| truth.len() != table.rows.len()) {
+            return Err(EvaluationError::OtherRows { rows: table.rows.len(), truths: truth.len() });
         }
         let taken = taken(decoder, table, full_scale_n).ok_or(EvaluationError::NoZero)?;
-        let evaluation = Self::of_taken(decoder, &taken, truth);
+        let evaluation = Self::of_taken(decoder, taken, truth);
         if evaluation.by_labels.rows == 0 { Err(EvaluationError::NoContacts) } else { Ok(evaluation) }
     }
 
     /// Of a table as the decoder takes it.
-    fn of_taken(decoder: &Decoder, taken: &Table, truth: Option<&Table>) -> Self {
-        let places = zero::contacts(taken);
-        let rows = taken.rows_at(&places);
+    fn of_taken(decoder: &Decoder, taken: Table, truth: Option<&[Label]>) -> Self {
+        let (rows, places) = contacts(taken);
         let found = decoded(decoder, &rows);
-        let labels: Vec<Label> = rows.iter().map(|row| row.label).collect();
-        let by_truth = |truth: &Table| {
-            let truths: Vec<Label> = places.iter().map(|at| truth.rows[*at].label).collect();
+        let by_truth = |truth: &[Label]| {
+            let truths: Vec<Label> = places.iter().map(|at| truth[*at]).collect();
             ByTruth { errors: errors(&found, &truths), coverage95: coverage95(decoder, &rows, &truths) }
         };
         Self {
-            by_labels: errors(&found, &labels),
+            by_labels: errors(&found, rows.iter().map(|row| &row.label)),
             warned: warned(decoder, &rows),
             truth: truth.map(by_truth),
         }
     }
 }
 
+/// The table's contacts, and their places in it. A table may have a million rows: they stay where they are.
+fn contacts(mut table: Table) -> (Vec<Row>, Vec<usize>) {
+    let places = zero::contacts(&table);
+    for (to, from) in places.iter().enumerate() {
+        // Never a place that is still to come: to ≤ from.
+        table.rows.swap(to, *from);
+    }
+    table.rows.truncate(places.len());
+    (table.rows, places)
+}
+
 /// The table as the decoder takes it. `None` if nothing says what the untouched pad reads, and the decoder has to know.
-fn taken(decoder: &Decoder, table: &Table, full_scale_n: f64) -> Option<Table> {
-    let raw = || Recording::raw(table.clone(), full_scale_n);
-    let recording = Recording::of(table.clone(), full_scale_n)
-        .or_else(|| decoder.compensation.zero_uv.map(|zero_uv| raw().less(&zero_uv)))
-        .or_else(|| (decoder.zero() == Zero::Raw).then(raw))?;
-    Some(recording.taken(decoder))
+fn taken(decoder: &Decoder, table: Table, full_scale_n: f64) -> Option<Table> {
+    if decoder.zero() == Zero::Raw {
+        return Some(table);
+    }
+    let recording = Recording::tared_or_raw(table, full_scale_n);
+    let recording = match decoder.compensation.zero_uv {
+        _ if recording.is_tared() => recording,
+        Some(zero_uv) => recording.less(&zero_uv),
+        None => return None,
+    };
+    Some(recording.into_taken(decoder))
 }
 
 /// What the decoder makes of tared rows; a row without channels is no contact.
@@ -157,7 +171,11 @@ pub fn strain(row: &Row) -> Strain {
 }
 
 /// Compares contacts one by one; both lists are taken as long as the shorter.
-pub fn errors(found: &[Contact], wanted: &[Label]) -> Errors {
+pub fn errors<'l>(
+    found: &[Contact],
+    wanted: impl IntoIterator<Item = &'l Label, IntoIter: ExactSizeIterator>,
+) -> Errors {
+    let wanted = wanted.into_iter();
     let mut errors = Errors { rows: found.len().min(wanted.len()), ..Errors::default() };
     let count = errors.rows.max(1) as f64;
     for (found, wanted) in found.iter().zip(wanted) {

@@ -15,6 +15,10 @@ use crate::mechanics::system::SolveError;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 
+/// What the computation of a field takes at most: it was seen to take 1.15 GB.
+#[cfg(feature = "simulator")]
+const MEMORY: u64 = 1_300 << 20;
+
 /// A pad's field, and whether the next run finds it.
 #[derive(Debug)]
 pub struct Obtained {
@@ -31,6 +35,12 @@ pub enum FieldError {
     /// The pad's equations have no answer here.
     #[cfg(feature = "simulator")]
     Unsolved(SolveError),
+    /// It is not known yet, and to compute it takes more memory than this process may have.
+    #[cfg(feature = "simulator")]
+    NoMemory {
+        /// What it may have, MB.
+        allowed_mb: u64,
+    },
     /// It is not known yet, and this program cannot compute it.
     #[cfg(not(feature = "simulator"))]
     NoSimulator,
@@ -41,6 +51,13 @@ impl fmt::Display for FieldError {
         match self {
             #[cfg(feature = "simulator")]
             Self::Unsolved(error) => write!(f, "the pad cannot be computed: {error}"),
+            #[cfg(feature = "simulator")]
+            Self::NoMemory { allowed_mb } => write!(
+                f,
+                "this pad's field is not known yet, and to compute it takes {} MB, where this process may have {allowed_mb} MB; \
+                 make it once where there is more: tactpad simulate --dataset paper --out /dev/null, with the same --device",
+                MEMORY >> 20
+            ),
             #[cfg(not(feature = "simulator"))]
             Self::NoSimulator => f.write_str(
                 "this pad's field is not known yet, and this program was built without the simulator that computes it; \
@@ -65,6 +82,11 @@ pub fn field_of(device: &Device, progress: impl FnMut(fmt::Arguments<'_>)) -> Re
     let path = folder(|name| std::env::var_os(name)).map(|folder| folder.join(file_name(device)));
     if let Some(field) = path.as_deref().and_then(|path| kept(path, device)) {
         return Ok(Obtained { field, not_kept: None });
+    }
+    #[cfg(feature = "simulator")]
+    if let Some(allowed) = memory_max(Path::new("/")).filter(|allowed| *allowed < MEMORY) {
+        // Killed by the system, it could not say so.
+        return Err(FieldError::NoMemory { allowed_mb: allowed >> 20 });
     }
     let computed = computed(device, progress)?;
     let bytes = computed.to_bytes(device);
@@ -103,6 +125,17 @@ fn keep(path: &Path, bytes: &[u8]) -> io::Result<()> {
         let _ = fs::remove_file(&unfinished);
     }
     kept
+}
+
+/// What the system lets this process have: the least limit of its control group and of those around it (cgroup v2), as
+/// systemd's `MemoryMax` sets it. `None` without a limit, and where there are no such groups.
+#[cfg(feature = "simulator")]
+fn memory_max(root: &Path) -> Option<u64> {
+    let groups = fs::read_to_string(root.join("proc/self/cgroup")).ok()?;
+    let group = groups.lines().find_map(|line| line.strip_prefix("0::/"))?;
+    let folder = root.join("sys/fs/cgroup");
+    let limit = |group: &Path| fs::read_to_string(folder.join(group).join("memory.max")).ok();
+    Path::new(group).ancestors().filter_map(limit).filter_map(|text| text.trim().parse().ok()).min()
 }
 
 #[cfg(feature = "simulator")]
@@ -156,6 +189,26 @@ mod tests {
         other.plate.thickness_mm = 1.5;
         assert!(kept(&path, &other).is_none());
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "nothing unfinished is left");
+    }
+
+    #[cfg(feature = "simulator")]
+    #[test]
+    fn the_least_limit_of_all_groups_counts() {
+        let root = tempfile::tempdir().unwrap();
+        let groups = root.path().join("sys/fs/cgroup");
+        fs::create_dir_all(groups.join("user.slice/tactpad.service")).unwrap();
+        fs::create_dir_all(root.path().join("proc/self")).unwrap();
+        assert_eq!(memory_max(root.path()), None);
+        fs::write(root.path().join("proc/self/cgroup"), "0::/user.slice/tactpad.service\n").unwrap();
+        fs::write(groups.join("user.slice/memory.max"), "max\n").unwrap();
+        assert_eq!(memory_max(root.path()), None);
+        fs::write(groups.join("user.slice/tactpad.service/memory.max"), "67108864\n").unwrap();
+        assert_eq!(memory_max(root.path()), Some(64 << 20));
+        let told = FieldError::NoMemory { allowed_mb: 64 }.to_string();
+        assert!(
+            told.contains("may have 64 MB") && told.contains("tactpad simulate --dataset paper"),
+            "{told}"
+        );
     }
 
     #[test]

@@ -4,10 +4,9 @@
 //! released, and one that is reached by unloading came from full scale. The zeros are readings with hysteresis, too, so states
 //! count relative to those of the untouched pad.
 
-use crate::network::Zero;
 use crate::pipeline::compensation::Compensation;
 use crate::pipeline::compensation::creep::{Creep, Crept, NO_CREEP};
-use crate::pipeline::compensation::hysteresis::{History, Hysteresis, PLAYS};
+use crate::pipeline::compensation::hysteresis::{History, Hysteresis, NO_HYSTERESIS, PLAYS};
 use crate::pipeline::compensation::thermal::Thermal;
 use crate::pipeline::contact::Decoder;
 use crate::quantity::CHANNELS;
@@ -26,8 +25,7 @@ pub type Untouched = (usize, [f64; CHANNELS]);
 /// Tables, one after the other.
 #[derive(Clone, Debug)]
 pub struct Recording {
-    /// All rows, as they were measured; of names only those of the first table.
-    raw: Table,
+    /// All rows, less what the untouched pad reads; of names only those of the first table.
     tared: Table,
     parts: Vec<Part>,
     full_scale_n: f64,
@@ -76,23 +74,30 @@ impl Stay {
 impl Recording {
     /// `None` if the table never reads the untouched pad. `full_scale_n` is the pad's largest force.
     pub fn of(raw: Table, full_scale_n: f64) -> Option<Self> {
-        let (zeros, tared) = (Zeros::of(&raw)?, zero::tared(&raw)?);
-        let readings = zeros.rows().iter().filter_map(|at| Some((*at, raw.rows.get(*at)?.uv?))).collect();
-        let (rows, contacts) = (raw.rows.len(), zero::contacts(&raw));
+        let zeros = Zeros::of(&raw)?;
+        Some(Self::by(raw, zeros, full_scale_n))
+    }
+
+    fn by(mut table: Table, zeros: Zeros, full_scale_n: f64) -> Self {
+        let (rows, contacts) = (table.rows.len(), zero::contacts(&table));
+        let readings = zeros.tare(&mut table);
         let part = Part { first: 0, rows, zeros: Some(zeros), readings, contacts };
-        Some(Self { raw, tared, parts: vec![part], full_scale_n })
+        Self { tared: table, parts: vec![part], full_scale_n }
     }
 
     /// A table that need not read the untouched pad. Its channels stay raw.
     pub fn raw(raw: Table, full_scale_n: f64) -> Self {
         let (rows, contacts) = (raw.rows.len(), zero::contacts(&raw));
         let part = Part { first: 0, rows, zeros: None, readings: Vec::new(), contacts };
-        Self { tared: raw.clone(), raw, parts: vec![part], full_scale_n }
+        Self { tared: raw, parts: vec![part], full_scale_n }
     }
 
     /// Relative to the untouched pad if the table reads it, else raw.
     pub fn tared_or_raw(table: Table, full_scale_n: f64) -> Self {
-        Self::of(table.clone(), full_scale_n).unwrap_or_else(|| Self::raw(table, full_scale_n))
+        match Zeros::of(&table) {
+            Some(zeros) => Self::by(table, zeros, full_scale_n),
+            None => Self::raw(table, full_scale_n),
+        }
     }
 
     /// This recording, and then another one.
@@ -100,7 +105,6 @@ impl Recording {
     pub fn then(mut self, other: Self) -> Self {
         let rows = self.tared.rows.len();
         // Trials of two tables are never the same one, whatever their indices are.
-        self.raw.rows.extend(other.raw.rows);
         self.tared.rows.extend(other.tared.rows);
         let moved = |part: Part| Part { first: part.first + rows, ..part };
         self.parts.extend(other.parts.into_iter().map(moved));
@@ -185,20 +189,22 @@ impl Recording {
         self.parts.iter().any(|part| (part.first..part.first + part.rows).contains(&at) && part.is_zero(at))
     }
 
-    /// The tables as a decoder takes them: raw if it learnt so, else at its pad's temperature, without creep and hysteresis.
+    /// The tables as a decoder takes them: at its pad's temperature, without creep and hysteresis. The untouched pad is that of
+    /// the tables; where they never read it, see [`Recording::less`]. A decoder that takes raw channels takes
+    /// [`Recording::raw`].
     pub fn taken(&self, decoder: &Decoder) -> Table {
-        if decoder.zero() == Zero::Raw { self.raw.clone() } else { self.compensated(&decoder.compensation) }
+        self.clone().into_taken(decoder)
     }
 
-    /// The tables relative to the untouched pad, at the reference temperature, without creep and hysteresis. The untouched pad
-    /// is that of the tables; where they never read it, see [`Recording::less`].
-    fn compensated(&self, compensation: &Compensation) -> Table {
-        let Compensation { thermal, creep, hysteresis, .. } = compensation;
+    /// The same, for a recording that nobody needs any more.
+    pub fn into_taken(self, decoder: &Decoder) -> Table {
+        let Compensation { thermal, creep, hysteresis, .. } = &decoder.compensation;
         let recording = match thermal {
-            Some(thermal) => self.clone().at_reference(thermal),
-            None => self.clone(),
+            Some(thermal) => self.at_reference(thermal),
+            None => self,
         };
-        recording.without_creep(creep).without_hysteresis(hysteresis)
+        let recording = recording.without_creep(creep);
+        if *hysteresis == NO_HYSTERESIS { recording.tared } else { recording.without_hysteresis(hysteresis) }
     }
 
     /// How far each row's channels have crept with this relaxation time. Loads are held for their dwell, and what they leave

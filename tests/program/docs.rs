@@ -28,6 +28,9 @@ const FENCE: &str = "```";
 /// A folder in which a command finds what others made before it, and `@` in its arguments.
 const FOLDER: &str = "@";
 
+/// What that folder is called where a command prints its name.
+const SHOWN_FOLDER: &str = "figures";
+
 /// What stands under a command in a page.
 #[derive(Debug, PartialEq, Eq)]
 enum Shown {
@@ -92,7 +95,8 @@ impl Runs {
             let output = program.args(words).current_dir(root).output().unwrap();
             let complaint = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "tactpad {command}: {complaint}");
-            (String::from_utf8(output.stdout).unwrap(), figures)
+            let printed = String::from_utf8(output.stdout).unwrap();
+            (printed.replace(&*figures.to_string_lossy(), SHOWN_FOLDER), figures)
         })
     }
 }
@@ -114,7 +118,7 @@ fn renewed(page: &Path, runs: &mut Runs, stale: &mut Vec<String>) -> (String, Ve
                 written = to;
             }
             Shown::Image(name) => {
-                let (there, drawn) = (page.with_file_name(&name), drawn(figures, &name));
+                let (there, drawn) = (page.with_file_name(&name), figures.join(&name));
                 let [before, now] = [&there, &drawn].map(|path| fs::read_to_string(path).unwrap_or_default());
                 if drawing_differs(&before, &now) {
                     stale.push(format!("{}: {name}", page.display()));
@@ -125,13 +129,6 @@ fn renewed(page: &Path, runs: &mut Runs, stale: &mut Vec<String>) -> (String, Ve
     }
     lines[written..].iter().for_each(|line| renewed.extend([line, "\n"]));
     (renewed, images)
-}
-
-/// The file of a folder that is shown under this name, which may begin with its page's: `layout-scan.svg` is `scan.svg`.
-fn drawn(figures: &Path, name: &str) -> PathBuf {
-    let short = name.split_once('-').map_or(name, |(_, short)| short);
-    let path = figures.join(name);
-    if path.exists() { path } else { figures.join(short) }
 }
 
 #[test]

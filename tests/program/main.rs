@@ -7,6 +7,8 @@ mod bad_input;
 mod docs;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod hints;
+#[cfg(target_os = "linux")]
+mod large_tables;
 mod networks;
 mod plot;
 mod simulate;

@@ -2,6 +2,7 @@
 
 use super::Subject;
 use crate::lab::rig::measurement::{Measurement, carry_out};
+use crate::network::Zero;
 use crate::pipeline::contact::Decoder;
 use crate::tables::measured::{Label, Row, Table};
 use crate::tables::recording::Recording;
@@ -10,6 +11,8 @@ use crate::tables::recording::Recording;
 #[derive(Clone, Debug)]
 pub(super) struct CarriedOut {
     pub(super) recording: Recording,
+    /// As it was measured, for a decoder that takes raw channels.
+    raw: Vec<Row>,
     pub(super) truths: Vec<Label>,
 }
 
@@ -19,12 +22,13 @@ impl CarriedOut {
     pub(super) fn of(subject: &Subject<'_>, plan: &Table, seed: u64) -> Self {
         let pad = subject.actual;
         let Measurement { table, truth } = carry_out(plan, pad.device, pad.field, seed);
+        let raw = table.rows.clone();
         let recording = Recording::of(table, pad.device.contact.full_scale_n);
-        Self { recording: recording.expect("a plan begins with the untouched pad"), truths: truth }
+        Self { recording: recording.expect("a plan begins with the untouched pad"), raw, truths: truth }
     }
 
     /// All rows as the decoder takes them.
     pub(super) fn taken(&self, decoder: &Decoder) -> Vec<Row> {
-        self.recording.taken(decoder).rows
+        if decoder.zero() == Zero::Raw { self.raw.clone() } else { self.recording.taken(decoder).rows }
     }
 }

@@ -105,6 +105,13 @@ pub enum FitError {
         /// Contacts that it takes at least.
         least: usize,
     },
+    /// There are more contacts than the decoder keeps.
+    TooMany {
+        /// Contacts with nine channels.
+        contacts: usize,
+        /// Contacts that it keeps at most.
+        most: usize,
+    },
     /// The earlier decoder is of a pad with another plate.
     OtherPlate,
     /// The readings are beyond anything that a pad can read: the normal equations have no solution.
@@ -118,6 +125,12 @@ impl fmt::Display for FitError {
                 write!(
                     f,
                     "it takes {least} contacts with nine channels at least, and here are {contacts}; measure more"
+                )
+            }
+            Self::TooMany { contacts, most } => {
+                write!(
+                    f,
+                    "the decoder keeps each contact, {most} at most, and here are {contacts}; take some of them with --rows {most}"
                 )
             }
             Self::OtherPlate => {

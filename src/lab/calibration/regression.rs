@@ -2,7 +2,7 @@
 
 use crate::network::Zero;
 use crate::numeric::linear::Factor;
-use crate::pipeline::contact::neighbours::{Known, NEIGHBOURS, Neighbours};
+use crate::pipeline::contact::neighbours::{KNOWN_MAX, Known, NEIGHBOURS, Neighbours};
 use crate::pipeline::contact::regression::{Regression, TERMS, Target};
 use crate::quantity::CHANNELS;
 use crate::tables::measured::Row;
@@ -46,10 +46,13 @@ pub fn regression(rows: &[Row], zero: Zero, target: Target, reach_mm: f64) -> Re
 /// Keeps the contacts as neighbours. `zero` is what their channels are relative to.
 ///
 /// # Errors
-/// Fewer contacts than neighbours are asked.
+/// Fewer contacts than neighbours are asked, or more than a decoder keeps.
 pub fn neighbours(rows: &[Row], zero: Zero) -> Result<Neighbours, FitError> {
     enough(rows, NEIGHBOURS)?;
     let channels: Vec<[f64; CHANNELS]> = rows.iter().filter_map(|row| row.uv).collect();
+    if channels.len() > KNOWN_MAX {
+        return Err(FitError::TooMany { contacts: channels.len(), most: KNOWN_MAX });
+    }
     let count = channels.len().max(1) as f64;
     let deviation_uv: [f32; CHANNELS] = std::array::from_fn(|k| {
         // Root mean square difference from the mean; of a channel that never moves 1.

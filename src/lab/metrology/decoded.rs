@@ -1,20 +1,19 @@
 //! Errors of the decoded contacts, and what the temperature adds to them.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::rows::{
-    Reading, Zeros, by_place, is_ordinary, is_same_place, is_usual, less, loads, readings,
-    usual_temperature_c,
+    Reading, Zeros, by_place, is_ordinary, is_usual, less, loads, readings, usual_temperature_c,
 };
+use super::same::Different;
 use super::thermal::STEP_C;
 use super::{Decode, Needs};
 use crate::numeric::statistics;
 use crate::quantity::{CHANNELS, Contact};
 use crate::tables::measured::zero::Untouched;
 use crate::tables::measured::{Label, Row, Table};
-
-/// Largest difference of forces that count as the same contact.
-const SAME_FORCE_N: f64 = 0.15;
 
 const NEEDED: &str = "static loads, with unloaded rows";
 const NEEDED_RAW: &str = "static loads";
@@ -113,14 +112,10 @@ fn over(
 }
 
 /// The first reading of each force at a place.
-fn different(place: Vec<Reading>) -> Vec<Reading> {
-    let mut kept: Vec<Reading> = Vec::new();
-    for reading in place {
-        if !kept.iter().any(|known| is_same_contact(&known.row.label, &reading.row.label)) {
-            kept.push(reading);
-        }
-    }
-    kept
+fn different(mut place: Vec<Reading>) -> Vec<Reading> {
+    let mut different = Different::default();
+    place.retain(|reading| different.take(&reading.row.label));
+    place
 }
 
 fn summary(differences: &[Difference]) -> DecodedErrors {
@@ -170,11 +165,13 @@ pub fn drift(table: &Table, decode: Option<Decode>) -> Result<DecodedDrift, Need
 
 /// Pairs of the loads at one place.
 fn pairs<'d, 't>(place: &'d [Drifted<'t>], usual_c: f64) -> Vec<Pair<'d, 't>> {
-    let (usual, other): (Vec<&Drifted>, Vec<&Drifted>) =
+    let (mut usual, other): (Vec<&Drifted>, Vec<&Drifted>) =
         place.iter().partition(|load| is_usual(load.row.temp_c, Some(usual_c)));
+    let mut different = Different::default();
+    usual.retain(|load| different.take(&load.row.label));
     let pair = |load: &&'d Drifted<'t>| {
         let change_c = (load.row.temp_c? - usual_c).abs();
-        let same = usual.iter().find(|one| is_same_contact(&one.row.label, &load.row.label))?;
+        let same = usual.get(different.find(&load.row.label)?)?;
         (change_c >= CHANGE_C).then_some(Pair { load, same, steps: change_c / STEP_C })
     };
     other.iter().filter_map(pair).collect()
@@ -196,29 +193,21 @@ fn drifted(table: &Table, usual_c: f64) -> Vec<Drifted<'_>> {
     let is_zero = |row: &&Row| row.trial.is_none() && untouched.is(row) && is_near(row, usual_c);
     let zeros: Vec<(Option<usize>, [f64; CHANNELS])> =
         table.rows.iter().filter(is_zero).filter_map(|row| Some((row.session, row.uv?))).collect();
-    let all: Vec<_> = zeros.iter().map(|(_, uv)| *uv).collect();
-    // A session without zeros of its own has those of all.
-    let zero_uv = |wanted: Option<usize>| {
-        let own = zeros.iter().filter(|(session, _)| *session == wanted).map(|(_, uv)| *uv);
-        let own: Vec<_> = own.collect();
-        statistics::mean_vector(if own.is_empty() { &all } else { &own })
-    };
-    if all.is_empty() {
+    if zeros.is_empty() {
         return Vec::new();
     }
-    let sessions = [None].into_iter().chain((0..table.sessions.len()).map(Some));
-    let zeros: Vec<_> = sessions.map(|session| (session, zero_uv(session))).collect();
-    let zero_of = |row: &Row| zeros.iter().find(|(session, _)| *session == row.session).map(|(_, uv)| *uv);
-    loads(table).filter_map(|(_, row)| Some(Drifted { row, uv: less(&row.uv?, &zero_of(row)?) })).collect()
+    let of_all = statistics::mean_vector(zeros.iter().map(|(_, uv)| uv));
+    let mut by_session: BTreeMap<Option<usize>, Vec<[f64; CHANNELS]>> = BTreeMap::new();
+    zeros.iter().for_each(|(session, uv)| by_session.entry(*session).or_default().push(*uv));
+    let by_session: BTreeMap<_, _> =
+        by_session.into_iter().map(|(session, own)| (session, statistics::mean_vector(&own))).collect();
+    // A session without zeros of its own has those of all.
+    let zero_of = |row: &Row| by_session.get(&row.session).unwrap_or(&of_all);
+    loads(table).filter_map(|(_, row)| Some(Drifted { row, uv: less(&row.uv?, zero_of(row)) })).collect()
 }
 
 fn is_near(row: &Row, usual_c: f64) -> bool {
     row.temp_c.is_some() && is_usual(row.temp_c, Some(usual_c))
-}
-
-fn is_same_contact(one: &Label, other: &Label) -> bool {
-    let apart_n = (one.fx_n - other.fx_n).hypot(one.fy_n - other.fy_n).hypot(one.fz_n - other.fz_n);
-    is_same_place(one, other) && apart_n <= SAME_FORCE_N
 }
 
 #[cfg(test)]

@@ -31,6 +31,7 @@ mod filter;
 mod fixture;
 mod output;
 mod rows;
+mod same;
 mod series;
 
 use std::fmt;

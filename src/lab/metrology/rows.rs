@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::numeric::statistics::median;
 use crate::quantity::CHANNELS;
+use crate::tables::measured::alike::Alike;
 use crate::tables::measured::zero::{self, UNLOADED_N, Untouched};
 use crate::tables::measured::{Label, Row, Table};
 
@@ -48,21 +49,22 @@ pub(super) fn is_same_place(one: &Label, other: &Label) -> bool {
 /// What the channels read without load.
 pub(super) struct Zeros<'t> {
     table: &'t Table,
-    zeros: Option<zero::Zeros>,
+    alike: Option<Alike<'t>>,
 }
 
 impl<'t> Zeros<'t> {
     pub(super) fn of(table: &'t Table) -> Self {
-        Self { table, zeros: zero::Zeros::by(table, &Untouched::unloaded(table)) }
+        let zeros = zero::Zeros::by(table, &Untouched::unloaded(table));
+        Self { table, alike: zeros.map(|zeros| Alike::of(table, zeros)) }
     }
 
     pub(super) const fn is_empty(&self) -> bool {
-        self.zeros.is_none()
+        self.alike.is_none()
     }
 
-    /// The zero at the row with this index, by [`zero::Zeros::alike`]; `None` where there is none.
+    /// The zero at the row with this index, by [`Alike::at`]; `None` where there is none.
     pub(super) fn at(&self, index: usize) -> Option<[f64; CHANNELS]> {
-        self.zeros.as_ref()?.alike(self.table, index)
+        self.alike.as_ref()?.at(index)
     }
 
     /// What the channels of a row read beyond their zero; `None` without channels or zero.

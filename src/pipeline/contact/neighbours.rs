@@ -6,6 +6,9 @@ use crate::quantity::{CHANNELS, Contact, Strain};
 /// How many neighbours; the paper's.
 pub const NEIGHBOURS: usize = 5;
 
+/// Most contacts that a decoder keeps: its file stays one that is read, 56 bytes for each, and a decode below a millisecond.
+pub const KNOWN_MAX: usize = 200_000;
+
 /// A contact that was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {

@@ -33,9 +33,6 @@ pub const UNLOADED_N: f64 = 0.1;
 /// The least load over the largest force of the untouched rows.
 const APART: f64 = 3.0;
 
-/// Temperatures closer than this have a common zero.
-const SAME_TEMPERATURE_C: f64 = 1.0;
-
 /// Which rows of a table are untouched.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Untouched {
@@ -120,55 +117,49 @@ impl Zeros {
     ///
     /// It lies between those of the two untouched rows around it.
     pub fn at(&self, row: usize, value: impl Fn(usize) -> [f64; CHANNELS]) -> [f64; CHANNELS] {
-        self.between(row, |_| true, value).unwrap_or([0.0; CHANNELS])
+        let (before, after) = self.rows.split_at(self.rows.partition_point(|zero| *zero < row));
+        self.between(row, before.last().copied(), after.first().copied(), value).unwrap_or([0.0; CHANNELS])
     }
 
-    /// What a row of `table` reads without load, by the untouched rows of its own temperature, as far as temperatures
-    /// are known. Those of its own session come first; a session without any, as where zeros are a session of their own,
-    /// has those of all. `None` where there is none.
-    pub fn alike(&self, table: &Table, row: usize) -> Option<[f64; CHANNELS]> {
-        let here = table.rows.get(row)?;
-        let is_as_warm = |zero: usize| is_same_temperature(here, &table.rows[zero]);
-        let is_of_session = |zero: usize| table.rows[zero].session == here.session;
-        let value = |zero: usize| table.rows[zero].uv.unwrap_or_default();
-        self.between(row, |zero| is_of_session(zero) && is_as_warm(zero), value)
-            .or_else(|| self.between(row, is_as_warm, value))
-    }
-
-    /// Between the nearest of those untouched rows that count.
-    fn between(
+    /// Between the values of an untouched row before a row and one after it, as far as there are any.
+    pub(super) fn between(
         &self,
         row: usize,
-        counts: impl Fn(usize) -> bool,
+        before: Option<usize>,
+        after: Option<usize>,
         value: impl Fn(usize) -> [f64; CHANNELS],
     ) -> Option<[f64; CHANNELS]> {
-        let (before, after) = self.rows.split_at(self.rows.partition_point(|zero| *zero < row));
-        let before = before.iter().rev().find(|zero| counts(**zero));
-        let after = after.iter().find(|zero| counts(**zero));
         let (Some(before), Some(after)) = (before, after) else {
-            return before.or(after).map(|only| value(*only));
+            return before.or(after).map(value);
         };
-        let [here, first, second] = [row, *before, *after].map(|row| self.places[row]);
+        let [here, first, second] = [row, before, after].map(|row| self.places[row]);
         // Clocks that start anew say nothing.
         let share = if second > first { ((here - first) / (second - first)).clamp(0.0, 1.0) } else { 0.5 };
-        let (first, second) = (value(*before), value(*after));
+        let (first, second) = (value(before), value(after));
         Some(std::array::from_fn(|k| first[k] + share * (second[k] - first[k])))
     }
-}
 
-/// Whether rows are of one temperature, as far as it is known.
-fn is_same_temperature(one: &Row, other: &Row) -> bool {
-    one.temp_c.zip(other.temp_c).is_none_or(|(one, other)| (one - other).abs() <= SAME_TEMPERATURE_C)
+    /// Takes the zero off the channels of each row of the table, and gives what the untouched rows read.
+    pub fn tare(&self, table: &mut Table) -> Vec<(usize, [f64; CHANNELS])> {
+        let readings: Vec<_> =
+            self.rows.iter().filter_map(|at| Some((*at, table.rows.get(*at)?.uv?))).collect();
+        let read_uv = |zero: usize| {
+            let found = readings.binary_search_by_key(&zero, |(at, _)| *at);
+            found.map_or([0.0; CHANNELS], |place| readings[place].1)
+        };
+        for (at, row) in table.rows.iter_mut().enumerate() {
+            let zero_uv = self.at(at, read_uv);
+            row.uv.iter_mut().flatten().zip(zero_uv).for_each(|(uv, zero_uv)| *uv -= zero_uv);
+        }
+        readings
+    }
 }
 
 /// The table with its zero taken off the channels of each row; `None` if it never reads the untouched pad.
 pub fn tared(table: &Table) -> Option<Table> {
     let zeros = Zeros::of(table)?;
     let mut tared = table.clone();
-    for (at, row) in tared.rows.iter_mut().enumerate() {
-        let zero_uv = zeros.at(at, |zero| table.rows[zero].uv.unwrap_or_default());
-        row.uv.iter_mut().flatten().zip(zero_uv).for_each(|(uv, zero_uv)| *uv -= zero_uv);
-    }
+    zeros.tare(&mut tared);
     Some(tared)
 }
 
@@ -227,19 +218,6 @@ mod tests {
         assert_eq!(Zeros::by(&light, &Untouched::unloaded(&light)).unwrap().rows(), [0, 2, 3]);
         let exact = table(vec![row(0.0, 10.0), row(0.08, 20.0), row(0.15, 40.0)]);
         assert_eq!(first_channel(&tared(&exact).unwrap()), [0.0, 10.0, 30.0]);
-    }
-
-    #[test]
-    fn alike_are_zeros_of_one_temperature_and_session() {
-        let at = |session, temp_c, uv| Row { session: Some(session), temp_c: Some(temp_c), ..row(0.0, uv) };
-        let load = |session, temp_c| Row { session: Some(session), temp_c: Some(temp_c), ..row(1.0, 0.0) };
-        let rows =
-            vec![at(0, 25.0, 7.0), at(1, 25.0, 1.0), at(0, 35.0, 2.0), load(0, 25.2), at(1, 25.0, 3.0)];
-        let rows = [rows, vec![load(1, 35.5), load(1, 60.0)]].concat();
-        let table = Table { sessions: vec!["one".into(), "two".into()], ..table(rows) };
-        let zeros = Zeros::of(&table).unwrap();
-        let first = |row| zeros.alike(&table, row).map(|uv| uv[0]);
-        assert_eq!([first(3), first(5), first(6), first(99)], [Some(7.0), Some(2.0), None, None]);
     }
 
     #[test]

@@ -433,6 +433,7 @@ fn a_reader_that_goes_away_is_no_panic() {
         "demo --seconds 2 --output none",
         "demo --seconds 2 --output none --json",
         "demo --seconds 2 --output auto",
+        "run --pad virtual --seconds 2 --output log:-",
         "latency --seconds 1 --output none",
     ] {
         let (reader, writer) = io::pipe().unwrap();

@@ -100,8 +100,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: None,
         duration_us: Some(microseconds(arguments.seconds)),
     })?;
-    let is_shown = !arguments.json && terminal::moves_cursor(&io::stdout()) && *output != Output::Stdout;
-    let screen = is_shown.then(|| start_screen(format!("{name} on a virtual pad"), &bridge, &seen));
+    let screen =
+        is_shown(arguments).then(|| start_screen(format!("{name} on a virtual pad"), &bridge, &seen));
     let played = play(&mut bridge, &PadAddress::Virtual);
     drop(screen);
     let ending = played?;
@@ -169,9 +169,14 @@ fn open_sink(arguments: &Arguments, profile: &Profile) -> Result<(Box<dyn Sink>,
     Ok((sink, missing.unwrap_or_else(best)))
 }
 
+/// Whether there is a live picture.
+fn is_shown(arguments: &Arguments) -> bool {
+    !arguments.json && arguments.output != Output::Stdout && terminal::moves_cursor(&io::stdout())
+}
+
 /// The event log on the screen: the live picture shows it, and without one it is lines on stdout.
 fn here(arguments: &Arguments) -> Result<Box<dyn Sink>, Failure> {
-    if arguments.json || terminal::moves_cursor(&io::stdout()) {
+    if arguments.json || is_shown(arguments) {
         return Ok(Box::new(NullSink));
     }
     log_to(WhileRead(io::stdout()))

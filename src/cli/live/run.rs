@@ -3,6 +3,7 @@
 use std::io;
 
 use clap::Args;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::files::Files;
 use super::newest::Newest;
@@ -68,6 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let title = printable(&title);
     // The live picture has the title and the state; without one they are told in words.
     let audience = if is_shown { Audience::Nobody } else { Audience::Stderr };
+    let prints = *output == Output::Stdout || (missing.is_some() && !is_shown);
     if let Some(missing) = missing {
         say(missing);
     }
@@ -87,8 +89,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.lines()));
     let ending = play(&mut bridge, &arguments.pad);
     drop(screen);
-    if ending? == Ending::CaptureEnded {
-        say("the capture has ended");
+    match ending {
+        Err(_) if prints && is_unread() => return Err(Failure::Unread),
+        Ok(Ending::CaptureEnded) => say("the capture has ended"),
+        Ok(_) => {}
+        Err(failure) => return Err(failure),
     }
     Ok(())
+}
+
+/// Whether the reader of standard output went away.
+fn is_unread() -> bool {
+    let stdout = io::stdout();
+    let mut asked = [PollFd::new(&stdout, PollFlags::empty())];
+    let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
+    poll(&mut asked, Some(&at_once)).is_ok()
+        && asked.iter().any(|stdout| stdout.revents().contains(PollFlags::ERR))
 }

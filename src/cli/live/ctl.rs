@@ -46,6 +46,7 @@ enum Action {
         name: String,
     },
     /// Read the profile in use again, after it was changed.
+    #[command(after_help = "Example: tactpad ctl reload")]
     Reload,
     /// End the bridge.
     #[command(after_help = "Example: tactpad ctl quit")]

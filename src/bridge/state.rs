@@ -78,7 +78,7 @@ impl State {
                 "several pads are attached, or what cannot be used: `tactpad devices` lists them"
             }
             Self::Silent => "the pad sends nothing that can be read: check its power and its line",
-            Self::Taring => "measuring the zero: leave the pad untouched for half a second",
+            Self::Taring => "measuring the zero: leave the pad untouched for a moment",
             Self::Loaded => "lift the finger: the zero is measured when nothing lies on the pad",
             Self::Playing => "playing",
             Self::Doubtful => "frames are lost, repeated or damaged, nothing is pressed: check the line",

@@ -158,6 +158,12 @@ fn no_press_is_lost_for_long(pad: &Pad, plays: u64) {
         assert!(zeros_loaded == 0 || game.phases.contains(&Phase::Loaded), "seed {seed}: it is told");
         loaded += u64::from(zeros_loaded > 0);
     }
+    // The same from rest: nothing is taken for a wrong zero.
+    for seed in 0..plays / 10 {
+        let rested = Play { thumb: Contact::default(), ..Play::drawn(seed) };
+        let (_, game) = game(pad, &rested, seed);
+        assert_eq!(game.played.pipeline.health().zeros_loaded, 0, "seed {seed}");
+    }
     let name = pad.decoder.name();
     println!(
         "{name}: {presses} presses, {} lost; {loaded} zeros under the thumb in {plays} plays",

@@ -102,7 +102,7 @@ mod tests {
     fn a_finger_in_the_way_is_told_at_once_and_once_however_often_it_comes() {
         let at = |ms: u64| HostInstant::default().plus_us(ms * 1_000);
         let mut herald = Herald::new(at(0));
-        let state = |ms: u64| if (ms / 200) % 2 == 0 { State::Taring } else { State::Loaded };
+        let state = |ms: u64| if (ms / 200).is_multiple_of(2) { State::Taring } else { State::Loaded };
         let told: Vec<_> =
             (0..900).step_by(40).filter_map(|ms| Some((ms, herald.hear(at(ms), state(ms))?))).collect();
         assert_eq!(told, [(200, State::Loaded)]);

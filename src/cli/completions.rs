@@ -10,10 +10,10 @@ use super::written::stdout;
 
 /// Arguments of `tactpad completions`.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example: tactpad completions bash > ~/.local/share/bash-completion/completions/tactpad\n\n\
-    zsh: write it as _tactpad into a folder of $fpath. fish: write it as ~/.config/fish/completions/tactpad.fish"
-)]
+#[command(after_help = "Example: tactpad completions bash > tactpad.bash\n\n\
+    bash: write it as ~/.local/share/bash-completion/completions/tactpad.\n\
+    zsh: write it as _tactpad into a folder of $fpath.\n\
+    fish: write it as ~/.config/fish/completions/tactpad.fish.")]
 pub(super) struct Arguments {
     /// The shell.
     shell: Shell,

@@ -1,4 +1,5 @@
 //! A finger that lies on the pad when its zero is measured: what that costs, and for how long.
+#![allow(clippy::print_stdout, reason = "a study tells what it found")]
 
 use tactpad::numeric::random::SplitMix64;
 use tactpad::pad::device::Device;
@@ -38,8 +39,8 @@ impl Play {
         let mut contact = |least_n: f32, most_n: f32| {
             let (radius_mm, turn) = (between(0.0, 20.0), between(0.0, std::f32::consts::TAU));
             Contact {
-                x_mm: radius_mm * turn.cos(),
-                y_mm: radius_mm * turn.sin(),
+                x_mm: radius_mm * libm::cosf(turn),
+                y_mm: radius_mm * libm::sinf(turn),
                 fz_n: between(least_n, most_n),
                 ..Contact::default()
             }

@@ -63,6 +63,11 @@ fn a_capture_is_not_written_over_unless_that_is_asked_for() {
     }
     assert_eq!(fs::read(folder.path().join("game.cap")).unwrap(), first);
     assert!(!folder.path().join("other.cap").exists());
+    fs::write(folder.path().join("mine.toml"), "schema = 1").unwrap();
+    let over_a_profile = tactpad(folder.path(), "record mine.toml --seconds 1");
+    assert_eq!(over_a_profile.status.code(), Some(2));
+    assert!(said(&over_a_profile).contains("mine.toml is there already"), "{}", said(&over_a_profile));
+    assert_eq!(fs::read_to_string(folder.path().join("mine.toml")).unwrap(), "schema = 1");
     assert!(tactpad(folder.path(), "record game.cap --seconds 1 --force").status.success());
     assert!(tactpad(folder.path(), "replay game.cap").status.success());
     // What holds no play is no loss.

@@ -73,14 +73,34 @@ pub(super) fn keep_capture(written: &Path, way_out: &str) -> Result<(), Failure>
     Err(Failure::Unusable(format!("{} is a capture: name another file{way_out}", written.display())))
 }
 
+/// Refuses to record over a file that holds anything but a capture without play.
+pub(super) fn keep_file(written: &Path, way_out: &str) -> Result<(), Failure> {
+    keep_capture(written, way_out)?;
+    let has_something = fs::metadata(written).is_ok_and(|it| it.is_file() && it.len() > 0);
+    if is_stdout(written)
+        || !has_something
+        || matches!(begun(written), None | Some(Err(CaptureError::NoPlay)))
+    {
+        return Ok(());
+    }
+    Err(Failure::Unusable(format!(
+        "{} is there already, and no capture: name another file{way_out}",
+        written.display()
+    )))
+}
+
 /// Whether it is a capture, be it damaged.
 fn holds_play(path: &Path) -> bool {
-    // Asked before it is opened: opening a pipe would wait for its other end.
-    let file = fs::metadata(path).is_ok_and(|it| it.is_file()).then(|| File::open(path).ok()).flatten();
-    let begun = file.map(|file| CaptureReader::new(BufReader::new(file)));
-    begun.is_some_and(|begun| {
+    begun(path).is_some_and(|begun| {
         !matches!(begun, Err(CaptureError::NotACapture | CaptureError::NoPlay | CaptureError::Io(_)))
     })
+}
+
+/// A file's beginning, read as a capture; `None` for what is no file or cannot be read.
+fn begun(path: &Path) -> Option<Result<CaptureReader<BufReader<File>>, CaptureError>> {
+    // Asked before it is opened: opening a pipe would wait for its other end.
+    let file = fs::metadata(path).is_ok_and(|it| it.is_file()).then(|| File::open(path).ok()).flatten();
+    file.map(|file| CaptureReader::new(BufReader::new(file)))
 }
 
 /// Reads a capture to its end, if that does not use it up. What cannot even be opened is told by who opens it.

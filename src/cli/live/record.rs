@@ -27,9 +27,9 @@ use tactpad::bridge::transport::fault::FaultPlan;
     after_help = "Example: tactpad record game.cap --pad serial:/dev/ttyACM0, then tactpad replay game.cap"
 )]
 pub(crate) struct Arguments {
-    /// The file to write; a capture that is there already is kept, and - is standard output.
+    /// The file to write; a file that is there already is kept, and - is standard output.
     capture: PathBuf,
-    /// Write over a capture that is there already.
+    /// Write over a file that is there already.
     #[arg(long)]
     force: bool,
     /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], capture:FILE.
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { capture, pad, profile, output, decoder, .. } = arguments;
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: Some(capture) }.check()?;
     if !arguments.force {
-        files::keep_capture(capture, ", or give --force to write over it")?;
+        files::keep_file(capture, ", or give --force to write over it")?;
     }
     let decoder = chosen::read(decoder)?;
     let profile = profile::read(profile, output.choice())?;

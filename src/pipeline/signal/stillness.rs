@@ -30,6 +30,12 @@ pub struct Stillness {
     known: usize,
 }
 
+impl Default for Stillness {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Stillness {
     /// Has seen nothing.
     pub const fn new() -> Self {

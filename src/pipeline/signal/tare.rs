@@ -266,7 +266,7 @@ mod tests {
             100..600 => 3_000.0,
             _ => 1_000.0,
         };
-        let known = known_at_ms(&mut tare, |ms| load(ms)).unwrap();
+        let known = known_at_ms(&mut tare, load).unwrap();
         assert!((1_350..1_450).contains(&known), "{known} ms");
         let strain = tare.apply(StreamInstant::from_us(1_500_000), &[1_000.0; CHANNELS], true, &Rest::NONE);
         assert!((strain.uv[4] - 1_000.0).abs() < 1e-3);

@@ -4,23 +4,21 @@
 //! released, and one that is reached by unloading came from full scale. The zeros are readings with hysteresis, too, so states
 //! count relative to those of the untouched pad.
 
+mod part;
+
+pub use self::part::Untouched;
+use self::part::{Follow, Part};
 use crate::pipeline::compensation::Compensation;
-use crate::pipeline::compensation::creep::{Creep, Crept, NO_CREEP};
-use crate::pipeline::compensation::hysteresis::{History, Hysteresis, NO_HYSTERESIS, PLAYS};
+use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
+use crate::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS, PLAYS};
 use crate::pipeline::compensation::thermal::Thermal;
 use crate::pipeline::contact::Decoder;
 use crate::quantity::CHANNELS;
 use crate::tables::measured::zero::{self, Zeros};
-use crate::tables::measured::{Approach, DWELL_S, READ_S, Row, Table};
+use crate::tables::measured::{Row, Table};
 
 /// Rounds of the fixed-point iteration between strains and their lags.
 const ROUNDS: usize = 4;
-
-/// For each play operator and channel: its state beside the strain, relative to the same of the untouched pad.
-pub type Lags = [[f64; CHANNELS]; PLAYS];
-
-/// A reading of the untouched pad: its row, and the channels.
-pub type Untouched = (usize, [f64; CHANNELS]);
 
 /// Tables, one after the other.
 #[derive(Clone, Debug)]
@@ -29,46 +27,6 @@ pub struct Recording {
     tared: Table,
     parts: Vec<Part>,
     full_scale_n: f64,
-}
-
-/// A table of the recording.
-#[derive(Clone, Debug)]
-struct Part {
-    /// Its first row in the recording.
-    first: usize,
-    rows: usize,
-    /// None in a table that never reads the untouched pad: there, channels are raw, or less a zero that is known otherwise.
-    zeros: Option<Zeros>,
-    /// What the untouched pad reads in the rows of the zeros.
-    readings: Vec<Untouched>,
-    /// Places of what a decoder is fitted to, from the part's first row on.
-    contacts: Vec<usize>,
-}
-
-/// How long a row's load is held before the middle of its reading and after, and how long the pad rests before; `None` where that
-/// is unknown and counts as long.
-struct Stay {
-    rest_s: Option<f64>,
-    before_s: f64,
-    after_s: f64,
-}
-
-impl Stay {
-    fn of(row: &Row, previous: Option<&Row>) -> Self {
-        // rest = (t − t_previous) − dwell − reading.
-        let passed_s = previous.and_then(|previous| Some(row.t_s? - previous.t_s?)).filter(|s| *s >= 0.0);
-        if row.trial.is_some() && previous.is_some_and(|previous| previous.trial == row.trial) {
-            return Self { rest_s: Some(0.0), before_s: passed_s.unwrap_or(0.0), after_s: 0.0 };
-        }
-        let read_s = if row.trial.is_none() { READ_S } else { 0.0 };
-        // Times in which the dwell has no room are no times of this kind: some count rows.
-        let rest_s = passed_s.zip(row.dwell_s).map(|(passed_s, dwell_s)| passed_s - dwell_s - read_s);
-        Self {
-            rest_s: rest_s.filter(|rest_s| *rest_s >= 0.0),
-            before_s: row.dwell_s.unwrap_or(DWELL_S) + read_s / 2.0,
-            after_s: read_s / 2.0,
-        }
-    }
 }
 
 impl Recording {
@@ -170,23 +128,26 @@ impl Recording {
         if *creep == NO_CREEP {
             return self;
         }
-        // Creep follows the strain without creep: a second round of the fixed-point iteration is near enough.
-        let mut free: Vec<Option<[f64; CHANNELS]>> = self.tared.rows.iter().map(|row| row.uv).collect();
-        for _ in 0..2 {
-            let known = |at: usize| free[at].filter(|_| !self.is_zero(at));
-            let crept = self.relative(&self.crept(creep.time_s, known));
-            let without = |(row, [state_uv]): (&Row, [[f64; CHANNELS]; 1])| {
-                let added_uv = Crept { state_uv }.added_uv(creep);
-                row.uv.map(|uv| std::array::from_fn(|k| uv[k] - added_uv[k]))
-            };
-            free = self.tared.rows.iter().zip(crept).map(without).collect();
+        for channel in 0..CHANNELS {
+            let read_uv = |row: &Row| row.uv.map_or(0.0, |uv| uv[channel]);
+            let mut free_uv: Vec<f64> = self.tared.rows.iter().map(read_uv).collect();
+            // Creep follows the strain without creep: a second round of the fixed-point iteration is near enough.
+            for _ in 0..2 {
+                let crept =
+                    self.crept_by(creep.time_s, |at, is_zero| if is_zero { 0.0 } else { free_uv[at] });
+                let rows = self.tared.rows.iter().zip(self.relative(crept));
+                free_uv.iter_mut().zip(rows).for_each(|(free_uv, (row, [crept_uv]))| {
+                    *free_uv = read_uv(row) - creep.added_uv(crept_uv);
+                });
+            }
+            self.set(channel, &free_uv);
         }
-        self.tared.rows.iter_mut().zip(free).for_each(|(row, uv)| row.uv = uv);
         self
     }
 
-    fn is_zero(&self, at: usize) -> bool {
-        self.parts.iter().any(|part| (part.first..part.first + part.rows).contains(&at) && part.is_zero(at))
+    fn set(&mut self, channel: usize, uv: &[f64]) {
+        let rows = self.tared.rows.iter_mut().zip(uv);
+        rows.for_each(|(row, uv)| row.uv.iter_mut().for_each(|channels| channels[channel] = *uv));
     }
 
     /// The tables as a decoder takes them: at its pad's temperature, without creep and hysteresis. The untouched pad is that of
@@ -207,137 +168,74 @@ impl Recording {
         if *hysteresis == NO_HYSTERESIS { recording.tared } else { recording.without_hysteresis(hysteresis) }
     }
 
-    /// How far each row's channels have crept with this relaxation time. Loads are held for their dwell, and what they leave
+    /// How far a channel has crept in each row with this relaxation time. Loads are held for their dwell, and what they leave
     /// behind fades until the next one; where rows have no times, it has faded. Strains are those of `known`, else the row's
-    /// channels.
-    pub fn crept(
-        &self,
-        time_s: f64,
-        known: impl Fn(usize) -> Option<[f64; CHANNELS]>,
-    ) -> Vec<[[f64; CHANNELS]; 1]> {
-        let known: &dyn Fn(usize) -> Option<[f64; CHANNELS]> = &known;
-        self.parts.iter().flat_map(|part| self.crept_part(part, time_s, known)).collect()
+    /// channel.
+    pub fn crept(&self, channel: usize, time_s: f64, known: impl Fn(usize) -> Option<f64>) -> Vec<[f64; 1]> {
+        let read_uv = |at: usize| self.tared.rows[at].uv.map_or(0.0, |uv| uv[channel]);
+        self.crept_by(time_s, |at, is_zero| {
+            known(at).unwrap_or_else(|| if is_zero { 0.0 } else { read_uv(at) })
+        })
     }
 
-    fn crept_part(
-        &self,
-        part: &Part,
-        time_s: f64,
-        known: &dyn Fn(usize) -> Option<[f64; CHANNELS]>,
-    ) -> Vec<[[f64; CHANNELS]; 1]> {
-        let mut crept = Crept::default();
-        let mut previous: Option<&Row> = None;
-        let mut follow = |at: usize| {
-            let row = &self.tared.rows[at];
-            let Stay { rest_s, before_s, after_s } = Stay::of(row, previous.replace(row));
-            match rest_s {
-                Some(rest_s) => crept.hold(&[0.0; CHANNELS], rest_s, time_s),
-                None => crept = Crept::default(),
-            }
-            let read_uv = || row.uv.filter(|_| !part.is_zero(at));
-            let strain_uv = known(at).or_else(read_uv).unwrap_or_default();
-            crept.hold(&strain_uv, before_s, time_s);
-            let state_uv = crept.state_uv;
-            crept.hold(&strain_uv, after_s, time_s);
-            [state_uv]
-        };
-        (part.first..part.first + part.rows).map(&mut follow).collect()
+    /// The same by the strain of each row, which is told whether it is one of the untouched pad.
+    fn crept_by(&self, time_s: f64, strain_uv: impl Fn(usize, bool) -> f64) -> Vec<[f64; 1]> {
+        let mut states = Vec::with_capacity(self.tared.rows.len());
+        for part in &self.parts {
+            part.crept(&self.tared.rows, time_s, &strain_uv, |state| states.push(state));
+        }
+        states
     }
 
     /// The tables relative to the untouched pad and without hysteresis.
-    pub fn without_hysteresis(&self, hysteresis: &Hysteresis) -> Table {
-        let mut table = self.tared.clone();
-        let lags = self.relative(&self.states(hysteresis, |_| None));
-        for (row, lags) in table.rows.iter_mut().zip(lags) {
-            row.uv = row.uv.map(|uv| without(uv, hysteresis, &lags));
+    #[must_use]
+    pub fn without_hysteresis(mut self, hysteresis: &Hysteresis) -> Table {
+        for channel in 0..CHANNELS {
+            let lags = self.relative(self.states(channel, hysteresis, |_| None));
+            for (row, lags) in self.tared.rows.iter_mut().zip(lags) {
+                row.uv
+                    .iter_mut()
+                    .for_each(|uv| uv[channel] = without(uv[channel], hysteresis, channel, &lags));
+            }
         }
-        table
+        self.tared
     }
 
-    /// Each row's states of the play operators less its strains. The strains are those of `known`, else the row's channels
-    /// without hysteresis: where a reading is to be explained, its own noise must not explain it.
+    /// A channel's states of the play operators less its strain, in each row. The strains are those of `known`, else the row's
+    /// channel without hysteresis: where a reading is to be explained, its own noise must not explain it.
     pub fn states(
         &self,
+        channel: usize,
         hysteresis: &Hysteresis,
-        known: impl Fn(usize) -> Option<[f64; CHANNELS]>,
-    ) -> Vec<Lags> {
-        let mut states = vec![[[0.0; CHANNELS]; PLAYS]; self.tared.rows.len()];
+        known: impl Fn(usize) -> Option<f64>,
+    ) -> Vec<[f64; PLAYS]> {
+        let rows = &self.tared.rows;
+        let mut states = vec![[0.0; PLAYS]; rows.len()];
         for _ in 0..ROUNDS {
-            states = self.follow_load_path(hysteresis, &self.relative(&states), &known);
+            states = self.relative(states);
+            let free_uv = |at: usize, is_zero: bool, lags: &[f64; PLAYS]| {
+                let read_uv = || {
+                    rows[at].uv.filter(|_| !is_zero).map(|uv| without(uv[channel], hysteresis, channel, lags))
+                };
+                known(at).or_else(read_uv).unwrap_or_default()
+            };
+            let follow = Follow { rows, full_scale_n: self.full_scale_n, hysteresis, channel };
+            self.parts.iter().for_each(|part| part.follow(&follow, &mut states, free_uv));
         }
         states
     }
 
-    /// These states relative to those of the untouched pad. What hysteresis or creep added to a row's tared channels is the sum
+    /// These states relative to those of the untouched pad. What hysteresis or creep added to a row's tared channel is the sum
     /// of shares times this.
-    pub fn relative<const N: usize>(&self, states: &[[[f64; CHANNELS]; N]]) -> Vec<[[f64; CHANNELS]; N]> {
-        let relative = |part: &Part| -> Vec<[[f64; CHANNELS]; N]> {
-            let states = &states[part.first..][..part.rows];
-            (0..part.rows).map(|at| part.relative(states, at)).collect()
-        };
-        self.parts.iter().flat_map(relative).collect()
-    }
-
-    /// The states if these lags are taken off the channels.
-    fn follow_load_path(
-        &self,
-        hysteresis: &Hysteresis,
-        lags: &[Lags],
-        known: impl Fn(usize) -> Option<[f64; CHANNELS]>,
-    ) -> Vec<Lags> {
-        let known: &dyn Fn(usize) -> Option<[f64; CHANNELS]> = &known;
-        self.parts.iter().flat_map(|part| self.follow_part(part, hysteresis, lags, known)).collect()
-    }
-
-    fn follow_part(
-        &self,
-        part: &Part,
-        hysteresis: &Hysteresis,
-        lags: &[Lags],
-        known: &dyn Fn(usize) -> Option<[f64; CHANNELS]>,
-    ) -> Vec<Lags> {
-        let mut history = History::default();
-        let mut previous: Option<usize> = None;
-        let mut states = Vec::with_capacity(part.rows);
-        for at in part.first..part.first + part.rows {
-            let (row, lags) = (&self.tared.rows[at], &lags[at]);
-            let read_uv = || row.uv.filter(|_| !part.is_zero(at)).map(|uv| without(uv, hysteresis, lags));
-            let free_uv = known(at).or_else(read_uv).unwrap_or_default();
-            if row.trial.is_none() || row.trial != previous {
-                history.follow(hysteresis, &[0.0; CHANNELS]);
-            }
-            if row.trial.is_none() && row.approach == Some(Approach::Unloading) {
-                let factor = row.label.overload(self.full_scale_n);
-                history.follow(hysteresis, &free_uv.map(|uv| factor * uv));
-            }
-            history.follow(hysteresis, &free_uv);
-            previous = row.trial;
-            states.push(history.state_uv.map(|states| std::array::from_fn(|k| states[k] - free_uv[k])));
-        }
+    #[must_use]
+    pub fn relative<const N: usize>(&self, mut states: Vec<[f64; N]>) -> Vec<[f64; N]> {
+        self.parts.iter().for_each(|part| part.relative(&mut states));
         states
     }
 }
 
-impl Part {
-    fn is_zero(&self, at: usize) -> bool {
-        let rows = self.zeros.as_ref().map_or(&[][..], Zeros::rows);
-        rows.binary_search(&(at - self.first)).is_ok()
-    }
-
-    /// A state relative to that of the untouched pad, which without its reading is one at rest.
-    fn relative<const N: usize>(&self, states: &[[[f64; CHANNELS]; N]], at: usize) -> [[f64; CHANNELS]; N] {
-        std::array::from_fn(|term| {
-            let zero_uv =
-                self.zeros.as_ref().map_or([0.0; CHANNELS], |zeros| zeros.at(at, |zero| states[zero][term]));
-            std::array::from_fn(|channel| states[at][term][channel] - zero_uv[channel])
-        })
-    }
-}
-
-fn without(uv: [f64; CHANNELS], hysteresis: &Hysteresis, lags: &Lags) -> [f64; CHANNELS] {
-    std::array::from_fn(|k| {
-        uv[k] - hysteresis.iter().zip(lags).map(|(play, lags)| play.share[k] * lags[k]).sum::<f64>()
-    })
+fn without(uv: f64, hysteresis: &Hysteresis, channel: usize, lags: &[f64; PLAYS]) -> f64 {
+    uv - hysteresis.iter().zip(lags).map(|(play, lag_uv)| play.share[channel] * lag_uv).sum::<f64>()
 }
 
 #[cfg(test)]
@@ -365,9 +263,9 @@ mod tests {
             recordings.iter().flat_map(|it| it.without_hysteresis(&hysteresis).rows).collect();
         let [first, second] = recordings;
         let joined = first.then(second);
-        assert_eq!(joined.without_hysteresis(&hysteresis).rows, alone);
         assert_eq!(joined.contacts(), [1, 2]);
         assert_eq!(joined.zeros().map(|zeros| zeros[0].0).collect::<Vec<_>>(), [0, 3]);
+        assert_eq!(joined.without_hysteresis(&hysteresis).rows, alone);
     }
 
     #[test]

@@ -260,7 +260,7 @@ mod tests {
         let tables = [table(&[(0.0, 10.0), (4.0, 2000.0)]), table(&[(1.0, 600.0), (0.0, 90.0)])];
         let recordings = tables.map(|table| Recording::of(table, 5.0).unwrap());
         let alone: Vec<Row> =
-            recordings.iter().flat_map(|it| it.without_hysteresis(&hysteresis).rows).collect();
+            recordings.iter().flat_map(|it| it.clone().without_hysteresis(&hysteresis).rows).collect();
         let [first, second] = recordings;
         let joined = first.then(second);
         assert_eq!(joined.contacts(), [1, 2]);

@@ -8,7 +8,10 @@ use std::process::{Command, Output, Stdio};
 use std::time::Instant;
 
 use tactpad::pad::field::PadField;
-use tactpad::quantity::{CHANNEL_NAMES, Contact};
+use tactpad::pipeline::compensation::creep::Creep;
+use tactpad::pipeline::compensation::hysteresis::Play;
+use tactpad::pipeline::shipped;
+use tactpad::quantity::{CHANNEL_NAMES, CHANNELS, Contact};
 
 /// Writes a table of presses on a spiral, one row in ten without load and a session of its own, that warms by ten degrees.
 fn write(path: &Path, rows: u32) {
@@ -19,10 +22,10 @@ fn write(path: &Path, rows: u32) {
         let radius_mm = 29.0 * (f64::from(row) / f64::from(rows)).sqrt() as f32;
         let load = if row % 10 == 0 { 0.0 } else { 1.0 };
         let contact = Contact {
-            x_mm: radius_mm * turn.cos(),
-            y_mm: radius_mm * turn.sin(),
-            fx_n: load * (0.7 * turn).cos(),
-            fy_n: load * (1.3 * turn).sin(),
+            x_mm: radius_mm * libm::cosf(turn),
+            y_mm: radius_mm * libm::sinf(turn),
+            fx_n: load * libm::cosf(0.7 * turn),
+            fy_n: load * libm::sinf(1.3 * turn),
             fz_n: load * (1.0 + (row % 7) as f32 / 2.0),
         };
         let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = contact;
@@ -47,6 +50,16 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
+/// Writes the decoder of a pad that creeps and has hysteresis; its file's name.
+fn pad_with_memory(folder: &Path) -> &'static str {
+    let mut decoder = shipped::decoder();
+    let play = Play { threshold_uv: [500.0; CHANNELS], share: [0.05; CHANNELS] };
+    decoder.compensation.hysteresis = [play, Play::NONE];
+    decoder.compensation.creep = Creep { time_s: 8.0, share: 0.01 };
+    fs::write(folder.join("memory.decoder"), decoder.to_bytes("of a test").unwrap()).unwrap();
+    "memory.decoder"
+}
+
 #[test]
 fn a_million_rows_are_judged_within_300_mb_and_are_too_many_neighbours() {
     let folder = tempfile::tempdir().unwrap();
@@ -56,6 +69,16 @@ fn a_million_rows_are_judged_within_300_mb_and_are_too_many_neighbours() {
     let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(told["rows"], 900_000);
     assert!(told["position_mae_mm"].as_f64().unwrap() < 0.1, "{told}");
+    let output = within(300_000, folder.path(), "metrology --measured m.csv --no-network --json");
+    assert!(output.status.success(), "{}", said(&output));
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(told["figures"][0]["sensitivity"]["places"].as_u64().unwrap() > 1_000, "{told}");
+    let with_memory = pad_with_memory(folder.path());
+    let output =
+        within(300_000, folder.path(), &format!("evaluate --decoder {with_memory} --measured m.csv --json"));
+    assert!(output.status.success(), "{}", said(&output));
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(told["rows"], 900_000);
     let line = "adapt --method knn --measured m.csv --out pad.decoder";
     let output = within(2_000_000, folder.path(), line);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
@@ -67,6 +90,7 @@ fn a_million_rows_are_judged_within_300_mb_and_are_too_many_neighbours() {
     assert!(output.status.success(), "what adapt writes is read: {}", said(&output));
 }
 
+#[expect(clippy::disallowed_methods, reason = "what is tested is the time that it takes")]
 #[test]
 fn figures_of_merit_take_time_in_proportion_to_the_rows() {
     let folder = tempfile::tempdir().unwrap();

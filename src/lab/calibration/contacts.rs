@@ -6,7 +6,6 @@ use crate::pad::influence::InfluenceField;
 use crate::pipeline::compensation::hysteresis::PLAYS;
 use crate::quantity::{CHANNELS, Contact};
 use crate::tables::measured::Row;
-use crate::tables::recording::Lags;
 
 /// Degree of the background's polynomials: features of some 10 mm.
 pub(super) const BACKGROUND_DEGREE: usize = 5;
@@ -18,6 +17,9 @@ const STEP_MM: f64 = 0.5;
 
 /// Per channel, what a unit force along each axis gives.
 pub(super) type Maps = [[f64; 3]; CHANNELS];
+
+/// For each play operator and channel: its state beside the strain, relative to the same of the untouched pad.
+pub(super) type Lags = [[f64; CHANNELS]; PLAYS];
 
 /// The simulator's field at a place.
 #[derive(Clone, Debug)]

@@ -10,7 +10,7 @@
 //! with zeros z, gains g and their temperature coefficients α, strains e before gains, crosstalk X, shares w and lags l of the
 //! play operators, creep's share c and state u, blur b, and physical parameters p. G is the simulator's field.
 
-use super::contacts::{BACKGROUND_DEGREE, Maps, Measured, Place, TERMS, response};
+use super::contacts::{BACKGROUND_DEGREE, Lags, Maps, Measured, Place, TERMS, response};
 use super::prior::Prior;
 use super::prior_deviations::{Kind, PriorDeviations};
 use crate::pad::device::parameter::Parameter;
@@ -18,7 +18,6 @@ use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
 use crate::pipeline::compensation::hysteresis::{Hysteresis, PLAYS, Play};
 use crate::pipeline::contact::uncertainty::UNKNOWNS;
 use crate::quantity::CHANNELS;
-use crate::tables::recording::Lags;
 
 /// Prior standard deviations. Of gains: the authors' earlier pad has 0.83 to 1.33.
 pub(super) const GAIN_DEVIATION: f64 = 0.3;

@@ -10,7 +10,7 @@
 
 use std::collections::BTreeMap;
 
-use super::contacts::{Maps, Measured, Place, TERMS};
+use super::contacts::{Lags, Maps, Measured, Place, TERMS};
 use super::model::Layout;
 use super::noise::{FieldCovariance, NoisePrior};
 use super::noise_model::{NoiseModel, Residual};
@@ -27,7 +27,7 @@ use crate::pipeline::compensation::creep::Creep;
 use crate::pipeline::compensation::hysteresis::{Hysteresis, PLAYS};
 use crate::pipeline::compensation::thermal::Thermal;
 use crate::quantity::{CHANNELS, Strain};
-use crate::tables::recording::{Lags, Recording, Untouched};
+use crate::tables::recording::{Recording, Untouched};
 
 /// Most Gauss-Newton steps of a fit; the channels are nearly linear in the parameters.
 const STEPS_MAX: usize = 12;
@@ -227,14 +227,17 @@ impl<'f> Problem<'f> {
         self.follow_creep(settings.creep_time_s, &strains);
         // Lags l = p − e of the play operators, relative to those of the untouched pad's readings.
         let hysteresis = Layout::hysteresis(values, &settings.thresholds_uv);
-        let states = self.recording.states(&hysteresis, |at| strains.get(&at).copied());
-        let lags = self.recording.relative(&states);
-        for (at, contact) in &mut self.contacts {
-            contact.lags = lags[*at];
-        }
-        for Jump { rows: [first, second], lags, .. } in &mut self.jumps {
-            let (first, second) = (&states[*first], &states[*second]);
-            *lags = std::array::from_fn(|play| change(&first[play], &second[play]));
+        for channel in 0..CHANNELS {
+            let known = |at: usize| strains.get(&at).map(|uv| uv[channel]);
+            let states = self.recording.states(channel, &hysteresis, known);
+            for Jump { rows: [first, second], lags, .. } in &mut self.jumps {
+                let changes = states[*second].iter().zip(states[*first]).map(|(to, from)| to - from);
+                lags.iter_mut().zip(changes).for_each(|(lags, change_uv)| lags[channel] = change_uv);
+            }
+            let states = self.recording.relative(states);
+            for (at, contact) in &mut self.contacts {
+                contact.lags.iter_mut().zip(states[*at]).for_each(|(lags, lag_uv)| lags[channel] = lag_uv);
+            }
         }
     }
 
@@ -243,13 +246,16 @@ impl<'f> Problem<'f> {
         if time_s == 0.0 {
             return;
         }
-        let states = self.recording.crept(time_s, |at| strains.get(&at).copied());
-        let relative = self.recording.relative(&states);
-        for (at, contact) in &mut self.contacts {
-            [contact.crept_uv] = relative[*at];
-        }
-        for Jump { rows: [first, second], crept_uv, .. } in &mut self.jumps {
-            *crept_uv = change(&states[*first][0], &states[*second][0]);
+        for channel in 0..CHANNELS {
+            let known = |at: usize| strains.get(&at).map(|uv| uv[channel]);
+            let states = self.recording.crept(channel, time_s, known);
+            for Jump { rows: [first, second], crept_uv, .. } in &mut self.jumps {
+                crept_uv[channel] = states[*second][0] - states[*first][0];
+            }
+            let states = self.recording.relative(states);
+            for (at, contact) in &mut self.contacts {
+                [contact.crept_uv[channel]] = states[*at];
+            }
         }
     }
 
@@ -417,11 +423,6 @@ fn jumps(zeros: Vec<Untouched>) -> Vec<Jump> {
         crept_uv: [0.0; CHANNELS],
     };
     zeros.iter().zip(zeros.get(1..).unwrap_or_default()).map(jump).collect()
-}
-
-/// Difference of two states.
-fn change(from: &[f64; CHANNELS], to: &[f64; CHANNELS]) -> [f64; CHANNELS] {
-    std::array::from_fn(|k| to[k] - from[k])
 }
 
 /// ln p(θ) = ½ Σᵢ (ln Pᵢ − Pᵢ (mᵢ − θᵢ)²), but for a constant.

@@ -36,17 +36,17 @@ pub struct Ageing {
 /// No place with both.
 pub fn after_cycles(table: &Table) -> Result<Ageing, Needs> {
     let is_wanted =
-        |reading: &Reading| is_press(&reading.row.label) && is_load(reading.row.label.fz_n, LOAD_N);
-    let presses = readings(table, &Zeros::of(table)).into_iter().filter(is_wanted);
-    let counted = presses.filter(|reading| reading.row.cycle.is_some()).collect();
-    let places = by_place(counted, |reading| &reading.row.label);
-    places.iter().find_map(|place| of_place(place)).ok_or(Needs::Rows(NEEDED))
+        |reading: &Reading| is_press(&reading.row().label) && is_load(reading.row().label.fz_n, LOAD_N);
+    let zeros = Zeros::of(table);
+    let presses = readings(&zeros).filter(is_wanted);
+    let counted = presses.filter(|reading| reading.row().cycle.is_some());
+    let places = by_place(counted, |reading| reading.row().label);
+    places.each().find_map(of_place).ok_or(Needs::Rows(NEEDED))
 }
 
-fn of_place(place: &[Reading]) -> Option<Ageing> {
+fn of_place<'r>(place: impl Iterator<Item = &'r Reading<'r, 'r>>) -> Option<Ageing> {
     let mut points: Vec<[f64; 2]> = place
-        .iter()
-        .filter_map(|reading| Some([reading.row.cycle?, sum_uv(&reading.uv) / reading.row.label.fz_n]))
+        .filter_map(|reading| Some([reading.row().cycle?, sum_uv(&reading.uv()) / reading.row().label.fz_n]))
         .collect();
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let means = points.chunk_by(|one, next| one[0] == next[0]).map(|same| {

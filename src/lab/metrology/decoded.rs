@@ -4,9 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::rows::{
-    Reading, Zeros, by_place, is_ordinary, is_usual, less, loads, readings, usual_temperature_c,
-};
+use super::rows::{Zeros, by_place, is_ordinary, is_usual, less, loads, usual_temperature_c};
 use super::same::Different;
 use super::thermal::STEP_C;
 use super::{Decode, Needs};
@@ -81,7 +79,8 @@ impl Difference {
 /// # Errors
 /// No such rows, or no decoder.
 pub fn errors(table: &Table, decode: Option<Decode>) -> Result<DecodedErrors, Needs> {
-    over(table, readings(table, &Zeros::of(table)), NEEDED, decode)
+    let zeros = Zeros::of(table);
+    over(table, |index| zeros.tared(index), NEEDED, decode)
 }
 
 /// The same for a decoder of raw channels, from which nothing is taken off.
@@ -89,60 +88,68 @@ pub fn errors(table: &Table, decode: Option<Decode>) -> Result<DecodedErrors, Ne
 /// # Errors
 /// As for [`errors`].
 pub fn raw_errors(table: &Table, decode: Option<Decode>) -> Result<DecodedErrors, Needs> {
-    let raw = loads(table).filter_map(|(_, row)| Some(Reading { row, uv: row.uv? }));
-    over(table, raw.collect(), NEEDED_RAW, decode)
+    over(table, |index| table.rows.get(index)?.uv, NEEDED_RAW, decode)
 }
 
+/// Over the loads for which the channels as the decoder takes them are known.
 fn over(
     table: &Table,
-    found: Vec<Reading>,
+    taken_uv: impl Fn(usize) -> Option<[f64; CHANNELS]>,
     needed: &'static str,
     decode: Option<Decode>,
 ) -> Result<DecodedErrors, Needs> {
     let is_ordinary = is_ordinary(table);
-    let found = found.into_iter().filter(|reading| is_ordinary(reading.row));
-    let places = by_place(found.collect(), |reading| &reading.row.label);
-    let found: Vec<Reading> = places.into_iter().flat_map(different).collect();
-    if found.is_empty() {
+    let found = loads(table).filter(|(index, row)| is_ordinary(row) && taken_uv(*index).is_some());
+    let places = by_place(found.map(|(index, _)| index as u32), |index| table.rows[*index as usize].label);
+    let mut different = places.each().flat_map(|place| different(table, place)).peekable();
+    if different.peek().is_none() {
         return Err(Needs::Rows(needed));
     }
     let decode = decode.ok_or(Needs::Decoder)?;
-    let differences = found.iter().map(|reading| Difference::of(&decode(&reading.uv), &reading.row.label));
-    Ok(summary(&differences.collect::<Vec<_>>()))
+    let error =
+        |index: usize| Some(Difference::of(&decode(&taken_uv(index)?), &table.rows.get(index)?.label));
+    Ok(summary(different.filter_map(error)))
 }
 
-/// The first reading of each force at a place.
-fn different(mut place: Vec<Reading>) -> Vec<Reading> {
+/// The first row of each force at a place.
+fn different<'p>(table: &Table, place: impl Iterator<Item = &'p u32>) -> impl Iterator<Item = usize> {
     let mut different = Different::default();
-    place.retain(|reading| different.take(&reading.row.label));
-    place
+    place.map(|index| *index as usize).filter(move |index| different.take(&table.rows[*index].label))
 }
 
-fn summary(differences: &[Difference]) -> DecodedErrors {
-    let mean = |of: &dyn Fn(&Difference) -> f64| statistics::mean(differences.iter().map(of));
-    let rms = |of: &dyn Fn(&Difference) -> f64| statistics::rms(differences.iter().map(of));
+/// Sums, so that a million differences need not be kept.
+fn summary(differences: impl Iterator<Item = Difference>) -> DecodedErrors {
+    let mut contacts = 0;
+    let (mut squares, mut magnitudes) = ([0.0; 4], [0.0; 3]);
+    for difference in differences {
+        let [fx_n, fy_n, fz_n] = difference.force_n;
+        let force_n = difference.force_n.map(f64::abs).iter().sum::<f64>() / 3.0;
+        let distance_mm = difference.place_mm[0].hypot(difference.place_mm[1]);
+        let add = |sums: &mut [f64], numbers: &[f64]| {
+            sums.iter_mut().zip(numbers).for_each(|(sum, number)| *sum += number);
+        };
+        add(&mut squares, &[fx_n, fy_n, fz_n, difference.resultant_n].map(|n| n.powi(2)));
+        add(&mut magnitudes, &[force_n, difference.place_magnitude_mm(), distance_mm]);
+        contacts += 1;
+    }
+    let [fx_n, fy_n, fz_n, resultant_rmse_n] = squares.map(|sum| (sum / contacts as f64).sqrt());
+    let [force_mae_n, place_mae_mm, place_distance_mm] = magnitudes.map(|sum| sum / contacts as f64);
     DecodedErrors {
-        force_rmse_n: [0, 1, 2].map(|axis| rms(&|difference| difference.force_n[axis])),
-        resultant_rmse_n: rms(&|difference| difference.resultant_n),
-        force_mae_n: mean(&|difference| difference.force_n.map(f64::abs).iter().sum::<f64>() / 3.0),
-        place_mae_mm: mean(&Difference::place_magnitude_mm),
-        place_distance_mm: mean(&|difference| difference.place_mm[0].hypot(difference.place_mm[1])),
-        contacts: differences.len(),
+        force_rmse_n: [fx_n, fy_n, fz_n],
+        resultant_rmse_n,
+        force_mae_n,
+        place_mae_mm,
+        place_distance_mm,
+        contacts,
     }
 }
 
 /// A load, and the same contact at the usual temperature.
-struct Pair<'d, 't> {
-    load: &'d Drifted<'t>,
-    same: &'d Drifted<'t>,
+struct Pair<'t> {
+    load: &'t Row,
+    same: &'t Row,
     /// The difference of temperatures in units of 10 °C.
     steps: f64,
-}
-
-/// A static load, tared by what its session reads unloaded at the usual temperature.
-struct Drifted<'t> {
-    row: &'t Row,
-    uv: [f64; CHANNELS],
 }
 
 /// The increase of the errors when the pad is warmer or colder than when it was tared, per 10 °C. Each
@@ -152,58 +159,73 @@ struct Drifted<'t> {
 /// No such pairs, or no decoder.
 pub fn drift(table: &Table, decode: Option<Decode>) -> Result<DecodedDrift, Needs> {
     let usual_c = usual_temperature_c(table).ok_or(Needs::Rows(NEEDED_WARM))?;
-    let places = by_place(drifted(table, usual_c), |load| &load.row.label);
-    let pairs: Vec<Pair> = places.iter().flat_map(|place| pairs(place, usual_c)).collect();
-    if pairs.is_empty() {
+    let zeros = UsualZeros::of(table, usual_c).ok_or(Needs::Rows(NEEDED_WARM))?;
+    let places = by_place(loads(table).map(|(_, row)| row), |row| row.label);
+    let mut pairs = places.each().flat_map(|place| pairs(place, usual_c)).peekable();
+    if pairs.peek().is_none() {
         return Err(Needs::Rows(NEEDED_WARM));
     }
     let decode = decode.ok_or(Needs::Decoder)?;
-    let error = |load: &Drifted| Difference::of(&decode(&load.uv), &load.row.label);
-    let compared = pairs.iter().map(|pair| (error(pair.load), error(pair.same), pair.steps));
-    Ok(increase(&compared.collect::<Vec<_>>()))
+    let error = |row: &Row| Some(Difference::of(&decode(&zeros.tared(row)?), &row.label));
+    Ok(increase(pairs.filter_map(|pair| Some((error(pair.load)?, error(pair.same)?, pair.steps)))))
 }
 
 /// Pairs of the loads at one place.
-fn pairs<'d, 't>(place: &'d [Drifted<'t>], usual_c: f64) -> Vec<Pair<'d, 't>> {
-    let (mut usual, other): (Vec<&Drifted>, Vec<&Drifted>) =
-        place.iter().partition(|load| is_usual(load.row.temp_c, Some(usual_c)));
+fn pairs<'t: 'p, 'p>(place: impl Iterator<Item = &'p &'t Row>, usual_c: f64) -> Vec<Pair<'t>> {
+    let (mut usual, other): (Vec<&Row>, Vec<&Row>) =
+        place.copied().partition(|row| is_usual(row.temp_c, Some(usual_c)));
     let mut different = Different::default();
-    usual.retain(|load| different.take(&load.row.label));
-    let pair = |load: &&'d Drifted<'t>| {
-        let change_c = (load.row.temp_c? - usual_c).abs();
-        let same = usual.get(different.find(&load.row.label)?)?;
+    usual.retain(|row| different.take(&row.label));
+    let pair = |load: &'t Row| {
+        let change_c = (load.temp_c? - usual_c).abs();
+        let same = usual.get(different.find(&load.label)?)?;
         (change_c >= CHANGE_C).then_some(Pair { load, same, steps: change_c / STEP_C })
     };
-    other.iter().filter_map(pair).collect()
+    other.into_iter().filter_map(pair).collect()
 }
 
-fn increase(compared: &[(Difference, Difference, f64)]) -> DecodedDrift {
-    let mean = |of: &dyn Fn(&Difference) -> f64| {
-        statistics::mean(compared.iter().map(|(load, same, steps)| (of(load) - of(same)) / steps))
-    };
-    DecodedDrift {
-        force_n: [0, 1, 2].map(|axis| mean(&|difference| difference.force_n[axis].abs())),
-        place_mm: mean(&Difference::place_magnitude_mm),
-        contacts: compared.len(),
+fn increase(compared: impl Iterator<Item = (Difference, Difference, f64)>) -> DecodedDrift {
+    let mut contacts = 0;
+    let mut sums = [0.0; 4];
+    for (load, same, steps) in compared {
+        let magnitudes = |difference: &Difference| {
+            let [fx_n, fy_n, fz_n] = difference.force_n.map(f64::abs);
+            [fx_n, fy_n, fz_n, difference.place_magnitude_mm()]
+        };
+        let both = magnitudes(&load).into_iter().zip(magnitudes(&same));
+        sums.iter_mut().zip(both).for_each(|(sum, (load, same))| *sum += (load - same) / steps);
+        contacts += 1;
     }
+    let [fx_n, fy_n, fz_n, place_mm] = sums.map(|sum| sum / contacts as f64);
+    DecodedDrift { force_n: [fx_n, fy_n, fz_n], place_mm, contacts }
 }
 
-fn drifted(table: &Table, usual_c: f64) -> Vec<Drifted<'_>> {
-    let untouched = Untouched::unloaded(table);
-    let is_zero = |row: &&Row| row.trial.is_none() && untouched.is(row) && is_near(row, usual_c);
-    let zeros: Vec<(Option<usize>, [f64; CHANNELS])> =
-        table.rows.iter().filter(is_zero).filter_map(|row| Some((row.session, row.uv?))).collect();
-    if zeros.is_empty() {
-        return Vec::new();
+/// What the sessions read unloaded at the usual temperature, on average.
+struct UsualZeros {
+    by_session: BTreeMap<Option<usize>, [f64; CHANNELS]>,
+    of_all: [f64; CHANNELS],
+}
+
+impl UsualZeros {
+    /// `None` where nothing is read so.
+    fn of(table: &Table, usual_c: f64) -> Option<Self> {
+        let untouched = Untouched::unloaded(table);
+        let is_zero = |row: &&Row| row.trial.is_none() && untouched.is(row) && is_near(row, usual_c);
+        let zeros =
+            || table.rows.iter().filter(is_zero).filter_map(|row| Some((row.session, row.uv.as_ref()?)));
+        let mut by_session: BTreeMap<Option<usize>, Vec<&[f64; CHANNELS]>> = BTreeMap::new();
+        zeros().for_each(|(session, uv)| by_session.entry(session).or_default().push(uv));
+        let mean = |(session, own): (_, Vec<_>)| (session, statistics::mean_vector(own.iter().copied()));
+        (!by_session.is_empty()).then(|| Self {
+            by_session: by_session.into_iter().map(mean).collect(),
+            of_all: statistics::mean_vector(zeros().map(|(_, uv)| uv)),
+        })
     }
-    let of_all = statistics::mean_vector(zeros.iter().map(|(_, uv)| uv));
-    let mut by_session: BTreeMap<Option<usize>, Vec<[f64; CHANNELS]>> = BTreeMap::new();
-    zeros.iter().for_each(|(session, uv)| by_session.entry(*session).or_default().push(*uv));
-    let by_session: BTreeMap<_, _> =
-        by_session.into_iter().map(|(session, own)| (session, statistics::mean_vector(&own))).collect();
-    // A session without zeros of its own has those of all.
-    let zero_of = |row: &Row| by_session.get(&row.session).unwrap_or(&of_all);
-    loads(table).filter_map(|(_, row)| Some(Drifted { row, uv: less(&row.uv?, zero_of(row)) })).collect()
+
+    /// A row's channels less those of its session; of all, where the session has none of its own.
+    fn tared(&self, row: &Row) -> Option<[f64; CHANNELS]> {
+        Some(less(row.uv.as_ref()?, self.by_session.get(&row.session).unwrap_or(&self.of_all)))
+    }
 }
 
 fn is_near(row: &Row, usual_c: f64) -> bool {

@@ -4,7 +4,7 @@ use super::ageing::Ageing;
 use super::fem::simulated_uv;
 use super::hysteresis::Hysteresis;
 use super::location::LocationSpread;
-use super::rows::{Zeros, by_place, is_ordinary, is_press, is_same_place, readings};
+use super::rows::{Reading, Zeros, by_place, is_ordinary, is_press, is_same_place, readings};
 use super::series;
 use super::thermal::ThermalDrift;
 use crate::numeric::statistics::{mean, mean_vector};
@@ -29,7 +29,7 @@ type Load = (Label, [f64; CHANNELS]);
 /// Simulated and measured channels of a module over the force, after the paper's Figure 4: at the place with
 /// the most different presses, of the module that reads most there. `None` where no place has three.
 pub fn by_force(table: &Table, signals: &InfluenceField) -> Option<Chart> {
-    let places = static_loads(table).into_iter().chain(loading_trials(table)).map(binned);
+    let places = static_loads(table).into_iter().chain(loading_trials(table));
     let steps = places.max_by_key(Vec::len).filter(|steps| steps.len() >= 3)?;
     let (Label { x_mm, y_mm, .. }, most) = *steps.last()?;
     let module = (0..MODULES).max_by(|a, b| most[3 * a + 2].total_cmp(&most[3 * b + 2]))?;
@@ -50,26 +50,28 @@ pub fn by_force(table: &Table, signals: &InfluenceField) -> Option<Chart> {
     })
 }
 
-/// The presses of each place, tared.
+/// The presses of each place, tared, by their force.
 fn static_loads(table: &Table) -> Vec<Vec<Load>> {
     let is_ordinary = is_ordinary(table);
-    let presses = readings(table, &Zeros::of(table));
+    let zeros = Zeros::of(table);
     let presses =
-        presses.into_iter().filter(|reading| is_press(&reading.row.label) && is_ordinary(reading.row));
-    let loads: Vec<Load> = presses.map(|reading| (reading.row.label, reading.uv)).collect();
-    by_place(loads, |(label, _)| label)
+        readings(&zeros).filter(|reading| is_press(&reading.row().label) && is_ordinary(reading.row()));
+    let places = by_place(presses, |reading| reading.row().label);
+    let load = |reading: &Reading| (reading.row().label, reading.uv());
+    places.each().map(|place| binned(place.map(load).collect())).collect()
 }
 
-/// The presses of each trial at one place, up to its largest.
+/// The presses of each trial at one place, up to its largest, by their force.
 fn loading_trials(table: &Table) -> Vec<Vec<Load>> {
     let loading = |trial: Vec<series::Sample>| -> Option<Vec<Load>> {
-        let first = trial.first()?.label;
-        let stays = trial.iter().all(|sample| is_same_place(&first, &sample.label));
-        let (top, _) = trial.iter().enumerate().max_by(|a, b| a.1.label.fz_n.total_cmp(&b.1.label.fz_n))?;
-        let up = trial.iter().take(top + 1).filter(|sample| is_press(&sample.label));
-        stays.then(|| up.map(|sample| (sample.label, sample.uv)).collect())
+        let first = trial.first()?.label();
+        let stays = trial.iter().all(|sample| is_same_place(first, sample.label()));
+        let (top, _) =
+            trial.iter().enumerate().max_by(|a, b| a.1.label().fz_n.total_cmp(&b.1.label().fz_n))?;
+        let up = trial.iter().take(top + 1).filter(|sample| is_press(sample.label()));
+        stays.then(|| binned(up.map(|sample| (*sample.label(), sample.uv())).collect()))
     };
-    series::all(table).into_iter().filter_map(loading).collect()
+    series::Trials::of(table).each().filter_map(loading).collect()
 }
 
 /// Means over loads of about the same force, by force.

@@ -8,7 +8,7 @@ use super::rows::{Reading, Zeros, by_place, is_load, is_ordinary, is_press, load
 use crate::numeric::statistics::{Line, mean, mean_vector};
 use crate::pad::influence::InfluenceField;
 use crate::quantity::CHANNELS;
-use crate::tables::measured::{Label, Table};
+use crate::tables::measured::{Label, Row, Table};
 
 /// The load that is compared.
 const LOAD_N: f64 = 1.0;
@@ -73,15 +73,15 @@ pub(super) fn simulated_uv(signals: &InfluenceField, label: &Label) -> [f64; CHA
 fn by_zero(table: &Table, zeros: &Zeros, signals: &InfluenceField) -> Vec<Pair> {
     let is_ordinary = is_ordinary(table);
     let is_wanted = |reading: &Reading| {
-        let label = &reading.row.label;
-        is_press(label) && is_load(label.fz_n, LOAD_N) && is_ordinary(reading.row)
+        let label = &reading.row().label;
+        is_press(label) && is_load(label.fz_n, LOAD_N) && is_ordinary(reading.row())
     };
-    let presses = readings(table, zeros).into_iter().filter(is_wanted).collect();
-    let pair = |place: Vec<Reading>| Pair {
-        measured_uv: channel_means(place.iter().map(|reading| reading.uv)),
-        simulated_uv: channel_means(place.iter().map(|reading| simulated_uv(signals, &reading.row.label))),
-    };
-    by_place(presses, |reading| &reading.row.label).into_iter().map(pair).collect()
+    let places = by_place(readings(zeros).filter(is_wanted), |reading| reading.row().label);
+    let pairs = places.each().map(|place| Pair {
+        measured_uv: channel_means(place.clone().map(Reading::uv)),
+        simulated_uv: channel_means(place.map(|reading| simulated_uv(signals, &reading.row().label))),
+    });
+    pairs.collect()
 }
 
 fn channel_means(samples: impl Iterator<Item = [f64; CHANNELS]>) -> [f64; CHANNELS] {
@@ -92,10 +92,9 @@ fn channel_means(samples: impl Iterator<Item = [f64; CHANNELS]>) -> [f64; CHANNE
 fn by_slope(table: &Table, signals: &InfluenceField) -> Vec<Pair> {
     let is_ordinary = is_ordinary(table);
     let presses = loads(table).filter(|(_, row)| is_press(&row.label) && is_ordinary(row));
-    let presses: Vec<(Label, [f64; CHANNELS])> =
-        presses.filter_map(|(_, row)| Some((row.label, row.uv?))).collect();
-    let places = by_place(presses, |(label, _)| label);
-    places.iter().filter_map(|place| slopes(place, signals)).collect()
+    let places = by_place(presses.map(|(_, row)| row), |row| row.label);
+    let loads = |row: &&Row| Some((row.label, row.uv?));
+    places.each().filter_map(|place| slopes(&place.filter_map(loads).collect::<Vec<_>>(), signals)).collect()
 }
 
 /// Sensitivity at a place, by the slope over its loads; `None` where the loads are too close to each other.
@@ -129,7 +128,6 @@ mod tests {
     use super::super::fixture::{row, table, unloaded};
     use super::*;
     use crate::pad::influence::MAPS;
-    use crate::tables::measured::Row;
 
     /// Each channel reads (channel + 1) · 100 µV per newton pressing; channel 0 nearly nothing.
     fn signals() -> InfluenceField {

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::output::sum_uv;
 use super::rows::{is_load, is_press};
-use super::series::{self, Sample, mean_fz_n, mean_sum_uv};
+use super::series::{self, Sample, Trials, mean_fz_n, mean_sum_uv};
 use super::{FULL_SCALE_N, Needs, filter};
 use crate::numeric::statistics::{deviation, mean};
 use crate::tables::measured::Table;
@@ -34,20 +34,19 @@ pub struct Held {
 /// # Errors
 /// No such trial.
 pub fn of_task(table: &Table) -> Result<[Held; 3], Needs> {
-    series::all(table).iter().find_map(|trial| task(trial)).ok_or(Needs::Rows(NEEDED))
+    Trials::of(table).each().find_map(|trial| task(&trial)).ok_or(Needs::Rows(NEEDED))
 }
 
 fn task(trial: &[Sample]) -> Option<[Held; 3]> {
-    let presses =
-        series::held(trial, HELD_S).filter(|part| part.first().is_some_and(|sample| is_press(&sample.label)));
+    let presses = series::held(trial, HELD_S)
+        .filter(|part| part.first().is_some_and(|sample| is_press(sample.label())));
     let presses: Vec<&[Sample]> = presses.collect();
     let held = |load_n: f64| presses.iter().find(|part| is_load(mean_fz_n(part), load_n)).copied();
     let [one, three, full] = LOADS_N.map(held);
     let (one, three, full) = (one?, three?, full?);
     let uv_per_n = mean_sum_uv(full) / mean_fz_n(full);
     let of = |load_n: f64, part: &[Sample]| {
-        let raw: Vec<_> = part.iter().map(|sample| sample.uv).collect();
-        let output_n: Vec<f64> = filter::means(&raw).iter().map(|uv| sum_uv(uv) / uv_per_n).collect();
+        let output_n: Vec<f64> = filter::means(part, Sample::uv).map(|uv| sum_uv(&uv) / uv_per_n).collect();
         Held { load_n, mean_error_n: mean(&output_n) - mean_fz_n(part), deviation_n: deviation(&output_n) }
     };
     Some([of(LOADS_N[0], one), of(LOADS_N[1], three), of(LOADS_N[2], full)])

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::output::sum_uv;
 use super::rows::is_same_place;
-use super::series::{self, Sample};
+use super::series::{self, Sample, Trials};
 use super::{FULL_SCALE_N, Needs};
 use crate::numeric::statistics::{Line, mean};
 use crate::tables::measured::Table;
@@ -51,7 +51,7 @@ struct Loop {
 /// # Errors
 /// No such trial.
 pub fn of_loops(table: &Table) -> Result<Hysteresis, Needs> {
-    let loops: Vec<Loop> = series::all(table).iter().filter_map(|trial| up_and_down(trial)).collect();
+    let loops: Vec<Loop> = Trials::of(table).each().filter_map(|trial| up_and_down(&trial)).collect();
     let differences: Vec<f64> = loops.iter().map(Loop::largest_difference_n).collect();
     let trials = loops.len();
     let Loop { loading, unloading } = loops.into_iter().next().ok_or(Needs::Rows(NEEDED))?;
@@ -61,11 +61,11 @@ pub fn of_loops(table: &Table) -> Result<Hysteresis, Needs> {
 /// `None` for a trial that is none, or that moves.
 fn up_and_down(trial: &[Sample]) -> Option<Loop> {
     let first = trial.first()?;
-    let stays = trial.iter().all(|sample| is_same_place(&first.label, &sample.label));
-    let (top, _) = trial.iter().enumerate().max_by(|a, b| a.1.label.fz_n.total_cmp(&b.1.label.fz_n))?;
+    let stays = trial.iter().all(|sample| is_same_place(first.label(), sample.label()));
+    let (top, _) = trial.iter().enumerate().max_by(|a, b| a.1.label().fz_n.total_cmp(&b.1.label().fz_n))?;
     let uv_per_n = sensitivity(trial)?;
     let branch = |samples: &[Sample]| -> Vec<[f64; 2]> {
-        samples.iter().map(|sample| [sample.label.fz_n, sum_uv(&sample.uv) / uv_per_n]).collect()
+        samples.iter().map(|sample| [sample.label().fz_n, sum_uv(&sample.uv()) / uv_per_n]).collect()
     };
     let (up, down) = trial.split_at(top + 1);
     let found = Loop { loading: branch(up), unloading: branch(down) };
@@ -74,9 +74,9 @@ fn up_and_down(trial: &[Sample]) -> Option<Loop> {
 
 /// µV per newton at the largest load; `None` where there is none.
 fn sensitivity(trial: &[Sample]) -> Option<f64> {
-    let largest_n = trial.iter().map(|sample| sample.label.fz_n).fold(0.0, f64::max);
+    let largest_n = trial.iter().map(|sample| sample.label().fz_n).fold(0.0, f64::max);
     let top: Vec<Sample> =
-        trial.iter().filter(|sample| sample.label.fz_n >= largest_n - TOP_N).copied().collect();
+        trial.iter().filter(|sample| sample.label().fz_n >= largest_n - TOP_N).copied().collect();
     let uv_per_n = series::mean_sum_uv(&top) / series::mean_fz_n(&top);
     (uv_per_n.is_finite() && uv_per_n != 0.0).then_some(uv_per_n)
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::rows::{by_place, is_load, is_press};
-use super::series::{self, Sample, mean_label};
+use super::series::{self, Sample, Trials, mean_label};
 use super::{Decode, Needs, filter};
 use crate::numeric::statistics::deviation;
 use crate::tables::measured::{Label, Table};
@@ -38,28 +38,30 @@ pub struct LocationSpread {
 /// # Errors
 /// One of the loads is not held for 8 s at that place, or there is no decoder.
 pub fn spreads(table: &Table, decode: Option<Decode>) -> Result<[LocationSpread; 4], Needs> {
-    let trials = series::all(table);
+    let trials = Trials::of(table);
+    let trials: Vec<Vec<Sample>> = trials.each().collect();
     let held = trials.iter().flat_map(|trial| series::held(trial, HELD_S));
     let labelled = held.map(|part| (mean_label(part), part));
-    let places = by_place(labelled.filter(|(label, _)| is_press(label)).collect(), |(label, _)| label);
-    let found = places.iter().find_map(|place| at_each_load(place)).ok_or(Needs::Rows(NEEDED))?;
+    let places = by_place(labelled.filter(|(label, _)| is_press(label)), |(label, _)| *label);
+    let found = places.each().find_map(at_each_load).ok_or(Needs::Rows(NEEDED))?;
     let decode = decode.ok_or(Needs::Decoder)?;
     let index = [0, 1, 2, 3];
     Ok(index.map(|index| spread(LOADS_N[index], found[index], decode)))
 }
 
-fn at_each_load<'s>(place: &[(Label, &'s [Sample])]) -> Option<[&'s [Sample]; 4]> {
+fn at_each_load<'p, 's: 'p, 't: 's>(
+    place: impl Iterator<Item = &'p (Label, &'s [Sample<'t>])> + Clone,
+) -> Option<[&'s [Sample<'t>]; 4]> {
     let held =
-        |load_n: f64| place.iter().find(|(label, _)| is_load(label.fz_n, load_n)).map(|(_, part)| *part);
+        |load_n: f64| place.clone().find(|(label, _)| is_load(label.fz_n, load_n)).map(|(_, part)| *part);
     let [a, b, c, d] = LOADS_N.map(held);
     Some([a?, b?, c?, d?])
 }
 
 fn spread(load_n: f64, samples: &[Sample], decode: Decode) -> LocationSpread {
-    let start_s = samples.first().map_or(0.0, |first| first.t_s);
-    let looked = samples.iter().take_while(|sample| sample.t_s - start_s <= LOOKED_S);
-    let raw_uv: Vec<_> = looked.map(|sample| sample.uv).collect();
-    let contacts = filter::means(&raw_uv).into_iter().map(|uv| decode(&uv));
+    let start_s = samples.first().map_or(0.0, |first| first.t_s());
+    let looked = samples.iter().take_while(|sample| sample.t_s() - start_s <= LOOKED_S).count();
+    let contacts = filter::means(&samples[..looked], Sample::uv).map(|uv| decode(&uv));
     let places_mm: Vec<[f64; 2]> =
         contacts.map(|contact| [contact.x_mm.into(), contact.y_mm.into()]).collect();
     let along = |axis: usize| deviation(&places_mm.iter().map(|place| place[axis]).collect::<Vec<_>>());

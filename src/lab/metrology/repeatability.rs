@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::output::sum_uv;
 use super::rows::{Reading, Zeros, by_place, is_load, is_ordinary, is_press, readings};
-use super::series::{self, Sample, mean_fz_n, mean_sum_uv};
+use super::series::{Sample, Trials, mean_fz_n, mean_sum_uv};
 use super::{FULL_SCALE_N, Needs};
 use crate::numeric::statistics::{deviation, mean};
 use crate::tables::measured::{Label, Table};
@@ -44,10 +44,10 @@ pub fn at_full_scale(table: &Table) -> Result<Repeatability, Needs> {
 }
 
 fn dispersion(cycles: Vec<Cycle>) -> Option<Repeatability> {
-    let places = by_place(cycles, |cycle| &cycle.label);
-    let most = places.into_iter().max_by_key(Vec::len).filter(|place| place.len() >= CYCLES_MIN)?;
-    let sums_uv: Vec<f64> = most.iter().map(|cycle| cycle.sum_uv).collect();
-    let loads_n: Vec<f64> = most.iter().map(|cycle| cycle.label.fz_n).collect();
+    let places = by_place(cycles, |cycle| cycle.label);
+    let most = places.each().max_by_key(ExactSizeIterator::len).filter(|place| place.len() >= CYCLES_MIN)?;
+    let sums_uv: Vec<f64> = most.clone().map(|cycle| cycle.sum_uv).collect();
+    let loads_n: Vec<f64> = most.clone().map(|cycle| cycle.label.fz_n).collect();
     let full_uv = mean(&sums_uv) * FULL_SCALE_N / mean(&loads_n);
     Some(Repeatability { share: deviation(&sums_uv) / full_uv.abs(), cycles: most.len() })
 }
@@ -58,20 +58,21 @@ fn is_full(label: &Label) -> bool {
 
 fn static_cycles(table: &Table) -> Vec<Cycle> {
     let is_ordinary = is_ordinary(table);
-    let is_wanted = |reading: &Reading| is_full(&reading.row.label) && is_ordinary(reading.row);
-    let full = readings(table, &Zeros::of(table)).into_iter().filter(is_wanted);
-    full.map(|reading| Cycle { label: reading.row.label, sum_uv: sum_uv(&reading.uv) }).collect()
+    let is_wanted = |reading: &Reading| is_full(&reading.row().label) && is_ordinary(reading.row());
+    let zeros = Zeros::of(table);
+    let full = readings(&zeros).filter(is_wanted);
+    full.map(|reading| Cycle { label: reading.row().label, sum_uv: sum_uv(&reading.uv()) }).collect()
 }
 
 fn trial_cycles(table: &Table) -> Vec<Cycle> {
-    series::all(table).iter().filter_map(|trial| top(trial)).collect()
+    Trials::of(table).each().filter_map(|trial| top(&trial)).collect()
 }
 
 fn top(trial: &[Sample]) -> Option<Cycle> {
-    let largest_n = trial.iter().map(|sample| sample.label.fz_n).fold(0.0, f64::max);
+    let largest_n = trial.iter().map(|sample| sample.label().fz_n).fold(0.0, f64::max);
     let samples: Vec<Sample> =
-        trial.iter().filter(|sample| sample.label.fz_n >= TOP_SHARE * largest_n).copied().collect();
-    let label = Label { fz_n: mean_fz_n(&samples), ..samples.first()?.label };
+        trial.iter().filter(|sample| sample.label().fz_n >= TOP_SHARE * largest_n).copied().collect();
+    let label = Label { fz_n: mean_fz_n(&samples), ..*samples.first()?.label() };
     is_full(&label).then(|| Cycle { label, sum_uv: mean_sum_uv(&samples) })
 }
 

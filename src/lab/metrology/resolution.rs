@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::Needs;
 use super::output::sum_uv;
 use super::rows::is_unloaded;
-use super::series::{self, Sample, duration_s, mean_label, mean_sum_uv};
+use super::series::{self, Sample, Trials, duration_s, mean_label, mean_sum_uv};
 use crate::numeric::statistics::{Line, deviation};
 use crate::tables::measured::Table;
 
@@ -47,14 +47,15 @@ pub struct Resolution {
 /// # Errors
 /// No load is held for 30 s.
 pub fn smallest_step(table: &Table) -> Result<Resolution, Needs> {
-    let trials = series::all(table);
+    let trials = Trials::of(table);
+    let trials: Vec<Vec<Sample>> = trials.each().collect();
     let held: Vec<&[Sample]> = trials.iter().flat_map(|trial| series::held(trial, HELD_S)).collect();
     let (unloaded, loaded): (Vec<&[Sample]>, Vec<&[Sample]>) =
         held.into_iter().partition(|part| is_unloaded(&mean_label(part)));
     longest(&loaded).map(|load| of_plateau(load, longest(&unloaded))).ok_or(Needs::Rows(NEEDED))
 }
 
-fn longest<'s>(parts: &[&'s [Sample]]) -> Option<&'s [Sample]> {
+fn longest<'s, 't>(parts: &[&'s [Sample<'t>]]) -> Option<&'s [Sample<'t>]> {
     parts.iter().max_by(|a, b| duration_s(a).total_cmp(&duration_s(b))).copied()
 }
 
@@ -91,12 +92,12 @@ fn means(samples: &[Sample], uv_per_n: f64) -> Vec<[f64; 2]> {
 
 /// Start and mean of each whole second, in µV.
 fn seconds(samples: &[Sample]) -> impl Iterator<Item = (f64, f64)> {
-    let start_s = samples.first().map_or(0.0, |sample| sample.t_s);
-    let second = move |sample: &Sample| ((sample.t_s - start_s) / AVERAGED_S).floor();
+    let start_s = samples.first().map_or(0.0, |sample| sample.t_s());
+    let second = move |sample: &Sample| ((sample.t_s() - start_s) / AVERAGED_S).floor();
     let whole = (duration_s(samples) / AVERAGED_S).floor();
     let chunks = samples.chunk_by(move |one, next| second(one) == second(next));
     let mean = move |chunk: &[Sample]| {
-        let sum_uv: f64 = chunk.iter().map(|sample| sum_uv(&sample.uv)).sum();
+        let sum_uv: f64 = chunk.iter().map(|sample| sum_uv(&sample.uv())).sum();
         chunk.first().map(|first| (second(first), sum_uv / chunk.len() as f64))
     };
     chunks.filter_map(mean).filter(move |(second, _)| *second < whole)

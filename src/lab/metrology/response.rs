@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use serde::Serialize;
 
 use super::output::sum_uv;
-use super::series::{self, Sample, duration_s, mean_fz_n};
+use super::series::{self, Sample, Trials, duration_s, mean_fz_n};
 use super::{Needs, filter};
 use crate::numeric::statistics::{mean, median};
 use crate::tables::measured::Table;
@@ -49,8 +49,7 @@ pub struct StepResponse {
 /// # Errors
 /// No step.
 pub fn to_steps(table: &Table) -> Result<StepResponse, Needs> {
-    let trials = series::all(table);
-    let steps: Vec<Step> = trials.iter().flat_map(|trial| steps(trial)).collect();
+    let steps: Vec<Step> = Trials::of(table).each().flat_map(|trial| steps(&trial)).collect();
     let first = steps.first().ok_or(Needs::Rows(NEEDED))?;
     let alike: Vec<&Step> = steps.iter().filter(|step| step.response.len() == first.response.len()).collect();
     let response: Vec<f64> =
@@ -79,6 +78,8 @@ struct Step {
 }
 
 fn steps(trial: &[Sample]) -> Vec<Step> {
+    let times = trial.windows(2).map(|pair| pair[1].t_s() - pair[0].t_s());
+    let Some(interval_s) = median(times).filter(|interval_s| *interval_s > 0.0) else { return Vec::new() };
     let plateaus = series::plateaus(trial);
     let mut start = 0;
     let mut found = Vec::new();
@@ -89,26 +90,25 @@ fn steps(trial: &[Sample]) -> Vec<Step> {
         let jump_n = pair[0]
             .last()
             .zip(pair[1].first())
-            .map_or(0.0, |(last, first)| first.label.fz_n - last.label.fz_n);
+            .map_or(0.0, |(last, first)| first.label().fz_n - last.label().fz_n);
         if stays && step_n >= STEP_N && jump_n >= AT_ONCE * step_n {
-            found.extend(step(trial, start, pair[1].len()));
+            found.extend(step(trial, start, pair[1].len(), interval_s));
         }
     }
     found
 }
 
 /// The step at sample `start`, whose load stays for `held` samples.
-fn step(trial: &[Sample], start: usize, held: usize) -> Option<Step> {
-    let filtered: Vec<f64> = {
-        let raw: Vec<_> = trial.iter().map(|sample| sample.uv).collect();
-        filter::means(&raw).iter().map(sum_uv).collect()
-    };
-    let times = trial.windows(2).map(|pair| pair[1].t_s - pair[0].t_s);
-    let interval_s = median(times).filter(|interval_s| *interval_s > 0.0)?;
+fn step(trial: &[Sample], start: usize, held: usize, interval_s: f64) -> Option<Step> {
     let looked = ((LOOKED_S / interval_s).round() as usize).min(held);
-    let around = filtered.get(start.checked_sub(BEFORE)?..start + looked)?;
-    let before = mean(filtered.get(start - BEFORE..start)?);
-    let settled = mean(filtered.get(start + looked..start + held).filter(|rest| !rest.is_empty())?);
+    // From BEFORE samples before the step on; the filter looks at some before these.
+    let first = start.checked_sub(BEFORE)?;
+    let from = first.saturating_sub(filter::WINDOW);
+    let filtered = filter::means(trial.get(from..start + held)?, Sample::uv).skip(first - from);
+    let filtered: Vec<f64> = filtered.map(|uv| sum_uv(&uv)).collect();
+    let around = filtered.get(..BEFORE + looked)?;
+    let before = mean(filtered.get(..BEFORE)?);
+    let settled = mean(filtered.get(BEFORE + looked..).filter(|rest| !rest.is_empty())?);
     let change = settled - before;
     let response = around.iter().map(|uv| (uv - before) / change).collect();
     (change != 0.0).then_some(Step { response, interval_s })

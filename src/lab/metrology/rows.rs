@@ -79,18 +79,28 @@ pub(super) fn less(uv: &[f64; CHANNELS], zero_uv: &[f64; CHANNELS]) -> [f64; CHA
     std::array::from_fn(|channel| uv[channel] - zero_uv[channel])
 }
 
-/// A static load and what it adds to the channels.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Reading<'t> {
-    pub(super) row: &'t Row,
-    /// Beyond the zero.
-    pub(super) uv: [f64; CHANNELS],
+/// A static load for which a zero is known. A table may have a million: they stay in the table.
+#[derive(Clone, Copy)]
+pub(super) struct Reading<'z, 't> {
+    zeros: &'z Zeros<'t>,
+    index: usize,
+}
+
+impl<'t> Reading<'_, 't> {
+    pub(super) fn row(&self) -> &'t Row {
+        &self.zeros.table.rows[self.index]
+    }
+
+    /// What it adds to the channels: beyond the zero.
+    pub(super) fn uv(&self) -> [f64; CHANNELS] {
+        self.zeros.tared(self.index).unwrap_or_default()
+    }
 }
 
 /// The static loads for which a zero is known.
-pub(super) fn readings<'t>(table: &'t Table, zeros: &Zeros) -> Vec<Reading<'t>> {
-    let tared = |(index, row)| Some(Reading { row, uv: zeros.tared(index)? });
-    loads(table).filter_map(tared).collect()
+pub(super) fn readings<'z, 't>(zeros: &'z Zeros<'t>) -> impl Iterator<Item = Reading<'z, 't>> {
+    let known = loads(zeros.table).filter(|(index, _)| zeros.tared(*index).is_some());
+    known.map(|(index, _)| Reading { zeros, index })
 }
 
 /// The static loads that have channels, with their indices.
@@ -120,29 +130,58 @@ pub(super) fn is_ordinary(table: &Table) -> impl Fn(&Row) -> bool + use<> {
     move |row| is_usual(row.temp_c, usual_c) && row.cycle.is_none_or(|cycle| cycle < least + FRESH_CYCLES)
 }
 
-/// Sorts items by their place, in the order in which the places first appear.
-pub(super) fn by_place<T>(items: Vec<T>, label: impl Fn(&T) -> &Label) -> Vec<Vec<T>> {
-    let mut places: Vec<Vec<T>> = Vec::new();
-    // Places by the square of the plate that their first item lies in: near ones are in the squares around.
-    let mut squares: BTreeMap<[i64; 2], Vec<usize>> = BTreeMap::new();
-    for item in items {
-        let [column, row] = square(label(&item));
-        let around = (column - 1..=column + 1).flat_map(|x| (row - 1..=row + 1).map(move |y| [x, y]));
-        let near = around.filter_map(|square| squares.get(&square)).flatten();
-        let is_same = |place: &&usize| {
-            let first = places.get(**place).and_then(|place| place.first());
-            first.is_some_and(|first| is_same_place(label(first), label(&item)))
-        };
-        let known = near.filter(is_same).min().copied();
-        match known.and_then(|known| places.get_mut(known)) {
-            Some(place) => place.push(item),
-            None => {
-                squares.entry([column, row]).or_default().push(places.len());
-                places.push(vec![item]);
-            }
-        }
+/// Items by their place.
+pub(super) struct Places<T> {
+    /// Those of one place stand together, in the order in which they were given.
+    items: Vec<(u32, T)>,
+}
+
+impl<T> Places<T> {
+    /// The items of each place, in the order in which the places first appear.
+    pub(super) fn each(&self) -> impl Iterator<Item = impl ExactSizeIterator<Item = &T> + Clone> {
+        self.items.chunk_by(|(one, _), (next, _)| one == next).map(|place| place.iter().map(|(_, item)| item))
     }
-    places
+}
+
+/// Sorts items by their place.
+pub(super) fn by_place<T>(items: impl IntoIterator<Item = T>, label: impl Fn(&T) -> Label) -> Places<T> {
+    let mut found = Found::default();
+    let mut items: Vec<(u32, T)> = items.into_iter().map(|item| (found.place(&label(&item)), item)).collect();
+    items.sort_by_key(|(place, _)| *place);
+    Places { items }
+}
+
+/// The places that were found among labels so far.
+#[derive(Default)]
+struct Found {
+    /// For each place where it is, and the one before it that lies in the same square of the plate.
+    places: Vec<([f64; 2], Option<u32>)>,
+    /// The last place in each square: near ones are in the squares around.
+    squares: BTreeMap<[i64; 2], u32>,
+}
+
+impl Found {
+    /// The number of the label's place: the first one that is near enough, else a new one.
+    fn place(&mut self, label: &Label) -> u32 {
+        let here = square(label);
+        let [column, row] = here;
+        let around = (column - 1..=column + 1).flat_map(|x| (row - 1..=row + 1).map(move |y| [x, y]));
+        let near = around.flat_map(|square| {
+            let last = self.squares.get(&square).copied();
+            std::iter::successors(last, |place| self.places.get(*place as usize)?.1)
+        });
+        let is_same = |place: &u32| {
+            let first = self.places.get(*place as usize);
+            first.is_some_and(|([x_mm, y_mm], _)| {
+                is_same_place(&Label { x_mm: *x_mm, y_mm: *y_mm, ..*label }, label)
+            })
+        };
+        near.filter(is_same).min().unwrap_or_else(|| {
+            let new = self.places.len() as u32;
+            self.places.push(([label.x_mm, label.y_mm], self.squares.insert(here, new)));
+            new
+        })
+    }
 }
 
 /// The square of the plate, as wide as a place, in which a label lies.
@@ -212,9 +251,9 @@ mod tests {
         let at = |x_mm| Label { x_mm, ..Label::default() };
         // −0.04 and 0.05 lie in two squares.
         let labels = [0.0, 5.0, 0.05, -0.04, 5.2, f64::NAN, f64::INFINITY, -1e300].map(at);
-        let places = by_place(labels.to_vec(), |label| label);
-        assert_eq!(places.iter().map(Vec::len).collect::<Vec<_>>(), [3, 1, 1, 1, 1, 1]);
-        let many: Vec<Label> = (0..200_000).map(|k| at(0.3 * f64::from(k))).collect();
-        assert_eq!(by_place(many, |label| label).len(), 200_000);
+        let places = by_place(labels, |label| *label);
+        assert_eq!(places.each().map(|place| place.len()).collect::<Vec<_>>(), [3, 1, 1, 1, 1, 1]);
+        let many = (0..200_000).map(|k| at(0.3 * f64::from(k)));
+        assert_eq!(by_place(many, |label| *label).each().count(), 200_000);
     }
 }

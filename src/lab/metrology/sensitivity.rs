@@ -37,33 +37,36 @@ pub struct Sensitivity {
 /// No static press with a zero.
 pub fn of_channels(table: &Table) -> Result<Sensitivity, Needs> {
     let is_ordinary = is_ordinary(table);
-    let is_wanted = |reading: &Reading| is_press(&reading.row.label) && is_ordinary(reading.row);
-    let presses: Vec<Reading> = readings(table, &Zeros::of(table)).into_iter().filter(is_wanted).collect();
-    let places = by_place(presses, |reading| &reading.row.label);
-    if places.is_empty() {
+    let zeros = Zeros::of(table);
+    let is_wanted = |reading: &Reading| is_press(&reading.row().label) && is_ordinary(reading.row());
+    let places = by_place(readings(&zeros).filter(is_wanted), |reading| reading.row().label);
+    let slopes: Vec<[f64; CHANNELS]> = places.each().map(slopes).collect();
+    if slopes.is_empty() {
         return Err(Needs::Rows(NEEDED));
     }
-    let slopes: Vec<[f64; CHANNELS]> = places.iter().map(|place| slopes(place)).collect();
-    let is_centre = |place: &&Vec<Reading>| {
-        place.first().is_some_and(|first| first.row.label.x_mm.hypot(first.row.label.y_mm) <= CENTRE_MM)
+    let is_centre = |place: Option<&Reading>| {
+        place.is_some_and(|first| first.row().label.x_mm.hypot(first.row().label.y_mm) <= CENTRE_MM)
     };
+    let centre = places.each().position(|mut place| is_centre(place.next()));
     let over = |fold: fn(f64, f64) -> f64, start: f64| {
         std::array::from_fn(|channel| slopes.iter().map(|slope| slope[channel]).fold(start, fold))
     };
     Ok(Sensitivity {
-        centre_uv_per_n: places.iter().find(is_centre).map(|place| self::slopes(place)),
+        centre_uv_per_n: centre.and_then(|centre| slopes.get(centre).copied()),
         least_uv_per_n: over(f64::min, f64::INFINITY),
         most_uv_per_n: over(f64::max, f64::NEG_INFINITY),
         z_uv_per_n: mean_magnitude(&slopes, is_z),
         xy_uv_per_n: mean_magnitude(&slopes, |channel| !is_z(channel)),
-        places: places.len(),
+        places: slopes.len(),
     })
 }
 
-fn slopes(place: &[Reading]) -> [f64; CHANNELS] {
-    let squares: f64 = place.iter().map(|reading| reading.row.label.fz_n.powi(2)).sum();
+fn slopes<'r>(place: impl Iterator<Item = &'r Reading<'r, 'r>>) -> [f64; CHANNELS] {
+    let place: Vec<(f64, [f64; CHANNELS])> =
+        place.map(|reading| (reading.row().label.fz_n, reading.uv())).collect();
+    let squares: f64 = place.iter().map(|(fz_n, _)| fz_n.powi(2)).sum();
     std::array::from_fn(|channel| {
-        let products = place.iter().map(|reading| reading.row.label.fz_n * reading.uv[channel]);
+        let products = place.iter().map(|(fz_n, uv)| fz_n * uv[channel]);
         products.sum::<f64>() / squares
     })
 }

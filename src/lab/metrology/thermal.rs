@@ -1,5 +1,7 @@
 //! Drift of the unloaded channels with the temperature.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::Needs;
@@ -31,31 +33,42 @@ pub struct ThermalDrift {
     pub readings: Vec<(f64, [f64; CHANNELS])>,
 }
 
-/// One unloaded row, less the mean of its session.
+/// Unloaded rows: a temperature and the channels, less the mean of their session.
+#[derive(Clone, Copy)]
 struct Reading {
     temp_c: f64,
     relative_c: f64,
     uv: [f64; CHANNELS],
 }
 
+/// The mean of a session's unloaded rows.
+struct Middle {
+    temp_c: f64,
+    uv: [f64; CHANNELS],
+}
+
+/// The temperature and the channels of an unloaded row.
+type Warm<'t> = (f64, &'t [f64; CHANNELS]);
+
 /// A line through each channel's unloaded readings over the temperature. Each session has its own zero.
 ///
 /// # Errors
 /// No session with unloaded rows at two temperatures.
 pub fn drift(table: &Table) -> Result<ThermalDrift, Needs> {
-    let sessions: Vec<Vec<(f64, [f64; CHANNELS])>> = sessions(table);
-    let wide = sessions.iter().filter(|session| range_c(session) >= RANGE_C);
-    let readings: Vec<Reading> = wide.flat_map(|session| relative(session)).collect();
-    if readings.is_empty() {
+    let wide = sessions(table).into_iter().filter(|session| range_c(session) >= RANGE_C);
+    let sessions: Vec<(Middle, Vec<Warm>)> = wide.map(|session| (Middle::of(&session), session)).collect();
+    if sessions.is_empty() {
         return Err(Needs::Rows(NEEDED));
     }
+    let readings =
+        || sessions.iter().flat_map(|(middle, session)| session.iter().map(|row| middle.relative(row)));
     let lines: [Line; CHANNELS] = std::array::from_fn(|channel| {
         let points: Vec<[f64; 2]> =
-            readings.iter().map(|reading| [reading.relative_c, reading.uv[channel]]).collect();
+            readings().map(|reading| [reading.relative_c, reading.uv[channel]]).collect();
         Line::through(&points)
     });
     let slope_uv_per_c = lines.map(|line| line.slope);
-    let steps = by_temperature(&readings);
+    let steps = by_temperature(readings());
     Ok(ThermalDrift {
         uv_per_10_c: STEP_C * mean(slope_uv_per_c.map(f64::abs)),
         slope_uv_per_c,
@@ -65,48 +78,57 @@ pub fn drift(table: &Table) -> Result<ThermalDrift, Needs> {
 }
 
 /// Temperature and channels of the unloaded rows, session by session; rows without session are one.
-fn sessions(table: &Table) -> Vec<Vec<(f64, [f64; CHANNELS])>> {
+fn sessions(table: &Table) -> Vec<Vec<Warm<'_>>> {
     let mut sessions = vec![Vec::new(); table.sessions.len() + 1];
     for row in table.rows.iter().filter(|row| is_unloaded(&row.label)) {
         let session = sessions.get_mut(row.session.map_or(0, |session| session + 1));
         if let (Some(session), Row { temp_c: Some(temp_c), uv: Some(uv), .. }) = (session, row) {
-            session.push((*temp_c, *uv));
+            session.push((*temp_c, uv));
         }
     }
     sessions
 }
 
-fn range_c(session: &[(f64, [f64; CHANNELS])]) -> f64 {
+fn range_c(session: &[Warm]) -> f64 {
     let temperatures = || session.iter().map(|(temp_c, _)| *temp_c);
     temperatures().fold(f64::MIN, f64::max) - temperatures().fold(f64::MAX, f64::min)
 }
 
-fn relative(session: &[(f64, [f64; CHANNELS])]) -> impl Iterator<Item = Reading> {
-    let mean_c = mean(session.iter().map(|(temp_c, _)| temp_c));
-    let mean_uv = mean_vector(session.iter().map(|(_, uv)| uv));
-    session.iter().map(move |(temp_c, uv)| Reading {
-        temp_c: *temp_c,
-        relative_c: temp_c - mean_c,
-        uv: std::array::from_fn(|channel| uv[channel] - mean_uv[channel]),
-    })
+impl Middle {
+    fn of(session: &[Warm]) -> Self {
+        Self {
+            temp_c: mean(session.iter().map(|(temp_c, _)| temp_c)),
+            uv: mean_vector(session.iter().map(|(_, uv)| *uv)),
+        }
+    }
+
+    fn relative(&self, (temp_c, uv): &Warm) -> Reading {
+        Reading {
+            temp_c: *temp_c,
+            relative_c: temp_c - self.temp_c,
+            uv: std::array::from_fn(|channel| uv[channel] - self.uv[channel]),
+        }
+    }
 }
 
 /// Means over the readings whose temperatures round to the same degree, from cold to warm.
-fn by_temperature(readings: &[Reading]) -> Vec<Reading> {
-    let mut degrees: Vec<f64> = readings.iter().map(|reading| reading.temp_c.round()).collect();
-    degrees.sort_by(f64::total_cmp);
-    degrees.dedup();
-    let step = |degree: f64| {
-        let same: Vec<&Reading> =
-            readings.iter().filter(|reading| reading.temp_c.round() == degree).collect();
-        let over = |of: &dyn Fn(&Reading) -> f64| mean(same.iter().map(|reading| of(reading)));
-        Reading {
-            temp_c: over(&|reading| reading.temp_c),
-            relative_c: over(&|reading| reading.relative_c),
-            uv: std::array::from_fn(|channel| over(&|reading| reading.uv[channel])),
-        }
+fn by_temperature(readings: impl Iterator<Item = Reading>) -> Vec<Reading> {
+    // For each degree the sums of both temperatures and of the channels, and how many they are.
+    let mut degrees: BTreeMap<i64, (Reading, f64)> = BTreeMap::new();
+    for Reading { temp_c, relative_c, uv } in readings {
+        let none = Reading { temp_c: 0.0, relative_c: 0.0, uv: [0.0; CHANNELS] };
+        let (sum, count) = degrees.entry(temp_c.round() as i64).or_insert((none, 0.0));
+        sum.temp_c += temp_c;
+        sum.relative_c += relative_c;
+        sum.uv.iter_mut().zip(uv).for_each(|(sum, uv)| *sum += uv);
+        *count += 1.0;
+    }
+    let mean = |(sum, count): (Reading, f64)| Reading {
+        temp_c: sum.temp_c / count,
+        relative_c: sum.relative_c / count,
+        uv: sum.uv.map(|sum| sum / count),
     };
-    degrees.into_iter().map(step).collect()
+    degrees.into_values().map(mean).collect()
 }
 
 fn nonlinearity(steps: &[Reading], lines: &[Line; CHANNELS]) -> f64 {

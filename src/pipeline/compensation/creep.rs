@@ -19,6 +19,13 @@ pub struct Creep {
 /// A pad that does not creep.
 pub const NO_CREEP: Creep = Creep { time_s: 0.0, share: 0.0 };
 
+impl Creep {
+    /// What creep adds to a channel that has crept so far.
+    pub const fn added_uv(&self, crept_uv: f64) -> f64 {
+        self.share * crept_uv
+    }
+}
+
 /// How far a pad has crept.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Crept {
@@ -29,15 +36,25 @@ pub struct Crept {
 impl Crept {
     /// These strains were held for so long. Without a relaxation time they are crept to at once.
     pub fn hold(&mut self, uv: &[f64; CHANNELS], held_s: f64, time_s: f64) {
-        // τ ċ = e − c with e held: c ← e + (c − e) exp(−Δt / τ).
-        let left = if held_s > 0.0 { libm::exp(-held_s / time_s) } else { 1.0 };
-        self.state_uv.iter_mut().zip(uv).for_each(|(state, uv)| *state = uv + left * (*state - uv));
+        let left = left(held_s, time_s);
+        self.state_uv.iter_mut().zip(uv).for_each(|(state, uv)| *state = held_uv(*state, *uv, left));
     }
 
     /// What creep adds to the channels.
     pub fn added_uv(&self, creep: &Creep) -> [f64; CHANNELS] {
-        self.state_uv.map(|uv| creep.share * uv)
+        self.state_uv.map(|uv| creep.added_uv(uv))
     }
+}
+
+/// The share of a channel's distance from a strain that is left when that was held for so long.
+pub fn left(held_s: f64, time_s: f64) -> f64 {
+    if held_s > 0.0 { libm::exp(-held_s / time_s) } else { 1.0 }
+}
+
+/// How far one channel has crept when a strain was held until this share of its distance was left.
+pub const fn held_uv(crept_uv: f64, uv: f64, left: f64) -> f64 {
+    // τ ċ = e − c with e held: c ← e + (c − e) exp(−Δt / τ).
+    uv + left * (crept_uv - uv)
 }
 
 #[cfg(test)]

@@ -30,6 +30,13 @@ pub struct Play {
 impl Play {
     /// A play operator that does nothing.
     pub const NONE: Self = Self { threshold_uv: [0.0; CHANNELS], share: [0.0; CHANNELS] };
+
+    /// A channel's state when its strain without hysteresis went here. It stays within the threshold of the strain.
+    pub const fn pulled(&self, channel: usize, state_uv: f64, free_uv: f64) -> f64 {
+        // The play operator: p ← min(max(p, e − r), e + r).
+        let threshold_uv = self.threshold_uv[channel];
+        state_uv.max(free_uv - threshold_uv).min(free_uv + threshold_uv)
+    }
 }
 
 /// The hysteresis of a pad. The magnitudes of a channel's shares are less than 1 in sum.
@@ -49,8 +56,8 @@ impl History {
     /// The channels went to these strains, which are without hysteresis.
     pub fn follow(&mut self, hysteresis: &Hysteresis, free_uv: &[f64; CHANNELS]) {
         for (states, play) in self.state_uv.iter_mut().zip(hysteresis) {
-            for ((state, free), threshold) in states.iter_mut().zip(free_uv).zip(play.threshold_uv) {
-                *state = pulled(*state, *free, threshold);
+            for (channel, (state, free)) in states.iter_mut().zip(free_uv).enumerate() {
+                *state = play.pulled(channel, *state, *free);
             }
         }
     }
@@ -75,7 +82,7 @@ impl History {
         let mut free_uv = read_uv;
         for _ in 0..ROUNDS {
             let added_uv = |(states, play): (&[f64; CHANNELS], &Play)| {
-                let state = pulled(states[channel], free_uv, play.threshold_uv[channel]);
+                let state = play.pulled(channel, states[channel], free_uv);
                 play.share[channel] * (state - free_uv)
             };
             let next_uv = read_uv - self.state_uv.iter().zip(hysteresis).map(added_uv).sum::<f64>();
@@ -87,12 +94,6 @@ impl History {
         }
         free_uv
     }
-}
-
-/// A state that stays within a threshold of the strain.
-const fn pulled(state: f64, free: f64, threshold: f64) -> f64 {
-    // The play operator: p ← min(max(p, e − r), e + r).
-    state.max(free - threshold).min(free + threshold)
 }
 
 #[cfg(test)]

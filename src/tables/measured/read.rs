@@ -41,6 +41,8 @@ pub fn table(from: impl BufRead, kind: Kind, place_max_mm: f64) -> Result<Table,
     if reader.table.rows.is_empty() {
         return Err(lines.error(Fault::NoRows));
     }
+    // Half of what it grew to may be empty.
+    reader.table.rows.shrink_to_fit();
     Ok(reader.table)
 }
 

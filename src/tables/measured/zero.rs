@@ -116,19 +116,19 @@ impl Zeros {
     /// What is to be taken off a row, if `value` is what is to be taken off the untouched rows.
     ///
     /// It lies between those of the two untouched rows around it.
-    pub fn at(&self, row: usize, value: impl Fn(usize) -> [f64; CHANNELS]) -> [f64; CHANNELS] {
+    pub fn at<const N: usize>(&self, row: usize, value: impl Fn(usize) -> [f64; N]) -> [f64; N] {
         let (before, after) = self.rows.split_at(self.rows.partition_point(|zero| *zero < row));
-        self.between(row, before.last().copied(), after.first().copied(), value).unwrap_or([0.0; CHANNELS])
+        self.between(row, before.last().copied(), after.first().copied(), value).unwrap_or([0.0; N])
     }
 
     /// Between the values of an untouched row before a row and one after it, as far as there are any.
-    pub(super) fn between(
+    pub(super) fn between<const N: usize>(
         &self,
         row: usize,
         before: Option<usize>,
         after: Option<usize>,
-        value: impl Fn(usize) -> [f64; CHANNELS],
-    ) -> Option<[f64; CHANNELS]> {
+        value: impl Fn(usize) -> [f64; N],
+    ) -> Option<[f64; N]> {
         let (Some(before), Some(after)) = (before, after) else {
             return before.or(after).map(value);
         };

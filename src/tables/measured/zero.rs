@@ -19,7 +19,7 @@
 //! - A decoder knows how the zero follows the temperature, or takes it to be constant: all untouched rows count
 //!   ([`Zeros::at`]).
 //! - Figures of merit do not know: untouched rows of the row's own temperature count, those of its own session first
-//!   ([`Zeros::alike`]).
+//!   ([`super::alike::Alike`]).
 
 use super::{Row, Table};
 use crate::quantity::CHANNELS;

@@ -34,10 +34,16 @@ pub(crate) struct Running {
 }
 
 impl Running {
-    /// The program `name`, in `folder`.
+    /// The program `name`, in `folder`. No signal is ignored from the start, be this test itself under nohup.
     pub(crate) fn program(name: impl AsRef<OsStr>, folder: &Path) -> Command {
-        let mut program = Command::new(name);
-        program.current_dir(folder).env("XDG_RUNTIME_DIR", folder).stdin(Stdio::null()).stdout(Stdio::null());
+        let mut program = Command::new("env");
+        program
+            .arg("--default-signal")
+            .arg(name)
+            .current_dir(folder)
+            .env("XDG_RUNTIME_DIR", folder)
+            .stdin(Stdio::null())
+            .stdout(Stdio::null());
         program
     }
 

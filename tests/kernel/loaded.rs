@@ -7,6 +7,7 @@ use evdev::KeyCode;
 use serde_json::Value;
 
 use crate::bridge::{Bridge, TACTPAD};
+use crate::clock::{MS, monotonic_ns};
 use crate::pad::{NONE, PRESS, Pad};
 
 /// The thumb lies still for this long before it first lifts: the bridge takes that for the zero.
@@ -29,6 +30,11 @@ pub(crate) fn thumb_at_the_start() {
     let Bridge { pad, program, reader } = bridge;
     let path = pad.path().to_owned();
     pad.unplug();
+    // Its number is free when the bridge has let it go.
+    let limit_ns = monotonic_ns() + STATUS_LIMIT_MS * MS;
+    while status()["state"] != "waiting" {
+        assert!(monotonic_ns() < limit_ns, "the bridge does not see that the pad is gone");
+    }
     let pad = Pad::plug_in();
     assert_eq!(pad.path(), path, "the kernel gives the lowest free number");
     let mut bridge = Bridge { pad, program, reader };

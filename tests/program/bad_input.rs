@@ -402,7 +402,10 @@ fn output_that_cannot_be_written_is_named() {
 #[test]
 fn a_recording_without_a_pad_leaves_the_old_capture() {
     let (_folder, path) = with_file("old.cap", b"precious");
-    refuses_line(&format!("record {} --force --pad serial:/dev/null", path.display()), &["is not a serial port"]);
+    refuses_line(
+        &format!("record {} --force --pad serial:/dev/null", path.display()),
+        &["is not a serial port"],
+    );
     assert_eq!(fs::read(&path).unwrap(), b"precious");
 }
 

@@ -145,7 +145,7 @@ impl Signal {
         let mean = self.filter.push(&sample.counts);
         let block_uv = self.tare.watch(at, &raw_uv(sample.counts.map(f64::from)));
         if self.tare.is_known() {
-            if block_uv.is_some_and(|uv| !pad.touched && self.tare.is_pulled(&uv, &pad.rest, &load_n)) {
+            if block_uv.is_some_and(|uv| self.tare.is_pulled(&uv, pad.touched, &pad.rest, &load_n)) {
                 return Conditioned::Pulled;
             }
             return Conditioned::Strain(self.tare.apply(at, &raw_uv(mean), pad.touched, &pad.rest));

@@ -117,10 +117,12 @@ impl Tare {
         self.stillness.push(at, raw_uv)
     }
 
-    /// Whether this block, of a pad that nothing touches, shows that the zero was a load: nothing can pull at the plate.
+    /// Whether the blocks up to this one show that the zero was a load: nothing can pull at the plate. One with a touch in it
+    /// does not.
     pub fn is_pulled(
         &mut self,
         block_uv: &[f64; CHANNELS],
+        touched: bool,
         rest: &Rest,
         load_n: impl Fn(&Strain) -> f32,
     ) -> bool {
@@ -128,7 +130,8 @@ impl Tare {
         let strain = relative(block_uv, &std::array::from_fn(|k| zero_uv[k] + rest.uv[k]));
         // At rest nothing needs to be decoded.
         let stands = strain.uv.iter().all(|uv| f64::from(uv.abs()) <= STILL_UV);
-        self.pulls = if stands || load_n(&strain) >= -SAME_N { 0 } else { self.pulls + 1 };
+        let is_below = !touched && !stands && load_n(&strain) < -SAME_N;
+        self.pulls = if is_below { self.pulls + 1 } else { 0 };
         self.pulls >= PULL_BLOCKS
     }
 
@@ -270,6 +273,16 @@ mod tests {
         assert!((1_350..1_450).contains(&known), "{known} ms");
         let strain = tare.apply(StreamInstant::from_us(1_500_000), &[1_000.0; CHANNELS], true, &Rest::NONE);
         assert!((strain.uv[4] - 1_000.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn blocks_below_the_zero_with_a_touch_between_are_not_in_a_row() {
+        let mut tare = Tare::new();
+        assert!(known_at_ms(&mut tare, |_| 0.0).is_some());
+        let mut pulled = |touched| {
+            tare.is_pulled(&[-500.0; CHANNELS], touched, &Rest::NONE, |strain| strain.uv[0] / UV_PER_N)
+        };
+        assert_eq!([false, true, false, false].map(&mut pulled), [false, false, false, true]);
     }
 
     #[test]

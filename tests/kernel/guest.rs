@@ -91,9 +91,10 @@ fn longest_stall_ms(said: &str) -> u64 {
 /// For how long this guest stood still so far, at most.
 static STOOD_STILL_MS: AtomicU64 = AtomicU64::new(0);
 
-/// By how much anything in the guest may have been late so far: a stall in full, and the millisecond it is rounded by.
+/// By how much anything in the guest may have been late so far: the longest stall in full. The watch sees only what of
+/// it lies past its own deadline, to the millisecond; up to a whole wait may lie before.
 pub(crate) fn lateness_ms() -> u64 {
-    STOOD_STILL_MS.load(Ordering::Relaxed) + 1
+    STOOD_STILL_MS.load(Ordering::Relaxed) + WATCH_MS + 1
 }
 
 /// Looks at the clock all the time, and tells at the end how long it was kept from that.

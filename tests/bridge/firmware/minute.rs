@@ -10,7 +10,7 @@ use firmware_proto::sample::Sample;
 use tactpad::pipeline::call::Call;
 use tactpad::pipeline::capture::reader::CaptureReader;
 
-use super::host_pad::HostPad;
+use super::host_pad::{Counts, HostPad};
 
 /// The firmware presses twice a second.
 const PRESSES_HZ: u64 = 2;
@@ -67,30 +67,39 @@ fn lateness_us(samples: &[Sample], rate_hz: u64) -> Vec<u64> {
     samples.chunks(rate_hz as usize).map(|second| second.iter().map(late_us).min().unwrap()).collect()
 }
 
+/// A line that was full is tried again so often: another program may have had the processor for long. A bridge that is too
+/// slow is so each time.
+const TRIES: u32 = 3;
+
 /// Plays at this rate; at least `share` of the samples that the time has room for are decoded.
 fn nothing_is_lost(rate_hz: u64, share: f64) {
-    let Some(pad) = HostPad::start(rate_hz) else { return };
     let seconds = std::env::var("TACTPAD_FIRMWARE_SECONDS").map_or(5, |text| text.parse().unwrap());
-    let Taken { samples, refused, events } = play(&pad.path, seconds);
-    let counts = pad.end();
-    let lateness_us = lateness_us(&samples, rate_hz);
-    println!(
-        "{} samples in {seconds} s, {events} events, most punctual sample of each second late by up to {} us, {counts:?}",
-        samples.len(),
-        lateness_us.iter().max().unwrap()
-    );
+    for again in (0..TRIES).rev() {
+        let Some(pad) = HostPad::start(rate_hz) else { return };
+        let taken = play(&pad.path, seconds);
+        let counts = pad.end();
+        println!("{} samples in {seconds} s, {} events, {counts:?}", taken.samples.len(), taken.events);
+        if again == 0 || counts.bytes_not_taken == 0 {
+            return check(&taken, &counts, rate_hz, seconds, share);
+        }
+    }
+}
 
+fn check(taken: &Taken, counts: &Counts, rate_hz: u64, seconds: u64, share: f64) {
+    let Taken { samples, refused, events } = taken;
+    let lateness_us = lateness_us(samples, rate_hz);
+    println!("most punctual sample of each second late by up to {} us", lateness_us.iter().max().unwrap());
     let expected = (rate_hz * seconds) as f64 * share;
     assert!(samples.len() as f64 >= expected, "{} of {expected} samples", samples.len());
     assert!(samples.windows(2).all(|pair| pair[1].sequence == pair[0].sequence + 1), "a frame is lost");
-    assert!(refused <= 1, "only the frame during which the port was opened may be cut");
+    assert!(*refused <= 1, "only the frame during which the port was opened may be cut");
     assert_eq!((counts.bytes_not_taken, counts.stalls), (0, 0));
     assert!(
         lateness_us.iter().all(|late_us| *late_us < 1_000_000 / rate_hz),
         "the rate drifts: {lateness_us:?}"
     );
     // The first second is rest; each press changes at least one control and back.
-    assert!(events as u64 >= 2 * (PRESSES_HZ * (seconds - 1) - 1), "{events} events");
+    assert!(*events as u64 >= 2 * (PRESSES_HZ * (seconds - 1) - 1), "{events} events");
 }
 
 #[test]

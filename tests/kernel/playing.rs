@@ -165,8 +165,14 @@ fn check_durations(bridge: &Bridge, hold_start_ns: u64, tap: &str, hold: &str) {
     let late_ms = lateness_ms();
     let tap_ms = (at(tap, 0) - at(tap, 1)) / MS;
     let tap_range_ms = MIN_PRESS_MS.saturating_sub(late_ms)..MIN_PRESS_MS + slack_ms();
-    assert!(tap_range_ms.contains(&tap_ms), "the tap lasted {tap_ms} ms, the machine stood still for {late_ms} ms");
+    assert!(
+        tap_range_ms.contains(&tap_ms),
+        "the tap lasted {tap_ms} ms, the machine stood still for {late_ms} ms"
+    );
     let long_ms = (at(hold, 1) - hold_start_ns) / MS;
     let long_range_ms = LONG_PRESS_MS.saturating_sub(late_ms)..LONG_PRESS_MS + slack_ms();
-    assert!(long_range_ms.contains(&long_ms), "long after {long_ms} ms, the machine stood still for {late_ms} ms");
+    assert!(
+        long_range_ms.contains(&long_ms),
+        "long after {long_ms} ms, the machine stood still for {late_ms} ms"
+    );
 }

@@ -1,0 +1,14 @@
+//! Effects that are hidden in measured data, and what the program finds of them.
+//!
+//! The measured data come from a generator that shares no code with the program: its influence fields are tables of
+//! another program's solution, and each effect has a formula of its own.
+
+mod background;
+mod effects;
+mod fields;
+mod files;
+mod measured;
+mod plan;
+mod random;
+mod sizes;
+mod truth;

@@ -1,0 +1,162 @@
+//! What may be hidden: the causes, and draws of their targets and sizes.
+
+use crate::effects::mechanical::OPEN_SHARE;
+use crate::random::Random;
+use crate::truth::{CHANNELS, Truth};
+
+/// Causes that static contacts show, with a size for each parameter that is plain to see.
+pub(crate) const STATIC: [&str; 21] = [
+    "channel_gain",
+    "channel_crosstalk",
+    "channel_offset",
+    "gauge_nonlinearity",
+    "module_displaced",
+    "module_rotated",
+    "module_tilted",
+    "module_stiffness",
+    "module_debonded",
+    "module_frame_open",
+    "module_crosstalk",
+    "plate_stiffness",
+    "excitation_gain",
+    "reference_tilt",
+    "reference_gain",
+    "reference_zero",
+    "stage_offset",
+    "stage_rotation",
+    "stage_scale",
+    "contact_height",
+    "contact_size",
+];
+
+/// Causes that need time, temperature or cycles, or that a gatekeeper finds.
+pub(crate) const OTHER: [&str; 15] = [
+    "channel_dead",
+    "channel_polarity",
+    "channels_swapped",
+    "adc_clipping",
+    "channel_skew",
+    "mains_pickup",
+    "noise_excess",
+    "thermal_zero",
+    "thermal_gain",
+    "zero_drift",
+    "hysteresis",
+    "creep",
+    "ageing",
+    "time_lag",
+    "reference_zero",
+];
+
+/// A cause with a drawn target and sign, `times` as large as its own plain size.
+pub(crate) fn drawn(effect: &str, times: f64, random: &mut Random) -> Truth {
+    let sign = random.sign();
+    let size = |plain: f64| sign * times * plain;
+    let [target, other] = channels(random);
+    let [module, source] = modules(random);
+    match effect {
+        "channel_gain" => Truth::new(effect, target, &[("gain", 1.0 + size(0.1))]),
+        "channel_offset" => Truth::new(effect, target, &[("offset_uv", size(60.0))]),
+        "channel_crosstalk" => Truth::new(effect, target, &[("share", size(0.06))]).with(other),
+        "gauge_nonlinearity" => Truth::new(effect, target, &[("second_order_percent_fs", size(8.0))]),
+        "channel_dead" | "channel_polarity" => Truth::new(effect, target, &[]),
+        "channels_swapped" => swapped(random),
+        "noise_excess" => Truth::new(effect, target, &[("factor", 1.0 + times * 2.0)]),
+        "adc_clipping" => Truth::new(effect, target, &[("limit_uv", 4000.0 / times)]),
+        "channel_skew" => Truth::new(effect, target, &[("skew_us", size(15_000.0))]),
+        "mains_pickup" => mains(random, times),
+        "module_displaced" => displaced(random, &module, times),
+        "module_rotated" => Truth::new(effect, &module, &[("deg", size(2.5))]),
+        "module_tilted" => tilted(random, &module, times),
+        "module_stiffness" => Truth::new(effect, &module, &[("factor", size(0.35).exp())]),
+        "module_debonded" => Truth::new(effect, &module, &[("area_share", times * 0.2)]).on(side(random)),
+        "module_frame_open" => open(random, &module, times),
+        "module_crosstalk" => Truth::new(effect, &module, &[("share", size(0.03))]).with(&source),
+        _ => whole(effect, sign, times, random),
+    }
+}
+
+/// Causes in the whole pad, in the contact or in the rig.
+fn whole(effect: &str, sign: f64, times: f64, random: &mut Random) -> Truth {
+    let size = |plain: f64| sign * times * plain;
+    let pad = |name: &str, value: f64| Truth::new(effect, "pad", &[(name, value)]);
+    let rig = |name: &str, value: f64| Truth::new(effect, "rig", &[(name, value)]);
+    match effect {
+        "plate_stiffness" => pad("factor", size(0.3).exp()),
+        "excitation_gain" => pad("gain", 1.0 + size(0.06)),
+        "thermal_zero" => pad("uv_per_c", size(12.0)),
+        "thermal_gain" => pad("per_c", size(0.004)),
+        "zero_drift" => pad("uv_per_h", size(60.0)),
+        "hysteresis" => pad("share_of_full_scale", times * 0.04),
+        "creep" => pad("share_at_20s", times * 0.03),
+        "ageing" => pad("share_at_end", times * 0.06),
+        "reference_gain" => rig("gain", 1.0 + size(0.06)),
+        "reference_tilt" => direction(effect, ["x_deg", "y_deg"], times * 2.0, random),
+        "reference_zero" => zero(times * 0.1, random),
+        "stage_offset" => direction(effect, ["x_mm", "y_mm"], times * 0.8, random),
+        "stage_rotation" => rig("deg", size(2.0)),
+        "stage_scale" => rig("scale", 1.0 + size(0.03)),
+        "contact_height" => rig("mm", size(0.8)),
+        "contact_size" => rig("radius_mm", 1.0 + times * 1.2),
+        _ => rig("ms", size(60.0)),
+    }
+}
+
+/// Two different channels.
+fn channels(random: &mut Random) -> [&'static str; 2] {
+    let first = random.below(9);
+    [CHANNELS[first], CHANNELS[(first + 1 + random.below(8)) % 9]]
+}
+
+/// Two different modules.
+fn modules(random: &mut Random) -> [String; 2] {
+    let first = random.below(3);
+    [first, (first + 1 + random.below(2)) % 3].map(|index| format!("module{index}"))
+}
+
+fn swapped(random: &mut Random) -> Truth {
+    let mut two = channels(random);
+    two.sort_unstable();
+    Truth::new("channels_swapped", two[0], &[]).with(two[1])
+}
+
+fn mains(random: &mut Random, times: f64) -> Truth {
+    let grid = [50.0, 60.0][random.below(2)];
+    let frequency = grid + random.between(-0.05, 0.05);
+    let parameters = [("amplitude_uv", times * 60.0), ("frequency_hz", frequency)];
+    Truth::new("mains_pickup", CHANNELS[random.below(9)], &parameters)
+}
+
+fn displaced(random: &mut Random, module: &str, times: f64) -> Truth {
+    let (sin, cos) = random.between(0.0, 360.0).to_radians().sin_cos();
+    let length = times * 0.8;
+    Truth::new("module_displaced", module, &[("radial_mm", length * cos), ("tangential_mm", length * sin)])
+}
+
+fn tilted(random: &mut Random, module: &str, times: f64) -> Truth {
+    let (sin, cos) = random.between(0.0, 360.0).to_radians().sin_cos();
+    let angle = times * 2.0;
+    Truth::new("module_tilted", module, &[("tangential_deg", angle * cos), ("radial_deg", angle * sin)])
+}
+
+fn side(random: &mut Random) -> &'static str {
+    ["+x", "-x", "+y", "-y"][random.below(4)]
+}
+
+/// The tables have a frame that is open along its tangent.
+fn open(random: &mut Random, module: &str, times: f64) -> Truth {
+    let share = OPEN_SHARE * times.min(1.0);
+    Truth::new("module_frame_open", module, &[("area_share", share)]).on(["+x", "-x"][random.below(2)])
+}
+
+fn direction(effect: &str, names: [&str; 2], length: f64, random: &mut Random) -> Truth {
+    let (sin, cos) = random.between(0.0, 360.0).to_radians().sin_cos();
+    Truth::new(effect, "rig", &[(names[0], length * cos), (names[1], length * sin)])
+}
+
+fn zero(length: f64, random: &mut Random) -> Truth {
+    let along = [random.normal(), random.normal(), random.normal()];
+    let norm = along.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let [x, y, z] = along.map(|part| length * part / norm);
+    Truth::new("reference_zero", "rig", &[("fx_n", x), ("fy_n", y), ("fz_n", z)])
+}

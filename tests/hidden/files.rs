@@ -9,13 +9,11 @@ use std::env;
 use std::fs;
 use std::path::Path;
 
-use serde_json::json;
-
-use crate::measured::{Quality, measured};
-use crate::plan::{Plan, carry_out};
+use crate::case::Case;
+use crate::measured::Quality;
+use crate::plan::Plan;
 use crate::random::Random;
 use crate::sizes;
-use crate::truth::Truth;
 
 #[test]
 fn cases_as_files() {
@@ -37,28 +35,24 @@ fn cases_as_files() {
     let causes = setting("EFFECTS", "null");
     for effect in causes.split(',') {
         for seed in first.parse().unwrap()..=last.parse().unwrap() {
-            let quality = match setting("QUALITY", "stated").as_str() {
-                "drawn" => Quality::drawn(&mut Random::new(seed, &format!("quality {effect}"))),
-                _ => Quality::STATED,
-            };
             let truth = (effect != "null")
                 .then(|| sizes::drawn(effect, times, &mut Random::new(seed, &format!("size {effect}"))));
-            write(Path::new(&folder), (effect, seed), plan, truth, &quality);
+            let mut case = Case::new(&format!("{effect}_{seed}"), seed, plan, truth.into_iter().collect());
+            if setting("QUALITY", "stated") == "stated" {
+                case.quality = Quality::STATED;
+            }
+            write(Path::new(&folder), &case);
         }
     }
 }
 
-fn write(folder: &Path, (name, seed): (&str, u64), plan: Plan, truth: Option<Truth>, quality: &Quality) {
-    let mut rows = plan.rows(seed, Path::new(env!("CARGO_TARGET_TMPDIR")));
-    carry_out(&mut rows, &mut Random::new(seed, "course"));
-    let truths: Vec<Truth> = truth.into_iter().collect();
-    let own = seed.wrapping_mul(1000) + name.bytes().map(u64::from).sum::<u64>();
-    let table = measured(rows, &truths, quality, &|_, _| {}, own);
-    fs::write(folder.join(format!("{name}_{seed}.csv")), table.csv()).unwrap();
-    if let [truth] = truths.as_slice() {
-        let mut document = truth.json();
-        document["plan"] = json!(plan.name());
-        document["background"] = json!(quality.background);
-        fs::write(folder.join(format!("{name}_{seed}.truth.json")), format!("{document}\n")).unwrap();
+fn write(folder: &Path, case: &Case) {
+    fs::write(folder.join(format!("{}.csv", case.key)), case.table(0).csv()).unwrap();
+    let mut document = case.truth();
+    if let [truth] = case.truths.as_slice() {
+        for (key, value) in truth.json().as_object().unwrap() {
+            document[key] = value.clone();
+        }
+        fs::write(folder.join(format!("{}.truth.json", case.key)), format!("{document}\n")).unwrap();
     }
 }

@@ -4,11 +4,15 @@
 //! another program's solution, and each effect has a formula of its own.
 
 mod background;
+mod case;
 mod effects;
 mod fields;
 mod files;
 mod measured;
 mod plan;
+mod program;
 mod random;
+mod score;
+mod simulator;
 mod sizes;
 mod truth;

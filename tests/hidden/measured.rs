@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::background::{background, rms_of};
-use crate::effects::{electrical, mechanical, memory, rig, warmth};
+use crate::effects::{electrical, mechanical, memory, rig, taken, warmth};
 use crate::fields::{NOMINAL, signals};
 use crate::plan::{Contact, Row};
 use crate::random::Random;
@@ -56,11 +56,18 @@ pub(crate) struct Measured {
     pub(crate) rows: Vec<Row>,
     pub(crate) labels: Vec<Contact>,
     pub(crate) channels: Vec<[f64; 9]>,
-    columns: Columns,
+    pub(crate) columns: Columns,
 }
 
 /// Adds a contribution of no catalogue to the strain.
 pub(crate) type Unknown<'a> = &'a dyn Fn(&[Contact], &mut [[f64; 9]]);
+
+/// Which pad and which recording of it: the background belongs to the pad, noise and phases to the recording.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seeds {
+    pub(crate) pad: u64,
+    pub(crate) recording: u64,
+}
 
 /// Carries out a plan on the pad with its hidden effects.
 pub(crate) fn measured(
@@ -68,14 +75,15 @@ pub(crate) fn measured(
     truths: &[Truth],
     quality: &Quality,
     unknown: Unknown,
-    seed: u64,
+    seeds: Seeds,
 ) -> Measured {
-    let drawn = |name: &str| Random::new(seed, name);
+    let drawn = |name: &str| Random::new(seeds.recording, name);
     let rms = typical(&rows);
     let full_scale = largest(&rows);
     let contacts = rig::true_contacts(truths, &rows);
     let mut signal = strain(truths, &contacts, quality);
-    let smooth = background(&rows, &contacts, &rms, quality.background, &mut drawn("background"));
+    let smooth =
+        background(&rows, &contacts, &rms, quality.background, &mut Random::new(seeds.pad, "background"));
     for (signal, smooth) in signal.iter_mut().flatten().zip(smooth.iter().flatten()) {
         *signal += smooth;
     }
@@ -104,7 +112,9 @@ pub(crate) fn strain(truths: &[Truth], contacts: &[Contact], quality: &Quality) 
         signal.iter_mut().enumerate().for_each(|(channel, signal)| *signal *= quality.kinds[channel % 3]);
         signal
     };
-    contacts.iter().map(read).collect()
+    let mut signals: Vec<[f64; 9]> = contacts.iter().map(read).collect();
+    taken::add(truths, contacts, &mut signals);
+    signals
 }
 
 fn nominal(rows: &[Row]) -> Vec<[f64; 9]> {

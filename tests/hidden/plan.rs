@@ -1,9 +1,9 @@
 //! Plans: which contacts are made, from the program's own plan files or from a table of the test's own.
 
 use std::path::Path;
-use std::process::Command;
 
 use crate::effects::warmth::REFERENCE_C;
+use crate::program::protocol;
 use crate::random::Random;
 
 /// A place in mm and a force in N, pressing positive.
@@ -62,14 +62,8 @@ impl Plan {
 
     /// The plan's rows; the program writes the first two, from outside.
     pub(crate) fn rows(self, seed: u64, folder: &Path) -> Vec<Row> {
-        let program = |name: &str| {
-            let file = folder.join(format!("plan-{name}-{seed}.csv"));
-            let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
-            command.args(["protocol", name, "--seed", &seed.to_string(), "--out"]).arg(&file);
-            let output = command.output().unwrap();
-            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-            read(&std::fs::read_to_string(file).unwrap())
-        };
+        let program =
+            |name: &str| read(&protocol(name, seed, &folder.join(format!("plan-{name}-{seed}.csv"))));
         match self {
             Self::Paper => program("paper"),
             Self::Recommended => program("recommended"),
@@ -141,37 +135,44 @@ fn stream(random: &mut Random) -> Vec<Row> {
     rows
 }
 
-/// The clock, the room's temperature and the cycles of load, as the recording goes on.
-///
-/// The room goes up and comes back, in three waves that are no multiples of the recording's length, so that it is not
-/// the time. Each contact counts for so many cycles that 50,000 are behind the pad at the end.
-pub(crate) fn carry_out(rows: &mut [Row], random: &mut Random) {
-    let mut now = 0.0;
-    let mut trial_start = 0.0;
-    let mut before = String::new();
-    for row in rows.iter_mut() {
-        match row.in_trial_s {
-            None => {
-                now += 4.0 + row.dwell_s;
-                row.time_s = now;
-            }
-            Some(at) => {
-                if row.trial != before {
-                    trial_start = now + 4.0;
-                }
-                row.time_s = trial_start + at;
-                now = row.time_s;
-            }
-        }
-        before.clone_from(&row.trial);
-    }
+/// How the room's temperature goes during a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Room {
+    /// Up and back in three waves that are no multiples of the recording's length: not the time.
+    UpAndDown,
+    /// Ever warmer, as after the heating was turned on: the time itself.
+    Warming,
+}
+
+/// The clock, the room's temperature and the cycles of load, as the recording goes on. Each contact counts for so many
+/// cycles that 50,000 are behind the pad at the end.
+pub(crate) fn carry_out(rows: &mut [Row], room: Room, random: &mut Random) {
+    run_clock(rows);
     let waves = [random.between(1.3, 1.8), random.between(2.2, 2.9), random.between(3.3, 4.6)];
     let phases = [0, 1, 2].map(|_| random.unit());
     let count = rows.len() as f64;
+    let end = rows.last().map_or(1.0, |row| row.time_s);
     for (index, row) in rows.iter_mut().enumerate() {
-        let part = row.time_s / now;
+        let part = row.time_s / end;
         let wave = |wave: usize| (std::f64::consts::TAU * (waves[wave] * part + phases[wave])).sin();
-        row.temp_c = REFERENCE_C + 3.0 * (wave(0) + wave(1) + wave(2));
+        row.temp_c = REFERENCE_C
+            + match room {
+                Room::UpAndDown => 3.0 * (wave(0) + wave(1) + wave(2)),
+                Room::Warming => 8.0 * part - 4.0,
+            };
         row.cycle = (50_000.0 * (index + 1) as f64 / count).round();
+    }
+}
+
+/// Four seconds to reach a contact, and what it is held; a series runs by its own clock.
+fn run_clock(rows: &mut [Row]) {
+    let (mut now, mut trial_start, mut before) = (0.0, 0.0, String::new());
+    for row in rows.iter_mut() {
+        if row.in_trial_s.is_some() && row.trial != before {
+            trial_start = now + 4.0;
+        }
+        now = row.in_trial_s.map_or(now + 4.0 + row.dwell_s, |at| trial_start + at);
+        row.time_s = now;
+        before.clone_from(&row.trial);
     }
 }

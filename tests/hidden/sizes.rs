@@ -1,15 +1,23 @@
 //! What may be hidden: the causes, and draws of their targets and sizes.
 
 use crate::effects::mechanical::OPEN_SHARE;
+use crate::plan::Plan;
 use crate::random::Random;
 use crate::truth::{CHANNELS, Truth};
 
-/// Causes that static contacts show, with a size for each parameter that is plain to see.
-pub(crate) const STATIC: [&str; 21] = [
+/// All causes: those that static contacts show, those that need time, temperature or cycles, those of the electronics.
+pub(crate) const CAUSES: [&str; 35] = [
     "channel_gain",
-    "channel_crosstalk",
     "channel_offset",
+    "noise_excess",
+    "channel_dead",
+    "channel_polarity",
+    "channels_swapped",
+    "channel_crosstalk",
     "gauge_nonlinearity",
+    "adc_clipping",
+    "channel_skew",
+    "mains_pickup",
     "module_displaced",
     "module_rotated",
     "module_tilted",
@@ -19,6 +27,12 @@ pub(crate) const STATIC: [&str; 21] = [
     "module_crosstalk",
     "plate_stiffness",
     "excitation_gain",
+    "thermal_zero",
+    "thermal_gain",
+    "zero_drift",
+    "hysteresis",
+    "creep",
+    "ageing",
     "reference_tilt",
     "reference_gain",
     "reference_zero",
@@ -27,26 +41,24 @@ pub(crate) const STATIC: [&str; 21] = [
     "stage_scale",
     "contact_height",
     "contact_size",
+    "time_lag",
 ];
 
-/// Causes that need time, temperature or cycles, or that a gatekeeper finds.
-pub(crate) const OTHER: [&str; 15] = [
-    "channel_dead",
-    "channel_polarity",
-    "channels_swapped",
-    "adc_clipping",
-    "channel_skew",
-    "mains_pickup",
-    "noise_excess",
-    "thermal_zero",
-    "thermal_gain",
-    "zero_drift",
-    "hysteresis",
-    "creep",
-    "ageing",
-    "time_lag",
-    "reference_zero",
-];
+/// Whether a cause's change of the field comes from elsewhere than the program: see `effects/taken.rs`.
+pub(crate) fn independent(effect: &str) -> bool {
+    !["module_tilted", "module_debonded"].contains(&effect)
+}
+
+/// Which plan shows a cause best: a stream for what goes with seconds, two dwells and two ways for what goes with minutes.
+pub(crate) fn best_plan(effect: &str) -> Plan {
+    match effect {
+        "channel_skew" | "mains_pickup" | "time_lag" => Plan::Stream,
+        "hysteresis" | "creep" | "zero_drift" | "thermal_zero" | "thermal_gain" | "ageing" => {
+            Plan::Recommended
+        }
+        _ => Plan::Paper,
+    }
+}
 
 /// A cause with a drawn target and sign, `times` as large as its own plain size.
 pub(crate) fn drawn(effect: &str, times: f64, random: &mut Random) -> Truth {
@@ -159,4 +171,77 @@ fn zero(length: f64, random: &mut Random) -> Truth {
     let norm = along.iter().map(|part| part * part).sum::<f64>().sqrt();
     let [x, y, z] = along.map(|part| length * part / norm);
     Truth::new("reference_zero", "rig", &[("fx_n", x), ("fy_n", y), ("fz_n", z)])
+}
+
+/// A parameter where nothing is wrong.
+fn neutral(effect: &str, name: &str) -> f64 {
+    match name {
+        "gain" | "scale" | "factor" => 1.0,
+        // The nominal contact's.
+        "radius_mm" if effect == "contact_size" => 1.0,
+        _ => 0.0,
+    }
+}
+
+/// How far a size is from nothing, and back. Stiffnesses go by their logarithm.
+fn deviation(effect: &str, name: &str, value: f64) -> f64 {
+    if name == "factor" && effect != "noise_excess" { value.ln() } else { value - neutral(effect, name) }
+}
+
+fn from_deviation(effect: &str, name: &str, deviation: f64) -> f64 {
+    if name == "factor" && effect != "noise_excess" {
+        deviation.exp()
+    } else {
+        neutral(effect, name) + deviation
+    }
+}
+
+/// What the generator can make at most, as a deviation: how far tables and formulas hold.
+fn largest(effect: &str, name: &str) -> f64 {
+    match (effect, name) {
+        ("module_frame_open", "area_share") => OPEN_SHARE,
+        ("module_debonded", "area_share") => 0.8,
+        ("module_displaced", _) => 1.6,
+        ("module_rotated", _) => 8.0,
+        ("module_tilted", _) => 9.0,
+        ("module_stiffness", _) => 0.9,
+        ("plate_stiffness", _) => 0.45,
+        ("contact_size", _) => 2.0,
+        ("channel_gain" | "excitation_gain" | "reference_gain", _) => 0.9,
+        (_, "share" | "share_of_full_scale" | "share_at_20s" | "share_at_end") => 0.5,
+        ("stage_offset", _) => 1.5,
+        ("stage_scale", _) => 0.05,
+        ("channel_skew", _) => 50_000.0,
+        _ => f64::INFINITY,
+    }
+}
+
+/// The same cause with a size of so many minimum detectable effects; none, if it has no size or would be larger than the
+/// generator can make it.
+///
+/// A minimum detectable effect is stated as a deviation from what is nominal, `0.03` for a gain of 1.03. Of several
+/// parameters each has its own, and the size is the root of the sum of their squares.
+pub(crate) fn scaled(truth: &Truth, times: f64, minimum: &dyn Fn(&str) -> Option<f64>) -> Option<Truth> {
+    let effect = truth.effect.as_str();
+    let mut squares = 0.0;
+    for (name, value) in truth.parameters.iter().filter(|(name, _)| name != "frequency_hz") {
+        let least = minimum(name).filter(|least| *least > 0.0)?;
+        let least = deviation(effect, name, from_size(effect, name, least));
+        squares += (deviation(effect, name, *value) / least).powi(2);
+    }
+    let share = times / squares.sqrt();
+    let mut made = truth.clone();
+    for (name, value) in made.parameters.iter_mut().filter(|(name, _)| name != "frequency_hz") {
+        let deviation = share * deviation(effect, name, *value);
+        if !deviation.is_finite() || deviation.abs() > largest(effect, name) {
+            return None;
+        }
+        *value = from_deviation(effect, name, deviation);
+    }
+    Some(made)
+}
+
+/// A parameter that is this much too large.
+fn from_size(effect: &str, name: &str, size: f64) -> f64 {
+    neutral(effect, name) + size
 }

@@ -4,7 +4,6 @@
 //! the difference splits into an odd and an even part, which are exact in their order; for the rest the share follows
 //! the physics: a stiffness acts by its compliance.
 
-use crate::effects::{bond, local};
 use crate::fields::{Influence, MOVED, NOMINAL, OPEN_FRAME, SOFT_FRAME, THICK_PLATE, TURNED, Table, View};
 use crate::truth::{Truth, module};
 
@@ -29,7 +28,7 @@ fn change(truth: &Truth, place: [f64; 2]) -> Influence {
         "module_displaced" => displaced(truth, place),
         "module_rotated" => rotated(truth, place),
         "module_stiffness" => {
-            let share = (1.0 / truth.value("factor") - 1.0) / (1.0 / 0.6 - 1.0);
+            let share = softened(truth.value("factor"), 0.6, 0.24);
             scaled(share, difference(&SOFT_FRAME, 2, truth.module(), false, place))
         }
         "module_frame_open" => {
@@ -37,15 +36,24 @@ fn change(truth: &Truth, place: [f64; 2]) -> Influence {
             let share = truth.value("area_share") / OPEN_SHARE;
             scaled(share, difference(&OPEN_FRAME, 0, truth.module(), mirrored, place))
         }
-        "module_debonded" => bond::change(truth, place),
         "plate_stiffness" => {
-            let share = (1.0 / truth.value("factor") - 1.0) / (1.0 / 1.15_f64.powi(3) - 1.0);
+            let share = softened(truth.value("factor"), 1.15_f64.powi(3), 0.15);
             scaled(share, difference(&THICK_PLATE, 0, 0, false, place))
         }
         "contact_size" => patch(truth.value("radius_mm"), place),
         "contact_height" => height(truth.value("mm"), place),
         _ => Influence::default(),
     }
+}
+
+/// The share of a table's change that another factor of the stiffness makes.
+///
+/// Between springs in a row and side by side a change of compliance c acts as c/(1 + kc): all of it where the part is
+/// soft beside the rest (k = 0), less and less where the rest takes over. No table tells k; it comes from the comparison
+/// with the simulator at three other factors.
+fn softened(factor: f64, table: f64, k: f64) -> f64 {
+    let change = |factor: f64| (1.0 / factor - 1.0) / (1.0 + k * (1.0 / factor - 1.0));
+    change(factor) / change(table)
 }
 
 /// A part that the mirror leaves belongs to the radius, the other to the tangent.
@@ -102,21 +110,16 @@ fn height(height_mm: f64, place: [f64; 2]) -> Influence {
     std::array::from_fn(|channel| [height_mm * along_x[channel], height_mm * along_y[channel], 0.0])
 }
 
-/// Causes that mix signals of modules: leaks between modules, and a module that stands askew.
+/// A leak between modules takes over a share of all three signals.
 fn mix(field: &mut Influence, truth: &Truth) {
-    match truth.effect.as_str() {
-        "module_crosstalk" => {
-            let source = truth.with.as_deref().and_then(module).unwrap_or_default();
-            let seen = *field;
-            for axis in 0..3 {
-                for force in 0..3 {
-                    field[3 * truth.module() + axis][force] +=
-                        truth.value("share") * seen[3 * source + axis][force];
-                }
-            }
-        }
-        "module_tilted" => local::tilt(field, truth),
-        _ => {}
+    if truth.effect != "module_crosstalk" {
+        return;
+    }
+    let source = truth.with.as_deref().and_then(module).unwrap_or_default();
+    let seen = *field;
+    for axis in 0..3 {
+        let leaks = seen[3 * source + axis].map(|value| truth.value("share") * value);
+        field[3 * truth.module() + axis].iter_mut().zip(leaks).for_each(|(value, leak)| *value += leak);
     }
 }
 

@@ -4,10 +4,14 @@
 //! another program's solution, and each effect has a formula of its own.
 
 mod background;
+mod campaign;
 mod case;
 mod effects;
 mod fields;
 mod files;
+mod found;
+mod generator;
+mod limits;
 mod measured;
 mod plan;
 mod program;

@@ -128,3 +128,29 @@ pub(crate) fn rival_share(diagnosis: &Value, truth: &Truth) -> Option<f64> {
     let entry = list(diagnosis, "not_detected").iter().find(|entry| means(entry, truth))?;
     entry["rival_share"].as_f64()
 }
+
+#[test]
+fn names_sets_and_wrong_names_are_told_apart() {
+    let truth = [Truth::new("channel_gain", "m1z", &[("gain", 1.12)])];
+    let finding = |status: &str, effect: &str, target: &str, rivals: Value| {
+        let parameters = json!({"gain": {"value": 1.1, "low95": 1.11, "high95": 1.13}});
+        json!({"status": status, "effect": effect, "target": target, "parameters": parameters,
+               "confounded_with": rivals})
+    };
+    let scored = |findings: Vec<Value>| {
+        Score::of(&json!({"verdict": "explained", "findings": findings, "unnamed_share": 0.1}), &truth)
+    };
+    let right = scored(vec![finding("NAMED", "channel_gain", "m1z", json!([]))]);
+    assert!(right.complete() && right.wrong.is_empty() && right.alarm);
+    assert_eq!((right.found[0], right.intervals), (Found::Named, [1, 1]));
+    let rivals = json!([{"effect": "channel_gain", "target": "m1z"}, {"effect": "creep", "target": "pad"}]);
+    let set = scored(vec![finding("CONFOUNDED", "hysteresis", "pad", rivals)]);
+    assert_eq!((set.found[0], set.wrong.len()), (Found::InSet(3), 0));
+    let wrong = scored(vec![finding("NAMED", "channel_gain", "m1y", json!([]))]);
+    assert_eq!(
+        (wrong.found[0], wrong.wrong.as_slice()),
+        (Found::Missed, ["channel_gain m1y".to_owned()].as_slice())
+    );
+    let quiet = Score::of(&json!({"verdict": "no_discrepancy", "findings": []}), &[]);
+    assert!(!quiet.alarm && quiet.complete());
+}

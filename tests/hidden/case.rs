@@ -53,7 +53,7 @@ impl Case {
 
     /// The table; another recording of the same pad has other noise.
     pub(crate) fn table(&self, recording: u64) -> Measured {
-        let mut rows = self.plan.rows(self.seed, &folder("plans"));
+        let mut rows = self.plan.rows(self.seed);
         carry_out(&mut rows, self.room, &mut Random::new(self.seed, "course"));
         // A large contact does not fit on the plate's edge.
         let radius = self.truths.iter().map(|truth| truth.value_or_zero("radius_mm")).fold(1.0, f64::max);

@@ -102,7 +102,7 @@ fn changes_of_other_modules_are_turned() {
 
 #[test]
 fn a_background_has_its_share_and_length() {
-    let rows = Plan::Paper.rows(1, &crate::program::folder("plans"));
+    let rows = Plan::Paper.rows(1);
     let contacts: Vec<Contact> = rows.iter().map(|row| row.contact).collect();
     let rms = typical(&rows);
     let made = background(&rows, &contacts, &rms, [0.02, 14.0], &mut Random::new(1, "test"));
@@ -126,11 +126,10 @@ fn two_recordings_of_a_pad_differ_by_their_noise() {
     let mut case = Case::new("pair", 3, Plan::Paper, Vec::new());
     case.quality = Quality { noise: [[0.006, 0.0]; 9], ..Quality::STATED };
     let [first, second] = [case.table(0), case.table(1)];
-    let rms = typical(&first.rows);
-    for channel in 0..9 {
+    for (channel, rms) in typical(&first.rows).into_iter().enumerate() {
         let squares: f64 =
             first.channels.iter().zip(&second.channels).map(|(a, b)| (a[channel] - b[channel]).powi(2)).sum();
-        let noise = (squares / first.channels.len() as f64 / 2.0).sqrt() / rms[channel];
+        let noise = (squares / first.channels.len() as f64 / 2.0).sqrt() / rms;
         assert!((noise / 0.006 - 1.0).abs() < 0.15, "{noise}");
     }
 }

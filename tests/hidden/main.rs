@@ -2,6 +2,11 @@
 //!
 //! The measured data come from a generator that shares no code with the program: its influence fields are tables of
 //! another program's solution, and each effect has a formula of its own.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test that cannot go on has failed, and says what it saw"
+)]
 
 mod background;
 mod campaign;

@@ -1,7 +1,5 @@
 //! Plans: which contacts are made, from the program's own plan files or from a table of the test's own.
 
-use std::path::Path;
-
 use crate::effects::warmth::REFERENCE_C;
 use crate::program::protocol;
 use crate::random::Random;
@@ -61,9 +59,8 @@ impl Plan {
     }
 
     /// The plan's rows; the program writes the first two, from outside.
-    pub(crate) fn rows(self, seed: u64, folder: &Path) -> Vec<Row> {
-        let program =
-            |name: &str| read(&protocol(name, seed, &folder.join(format!("plan-{name}-{seed}.csv"))));
+    pub(crate) fn rows(self, seed: u64) -> Vec<Row> {
+        let program = |name: &str| read(&protocol(name, seed));
         match self {
             Self::Paper => program("paper"),
             Self::Recommended => program("recommended"),

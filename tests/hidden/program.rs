@@ -19,8 +19,10 @@ pub(crate) fn folder(name: &str) -> PathBuf {
 
 /// What the simulator reads for the contacts, on a device (`--device`) or with imperfections (`--imperfections`) of this
 /// text.
-pub(crate) fn simulated(folder: &Path, contacts: &[Contact], pad: Option<(&str, &str)>) -> Vec<[f64; 9]> {
-    let [places, out, device] = ["places.csv", "signals.csv", "pad.toml"].map(|name| folder.join(name));
+pub(crate) fn simulated(contacts: &[Contact], pad: Option<(&str, &str)>) -> Vec<[f64; 9]> {
+    let folder = tempfile::tempdir().unwrap();
+    let [places, out, device] =
+        ["places.csv", "signals.csv", "pad.toml"].map(|name| folder.path().join(name));
     let mut table = String::from("x_mm,y_mm,fx_n,fy_n,fz_n\n");
     for Contact { place: [x, y], force: [fx, fy, fz] } in contacts {
         writeln!(table, "{x},{y},{fx},{fy},{fz}").unwrap();
@@ -48,9 +50,11 @@ fn channels(table: &str) -> Vec<[f64; 9]> {
 }
 
 /// The plan as the program writes it.
-pub(crate) fn protocol(name: &str, seed: u64, file: &Path) -> String {
+pub(crate) fn protocol(name: &str, seed: u64) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("plan.csv");
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
-    command.args(["protocol", name, "--seed", &seed.to_string(), "--out"]).arg(file);
+    command.args(["protocol", name, "--seed", &seed.to_string(), "--out"]).arg(&file);
     done(command.output().unwrap());
     fs::read_to_string(file).unwrap()
 }

@@ -6,7 +6,7 @@
 use crate::effects::mechanical::OPEN_SHARE;
 use crate::measured::{Quality, strain};
 use crate::plan::Contact;
-use crate::program::{folder, simulated};
+use crate::program::simulated;
 use crate::truth::Truth;
 
 /// How a change of ours lies beside the simulator's: the factor that fits it best, and what that leaves, as a share.
@@ -48,9 +48,9 @@ fn module(index: usize, keys: &str) -> (&'static str, String) {
 /// Ours beside the simulator's for one hidden cause and the device or imperfections that mean the same.
 fn compared(name: &str, truth: Truth, (option, text): &(&str, String)) -> Likeness {
     let quality = Quality::STATED;
-    let (folder, contacts) = (folder("simulator"), contacts());
-    let changed = simulated(&folder, &contacts, Some((option, text)));
-    let theirs = minus(&changed, &simulated(&folder, &contacts, None));
+    let contacts = contacts();
+    let changed = simulated(&contacts, Some((option, text)));
+    let theirs = minus(&changed, &simulated(&contacts, None));
     let ours = minus(&strain(&[truth], &contacts, &quality), &strain(&[], &contacts, &quality));
     let found = likeness(&ours, &theirs);
     println!("{name}: the simulator has {:.3} of ours, and {:.1} % beside", found.factor, 100.0 * found.rest);
@@ -59,7 +59,7 @@ fn compared(name: &str, truth: Truth, (option, text): &(&str, String)) -> Likene
 
 #[test]
 fn the_nominal_field_is_that_of_the_simulator() {
-    let theirs = simulated(&folder("nominal"), &contacts(), None);
+    let theirs = simulated(&contacts(), None);
     let ours = strain(&[], &contacts(), &Quality::STATED);
     for axis in 0..3 {
         let of = |rows: &[[f64; 9]]| -> Vec<f64> {

@@ -6,6 +6,7 @@
 //! `TACTPAD_HIDDEN_CAMPAIGN_SEEDS=N` makes it longer (5 otherwise), `TACTPAD_HIDDEN_CAMPAIGN_NULLS=N` has other than 400 nulls,
 //! `TACTPAD_HIDDEN_CAMPAIGN_PARTS=nulls,sizes` runs only some parts.
 
+mod drawing;
 mod gates;
 mod lines;
 mod parts;
@@ -58,7 +59,7 @@ fn run(part: &str, jobs: &[Job], lines: &Lines) {
     let open: Vec<&Job> = jobs.iter().filter(|job| lines.get(&job.key).is_none()).collect();
     println!("{part}: {} runs, {} of them still to do", jobs.len(), open.len());
     let next = AtomicUsize::new(0);
-    let progress = Mutex::new(0);
+    let progress = Mutex::new(0_usize);
     std::thread::scope(|scope| {
         for _ in 0..2 {
             scope.spawn(|| {
@@ -66,7 +67,7 @@ fn run(part: &str, jobs: &[Job], lines: &Lines) {
                     lines.add((job.run)(lines), job);
                     let mut done = progress.lock().unwrap();
                     *done += 1;
-                    if *done % 10 == 0 || *done == open.len() {
+                    if done.is_multiple_of(10) || *done == open.len() {
                         println!("{part}: {done} of {}", open.len());
                     }
                 }

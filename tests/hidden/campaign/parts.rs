@@ -22,7 +22,6 @@ pub(super) struct Job {
     pub(super) part: &'static str,
     pub(super) plan: Plan,
     pub(super) effect: &'static str,
-    #[expect(clippy::type_complexity, reason = "a job is what it does")]
     pub(super) run: Box<dyn Fn(&Lines) -> Value + Send + Sync>,
 }
 

@@ -4,7 +4,9 @@ use std::fmt::Write as _;
 use std::fs;
 
 use serde_json::Value;
+use tactpad::plot::svg;
 
+use super::drawing;
 use super::gates::Gate;
 use crate::limits::Share;
 use crate::program::folder;
@@ -24,6 +26,7 @@ pub(super) fn written(lines: &[Value], gates: &[Gate]) -> String {
     let slowest = seconds.iter().copied().fold(0.0, f64::max);
     writeln!(text, "\n{} runs, the slowest {slowest:.1} s.", lines.len()).unwrap();
     fs::write(folder("").join("campaign.md"), &text).unwrap();
+    fs::write(folder("").join("campaign.svg"), svg::text(&drawing::figure(lines))).unwrap();
     text
 }
 

@@ -6,16 +6,15 @@
 //! the simulator has them right: `sizes::INDEPENDENT` leaves them out of the gates on sizes.
 
 use crate::plan::Contact;
-use crate::program::{folder, simulated};
+use crate::program::simulated;
 use crate::truth::Truth;
 
 /// Adds the change to what the contacts read.
 pub(crate) fn add(truths: &[Truth], contacts: &[Contact], signals: &mut [[f64; 9]]) {
     for truth in truths {
         let Some(text) = imperfections(truth) else { continue };
-        let folder = folder(&format!("taken-{}-{}", truth.effect, std::process::id()));
         let [with, without] =
-            [Some(("--imperfections", text.as_str())), None].map(|pad| simulated(&folder, contacts, pad));
+            [Some(("--imperfections", text.as_str())), None].map(|pad| simulated(contacts, pad));
         for ((signal, with), without) in signals.iter_mut().zip(with).zip(without) {
             (0..9).for_each(|channel| signal[channel] += with[channel] - without[channel]);
         }

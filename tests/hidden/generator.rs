@@ -106,8 +106,8 @@ fn a_background_has_its_share_and_length() {
     let contacts: Vec<Contact> = rows.iter().map(|row| row.contact).collect();
     let rms = typical(&rows);
     let made = background(&rows, &contacts, &rms, [0.02, 14.0], &mut Random::new(1, "test"));
-    for channel in 0..9 {
-        assert!((rms_of(&rows, &made, channel) / rms[channel] - 0.02).abs() < 1e-9);
+    for (channel, rms) in rms.into_iter().enumerate() {
+        assert!((rms_of(&rows, &made, channel) / rms - 0.02).abs() < 1e-9);
     }
     let random = &mut Random::new(2, "test");
     let pairs: Vec<[f64; 2]> = (0..2000)

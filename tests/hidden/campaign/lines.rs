@@ -18,20 +18,27 @@ pub(super) struct Lines {
     known: Mutex<BTreeMap<String, Value>>,
 }
 
+/// One file for each program and generator: what another one found is not taken over.
 fn place() -> PathBuf {
-    folder("").join("campaign.jsonl")
+    let programs = [PathBuf::from(env!("CARGO_BIN_EXE_tactpad")), std::env::current_exe().unwrap()];
+    let bytes = programs.into_iter().flat_map(|program| fs::read(program).unwrap());
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    folder("").join(format!("campaign-{hash:016x}.jsonl"))
 }
 
 impl Lines {
     /// Takes up the file where it was left. A line that was broken off in writing is not one.
     pub(super) fn open() -> Self {
-        let text = fs::read_to_string(place()).unwrap_or_default();
+        let place = place();
+        let text = fs::read_to_string(&place).unwrap_or_default();
         let line = |line: &str| {
             let value: Value = serde_json::from_str(line).ok()?;
             Some((value["key"].as_str()?.to_owned(), value))
         };
         let known: BTreeMap<String, Value> = text.lines().filter_map(line).collect();
-        let mut file = OpenOptions::new().create(true).append(true).open(place()).unwrap();
+        let mut file = OpenOptions::new().create(true).append(true).open(place).unwrap();
         if !text.is_empty() && !text.ends_with('\n') {
             file.write_all(b"\n").unwrap();
         }

@@ -1,8 +1,9 @@
 //! The campaign: how often the program is right, over causes, sizes, plans and seeds.
 //!
 //! `TACTPAD_HIDDEN_CAMPAIGN=1 cargo test --release --test hidden campaign:: -- --nocapture` runs it, two cases at a time, and
-//! shows how far it is. What came of each case is a line of `target/tmp/hidden/campaign.jsonl`: broken off, it goes on where
-//! it stopped. At the end it prints the gates and writes a table and a figure beside the lines.
+//! shows how far it is. What came of each case is a line of `target/tmp/hidden/campaign-….jsonl`: broken off, it goes on where
+//! it stopped, as long as program and generator are the same. At the end it prints the gates and writes a table and a
+//! figure, `campaign.md` and `campaign.svg`, beside the lines.
 //! `TACTPAD_HIDDEN_CAMPAIGN_SEEDS=N` makes it longer (5 otherwise), `TACTPAD_HIDDEN_CAMPAIGN_NULLS=N` has other than 400 nulls,
 //! `TACTPAD_HIDDEN_CAMPAIGN_PARTS=nulls,sizes` runs only some parts.
 

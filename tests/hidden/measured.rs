@@ -16,6 +16,8 @@ pub(crate) struct Quality {
     pub(crate) background: [f64; 2],
     /// Additive and multiplicative noise of each channel, as shares of its rms and of its signal.
     pub(crate) noise: [[f64; 2]; 9],
+    /// Correlation of the noise with that of the sample before, in a series.
+    pub(crate) memory: f64,
     /// Factors of the kinds of channel: within the table's own numerical error.
     pub(crate) kinds: [f64; 3],
 }
@@ -23,13 +25,15 @@ pub(crate) struct Quality {
 impl Quality {
     /// The quality for which the smallest sizes that are asked for are stated.
     pub(crate) const STATED: Self =
-        Self { background: [0.015, 14.0], noise: [[0.004; 2]; 9], kinds: [1.0; 3] };
+        Self { background: [0.015, 14.0], noise: [[0.004; 2]; 9], memory: 0.0, kinds: [1.0; 3] };
 
-    /// Background of 1 to 3 % and 10 to 20 mm, noise of 0.2 to 0.8 % each, and the table's stated error.
+    /// Background of 1 to 3 % and 10 to 20 mm, noise of 0.2 to 0.8 % each, correlated up to a half from sample to sample of
+    /// a series, and the table's stated error.
     pub(crate) fn drawn(random: &mut Random) -> Self {
         Self {
             background: [random.between(0.01, 0.03), random.between(10.0, 20.0)],
             noise: std::array::from_fn(|_| [random.between(0.002, 0.008), random.between(0.002, 0.008)]),
+            memory: random.between(0.0, 0.5),
             kinds: [0.005, 0.003, 0.005].map(|error| 1.0 + random.between(-error, error)),
         }
     }
@@ -92,17 +96,33 @@ pub(crate) fn measured(
     electrical::conduct(truths, &rows, &mut signal, &full_scale);
     warmth::warm(truths, &rows, &mut signal);
     electrical::add(truths, &rows, &mut signal, &mut drawn("mains"));
-    let mut random = drawn("noise");
-    for signal in &mut signal {
-        for channel in 0..9 {
-            let [additive, multiplicative] = quality.noise[channel];
-            let deviation = (additive * rms[channel]).hypot(multiplicative * signal[channel]);
-            signal[channel] += deviation * electrical::noise_factor(truths, channel) * random.normal();
-        }
-    }
+    add_noise(truths, &rows, &mut signal, &rms, quality, &mut drawn("noise"));
     electrical::convert(truths, &mut signal, &mut drawn("wires"));
     let labels = rig::labels(truths, &rows);
     Measured { rows, labels, channels: signal, columns: Columns::of(truths) }
+}
+
+/// Noise of each channel; within a series it remembers the sample before.
+fn add_noise(
+    truths: &[Truth],
+    rows: &[Row],
+    signals: &mut [[f64; 9]],
+    rms: &[f64; 9],
+    quality: &Quality,
+    random: &mut Random,
+) {
+    let mut last = [0.0; 9];
+    for (index, signal) in signals.iter_mut().enumerate() {
+        let goes_on =
+            rows[index].in_trial_s.is_some() && index > 0 && rows[index - 1].trial == rows[index].trial;
+        let memory = if goes_on { quality.memory } else { 0.0 };
+        for channel in 0..9 {
+            last[channel] = memory * last[channel] + (1.0 - memory * memory).sqrt() * random.normal();
+            let [additive, multiplicative] = quality.noise[channel];
+            let deviation = (additive * rms[channel]).hypot(multiplicative * signal[channel]);
+            signal[channel] += deviation * electrical::noise_factor(truths, channel) * last[channel];
+        }
+    }
 }
 
 /// What the mechanics make of the contacts.

@@ -43,7 +43,7 @@ pub(crate) fn background(
             let axis = |axis: usize| fields[axis].at(contact.place) * contact.force[axis];
             row[channel] = (0..3).map(axis).sum();
         }
-        let seen = rms_of(rows, &whole, channel);
+        let seen = rms_of(rows, &whole, channel).max(f64::MIN_POSITIVE);
         whole.iter_mut().for_each(|row| row[channel] *= share * rms[channel] / seen);
     }
     whole

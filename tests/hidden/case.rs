@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::background::{Smooth, rms_of};
 use crate::measured::{Columns, Measured, Quality, Seeds, measured};
-use crate::plan::{Contact, Plan, Room, carry_out};
+use crate::plan::{Contact, Plan, Room, Row, carry_out};
 use crate::program::{diagnosed, folder};
 use crate::random::Random;
 use crate::truth::Truth;
@@ -51,13 +51,19 @@ impl Case {
         }
     }
 
-    /// The table; another recording of the same pad has other noise.
-    pub(crate) fn table(&self, recording: u64) -> Measured {
+    /// The plan as it is carried out.
+    pub(crate) fn rows(&self) -> Vec<Row> {
         let mut rows = self.plan.rows(self.seed);
         carry_out(&mut rows, self.room, &mut Random::new(self.seed, "course"));
         // A large contact does not fit on the plate's edge.
         let radius = self.truths.iter().map(|truth| truth.value_or_zero("radius_mm")).fold(1.0, f64::max);
         rows.retain(|row| row.contact.place[0].hypot(row.contact.place[1]) <= 30.0 - radius);
+        rows
+    }
+
+    /// The table; another recording of the same pad has other noise.
+    pub(crate) fn table(&self, recording: u64) -> Measured {
+        let rows = self.rows();
         let seeds = Seeds {
             pad: Random::new(self.seed, &self.key).below(1 << 40) as u64,
             recording: Random::new(self.seed, &format!("{} {recording}", self.key)).below(1 << 40) as u64,

@@ -19,6 +19,7 @@ mod generator;
 mod limits;
 mod measured;
 mod plan;
+mod precision;
 mod program;
 mod random;
 mod score;

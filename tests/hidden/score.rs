@@ -71,6 +71,18 @@ fn intervals(findings: &[Value], truth: &Truth) -> [usize; 2] {
     [held.len(), held.iter().filter(|held| **held).count()]
 }
 
+/// The widths of a named cause's intervals, in the order of its parameters.
+pub(crate) fn widths(diagnosis: &Value, truth: &Truth) -> Option<Vec<f64>> {
+    let findings = list(diagnosis, "findings");
+    let named =
+        findings.iter().find(|finding| text(finding, "status") == "NAMED" && means(finding, truth))?;
+    let width = |(name, _): &(String, f64)| {
+        let stated = &named["parameters"][name];
+        Some(stated["high95"].as_f64()? - stated["low95"].as_f64()?)
+    };
+    truth.parameters.iter().map(width).collect()
+}
+
 impl Score {
     pub(crate) fn of(diagnosis: &Value, truths: &[Truth]) -> Self {
         let findings = list(diagnosis, "findings");

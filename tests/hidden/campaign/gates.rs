@@ -120,6 +120,13 @@ fn large(lines: &[&Value]) -> Vec<Gate> {
         better.value() >= 0.9,
     ));
     gates.push(coverage(&right));
+    let widths = right.iter().flat_map(|line| line["relative_widths"].as_array().into_iter().flatten());
+    let middle = median(widths.filter_map(Value::as_f64).collect());
+    gates.push(gate(
+        "3×, paper's plan: intervals at most 1.5 times as wide as they must be, at the median",
+        format!("{middle:.2}"),
+        middle <= 1.5,
+    ));
     gates
 }
 

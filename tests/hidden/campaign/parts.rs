@@ -10,9 +10,10 @@ use super::lines::Lines;
 use crate::case::Case;
 use crate::measured::{Columns, Quality};
 use crate::plan::Plan;
+use crate::precision::least_widths;
 use crate::program::{diagnosed, folder};
 use crate::random::Random;
-use crate::score::{Found, Score, minimum_detectable, rival_share};
+use crate::score::{Found, Score, minimum_detectable, rival_share, widths};
 use crate::sizes::{CAUSES, drawn, independent, scaled};
 use crate::truth::{CHANNELS, Truth};
 
@@ -70,6 +71,7 @@ fn line(case: &Case, more: &[&str]) -> Value {
                 ["rmse_ratio", "rmse_ratio_low95", "rmse_ratio_high95"]
                     .map(|key| diagnosis["gain"][key].clone())
             );
+            line["relative_widths"] = json!(relative_widths(case, &diagnosis));
             if case.truths.is_empty() {
                 line["not_detected"] = diagnosis["not_detected"].clone();
             }
@@ -77,6 +79,13 @@ fn line(case: &Case, more: &[&str]) -> Value {
         Err(said) => line["refused"] = json!(said),
     }
     line
+}
+
+/// The widths of a named cause's intervals over the least that they can be; on the paper's plan, whose noise has no memory.
+fn relative_widths(case: &Case, diagnosis: &Value) -> Option<Vec<f64>> {
+    let [truth] = case.truths.as_slice() else { return None };
+    let stated = widths(diagnosis, truth).filter(|_| case.plan == Plan::Paper)?;
+    Some(stated.iter().zip(least_widths(case)).map(|(stated, least)| stated / least).collect())
 }
 
 /// Tables without a fault, for the sizes of the others.

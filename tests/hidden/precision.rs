@@ -21,9 +21,14 @@ pub(crate) fn least_widths(case: &Case) -> Vec<f64> {
     for channel in 0..9 {
         let whitened = Whitening::new(&rows, &case.quality, channel);
         let zero = whitened.of(vec![1.0; rows.len()]);
+        let unknown = |values: Vec<f64>| match truth.effect.as_str() {
+            // The zero itself is asked for.
+            "channel_offset" => values,
+            _ => without(values, &zero),
+        };
         let own: Vec<Vec<f64>> = slopes
             .iter()
-            .map(|slope| without(whitened.of(slope.iter().map(|row| row[channel]).collect()), &zero))
+            .map(|slope| unknown(whitened.of(slope.iter().map(|row| row[channel]).collect())))
             .collect();
         for (row, a) in information.iter_mut().zip(&own) {
             row.iter_mut().zip(&own).for_each(|(sum, b)| *sum += product(a, b));

@@ -85,7 +85,9 @@ fn line(case: &Case, more: &[&str]) -> Value {
 fn relative_widths(case: &Case, diagnosis: &Value) -> Option<Vec<f64>> {
     let [truth] = case.truths.as_slice() else { return None };
     let stated = widths(diagnosis, truth).filter(|_| case.plan == Plan::Paper)?;
-    Some(stated.iter().zip(least_widths(case)).map(|(stated, least)| stated / least).collect())
+    // Where a row has no slope, as at a converter's end, there is no such limit.
+    let known = stated.into_iter().zip(least_widths(case)).filter(|(_, least)| least.is_normal());
+    Some(known.map(|(stated, least)| stated / least).collect())
 }
 
 /// Tables without a fault, for the sizes of the others.

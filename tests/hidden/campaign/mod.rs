@@ -1,0 +1,78 @@
+//! The campaign: how often the program is right, over causes, sizes, plans and seeds.
+//!
+//! `TACTPAD_HIDDEN_CAMPAIGN=1 cargo test --release --test hidden campaign:: -- --nocapture` runs it, two cases at a time, and
+//! shows how far it is. What came of each case is a line of `target/tmp/hidden/campaign-….jsonl`: broken off, it goes on where
+//! it stopped, as long as program and generator are the same. At the end it prints the gates and writes a table and a
+//! figure, `campaign.md` and `campaign.svg`, beside the lines.
+//! `TACTPAD_HIDDEN_CAMPAIGN_SEEDS=N` makes it longer (5 otherwise), `TACTPAD_HIDDEN_CAMPAIGN_NULLS=N` has other than 400 nulls,
+//! `TACTPAD_HIDDEN_CAMPAIGN_PARTS=nulls,sizes` runs only some parts.
+
+mod drawing;
+mod gates;
+mod lines;
+mod parts;
+mod report;
+
+use std::env;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use lines::Lines;
+use parts::Job;
+
+/// How long the campaign is.
+#[derive(Debug, Clone, Copy)]
+struct Length {
+    seeds: u64,
+    nulls: u64,
+}
+
+fn number(name: &str, usual: u64) -> u64 {
+    env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
+}
+
+#[test]
+fn campaign() {
+    if env::var_os("TACTPAD_HIDDEN_CAMPAIGN").is_none() {
+        return;
+    }
+    let length = Length {
+        seeds: number("TACTPAD_HIDDEN_CAMPAIGN_SEEDS", 5),
+        nulls: number("TACTPAD_HIDDEN_CAMPAIGN_NULLS", 400),
+    };
+    let wanted = env::var("TACTPAD_HIDDEN_CAMPAIGN_PARTS").unwrap_or_default();
+    let lines = Lines::open();
+    // Sizes come from the tables without a fault, so those are first.
+    for part in parts::ALL {
+        if wanted.is_empty() || wanted.split(',').any(|wanted| wanted == part.name || part.name == "least") {
+            run(part.name, &(part.jobs)(length), &lines);
+        }
+    }
+    let all = lines.all();
+    let gates = gates::of(&all);
+    println!("{}", report::written(&all, &gates));
+    let failed: Vec<&gates::Gate> = gates.iter().filter(|gate| !gate.held).collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+}
+
+/// Runs what has no line yet, two at a time.
+fn run(part: &str, jobs: &[Job], lines: &Lines) {
+    let open: Vec<&Job> = jobs.iter().filter(|job| lines.get(&job.key).is_none()).collect();
+    println!("{part}: {} runs, {} of them still to do", jobs.len(), open.len());
+    let next = AtomicUsize::new(0);
+    let progress = Mutex::new(0_usize);
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some(job) = open.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    lines.add((job.run)(lines), job);
+                    let mut done = progress.lock().unwrap();
+                    *done += 1;
+                    if done.is_multiple_of(10) || *done == open.len() {
+                        println!("{part}: {done} of {}", open.len());
+                    }
+                }
+            });
+        }
+    });
+}

@@ -1,0 +1,173 @@
+//! One hidden case for each cause, nulls, several causes at once, causes of no catalogue, and confounded pairs.
+//!
+//! Seeds are 1, 2, 3 …, whatever comes of them: gates are on the whole set.
+
+use std::env;
+
+use serde_json::Value;
+
+use crate::case::{Case, Outside};
+use crate::plan::{Plan, Room};
+use crate::random::Random;
+use crate::score::{Found, Score};
+use crate::sizes::{CAUSES, best_plan, drawn};
+use crate::truth::Truth;
+
+/// How much of the set is run: `TACTPAD_HIDDEN=all` is what continuous integration runs, `TACTPAD_HIDDEN=double` the set
+/// twice with 40 nulls. Without it a part that takes less than three minutes; `TACTPAD_HIDDEN=none` runs no diagnosis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Extent {
+    None,
+    Part,
+    All,
+    Double,
+}
+
+/// What runs where nothing is said.
+const USUAL: Extent = Extent::None;
+
+fn extent() -> Extent {
+    match env::var("TACTPAD_HIDDEN").as_deref() {
+        Ok("none") => Extent::None,
+        Ok("part") => Extent::Part,
+        Ok("all") => Extent::All,
+        Ok("double") => Extent::Double,
+        _ => USUAL,
+    }
+}
+
+fn run(case: &Case) -> (Value, Score) {
+    let diagnosis = case.diagnosed(&[]).unwrap_or_else(|said| panic!("{}: {said}", case.key));
+    let score = Score::of(&diagnosis, &case.truths);
+    println!("{}: {} {}", case.key, case.truth(), score.json());
+    (diagnosis, score)
+}
+
+fn truth(effect: &str, seed: u64) -> Truth {
+    drawn(effect, 1.0, &mut Random::new(seed, effect))
+}
+
+/// Every cause that a half of the set has: even ones or odd ones.
+fn hidden(half: usize) {
+    let rounds = match extent() {
+        Extent::None => return,
+        Extent::Part if half == 1 => return,
+        Extent::Part | Extent::All => 1,
+        Extent::Double => 2,
+    };
+    let (mut missed, mut wrong) = (Vec::new(), Vec::new());
+    for seed in 1..=rounds {
+        for effect in CAUSES.iter().skip(half).step_by(2) {
+            let truths = vec![truth(effect, seed)];
+            let case = Case::new(&format!("one-{effect}-{seed}"), seed, best_plan(effect), truths);
+            let (_, score) = run(&case);
+            if !score.complete() {
+                missed.push(case.key.clone());
+            }
+            wrong.extend(score.wrong.iter().map(|wrong| format!("{}: {wrong}", case.key)));
+        }
+    }
+    // 95 % and 2 % are the campaign's gates; of 18 cases one may go astray.
+    let may = rounds as usize;
+    assert!(missed.len() <= may, "missed: {missed:#?}");
+    assert!(wrong.len() <= may, "wrong names: {wrong:#?}");
+}
+
+#[test]
+fn hidden_effects_are_found() {
+    hidden(0);
+}
+
+#[test]
+fn more_hidden_effects_are_found() {
+    hidden(1);
+}
+
+#[test]
+fn pads_without_a_fault_seldom_alarm() {
+    let (count, may) = match extent() {
+        Extent::None => return,
+        Extent::Double => (40, 5),
+        _ => (10, 2),
+    };
+    let null = |seed: u64| {
+        let plan = Plan::BOTH[seed as usize % 2];
+        Case::new(&format!("null-{seed}"), seed, plan, Vec::new())
+    };
+    let alarms: Vec<String> =
+        (1..=count).map(null).filter(|case| run(case).1.alarm).map(|case| case.key).collect();
+    assert!(alarms.len() <= may, "{alarms:?}");
+}
+
+#[test]
+fn two_effects_at_once_are_both_found() {
+    if extent() < Extent::Part {
+        return;
+    }
+    for (seed, pair) in
+        [["channel_gain", "stage_offset"], ["module_rotated", "channel_crosstalk"]].iter().enumerate()
+    {
+        let seed = seed as u64 + 1;
+        let truths = pair.map(|effect| truth(effect, seed)).to_vec();
+        let (_, score) = run(&Case::new(&format!("pair-{seed}"), seed, Plan::Recommended, truths));
+        assert!(score.complete() && score.wrong.is_empty(), "{pair:?}: {score:?}");
+    }
+}
+
+#[test]
+fn what_no_catalogue_has_stays_unnamed() {
+    if extent() < Extent::Part {
+        return;
+    }
+    for (seed, outside) in [(1, Outside::Dent), (2, Outside::Product)] {
+        let case = Case { outside, ..Case::new(&format!("outside-{seed}"), seed, Plan::Paper, Vec::new()) };
+        let (_, score) = run(&case);
+        assert!(score.wrong.is_empty(), "{outside:?}: {:?}", score.wrong);
+        assert!(score.unnamed_share > 0.0, "{outside:?}: {score:?}");
+        assert!(
+            ["unexplained", "partly_explained"].contains(&score.verdict.as_str()),
+            "{outside:?}: {score:?}"
+        );
+    }
+}
+
+/// The truth is in a set, with the measurement that separates it.
+fn confounded(case: &Case) {
+    let (diagnosis, score) = run(case);
+    assert!(matches!(score.found[0], Found::InSet(size) if size > 1), "{}: {score:?}", case.key);
+    assert!(score.wrong.is_empty(), "{}: {score:?}", case.key);
+    let separated =
+        diagnosis["findings"].as_array().unwrap().iter().any(|finding| !finding["separate_by"].is_null());
+    assert!(separated, "{}: {diagnosis}", case.key);
+}
+
+fn resolved(case: &Case) {
+    let (_, score) = run(case);
+    assert_eq!(score.found[0], Found::Named, "{}: {score:?}", case.key);
+    assert!(score.wrong.is_empty(), "{}: {score:?}", case.key);
+}
+
+/// In a room that only gets warmer, drift in time and a zero that follows the temperature are the same.
+#[test]
+fn drift_and_warmth_are_told_apart_by_a_room_that_cools_again() {
+    if extent() < Extent::Part {
+        return;
+    }
+    let mut case = Case::new("warming", 1, Plan::Recommended, vec![truth("thermal_zero", 1)]);
+    case.room = Room::Warming;
+    confounded(&case);
+    case.room = Room::UpAndDown;
+    resolved(&case);
+}
+
+/// Where every contact is held equally long, creep is a gain.
+#[test]
+fn creep_and_gain_are_told_apart_by_two_dwells() {
+    if extent() < Extent::Part {
+        return;
+    }
+    let mut case = Case::new("held", 2, Plan::Paper, vec![truth("creep", 2)]);
+    confounded(&case);
+    case.plan = Plan::Recommended;
+    resolved(&case);
+}

@@ -6,6 +6,7 @@ mod completions;
 mod decoder_file;
 mod destination;
 mod device;
+mod diagnose;
 mod evaluate;
 mod failure;
 mod field;
@@ -71,6 +72,8 @@ enum Verb {
     Layout(layout::Arguments),
     /// Find the paper's figures of merit, of the twin or of a measured file.
     Metrology(metrology::Arguments),
+    /// Say what a measured file shows that the model of the pad gets wrong, and why.
+    Diagnose(diagnose::Arguments),
     /// Print a shell's completions of verbs and options.
     Completions(completions::Arguments),
 }
@@ -91,6 +94,7 @@ pub(super) fn run() -> ExitCode {
         Verb::Profile(arguments) => profile::run(&arguments),
         Verb::Layout(arguments) => layout::run(&arguments),
         Verb::Metrology(arguments) => metrology::run(&arguments),
+        Verb::Diagnose(arguments) => diagnose::run(&arguments),
         Verb::Completions(arguments) => completions::run(&arguments, &mut Arguments::command()),
     };
     let (code, message) = match outcome {

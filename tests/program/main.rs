@@ -3,6 +3,7 @@
 mod adapt;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod bad_input;
+mod diagnose;
 #[cfg(feature = "simulator")]
 mod docs;
 #[cfg(all(feature = "live", target_os = "linux"))]

@@ -1,0 +1,180 @@
+//! The JSON document. Numbers that are not finite are `null` there.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::numbers::{side, word};
+use tactpad::lab::diagnosis::diagnosis::{self, Diagnosis};
+use tactpad::lab::diagnosis::target::Target;
+
+/// Version of the document's form.
+const SCHEMA: u32 = 1;
+
+/// The whole answer.
+#[derive(Serialize)]
+pub(super) struct Document<'d> {
+    schema: u32,
+    verdict: &'static str,
+    noise_floor_uv: f64,
+    rmse_uv: Rmse,
+    background: Background,
+    findings: Vec<Finding<'d>>,
+    not_detected: Vec<NotDetected>,
+    not_testable: Vec<NotTestable>,
+    unnamed_share: f64,
+    ceiling_share: Option<f64>,
+    gain: Option<Gain>,
+    /// Checks before the diagnosis; there are none yet.
+    gatekeepers: [(); 0],
+}
+
+#[derive(Serialize)]
+struct Rmse {
+    nominal: f64,
+    extended: f64,
+}
+
+#[derive(Serialize)]
+struct Background {
+    share: f64,
+    length_mm: f64,
+}
+
+/// A cause and where it is.
+#[derive(Serialize)]
+struct Cause {
+    effect: &'static str,
+    target: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    side: Option<&'static str>,
+}
+
+#[derive(Serialize)]
+struct Finding<'d> {
+    status: &'static str,
+    #[serde(flatten)]
+    cause: Cause,
+    parameters: BTreeMap<&'static str, Estimate>,
+    p_value: f64,
+    share: f64,
+    confounded_with: Vec<Cause>,
+    separate_by: Option<&'d str>,
+}
+
+#[derive(Serialize)]
+struct Estimate {
+    value: f64,
+    low95: f64,
+    high95: f64,
+}
+
+#[derive(Serialize)]
+struct NotDetected {
+    #[serde(flatten)]
+    cause: Cause,
+    minimum_detectable: BTreeMap<&'static str, f64>,
+    rival_share: f64,
+}
+
+#[derive(Serialize)]
+struct NotTestable {
+    effect: &'static str,
+    needs: &'static str,
+}
+
+#[derive(Serialize)]
+struct Gain {
+    rows_locked: usize,
+    rmse_ratio: f64,
+    rmse_ratio_low95: f64,
+    rmse_ratio_high95: f64,
+    /// Always `null`: no decoder takes part.
+    position_mae_mm: (),
+    force_mae_n: (),
+    per_cause: Vec<Without>,
+}
+
+#[derive(Serialize)]
+struct Without {
+    #[serde(flatten)]
+    cause: Cause,
+    rmse_ratio_without: f64,
+}
+
+impl<'d> Document<'d> {
+    pub(super) fn of(diagnosis: &'d Diagnosis) -> Self {
+        let cause = |effect, target: &Target| Cause::of(effect, target, &diagnosis.channels);
+        let not_detected = diagnosis.not_detected.iter().map(|it| NotDetected {
+            cause: cause(it.effect, &it.target),
+            minimum_detectable: it.minimum_detectable.iter().copied().collect(),
+            rival_share: it.rival_share,
+        });
+        let untested = diagnosis.not_testable.iter();
+        Self {
+            schema: SCHEMA,
+            verdict: word(diagnosis.verdict),
+            noise_floor_uv: diagnosis.noise_floor,
+            rmse_uv: Rmse { nominal: diagnosis.rmse_nominal, extended: diagnosis.rmse_extended },
+            background: Background { share: diagnosis.background_share, length_mm: diagnosis.background_mm },
+            findings: diagnosis.findings.iter().map(|it| Finding::of(it, &diagnosis.channels)).collect(),
+            not_detected: not_detected.collect(),
+            not_testable: untested.map(|it| NotTestable { effect: it.effect, needs: it.needs }).collect(),
+            unnamed_share: diagnosis.unnamed_share,
+            ceiling_share: diagnosis.ceiling_share,
+            gain: diagnosis.gain.as_ref().map(|gain| Gain::of(gain, diagnosis)),
+            gatekeepers: [],
+        }
+    }
+}
+
+impl Cause {
+    fn of(effect: &'static str, target: &Target, channels: &[String]) -> Self {
+        Self {
+            effect,
+            target: target.name(channels),
+            with: target.with(channels),
+            side: target.side().map(side),
+        }
+    }
+}
+
+impl<'d> Finding<'d> {
+    fn of(finding: &'d diagnosis::Finding, channels: &[String]) -> Self {
+        let estimate = |it: &diagnosis::Estimate| {
+            let [low95, high95] = it.interval95;
+            (it.name, Estimate { value: it.value, low95, high95 })
+        };
+        let others = finding.confounded_with.iter();
+        Self {
+            status: if finding.confounded_with.is_empty() { "NAMED" } else { "CONFOUNDED" },
+            cause: Cause::of(finding.effect, &finding.target, channels),
+            parameters: finding.parameters.iter().map(estimate).collect(),
+            p_value: finding.p_value,
+            share: finding.share,
+            confounded_with: others.map(|(effect, target)| Cause::of(effect, target, channels)).collect(),
+            separate_by: finding.separate_by.as_deref(),
+        }
+    }
+}
+
+impl Gain {
+    fn of(gain: &diagnosis::Gain, diagnosis: &Diagnosis) -> Self {
+        let [rmse_ratio_low95, rmse_ratio_high95] = gain.rmse_ratio_interval95;
+        let without = |(it, ratio): (&diagnosis::Finding, &f64)| Without {
+            cause: Cause::of(it.effect, &it.target, &diagnosis.channels),
+            rmse_ratio_without: *ratio,
+        };
+        Self {
+            rows_locked: gain.rows_locked,
+            rmse_ratio: gain.rmse_ratio,
+            rmse_ratio_low95,
+            rmse_ratio_high95,
+            position_mae_mm: (),
+            force_mae_n: (),
+            per_cause: diagnosis.findings.iter().zip(&gain.ratio_without).map(without).collect(),
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! `tactpad diagnose`: what measured contacts show that the model of the pad gets wrong, and why.
+
+mod document;
+mod numbers;
+mod text;
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use self::document::Document;
+use super::destination::Destination;
+use super::device::Pad;
+use super::failure::Failure;
+use super::field::field_of;
+use super::progress::Progress;
+use super::tables;
+use super::written::{both_print, is_same, is_stdout, print_json, say, stdout, written_over};
+use tactpad::lab::diagnosis::diagnosis::Diagnosis;
+use tactpad::lab::diagnosis::extension::extended;
+use tactpad::lab::diagnosis::{self, OpenFrame, Unfit};
+use tactpad::pad::device::{Device, Side};
+use tactpad::tables::measured::Table;
+use tactpad::tables::measured::columns::Kind;
+
+/// Arguments of `tactpad diagnose`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad diagnose --measured measured.csv --save-device found.toml\n\n\
+                  Without --device and --imperfections the model is the nominal pad. What the words mean stands in \
+                  docs/diagnosis.md.")]
+pub(super) struct Arguments {
+    /// The measured file: raw channels, and what the reference wrote down.
+    #[arg(long, value_name = "M.csv")]
+    measured: PathBuf,
+    #[command(flatten)]
+    pad: Pad,
+    /// A device file to write: the model with the named causes in it; - is standard output.
+    #[arg(long, value_name = "E.toml")]
+    save_device: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { measured, pad, save_device, json } = arguments;
+    let saved = save_device.as_deref().map(|path| destination(path, arguments)).transpose()?;
+    let device = pad.read()?;
+    let table = tables::read(measured, Kind::Measured, device.plate.radius_mm())?;
+    // It takes a while until the engine itself could say so.
+    diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
+    let diagnosis = diagnosed(&table, &device).map_err(|why| match why {
+        Why::Unfit(why) => unfit(measured, &why),
+        Why::NoField(failure) => failure,
+    })?;
+    if let Some(to) = saved {
+        save(&to, &device, &diagnosis, &table)?;
+    }
+    if *json {
+        return print_json(&Document::of(&diagnosis));
+    }
+    if save_device.as_deref().is_some_and(is_stdout) {
+        say(text::Report(&diagnosis));
+        return Ok(());
+    }
+    use std::io::Write as _;
+    Ok(write!(stdout(), "{}", text::Report(&diagnosis))?)
+}
+
+/// Where the device goes: nowhere that is read, and not between the lines of a document.
+fn destination(path: &Path, arguments: &Arguments) -> Result<Destination, Failure> {
+    if arguments.json && is_stdout(path) {
+        return Err(both_print("--save-device -"));
+    }
+    arguments.pad.spare(path)?;
+    if is_same(&arguments.measured, path) {
+        return Err(written_over(path, "is the measured table"));
+    }
+    Destination::of(path)
+}
+
+/// Why there is no diagnosis.
+enum Why {
+    Unfit(Unfit),
+    NoField(Failure),
+}
+
+fn diagnosed(table: &Table, device: &Device) -> Result<Diagnosis, Why> {
+    let field = field_of(device).map_err(Why::NoField)?;
+    let open_frames = open_frames(device);
+    let pad = diagnosis::Pad { device, field: &field, open_frames: &open_frames };
+    let _progress = Progress::begin("looking for causes");
+    diagnosis::diagnose(table, &pad).map_err(Why::Unfit)
+}
+
+/// The pad with a frame open on each side; none where they cannot be had.
+fn open_frames(device: &Device) -> Vec<OpenFrame> {
+    let mut open = Vec::new();
+    for side in [Side::PlusX, Side::MinusX, Side::PlusY, Side::MinusY] {
+        let mut device = device.clone();
+        device.modules[0].frame_open = Some(side);
+        match field_of(&device) {
+            Ok(field) => open.push(OpenFrame { side, field: field.signals }),
+            Err(Failure::Failed(why) | Failure::Unusable(why)) => {
+                say(format_args!("open frames are not looked for: {why}"));
+                return Vec::new();
+            }
+            Err(Failure::Unread) => return Vec::new(),
+        }
+    }
+    open
+}
+
+fn unfit(measured: &Path, why: &Unfit) -> Failure {
+    Failure::Unusable(format!("{}: {why}", measured.display()))
+}
+
+fn save(to: &Destination, device: &Device, diagnosis: &Diagnosis, table: &Table) -> Result<(), Failure> {
+    let last_cycle = table.rows.iter().filter_map(|row| row.cycle).reduce(f64::max);
+    let (device, left_out) = extended(device, diagnosis, last_cycle);
+    to.write(device.to_toml().as_bytes())?;
+    if !left_out.is_empty() {
+        say(format_args!(
+            "named, but not in the saved device, which cannot hold it: {}",
+            left_out.join(", ")
+        ));
+    }
+    if diagnosis.findings.iter().any(|finding| !finding.confounded_with.is_empty()) {
+        say("confounded causes are not in the saved device");
+    }
+    Ok(())
+}

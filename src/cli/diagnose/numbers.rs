@@ -1,0 +1,111 @@
+//! Words and numbers of a diagnosis.
+
+use tactpad::lab::diagnosis::diagnosis::{Estimate, Verdict};
+use tactpad::pad::device::Side;
+
+/// How parameters' names end, and the unit that people read.
+const UNITS: [(&str, &str); 11] = [
+    ("uv_per_c", "µV/°C"),
+    ("uv_per_h", "µV/h"),
+    ("per_c", "/°C"),
+    ("percent_fs", "% of full scale"),
+    ("mm", "mm"),
+    ("deg", "°"),
+    ("uv", "µV"),
+    ("us", "µs"),
+    ("ms", "ms"),
+    ("hz", "Hz"),
+    ("n", "N"),
+];
+/// Digits behind the point at most.
+const DECIMALS_MAX: i32 = 9;
+
+/// A verdict as documents write it.
+pub(super) const fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::NoDiscrepancy => "no_discrepancy",
+        Verdict::Explained => "explained",
+        Verdict::PartlyExplained => "partly_explained",
+        Verdict::Unexplained => "unexplained",
+    }
+}
+
+/// A side as device files write it.
+pub(super) const fn side(side: Side) -> &'static str {
+    match side {
+        Side::PlusX => "+x",
+        Side::MinusX => "-x",
+        Side::PlusY => "+y",
+        Side::MinusY => "-y",
+    }
+}
+
+/// A number with its interval: `radial 0.71 mm (0.69 to 0.73)`.
+pub(super) fn estimate(estimate: &Estimate) -> String {
+    let [low, high] = estimate.interval95;
+    let width = high - low;
+    let decimals = if width.is_finite() { decimals(0.5 * width) } else { decimals(estimate.value) };
+    let [value, low, high] = [estimate.value, low, high].map(|value| rounded(value, decimals));
+    format!("{} ({low} to {high})", named(estimate.name, &value))
+}
+
+/// Values of a number, from the least to the greatest.
+pub(super) fn range(name: &str, least: f64, greatest: f64) -> String {
+    let [low, high] = [least, greatest].map(|value| rounded(value, decimals(least)));
+    if low == high { named(name, &low) } else { named(name, &format!("{low} to {high}")) }
+}
+
+/// A value under its name: what it is before, its unit behind.
+fn named(name: &str, value: &str) -> String {
+    let ends = |(ending, _): &&(&str, &str)| {
+        name.strip_suffix(ending).is_some_and(|before| before.is_empty() || before.ends_with('_'))
+    };
+    let (ending, unit) = UNITS.iter().find(ends).copied().unwrap_or_default();
+    let what = name.strip_suffix(ending).unwrap_or(name).trim_end_matches('_').replace('_', " ");
+    let gap = if unit.is_empty() || unit == "°" { "" } else { " " };
+    format!("{what} {value}{gap}{unit}").trim().to_owned()
+}
+
+/// How many digits behind the point show two figures of `size`.
+fn decimals(size: f64) -> usize {
+    let magnitude = size.abs().log10().floor();
+    if magnitude.is_finite() { (1 - magnitude as i32).clamp(0, DECIMALS_MAX) as usize } else { 2 }
+}
+
+fn rounded(value: f64, decimals: usize) -> String {
+    if value.is_nan() {
+        return "unknown".into();
+    }
+    if value.is_infinite() {
+        return if value > 0.0 { "∞".into() } else { "−∞".into() };
+    }
+    let text = format!("{value:.decimals$}");
+    // No minus in front of nothing.
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|digit| matches!(digit, '0' | '.')) => zero.to_owned(),
+        Some(positive) => format!("−{positive}"),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(name: &'static str, value: f64, interval95: [f64; 2]) -> String {
+        estimate(&Estimate { name, value, interval95 })
+    }
+
+    #[test]
+    fn numbers_have_units_and_as_many_digits_as_their_intervals() {
+        assert_eq!(told("deg", 2.13, [1.8, 2.46]), "2.13° (1.80 to 2.46)");
+        assert_eq!(told("radial_mm", -0.7123, [-0.76, -0.66]), "radial −0.712 mm (−0.760 to −0.660)");
+        assert_eq!(told("uv_per_c", 31.26, [11.0, 51.0]), "31 µV/°C (11 to 51)");
+        assert_eq!(told("gain", 1.12, [1.11, 1.13]), "gain 1.120 (1.110 to 1.130)");
+        assert_eq!(told("share_at_end", -1e-9, [-0.2, 0.2]), "share at end 0.00 (−0.20 to 0.20)");
+        assert_eq!(told("area_share", 0.4, [f64::NEG_INFINITY, f64::INFINITY]), "area share 0.40 (−∞ to ∞)");
+        assert_eq!(told("gain", f64::NAN, [f64::NAN; 2]), "gain unknown (unknown to unknown)");
+        assert_eq!(range("fx_n", 0.0213, 0.0479), "fx 0.021 to 0.048 N");
+        assert_eq!(range("mm", 0.5, 0.5), "0.50 mm");
+    }
+}

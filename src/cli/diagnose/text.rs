@@ -1,0 +1,152 @@
+//! What people read.
+
+use std::fmt;
+
+use super::numbers::{estimate, range, side};
+use crate::cli::wrapped::hanging;
+use tactpad::lab::diagnosis::diagnosis::{Diagnosis, Finding, Gain, NotDetected, Verdict};
+use tactpad::lab::diagnosis::target::Target;
+
+/// A diagnosis in lines of a terminal.
+pub(super) struct Report<'d>(pub(super) &'d Diagnosis);
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(diagnosis) = self;
+        writeln!(f, "{}", hanging("", &verdict(diagnosis)))?;
+        writeln!(f, "{}", hanging("", &sizes(diagnosis)))?;
+        for (number, finding) in (1..).zip(&diagnosis.findings) {
+            writeln!(f, "\n{}", hanging(&format!("{number:>3}  "), &found(finding, &diagnosis.channels)))?;
+        }
+        if let Some(gain) = &diagnosis.gain {
+            writeln!(f, "\n{}", hanging("", &gained(gain, diagnosis)))?;
+        }
+        untested(f, diagnosis)?;
+        undetected(f, &diagnosis.not_detected)
+    }
+}
+
+fn verdict(diagnosis: &Diagnosis) -> String {
+    let percent = 100.0 * diagnosis.unnamed_share;
+    match diagnosis.verdict {
+        Verdict::NoDiscrepancy => "No discrepancy: the model accounts for these rows.".into(),
+        Verdict::Explained => "Explained: what the model gets wrong here is what is listed below.".into(),
+        Verdict::PartlyExplained => format!(
+            "Partly explained: the causes below hold, but {percent:.0} % of what the model gets wrong here has no \
+             known cause."
+        ),
+        Verdict::Unexplained => {
+            "Unexplained: the model is wrong here, and no known cause accounts for it.".into()
+        }
+    }
+}
+
+fn sizes(diagnosis: &Diagnosis) -> String {
+    let Diagnosis { noise_floor, rmse_nominal, rmse_extended, .. } = diagnosis;
+    let mut text = format!(
+        "The channels' noise is {noise_floor:.1} µV rms; the model misses them by {rmse_nominal:.1} µV"
+    );
+    if !diagnosis.findings.is_empty() {
+        text += &format!(", and with the causes below by {rmse_extended:.1} µV");
+    }
+    if let Some(ceiling) = diagnosis.ceiling_share.filter(|share| share.is_finite()) {
+        text += &format!(". The causes remove {:.0} % of what any smooth model could", 100.0 * ceiling);
+    }
+    text + "."
+}
+
+/// A cause and where it is.
+fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
+    let with = target.with(channels).map(|with| format!(" from {with}")).unwrap_or_default();
+    let side = target.side().map(|it| format!(" on its {} side", side(it))).unwrap_or_default();
+    format!("{effect} of {}{with}{side}", target.name(channels))
+}
+
+fn found(finding: &Finding, channels: &[String]) -> String {
+    let numbers: Vec<String> = finding.parameters.iter().map(estimate).collect();
+    let first = cause(finding.effect, &finding.target, channels);
+    let share = 100.0 * finding.share;
+    let colon = if numbers.is_empty() { "" } else { ": " };
+    let mut text = format!(
+        "{first}{colon}{}; p {:.0e}, {share:.0} % of the residual",
+        numbers.join(", "),
+        finding.p_value
+    );
+    if !finding.confounded_with.is_empty() {
+        let others = finding.confounded_with.iter().map(|(effect, target)| cause(effect, target, channels));
+        let others: Vec<String> = others.collect();
+        text += &format!(". These rows do not tell it from {}", others.join(", or from "));
+    }
+    if let Some(measurement) = &finding.separate_by {
+        text += &format!(". To tell: {}", measurement.trim_end_matches('.'));
+    }
+    text + "."
+}
+
+fn gained(gain: &Gain, diagnosis: &Diagnosis) -> String {
+    let Gain { rows_locked, rmse_ratio, rmse_ratio_interval95: [low, high], .. } = gain;
+    let mut text = format!(
+        "On {rows_locked} rows that had no part in this, the causes bring the model's error down to {rmse_ratio:.2} \
+         of what it was ({low:.2} to {high:.2})"
+    );
+    let without = diagnosis.findings.iter().zip(&gain.ratio_without).map(|(finding, ratio)| {
+        format!("{ratio:.2} without {}", cause(finding.effect, &finding.target, &diagnosis.channels))
+    });
+    let without: Vec<String> = without.collect();
+    if !without.is_empty() {
+        text += &format!("; {}", without.join(", "));
+    }
+    text + "."
+}
+
+/// What could not be asked for, by the column that it needs.
+fn untested(f: &mut fmt::Formatter<'_>, diagnosis: &Diagnosis) -> fmt::Result {
+    let mut needs: Vec<&str> = diagnosis.not_testable.iter().map(|it| it.needs).collect();
+    needs.sort_unstable();
+    needs.dedup();
+    for (index, column) in needs.iter().enumerate() {
+        let effects = diagnosis.not_testable.iter().filter(|it| it.needs == *column);
+        let effects: Vec<&str> = effects.map(|it| it.effect).collect();
+        let text = format!("Not testable without {column} that varies: {}.", effects.join(", "));
+        writeln!(f, "{}{}", if index == 0 { "\n" } else { "" }, hanging("", &text))?;
+    }
+    Ok(())
+}
+
+/// What would have been found, a line for each effect.
+fn undetected(f: &mut fmt::Formatter<'_>, all: &[NotDetected]) -> fmt::Result {
+    let mut effects: Vec<&str> = Vec::new();
+    for it in all.iter().filter(|it| !it.minimum_detectable.is_empty()) {
+        if !effects.contains(&it.effect) {
+            effects.push(it.effect);
+        }
+    }
+    if effects.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "\nNot found; these sizes would be, in nine of ten such measurements:")?;
+    for effect in effects {
+        let sizes = least_sizes(all.iter().filter(|it| it.effect == effect));
+        writeln!(f, "{}", hanging(&format!("  {effect:<20}"), &sizes))?;
+    }
+    Ok(())
+}
+
+/// For each number of one effect the sizes over its targets.
+fn least_sizes<'d>(targets: impl Iterator<Item = &'d NotDetected>) -> String {
+    let mut sizes: Vec<(&str, [f64; 2])> = Vec::new();
+    for (name, size) in targets.flat_map(|it| &it.minimum_detectable) {
+        let at = sizes.iter().position(|(known, _)| known == name).unwrap_or(sizes.len());
+        if at == sizes.len() {
+            sizes.push((name, [f64::INFINITY, f64::NEG_INFINITY]));
+        }
+        if size.is_finite() {
+            let [least, greatest] = &mut sizes[at].1;
+            (*least, *greatest) = (least.min(*size), greatest.max(*size));
+        }
+    }
+    let told = sizes.iter().map(|(name, [least, greatest])| {
+        if least.is_finite() { range(name, *least, *greatest) } else { format!("{name} at no size") }
+    });
+    told.collect::<Vec<_>>().join(", ")
+}

@@ -274,7 +274,7 @@ mod tests {
             finding("module_crosstalk", Target::Modules { into: 2, from: 1 }, &[("share", 0.04)]),
             finding("thermal_zero", Target::Pad, &[("uv_per_c", 3.0)]),
             finding("zero_drift", Target::Channel(8), &[("uv_per_h", 40.0)]),
-            finding("ageing", Target::Channel(3), &[("share_at_end", 0.1)]),
+            finding("ageing", Target::Channel(3), &[("share_at_end", 0.02)]),
             finding("reference_zero", Target::Rig, &[("fx_n", 0.1), ("fy_n", 0.2), ("fz_n", -0.1)]),
             finding("stage_scale", Target::Rig, &[("scale", 1.02)]),
         ];
@@ -290,7 +290,7 @@ mod tests {
         assert_eq!(behaviour.thermal.zero_uv_per_c, [3.0; CHANNELS]);
         assert_eq!(behaviour.noise.drift_uv_per_h[8], 40.0);
         // After 500 cycles ln 2 of what is ln 101 after 50,000.
-        near(behaviour.ageing.share[3], 0.1 * 101_f64.ln() / 2_f64.ln());
+        near(behaviour.ageing.share[3], 0.02 * 101_f64.ln() / 2_f64.ln());
         assert_eq!(behaviour.rig.reference_zero_n, [0.1, 0.2, -0.1]);
         near(behaviour.rig.stage_scale, 1.02);
     }
@@ -305,7 +305,7 @@ mod tests {
             finding("contact_height", Target::Rig, &[("mm", 1.0)]),
             finding("module_frame_open", Target::ModuleSide(0, Side::PlusX), &[("area_share", 0.1)]),
             finding("module_displaced", Target::Module(0), &[("radial_mm", 1e3), ("tangential_mm", 0.0)]),
-            finding("ageing", Target::Pad, &[("share_at_end", 0.1)]),
+            finding("ageing", Target::Pad, &[("share_at_end", 0.02)]),
             finding("channel_gain", Target::Channel(1), &[("gain", f64::NAN)]),
             confounded,
         ];

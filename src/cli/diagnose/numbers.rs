@@ -68,7 +68,8 @@ fn named(name: &str, value: &str) -> String {
 
 /// How many digits behind the point show two figures of `size`.
 fn decimals(size: f64) -> usize {
-    let magnitude = size.abs().log10().floor();
+    // A difference of decimal fractions may fall short of a power of ten by its rounding.
+    let magnitude = (size.abs().log10() + 1e-9).floor();
     if magnitude.is_finite() { (1 - magnitude as i32).clamp(0, DECIMALS_MAX) as usize } else { 2 }
 }
 

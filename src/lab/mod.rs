@@ -3,6 +3,7 @@
 pub mod ablation;
 pub mod calibration;
 pub mod contacts;
+pub mod diagnosis;
 pub mod evaluation;
 pub mod field_cache;
 pub mod layout;

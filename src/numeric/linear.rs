@@ -76,6 +76,11 @@ impl Symmetric {
         Self { size, rows: vec![0.0; size * size] }
     }
 
+    /// From all its entries, row by row.
+    pub(super) fn of(size: usize, rows: &[f64]) -> Self {
+        Self { size, rows: rows.to_vec() }
+    }
+
     /// Adds to a diagonal entry.
     pub fn add_diagonal(&mut self, at: usize, value: f64) {
         if let Some(entry) = self.rows.get_mut(at * self.size + at) {
@@ -148,8 +153,13 @@ impl LargeFactor {
 
     /// The x with A x = b. `right` has as many numbers as the matrix rows.
     pub fn solve(&self, right: &[f64]) -> Vec<f64> {
-        // Backward substitution, column by column: once xᵢ is known, Lᵢₖ xᵢ is taken off all k < i.
-        let mut x = self.solve_lower(right);
+        self.solve_upper(&self.solve_lower(right))
+    }
+
+    /// The x with Lᵀ x = b.
+    pub fn solve_upper(&self, right: &[f64]) -> Vec<f64> {
+        // Column by column: once xᵢ is known, Lᵢₖ xᵢ is taken off all k < i.
+        let mut x = right.to_vec();
         for row in (0..self.size).rev() {
             let line = &self.lower[row * self.size..][..=row];
             x[row] /= line[row];
@@ -181,8 +191,8 @@ impl LargeFactor {
     }
 }
 
-/// Four sums side by side, so that the loop becomes vectors; the order is fixed.
-fn dot(left: &[f64], right: &[f64]) -> f64 {
+/// Σ aᵢ bᵢ, in four sums side by side, so that the loop becomes vectors; the order is fixed.
+pub fn dot(left: &[f64], right: &[f64]) -> f64 {
     let (left, right) = (left.as_chunks::<4>(), right.as_chunks::<4>());
     let mut sums = [0.0; 4];
     for (left, right) in left.0.iter().zip(right.0) {

@@ -1,6 +1,8 @@
-//! Numerical methods that know nothing of pads: symmetric systems, polynomials over the disc, random numbers,
+//! Numerical methods that know nothing of pads: linear systems, polynomials over the disc, random numbers,
 //! statistics.
 
+pub mod chi_square;
+pub mod dense;
 pub mod linear;
 pub mod random;
 pub mod statistics;

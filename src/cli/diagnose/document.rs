@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::numbers::{side, word};
-use tactpad::lab::diagnosis::diagnosis::{self, Diagnosis};
+use tactpad::lab::diagnosis::report::{self, Diagnosis};
 use tactpad::lab::diagnosis::target::Target;
 
 /// Version of the document's form.
@@ -142,8 +142,8 @@ impl Cause {
 }
 
 impl<'d> Finding<'d> {
-    fn of(finding: &'d diagnosis::Finding, channels: &[String]) -> Self {
-        let estimate = |it: &diagnosis::Estimate| {
+    fn of(finding: &'d report::Finding, channels: &[String]) -> Self {
+        let estimate = |it: &report::Estimate| {
             let [low95, high95] = it.interval95;
             (it.name, Estimate { value: it.value, low95, high95 })
         };
@@ -161,9 +161,9 @@ impl<'d> Finding<'d> {
 }
 
 impl Gain {
-    fn of(gain: &diagnosis::Gain, diagnosis: &Diagnosis) -> Self {
+    fn of(gain: &report::Gain, diagnosis: &Diagnosis) -> Self {
         let [rmse_ratio_low95, rmse_ratio_high95] = gain.rmse_ratio_interval95;
-        let without = |(it, ratio): (&diagnosis::Finding, &f64)| Without {
+        let without = |(it, ratio): (&report::Finding, &f64)| Without {
             cause: Cause::of(it.effect, &it.target, &diagnosis.channels),
             rmse_ratio_without: *ratio,
         };

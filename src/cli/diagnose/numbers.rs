@@ -1,6 +1,6 @@
 //! Words and numbers of a diagnosis.
 
-use tactpad::lab::diagnosis::diagnosis::{Estimate, Verdict};
+use tactpad::lab::diagnosis::report::{Estimate, Verdict};
 use tactpad::pad::device::Side;
 
 /// How parameters' names end, and the unit that people read.

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::numbers::{estimate, range, side};
 use crate::cli::wrapped::hanging;
-use tactpad::lab::diagnosis::diagnosis::{Diagnosis, Finding, Gain, NotDetected, Verdict};
+use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, Verdict};
 use tactpad::lab::diagnosis::target::Target;
 
 /// A diagnosis in lines of a terminal.

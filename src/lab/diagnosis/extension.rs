@@ -1,13 +1,14 @@
 //! The device that a diagnosis makes of another: with the named causes in it.
 
-use super::diagnosis::{Diagnosis, Finding};
+use super::report::{Diagnosis, Finding};
+use super::simulated::side_share;
 use super::target::Target;
 use crate::pad::device::behaviour::{Ageing, Crosstalk, ModuleCrosstalk};
 use crate::pad::device::parameter::Parameter;
 use crate::pad::device::{Device, Side};
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
 
-/// A device file opens the side of a frame or does not: from this share of the side on, open is nearer.
+/// A device file opens the side of a frame or does not: from this part of the side on, open is nearer.
 const NEARER_OPEN: f64 = 0.5;
 
 /// What a finding's value does to a number of the device.
@@ -138,8 +139,9 @@ fn leak<T: Leak>(leaks: &mut Vec<T>, mut more: T) {
 
 /// A module's frame is missing on one side at most, and there as a whole.
 fn open(device: &mut Device, module: usize, side: Side, share: f64) -> Option<()> {
+    let part = share / side_share(device, side);
     let frame_open = &mut device.modules.get_mut(module)?.frame_open;
-    let is_held = share >= NEARER_OPEN && frame_open.is_none_or(|open| open == side);
+    let is_held = part >= NEARER_OPEN && frame_open.is_none_or(|open| open == side);
     is_held.then(|| *frame_open = Some(side))
 }
 
@@ -190,7 +192,7 @@ fn names(number: &str, target: Target) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::diagnosis::{Estimate, Verdict};
+    use super::super::report::{Estimate, Verdict};
     use super::*;
     use crate::pad::device::Module;
 
@@ -239,7 +241,7 @@ mod tests {
             finding("module_rotated", Target::Module(1), &[("deg", -5.0)]),
             finding("module_tilted", Target::Module(1), &[("tangential_deg", 0.2), ("radial_deg", -0.3)]),
             finding("module_stiffness", Target::Module(2), &[("factor", 0.6)]),
-            finding("module_frame_open", Target::ModuleSide(0, Side::MinusX), &[("area_share", 0.9)]),
+            finding("module_frame_open", Target::ModuleSide(0, Side::MinusX), &[("area_share", 0.18)]),
             finding("plate_stiffness", Target::Pad, &[("factor", 1.5)]),
             finding("contact_size", Target::Rig, &[("radius_mm", 2.5)]),
         ]
@@ -303,7 +305,7 @@ mod tests {
         let findings = vec![
             finding("gauge_nonlinearity", Target::Channel(0), &[("second_order_percent_fs", 2.0)]),
             finding("contact_height", Target::Rig, &[("mm", 1.0)]),
-            finding("module_frame_open", Target::ModuleSide(0, Side::PlusX), &[("area_share", 0.1)]),
+            finding("module_frame_open", Target::ModuleSide(0, Side::PlusX), &[("area_share", 0.05)]),
             finding("module_displaced", Target::Module(0), &[("radial_mm", 1e3), ("tangential_mm", 0.0)]),
             finding("ageing", Target::Pad, &[("share_at_end", 0.02)]),
             finding("channel_gain", Target::Channel(1), &[("gain", f64::NAN)]),

@@ -1,0 +1,272 @@
+//! Which causes the residual calls for: forward selection with refits, backward removal.
+
+use super::bootstrap::Bootstrap;
+use super::columns::{Columns, ZERO};
+use super::covariance::{Background, Marginal, Systems};
+use super::inference::{Projected, Test};
+use super::model::{Linearised, Model, Parameter};
+use super::observations::Observations;
+use crate::numeric::dense::Matrix;
+use crate::numeric::linear::dot;
+
+/// How often anything may be found where nothing is wrong: the family-wise level.
+pub(super) const LEVEL: f64 = 0.03;
+/// Draws of the bootstrap.
+const DRAWS: usize = 1000;
+/// Candidates whose fit is looked at closely, by their score.
+const SHORTLIST: usize = 6;
+/// No more causes than this are looked for.
+const CAUSES_MAX: usize = 12;
+/// Gauss-Newton steps of a refit.
+const REFITS: usize = 5;
+/// A refit that moves no coordinate by more than this many standard deviations stands.
+const STANDS: f64 = 0.1;
+
+/// Hypotheses that hold, each with its coordinates.
+pub(super) type Applied = Vec<(usize, Vec<f64>)>;
+
+/// The measurement about a fitted point.
+pub(super) struct Fit {
+    /// What holds, with the fitted coordinates.
+    pub(super) applied: Applied,
+    pub(super) systems: Systems,
+    pub(super) background: Background,
+    pub(super) marginal: Marginal,
+    pub(super) linearised: Linearised,
+    /// Coordinates of all columns beside the point: the nuisances, and what a last step would change.
+    pub(super) coordinates: Vec<f64>,
+}
+
+/// What was found.
+pub(super) struct Attribution {
+    /// About the causes that hold.
+    pub(super) fit: Fit,
+    /// The p-value below which a cause is found: the family-wise level's quantile of the least of all.
+    pub(super) critical: f64,
+}
+
+/// Finds causes.
+pub(super) struct Search<'m> {
+    pub(super) model: &'m dyn Model,
+    pub(super) observations: &'m Observations,
+    pub(super) columns: Columns,
+    pub(super) clusters: Vec<usize>,
+}
+
+impl<'m> Search<'m> {
+    pub(super) fn new(model: &'m dyn Model, observations: &'m Observations) -> Self {
+        let (channels, rows) = (observations.channels.len(), observations.rows());
+        let columns = Columns::of(model.hypotheses(), &model.common_errors(), channels, rows);
+        Self { model, observations, columns, clusters: observations.clusters() }
+    }
+
+    /// Forward selection: the best candidate is fitted while it is significant; then whatever is no longer is taken out.
+    pub(super) fn run(&self) -> Option<Attribution> {
+        let mut fit = self.fitted(&Vec::new(), None)?;
+        let mut critical = self.critical(&fit)?;
+        // What was taken out stays out, so that the search ends.
+        let mut barred: Vec<usize> = Vec::new();
+        while fit.applied.len() < CAUSES_MAX {
+            let Some(next) = self.next(&fit, critical, &barred)? else { break };
+            let mut applied = fit.applied.clone();
+            applied.push((next, vec![0.0; self.model.hypotheses()[next].parameters.len()]));
+            fit = self.fitted(&applied, Some(&fit.background))?;
+            critical = self.critical(&fit)?;
+            while let Some(least) = self.superfluous(&fit, critical)? {
+                let mut applied = fit.applied.clone();
+                barred.push(applied.remove(least).0);
+                fit = self.fitted(&applied, Some(&fit.background))?;
+            }
+        }
+        Some(Attribution { fit, critical })
+    }
+
+    pub(super) fn is_zero(&self, hypothesis: usize) -> bool {
+        self.model.hypotheses()[hypothesis].effect == ZERO
+    }
+
+    /// The fit of these hypotheses by Gauss and Newton's method, with the covariance that goes with it.
+    pub(super) fn fitted(&self, applied: &Applied, start: Option<&Background>) -> Option<Fit> {
+        let mut applied = applied.clone();
+        let mut background = start.cloned();
+        for step in 0..=REFITS {
+            let linearised = self.model.linearised(&applied);
+            let systems = Systems::of(self.observations, &linearised, &self.columns.signatures(&linearised))?;
+            let fitted = self.columns.fitted(applied.iter().map(|(at, _)| *at));
+            let found = systems.background(&fitted, if step == 0 { None } else { background.as_ref() })?;
+            let marginal = systems.marginal(&found)?;
+            let solved = fitted.solved(&marginal)?;
+            let moves = self.moves(&applied, &solved.coordinates, &marginal);
+            if step == REFITS || moves < STANDS {
+                return Some(Fit {
+                    applied,
+                    systems,
+                    background: found,
+                    marginal,
+                    linearised,
+                    coordinates: solved.coordinates,
+                });
+            }
+            self.step(&mut applied, &solved.coordinates);
+            background = Some(found);
+        }
+        None
+    }
+
+    /// By how many standard deviations a step moves the coordinates at most.
+    fn moves(&self, applied: &Applied, step: &[f64], marginal: &Marginal) -> f64 {
+        let columns = applied.iter().flat_map(|(at, _)| &self.columns.of_hypothesis[*at]);
+        columns
+            .map(|column| step[*column].abs() * marginal.fisher.at(*column, *column).sqrt())
+            .fold(0.0, f64::max)
+    }
+
+    fn step(&self, applied: &mut Applied, step: &[f64]) {
+        for (at, coordinates) in applied {
+            let hypothesis = &self.model.hypotheses()[*at];
+            let columns = &self.columns.of_hypothesis[*at];
+            for ((coordinate, column), parameter) in
+                coordinates.iter_mut().zip(columns).zip(&hypothesis.parameters)
+            {
+                *coordinate = parameter.coordinate(parameter.value(*coordinate + step[*column]));
+            }
+        }
+    }
+
+    /// The critical p-value where these causes hold.
+    fn critical(&self, fit: &Fit) -> Option<f64> {
+        let projected = self.projected(fit)?;
+        let mut bootstrap = Bootstrap::of(
+            &fit.systems,
+            &fit.marginal,
+            &fit.background,
+            &self.columns,
+            &fit.coordinates,
+            &self.clusters,
+        );
+        let asked: Vec<usize> =
+            (0..self.columns.of_hypothesis.len()).filter(|at| !self.is_zero(*at)).collect();
+        let parts: Vec<Vec<f64>> = asked.iter().map(|at| self.parts(fit, *at)).collect();
+        let mut least: Vec<f64> = (0..DRAWS)
+            .map(|_| {
+                let draw = bootstrap.draw();
+                let score = projected.projected(&draw.score);
+                let p_value = |(at, parts): (&usize, &Vec<f64>)| {
+                    let test = self.test(&projected, *at, &score);
+                    Test { square: test.square / dot(parts, &draw.variances), ..test }.p_value()
+                };
+                asked.iter().zip(&parts).map(p_value).fold(1.0, f64::min)
+            })
+            .collect();
+        least.sort_by(f64::total_cmp);
+        Some(least[(LEVEL * DRAWS as f64) as usize])
+    }
+
+    /// The channels' parts in what is known of a hypothesis: they add up to 1.
+    fn parts(&self, fit: &Fit, hypothesis: usize) -> Vec<f64> {
+        let columns = &self.columns.of_hypothesis[hypothesis];
+        let of_channel = |at: usize| {
+            let own = fit.systems.channels[at]
+                .columns
+                .iter()
+                .enumerate()
+                .filter(|(_, number)| columns.contains(number));
+            own.map(|(row, _)| fit.marginal.channels[at].fisher.at(row, row)).sum::<f64>()
+        };
+        let parts: Vec<f64> = (0..fit.systems.channels.len()).map(of_channel).collect();
+        let whole: f64 = parts.iter().sum();
+        parts.iter().map(|part| if whole > 0.0 { part / whole } else { 1.0 / parts.len() as f64 }).collect()
+    }
+
+    pub(super) fn projected(&self, fit: &Fit) -> Option<Projected> {
+        Projected::of(&fit.marginal, &self.columns.fitted(fit.applied.iter().map(|(at, _)| *at)))
+    }
+
+    /// The test of a hypothesis that is not fitted. One whose number cannot be negative is asked for positive ones only.
+    pub(super) fn test(&self, projected: &Projected, at: usize, score: &[f64]) -> Test {
+        let columns = &self.columns.of_hypothesis[at];
+        let is_one_sided = self.model.hypotheses()[at].parameters.iter().all(Parameter::is_one_sided);
+        if is_one_sided && columns.iter().all(|column| score[*column] <= 0.0) {
+            return Test::NOTHING;
+        }
+        projected.test(columns, score)
+    }
+
+    /// The candidate with the best fit, if it is significant.
+    fn next(&self, fit: &Fit, critical: f64, barred: &[usize]) -> Option<Option<usize>> {
+        let projected = self.projected(fit)?;
+        let holds = |at: usize| barred.contains(&at) || fit.applied.iter().any(|(held, _)| *held == at);
+        let mut candidates: Vec<(f64, usize)> = (0..self.columns.of_hypothesis.len())
+            .filter(|at| !holds(*at) && !self.is_zero(*at))
+            .map(|at| (self.test(&projected, at, &projected.score).p_value(), at))
+            .collect();
+        candidates.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut best: Option<(f64, usize)> = None;
+        for (_, at) in candidates.into_iter().take(SHORTLIST) {
+            // The covariance is found anew, so that the background does not take the candidate's part.
+            let held = fit.applied.iter().map(|(held, _)| *held);
+            let background = fit
+                .systems
+                .background(&self.columns.fitted(held.clone().chain([at])), Some(&fit.background))?;
+            let marginal = fit.systems.marginal(&background)?;
+            let projected = Projected::of(&marginal, &self.columns.fitted(held))?;
+            let test = self.test(&projected, at, &projected.score);
+            let solved = self
+                .columns
+                .fitted(fit.applied.iter().map(|(held, _)| *held).chain([at]))
+                .solved(&marginal)?;
+            let deviance = marginal.square - solved.removed + marginal.log_determinant();
+            let penalty = test.freedom as f64 * (self.observations.rows() as f64).ln();
+            if test.p_value() < critical && best.is_none_or(|(least, _)| deviance + penalty < least) {
+                best = Some((deviance + penalty, at));
+            }
+        }
+        Some(best.map(|(_, at)| at))
+    }
+
+    /// The place in the fit of a cause that is not significant beside the others; the least of them.
+    fn superfluous(&self, fit: &Fit, critical: f64) -> Option<Option<usize>> {
+        let mut worst: Option<(f64, usize)> = None;
+        for at in 0..fit.applied.len() {
+            let p_value = self.test_within(fit, at)?.p_value();
+            if p_value > critical && worst.is_none_or(|(greatest, _)| p_value > greatest) {
+                worst = Some((p_value, at));
+            }
+        }
+        Some(worst.map(|(_, at)| at))
+    }
+
+    /// The test of a fitted cause beside all others that are fitted.
+    pub(super) fn test_within(&self, fit: &Fit, at: usize) -> Option<Test> {
+        let (hypothesis, _) = fit.applied[at];
+        let own = &self.columns.of_hypothesis[hypothesis];
+        let (projected, score) = self.without(fit, at)?;
+        Some(projected.test(own, &score))
+    }
+
+    /// Everything but one fitted cause projected out, and the score of the residual without that cause.
+    pub(super) fn without(&self, fit: &Fit, at: usize) -> Option<(Projected, Vec<f64>)> {
+        let others =
+            fit.applied.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, (held, _))| *held);
+        let projected = Projected::of(&fit.marginal, &self.columns.fitted(others))?;
+        let (hypothesis, coordinates) = &fit.applied[at];
+        // r + J ψ̂: the residual about the point without the cause, to first order.
+        let mut score = projected.score.clone();
+        for (column, psi) in self.columns.of_hypothesis[*hypothesis].iter().zip(coordinates) {
+            score
+                .iter_mut()
+                .zip(projected.fisher.row(*column))
+                .for_each(|(score, entry)| *score += psi * entry);
+        }
+        Some((projected, score))
+    }
+
+    /// Covariance of a fitted cause's coordinates.
+    pub(super) fn covariance(&self, fit: &Fit, at: usize) -> Option<Matrix> {
+        let (projected, _) = self.without(fit, at)?;
+        let own = &self.columns.of_hypothesis[fit.applied[at].0];
+        let factor = projected.fisher.picked(own, own).factorised()?;
+        let unit = |at: usize| (0..own.len()).map(|k| f64::from(u8::from(k == at))).collect::<Vec<_>>();
+        Some(Matrix::from_rows(&(0..own.len()).map(|at| factor.solve(&unit(at))).collect::<Vec<_>>()))
+    }
+}

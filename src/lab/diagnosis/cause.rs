@@ -1,0 +1,48 @@
+//! What a cause is.
+
+use super::chain::Chain;
+use super::model::Parameter;
+use super::setting::Setting;
+use super::target::Target;
+
+/// Where in the chain a cause acts first. What lies before it need not be computed anew.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stage {
+    /// On the contact itself.
+    Contact,
+    /// On the strains under it.
+    Mechanics,
+    /// On the channels.
+    Channels,
+}
+
+/// A cause of a difference between a pad and its model.
+pub(super) trait Cause: Sync {
+    /// Its name in reports.
+    fn effect(&self) -> &'static str;
+    /// Its numbers.
+    fn parameters(&self, setting: &Setting) -> Vec<Parameter>;
+    /// Where it acts first.
+    fn stage(&self) -> Stage;
+    /// The places where it may be.
+    fn targets(&self, setting: &Setting) -> Vec<Target>;
+    /// The column without which it cannot be seen, if that is missing or stays the same.
+    fn missing(&self, _setting: &Setting) -> Option<&'static str> {
+        None
+    }
+    /// Puts it into the chain, with these values of its numbers.
+    fn apply(&self, target: &Target, values: &[f64], setting: &Setting, chain: &mut Chain);
+}
+
+/// Sets a number of each channel: of one, or of all for [`Target::Pad`].
+pub(super) fn each_channel(target: &Target, numbers: &mut [f64], value: f64) {
+    match *target {
+        Target::Channel(channel) => numbers[channel] += value,
+        _ => numbers.iter_mut().for_each(|number| *number += value),
+    }
+}
+
+/// All channels, and the pad as a whole.
+pub(super) fn pad_and_channels(setting: &Setting) -> Vec<Target> {
+    std::iter::once(Target::Pad).chain(setting.each_channel()).collect()
+}

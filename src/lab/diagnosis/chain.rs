@@ -1,0 +1,205 @@
+//! From what was written down to what N channels should read: everything in which a pad, or the rig, may differ.
+//!
+//! ```text
+//! place = d + c R(φ) written                    force = R(tilt)⁻¹ (written − zero)/gain           (the rig)
+//! eₖ = Σₐ Fₐ (Gₖₐ + ¼ ½ (R² − R₀²) ∇²Gₖₐ + Σⱼ wⱼ Cⱼₖₐ)(place) + h (Fx ∂ₓ + Fy ∂ᵧ) Gₖz(place)      (the mechanics)
+//! sₖ = lₖ (1 + αₖ ΔT) gₖ Σₘ (1 + M)ₖₘ eₘ,    qₖ = sₖ + pₖ sₖ²/Sₖ                                   (the channel)
+//! yₖ = Σₗ (1 + X)ₖₗ qₗ + zₖ + βₖ ΔT + δₖ t                                                          (what is read)
+//! ```
+//!
+//! G is the pad's influence field, C are changes of it, M and X what modules and channels take of each other, g gains, l what
+//! ageing has left, α and β temperature coefficients, p the second order at full scale S, z zeros, δ drift. A load patch of
+//! radius R averages a field to G + (R²/8) ∇²G. A force at the height h turns about the plate: h Fx is the couple of two
+//! opposite pressing forces.
+
+use super::observations::Sample;
+use super::setting::Setting;
+use crate::pad::device::Side;
+
+/// Cycles at which ageing begins to slow down.
+const ONSET_CYCLES: f64 = 500.0;
+
+/// What differs in the rig that measured.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct RigChain {
+    /// True minus written place.
+    pub(super) offset_mm: [f64; 2],
+    /// From written to true place, counter-clockwise.
+    pub(super) rotation_deg: f64,
+    /// True over written distance from the axis.
+    pub(super) scale: f64,
+    /// Turn of the reference about x and y, from true to written force.
+    pub(super) tilt_deg: [f64; 2],
+    /// Written over true force.
+    pub(super) gain: f64,
+    /// Written minus true force.
+    pub(super) zero_n: [f64; 3],
+}
+
+/// What differs in the contact and the mechanics.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MechanicsChain {
+    /// h: how far above the plate's surface forces act.
+    pub(super) height_mm: f64,
+    /// R² − R₀² of the load patch.
+    pub(super) patch_mm2: f64,
+    /// w: weights of the field's changes.
+    pub(super) weights: Vec<f64>,
+}
+
+/// What differs in the channels.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct ChannelChain {
+    /// M, as (into, from, share).
+    pub(super) module_shares: Vec<(usize, usize, f64)>,
+    /// g.
+    pub(super) gain: Vec<f64>,
+    /// α, 1/°C.
+    pub(super) gain_per_c: Vec<f64>,
+    /// Loss of the strain at the largest cycle of the measurement.
+    pub(super) loss: Vec<f64>,
+    /// p, as a share of full scale.
+    pub(super) second_order: Vec<f64>,
+    /// X, as (into, from, share).
+    pub(super) shares: Vec<(usize, usize, f64)>,
+    /// z.
+    pub(super) offset: Vec<f64>,
+    /// β, per °C.
+    pub(super) zero_per_c: Vec<f64>,
+    /// δ, per hour.
+    pub(super) drift_per_h: Vec<f64>,
+}
+
+/// Everything that may differ. [`Chain::nominal`] differs in nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Chain {
+    /// The rig.
+    pub(super) rig: RigChain,
+    /// Contact and plate.
+    pub(super) mechanics: MechanicsChain,
+    /// The channels.
+    pub(super) channels: ChannelChain,
+}
+
+/// What the channels' equations need to know of a measurement.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Reference {
+    /// Temperature at which gains and zeros are nominal.
+    pub(super) temp_c: f64,
+    /// First time of the measurement.
+    pub(super) t_s: f64,
+    /// Its largest cycle.
+    pub(super) cycle: f64,
+    /// S: each channel's full scale.
+    pub(super) full_scale: Vec<f64>,
+}
+
+impl Chain {
+    /// N channels, and a field that may change in so many ways.
+    pub(super) fn nominal(channels: usize, changes: usize) -> Self {
+        Self {
+            rig: RigChain {
+                offset_mm: [0.0; 2],
+                rotation_deg: 0.0,
+                scale: 1.0,
+                tilt_deg: [0.0; 2],
+                gain: 1.0,
+                zero_n: [0.0; 3],
+            },
+            mechanics: MechanicsChain { height_mm: 0.0, patch_mm2: 0.0, weights: vec![0.0; changes] },
+            channels: ChannelChain {
+                module_shares: Vec::new(),
+                gain: vec![1.0; channels],
+                gain_per_c: vec![0.0; channels],
+                loss: vec![0.0; channels],
+                second_order: vec![0.0; channels],
+                shares: Vec::new(),
+                offset: vec![0.0; channels],
+                zero_per_c: vec![0.0; channels],
+                drift_per_h: vec![0.0; channels],
+            },
+        }
+    }
+}
+
+impl MechanicsChain {
+    /// Sets a number of the device, to first order about the field's own pad. A pad whose field does not know the number stays.
+    pub(super) fn add(&mut self, setting: &Setting, number: &str, value: f64) {
+        if let Some((at, own, nominal)) = setting.number(number) {
+            self.weights[at] += nominal + value - own;
+        }
+    }
+
+    /// Multiplies a modulus or stiffness k by a factor f.
+    pub(super) fn stiffen(&mut self, setting: &Setting, number: &str, factor: f64) {
+        if let Some((at, own, nominal)) = setting.number(number) {
+            // What gives way adds up, in series: first order in 1/k, with the slope k ∂/∂k at the field's own k.
+            self.weights[at] += own * (1.0 - own / (nominal * factor));
+        }
+    }
+
+    /// Takes away a share of a frame's area on a side: of the change of a pad that has nothing left there, in proportion.
+    pub(super) fn open(&mut self, setting: &Setting, module: usize, side: Side, share: f64) {
+        if let Some((at, whole)) = setting.frame_open(module, side) {
+            self.weights[at] += share / whole;
+        }
+    }
+}
+
+impl RigChain {
+    /// The true place.
+    pub(super) fn place_mm(&self, written_mm: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) =
+            (libm::sin(self.rotation_deg.to_radians()), libm::cos(self.rotation_deg.to_radians()));
+        let [x, y] = written_mm.map(|mm| self.scale * mm);
+        [self.offset_mm[0] + cos * x - sin * y, self.offset_mm[1] + sin * x + cos * y]
+    }
+
+    /// The true force.
+    pub(super) fn force_n(&self, written_n: [f64; 3]) -> [f64; 3] {
+        let mut force_n = written_n;
+        force_n.iter_mut().zip(self.zero_n).for_each(|(n, zero_n)| *n = (*n - zero_n) / self.gain);
+        // Written = R_y R_x true, with the pad's z up and Fz down; so the true one is turned back about y, then about x.
+        let [fx, fy, fz] = force_n;
+        let (sin, cos) = (libm::sin(self.tilt_deg[1].to_radians()), libm::cos(self.tilt_deg[1].to_radians()));
+        let (fx, fz) = (cos * fx + sin * fz, cos * fz - sin * fx);
+        let (sin, cos) = (libm::sin(self.tilt_deg[0].to_radians()), libm::cos(self.tilt_deg[0].to_radians()));
+        [fx, cos * fy - sin * fz, cos * fz + sin * fy]
+    }
+}
+
+impl ChannelChain {
+    /// The readings of all channels by their strains, in these circumstances.
+    pub(super) fn read(&self, strain: &[f64], sample: &Sample, reference: &Reference) -> Vec<f64> {
+        let above_c = sample.temp_c.map_or(0.0, |temp_c| temp_c - reference.temp_c);
+        let hours = sample.t_s.map_or(0.0, |t_s| (t_s - reference.t_s) / 3600.0);
+        let aged = sample.cycle.map_or(0.0, |cycle| aged(cycle, reference.cycle));
+        let mut strained = strain.to_vec();
+        for (into, from, share) in &self.module_shares {
+            strained[*into] += share * strain[*from];
+        }
+        for (channel, value) in strained.iter_mut().enumerate() {
+            let left = 1.0 - self.loss[channel] * aged;
+            *value *= left * (1.0 + self.gain_per_c[channel] * above_c) * self.gain[channel];
+            *value += self.second_order[channel] * *value * *value / reference.full_scale[channel];
+        }
+        let mut read = strained.clone();
+        for (into, from, share) in &self.shares {
+            read[*into] += share * strained[*from];
+        }
+        for (channel, value) in read.iter_mut().enumerate() {
+            *value +=
+                self.offset[channel] + self.zero_per_c[channel] * above_c + self.drift_per_h[channel] * hours;
+        }
+        read
+    }
+}
+
+/// How far ageing has come at a cycle: 1 at the last. ln(1 + n/n₀)/ln(1 + N/n₀)
+fn aged(cycle: f64, last: f64) -> f64 {
+    if last > 0.0 {
+        libm::log1p(cycle.max(0.0) / ONSET_CYCLES) / libm::log1p(last / ONSET_CYCLES)
+    } else {
+        0.0
+    }
+}

@@ -1,0 +1,87 @@
+//! What the findings are worth on rows that had no part in finding them.
+
+use super::attribution::Applied;
+use super::model::Model;
+use super::observations::Observations;
+use super::report::Gain;
+use crate::numeric::random::SplitMix64;
+use crate::numeric::statistics::mean;
+
+/// Draws of the bootstrap over clusters.
+const DRAWS: usize = 1000;
+/// The same draws for the same data.
+const SEED: u64 = 0x6a19;
+
+/// A model at rows, and what the rows read.
+pub(super) struct Rows<'r> {
+    pub(super) model: &'r dyn Model,
+    pub(super) observations: &'r Observations,
+}
+
+impl Rows<'_> {
+    /// Each channel's residuals with these hypotheses.
+    pub(super) fn residuals(&self, applied: &Applied) -> Vec<Vec<f64>> {
+        let readings = self.model.readings(applied);
+        let pairs = self.observations.readings.iter().zip(readings);
+        pairs
+            .map(|(measured, modelled)| measured.iter().zip(modelled).map(|(y, f)| y - f).collect())
+            .collect()
+    }
+
+    /// The means of the residuals: each channel's zero.
+    pub(super) fn zeros(&self, applied: &Applied) -> Vec<f64> {
+        self.residuals(applied).iter().map(mean).collect()
+    }
+
+    /// For each cluster, the sum of squares beside these zeros.
+    fn squares(&self, applied: &Applied, zeros: &[f64]) -> Vec<f64> {
+        let clusters = self.observations.clusters();
+        let mut squares = vec![0.0; clusters.iter().max().map_or(0, |last| last + 1)];
+        for (residuals, zero) in self.residuals(applied).iter().zip(zeros) {
+            for (residual, cluster) in residuals.iter().zip(&clusters) {
+                squares[*cluster] += (residual - zero).powi(2);
+            }
+        }
+        squares
+    }
+}
+
+/// Root mean square of residuals beside zeros.
+pub(super) fn rmse(rows: &Rows<'_>, applied: &Applied, zeros: &[f64]) -> f64 {
+    let count = (rows.observations.rows() * zeros.len()) as f64;
+    (rows.squares(applied, zeros).iter().sum::<f64>() / count).sqrt()
+}
+
+/// The gain of `applied` on the locked rows. Zeros are those of the open ones.
+pub(super) fn gain(open: &Rows<'_>, locked: &Rows<'_>, applied: &Applied) -> Gain {
+    let squares = |applied: &Applied| locked.squares(applied, &open.zeros(applied));
+    let (nominal, extended) = (squares(&Vec::new()), squares(applied));
+    let without = |at: usize| {
+        let others: Applied =
+            applied.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, it)| it.clone()).collect();
+        ratio(&squares(&others), &nominal)
+    };
+    let mut random = SplitMix64::new(SEED);
+    let mut drawn: Vec<f64> = (0..DRAWS)
+        .map(|_| {
+            let mut sums = [0.0; 2];
+            for _ in 0..nominal.len() {
+                let at = (random.next_bits() % nominal.len() as u64) as usize;
+                sums = [sums[0] + extended[at], sums[1] + nominal[at]];
+            }
+            (sums[0] / sums[1]).sqrt()
+        })
+        .collect();
+    drawn.sort_by(f64::total_cmp);
+    let quantile = |share: f64| drawn[(share * DRAWS as f64) as usize];
+    Gain {
+        rows_locked: locked.observations.rows(),
+        rmse_ratio: ratio(&extended, &nominal),
+        rmse_ratio_interval95: [quantile(0.025), quantile(0.975)],
+        ratio_without: (0..applied.len()).map(without).collect(),
+    }
+}
+
+fn ratio(extended: &[f64], nominal: &[f64]) -> f64 {
+    (extended.iter().sum::<f64>() / nominal.iter().sum::<f64>()).sqrt()
+}

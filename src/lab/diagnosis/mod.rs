@@ -1,0 +1,185 @@
+//! Diagnosis: what measured data show that a model gets wrong, and which causes explain it.
+//!
+//! The way of the data: rows become [`observations`]; a model (`model`) says what they should
+//! read and how that changes with each hypothesis of the catalogue (`causes/`); the residual's covariance is noise, a smooth
+//! background that every simulator leaves, and what the simulator is known to get wrong (`covariance`); group score tests with a
+//! cluster bootstrap choose causes (`attribution`); the encompassing rule says which of them may be named (`naming`); rows that
+//! had no part in it say what they are worth (`gain`).
+//!
+//! The engine knows nothing of nine channels, but for `simulated`.
+//!
+//! Sources: M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (a discrepancy beside the parameters); J.
+//! Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014) 114007 (without it parameters are wrong and too sure).
+
+mod attribution;
+mod basis;
+mod bootstrap;
+mod cause;
+mod causes;
+mod chain;
+mod columns;
+mod covariance;
+pub mod extension;
+mod gain;
+mod inference;
+mod model;
+mod naming;
+mod noise;
+pub mod observations;
+pub mod report;
+mod separation;
+mod setting;
+mod simulated;
+mod system;
+pub mod target;
+
+use std::fmt;
+
+use self::attribution::{Attribution, Search};
+use self::gain::{Rows, gain, rmse};
+use self::observations::Observations;
+use self::report::{Diagnosis, NotTestable, Verdict};
+use self::separation::separate_by;
+use self::simulated::Simulated;
+pub use self::simulated::{OpenFrame, Pad};
+use crate::lab::calibration::screening::{Fault, Unexplained, screened};
+use crate::numeric::chi_square;
+use crate::numeric::statistics::{mean, rms};
+use crate::tables::measured::Table;
+
+/// Fewest rows, and fewest locations among them, by which causes can be told.
+const ROWS_MIN: usize = 60;
+const LOCATIONS_MIN: usize = 12;
+
+/// Why a table cannot be diagnosed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Unfit {
+    /// Too few rows.
+    Rows(usize),
+    /// Too few locations.
+    Locations(usize),
+    /// No forces.
+    Unloaded,
+    /// A channel is dead, reversed or in another's place: until that is mended it hides everything else.
+    Fault(Fault),
+    /// The channels do not go with the contacts.
+    Unexplained(Unexplained),
+    /// The numbers have no unique solution.
+    Singular,
+}
+
+impl fmt::Display for Unfit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rows(rows) => write!(
+                f,
+                "{rows} rows with channels: to tell causes apart it takes {ROWS_MIN} at least; tactpad protocol paper makes a plan"
+            ),
+            Self::Locations(locations) => write!(
+                f,
+                "contacts at {locations} places: to tell causes apart it takes {LOCATIONS_MIN} at least, spread over the plate"
+            ),
+            Self::Unloaded => f.write_str("all forces are zero: without written loads the channels cannot be held against the pad"),
+            Self::Fault(fault) => write!(f, "{fault}; mend or leave out that first, as it hides everything else"),
+            Self::Unexplained(why) => why.fmt(f),
+            Self::Singular => f.write_str("these readings have no noise at all, or numbers too large to be readings: nothing can be told by them"),
+        }
+    }
+}
+
+impl std::error::Error for Unfit {}
+
+/// Holds a measured table against a pad: what differs, and why.
+///
+/// # Errors
+/// The table has too little in it to tell causes apart.
+pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
+    check(table)?;
+    if let Some(fault) = screened(&table.rows, pad.device, pad.field).map_err(Unfit::Unexplained)? {
+        return Err(Unfit::Fault(fault));
+    }
+    let all = Observations::of(table);
+    let [open, locked] = all.split().map(|rows| all.picked(&rows));
+    let model = Simulated::new(pad, &all, &open);
+    let search = Search::new(&model, &open);
+    let found = search.run().ok_or(Unfit::Singular)?;
+    let at_locked = Simulated::new(pad, &all, &locked);
+    let rows =
+        [Rows { model: &model, observations: &open }, Rows { model: &at_locked, observations: &locked }];
+    summary(&search, &found, &rows, &model.missing()).ok_or(Unfit::Singular)
+}
+
+/// Whether there is enough in a table; quick, where [`diagnose`] takes seconds.
+///
+/// # Errors
+/// What is missing.
+pub fn check(table: &Table) -> Result<(), Unfit> {
+    let all = Observations::of(table);
+    let locations = all.clusters().into_iter().max().map_or(0, |last| last + 1);
+    match all {
+        _ if all.rows() < ROWS_MIN => Err(Unfit::Rows(all.rows())),
+        _ if locations < LOCATIONS_MIN => Err(Unfit::Locations(locations)),
+        _ if all.load_rms() <= 0.0 => Err(Unfit::Unloaded),
+        _ => Ok(()),
+    }
+}
+
+/// Everything that is said about what was found.
+fn summary(
+    search: &Search<'_>,
+    found: &Attribution,
+    [open, locked]: &[Rows<'_>; 2],
+    missing: &[NotTestable],
+) -> Option<Diagnosis> {
+    let fit = &found.fit;
+    let unnamed = unnamed_square(found);
+    let whole = search.removed(fit)? + unnamed;
+    let mut findings = search.findings(found, whole)?;
+    // While as much is unexplained, a cause is only the nearest name.
+    findings.retain(|finding| finding.share * whole > unnamed);
+    for finding in &mut findings {
+        finding.separate_by = separate_by(finding);
+    }
+    findings.extend(search.offsets(found, whole + search.offsets_square(found)?)?);
+    let unnamed_share = if unnamed > 0.0 { unnamed / whole } else { 0.0 };
+    let explains = !findings.is_empty();
+    let nothing = Vec::new();
+    let noise = fit.systems.noise.iter().zip(&fit.linearised.readings);
+    Some(Diagnosis {
+        channels: open.observations.channels.clone(),
+        verdict: verdict(explains, unnamed_share),
+        noise_floor: mean(noise.map(|(noise, signal)| noise.mean_square(signal))).sqrt(),
+        rmse_nominal: rmse(open, &nothing, &open.zeros(&nothing)),
+        rmse_extended: rmse(open, &fit.applied, &open.zeros(&fit.applied)),
+        background_mm: fit.background.length_mm,
+        background_share: rms(fit.background.shares.iter().flatten().copied()),
+        ceiling_share: explains.then_some(1.0 - unnamed_share),
+        gain: (!fit.applied.is_empty() && locked.observations.rows() > 0)
+            .then(|| gain(open, locked, &fit.applied)),
+        not_detected: search.not_detected(found)?,
+        not_testable: missing.to_vec(),
+        unnamed_share,
+        findings,
+    })
+}
+
+/// What the background's process leaves over where it is as large as it may be: its squares beyond their expectation, in the
+/// channels in which that is no chance.
+fn unnamed_square(found: &Attribution) -> f64 {
+    let fit = &found.fit;
+    let energies = fit.systems.background_energy(&fit.background, &fit.marginal, &fit.coordinates);
+    let is_no_chance = |[square, freedom]: &[f64; 2]| {
+        chi_square::exceeded(*square, freedom.round() as usize) < found.critical
+    };
+    energies.iter().filter(|it| is_no_chance(it)).map(|[square, freedom]| square - freedom).sum()
+}
+
+const fn verdict(explains: bool, unnamed_share: f64) -> Verdict {
+    match (explains, unnamed_share > 0.0) {
+        (false, false) => Verdict::NoDiscrepancy,
+        (true, false) => Verdict::Explained,
+        (true, true) => Verdict::PartlyExplained,
+        (false, true) => Verdict::Unexplained,
+    }
+}

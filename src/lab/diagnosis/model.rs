@@ -1,0 +1,109 @@
+//! What the engine asks of a model of the channels, and what it knows of the hypotheses.
+
+use super::target::Target;
+
+/// A number of a hypothesis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Parameter {
+    /// As reports name it, its unit last.
+    pub(super) name: &'static str,
+    /// Where there is no effect.
+    pub(super) none: f64,
+    /// Least and greatest value that is physically possible.
+    pub(super) range: [f64; 2],
+    /// Half the width of the difference that makes its derivative, in the coordinate ψ.
+    pub(super) step: f64,
+    /// What the coordinate is.
+    pub(super) coordinate: Coordinate,
+}
+
+/// How a coordinate ψ follows from a value v and its none v₀.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Coordinate {
+    /// ψ = v − v₀.
+    Difference,
+    /// ψ = ln(v/v₀): positive by construction.
+    Logarithm,
+    /// ψ = v² − v₀²: what only its square acts by.
+    Square,
+}
+
+impl Parameter {
+    /// An additive parameter.
+    pub(super) const fn additive(name: &'static str, range: [f64; 2], step: f64) -> Self {
+        Self { name, none: 0.0, range, step, coordinate: Coordinate::Difference }
+    }
+
+    /// A factor that is positive by construction.
+    pub(super) const fn factor(name: &'static str, range: [f64; 2]) -> Self {
+        Self { name, none: 1.0, range, step: 1e-3, coordinate: Coordinate::Logarithm }
+    }
+
+    /// Whether there is nothing below none.
+    pub(super) fn is_one_sided(&self) -> bool {
+        self.range[0] >= self.none
+    }
+
+    /// The value at a coordinate, kept in the range.
+    pub(super) fn value(&self, coordinate: f64) -> f64 {
+        let value = match self.coordinate {
+            Coordinate::Difference => self.none + coordinate,
+            Coordinate::Logarithm => self.none * libm::exp(coordinate),
+            Coordinate::Square => libm::sqrt((self.none * self.none + coordinate).max(0.0)),
+        };
+        value.clamp(self.range[0], self.range[1])
+    }
+
+    /// The coordinate of a value.
+    pub(super) fn coordinate(&self, value: f64) -> f64 {
+        match self.coordinate {
+            Coordinate::Difference => value - self.none,
+            Coordinate::Logarithm => libm::log(value / self.none),
+            Coordinate::Square => value * value - self.none * self.none,
+        }
+    }
+}
+
+/// A cause in one place.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Hypothesis {
+    /// The cause.
+    pub(super) effect: &'static str,
+    /// Where.
+    pub(super) target: Target,
+    /// Its numbers.
+    pub(super) parameters: Vec<Parameter>,
+}
+
+/// Readings that change together: each channel's, or `None` where nothing changes.
+pub(super) type Signature = Vec<Option<Vec<f64>>>;
+
+/// Something that the model gets wrong by a known amount, in all contacts alike.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CommonError {
+    /// Its standard deviation.
+    pub(super) deviation: f64,
+    /// What one unit of it changes.
+    pub(super) signature: Signature,
+}
+
+/// Everything about the present point ψ.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Linearised {
+    /// Each channel's readings, row by row.
+    pub(super) readings: Vec<Vec<f64>>,
+    /// For each hypothesis and each of its parameters, ∂readings/∂ψ.
+    pub(super) signatures: Vec<Vec<Signature>>,
+}
+
+/// A model of N channels at the rows of a measurement.
+pub(super) trait Model {
+    /// What may be wrong with it.
+    fn hypotheses(&self) -> &[Hypothesis];
+    /// Each channel's readings, row by row, when hypotheses hold with these coordinates.
+    fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>>;
+    /// The same, and their derivatives by all coordinates.
+    fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised;
+    /// What is known of its own errors.
+    fn common_errors(&self) -> Vec<CommonError>;
+}

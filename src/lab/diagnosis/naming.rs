@@ -1,0 +1,201 @@
+//! Which of the fitted causes may be named: the encompassing rule.
+//!
+//! A cause is named if it survives every rival: if something significant of it is left when the rival is fitted in its place. A
+//! rival that leaves nothing of it explains the data as well, and the two are confounded. A rival of which something is left
+//! beside the cause is another cause, and the search has it.
+//!
+//! Source: G. E. Mizon, J.-F. Richard, Econometrica 54 (1986) 657.
+
+use super::attribution::{Attribution, Fit, Search};
+use super::columns::ZERO;
+use super::inference::{Projected, Test};
+use super::report::{Estimate, Finding, NotDetected};
+use super::target::Target;
+use crate::numeric::chi_square;
+
+/// Quantile of a normal number: 95 % lie within.
+const WITHIN_95: f64 = 1.959_964;
+/// Share of measurements like this one in which a cause of the stated size is found.
+const POWER: f64 = 0.9;
+
+impl Search<'_> {
+    /// The findings, the largest first. `whole` is the weighted squared residual above noise and background.
+    pub(super) fn findings(&self, found: &Attribution, whole: f64) -> Option<Vec<Finding>> {
+        let mut findings = Vec::new();
+        for at in 0..found.fit.applied.len() {
+            let (hypothesis, _) = found.fit.applied[at];
+            let (projected, score) = self.without(&found.fit, at)?;
+            let test = projected.test(&self.columns.of_hypothesis[hypothesis], &score);
+            let it = &self.model.hypotheses()[hypothesis];
+            findings.push(Finding {
+                effect: it.effect,
+                target: it.target,
+                parameters: self.estimates(found, at)?,
+                p_value: test.p_value(),
+                share: (test.square / whole).clamp(0.0, 1.0),
+                confounded_with: self.rivals(found, at, &projected, &score),
+                separate_by: None,
+            });
+        }
+        findings.sort_by(|one, other| other.share.total_cmp(&one.share));
+        Some(findings)
+    }
+
+    /// A fitted cause's numbers with their intervals.
+    fn estimates(&self, found: &Attribution, at: usize) -> Option<Vec<Estimate>> {
+        let covariance = self.covariance(&found.fit, at)?;
+        let (hypothesis, coordinates) = &found.fit.applied[at];
+        let parameters = &self.model.hypotheses()[*hypothesis].parameters;
+        let estimate = |(k, parameter): (usize, &super::model::Parameter)| {
+            let spread = WITHIN_95 * covariance.at(k, k).max(0.0).sqrt();
+            Estimate {
+                name: parameter.name,
+                value: parameter.value(coordinates[k]),
+                interval95: [-spread, spread].map(|by| parameter.value(coordinates[k] + by)),
+            }
+        };
+        Some(parameters.iter().enumerate().map(estimate).collect())
+    }
+
+    /// The rivals that explain the data as well as a fitted cause, `projected` and `score` being without it.
+    fn rivals(
+        &self,
+        found: &Attribution,
+        at: usize,
+        projected: &Projected,
+        score: &[f64],
+    ) -> Vec<(&'static str, Target)> {
+        let (own, _) = found.fit.applied[at];
+        let columns = &self.columns.of_hypothesis[own];
+        let held = |rival: &usize| found.fit.applied.iter().any(|(held, _)| held == rival);
+        (0..self.columns.of_hypothesis.len())
+            .filter(|rival| !held(rival) && !self.is_zero(*rival))
+            .filter(|rival| {
+                let others = &self.columns.of_hypothesis[*rival];
+                let alone = projected.test(others, score);
+                let both = projected.test(&[others.as_slice(), columns].concat(), score);
+                let beyond = Test {
+                    square: (both.square - alone.square).max(0.0),
+                    freedom: both.freedom - alone.freedom,
+                };
+                beyond.p_value() > found.critical && self.is_possible(*rival, projected, score)
+            })
+            .map(|rival| (self.model.hypotheses()[rival].effect, self.model.hypotheses()[rival].target))
+            .collect()
+    }
+
+    /// Whether a rival would explain the data with numbers that are physically possible.
+    fn is_possible(&self, rival: usize, projected: &Projected, score: &[f64]) -> bool {
+        let columns = &self.columns.of_hypothesis[rival];
+        let Some(factor) = projected.fisher.picked(columns, columns).factorised() else { return true };
+        let of_columns: Vec<f64> = columns.iter().map(|column| score[*column]).collect();
+        let parameters = &self.model.hypotheses()[rival].parameters;
+        factor.solve(&of_columns).iter().zip(parameters).all(|(psi, parameter)| {
+            let back = parameter.coordinate(parameter.value(*psi));
+            (back - psi).abs() <= 1e-9 + 1e-6 * psi.abs()
+        })
+    }
+
+    /// What all fitted causes together take off the weighted squares, beside the nuisances.
+    pub(super) fn removed(&self, fit: &Fit) -> Option<f64> {
+        let projected = Projected::of(&fit.marginal, &self.columns.fitted([]))?;
+        let mut score = projected.score.clone();
+        let mut columns = Vec::new();
+        for (hypothesis, coordinates) in &fit.applied {
+            for (column, psi) in self.columns.of_hypothesis[*hypothesis].iter().zip(coordinates) {
+                score
+                    .iter_mut()
+                    .zip(projected.fisher.row(*column))
+                    .for_each(|(score, entry)| *score += psi * entry);
+                columns.push(*column);
+            }
+        }
+        Some(projected.test(&columns, &score).square)
+    }
+
+    /// Each channel's zero and its variance.
+    fn zeros(&self, found: &Attribution) -> Option<Vec<[f64; 2]>> {
+        let fit = &found.fit;
+        let covariance =
+            self.columns.fitted(fit.applied.iter().map(|(at, _)| *at)).factorised(&fit.marginal)?;
+        let diagonal = covariance.inverse_diagonal();
+        Some(
+            (0..fit.systems.channels.len())
+                .map(|channel| [fit.coordinates[channel], diagonal[channel]])
+                .collect(),
+        )
+    }
+
+    /// What the zeros that are not zero take off the weighted squares.
+    pub(super) fn offsets_square(&self, found: &Attribution) -> Option<f64> {
+        let squares = self.zeros(found)?.into_iter().map(|[zero, variance]| zero * zero / variance);
+        Some(squares.filter(|square| chi_square::exceeded(*square, 1) < found.critical).sum())
+    }
+
+    /// The zeros that are not zero.
+    pub(super) fn offsets(&self, found: &Attribution, whole: f64) -> Option<Vec<Finding>> {
+        let finding = |(channel, [zero, variance]): (usize, [f64; 2])| {
+            let square = zero * zero / variance;
+            let spread = WITHIN_95 * variance.sqrt();
+            let p_value = chi_square::exceeded(square, 1);
+            (p_value < found.critical).then(|| Finding {
+                effect: ZERO,
+                target: Target::Channel(channel),
+                parameters: vec![Estimate {
+                    name: "offset_uv",
+                    value: zero,
+                    interval95: [zero - spread, zero + spread],
+                }],
+                p_value,
+                share: square / whole,
+                confounded_with: Vec::new(),
+                separate_by: None,
+            })
+        };
+        Some(self.zeros(found)?.into_iter().enumerate().filter_map(finding).collect())
+    }
+
+    /// What was asked for and not found, with the size that would have been.
+    pub(super) fn not_detected(&self, found: &Attribution) -> Option<Vec<NotDetected>> {
+        let projected = self.projected(&found.fit)?;
+        let largest = self.columns.of_hypothesis.iter().map(Vec::len).max().unwrap_or(0);
+        let noncentralities: Vec<f64> = (0..=largest)
+            .map(|freedom| {
+                chi_square::noncentrality(chi_square::quantile(found.critical, freedom), freedom, POWER)
+            })
+            .collect();
+        let asked = (0..self.columns.of_hypothesis.len())
+            .filter(|at| !self.is_zero(*at) && found.fit.applied.iter().all(|(held, _)| held != at));
+        Some(asked.filter_map(|at| self.detectable(&projected, at, &noncentralities)).collect())
+    }
+
+    fn detectable(&self, projected: &Projected, at: usize, noncentralities: &[f64]) -> Option<NotDetected> {
+        let it = &self.model.hypotheses()[at];
+        let columns = &self.columns.of_hypothesis[at];
+        let freedom = projected.test(columns, &projected.score).freedom;
+        if freedom == 0 {
+            return None;
+        }
+        let minimum_detectable =
+            columns.iter().zip(&it.parameters).filter(|(column, _)| !projected.is_empty(**column));
+        let size = |(column, parameter): (&usize, &super::model::Parameter)| {
+            // λ = ψ² I.
+            let psi = (noncentralities[freedom] / projected.fisher.at(*column, *column)).sqrt();
+            (parameter.name, (parameter.value(psi) - parameter.none).abs())
+        };
+        Some(NotDetected {
+            effect: it.effect,
+            target: it.target,
+            minimum_detectable: minimum_detectable.map(size).collect(),
+            rival_share: self.rival_share(projected, at),
+        })
+    }
+
+    /// The largest part of a hypothesis' signature that another one reproduces.
+    fn rival_share(&self, projected: &Projected, at: usize) -> f64 {
+        let own = &self.columns.of_hypothesis[at];
+        let rivals =
+            (0..self.columns.of_hypothesis.len()).filter(|rival| *rival != at && !self.is_zero(*rival));
+        rivals.map(|rival| projected.reproduced(own, &self.columns.of_hypothesis[rival])).fold(0.0, f64::max)
+    }
+}

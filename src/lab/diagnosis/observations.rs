@@ -1,0 +1,99 @@
+//! What was measured, for any number of channels: readings, and what was written down beside them.
+
+use crate::numeric::random::SplitMix64;
+use crate::numeric::statistics::rms;
+use crate::quantity::{CHANNEL_NAMES, CHANNELS};
+use crate::tables::measured::{Row, Table};
+
+/// Places nearer to each other than this are one location.
+const LOCATION_MM: f64 = 0.25;
+/// One location in so many is locked: it is looked at once, for the gain.
+const LOCKED_ONE_IN: u64 = 5;
+
+/// The written circumstances of a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Where the contact was, by the stage.
+    pub place_mm: [f64; 2],
+    /// Fx, Fy, Fz by the reference, or whatever loads there are.
+    pub load: [f64; 3],
+    /// Index of its session.
+    pub session: usize,
+    /// On the clock of the channels.
+    pub t_s: Option<f64>,
+    /// Of the pad.
+    pub temp_c: Option<f64>,
+    /// Cycles of load that the pad has behind it.
+    pub cycle: Option<f64>,
+}
+
+/// Rows of a measurement.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Observations {
+    /// Names of the channels.
+    pub channels: Vec<String>,
+    /// Each channel's readings, row by row.
+    pub readings: Vec<Vec<f64>>,
+    /// What was written beside them.
+    pub samples: Vec<Sample>,
+}
+
+impl Observations {
+    /// The rows of a table that have channels, in its order.
+    pub fn of(table: &Table) -> Self {
+        let rows: Vec<(&Row, [f64; CHANNELS])> =
+            table.rows.iter().filter_map(|row| Some((row, row.uv?))).collect();
+        let sample = |row: &Row| Sample {
+            place_mm: [row.label.x_mm, row.label.y_mm],
+            load: [row.label.fx_n, row.label.fy_n, row.label.fz_n],
+            session: row.session.unwrap_or(0),
+            t_s: row.t_s,
+            temp_c: row.temp_c,
+            cycle: row.cycle,
+        };
+        Self {
+            channels: CHANNEL_NAMES.map(str::to_owned).to_vec(),
+            readings: (0..CHANNELS).map(|channel| rows.iter().map(|(_, uv)| uv[channel]).collect()).collect(),
+            samples: rows.iter().map(|(row, _)| sample(row)).collect(),
+        }
+    }
+
+    /// How many rows there are.
+    pub const fn rows(&self) -> usize {
+        self.samples.len()
+    }
+
+    /// The rows at these places.
+    pub fn picked(&self, rows: &[usize]) -> Self {
+        Self {
+            channels: self.channels.clone(),
+            readings: self.readings.iter().map(|of| rows.iter().map(|row| of[*row]).collect()).collect(),
+            samples: rows.iter().map(|row| self.samples[*row]).collect(),
+        }
+    }
+
+    /// For each row the number of its cluster: rows of one location and session share their errors.
+    pub fn clusters(&self) -> Vec<usize> {
+        let steps = |mm: f64| libm::round(mm / LOCATION_MM) as i64;
+        let key = |sample: &Sample| (sample.session, sample.place_mm.map(steps));
+        let mut keys: Vec<_> = self.samples.iter().map(key).collect();
+        let rows = keys.clone();
+        keys.sort_unstable();
+        keys.dedup();
+        rows.iter().map(|row| keys.partition_point(|key| key < row)).collect()
+    }
+
+    /// The rows to find causes by, and the locked ones: whole clusters, drawn once and for all by their number.
+    pub fn split(&self) -> [Vec<usize>; 2] {
+        let clusters = self.clusters();
+        let is_locked =
+            |row: &usize| SplitMix64::new(clusters[*row] as u64).next_bits().is_multiple_of(LOCKED_ONE_IN);
+        let (locked, open) = (0..self.rows()).partition(is_locked);
+        [open, locked]
+    }
+
+    /// Root mean square of the loads' magnitudes.
+    pub fn load_rms(&self) -> f64 {
+        rms(self.samples.iter().map(|it| libm::sqrt(it.load.iter().map(|n| n * n).sum())))
+    }
+}

@@ -1,0 +1,112 @@
+//! What a diagnosis says.
+
+use super::target::Target;
+
+/// The whole answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnosis {
+    /// Names of the channels.
+    pub channels: Vec<String>,
+    /// In one word.
+    pub verdict: Verdict,
+    /// Root mean square of the channels' noise, in their unit.
+    pub noise_floor: f64,
+    /// Root mean square of the residual of the model as it is, zeros taken off.
+    pub rmse_nominal: f64,
+    /// The same with the named and confounded causes.
+    pub rmse_extended: f64,
+    /// Correlation length of the smooth background, and its mean size as a share of a channel's root mean square.
+    pub background_mm: f64,
+    /// See [`Self::background_mm`].
+    pub background_share: f64,
+    /// What was found, the largest first.
+    pub findings: Vec<Finding>,
+    /// What was asked for and not found.
+    pub not_detected: Vec<NotDetected>,
+    /// What could not be asked for.
+    pub not_testable: Vec<NotTestable>,
+    /// Part of the weighted squared residual above noise and background that no cause explains; 0 where that is chance.
+    pub unnamed_share: f64,
+    /// What the findings remove of what a flexible model could.
+    pub ceiling_share: Option<f64>,
+    /// On the locked rows; `None` where nothing was found.
+    pub gain: Option<Gain>,
+}
+
+/// The answer in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The model says all.
+    NoDiscrepancy,
+    /// The findings say all that the model does not.
+    Explained,
+    /// They leave something.
+    PartlyExplained,
+    /// There is something, and no finding.
+    Unexplained,
+}
+
+/// A cause, or a set of causes of which one holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// The cause.
+    pub effect: &'static str,
+    /// Where.
+    pub target: Target,
+    /// Its numbers.
+    pub parameters: Vec<Estimate>,
+    /// The probability of as much by chance.
+    pub p_value: f64,
+    /// Part of the weighted squared residual above noise and background that it removes.
+    pub share: f64,
+    /// Other causes that explain it as well. Empty: the cause is named.
+    pub confounded_with: Vec<(&'static str, Target)>,
+    /// The measurement that would tell them apart.
+    pub separate_by: Option<String>,
+}
+
+/// A number with its interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Its name, the unit last.
+    pub name: &'static str,
+    /// The value.
+    pub value: f64,
+    /// Ends of the 95 % interval.
+    pub interval95: [f64; 2],
+}
+
+/// A cause that was not found, and the size at which it would have been.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotDetected {
+    /// The cause.
+    pub effect: &'static str,
+    /// Where.
+    pub target: Target,
+    /// For each number: the deviation from none that is found in nine of ten measurements like this one.
+    pub minimum_detectable: Vec<(&'static str, f64)>,
+    /// The largest part of its signature that another cause reproduces.
+    pub rival_share: f64,
+}
+
+/// A cause that the data cannot show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotTestable {
+    /// The cause.
+    pub effect: &'static str,
+    /// The column that is missing, or stays the same.
+    pub needs: &'static str,
+}
+
+/// What the findings are worth on rows that had no part in finding them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gain {
+    /// How many rows.
+    pub rows_locked: usize,
+    /// Extended over nominal root mean square of the residual.
+    pub rmse_ratio: f64,
+    /// Ends of its 95 % interval.
+    pub rmse_ratio_interval95: [f64; 2],
+    /// For each finding, the ratio without it over the nominal residual.
+    pub ratio_without: Vec<f64>,
+}

@@ -1,0 +1,433 @@
+//! The simulated pad as a model of nine channels.
+
+use super::cause::{Cause, Stage};
+use super::causes::CATALOGUE;
+use super::chain::{Chain, ChannelChain, Reference, RigChain};
+use super::model::{CommonError, Hypothesis, Linearised, Model, Signature};
+use super::observations::{Observations, Sample};
+use super::report::NotTestable;
+use super::setting::{Change, Setting};
+use crate::numeric::zernike::{Jet, jets};
+use crate::pad::device::behaviour::{Behaviour, ModuleCrosstalk};
+use crate::pad::device::{Device, Side, Stack};
+use crate::pad::field::{PadField, Sensitivity};
+use crate::pad::influence::{Gains, InfluenceField, MAPS};
+use crate::quantity::{CHANNELS, MODULES};
+
+/// Standard deviation of a factor that all modules' x, y or z channels share, of their answer to shear or to normal loads: the
+/// simulator's discretisation. Held against an independent solution: −0.5, −1.2 and +0.7 % of shear, +0.3, −0.1, +0.6 % of normal
+/// loads.
+const COMMON_ERROR: f64 = 0.008;
+/// Standard deviations of the simulator's error that look like a cause, as coordinates of that cause: the plate's polynomials are
+/// stiffer than the plate, and its splines round the field off. Held against the same solution: 1.1 % and 0.64 mm².
+const ERRORS_LIKE: [(&str, f64); 2] = [("plate_stiffness", 0.015), ("contact_size", 0.65)];
+/// Step of the differences that make second derivatives.
+const STEP_MM: f64 = 0.5;
+/// Readings that change by less than this part of the largest reading do not change.
+const NOTHING: f64 = 1e-9;
+
+/// Per channel, what a unit force along each axis gives.
+type Maps = [[f64; 3]; CHANNELS];
+
+/// The fields of a pad whose module 0 has no frame on one side.
+pub struct OpenFrame {
+    /// Which side.
+    pub side: Side,
+    /// The pad's field.
+    pub field: InfluenceField,
+}
+
+/// The pad that is held to be right.
+#[derive(Clone, Copy)]
+pub struct Pad<'p> {
+    /// Its device.
+    pub device: &'p Device,
+    /// Its field.
+    pub field: &'p PadField,
+    /// The same with frames open; none, and nobody asks for them.
+    pub open_frames: &'p [OpenFrame],
+}
+
+/// Nine channels by a pad's field.
+pub(super) struct Simulated<'f> {
+    field: &'f PadField,
+    observations: &'f Observations,
+    setting: Setting,
+    reference: Reference,
+    hypotheses: Vec<Hypothesis>,
+    causes: Vec<&'static dyn Cause>,
+    /// The device's own imperfections.
+    own: Chain,
+    /// For each row, the changes of the maps, in the order of the setting's.
+    changes: Vec<Vec<Maps>>,
+}
+
+/// A row under a chain.
+struct Row {
+    force_n: [f64; 3],
+    gains: Gains,
+    laplacian: Maps,
+    /// What each change of the field adds to the strains.
+    changes: Vec<[f64; CHANNELS]>,
+}
+
+impl<'f> Simulated<'f> {
+    /// The pad at some `observations` of `all`: hypotheses and references are those of all, so that any part has the same.
+    pub(super) fn new(pad: &Pad<'f>, all: &Observations, observations: &'f Observations) -> Self {
+        let Pad { device, field, open_frames: open } = *pad;
+        let setting = setting(device, field, open, all);
+        let mut hypotheses = Vec::new();
+        let mut causes: Vec<&'static dyn Cause> = Vec::new();
+        for cause in CATALOGUE.into_iter().filter(|cause| cause.missing(&setting).is_none()) {
+            for target in cause.targets(&setting) {
+                hypotheses.push(Hypothesis {
+                    effect: cause.effect(),
+                    target,
+                    parameters: cause.parameters(&setting),
+                });
+                causes.push(cause);
+            }
+        }
+        let places = observations.samples.iter().map(|sample| sample.place_mm);
+        let changes =
+            places.map(|place_mm| changes(field, open, device.plate.radius_mm(), place_mm)).collect();
+        Self {
+            own: own_chain(device, setting.changes.len()),
+            field,
+            observations,
+            reference: reference(device, field, all),
+            setting,
+            hypotheses,
+            causes,
+            changes,
+        }
+    }
+
+    /// The causes that cannot be asked for, and what is missing.
+    pub(super) fn missing(&self) -> Vec<NotTestable> {
+        let missing =
+            CATALOGUE.iter().filter_map(|cause| Some((cause.effect(), cause.missing(&self.setting)?)));
+        missing.map(|(effect, needs)| NotTestable { effect, needs }).collect()
+    }
+
+    /// The chain of these hypotheses.
+    fn chain(&self, applied: &[(usize, Vec<f64>)]) -> Chain {
+        let mut chain = self.own.clone();
+        for (at, coordinates) in applied {
+            let hypothesis = &self.hypotheses[*at];
+            let values: Vec<f64> =
+                hypothesis.parameters.iter().zip(coordinates).map(|(it, psi)| it.value(*psi)).collect();
+            self.causes[*at].apply(&hypothesis.target, &values, &self.setting, &mut chain);
+        }
+        chain
+    }
+
+    fn row(&self, at: usize, chain: &Chain) -> Row {
+        let sample = &self.observations.samples[at];
+        let place_mm = chain.rig.place_mm(sample.place_mm);
+        let force_n = chain.rig.force_n(sample.load);
+        Row {
+            force_n,
+            gains: continued(&self.field.signals, place_mm),
+            laplacian: laplacian(&self.field.signals, place_mm),
+            changes: self.changes[at].iter().map(|maps| maps.map(|map| response(&map, &force_n))).collect(),
+        }
+    }
+
+    fn rows(&self, chain: &Chain) -> Vec<Row> {
+        (0..self.observations.rows()).map(|at| self.row(at, chain)).collect()
+    }
+
+    fn reading(&self, at: usize, strain: &[f64; CHANNELS], chain: &Chain) -> Vec<f64> {
+        chain.channels.read(strain, &self.observations.samples[at], &self.reference)
+    }
+
+    /// The readings with one more hypothesis, of which only what it can change is computed anew.
+    fn perturbed(
+        &self,
+        rows: &[Row],
+        strains: &[[f64; CHANNELS]],
+        stage: Stage,
+        chain: &Chain,
+    ) -> Vec<Vec<f64>> {
+        let read = |at: usize| match stage {
+            Stage::Contact => self.reading(at, &self.row(at, chain).strain(chain), chain),
+            Stage::Mechanics => self.reading(at, &rows[at].strain(chain), chain),
+            Stage::Channels => self.reading(at, &strains[at], chain),
+        };
+        transposed((0..self.observations.rows()).map(read))
+    }
+
+    /// ∂readings/∂ψ by one coordinate: a central difference.
+    fn signature(
+        &self,
+        rows: &[Row],
+        strains: &[[f64; CHANNELS]],
+        applied: &[(usize, Vec<f64>)],
+        [at, parameter]: [usize; 2],
+    ) -> Signature {
+        let hypothesis = &self.hypotheses[at];
+        let step = hypothesis.parameters[parameter].step;
+        let moved = |by: f64| {
+            let mut applied = applied.to_vec();
+            let own = match applied.iter().position(|(index, _)| *index == at) {
+                Some(own) => own,
+                None => {
+                    applied.push((at, vec![0.0; hypothesis.parameters.len()]));
+                    applied.len() - 1
+                }
+            };
+            applied[own].1[parameter] += by;
+            self.perturbed(rows, strains, self.causes[at].stage(), &self.chain(&applied))
+        };
+        // A number that cannot be below none is changed upwards only.
+        let is_one_sided = hypothesis.parameters[parameter].is_one_sided();
+        let [below, above] = [moved(if is_one_sided { 0.0 } else { -step }), moved(step)];
+        let width = if is_one_sided { step } else { 2.0 * step };
+        let channels = above.into_iter().zip(below).zip(&self.reference.full_scale);
+        channels
+            .map(|((above, below), full_scale)| {
+                let slopes: Vec<f64> = above.iter().zip(&below).map(|(a, b)| (a - b) / width).collect();
+                let is_changed = slopes.iter().any(|slope| (slope * step).abs() > NOTHING * full_scale);
+                is_changed.then_some(slopes)
+            })
+            .collect()
+    }
+}
+
+impl Model for Simulated<'_> {
+    fn hypotheses(&self) -> &[Hypothesis] {
+        &self.hypotheses
+    }
+
+    fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>> {
+        let chain = self.chain(applied);
+        let rows = (0..self.observations.rows())
+            .map(|at| self.reading(at, &self.row(at, &chain).strain(&chain), &chain));
+        transposed(rows)
+    }
+
+    fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
+        let chain = self.chain(applied);
+        let rows = self.rows(&chain);
+        let strains: Vec<[f64; CHANNELS]> = rows.iter().map(|row| row.strain(&chain)).collect();
+        let readings =
+            transposed(strains.iter().enumerate().map(|(at, strain)| self.reading(at, strain, &chain)));
+        let signatures = self.hypotheses.iter().enumerate().map(|(at, hypothesis)| {
+            (0..hypothesis.parameters.len())
+                .map(|parameter| self.signature(&rows, &strains, applied, [at, parameter]))
+                .collect()
+        });
+        Linearised { signatures: signatures.collect(), readings }
+    }
+
+    fn common_errors(&self) -> Vec<CommonError> {
+        let chain = self.chain(&[]);
+        let mut errors = Vec::new();
+        for (axis, is_normal) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
+            let signature = (0..CHANNELS).map(|channel| {
+                let of = |row: Row| {
+                    let [fx_n, fy_n, fz_n] = row.force_n;
+                    let force_n = if is_normal { [0.0, 0.0, fz_n] } else { [fx_n, fy_n, 0.0] };
+                    response(&row.gains.value[channel], &force_n)
+                };
+                (channel % 3 == axis).then(|| self.rows(&chain).into_iter().map(of).collect())
+            });
+            errors.push(CommonError { deviation: COMMON_ERROR, signature: signature.collect() });
+        }
+        let rows = self.rows(&self.chain(&[]));
+        let strains: Vec<[f64; CHANNELS]> = rows.iter().map(|row| row.strain(&self.chain(&[]))).collect();
+        for (effect, deviation) in ERRORS_LIKE {
+            let like = self.hypotheses.iter().position(|it| it.effect == effect);
+            errors.extend(like.map(|at| CommonError {
+                deviation,
+                signature: self.signature(&rows, &strains, &[], [at, 0]),
+            }));
+        }
+        errors
+    }
+}
+
+impl Row {
+    fn strain(&self, chain: &Chain) -> [f64; CHANNELS] {
+        let Self { force_n, gains, laplacian, changes } = self;
+        let mechanics = &chain.mechanics;
+        // Half the mean square of the patch's radius along each axis, over its nominal one: (R² − R₀²)/8.
+        let spread_mm2 = mechanics.patch_mm2 / 8.0;
+        let [fx_n, fy_n, _] = *force_n;
+        let mut strain: [f64; CHANNELS] = std::array::from_fn(|channel| {
+            let couple = fx_n * gains.dx[channel][2] + fy_n * gains.dy[channel][2];
+            response(&gains.value[channel], force_n)
+                + spread_mm2 * response(&laplacian[channel], force_n)
+                + mechanics.height_mm * couple
+        });
+        for (weight, change) in mechanics.weights.iter().zip(changes).filter(|(weight, _)| **weight != 0.0) {
+            strain.iter_mut().zip(change).for_each(|(strain, change)| *strain += weight * change);
+        }
+        strain
+    }
+}
+
+fn setting(device: &Device, field: &PadField, open: &[OpenFrame], observations: &Observations) -> Setting {
+    let numbers = free(field).map(|it| Change::Number {
+        name: it.parameter.name(),
+        own: it.parameter.get(device),
+        nominal: it.parameter.get(device),
+    });
+    let frames = open.iter().flat_map(|it| (0..MODULES).map(|module| Change::FrameOpen(module, it.side)));
+    let differs = |of: fn(&Sample) -> Option<f64>| {
+        let mut values = observations.samples.iter().filter_map(of);
+        values.next().is_some_and(|first| values.any(|value| value != first))
+    };
+    Setting {
+        channels: CHANNELS,
+        modules: MODULES,
+        changes: numbers.chain(frames).collect(),
+        has_field: true,
+        side_shares: [Side::PlusX, Side::MinusX, Side::PlusY, Side::MinusY]
+            .map(|side| (side, side_share(device, side))),
+        patch_radius_mm: device.contact.patch_radius_mm,
+        has_time: differs(|sample| sample.t_s),
+        has_temperature: differs(|sample| sample.temp_c),
+        has_cycles: differs(|sample| sample.cycle),
+    }
+}
+
+/// What a device's file says of its channels and of the rig that measures it.
+fn own_chain(device: &Device, changes: usize) -> Chain {
+    let Behaviour { thermal, crosstalk, module_crosstalk, noise, rig, .. } = &device.behaviour;
+    let modules = || device.modules.iter();
+    Chain {
+        rig: RigChain {
+            offset_mm: [rig.stage_x_mm, rig.stage_y_mm],
+            rotation_deg: rig.stage_rotation_deg,
+            scale: rig.stage_scale,
+            tilt_deg: [rig.reference_tilt_x_deg, rig.reference_tilt_y_deg],
+            gain: rig.reference_gain,
+            zero_n: rig.reference_zero_n,
+        },
+        channels: ChannelChain {
+            module_shares: module_crosstalk.iter().flat_map(by_axis).collect(),
+            gain: modules().flat_map(|module| module.gain).collect(),
+            gain_per_c: thermal.gain_per_c.to_vec(),
+            shares: crosstalk.iter().map(|it| (it.channel, it.with, it.share)).collect(),
+            offset: modules().flat_map(|module| module.offset_uv).collect(),
+            zero_per_c: thermal.zero_uv_per_c.to_vec(),
+            drift_per_h: noise.drift_uv_per_h.to_vec(),
+            ..Chain::nominal(CHANNELS, changes).channels
+        },
+        ..Chain::nominal(CHANNELS, changes)
+    }
+}
+
+/// A module's share, channel by channel.
+fn by_axis(it: &ModuleCrosstalk) -> impl Iterator<Item = (usize, usize, f64)> + use<> {
+    let ModuleCrosstalk { module, with, share } = *it;
+    (0..3).map(move |axis| (3 * module + axis, 3 * with + axis, share))
+}
+
+/// The part of a frame's area that lies on a side, from corner to corner.
+pub(super) fn side_share(device: &Device, side: Side) -> f64 {
+    let Stack { film_length_x_mm: length, film_width_y_mm: width, frame_width_mm: frame, .. } = device.stack;
+    let whole = length * width - (length - 2.0 * frame) * (width - 2.0 * frame);
+    match side {
+        Side::PlusX | Side::MinusX => frame * width / whole,
+        Side::PlusY | Side::MinusY => frame * length / whole,
+    }
+}
+
+/// The numbers of the device that a cause can change.
+fn free(field: &PadField) -> impl Iterator<Item = &Sensitivity> {
+    let is_free =
+        |it: &&Sensitivity| it.parameter.module().is_some() || it.parameter.name() == "material.plate.e_mpa";
+    field.sensitivities.iter().filter(is_free)
+}
+
+fn reference(device: &Device, field: &PadField, observations: &Observations) -> Reference {
+    let samples = &observations.samples;
+    let largest = |channel: usize| {
+        let of = |sample: &Sample| {
+            let gains = continued(&field.signals, sample.place_mm).value[channel];
+            response(&gains, &sample.load).abs()
+        };
+        samples.iter().map(of).fold(f64::MIN_POSITIVE, f64::max)
+    };
+    Reference {
+        temp_c: device.behaviour.thermal.reference_c,
+        t_s: samples.iter().filter_map(|sample| sample.t_s).fold(f64::INFINITY, f64::min),
+        cycle: samples.iter().filter_map(|sample| sample.cycle).fold(0.0, f64::max),
+        full_scale: (0..CHANNELS).map(largest).collect(),
+    }
+}
+
+/// The changes of the maps at a place, in the order of the setting's.
+fn changes(field: &PadField, open: &[OpenFrame], plate_mm: f64, place_mm: [f64; 2]) -> Vec<Maps> {
+    let largest = free(field).map(|it| it.maps[0][0].coefficients.len()).max().unwrap_or(0);
+    let degree = (0..).find(|degree| (degree + 1) * (degree + 2) / 2 >= largest).unwrap_or(0);
+    let jets: Vec<Jet> = jets(degree, place_mm.map(|mm| mm / plate_mm));
+    let numbers =
+        free(field).map(|it| it.maps.each_ref().map(|axes| axes.each_ref().map(|map| map.value(&jets))));
+    let frames =
+        open.iter().flat_map(|it| (0..MODULES).map(|module| opened(field, &it.field, module, place_mm)));
+    numbers.chain(frames).collect()
+}
+
+/// The change of the maps where the frame of a module is open, by the field of a pad whose module 0 is: all modules are alike,
+/// so the pad is turned until the module is in the place of the first.
+fn opened(field: &PadField, open: &InfluenceField, module: usize, place_mm: [f64; 2]) -> Maps {
+    let turn = -(module as f64) * std::f64::consts::TAU / MODULES as f64;
+    let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+    let [x_mm, y_mm] = [cos * place_mm[0] - sin * place_mm[1], sin * place_mm[0] + cos * place_mm[1]];
+    let (changed, whole) =
+        (open.gains(x_mm as f32, y_mm as f32).value, field.signals.gains(x_mm as f32, y_mm as f32).value);
+    std::array::from_fn(|channel| {
+        let turned = (channel + MAPS - 3 * module) % CHANNELS;
+        let [ax, ay, az]: [f64; 3] = std::array::from_fn(|axis| changed[turned][axis] - whole[turned][axis]);
+        // A unit force along +x here is (cos, sin) there.
+        [cos * ax + sin * ay, -sin * ax + cos * ay, az]
+    })
+}
+
+/// The field at a place; beyond its radius it goes on straight, as a plate does that does not end there.
+fn continued(field: &InfluenceField, place_mm: [f64; 2]) -> Gains {
+    let beyond = libm::hypot(place_mm[0], place_mm[1]) / f64::from(field.radius_mm());
+    let [x_mm, y_mm] = place_mm.map(|mm| mm / beyond.max(1.0));
+    let mut gains = field.gains(x_mm as f32, y_mm as f32);
+    let by_mm = [place_mm[0] - x_mm, place_mm[1] - y_mm];
+    for channel in 0..CHANNELS {
+        for axis in 0..3 {
+            let slope = [gains.dx[channel][axis], gains.dy[channel][axis]];
+            gains.value[channel][axis] += slope[0] * by_mm[0] + slope[1] * by_mm[1];
+        }
+    }
+    gains
+}
+
+/// ∇²G by central differences of the spline's own slopes, a little within the rim, where the field is held.
+fn laplacian(field: &InfluenceField, [x_mm, y_mm]: [f64; 2]) -> Maps {
+    let share = (f64::from(field.radius_mm()) - STEP_MM) / libm::hypot(x_mm, y_mm);
+    let [x_mm, y_mm] = [x_mm, y_mm].map(|mm| share.min(1.0) * mm);
+    let at = |x_mm: f64, y_mm: f64| field.gains(x_mm as f32, y_mm as f32);
+    let (right, left) = (at(x_mm + STEP_MM, y_mm), at(x_mm - STEP_MM, y_mm));
+    let (above, below) = (at(x_mm, y_mm + STEP_MM), at(x_mm, y_mm - STEP_MM));
+    std::array::from_fn(|channel| {
+        std::array::from_fn(|axis| {
+            let by_x = right.dx[channel][axis] - left.dx[channel][axis];
+            (by_x + above.dy[channel][axis] - below.dy[channel][axis]) / (2.0 * STEP_MM)
+        })
+    })
+}
+
+/// Σₐ Fₐ Gₐ.
+fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
+    map.iter().zip(force_n).map(|(map, n)| map * n).sum()
+}
+
+/// From rows of channels to channels of rows.
+fn transposed(rows: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
+    let mut channels = vec![Vec::new(); CHANNELS];
+    for row in rows {
+        channels.iter_mut().zip(row).for_each(|(channel, value)| channel.push(value));
+    }
+    channels
+}

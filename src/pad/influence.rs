@@ -8,6 +8,9 @@ use std::f64::consts::SQRT_2;
 use crate::bytes::{Reader, push_floats};
 use crate::quantity::{CHANNELS, Contact, Strain};
 
+/// Step of the differences that make second derivatives.
+const STEP_MM: f64 = 0.5;
+
 /// Maps of a field: for each channel one for Fx, Fy and Fz.
 pub const MAPS: usize = 3 * CHANNELS;
 
@@ -152,6 +155,25 @@ impl InfluenceField {
             }
         }
         sums.gains(1.0 / self.spacing_mm)
+    }
+
+    /// ∇²G of each channel and force axis, µV/N per mm²: the sum of the second derivatives by x and y.
+    ///
+    /// The field is held at its rim, where it has no curvature; so that is taken a little inwards.
+    pub fn laplacian(&self, [x_mm, y_mm]: [f64; 2]) -> [[f64; 3]; CHANNELS] {
+        let share = (f64::from(self.radius_mm) - STEP_MM) / libm::hypot(x_mm, y_mm);
+        let [x_mm, y_mm] = [x_mm, y_mm].map(|mm| share.min(1.0) * mm);
+        // ∇²G ≈ [∂ₓG(x + h) − ∂ₓG(x − h) + ∂ᵧG(y + h) − ∂ᵧG(y − h)]/2h, by the spline's own slopes.
+        let at = |x_mm: f64, y_mm: f64| self.gains(x_mm as f32, y_mm as f32);
+        let (right, left) = (at(x_mm + STEP_MM, y_mm), at(x_mm - STEP_MM, y_mm));
+        let (above, below) = (at(x_mm, y_mm + STEP_MM), at(x_mm, y_mm - STEP_MM));
+        std::array::from_fn(|channel| {
+            std::array::from_fn(|axis| {
+                let by_x = right.dx[channel][axis] - left.dx[channel][axis];
+                let by_y = above.dy[channel][axis] - below.dy[channel][axis];
+                (by_x + by_y) / (2.0 * STEP_MM)
+            })
+        })
     }
 
     /// What an ideal pad reports for `contact`, in microvolts. Linear in the forces.

@@ -125,8 +125,24 @@ fn two_effects_at_once_are_both_found() {
     {
         let seed = seed as u64 + 1;
         let truths = pair.map(|effect| truth(effect, seed)).to_vec();
-        let (_, score) = run(&Case::new(&format!("pair-{seed}"), seed, Plan::Recommended, truths));
+        let (diagnosis, score) = run(&Case::new(&format!("pair-{seed}"), seed, Plan::Recommended, truths));
         assert!(score.complete() && score.wrong.is_empty(), "{pair:?}: {score:?}");
+        // Each finding's own worth stands under its own name.
+        let gain = &diagnosis["gain"];
+        for (finding, worth) in
+            diagnosis["findings"].as_array().unwrap().iter().zip(gain["per_cause"].as_array().unwrap())
+        {
+            assert_eq!(
+                (&finding["effect"], &finding["target"]),
+                (&worth["effect"], &worth["target"]),
+                "{gain}"
+            );
+        }
+        for effect in pair {
+            let of = |it: &&Value| it["effect"] == *effect;
+            let worth = gain["per_cause"].as_array().unwrap().iter().find(of).unwrap();
+            assert!(worth["rmse_ratio_without"].as_f64() > gain["rmse_ratio"].as_f64(), "{effect}: {gain}");
+        }
     }
 }
 

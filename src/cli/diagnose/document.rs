@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::numbers::{side, word};
+use super::numbers::word;
 use tactpad::lab::diagnosis::report::{self, Diagnosis};
 use tactpad::lab::diagnosis::target::Target;
+use tactpad::pad::device::Side;
 
 /// Version of the document's form.
 const SCHEMA: u32 = 1;
@@ -124,7 +125,7 @@ impl<'d> Document<'d> {
             not_testable: untested.map(|it| NotTestable { effect: it.effect, needs: it.needs }).collect(),
             unnamed_share: diagnosis.unnamed_share,
             ceiling_share: diagnosis.ceiling_share,
-            gain: diagnosis.gain.as_ref().map(|gain| Gain::of(gain, diagnosis)),
+            gain: diagnosis.gain.as_ref().map(|gain| Gain::of(gain, &diagnosis.channels)),
             gatekeepers: [],
         }
     }
@@ -136,7 +137,7 @@ impl Cause {
             effect,
             target: target.name(channels),
             with: target.with(channels),
-            side: target.side().map(side),
+            side: target.side().map(Side::name),
         }
     }
 }
@@ -161,11 +162,11 @@ impl<'d> Finding<'d> {
 }
 
 impl Gain {
-    fn of(gain: &report::Gain, diagnosis: &Diagnosis) -> Self {
+    fn of(gain: &report::Gain, channels: &[String]) -> Self {
         let [rmse_ratio_low95, rmse_ratio_high95] = gain.rmse_ratio_interval95;
-        let without = |(it, ratio): (&report::Finding, &f64)| Without {
-            cause: Cause::of(it.effect, &it.target, &diagnosis.channels),
-            rmse_ratio_without: *ratio,
+        let without = |it: &report::Without| Without {
+            cause: Cause::of(it.effect, &it.target, channels),
+            rmse_ratio_without: it.rmse_ratio,
         };
         Self {
             rows_locked: gain.rows_locked,
@@ -174,7 +175,7 @@ impl Gain {
             rmse_ratio_high95,
             position_mae_mm: (),
             force_mae_n: (),
-            per_cause: diagnosis.findings.iter().zip(&gain.ratio_without).map(without).collect(),
+            per_cause: gain.per_cause.iter().map(without).collect(),
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Words and numbers of a diagnosis.
 
 use tactpad::lab::diagnosis::report::{Estimate, Verdict};
-use tactpad::pad::device::Side;
 
 /// How parameters' names end, and the unit that people read.
 const UNITS: [(&str, &str); 11] = [
@@ -27,16 +26,6 @@ pub(super) const fn word(verdict: Verdict) -> &'static str {
         Verdict::Explained => "explained",
         Verdict::PartlyExplained => "partly_explained",
         Verdict::Unexplained => "unexplained",
-    }
-}
-
-/// A side as device files write it.
-pub(super) const fn side(side: Side) -> &'static str {
-    match side {
-        Side::PlusX => "+x",
-        Side::MinusX => "-x",
-        Side::PlusY => "+y",
-        Side::MinusY => "-y",
     }
 }
 

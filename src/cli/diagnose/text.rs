@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::numbers::{estimate, range, side};
+use super::numbers::{estimate, range};
 use crate::cli::wrapped::hanging;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, Verdict};
 use tactpad::lab::diagnosis::target::Target;
@@ -58,7 +58,7 @@ fn sizes(diagnosis: &Diagnosis) -> String {
 /// A cause and where it is.
 fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
     let with = target.with(channels).map(|with| format!(" from {with}")).unwrap_or_default();
-    let side = target.side().map(|it| format!(" on its {} side", side(it))).unwrap_or_default();
+    let side = target.side().map(|it| format!(" on its {} side", it.name())).unwrap_or_default();
     format!("{effect} of {}{with}{side}", target.name(channels))
 }
 
@@ -89,8 +89,8 @@ fn gained(gain: &Gain, diagnosis: &Diagnosis) -> String {
         "On {rows_locked} rows that had no part in this, the causes bring the model's error down to {rmse_ratio:.2} \
          of what it was ({low:.2} to {high:.2})"
     );
-    let without = diagnosis.findings.iter().zip(&gain.ratio_without).map(|(finding, ratio)| {
-        format!("{ratio:.2} without {}", cause(finding.effect, &finding.target, &diagnosis.channels))
+    let without = gain.per_cause.iter().map(|it| {
+        format!("{:.2} without {}", it.rmse_ratio, cause(it.effect, &it.target, &diagnosis.channels))
     });
     let without: Vec<String> = without.collect();
     if !without.is_empty() {

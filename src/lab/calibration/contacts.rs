@@ -2,7 +2,6 @@
 
 use crate::numeric::zernike::{Jet, jets, norms};
 use crate::pad::field::{PadField, Sensitivity};
-use crate::pad::influence::InfluenceField;
 use crate::pipeline::compensation::hysteresis::PLAYS;
 use crate::quantity::{CHANNELS, Contact};
 use crate::tables::measured::Row;
@@ -11,9 +10,6 @@ use crate::tables::measured::Row;
 pub(super) const BACKGROUND_DEGREE: usize = 5;
 /// Number of these polynomials.
 pub(super) const TERMS: usize = (BACKGROUND_DEGREE + 1) * (BACKGROUND_DEGREE + 2) / 2;
-
-/// Step of the differences that make second derivatives.
-const STEP_MM: f64 = 0.5;
 
 /// Per channel, what a unit force along each axis gives.
 pub(super) type Maps = [[f64; 3]; CHANNELS];
@@ -70,7 +66,7 @@ impl Place {
         Self {
             gains: gains.value,
             gradient: [gains.dx, gains.dy],
-            laplacian: laplacian(&field.signals, place_mm),
+            laplacian: field.signals.laplacian(place_mm),
             sensitivities: sensitivities.iter().map(sensitivity).collect(),
             terms: terms(&jets),
         }
@@ -80,24 +76,6 @@ impl Place {
 /// Σₐ Fₐ Eₐ.
 pub(super) fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
     map.iter().zip(force_n).map(|(map, n)| map * n).sum()
-}
-
-/// The Laplacian of the maps, ∇²G ≈ \[∂ₓG(x + h) − ∂ₓG(x − h) + ∂ᵧG(y + h) − ∂ᵧG(y − h)\]/2h.
-fn laplacian(signals: &InfluenceField, [x_mm, y_mm]: [f64; 2]) -> Maps {
-    // The field is held at its rim: beyond it there is no curvature, so that is taken a little inwards.
-    let share = (f64::from(signals.radius_mm()) - STEP_MM) / libm::hypot(x_mm, y_mm);
-    let [x_mm, y_mm] = [x_mm, y_mm].map(|mm| share.min(1.0) * mm);
-    // Central differences of the spline's own slopes.
-    let at = |x_mm: f64, y_mm: f64| signals.gains(x_mm as f32, y_mm as f32);
-    let (right, left) = (at(x_mm + STEP_MM, y_mm), at(x_mm - STEP_MM, y_mm));
-    let (above, below) = (at(x_mm, y_mm + STEP_MM), at(x_mm, y_mm - STEP_MM));
-    std::array::from_fn(|channel| {
-        std::array::from_fn(|axis| {
-            let by_x = right.dx[channel][axis] - left.dx[channel][axis];
-            let by_y = above.dy[channel][axis] - below.dy[channel][axis];
-            (by_x + by_y) / (2.0 * STEP_MM)
-        })
-    })
 }
 
 /// The degree of a polynomial with this number of coefficients.

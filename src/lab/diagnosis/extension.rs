@@ -22,11 +22,10 @@ enum Change {
 use Change::{Add, Multiply, Replace};
 
 /// Effect, the finding's number, the device's number (by [`Parameter`]'s names), and what becomes of it.
-const NUMBERS: [(&str, &str, &str, Change); 27] = [
+const NUMBERS: [(&str, &str, &str, Change); 25] = [
     ("channel_gain", "gain", "module.{module}.gain.{axis}", Multiply),
     ("excitation_gain", "gain", "module.{module}.gain.{axis}", Multiply),
     ("channel_offset", "offset_uv", "module.{module}.offset_uv.{axis}", Add),
-    ("channel_skew", "skew_us", "sampling.skew_us.{channel}", Add),
     ("module_displaced", "radial_mm", "module.{module}.radial_mm", Add),
     ("module_displaced", "tangential_mm", "module.{module}.tangential_mm", Add),
     ("module_rotated", "deg", "module.{module}.rotation_deg", Add),
@@ -48,7 +47,6 @@ const NUMBERS: [(&str, &str, &str, Change); 27] = [
     ("stage_offset", "y_mm", "rig.stage_y_mm", Add),
     ("stage_rotation", "deg", "rig.stage_rotation_deg", Add),
     ("stage_scale", "scale", "rig.stage_scale", Multiply),
-    ("time_lag", "ms", "rig.label_lag_ms", Add),
     ("contact_size", "radius_mm", "contact.patch_radius_mm", Replace),
 ];
 

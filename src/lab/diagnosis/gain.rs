@@ -1,9 +1,9 @@
 //! What the findings are worth on rows that had no part in finding them.
 
 use super::attribution::Applied;
-use super::model::Model;
+use super::model::{Hypothesis, Model};
 use super::observations::Observations;
-use super::report::Gain;
+use super::report::{Gain, Without};
 use crate::numeric::random::SplitMix64;
 use crate::numeric::statistics::mean;
 
@@ -56,10 +56,12 @@ pub(super) fn rmse(rows: &Rows<'_>, applied: &Applied, zeros: &[f64]) -> f64 {
 pub(super) fn gain(open: &Rows<'_>, locked: &Rows<'_>, applied: &Applied) -> Gain {
     let squares = |applied: &Applied| locked.squares(applied, &open.zeros(applied));
     let (nominal, extended) = (squares(&Vec::new()), squares(applied));
+    let hypotheses = open.model.hypotheses();
     let without = |at: usize| {
         let others: Applied =
             applied.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, it)| it.clone()).collect();
-        ratio(&squares(&others), &nominal)
+        let Hypothesis { effect, target, .. } = hypotheses[applied[at].0];
+        Without { effect, target, rmse_ratio: ratio(&squares(&others), &nominal) }
     };
     let mut random = SplitMix64::new(SEED);
     let mut drawn: Vec<f64> = (0..DRAWS)
@@ -78,7 +80,7 @@ pub(super) fn gain(open: &Rows<'_>, locked: &Rows<'_>, applied: &Applied) -> Gai
         rows_locked: locked.observations.rows(),
         rmse_ratio: ratio(&extended, &nominal),
         rmse_ratio_interval95: [quantile(0.025), quantile(0.975)],
-        ratio_without: (0..applied.len()).map(without).collect(),
+        per_cause: (0..applied.len()).map(without).collect(),
     }
 }
 

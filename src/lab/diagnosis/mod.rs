@@ -35,10 +35,10 @@ pub mod target;
 
 use std::fmt;
 
-use self::attribution::{Attribution, Search};
+use self::attribution::{Applied, Attribution, Search};
 use self::gain::{Rows, gain, rmse};
 use self::observations::Observations;
-use self::report::{Diagnosis, NotTestable, Verdict};
+use self::report::{Diagnosis, Finding, NotTestable, Verdict};
 use self::separation::separate_by;
 use self::simulated::Simulated;
 pub use self::simulated::{OpenFrame, Pad};
@@ -135,28 +135,28 @@ fn summary(
     let fit = &found.fit;
     let unnamed = unnamed_square(found);
     let whole = search.removed(fit)? + unnamed;
-    let mut findings = search.findings(found, whole)?;
+    let mut kept = search.findings(found, whole)?;
     // While as much is unexplained, a cause is only the nearest name.
-    findings.retain(|finding| finding.share * whole > unnamed);
+    kept.retain(|(_, finding)| finding.share * whole > unnamed);
+    let applied: Applied = kept.iter().map(|(at, _)| fit.applied[*at].clone()).collect();
+    let mut findings: Vec<Finding> = kept.into_iter().map(|(_, finding)| finding).collect();
     for finding in &mut findings {
         finding.separate_by = separate_by(finding);
     }
     findings.extend(search.offsets(found, whole + search.offsets_square(found)?)?);
     let unnamed_share = if unnamed > 0.0 { unnamed / whole } else { 0.0 };
-    let explains = !findings.is_empty();
     let nothing = Vec::new();
     let noise = fit.systems.noise.iter().zip(&fit.linearised.readings);
     Some(Diagnosis {
         channels: open.observations.channels.clone(),
-        verdict: verdict(explains, unnamed_share),
+        verdict: verdict(!findings.is_empty(), unnamed_share),
         noise_floor: mean(noise.map(|(noise, signal)| noise.mean_square(signal))).sqrt(),
         rmse_nominal: rmse(open, &nothing, &open.zeros(&nothing)),
-        rmse_extended: rmse(open, &fit.applied, &open.zeros(&fit.applied)),
+        rmse_extended: rmse(open, &applied, &open.zeros(&applied)),
         background_mm: fit.background.length_mm,
         background_share: rms(fit.background.shares.iter().flatten().copied()),
-        ceiling_share: explains.then_some(1.0 - unnamed_share),
-        gain: (!fit.applied.is_empty() && locked.observations.rows() > 0)
-            .then(|| gain(open, locked, &fit.applied)),
+        ceiling_share: None,
+        gain: (!applied.is_empty() && locked.observations.rows() > 0).then(|| gain(open, locked, &applied)),
         not_detected: search.not_detected(found)?,
         not_testable: missing.to_vec(),
         unnamed_share,

@@ -19,15 +19,16 @@ const WITHIN_95: f64 = 1.959_964;
 const POWER: f64 = 0.9;
 
 impl Search<'_> {
-    /// The findings, the largest first. `whole` is the weighted squared residual above noise and background.
-    pub(super) fn findings(&self, found: &Attribution, whole: f64) -> Option<Vec<Finding>> {
+    /// The findings with their places in the fit, the largest first. `whole` is the weighted squared residual above noise and
+    /// background.
+    pub(super) fn findings(&self, found: &Attribution, whole: f64) -> Option<Vec<(usize, Finding)>> {
         let mut findings = Vec::new();
         for at in 0..found.fit.applied.len() {
             let (hypothesis, _) = found.fit.applied[at];
             let (projected, score) = self.without(&found.fit, at)?;
             let test = projected.test(&self.columns.of_hypothesis[hypothesis], &score);
             let it = &self.model.hypotheses()[hypothesis];
-            findings.push(Finding {
+            let finding = Finding {
                 effect: it.effect,
                 target: it.target,
                 parameters: self.estimates(found, at)?,
@@ -35,9 +36,10 @@ impl Search<'_> {
                 share: (test.square / whole).clamp(0.0, 1.0),
                 confounded_with: self.rivals(found, at, &projected, &score),
                 separate_by: None,
-            });
+            };
+            findings.push((at, finding));
         }
-        findings.sort_by(|one, other| other.share.total_cmp(&one.share));
+        findings.sort_by(|(_, one), (_, other)| other.share.total_cmp(&one.share));
         Some(findings)
     }
 

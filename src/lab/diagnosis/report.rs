@@ -27,7 +27,7 @@ pub struct Diagnosis {
     pub not_testable: Vec<NotTestable>,
     /// Part of the weighted squared residual above noise and background that no cause explains; 0 where that is chance.
     pub unnamed_share: f64,
-    /// What the findings remove of what a flexible model could.
+    /// What the findings remove of what a flexible model could; `None`: no such model was fitted.
     pub ceiling_share: Option<f64>,
     /// On the locked rows; `None` where nothing was found.
     pub gain: Option<Gain>,
@@ -107,6 +107,17 @@ pub struct Gain {
     pub rmse_ratio: f64,
     /// Ends of its 95 % interval.
     pub rmse_ratio_interval95: [f64; 2],
-    /// For each finding, the ratio without it over the nominal residual.
-    pub ratio_without: Vec<f64>,
+    /// What each cause is worth by itself.
+    pub per_cause: Vec<Without>,
+}
+
+/// The residual with all findings but one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Without {
+    /// The one.
+    pub effect: &'static str,
+    /// Where.
+    pub target: Target,
+    /// The residual without it over the nominal one.
+    pub rmse_ratio: f64,
 }

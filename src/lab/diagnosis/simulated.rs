@@ -21,8 +21,6 @@ const COMMON_ERROR: f64 = 0.008;
 /// Standard deviations of the simulator's error that look like a cause, as coordinates of that cause: the plate's polynomials are
 /// stiffer than the plate, and its splines round the field off. Held against the same solution: 1.1 % and 0.64 mm².
 const ERRORS_LIKE: [(&str, f64); 2] = [("plate_stiffness", 0.015), ("contact_size", 0.65)];
-/// Step of the differences that make second derivatives.
-const STEP_MM: f64 = 0.5;
 /// Readings that change by less than this part of the largest reading do not change.
 const NOTHING: f64 = 1e-9;
 
@@ -129,7 +127,7 @@ impl<'f> Simulated<'f> {
         Row {
             force_n,
             gains: continued(&self.field.signals, place_mm),
-            laplacian: laplacian(&self.field.signals, place_mm),
+            laplacian: self.field.signals.laplacian(place_mm),
             changes: self.changes[at].iter().map(|maps| maps.map(|map| response(&map, &force_n))).collect(),
         }
     }
@@ -401,21 +399,6 @@ fn continued(field: &InfluenceField, place_mm: [f64; 2]) -> Gains {
         }
     }
     gains
-}
-
-/// ∇²G by central differences of the spline's own slopes, a little within the rim, where the field is held.
-fn laplacian(field: &InfluenceField, [x_mm, y_mm]: [f64; 2]) -> Maps {
-    let share = (f64::from(field.radius_mm()) - STEP_MM) / libm::hypot(x_mm, y_mm);
-    let [x_mm, y_mm] = [x_mm, y_mm].map(|mm| share.min(1.0) * mm);
-    let at = |x_mm: f64, y_mm: f64| field.gains(x_mm as f32, y_mm as f32);
-    let (right, left) = (at(x_mm + STEP_MM, y_mm), at(x_mm - STEP_MM, y_mm));
-    let (above, below) = (at(x_mm, y_mm + STEP_MM), at(x_mm, y_mm - STEP_MM));
-    std::array::from_fn(|channel| {
-        std::array::from_fn(|axis| {
-            let by_x = right.dx[channel][axis] - left.dx[channel][axis];
-            (by_x + above.dy[channel][axis] - below.dy[channel][axis]) / (2.0 * STEP_MM)
-        })
-    })
 }
 
 /// Σₐ Fₐ Gₐ.

@@ -218,6 +218,18 @@ pub enum Side {
     MinusY,
 }
 
+impl Side {
+    /// As device files write it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::PlusX => "+x",
+            Self::MinusX => "-x",
+            Self::PlusY => "+y",
+            Self::MinusY => "-y",
+        }
+    }
+}
+
 /// How one module differs from the nominal one: a `[[module]]` table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Module {

@@ -62,7 +62,11 @@ pub(super) const DIRECTIONS: [(&str, Direction); 2] = [("x", Direction::X), ("y"
 
 /// The sides of a frame, as the file writes them.
 pub(super) const SIDES: [(&str, Side); 4] =
-    [("+x", Side::PlusX), ("-x", Side::MinusX), ("+y", Side::PlusY), ("-y", Side::MinusY)];
+    [named(Side::PlusX), named(Side::MinusX), named(Side::PlusY), named(Side::MinusY)];
+
+const fn named(side: Side) -> (&'static str, Side) {
+    (side.name(), side)
+}
 
 const SINGLE: [&str; 1] = [""];
 const MODULE_NUMBERS: [&str; 3] = ["0", "1", "2"];

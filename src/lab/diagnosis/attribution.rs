@@ -55,8 +55,7 @@ pub(super) struct Search<'m> {
 
 impl<'m> Search<'m> {
     pub(super) fn new(model: &'m dyn Model, observations: &'m Observations) -> Self {
-        let (channels, rows) = (observations.channels.len(), observations.rows());
-        let columns = Columns::of(model.hypotheses(), &model.common_errors(), channels, rows);
+        let columns = Columns::of(model.hypotheses(), &model.common_errors(), observations);
         Self { model, observations, columns, clusters: observations.clusters() }
     }
 

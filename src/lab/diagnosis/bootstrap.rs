@@ -60,7 +60,7 @@ impl Bootstrap {
             let own: Vec<f64> = system.columns.iter().map(|number| coordinates[*number]).collect();
             let z = reduced.factor.solve(&system.background_score(&own));
             let left = system.left_over(&own, &z);
-            let inflation = inflation(&left);
+            let inflation = inflation(&left, system.told());
             let smooth: Vec<Vec<f64>> =
                 reduced.whitened_mixed.iter().map(|whitened| reduced.factor.solve_upper(whitened)).collect();
             for ((number, column), smooth) in system.columns.iter().zip(&system.signatures).zip(&smooth) {
@@ -124,7 +124,7 @@ impl Bootstrap {
 }
 
 /// What is left over is smaller than the errors, as it was fitted; in standard deviations its mean square should be 1.
-fn inflation(left: &[f64]) -> f64 {
-    let square = dot(left, left) / left.len() as f64;
+fn inflation(left: &[f64], told: usize) -> f64 {
+    let square = dot(left, left) / told.max(1) as f64;
     if square > 0.0 { 1.0 / square.sqrt() } else { 1.0 }
 }

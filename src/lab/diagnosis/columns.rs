@@ -2,6 +2,7 @@
 
 use super::covariance::{Column, Fitted};
 use super::model::{CommonError, Hypothesis, Linearised, Signature};
+use super::observations::Observations;
 use super::target::Target;
 
 /// The cause whose column is the channel's zero itself, which is always fitted.
@@ -19,18 +20,16 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub(super) fn of(
-        hypotheses: &[Hypothesis],
-        errors: &[CommonError],
-        channels: usize,
-        rows: usize,
-    ) -> Self {
+    pub(super) fn of(hypotheses: &[Hypothesis], errors: &[CommonError], observations: &Observations) -> Self {
+        let (channels, rows) = (observations.channels.len(), observations.rows());
         let zero = |channel: usize| -> Signature {
             (0..channels).map(|k| (k == channel).then(|| vec![1.0; rows])).collect()
         };
         let mut nuisance: Vec<Signature> = (0..channels).map(zero).collect();
         nuisance.extend(errors.iter().map(|error| error.signature.clone()));
-        let mut precisions = vec![0.0; channels];
+        // A channel that tells nothing has no zero.
+        let dead = |channel: usize| f64::from(u8::from(!observations.is_alive(channel)));
+        let mut precisions: Vec<f64> = (0..channels).map(dead).collect();
         precisions.extend(errors.iter().map(|error| 1.0 / (error.deviation * error.deviation)));
         let mut next = nuisance.len();
         let of_hypothesis = hypotheses

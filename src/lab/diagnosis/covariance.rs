@@ -87,10 +87,13 @@ impl Systems {
                 .collect();
             let mut level = NoiseLevel::first(modelled);
             let system = |level: &NoiseLevel| {
-                let variances: Vec<f64> = modelled.iter().map(|f| level.variance(*f)).collect();
+                let is_told = &observations.is_told[channel];
+                let variance =
+                    |(f, is_told): (&f64, &bool)| if *is_told { level.variance(*f) } else { f64::INFINITY };
+                let variances: Vec<f64> = modelled.iter().zip(is_told).map(variance).collect();
                 ChannelSystem::of(&own, &background, &residual, &variances)
             };
-            for _ in 0..NOISE_ROUNDS {
+            for _ in 0..if observations.is_alive(channel) { NOISE_ROUNDS } else { 0 } {
                 level = estimated_noise(&system(&level), modelled, &basis)?;
             }
             channels.push(system(&level));
@@ -297,10 +300,11 @@ fn estimated_noise(system: &ChannelSystem, modelled: &[f64], basis: &Basis) -> O
     let reduced = system.reduced(&variances)?;
     let size = rms(modelled.iter().copied());
     let mut inner = reduced.fisher.clone();
-    let rows = modelled.len() as f64;
+    let rows = system.told() as f64;
     let mut priors = Vec::new();
     for (at, column) in system.signatures.iter().enumerate() {
-        let own = rms(column.iter().zip(&system.weights).map(|(value, weight)| value / weight));
+        let told = column.iter().zip(&system.weights).filter(|(_, weight)| **weight > 0.0);
+        let own = rms(told.map(|(value, weight)| value / weight));
         let precision = (own / (SIGNATURE_PRIOR * size)).powi(2);
         priors.push(precision);
         inner.row_mut(at)[at] += precision;
@@ -309,7 +313,9 @@ fn estimated_noise(system: &ChannelSystem, modelled: &[f64], basis: &Basis) -> O
     let coordinates = factor.solve(&reduced.score);
     let z = reduced.factor.solve(&system.background_score(&coordinates));
     let left = system.left_over(&coordinates, &z);
-    let residual: Vec<f64> = left.iter().zip(&system.weights).map(|(r, weight)| r / weight).collect();
+    let told = left.iter().zip(&system.weights).zip(modelled).filter(|((_, weight), _)| **weight > 0.0);
+    let (residual, modelled): (Vec<f64>, Vec<f64>) =
+        told.map(|((r, weight), modelled)| (r / weight, *modelled)).unzip();
     // Σ (1 − P Var): what the rows, not the priors, tell.
     let told = |inverse: Vec<f64>, precisions: &mut dyn Iterator<Item = f64>| -> f64 {
         inverse
@@ -321,5 +327,5 @@ fn estimated_noise(system: &ChannelSystem, modelled: &[f64], basis: &Basis) -> O
     let effective = told(factor.inverse_diagonal(), &mut priors.iter().copied())
         + told(reduced.factor.inverse_diagonal(), &mut variances.iter().map(|variance| 1.0 / variance));
     let freedom_ratio = (1.0 - effective / rows).max(FREEDOM_RATIO_MIN);
-    Some(NoiseLevel::of(&residual, modelled, freedom_ratio))
+    Some(NoiseLevel::of(&residual, &modelled, freedom_ratio))
 }

@@ -19,18 +19,23 @@ pub(super) struct Rows<'r> {
 }
 
 impl Rows<'_> {
-    /// Each channel's residuals with these hypotheses.
+    /// Each channel's residuals with these hypotheses; NaN where a reading tells nothing.
     pub(super) fn residuals(&self, applied: &Applied) -> Vec<Vec<f64>> {
         let readings = self.model.readings(applied);
-        let pairs = self.observations.readings.iter().zip(readings);
-        pairs
-            .map(|(measured, modelled)| measured.iter().zip(modelled).map(|(y, f)| y - f).collect())
+        let Observations { readings: measured, is_told, .. } = self.observations;
+        let left = |((y, f), is_told): ((&f64, f64), &bool)| if *is_told { y - f } else { f64::NAN };
+        let channels = measured.iter().zip(readings).zip(is_told);
+        channels
+            .map(|((measured, modelled), is_told)| {
+                measured.iter().zip(modelled).zip(is_told).map(left).collect()
+            })
             .collect()
     }
 
     /// The means of the residuals: each channel's zero.
     pub(super) fn zeros(&self, applied: &Applied) -> Vec<f64> {
-        self.residuals(applied).iter().map(mean).collect()
+        let told = |of: &Vec<f64>| mean(of.iter().copied().filter(|residual| !residual.is_nan()));
+        self.residuals(applied).iter().map(told).collect()
     }
 
     /// For each cluster, the sum of squares beside these zeros.
@@ -38,7 +43,7 @@ impl Rows<'_> {
         let clusters = self.observations.clusters();
         let mut squares = vec![0.0; clusters.iter().max().map_or(0, |last| last + 1)];
         for (residuals, zero) in self.residuals(applied).iter().zip(zeros) {
-            for (residual, cluster) in residuals.iter().zip(&clusters) {
+            for (residual, cluster) in residuals.iter().zip(&clusters).filter(|(it, _)| !it.is_nan()) {
                 squares[*cluster] += (residual - zero).powi(2);
             }
         }
@@ -48,7 +53,7 @@ impl Rows<'_> {
 
 /// Root mean square of residuals beside zeros.
 pub(super) fn rmse(rows: &Rows<'_>, applied: &Applied, zeros: &[f64]) -> f64 {
-    let count = (rows.observations.rows() * zeros.len()) as f64;
+    let count = rows.observations.is_told.iter().flatten().filter(|it| **it).count() as f64;
     (rows.squares(applied, zeros).iter().sum::<f64>() / count).sqrt()
 }
 

@@ -146,11 +146,12 @@ fn summary(
     findings.extend(search.offsets(found, whole + search.offsets_square(found)?)?);
     let unnamed_share = if unnamed > 0.0 { unnamed / whole } else { 0.0 };
     let nothing = Vec::new();
-    let noise = fit.systems.noise.iter().zip(&fit.linearised.readings);
+    let noise = fit.systems.noise.iter().zip(&fit.linearised.readings).enumerate();
+    let alive = noise.filter(|(channel, _)| open.observations.is_alive(*channel));
     Some(Diagnosis {
         channels: open.observations.channels.clone(),
         verdict: verdict(!findings.is_empty(), unnamed_share),
-        noise_floor: mean(noise.map(|(noise, signal)| noise.mean_square(signal))).sqrt(),
+        noise_floor: mean(alive.map(|(_, (noise, signal))| noise.mean_square(signal))).sqrt(),
         rmse_nominal: rmse(open, &nothing, &open.zeros(&nothing)),
         rmse_extended: rmse(open, &applied, &open.zeros(&applied)),
         background_mm: fit.background.length_mm,

@@ -3,7 +3,7 @@
 use crate::numeric::random::SplitMix64;
 use crate::numeric::statistics::rms;
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
-use crate::tables::measured::{Row, Table};
+use crate::tables::measured::{Approach, Row, Table};
 
 /// Places nearer to each other than this are one location.
 const LOCATION_MM: f64 = 0.25;
@@ -19,8 +19,16 @@ pub struct Sample {
     pub load: [f64; 3],
     /// Index of its session.
     pub session: usize,
+    /// Index of its time series; none for a static sample.
+    pub trial: Option<usize>,
     /// On the clock of the channels.
     pub t_s: Option<f64>,
+    /// On the clock of what was written down, if that has its own.
+    pub label_t_s: Option<f64>,
+    /// How long a static load was held before it was read.
+    pub dwell_s: Option<f64>,
+    /// Whether a static load came from a higher one.
+    pub is_unloading: bool,
     /// Of the pad.
     pub temp_c: Option<f64>,
     /// Cycles of load that the pad has behind it.
@@ -34,6 +42,8 @@ pub struct Observations {
     pub channels: Vec<String>,
     /// Each channel's readings, row by row.
     pub readings: Vec<Vec<f64>>,
+    /// The same way, whether a reading tells anything: one that is missing or clipped does not.
+    pub is_told: Vec<Vec<bool>>,
     /// What was written beside them.
     pub samples: Vec<Sample>,
 }
@@ -47,13 +57,18 @@ impl Observations {
             place_mm: [row.label.x_mm, row.label.y_mm],
             load: [row.label.fx_n, row.label.fy_n, row.label.fz_n],
             session: row.session.unwrap_or(0),
+            trial: row.trial,
             t_s: row.t_s,
+            label_t_s: None,
+            dwell_s: row.dwell_s,
+            is_unloading: row.approach == Some(Approach::Unloading),
             temp_c: row.temp_c,
             cycle: row.cycle,
         };
         Self {
             channels: CHANNEL_NAMES.map(str::to_owned).to_vec(),
             readings: (0..CHANNELS).map(|channel| rows.iter().map(|(_, uv)| uv[channel]).collect()).collect(),
+            is_told: vec![vec![true; rows.len()]; CHANNELS],
             samples: rows.iter().map(|(row, _)| sample(row)).collect(),
         }
     }
@@ -65,11 +80,20 @@ impl Observations {
 
     /// The rows at these places.
     pub fn picked(&self, rows: &[usize]) -> Self {
+        fn of<T: Copy>(all: &[Vec<T>], rows: &[usize]) -> Vec<Vec<T>> {
+            all.iter().map(|of| rows.iter().map(|row| of[*row]).collect()).collect()
+        }
         Self {
             channels: self.channels.clone(),
-            readings: self.readings.iter().map(|of| rows.iter().map(|row| of[*row]).collect()).collect(),
+            readings: of(&self.readings, rows),
+            is_told: of(&self.is_told, rows),
             samples: rows.iter().map(|row| self.samples[*row]).collect(),
         }
+    }
+
+    /// Whether a channel tells anything at all.
+    pub fn is_alive(&self, channel: usize) -> bool {
+        self.is_told[channel].contains(&true)
     }
 
     /// For each row the number of its cluster: rows of one location and session share their errors.

@@ -55,7 +55,7 @@ pub(super) struct Reduced {
 }
 
 impl ChannelSystem {
-    /// `signatures` are columns with their numbers; `variances` are D's.
+    /// `signatures` are columns with their numbers; `variances` are D's, infinite where a row tells nothing.
     pub(super) fn of(
         signatures: &[(usize, &[f64])],
         background: &[Vec<f64>],
@@ -80,13 +80,18 @@ impl ChannelSystem {
             background_residual: against(&background),
             signature_residual: against(&signatures),
             square: dot(&residual, &residual),
-            log_determinant: variances.iter().map(|variance| variance.ln()).sum(),
+            log_determinant: variances.iter().filter(|it| it.is_finite()).map(|variance| variance.ln()).sum(),
             columns,
             weights,
             signatures,
             background,
             residual,
         }
+    }
+
+    /// How many rows tell something.
+    pub(super) fn told(&self) -> usize {
+        self.weights.iter().filter(|weight| **weight > 0.0).count()
     }
 
     /// With background variances T; `None` if H is not positive definite.

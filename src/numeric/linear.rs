@@ -169,6 +169,27 @@ impl LargeFactor {
         x
     }
 
+    /// The square blocks of this width along the diagonal of the inverse of A.
+    pub fn inverse_blocks(&self, width: usize) -> Vec<Vec<Vec<f64>>> {
+        // A⁻¹ = L⁻ᵀ L⁻¹: products of columns of L⁻¹, whose entries above the diagonal are zero.
+        let column = |at: usize| {
+            let mut column = vec![0.0; self.size];
+            column[at] = 1.0 / self.lower[at * self.size + at];
+            for row in at + 1..self.size {
+                let line = &self.lower[row * self.size..][..=row];
+                column[row] = -dot(&line[at..row], &column[at..row]) / line[row];
+            }
+            column
+        };
+        let block = |first: usize| {
+            let columns: Vec<Vec<f64>> = (first..(first + width).min(self.size)).map(column).collect();
+            let product =
+                |one: &Vec<f64>| columns.iter().map(|other| dot(&one[first..], &other[first..])).collect();
+            columns.iter().map(product).collect()
+        };
+        (0..self.size).step_by(width.max(1)).map(block).collect()
+    }
+
     /// The diagonal of the inverse of A.
     pub fn inverse_diagonal(&self) -> Vec<f64> {
         // A⁻¹ = L⁻ᵀ L⁻¹, so (A⁻¹)ᵢᵢ is the square of column i of L⁻¹, whose entries above i are zero.

@@ -49,14 +49,17 @@ pub(super) struct Attribution {
 pub(super) struct Search<'m> {
     pub(super) model: &'m dyn Model,
     pub(super) observations: &'m Observations,
+    /// Where the background's size is asked for.
+    all: &'m Observations,
     pub(super) columns: Columns,
     pub(super) clusters: Vec<usize>,
 }
 
 impl<'m> Search<'m> {
-    pub(super) fn new(model: &'m dyn Model, observations: &'m Observations) -> Self {
+    /// `observations` are the open rows of `all`.
+    pub(super) fn new(model: &'m dyn Model, all: &'m Observations, observations: &'m Observations) -> Self {
         let columns = Columns::of(model.hypotheses(), &model.common_errors(), observations);
-        Self { model, observations, columns, clusters: observations.clusters() }
+        Self { model, all, observations, columns, clusters: observations.clusters() }
     }
 
     /// Forward selection: the best candidate is fitted while it is significant; then whatever is no longer is taken out.
@@ -90,7 +93,12 @@ impl<'m> Search<'m> {
         let mut background = start.cloned();
         for step in 0..=REFITS {
             let linearised = self.model.linearised(&applied);
-            let systems = Systems::of(self.observations, &linearised, &self.columns.signatures(&linearised))?;
+            let systems = Systems::of(
+                [self.all, self.observations],
+                &self.model.sizes(),
+                &linearised,
+                &self.columns.signatures(&linearised),
+            )?;
             let fitted = self.columns.fitted(applied.iter().map(|(at, _)| *at));
             let found = systems.background(&fitted, if step == 0 { None } else { background.as_ref() })?;
             let marginal = systems.marginal(&found)?;

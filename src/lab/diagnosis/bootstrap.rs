@@ -60,7 +60,7 @@ impl Bootstrap {
             let own: Vec<f64> = system.columns.iter().map(|number| coordinates[*number]).collect();
             let z = reduced.factor.solve(&system.background_score(&own));
             let left = system.left_over(&own, &z);
-            let inflation = inflation(&left, system.told());
+            let inflation = inflation(&left, system.whitening.told());
             let smooth: Vec<Vec<f64>> =
                 reduced.whitened_mixed.iter().map(|whitened| reduced.factor.solve_upper(whitened)).collect();
             for ((number, column), smooth) in system.columns.iter().zip(&system.signatures).zip(&smooth) {
@@ -73,14 +73,17 @@ impl Bootstrap {
                     of_clusters.row_mut(*cluster)[*number] += inflation * own * left;
                 }
             }
-            // Aᵀ V⁻¹ B T½: Bᵀ V⁻¹ A = T⁻¹ H⁻¹ Bᵀ D⁻¹ A.
-            let variances = systems.variances(background, at);
-            let rows: Vec<Vec<f64>> = smooth
-                .iter()
-                .map(|smooth| {
-                    smooth.iter().zip(&variances).map(|(value, variance)| value / variance.sqrt()).collect()
-                })
-                .collect();
+            // Aᵀ V⁻¹ B T½: Bᵀ V⁻¹ A = T⁻¹ H⁻¹ Bᵀ D⁻¹ A, and T½ T⁻¹ is L⁻¹/τ of each load.
+            let shares = background.shares[at];
+            let whitened = |smooth: &Vec<f64>| -> Vec<f64> {
+                let loads = smooth.chunks(smooth.len() / shares.len()).zip(shares);
+                loads
+                    .flat_map(|(of_load, share)| {
+                        background.prior.whitened(of_load).into_iter().map(move |value| value / share)
+                    })
+                    .collect()
+            };
+            let rows: Vec<Vec<f64>> = smooth.iter().map(whitened).collect();
             backgrounds.push((system.columns.clone(), Matrix::from_rows(&rows)));
         }
         let errors = columns.precisions.iter().enumerate().filter(|(_, precision)| **precision > 0.0);

@@ -92,6 +92,8 @@ pub(super) struct Reference {
     pub(super) cycle: f64,
     /// S: each channel's full scale.
     pub(super) full_scale: Vec<f64>,
+    /// Each channel's root mean square.
+    pub(super) sizes: Vec<f64>,
 }
 
 impl Chain {

@@ -1,16 +1,21 @@
 //! The covariance of what no cause explains: noise, a smooth background, and errors that the model is known to have.
 
-use super::basis::Basis;
+use super::basis::{Basis, Prior};
 use super::model::Linearised;
 use super::noise::NoiseLevel;
 use super::observations::Observations;
 use super::system::{ChannelSystem, Reduced};
-use crate::numeric::dense::Matrix;
-use crate::numeric::linear::LargeFactor;
+use super::whitening::Whitening;
+use crate::numeric::dense::{Matrix, gram};
+use crate::numeric::linear::{LargeFactor, dot};
 use crate::numeric::statistics::rms;
 
 /// Largest background, as a share of a channel's root mean square.
-pub(super) const BACKGROUND_MAX: f64 = 0.03;
+const BACKGROUND_MAX: f64 = 0.03;
+/// Root mean square of what the simulator itself gets wrong, smooth as well and the same way: 0.44 % against an independent solution.
+const MODEL_ERROR: f64 = 0.005;
+/// Largest smooth remainder that is not a finding.
+pub(super) const REMAINDER_MAX: f64 = BACKGROUND_MAX + MODEL_ERROR;
 /// Where its search begins, and where it ends.
 const BACKGROUND_FIRST: f64 = 0.01;
 const BACKGROUND_MIN: f64 = 1e-4;
@@ -30,10 +35,10 @@ const NOISE_ROUNDS: usize = 3;
 const FREEDOM_RATIO_MIN: f64 = 0.1;
 
 /// Sizes of the smooth background.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Background {
-    /// Its correlation length.
-    pub(super) length_mm: f64,
+    /// The process.
+    pub(super) prior: Prior,
     /// For each channel and load: standard deviation as a share of the channel's root mean square.
     pub(super) shares: Vec<[f64; 3]>,
     /// For each channel: the degrees of freedom that its size is known by.
@@ -45,8 +50,25 @@ pub(super) struct Systems {
     pub(super) channels: Vec<ChannelSystem>,
     pub(super) noise: Vec<NoiseLevel>,
     basis: Basis,
+    /// Σ (load φ)(load φ)ᵀ/n over the rows of the whole measurement.
+    mean_squares: Matrix,
+    /// For each channel, what makes that G: zᵀ G z is the mean square of B z over the channel's.
+    extents: Vec<f64>,
     /// Number of all columns.
     pub(super) columns: usize,
+}
+
+/// What the background's functions say of a channel's residual.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Remainder {
+    /// Over the rows, as a share of the channel's mean square.
+    pub(super) mean_square: f64,
+    /// Standard deviation of that.
+    pub(super) deviation: f64,
+    /// ẑᵀ T⁻¹ ẑ.
+    pub(super) energy: f64,
+    /// The degrees of freedom that the rows tell: about the energy, unless the background is larger than it may be.
+    pub(super) freedom: f64,
 }
 
 /// All channels' systems with one background.
@@ -65,51 +87,64 @@ pub(super) struct Marginal {
 pub(super) type Column<'c> = &'c [Option<Vec<f64>>];
 
 impl Systems {
-    /// `columns` are the signatures about the present point, `linearised` that point.
+    /// `columns` are the signatures about the present point, `linearised` that point; `observations` are rows of `all`, over which the
+    /// channels' root mean squares are `sizes`.
     pub(super) fn of(
-        observations: &Observations,
+        [all, observations]: [&Observations; 2],
+        sizes: &[f64],
         linearised: &Linearised,
         columns: &[Column<'_>],
     ) -> Option<Self> {
         let basis = Basis::of(observations);
         let load_rms = observations.load_rms();
+        let follows = observations.follows();
+        let wide = basis.prior(basis.lengths_mm()[0])?;
         let mut noise = Vec::new();
+        let mut extents = Vec::new();
         let mut channels = Vec::new();
-        for (channel, readings) in observations.readings.iter().enumerate() {
+        for ((channel, readings), whole) in observations.readings.iter().enumerate().zip(sizes) {
             let modelled = &linearised.readings[channel];
             let residual: Vec<f64> = readings.iter().zip(modelled).map(|(y, f)| y - f).collect();
             let size = rms(modelled.iter().copied()) / load_rms;
-            let background = background_columns(observations, &basis, size);
+            let background = products(observations, &basis.values, size);
+            extents.push((size / whole).powi(2));
             let own: Vec<(usize, &[f64])> = columns
                 .iter()
                 .enumerate()
                 .filter_map(|(number, column)| Some((number, column[channel].as_deref()?)))
                 .collect();
-            let mut level = NoiseLevel::first(modelled);
-            let system = |level: &NoiseLevel| {
+            let (mut level, mut memory) = (NoiseLevel::first(modelled), 0.0);
+            let system = |level: &NoiseLevel, memory: f64| {
                 let is_told = &observations.is_told[channel];
                 let variance =
                     |(f, is_told): (&f64, &bool)| if *is_told { level.variance(*f) } else { f64::INFINITY };
                 let variances: Vec<f64> = modelled.iter().zip(is_told).map(variance).collect();
-                ChannelSystem::of(&own, &background, &residual, &variances)
+                ChannelSystem::of(&own, &background, &residual, Whitening::of(&variances, &follows, memory))
             };
             for _ in 0..if observations.is_alive(channel) { NOISE_ROUNDS } else { 0 } {
-                level = estimated_noise(&system(&level), modelled, &basis)?;
+                (level, memory) = estimated_noise(&system(&level, memory), modelled, &wide)?;
             }
-            channels.push(system(&level));
+            channels.push(system(&level, memory));
             noise.push(level);
         }
-        Some(Self { channels, noise, basis, columns: columns.len() })
+        Some(Self {
+            channels,
+            noise,
+            mean_squares: mean_squares(all, &basis),
+            extents,
+            basis,
+            columns: columns.len(),
+        })
     }
 
-    /// Variances of a channel's background functions, load by load.
-    pub(super) fn variances(&self, background: &Background, channel: usize) -> Vec<f64> {
-        let of_functions = self.basis.variances(background.length_mm);
-        let shares = background.shares[channel];
-        shares
-            .iter()
-            .flat_map(|share| of_functions.iter().map(move |variance| share * share * variance))
-            .collect()
+    /// G z of a channel.
+    fn extent(&self, channel: usize, z: &[f64]) -> Vec<f64> {
+        self.mean_squares.times(z).into_iter().map(|value| value * self.extents[channel]).collect()
+    }
+
+    /// The coordinates of the background's functions, load by load.
+    fn by_load<'z>(&self, z: &'z [f64]) -> std::slice::Chunks<'z, f64> {
+        z.chunks(self.basis.len().max(1))
     }
 
     /// With this background; `None` where a system is not positive definite.
@@ -119,7 +154,7 @@ impl Systems {
         let (mut square, mut log_determinant) = (0.0, 0.0);
         let mut channels = Vec::new();
         for (at, system) in self.channels.iter().enumerate() {
-            let reduced = system.reduced(&self.variances(background, at))?;
+            let reduced = system.reduced(&background.prior, &background.shares[at])?;
             for (row, number) in system.columns.iter().enumerate() {
                 score[*number] += reduced.score[row];
                 let line = fisher.row_mut(*number);
@@ -140,15 +175,14 @@ impl Systems {
             return Some(self.sized(fitted, start, STEPS_AGAIN)?.1);
         }
         let [least, most] = self.basis.lengths_mm().map(f64::ln);
-        let first = Background {
-            length_mm: 0.0,
+        let mut best = Background {
+            prior: self.basis.prior(least.exp())?,
             shares: vec![[BACKGROUND_FIRST; 3]; self.channels.len()],
             freedom: vec![0.0; self.channels.len()],
         };
         // Golden section over ln l.
-        let mut best = first;
         let at = |log_length: f64, best: &mut Background| -> Option<f64> {
-            best.length_mm = log_length.exp();
+            best.prior = self.basis.prior(log_length.exp())?;
             let (likelihood, sized) = self.sized(fitted, best, STEPS)?;
             *best = sized;
             Some(likelihood)
@@ -184,54 +218,55 @@ impl Systems {
         Some((likelihood, background))
     }
 
-    /// For each channel, ẑᵀ T⁻¹ ẑ of the background and the degrees of freedom that its rows tell: about equal, unless the background
-    /// is larger than it may be.
-    pub(super) fn background_energy(
+    /// Each channel's smooth remainder, with these coordinates of the columns.
+    pub(super) fn remainders(
         &self,
         background: &Background,
         fit: &Marginal,
         coordinates: &[f64],
-    ) -> Vec<[f64; 2]> {
-        let channels = self.channels.iter().zip(&fit.channels).enumerate();
-        channels
-            .map(|(at, (system, reduced))| {
-                let own: Vec<f64> = system.columns.iter().map(|number| coordinates[*number]).collect();
-                let z = reduced.factor.solve(&system.background_score(&own));
-                let prior = self.variances(background, at);
-                let told = reduced.factor.inverse_diagonal();
-                let square = z.iter().zip(&prior).map(|(z, prior)| z * z / prior).sum();
-                [
-                    square,
-                    told.iter().zip(&prior).map(|(variance, prior)| (1.0 - variance / prior).max(0.0)).sum(),
-                ]
-            })
-            .collect()
+    ) -> Vec<Remainder> {
+        let remainder = |(at, (system, reduced)): (usize, (&ChannelSystem, &Reduced))| {
+            let z = smooth(system, reduced, coordinates);
+            let shares = background.shares[at];
+            let slope = self.extent(at, &z);
+            Remainder {
+                mean_square: dot(&z, &slope),
+                // Var zᵀ G z = 4 zᵀ G Var(z) G z.
+                deviation: 2.0 * dot(&slope, &reduced.factor.solve(&slope)).max(0.0).sqrt(),
+                energy: self
+                    .by_load(&z)
+                    .zip(shares)
+                    .map(|(z, share)| background.prior.energy(z) / (share * share))
+                    .sum(),
+                freedom: reduced.freedom(&background.prior, &shares).iter().sum(),
+            }
+        };
+        self.channels.iter().zip(&fit.channels).enumerate().map(remainder).collect()
     }
 
-    /// One step of MacKay's fixed point for each size τ: τ² = Σ z²/s / Σ γ, with s the function's variance at τ = 1 and
-    /// γ = 1 − Var z/(τ² s) what the rows tell of it; the pooled size counts as further observations.
+    /// One step of MacKay's fixed point for each size τ: τ² = Σ zᵀ T⁻¹ z/Σ γ, with T the process' covariance at τ = 1 and
+    /// γ = K − tr(T⁻¹ Var z)/τ² what the rows tell of its K functions; the pooled size counts as further observations. Of a
+    /// remainder that is larger than a background may be, the background has as much as it may.
     fn updated(&self, background: &Background, marginal: &Marginal, coordinates: &[f64]) -> Background {
-        let unit = self.basis.variances(background.length_mm);
-        let mut sums = vec![[[0.0; 2]; 3]; self.channels.len()];
-        for (channel, (system, reduced)) in self.channels.iter().zip(&marginal.channels).enumerate() {
-            let own: Vec<f64> = system.columns.iter().map(|number| coordinates[*number]).collect();
-            let z = reduced.factor.solve(&system.background_score(&own));
-            let variances = reduced.factor.inverse_diagonal();
-            for (at, (z, variance)) in z.iter().zip(variances).enumerate() {
-                let (load, function) = (at / unit.len(), at % unit.len());
-                let prior = background.shares[channel][load].powi(2) * unit[function];
-                sums[channel][load][0] += z * z / unit[function];
-                sums[channel][load][1] += (1.0 - variance / prior).max(0.0);
-            }
-        }
+        let prior = &background.prior;
+        let sums = |(channel, (system, reduced)): (usize, (&ChannelSystem, &Reduced))| -> [[f64; 2]; 3] {
+            let z = smooth(system, reduced, coordinates);
+            let mean_square = dot(&z, &self.extent(channel, &z));
+            let allowed = (REMAINDER_MAX * REMAINDER_MAX / mean_square).min(1.0);
+            let energies: Vec<f64> = self.by_load(&z).map(|z| allowed * prior.energy(z)).collect();
+            let freedom = reduced.freedom(prior, &background.shares[channel]);
+            std::array::from_fn(|load| [energies[load], freedom[load]])
+        };
+        let sums: Vec<[[f64; 2]; 3]> =
+            self.channels.iter().zip(&marginal.channels).enumerate().map(sums).collect();
         let all = sums.iter().flatten().fold([0.0; 2], |all, it| [all[0] + it[0], all[1] + it[1]]);
         let pooled = all[0] / all[1].max(1e-3);
-        let size = |[square, freedom]: [f64; 2]| {
-            let share = ((POOLED_FREEDOM * pooled + square) / (POOLED_FREEDOM + freedom)).sqrt();
-            share.clamp(BACKGROUND_MIN, BACKGROUND_MAX)
+        let size = |[energy, freedom]: [f64; 2]| {
+            let share = ((POOLED_FREEDOM * pooled + energy) / (POOLED_FREEDOM + freedom)).sqrt();
+            share.max(BACKGROUND_MIN)
         };
         Background {
-            length_mm: background.length_mm,
+            prior: prior.clone(),
             shares: sums.iter().map(|loads| loads.map(size)).collect(),
             freedom: sums.iter().map(|loads| loads.iter().map(|it| it[1]).sum()).collect(),
         }
@@ -280,30 +315,44 @@ impl Fitted<'_> {
     }
 }
 
-/// The background's functions times each load, in the channel's unit at a share of 1.
-fn background_columns(observations: &Observations, basis: &Basis, size: f64) -> Vec<Vec<f64>> {
+/// ẑ = H⁻¹ Bᵀ D⁻¹ (r − A ψ̂).
+fn smooth(system: &ChannelSystem, reduced: &Reduced, coordinates: &[f64]) -> Vec<f64> {
+    let own: Vec<f64> = system.columns.iter().map(|number| coordinates[*number]).collect();
+    reduced.factor.solve(&system.background_score(&own))
+}
+
+/// Σ (load φ)(load φ)ᵀ/n.
+fn mean_squares(all: &Observations, basis: &Basis) -> Matrix {
+    let values: Vec<Vec<f64>> = all.samples.iter().map(|sample| basis.at(sample.place_mm)).collect();
+    let columns = products(all, &values, 1.0 / (all.rows() as f64).sqrt());
+    gram(&columns.iter().map(Vec::as_slice).collect::<Vec<_>>())
+}
+
+/// Each load times each function of the background, row by row: in the channel's unit at a share of 1 where `size` is the channel's
+/// root mean square over the loads'.
+fn products(observations: &Observations, values: &[Vec<f64>], size: f64) -> Vec<Vec<f64>> {
+    let functions = values.first().map_or(0, Vec::len);
     let column = |load: usize, function: usize| {
-        let rows = observations.samples.iter().zip(&basis.values);
+        let rows = observations.samples.iter().zip(values);
         rows.map(|(sample, values)| size * sample.load[load] * values[function]).collect()
     };
     (0..3)
-        .flat_map(|load| (0..basis.len()).map(move |function| (load, function)))
+        .flat_map(|load| (0..functions).map(move |function| (load, function)))
         .map(|(l, f)| column(l, f))
         .collect()
 }
 
-/// The noise when all causes and a large background are fitted with wide priors: what nothing smooth explains.
-fn estimated_noise(system: &ChannelSystem, modelled: &[f64], basis: &Basis) -> Option<NoiseLevel> {
-    let unit = basis.variances(basis.lengths_mm()[0]);
-    let variances: Vec<f64> =
-        (0..3).flat_map(|_| unit.iter().map(|s| 4.0 * BACKGROUND_MAX * BACKGROUND_MAX * s)).collect();
-    let reduced = system.reduced(&variances)?;
+/// The noise and its memory, when all causes and a large background are fitted with wide priors: what nothing smooth explains.
+fn estimated_noise(system: &ChannelSystem, modelled: &[f64], wide: &Prior) -> Option<(NoiseLevel, f64)> {
+    let shares = [2.0 * BACKGROUND_MAX; 3];
+    let reduced = system.reduced(wide, &shares)?;
     let size = rms(modelled.iter().copied());
     let mut inner = reduced.fisher.clone();
-    let rows = system.told() as f64;
+    let weights = &system.whitening.weights;
+    let rows = system.whitening.told() as f64;
     let mut priors = Vec::new();
     for (at, column) in system.signatures.iter().enumerate() {
-        let told = column.iter().zip(&system.weights).filter(|(_, weight)| **weight > 0.0);
+        let told = column.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
         let own = rms(told.map(|(value, weight)| value / weight));
         let precision = (own / (SIGNATURE_PRIOR * size)).powi(2);
         priors.push(precision);
@@ -313,7 +362,7 @@ fn estimated_noise(system: &ChannelSystem, modelled: &[f64], basis: &Basis) -> O
     let coordinates = factor.solve(&reduced.score);
     let z = reduced.factor.solve(&system.background_score(&coordinates));
     let left = system.left_over(&coordinates, &z);
-    let told = left.iter().zip(&system.weights).zip(modelled).filter(|((_, weight), _)| **weight > 0.0);
+    let told = left.iter().zip(weights).zip(modelled).filter(|((_, weight), _)| **weight > 0.0);
     let (residual, modelled): (Vec<f64>, Vec<f64>) =
         told.map(|((r, weight), modelled)| (r / weight, *modelled)).unzip();
     // Σ (1 − P Var): what the rows, not the priors, tell.
@@ -325,7 +374,7 @@ fn estimated_noise(system: &ChannelSystem, modelled: &[f64], basis: &Basis) -> O
             .sum()
     };
     let effective = told(factor.inverse_diagonal(), &mut priors.iter().copied())
-        + told(reduced.factor.inverse_diagonal(), &mut variances.iter().map(|variance| 1.0 / variance));
+        + reduced.freedom(wide, &shares).iter().sum::<f64>();
     let freedom_ratio = (1.0 - effective / rows).max(FREEDOM_RATIO_MIN);
-    Some(NoiseLevel::of(&residual, &modelled, freedom_ratio))
+    Some((NoiseLevel::of(&residual, &modelled, freedom_ratio), system.whitening.memory_of(&left)))
 }

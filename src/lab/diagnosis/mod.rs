@@ -32,10 +32,12 @@ mod setting;
 mod simulated;
 mod system;
 pub mod target;
+mod whitening;
 
 use std::fmt;
 
 use self::attribution::{Applied, Attribution, Search};
+use self::covariance::{REMAINDER_MAX, Remainder};
 use self::gain::{Rows, gain, rmse};
 use self::observations::Observations;
 use self::report::{Diagnosis, Finding, NotTestable, Verdict};
@@ -102,7 +104,7 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
     let all = Observations::of(table);
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
     let model = Simulated::new(pad, &all, &open);
-    let search = Search::new(&model, &open);
+    let search = Search::new(&model, &all, &open);
     let found = search.run().ok_or(Unfit::Singular)?;
     let at_locked = Simulated::new(pad, &all, &locked);
     let rows =
@@ -154,7 +156,7 @@ fn summary(
         noise_floor: mean(alive.map(|(_, (noise, signal))| noise.mean_square(signal))).sqrt(),
         rmse_nominal: rmse(open, &nothing, &open.zeros(&nothing)),
         rmse_extended: rmse(open, &applied, &open.zeros(&applied)),
-        background_mm: fit.background.length_mm,
+        background_mm: fit.background.prior.length_mm,
         background_share: rms(fit.background.shares.iter().flatten().copied()),
         ceiling_share: None,
         gain: (!applied.is_empty() && locked.observations.rows() > 0).then(|| gain(open, locked, &applied)),
@@ -165,15 +167,16 @@ fn summary(
     })
 }
 
-/// What the background's process leaves over where it is as large as it may be: its squares beyond their expectation, in the
-/// channels in which that is no chance.
+/// What smooth remainders have beyond a background, in the channels in which one is larger than a background may be and that is
+/// no chance.
 fn unnamed_square(found: &Attribution) -> f64 {
     let fit = &found.fit;
-    let energies = fit.systems.background_energy(&fit.background, &fit.marginal, &fit.coordinates);
-    let is_no_chance = |[square, freedom]: &[f64; 2]| {
-        chi_square::exceeded(*square, freedom.round() as usize) < found.critical
+    let remainders = fit.systems.remainders(&fit.background, &fit.marginal, &fit.coordinates);
+    let is_no_chance = |it: &&Remainder| {
+        let beyond = (it.mean_square - REMAINDER_MAX * REMAINDER_MAX) / it.deviation;
+        beyond > 0.0 && chi_square::exceeded(beyond * beyond, 1) < found.critical
     };
-    energies.iter().filter(|it| is_no_chance(it)).map(|[square, freedom]| square - freedom).sum()
+    remainders.iter().filter(is_no_chance).map(|it| (it.energy - it.freedom).max(0.0)).sum()
 }
 
 const fn verdict(explains: bool, unnamed_share: f64) -> Verdict {

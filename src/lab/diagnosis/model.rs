@@ -102,7 +102,9 @@ pub(super) trait Model {
     fn hypotheses(&self) -> &[Hypothesis];
     /// Each channel's readings, row by row, when hypotheses hold with these coordinates.
     fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>>;
-    /// The same, and their derivatives by all coordinates.
+    /// Each channel's root mean square over the whole measurement, of which these may be some rows.
+    fn sizes(&self) -> Vec<f64>;
+    /// The readings, and their derivatives by all coordinates.
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised;
     /// What is known of its own errors.
     fn common_errors(&self) -> Vec<CommonError>;

@@ -91,6 +91,12 @@ impl Observations {
         }
     }
 
+    /// For each row, whether it goes on with the time series of the row before it.
+    pub fn follows(&self) -> Vec<bool> {
+        let goes_on = |pair: &[Sample]| pair[0].trial.is_some() && pair[0].trial == pair[1].trial;
+        std::iter::once(false).chain(self.samples.windows(2).map(goes_on)).take(self.rows()).collect()
+    }
+
     /// Whether a channel tells anything at all.
     pub fn is_alive(&self, channel: usize) -> bool {
         self.is_told[channel].contains(&true)

@@ -7,6 +7,7 @@ use super::model::{CommonError, Hypothesis, Linearised, Model, Signature};
 use super::observations::{Observations, Sample};
 use super::report::NotTestable;
 use super::setting::{Change, Setting};
+use crate::numeric::statistics::rms;
 use crate::numeric::zernike::{Jet, jets};
 use crate::pad::device::behaviour::{Behaviour, ModuleCrosstalk};
 use crate::pad::device::{Device, Side, Stack};
@@ -205,6 +206,10 @@ impl Model for Simulated<'_> {
         transposed(rows)
     }
 
+    fn sizes(&self) -> Vec<f64> {
+        self.reference.sizes.clone()
+    }
+
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
         let chain = self.chain(applied);
         let rows = self.rows(&chain);
@@ -343,18 +348,17 @@ fn free(field: &PadField) -> impl Iterator<Item = &Sensitivity> {
 
 fn reference(device: &Device, field: &PadField, observations: &Observations) -> Reference {
     let samples = &observations.samples;
-    let largest = |channel: usize| {
-        let of = |sample: &Sample| {
-            let gains = continued(&field.signals, sample.place_mm).value[channel];
-            response(&gains, &sample.load).abs()
-        };
-        samples.iter().map(of).fold(f64::MIN_POSITIVE, f64::max)
+    let nominal = |sample: &Sample| {
+        continued(&field.signals, sample.place_mm).value.map(|gains| response(&gains, &sample.load))
     };
+    let nominal: Vec<[f64; CHANNELS]> = samples.iter().map(nominal).collect();
+    let of = |channel: usize| nominal.iter().map(move |row| row[channel]);
     Reference {
         temp_c: device.behaviour.thermal.reference_c,
         t_s: samples.iter().filter_map(|sample| sample.t_s).fold(f64::INFINITY, f64::min),
         cycle: samples.iter().filter_map(|sample| sample.cycle).fold(0.0, f64::max),
-        full_scale: (0..CHANNELS).map(largest).collect(),
+        full_scale: (0..CHANNELS).map(|k| of(k).map(f64::abs).fold(f64::MIN_POSITIVE, f64::max)).collect(),
+        sizes: (0..CHANNELS).map(|k| rms(of(k))).collect(),
     }
 }
 

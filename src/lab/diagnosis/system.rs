@@ -9,6 +9,8 @@
 //!
 //! (M. A. Woodbury, Princeton Statistical Research Group 42 (1950)).
 
+use super::basis::Prior;
+use super::whitening::Whitening;
 use crate::numeric::dense::{Matrix, gram};
 use crate::numeric::linear::{LargeFactor, dot};
 
@@ -16,8 +18,8 @@ use crate::numeric::linear::{LargeFactor, dot};
 pub(super) struct ChannelSystem {
     /// The columns that this channel knows, by their number among all.
     pub(super) columns: Vec<usize>,
-    /// D⁻½ of each row.
-    pub(super) weights: Vec<f64>,
+    /// Of each row.
+    pub(super) whitening: Whitening,
     /// D⁻½ A, column by column.
     pub(super) signatures: Vec<Vec<f64>>,
     /// D⁻½ B, column by column.
@@ -54,22 +56,33 @@ pub(super) struct Reduced {
     pub(super) log_determinant: f64,
 }
 
+impl Reduced {
+    /// For each load, the degrees of freedom that the rows tell of the background: K − tr(T⁻¹ Var z).
+    pub(super) fn freedom(&self, prior: &Prior, shares: &[f64]) -> Vec<f64> {
+        let width = prior.precision.columns();
+        let blocks = self.factor.inverse_blocks(width);
+        let untold = |(block, share): (&Vec<Vec<f64>>, &f64)| {
+            let trace: f64 =
+                block.iter().enumerate().map(|(at, row)| dot(row, prior.precision.row(at))).sum();
+            (width as f64 - trace / (share * share)).max(0.0)
+        };
+        blocks.iter().zip(shares).map(untold).collect()
+    }
+}
+
 impl ChannelSystem {
-    /// `signatures` are columns with their numbers; `variances` are D's, infinite where a row tells nothing.
+    /// `signatures` are columns with their numbers.
     pub(super) fn of(
         signatures: &[(usize, &[f64])],
         background: &[Vec<f64>],
         residual: &[f64],
-        variances: &[f64],
+        whitening: Whitening,
     ) -> Self {
-        let weights: Vec<f64> = variances.iter().map(|variance| 1.0 / variance.sqrt()).collect();
-        let weighted = |column: &[f64]| -> Vec<f64> {
-            column.iter().zip(&weights).map(|(value, weight)| value * weight).collect()
-        };
         let columns: Vec<usize> = signatures.iter().map(|(number, _)| *number).collect();
-        let signatures: Vec<Vec<f64>> = signatures.iter().map(|(_, column)| weighted(column)).collect();
-        let background: Vec<Vec<f64>> = background.iter().map(|column| weighted(column)).collect();
-        let residual = weighted(residual);
+        let signatures: Vec<Vec<f64>> =
+            signatures.iter().map(|(_, column)| whitening.whitened(column)).collect();
+        let background: Vec<Vec<f64>> = background.iter().map(|column| whitening.whitened(column)).collect();
+        let residual = whitening.whitened(residual);
         let slices = |of: &[Vec<f64>]| gram(&of.iter().map(Vec::as_slice).collect::<Vec<_>>());
         let against = |of: &[Vec<f64>]| of.iter().map(|column| dot(column, &residual)).collect();
         let mixed = |column: &Vec<f64>| background.iter().map(|other| dot(column, other)).collect();
@@ -80,25 +93,27 @@ impl ChannelSystem {
             background_residual: against(&background),
             signature_residual: against(&signatures),
             square: dot(&residual, &residual),
-            log_determinant: variances.iter().filter(|it| it.is_finite()).map(|variance| variance.ln()).sum(),
+            log_determinant: whitening.log_determinant(),
             columns,
-            weights,
+            whitening,
             signatures,
             background,
             residual,
         }
     }
 
-    /// How many rows tell something.
-    pub(super) fn told(&self) -> usize {
-        self.weights.iter().filter(|weight| **weight > 0.0).count()
-    }
-
-    /// With background variances T; `None` if H is not positive definite.
-    pub(super) fn reduced(&self, variances: &[f64]) -> Option<Reduced> {
+    /// With a background of T = diag(τ²) ⊗ the process' own, τ being its share for each load; `None` if H is not positive definite.
+    pub(super) fn reduced(&self, prior: &Prior, shares: &[f64]) -> Option<Reduced> {
         let mut inner = self.background_gram.clone();
-        for (at, variance) in variances.iter().enumerate() {
-            inner.row_mut(at)[at] += 1.0 / variance;
+        let width = prior.precision.columns();
+        for (load, share) in shares.iter().enumerate() {
+            for at in 0..width {
+                let entries = &mut inner.row_mut(load * width + at)[load * width..][..width];
+                entries
+                    .iter_mut()
+                    .zip(prior.precision.row(at))
+                    .for_each(|(entry, own)| *entry += own / (share * share));
+            }
         }
         let factor = inner.factorised()?;
         let whitened_mixed: Vec<Vec<f64>> =
@@ -119,7 +134,10 @@ impl ChannelSystem {
             square: self.square - dot(&whitened_residual, &whitened_residual),
             log_determinant: self.log_determinant
                 + factor.log_determinant()
-                + variances.iter().map(|variance| variance.ln()).sum::<f64>(),
+                + shares
+                    .iter()
+                    .map(|share| prior.log_determinant() + 2.0 * width as f64 * share.ln())
+                    .sum::<f64>(),
             whitened_mixed,
             factor,
         })

@@ -38,7 +38,7 @@ use std::fmt;
 use self::attribution::{Applied, Attribution, Search};
 use self::gain::{Rows, gain, rmse};
 use self::observations::Observations;
-use self::report::{Diagnosis, Finding, NotTestable, Verdict};
+use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
 use self::separation::separate_by;
 use self::simulated::Simulated;
 pub use self::simulated::{OpenFrame, Pad};
@@ -149,6 +149,7 @@ fn summary(
     let noise = fit.systems.noise.iter().zip(&fit.linearised.readings).enumerate();
     let alive = noise.filter(|(channel, _)| open.observations.is_alive(*channel));
     Some(Diagnosis {
+        residuals: residuals(open, found, &applied),
         channels: open.observations.channels.clone(),
         verdict: verdict(!findings.is_empty(), unnamed_share),
         noise_floor: mean(alive.map(|(_, (noise, signal))| noise.mean_square(signal))).sqrt(),
@@ -163,6 +164,17 @@ fn summary(
         unnamed_share,
         findings,
     })
+}
+
+/// What the model misses at the open rows, as it is and with what was found.
+fn residuals(open: &Rows<'_>, found: &Attribution, applied: &Applied) -> Residuals {
+    let noise = found.fit.systems.noise.iter().zip(&found.fit.linearised.readings);
+    Residuals {
+        samples: open.observations.samples.clone(),
+        noise: noise.map(|(noise, signal)| noise.mean_square(signal).sqrt()).collect(),
+        nominal: open.centred(&Vec::new()),
+        extended: open.centred(applied),
+    }
 }
 
 /// What the background's process leaves over where it is as large as it may be: its squares beyond their expectation, in the

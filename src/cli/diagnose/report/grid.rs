@@ -1,0 +1,100 @@
+//! Small pictures side by side, one card for each channel.
+
+use super::Subject;
+use super::drawing::escaped;
+use tactpad::numeric::statistics::rms;
+
+/// So many channels are shown at once; of more, those that the model misses most, and the others on request.
+const CHANNELS_MAX: usize = 12;
+/// Dots on a page at most, and on each map at least.
+const DOTS_MAX: usize = 12_000;
+const DOTS_MIN: usize = 150;
+/// No more dots than this can be told apart on one map.
+const DOTS_OF_MAP: usize = 600;
+/// 1/φ: multiples of it, without their whole parts, are spread evenly, whatever the rows' order.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// The channels of a page, in the order of the file.
+pub(super) struct Grid<'s> {
+    subject: &'s Subject<'s>,
+    first: Vec<usize>,
+    others: Vec<usize>,
+}
+
+impl<'s> Grid<'s> {
+    pub(super) fn of(subject: &'s Subject<'s>) -> Self {
+        let mut channels = subject.alive();
+        channels.sort_by(|one, other| subject.excess(*other).total_cmp(&subject.excess(*one)));
+        let mut others = channels.split_off(channels.len().min(CHANNELS_MAX));
+        channels.sort_unstable();
+        others.sort_unstable();
+        Self { subject, first: channels, others }
+    }
+
+    /// A card for each channel, with what `inside` draws of it.
+    pub(super) fn html(&self, inside: impl Fn(usize) -> String) -> String {
+        let cards = |channels: &[usize]| -> String {
+            let card = |channel: &usize| format!("<figure class=\"card\">{}<div class=\"pictures\">{}</div></figure>", self.caption(*channel), inside(*channel));
+            channels.iter().map(card).collect()
+        };
+        let first = format!("<div class=\"grid\">{}</div>", cards(&self.first));
+        if self.others.is_empty() {
+            return first;
+        }
+        let count = self.others.len();
+        format!("{first}<details><summary>{count} more channels, which the model misses less</summary><div class=\"grid\">{}</div></details>", cards(&self.others))
+    }
+
+    fn caption(&self, channel: usize) -> String {
+        let Subject { diagnosis, unit, .. } = self.subject;
+        let [before, after] = self.subject.errors(channel);
+        let digits = if before >= 100.0 { 0 } else { 1 };
+        let name = escaped(&diagnosis.channels[channel]);
+        let sizes = if self.subject.is_extended() {
+            format!("{before:.digits$} → {after:.digits$} {unit}")
+        } else {
+            format!("{before:.digits$} {unit}")
+        };
+        format!("<figcaption><strong>{name}</strong> <span>{sizes} rms</span></figcaption>")
+    }
+}
+
+impl Subject<'_> {
+    /// The channels that tell anything.
+    pub(super) fn alive(&self) -> Vec<usize> {
+        let residuals = &self.diagnosis.residuals;
+        let is_alive = |channel: &usize| residuals.nominal[*channel].iter().any(|it| it.is_finite());
+        (0..residuals.nominal.len()).filter(is_alive).collect()
+    }
+
+    /// Root mean square of a channel's residuals, before and after.
+    pub(super) fn errors(&self, channel: usize) -> [f64; 2] {
+        let residuals = &self.diagnosis.residuals;
+        [&residuals.nominal, &residuals.extended]
+            .map(|of| rms(of[channel].iter().copied().filter(|it| it.is_finite())))
+    }
+
+    /// How far the model misses a channel, in multiples of its noise.
+    fn excess(&self, channel: usize) -> f64 {
+        self.errors(channel)[0] / self.diagnosis.residuals.noise[channel].max(f64::MIN_POSITIVE)
+    }
+
+    /// Whether there is anything that the extended model does otherwise.
+    pub(super) fn is_extended(&self) -> bool {
+        let residuals = &self.diagnosis.residuals;
+        residuals.nominal.iter().flatten().zip(residuals.extended.iter().flatten()).any(|(one, other)| one.is_finite() && one != other)
+    }
+
+    /// How many rows have a dot on each map.
+    pub(super) fn drawn_rows(&self) -> usize {
+        let rows = self.diagnosis.residuals.samples.len();
+        let maps = 2 * self.diagnosis.residuals.nominal.len().max(1);
+        rows.min((DOTS_MAX / maps).clamp(DOTS_MIN, DOTS_OF_MAP))
+    }
+}
+
+/// Whether a row has a dot: evenly many of all rows.
+pub(super) fn is_drawn(row: usize, subject: &Subject<'_>) -> bool {
+    let share = subject.drawn_rows() as f64 / subject.diagnosis.residuals.samples.len() as f64;
+    (row as f64 * GOLDEN).fract() < share
+}

@@ -1,0 +1,120 @@
+//! `--report`: one page that is read from the top, and the JSON document beside it.
+//!
+//! The page needs nothing but itself: no script, no font, no network. The style sheet is inside it, and drawings take their
+//! colours from that, in light and in dark. It knows neither nine channels nor modules: these are drawn where there are any.
+
+mod account;
+mod causes;
+mod circumstances;
+mod dots;
+mod drawing;
+mod errors;
+mod grid;
+mod limits;
+mod maps;
+mod trends;
+mod verdict;
+mod words;
+
+use self::drawing::escaped;
+use tactpad::lab::diagnosis::report::Diagnosis;
+use tactpad::pad::device::Device;
+
+/// Names of the files in the report's folder.
+pub(super) const PAGE: &str = "report.html";
+/// See [`PAGE`].
+pub(super) const DOCUMENT: &str = "report.json";
+
+const STYLE: &str = include_str!("style.css");
+
+/// What a report is of.
+pub(super) struct Subject<'d> {
+    /// What was found.
+    pub(super) diagnosis: &'d Diagnosis,
+    /// What was measured, in a few words: the file's name.
+    pub(super) measured: String,
+    /// What it was held against.
+    pub(super) model: String,
+    /// Unit of the channels; empty where it is not known.
+    pub(super) unit: &'d str,
+    /// Unit of the loads, where it is known.
+    pub(super) load_unit: Option<&'d str>,
+    /// What to draw under the contacts.
+    pub(super) plate: Option<Plate>,
+    /// What checks before the diagnosis found.
+    pub(super) notices: Vec<Notice>,
+}
+
+/// A plate with its modules.
+pub(super) struct Plate {
+    pub(super) radius_mm: f64,
+    /// Corners of the modules' films.
+    pub(super) modules_mm: Vec<[[f64; 2]; 4]>,
+}
+
+/// Something that a check before the diagnosis found.
+pub(super) struct Notice {
+    pub(super) check: String,
+    pub(super) channel: Option<String>,
+    pub(super) detail: String,
+}
+
+impl Plate {
+    /// The plate of a device, its modules where it has them.
+    pub(super) fn of(device: &Device) -> Self {
+        let half_mm = [device.stack.film_length_x_mm, device.stack.film_width_y_mm].map(|side| 0.5 * side);
+        Self {
+            radius_mm: device.plate.radius_mm(),
+            modules_mm: device.poses().iter().map(|pose| pose.corners_mm(half_mm)).collect(),
+        }
+    }
+}
+
+/// The page. Equal subjects give equal bytes.
+pub(super) fn page(subject: &Subject<'_>) -> String {
+    let headline = escaped(&verdict::headline(subject));
+    let measured = escaped(&subject.measured);
+    let sections = [
+        causes::section(subject),
+        maps::section(subject),
+        trends::section(subject),
+        causes::confounded(subject),
+        limits::sizes(subject),
+        limits::untested(subject),
+        account::notices(subject),
+        account::gain(subject),
+        account::method(subject),
+    ];
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" \
+         content=\"width=device-width, initial-scale=1\"/>\n<meta name=\"color-scheme\" content=\"light dark\"/>\n\
+         <title>{measured}: {headline}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<header><p class=\"of\">Diagnosis of \
+         <strong>{measured}</strong> against {}</p><h1>{headline}</h1></header>\n{}\n{}\n</main>\n</body>\n</html>\n",
+        escaped(&subject.model),
+        overview(subject),
+        sections.join("\n")
+    )
+}
+
+/// The sizes that matter most, and each channel's.
+fn overview(subject: &Subject<'_>) -> String {
+    let Diagnosis { noise_floor, rmse_nominal, rmse_extended, unnamed_share, gain, .. } = subject.diagnosis;
+    let unit = escaped(subject.unit);
+    let figure = |value: String, what: &str| format!("<div><dt>{what}</dt><dd>{value}</dd></div>");
+    let mut figures = figure(format!("{rmse_nominal:.1} {unit}"), "the model misses the channels by, rms");
+    if subject.is_extended() {
+        figures += &figure(format!("{rmse_extended:.1} {unit}"), "with the causes below");
+    }
+    figures += &figure(format!("{noise_floor:.1} {unit}"), "the channels’ noise");
+    if let Some(gain) = gain {
+        let [low, high] = gain.rmse_ratio_interval95.map(|it| 100.0 * it);
+        figures += &figure(
+            format!("{:.0} %", 100.0 * gain.rmse_ratio),
+            &format!("of the error is left on {} locked rows ({low:.0} to {high:.0} %)", gain.rows_locked),
+        );
+    }
+    if *unnamed_share > 0.0 {
+        figures += &figure(format!("{:.0} %", 100.0 * unnamed_share), "of the residual above noise has no known cause");
+    }
+    format!("<div class=\"top\"><dl class=\"figures\">{figures}</dl>{}</div>", errors::figure(subject))
+}

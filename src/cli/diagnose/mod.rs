@@ -118,7 +118,8 @@ fn write_report(
         notices: Vec::new(),
     };
     let page = folder.write(report::PAGE, report::page(&subject).as_bytes())?;
-    let document = folder.write(report::DOCUMENT, format!("{}\n", json_text(&Document::of(diagnosis))?).as_bytes())?;
+    let document =
+        folder.write(report::DOCUMENT, format!("{}\n", json_text(&Document::of(diagnosis))?).as_bytes())?;
     say(format_args!("the report is {page}, its numbers are {document}"));
     Ok(())
 }

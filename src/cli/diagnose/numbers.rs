@@ -52,8 +52,13 @@ pub(super) fn range(name: &str, least: f64, greatest: f64) -> String {
 /// A value under its name: what it is before, its unit behind.
 pub(super) fn named(name: &str, value: &str) -> String {
     let (what, unit) = parts(name);
+    format!("{what} {}", with_unit(value, unit)).trim().to_owned()
+}
+
+/// A value with its unit behind.
+pub(super) fn with_unit(value: &str, unit: &str) -> String {
     let gap = if unit.is_empty() || unit == "°" { "" } else { " " };
-    format!("{what} {value}{gap}{unit}").trim().to_owned()
+    format!("{value}{gap}{unit}")
 }
 
 /// What a number is, and its unit: `radial_mm` is a `radial` in `mm`.

@@ -1,9 +1,9 @@
 //! Each cause: what it is, how large, how sure.
 
+use super::super::numbers::{carried, parts, rounded, with_unit};
 use super::Subject;
 use super::drawing::{Drawing, escaped};
 use super::words::{capital, cause, chance, none, sentence};
-use super::super::numbers::{carried, parts, rounded};
 use tactpad::lab::diagnosis::report::{Estimate, Finding};
 
 /// Size of the bars, in pixels.
@@ -13,17 +13,24 @@ const BAR: [f64; 2] = [200.0, 18.0];
 pub(super) fn section(subject: &Subject<'_>) -> String {
     let findings = &subject.diagnosis.findings;
     if findings.is_empty() {
-        return "<section id=\"causes\"><h2>Causes</h2><p>No cause of the catalogue was found.</p></section>".to_owned();
+        return "<section id=\"causes\"><h2>Causes</h2><p>No cause of the catalogue was found.</p></section>"
+            .to_owned();
     }
     let cards: String = findings.iter().map(|finding| card(subject, finding)).collect();
-    format!("<section id=\"causes\"><h2>Causes</h2>{}<ol class=\"causes\">{cards}</ol></section>", unnamed(subject))
+    format!(
+        "<section id=\"causes\"><h2>Causes</h2>{}<ol class=\"causes\">{cards}</ol></section>",
+        unnamed(subject)
+    )
 }
 
 /// What no cause explains.
 fn unnamed(subject: &Subject<'_>) -> String {
     let share = subject.diagnosis.unnamed_share;
     if share > 0.0 {
-        format!("<p>{:.0} % of the residual above the noise has no cause in the catalogue.</p>", 100.0 * share)
+        format!(
+            "<p>{:.0} % of the residual above the noise has no cause in the catalogue.</p>",
+            100.0 * share
+        )
     } else {
         String::new()
     }
@@ -49,7 +56,7 @@ fn card(subject: &Subject<'_>, finding: &Finding) -> String {
 
 fn table(rows: &str) -> String {
     format!(
-        "<table><thead><tr><th scope=\"col\">size</th><th scope=\"col\" class=\"number\">value</th><th scope=\"col\" \
+        "<table><thead><tr><td></td><th scope=\"col\" class=\"number\">value</th><th scope=\"col\" \
          class=\"number\">95 % interval</th><th scope=\"col\" class=\"wide\">from none</th></tr></thead><tbody>{rows}</tbody></table>"
     )
 }
@@ -61,11 +68,12 @@ fn number(estimate: &Estimate) -> String {
     let digits = carried(*value, *interval95);
     let [value_text, low, high] = [*value, interval95[0], interval95[1]].map(|it| rounded(it, digits));
     let what = if what.is_empty() { "size".to_owned() } else { what };
+    let value_text = with_unit(&value_text, unit);
     format!(
-        "<tr><th scope=\"row\">{}</th><td class=\"number\">{value_text} {unit}</td><td class=\"number\">{low} to {high}</td>\
+        "<tr><th scope=\"row\">{}</th><td class=\"number\">{value_text}</td><td class=\"number\">{low} to {high}</td>\
          <td class=\"wide\">{}</td></tr>",
         escaped(&what),
-        interval(estimate, &format!("{what} {value_text} {unit}, {low} to {high}"))
+        interval(estimate, &format!("{what} {value_text}, {low} to {high}"))
     )
 }
 
@@ -74,7 +82,8 @@ fn interval(estimate: &Estimate, title: &str) -> String {
     let Estimate { name, value, interval95: [low, high] } = *estimate;
     let none = none(name);
     let ends = [low, high, value].into_iter().chain(none);
-    let (left, right) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(left, right), it| (left.min(it), right.max(it)));
+    let (left, right) =
+        ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(left, right), it| (left.min(it), right.max(it)));
     let [width, height] = BAR;
     let mut drawing = Drawing::new("interval", [0.0, 0.0, width, height], title);
     let x = |at: f64| 8.0 + (at - left) / (right - left) * (width - 16.0);
@@ -96,10 +105,13 @@ fn evidence(subject: &Subject<'_>, finding: &Finding) -> String {
     });
     let without = without.map_or_else(String::new, |it| {
         let percent = 100.0 * it.rmse_ratio;
-        format!("<div><dt>Error left without it, on locked rows</dt><dd>{}{percent:.0} %</dd></div>", bar(it.rmse_ratio, &format!("{percent:.0} % of the error")))
+        format!(
+            "<div><dt>Error left without it</dt><dd>{}{percent:.0} %</dd></div>",
+            bar(it.rmse_ratio, &format!("{percent:.0} % of the error"))
+        )
     });
     format!(
-        "<dl class=\"evidence\"><div><dt>As much by chance</dt><dd>{}</dd></div><div><dt>Share of the residual above noise</dt>\
+        "<dl class=\"evidence\"><div><dt>By chance</dt><dd>{}</dd></div><div><dt>Share of the residual</dt>\
          <dd>{}{}</dd></div>{without}</dl>",
         chance(finding.p_value),
         bar(finding.share, &format!("{share:.0} % of the residual")),
@@ -120,7 +132,9 @@ pub(super) fn confounded(subject: &Subject<'_>) -> String {
     let sets = subject.diagnosis.findings.iter().filter(|it| !it.confounded_with.is_empty());
     let sets: String = sets.map(|finding| set(finding, &subject.diagnosis.channels)).collect();
     let body = match sets.as_str() {
-        "" if subject.diagnosis.findings.is_empty() => "<p>Nothing was found that could be mistaken for something else.</p>",
+        "" if subject.diagnosis.findings.is_empty() => {
+            "<p>Nothing was found that could be mistaken for something else.</p>"
+        }
         "" => "<p>Nothing: no other cause of the catalogue explains what was found.</p>",
         sets => sets,
     };
@@ -143,7 +157,12 @@ fn set(finding: &Finding, channels: &[String]) -> String {
     };
     let next = finding.separate_by.as_ref().map_or_else(
         || "<p>No measurement that would tell them apart is known to this program.</p>".to_owned(),
-        |how| format!("<p class=\"next\"><strong>Measure next:</strong> {}.</p>", escaped(how.trim_end_matches('.'))),
+        |how| {
+            format!(
+                "<p class=\"next\"><strong>Measure next:</strong> {}.</p>",
+                escaped(how.trim_end_matches('.'))
+            )
+        },
     );
     format!(
         "<div class=\"set\"><h3>{}</h3><p>These rows would look the same with</p><ul>{}</ul>{more}{next}</div>",

@@ -25,7 +25,10 @@ pub(super) fn all(subject: &Subject<'_>) -> Vec<Circumstance> {
     let mut all = vec![load(samples, subject), direction(samples), time(samples)];
     all.push(of(samples, "temperature in °C", |it| it.temp_c));
     all.push(of(samples, "cycles of load", |it| it.cycle));
-    all.push(Circumstance { names: vec!["loading", "unloading"], ..of(samples, "load came", |it| Some(f64::from(u8::from(it.is_unloading)))) });
+    all.push(Circumstance {
+        names: vec!["loading", "unloading"],
+        ..of(samples, "load came", |it| Some(f64::from(u8::from(it.is_unloading))))
+    });
     all.retain(differs);
     all
 }
@@ -64,7 +67,10 @@ fn time(samples: &[Sample]) -> Circumstance {
 /// Whether enough rows have different values.
 fn differs(circumstance: &Circumstance) -> bool {
     let finite = || circumstance.values.iter().filter(|it| it.is_finite());
-    let [low, high] = [finite().copied().fold(f64::INFINITY, f64::min), finite().copied().fold(f64::NEG_INFINITY, f64::max)];
+    let [low, high] = [
+        finite().copied().fold(f64::INFINITY, f64::min),
+        finite().copied().fold(f64::NEG_INFINITY, f64::max),
+    ];
     finite().count() >= ROWS_MIN && high - low > 1e-9 * low.abs().max(high.abs())
 }
 
@@ -75,27 +81,37 @@ pub(super) struct Bin {
     pub(super) rows: Vec<usize>,
 }
 
-/// About so many rows in a bin, and no more bins than this.
-const ROWS_OF_BIN: usize = 25;
-const BINS_MAX: usize = 12;
+/// The middle nine tenths of the values lie in so many bins.
+const BINS: f64 = 10.0;
 /// A bin of fewer rows has no quantiles.
 const ROWS_OF_BIN_MIN: usize = 4;
 
 impl Circumstance {
-    /// The rows in bins of about as many rows each, rows of one value together.
+    /// The rows in bins of equal width, each from a value on: so that rows of one written value, which scatter, stay together.
     pub(super) fn bins(&self) -> Vec<Bin> {
-        let mut rows: Vec<usize> = (0..self.values.len()).filter(|row| self.values[*row].is_finite()).collect();
+        let mut rows: Vec<usize> =
+            (0..self.values.len()).filter(|row| self.values[*row].is_finite()).collect();
         rows.sort_by(|one, other| self.values[*one].total_cmp(&self.values[*other]));
-        let size = rows.len().div_ceil(BINS_MAX).max(ROWS_OF_BIN);
+        let width = self.width(&rows);
         let mut bins: Vec<Vec<usize>> = Vec::new();
-        for group in rows.chunk_by(|one, other| self.values[*one] == self.values[*other]) {
+        for row in rows {
             match bins.last_mut() {
-                Some(last) if last.len() + group.len() / 2 < size && self.names.is_empty() => last.extend(group),
-                _ => bins.push(group.to_vec()),
+                Some(last) if self.values[row] - self.values[last[0]] < width => last.push(row),
+                _ => bins.push(vec![row]),
             }
         }
         let bins = bins.into_iter().filter(|rows| rows.len() >= ROWS_OF_BIN_MIN);
         bins.map(|rows| Bin { value: self.values[rows[rows.len() / 2]], rows }).collect()
+    }
+
+    /// Width of a bin, without the values farthest out; `rows` are in the order of their values.
+    fn width(&self, rows: &[usize]) -> f64 {
+        let Some(last) = rows.len().checked_sub(1) else { return 0.0 };
+        let span = |share: f64| {
+            let aside = (share * last as f64) as usize;
+            self.values[rows[last - aside]] - self.values[rows[aside]]
+        };
+        if span(0.05) > 0.0 { span(0.05) / BINS } else { span(0.0) / BINS }
     }
 }
 
@@ -108,12 +124,12 @@ mod tests {
     }
 
     #[test]
-    fn equal_values_stay_together() {
-        let steps = circumstance((0..100).map(|at| f64::from(at % 4)).collect());
-        let values: Vec<f64> = steps.bins().iter().map(|bin| bin.value).collect();
+    fn values_that_scatter_about_one_stay_together() {
+        let steps = circumstance((0..400).map(|at| f64::from(at % 4) + 1e-4 * f64::from(at)).collect());
+        let values: Vec<f64> = steps.bins().iter().map(|bin| bin.value.round()).collect();
         assert_eq!(values, [0.0, 1.0, 2.0, 3.0]);
         let even = circumstance((0..1000).map(f64::from).collect());
-        assert!((8..=BINS_MAX).contains(&even.bins().len()), "{}", even.bins().len());
+        assert!((10..=12).contains(&even.bins().len()), "{}", even.bins().len());
         assert!(even.bins().iter().all(|bin| bin.rows.len() > 50));
         assert!(circumstance(vec![f64::NAN; 50]).bins().is_empty());
     }

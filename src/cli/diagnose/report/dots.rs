@@ -1,7 +1,10 @@
-//! Residuals as dots: the larger the residual the larger the dot; a disc reads too much, a ring too little.
+//! Residuals as dots: the larger the residual the larger the dot; a disc reads too much, a ring too little, a square both.
+
+use std::collections::BTreeMap;
 
 use super::drawing::Drawing;
 use tactpad::lab::diagnosis::report::Residuals;
+use tactpad::numeric::statistics::rms;
 
 /// Radius of the largest dot, as a share of the map's width.
 const RADIUS_MAX: f64 = 0.042;
@@ -11,6 +14,62 @@ const RADIUS_MIN: f64 = 0.004;
 const LARGEST_ONE_IN: usize = 200;
 /// The scale ends no lower: noise alone must not look large.
 const LEAST_FULL: f64 = 5.0;
+
+/// Contacts within these parts of a map's width are one dot: the first that makes few enough.
+const CELLS: [f64; 5] = [96.0, 64.0, 48.0, 32.0, 24.0];
+/// More of the residuals than this are of one sign, or the dot has none.
+const ONE_SIGN: f64 = 0.5;
+
+/// Contacts near each other.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Place {
+    /// Their middle.
+    pub(super) at: [f64; 2],
+    /// Their rows.
+    pub(super) rows: Vec<usize>,
+}
+
+/// The contacts' places on a map of this width, no more than `count` of them if that can be.
+pub(super) fn places(places_mm: &[[f64; 2]], width: f64, count: usize) -> Vec<Place> {
+    let mut cells = BTreeMap::new();
+    for parts in CELLS {
+        cells = BTreeMap::<[i64; 2], Vec<usize>>::new();
+        for (row, place) in
+            places_mm.iter().enumerate().filter(|(_, place)| place.iter().all(|it| it.is_finite()))
+        {
+            cells.entry(place.map(|mm| (mm / width * parts).round() as i64)).or_default().push(row);
+        }
+        if cells.len() <= count {
+            break;
+        }
+    }
+    let middle = |rows: &[usize], axis: usize| {
+        rows.iter().map(|row| places_mm[*row][axis]).sum::<f64>() / rows.len() as f64
+    };
+    cells.into_values().map(|rows| Place { at: [0, 1].map(|axis| middle(&rows, axis)), rows }).collect()
+}
+
+/// What contacts near each other say together: the root mean square of their residuals, with a sign if they have one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Dot {
+    /// Where.
+    pub(super) at: [f64; 2],
+    /// In multiples of the noise.
+    pub(super) level: f64,
+    /// The sum of the residuals over the sum of their sizes.
+    pub(super) sign: f64,
+}
+
+impl Dot {
+    /// Of levels at a place; none where there are none.
+    pub(super) fn of(at: [f64; 2], levels: impl Iterator<Item = f64>) -> Option<Self> {
+        let levels: Vec<f64> = levels.filter(|level| level.is_finite()).collect();
+        let sum: f64 = levels.iter().sum();
+        let sizes: f64 = levels.iter().map(|level| level.abs()).sum();
+        let sign = if sizes > 0.0 { sum / sizes } else { 0.0 };
+        (!levels.is_empty()).then(|| Self { at, level: rms(levels), sign })
+    }
+}
 
 /// The scale of the dots: all maps of a page have the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,13 +96,20 @@ impl DotScale {
         width * (RADIUS_MAX * share).max(RADIUS_MIN)
     }
 
-    /// Draws dots at places, the largest first, so that none hides another.
-    pub(super) fn draw(self, drawing: &mut Drawing, dots: &[([f64; 2], f64)], width: f64) {
-        let mut dots: Vec<_> = dots.iter().filter(|(_, level)| level.is_finite()).collect();
-        dots.sort_by(|(_, one), (_, other)| other.abs().total_cmp(&one.abs()));
-        for (place, level) in dots {
-            let class = if *level < 0.0 { "less" } else { "more" };
-            drawing.circle(class, *place, self.radius(*level, width));
+    /// Draws dots, the largest first, so that none hides another.
+    pub(super) fn draw(self, drawing: &mut Drawing, mut dots: Vec<Dot>, width: f64) {
+        dots.sort_by(|one, other| other.level.total_cmp(&one.level));
+        for Dot { at, level, sign } in dots {
+            let radius = self.radius(level, width);
+            match sign {
+                it if it > ONE_SIGN => drawing.circle("more", at, radius),
+                it if it < -ONE_SIGN => drawing.circle("less", at, radius),
+                _ => {
+                    // As large as a disc of the same radius.
+                    let half = 0.5 * radius * std::f64::consts::PI.sqrt();
+                    drawing.rectangle("both", at.map(|mm| mm - half), at.map(|mm| mm + half));
+                }
+            }
         }
     }
 
@@ -62,6 +128,28 @@ pub(super) fn level(residual: f64, noise: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn contacts_of_one_place_are_one_dot() {
+        let all: Vec<[f64; 2]> =
+            (0..1000).map(|at| [f64::from(at % 10) * 6.0, 0.001 * f64::from(at / 10)]).collect();
+        let found = places(&all, 60.0, 500);
+        assert_eq!((found.len(), found[0].rows.len()), (10, 100));
+        let spread: Vec<[f64; 2]> =
+            (0..10_000).map(|at| [f64::from(at % 100), f64::from(at / 100)]).collect();
+        assert!(places(&spread, 100.0, 700).len() <= 700);
+        assert!(places(&[[f64::NAN, 0.0]], 1.0, 5).is_empty());
+    }
+
+    #[test]
+    fn dots_of_both_signs_have_none() {
+        let of = |levels: [f64; 2]| Dot::of([0.0; 2], levels.into_iter()).map(|dot| dot.sign);
+        assert_eq!(
+            [of([3.0, -3.0]), of([1.0, 2.0]), of([-1.0, f64::NAN])],
+            [Some(0.0), Some(1.0), Some(-1.0)]
+        );
+        assert_eq!(of([f64::NAN; 2]), None);
+    }
 
     #[test]
     fn the_scale_spares_single_outliers() {

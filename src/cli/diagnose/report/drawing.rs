@@ -66,7 +66,8 @@ impl Drawing {
             return;
         }
         let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
-        let numbers: String = numbers.iter().map(|(key, value)| format!(" {key}=\"{}\"", short(*value))).collect();
+        let numbers: String =
+            numbers.iter().map(|(key, value)| format!(" {key}=\"{}\"", short(*value))).collect();
         let _ = write!(self.marks, "<{name}{class}{numbers}/>");
     }
 }
@@ -107,7 +108,10 @@ mod tests {
 
     #[test]
     fn what_files_say_stays_text() {
-        assert_eq!(escaped("<b a=\"1\">&'\u{0}\u{202e}"), "&lt;b a=&quot;1&quot;&gt;&amp;&#39;\u{fffd}\u{fffd}");
+        assert_eq!(
+            escaped("<b a=\"1\">&'\u{0}\u{202e}"),
+            "&lt;b a=&quot;1&quot;&gt;&amp;&#39;\u{fffd}\u{fffd}"
+        );
         let mut drawing = Drawing::new("x", [0.0, 0.0, 1.0, 1.0], "<title>");
         drawing.text("t", [0.0, 0.0], "</svg>");
         assert_eq!(drawing.html().matches("svg>").count(), 1 + 0, "{}", drawing.html());

@@ -25,13 +25,25 @@ pub(super) fn figure(subject: &Subject<'_>) -> String {
     let largest = channels.iter().map(|it| subject.errors(*it)[0].max(subject.errors(*it)[1]).max(noise(it)));
     let span = Scale::Linear.span(largest.chain([0.0]));
     let bottom = TOP + LINE * channels.len() as f64;
-    let mut drawing = Drawing::new("errors", [0.0, 0.0, WIDTH, bottom + 36.0], "Root mean square of each channel’s residuals");
+    let mut drawing = Drawing::new(
+        "errors",
+        [0.0, 0.0, WIDTH, bottom + 36.0],
+        "Root mean square of each channel’s residuals",
+    );
     let x = |value: f64| LEFT + value / span[1] * (RIGHT - LEFT);
     for tick in linear_ticks(span, 4.0) {
         drawing.line("rule", [x(tick.value), TOP], [x(tick.value), bottom]);
-        drawing.text("middle", [x(tick.value), bottom + 14.0], &tick.label.replace("^{", "^").replace('}', ""));
+        drawing.text(
+            "middle",
+            [x(tick.value), bottom + 14.0],
+            &tick.label.replace("^{", "^").replace('}', ""),
+        );
     }
-    drawing.text("middle title", [0.5 * (LEFT + RIGHT), bottom + 30.0], &format!("rms residual in {}", subject.unit));
+    drawing.text(
+        "middle title",
+        [0.5 * (LEFT + RIGHT), bottom + 30.0],
+        &format!("rms residual in {}", subject.unit),
+    );
     for (line, channel) in channels.iter().enumerate() {
         let y = TOP + LINE * (line as f64 + 0.5);
         drawing.text("end", [LEFT - 8.0, y + 4.0], &cut(&subject.diagnosis.channels[*channel]));
@@ -47,7 +59,11 @@ pub(super) fn figure(subject: &Subject<'_>) -> String {
 }
 
 fn cut(name: &str) -> String {
-    if name.chars().count() <= NAME_MAX { name.to_owned() } else { name.chars().take(NAME_MAX - 1).chain(['…']).collect() }
+    if name.chars().count() <= NAME_MAX {
+        name.to_owned()
+    } else {
+        name.chars().take(NAME_MAX - 1).chain(['…']).collect()
+    }
 }
 
 fn legend(subject: &Subject<'_>) -> String {
@@ -61,5 +77,9 @@ fn legend(subject: &Subject<'_>) -> String {
         format!("<span class=\"entry\">{}<span>{what}</span></span>", drawing.html())
     };
     let after = if subject.is_extended() { entry("after", "with the causes") } else { String::new() };
-    format!("<figcaption class=\"legend\">{}{after}{}</figcaption>", entry("before", "the model as it is"), entry("noise", "noise"))
+    format!(
+        "<figcaption class=\"legend\">{}{after}{}</figcaption>",
+        entry("before", "the model as it is"),
+        entry("noise", "noise")
+    )
 }

@@ -11,8 +11,6 @@ const DOTS_MAX: usize = 12_000;
 const DOTS_MIN: usize = 150;
 /// No more dots than this can be told apart on one map.
 const DOTS_OF_MAP: usize = 600;
-/// 1/φ: multiples of it, without their whole parts, are spread evenly, whatever the rows' order.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The channels of a page, in the order of the file.
 pub(super) struct Grid<'s> {
@@ -34,7 +32,13 @@ impl<'s> Grid<'s> {
     /// A card for each channel, with what `inside` draws of it.
     pub(super) fn html(&self, inside: impl Fn(usize) -> String) -> String {
         let cards = |channels: &[usize]| -> String {
-            let card = |channel: &usize| format!("<figure class=\"card\">{}<div class=\"pictures\">{}</div></figure>", self.caption(*channel), inside(*channel));
+            let card = |channel: &usize| {
+                format!(
+                    "<figure class=\"card\">{}<div class=\"pictures\">{}</div></figure>",
+                    self.caption(*channel),
+                    inside(*channel)
+                )
+            };
             channels.iter().map(card).collect()
         };
         let first = format!("<div class=\"grid\">{}</div>", cards(&self.first));
@@ -42,7 +46,10 @@ impl<'s> Grid<'s> {
             return first;
         }
         let count = self.others.len();
-        format!("{first}<details><summary>{count} more channels, which the model misses less</summary><div class=\"grid\">{}</div></details>", cards(&self.others))
+        format!(
+            "{first}<details><summary>{count} more channels, which the model misses less</summary><div class=\"grid\">{}</div></details>",
+            cards(&self.others)
+        )
     }
 
     fn caption(&self, channel: usize) -> String {
@@ -82,19 +89,17 @@ impl Subject<'_> {
     /// Whether there is anything that the extended model does otherwise.
     pub(super) fn is_extended(&self) -> bool {
         let residuals = &self.diagnosis.residuals;
-        residuals.nominal.iter().flatten().zip(residuals.extended.iter().flatten()).any(|(one, other)| one.is_finite() && one != other)
+        residuals
+            .nominal
+            .iter()
+            .flatten()
+            .zip(residuals.extended.iter().flatten())
+            .any(|(one, other)| one.is_finite() && one != other)
     }
 
-    /// How many rows have a dot on each map.
-    pub(super) fn drawn_rows(&self) -> usize {
-        let rows = self.diagnosis.residuals.samples.len();
+    /// How many dots a map may have.
+    pub(super) fn dots_of_map(&self) -> usize {
         let maps = 2 * self.diagnosis.residuals.nominal.len().max(1);
-        rows.min((DOTS_MAX / maps).clamp(DOTS_MIN, DOTS_OF_MAP))
+        (DOTS_MAX / maps).clamp(DOTS_MIN, DOTS_OF_MAP)
     }
-}
-
-/// Whether a row has a dot: evenly many of all rows.
-pub(super) fn is_drawn(row: usize, subject: &Subject<'_>) -> bool {
-    let share = subject.drawn_rows() as f64 / subject.diagnosis.residuals.samples.len() as f64;
-    (row as f64 * GOLDEN).fract() < share
 }

@@ -1,9 +1,9 @@
 //! What could not have been seen: the sizes from which on causes are found, and what could not be asked for.
 
+use super::super::numbers::{decimals, parts, rounded, with_unit};
 use super::Subject;
 use super::drawing::escaped;
 use super::words::{capital, cause, title};
-use super::super::numbers::{decimals, parts, rounded};
 use tactpad::lab::diagnosis::report::NotDetected;
 
 /// A cause that another one reproduces to this part would hardly have been named alone.
@@ -37,7 +37,9 @@ struct Group {
 
 fn groups(all: &[NotDetected]) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
-    for (it, (name, size)) in all.iter().flat_map(|it| it.minimum_detectable.iter().map(move |size| (it, *size))) {
+    for (it, (name, size)) in
+        all.iter().flat_map(|it| it.minimum_detectable.iter().map(move |size| (it, *size)))
+    {
         let known = groups.iter().position(|group| group.effect == it.effect && group.name == name);
         let at = known.unwrap_or(groups.len());
         if known.is_none() {
@@ -53,7 +55,11 @@ fn groups(all: &[NotDetected]) -> Vec<Group> {
 impl Group {
     fn row(&self) -> String {
         let least = self.sizes.iter().copied().fold(f64::INFINITY, f64::min);
-        let greatest = if self.sizes.len() < self.places { f64::INFINITY } else { self.sizes.iter().copied().fold(0.0, f64::max) };
+        let greatest = if self.sizes.len() < self.places {
+            f64::INFINITY
+        } else {
+            self.sizes.iter().copied().fold(0.0, f64::max)
+        };
         let places = if self.places == 1 { String::new() } else { self.places.to_string() };
         let worst = if self.places == 1 { String::new() } else { size(self.name, greatest) };
         format!(
@@ -81,15 +87,17 @@ fn size(name: &str, size: f64) -> String {
         unit @ ("" | "/°C") => (100.0 * size, format!("%{unit}")),
         unit => (size, unit.to_owned()),
     };
-    let gap = if unit == "°" { "" } else { " " };
-    format!("{}{gap}{unit}", rounded(value, decimals(value)))
+    with_unit(&rounded(value, decimals(value)), &unit)
 }
 
 /// All of them, one by one.
 fn list(subject: &Subject<'_>) -> String {
     let all = &subject.diagnosis.not_detected;
     let row = |it: &NotDetected| {
-        let sizes = it.minimum_detectable.iter().map(|(name, value)| format!("{} {}", what(name), size(name, *value)));
+        let sizes = it
+            .minimum_detectable
+            .iter()
+            .map(|(name, value)| format!("{} {}", what(name), size(name, *value)));
         let sizes: Vec<String> = sizes.collect();
         let sizes = if sizes.is_empty() { "at no size".to_owned() } else { sizes.join(", ") };
         let like = if it.rival_share >= LIKE { " hardly" } else { "" };
@@ -114,7 +122,9 @@ pub(super) fn untested(subject: &Subject<'_>) -> String {
     let all = &subject.diagnosis.not_testable;
     let head = "<section id=\"untested\"><h2>What could not be tested</h2>";
     if all.is_empty() {
-        return format!("{head}<p>Nothing: the table has what every cause of the catalogue needs.</p></section>");
+        return format!(
+            "{head}<p>Nothing: the table has what every cause of the catalogue needs.</p></section>"
+        );
     }
     let mut needs: Vec<&str> = all.iter().map(|it| it.needs).collect();
     needs.sort_unstable();
@@ -122,7 +132,11 @@ pub(super) fn untested(subject: &Subject<'_>) -> String {
     let row = |column: &&str| {
         let effects = all.iter().filter(|it| it.needs == *column).map(|it| title(it.effect));
         let effects: Vec<String> = effects.collect();
-        format!("<li>Without <code>{}</code> that varies: {}.</li>", escaped(column), escaped(&effects.join(", ")))
+        format!(
+            "<li>Without <code>{}</code> that varies: {}.</li>",
+            escaped(column),
+            escaped(&effects.join(", "))
+        )
     };
     format!("{head}<ul>{}</ul></section>", needs.iter().map(row).collect::<String>())
 }

@@ -1,8 +1,8 @@
 //! Where on the plate the residuals are: a map for each channel, before and after.
 
-use super::dots::{DotScale, level};
-use super::drawing::{Drawing, escaped};
-use super::grid::{Grid, is_drawn};
+use super::dots::{Dot, DotScale, Place, level, places};
+use super::drawing::Drawing;
+use super::grid::Grid;
 use super::{Plate, Subject};
 use tactpad::lab::diagnosis::observations::Sample;
 
@@ -12,6 +12,9 @@ const MARGIN: f64 = 0.05;
 const APART: f64 = 1e-6;
 /// Width of a map on the page, in pixels: the legend's dots are as large as the maps'.
 const MAP_PX: f64 = 172.0;
+
+/// How far below a map's upper edge its name stands, as a share of its width.
+const WHEN: f64 = 0.05;
 
 /// What the maps show: left, top, and width in millimetres, y down.
 #[derive(Clone, Copy, Debug)]
@@ -26,42 +29,41 @@ pub(super) fn section(subject: &Subject<'_>) -> String {
     let samples = &subject.diagnosis.residuals.samples;
     let Some(frame) = Frame::of(samples, subject.plate.as_ref()) else { return String::new() };
     let scale = DotScale::of(&subject.diagnosis.residuals);
-    let maps = Grid::of(subject).html(|channel| maps(subject, channel, frame, scale));
+    let places_mm: Vec<[f64; 2]> = samples.iter().map(|it| it.place_mm).collect();
+    let places = places(&places_mm, frame.width, subject.dots_of_map());
+    let maps = Grid::of(subject).html(|channel| maps(subject, channel, &places, frame, scale));
     let lead = if subject.is_extended() {
-        "Each pair of maps is one channel: the model as it is, and with the causes above. One dot is one contact."
+        "Each pair of maps is one channel: before, that is the model as it is, and after, with the causes above."
     } else {
-        "Each map is one channel. One dot is one contact."
-    };
-    let some = if samples.len() > subject.drawn_rows() {
-        format!(" Of {} rows {} are drawn, evenly picked.", samples.len(), subject.drawn_rows())
-    } else {
-        String::new()
+        "Each map is one channel."
     };
     format!(
-        "<section id=\"maps\"><h2>Where on the plate</h2><p>{lead}{some}</p>{}{maps}</section>",
+        "<section id=\"maps\"><h2>Where on the plate</h2><p>{lead} One mark is one place; its area grows with the rms of the residuals \
+         there.</p>{}{maps}</section>",
         legend(subject, scale)
     )
 }
 
 /// One channel's maps.
-fn maps(subject: &Subject<'_>, channel: usize, frame: Frame, scale: DotScale) -> String {
+fn maps(subject: &Subject<'_>, channel: usize, places: &[Place], frame: Frame, scale: DotScale) -> String {
     let residuals = &subject.diagnosis.residuals;
     let name = &subject.diagnosis.channels[channel];
     let one = |of: &[Vec<f64>], when: &str| {
-        let mut drawing = frame.drawing(&format!("Channel {name}: residuals on the plate{when}"));
+        let mut drawing = frame.drawing(&format!("Channel {name}: residuals on the plate, {when}"));
+        if subject.is_extended() {
+            drawing.text("start when", [frame.left, frame.top + WHEN * frame.width], when);
+        }
         ground(&mut drawing, subject.plate.as_ref());
-        let rows = (0..residuals.samples.len()).filter(|row| is_drawn(*row, subject));
-        let dot = |row: usize| {
-            let [x, y] = residuals.samples[row].place_mm;
-            ([x, -y], level(of[channel][row], residuals.noise[channel]))
+        let dot = |place: &Place| {
+            let levels = place.rows.iter().map(|row| level(of[channel][*row], residuals.noise[channel]));
+            let [x, y] = place.at;
+            Dot::of([x, -y], levels)
         };
-        scale.draw(&mut drawing, &rows.map(dot).collect::<Vec<_>>(), frame.width);
+        scale.draw(&mut drawing, places.iter().filter_map(dot).collect(), frame.width);
         drawing.html()
     };
-    if !subject.is_extended() {
-        return one(&residuals.nominal, "");
-    }
-    one(&residuals.nominal, ", the model as it is") + &one(&residuals.extended, ", with the causes")
+    let before = one(&residuals.nominal, "before");
+    if subject.is_extended() { before + &one(&residuals.extended, "after") } else { before }
 }
 
 impl Frame {
@@ -78,7 +80,8 @@ impl Frame {
         if !(spread > APART * size && spread.is_finite()) {
             return None;
         }
-        let [x, y] = plate.map_or(ends, |it| [[-it.radius_mm, it.radius_mm]; 2]).map(|[low, high]| 0.5 * (low + high));
+        let [x, y] =
+            plate.map_or(ends, |it| [[-it.radius_mm, it.radius_mm]; 2]).map(|[low, high]| 0.5 * (low + high));
         let width = plate.map_or(spread, |it| 2.0 * it.radius_mm) * (1.0 + 2.0 * MARGIN);
         Some(Self { left: x - 0.5 * width, top: -y - 0.5 * width, width })
     }
@@ -97,30 +100,27 @@ fn ground(drawing: &mut Drawing, plate: Option<&Plate>) {
     }
 }
 
-/// What discs and rings and their sizes mean, and which module is which.
+/// What discs, rings and squares and their sizes mean, and which module is which.
 fn legend(subject: &Subject<'_>, scale: DotScale) -> String {
+    let entry = |mark: String, what: &str| format!("<span class=\"entry\">{mark}<span>{what}</span></span>");
     let examples = scale.examples();
-    let size = |at: usize, level: f64| {
-        let is_largest = at + 1 == examples.len();
-        let times = format!("{level:.0}× noise{}", if is_largest { " and more" } else { "" });
-        format!("<span class=\"entry\">{}{}<span>{times}</span></span>", dot(level, scale), dot(-level, scale))
-    };
-    let sizes: String = examples.iter().enumerate().map(|(at, level)| size(at, *level)).collect();
-    let full = dot(scale.full, scale);
-    let ring = dot(-scale.full, scale);
-    format!(
-        "<div class=\"legend\">{}<span class=\"entry\">{full}<span>reads more than the model</span></span>\
-         <span class=\"entry\">{ring}<span>reads less</span></span>{sizes}</div>",
-        key(subject)
-    )
+    let full = scale.full;
+    let signs = [
+        entry(mark(1.0, full, scale), "reads more than the model"),
+        entry(mark(-1.0, full, scale), "reads less"),
+        entry(mark(0.0, full, scale), "more and less, by the load"),
+    ];
+    let size = |level: &f64| format!("{}<span>{level:.0} ×</span>", mark(1.0, *level, scale));
+    let sizes: String = examples.iter().map(size).collect();
+    let sizes = format!("<span class=\"entry\">{sizes}<span>the channel’s noise</span></span>");
+    format!("<div class=\"legend\">{}{}{sizes}</div>", key(subject), signs.concat())
 }
 
-/// A dot of the legend.
-fn dot(level: f64, scale: DotScale) -> String {
-    let side = 2.5 * scale.radius(scale.full, MAP_PX);
-    let what = if level < 0.0 { "ring" } else { "disc" };
-    let mut drawing = Drawing::new("dot", [-0.5 * side, -0.5 * side, side, side], format!("a {what}"));
-    scale.draw(&mut drawing, &[([0.0, 0.0], level)], MAP_PX);
+/// A mark of the legend, as large as on the maps.
+fn mark(sign: f64, level: f64, scale: DotScale) -> String {
+    let what = ["a ring", "a square", "a disc"][(sign + 1.0) as usize];
+    let mut drawing = Drawing::new("dot", [-9.0, -9.0, 18.0, 18.0], what);
+    scale.draw(&mut drawing, vec![Dot { at: [0.0; 2], level, sign }], MAP_PX);
     drawing.html()
 }
 
@@ -128,15 +128,19 @@ fn dot(level: f64, scale: DotScale) -> String {
 fn key(subject: &Subject<'_>) -> String {
     let Some(plate) = &subject.plate else { return String::new() };
     let radius = plate.radius_mm;
-    let mut drawing = Drawing::new("key", [-1.5 * radius, -1.5 * radius, 3.0 * radius, 3.0 * radius], "The plate with its modules");
+    let mut drawing = Drawing::new(
+        "key",
+        [-1.5 * radius, -1.5 * radius, 3.0 * radius, 3.0 * radius],
+        "The plate with its modules",
+    );
     ground(&mut drawing, Some(plate));
     for (number, corners) in plate.modules_mm.iter().enumerate() {
         let middle = |axis: usize| corners.iter().map(|corner| corner[axis]).sum::<f64>() / 4.0;
-        drawing.text("middle", [middle(0), -middle(1)], &number.to_string());
+        drawing.text("middle", [0.5 * middle(0), -0.5 * middle(1)], &number.to_string());
     }
     drawing.line("axis", [radius, 0.0], [1.2 * radius, 0.0]);
     drawing.text("start", [1.23 * radius, 0.0], "x");
     drawing.line("axis", [0.0, -radius], [0.0, -1.2 * radius]);
     drawing.text("above", [0.0, -1.26 * radius], "y");
-    format!("<span class=\"entry\">{}<span>{}</span></span>", drawing.html(), escaped("modules 0 to ") + &plate.modules_mm.len().saturating_sub(1).to_string())
+    format!("<span class=\"entry\">{}<span>the modules</span></span>", drawing.html())
 }

@@ -106,15 +106,114 @@ fn overview(subject: &Subject<'_>) -> String {
         figures += &figure(format!("{rmse_extended:.1} {unit}"), "with the causes below");
     }
     figures += &figure(format!("{noise_floor:.1} {unit}"), "the channels’ noise");
+    figures += &figure(
+        format!("{:.1} %", 100.0 * subject.diagnosis.background_share),
+        "of a channel’s rms is background: the smooth small error that every model leaves",
+    );
     if let Some(gain) = gain {
-        let [low, high] = gain.rmse_ratio_interval95.map(|it| 100.0 * it);
-        figures += &figure(
-            format!("{:.0} %", 100.0 * gain.rmse_ratio),
-            &format!("of the error is left on {} locked rows ({low:.0} to {high:.0} %)", gain.rows_locked),
-        );
+        let [left, low, high] = account::percent_left(gain);
+        let what = format!("of the error is left on {} locked rows ({low} to {high} %)", gain.rows_locked);
+        figures += &figure(format!("{left} %"), &what);
     }
     if *unnamed_share > 0.0 {
-        figures += &figure(format!("{:.0} %", 100.0 * unnamed_share), "of the residual above noise has no known cause");
+        figures += &figure(
+            format!("{:.0} %", 100.0 * unnamed_share),
+            "of the residual above noise has no known cause",
+        );
     }
     format!("<div class=\"top\"><dl class=\"figures\">{figures}</dl>{}</div>", errors::figure(subject))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tactpad::lab::diagnosis::observations::Sample;
+    use tactpad::lab::diagnosis::report::{Estimate, Finding, Residuals, Verdict};
+    use tactpad::lab::diagnosis::target::Target;
+
+    /// A sensor with so many channels, of which the first reads a tenth too much.
+    fn diagnosis(channels: usize, rows: usize) -> Diagnosis {
+        let sample =
+            |row: usize| Sample { load: [row as f64, 0.0, 0.0], t_s: Some(row as f64), ..Sample::default() };
+        let wrong =
+            |channel: usize, row: usize| if channel == 0 { 0.1 * row as f64 } else { (row % 3) as f64 - 1.0 };
+        let residuals = |is_extended: bool| -> Vec<Vec<f64>> {
+            let of =
+                |channel| (0..rows).map(|row| wrong(if is_extended { 1 } else { channel }, row)).collect();
+            (0..channels).map(of).collect()
+        };
+        Diagnosis {
+            channels: (0..channels).map(|channel| format!("<s{channel}>&")).collect(),
+            verdict: Verdict::Explained,
+            noise_floor: 1.0,
+            rmse_nominal: 5.0,
+            rmse_extended: 1.0,
+            background_mm: 10.0,
+            background_share: 0.0,
+            findings: vec![Finding {
+                effect: "channel_gain",
+                target: Target::Channel(0),
+                parameters: vec![Estimate { name: "gain", value: 1.1, interval95: [1.09, f64::INFINITY] }],
+                p_value: 0.0,
+                share: f64::NAN,
+                confounded_with: vec![("zero_drift", Target::Pad)],
+                separate_by: Some("measure <again>".to_owned()),
+            }],
+            not_detected: Vec::new(),
+            not_testable: Vec::new(),
+            unnamed_share: 0.0,
+            ceiling_share: None,
+            gain: None,
+            residuals: Residuals {
+                samples: (0..rows).map(sample).collect(),
+                noise: vec![0.0; channels],
+                nominal: residuals(false),
+                extended: residuals(true),
+            },
+        }
+    }
+
+    fn of(diagnosis: &Diagnosis) -> String {
+        page(&Subject {
+            diagnosis,
+            measured: "<script>.csv".to_owned(),
+            model: "another".to_owned(),
+            unit: "",
+            load_unit: None,
+            plate: None,
+            notices: vec![Notice {
+                check: "stuck".to_owned(),
+                channel: Some("<b>".to_owned()),
+                detail: "a & b".to_owned(),
+            }],
+        })
+    }
+
+    #[test]
+    fn sensors_without_a_plate_have_no_maps() {
+        let page = of(&diagnosis(30, 200));
+        assert!(page.contains("Against load and time") && !page.contains("id=\"maps\""));
+        assert!(page.contains("18 more channels"), "12 are shown at once");
+        assert!(page.contains("Stuck"), "notices are told");
+        assert!(page.contains("Measure next:</strong> measure &lt;again&gt;."));
+    }
+
+    #[test]
+    fn what_files_say_is_no_markup() {
+        let page = of(&diagnosis(3, 60));
+        for bad in ["<script", "<s0>", "<b>", "<again>", "a & b"] {
+            assert!(!page.contains(bad), "{bad}");
+        }
+        assert!(!page.contains("NaN\"") && !page.contains("inf\""), "no number of a drawing is none");
+    }
+
+    #[test]
+    fn no_rows_and_no_channels_are_a_page() {
+        for (channels, rows) in [(0, 0), (1, 0), (2, 1), (1, 3)] {
+            assert!(
+                of(&diagnosis(channels, rows)).ends_with("</html>\n"),
+                "{channels} channels, {rows} rows"
+            );
+        }
+    }
 }

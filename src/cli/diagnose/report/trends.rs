@@ -4,6 +4,7 @@ use super::Subject;
 use super::circumstances::{self, Circumstance};
 use super::drawing::{Drawing, escaped};
 use super::grid::Grid;
+use super::words::listed;
 use tactpad::plot::scale::{Scale, linear_ticks};
 
 /// A panel's size, and the ends of its axes, in pixels.
@@ -53,28 +54,24 @@ impl Circumstance {
     }
 }
 
-/// `a, b and c`.
-fn listed(words: &[String]) -> String {
-    match words {
-        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
-        _ => words.concat(),
-    }
-}
-
 /// One channel against everything, all with the same residuals upwards.
 fn panels(subject: &Subject<'_>, channel: usize, all: &[Circumstance]) -> String {
     let residuals = &subject.diagnosis.residuals;
-    let bands: Vec<[Band; 2]> =
-        all.iter().map(|it| [&residuals.nominal, &residuals.extended].map(|of| band(it, &of[channel]))).collect();
+    let bands: Vec<[Band; 2]> = all
+        .iter()
+        .map(|it| [&residuals.nominal, &residuals.extended].map(|of| band(it, &of[channel])))
+        .collect();
     let noise = residuals.noise[channel];
-    let shown = bands.iter().flatten().flatten().flat_map(|(_, values)| *values).chain([-noise, noise]);
-    let y = Scale::Linear.span(shown.filter(|it| it.is_finite()));
+    let shown = bands.iter().flatten().flatten().flat_map(|(_, values)| *values).chain([noise]);
+    let largest = shown.map(f64::abs).filter(|it| it.is_finite()).fold(0.0, f64::max);
+    let y = Scale::Linear.span([-largest, largest].into_iter());
     all.iter().zip(&bands).map(|(it, bands)| panel(subject, channel, it, bands, y)).collect()
 }
 
 fn band(circumstance: &Circumstance, residuals: &[f64]) -> Band {
     let of_bin = |bin: circumstances::Bin| {
-        let mut values: Vec<f64> = bin.rows.iter().map(|row| residuals[*row]).filter(|it| it.is_finite()).collect();
+        let mut values: Vec<f64> =
+            bin.rows.iter().map(|row| residuals[*row]).filter(|it| it.is_finite()).collect();
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1)?;
         Some((bin.value, QUANTILES.map(|share| values[(share * last as f64).round() as usize])))
@@ -82,7 +79,13 @@ fn band(circumstance: &Circumstance, residuals: &[f64]) -> Band {
     circumstance.bins().into_iter().filter_map(of_bin).collect()
 }
 
-fn panel(subject: &Subject<'_>, channel: usize, it: &Circumstance, [before, after]: &[Band; 2], y: [f64; 2]) -> String {
+fn panel(
+    subject: &Subject<'_>,
+    channel: usize,
+    it: &Circumstance,
+    [before, after]: &[Band; 2],
+    y: [f64; 2],
+) -> String {
     let name = &subject.diagnosis.channels[channel];
     let title = format!("Channel {name}: residual in {} against {}", subject.unit, it.title);
     let mut drawing = Drawing::new("trend", [0.0, 0.0, SIZE[0], SIZE[1]], title);
@@ -135,7 +138,7 @@ impl Axes {
     fn draw(&self, drawing: &mut Drawing, circumstance: &Circumstance) {
         drawing.line("axis", [LEFT, TOP], [LEFT, BOTTOM]);
         drawing.line("axis", [LEFT, BOTTOM], [RIGHT, BOTTOM]);
-        for tick in linear_ticks(self.y, 3.0) {
+        for tick in linear_ticks(self.y, 4.0) {
             let [_, y] = self.at([self.x[0], tick.value]);
             drawing.line("axis", [LEFT - 3.0, y], [LEFT, y]);
             drawing.text("end", [LEFT - 5.0, y + 3.5], &plain(&tick.label));

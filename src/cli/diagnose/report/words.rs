@@ -1,6 +1,6 @@
 //! Causes in plain English.
 
-use super::super::numbers::{carried, decimals, estimate, parts, rounded};
+use super::super::numbers::{carried, decimals, estimate, parts, rounded, with_unit};
 use tactpad::lab::diagnosis::report::{Estimate, Finding};
 use tactpad::lab::diagnosis::target::Target;
 
@@ -27,12 +27,28 @@ const EFFECTS: [(&str, &str, &str); 35] = [
         "{target} stands {radial_mm|too far out|too far in&tangential_mm|too far counter-clockwise|too far clockwise}",
     ),
     ("module_rotated", "turned module", "{target} is turned {deg|counter-clockwise|clockwise}"),
-    ("module_tilted", "tilted module", "{target} is tilted by {tangential_deg|along the tangent&radial_deg|along the radius}"),
-    ("module_stiffness", "wrong stiffness of a module", "the frame of {target} is {factor|stiffer|softer} than in the model"),
+    (
+        "module_tilted",
+        "tilted module",
+        "{target} is tilted by {tangential_deg|along the tangent&radial_deg|along the radius}",
+    ),
+    (
+        "module_stiffness",
+        "wrong stiffness of a module",
+        "the frame of {target} is {factor|stiffer|softer} than in the model",
+    ),
     ("module_debonded", "bond come off", "the bond of {target} is off over {area_share} of its area"),
-    ("module_frame_open", "open frame", "the frame of {target} is open over {area_share} of its area, on its {side} side"),
+    (
+        "module_frame_open",
+        "open frame",
+        "the frame of {target} is open over {area_share} of its area, on its {side} side",
+    ),
     ("module_crosstalk", "crosstalk between modules", "{target} takes up {share} of {with}"),
-    ("plate_stiffness", "wrong stiffness of the plate", "the plate is {factor|stiffer|softer} than in the model"),
+    (
+        "plate_stiffness",
+        "wrong stiffness of the plate",
+        "the plate is {factor|stiffer|softer} than in the model",
+    ),
     ("excitation_gain", "wrong excitation", "every channel reads {gain|too much|too little}"),
     ("thermal_zero", "zero moving with temperature", "the zero of {target} moves by {uv_per_c}"),
     ("thermal_gain", "gain changing with temperature", "the gain of {target} changes by {per_c}"),
@@ -40,12 +56,28 @@ const EFFECTS: [(&str, &str, &str); 35] = [
     ("hysteresis", "hysteresis", "{target} keeps {share_of_full_scale} of full scale after a load"),
     ("creep", "creep", "{target} creeps by {share_at_20s} within 20 s"),
     ("ageing", "ageing", "{target} has lost {share_at_end} of its signal by the last cycle"),
-    ("reference_tilt", "force reference askew", "the force reference stands askew by {x_deg|about x&y_deg|about y}"),
-    ("reference_gain", "wrong gain of the force reference", "the force reference writes {gain|too much|too little}"),
-    ("reference_zero", "zero of the force reference off", "the zero of the force reference is off by {fx_n|in x&fy_n|in y&fz_n|in z}"),
+    (
+        "reference_tilt",
+        "force reference askew",
+        "the force reference stands askew by {x_deg|about x&y_deg|about y}",
+    ),
+    (
+        "reference_gain",
+        "wrong gain of the force reference",
+        "the force reference writes {gain|too much|too little}",
+    ),
+    (
+        "reference_zero",
+        "zero of the force reference off",
+        "the zero of the force reference is off by {fx_n|in x&fy_n|in y&fz_n|in z}",
+    ),
     ("stage_offset", "stage out of place", "the stage is off by {x_mm|in x&y_mm|in y}"),
     ("stage_rotation", "turned stage", "the stage is turned {deg|counter-clockwise|clockwise}"),
-    ("stage_scale", "wrong scale of the stage", "true distances are {scale|longer|shorter} than the stage writes"),
+    (
+        "stage_scale",
+        "wrong scale of the stage",
+        "true distances are {scale|longer|shorter} than the stage writes",
+    ),
     ("contact_height", "height of the contact", "the forces act {mm|above|below} the plate’s surface"),
     ("contact_size", "size of the contact", "the contact has a radius of {radius_mm}"),
     ("time_lag", "labels out of step", "the labels are {ms|late|early}"),
@@ -53,7 +85,10 @@ const EFFECTS: [(&str, &str, &str); 35] = [
 
 /// An effect's name for people.
 pub(super) fn title(effect: &str) -> String {
-    EFFECTS.iter().find(|(name, ..)| *name == effect).map_or_else(|| effect.replace('_', " "), |(_, it, _)| (*it).to_owned())
+    EFFECTS
+        .iter()
+        .find(|(name, ..)| *name == effect)
+        .map_or_else(|| effect.replace('_', " "), |(_, it, _)| (*it).to_owned())
 }
 
 /// A cause and where it is: `turned module (module 1)`.
@@ -96,13 +131,13 @@ pub(super) fn chance(p_value: f64) -> String {
         return "unknown".to_owned();
     }
     if once_in > 1e12 {
-        return "less than once in a million million such measurements".to_owned();
+        return "practically never (p below 10⁻¹²)".to_owned();
     }
     let (step, word) = STEPS.iter().find(|(step, _)| once_in >= *step).copied().unwrap_or((1.0, ""));
     let count = once_in / step;
     let power = 10_f64.powf(count.log10().floor());
     let count = (count / power).round() * power;
-    format!("once in {} such measurements", format!("{count:.0} {word}").trim())
+    format!("once in {} measurements", format!("{count:.0} {word}").trim())
 }
 
 /// What stands for a placeholder.
@@ -131,7 +166,7 @@ fn sizes(wanted: &str, parameters: &[Estimate]) -> String {
         numbers.iter().filter(|(_, it)| is_told(it)).map(|(words, it)| size(it, words)).collect()
     };
     let some = told(is_some);
-    (if some.is_empty() { told(|_| true) } else { some }).join(" and ")
+    listed(&if some.is_empty() { told(|_| true) } else { some })
 }
 
 fn is_some(estimate: &Estimate) -> bool {
@@ -145,9 +180,19 @@ fn subject(target: &Target, channels: &[String]) -> String {
     if is_channel && !name.starts_with("channel ") { format!("channel {name}") } else { place(&name) }
 }
 
+/// `a, b and c`.
+pub(super) fn listed(words: &[String]) -> String {
+    match words {
+        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
+        _ => words.concat(),
+    }
+}
+
 /// `module1` as people write it.
-fn place(name: &str) -> String {
-    let number = name.strip_prefix("module").filter(|it| !it.is_empty() && it.chars().all(|digit| digit.is_ascii_digit()));
+pub(super) fn place(name: &str) -> String {
+    let number = name
+        .strip_prefix("module")
+        .filter(|it| !it.is_empty() && it.chars().all(|digit| digit.is_ascii_digit()));
     number.map_or_else(|| name.to_owned(), |number| format!("module {number}"))
 }
 
@@ -155,22 +200,26 @@ fn place(name: &str) -> String {
 fn size(estimate: &Estimate, words: &[&str]) -> String {
     let (value, interval, unit) = shown(estimate);
     let digits = sentence_digits(value, interval);
-    let gap = if unit == "°" { "" } else { " " };
+    let told = |value: f64| with_unit(&rounded(value, digits), &unit);
     match words {
-        [more, less, ..] => {
-            let word = if value < 0.0 { less } else { more };
-            format!("{}{gap}{unit} {word}", rounded(value.abs(), digits))
-        }
-        [word] => format!("{}{gap}{unit} {word}", rounded(value, digits)),
-        [] => format!("{}{gap}{unit}", rounded(value, digits)),
+        [more, less, ..] => format!("{} {}", told(value.abs()), if value < 0.0 { less } else { more }),
+        [word] => format!("{} {word}", told(value)),
+        [] => told(value),
     }
 }
 
-/// One digit fewer than beside an interval, unless nothing would be left.
+/// Two figures, or what the interval carries if that is less; one that is nothing by that keeps its figures.
 fn sentence_digits(value: f64, interval95: [f64; 2]) -> usize {
-    let fewer = carried(value, interval95).saturating_sub(1);
-    let is_left = value.abs() >= 0.5 * 10_f64.powi(-(fewer as i32));
-    if is_left { fewer } else { decimals(value).min(fewer + 2) }
+    let carried = carried(value, interval95).saturating_sub(1);
+    let is_left = value.abs() >= 0.5 * 10_f64.powi(-(carried as i32));
+    if is_left { carried.min(two_figures(value)) } else { two_figures(value) }
+}
+
+/// As many digits behind the point as show two figures of the value, rounded.
+fn two_figures(value: f64) -> usize {
+    let places = decimals(value);
+    let power = 10_f64.powi(places as i32);
+    decimals((value * power).round() / power)
 }
 
 /// A number as people read it: factors and shares as per cent off none.
@@ -222,17 +271,32 @@ mod tests {
     #[test]
     fn findings_are_sentences() {
         let channel = Target::Channel(0);
-        assert_eq!(told("channel_gain", channel, &[("gain", 1.1203, 0.01)]), "channel m0x reads 12 % too much");
-        assert_eq!(told("channel_gain", channel, &[("gain", 0.931, 0.002)]), "channel m0x reads 6.9 % too little");
+        assert_eq!(
+            told("channel_gain", channel, &[("gain", 1.1203, 0.01)]),
+            "channel m0x reads 12 % too much"
+        );
+        assert_eq!(
+            told("channel_gain", channel, &[("gain", 0.931, 0.002)]),
+            "channel m0x reads 6.9 % too little"
+        );
         let crosstalk = Target::Channels { into: 1, from: 0 };
-        assert_eq!(told("channel_crosstalk", crosstalk, &[("share", 0.021, 0.002)]), "channel m0y takes up 2.1 % of m0x");
-        assert_eq!(told("module_rotated", Target::Module(2), &[("deg", -2.13, 0.3)]), "module 2 is turned 2.1° clockwise");
+        assert_eq!(
+            told("channel_crosstalk", crosstalk, &[("share", 0.021, 0.002)]),
+            "channel m0y takes up 2.1 % of m0x"
+        );
+        assert_eq!(
+            told("module_rotated", Target::Module(2), &[("deg", -2.13, 0.3)]),
+            "module 2 is turned 2.1° clockwise"
+        );
         assert_eq!(
             told("thermal_zero", Target::Pad, &[("uv_per_c", -31.3, 2.0)]),
             "the zero of every channel moves by −31 µV/°C"
         );
         let displaced = [("radial_mm", -0.71, 0.02), ("tangential_mm", 0.01, 0.02)];
-        assert_eq!(told("module_displaced", Target::Module(1), &displaced), "module 1 stands 0.71 mm too far in");
+        assert_eq!(
+            told("module_displaced", Target::Module(1), &displaced),
+            "module 1 stands 0.71 mm too far in"
+        );
         let askew = [("x_deg", 1.23, 0.2), ("y_deg", -0.8, 0.2)];
         assert_eq!(
             told("reference_tilt", Target::Rig, &askew),
@@ -243,14 +307,17 @@ mod tests {
 
     #[test]
     fn small_numbers_keep_a_digit() {
-        assert_eq!(told("channel_gain", Target::Channel(0), &[("gain", 1.004, 0.2)]), "channel m0x reads 0.40 % too much");
+        assert_eq!(
+            told("channel_gain", Target::Channel(0), &[("gain", 1.004, 0.2)]),
+            "channel m0x reads 0.40 % too much"
+        );
     }
 
     #[test]
     fn chances_are_words() {
-        assert_eq!(chance(3.1e-4), "once in 3 thousand such measurements");
-        assert_eq!(chance(0.02), "once in 50 such measurements");
-        assert_eq!(chance(0.0), "less than once in a million million such measurements");
+        assert_eq!(chance(3.1e-4), "once in 3 thousand measurements");
+        assert_eq!(chance(0.02), "once in 50 measurements");
+        assert_eq!(chance(0.0), "practically never (p below 10⁻¹²)");
         assert_eq!(chance(f64::NAN), "unknown");
     }
 }

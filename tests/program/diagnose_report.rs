@@ -37,17 +37,13 @@ fn malformed(page: &str) -> Option<String> {
         {
             return Some(format!("bare sign in {part}"));
         }
-        let name = tag.split([' ', '/']).next().unwrap_or_default();
         match tag.strip_prefix('/') {
             Some(closed) if open.pop() == Some(closed) => {}
             Some(closed) => return Some(format!("</{closed}>")),
             None if tag.ends_with('/') => {}
-            None => open.push(tag.split(' ').next().unwrap_or(name)),
+            None => open.push(tag.split(' ').next().unwrap_or(tag)),
         }
-        if !tag.matches('"').count().is_multiple_of(2)
-            || tag.matches('=').count()
-                > tag.matches("=\"").count() + tag.matches("=device").count() + tag.matches("=1").count()
-        {
+        if tag.matches("=\"").count() * 2 != tag.matches('"').count() {
             return Some(format!("attributes of <{tag}>"));
         }
     }
@@ -78,7 +74,7 @@ fn the_page_has_all_that_was_found_and_needs_nothing_else() {
     let measured = "<i>&amp.csv";
     done(folder, &format!("twin --plan plan.csv --seed 1 --imperfections wrong.toml --out {measured}"));
     fs::create_dir(folder.join("report")).unwrap();
-    fs::write(folder.join("report/report.html"), "old").unwrap();
+    fs::write(folder.join("report/report.html"), "an earlier page").unwrap();
     let printed = done(folder, &format!("diagnose --measured {measured} --report report --json"));
     let [page, document] = ["report.html", "report.json"]
         .map(|name| fs::read_to_string(folder.join("report").join(name)).unwrap());
@@ -98,7 +94,7 @@ fn the_page_has_all_that_was_found_and_needs_nothing_else() {
         );
         assert!(page.contains(&name), "{name}");
     }
-    for bad in ["http", "//", "<script", "url(", "@import", "<i>", "NaN", "old"] {
+    for bad in ["http", "//", "<script", "url(", "@import", "<i>", "NaN", "an earlier page"] {
         assert!(!page.contains(bad), "{bad}");
     }
     assert!(
@@ -115,6 +111,7 @@ fn folders_that_cannot_be_are_refused_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("file"), "").unwrap();
+    fs::create_dir(folder.join("new")).unwrap();
     fs::write(folder.join("report.json"), "x_mm\n1\n").unwrap();
     for (line, wanted) in [
         ("--measured m.csv --report file", "file is no folder; name another"),

@@ -1,9 +1,9 @@
 //! What the causes are worth on locked rows, what was noticed before, and how all of it was computed.
 
 use super::super::numbers::{carried, rounded};
-use super::Subject;
 use super::causes::bar;
 use super::drawing::escaped;
+use super::subject::{Notice, Subject};
 use super::words::{capital, cause};
 use tactpad::lab::diagnosis::report::Gain;
 
@@ -54,7 +54,7 @@ pub(super) fn notices(subject: &Subject<'_>) -> String {
     if subject.notices.is_empty() {
         return String::new();
     }
-    let row = |it: &super::Notice| {
+    let row = |it: &Notice| {
         format!(
             "<li><strong>{}</strong> {} {}</li>",
             escaped(&capital(&it.check.replace('_', " "))),

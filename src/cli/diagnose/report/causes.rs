@@ -1,8 +1,8 @@
 //! Each cause: what it is, how large, how sure.
 
 use super::super::numbers::{carried, parts, rounded, with_unit};
-use super::Subject;
 use super::drawing::{Drawing, escaped};
+use super::subject::Subject;
 use super::words::{capital, cause, chance, none, sentence};
 use tactpad::lab::diagnosis::report::{Estimate, Finding};
 
@@ -99,7 +99,6 @@ fn interval(estimate: &Estimate, title: &str) -> String {
 
 /// What speaks for it.
 fn evidence(subject: &Subject<'_>, finding: &Finding) -> String {
-    let share = 100.0 * finding.share;
     let without = subject.diagnosis.gain.as_ref().and_then(|gain| {
         gain.per_cause.iter().find(|it| it.effect == finding.effect && it.target == finding.target)
     });
@@ -114,9 +113,18 @@ fn evidence(subject: &Subject<'_>, finding: &Finding) -> String {
         "<dl class=\"evidence\"><div><dt>By chance</dt><dd>{}</dd></div><div><dt>Share of the residual</dt>\
          <dd>{}{}</dd></div>{without}</dl>",
         chance(finding.p_value),
-        bar(finding.share, &format!("{share:.0} % of the residual")),
-        if share < 1.0 { "less than 1 %".to_owned() } else { format!("{share:.0} %") }
+        bar(finding.share, &format!("{} of the residual", percent(finding.share))),
+        percent(finding.share)
     )
+}
+
+/// A share in words.
+fn percent(share: f64) -> String {
+    match 100.0 * share {
+        it if it.is_nan() => "unknown".to_owned(),
+        it if it < 1.0 => "less than 1 %".to_owned(),
+        it => format!("{it:.0} %"),
+    }
 }
 
 /// A share as a bar.

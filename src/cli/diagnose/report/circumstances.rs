@@ -1,6 +1,6 @@
 //! What was written beside the rows, as axes: load, its direction, time, temperature, cycles.
 
-use super::Subject;
+use super::subject::Subject;
 use tactpad::lab::diagnosis::observations::Sample;
 use tactpad::numeric::statistics::rms;
 
@@ -27,7 +27,7 @@ pub(super) fn all(subject: &Subject<'_>) -> Vec<Circumstance> {
     all.push(of(samples, "cycles of load", |it| it.cycle));
     all.push(Circumstance {
         names: vec!["loading", "unloading"],
-        ..of(samples, "load came", |it| Some(f64::from(u8::from(it.is_unloading))))
+        ..of(samples, "approach", |it| Some(f64::from(u8::from(it.is_unloading))))
     });
     all.retain(differs);
     all

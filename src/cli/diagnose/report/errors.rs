@@ -1,7 +1,7 @@
 //! How far the model misses each channel, before and after: one line each.
 
-use super::Subject;
 use super::drawing::Drawing;
+use super::subject::Subject;
 use tactpad::plot::scale::{Scale, linear_ticks};
 
 /// A line's height, and where the axis begins and ends, in pixels.

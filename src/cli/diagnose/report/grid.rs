@@ -1,8 +1,7 @@
 //! Small pictures side by side, one card for each channel.
 
-use super::Subject;
 use super::drawing::escaped;
-use tactpad::numeric::statistics::rms;
+use super::subject::Subject;
 
 /// So many channels are shown at once; of more, those that the model misses most, and the others on request.
 const CHANNELS_MAX: usize = 12;
@@ -67,36 +66,6 @@ impl<'s> Grid<'s> {
 }
 
 impl Subject<'_> {
-    /// The channels that tell anything.
-    pub(super) fn alive(&self) -> Vec<usize> {
-        let residuals = &self.diagnosis.residuals;
-        let is_alive = |channel: &usize| residuals.nominal[*channel].iter().any(|it| it.is_finite());
-        (0..residuals.nominal.len()).filter(is_alive).collect()
-    }
-
-    /// Root mean square of a channel's residuals, before and after.
-    pub(super) fn errors(&self, channel: usize) -> [f64; 2] {
-        let residuals = &self.diagnosis.residuals;
-        [&residuals.nominal, &residuals.extended]
-            .map(|of| rms(of[channel].iter().copied().filter(|it| it.is_finite())))
-    }
-
-    /// How far the model misses a channel, in multiples of its noise.
-    fn excess(&self, channel: usize) -> f64 {
-        self.errors(channel)[0] / self.diagnosis.residuals.noise[channel].max(f64::MIN_POSITIVE)
-    }
-
-    /// Whether there is anything that the extended model does otherwise.
-    pub(super) fn is_extended(&self) -> bool {
-        let residuals = &self.diagnosis.residuals;
-        residuals
-            .nominal
-            .iter()
-            .flatten()
-            .zip(residuals.extended.iter().flatten())
-            .any(|(one, other)| one.is_finite() && one != other)
-    }
-
     /// How many dots a map may have.
     pub(super) fn dots_of_map(&self) -> usize {
         let maps = 2 * self.diagnosis.residuals.nominal.len().max(1);

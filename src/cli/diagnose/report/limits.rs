@@ -1,8 +1,8 @@
 //! What could not have been seen: the sizes from which on causes are found, and what could not be asked for.
 
 use super::super::numbers::{decimals, parts, rounded, with_unit};
-use super::Subject;
 use super::drawing::escaped;
+use super::subject::Subject;
 use super::words::{capital, cause, title};
 use tactpad::lab::diagnosis::report::NotDetected;
 

@@ -3,7 +3,7 @@
 use super::dots::{Dot, DotScale, Place, level, places};
 use super::drawing::Drawing;
 use super::grid::Grid;
-use super::{Plate, Subject};
+use super::subject::{Plate, Subject};
 use tactpad::lab::diagnosis::observations::Sample;
 
 /// Space around a plate or the places, as a share of it.

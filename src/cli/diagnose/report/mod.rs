@@ -12,13 +12,14 @@ mod errors;
 mod grid;
 mod limits;
 mod maps;
+mod subject;
 mod trends;
 mod verdict;
 mod words;
 
 use self::drawing::escaped;
+pub(super) use self::subject::{Plate, Subject};
 use tactpad::lab::diagnosis::report::Diagnosis;
-use tactpad::pad::device::Device;
 
 /// Names of the files in the report's folder.
 pub(super) const PAGE: &str = "report.html";
@@ -26,49 +27,6 @@ pub(super) const PAGE: &str = "report.html";
 pub(super) const DOCUMENT: &str = "report.json";
 
 const STYLE: &str = include_str!("style.css");
-
-/// What a report is of.
-pub(super) struct Subject<'d> {
-    /// What was found.
-    pub(super) diagnosis: &'d Diagnosis,
-    /// What was measured, in a few words: the file's name.
-    pub(super) measured: String,
-    /// What it was held against.
-    pub(super) model: String,
-    /// Unit of the channels; empty where it is not known.
-    pub(super) unit: &'d str,
-    /// Unit of the loads, where it is known.
-    pub(super) load_unit: Option<&'d str>,
-    /// What to draw under the contacts.
-    pub(super) plate: Option<Plate>,
-    /// What checks before the diagnosis found.
-    pub(super) notices: Vec<Notice>,
-}
-
-/// A plate with its modules.
-pub(super) struct Plate {
-    pub(super) radius_mm: f64,
-    /// Corners of the modules' films.
-    pub(super) modules_mm: Vec<[[f64; 2]; 4]>,
-}
-
-/// Something that a check before the diagnosis found.
-pub(super) struct Notice {
-    pub(super) check: String,
-    pub(super) channel: Option<String>,
-    pub(super) detail: String,
-}
-
-impl Plate {
-    /// The plate of a device, its modules where it has them.
-    pub(super) fn of(device: &Device) -> Self {
-        let half_mm = [device.stack.film_length_x_mm, device.stack.film_width_y_mm].map(|side| 0.5 * side);
-        Self {
-            radius_mm: device.plate.radius_mm(),
-            modules_mm: device.poses().iter().map(|pose| pose.corners_mm(half_mm)).collect(),
-        }
-    }
-}
 
 /// The page. Equal subjects give equal bytes.
 pub(super) fn page(subject: &Subject<'_>) -> String {
@@ -106,10 +64,13 @@ fn overview(subject: &Subject<'_>) -> String {
         figures += &figure(format!("{rmse_extended:.1} {unit}"), "with the causes below");
     }
     figures += &figure(format!("{noise_floor:.1} {unit}"), "the channels’ noise");
-    figures += &figure(
-        format!("{:.1} %", 100.0 * subject.diagnosis.background_share),
-        "of a channel’s rms is background: the smooth small error that every model leaves",
-    );
+    let background = format!("{:.1} %", 100.0 * subject.diagnosis.background_share);
+    if background != "0.0 %" {
+        figures += &figure(
+            background,
+            "of a channel’s rms is background: the smooth small error that every model leaves",
+        );
+    }
     if let Some(gain) = gain {
         let [left, low, high] = account::percent_left(gain);
         let what = format!("of the error is left on {} locked rows ({low} to {high} %)", gain.rows_locked);
@@ -126,6 +87,7 @@ fn overview(subject: &Subject<'_>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::subject::Notice;
     use super::*;
     use tactpad::lab::diagnosis::observations::Sample;
     use tactpad::lab::diagnosis::report::{Estimate, Finding, Residuals, Verdict};

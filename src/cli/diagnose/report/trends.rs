@@ -1,9 +1,9 @@
 //! Residuals against load, direction, time and temperature: for each channel, where eight of ten rows lie.
 
-use super::Subject;
 use super::circumstances::{self, Circumstance};
 use super::drawing::{Drawing, escaped};
 use super::grid::Grid;
+use super::subject::Subject;
 use super::words::listed;
 use tactpad::plot::scale::{Scale, linear_ticks};
 
@@ -36,22 +36,13 @@ pub(super) fn section(subject: &Subject<'_>) -> String {
         return String::new();
     }
     let panels = Grid::of(subject).html(|channel| panels(subject, channel, &all));
-    let titles: Vec<String> = all.iter().map(Circumstance::short).collect();
+    let titles: Vec<String> =
+        all.iter().map(|it| it.title.split(" in ").next().unwrap_or_default().to_owned()).collect();
     format!(
         "<section id=\"trends\"><h2>Against {}</h2>{}{panels}</section>",
         escaped(&listed(&titles)),
         legend(subject)
     )
-}
-
-impl Circumstance {
-    /// Its title without its unit.
-    fn short(&self) -> String {
-        match self.names.as_slice() {
-            [] => self.title.split(" in ").next().unwrap_or(&self.title).to_owned(),
-            _ => "loading and unloading".to_owned(),
-        }
-    }
 }
 
 /// One channel against everything, all with the same residuals upwards.

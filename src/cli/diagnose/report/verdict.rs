@@ -1,6 +1,6 @@
 //! The whole answer in one sentence.
 
-use super::Subject;
+use super::subject::Subject;
 use super::words::{capital, cause, listed, place, sentence, title};
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Verdict};
 use tactpad::lab::diagnosis::target::Target;

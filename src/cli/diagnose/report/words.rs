@@ -11,7 +11,7 @@ use tactpad::lab::diagnosis::target::Target;
 /// their intervals. Numbers without a unit are told in per cent.
 const EFFECTS: [(&str, &str, &str); 35] = [
     ("channel_gain", "wrong gain", "{target} reads {gain|too much|too little}"),
-    ("channel_offset", "zero off", "{target} reads {offset_uv} without load"),
+    ("channel_offset", "offset", "{target} reads {offset_uv} without load"),
     ("noise_excess", "too much noise", "{target} is {factor|noisier|quieter} than it should be"),
     ("channel_dead", "dead channel", "{target} is dead"),
     ("channel_polarity", "reversed channel", "{target} has the wrong sign"),
@@ -68,7 +68,7 @@ const EFFECTS: [(&str, &str, &str); 35] = [
     ),
     (
         "reference_zero",
-        "zero of the force reference off",
+        "offset of the force reference",
         "the zero of the force reference is off by {fx_n|in x&fy_n|in y&fz_n|in z}",
     ),
     ("stage_offset", "stage out of place", "the stage is off by {x_mm|in x&y_mm|in y}"),

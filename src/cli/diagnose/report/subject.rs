@@ -5,40 +5,40 @@ use tactpad::numeric::statistics::rms;
 use tactpad::pad::device::Device;
 
 /// What a report is of.
-pub(in crate::cli::diagnose) struct Subject<'d> {
+pub(crate) struct Subject<'d> {
     /// What was found.
-    pub(in crate::cli::diagnose) diagnosis: &'d Diagnosis,
+    pub(crate) diagnosis: &'d Diagnosis,
     /// What was measured, in a few words: the file's name.
-    pub(in crate::cli::diagnose) measured: String,
+    pub(crate) measured: String,
     /// What it was held against.
-    pub(in crate::cli::diagnose) model: String,
+    pub(crate) model: String,
     /// Unit of the channels; empty where it is not known.
-    pub(in crate::cli::diagnose) unit: &'d str,
+    pub(crate) unit: &'d str,
     /// Unit of the loads, where it is known.
-    pub(in crate::cli::diagnose) load_unit: Option<&'d str>,
+    pub(crate) load_unit: Option<&'d str>,
     /// What to draw under the contacts.
-    pub(in crate::cli::diagnose) plate: Option<Plate>,
+    pub(crate) plate: Option<Plate>,
     /// What checks before the diagnosis found.
-    pub(in crate::cli::diagnose) notices: Vec<Notice>,
+    pub(crate) notices: Vec<Notice>,
 }
 
 /// A plate with its modules.
-pub(in crate::cli::diagnose) struct Plate {
-    pub(in crate::cli::diagnose) radius_mm: f64,
+pub(crate) struct Plate {
+    pub(crate) radius_mm: f64,
     /// Corners of the modules' films.
-    pub(in crate::cli::diagnose) modules_mm: Vec<[[f64; 2]; 4]>,
+    pub(crate) modules_mm: Vec<[[f64; 2]; 4]>,
 }
 
 /// Something that a check before the diagnosis found.
-pub(in crate::cli::diagnose) struct Notice {
-    pub(in crate::cli::diagnose) check: String,
-    pub(in crate::cli::diagnose) channel: Option<String>,
-    pub(in crate::cli::diagnose) detail: String,
+pub(crate) struct Notice {
+    pub(crate) check: String,
+    pub(crate) channel: Option<String>,
+    pub(crate) detail: String,
 }
 
 impl Plate {
     /// The plate of a device, its modules where it has them.
-    pub(in crate::cli::diagnose) fn of(device: &Device) -> Self {
+    pub(crate) fn of(device: &Device) -> Self {
         let half_mm = [device.stack.film_length_x_mm, device.stack.film_width_y_mm].map(|side| 0.5 * side);
         Self {
             radius_mm: device.plate.radius_mm(),

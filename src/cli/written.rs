@@ -20,8 +20,12 @@ pub(super) fn stdout() -> Named<Stdout> {
 
 /// Prints one JSON document to stdout.
 pub(super) fn print_json(document: &impl serde::Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string(document).map_err(|error| Failure::Failed(error.to_string()))?;
-    Ok(writeln!(stdout(), "{text}")?)
+    Ok(writeln!(stdout(), "{}", json_text(document)?)?)
+}
+
+/// A JSON document on one line.
+pub(super) fn json_text(document: &impl serde::Serialize) -> Result<String, Failure> {
+    serde_json::to_string(document).map_err(|error| Failure::Failed(error.to_string()))
 }
 
 /// Says something to people beside the verb's output. What does not get out must not stop the verb.

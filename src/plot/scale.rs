@@ -32,10 +32,11 @@ pub(super) struct Axis {
 
 /// A value with a mark at the axis.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tick {
-    pub(super) value: f64,
-    /// Empty for a tick between labelled ones.
-    pub(super) label: String,
+pub struct Tick {
+    /// Where it is.
+    pub value: f64,
+    /// What is written there, `^{…}` being an exponent. Empty for a tick between labelled ones.
+    pub label: String,
 }
 
 impl Scale {
@@ -59,7 +60,7 @@ impl Scale {
     }
 
     /// The span of an axis that shows `values` and begins and ends at ticks.
-    pub(super) fn span(self, values: impl Iterator<Item = f64>) -> [f64; 2] {
+    pub fn span(self, values: impl Iterator<Item = f64>) -> [f64; 2] {
         let shown = span_of(values.filter(|&value| self.shows(value)));
         match self {
             Self::Linear => {
@@ -136,7 +137,7 @@ fn nice_below(value: f64) -> f64 {
 }
 
 /// Labelled ticks at even values, about `steps` apart.
-pub(super) fn linear_ticks([low, high]: [f64; 2], steps: f64) -> Vec<Tick> {
+pub fn linear_ticks([low, high]: [f64; 2], steps: f64) -> Vec<Tick> {
     let step = nice_step((high - low) / steps);
     let [first, last] = [(low / step - RESOLUTION).ceil(), (high / step + RESOLUTION).floor()];
     if !(step > 0.0 && last - first < 100.0) {

@@ -95,6 +95,7 @@ fn help_has_all_options_and_an_example() {
         "--device",
         "--imperfections",
         "--save-device",
+        "--report",
         "--json",
         "Example: tactpad diagnose --measured",
     ] {

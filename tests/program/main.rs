@@ -4,6 +4,7 @@ mod adapt;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod bad_input;
 mod diagnose;
+mod diagnose_report;
 #[cfg(feature = "simulator")]
 mod docs;
 #[cfg(all(feature = "live", target_os = "linux"))]

@@ -2,6 +2,7 @@
 
 mod document;
 mod numbers;
+mod report;
 mod text;
 
 use std::path::{Path, PathBuf};
@@ -9,13 +10,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use self::document::Document;
-use super::destination::Destination;
+use super::destination::{Destination, Folder};
 use super::device::Pad;
 use super::failure::Failure;
 use super::field::field_of;
 use super::progress::Progress;
 use super::tables;
-use super::written::{both_print, is_same, is_stdout, print_json, say, stdout, written_over};
+use super::written::{both_print, is_same, is_stdout, json_text, print_json, say, stdout, written_over};
 use tactpad::lab::diagnosis::extension::extended;
 use tactpad::lab::diagnosis::report::Diagnosis;
 use tactpad::lab::diagnosis::{self, OpenFrame, Unfit};
@@ -37,15 +38,19 @@ pub(super) struct Arguments {
     /// A device file to write: the model with the named causes in it; - is standard output.
     #[arg(long, value_name = "E.toml")]
     save_device: Option<PathBuf>,
+    /// A folder for report.html, one page with pictures of what was found, and report.json.
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { measured, pad, save_device, json } = arguments;
+    let Arguments { measured, pad, save_device, report, json } = arguments;
     let saved = save_device.as_deref().map(|path| destination(path, arguments)).transpose()?;
     let device = pad.read()?;
+    let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;
     let table = tables::read(measured, Kind::Measured, device.plate.radius_mm())?;
     // It takes a while until the engine itself could say so.
     diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
@@ -55,6 +60,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     if let Some(to) = saved {
         save(&to, &device, &diagnosis, &table)?;
+    }
+    if let Some(folder) = folder {
+        write_report(&folder, measured, &device, &diagnosis)?;
     }
     if *json {
         return print_json(&Document::of(&diagnosis));
@@ -77,6 +85,43 @@ fn destination(path: &Path, arguments: &Arguments) -> Result<Destination, Failur
         return Err(written_over(path, "is the measured table"));
     }
     Destination::of(path)
+}
+
+/// The folder of the report: none whose files of these names are read or written by another option.
+fn folder(path: &Path, arguments: &Arguments) -> Result<Folder, Failure> {
+    for file in [report::PAGE, report::DOCUMENT].map(|name| path.join(name)) {
+        arguments.pad.spare(&file)?;
+        if is_same(&arguments.measured, &file) {
+            return Err(written_over(&file, "is the measured table"));
+        }
+        if arguments.save_device.as_deref().is_some_and(|saved| is_same(saved, &file)) {
+            return Err(written_over(&file, "is the device to save"));
+        }
+    }
+    Folder::of(path)
+}
+
+fn write_report(
+    folder: &Folder,
+    measured: &Path,
+    device: &Device,
+    diagnosis: &Diagnosis,
+) -> Result<(), Failure> {
+    let name = measured.file_name().unwrap_or(measured.as_os_str());
+    let subject = report::Subject {
+        diagnosis,
+        measured: name.to_string_lossy().into_owned(),
+        model: format!("the model of {}", device.name),
+        unit: "µV",
+        load_unit: Some("N"),
+        plate: Some(report::Plate::of(device)),
+        notices: Vec::new(),
+    };
+    let page = folder.write(report::PAGE, report::page(&subject).as_bytes())?;
+    let document =
+        folder.write(report::DOCUMENT, format!("{}\n", json_text(&Document::of(diagnosis))?).as_bytes())?;
+    say(format_args!("the report is {page}, its numbers are {document}"));
+    Ok(())
 }
 
 /// Why there is no diagnosis.

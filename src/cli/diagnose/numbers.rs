@@ -32,10 +32,15 @@ pub(super) const fn word(verdict: Verdict) -> &'static str {
 /// A number with its interval: `radial 0.71 mm (0.69 to 0.73)`.
 pub(super) fn estimate(estimate: &Estimate) -> String {
     let [low, high] = estimate.interval95;
-    let width = high - low;
-    let decimals = if width.is_finite() { decimals(0.5 * width) } else { decimals(estimate.value) };
+    let decimals = carried(estimate.value, estimate.interval95);
     let [value, low, high] = [estimate.value, low, high].map(|value| rounded(value, decimals));
     format!("{} ({low} to {high})", named(estimate.name, &value))
+}
+
+/// How many digits behind the point a value's interval carries.
+pub(super) fn carried(value: f64, [low, high]: [f64; 2]) -> usize {
+    let half = 0.5 * (high - low);
+    decimals(if half.is_finite() { half } else { value })
 }
 
 /// Values of a number, from the least to the greatest.
@@ -45,24 +50,34 @@ pub(super) fn range(name: &str, least: f64, greatest: f64) -> String {
 }
 
 /// A value under its name: what it is before, its unit behind.
-fn named(name: &str, value: &str) -> String {
+pub(super) fn named(name: &str, value: &str) -> String {
+    let (what, unit) = parts(name);
+    format!("{what} {}", with_unit(value, unit)).trim().to_owned()
+}
+
+/// A value with its unit behind.
+pub(super) fn with_unit(value: &str, unit: &str) -> String {
+    let gap = if unit.is_empty() || unit == "°" { "" } else { " " };
+    format!("{value}{gap}{unit}")
+}
+
+/// What a number is, and its unit: `radial_mm` is a `radial` in `mm`.
+pub(super) fn parts(name: &str) -> (String, &'static str) {
     let ends = |(ending, _): &&(&str, &str)| {
         name.strip_suffix(ending).is_some_and(|before| before.is_empty() || before.ends_with('_'))
     };
     let (ending, unit) = UNITS.iter().find(ends).copied().unwrap_or_default();
-    let what = name.strip_suffix(ending).unwrap_or(name).trim_end_matches('_').replace('_', " ");
-    let gap = if unit.is_empty() || unit == "°" { "" } else { " " };
-    format!("{what} {value}{gap}{unit}").trim().to_owned()
+    (name.strip_suffix(ending).unwrap_or(name).trim_end_matches('_').replace('_', " "), unit)
 }
 
 /// How many digits behind the point show two figures of `size`.
-fn decimals(size: f64) -> usize {
+pub(super) fn decimals(size: f64) -> usize {
     // A difference of decimal fractions may fall short of a power of ten by its rounding.
     let magnitude = (size.abs().log10() + 1e-9).floor();
     if magnitude.is_finite() { (1 - magnitude as i32).clamp(0, DECIMALS_MAX) as usize } else { 2 }
 }
 
-fn rounded(value: f64, decimals: usize) -> String {
+pub(super) fn rounded(value: f64, decimals: usize) -> String {
     if value.is_nan() {
         return "unknown".into();
     }

@@ -38,6 +38,15 @@ impl Rows<'_> {
         self.residuals(applied).iter().map(told).collect()
     }
 
+    /// The residuals beside each channel's zero.
+    pub(super) fn centred(&self, applied: &Applied) -> Vec<Vec<f64>> {
+        let mut residuals = self.residuals(applied);
+        for (channel, zero) in residuals.iter_mut().zip(self.zeros(applied)) {
+            channel.iter_mut().for_each(|residual| *residual -= zero);
+        }
+        residuals
+    }
+
     /// For each cluster, the sum of squares beside these zeros.
     fn squares(&self, applied: &Applied, zeros: &[f64]) -> Vec<f64> {
         let clusters = self.observations.clusters();

@@ -40,7 +40,7 @@ use self::attribution::{Applied, Attribution, Search};
 use self::covariance::{REMAINDER_MAX, Remainder};
 use self::gain::{Rows, gain, rmse};
 use self::observations::Observations;
-use self::report::{Diagnosis, Finding, NotTestable, Verdict};
+use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
 use self::separation::separate_by;
 use self::simulated::Simulated;
 pub use self::simulated::{OpenFrame, Pad};
@@ -151,6 +151,7 @@ fn summary(
     let noise = fit.systems.noise.iter().zip(&fit.linearised.readings).enumerate();
     let alive = noise.filter(|(channel, _)| open.observations.is_alive(*channel));
     Some(Diagnosis {
+        residuals: residuals(open, found, &applied),
         channels: open.observations.channels.clone(),
         verdict: verdict(!findings.is_empty(), unnamed_share),
         noise_floor: mean(alive.map(|(_, (noise, signal))| noise.mean_square(signal))).sqrt(),
@@ -165,6 +166,17 @@ fn summary(
         unnamed_share,
         findings,
     })
+}
+
+/// What the model misses at the open rows, as it is and with what was found.
+fn residuals(open: &Rows<'_>, found: &Attribution, applied: &Applied) -> Residuals {
+    let noise = found.fit.systems.noise.iter().zip(&found.fit.linearised.readings);
+    Residuals {
+        samples: open.observations.samples.clone(),
+        noise: noise.map(|(noise, signal)| noise.mean_square(signal).sqrt()).collect(),
+        nominal: open.centred(&Vec::new()),
+        extended: open.centred(applied),
+    }
 }
 
 /// What smooth remainders have beyond a background, in the channels in which one is larger than a background may be and that is

@@ -1,5 +1,6 @@
 //! What a diagnosis says.
 
+use super::observations::Sample;
 use super::target::Target;
 
 /// The whole answer.
@@ -31,6 +32,21 @@ pub struct Diagnosis {
     pub ceiling_share: Option<f64>,
     /// On the locked rows; `None` where nothing was found.
     pub gain: Option<Gain>,
+    /// What the model misses, row by row.
+    pub residuals: Residuals,
+}
+
+/// What the model misses at the rows by which causes were found, each channel's zero taken off.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Residuals {
+    /// What was written beside each row.
+    pub samples: Vec<Sample>,
+    /// Root mean square of each channel's noise, in its unit.
+    pub noise: Vec<f64>,
+    /// Each channel's residuals of the model as it is, row by row; NaN where a reading tells nothing.
+    pub nominal: Vec<Vec<f64>>,
+    /// The same with the named and confounded causes.
+    pub extended: Vec<Vec<f64>>,
 }
 
 /// The answer in one word.

@@ -1,0 +1,81 @@
+//! The whole answer in one sentence.
+
+use super::subject::Subject;
+use super::words::{capital, cause, listed, place, sentence, title};
+use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Verdict};
+use tactpad::lab::diagnosis::target::Target;
+
+/// So many findings are told with their sizes; of more, what they are.
+const TOLD_MAX: usize = 2;
+/// And of a set that cannot be told apart, so many.
+const RIVALS_MAX: usize = 2;
+
+/// `Channel m1z reads 12 % too much; nothing else is wrong beyond noise and background.`
+pub(super) fn headline(subject: &Subject<'_>) -> String {
+    let diagnosis = subject.diagnosis;
+    let told = capital(&told(diagnosis));
+    let percent = 100.0 * diagnosis.unnamed_share;
+    match diagnosis.verdict {
+        Verdict::NoDiscrepancy => {
+            "The model accounts for these rows: nothing is wrong beyond noise and background.".to_owned()
+        }
+        Verdict::Explained => format!("{told}; nothing else is wrong beyond noise and background."),
+        Verdict::PartlyExplained => {
+            format!("{told}; {percent:.0} % of what the model gets wrong has no known cause.")
+        }
+        Verdict::Unexplained => "The model is wrong here, and no known cause accounts for it.".to_owned(),
+    }
+}
+
+fn told(diagnosis: &Diagnosis) -> String {
+    let Diagnosis { findings, channels, .. } = diagnosis;
+    if findings.len() > TOLD_MAX {
+        let sets = findings.iter().filter(|it| !it.confounded_with.is_empty()).count();
+        let doubt = match sets {
+            0 => "",
+            1 => "; one of them could be something else",
+            _ => "; some of them could be something else",
+        };
+        return format!("{} things are wrong: {}{doubt}", findings.len(), listed(&names(findings, channels)));
+    }
+    findings.iter().map(|finding| clause(finding, channels)).collect::<Vec<_>>().join("; ")
+}
+
+/// What the findings are, those of one effect together.
+fn names(findings: &[Finding], channels: &[String]) -> Vec<String> {
+    let mut effects: Vec<&str> = Vec::new();
+    for finding in findings.iter().filter(|it| !matches!(it.target, Target::Pad | Target::Rig)) {
+        if !effects.contains(&finding.effect) {
+            effects.push(finding.effect);
+        }
+    }
+    let of_effect = |effect: &&str| {
+        let places =
+            findings.iter().filter(|it| it.effect == *effect).map(|it| place(&it.target.name(channels)));
+        let mut places: Vec<String> = places.collect();
+        places.sort();
+        places.dedup();
+        format!("{} ({})", title(effect), places.join(", "))
+    };
+    let whole = findings
+        .iter()
+        .filter(|it| matches!(it.target, Target::Pad | Target::Rig))
+        .map(|it| title(it.effect));
+    whole.chain(effects.iter().map(of_effect)).collect()
+}
+
+/// A finding; of a set, that it is one.
+fn clause(finding: &Finding, channels: &[String]) -> String {
+    let others = &finding.confounded_with;
+    let first = sentence(finding, channels);
+    if others.is_empty() {
+        return first;
+    }
+    let told = others.iter().take(RIVALS_MAX).map(|(effect, target)| cause(effect, target, channels));
+    let told: Vec<String> = told.collect();
+    let more = match others.len().saturating_sub(RIVALS_MAX) {
+        0 => String::new(),
+        more => format!(", or one of {more} other causes"),
+    };
+    format!("either {first}, or it is {}{more}", told.join(", or "))
+}

@@ -11,6 +11,7 @@
 //! Sources: M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (a discrepancy beside the parameters); J.
 //! Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014) 114007 (without it parameters are wrong and too sure).
 
+mod atlas;
 mod attribution;
 mod basis;
 mod bootstrap;
@@ -22,6 +23,7 @@ mod covariance;
 pub mod extension;
 mod gain;
 mod inference;
+mod mechanics;
 mod model;
 mod naming;
 mod noise;
@@ -35,13 +37,13 @@ pub mod target;
 
 use std::fmt;
 
+use self::atlas::{Atlas, attributed};
 use self::attribution::{Applied, Attribution, Search};
 use self::gain::{Rows, gain, rmse};
 use self::observations::Observations;
 use self::report::{Diagnosis, Finding, NotTestable, Verdict};
 use self::separation::separate_by;
-use self::simulated::Simulated;
-pub use self::simulated::{OpenFrame, Pad};
+pub use self::mechanics::Pad;
 use crate::lab::calibration::screening::{Fault, Unexplained, screened};
 use crate::numeric::chi_square;
 use crate::numeric::statistics::{mean, rms};
@@ -101,10 +103,10 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
     }
     let all = Observations::of(table);
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
-    let model = Simulated::new(pad, &all, &open);
+    let mut model = Atlas::new(pad, &all, &open);
+    let found = attributed(&mut model, &open).ok_or(Unfit::Singular)?;
+    let at_locked = model.at(&locked);
     let search = Search::new(&model, &open);
-    let found = search.run().ok_or(Unfit::Singular)?;
-    let at_locked = Simulated::new(pad, &all, &locked);
     let rows =
         [Rows { model: &model, observations: &open }, Rows { model: &at_locked, observations: &locked }];
     summary(&search, &found, &rows, &model.missing()).ok_or(Unfit::Singular)

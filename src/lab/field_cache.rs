@@ -100,11 +100,8 @@ pub fn changes_of(
     if is_nominal(device) {
         return Ok(Obtained { known: FieldChanges::nominal(), not_kept: None });
     }
-    let form = Form {
-        extension: "changes",
-        to_bytes: FieldChanges::to_bytes,
-        from_bytes: FieldChanges::from_bytes,
-    };
+    let form =
+        Form { extension: "changes", to_bytes: FieldChanges::to_bytes, from_bytes: FieldChanges::from_bytes };
     obtained(device, &form, |device| computed_changes(device, progress))
 }
 
@@ -125,7 +122,8 @@ fn obtained<T>(
     form: &Form<T>,
     compute: impl FnOnce(&Device) -> Result<T, FieldError>,
 ) -> Result<Obtained<T>, FieldError> {
-    let path = folder(|name| std::env::var_os(name)).map(|folder| folder.join(file_name(device, form.extension)));
+    let path =
+        folder(|name| std::env::var_os(name)).map(|folder| folder.join(file_name(device, form.extension)));
     if let Some(known) = path.as_deref().and_then(|path| kept(path, device, form)) {
         return Ok(Obtained { known, not_kept: None });
     }

@@ -1,7 +1,7 @@
 //! The device that a diagnosis makes of another: with the named causes in it.
 
-use super::report::Diagnosis;
 use super::mechanics::side_share;
+use super::report::Diagnosis;
 use super::target::Target;
 use crate::pad::device::behaviour::{Ageing, Crosstalk, ModuleCrosstalk};
 use crate::pad::device::parameter::Parameter;
@@ -154,11 +154,8 @@ fn open(device: &mut Device, module: usize, side: Side, share: f64) -> Option<()
 fn debond(device: &mut Device, module: usize, side: Side, share: f64) -> Option<()> {
     let module = device.modules.get_mut(module)?;
     let (from, before) = module.debonded().unwrap_or((side, 0.0));
-    (from == side).then(|| *module = Module {
-        debonded_side: Some(side),
-        debonded_share: before + share,
-        ..*module
-    })
+    (from == side)
+        .then(|| *module = Module { debonded_side: Some(side), debonded_share: before + share, ..*module })
 }
 
 fn set_numbers(

@@ -28,7 +28,12 @@ pub struct Pad<'p> {
 pub(super) type Maps = [[f64; 3]; CHANNELS];
 
 /// The changes that there are about the field of `own`, a pad that is held to be `nominal`.
-pub(super) fn changes(nominal: &Device, own: &Device, field: &PadField, flaws: &[FieldChange]) -> Vec<Change> {
+pub(super) fn changes(
+    nominal: &Device,
+    own: &Device,
+    field: &PadField,
+    flaws: &[FieldChange],
+) -> Vec<Change> {
     let numbers = free(field).map(|it| Change::Number {
         name: it.parameter.name(),
         own: it.parameter.get(own),

@@ -19,6 +19,9 @@ const FAR: f64 = 1.0;
 /// frame is not the frame. The simulator has 4.2 for a frame, and 1/k in place of ln k.
 const STIFFNESS_REACH: f64 = 4.0;
 
+/// Fields are solved at whole multiples of this part of a reach: near enough, and soon known for most pads that come.
+const GRID: f64 = 1.0 / 400.0;
+
 /// A changed pad.
 struct Solved {
     /// The hypotheses that change its field.
@@ -89,13 +92,15 @@ impl<'f> Atlas<'f> {
     /// The pad with those of the hypotheses that change its field; none if it cannot be had.
     fn solve(&self, applied: &Applied) -> Option<Solved> {
         let (mut device, mut at) = (self.pad.device.clone(), Applied::new());
-        for (hypothesis, coordinates) in applied.iter().filter(|(it, _)| self.reaches[*it].is_some()) {
+        for (hypothesis, coordinates) in applied {
+            let Some(reaches) = &self.reaches[*hypothesis] else { continue };
+            let coordinates: Vec<f64> = coordinates.iter().zip(reaches).map(rounded).collect();
             let Hypothesis { effect, target, ref parameters } = self.first.hypotheses()[*hypothesis];
-            let values = parameters.iter().zip(coordinates);
+            let values = parameters.iter().zip(&coordinates);
             let numbers: Vec<_> = values.map(|(it, psi)| (it.name, it.value(*psi))).collect();
             if let Some(changed) = with(&device, (effect, target), &numbers, None) {
                 device = changed;
-                at.push((*hypothesis, coordinates.clone()));
+                at.push((*hypothesis, coordinates));
             }
         }
         let field = (self.pad.solve)(&device)?;
@@ -168,6 +173,11 @@ fn coordinates(applied: &[(usize, Vec<f64>)], hypothesis: usize) -> Option<&Vec<
 fn difference(count: usize, from: Option<&Vec<f64>>, to: Option<&Vec<f64>>) -> Vec<f64> {
     let of = |psi: Option<&Vec<f64>>, k: usize| psi.and_then(|psi| psi.get(k)).copied().unwrap_or(0.0);
     (0..count).map(|k| of(from, k) - of(to, k)).collect()
+}
+
+fn rounded((psi, reach): (&f64, &f64)) -> f64 {
+    let step = reach * GRID;
+    if step.is_finite() { libm::round(psi / step) * step } else { *psi }
 }
 
 /// How far a coordinate may go until the tangent is off by as much as it says: a module's distance from the axis, a radian. The

@@ -12,18 +12,21 @@ use std::process;
 
 #[cfg(feature = "simulator")]
 use crate::mechanics::system::SolveError;
+use crate::pad::changes::FieldChanges;
+#[cfg(feature = "simulator")]
+use crate::pad::changes::Flaw;
 use crate::pad::device::Device;
-use crate::pad::field::PadField;
+use crate::pad::field::{FieldFileError, PadField};
 
 /// What the computation of a field takes at most: it was seen to take 1.15 GB.
 #[cfg(feature = "simulator")]
 const MEMORY: u64 = 1_300 << 20;
 
-/// A pad's field, and whether the next run finds it.
+/// A pad's field or the like, and whether the next run finds it.
 #[derive(Debug)]
-pub struct Obtained {
-    /// The field.
-    pub field: PadField,
+pub struct Obtained<T> {
+    /// What was asked for.
+    pub known: T,
     /// The file in which it could not be kept, and why.
     pub not_kept: Option<(PathBuf, io::Error)>,
 }
@@ -75,25 +78,66 @@ impl std::error::Error for FieldError {}
 ///
 /// # Errors
 /// The pad cannot be computed. A field that cannot be kept is no error.
-pub fn field_of(device: &Device, progress: impl FnMut(fmt::Arguments<'_>)) -> Result<Obtained, FieldError> {
-    if device.field_text() == Device::nominal().field_text() {
-        return Ok(Obtained { field: PadField::nominal(), not_kept: None });
+pub fn field_of(
+    device: &Device,
+    progress: impl FnMut(fmt::Arguments<'_>),
+) -> Result<Obtained<PadField>, FieldError> {
+    if is_nominal(device) {
+        return Ok(Obtained { known: PadField::nominal(), not_kept: None });
     }
-    let path = folder(|name| std::env::var_os(name)).map(|folder| folder.join(file_name(device)));
-    if let Some(field) = path.as_deref().and_then(|path| kept(path, device)) {
-        return Ok(Obtained { field, not_kept: None });
+    let form = Form { extension: "field", to_bytes: PadField::to_bytes, from_bytes: PadField::from_bytes };
+    obtained(device, &form, |device| computed(device, progress))
+}
+
+/// What flaws change in the field of `device`, in the same way.
+///
+/// # Errors
+/// As for [`field_of`].
+pub fn changes_of(
+    device: &Device,
+    progress: impl FnMut(fmt::Arguments<'_>),
+) -> Result<Obtained<FieldChanges>, FieldError> {
+    if is_nominal(device) {
+        return Ok(Obtained { known: FieldChanges::nominal(), not_kept: None });
+    }
+    let form =
+        Form { extension: "changes", to_bytes: FieldChanges::to_bytes, from_bytes: FieldChanges::from_bytes };
+    obtained(device, &form, |device| computed_changes(device, progress))
+}
+
+fn is_nominal(device: &Device) -> bool {
+    device.field_text() == Device::nominal().field_text()
+}
+
+/// What is kept of a device in a file.
+struct Form<T> {
+    extension: &'static str,
+    to_bytes: fn(&T, &Device) -> Vec<u8>,
+    from_bytes: fn(&[u8], &Device) -> Result<T, FieldFileError>,
+}
+
+/// What is kept, else what is computed, which is then kept.
+fn obtained<T>(
+    device: &Device,
+    form: &Form<T>,
+    compute: impl FnOnce(&Device) -> Result<T, FieldError>,
+) -> Result<Obtained<T>, FieldError> {
+    let path =
+        folder(|name| std::env::var_os(name)).map(|folder| folder.join(file_name(device, form.extension)));
+    if let Some(known) = path.as_deref().and_then(|path| kept(path, device, form)) {
+        return Ok(Obtained { known, not_kept: None });
     }
     #[cfg(feature = "simulator")]
     if let Some(allowed) = memory_max(Path::new("/")).filter(|allowed| *allowed < MEMORY) {
         // Killed by the system, it could not say so.
         return Err(FieldError::NoMemory { allowed_mb: allowed >> 20 });
     }
-    let computed = computed(device, progress)?;
-    let bytes = computed.to_bytes(device);
+    let computed = compute(device)?;
+    let bytes = (form.to_bytes)(&computed, device);
     let not_kept = path.and_then(|path| Some((keep(&path, &bytes).err()?, path)));
-    // The file's sensitivities are rounded. What this run computes with is what the next one will find.
-    let field = PadField::from_bytes(&bytes, device).unwrap_or(computed);
-    Ok(Obtained { field, not_kept: not_kept.map(|(error, path)| (path, error)) })
+    // The file's numbers are rounded. What this run computes with is what the next one will find.
+    let known = (form.from_bytes)(&bytes, device).unwrap_or(computed);
+    Ok(Obtained { known, not_kept: not_kept.map(|(error, path)| (path, error)) })
 }
 
 /// Where fields are kept, by the environment's variables; the base must be an absolute path (XDG Base Directory
@@ -104,13 +148,13 @@ fn folder(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     base.map(|base| base.join("tactpad"))
 }
 
-fn file_name(device: &Device) -> String {
-    format!("{:016x}.field", device.fingerprint())
+fn file_name(device: &Device, extension: &str) -> String {
+    format!("{:016x}.{extension}", device.fingerprint())
 }
 
 /// A file that cannot be used is as good as none.
-fn kept(path: &Path, device: &Device) -> Option<PadField> {
-    PadField::from_bytes(&fs::read(path).ok()?, device).ok()
+fn kept<T>(path: &Path, device: &Device, form: &Form<T>) -> Option<T> {
+    (form.from_bytes)(&fs::read(path).ok()?, device).ok()
 }
 
 /// Writes a file that others see whole or not at all.
@@ -153,6 +197,32 @@ fn computed(device: &Device, mut progress: impl FnMut(fmt::Arguments<'_>)) -> Re
     simulator.field(device).map_err(FieldError::Unsolved)
 }
 
+#[cfg(feature = "simulator")]
+fn computed_changes(
+    device: &Device,
+    mut progress: impl FnMut(fmt::Arguments<'_>),
+) -> Result<FieldChanges, FieldError> {
+    use crate::mechanics::mesh::Fineness;
+    use crate::mechanics::simulator::Simulator;
+
+    let mut simulator = Simulator::new(Fineness::STANDARD);
+    progress(format_args!("computing the pad's field"));
+    let whole = simulator.pad(device).map_err(FieldError::Unsolved)?.signals();
+    let change = |flaw| {
+        progress(format_args!("computing the pad's field where module 0 is flawed: {flaw}"));
+        simulator.change(device, &whole, flaw).map_err(FieldError::Unsolved)
+    };
+    Flaw::all().map(change).collect::<Result<_, _>>().map(FieldChanges)
+}
+
+#[cfg(not(feature = "simulator"))]
+fn computed_changes(
+    _device: &Device,
+    _progress: impl FnMut(fmt::Arguments<'_>),
+) -> Result<FieldChanges, FieldError> {
+    Err(FieldError::NoSimulator)
+}
+
 #[cfg(not(feature = "simulator"))]
 fn computed(_device: &Device, _progress: impl FnMut(fmt::Arguments<'_>)) -> Result<PadField, FieldError> {
     Err(FieldError::NoSimulator)
@@ -179,15 +249,17 @@ mod tests {
     fn a_kept_file_reads_back_and_another_devices_does_not() {
         let folder = tempfile::tempdir().unwrap();
         let (device, field) = (Device::nominal(), PadField::nominal());
-        let path = folder.path().join("new/folder").join(file_name(&device));
-        assert!(kept(&path, &device).is_none());
+        let form =
+            Form { extension: "field", to_bytes: PadField::to_bytes, from_bytes: PadField::from_bytes };
+        let path = folder.path().join("new/folder").join(file_name(&device, form.extension));
+        assert!(kept(&path, &device, &form).is_none());
         keep(&path, b"damaged").unwrap();
-        assert!(kept(&path, &device).is_none());
+        assert!(kept(&path, &device, &form).is_none());
         keep(&path, &field.to_bytes(&device)).unwrap();
-        assert!(kept(&path, &device).is_some_and(|read| read.signals == field.signals));
+        assert!(kept(&path, &device, &form).is_some_and(|read| read.signals == field.signals));
         let mut other = device;
         other.plate.thickness_mm = 1.5;
-        assert!(kept(&path, &other).is_none());
+        assert!(kept(&path, &other, &form).is_none());
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1, "nothing unfinished is left");
     }
 

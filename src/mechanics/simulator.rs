@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::numeric::zernike::jets;
+use crate::pad::changes::{FieldChange, Flaw};
 use crate::pad::device::{Device, Gauge, Material, Side, Stack};
 use crate::pad::field::{ForceMaps, PadField, Sensitivity};
 use crate::pad::influence::{InfluenceField, MAPS};
@@ -10,7 +11,7 @@ use crate::quantity::{CHANNELS, MODULES};
 
 use super::deformed::ModeShapes;
 use super::mesh::{Fineness, Layer};
-use super::pad::Pad;
+use super::pad::{Pad, add};
 use super::sensitivity::sensitivities;
 use super::superelement::{LayerDerivatives, Solution, Superelement};
 use super::system::SolveError;
@@ -114,6 +115,21 @@ impl Simulator {
         let signals = splines(device, SIGNALS_PER_RADIUS, &pad.signals());
         let sums = splines(device, SUMS_PER_RADIUS, &pad.bridge_sums());
         Ok(PadField { signals, sums, sensitivities })
+    }
+
+    /// What a flaw of module 0 changes in the device's pad, whose signals are `whole`.
+    ///
+    /// # Errors
+    /// As for [`Self::pad`].
+    pub fn change(
+        &mut self,
+        device: &Device,
+        whole: &[ForceMaps; CHANNELS],
+        flaw: Flaw,
+    ) -> Result<FieldChange, SolveError> {
+        let mut maps = self.pad(&flaw.on(device))?.signals();
+        add(&mut maps, -1.0, whole);
+        Ok(FieldChange { flaw, maps })
     }
 
     fn known(&self, blueprint: &Blueprint) -> Option<&Solved> {

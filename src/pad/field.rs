@@ -84,15 +84,8 @@ impl PadField {
     /// # Errors
     /// Bytes that are not what [`Self::to_bytes`] wrote for an equal device.
     pub fn from_bytes(bytes: &[u8], device: &Device) -> Result<Self, FieldFileError> {
-        let body = unsealed(MAGIC, bytes).map_err(|broken| match broken {
-            Broken::Magic => FieldFileError::Version,
-            Broken::Damaged => FieldFileError::Damaged,
-        })?;
-        let mut reader = FieldReader { from: Reader::new(body) };
-        if reader.from.text().ok_or(FieldFileError::Damaged)? != device.field_text().as_bytes() {
-            return Err(FieldFileError::Device);
-        }
-        reader.field().filter(|_| reader.from.is_at_end()).ok_or(FieldFileError::Damaged)
+        let mut from = body_of(MAGIC, bytes, device)?;
+        field(&mut from).filter(|_| from.is_at_end()).ok_or(FieldFileError::Damaged)
     }
 
     /// The bytes of the field's file. Numbers are little-endian.
@@ -110,12 +103,32 @@ impl PadField {
         body.extend((self.sensitivities.len() as u32).to_le_bytes());
         for Sensitivity { parameter, maps } in &self.sensitivities {
             push_text(&mut body, parameter.name().as_bytes());
-            let degree = kept_degree(maps);
-            body.extend((degree as u32).to_le_bytes());
-            maps.iter().flatten().for_each(|map| write_map(&mut body, map, degree));
+            write_maps(&mut body, maps);
         }
         sealed(MAGIC, &body)
     }
+}
+
+/// What follows the device's text in the body of a file that begins with `magic`.
+pub(super) fn body_of<'b>(
+    magic: &[u8],
+    bytes: &'b [u8],
+    device: &Device,
+) -> Result<Reader<'b>, FieldFileError> {
+    let body = unsealed(magic, bytes).map_err(|broken| match broken {
+        Broken::Magic => FieldFileError::Version,
+        Broken::Damaged => FieldFileError::Damaged,
+    })?;
+    let mut reader = Reader::new(body);
+    let text = reader.text().ok_or(FieldFileError::Damaged)?;
+    if text == device.field_text().as_bytes() { Ok(reader) } else { Err(FieldFileError::Device) }
+}
+
+/// Writes a change of the maps: its degree, then map by map.
+pub(super) fn write_maps(to: &mut Vec<u8>, maps: &[ForceMaps; CHANNELS]) {
+    let degree = kept_degree(maps);
+    to.extend((degree as u32).to_le_bytes());
+    maps.iter().flatten().for_each(|map| write_map(to, map, degree));
 }
 
 /// The least degree to which the maps can be cut.
@@ -141,35 +154,33 @@ fn write_map(to: &mut Vec<u8>, map: &Polynomial, degree: usize) {
     to.extend(kept().flat_map(|c| steps(c).to_le_bytes()));
 }
 
-/// Reads a field's file.
-struct FieldReader<'b> {
-    from: Reader<'b>,
+/// Reads a field's file, after the device's text.
+fn field(from: &mut Reader<'_>) -> Option<PadField> {
+    let (signals, sums) = (InfluenceField::read(from)?, InfluenceField::read(from)?);
+    let sensitivities = (0..from.length()?).map(|_| sensitivity(from)).collect::<Option<_>>()?;
+    Some(PadField { signals, sums, sensitivities })
 }
 
-impl FieldReader<'_> {
-    fn field(&mut self) -> Option<PadField> {
-        let (signals, sums) = (InfluenceField::read(&mut self.from)?, InfluenceField::read(&mut self.from)?);
-        let sensitivities = (0..self.from.length()?).map(|_| self.sensitivity()).collect::<Option<_>>()?;
-        Some(PadField { signals, sums, sensitivities })
-    }
+fn sensitivity(from: &mut Reader<'_>) -> Option<Sensitivity> {
+    let parameter = std::str::from_utf8(from.text()?).ok()?.parse().ok()?;
+    Some(Sensitivity { parameter, maps: read_maps(from)? })
+}
 
-    fn sensitivity(&mut self) -> Option<Sensitivity> {
-        let parameter = std::str::from_utf8(self.from.text()?).ok()?.parse().ok()?;
-        let degree = self.from.length().filter(|degree| *degree <= DEGREE_MAX)?;
-        let maps: Vec<Polynomial> = (0..MAPS).map(|_| self.map(degree)).collect::<Option<_>>()?;
-        let mut maps = maps.into_iter();
-        let none = || Polynomial { coefficients: Vec::new() };
-        let maps = std::array::from_fn(|_| std::array::from_fn(|_| maps.next().unwrap_or_else(none)));
-        Some(Sensitivity { parameter, maps })
-    }
+/// Reads what [`write_maps`] wrote.
+pub(super) fn read_maps(from: &mut Reader<'_>) -> Option<[ForceMaps; CHANNELS]> {
+    let degree = from.length().filter(|degree| *degree <= DEGREE_MAX)?;
+    let maps: Vec<Polynomial> = (0..MAPS).map(|_| map(from, degree)).collect::<Option<_>>()?;
+    let mut maps = maps.into_iter();
+    let none = || Polynomial { coefficients: Vec::new() };
+    Some(std::array::from_fn(|_| std::array::from_fn(|_| maps.next().unwrap_or_else(none))))
+}
 
-    fn map(&mut self, degree: usize) -> Option<Polynomial> {
-        let scale = f64::from(self.from.float().filter(|scale| scale.is_finite())?);
-        let steps = self.from.take(2 * count(degree))?.as_chunks().0;
-        Some(Polynomial {
-            coefficients: steps.iter().map(|s| scale * f64::from(i16::from_le_bytes(*s))).collect(),
-        })
-    }
+fn map(from: &mut Reader<'_>, degree: usize) -> Option<Polynomial> {
+    let scale = f64::from(from.float().filter(|scale| scale.is_finite())?);
+    let steps = from.take(2 * count(degree))?.as_chunks().0;
+    Some(Polynomial {
+        coefficients: steps.iter().map(|s| scale * f64::from(i16::from_le_bytes(*s))).collect(),
+    })
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //!
 //! Contact → [`influence`] (µV per newton at each place) → [`readout`] (bridge law, gain, offset, converter) → channels.
 
+pub mod changes;
 pub mod device;
 pub mod field;
 pub mod influence;

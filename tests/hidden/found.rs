@@ -27,7 +27,7 @@ enum Extent {
 const USUAL: Extent = Extent::Part;
 
 /// Causes that the catalogue does not have yet: the program refuses them, or would not know them.
-const MISSING: [&str; 11] = [
+const MISSING: [&str; 10] = [
     "noise_excess",
     "channel_dead",
     "channel_polarity",
@@ -35,7 +35,6 @@ const MISSING: [&str; 11] = [
     "adc_clipping",
     "channel_skew",
     "mains_pickup",
-    "module_debonded",
     "hysteresis",
     "creep",
     "time_lag",

@@ -3,6 +3,8 @@
 #[cfg(feature = "simulator")]
 mod calculix;
 #[cfg(feature = "simulator")]
+mod changes;
+#[cfg(feature = "simulator")]
 mod elements;
 #[cfg(feature = "simulator")]
 mod field;

@@ -13,14 +13,15 @@ use self::document::Document;
 use super::destination::{Destination, Folder};
 use super::device::Pad;
 use super::failure::Failure;
-use super::field::field_of;
+use super::field::{changes_of, field_of};
 use super::progress::Progress;
 use super::tables;
 use super::written::{both_print, is_same, is_stdout, json_text, print_json, say, stdout, written_over};
 use tactpad::lab::diagnosis::extension::extended;
 use tactpad::lab::diagnosis::report::Diagnosis;
-use tactpad::lab::diagnosis::{self, OpenFrame, Unfit};
-use tactpad::pad::device::{Device, Side};
+use tactpad::lab::diagnosis::{self, Unfit};
+use tactpad::pad::changes::FieldChange;
+use tactpad::pad::device::Device;
 use tactpad::tables::measured::Table;
 use tactpad::tables::measured::columns::Kind;
 
@@ -132,28 +133,23 @@ enum Why {
 
 fn diagnosed(table: &Table, device: &Device) -> Result<Diagnosis, Why> {
     let field = field_of(device).map_err(Why::NoField)?;
-    let open_frames = open_frames(device);
-    let pad = diagnosis::Pad { device, field: &field, open_frames: &open_frames };
+    let flaws = flaws(device);
+    let solve = |device: &Device| field_of(device).ok();
+    let pad = diagnosis::Pad { device, field: &field, flaws: &flaws, solve: &solve };
     let _progress = Progress::begin("looking for causes");
     diagnosis::diagnose(table, &pad).map_err(Why::Unfit)
 }
 
-/// The pad with a frame open on each side; none where they cannot be had.
-fn open_frames(device: &Device) -> Vec<OpenFrame> {
-    let mut open = Vec::new();
-    for side in [Side::PlusX, Side::MinusX, Side::PlusY, Side::MinusY] {
-        let mut device = device.clone();
-        device.modules[0].frame_open = Some(side);
-        match field_of(&device) {
-            Ok(field) => open.push(OpenFrame { side, field: field.signals }),
-            Err(Failure::Failed(why) | Failure::Unusable(why)) => {
-                say(format_args!("open frames are not looked for: {why}"));
-                return Vec::new();
-            }
-            Err(Failure::Unread) => return Vec::new(),
+/// What flaws of a module change; none where that cannot be had.
+fn flaws(device: &Device) -> Vec<FieldChange> {
+    match changes_of(device) {
+        Ok(changes) => changes.0,
+        Err(Failure::Failed(why) | Failure::Unusable(why)) => {
+            say(format_args!("open frames and loose bonds are not looked for: {why}"));
+            Vec::new()
         }
+        Err(Failure::Unread) => Vec::new(),
     }
-    open
 }
 
 fn unfit(measured: &Path, why: &Unfit) -> Failure {

@@ -62,10 +62,16 @@ impl<'m> Search<'m> {
         Self { model, all, observations, columns, clusters: observations.clusters() }
     }
 
-    /// Forward selection: the best candidate is fitted while it is significant; then whatever is no longer is taken out.
-    pub(super) fn run(&self) -> Option<Attribution> {
-        let mut fit = self.fitted(&Vec::new(), None)?;
+    /// Forward selection from causes that are held to be there: whatever is not significant is taken out; while the best
+    /// candidate is, it is fitted.
+    pub(super) fn run(&self, start: &Applied) -> Option<Attribution> {
+        let mut fit = self.fitted(start, None)?;
         let mut critical = self.critical(&fit)?;
+        while let Some(least) = self.superfluous(&fit, critical)? {
+            let mut applied = fit.applied.clone();
+            applied.remove(least);
+            fit = self.fitted(&applied, Some(&fit.background))?;
+        }
         // What was taken out stays out, so that the search ends.
         let mut barred: Vec<usize> = Vec::new();
         while fit.applied.len() < CAUSES_MAX {

@@ -125,18 +125,18 @@ impl Chain {
 }
 
 impl MechanicsChain {
-    /// Sets a number of the device, to first order about the field's own pad. A pad whose field does not know the number stays.
+    /// Adds to a number of the device, to first order about the field's own pad. A pad whose field does not know the number
+    /// stays.
     pub(super) fn add(&mut self, setting: &Setting, number: &str, value: f64) {
-        if let Some((at, own, nominal)) = setting.number(number) {
-            self.weights[at] += nominal + value - own;
+        if let Some((at, _)) = setting.number(number) {
+            self.weights[at] += value;
         }
     }
 
-    /// Multiplies a modulus or stiffness k by a factor f.
+    /// Multiplies a modulus or stiffness by a factor.
     pub(super) fn stiffen(&mut self, setting: &Setting, number: &str, factor: f64) {
-        if let Some((at, own, nominal)) = setting.number(number) {
-            // What gives way adds up, in series: first order in 1/k, with the slope k ∂/∂k at the field's own k.
-            self.weights[at] += own * (1.0 - own / (nominal * factor));
+        if let Some((at, change)) = setting.number(number) {
+            self.weights[at] += change.weight(factor) - change.weight(1.0);
         }
     }
 
@@ -144,6 +144,13 @@ impl MechanicsChain {
     pub(super) fn open(&mut self, setting: &Setting, module: usize, side: Side, share: f64) {
         if let Some((at, whole)) = setting.frame_open(module, side) {
             self.weights[at] += share / whole;
+        }
+    }
+
+    /// Takes away a share of a bond's area from a side inwards: between the changes of pads that have lost known shares.
+    pub(super) fn debond(&mut self, setting: &Setting, module: usize, side: Side, share: f64) {
+        for (at, weight) in setting.debonded(module, side, share) {
+            self.weights[at] += weight;
         }
     }
 }

@@ -1,11 +1,11 @@
 //! The device that a diagnosis makes of another: with the named causes in it.
 
-use super::report::{Diagnosis, Finding};
-use super::simulated::side_share;
+use super::mechanics::side_share;
+use super::report::Diagnosis;
 use super::target::Target;
 use crate::pad::device::behaviour::{Ageing, Crosstalk, ModuleCrosstalk};
 use crate::pad::device::parameter::Parameter;
-use crate::pad::device::{Device, Side};
+use crate::pad::device::{Device, Module, Side};
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
 
 /// A device file opens the side of a frame or does not: from this part of the side on, open is nearer.
@@ -60,7 +60,8 @@ pub fn extended(
 ) -> (Device, Vec<&'static str>) {
     let (mut device, mut left_out) = (device.clone(), Vec::new());
     for finding in diagnosis.findings.iter().filter(|finding| finding.confounded_with.is_empty()) {
-        match with(&device, finding, last_cycle).filter(reads_back) {
+        let numbers: Vec<_> = finding.parameters.iter().map(|it| (it.name, it.value)).collect();
+        match with(&device, (finding.effect, finding.target), &numbers, last_cycle) {
             Some(changed) => device = changed,
             None => left_out.push(finding.effect),
         }
@@ -75,11 +76,16 @@ fn reads_back(device: &Device) -> bool {
     Device::from_toml(&device.to_toml()).0.as_ref() == Some(device)
 }
 
-/// The device with one finding more; none where it has no number for it.
-fn with(device: &Device, finding: &Finding, last_cycle: Option<f64>) -> Option<Device> {
+/// The device with one cause more, of these numbers; none where it has no number for it, or none within its range.
+pub(super) fn with(
+    device: &Device,
+    (effect, target): (&'static str, Target),
+    numbers: &[(&str, f64)],
+    last_cycle: Option<f64>,
+) -> Option<Device> {
     let mut device = device.clone();
-    let first = finding.parameters.first()?.value;
-    match (finding.effect, finding.target) {
+    let (_, first) = *numbers.first()?;
+    match (effect, target) {
         ("channel_crosstalk", Target::Channels { into, from }) => {
             leak(&mut device.behaviour.crosstalk, Crosstalk { channel: into, with: from, share: first });
         }
@@ -90,15 +96,16 @@ fn with(device: &Device, finding: &Finding, last_cycle: Option<f64>) -> Option<D
             );
         }
         ("module_frame_open", Target::ModuleSide(module, side)) => open(&mut device, module, side, first)?,
-        _ => set_numbers(&mut device, finding, last_cycle)?,
+        ("module_debonded", Target::ModuleSide(module, side)) => debond(&mut device, module, side, first)?,
+        _ => set_numbers(&mut device, (effect, target), numbers, last_cycle)?,
     }
-    if finding.effect == "contact_size" {
+    if effect == "contact_size" {
         // A wider finger leaves the plate earlier.
         let contact = &mut device.contact;
         let centre_mm = device.plate.radius_mm() - contact.patch_radius_mm;
         contact.max_centre_radius_mm = contact.max_centre_radius_mm.min(centre_mm);
     }
-    Some(device)
+    Some(device).filter(reads_back)
 }
 
 /// A share of a source that appears in a receiver.
@@ -143,17 +150,28 @@ fn open(device: &mut Device, module: usize, side: Side, share: f64) -> Option<()
     is_held.then(|| *frame_open = Some(side))
 }
 
-fn set_numbers(device: &mut Device, finding: &Finding, last_cycle: Option<f64>) -> Option<()> {
-    for estimate in &finding.parameters {
-        let known = |(effect, name, ..): &&(&str, &str, &str, Change)| {
-            *effect == finding.effect && *name == estimate.name
-        };
+/// A module's bond has come off from one side at most.
+fn debond(device: &mut Device, module: usize, side: Side, share: f64) -> Option<()> {
+    let module = device.modules.get_mut(module)?;
+    let (from, before) = module.debonded().unwrap_or((side, 0.0));
+    (from == side)
+        .then(|| *module = Module { debonded_side: Some(side), debonded_share: before + share, ..*module })
+}
+
+fn set_numbers(
+    device: &mut Device,
+    (effect, target): (&'static str, Target),
+    numbers: &[(&str, f64)],
+    last_cycle: Option<f64>,
+) -> Option<()> {
+    for (name, value) in numbers {
+        let known = |(of, number, ..): &&(&str, &str, &str, Change)| *of == effect && number == name;
         let (_, _, number, change) = NUMBERS.iter().find(known)?;
-        let mut value = estimate.value;
-        if finding.effect == "ageing" {
+        let mut value = *value;
+        if effect == "ageing" {
             value *= whole_per_part(&device.behaviour.ageing, last_cycle?)?;
         }
-        for name in names(number, finding.target) {
+        for name in names(number, target) {
             let parameter: Parameter = name.parse().ok()?;
             let own = parameter.get(device);
             let changed = match change {
@@ -190,9 +208,8 @@ fn names(number: &str, target: Target) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::report::{Estimate, Verdict};
+    use super::super::report::{Estimate, Finding, Verdict};
     use super::*;
-    use crate::pad::device::Module;
 
     fn finding(effect: &'static str, target: Target, parameters: &[(&'static str, f64)]) -> Finding {
         let estimate = |(name, value): &(&'static str, f64)| Estimate {
@@ -241,6 +258,7 @@ mod tests {
             finding("module_tilted", Target::Module(1), &[("tangential_deg", 0.2), ("radial_deg", -0.3)]),
             finding("module_stiffness", Target::Module(2), &[("factor", 0.6)]),
             finding("module_frame_open", Target::ModuleSide(0, Side::MinusX), &[("area_share", 0.18)]),
+            finding("module_debonded", Target::ModuleSide(2, Side::PlusY), &[("area_share", 0.3)]),
             finding("plate_stiffness", Target::Pad, &[("factor", 1.5)]),
             finding("contact_size", Target::Rig, &[("radius_mm", 2.5)]),
         ]
@@ -255,7 +273,12 @@ mod tests {
         let wanted = [
             Module { radial_mm: -0.7, tangential_mm: 0.9, frame_open: Some(Side::MinusX), ..Module::NOMINAL },
             Module { rotation_deg: -5.0, tilt_tangential_deg: 0.2, tilt_radial_deg: -0.3, ..Module::NOMINAL },
-            Module { frame_e_factor: 0.6, ..Module::NOMINAL },
+            Module {
+                frame_e_factor: 0.6,
+                debonded_side: Some(Side::PlusY),
+                debonded_share: 0.3,
+                ..Module::NOMINAL
+            },
         ];
         assert_eq!(device.modules, wanted);
         near(device.material.plate.e_mpa, 1.5 * nominal.material.plate.e_mpa);

@@ -11,6 +11,7 @@
 //! Sources: M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (a discrepancy beside the parameters); J.
 //! Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014) 114007 (without it parameters are wrong and too sure).
 
+mod atlas;
 mod attribution;
 mod basis;
 mod bootstrap;
@@ -22,6 +23,7 @@ mod covariance;
 pub mod extension;
 mod gain;
 mod inference;
+mod mechanics;
 mod model;
 mod naming;
 mod noise;
@@ -36,14 +38,14 @@ mod whitening;
 
 use std::fmt;
 
+use self::atlas::{Atlas, attributed};
 use self::attribution::{Applied, Attribution, Search};
 use self::covariance::{REMAINDER_MAX, Remainder};
 use self::gain::{Rows, gain, rmse};
+pub use self::mechanics::Pad;
 use self::observations::Observations;
 use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
 use self::separation::separate_by;
-use self::simulated::Simulated;
-pub use self::simulated::{OpenFrame, Pad};
 use crate::lab::calibration::screening::{Fault, Unexplained, screened};
 use crate::numeric::chi_square;
 use crate::numeric::statistics::{mean, rms};
@@ -103,10 +105,10 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
     }
     let all = Observations::of(table);
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
-    let model = Simulated::new(pad, &all, &open);
+    let mut model = Atlas::new(pad, &all, &open);
+    let found = attributed(&mut model).ok_or(Unfit::Singular)?;
+    let at_locked = model.at(&locked);
     let search = Search::new(&model, &all, &open);
-    let found = search.run().ok_or(Unfit::Singular)?;
-    let at_locked = Simulated::new(pad, &all, &locked);
     let rows =
         [Rows { model: &model, observations: &open }, Rows { model: &at_locked, observations: &locked }];
     summary(&search, &found, &rows, &model.missing()).ok_or(Unfit::Singular)

@@ -1,7 +1,7 @@
 //! What a pad and a measurement offer: which causes can be asked for, and where.
 
 use super::target::Target;
-use crate::pad::device::Side;
+use crate::pad::device::{Device, Side};
 
 /// A way in which the field may change, by the mechanics.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,9 +14,25 @@ pub(super) enum Change {
         own: f64,
         /// Its value in the pad that is held to be right.
         nominal: f64,
+        /// Whether it is a modulus, or multiplies one.
+        is_stiffness: bool,
     },
     /// The frame of a module is missing on a side.
     FrameOpen(usize, Side),
+    /// A share of the bond's area of a module has come off from a side.
+    Debonded(usize, Side, f64),
+}
+
+impl Change {
+    /// The weight of a number that is `factor` times the nominal one; of the nominal one where that is no stiffness.
+    pub(super) fn weight(&self, factor: f64) -> f64 {
+        match *self {
+            // What gives way adds up, in series: first order in 1/k, with the slope k ∂/∂k at the field's own k.
+            Self::Number { own, nominal, is_stiffness: true, .. } => own * (1.0 - own / (nominal * factor)),
+            Self::Number { own, nominal, .. } => nominal - own,
+            Self::FrameOpen(..) | Self::Debonded(..) => 0.0,
+        }
+    }
 }
 
 /// What there is to ask.
@@ -53,6 +69,11 @@ impl Setting {
         (0..self.modules).map(Target::Module)
     }
 
+    /// Every side of every module.
+    pub(super) fn each_side(&self) -> Vec<Target> {
+        (0..self.modules).flat_map(|module| Side::ALL.map(|side| Target::ModuleSide(module, side))).collect()
+    }
+
     /// The rig, where there is a field to hold it against.
     pub(super) fn rig(&self) -> Vec<Target> {
         if self.has_field { vec![Target::Rig] } else { Vec::new() }
@@ -65,11 +86,40 @@ impl Setting {
         Some((at, *share))
     }
 
-    /// The weight of a number of the device, its value in the field's own pad, and the nominal one.
-    pub(super) fn number(&self, wanted: &str) -> Option<(usize, f64, f64)> {
-        self.changes.iter().enumerate().find_map(|(at, change)| match *change {
-            Change::Number { name, own, nominal } if name == wanted => Some((at, own, nominal)),
+    /// The weights of the changes by which a bond has lost a share of its area: Lagrange's polynomials through the known
+    /// shares and none.
+    pub(super) fn debonded(&self, module: usize, side: Side, share: f64) -> Vec<(usize, f64)> {
+        let known = self.changes.iter().enumerate().filter_map(|(at, change)| match *change {
+            Change::Debonded(of, from, known) if (of, from) == (module, side) => Some((at, known)),
             _ => None,
-        })
+        });
+        let known: Vec<(usize, f64)> = known.collect();
+        let weight = |(at, own): &(usize, f64)| {
+            let others = known.iter().filter(|(other, _)| other != at);
+            // Π (s − sⱼ)/(sᵢ − sⱼ), none among the sⱼ.
+            let factors = others.map(|(_, other)| (share - other) / (own - other));
+            (*at, share / own * factors.product::<f64>())
+        };
+        known.iter().map(weight).collect()
+    }
+
+    /// A number of the device: its weight's place, and what is known of it.
+    pub(super) fn number(&self, wanted: &str) -> Option<(usize, Change)> {
+        let is_wanted = |change: &Change| matches!(change, Change::Number { name, .. } if *name == wanted);
+        self.changes.iter().position(is_wanted).map(|at| (at, self.changes[at]))
+    }
+
+    /// The weights by which the pad that is held to be right differs from the field's own.
+    pub(super) fn own_weights(&self, nominal: &Device, own: &Device) -> Vec<f64> {
+        let mut weights: Vec<f64> = self.changes.iter().map(|change| change.weight(1.0)).collect();
+        for (device, sign) in [(nominal, 1.0), (own, -1.0)] {
+            for (module, state) in device.modules.iter().enumerate() {
+                let open = state.frame_open.and_then(|side| self.frame_open(module, side));
+                open.into_iter().for_each(|(at, _)| weights[at] += sign);
+                let debonded = state.debonded().map(|(side, share)| self.debonded(module, side, share));
+                debonded.into_iter().flatten().for_each(|(at, weight)| weights[at] += sign * weight);
+            }
+        }
+        weights
     }
 }

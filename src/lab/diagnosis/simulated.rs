@@ -1,18 +1,20 @@
 //! The simulated pad as a model of nine channels.
 
+use std::sync::Arc;
+
 use super::cause::{Cause, Stage};
 use super::causes::CATALOGUE;
-use super::chain::{Chain, ChannelChain, Reference, RigChain};
+use super::chain::{Chain, ChannelChain, MechanicsChain, Reference, RigChain};
+use super::mechanics::{Maps, Pad, at_places, changes, side_share};
 use super::model::{CommonError, Hypothesis, Linearised, Model, Signature};
 use super::observations::{Observations, Sample};
 use super::report::NotTestable;
 use super::setting::{Change, Setting};
 use crate::numeric::statistics::rms;
-use crate::numeric::zernike::{Jet, jets};
 use crate::pad::device::behaviour::{Behaviour, ModuleCrosstalk};
-use crate::pad::device::{Device, Side, Stack};
-use crate::pad::field::{PadField, Sensitivity};
-use crate::pad::influence::{Gains, InfluenceField, MAPS};
+use crate::pad::device::{Device, Side};
+use crate::pad::field::PadField;
+use crate::pad::influence::{Gains, InfluenceField};
 use crate::quantity::{CHANNELS, MODULES};
 
 /// Standard deviation of a factor that all modules' x, y or z channels share, of their answer to shear or to normal loads: the
@@ -25,31 +27,9 @@ const ERRORS_LIKE: [(&str, f64); 2] = [("plate_stiffness", 0.015), ("contact_siz
 /// Readings that change by less than this part of the largest reading do not change.
 const NOTHING: f64 = 1e-9;
 
-/// Per channel, what a unit force along each axis gives.
-type Maps = [[f64; 3]; CHANNELS];
-
-/// The fields of a pad whose module 0 has no frame on one side.
-pub struct OpenFrame {
-    /// Which side.
-    pub side: Side,
-    /// The pad's field.
-    pub field: InfluenceField,
-}
-
-/// The pad that is held to be right.
-#[derive(Clone, Copy)]
-pub struct Pad<'p> {
-    /// Its device.
-    pub device: &'p Device,
-    /// Its field.
-    pub field: &'p PadField,
-    /// The same with frames open; none, and nobody asks for them.
-    pub open_frames: &'p [OpenFrame],
-}
-
 /// Nine channels by a pad's field.
 pub(super) struct Simulated<'f> {
-    field: &'f PadField,
+    signals: InfluenceField,
     observations: &'f Observations,
     setting: Setting,
     reference: Reference,
@@ -58,7 +38,7 @@ pub(super) struct Simulated<'f> {
     /// The device's own imperfections.
     own: Chain,
     /// For each row, the changes of the maps, in the order of the setting's.
-    changes: Vec<Vec<Maps>>,
+    changes: Vec<Arc<[Maps]>>,
 }
 
 /// A row under a chain.
@@ -71,10 +51,15 @@ struct Row {
 }
 
 impl<'f> Simulated<'f> {
-    /// The pad at some `observations` of `all`: hypotheses and references are those of all, so that any part has the same.
-    pub(super) fn new(pad: &Pad<'f>, all: &Observations, observations: &'f Observations) -> Self {
-        let Pad { device, field, open_frames: open } = *pad;
-        let setting = setting(device, field, open, all);
+    /// The pad at some `observations` of `all`, about the `field` of its `own` device: hypotheses and references are those of all
+    /// and of the pad that is held to be right, so that any part, about any field, has the same.
+    pub(super) fn new(
+        pad: &Pad<'_>,
+        (own, field): (&Device, &PadField),
+        all: &Observations,
+        observations: &'f Observations,
+    ) -> Self {
+        let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all);
         let mut hypotheses = Vec::new();
         let mut causes: Vec<&'static dyn Cause> = Vec::new();
         for cause in CATALOGUE.into_iter().filter(|cause| cause.missing(&setting).is_none()) {
@@ -87,19 +72,24 @@ impl<'f> Simulated<'f> {
                 causes.push(cause);
             }
         }
-        let places = observations.samples.iter().map(|sample| sample.place_mm);
-        let changes =
-            places.map(|place_mm| changes(field, open, device.plate.radius_mm(), place_mm)).collect();
+        let places_mm: Vec<[f64; 2]> = observations.samples.iter().map(|sample| sample.place_mm).collect();
+        let weights = setting.own_weights(pad.device, own);
         Self {
-            own: own_chain(device, setting.changes.len()),
-            field,
+            own: own_chain(pad.device, weights),
+            signals: field.signals.clone(),
+            reference: reference(pad.device, pad.field, all),
+            changes: at_places(field, pad.flaws, pad.device.plate.radius_mm(), &places_mm),
             observations,
-            reference: reference(device, field, all),
             setting,
             hypotheses,
             causes,
-            changes,
         }
+    }
+
+    /// Whether a hypothesis changes the field.
+    pub(super) fn changes_field(&self, hypothesis: usize) -> bool {
+        let steps = self.hypotheses[hypothesis].parameters.iter().map(|it| it.step).collect();
+        self.chain(&[(hypothesis, steps)]).mechanics.weights != self.own.mechanics.weights
     }
 
     /// The causes that cannot be asked for, and what is missing.
@@ -127,8 +117,8 @@ impl<'f> Simulated<'f> {
         let force_n = chain.rig.force_n(sample.load);
         Row {
             force_n,
-            gains: continued(&self.field.signals, place_mm),
-            laplacian: self.field.signals.laplacian(place_mm),
+            gains: continued(&self.signals, place_mm),
+            laplacian: self.signals.laplacian(place_mm),
             changes: self.changes[at].iter().map(|maps| maps.map(|map| response(&map, &force_n))).collect(),
         }
     }
@@ -271,13 +261,7 @@ impl Row {
     }
 }
 
-fn setting(device: &Device, field: &PadField, open: &[OpenFrame], observations: &Observations) -> Setting {
-    let numbers = free(field).map(|it| Change::Number {
-        name: it.parameter.name(),
-        own: it.parameter.get(device),
-        nominal: it.parameter.get(device),
-    });
-    let frames = open.iter().flat_map(|it| (0..MODULES).map(|module| Change::FrameOpen(module, it.side)));
+fn setting(device: &Device, changes: Vec<Change>, observations: &Observations) -> Setting {
     let differs = |of: fn(&Sample) -> Option<f64>| {
         let mut values = observations.samples.iter().filter_map(of);
         values.next().is_some_and(|first| values.any(|value| value != first))
@@ -285,10 +269,9 @@ fn setting(device: &Device, field: &PadField, open: &[OpenFrame], observations: 
     Setting {
         channels: CHANNELS,
         modules: MODULES,
-        changes: numbers.chain(frames).collect(),
+        changes,
         has_field: true,
-        side_shares: [Side::PlusX, Side::MinusX, Side::PlusY, Side::MinusY]
-            .map(|side| (side, side_share(device, side))),
+        side_shares: Side::ALL.map(|side| (side, side_share(device, side))),
         patch_radius_mm: device.contact.patch_radius_mm,
         has_time: differs(|sample| sample.t_s),
         has_temperature: differs(|sample| sample.temp_c),
@@ -297,9 +280,10 @@ fn setting(device: &Device, field: &PadField, open: &[OpenFrame], observations: 
 }
 
 /// What a device's file says of its channels and of the rig that measures it.
-fn own_chain(device: &Device, changes: usize) -> Chain {
+fn own_chain(device: &Device, weights: Vec<f64>) -> Chain {
     let Behaviour { thermal, crosstalk, module_crosstalk, noise, rig, .. } = &device.behaviour;
     let modules = || device.modules.iter();
+    let nominal = Chain::nominal(CHANNELS, weights.len());
     Chain {
         rig: RigChain {
             offset_mm: [rig.stage_x_mm, rig.stage_y_mm],
@@ -317,9 +301,9 @@ fn own_chain(device: &Device, changes: usize) -> Chain {
             offset: modules().flat_map(|module| module.offset_uv).collect(),
             zero_per_c: thermal.zero_uv_per_c.to_vec(),
             drift_per_h: noise.drift_uv_per_h.to_vec(),
-            ..Chain::nominal(CHANNELS, changes).channels
+            ..nominal.channels
         },
-        ..Chain::nominal(CHANNELS, changes)
+        mechanics: MechanicsChain { weights, ..nominal.mechanics },
     }
 }
 
@@ -327,23 +311,6 @@ fn own_chain(device: &Device, changes: usize) -> Chain {
 fn by_axis(it: &ModuleCrosstalk) -> impl Iterator<Item = (usize, usize, f64)> + use<> {
     let ModuleCrosstalk { module, with, share } = *it;
     (0..3).map(move |axis| (3 * module + axis, 3 * with + axis, share))
-}
-
-/// The part of a frame's area that lies on a side, from corner to corner.
-pub(super) fn side_share(device: &Device, side: Side) -> f64 {
-    let Stack { film_length_x_mm: length, film_width_y_mm: width, frame_width_mm: frame, .. } = device.stack;
-    let whole = length * width - (length - 2.0 * frame) * (width - 2.0 * frame);
-    match side {
-        Side::PlusX | Side::MinusX => frame * width / whole,
-        Side::PlusY | Side::MinusY => frame * length / whole,
-    }
-}
-
-/// The numbers of the device that a cause can change.
-fn free(field: &PadField) -> impl Iterator<Item = &Sensitivity> {
-    let is_free =
-        |it: &&Sensitivity| it.parameter.module().is_some() || it.parameter.name() == "material.plate.e_mpa";
-    field.sensitivities.iter().filter(is_free)
 }
 
 fn reference(device: &Device, field: &PadField, observations: &Observations) -> Reference {
@@ -360,34 +327,6 @@ fn reference(device: &Device, field: &PadField, observations: &Observations) -> 
         full_scale: (0..CHANNELS).map(|k| of(k).map(f64::abs).fold(f64::MIN_POSITIVE, f64::max)).collect(),
         sizes: (0..CHANNELS).map(|k| rms(of(k))).collect(),
     }
-}
-
-/// The changes of the maps at a place, in the order of the setting's.
-fn changes(field: &PadField, open: &[OpenFrame], plate_mm: f64, place_mm: [f64; 2]) -> Vec<Maps> {
-    let largest = free(field).map(|it| it.maps[0][0].coefficients.len()).max().unwrap_or(0);
-    let degree = (0..).find(|degree| (degree + 1) * (degree + 2) / 2 >= largest).unwrap_or(0);
-    let jets: Vec<Jet> = jets(degree, place_mm.map(|mm| mm / plate_mm));
-    let numbers =
-        free(field).map(|it| it.maps.each_ref().map(|axes| axes.each_ref().map(|map| map.value(&jets))));
-    let frames =
-        open.iter().flat_map(|it| (0..MODULES).map(|module| opened(field, &it.field, module, place_mm)));
-    numbers.chain(frames).collect()
-}
-
-/// The change of the maps where the frame of a module is open, by the field of a pad whose module 0 is: all modules are alike,
-/// so the pad is turned until the module is in the place of the first.
-fn opened(field: &PadField, open: &InfluenceField, module: usize, place_mm: [f64; 2]) -> Maps {
-    let turn = -(module as f64) * std::f64::consts::TAU / MODULES as f64;
-    let (sin, cos) = (libm::sin(turn), libm::cos(turn));
-    let [x_mm, y_mm] = [cos * place_mm[0] - sin * place_mm[1], sin * place_mm[0] + cos * place_mm[1]];
-    let (changed, whole) =
-        (open.gains(x_mm as f32, y_mm as f32).value, field.signals.gains(x_mm as f32, y_mm as f32).value);
-    std::array::from_fn(|channel| {
-        let turned = (channel + MAPS - 3 * module) % CHANNELS;
-        let [ax, ay, az]: [f64; 3] = std::array::from_fn(|axis| changed[turned][axis] - whole[turned][axis]);
-        // A unit force along +x here is (cos, sin) there.
-        [cos * ax + sin * ay, -sin * ax + cos * ay, az]
-    })
 }
 
 /// The field at a place; beyond its radius it goes on straight, as a plate does that does not end there.

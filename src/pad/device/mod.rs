@@ -219,6 +219,9 @@ pub enum Side {
 }
 
 impl Side {
+    /// All four.
+    pub const ALL: [Self; 4] = [Self::PlusX, Self::MinusX, Self::PlusY, Self::MinusY];
+
     /// As device files write it.
     pub const fn name(self) -> &'static str {
         match self {

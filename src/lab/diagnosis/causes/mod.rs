@@ -12,6 +12,7 @@ mod contact_size;
 mod excitation_gain;
 mod gauge_nonlinearity;
 mod module_crosstalk;
+mod module_debonded;
 mod module_displaced;
 mod module_frame_open;
 mod module_rotated;
@@ -31,7 +32,7 @@ mod zero_drift;
 use super::cause::Cause;
 
 /// All causes, in the order of reports.
-pub(super) const CATALOGUE: [&dyn Cause; 24] = [
+pub(super) const CATALOGUE: [&dyn Cause; 25] = [
     &channel_gain::ChannelGain,
     &channel_offset::ChannelOffset,
     &channel_crosstalk::ChannelCrosstalk,
@@ -40,6 +41,7 @@ pub(super) const CATALOGUE: [&dyn Cause; 24] = [
     &module_rotated::ModuleRotated,
     &module_tilted::ModuleTilted,
     &module_stiffness::ModuleStiffness,
+    &module_debonded::ModuleDebonded,
     &module_frame_open::ModuleFrameOpen,
     &module_crosstalk::ModuleCrosstalk,
     &plate_stiffness::PlateStiffness,

@@ -5,7 +5,6 @@ use crate::lab::diagnosis::chain::Chain;
 use crate::lab::diagnosis::model::Parameter;
 use crate::lab::diagnosis::setting::Setting;
 use crate::lab::diagnosis::target::Target;
-use crate::pad::device::Side;
 
 /// Share of the frame's area that is missing, on that side.
 pub(super) struct ModuleFrameOpen;
@@ -26,8 +25,7 @@ impl Cause for ModuleFrameOpen {
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {
-        let sides = [Side::PlusX, Side::MinusX, Side::PlusY, Side::MinusY];
-        (0..setting.modules).flat_map(|module| sides.map(|side| Target::ModuleSide(module, side))).collect()
+        setting.each_side()
     }
 
     fn apply(&self, target: &Target, values: &[f64], setting: &Setting, chain: &mut Chain) {

@@ -1,0 +1,200 @@
+//! The simulated pad about more than one field: its own, and those of changed pads that lie too far off for its tangent.
+
+use super::attribution::{Applied, Attribution, Fit, Search};
+use super::extension::with;
+use super::mechanics::Pad;
+use super::model::{CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter};
+use super::observations::Observations;
+use super::report::NotTestable;
+use super::simulated::Simulated;
+use crate::numeric::linear::dot;
+use crate::pad::device::Device;
+use crate::pad::field::PadField;
+
+/// No more fields than this are solved for one diagnosis.
+const SOLVED_MAX: usize = 3;
+/// A field is solved where the tangent's error would move a number by so many of its own standard deviations.
+const FAR: f64 = 1.0;
+/// The tangent's error is as large as the change itself where ln k is off by so much: most of what gives way beside a module's
+/// frame is not the frame. The simulator has 4.2 for a frame, and 1/k in place of ln k.
+const STIFFNESS_REACH: f64 = 4.0;
+
+/// Fields are solved at whole multiples of this part of a reach: near enough, and soon known for most pads that come.
+const GRID: f64 = 1.0 / 400.0;
+
+/// A changed pad.
+struct Solved {
+    /// The hypotheses that change its field.
+    at: Applied,
+    device: Device,
+    field: PadField,
+}
+
+/// Nine channels, by the field that is nearest to what is asked for.
+pub(super) struct Atlas<'f> {
+    pad: Pad<'f>,
+    all: &'f Observations,
+    /// About the pad that is held to be right.
+    first: Simulated<'f>,
+    /// About the others, in the order of `solved`.
+    others: Vec<Simulated<'f>>,
+    solved: Vec<Solved>,
+    /// For each hypothesis and each of its coordinates, how far the tangent reaches; none where the field does not change.
+    reaches: Vec<Option<Vec<f64>>>,
+    observations: &'f Observations,
+}
+
+/// What the search finds. Where that is too far from any field that is known, it is searched again about the field of the pad that was
+/// found: what only made up for the tangent's error goes, and what that hid is seen.
+pub(super) fn attributed(atlas: &mut Atlas<'_>) -> Option<Attribution> {
+    let mut found = atlas.search().run(&Vec::new())?;
+    while atlas.solved.len() < SOLVED_MAX && atlas.is_far(&found.fit)? {
+        let Some(solved) = atlas.solve(&found.fit.applied) else { break };
+        atlas.add(solved);
+        found = atlas.search().run(&found.fit.applied)?;
+    }
+    Some(found)
+}
+
+impl<'f> Atlas<'f> {
+    /// The pad at some `observations` of `all`.
+    pub(super) fn new(pad: &Pad<'f>, all: &'f Observations, observations: &'f Observations) -> Self {
+        let first = Simulated::new(pad, (pad.device, pad.field), all, observations);
+        let module_mm = pad.device.sites.centre_radius_mm;
+        let reaches = first.hypotheses().iter().enumerate().map(|(at, hypothesis)| {
+            let reaches = hypothesis.parameters.iter().map(|it| reach(it, module_mm)).collect();
+            first.changes_field(at).then_some(reaches)
+        });
+        let reaches = reaches.collect();
+        Self { pad: *pad, all, first, others: Vec::new(), solved: Vec::new(), reaches, observations }
+    }
+
+    /// The same pads at other observations.
+    pub(super) fn at<'o>(&'o self, observations: &'o Observations) -> Atlas<'o> {
+        let mut other = Atlas::new(&self.pad, self.all, observations);
+        for Solved { at, device, field } in &self.solved {
+            other.add(Solved { at: at.clone(), device: device.clone(), field: field.clone() });
+        }
+        other
+    }
+
+    fn search(&self) -> Search<'_> {
+        Search::new(self, self.all, self.observations)
+    }
+
+    /// The causes that cannot be asked for, and what is missing.
+    pub(super) fn missing(&self) -> Vec<NotTestable> {
+        self.first.missing()
+    }
+
+    fn add(&mut self, solved: Solved) {
+        let own = (&solved.device, &solved.field);
+        self.others.push(Simulated::new(&self.pad, own, self.all, self.observations));
+        self.solved.push(solved);
+    }
+
+    /// The pad with those of the hypotheses that change its field; none if it cannot be had.
+    fn solve(&self, applied: &Applied) -> Option<Solved> {
+        let (mut device, mut at) = (self.pad.device.clone(), Applied::new());
+        for (hypothesis, coordinates) in applied {
+            let Some(reaches) = &self.reaches[*hypothesis] else { continue };
+            let coordinates: Vec<f64> = coordinates.iter().zip(reaches).map(rounded).collect();
+            let Hypothesis { effect, target, ref parameters } = self.first.hypotheses()[*hypothesis];
+            let values = parameters.iter().zip(&coordinates);
+            let numbers: Vec<_> = values.map(|(it, psi)| (it.name, it.value(*psi))).collect();
+            if let Some(changed) = with(&device, (effect, target), &numbers, None) {
+                device = changed;
+                at.push((*hypothesis, coordinates));
+            }
+        }
+        let field = (self.pad.solve)(&device)?;
+        Some(Solved { at, device, field })
+    }
+
+    /// The place in `solved` of the field that is nearest; none for the pad's own.
+    fn nearest(&self, applied: &[(usize, Vec<f64>)]) -> Option<usize> {
+        let own = (self.distance(applied, &[]), None);
+        let others = self.solved.iter().enumerate().map(|(k, it)| (self.distance(applied, &it.at), Some(k)));
+        others.fold(own, |nearest, other| if other.0 <= nearest.0 { other } else { nearest }).1
+    }
+
+    fn about(&self, applied: &[(usize, Vec<f64>)]) -> &Simulated<'f> {
+        self.nearest(applied).and_then(|k| self.others.get(k)).unwrap_or(&self.first)
+    }
+
+    /// The square of a distance, in reaches.
+    fn distance(&self, from: &[(usize, Vec<f64>)], to: &[(usize, Vec<f64>)]) -> f64 {
+        let square = |(at, reaches): (usize, &Option<Vec<f64>>)| {
+            let reaches = reaches.as_ref()?;
+            let by = difference(reaches.len(), coordinates(from, at), coordinates(to, at));
+            Some(by.iter().zip(reaches).map(|(by, reach)| (by / reach).powi(2)).sum::<f64>())
+        };
+        self.reaches.iter().enumerate().filter_map(square).sum()
+    }
+
+    /// Whether the tangent's error moves a number of a fitted cause by more than that is known.
+    fn is_far(&self, fit: &Fit) -> Option<bool> {
+        let at = self.nearest(&fit.applied).map_or(&[][..], |k| &self.solved[k].at);
+        let search = self.search();
+        for (place, (hypothesis, psi)) in fit.applied.iter().enumerate() {
+            let Some(reaches) = &self.reaches[*hypothesis] else { continue };
+            let by = difference(reaches.len(), Some(psi), coordinates(at, *hypothesis));
+            let error = by.iter().zip(reaches).map(|(by, reach)| (by / reach).powi(2)).sum::<f64>().sqrt();
+            let (projected, _) = search.without(fit, place)?;
+            let own = &search.columns.of_hypothesis[*hypothesis];
+            let square = dot(&projected.fisher.picked(own, own).times(&by), &by);
+            if error * square.max(0.0).sqrt() > FAR {
+                return Some(true);
+            }
+        }
+        Some(false)
+    }
+}
+
+impl Model for Atlas<'_> {
+    fn hypotheses(&self) -> &[Hypothesis] {
+        self.first.hypotheses()
+    }
+
+    fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>> {
+        self.about(applied).readings(applied)
+    }
+
+    fn sizes(&self) -> Vec<f64> {
+        self.first.sizes()
+    }
+
+    fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
+        self.about(applied).linearised(applied)
+    }
+
+    fn common_errors(&self) -> Vec<CommonError> {
+        self.first.common_errors()
+    }
+}
+
+fn coordinates(applied: &[(usize, Vec<f64>)], hypothesis: usize) -> Option<&Vec<f64>> {
+    applied.iter().find(|(at, _)| *at == hypothesis).map(|(_, psi)| psi)
+}
+
+/// Coordinates less others; those of a cause that does not hold are zero.
+fn difference(count: usize, from: Option<&Vec<f64>>, to: Option<&Vec<f64>>) -> Vec<f64> {
+    let of = |psi: Option<&Vec<f64>>, k: usize| psi.and_then(|psi| psi.get(k)).copied().unwrap_or(0.0);
+    (0..count).map(|k| of(from, k) - of(to, k)).collect()
+}
+
+fn rounded((psi, reach): (&f64, &f64)) -> f64 {
+    let step = reach * GRID;
+    if step.is_finite() { libm::round(psi / step) * step } else { *psi }
+}
+
+/// How far a coordinate may go until the tangent is off by as much as it says: a module's distance from the axis, a radian. The
+/// simulator has 26 to 56 mm and 50 to 150° on the nominal pad. What a module lacks is no tangent.
+fn reach(parameter: &Parameter, module_mm: f64) -> f64 {
+    match parameter.coordinate {
+        Coordinate::Logarithm => STIFFNESS_REACH,
+        _ if parameter.name.ends_with("_mm") => module_mm,
+        _ if parameter.name.ends_with("deg") => 1_f64.to_degrees(),
+        _ => f64::INFINITY,
+    }
+}

@@ -226,6 +226,7 @@ mod tests {
             unnamed_share: 0.0,
             ceiling_share: None,
             gain: None,
+            gatekeepers: Vec::new(),
         }
     }
 

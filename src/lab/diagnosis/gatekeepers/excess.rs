@@ -133,3 +133,41 @@ fn notice(observations: &Observations, level: &Level, excess: f64) -> Notice {
     );
     Notice { check: "noise", channel: Some(level.channel), detail }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::random::SplitMix64;
+
+    /// Nine channels of signals between 100 and 4,000, the fifth with so many times its noise of 0.2 to 0.8 % each.
+    fn found(seed: u64, factor: f64) -> Excess {
+        let mut random = SplitMix64::new(seed);
+        let mut between = |low: f64, high: f64| low + (high - low) * f64::from(random.fraction());
+        let (mut noise, mut signals) = (Vec::new(), Vec::new());
+        for channel in 0..9 {
+            let size = between(100.0, 4000.0);
+            let signal: Vec<f64> = (0..400).map(|row| size * libm::sin(f64::from(row))).collect();
+            let mut level = NoiseLevel::first(&signal);
+            let times = if channel == 4 { factor } else { 1.0 };
+            level.additive = times * between(0.002, 0.008) * size * 0.5_f64.sqrt();
+            level.share = times * between(0.002, 0.008);
+            noise.push(level);
+            signals.push(signal);
+        }
+        let observations = Observations { is_told: vec![vec![true; 400]; 9], ..Observations::default() };
+        excess(&observations, &noise, &signals)
+    }
+
+    #[test]
+    fn sound_channels_differ_and_a_loud_one_is_told() {
+        let alarms = (0..400).filter(|seed| !found(*seed, 1.0).findings.is_empty()).count();
+        assert!(alarms <= 8, "{alarms} of 400");
+        let right = |it: &Excess| it.findings.len() == 1 && it.findings[0].target == Target::Channel(4);
+        let told = |factor: f64| (0..400).filter(|seed| right(&found(*seed, factor))).count();
+        assert!(told(3.0) > 200 && told(5.0) > 380, "{} and {} of 400", told(3.0), told(5.0));
+        let holds = |it: &Excess| it.findings[0].parameters[0].interval95;
+        let loud: Vec<Excess> = (0..400).map(|seed| found(seed, 5.0)).filter(right).collect();
+        let covered = loud.iter().filter(|it| holds(it)[0] <= 5.0 && holds(it)[1] >= 5.0).count();
+        assert!(covered as f64 > 0.9 * loud.len() as f64, "{covered} of {}", loud.len());
+    }
+}

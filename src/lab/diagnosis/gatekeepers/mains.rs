@@ -1,15 +1,17 @@
 //! The mains in a channel's time series: a line near 50 or 60 Hz, or where the sampling folds it to.
 //!
-//! What a stretch's line takes off the squares, in units of that stretch's noise, adds up over the stretches: T(f) is χ² with two
-//! degrees of freedom for each. The noise is what frequencies nearby take off, so that noise with a memory passes. A line that
-//! the loads have as well is the press's own.
+//! What a stretch's line takes off the squares, S, is held against the mean σ² per degree of freedom that frequencies nearby take
+//! off, so that noise with a memory passes. With d such degrees of freedom S/2σ² is F distributed with 2 and d, and
+//! d ln(1 + S/(d σ²)) is χ² with two; that adds up over the stretches. A line that the loads have as well is the press's own.
+//!
+//! Source: R. A. Fisher, Statistical Methods for Research Workers (1925), 21.1 (combined tests).
 
 use super::line::{Stretch, Waves};
 use super::{Gate, LEVEL, rows_text};
 use crate::lab::diagnosis::report::{Estimate, NotDetected, NotTestable};
 use crate::lab::diagnosis::target::Target;
 use crate::numeric::chi_square;
-use crate::numeric::statistics::{mean, median};
+use crate::numeric::statistics::mean;
 
 /// The grids' frequencies, and how far from them the mains are looked for.
 const GRIDS_HZ: [f64; 2] = [50.0, 60.0];
@@ -37,6 +39,16 @@ struct Comb {
     searched: usize,
     /// For each stretch and frequency.
     waves: Vec<Vec<Option<Waves>>>,
+}
+
+/// The noise of a stretch.
+struct Noise {
+    /// Which stretch.
+    at: usize,
+    /// For each degree of freedom.
+    variance: f64,
+    /// By how many it is known.
+    freedom: f64,
 }
 
 /// A line as far as it was looked for in a channel.
@@ -155,10 +167,8 @@ impl Comb {
     /// The largest line of the grid in `values`, by the stretches in which the channel is `told`; none where no stretch tells it.
     fn peak(&self, stretches: &[&Stretch], told: &[bool], values: &[f64], critical: f64) -> Option<Peak> {
         let cut: Vec<Vec<f64>> = stretches.iter().map(|it| of_rows(values, it)).collect();
-        let usable: Vec<(usize, f64)> = (0..cut.len())
-            .filter(|at| told[*at])
-            .filter_map(|at| Some((at, self.noise(at, &cut[at])?)))
-            .collect();
+        let told = (0..cut.len()).filter(|at| told[*at]);
+        let usable: Vec<Noise> = told.filter_map(|at| self.noise(at, stretches[at], &cut[at])).collect();
         let squares: Vec<[f64; 2]> =
             (0..self.frequencies_hz.len()).map(|at| self.square(at, &usable, &cut)).collect();
         let beside = squares[self.searched..].iter().filter(|it| it[1] > 0.0);
@@ -169,47 +179,58 @@ impl Comb {
             return None;
         }
         let total = |hz: f64| -> f64 {
-            let of = |(it, noise): &(usize, f64)| Some(stretches[*it].waves(hz)?.square(&cut[*it]) / noise);
-            usable.iter().filter_map(of).sum::<f64>() / scale
+            let of = |it: &Noise| Some(stretches[it.at].waves(hz)?.square(&cut[it.at]) / it.variance);
+            usable.iter().filter_map(of).sum()
         };
-        let (frequency_hz, curvature) =
-            top(self.frequencies_hz[at], self.frequencies_hz[1] - self.frequencies_hz[0], &total);
-        let parts: Vec<[f64; 2]> = usable
-            .iter()
-            .filter_map(|(it, noise)| {
-                let waves = stretches[*it].waves(frequency_hz)?;
-                Some([waves.amplitude(&cut[*it]), waves.weight() / (noise * scale)])
-            })
-            .collect();
-        let weight: f64 = parts.iter().map(|[_, weight]| weight).sum();
-        // Rice's mean is A + σ²/(2A).
-        let unbiased =
-            |[amplitude, weight]: &[f64; 2]| weight * amplitude - 0.5 / amplitude.max(f64::MIN_POSITIVE);
-        let freedom = freedom as usize;
+        let step_hz = self.frequencies_hz[1] - self.frequencies_hz[0];
+        let (frequency_hz, curvature) = top(self.frequencies_hz[at], step_hz, &total);
+        let part = |it: &Noise| {
+            let waves = stretches[it.at].waves(frequency_hz)?;
+            Some([waves.amplitude(&cut[it.at]), waves.weight() / it.variance])
+        };
+        let parts: Vec<[f64; 2]> = usable.iter().filter_map(part).collect();
+        let [amplitude, weight] = joint_amplitude(&parts);
         Some(Peak {
             grid_hz: self.grid_hz,
             frequency_hz,
             spread_hz: WITHIN_95 * (2.0 / curvature).sqrt(),
             square: square / scale,
-            p_value: chi_square::exceeded(square / scale, freedom),
-            amplitude: parts.iter().map(unbiased).sum::<f64>().max(0.0) / weight,
+            p_value: chi_square::exceeded(square / scale, freedom as usize),
+            amplitude,
             spread: WITHIN_95 / weight.sqrt(),
-            least: (noncentrality(critical, freedom) / weight).sqrt(),
+            least: (noncentrality(critical, freedom as usize) / weight).sqrt(),
         })
     }
 
-    /// A stretch's noise: the median over the frequencies beside. χ² of two degrees has its median at 2 ln 2.
-    fn noise(&self, stretch: usize, values: &[f64]) -> Option<f64> {
-        let beside = self.waves[stretch][self.searched..].iter().flatten().map(|waves| waves.square(values));
-        median(beside).map(|it| it / (2.0 * std::f64::consts::LN_2)).filter(|it| *it > 0.0)
+    /// A stretch's noise per degree of freedom, and how many it is known by.
+    fn noise(&self, at: usize, stretch: &Stretch, values: &[f64]) -> Option<Noise> {
+        let beside: Vec<f64> = self.waves[at][self.searched..]
+            .iter()
+            .flatten()
+            .map(|waves| 0.5 * waves.square(values))
+            .collect();
+        let step_hz = self.frequencies_hz[1] - self.frequencies_hz[0];
+        let freedom = 2.0 * (beside.len() as f64 * step_hz * stretch.span_s()).max(1.0);
+        let variance = mean(beside);
+        (variance > 0.0).then_some(Noise { at, variance, freedom })
     }
 
-    /// T and its degrees of freedom.
-    fn square(&self, frequency: usize, usable: &[(usize, f64)], cut: &[Vec<f64>]) -> [f64; 2] {
-        let of =
-            |(at, noise): &(usize, f64)| Some(self.waves[*at][frequency].as_ref()?.square(&cut[*at]) / noise);
+    /// The sum of the stretches' χ², and its degrees of freedom.
+    fn square(&self, frequency: usize, usable: &[Noise], cut: &[Vec<f64>]) -> [f64; 2] {
+        let of = |noise: &Noise| {
+            let square = self.waves[noise.at][frequency].as_ref()?.square(&cut[noise.at]);
+            Some(noise.freedom * (square / (noise.freedom * noise.variance)).ln_1p())
+        };
         usable.iter().filter_map(of).fold([0.0; 2], |[sum, freedom], it| [sum + it, freedom + 2.0])
     }
+}
+
+/// The amplitude that stretches have together, and its weight. Rice's mean is A + σ²/(2A).
+fn joint_amplitude(parts: &[[f64; 2]]) -> [f64; 2] {
+    let weight: f64 = parts.iter().map(|[_, weight]| weight).sum();
+    let unbiased =
+        |[amplitude, weight]: &[f64; 2]| weight * amplitude - 0.5 / amplitude.max(f64::MIN_POSITIVE);
+    [parts.iter().map(unbiased).sum::<f64>().max(0.0) / weight, weight]
 }
 
 /// λ at which χ² passes its critical value in nine of ten: exact for few degrees of freedom, by the normal law for many.

@@ -4,10 +4,12 @@
 //! jump to it and back again and again while no other channel does. Limits of a converter and its steps do neither: the readings
 //! around them are next to them.
 
-use super::{Gate, rows_text};
+use super::{Gate, LEVEL, rows_text};
 
 /// Fewest rows of a code.
 const ROWS_MIN: usize = 3;
+/// Of so many of a channel's most frequent values any may be a code, and its extremes.
+const CANDIDATES: usize = 8;
 /// A code comes and goes so often at least.
 const RUNS_MIN: usize = 3;
 /// Of readings that jump, this is the ordinary part: no more than one in a hundred.
@@ -81,22 +83,27 @@ fn code(gate: &Gate, channel: usize) -> Option<(f64, Vec<usize>)> {
     let readings = &gate.observations.readings[channel];
     let mut sorted: Vec<f64> = gate.readings(channel, &told);
     sorted.sort_by(f64::total_cmp);
-    let repeated: Vec<f64> = sorted
-        .chunk_by(|one, other| one == other)
-        .filter(|it| it.len() >= ROWS_MIN)
-        .map(|it| it[0])
-        .collect();
     let rows =
         |code: f64| -> Vec<usize> { told.iter().copied().filter(|row| readings[*row] == code).collect() };
     let is_code = |code: &f64| {
         is_apart(&sorted, *code)
-            || (jumps(readings, &told, *code) > JUMPS && others_rest(gate, channel, &told, &rows(*code)))
+            || (jumps(readings, &told, *code) && others_rest(gate, channel, &told, &rows(*code)))
     };
-    repeated
+    candidates(&sorted)
         .into_iter()
         .filter(is_code)
         .map(|code| (code, rows(code)))
         .find(|(_, rows)| rows.len() < told.len())
+}
+
+/// Values that recur: the most frequent ones and the extremes.
+fn candidates(sorted: &[f64]) -> Vec<f64> {
+    let repeated = sorted.chunk_by(|one, other| one == other).filter(|it| it.len() >= ROWS_MIN);
+    let mut counted: Vec<(usize, f64)> = repeated.map(|it| (it.len(), it[0])).collect();
+    let ends: Vec<(usize, f64)> = counted.first().into_iter().chain(counted.last()).copied().collect();
+    counted.sort_by_key(|(count, _)| usize::MAX - count);
+    counted.truncate(CANDIDATES);
+    ends.into_iter().chain(counted).map(|(_, value)| value).collect()
 }
 
 /// Whether a value lies further from all others than they lie apart.
@@ -106,14 +113,19 @@ fn is_apart(sorted: &[f64], code: f64) -> bool {
     others.len() >= ROWS_MIN && most > least && (least - code).max(code - most) > most - least
 }
 
-/// The share of the rows with this value that are jumps; 0 if it comes too seldom.
-fn jumps(readings: &[f64], rows: &[usize], code: f64) -> f64 {
+/// Whether more of the rows with this value are jumps than chance makes of ordinary ones: k of m with the probability q each have
+/// at most the probability exp(−m (x ln(x/q) + (1 − x) ln((1 − x)/(1 − q)))), x = k/m (Chernoff's bound).
+fn jumps(readings: &[f64], rows: &[usize], code: f64) -> bool {
     let runs = rows.chunk_by(|one, other| readings[*one] == readings[*other]);
     if runs.filter(|run| run.first().is_some_and(|row| readings[*row] == code)).count() < RUNS_MIN {
-        return 0.0;
+        return false;
     }
     let (own, others): (Vec<usize>, Vec<usize>) = rows.iter().partition(|row| readings[**row] == code);
-    share_above(&distances(readings, &others, &own), &distances(readings, &others, &others))
+    let own = distances(readings, &others, &own);
+    let share = share_above(&own, &distances(readings, &others, &others));
+    let part = |share: f64, chance: f64| if share > 0.0 { share * (share / chance).ln() } else { 0.0 };
+    let exponent = part(share, 1.0 - ORDINARY) + part(1.0 - share, ORDINARY);
+    share > JUMPS && (-(own.len() as f64) * exponent).exp() < LEVEL / CANDIDATES as f64
 }
 
 /// The share of distances that are larger than ordinary ones.

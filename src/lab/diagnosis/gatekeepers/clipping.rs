@@ -4,9 +4,9 @@
 //! would fall into a cell as wide as the converter's step q; that c do has at most the probability exp(c − λ − c ln(c/λ))
 //! (Chernoff's bound of Poisson's law). And they should have been larger: by the model, or by what the other channels read.
 
+use super::gate::{Gate, LEVEL, rows_text};
 use super::prediction::Fitted;
 use super::steps::least_gap;
-use super::{Gate, LEVEL, rows_text};
 use crate::lab::diagnosis::report::Estimate;
 use crate::lab::diagnosis::target::Target;
 use crate::numeric::statistics::{mean, population_deviation};

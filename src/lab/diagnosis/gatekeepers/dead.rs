@@ -6,8 +6,8 @@
 //!
 //! Source: R. A. Fisher, Metron 1 (1921) 3; R. A. Fisher, Statistical Methods for Research Workers (1925), the F test.
 
+use super::gate::{Gate, LEVEL, rows_text, squares};
 use super::prediction::explained;
-use super::{Gate, LEVEL, rows_text, squares};
 use crate::lab::diagnosis::target::Target;
 use crate::numeric::chi_square;
 

@@ -6,8 +6,8 @@
 //!
 //! Source: R. A. Fisher, Statistical Methods for Research Workers (1925), 21.1 (combined tests).
 
+use super::gate::{Gate, LEVEL, rows_text};
 use super::line::{Stretch, Waves};
-use super::{Gate, LEVEL, rows_text};
 use crate::lab::diagnosis::report::{Estimate, NotDetected, NotTestable};
 use crate::lab::diagnosis::target::Target;
 use crate::numeric::chi_square;

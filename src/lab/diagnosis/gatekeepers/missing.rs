@@ -4,7 +4,7 @@
 //! jump to it and back again and again while no other channel does. Limits of a converter and its steps do neither: the readings
 //! around them are next to them.
 
-use super::{Gate, LEVEL, rows_text};
+use super::gate::{Gate, LEVEL, rows_text};
 
 /// Fewest rows of a code.
 const ROWS_MIN: usize = 3;

@@ -1,6 +1,6 @@
 //! What a channel should read by others: least squares.
 
-use super::squares;
+use super::gate::squares;
 use crate::numeric::dense::{Matrix, gram};
 use crate::numeric::linear::dot;
 use crate::numeric::statistics::mean;

@@ -1,6 +1,6 @@
 //! Rates that do not match: channels that are held over several rows, and a label's clock that runs away from the channels'.
 
-use super::{Gate, rows_text};
+use super::gate::{Gate, rows_text};
 use crate::numeric::statistics::{Line, deviation};
 
 /// Of a held channel's changes, so many come after one and the same number of rows.

@@ -2,7 +2,7 @@
 //!
 //! The step is the least distance of two values, if all distances are whole multiples of it.
 
-use super::{Gate, rows_text};
+use super::gate::{Gate, rows_text};
 use crate::numeric::statistics::median;
 
 /// Values in all for a step to be told, and distances from a multiple that digits of a file may leave.

@@ -3,7 +3,7 @@
 //! A converter's steps let values repeat by chance: with the share p of repeats in the rest of the channel, a run of k repeats
 //! somewhere in n rows has at most the probability n pᵏ.
 
-use super::{Gate, LEVEL, rows_text, squares};
+use super::gate::{Gate, LEVEL, rows_text, squares};
 use crate::numeric::statistics::median;
 
 /// Others move if their mean square in the stretch is this part of that of all rows: a third of its deviation.

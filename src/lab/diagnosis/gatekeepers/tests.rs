@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::lab::diagnosis::observations::Sample;
+use crate::lab::diagnosis::target::Target;
 use crate::numeric::random::SplitMix64;
 
 /// Three channels under loads of three axes, static, and what they should read.

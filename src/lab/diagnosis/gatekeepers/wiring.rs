@@ -4,7 +4,7 @@
 //! channels are exchanged if that is likelier, ½ n ln [(uₖₖ uₗₗ)/(uₖₗ uₗₖ)] (with normal residuals the likelihood goes with
 //! u^(−n/2)), and leaves each of them at most half. A sign shows in none of this: it is that of r in the right place.
 
-use super::{Gate, LEVEL, correlation, squares};
+use super::gate::{Gate, LEVEL, correlation, squares};
 use crate::lab::diagnosis::target::Target;
 use crate::numeric::chi_square;
 

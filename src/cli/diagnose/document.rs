@@ -26,8 +26,7 @@ pub(super) struct Document<'d> {
     unnamed_share: f64,
     ceiling_share: Option<f64>,
     gain: Option<Gain>,
-    /// Checks before the diagnosis; there are none yet.
-    gatekeepers: [(); 0],
+    gatekeepers: Vec<Notice<'d>>,
 }
 
 #[derive(Serialize)]
@@ -98,6 +97,14 @@ struct Gain {
     per_cause: Vec<Without>,
 }
 
+/// What a check of the recording found; `channel` is `all` where it was in whole rows.
+#[derive(Serialize)]
+struct Notice<'d> {
+    check: &'static str,
+    channel: &'d str,
+    detail: &'d str,
+}
+
 #[derive(Serialize)]
 struct Without {
     #[serde(flatten)]
@@ -126,7 +133,7 @@ impl<'d> Document<'d> {
             unnamed_share: diagnosis.unnamed_share,
             ceiling_share: diagnosis.ceiling_share,
             gain: diagnosis.gain.as_ref().map(|gain| Gain::of(gain, &diagnosis.channels)),
-            gatekeepers: [],
+            gatekeepers: diagnosis.gatekeepers.iter().map(|it| Notice::of(it, &diagnosis.channels)).collect(),
         }
     }
 }
@@ -158,6 +165,13 @@ impl<'d> Finding<'d> {
             confounded_with: others.map(|(effect, target)| Cause::of(effect, target, channels)).collect(),
             separate_by: finding.separate_by.as_deref(),
         }
+    }
+}
+
+impl<'d> Notice<'d> {
+    fn of(notice: &'d report::Notice, channels: &'d [String]) -> Self {
+        let channel = notice.channel.and_then(|channel| channels.get(channel));
+        Self { check: notice.check, channel: channel.map_or("all", String::as_str), detail: &notice.detail }
     }
 }
 

@@ -15,6 +15,10 @@ impl fmt::Display for Report<'_> {
         let Self(diagnosis) = self;
         writeln!(f, "{}", hanging("", &verdict(diagnosis)))?;
         writeln!(f, "{}", hanging("", &sizes(diagnosis)))?;
+        for (at, notice) in diagnosis.gatekeepers.iter().enumerate() {
+            let first = if at == 0 { "\nBefore the diagnosis, of the recording itself:\n" } else { "" };
+            writeln!(f, "{first}{}", hanging("  - ", &format!("{}.", notice.detail)))?;
+        }
         for (number, finding) in (1..).zip(&diagnosis.findings) {
             writeln!(f, "\n{}", hanging(&format!("{number:>3}  "), &found(finding, &diagnosis.channels)))?;
         }
@@ -57,7 +61,8 @@ fn sizes(diagnosis: &Diagnosis) -> String {
 
 /// A cause and where it is.
 fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
-    let with = target.with(channels).map(|with| format!(" from {with}")).unwrap_or_default();
+    let joint = if effect == "channels_swapped" { "with" } else { "from" };
+    let with = target.with(channels).map(|with| format!(" {joint} {with}")).unwrap_or_default();
     let side = target.side().map(|it| format!(" on its {} side", it.name())).unwrap_or_default();
     format!("{effect} of {}{with}{side}", target.name(channels))
 }

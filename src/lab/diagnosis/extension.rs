@@ -244,6 +244,7 @@ mod tests {
             ceiling_share: None,
             gain: None,
             residuals: super::super::report::Residuals::default(),
+            gatekeepers: Vec::new(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Diagnosis: what measured data show that a model gets wrong, and which causes explain it.
 //!
-//! The way of the data: rows become [`observations`]; a model (`model`) says what they should
+//! The way of the data: rows become [`observations`], which pass checks of the recording (`gatekeepers/`); a model (`model`) says what they should
 //! read and how that changes with each hypothesis of the catalogue (`causes/`); the residual's covariance is noise, a smooth
 //! background that every simulator leaves, and what the simulator is known to get wrong (`covariance`); group score tests with a
 //! cluster bootstrap choose causes (`attribution`); the encompassing rule says which of them may be named (`naming`); rows that
@@ -22,6 +22,7 @@ mod columns;
 mod covariance;
 pub mod extension;
 mod gain;
+mod gatekeepers;
 mod inference;
 mod mechanics;
 mod model;
@@ -42,11 +43,14 @@ use self::atlas::{Atlas, attributed};
 use self::attribution::{Applied, Attribution, Search};
 use self::covariance::{REMAINDER_MAX, Remainder};
 use self::gain::{Rows, gain, rmse};
+use self::gatekeepers::excess::excess;
+use self::gatekeepers::{Gate, guarded};
 pub use self::mechanics::Pad;
+use self::model::Model;
 use self::observations::Observations;
 use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
 use self::separation::separate_by;
-use crate::lab::calibration::screening::{Fault, Unexplained, screened};
+use self::simulated::Simulated;
 use crate::numeric::chi_square;
 use crate::numeric::statistics::{mean, rms};
 use crate::tables::measured::Table;
@@ -65,10 +69,8 @@ pub enum Unfit {
     Locations(usize),
     /// No forces.
     Unloaded,
-    /// A channel is dead, reversed or in another's place: until that is mended it hides everything else.
-    Fault(Fault),
-    /// The channels do not go with the contacts.
-    Unexplained(Unexplained),
+    /// No channel goes with the contacts.
+    Silent,
     /// The numbers have no unique solution.
     Singular,
 }
@@ -85,8 +87,9 @@ impl fmt::Display for Unfit {
                 "contacts at {locations} places: to tell causes apart it takes {LOCATIONS_MIN} at least, spread over the plate"
             ),
             Self::Unloaded => f.write_str("all forces are zero: without written loads the channels cannot be held against the pad"),
-            Self::Fault(fault) => write!(f, "{fault}; mend or leave out that first, as it hides everything else"),
-            Self::Unexplained(why) => why.fmt(f),
+            Self::Silent => f.write_str(
+                "no channel follows the contacts; measure again, and see that each row has the channels of its own contact",
+            ),
             Self::Singular => f.write_str("these readings have no noise at all, or numbers too large to be readings: nothing can be told by them"),
         }
     }
@@ -100,18 +103,44 @@ impl std::error::Error for Unfit {}
 /// The table has too little in it to tell causes apart.
 pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
     check(table)?;
-    if let Some(fault) = screened(&table.rows, pad.device, pad.field).map_err(Unfit::Unexplained)? {
-        return Err(Unfit::Fault(fault));
-    }
-    let all = Observations::of(table);
+    let gate = checked(&Observations::of(table), pad)?;
+    let all = &gate.observations;
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
-    let mut model = Atlas::new(pad, &all, &open);
+    let mut model = Atlas::new(pad, all, &open);
     let found = attributed(&mut model).ok_or(Unfit::Singular)?;
     let at_locked = model.at(&locked);
-    let search = Search::new(&model, &all, &open);
+    let search = Search::new(&model, all, &open);
     let rows =
         [Rows { model: &model, observations: &open }, Rows { model: &at_locked, observations: &locked }];
-    summary(&search, &found, &rows, &model.missing()).ok_or(Unfit::Singular)
+    let diagnosis = summary(&search, &found, &rows, &model.missing()).ok_or(Unfit::Singular)?;
+    Ok(with_gatekeepers(diagnosis, gate, &found, &open))
+}
+
+/// The observations after the checks of the recording.
+fn checked(observations: &Observations, pad: &Pad<'_>) -> Result<Gate, Unfit> {
+    let expected = Simulated::new(pad, (pad.device, pad.field), observations, observations).readings(&[]);
+    let gate = guarded(observations, Some(&expected));
+    let is_alive = |channel| gate.observations.is_alive(channel);
+    if (0..gate.observations.channels.len()).any(is_alive) { Ok(gate) } else { Err(Unfit::Silent) }
+}
+
+/// What the checks of the recording found goes first.
+fn with_gatekeepers(
+    mut diagnosis: Diagnosis,
+    gate: Gate,
+    found: &Attribution,
+    open: &Observations,
+) -> Diagnosis {
+    // Shares are of the residual before the repairs.
+    diagnosis.findings.iter_mut().for_each(|finding| finding.share *= gate.left);
+    let excess = excess(open, &found.fit.systems.noise, &found.fit.linearised.readings);
+    let own = gate.findings.into_iter().chain(excess.findings);
+    diagnosis.findings.splice(..0, own);
+    diagnosis.verdict = verdict(!diagnosis.findings.is_empty(), diagnosis.unnamed_share);
+    diagnosis.not_detected.extend(gate.not_detected.into_iter().chain(excess.not_detected));
+    diagnosis.not_testable.extend(gate.not_testable);
+    diagnosis.gatekeepers = gate.notices.into_iter().chain(excess.notices).collect();
+    diagnosis
 }
 
 /// Whether there is enough in a table; quick, where [`diagnose`] takes seconds.
@@ -167,6 +196,7 @@ fn summary(
         not_testable: missing.to_vec(),
         unnamed_share,
         findings,
+        gatekeepers: Vec::new(),
     })
 }
 

@@ -32,6 +32,8 @@ pub struct Diagnosis {
     pub ceiling_share: Option<f64>,
     /// On the locked rows; `None` where nothing was found.
     pub gain: Option<Gain>,
+    /// What the checks before it found in the recording, and did about it.
+    pub gatekeepers: Vec<Notice>,
     /// What the model misses, row by row.
     pub residuals: Residuals,
 }
@@ -47,6 +49,17 @@ pub struct Residuals {
     pub nominal: Vec<Vec<f64>>,
     /// The same with the named and confounded causes.
     pub extended: Vec<Vec<f64>>,
+}
+
+/// What a check of the recording found and did.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// The check, in a word.
+    pub check: &'static str,
+    /// In which channel; none: in whole rows.
+    pub channel: Option<usize>,
+    /// What, in how many rows, what was done about it, and how to look at it.
+    pub detail: String,
 }
 
 /// The answer in one word.

@@ -1,0 +1,59 @@
+//! Checks before any physics: faults of the recording and the electronics.
+//!
+//! Each check mends what it finds, or takes away the weight of the readings that it cannot mend, and leaves a [`Notice`] that
+//! says which channel, how many rows, what was done, and how to look at it. What has a name among the effects is a finding,
+//! too. Nothing here knows of nine channels or of a pad: where a model says what the channels should read, that helps, and
+//! where none does, the channels are held against each other and against themselves.
+//!
+//! A check is a file, and a line in [`CHECKS`].
+
+mod clipping;
+mod clock;
+mod dead;
+pub(super) mod excess;
+mod gate;
+mod line;
+mod mains;
+mod missing;
+mod prediction;
+mod rates;
+mod steps;
+mod stuck;
+mod wiring;
+
+pub(super) use self::gate::Gate;
+use super::observations::Observations;
+
+/// All checks, in their order: times before series, codes before anything that calculates, wires before whatever holds a
+/// channel against its own model.
+const CHECKS: [fn(&mut Gate); 9] = [
+    clock::check,
+    missing::check,
+    stuck::check,
+    rates::check,
+    dead::check,
+    wiring::check,
+    clipping::check,
+    steps::check,
+    mains::check,
+];
+
+/// The observations after all checks. `expected` are each channel's readings by a model, row by row; `None`: there is no model.
+///
+/// Tables of any size pass, also ones without rows; whether enough is left in them is for the caller to ask.
+pub(super) fn guarded(observations: &Observations, expected: Option<&[Vec<f64>]>) -> Gate {
+    let mut gate = Gate {
+        observations: observations.clone(),
+        expected: expected.map(<[Vec<f64>]>::to_vec),
+        notices: Vec::new(),
+        findings: Vec::new(),
+        not_detected: Vec::new(),
+        not_testable: Vec::new(),
+        left: 1.0,
+    };
+    CHECKS.iter().for_each(|check| check(&mut gate));
+    gate
+}
+
+#[cfg(test)]
+mod tests;

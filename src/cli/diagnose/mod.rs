@@ -116,7 +116,6 @@ fn write_report(
         unit: "µV",
         load_unit: Some("N"),
         plate: Some(report::Plate::of(device)),
-        notices: Vec::new(),
     };
     let page = folder.write(report::PAGE, report::page(&subject).as_bytes())?;
     let document =

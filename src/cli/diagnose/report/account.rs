@@ -3,9 +3,9 @@
 use super::super::numbers::{carried, rounded};
 use super::causes::bar;
 use super::drawing::escaped;
-use super::subject::{Notice, Subject};
+use super::subject::Subject;
 use super::words::{capital, cause};
-use tactpad::lab::diagnosis::report::Gain;
+use tactpad::lab::diagnosis::report::{Gain, Notice};
 
 /// The section of the gain.
 pub(super) fn gain(subject: &Subject<'_>) -> String {
@@ -51,18 +51,18 @@ fn table(subject: &Subject<'_>, gain: &Gain) -> String {
 
 /// What checks before the diagnosis found; empty where they found nothing.
 pub(super) fn notices(subject: &Subject<'_>) -> String {
-    if subject.notices.is_empty() {
+    if subject.diagnosis.gatekeepers.is_empty() {
         return String::new();
     }
     let row = |it: &Notice| {
         format!(
             "<li><strong>{}</strong> {} {}</li>",
             escaped(&capital(&it.check.replace('_', " "))),
-            escaped(it.channel.as_deref().unwrap_or_default()),
+            escaped(it.channel.map_or("", |channel| subject.diagnosis.channels[channel].as_str())),
             escaped(&it.detail)
         )
     };
-    let rows: String = subject.notices.iter().map(row).collect();
+    let rows: String = subject.diagnosis.gatekeepers.iter().map(row).collect();
     format!("<section id=\"gatekeepers\"><h2>Noticed before the diagnosis</h2><ul>{rows}</ul></section>")
 }
 

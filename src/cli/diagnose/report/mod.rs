@@ -87,10 +87,9 @@ fn overview(subject: &Subject<'_>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::subject::Notice;
     use super::*;
     use tactpad::lab::diagnosis::observations::Sample;
-    use tactpad::lab::diagnosis::report::{Estimate, Finding, Residuals, Verdict};
+    use tactpad::lab::diagnosis::report::{Estimate, Finding, Notice, Residuals, Verdict};
     use tactpad::lab::diagnosis::target::Target;
 
     /// A sensor with so many channels, of which the first reads a tenth too much.
@@ -125,6 +124,7 @@ mod tests {
             not_testable: Vec::new(),
             unnamed_share: 0.0,
             ceiling_share: None,
+            gatekeepers: vec![Notice { check: "stuck", channel: Some(1), detail: "a & b".to_owned() }],
             gain: None,
             residuals: Residuals {
                 samples: (0..rows).map(sample).collect(),
@@ -143,11 +143,6 @@ mod tests {
             unit: "",
             load_unit: None,
             plate: None,
-            notices: vec![Notice {
-                check: "stuck".to_owned(),
-                channel: Some("<b>".to_owned()),
-                detail: "a & b".to_owned(),
-            }],
         })
     }
 

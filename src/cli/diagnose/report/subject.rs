@@ -18,8 +18,6 @@ pub(crate) struct Subject<'d> {
     pub(crate) load_unit: Option<&'d str>,
     /// What to draw under the contacts.
     pub(crate) plate: Option<Plate>,
-    /// What checks before the diagnosis found.
-    pub(crate) notices: Vec<Notice>,
 }
 
 /// A plate with its modules.
@@ -27,13 +25,6 @@ pub(crate) struct Plate {
     pub(crate) radius_mm: f64,
     /// Corners of the modules' films.
     pub(crate) modules_mm: Vec<[[f64; 2]; 4]>,
-}
-
-/// Something that a check before the diagnosis found.
-pub(crate) struct Notice {
-    pub(crate) check: String,
-    pub(crate) channel: Option<String>,
-    pub(crate) detail: String,
 }
 
 impl Plate {

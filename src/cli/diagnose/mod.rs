@@ -8,6 +8,7 @@ mod text;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 
 use self::document::Document;
 use super::destination::{Destination, Folder};
@@ -42,20 +43,23 @@ pub(super) struct Arguments {
     /// A folder for report.html, one page with pictures of what was found, and report.json.
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
+    /// Leave an effect out of what is asked for; may stand more than once.
+    #[arg(long, value_name = "EFFECT", hide_possible_values = true, value_parser = PossibleValuesParser::new(diagnosis::effects()))]
+    without: Vec<String>,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { measured, pad, save_device, report, json } = arguments;
+    let Arguments { measured, pad, save_device, report, without, json } = arguments;
     let saved = save_device.as_deref().map(|path| destination(path, arguments)).transpose()?;
     let device = pad.read()?;
     let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;
     let table = tables::read(measured, Kind::Measured, device.plate.radius_mm())?;
     // It takes a while until the engine itself could say so.
     diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
-    let diagnosis = diagnosed(&table, &device).map_err(|why| match why {
+    let diagnosis = diagnosed(&table, &device, without).map_err(|why| match why {
         Why::Unfit(why) => unfit(measured, &why),
         Why::NoField(failure) => failure,
     })?;
@@ -130,11 +134,11 @@ enum Why {
     NoField(Failure),
 }
 
-fn diagnosed(table: &Table, device: &Device) -> Result<Diagnosis, Why> {
+fn diagnosed(table: &Table, device: &Device, without: &[String]) -> Result<Diagnosis, Why> {
     let field = field_of(device).map_err(Why::NoField)?;
     let flaws = flaws(device);
     let solve = |device: &Device| field_of(device).ok();
-    let pad = diagnosis::Pad { device, field: &field, flaws: &flaws, solve: &solve };
+    let pad = diagnosis::Pad { device, field: &field, flaws: &flaws, solve: &solve, without };
     let _progress = Progress::begin("looking for causes");
     diagnosis::diagnose(table, &pad).map_err(Why::Unfit)
 }

@@ -176,7 +176,7 @@ impl<'m> Search<'m> {
     }
 
     /// The channels' parts in what is known of a hypothesis: they add up to 1.
-    fn parts(&self, fit: &Fit, hypothesis: usize) -> Vec<f64> {
+    pub(super) fn parts(&self, fit: &Fit, hypothesis: usize) -> Vec<f64> {
         let columns = &self.columns.of_hypothesis[hypothesis];
         let of_channel = |at: usize| {
             let own = fit.systems.channels[at]

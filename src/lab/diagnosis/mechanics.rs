@@ -22,6 +22,15 @@ pub struct Pad<'p> {
     pub flaws: &'p [FieldChange],
     /// The field of another pad, which may take seconds; none where it cannot be had.
     pub solve: &'p dyn Fn(&Device) -> Option<PadField>,
+    /// Effects that are not asked for.
+    pub without: &'p [String],
+}
+
+impl Pad<'_> {
+    /// Whether an effect is asked for.
+    pub(super) fn asks_for(&self, effect: &str) -> bool {
+        self.without.iter().all(|other| other != effect)
+    }
 }
 
 /// Per channel, what a unit force along each axis gives.

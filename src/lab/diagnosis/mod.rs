@@ -41,9 +41,11 @@ use std::fmt;
 
 use self::atlas::{Atlas, attributed};
 use self::attribution::{Applied, Attribution, Search};
+use self::cause::Cause;
+use self::causes::CATALOGUE;
 use self::covariance::{REMAINDER_MAX, Remainder};
 use self::gain::{Rows, gain, rmse};
-use self::gatekeepers::excess::excess;
+use self::gatekeepers::excess::{EFFECT, Excess, excess};
 use self::gatekeepers::{Gate, guarded};
 pub use self::mechanics::Pad;
 use self::model::Model;
@@ -58,6 +60,10 @@ use crate::tables::measured::Table;
 /// Fewest rows, and fewest locations among them, by which causes can be told.
 const ROWS_MIN: usize = 60;
 const LOCATIONS_MIN: usize = 12;
+/// A cause is named where it explains so many times what is left unexplained in the channels that tell of it; and the least part of
+/// what is known of a cause by which a channel tells of it.
+const OVER_REMAINDER: f64 = 10.0;
+const PART_MIN: f64 = 0.01;
 
 /// Why a table cannot be diagnosed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -113,27 +119,25 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
     let rows =
         [Rows { model: &model, observations: &open }, Rows { model: &at_locked, observations: &locked }];
     let diagnosis = summary(&search, &found, &rows, &model.missing()).ok_or(Unfit::Singular)?;
-    Ok(with_gatekeepers(diagnosis, gate, &found, &open))
+    let excess =
+        pad.asks_for(EFFECT).then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
+    let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
+    diagnosis.not_detected.retain(|it| pad.asks_for(it.effect));
+    Ok(diagnosis)
 }
 
 /// The observations after the checks of the recording.
 fn checked(observations: &Observations, pad: &Pad<'_>) -> Result<Gate, Unfit> {
     let expected = Simulated::new(pad, (pad.device, pad.field), observations, observations).readings(&[]);
-    let gate = guarded(observations, Some(&expected));
+    let gate = guarded(observations, Some(&expected), |effect| pad.asks_for(effect));
     let is_alive = |channel| gate.observations.is_alive(channel);
     if (0..gate.observations.channels.len()).any(is_alive) { Ok(gate) } else { Err(Unfit::Silent) }
 }
 
 /// What the checks of the recording found goes first.
-fn with_gatekeepers(
-    mut diagnosis: Diagnosis,
-    gate: Gate,
-    found: &Attribution,
-    open: &Observations,
-) -> Diagnosis {
+fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Diagnosis {
     // Shares are of the residual before the repairs.
     diagnosis.findings.iter_mut().for_each(|finding| finding.share *= gate.left);
-    let excess = excess(open, &found.fit.systems.noise, &found.fit.linearised.readings);
     let own = gate.findings.into_iter().chain(excess.findings);
     diagnosis.findings.splice(..0, own);
     diagnosis.verdict = verdict(!diagnosis.findings.is_empty(), diagnosis.unnamed_share);
@@ -141,6 +145,11 @@ fn with_gatekeepers(
     diagnosis.not_testable.extend(gate.not_testable);
     diagnosis.gatekeepers = gate.notices.into_iter().chain(excess.notices).collect();
     diagnosis
+}
+
+/// The names of all effects that can be found.
+pub fn effects() -> impl Iterator<Item = &'static str> {
+    CATALOGUE.into_iter().map(Cause::effect).chain(gatekeepers::EFFECTS)
 }
 
 /// Whether there is enough in a table; quick, where [`diagnose`] takes seconds.
@@ -166,11 +175,16 @@ fn summary(
     missing: &[NotTestable],
 ) -> Option<Diagnosis> {
     let fit = &found.fit;
-    let unnamed = unnamed_square(found);
+    let unnamed_by_channel = unnamed_squares(found);
+    let unnamed: f64 = unnamed_by_channel.iter().sum();
     let whole = search.removed(fit)? + unnamed;
     let mut kept = search.findings(found, whole)?;
-    // While as much is unexplained, a cause is only the nearest name.
-    kept.retain(|(_, finding)| finding.share * whole > unnamed);
+    // A smooth remainder is a rival of every cause that acts on the same channels: while it survives, that is only the nearest name.
+    kept.retain(|(at, finding)| {
+        let parts = search.parts(fit, fit.applied[*at].0);
+        let channels = parts.iter().zip(&unnamed_by_channel).filter(|(part, _)| **part > PART_MIN);
+        finding.share * whole > OVER_REMAINDER * channels.map(|(_, square)| square).sum::<f64>()
+    });
     let applied: Applied = kept.iter().map(|(at, _)| fit.applied[*at].clone()).collect();
     let mut findings: Vec<Finding> = kept.into_iter().map(|(_, finding)| finding).collect();
     for finding in &mut findings {
@@ -211,16 +225,17 @@ fn residuals(open: &Rows<'_>, found: &Attribution, applied: &Applied) -> Residua
     }
 }
 
-/// What smooth remainders have beyond a background, in the channels in which one is larger than a background may be and that is
-/// no chance.
-fn unnamed_square(found: &Attribution) -> f64 {
+/// What each channel's smooth remainder has beyond a background, where it is larger than a background may be and that is no
+/// chance; else nothing.
+fn unnamed_squares(found: &Attribution) -> Vec<f64> {
     let fit = &found.fit;
     let remainders = fit.systems.remainders(&fit.background, &fit.marginal, &fit.coordinates);
-    let is_no_chance = |it: &&Remainder| {
+    let is_no_chance = |it: &Remainder| {
         let beyond = (it.mean_square - REMAINDER_MAX * REMAINDER_MAX) / it.deviation;
         beyond > 0.0 && chi_square::exceeded(beyond * beyond, 1) < found.critical
     };
-    remainders.iter().filter(is_no_chance).map(|it| (it.energy - it.freedom).max(0.0)).sum()
+    let square = |it: &Remainder| if is_no_chance(it) { (it.energy - it.freedom).max(0.0) } else { 0.0 };
+    remainders.iter().map(square).collect()
 }
 
 const fn verdict(explains: bool, unnamed_share: f64) -> Verdict {

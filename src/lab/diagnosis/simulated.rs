@@ -62,7 +62,8 @@ impl<'f> Simulated<'f> {
         let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all);
         let mut hypotheses = Vec::new();
         let mut causes: Vec<&'static dyn Cause> = Vec::new();
-        for cause in CATALOGUE.into_iter().filter(|cause| cause.missing(&setting).is_none()) {
+        let is_asked = |cause: &&dyn Cause| pad.asks_for(cause.effect()) && cause.missing(&setting).is_none();
+        for cause in CATALOGUE.into_iter().filter(is_asked) {
             for target in cause.targets(&setting) {
                 hypotheses.push(Hypothesis {
                     effect: cause.effect(),

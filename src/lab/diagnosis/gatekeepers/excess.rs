@@ -23,6 +23,9 @@ const OTHERS_MIN: usize = 4;
 const WITHIN_95: f64 = 1.959_964;
 const POWER_90: f64 = 1.281_552;
 
+/// Its name in reports.
+pub(in crate::lab::diagnosis) const EFFECT: &str = "noise_excess";
+
 /// What the noise of the channels says.
 #[derive(Clone, Debug, Default)]
 pub(in crate::lab::diagnosis) struct Excess {
@@ -64,7 +67,7 @@ pub(in crate::lab::diagnosis) fn excess(
             found.notices.push(notice(observations, own, excess));
         } else {
             found.not_detected.push(NotDetected {
-                effect: "noise_excess",
+                effect: EFFECT,
                 target: Target::Channel(own.channel),
                 minimum_detectable: vec![("factor", libm::exp((critical + POWER_90) * deviation) - 1.0)],
                 rival_share: 0.0,
@@ -108,7 +111,7 @@ fn predicted(others: &[Level], signal: f64) -> [f64; 2] {
 fn finding(channel: usize, excess: f64, deviation: f64) -> Finding {
     let within = WITHIN_95 * deviation;
     Finding {
-        effect: "noise_excess",
+        effect: EFFECT,
         target: Target::Channel(channel),
         parameters: vec![Estimate {
             name: "factor",

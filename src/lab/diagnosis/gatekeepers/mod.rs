@@ -38,10 +38,18 @@ const CHECKS: [fn(&mut Gate); 9] = [
     mains::check,
 ];
 
-/// The observations after all checks. `expected` are each channel's readings by a model, row by row; `None`: there is no model.
+/// What the checks name, this one and [`excess`] among them.
+pub(super) const EFFECTS: [&str; 6] =
+    ["channel_dead", "channels_swapped", "channel_polarity", "adc_clipping", "mains_pickup", excess::EFFECT];
+
+/// The observations after all checks, but those that find an effect that is not asked for. `expected` are each channel's readings by a model, row by row; `None`: there is no model.
 ///
 /// Tables of any size pass, also ones without rows; whether enough is left in them is for the caller to ask.
-pub(super) fn guarded(observations: &Observations, expected: Option<&[Vec<f64>]>) -> Gate {
+pub(super) fn guarded(
+    observations: &Observations,
+    expected: Option<&[Vec<f64>]>,
+    asks_for: impl Fn(&str) -> bool,
+) -> Gate {
     let mut gate = Gate {
         observations: observations.clone(),
         expected: expected.map(<[Vec<f64>]>::to_vec),
@@ -51,7 +59,14 @@ pub(super) fn guarded(observations: &Observations, expected: Option<&[Vec<f64>]>
         not_testable: Vec::new(),
         left: 1.0,
     };
-    CHECKS.iter().for_each(|check| check(&mut gate));
+    for check in CHECKS {
+        let before = gate.clone();
+        check(&mut gate);
+        let own = &gate.findings[before.findings.len()..];
+        if own.iter().any(|finding| !asks_for(finding.effect)) {
+            gate = before;
+        }
+    }
     gate
 }
 

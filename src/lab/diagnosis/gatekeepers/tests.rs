@@ -66,10 +66,10 @@ fn masked(gate: &Gate, channel: usize) -> usize {
 fn sound_recordings_pass_as_they_are() {
     let (table, expected) = pressed(300);
     for model in [Some(expected.as_slice()), None] {
-        let gate = guarded(&table, model);
+        let gate = guarded(&table, model, |_| true);
         assert_eq!((checks(&gate), gate.observations), (vec![], table.clone()));
     }
-    let gate = guarded(&stream(900, 45.0), None);
+    let gate = guarded(&stream(900, 45.0), None, |_| true);
     assert_eq!((checks(&gate), found(&gate)), (vec![], vec![]));
     assert!(
         gate.not_detected.iter().all(|it| (0.05..1.0).contains(&it.minimum_detectable[0].1)),
@@ -99,7 +99,7 @@ fn no_recording_is_too_poor() {
             {
                 let table = hostile(value, t_s, rows);
                 for model in [None, Some(table.readings.as_slice())] {
-                    let gate = guarded(&table, model);
+                    let gate = guarded(&table, model, |_| true);
                     assert_eq!(gate.observations.rows(), rows);
                     assert!(gate.observations.readings.iter().flatten().all(|y| y.is_finite()));
                 }
@@ -108,7 +108,7 @@ fn no_recording_is_too_poor() {
     }
     let mut nothing = pressed(50).0;
     nothing.is_told.iter_mut().flatten().for_each(|is_told| *is_told = false);
-    assert_eq!(checks(&guarded(&nothing, Some(&nothing.readings.clone()))), vec![]);
+    assert_eq!(checks(&guarded(&nothing, Some(&nothing.readings.clone()), |_| true)), vec![]);
 }
 
 #[test]
@@ -116,13 +116,13 @@ fn wires_are_found_and_put_back() {
     let (table, expected) = pressed(300);
     let mut swapped = table.clone();
     swapped.readings.swap(0, 2);
-    let gate = guarded(&swapped, Some(&expected));
+    let gate = guarded(&swapped, Some(&expected), |_| true);
     assert_eq!(found(&gate), vec![("channels_swapped", Target::Channels { into: 0, from: 2 })]);
     assert_eq!(gate.observations.readings, table.readings);
     assert!(gate.findings[0].share > 0.9 && gate.findings[0].p_value < 1e-9);
     let mut turned = table.clone();
     turned.readings[1].iter_mut().for_each(|y| *y = -*y);
-    let gate = guarded(&turned, Some(&expected));
+    let gate = guarded(&turned, Some(&expected), |_| true);
     assert_eq!(found(&gate), vec![("channel_polarity", Target::Channel(1))]);
     assert_eq!(gate.observations.readings, table.readings);
 }
@@ -132,14 +132,14 @@ fn a_channel_that_follows_nothing_has_no_weight() {
     let (mut table, expected) = pressed(300);
     let mut random = SplitMix64::new(3);
     table.readings[1].iter_mut().for_each(|y| *y = -33.0 + 0.3 * f64::from(random.normal()));
-    let gate = guarded(&table, Some(&expected));
+    let gate = guarded(&table, Some(&expected), |_| true);
     assert_eq!((found(&gate), masked(&gate, 1)), (vec![("channel_dead", Target::Channel(1))], 300));
     // A small gain is none: a tenth of the answer is an answer.
     let (mut table, expected) = pressed(300);
     table.readings[1].iter_mut().for_each(|y| *y *= 0.1);
-    assert_eq!(found(&guarded(&table, Some(&expected))), vec![]);
+    assert_eq!(found(&guarded(&table, Some(&expected), |_| true)), vec![]);
     table.readings[1].fill(4.0);
-    assert_eq!(found(&guarded(&table, None)), vec![("channel_dead", Target::Channel(1))]);
+    assert_eq!(found(&guarded(&table, None, |_| true)), vec![("channel_dead", Target::Channel(1))]);
 }
 
 #[test]
@@ -148,14 +148,14 @@ fn limits_are_found_with_and_without_a_model() {
     table.readings[2].iter_mut().for_each(|y| *y = y.clamp(-1e9, 480.0));
     let clipped = table.readings[2].iter().filter(|y| **y == 480.0).count();
     for model in [Some(expected.as_slice()), None] {
-        let gate = guarded(&table, model);
+        let gate = guarded(&table, model, |_| true);
         assert_eq!((found(&gate), masked(&gate, 2)), (vec![("adc_clipping", Target::Channel(2))], clipped));
         let limit = gate.findings[0].parameters[0];
         assert!(limit.interval95[0] <= 480.0 && limit.interval95[1] >= 480.0, "{limit:?}");
     }
     // Coarse steps alone are no limit.
     table.readings[2] = pressed(400).0.readings[2].iter().map(|y| 40.0 * (y / 40.0).round()).collect();
-    assert_eq!(found(&guarded(&table, Some(&expected))), vec![]);
+    assert_eq!(found(&guarded(&table, Some(&expected), |_| true)), vec![]);
 }
 
 #[test]
@@ -163,13 +163,13 @@ fn codes_are_masked_and_what_only_looks_like_one_is_not() {
     for code in [9999.0, f64::NAN, -1.0, 0.0] {
         let mut table = stream(900, 45.0);
         (5..900).step_by(9).for_each(|row| table.readings[0][row] = code);
-        let gate = guarded(&table, None);
+        let gate = guarded(&table, None, |_| true);
         assert_eq!((checks(&gate), masked(&gate, 0)), (vec![("missing", Some(0))], 100), "{code}");
     }
     // Rest between static loads, to the last digit, in all channels.
     let (mut table, _) = pressed(200);
     table.readings.iter_mut().for_each(|of| of.iter_mut().step_by(2).for_each(|y| *y = 0.0));
-    assert_eq!(checks(&guarded(&table, None)), vec![]);
+    assert_eq!(checks(&guarded(&table, None, |_| true)), vec![]);
 }
 
 #[test]
@@ -177,7 +177,7 @@ fn a_channel_that_is_stuck_for_a_while_is_masked_there() {
     let mut table = stream(900, 45.0);
     let value = table.readings[1][400];
     table.readings[1][400..460].fill(value);
-    let gate = guarded(&table, None);
+    let gate = guarded(&table, None, |_| true);
     assert_eq!((checks(&gate), masked(&gate, 1)), (vec![("stuck", Some(1))], 60));
 }
 
@@ -185,11 +185,11 @@ fn a_channel_that_is_stuck_for_a_while_is_masked_there() {
 fn held_channels_and_clocks_that_run_apart_are_told() {
     let mut table = stream(900, 45.0);
     (0..900).for_each(|row| table.readings[2][row] = table.readings[2][row - row % 3]);
-    let gate = guarded(&table, None);
+    let gate = guarded(&table, None, |_| true);
     assert_eq!((checks(&gate), masked(&gate, 2)), (vec![("rates", Some(2))], 600));
     let mut table = stream(900, 45.0);
     table.samples.iter_mut().for_each(|sample| sample.label_t_s = sample.t_s.map(|t_s| 0.003 + 1.004 * t_s));
-    assert_eq!(checks(&guarded(&table, None)), vec![("clocks", None)]);
+    assert_eq!(checks(&guarded(&table, None, |_| true)), vec![("clocks", None)]);
 }
 
 #[test]
@@ -204,15 +204,15 @@ fn times_are_sorted_split_and_freed_of_doubles() {
             })
             .collect::<Vec<_>>(),
     );
-    let gate = guarded(&table, None);
+    let gate = guarded(&table, None, |_| true);
     assert_eq!((checks(&gate), &gate.observations), (vec![("time", None)], &sound));
     table = sound.clone();
     table.samples[77].t_s = table.samples[76].t_s;
-    let gate = guarded(&table, None);
+    let gate = guarded(&table, None, |_| true);
     assert_eq!((checks(&gate), masked(&gate, 0)), (vec![("time", None)], 1));
     table = sound;
     (450..600).for_each(|row| table.samples[row].t_s = table.samples[row].t_s.map(|t_s| t_s - 8.0));
-    let gate = guarded(&table, None);
+    let gate = guarded(&table, None, |_| true);
     assert_eq!(checks(&gate), vec![("time", None)]);
     assert_eq!(
         (gate.observations.samples[449].trial, gate.observations.samples[450].trial),
@@ -224,7 +224,7 @@ fn times_are_sorted_split_and_freed_of_doubles() {
 fn steps_above_the_noise_are_told() {
     let mut table = stream(900, 45.0);
     table.readings[0].iter_mut().for_each(|y| *y = 8.0 * (*y / 8.0).round());
-    assert_eq!(checks(&guarded(&table, None)), vec![("steps", Some(0))]);
+    assert_eq!(checks(&guarded(&table, None, |_| true)), vec![("steps", Some(0))]);
 }
 
 #[test]
@@ -235,7 +235,7 @@ fn the_mains_are_found_where_they_fold_to_and_taken_out() {
         let times: Vec<f64> = table.samples.iter().filter_map(|sample| sample.t_s).collect();
         let wave = |t_s: &f64| 3.0 * libm::sin(std::f64::consts::TAU * line_hz * t_s + 1.0);
         table.readings[1].iter_mut().zip(times.iter().map(wave)).for_each(|(y, wave)| *y += wave);
-        let gate = guarded(&table, None);
+        let gate = guarded(&table, None, |_| true);
         assert_eq!(found(&gate), vec![("mains_pickup", Target::Channel(1))], "{rate_hz} {line_hz}");
         for (number, truth) in gate.findings[0].parameters.iter().zip([3.0, line_hz]) {
             let [low, high] = number.interval95;
@@ -245,7 +245,7 @@ fn the_mains_are_found_where_they_fold_to_and_taken_out() {
         assert!(left.sum::<f64>() / 900.0 < 0.1);
     }
     // The samples' own rate folds the line to nothing.
-    let gate = guarded(&stream(900, 50.0), None);
+    let gate = guarded(&stream(900, 50.0), None, |_| true);
     assert_eq!(gate.findings, vec![]);
 }
 
@@ -257,5 +257,5 @@ fn what_the_press_does_itself_is_not_the_mains() {
         table.samples[row].load[2] += 0.1 * shake;
         table.readings[0][row] += 10.0 * shake;
     }
-    assert_eq!(found(&guarded(&table, None)), vec![]);
+    assert_eq!(found(&guarded(&table, None, |_| true)), vec![]);
 }

@@ -209,32 +209,33 @@ impl<'m> Search<'m> {
     fn next(&self, fit: &Fit, critical: f64, barred: &[usize]) -> Option<Option<usize>> {
         let projected = self.projected(fit)?;
         let holds = |at: usize| barred.contains(&at) || fit.applied.iter().any(|(held, _)| *held == at);
-        let mut candidates: Vec<(f64, usize)> = (0..self.columns.of_hypothesis.len())
+        let mut candidates: Vec<(Test, usize)> = (0..self.columns.of_hypothesis.len())
             .filter(|at| !holds(*at) && !self.is_zero(*at))
-            .map(|at| (self.test(&projected, at, &projected.score).p_value(), at))
+            .map(|at| (self.test(&projected, at, &projected.score), at))
             .collect();
-        candidates.sort_by(|one, other| one.0.total_cmp(&other.0));
+        candidates.sort_by(|(one, _), (other, _)| one.by_chance(other));
         let mut best: Option<(f64, usize)> = None;
         for (_, at) in candidates.into_iter().take(SHORTLIST) {
-            // The covariance is found anew, so that the background does not take the candidate's part.
-            let held = fit.applied.iter().map(|(held, _)| *held);
-            let background = fit
-                .systems
-                .background(&self.columns.fitted(held.clone().chain([at])), Some(&fit.background))?;
-            let marginal = fit.systems.marginal(&background)?;
-            let projected = Projected::of(&marginal, &self.columns.fitted(held))?;
-            let test = self.test(&projected, at, &projected.score);
-            let solved = self
-                .columns
-                .fitted(fit.applied.iter().map(|(held, _)| *held).chain([at]))
-                .solved(&marginal)?;
-            let deviance = marginal.square - solved.removed + marginal.log_determinant();
-            let penalty = test.freedom as f64 * (self.observations.rows() as f64).ln();
-            if test.p_value() < critical && best.is_none_or(|(least, _)| deviance + penalty < least) {
-                best = Some((deviance + penalty, at));
+            // One that the held ones reproduce has no fit beside them.
+            let Some((criterion, test)) = self.criterion(fit, at) else { continue };
+            if test.p_value() < critical && best.is_none_or(|(least, _)| criterion < least) {
+                best = Some((criterion, at));
             }
         }
         Some(best.map(|(_, at)| at))
+    }
+
+    /// Schwarz's criterion of the fit with a candidate beside the held causes, and the candidate's test. The covariance is found
+    /// anew, so that the background does not take the candidate's part.
+    fn criterion(&self, fit: &Fit, at: usize) -> Option<(f64, Test)> {
+        let held = || fit.applied.iter().map(|(held, _)| *held);
+        let both = self.columns.fitted(held().chain([at]));
+        let background = fit.systems.background(&both, Some(&fit.background))?;
+        let marginal = fit.systems.marginal(&background)?;
+        let projected = Projected::of(&marginal, &self.columns.fitted(held()))?;
+        let test = self.test(&projected, at, &projected.score);
+        let deviance = marginal.square - both.solved(&marginal)?.removed + marginal.log_determinant();
+        Some((deviance + test.freedom as f64 * (self.observations.rows() as f64).ln(), test))
     }
 
     /// The place in the fit of a cause that is not significant beside the others; the least of them.

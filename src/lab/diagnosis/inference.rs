@@ -1,5 +1,7 @@
 //! Group score tests: what a hypothesis removes of the residual beyond all columns that are already fitted.
 
+use std::cmp::Ordering;
+
 use super::covariance::{Fitted, Marginal};
 use crate::numeric::chi_square;
 use crate::numeric::dense::Matrix;
@@ -36,6 +38,12 @@ impl Test {
     /// The probability of as much by chance.
     pub(super) fn p_value(self) -> f64 {
         chi_square::exceeded(self.square, self.freedom)
+    }
+
+    /// The order of p-values. Those that are too small for a number are told apart by what the test takes off beyond chance.
+    pub(super) fn by_chance(&self, other: &Self) -> Ordering {
+        let beyond = |test: &Self| test.square - test.freedom as f64;
+        self.p_value().total_cmp(&other.p_value()).then(beyond(other).total_cmp(&beyond(self)))
     }
 }
 

@@ -28,13 +28,15 @@ impl Search<'_> {
             let (projected, score) = self.without(&found.fit, at)?;
             let test = projected.test(&self.columns.of_hypothesis[hypothesis], &score);
             let it = &self.model.hypotheses()[hypothesis];
+            let named =
+                |rival: usize| (self.model.hypotheses()[rival].effect, self.model.hypotheses()[rival].target);
             let finding = Finding {
                 effect: it.effect,
                 target: it.target,
                 parameters: self.estimates(found, at)?,
                 p_value: test.p_value(),
                 share: (test.square / whole).clamp(0.0, 1.0),
-                confounded_with: self.rivals(found, at, &projected, &score),
+                confounded_with: self.rivals(found, at, &projected, &score).into_iter().map(named).collect(),
                 separate_by: None,
             };
             findings.push((at, finding));
@@ -60,13 +62,7 @@ impl Search<'_> {
     }
 
     /// The rivals that explain the data as well as a fitted cause, `projected` and `score` being without it.
-    fn rivals(
-        &self,
-        found: &Attribution,
-        at: usize,
-        projected: &Projected,
-        score: &[f64],
-    ) -> Vec<(&'static str, Target)> {
+    fn rivals(&self, found: &Attribution, at: usize, projected: &Projected, score: &[f64]) -> Vec<usize> {
         let (own, _) = found.fit.applied[at];
         let columns = &self.columns.of_hypothesis[own];
         let held = |rival: &usize| found.fit.applied.iter().any(|(held, _)| held == rival);
@@ -82,7 +78,6 @@ impl Search<'_> {
                 };
                 beyond.p_value() > found.critical && self.is_possible(*rival, projected, score)
             })
-            .map(|rival| (self.model.hypotheses()[rival].effect, self.model.hypotheses()[rival].target))
             .collect()
     }
 
@@ -128,9 +123,46 @@ impl Search<'_> {
         )
     }
 
+    /// Each channel's zero and its variance, with whatever of confounded causes leaves it nearest to none: which of them holds is not
+    /// known, and a zero that only one of them needs is not either.
+    fn least_zeros(&self, found: &Attribution) -> Option<Vec<[f64; 2]>> {
+        let mut least = self.zeros(found)?;
+        for at in 0..found.fit.applied.len() {
+            let (projected, score) = self.without(&found.fit, at)?;
+            for rival in self.rivals(found, at, &projected, &score) {
+                let zeros = self.zeros_with(&found.fit, at, rival).into_iter().flatten();
+                let square = |[zero, variance]: [f64; 2]| zero * zero / variance;
+                for (least, other) in
+                    least.iter_mut().zip(zeros).filter(|(one, other)| square(*other) < square(**one))
+                {
+                    *least = other;
+                }
+            }
+        }
+        Some(least)
+    }
+
+    /// The zeros with a rival in the place of a fitted cause; `None` where the other causes reproduce it.
+    fn zeros_with(&self, fit: &Fit, at: usize, rival: usize) -> Option<Vec<[f64; 2]>> {
+        let others =
+            fit.applied.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, (held, _))| *held);
+        let fitted = self.columns.fitted(others.chain([rival]));
+        // Aᵀ V⁻¹ (r + J ψ̂): about the point without the cause, to first order.
+        let mut score = fit.marginal.score.clone();
+        let (hypothesis, coordinates) = &fit.applied[at];
+        for (column, psi) in self.columns.of_hypothesis[*hypothesis].iter().zip(coordinates) {
+            let row = fit.marginal.fisher.row(*column);
+            score.iter_mut().zip(row).for_each(|(score, entry)| *score += psi * entry);
+        }
+        let factor = fitted.factorised(&fit.marginal)?;
+        let score: Vec<f64> = fitted.columns.iter().map(|column| score[*column]).collect();
+        let zeros = factor.solve(&score).into_iter().zip(factor.inverse_diagonal());
+        Some(zeros.take(fit.systems.channels.len()).map(|(zero, variance)| [zero, variance]).collect())
+    }
+
     /// What the zeros that are not zero take off the weighted squares.
     pub(super) fn offsets_square(&self, found: &Attribution) -> Option<f64> {
-        let squares = self.zeros(found)?.into_iter().map(|[zero, variance]| zero * zero / variance);
+        let squares = self.least_zeros(found)?.into_iter().map(|[zero, variance]| zero * zero / variance);
         Some(squares.filter(|square| chi_square::exceeded(*square, 1) < found.critical).sum())
     }
 
@@ -154,7 +186,7 @@ impl Search<'_> {
                 separate_by: None,
             })
         };
-        Some(self.zeros(found)?.into_iter().enumerate().filter_map(finding).collect())
+        Some(self.least_zeros(found)?.into_iter().enumerate().filter_map(finding).collect())
     }
 
     /// What was asked for and not found, with the size that would have been.

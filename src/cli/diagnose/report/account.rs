@@ -58,7 +58,11 @@ pub(super) fn notices(subject: &Subject<'_>) -> String {
         format!(
             "<li><strong>{}</strong> {} {}</li>",
             escaped(&capital(&it.check.replace('_', " "))),
-            escaped(it.channel.map_or("", |channel| subject.diagnosis.channels[channel].as_str())),
+            escaped(
+                it.channel
+                    .and_then(|channel| subject.diagnosis.channels.get(channel))
+                    .map_or("", String::as_str)
+            ),
             escaped(&it.detail)
         )
     };

@@ -24,14 +24,14 @@ const WITHIN_95: f64 = 1.959_964;
 const POWER_90: f64 = 1.281_552;
 
 /// Its name in reports.
-pub(in crate::lab::diagnosis) const EFFECT: &str = "noise_excess";
+pub(crate) const EFFECT: &str = "noise_excess";
 
 /// What the noise of the channels says.
 #[derive(Clone, Debug, Default)]
-pub(in crate::lab::diagnosis) struct Excess {
-    pub(in crate::lab::diagnosis) notices: Vec<Notice>,
-    pub(in crate::lab::diagnosis) findings: Vec<Finding>,
-    pub(in crate::lab::diagnosis) not_detected: Vec<NotDetected>,
+pub(crate) struct Excess {
+    pub(crate) notices: Vec<Notice>,
+    pub(crate) findings: Vec<Finding>,
+    pub(crate) not_detected: Vec<NotDetected>,
 }
 
 /// A channel's noise and signal, as logarithms.
@@ -45,11 +45,7 @@ struct Level {
 }
 
 /// Holds the channels' noise against each other; `signals` are the readings that the fit expects.
-pub(in crate::lab::diagnosis) fn excess(
-    observations: &Observations,
-    noise: &[NoiseLevel],
-    signals: &[Vec<f64>],
-) -> Excess {
+pub(crate) fn excess(observations: &Observations, noise: &[NoiseLevel], signals: &[Vec<f64>]) -> Excess {
     let levels: Vec<Level> =
         noise.iter().zip(signals).enumerate().filter_map(|it| level(observations, it)).collect();
     let mut found = Excess::default();

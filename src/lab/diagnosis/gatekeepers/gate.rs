@@ -10,21 +10,21 @@ pub(super) const LEVEL: f64 = 1e-3;
 
 /// Observations on their way through the checks.
 #[derive(Clone, Debug)]
-pub(in crate::lab::diagnosis) struct Gate {
+pub(crate) struct Gate {
     /// As far as they are mended.
-    pub(in crate::lab::diagnosis) observations: Observations,
+    pub(crate) observations: Observations,
     /// What the channels should read, if a model says so.
     pub(super) expected: Option<Vec<Vec<f64>>>,
     /// What was found and done.
-    pub(in crate::lab::diagnosis) notices: Vec<Notice>,
+    pub(crate) notices: Vec<Notice>,
     /// What of it has a name among the effects.
-    pub(in crate::lab::diagnosis) findings: Vec<Finding>,
+    pub(crate) findings: Vec<Finding>,
     /// Effects that were asked for and not found.
-    pub(in crate::lab::diagnosis) not_detected: Vec<NotDetected>,
+    pub(crate) not_detected: Vec<NotDetected>,
     /// Effects that could not be asked for.
-    pub(in crate::lab::diagnosis) not_testable: Vec<NotTestable>,
+    pub(crate) not_testable: Vec<NotTestable>,
     /// The part of the squared residual that no repair took away.
-    pub(in crate::lab::diagnosis) left: f64,
+    pub(crate) left: f64,
 }
 
 impl Gate {

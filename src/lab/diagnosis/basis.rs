@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn the_process_has_its_covariance() {
         let basis = disc();
-        // So many waves hold nine tenths of its mean square and more.
+        // The projection is found to lose up to a tenth of the mean square; from where is not known.
         for length_mm in [10.0, 14.0, 20.0, 30.0] {
             let prior = basis.prior(length_mm).unwrap();
             let covariance = |one: [f64; 2], other: [f64; 2]| {

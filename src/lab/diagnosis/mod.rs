@@ -1,10 +1,11 @@
 //! Diagnosis: what measured data show that a model gets wrong, and which causes explain it.
 //!
-//! The way of the data: rows become [`observations`], which pass checks of the recording (`gatekeepers/`); a model (`model`) says what they should
-//! read and how that changes with each hypothesis of the catalogue (`causes/`); the residual's covariance is noise, a smooth
-//! background that every simulator leaves, and what the simulator is known to get wrong (`covariance`); group score tests with a
-//! cluster bootstrap choose causes (`attribution`); the encompassing rule says which of them may be named (`naming`); rows that
-//! had no part in it say what they are worth (`gain`).
+//! The way of the data: rows become [`observations`], which pass checks of the recording (`gatekeepers/`); a model (`model`)
+//! says what they should read and how that changes with each hypothesis of the catalogue (`causes/`), about the pad's own field
+//! or those of changed pads (`atlas`); the residual's covariance is noise, a smooth background that every simulator leaves, and
+//! what the simulator is known to get wrong (`covariance`); group score tests with a cluster bootstrap choose causes
+//! (`attribution`); the encompassing rule says which of them may be named (`naming`); rows that had no part in it say what they
+//! are worth (`gain`).
 //!
 //! The engine knows nothing of nine channels, but for `simulated`.
 //!

@@ -1,5 +1,6 @@
 //! `tactpad diagnose`: what measured contacts show that the model of the pad gets wrong, and why.
 
+mod against;
 mod document;
 mod numbers;
 mod report;
@@ -28,13 +29,25 @@ use tactpad::tables::measured::columns::Kind;
 
 /// Arguments of `tactpad diagnose`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tactpad diagnose --measured measured.csv --save-device found.toml\n\n\
+#[command(
+    after_help = "Example: tactpad diagnose --measured measured.csv --save-device found.toml\n         \
+                  tactpad diagnose --measured today.csv --against january.csv\n\n\
                   Without --device and --imperfections the model is the nominal pad. What the words mean stands in \
-                  docs/diagnosis.md.")]
+                  docs/diagnosis.md."
+)]
 pub(super) struct Arguments {
     /// The measured file: raw channels, and what the reference wrote down.
     #[arg(long, value_name = "M.csv")]
     measured: PathBuf,
+    /// An earlier recording of the same sensor, whatever sensor that is: what changed since? Neither a model nor forces are needed.
+    #[arg(long, value_name = "EARLIER.csv")]
+    against: Option<PathBuf>,
+    /// With --against: the columns that are labels; else those of docs/diagnosis.md that both files have.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "against")]
+    labels: Vec<String>,
+    /// With --against: the columns that are channels; else all other columns of numbers that both files have.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "against")]
+    channels: Vec<String>,
     #[command(flatten)]
     pad: Pad,
     /// A device file to write: the model with the named causes in it; - is standard output.
@@ -44,7 +57,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
     /// Leave an effect out of what is asked for; may stand more than once.
-    #[arg(long, value_name = "EFFECT", hide_possible_values = true, value_parser = PossibleValuesParser::new(diagnosis::effects()))]
+    #[arg(long, value_name = "EFFECT", hide_possible_values = true, value_parser = PossibleValuesParser::new(effects()))]
     without: Vec<String>,
     /// Print one JSON document.
     #[arg(long)]
@@ -52,7 +65,10 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { measured, pad, save_device, report, without, json } = arguments;
+    if let Some(earlier) = &arguments.against {
+        return against::run(arguments, earlier);
+    }
+    let Arguments { measured, pad, save_device, report, without, json, .. } = arguments;
     let saved = save_device.as_deref().map(|path| destination(path, arguments)).transpose()?;
     let device = pad.read()?;
     let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;
@@ -67,7 +83,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         save(&to, &device, &diagnosis, &table)?;
     }
     if let Some(folder) = folder {
-        write_report(&folder, measured, &device, &diagnosis)?;
+        let subject = report::Subject {
+            diagnosis: &diagnosis,
+            measured: file_name(measured),
+            model: format!("the model of {}", device.name),
+            unit: "µV",
+            load_unit: Some("N"),
+            plate: Some(report::Plate::of(&device)),
+        };
+        write_report(&folder, &report::page(&subject), &diagnosis)?;
     }
     if *json {
         return print_json(&Document::of(&diagnosis));
@@ -99,6 +123,9 @@ fn folder(path: &Path, arguments: &Arguments) -> Result<Folder, Failure> {
         if is_same(&arguments.measured, &file) {
             return Err(written_over(&file, "is the measured table"));
         }
+        if arguments.against.as_deref().is_some_and(|earlier| is_same(earlier, &file)) {
+            return Err(written_over(&file, "is the earlier recording"));
+        }
         if arguments.save_device.as_deref().is_some_and(|saved| is_same(saved, &file)) {
             return Err(written_over(&file, "is the device to save"));
         }
@@ -106,26 +133,23 @@ fn folder(path: &Path, arguments: &Arguments) -> Result<Folder, Failure> {
     Folder::of(path)
 }
 
-fn write_report(
-    folder: &Folder,
-    measured: &Path,
-    device: &Device,
-    diagnosis: &Diagnosis,
-) -> Result<(), Failure> {
-    let name = measured.file_name().unwrap_or(measured.as_os_str());
-    let subject = report::Subject {
-        diagnosis,
-        measured: name.to_string_lossy().into_owned(),
-        model: format!("the model of {}", device.name),
-        unit: "µV",
-        load_unit: Some("N"),
-        plate: Some(report::Plate::of(device)),
-    };
-    let page = folder.write(report::PAGE, report::page(&subject).as_bytes())?;
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+fn write_report(folder: &Folder, page: &str, diagnosis: &Diagnosis) -> Result<(), Failure> {
+    let page = folder.write(report::PAGE, page.as_bytes())?;
     let document =
         folder.write(report::DOCUMENT, format!("{}\n", json_text(&Document::of(diagnosis))?).as_bytes())?;
     say(format_args!("the report is {page}, its numbers are {document}"));
     Ok(())
+}
+
+/// All effects that can be left out.
+fn effects() -> Vec<&'static str> {
+    let mut effects: Vec<&str> = diagnosis::effects().collect();
+    effects.extend(diagnosis::against::effects().filter(|it| diagnosis::effects().all(|other| other != *it)));
+    effects
 }
 
 /// Why there is no diagnosis.

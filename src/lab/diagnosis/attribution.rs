@@ -101,7 +101,7 @@ impl<'m> Search<'m> {
             let linearised = self.model.linearised(&applied);
             let systems = Systems::of(
                 [self.all, self.observations],
-                &self.model.sizes(),
+                self.model,
                 &linearised,
                 &self.columns.signatures(&linearised),
             )?;

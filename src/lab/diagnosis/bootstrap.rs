@@ -1,7 +1,7 @@
 //! The distribution of scores under the hypothesis that nothing else is wrong: a cluster bootstrap.
 //!
 //! A draw is r* = B z* + w ∘ n̂ + Σ e* E: the background from its process, the rows' own errors n̂ = r − A ψ̂ − B ẑ with one random
-//! sign w for each cluster, so that whatever rows of a location share stays together, and the model's own errors. Scores are
+//! sign w for each cluster, so that whatever rows of a location share stays together, and the model's own and stated errors. Scores are
 //! linear in r*, so a draw costs no look at the rows.
 //!
 //! Source: A. C. Cameron, J. B. Gelbach, D. L. Miller, Review of Economics and Statistics 90 (2008) 414 (wild cluster bootstrap);
@@ -56,25 +56,28 @@ impl Bootstrap {
         let count = clusters.iter().max().map_or(0, |last| last + 1);
         let mut of_clusters = Matrix::zeros(count, systems.columns);
         let mut backgrounds = Vec::new();
-        for (at, (system, reduced)) in systems.channels.iter().zip(&marginal.channels).enumerate() {
+        for (channel, (system, reduced)) in systems.channels.iter().zip(&marginal.channels).enumerate() {
             let own: Vec<f64> = system.columns.iter().map(|number| coordinates[*number]).collect();
             let z = reduced.factor.solve(&system.background_score(&own));
             let left = system.left_over(&own, &z);
             let inflation = inflation(&left, system.whitening.told());
             let smooth: Vec<Vec<f64>> =
                 reduced.whitened_mixed.iter().map(|whitened| reduced.factor.solve_upper(whitened)).collect();
-            for ((number, column), smooth) in system.columns.iter().zip(&system.signatures).zip(&smooth) {
+            let mut stated: Vec<Vec<f64>> = Vec::new();
+            for ((at, number), smooth) in system.columns.iter().enumerate().zip(&smooth) {
                 // D½ V⁻¹ A = D⁻½ (A − B H⁻¹ Bᵀ D⁻¹ A), row by row, times D⁻½ n̂.
-                let mut own = column.clone();
-                for (factor, function) in smooth.iter().zip(&system.background) {
-                    own.iter_mut().zip(function).for_each(|(own, value)| *own -= factor * value);
-                }
+                let own = system.weighted(at, smooth);
                 for ((own, left), cluster) in own.iter().zip(&left).zip(clusters) {
                     of_clusters.row_mut(*cluster)[*number] += inflation * own * left;
                 }
+                // Aᵀ V⁻¹ E.
+                stated.push(system.stated.columns.iter().map(|error| dot(error, &own)).collect());
+            }
+            if !system.stated.columns.is_empty() {
+                backgrounds.push((system.columns.clone(), Matrix::from_rows(&stated)));
             }
             // Aᵀ V⁻¹ B T½: Bᵀ V⁻¹ A = T⁻¹ H⁻¹ Bᵀ D⁻¹ A, and T½ T⁻¹ is L⁻¹/τ of each load.
-            let shares = background.shares[at];
+            let shares = background.shares[channel];
             let whitened = |smooth: &Vec<f64>| -> Vec<f64> {
                 let loads = smooth.chunks(smooth.len() / shares.len()).zip(shares);
                 loads

@@ -1,7 +1,7 @@
 //! The covariance of what no cause explains: noise, a smooth background, and errors that the model is known to have.
 
 use super::basis::{Basis, Prior};
-use super::model::Linearised;
+use super::model::{Linearised, Model};
 use super::noise::NoiseLevel;
 use super::observations::Observations;
 use super::system::{ChannelSystem, Reduced};
@@ -87,11 +87,11 @@ pub(super) struct Marginal {
 pub(super) type Column<'c> = &'c [Option<Vec<f64>>];
 
 impl Systems {
-    /// `columns` are the signatures about the present point, `linearised` that point; `observations` are rows of `all`, over which the
-    /// channels' root mean squares are `sizes`.
+    /// `columns` are the signatures about the present point, `linearised` that point; `observations` are rows of `all`. The `model`
+    /// says what it knows of its channels.
     pub(super) fn of(
         [all, observations]: [&Observations; 2],
-        sizes: &[f64],
+        model: &dyn Model,
         linearised: &Linearised,
         columns: &[Column<'_>],
     ) -> Option<Self> {
@@ -102,12 +102,13 @@ impl Systems {
         let mut noise = Vec::new();
         let mut extents = Vec::new();
         let mut channels = Vec::new();
-        for ((channel, readings), whole) in observations.readings.iter().enumerate().zip(sizes) {
+        for ((channel, readings), whole) in observations.readings.iter().enumerate().zip(model.sizes()) {
             let modelled = &linearised.readings[channel];
             let residual: Vec<f64> = readings.iter().zip(modelled).map(|(y, f)| y - f).collect();
             let size = rms(modelled.iter().copied()) / load_rms;
             let background = products(observations, &basis.values, size);
             extents.push((size / whole).powi(2));
+            let errors = model.stated_errors(channel);
             let own: Vec<(usize, &[f64])> = columns
                 .iter()
                 .enumerate()
@@ -119,12 +120,13 @@ impl Systems {
                 let variance =
                     |(f, is_told): (&f64, &bool)| if *is_told { level.variance(*f) } else { f64::INFINITY };
                 let variances: Vec<f64> = modelled.iter().zip(is_told).map(variance).collect();
-                ChannelSystem::of(&own, &background, &residual, Whitening::of(&variances, &follows, memory))
+                let whitening = Whitening::of(&variances, &follows, memory);
+                ChannelSystem::of(&own, &background, errors, &residual, whitening)
             };
             for _ in 0..if observations.is_alive(channel) { NOISE_ROUNDS } else { 0 } {
-                (level, memory) = estimated_noise(&system(&level, memory), modelled, &wide)?;
+                (level, memory) = estimated_noise(&system(&level, memory)?, modelled, &wide)?;
             }
-            channels.push(system(&level, memory));
+            channels.push(system(&level, memory)?);
             noise.push(level);
         }
         Some(Self {
@@ -374,7 +376,8 @@ fn estimated_noise(system: &ChannelSystem, modelled: &[f64], wide: &Prior) -> Op
             .sum()
     };
     let effective = told(factor.inverse_diagonal(), &mut priors.iter().copied())
-        + reduced.freedom(wide, &shares).iter().sum::<f64>();
+        + reduced.freedom(wide, &shares).iter().sum::<f64>()
+        + system.stated.freedom();
     let freedom_ratio = (1.0 - effective / rows).max(FREEDOM_RATIO_MIN);
     Some((NoiseLevel::of(&residual, &modelled, freedom_ratio), system.whitening.memory_of(&left)))
 }

@@ -12,6 +12,7 @@
 //! Sources: M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (a discrepancy beside the parameters); J.
 //! Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014) 114007 (without it parameters are wrong and too sure).
 
+pub mod against;
 mod atlas;
 mod attribution;
 mod basis;
@@ -30,7 +31,6 @@ mod model;
 mod naming;
 mod noise;
 pub mod observations;
-#[allow(dead_code, reason = "the comparison with an earlier recording comes next")]
 mod regression;
 pub mod report;
 mod separation;

@@ -108,4 +108,8 @@ pub(super) trait Model {
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised;
     /// What is known of its own errors.
     fn common_errors(&self) -> Vec<CommonError>;
+    /// A channel's further errors, row by row: independent columns of deviation 1 each, which no other channel shares.
+    fn stated_errors(&self, _channel: usize) -> &[Vec<f64>] {
+        &[]
+    }
 }

@@ -33,6 +33,8 @@ pub struct Sample {
     pub temp_c: Option<f64>,
     /// Cycles of load that the pad has behind it.
     pub cycle: Option<f64>,
+    /// Its cluster, where that is not its location and session.
+    pub block: Option<usize>,
 }
 
 /// Rows of a measurement.
@@ -64,6 +66,7 @@ impl Observations {
             is_unloading: row.approach == Some(Approach::Unloading),
             temp_c: row.temp_c,
             cycle: row.cycle,
+            block: None,
         };
         Self {
             channels: CHANNEL_NAMES.map(str::to_owned).to_vec(),
@@ -105,7 +108,10 @@ impl Observations {
     /// For each row the number of its cluster: rows of one location and session share their errors.
     pub fn clusters(&self) -> Vec<usize> {
         let steps = |mm: f64| libm::round(mm / LOCATION_MM) as i64;
-        let key = |sample: &Sample| (sample.session, sample.place_mm.map(steps));
+        let key = |sample: &Sample| match sample.block {
+            Some(block) => (block, [0; 2]),
+            None => (sample.session, sample.place_mm.map(steps)),
+        };
         let mut keys: Vec<_> = self.samples.iter().map(key).collect();
         let rows = keys.clone();
         keys.sort_unstable();

@@ -124,17 +124,28 @@ impl Regression {
         functions
     }
 
-    /// The part of the process' variance at a row of which the functions know nothing: how far the row is from all that were seen.
+    /// The part of the process' variance of which the functions know nothing at a row: how far that is from all that were seen.
     pub(super) fn unknown(&self, row: &[f64]) -> f64 {
         let (functions, whole) = self.smooth(row);
-        if whole > 0.0 { (1.0 - dot(&functions, &functions) / whole).max(0.0) } else { 0.0 }
+        // Under a small load nothing much can be unknown: loads have a mean square of 1.
+        (whole - dot(&functions, &functions)).max(0.0) / whole.max(1.0)
     }
 
     fn smooth(&self, row: &[f64]) -> (Vec<f64>, f64) {
+        let functions = self.factor.solve_lower(&self.covariances(row));
         let row = scaled(&self.groups, &self.scales, row);
-        let with: Vec<f64> =
-            self.pivots.iter().map(|pivot| self.kernel.of(&self.groups, pivot, &row)).collect();
-        (self.factor.solve_lower(&with), self.kernel.of(&self.groups, &row, &row))
+        (functions, self.kernel.of(&self.groups, &row, &row))
+    }
+
+    /// The covariances of a row with the pivots.
+    pub(super) fn covariances(&self, row: &[f64]) -> Vec<f64> {
+        let row = scaled(&self.groups, &self.scales, row);
+        self.pivots.iter().map(|pivot| self.kernel.of(&self.groups, pivot, &row)).collect()
+    }
+
+    /// What a fit's smooth part is of these covariances: φᵀ w = kᵀ (L⁻ᵀ w), which costs no solution for each row.
+    pub(super) fn spread(&self, fit: &Fit) -> Vec<f64> {
+        self.factor.solve_upper(&fit.weights[1 + self.others..])
     }
 
     /// The regression of a channel by the functions at its rows, row by row. `is_told` says which readings count, `follows` which rows
@@ -242,8 +253,7 @@ impl Fit {
     /// One of the linear weights, and its standard deviation.
     pub(super) fn slope(&self, at: usize) -> [f64; 2] {
         let unit: Vec<f64> = (0..self.weights.len()).map(|k| f64::from(u8::from(k == 1 + at))).collect();
-        let errors = self.errors(&unit);
-        [self.weights[1 + at], rms(errors.iter().copied()) * (errors.len() as f64).sqrt()]
+        [self.weights[1 + at], self.variance(&unit).sqrt()]
     }
 
     /// The error of [`Self::value`], as a sum of independent ones of deviation 1: the same ones for all rows.

@@ -11,6 +11,8 @@ pub enum Target {
     Pad,
     /// What measured it.
     Rig,
+    /// All channels, or all labels, of a sensor that nothing more is known of.
+    All,
     /// A channel.
     Channel(usize),
     /// A channel, by another one.
@@ -39,6 +41,7 @@ impl Target {
         match *self {
             Self::Pad => "pad".to_owned(),
             Self::Rig => "rig".to_owned(),
+            Self::All => "all".to_owned(),
             Self::Channel(channel) | Self::Channels { into: channel, .. } => channel_name(channels, channel),
             Self::Module(module) | Self::Modules { into: module, .. } | Self::ModuleSide(module, _) => {
                 format!("module{module}")

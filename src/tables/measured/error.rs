@@ -30,6 +30,8 @@ pub enum Fault {
     Io(io::Error),
     /// There is no line.
     Empty(Kind),
+    /// There is no line, where any names of columns would do.
+    NoHeader,
     /// The text has two bytes for each character.
     Utf16,
     /// A line that is longer than any row.
@@ -106,6 +108,7 @@ impl fmt::Display for Fault {
         match self {
             Self::Io(error) => write!(f, "{error}"),
             Self::Empty(kind) => write!(f, "the file is empty; it begins with {}", Expected(*kind)),
+            Self::NoHeader => f.write_str("the file is empty; it begins with a line of the columns' names"),
             Self::Utf16 => f.write_str("the table is UTF-16; save it as UTF-8"),
             Self::LongLine => f.write_str("the line is longer than 1 MB: this is no table of contacts"),
             Self::Quotation => f.write_str(

@@ -12,6 +12,7 @@ pub mod error;
 mod layout;
 mod lines;
 pub mod read;
+pub mod sheet;
 pub mod write;
 pub mod zero;
 

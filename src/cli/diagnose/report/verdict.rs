@@ -44,7 +44,8 @@ fn told(diagnosis: &Diagnosis) -> String {
 /// What the findings are, those of one effect together.
 fn names(findings: &[Finding], channels: &[String]) -> Vec<String> {
     let mut effects: Vec<&str> = Vec::new();
-    for finding in findings.iter().filter(|it| !matches!(it.target, Target::Pad | Target::Rig)) {
+    for finding in findings.iter().filter(|it| !matches!(it.target, Target::Pad | Target::Rig | Target::All))
+    {
         if !effects.contains(&finding.effect) {
             effects.push(finding.effect);
         }
@@ -59,7 +60,7 @@ fn names(findings: &[Finding], channels: &[String]) -> Vec<String> {
     };
     let whole = findings
         .iter()
-        .filter(|it| matches!(it.target, Target::Pad | Target::Rig))
+        .filter(|it| matches!(it.target, Target::Pad | Target::Rig | Target::All))
         .map(|it| title(it.effect));
     whole.chain(effects.iter().map(of_effect)).collect()
 }

@@ -71,7 +71,7 @@ const EFFECTS: [(&str, &str, &str); 35] = [
         "offset of the force reference",
         "the zero of the force reference is off by {fx_n|in x&fy_n|in y&fz_n|in z}",
     ),
-    ("stage_offset", "stage out of place", "the stage is off by {x_mm|in x&y_mm|in y}"),
+    ("stage_offset", "stage out of place", "the stage is off by {x_mm|in x&y_mm|in y&z_mm|in z}"),
     ("stage_rotation", "turned stage", "the stage is turned {deg|counter-clockwise|clockwise}"),
     (
         "stage_scale",
@@ -96,7 +96,7 @@ pub(super) fn cause(effect: &str, target: &Target, channels: &[String]) -> Strin
     let with = target.with(channels).map(|with| format!(" from {}", place(&with))).unwrap_or_default();
     let side = target.side().map(|it| format!(", {} side", it.name())).unwrap_or_default();
     match target {
-        Target::Pad | Target::Rig => title(effect),
+        Target::Pad | Target::Rig | Target::All => title(effect),
         _ => format!("{} ({}{with}{side})", title(effect), place(&target.name(channels))),
     }
 }
@@ -144,7 +144,7 @@ pub(super) fn chance(p_value: f64) -> String {
 fn filled(wanted: &str, finding: &Finding, channels: &[String]) -> String {
     let Finding { target, parameters, .. } = finding;
     match wanted {
-        "target" if matches!(target, Target::Pad | Target::Rig) => "every channel".to_owned(),
+        "target" if matches!(target, Target::Pad | Target::Rig | Target::All) => "every channel".to_owned(),
         "target" => subject(target, channels),
         "with" => target.with(channels).map(|with| place(&with)).unwrap_or_default(),
         "side" => target.side().map(|it| it.name().replace('-', "−")).unwrap_or_default(),

@@ -1,0 +1,151 @@
+//! Tables of any sensor: a header, and columns of numbers under whatever names.
+//!
+//! A column counts as numbers if most of its cells that are not empty are; cells without a finite number are missing values. Columns
+//! of texts are kept as texts.
+
+use std::borrow::Cow;
+use std::io::BufRead;
+
+use super::error::{Fault, ReadError};
+use super::lines::{Lines, cells};
+
+/// Of a column's cells that are not empty, so many are numbers at least.
+const NUMBERS_MIN: f64 = 0.5;
+
+/// A table of named columns, all of them equally long.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sheet {
+    columns: Vec<Column>,
+    rows: usize,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Column {
+    name: String,
+    /// Not a number where a value is missing.
+    numbers: Vec<f64>,
+    /// What stands there.
+    texts: Vec<String>,
+    is_number: bool,
+}
+
+impl Sheet {
+    /// How many rows there are.
+    pub const fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// The names of the columns of numbers, in the file's order.
+    pub fn numeric(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().filter(|column| column.is_number).map(|column| column.name.as_str())
+    }
+
+    /// Whether there is a column of this name, of whatever kind.
+    pub fn has(&self, name: &str) -> bool {
+        self.column(name).is_some()
+    }
+
+    /// A column of numbers, NaN where one is missing.
+    pub fn numbers(&self, name: &str) -> Option<&[f64]> {
+        self.column(name).filter(|column| column.is_number).map(|column| column.numbers.as_slice())
+    }
+
+    /// What stands in a column; empty where nothing does.
+    pub fn texts(&self, name: &str) -> Option<&[String]> {
+        self.column(name).map(|column| column.texts.as_slice())
+    }
+
+    fn column(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+}
+
+/// Reads a table; at least one row, or it is an error.
+///
+/// # Errors
+/// The text is no table: where, and why.
+pub fn sheet(from: impl BufRead) -> Result<Sheet, ReadError> {
+    let mut lines = Lines::new(from);
+    let mut sheet = match lines.next_line()? {
+        Some((line, header)) => headed(&header).map_err(|fault| ReadError { line, fault })?,
+        None => return Err(lines.error(Fault::NoHeader)),
+    };
+    while let Some((line, text)) = lines.next_line()? {
+        let read = cells(&text).ok_or(Fault::Quotation).and_then(|cells| sheet.push(&cells));
+        read.map_err(|fault| ReadError { line, fault })?;
+    }
+    if sheet.rows == 0 {
+        return Err(lines.error(Fault::NoRows));
+    }
+    for column in &mut sheet.columns {
+        let written = column.texts.iter().filter(|text| !text.is_empty()).count() as f64;
+        let numbers = column.numbers.iter().filter(|number| number.is_finite()).count() as f64;
+        column.is_number = numbers > NUMBERS_MIN * written;
+    }
+    Ok(sheet)
+}
+
+fn headed(header: &str) -> Result<Sheet, Fault> {
+    let names = cells(header).ok_or(Fault::Quotation)?;
+    let mut sheet = Sheet::default();
+    for name in names {
+        let name = name.trim().to_owned();
+        if sheet.has(&name) {
+            return Err(Fault::DoubledColumn(name));
+        }
+        sheet.columns.push(Column { name, numbers: Vec::new(), texts: Vec::new(), is_number: true });
+    }
+    if sheet.columns.len() == 1 && header.contains([';', '\t']) {
+        return Err(Fault::Separator);
+    }
+    Ok(sheet)
+}
+
+impl Sheet {
+    fn push(&mut self, cells: &[Cow<'_, str>]) -> Result<(), Fault> {
+        if cells.len() != self.columns.len() {
+            return Err(Fault::Width { found: cells.len(), named: self.columns.len() });
+        }
+        for (column, cell) in self.columns.iter_mut().zip(cells) {
+            let text = cell.trim();
+            let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+            column.numbers.push(number.unwrap_or(f64::NAN));
+            column.texts.push(text.to_owned());
+        }
+        self.rows += 1;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_of_any_name_are_numbers_texts_and_gaps() {
+        let text = "a b,note,\"c,1\"\n1,x,-2e3\n\n,y,nan\n3,,error\n4,z,5\n";
+        let sheet = sheet(text.as_bytes()).unwrap();
+        assert_eq!(sheet.rows(), 4);
+        assert_eq!(sheet.numeric().collect::<Vec<_>>(), ["a b"]);
+        let numbers = sheet.numbers("a b").unwrap();
+        assert!(numbers[1].is_nan() && numbers[0] == 1.0 && numbers[2..] == [3.0, 4.0]);
+        assert_eq!(sheet.texts("note").unwrap(), ["x", "y", "", "z"]);
+        assert!(sheet.numbers("note").is_none() && sheet.has("c,1") && !sheet.has("d"));
+    }
+
+    #[test]
+    fn what_is_no_table_says_where() {
+        for (text, line, said) in [
+            ("", 1, "the file is empty"),
+            ("a,b\n", 1, "no contact follows"),
+            ("a,b\n1,2\n1\n", 3, "1 values"),
+            ("a,a\n1,2\n", 1, "two columns are named a"),
+            ("a;b\n1;2\n", 1, "not separated by commas"),
+            ("a,\"b\n1,2\n", 1, "a quotation mark"),
+        ] {
+            let error = sheet(text.as_bytes()).unwrap_err();
+            assert_eq!(error.line, line, "{text}");
+            assert!(error.fault.to_string().contains(said), "{}", error.fault);
+        }
+    }
+}

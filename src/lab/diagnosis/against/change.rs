@@ -1,11 +1,13 @@
 //! What may have changed in a sensor, or in what measured it, since an earlier recording.
 //!
 //! ```text
-//! place = d + R(φ) written(t + lag),   load = written(t + lag)/γ
-//! yₖ = gₖ fₖ(place, load) + δₖ t + βₖ ΔT + zₖ
+//! place = d + R(φ) written(t + lag),   load = written(t + lag)
+//! yₖ = gₖ/γ fₖ(place, load) + δₖ t + βₖ ΔT + zₖ
 //! ```
 //!
-//! f is the earlier recording's regression beside its zeros, γ what is written over the true load. The zeros z are always fitted.
+//! f is the earlier recording's regression beside its zeros, γ what is written, or meant where nothing is, over the true load: by a
+//! sensor that is linear in its load it is not told from a gain of all channels, and by any other one not surely. The zeros z are
+//! always fitted.
 
 use super::columns::Columns;
 use crate::lab::diagnosis::model::{Hypothesis, Parameter};
@@ -95,14 +97,14 @@ impl Changes {
 
     /// Whether labels are other than they are written.
     pub(super) fn moves_labels(&self) -> bool {
-        self.load != 1.0 || self.offset_mm != [0.0; 3] || self.rotation_deg != 0.0 || self.lag_ms != 0.0
+        self.offset_mm != [0.0; 3] || self.rotation_deg != 0.0 || self.lag_ms != 0.0
     }
 }
 
 impl Act {
     /// Whether only what is read from the labels changes, not the labels.
     pub(super) const fn is_of_channels(&self) -> bool {
-        matches!(self, Self::Gain(_) | Self::Drift(_) | Self::Thermal(_))
+        matches!(self, Self::Gain(_) | Self::Load | Self::Drift(_) | Self::Thermal(_))
     }
 }
 

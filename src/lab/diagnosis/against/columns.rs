@@ -12,6 +12,9 @@ const CIRCUMSTANCES: [&str; 6] = ["t_s", "label_t_s", "temp_c", "cycle", "trial"
 /// What plans write beside them.
 const PLANNED: [&str; 2] = ["dwell_s", "approach"];
 
+/// What varies by less than this part of itself stays the same.
+const LAST_DIGITS: f64 = 1e-5;
+
 /// What is asked for; empty: whatever both tables have.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Asked<'a> {
@@ -128,7 +131,15 @@ fn is_known(name: &str) -> bool {
     CIRCUMSTANCES.contains(&name) || PLACES.iter().chain(&LOADS).any(|names| names.contains(&name))
 }
 
+/// Whether a column varies by more than its last digits.
 fn varies(sheet: &Sheet, name: &str) -> bool {
-    let mut numbers = sheet.numbers(name).unwrap_or_default().iter().filter(|number| number.is_finite());
-    numbers.next().is_some_and(|first| numbers.any(|number| number != first))
+    let numbers =
+        || sheet.numbers(name).unwrap_or_default().iter().copied().filter(|number| number.is_finite());
+    let [low, high] = extent(numbers());
+    high - low > LAST_DIGITS * high.abs().max(low.abs())
+}
+
+/// The least and the greatest value.
+pub(super) fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }

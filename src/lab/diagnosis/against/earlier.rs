@@ -4,15 +4,17 @@
 //! itself; and so is a zero's drift over the recording. No more than that is expected of a later one, either.
 
 use super::Unfit;
-use super::columns::Columns;
+use super::columns::{Columns, extent};
 use super::recording::Recording;
+use crate::lab::diagnosis::model::Signature;
+use crate::lab::diagnosis::observations::Sample;
 use crate::lab::diagnosis::regression::{Fit, Labels, Regression};
-use crate::numeric::statistics::mean;
+use crate::numeric::statistics::{mean, population_deviation, rms};
 
 /// Fewest rows, of a recording and of a channel of it.
 pub(super) const ROWS_MIN: usize = 60;
 /// Parts that a recording is held against itself in.
-const PARTS: usize = 6;
+pub(super) const PARTS: usize = 6;
 /// A row of which the regression knows less than this is beyond what was recorded.
 const UNKNOWN_MAX: f64 = 0.02;
 /// How far a label may lie beyond the earlier ones, as a share of their range.
@@ -20,6 +22,10 @@ const BEYOND: f64 = 0.1;
 /// Directions of the prediction's error at most; those that are left out have less than this part of the noise in any row.
 const ERRORS_MAX: usize = 160;
 const ERROR_MIN: f64 = 0.01;
+/// Least part of what all of a recording says of a change that a part of it says.
+const SEEN_MIN: f64 = 0.01;
+/// Static samples are enough from so many on.
+const STATIC_MIN: usize = 2 * ROWS_MIN;
 
 /// A sensor as an earlier recording knows it.
 #[derive(Clone, Debug)]
@@ -32,8 +38,6 @@ pub(super) struct Earlier {
     /// Mean temperature, where it varies.
     temp_c: Option<f64>,
     has_time: bool,
-    /// Standard deviation of a gain that all channels share, from part to part.
-    pub(super) gain: f64,
 }
 
 /// A channel as the earlier recording knows it.
@@ -47,6 +51,8 @@ pub(super) struct Channel {
     pub(super) drift: f64,
     /// By how much the gain differs from part to part.
     pub(super) gain: f64,
+    /// What the fit leaves of each row, and one over its variance; 0 where nothing is told.
+    left: Vec<[f64; 2]>,
 }
 
 /// Zero and gain of a part, and their variances.
@@ -80,7 +86,6 @@ impl Earlier {
             .map(|(row, others)| regression.functions(row, others))
             .collect();
         let mut channels = vec![None; observations.channels.len()];
-        let mut parts = Vec::new();
         for channel in alive {
             let known = Known { recording, functions: &functions, channel };
             let fit = known.fitted(&regression).ok_or(Unfit::Singular)?;
@@ -90,19 +95,13 @@ impl Earlier {
                 gain: between(own.iter().map(|part| part.gain)),
                 drift: if has_time { beyond_chance(fit.slope(0)) } else { 0.0 },
                 spread: regression.spread(&fit),
+                left: known.left(&fit),
                 fit,
             });
-            parts.push(own);
         }
+        pool(&mut channels, &functions);
         let extents = (0..columns.inputs.len()).map(|at| extent(recording.inputs.iter().map(|row| row[at])));
-        Ok(Self {
-            regression,
-            channels,
-            extents: extents.collect(),
-            temp_c,
-            has_time,
-            gain: shared_gain(&parts),
-        })
+        Ok(Self { regression, channels, extents: extents.collect(), temp_c, has_time })
     }
 
     /// Whether what is expected at a row is known: its labels are within those of the earlier recording, and near some of them.
@@ -138,6 +137,29 @@ impl Earlier {
 
     fn above_c(&self, temp_c: Option<f64>) -> f64 {
         self.temp_c.zip(temp_c).map_or(0.0, |(middle, now)| now - middle)
+    }
+
+    /// How large a change of this signature the earlier recording shows in itself, as a standard deviation: what it differs by from part
+    /// to part, and what all parts have of it. `parts` has the part of each row.
+    pub(super) fn contradiction(&self, signature: &Signature, parts: &[Option<usize>]) -> f64 {
+        let count = parts.iter().flatten().max().map_or(0, |last| last + 1);
+        let mut sums = vec![[0.0; 2]; count];
+        for (channel, signature) in self.channels.iter().zip(signature) {
+            let (Some(Channel { left, .. }), Some(signature)) = (channel, signature) else { continue };
+            let whole: f64 = left.iter().map(|it| it[1]).sum();
+            let middle = left.iter().zip(signature).map(|(it, slope)| it[1] * slope).sum::<f64>() / whole;
+            for (([left, weight], slope), part) in left.iter().zip(signature).zip(parts) {
+                let (slope, Some(part)) = (slope - middle, part) else { continue };
+                sums[*part][0] += weight * slope * left;
+                sums[*part][1] += weight * slope * slope;
+            }
+        }
+        let all = sums.iter().fold([0.0; 2], |all, it| [all[0] + it[0], all[1] + it[1]]);
+        // A part in which next to nothing of it can be seen says nothing.
+        let seen = sums.iter().filter(|it| it[1] > SEEN_MIN * all[1]);
+        let own = between(seen.map(|[product, square]| [product / square, 1.0 / square]));
+        let common = if all[1] > 0.0 { beyond_chance([all[0] / all[1], all[1].sqrt().recip()]) } else { 0.0 };
+        libm::hypot(own, common)
     }
 
     /// The errors of a channel's prediction at rows, as independent columns of deviation 1.
@@ -178,14 +200,26 @@ impl Known<'_> {
         regression.fitted(self.functions, readings, is_told, &observations.follows())
     }
 
+    /// What the fit leaves, and its weights.
+    fn left(&self, fit: &Fit) -> Vec<[f64; 2]> {
+        let observations = &self.recording.observations;
+        let correlated = correlated(fit);
+        let rows = observations.readings[self.channel].iter().zip(&observations.is_told[self.channel]);
+        let left = |((y, is_told), functions): ((&f64, &bool), &Vec<f64>)| {
+            let variance = correlated * fit.noise.variance(fit.signal(functions));
+            if *is_told { [y - fit.value(functions), 1.0 / variance] } else { [0.0; 2] }
+        };
+        rows.zip(self.functions).map(left).collect()
+    }
+
     /// Zero and gain of what the fit leaves, part by part.
     fn parts(&self, fit: &Fit) -> Vec<Part> {
         let observations = &self.recording.observations;
         let (readings, is_told) = (&observations.readings[self.channel], &observations.is_told[self.channel]);
-        let rows: Vec<usize> = (0..readings.len()).filter(|row| is_told[*row]).collect();
-        // What a row says anew where the one before foretells it.
-        let correlated = (1.0 + fit.memory) / (1.0 - fit.memory);
-        let shrunk = (1.0 - fit.freedom / rows.len() as f64).max(0.1).sqrt();
+        let told: Vec<usize> = (0..readings.len()).filter(|row| is_told[*row]).collect();
+        let shrunk = (1.0 - fit.freedom / told.len() as f64).max(0.1).sqrt();
+        let rows = counted(&observations.samples, told);
+        let correlated = correlated(fit);
         let part = |at: usize| {
             let own = &rows[at * rows.len() / PARTS..(at + 1) * rows.len() / PARTS];
             let told: Vec<[f64; 3]> = own
@@ -218,6 +252,19 @@ impl Part {
     }
 }
 
+/// The rows by which a recording is held against itself: static samples where there are enough, as the rows of a time series have their
+/// errors together.
+pub(super) fn counted(samples: &[Sample], rows: Vec<usize>) -> Vec<usize> {
+    let is_static = |row: &&usize| samples[**row].trial.is_none();
+    let samples: Vec<usize> = rows.iter().filter(is_static).copied().collect();
+    if samples.len() < STATIC_MIN { rows } else { samples }
+}
+
+/// How many rows say as much as one that the row before does not foretell.
+fn correlated(fit: &Fit) -> f64 {
+    (1.0 + fit.memory) / (1.0 - fit.memory)
+}
+
 /// The standard deviation of values beyond their variances. Few parts may be alike by chance: with B of them the sum of squares is
 /// over B − 3, as the mean of a scaled inverse χ² with B − 1 degrees of freedom has it.
 fn between(parts: impl Iterator<Item = [f64; 2]>) -> f64 {
@@ -232,16 +279,23 @@ fn between(parts: impl Iterator<Item = [f64; 2]>) -> f64 {
     ((squares - chance * (freedom - 1.0) / freedom) / (freedom - 3.0)).max(0.0).sqrt()
 }
 
-/// The same for the mean gain of all channels.
-fn shared_gain(channels: &[Vec<Part>]) -> f64 {
-    let part = |at: usize| {
-        let own =
-            channels.iter().map(|parts| parts[at].gain).filter(|gain| gain.iter().all(|it| it.is_finite()));
-        let weights: Vec<[f64; 2]> = own.map(|[gain, variance]| [gain / variance, 1.0 / variance]).collect();
-        let whole: f64 = weights.iter().map(|it| it[1]).sum();
-        [weights.iter().map(|it| it[0]).sum::<f64>() / whole, 1.0 / whole]
+/// Few parts tell little of what a channel does by itself: half of it is what all channels do, relative to their signals.
+fn pool(channels: &mut [Option<Channel>], functions: &[Vec<f64>]) {
+    let size = |it: &Channel| {
+        let signals: Vec<f64> = functions.iter().map(|row| it.fit.signal(row)).collect();
+        population_deviation(&signals).max(f64::MIN_POSITIVE.sqrt())
     };
-    between((0..PARTS).map(part))
+    let sizes: Vec<f64> = channels.iter().flatten().map(size).collect();
+    let shares =
+        channels.iter().flatten().zip(&sizes).map(|(it, size)| [it.wander / size, it.drift / size, it.gain]);
+    let shares: Vec<[f64; 3]> = shares.collect();
+    let pooled = [0, 1, 2].map(|at| rms(shares.iter().map(|it| it[at])));
+    for (channel, size) in channels.iter_mut().flatten().zip(sizes) {
+        let half = |own: f64, pooled: f64| rms([own, pooled]);
+        channel.wander = half(channel.wander, pooled[0] * size);
+        channel.drift = half(channel.drift, pooled[1] * size);
+        channel.gain = half(channel.gain, pooled[2]);
+    }
 }
 
 /// A number beyond what its standard deviation makes of none.
@@ -255,16 +309,12 @@ fn others(recording: &Recording, has_time: bool, temp_c: Option<f64>) -> Vec<Vec
     let [first, last] = extent(samples.iter().filter_map(|sample| sample.t_s));
     let time =
         |t_s: f64| if last > first { (t_s - f64::midpoint(first, last)) / (last - first) } else { 0.0 };
-    let of_row = |sample: &crate::lab::diagnosis::observations::Sample| {
+    let of_row = |sample: &Sample| {
         let mut others: Vec<f64> = sample.t_s.filter(|_| has_time).map(time).into_iter().collect();
         others.extend(temp_c.map(|middle| sample.temp_c.map_or(0.0, |now| now - middle)));
         others
     };
     samples.iter().map(of_row).collect()
-}
-
-pub(super) fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
 /// A channel's readings about their mean, with that in the place of readings that tell nothing.

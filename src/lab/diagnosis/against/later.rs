@@ -2,13 +2,12 @@
 
 use super::change::{Act, Changes, Circumstances, hypotheses};
 use super::columns::{Asked, Columns};
-use super::earlier::Earlier;
+use super::earlier::{Earlier, PARTS, counted};
 use super::recording::Recording;
 use crate::lab::diagnosis::model::{CommonError, Hypothesis, Linearised, Model, Signature};
+use crate::lab::diagnosis::observations::Sample;
 use crate::numeric::statistics::rms;
 
-/// Parts of the later recording whose zeros may differ as those of the earlier one's parts do.
-const PARTS: usize = 6;
 /// Readings that change by less than this part of the largest reading do not change.
 const NOTHING: f64 = 1e-9;
 
@@ -24,6 +23,8 @@ pub(super) struct Setting<'r> {
     pub(super) sizes: &'r [f64],
     /// Mean temperature.
     pub(super) temp_c: f64,
+    /// What the earlier recording shows in itself of changes of all channels: their acts, which of their numbers, and how much.
+    pub(super) own: &'r [(Act, usize, f64)],
 }
 
 /// The channels of some rows.
@@ -39,15 +40,21 @@ pub(super) struct Later<'r> {
 
 impl<'r> Later<'r> {
     pub(super) fn new(setting: Setting<'r>, recording: &'r Recording) -> Self {
+        let mut later = Self::without_errors(setting, recording);
+        later.errors = (0..setting.columns.channels.len()).map(|channel| later.errors_of(channel)).collect();
+        later
+    }
+
+    /// The same without what predictions may be off by.
+    pub(super) fn without_errors(setting: Setting<'r>, recording: &'r Recording) -> Self {
         let Setting { earlier, columns, asked, there, .. } = setting;
         let (hypotheses, acts) =
             hypotheses(columns, &earlier.extents, there, |effect| asked.asks_for(effect)).into_iter().unzip();
         let temps = recording.observations.samples.iter().map(|sample| sample.temp_c);
         let unchanged: Vec<Vec<f64>> =
             recording.inputs.iter().zip(temps).map(|(row, temp_c)| earlier.signals(row, temp_c)).collect();
-        let mut later = Self { setting, recording, hypotheses, acts, unchanged, errors: Vec::new() };
-        later.errors = (0..columns.channels.len()).map(|channel| later.errors_of(channel)).collect();
-        later
+        let errors = vec![Vec::new(); columns.channels.len()];
+        Self { setting, recording, hypotheses, acts, unchanged, errors }
     }
 
     /// How far the prediction of a channel may be off: by the regression's own error, and by what a recording does by itself.
@@ -83,6 +90,39 @@ impl<'r> Later<'r> {
         errors
     }
 
+    /// What the earlier recording, of which these are the rows, shows in itself of changes that all channels share.
+    pub(super) fn contradictions(&self) -> Vec<(Act, usize, f64)> {
+        let samples = &self.recording.observations.samples;
+        let count = samples.len();
+        let counted = counted(samples, (0..count).collect());
+        let mut by_row = vec![None; count];
+        counted.iter().enumerate().for_each(|(at, row)| by_row[*row] = Some(at * PARTS / counted.len()));
+        // Labels can only be late in a series: each is a part.
+        let trials = samples.iter().filter_map(|it| it.trial).max().map_or(0, |last| last + 1);
+        let by_trial: Vec<Option<usize>> = samples.iter().map(|it| it.trial).collect();
+        let mut own = Vec::new();
+        for (at, act) in self.acts.iter().enumerate() {
+            if matches!(act, Act::Gain(Some(_)) | Act::Drift(_) | Act::Thermal(_)) {
+                continue;
+            }
+            let parts = if *act == Act::Lag && trials > 1 { &by_trial } else { &by_row };
+            for parameter in 0..self.hypotheses[at].parameters.len() {
+                let deviation = self.setting.earlier.contradiction(&self.of(at, parameter), parts);
+                own.push((act.clone(), parameter, deviation));
+            }
+        }
+        own
+    }
+
+    /// ∂readings/∂ψ where nothing has changed.
+    fn of(&self, at: usize, parameter: usize) -> Signature {
+        if self.acts[at].is_of_channels() {
+            let nothing = Changes::none(self.setting.columns.channels.len());
+            return self.of_channels(&self.acts[at], &self.unchanged, &nothing);
+        }
+        self.of_labels(&[], [at, parameter])
+    }
+
     fn changes(&self, applied: &[(usize, Vec<f64>)]) -> Changes {
         let mut changes = Changes::none(self.setting.columns.channels.len());
         for (at, coordinates) in applied {
@@ -96,18 +136,13 @@ impl<'r> Later<'r> {
 
     /// For each row, what each channel reads beside its zero, before what happens in the channels.
     fn signals(&self, changes: &Changes) -> Vec<Vec<f64>> {
-        let Setting { earlier, columns, .. } = self.setting;
+        let earlier = self.setting.earlier;
         if !changes.moves_labels() {
             return self.unchanged.clone();
         }
         let samples = &self.recording.observations.samples;
-        // A load that is not written may still be another one.
-        let unwritten = if columns.has_loads() { 1.0 } else { changes.load };
-        let signal = |(row, sample): (usize, &crate::lab::diagnosis::observations::Sample)| {
-            let mut signals = earlier.signals(&self.moved(row, changes), sample.temp_c);
-            signals.iter_mut().for_each(|signal| *signal /= unwritten);
-            signals
-        };
+        let signal =
+            |(row, sample): (usize, &Sample)| earlier.signals(&self.moved(row, changes), sample.temp_c);
         samples.iter().enumerate().map(signal).collect()
     }
 
@@ -124,8 +159,6 @@ impl<'r> Later<'r> {
         for (at, by_mm) in [x, y, z].into_iter().zip(changes.offset_mm) {
             at.into_iter().for_each(|at| labels[at] += by_mm);
         }
-        let loads = columns.groups.iter().filter(|group| group.is_load).flat_map(|group| &group.inputs);
-        loads.for_each(|at| labels[*at] /= changes.load);
         labels
     }
 
@@ -165,7 +198,9 @@ impl<'r> Later<'r> {
         let channel = |k: usize| {
             let Changes { gains, drifts_per_h, zeros_per_c, .. } = changes;
             let read = |(row, signal): (usize, &Vec<f64>)| {
-                gains[k] * signal[k] + drifts_per_h[k] * self.hours(row) + zeros_per_c[k] * self.above_c(row)
+                gains[k] / changes.load * signal[k]
+                    + drifts_per_h[k] * self.hours(row)
+                    + zeros_per_c[k] * self.above_c(row)
             };
             rows().map(read).collect()
         };
@@ -186,12 +221,16 @@ impl<'r> Later<'r> {
         let rows = || 0..signals.len();
         let slope = |k: usize| -> Vec<f64> {
             match act {
-                Act::Gain(_) => rows().map(|row| changes.gains[k] * signals[row][k]).collect(),
+                Act::Gain(_) => rows().map(|row| changes.gains[k] / changes.load * signals[row][k]).collect(),
+                Act::Load => rows().map(|row| -changes.gains[k] / changes.load * signals[row][k]).collect(),
                 Act::Thermal(_) => rows().map(|row| self.above_c(row)).collect(),
                 _ => rows().map(|row| self.hours(row)).collect(),
             }
         };
-        let (Act::Gain(of) | Act::Drift(of) | Act::Thermal(of)) = act else { return Vec::new() };
+        let of = match act {
+            Act::Gain(of) | Act::Drift(of) | Act::Thermal(of) => *of,
+            _ => None,
+        };
         let is_known = |k: &usize| self.setting.earlier.channels[*k].is_some();
         let of_channel = |k: usize| (of.is_none_or(|of| of == k) && is_known(&k)).then(|| slope(k));
         (0..self.setting.columns.channels.len()).map(of_channel).collect()
@@ -252,10 +291,15 @@ impl Model for Later<'_> {
     }
 
     fn common_errors(&self) -> Vec<CommonError> {
-        let deviation = self.setting.earlier.gain;
-        let changes = Changes::none(self.setting.columns.channels.len());
-        let signature = self.of_channels(&Act::Gain(None), &self.unchanged, &changes);
-        if deviation > 0.0 { vec![CommonError { deviation, signature }] } else { Vec::new() }
+        let own = self.setting.own.iter().filter(|(.., deviation)| *deviation > 0.0);
+        let signature = |act: &Act, parameter: usize| {
+            let at = self.acts.iter().position(|other| other == act)?;
+            Some(self.of(at, parameter))
+        };
+        let errors = own.filter_map(|(act, parameter, deviation)| {
+            Some(CommonError { deviation: *deviation, signature: signature(act, *parameter)? })
+        });
+        errors.collect()
     }
 
     fn stated_errors(&self, channel: usize) -> &[Vec<f64>] {

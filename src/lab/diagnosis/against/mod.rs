@@ -9,15 +9,17 @@ mod columns;
 mod earlier;
 mod later;
 mod recording;
+mod standing;
 
 use std::fmt;
 
 use self::change::{Circumstances, EFFECTS, missing};
 pub use self::columns::Asked;
-use self::columns::Columns;
-use self::earlier::{Earlier, ROWS_MIN, extent};
+use self::columns::{Columns, extent};
+use self::earlier::{Earlier, ROWS_MIN};
 use self::later::{Later, Setting, sizes};
 use self::recording::Recording;
+use self::standing::standing;
 use crate::lab::diagnosis::attribution::Search;
 use crate::lab::diagnosis::columns::ZERO;
 use crate::lab::diagnosis::gain::Rows;
@@ -142,7 +144,7 @@ pub fn compare(earlier: &Sheet, later: &Sheet, asked: &Asked<'_>) -> Result<Diag
     let mut after = after.picked(&reached);
     after.placed(&columns, &known.extents);
     let (after, gate) = checked(&after, &known, asked)?;
-    let mut diagnosis = told(&columns, &known, &after, asked, gate)?;
+    let mut diagnosis = told(&columns, &known, [&before, &after], asked, gate)?;
     diagnosis.gatekeepers.splice(..0, lost.notices());
     Ok(diagnosis)
 }
@@ -186,7 +188,7 @@ fn checked(after: &Recording, known: &Earlier, asked: &Asked<'_>) -> Result<(Rec
 fn told(
     columns: &Columns,
     known: &Earlier,
-    after: &Recording,
+    [before, after]: [&Recording; 2],
     asked: &Asked<'_>,
     gate: Gate,
 ) -> Result<Diagnosis, Unfit> {
@@ -195,7 +197,9 @@ fn told(
     let times_s = extent(all.samples.iter().filter_map(|sample| sample.t_s));
     let temp_c = mean(all.samples.iter().filter_map(|sample| sample.temp_c).collect::<Vec<_>>());
     let sizes = sizes(known, after);
-    let setting = Setting { earlier: known, columns, asked, there, times_s, sizes: &sizes, temp_c };
+    let setting = Setting { earlier: known, columns, asked, there, times_s, sizes: &sizes, temp_c, own: &[] };
+    let own = Later::without_errors(setting, before).contradictions();
+    let setting = Setting { own: &own, ..setting };
     let [open, locked] = all.split().map(|rows| {
         let mut part = after.picked(&rows);
         part.observations = all.picked(&rows);
@@ -206,12 +210,16 @@ fn told(
     let found = search.run(&Vec::new()).ok_or(Unfit::Singular)?;
     let rows = [(&model, &open), (&at_locked, &locked)]
         .map(|(model, part)| Rows { model: model as &dyn Model, observations: &part.observations });
-    let diagnosis = summary(&search, &found, &rows, &missing(columns, there)).ok_or(Unfit::Singular)?;
+    let mut diagnosis = summary(&search, &found, &rows, &missing(columns, there)).ok_or(Unfit::Singular)?;
+    standing(&mut diagnosis, &rows[0], &found);
     let signals = &found.fit.linearised.readings;
     let excess =
         asked.asks_for(EFFECT).then(|| excess(&open.observations, &found.fit.systems.noise, signals));
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
     let own = diagnosis.findings.clone();
+    // Readings at a limit that was not seen look like noise.
+    let is_clipped = |target: Target| own.iter().any(|it| it.effect == "adc_clipping" && it.target == target);
+    diagnosis.findings.retain(|it| it.effect != EFFECT || !is_clipped(it.target));
     diagnosis
         .findings
         .retain(|it| asked.asks_for(it.effect) && (it.effect != ZERO || is_known_zero(it, &own, columns)));

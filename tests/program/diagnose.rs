@@ -78,6 +78,11 @@ fn tables_and_arguments_that_cannot_be_are_refused() {
         ("--measured m.csv --device typo.toml --save-device typo.toml", "typo.toml is the device"),
         ("--measured m.csv --save-device no/e.toml", "cannot be written"),
         ("--measured m.csv --save-device - --json", "both print"),
+        ("--measured m.csv --against none.csv", "none.csv cannot be read"),
+        ("--measured m.csv --against plan.csv", "no channel in common"),
+        ("--measured m.csv --against m.csv --labels x_mm,q", "has no column q"),
+        ("--measured m.csv --against m.csv --save-device e.toml", "--against knows no model"),
+        ("--measured m.csv --labels x_mm", "--against"),
         ("", "--measured <M.csv>"),
     ] {
         let said = refused(folder.path(), line);
@@ -97,8 +102,56 @@ fn help_has_all_options_and_an_example() {
         "--save-device",
         "--report",
         "--json",
+        "--against",
         "Example: tactpad diagnose --measured",
     ] {
         assert!(help.contains(word), "{word}: {help}");
     }
+}
+
+/// A table of a sensor that is no pad: places, and three channels that are smooth there, with noise; the second has this gain.
+fn other_sensor(seed: u64, gain: f64) -> String {
+    let mut state = seed;
+    let mut draw = || {
+        // D. E. Knuth's MMIX generator.
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f64 / f64::from(1_u32 << 24)
+    };
+    let row = |_: usize| {
+        let [x, y] = [draw(), draw()].map(|share| 20.0 * share - 10.0);
+        let mut noise = || (0..4).map(|_| draw() - 0.5).sum::<f64>();
+        let a = 300.0 + 90.0 * (x / 7.0).sin() + 5.0 * y + noise();
+        let b = 40.0 + gain * (60.0 * (y / 6.0).cos() - 4.0 * x) + noise();
+        let c = -80.0 + 7.0 * x + 50.0 * (0.1 * (x + y)).sin() + noise();
+        format!("{x},{y},{a},{b},{c}\n")
+    };
+    format!("x_mm,y_mm,left,middle,right\n{}", (0..200).map(row).collect::<String>())
+}
+
+#[test]
+fn what_changed_in_any_sensor_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("before.csv", &other_sensor(1, 1.0));
+    write("same.csv", &other_sensor(2, 1.0));
+    write("weaker.csv", &other_sensor(3, 0.85));
+    let found = |file: &str| -> serde_json::Value {
+        let output = diagnose(folder.path(), &format!("--measured {file} --against before.csv --json"));
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let same = found("same.csv");
+    assert_eq!(
+        (same["verdict"].as_str(), same["findings"].as_array().unwrap().len()),
+        (Some("no_discrepancy"), 0),
+        "{same}"
+    );
+    let weaker = found("weaker.csv");
+    let [finding] = weaker["findings"].as_array().unwrap().as_slice() else { panic!("{weaker}") };
+    assert_eq!(
+        [&finding["status"], &finding["effect"], &finding["target"]],
+        ["NAMED", "channel_gain", "middle"]
+    );
+    let gain = finding["parameters"]["gain"]["value"].as_f64().unwrap();
+    assert!((gain - 0.85).abs() < 0.03, "{gain}");
 }

@@ -211,7 +211,7 @@ fn told(
     let rows = [(&model, &open), (&at_locked, &locked)]
         .map(|(model, part)| Rows { model: model as &dyn Model, observations: &part.observations });
     let mut diagnosis = summary(&search, &found, &rows, &missing(columns, there)).ok_or(Unfit::Singular)?;
-    standing(&mut diagnosis, &rows[0], &found);
+    standing(&mut diagnosis, &rows, &found);
     let signals = &found.fit.linearised.readings;
     let excess =
         asked.asks_for(EFFECT).then(|| excess(&open.observations, &found.fit.systems.noise, signals));

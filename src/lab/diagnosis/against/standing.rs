@@ -6,7 +6,7 @@
 
 use crate::lab::diagnosis::attribution::{Applied, Attribution};
 use crate::lab::diagnosis::columns::ZERO;
-use crate::lab::diagnosis::gain::Rows;
+use crate::lab::diagnosis::gain::{Rows, gain, rmse};
 use crate::lab::diagnosis::report::{Diagnosis, Finding};
 use crate::lab::diagnosis::verdict;
 
@@ -14,7 +14,7 @@ use crate::lab::diagnosis::verdict;
 const STANDS: f64 = 2.5;
 
 /// Withdraws what does not stand by the plain squares of the open rows.
-pub(super) fn standing(diagnosis: &mut Diagnosis, open: &Rows<'_>, found: &Attribution) {
+pub(super) fn standing(diagnosis: &mut Diagnosis, [open, locked]: &[Rows<'_>; 2], found: &Attribution) {
     let noise = diagnosis.residuals.noise.clone();
     let hypotheses = open.model.hypotheses();
     let place = |finding: &Finding| {
@@ -40,6 +40,15 @@ pub(super) fn standing(diagnosis: &mut Diagnosis, open: &Rows<'_>, found: &Attri
         let Some(least) = diagnosis.findings.iter().rposition(|finding| !stands(finding)) else { break };
         withdrawn.push(diagnosis.findings.remove(least));
     }
+    if withdrawn.is_empty() {
+        return;
+    }
+    let places = diagnosis.findings.iter().filter_map(place);
+    let told: Applied = places.map(|at| found.fit.applied[at].clone()).collect();
+    diagnosis.rmse_extended = rmse(open, &told, &open.zeros(&told));
+    diagnosis.residuals.extended = open.centred(&told);
+    let has_gain = !told.is_empty() && locked.observations.rows() > 0;
+    diagnosis.gain = has_gain.then(|| gain(open, locked, &told));
     let unnamed: f64 = withdrawn.iter().map(|finding| finding.share).sum();
     diagnosis.unnamed_share = (diagnosis.unnamed_share + unnamed).min(1.0);
     diagnosis.verdict = verdict(!diagnosis.findings.is_empty(), diagnosis.unnamed_share);

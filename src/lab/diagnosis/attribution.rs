@@ -107,7 +107,8 @@ impl<'m> Search<'m> {
             )?;
             let fitted = self.columns.fitted(applied.iter().map(|(at, _)| *at));
             let found = systems.background(&fitted, if step == 0 { None } else { background.as_ref() })?;
-            let marginal = systems.marginal(&found)?;
+            let mut marginal = systems.marginal(&found)?;
+            self.columns.pull(&mut marginal, &applied);
             let solved = fitted.solved(&marginal)?;
             let moves = self.moves(&applied, &solved.coordinates, &marginal);
             if step == REFITS || moves < STANDS {
@@ -137,11 +138,11 @@ impl<'m> Search<'m> {
     fn step(&self, applied: &mut Applied, step: &[f64]) {
         for (at, coordinates) in applied {
             let hypothesis = &self.model.hypotheses()[*at];
-            let columns = &self.columns.of_hypothesis[*at];
+            let columns = self.columns.all_of(*at);
             for ((coordinate, column), parameter) in
                 coordinates.iter_mut().zip(columns).zip(&hypothesis.parameters)
             {
-                *coordinate = parameter.coordinate(parameter.value(*coordinate + step[*column]));
+                *coordinate = parameter.coordinate(parameter.value(*coordinate + step[column]));
             }
         }
     }
@@ -154,7 +155,7 @@ impl<'m> Search<'m> {
             &fit.marginal,
             &fit.background,
             &self.columns,
-            &fit.coordinates,
+            &fit.systems.explained(&fit.marginal, &fit.linearised)?,
             &self.clusters,
         );
         let asked: Vec<usize> =
@@ -198,7 +199,7 @@ impl<'m> Search<'m> {
     /// The test of a hypothesis that is not fitted. One whose number cannot be negative is asked for positive ones only.
     pub(super) fn test(&self, projected: &Projected, at: usize, score: &[f64]) -> Test {
         let columns = &self.columns.of_hypothesis[at];
-        let is_one_sided = self.model.hypotheses()[at].parameters.iter().all(Parameter::is_one_sided);
+        let is_one_sided = self.model.hypotheses()[at].asked().iter().all(Parameter::is_one_sided);
         if is_one_sided && columns.iter().all(|column| score[*column] <= 0.0) {
             return Test::NOTHING;
         }
@@ -278,8 +279,12 @@ impl<'m> Search<'m> {
     /// Covariance of a fitted cause's coordinates.
     pub(super) fn covariance(&self, fit: &Fit, at: usize) -> Option<Matrix> {
         let (projected, _) = self.without(fit, at)?;
-        let own = &self.columns.of_hypothesis[fit.applied[at].0];
-        let factor = projected.fisher.picked(own, own).factorised()?;
+        let own: Vec<usize> = self.columns.all_of(fit.applied[at].0).collect();
+        let mut inner = projected.fisher.picked(&own, &own);
+        for (row, column) in own.iter().enumerate() {
+            inner.row_mut(row)[row] += self.columns.precisions[*column];
+        }
+        let factor = inner.factorised()?;
         let unit = |at: usize| (0..own.len()).map(|k| f64::from(u8::from(k == at))).collect::<Vec<_>>();
         Some(Matrix::from_rows(&(0..own.len()).map(|at| factor.solve(&unit(at))).collect::<Vec<_>>()))
     }

@@ -26,6 +26,7 @@ mod gain;
 mod gatekeepers;
 mod inference;
 mod mechanics;
+mod memory;
 mod model;
 mod naming;
 mod noise;

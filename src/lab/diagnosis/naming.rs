@@ -49,7 +49,7 @@ impl Search<'_> {
     fn estimates(&self, found: &Attribution, at: usize) -> Option<Vec<Estimate>> {
         let covariance = self.covariance(&found.fit, at)?;
         let (hypothesis, coordinates) = &found.fit.applied[at];
-        let parameters = &self.model.hypotheses()[*hypothesis].parameters;
+        let parameters = self.model.hypotheses()[*hypothesis].asked();
         let estimate = |(k, parameter): (usize, &super::model::Parameter)| {
             let spread = WITHIN_95 * covariance.at(k, k).max(0.0).sqrt();
             Estimate {
@@ -86,7 +86,7 @@ impl Search<'_> {
         let columns = &self.columns.of_hypothesis[rival];
         let Some(factor) = projected.fisher.picked(columns, columns).factorised() else { return true };
         let of_columns: Vec<f64> = columns.iter().map(|column| score[*column]).collect();
-        let parameters = &self.model.hypotheses()[rival].parameters;
+        let parameters = self.model.hypotheses()[rival].asked();
         factor.solve(&of_columns).iter().zip(parameters).all(|(psi, parameter)| {
             let back = parameter.coordinate(parameter.value(*psi));
             (back - psi).abs() <= 1e-9 + 1e-6 * psi.abs()
@@ -211,7 +211,7 @@ impl Search<'_> {
             return None;
         }
         let minimum_detectable =
-            columns.iter().zip(&it.parameters).filter(|(column, _)| !projected.is_empty(**column));
+            columns.iter().zip(it.asked()).filter(|(column, _)| !projected.is_empty(**column));
         let size = |(column, parameter): (&usize, &super::model::Parameter)| {
             // λ = ψ² I.
             let psi = (noncentralities[freedom] / projected.fisher.at(*column, *column)).sqrt();

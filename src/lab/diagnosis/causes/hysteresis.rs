@@ -1,0 +1,51 @@
+//! Friction between the pad's parts: on the way down a channel reads more than on the way up.
+
+use crate::lab::diagnosis::cause::{Cause, Stage, channels_of, pad_and_channels};
+use crate::lab::diagnosis::chain::Chain;
+use crate::lab::diagnosis::memory::Play;
+use crate::lab::diagnosis::model::{Parameter, with_parts};
+use crate::lab::diagnosis::setting::Setting;
+use crate::lab::diagnosis::target::Target;
+
+/// Height of the loop of a full stroke, as a share of full scale. How soon a loop has opened differs from glue to glue: the parts of
+/// the play operators are fitted beside the height, and by any parts Prandtl's and Ishlinskii's model has any such loop.
+///
+/// Source: M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis (1989), section 2.
+pub(super) struct Hysteresis;
+
+const PARAMETERS: [Parameter; 1 + THRESHOLDS.len()] = with_parts(
+    Parameter::additive("share_of_full_scale", [0.0, 0.5], 1e-3),
+    ["part_0", "part_1", "part_2", "part_3", "part_4"],
+);
+/// As shares of full scale, evenly spread in their logarithm.
+const THRESHOLDS: [f64; 5] = [0.01, 0.025, 0.063, 0.158, 0.4];
+
+impl Cause for Hysteresis {
+    fn effect(&self) -> &'static str {
+        "hysteresis"
+    }
+
+    fn parameters(&self, _: &Setting) -> Vec<Parameter> {
+        PARAMETERS.to_vec()
+    }
+
+    fn stage(&self) -> Stage {
+        Stage::Mechanics
+    }
+
+    /// One channel's is a gain, or bends it, where all loads come from the same side.
+    fn targets(&self, setting: &Setting) -> Vec<Target> {
+        if setting.has_both_ways { pad_and_channels(setting) } else { vec![Target::Pad] }
+    }
+
+    fn apply(&self, target: &Target, values: &[f64], setting: &Setting, chain: &mut Chain) {
+        let whole: f64 = values[1..].iter().sum();
+        for channel in channels_of(target, setting) {
+            for (threshold, part) in THRESHOLDS.into_iter().zip(&values[1..]) {
+                // A loop is 2 w r high.
+                let share = values[0] * part / whole / (2.0 * threshold);
+                chain.memory.plays.push(Play { channel, threshold, share });
+            }
+        }
+    }
+}

@@ -19,6 +19,8 @@ pub(super) struct Play {
     pub(super) threshold: f64,
     /// w.
     pub(super) share: f64,
+    /// A static load that comes from above came from so many times as far above as is thought.
+    pub(super) above: f64,
 }
 
 /// Slow giving way of one channel.
@@ -133,12 +135,14 @@ impl Course {
     }
 
     /// p − e, row by row, of a play operator.
-    fn held_back(&self, threshold: f64, strain: &[f64]) -> Vec<f64> {
+    fn held_back(&self, threshold: f64, above: f64, strain: &[f64]) -> Vec<f64> {
         let mut state = 0.0;
         let rows = self.steps.iter().zip(strain);
         rows.map(|(step, strain)| {
             match step {
-                Step::Static { overload: Some(times), .. } => state = pulled(0.0, strain * times, threshold),
+                Step::Static { overload: Some(times), .. } => {
+                    state = pulled(0.0, strain * (1.0 + above * (times - 1.0)), threshold);
+                }
                 Step::Static { .. } | Step::First => state = 0.0,
                 Step::Next { .. } => {}
             }
@@ -197,7 +201,7 @@ impl MemoryChain {
         strain: &[f64],
     ) -> Option<Vec<f64>> {
         let plays = self.plays.iter().filter(|it| it.channel == channel && it.share != 0.0);
-        let plays = plays.map(|it| (it.share, course.held_back(it.threshold * full_scale, strain)));
+        let plays = plays.map(|it| (it.share, course.held_back(it.threshold * full_scale, it.above, strain)));
         let prony = self.prony.iter().filter(|it| it.channel == channel && it.share != 0.0);
         let prony = prony.map(|it| (it.share, course.crept(it.time_s, strain)));
         plays.chain(prony).fold(None, |sum, (share, rows)| {
@@ -238,8 +242,10 @@ mod tests {
 
     #[test]
     fn a_loop_of_a_series_is_that_of_static_loads_from_both_sides() {
-        let chain =
-            MemoryChain { plays: vec![Play { channel: 0, threshold: 0.1, share: 0.2 }], prony: Vec::new() };
+        let chain = MemoryChain {
+            plays: vec![Play { channel: 0, threshold: 0.1, share: 0.2, above: 1.0 }],
+            prony: Vec::new(),
+        };
         let up_and_down: Vec<f64> =
             (0..=20).map(|row: i32| 100.0 * f64::from(10 - (row - 10).abs())).collect();
         let added = chain.added(&series(21, 1.0), 0, 1000.0, &up_and_down).unwrap();

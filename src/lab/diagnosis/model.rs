@@ -42,10 +42,10 @@ impl Parameter {
         Self { name, none: 1.0, range, step: 1e-3, coordinate: Coordinate::Logarithm, shape: None }
     }
 
-    /// A positive number of an effect's course: as large as its like, to a factor of e. These come last.
-    const fn part(name: &'static str) -> Self {
+    /// A factor in an effect's course, to a deviation of its logarithm. These come last.
+    const fn shape((name, deviation): (&'static str, f64)) -> Self {
         let coordinate = Coordinate::Logarithm;
-        Self { name, none: 1.0, range: [1e-3, 1e3], step: 0.02, coordinate, shape: Some(1.0) }
+        Self { name, none: 1.0, range: [1e-3, 1e3], step: 0.02, coordinate, shape: Some(deviation) }
     }
 
     /// Whether there is nothing below none.
@@ -73,15 +73,15 @@ impl Parameter {
     }
 }
 
-/// An effect's size, and the parts that its course has.
-pub(super) const fn with_parts<const PARTS: usize, const ALL: usize>(
+/// An effect's size, and the factors in its course with the deviations of their logarithms.
+pub(super) const fn with_shapes<const SHAPES: usize, const ALL: usize>(
     size: Parameter,
-    names: [&'static str; PARTS],
+    shapes: [(&'static str, f64); SHAPES],
 ) -> [Parameter; ALL] {
     let mut parameters = [size; ALL];
     let mut at = 0;
-    while at < PARTS {
-        parameters[at + 1] = Parameter::part(names[at]);
+    while at < SHAPES {
+        parameters[at + 1] = Parameter::shape(shapes[at]);
         at += 1;
     }
     parameters

@@ -390,7 +390,7 @@ fn own_chain(device: &Device, weights: Vec<f64>, reference: &Reference) -> Chain
 fn plays<'r>(it: &'r behaviour::Play, reference: &'r Reference) -> impl Iterator<Item = Play> + 'r {
     let of = |channel: usize| {
         let threshold = it.threshold_uv / reference.full_scale[channel];
-        Play { channel, threshold, share: it.share }
+        Play { channel, threshold, share: it.share, above: 1.0 }
     };
     (0..CHANNELS).filter(|channel| it.channels[*channel]).map(of)
 }

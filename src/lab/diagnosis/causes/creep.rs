@@ -3,7 +3,7 @@
 use crate::lab::diagnosis::cause::{Cause, Stage, channels_of, pad_and_channels};
 use crate::lab::diagnosis::chain::Chain;
 use crate::lab::diagnosis::memory::{Dwells, Prony};
-use crate::lab::diagnosis::model::{Parameter, with_parts};
+use crate::lab::diagnosis::model::{Parameter, with_shapes};
 use crate::lab::diagnosis::setting::Setting;
 use crate::lab::diagnosis::target::Target;
 
@@ -13,9 +13,9 @@ use crate::lab::diagnosis::target::Target;
 /// Source: J. D. Ferry, Viscoelastic Properties of Polymers (1980), chapter 3 (spectra of relaxation times).
 pub(super) struct Creep;
 
-const PARAMETERS: [Parameter; 1 + TIMES_S.len()] = with_parts(
+const PARAMETERS: [Parameter; 1 + TIMES_S.len()] = with_shapes(
     Parameter::additive("share_at_20s", [-0.5, 0.5], 1e-3),
-    ["part_0", "part_1", "part_2", "part_3", "part_4"],
+    [("part_0", 1.0), ("part_1", 1.0), ("part_2", 1.0), ("part_3", 1.0), ("part_4", 1.0)],
 );
 /// Evenly spread in their logarithm, over all that a recording shows.
 const TIMES_S: [f64; 5] = [0.5, 2.0, 8.0, 32.0, 128.0];

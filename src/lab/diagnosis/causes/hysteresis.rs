@@ -3,20 +3,31 @@
 use crate::lab::diagnosis::cause::{Cause, Stage, channels_of, pad_and_channels};
 use crate::lab::diagnosis::chain::Chain;
 use crate::lab::diagnosis::memory::Play;
-use crate::lab::diagnosis::model::{Parameter, with_parts};
+use crate::lab::diagnosis::model::{Parameter, with_shapes};
 use crate::lab::diagnosis::setting::Setting;
 use crate::lab::diagnosis::target::Target;
 
 /// Height of the loop of a full stroke, as a share of full scale. How soon a loop has opened differs from glue to glue: the parts of
-/// the play operators are fitted beside the height, and by any parts Prandtl's and Ishlinskii's model has any such loop.
+/// the play operators are fitted beside the height, and by any parts Prandtl's and Ishlinskii's model has any such loop. Nobody
+/// writes from how far above a static load came, so that is fitted, too.
 ///
 /// Source: M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis (1989), section 2.
 pub(super) struct Hysteresis;
 
-const PARAMETERS: [Parameter; 1 + THRESHOLDS.len()] = with_parts(
+const PARAMETERS: [Parameter; 3 + THRESHOLDS.len()] = with_shapes(
     Parameter::additive("share_of_full_scale", [0.0, 0.5], 1e-3),
-    ["part_0", "part_1", "part_2", "part_3", "part_4"],
+    [
+        ("part_0", 1.0),
+        ("part_1", 1.0),
+        ("part_2", 1.0),
+        ("part_3", 1.0),
+        ("part_4", 1.0),
+        ("above", 1.0),
+        ("full_scale", FULL_SCALE_ERROR),
+    ],
 );
+/// What a height is a share of is the model's full scale, and that is no better known.
+const FULL_SCALE_ERROR: f64 = 0.008;
 /// As shares of full scale, evenly spread in their logarithm.
 const THRESHOLDS: [f64; 5] = [0.01, 0.025, 0.063, 0.158, 0.4];
 
@@ -39,12 +50,14 @@ impl Cause for Hysteresis {
     }
 
     fn apply(&self, target: &Target, values: &[f64], setting: &Setting, chain: &mut Chain) {
-        let whole: f64 = values[1..].iter().sum();
+        let (parts, others) = values[1..].split_at(THRESHOLDS.len());
+        let [above, full_scale] = [others[0], others[1]];
+        let whole: f64 = parts.iter().sum();
         for channel in channels_of(target, setting) {
-            for (threshold, part) in THRESHOLDS.into_iter().zip(&values[1..]) {
+            for (threshold, part) in THRESHOLDS.into_iter().zip(parts) {
                 // A loop is 2 w r high.
-                let share = values[0] * part / whole / (2.0 * threshold);
-                chain.memory.plays.push(Play { channel, threshold, share });
+                let share = values[0] * full_scale * part / whole / (2.0 * threshold);
+                chain.memory.plays.push(Play { channel, threshold, share, above });
             }
         }
     }

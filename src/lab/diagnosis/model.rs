@@ -140,6 +140,8 @@ pub(super) trait Model {
     fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>>;
     /// Each channel's root mean square over the whole measurement, of which these may be some rows.
     fn sizes(&self) -> Vec<f64>;
+    /// Each channel's largest reading over the whole measurement.
+    fn full_scale(&self) -> Vec<f64>;
     /// The readings, and their derivatives by all coordinates.
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised;
     /// What is known of its own errors.

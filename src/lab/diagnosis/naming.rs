@@ -34,6 +34,7 @@ impl Search<'_> {
                 effect: it.effect,
                 target: it.target,
                 parameters: self.estimates(found, at)?,
+                shapes: self.shapes(found, at),
                 p_value: test.p_value(),
                 share: (test.square / whole).clamp(0.0, 1.0),
                 confounded_with: self.rivals(found, at, &projected, &score).into_iter().map(named).collect(),
@@ -59,6 +60,14 @@ impl Search<'_> {
             }
         };
         Some(parameters.iter().enumerate().map(estimate).collect())
+    }
+
+    /// The numbers of a fitted cause's course.
+    fn shapes(&self, found: &Attribution, at: usize) -> Vec<(&'static str, f64)> {
+        let (hypothesis, coordinates) = &found.fit.applied[at];
+        let it = &self.model.hypotheses()[*hypothesis];
+        let numbers = it.parameters.iter().zip(coordinates).skip(it.asked().len());
+        numbers.map(|(parameter, psi)| (parameter.name, parameter.value(*psi))).collect()
     }
 
     /// The rivals that explain the data as well as a fitted cause, `projected` and `score` being without it.
@@ -180,6 +189,7 @@ impl Search<'_> {
                     value: zero,
                     interval95: [zero - spread, zero + spread],
                 }],
+                shapes: Vec::new(),
                 p_value,
                 share: square / whole,
                 confounded_with: Vec::new(),

@@ -4,16 +4,16 @@ use std::sync::Arc;
 
 use super::cause::{Cause, Stage};
 use super::causes::CATALOGUE;
-use super::chain::{Chain, ChannelChain, MechanicsChain, Reference, RigChain};
+use super::chain::{Chain, Reference};
 use super::covariance::BACKGROUND_MAX;
 use super::mechanics::{Maps, Pad, at_places, changes, side_share};
-use super::memory::{Course, MemoryChain, Play, Prony};
+use super::memory::{Course, MemoryChain};
 use super::model::{CommonError, Hypothesis, Linearised, Model, Parameter, Signature};
 use super::observations::{Observations, Sample};
+use super::own::own_chain;
 use super::report::NotTestable;
 use super::setting::{Change, Setting};
 use crate::numeric::statistics::rms;
-use crate::pad::device::behaviour::{self, Behaviour, ModuleCrosstalk};
 use crate::pad::device::{Device, Side};
 use crate::pad::field::PadField;
 use crate::pad::influence::{Gains, InfluenceField};
@@ -265,6 +265,10 @@ impl Model for Simulated<'_> {
         self.reference.sizes.clone()
     }
 
+    fn full_scale(&self) -> Vec<f64> {
+        self.reference.full_scale.clone()
+    }
+
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
         let chain = self.chain(applied);
         let rows = self.rows(&chain);
@@ -350,61 +354,6 @@ fn setting(device: &Device, changes: Vec<Change>, observations: &Observations, c
         has_both_ways: course.has_both_ways() || course.has_series(),
         dwells: course.dwells(),
     }
-}
-
-/// What a device's file says of its channels and of the rig that measures it.
-fn own_chain(device: &Device, weights: Vec<f64>, reference: &Reference) -> Chain {
-    let Behaviour { thermal, crosstalk, module_crosstalk, hysteresis, creep, noise, rig, .. } =
-        &device.behaviour;
-    let modules = || device.modules.iter();
-    let nominal = Chain::nominal(CHANNELS, weights.len());
-    Chain {
-        rig: RigChain {
-            offset_mm: [rig.stage_x_mm, rig.stage_y_mm],
-            rotation_deg: rig.stage_rotation_deg,
-            scale: rig.stage_scale,
-            tilt_deg: [rig.reference_tilt_x_deg, rig.reference_tilt_y_deg],
-            gain: rig.reference_gain,
-            zero_n: rig.reference_zero_n,
-            ..nominal.rig
-        },
-        memory: MemoryChain {
-            plays: hysteresis.iter().flat_map(|it| plays(it, reference)).collect(),
-            prony: creep.iter().flat_map(prony).collect(),
-        },
-        channels: ChannelChain {
-            module_shares: module_crosstalk.iter().flat_map(by_axis).collect(),
-            gain: modules().flat_map(|module| module.gain).collect(),
-            gain_per_c: thermal.gain_per_c.to_vec(),
-            shares: crosstalk.iter().map(|it| (it.channel, it.with, it.share)).collect(),
-            offset: modules().flat_map(|module| module.offset_uv).collect(),
-            zero_per_c: thermal.zero_uv_per_c.to_vec(),
-            drift_per_h: noise.drift_uv_per_h.to_vec(),
-            ..nominal.channels
-        },
-        mechanics: MechanicsChain { weights, ..nominal.mechanics },
-    }
-}
-
-/// A play operator, channel by channel.
-fn plays<'r>(it: &'r behaviour::Play, reference: &'r Reference) -> impl Iterator<Item = Play> + 'r {
-    let of = |channel: usize| {
-        let threshold = it.threshold_uv / reference.full_scale[channel];
-        Play { channel, threshold, share: it.share, above: 1.0 }
-    };
-    (0..CHANNELS).filter(|channel| it.channels[*channel]).map(of)
-}
-
-/// A term of creep, channel by channel.
-fn prony(it: &behaviour::Prony) -> impl Iterator<Item = Prony> + use<'_> {
-    let of = |channel: usize| Prony { channel, time_s: it.time_s, share: it.share };
-    (0..CHANNELS).filter(|channel| it.channels[*channel]).map(of)
-}
-
-/// A module's share, channel by channel.
-fn by_axis(it: &ModuleCrosstalk) -> impl Iterator<Item = (usize, usize, f64)> + use<> {
-    let ModuleCrosstalk { module, with, share } = *it;
-    (0..3).map(move |axis| (3 * module + axis, 3 * with + axis, share))
 }
 
 fn reference(device: &Device, field: &PadField, observations: &Observations) -> Reference {

@@ -47,13 +47,17 @@ impl Cause for Creep {
     }
 
     fn apply(&self, target: &Target, values: &[f64], setting: &Setting, chain: &mut Chain) {
-        // Parts are those of what has come after 20 s: c (1 − exp(−20 s/τ)).
-        let whole: f64 = values[1..].iter().sum();
         for channel in channels_of(target, setting) {
-            for (time_s, part) in TIMES_S.into_iter().zip(&values[1..]) {
-                let share = values[0] * part / whole / -libm::expm1(-20.0 / time_s);
-                chain.memory.prony.push(Prony { channel, time_s, share });
-            }
+            let term = |[time_s, share]: [f64; 2]| Prony { channel, time_s, share };
+            chain.memory.prony.extend(terms(values).map(term));
         }
     }
+}
+
+/// Relaxation times and shares that the cause's numbers mean.
+pub(crate) fn terms(values: &[f64]) -> impl Iterator<Item = [f64; 2]> {
+    let whole: f64 = values[1..].iter().sum();
+    // Parts are those of what has come after 20 s: c (1 − exp(−20 s/τ)).
+    let share = move |time_s: f64, part: f64| values[0] * part / whole / -libm::expm1(-20.0 / time_s);
+    TIMES_S.into_iter().zip(&values[1..]).map(move |(time_s, part)| [time_s, share(time_s, *part)])
 }

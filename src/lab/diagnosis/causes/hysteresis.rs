@@ -50,15 +50,21 @@ impl Cause for Hysteresis {
     }
 
     fn apply(&self, target: &Target, values: &[f64], setting: &Setting, chain: &mut Chain) {
-        let (parts, others) = values[1..].split_at(THRESHOLDS.len());
-        let [above, full_scale] = [others[0], others[1]];
-        let whole: f64 = parts.iter().sum();
+        let above = values[1 + THRESHOLDS.len()];
         for channel in channels_of(target, setting) {
-            for (threshold, part) in THRESHOLDS.into_iter().zip(parts) {
-                // A loop is 2 w r high.
-                let share = values[0] * full_scale * part / whole / (2.0 * threshold);
-                chain.memory.plays.push(Play { channel, threshold, share, above });
-            }
+            let play = |[threshold, share]: [f64; 2]| Play { channel, threshold, share, above };
+            chain.memory.plays.extend(plays(values).map(play));
         }
     }
+}
+
+/// Thresholds and shares of the play operators that the cause's numbers mean.
+pub(crate) fn plays(values: &[f64]) -> impl Iterator<Item = [f64; 2]> {
+    let (parts, others) = values[1..].split_at(THRESHOLDS.len());
+    let height = values[0] * others[1] / parts.iter().sum::<f64>();
+    // A loop is 2 w r high.
+    THRESHOLDS
+        .into_iter()
+        .zip(parts)
+        .map(move |(threshold, part)| [threshold, height * part / (2.0 * threshold)])
 }

@@ -101,6 +101,7 @@ impl Gate {
             effect,
             target,
             parameters: Vec::new(),
+            shapes: Vec::new(),
             p_value,
             share,
             confounded_with: Vec::new(),

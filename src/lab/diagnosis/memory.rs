@@ -152,8 +152,9 @@ impl Course {
         .collect()
     }
 
-    /// The strain, low-passed.
-    fn crept(&self, time_s: f64, strain: &[f64]) -> Vec<f64> {
+    /// The strain, low-passed. Between two rows it goes evenly; with an `early` of 1 it is at once where it goes, with −1 it goes there
+    /// at the end.
+    fn crept(&self, time_s: f64, early: f64, strain: &[f64]) -> Vec<f64> {
         let (mut state, mut before) = (0.0, 0.0);
         let rows = self.steps.iter().zip(strain);
         rows.map(|(step, strain)| {
@@ -165,7 +166,9 @@ impl Course {
                 Step::First => 0.0,
                 Step::Next { after_s } => {
                     let times = after_s / time_s;
-                    low_passed(state, [before, *strain], times, libm::exp(-times))
+                    let first = before + early.max(0.0) * (strain - before);
+                    let last = strain + early.min(0.0) * (strain - before);
+                    low_passed(state, [first, last], times, libm::exp(-times))
                 }
             };
             before = *strain;
@@ -192,18 +195,19 @@ impl Moment {
 }
 
 impl MemoryChain {
-    /// What a channel's memory adds to its strain, row by row; none where it remembers nothing.
+    /// What a channel's memory adds to its strain, row by row; none where it remembers nothing. `early` says when between two rows
+    /// the load has changed.
     pub(super) fn added(
         &self,
         course: &Course,
         channel: usize,
         full_scale: f64,
-        strain: &[f64],
+        (strain, early): (&[f64], f64),
     ) -> Option<Vec<f64>> {
         let plays = self.plays.iter().filter(|it| it.channel == channel && it.share != 0.0);
         let plays = plays.map(|it| (it.share, course.held_back(it.threshold * full_scale, it.above, strain)));
         let prony = self.prony.iter().filter(|it| it.channel == channel && it.share != 0.0);
-        let prony = prony.map(|it| (it.share, course.crept(it.time_s, strain)));
+        let prony = prony.map(|it| (it.share, course.crept(it.time_s, early, strain)));
         plays.chain(prony).fold(None, |sum, (share, rows)| {
             let mut sum = sum.unwrap_or_else(|| vec![0.0; rows.len()]);
             sum.iter_mut().zip(rows).for_each(|(sum, value)| *sum += share * value);
@@ -248,14 +252,14 @@ mod tests {
         };
         let up_and_down: Vec<f64> =
             (0..=20).map(|row: i32| 100.0 * f64::from(10 - (row - 10).abs())).collect();
-        let added = chain.added(&series(21, 1.0), 0, 1000.0, &up_and_down).unwrap();
+        let added = chain.added(&series(21, 1.0), 0, 1000.0, (&up_and_down, 0.0)).unwrap();
         // 2 w r S
         assert!((added[15] - added[5] - 2.0 * 0.2 * 0.1 * 1000.0).abs() < 1e-9, "{added:?}");
         let course = Course::of(&[held(false, 1.0), held(true, 1.0)], &[false; 2], 5.0);
         assert!(course.has_both_ways() && !course.has_series() && course.dwells() == Dwells::Alike);
-        let ways = chain.added(&course, 0, 1000.0, &[500.0; 2]).unwrap();
+        let ways = chain.added(&course, 0, 1000.0, (&[500.0; 2], 0.0)).unwrap();
         assert_eq!([ways[0], ways[1]], [added[5], added[15]]);
-        assert_eq!(chain.added(&course, 1, 1000.0, &[500.0; 2]), None);
+        assert_eq!(chain.added(&course, 1, 1000.0, (&[500.0; 2], 0.0)), None);
     }
 
     #[test]
@@ -265,11 +269,15 @@ mod tests {
         let mut strain = vec![500.0; 101];
         strain[0] = 0.0;
         // Within 0.1 s of the load.
-        let added = chain.added(&series(101, 0.1), 0, 1000.0, &strain).unwrap();
+        let added = chain.added(&series(101, 0.1), 0, 1000.0, (&strain, 0.0)).unwrap();
         let course = Course::of(&[held(false, 9.95), held(false, 1.0)], &[false; 2], 5.0);
         assert_eq!(course.dwells(), Dwells::Different);
-        let by_dwell = chain.added(&course, 0, 1000.0, &[500.0; 2]).unwrap();
+        let by_dwell = chain.added(&course, 0, 1000.0, (&[500.0; 2], 0.0)).unwrap();
         assert!((added[100] - by_dwell[0]).abs() < 1e-3, "{} {}", added[100], by_dwell[0]);
+        let at = |early: f64| chain.added(&series(101, 0.1), 0, 1000.0, (&strain, early)).unwrap()[1];
+        // 0.1 s of 4 s, half of them, none.
+        assert!((at(1.0) - 25.0 * 0.024_690).abs() < 1e-4 && (2.0 * at(0.0) / at(1.0) - 1.0).abs() < 0.02);
+        assert!(at(-1.0).abs() < 1e-9, "{}", at(-1.0));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::causes::CATALOGUE;
 use super::chain::{Chain, Reference};
 use super::covariance::BACKGROUND_MAX;
 use super::mechanics::{Maps, Pad, at_places, changes, side_share};
-use super::memory::{Course, MemoryChain};
+use super::memory::Course;
 use super::model::{CommonError, Hypothesis, Linearised, Model, Parameter, Signature};
 use super::observations::{Observations, Sample};
 use super::own::own_chain;
@@ -149,14 +149,15 @@ impl<'f> Simulated<'f> {
     fn remembered(&self, mut strains: Vec<[f64; CHANNELS]>, chain: &Chain) -> Vec<[f64; CHANNELS]> {
         for (channel, full_scale) in self.reference.full_scale.iter().enumerate() {
             let own: Vec<f64> = strains.iter().map(|strain| strain[channel]).collect();
-            let added = chain.memory.added(&self.course, channel, *full_scale, &own).unwrap_or_default();
+            let added =
+                chain.memory.added(&self.course, channel, *full_scale, (&own, 0.0)).unwrap_or_default();
             strains.iter_mut().zip(added).for_each(|(strain, added)| strain[channel] += added);
         }
         strains
     }
 
-    /// What play operators make of an error of the strains: half of what they add to ones that are too large by the largest
-    /// background, less what to ones that are too small.
+    /// What memory makes of an error of the strains, and of not knowing when between two rows a load has changed: half of what it adds
+    /// to strains that are too large by the largest background and come early, less what to ones that are too small and late.
     fn doubts(&self, rows: &[Row], chain: &Chain) -> Vec<Vec<f64>> {
         let magnitude = |row: &Row| libm::sqrt(row.force_n.iter().map(|n| n * n).sum());
         let magnitudes: Vec<f64> = rows.iter().map(magnitude).collect();
@@ -167,9 +168,8 @@ impl<'f> Simulated<'f> {
             let added = |sign: f64| {
                 let off = |magnitude: f64| sign * BACKGROUND_MAX * size * magnitude / load_rms;
                 let own = strains.iter().zip(&magnitudes).map(|(strain, it)| strain[channel] + off(*it));
-                let plays = chain.memory.plays.iter().filter(|it| it.channel == channel);
-                let plays = MemoryChain { plays: plays.copied().collect(), prony: Vec::new() };
-                plays.added(&self.course, channel, full_scale, &own.collect::<Vec<_>>())
+                let own: Vec<f64> = own.collect();
+                chain.memory.added(&self.course, channel, full_scale, (&own, sign))
             };
             let (Some(above), Some(below)) = (added(1.0), added(-1.0)) else { return Vec::new() };
             self.picked.iter().map(|row| 0.5 * (above[*row] - below[*row])).collect()

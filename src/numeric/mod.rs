@@ -4,6 +4,7 @@
 pub mod chi_square;
 pub mod dense;
 pub mod linear;
+pub mod memory;
 pub mod random;
 pub mod statistics;
 pub mod zernike;

@@ -256,10 +256,10 @@ fn over_a_device_keys_replace_keys_and_lists_replace_lists() {
 fn terms_of_a_sum_are_counted() {
     let terms = |count: u32| (1..=count).map(|time| format!("[[creep]]\ntime_s = {time}\nshare = 0.01\n"));
     let laid = |count| Device::nominal().with_imperfections(&terms(count).collect::<String>());
-    assert_eq!(laid(16).1, vec![]);
-    let (device, told) = laid(17);
+    assert_eq!(laid(144).1, vec![]);
+    let (device, told) = laid(145);
     assert!(device.is_none() && told.len() == 1, "{told:?}");
-    assert!(told[0].line == 49 && told[0].message.contains("more than 16"), "{told:?}");
+    assert!(told[0].line == 433 && told[0].message.contains("more than 144"), "{told:?}");
     assert_eq!(laid(1_000).1, told, "and no more is said");
 }
 

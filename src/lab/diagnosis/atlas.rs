@@ -1,7 +1,7 @@
 //! The simulated pad about more than one field: its own, and those of changed pads that lie too far off for its tangent.
 
 use super::attribution::{Applied, Attribution, Fit, Search};
-use super::extension::with;
+use super::extension::{Circumstances, with};
 use super::mechanics::Pad;
 use super::model::{CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter};
 use super::observations::Observations;
@@ -102,7 +102,7 @@ impl<'f> Atlas<'f> {
             let Hypothesis { effect, target, ref parameters } = self.first.hypotheses()[*hypothesis];
             let values = parameters.iter().zip(&coordinates);
             let numbers: Vec<_> = values.map(|(it, psi)| (it.name, it.value(*psi))).collect();
-            if let Some(changed) = with(&device, (effect, target), &numbers, None) {
+            if let Some(changed) = with(&device, (effect, target), &numbers, &Circumstances::default()) {
                 device = changed;
                 at.push((*hypothesis, coordinates));
             }
@@ -162,6 +162,10 @@ impl Model for Atlas<'_> {
 
     fn sizes(&self) -> Vec<f64> {
         self.first.sizes()
+    }
+
+    fn full_scale(&self) -> Vec<f64> {
+        self.first.full_scale()
     }
 
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {

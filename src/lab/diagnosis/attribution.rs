@@ -2,7 +2,7 @@
 
 use super::bootstrap::Bootstrap;
 use super::columns::{Columns, ZERO};
-use super::covariance::{Background, Marginal, Systems};
+use super::covariance::{BACKGROUND_MAX, Background, Marginal, Systems};
 use super::inference::{Projected, Test};
 use super::model::{Linearised, Model, Parameter};
 use super::observations::Observations;
@@ -21,6 +21,10 @@ const CAUSES_MAX: usize = 12;
 const REFITS: usize = 5;
 /// A refit that moves no coordinate by more than this many standard deviations stands.
 const STANDS: f64 = 0.1;
+
+/// A cause's signature is known no better than the field that it is made of: so much of what the largest cause explains may be that
+/// cause still, in another guise.
+const SIGNATURE_ERROR: f64 = BACKGROUND_MAX;
 
 /// Hypotheses that hold, each with its coordinates.
 pub(super) type Applied = Vec<(usize, Vec<f64>)>;
@@ -107,7 +111,8 @@ impl<'m> Search<'m> {
             )?;
             let fitted = self.columns.fitted(applied.iter().map(|(at, _)| *at));
             let found = systems.background(&fitted, if step == 0 { None } else { background.as_ref() })?;
-            let marginal = systems.marginal(&found)?;
+            let mut marginal = systems.marginal(&found)?;
+            self.columns.pull(&mut marginal, &applied);
             let solved = fitted.solved(&marginal)?;
             let moves = self.moves(&applied, &solved.coordinates, &marginal);
             if step == REFITS || moves < STANDS {
@@ -137,11 +142,11 @@ impl<'m> Search<'m> {
     fn step(&self, applied: &mut Applied, step: &[f64]) {
         for (at, coordinates) in applied {
             let hypothesis = &self.model.hypotheses()[*at];
-            let columns = &self.columns.of_hypothesis[*at];
+            let columns = self.columns.all_of(*at);
             for ((coordinate, column), parameter) in
                 coordinates.iter_mut().zip(columns).zip(&hypothesis.parameters)
             {
-                *coordinate = parameter.coordinate(parameter.value(*coordinate + step[*column]));
+                *coordinate = parameter.coordinate(parameter.value(*coordinate + step[column]));
             }
         }
     }
@@ -154,7 +159,7 @@ impl<'m> Search<'m> {
             &fit.marginal,
             &fit.background,
             &self.columns,
-            &fit.coordinates,
+            &fit.systems.explained(&fit.marginal, &fit.linearised)?,
             &self.clusters,
         );
         let asked: Vec<usize> =
@@ -198,7 +203,7 @@ impl<'m> Search<'m> {
     /// The test of a hypothesis that is not fitted. One whose number cannot be negative is asked for positive ones only.
     pub(super) fn test(&self, projected: &Projected, at: usize, score: &[f64]) -> Test {
         let columns = &self.columns.of_hypothesis[at];
-        let is_one_sided = self.model.hypotheses()[at].parameters.iter().all(Parameter::is_one_sided);
+        let is_one_sided = self.model.hypotheses()[at].asked().iter().all(Parameter::is_one_sided);
         if is_one_sided && columns.iter().all(|column| score[*column] <= 0.0) {
             return Test::NOTHING;
         }
@@ -208,6 +213,7 @@ impl<'m> Search<'m> {
     /// The candidate with the best fit, if it is significant.
     fn next(&self, fit: &Fit, critical: f64, barred: &[usize]) -> Option<Option<usize>> {
         let projected = self.projected(fit)?;
+        let least = self.least_square(fit)?;
         let holds = |at: usize| barred.contains(&at) || fit.applied.iter().any(|(held, _)| *held == at);
         let mut candidates: Vec<(Test, usize)> = (0..self.columns.of_hypothesis.len())
             .filter(|at| !holds(*at) && !self.is_zero(*at))
@@ -218,7 +224,8 @@ impl<'m> Search<'m> {
         for (_, at) in candidates.into_iter().take(SHORTLIST) {
             // One that the held ones reproduce has no fit beside them.
             let Some((criterion, test)) = self.criterion(fit, at) else { continue };
-            if test.p_value() < critical && best.is_none_or(|(least, _)| criterion < least) {
+            let is_found = test.p_value() < critical && test.square > least;
+            if is_found && best.is_none_or(|(least, _)| criterion < least) {
                 best = Some((criterion, at));
             }
         }
@@ -241,13 +248,24 @@ impl<'m> Search<'m> {
     /// The place in the fit of a cause that is not significant beside the others; the least of them.
     fn superfluous(&self, fit: &Fit, critical: f64) -> Option<Option<usize>> {
         let mut worst: Option<(f64, usize)> = None;
+        let least = self.least_square(fit)?;
         for at in 0..fit.applied.len() {
-            let p_value = self.test_within(fit, at)?.p_value();
-            if p_value > critical && worst.is_none_or(|(greatest, _)| p_value > greatest) {
+            let test = self.test_within(fit, at)?;
+            let p_value = test.p_value();
+            if (p_value > critical || test.square < least)
+                && worst.is_none_or(|(greatest, _)| p_value > greatest)
+            {
                 worst = Some((p_value, at));
             }
         }
         Some(worst.map(|(_, at)| at))
+    }
+
+    /// What a cause must take off the weighted squares to be more than the largest one's signature may be wrong by.
+    fn least_square(&self, fit: &Fit) -> Option<f64> {
+        let mut squares = (0..fit.applied.len()).map(|at| Some(self.test_within(fit, at)?.square));
+        let largest = squares.try_fold(0.0, |largest, square| Some(f64::max(largest, square?)))?;
+        Some(SIGNATURE_ERROR * SIGNATURE_ERROR * largest)
     }
 
     /// The test of a fitted cause beside all others that are fitted.
@@ -278,8 +296,12 @@ impl<'m> Search<'m> {
     /// Covariance of a fitted cause's coordinates.
     pub(super) fn covariance(&self, fit: &Fit, at: usize) -> Option<Matrix> {
         let (projected, _) = self.without(fit, at)?;
-        let own = &self.columns.of_hypothesis[fit.applied[at].0];
-        let factor = projected.fisher.picked(own, own).factorised()?;
+        let own: Vec<usize> = self.columns.all_of(fit.applied[at].0).collect();
+        let mut inner = projected.fisher.picked(&own, &own);
+        for (row, column) in own.iter().enumerate() {
+            inner.row_mut(row)[row] += self.columns.precisions[*column];
+        }
+        let factor = inner.factorised()?;
         let unit = |at: usize| (0..own.len()).map(|k| f64::from(u8::from(k == at))).collect::<Vec<_>>();
         Some(Matrix::from_rows(&(0..own.len()).map(|at| factor.solve(&unit(at))).collect::<Vec<_>>()))
     }

@@ -42,6 +42,14 @@ pub(super) fn each_channel(target: &Target, numbers: &mut [f64], value: f64) {
     }
 }
 
+/// The channels of a target: one, or all.
+pub(super) fn channels_of(target: &Target, setting: &Setting) -> std::ops::Range<usize> {
+    match *target {
+        Target::Channel(channel) => channel..channel + 1,
+        _ => 0..setting.channels,
+    }
+}
+
 /// All channels, and the pad as a whole.
 pub(super) fn pad_and_channels(setting: &Setting) -> Vec<Target> {
     std::iter::once(Target::Pad).chain(setting.each_channel()).collect()

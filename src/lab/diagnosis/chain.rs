@@ -3,15 +3,18 @@
 //! ```text
 //! place = d + c R(φ) written                    force = R(tilt)⁻¹ (written − zero)/gain           (the rig)
 //! eₖ = Σₐ Fₐ (Gₖₐ + ¼ ½ (R² − R₀²) ∇²Gₖₐ + Σⱼ wⱼ Cⱼₖₐ)(place) + h (Fx ∂ₓ + Fy ∂ᵧ) Gₖz(place)      (the mechanics)
-//! sₖ = lₖ (1 + αₖ ΔT) gₖ Σₘ (1 + M)ₖₘ eₘ,    qₖ = sₖ + pₖ sₖ²/Sₖ                                   (the channel)
+//! mₖ = eₖ + what k remembers of eₖ                                                                  (the memory)
+//! sₖ = lₖ (1 + αₖ ΔT) gₖ Σₘ (1 + M)ₖₘ mₘ,    qₖ = sₖ + pₖ sₖ²/Sₖ                                   (the channel)
 //! yₖ = Σₗ (1 + X)ₖₗ qₗ + zₖ + βₖ ΔT + δₖ t                                                          (what is read)
 //! ```
 //!
 //! G is the pad's influence field, C are changes of it, M and X what modules and channels take of each other, g gains, l what
-//! ageing has left, α and β temperature coefficients, p the second order at full scale S, z zeros, δ drift. A load patch of
+//! ageing has left, α and β temperature coefficients, p the second order at full scale S, z zeros, δ drift. What is written, and what a
+//! channel reads, may be late: of a series' rows it is then that of another moment (`memory`). A load patch of
 //! radius R averages a field to G + (R²/8) ∇²G. A force at the height h turns about the plate: h Fx is the couple of two
 //! opposite pressing forces.
 
+use super::memory::MemoryChain;
 use super::observations::Sample;
 use super::setting::Setting;
 use crate::pad::device::Side;
@@ -34,6 +37,8 @@ pub(super) struct RigChain {
     pub(super) gain: f64,
     /// Written minus true force.
     pub(super) zero_n: [f64; 3],
+    /// By how much all that is late.
+    pub(super) lag_s: f64,
 }
 
 /// What differs in the contact and the mechanics.
@@ -68,6 +73,8 @@ pub(super) struct ChannelChain {
     pub(super) zero_per_c: Vec<f64>,
     /// δ, per hour.
     pub(super) drift_per_h: Vec<f64>,
+    /// By how much what is read is late.
+    pub(super) skew_s: Vec<f64>,
 }
 
 /// Everything that may differ. [`Chain::nominal`] differs in nothing.
@@ -77,6 +84,8 @@ pub(super) struct Chain {
     pub(super) rig: RigChain,
     /// Contact and plate.
     pub(super) mechanics: MechanicsChain,
+    /// What the channels remember.
+    pub(super) memory: MemoryChain,
     /// The channels.
     pub(super) channels: ChannelChain,
 }
@@ -107,8 +116,10 @@ impl Chain {
                 tilt_deg: [0.0; 2],
                 gain: 1.0,
                 zero_n: [0.0; 3],
+                lag_s: 0.0,
             },
             mechanics: MechanicsChain { height_mm: 0.0, patch_mm2: 0.0, weights: vec![0.0; changes] },
+            memory: MemoryChain::default(),
             channels: ChannelChain {
                 module_shares: Vec::new(),
                 gain: vec![1.0; channels],
@@ -119,6 +130,7 @@ impl Chain {
                 offset: vec![0.0; channels],
                 zero_per_c: vec![0.0; channels],
                 drift_per_h: vec![0.0; channels],
+                skew_s: vec![0.0; channels],
             },
         }
     }

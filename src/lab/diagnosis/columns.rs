@@ -1,7 +1,7 @@
 //! All columns of the linear systems: each channel's zero, the model's own errors, and the hypotheses' signatures.
 
-use super::covariance::{Column, Fitted};
-use super::model::{CommonError, Hypothesis, Linearised, Signature};
+use super::covariance::{Column, Fitted, Marginal};
+use super::model::{CommonError, Hypothesis, Linearised, Parameter, Signature};
 use super::observations::Observations;
 use super::target::Target;
 
@@ -12,8 +12,10 @@ pub(super) const ZERO: &str = "channel_offset";
 pub(super) struct Columns {
     /// The zeros, and the model's own errors.
     nuisance: Vec<Signature>,
-    /// For each hypothesis, the numbers of its columns.
+    /// For each hypothesis, the numbers of the columns that are asked for.
     pub(super) of_hypothesis: Vec<Vec<usize>>,
+    /// For each hypothesis, the columns of its course: free wherever it holds.
+    pub(super) shapes: Vec<Vec<usize>>,
     /// For each column, the precision of its prior; 0: none.
     pub(super) precisions: Vec<f64>,
     channels: usize,
@@ -32,19 +34,21 @@ impl Columns {
         let mut precisions: Vec<f64> = (0..channels).map(dead).collect();
         precisions.extend(errors.iter().map(|error| 1.0 / (error.deviation * error.deviation)));
         let mut next = nuisance.len();
-        let of_hypothesis = hypotheses
-            .iter()
-            .map(|hypothesis| match hypothesis.target {
-                Target::Channel(channel) if hypothesis.effect == ZERO => vec![channel],
-                _ => {
-                    let first = next;
-                    next += hypothesis.parameters.len();
-                    (first..next).collect()
-                }
-            })
-            .collect();
-        precisions.resize(next, 0.0);
-        Self { nuisance, of_hypothesis, precisions, channels }
+        let (mut of_hypothesis, mut shapes) = (Vec::new(), Vec::new());
+        for hypothesis in hypotheses {
+            if let (Target::Channel(channel), ZERO) = (hypothesis.target, hypothesis.effect) {
+                of_hypothesis.push(vec![channel]);
+                shapes.push(Vec::new());
+                continue;
+            }
+            let asked = next + hypothesis.asked().len();
+            of_hypothesis.push((next..asked).collect());
+            next += hypothesis.parameters.len();
+            shapes.push((asked..next).collect());
+            let precision = |it: &Parameter| it.shape.map_or(0.0, |deviation| 1.0 / (deviation * deviation));
+            precisions.extend(hypothesis.parameters.iter().map(precision));
+        }
+        Self { nuisance, of_hypothesis, shapes, precisions, channels }
     }
 
     /// The columns themselves, about the present point.
@@ -54,12 +58,28 @@ impl Columns {
         self.nuisance.iter().chain(of_hypotheses).map(Vec::as_slice).collect()
     }
 
+    /// Adds the pull of the priors where courses are other than expected: −P ψ.
+    pub(super) fn pull(&self, marginal: &mut Marginal, applied: &[(usize, Vec<f64>)]) {
+        for (at, coordinates) in applied {
+            let shapes = &self.shapes[*at];
+            let own = &coordinates[coordinates.len() - shapes.len()..];
+            for (column, psi) in shapes.iter().zip(own) {
+                marginal.score[*column] -= self.precisions[*column] * psi;
+            }
+        }
+    }
+
+    /// All columns of a hypothesis, in the order of its numbers.
+    pub(super) fn all_of(&self, hypothesis: usize) -> impl Iterator<Item = usize> {
+        self.of_hypothesis[hypothesis].iter().chain(&self.shapes[hypothesis]).copied()
+    }
+
     /// The nuisances and these hypotheses, free.
     pub(super) fn fitted(&self, hypotheses: impl IntoIterator<Item = usize>) -> Fitted<'_> {
         let mut columns: Vec<usize> = (0..self.nuisance.len()).collect();
         for hypothesis in hypotheses {
             let own = self.of_hypothesis[hypothesis].iter().filter(|column| **column >= self.nuisance.len());
-            columns.extend(own);
+            columns.extend(own.chain(&self.shapes[hypothesis]));
         }
         Fitted { columns, precisions: &self.precisions }
     }

@@ -11,7 +11,7 @@ use crate::numeric::linear::{LargeFactor, dot};
 use crate::numeric::statistics::rms;
 
 /// Largest background, as a share of a channel's root mean square.
-const BACKGROUND_MAX: f64 = 0.03;
+pub(super) const BACKGROUND_MAX: f64 = 0.03;
 /// Root mean square of what the simulator itself gets wrong, smooth as well and the same way: 0.44 % against an independent solution.
 const MODEL_ERROR: f64 = 0.005;
 /// Largest smooth remainder that is not a finding.
@@ -106,7 +106,8 @@ impl Systems {
             let modelled = &linearised.readings[channel];
             let residual: Vec<f64> = readings.iter().zip(modelled).map(|(y, f)| y - f).collect();
             let size = rms(modelled.iter().copied()) / load_rms;
-            let background = products(observations, &basis.values, size);
+            let background = products(&linearised.loads, &basis.values, size);
+            let doubts = &linearised.doubts[channel];
             extents.push((size / whole).powi(2));
             let errors = model.stated_errors(channel);
             let own: Vec<(usize, &[f64])> = columns
@@ -117,14 +118,16 @@ impl Systems {
             let (mut level, mut memory) = (NoiseLevel::first(modelled), 0.0);
             let system = |level: &NoiseLevel, memory: f64| {
                 let is_told = &observations.is_told[channel];
-                let variance =
-                    |(f, is_told): (&f64, &bool)| if *is_told { level.variance(*f) } else { f64::INFINITY };
-                let variances: Vec<f64> = modelled.iter().zip(is_told).map(variance).collect();
+                let variance = |(row, is_told): (usize, &bool)| {
+                    let doubt = doubts.get(row).copied().unwrap_or_default();
+                    if *is_told { level.variance(modelled[row]) + doubt * doubt } else { f64::INFINITY }
+                };
+                let variances: Vec<f64> = is_told.iter().enumerate().map(variance).collect();
                 let whitening = Whitening::of(&variances, &follows, memory);
                 ChannelSystem::of(&own, &background, errors, &residual, whitening)
             };
             for _ in 0..if observations.is_alive(channel) { NOISE_ROUNDS } else { 0 } {
-                (level, memory) = estimated_noise(&system(&level, memory)?, modelled, &wide)?;
+                (level, memory) = estimated_noise(&system(&level, memory)?, &level, modelled, &wide)?;
             }
             channels.push(system(&level, memory)?);
             noise.push(level);
@@ -169,6 +172,18 @@ impl Systems {
             channels.push(reduced);
         }
         Some(Marginal { fisher, score, square, log_determinant, channels })
+    }
+
+    /// Coordinates of all columns, fitted at once with wide priors: beside them nothing is left that any cause explains.
+    pub(super) fn explained(&self, marginal: &Marginal, linearised: &Linearised) -> Option<Vec<f64>> {
+        let mut precisions = vec![0.0; self.columns];
+        for (system, modelled) in self.channels.iter().zip(&linearised.readings) {
+            for (number, precision) in system.columns.iter().zip(wide_precisions(system, modelled)) {
+                precisions[*number] = f64::max(precisions[*number], precision);
+            }
+        }
+        let known = (0..self.columns).filter(|column| precisions[*column] > 0.0).collect();
+        Some(Fitted { columns: known, precisions: &precisions }.solved(marginal)?.coordinates)
     }
 
     /// The background with the greatest likelihood when the columns `fitted` are free, `start` being a guess.
@@ -326,17 +341,17 @@ fn smooth(system: &ChannelSystem, reduced: &Reduced, coordinates: &[f64]) -> Vec
 /// Σ (load φ)(load φ)ᵀ/n.
 fn mean_squares(all: &Observations, basis: &Basis) -> Matrix {
     let values: Vec<Vec<f64>> = all.samples.iter().map(|sample| basis.at(sample.place_mm)).collect();
-    let columns = products(all, &values, 1.0 / (all.rows() as f64).sqrt());
+    let loads: Vec<[f64; 3]> = all.samples.iter().map(|sample| sample.load).collect();
+    let columns = products(&loads, &values, 1.0 / (all.rows() as f64).sqrt());
     gram(&columns.iter().map(Vec::as_slice).collect::<Vec<_>>())
 }
 
 /// Each load times each function of the background, row by row: in the channel's unit at a share of 1 where `size` is the channel's
 /// root mean square over the loads'.
-fn products(observations: &Observations, values: &[Vec<f64>], size: f64) -> Vec<Vec<f64>> {
+fn products(loads: &[[f64; 3]], values: &[Vec<f64>], size: f64) -> Vec<Vec<f64>> {
     let functions = values.first().map_or(0, Vec::len);
     let column = |load: usize, function: usize| {
-        let rows = observations.samples.iter().zip(values);
-        rows.map(|(sample, values)| size * sample.load[load] * values[function]).collect()
+        loads.iter().zip(values).map(|(loads, values)| size * loads[load] * values[function]).collect()
     };
     (0..3)
         .flat_map(|load| (0..functions).map(move |function| (load, function)))
@@ -344,29 +359,38 @@ fn products(observations: &Observations, values: &[Vec<f64>], size: f64) -> Vec<
         .collect()
 }
 
+/// Precisions of wide priors of a channel's columns: no column is more than a share of the channel's root mean square.
+fn wide_precisions(system: &ChannelSystem, modelled: &[f64]) -> Vec<f64> {
+    let size = rms(modelled.iter().copied());
+    let precision = |column: &Vec<f64>| {
+        let told = column.iter().zip(&system.whitening.weights).filter(|(_, weight)| **weight > 0.0);
+        let own = rms(told.map(|(value, weight)| value / weight));
+        (own / (SIGNATURE_PRIOR * size)).powi(2)
+    };
+    system.signatures.iter().map(precision).collect()
+}
+
 /// The noise and its memory, when all causes and a large background are fitted with wide priors: what nothing smooth explains.
-fn estimated_noise(system: &ChannelSystem, modelled: &[f64], wide: &Prior) -> Option<(NoiseLevel, f64)> {
+fn estimated_noise(
+    system: &ChannelSystem,
+    level: &NoiseLevel,
+    modelled: &[f64],
+    wide: &Prior,
+) -> Option<(NoiseLevel, f64)> {
     let shares = [2.0 * BACKGROUND_MAX; 3];
     let reduced = system.reduced(wide, &shares)?;
-    let size = rms(modelled.iter().copied());
     let mut inner = reduced.fisher.clone();
     let weights = &system.whitening.weights;
     let rows = system.whitening.told() as f64;
-    let mut priors = Vec::new();
-    for (at, column) in system.signatures.iter().enumerate() {
-        let told = column.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
-        let own = rms(told.map(|(value, weight)| value / weight));
-        let precision = (own / (SIGNATURE_PRIOR * size)).powi(2);
-        priors.push(precision);
-        inner.row_mut(at)[at] += precision;
-    }
+    let priors = wide_precisions(system, modelled);
+    priors.iter().enumerate().for_each(|(at, precision)| inner.row_mut(at)[at] += precision);
     let factor = inner.factorised()?;
     let coordinates = factor.solve(&reduced.score);
     let z = reduced.factor.solve(&system.background_score(&coordinates));
     let left = system.left_over(&coordinates, &z);
     let told = left.iter().zip(weights).zip(modelled).filter(|((_, weight), _)| **weight > 0.0);
     let (residual, modelled): (Vec<f64>, Vec<f64>) =
-        told.map(|((r, weight), modelled)| (r / weight, *modelled)).unzip();
+        told.map(|((r, _), modelled)| (r * level.variance(*modelled).sqrt(), *modelled)).unzip();
     // Σ (1 − P Var): what the rows, not the priors, tell.
     let told = |inverse: Vec<f64>, precisions: &mut dyn Iterator<Item = f64>| -> f64 {
         inverse

@@ -1,9 +1,10 @@
 //! The device that a diagnosis makes of another: with the named causes in it.
 
+use super::causes::{creep, hysteresis};
 use super::mechanics::side_share;
 use super::report::Diagnosis;
 use super::target::Target;
-use crate::pad::device::behaviour::{Ageing, Crosstalk, ModuleCrosstalk};
+use crate::pad::device::behaviour::{Ageing, Crosstalk, ModuleCrosstalk, Play, Prony};
 use crate::pad::device::parameter::Parameter;
 use crate::pad::device::{Device, Module, Side};
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
@@ -22,7 +23,7 @@ enum Change {
 use Change::{Add, Multiply, Replace};
 
 /// Effect, the finding's number, the device's number (by [`Parameter`]'s names), and what becomes of it.
-const NUMBERS: [(&str, &str, &str, Change); 25] = [
+const NUMBERS: [(&str, &str, &str, Change); 27] = [
     ("channel_gain", "gain", "module.{module}.gain.{axis}", Multiply),
     ("excitation_gain", "gain", "module.{module}.gain.{axis}", Multiply),
     ("channel_offset", "offset_uv", "module.{module}.offset_uv.{axis}", Add),
@@ -47,6 +48,8 @@ const NUMBERS: [(&str, &str, &str, Change); 25] = [
     ("stage_offset", "y_mm", "rig.stage_y_mm", Add),
     ("stage_rotation", "deg", "rig.stage_rotation_deg", Add),
     ("stage_scale", "scale", "rig.stage_scale", Multiply),
+    ("channel_skew", "skew_us", "sampling.skew_us.{channel}", Add),
+    ("time_lag", "ms", "rig.label_lag_ms", Add),
     ("contact_size", "radius_mm", "contact.patch_radius_mm", Replace),
 ];
 
@@ -59,9 +62,11 @@ pub fn extended(
     last_cycle: Option<f64>,
 ) -> (Device, Vec<&'static str>) {
     let (mut device, mut left_out) = (device.clone(), Vec::new());
+    let circumstances = Circumstances { last_cycle, full_scale: &diagnosis.full_scale };
     for finding in diagnosis.findings.iter().filter(|finding| finding.confounded_with.is_empty()) {
-        let numbers: Vec<_> = finding.parameters.iter().map(|it| (it.name, it.value)).collect();
-        match with(&device, (finding.effect, finding.target), &numbers, last_cycle) {
+        let asked = finding.parameters.iter().map(|it| (it.name, it.value));
+        let numbers: Vec<_> = asked.chain(finding.shapes.iter().copied()).collect();
+        match with(&device, (finding.effect, finding.target), &numbers, &circumstances) {
             Some(changed) => device = changed,
             None => left_out.push(finding.effect),
         }
@@ -69,6 +74,15 @@ pub fn extended(
     left_out.sort_unstable();
     left_out.dedup();
     (device, left_out)
+}
+
+/// What numbers are said of.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Circumstances<'m> {
+    /// The measurement's last cycle of load.
+    last_cycle: Option<f64>,
+    /// Each channel's full scale.
+    full_scale: &'m [f64],
 }
 
 /// Whether its file would be taken: all numbers within their ranges, all parts in their places.
@@ -81,7 +95,7 @@ pub(super) fn with(
     device: &Device,
     (effect, target): (&'static str, Target),
     numbers: &[(&str, f64)],
-    last_cycle: Option<f64>,
+    circumstances: &Circumstances<'_>,
 ) -> Option<Device> {
     let mut device = device.clone();
     let (_, first) = *numbers.first()?;
@@ -97,7 +111,8 @@ pub(super) fn with(
         }
         ("module_frame_open", Target::ModuleSide(module, side)) => open(&mut device, module, side, first)?,
         ("module_debonded", Target::ModuleSide(module, side)) => debond(&mut device, module, side, first)?,
-        _ => set_numbers(&mut device, (effect, target), numbers, last_cycle)?,
+        ("hysteresis" | "creep", _) => remember(&mut device, (effect, target), numbers, circumstances)?,
+        _ => set_numbers(&mut device, (effect, target), numbers, circumstances.last_cycle)?,
     }
     if effect == "contact_size" {
         // A wider finger leaves the plate earlier.
@@ -158,6 +173,36 @@ fn debond(device: &mut Device, module: usize, side: Side, share: f64) -> Option<
         .then(|| *module = Module { debonded_side: Some(side), debonded_share: before + share, ..*module })
 }
 
+/// Adds play operators, or terms of creep, in each channel of the target.
+fn remember(
+    device: &mut Device,
+    (effect, target): (&str, Target),
+    numbers: &[(&str, f64)],
+    circumstances: &Circumstances<'_>,
+) -> Option<()> {
+    let values: Vec<f64> = numbers.iter().map(|(_, value)| *value).collect();
+    let channels = match target {
+        Target::Channel(channel) => channel..channel + 1,
+        _ => 0..CHANNELS,
+    };
+    for channel in channels {
+        let own = std::array::from_fn(|other| other == channel);
+        if effect == "creep" {
+            let term = |[time_s, share]: [f64; 2]| Prony { channels: own, time_s, share };
+            device.behaviour.creep.extend(creep::terms(&values).map(term));
+        } else {
+            let full_scale_uv = circumstances.full_scale.get(channel)?;
+            let play = |[threshold, share]: [f64; 2]| Play {
+                channels: own,
+                threshold_uv: threshold * full_scale_uv,
+                share,
+            };
+            device.behaviour.hysteresis.extend(hysteresis::plays(&values).map(play));
+        }
+    }
+    Some(())
+}
+
 fn set_numbers(
     device: &mut Device,
     (effect, target): (&'static str, Target),
@@ -210,6 +255,7 @@ fn names(number: &str, target: Target) -> Vec<String> {
 mod tests {
     use super::super::report::{Estimate, Finding, Verdict};
     use super::*;
+    use crate::pad::device::behaviour::Behaviour;
 
     fn finding(effect: &'static str, target: Target, parameters: &[(&'static str, f64)]) -> Finding {
         let estimate = |(name, value): &(&'static str, f64)| Estimate {
@@ -221,6 +267,7 @@ mod tests {
             effect,
             target,
             parameters: parameters.iter().map(estimate).collect(),
+            shapes: Vec::new(),
             p_value: 1e-9,
             share: 0.1,
             confounded_with: Vec::new(),
@@ -231,6 +278,7 @@ mod tests {
     fn diagnosis(findings: Vec<Finding>) -> Diagnosis {
         Diagnosis {
             channels: CHANNEL_NAMES.map(str::to_owned).to_vec(),
+            full_scale: vec![5000.0; CHANNELS],
             verdict: Verdict::Explained,
             noise_floor: 10.0,
             rmse_nominal: 80.0,
@@ -302,6 +350,8 @@ mod tests {
             finding("ageing", Target::Channel(3), &[("share_at_end", 0.02)]),
             finding("reference_zero", Target::Rig, &[("fx_n", 0.1), ("fy_n", 0.2), ("fz_n", -0.1)]),
             finding("stage_scale", Target::Rig, &[("scale", 1.02)]),
+            finding("channel_skew", Target::Channel(1), &[("skew_us", 900.0)]),
+            finding("time_lag", Target::Rig, &[("ms", -40.0)]),
         ];
         let (extended, left_out) = extended(&device, &diagnosis(findings), Some(500.0));
         assert_eq!(left_out, [""; 0]);
@@ -318,6 +368,28 @@ mod tests {
         near(behaviour.ageing.share[3], 0.02 * 101_f64.ln() / 2_f64.ln());
         assert_eq!(behaviour.rig.reference_zero_n, [0.1, 0.2, -0.1]);
         near(behaviour.rig.stage_scale, 1.02);
+        near(behaviour.sampling.skew_us[1], 900.0);
+        near(behaviour.rig.label_lag_ms, -40.0);
+    }
+
+    #[test]
+    fn what_a_pad_remembers_is_as_high_and_as_slow_as_found() {
+        let parts = ["part_0", "part_1", "part_2", "part_3", "part_4"].map(|name| (name, 1.0));
+        let mut hysteresis = finding("hysteresis", Target::Pad, &[("share_of_full_scale", 0.04)]);
+        hysteresis.shapes = parts.into_iter().chain([("above", 1.0), ("full_scale", 1.0)]).collect();
+        let mut creep = finding("creep", Target::Channel(2), &[("share_at_20s", 0.03)]);
+        creep.shapes = parts.to_vec();
+        let (device, left_out) = extended(&Device::nominal(), &diagnosis(vec![hysteresis, creep]), None);
+        assert_eq!(left_out, [""; 0]);
+        let Behaviour { hysteresis, creep, .. } = device.behaviour;
+        // Σ 2 w r, and Σ c (1 − exp(−20 s/τ)).
+        let height = |channel: usize| -> f64 {
+            let own = hysteresis.iter().filter(|it| it.channels[channel]);
+            own.map(|it| 2.0 * it.share * it.threshold_uv).sum()
+        };
+        (0..CHANNELS).for_each(|channel| near(height(channel), 0.04 * 5000.0));
+        near(creep.iter().map(|it| it.share * (1.0 - (-20.0 / it.time_s).exp())).sum(), 0.03);
+        assert!(creep.iter().all(|it| it.channels[2] && !it.channels[0]));
     }
 
     #[test]

@@ -27,10 +27,12 @@ mod gain;
 mod gatekeepers;
 mod inference;
 mod mechanics;
+mod memory;
 mod model;
 mod naming;
 mod noise;
 pub mod observations;
+mod own;
 mod regression;
 pub mod report;
 mod separation;
@@ -43,7 +45,7 @@ mod whitening;
 use std::fmt;
 
 use self::atlas::{Atlas, attributed};
-use self::attribution::{Applied, Attribution, Search};
+use self::attribution::{Applied, Attribution, Fit, Search};
 use self::cause::Cause;
 use self::causes::CATALOGUE;
 use self::covariance::{REMAINDER_MAX, Remainder};
@@ -196,13 +198,12 @@ fn summary(
     findings.extend(search.offsets(found, whole + search.offsets_square(found)?)?);
     let unnamed_share = if unnamed > 0.0 { unnamed / whole } else { 0.0 };
     let nothing = Vec::new();
-    let noise = fit.systems.noise.iter().zip(&fit.linearised.readings).enumerate();
-    let alive = noise.filter(|(channel, _)| open.observations.is_alive(*channel));
     Some(Diagnosis {
         residuals: residuals(open, found, &applied),
         channels: open.observations.channels.clone(),
+        full_scale: search.model.full_scale(),
         verdict: verdict(!findings.is_empty(), unnamed_share),
-        noise_floor: mean(alive.map(|(_, (noise, signal))| noise.mean_square(signal))).sqrt(),
+        noise_floor: noise_floor(open, fit),
         rmse_nominal: rmse(open, &nothing, &open.zeros(&nothing)),
         rmse_extended: rmse(open, &applied, &open.zeros(&applied)),
         background_mm: fit.background.prior.length_mm,
@@ -215,6 +216,13 @@ fn summary(
         findings,
         gatekeepers: Vec::new(),
     })
+}
+
+/// Root mean square of the channels' noise.
+fn noise_floor(open: &Rows<'_>, fit: &Fit) -> f64 {
+    let noise = fit.systems.noise.iter().zip(&fit.linearised.readings).enumerate();
+    let alive = noise.filter(|(channel, _)| open.observations.is_alive(*channel));
+    mean(alive.map(|(_, (noise, signal))| noise.mean_square(signal))).sqrt()
 }
 
 /// What the model misses at the open rows, as it is and with what was found.

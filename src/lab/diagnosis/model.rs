@@ -15,6 +15,9 @@ pub(super) struct Parameter {
     pub(super) step: f64,
     /// What the coordinate is.
     pub(super) coordinate: Coordinate,
+    /// Of a number that nobody asks for, but without which an effect has no course: its coordinate's prior deviation. Where there is
+    /// no effect it changes nothing.
+    pub(super) shape: Option<f64>,
 }
 
 /// How a coordinate ψ follows from a value v and its none v₀.
@@ -31,12 +34,18 @@ pub(super) enum Coordinate {
 impl Parameter {
     /// An additive parameter.
     pub(super) const fn additive(name: &'static str, range: [f64; 2], step: f64) -> Self {
-        Self { name, none: 0.0, range, step, coordinate: Coordinate::Difference }
+        Self { name, none: 0.0, range, step, coordinate: Coordinate::Difference, shape: None }
     }
 
     /// A factor that is positive by construction.
     pub(super) const fn factor(name: &'static str, range: [f64; 2]) -> Self {
-        Self { name, none: 1.0, range, step: 1e-3, coordinate: Coordinate::Logarithm }
+        Self { name, none: 1.0, range, step: 1e-3, coordinate: Coordinate::Logarithm, shape: None }
+    }
+
+    /// A factor in an effect's course, to a deviation of its logarithm. These come last.
+    const fn shape((name, deviation): (&'static str, f64)) -> Self {
+        let coordinate = Coordinate::Logarithm;
+        Self { name, none: 1.0, range: [1e-3, 1e3], step: 0.02, coordinate, shape: Some(deviation) }
     }
 
     /// Whether there is nothing below none.
@@ -64,6 +73,20 @@ impl Parameter {
     }
 }
 
+/// An effect's size, and the factors in its course with the deviations of their logarithms.
+pub(super) const fn with_shapes<const SHAPES: usize, const ALL: usize>(
+    size: Parameter,
+    shapes: [(&'static str, f64); SHAPES],
+) -> [Parameter; ALL] {
+    let mut parameters = [size; ALL];
+    let mut at = 0;
+    while at < SHAPES {
+        parameters[at + 1] = Parameter::shape(shapes[at]);
+        at += 1;
+    }
+    parameters
+}
+
 /// A cause in one place.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hypothesis {
@@ -73,6 +96,14 @@ pub(super) struct Hypothesis {
     pub(super) target: Target,
     /// Its numbers.
     pub(super) parameters: Vec<Parameter>,
+}
+
+impl Hypothesis {
+    /// The numbers that are asked for.
+    pub(super) fn asked(&self) -> &[Parameter] {
+        let shapes = self.parameters.iter().filter(|it| it.shape.is_some()).count();
+        &self.parameters[..self.parameters.len() - shapes]
+    }
 }
 
 /// Readings that change together: each channel's, or `None` where nothing changes.
@@ -92,6 +123,11 @@ pub(super) struct CommonError {
 pub(super) struct Linearised {
     /// Each channel's readings, row by row.
     pub(super) readings: Vec<Vec<f64>>,
+    /// The loads by which the model has come to them, row by row: what it gets wrong goes with these.
+    pub(super) loads: Vec<[f64; 3]>,
+    /// The same way as the readings, the standard deviation that they have where the model is as far off as it may be and an effect
+    /// makes more of that; nothing for channels where none does.
+    pub(super) doubts: Vec<Vec<f64>>,
     /// For each hypothesis and each of its parameters, ∂readings/∂ψ.
     pub(super) signatures: Vec<Vec<Signature>>,
 }
@@ -104,6 +140,10 @@ pub(super) trait Model {
     fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>>;
     /// Each channel's root mean square over the whole measurement, of which these may be some rows.
     fn sizes(&self) -> Vec<f64>;
+    /// Each channel's largest reading over the whole measurement; nothing where no effect is a share of it.
+    fn full_scale(&self) -> Vec<f64> {
+        Vec::new()
+    }
     /// The readings, and their derivatives by all coordinates.
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised;
     /// What is known of its own errors.

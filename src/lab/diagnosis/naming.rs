@@ -34,6 +34,7 @@ impl Search<'_> {
                 effect: it.effect,
                 target: it.target,
                 parameters: self.estimates(found, at)?,
+                shapes: self.shapes(found, at),
                 p_value: test.p_value(),
                 share: (test.square / whole).clamp(0.0, 1.0),
                 confounded_with: self.rivals(found, at, &projected, &score).into_iter().map(named).collect(),
@@ -49,7 +50,7 @@ impl Search<'_> {
     fn estimates(&self, found: &Attribution, at: usize) -> Option<Vec<Estimate>> {
         let covariance = self.covariance(&found.fit, at)?;
         let (hypothesis, coordinates) = &found.fit.applied[at];
-        let parameters = &self.model.hypotheses()[*hypothesis].parameters;
+        let parameters = self.model.hypotheses()[*hypothesis].asked();
         let estimate = |(k, parameter): (usize, &super::model::Parameter)| {
             let spread = WITHIN_95 * covariance.at(k, k).max(0.0).sqrt();
             Estimate {
@@ -59,6 +60,14 @@ impl Search<'_> {
             }
         };
         Some(parameters.iter().enumerate().map(estimate).collect())
+    }
+
+    /// The numbers of a fitted cause's course.
+    fn shapes(&self, found: &Attribution, at: usize) -> Vec<(&'static str, f64)> {
+        let (hypothesis, coordinates) = &found.fit.applied[at];
+        let it = &self.model.hypotheses()[*hypothesis];
+        let numbers = it.parameters.iter().zip(coordinates).skip(it.asked().len());
+        numbers.map(|(parameter, psi)| (parameter.name, parameter.value(*psi))).collect()
     }
 
     /// The rivals that explain the data as well as a fitted cause, `projected` and `score` being without it.
@@ -86,7 +95,7 @@ impl Search<'_> {
         let columns = &self.columns.of_hypothesis[rival];
         let Some(factor) = projected.fisher.picked(columns, columns).factorised() else { return true };
         let of_columns: Vec<f64> = columns.iter().map(|column| score[*column]).collect();
-        let parameters = &self.model.hypotheses()[rival].parameters;
+        let parameters = self.model.hypotheses()[rival].asked();
         factor.solve(&of_columns).iter().zip(parameters).all(|(psi, parameter)| {
             let back = parameter.coordinate(parameter.value(*psi));
             (back - psi).abs() <= 1e-9 + 1e-6 * psi.abs()
@@ -180,6 +189,7 @@ impl Search<'_> {
                     value: zero,
                     interval95: [zero - spread, zero + spread],
                 }],
+                shapes: Vec::new(),
                 p_value,
                 share: square / whole,
                 confounded_with: Vec::new(),
@@ -211,7 +221,7 @@ impl Search<'_> {
             return None;
         }
         let minimum_detectable =
-            columns.iter().zip(&it.parameters).filter(|(column, _)| !projected.is_empty(**column));
+            columns.iter().zip(it.asked()).filter(|(column, _)| !projected.is_empty(**column));
         let size = |(column, parameter): (&usize, &super::model::Parameter)| {
             // λ = ψ² I.
             let psi = (noncentralities[freedom] / projected.fisher.at(*column, *column)).sqrt();

@@ -48,6 +48,8 @@ pub struct Observations {
     pub is_told: Vec<Vec<bool>>,
     /// What was written beside them.
     pub samples: Vec<Sample>,
+    /// The rows' numbers in the whole measurement.
+    pub numbers: Vec<usize>,
 }
 
 impl Observations {
@@ -73,6 +75,7 @@ impl Observations {
             readings: (0..CHANNELS).map(|channel| rows.iter().map(|(_, uv)| uv[channel]).collect()).collect(),
             is_told: vec![vec![true; rows.len()]; CHANNELS],
             samples: rows.iter().map(|(row, _)| sample(row)).collect(),
+            numbers: (0..rows.len()).collect(),
         }
     }
 
@@ -91,7 +94,13 @@ impl Observations {
             readings: of(&self.readings, rows),
             is_told: of(&self.is_told, rows),
             samples: rows.iter().map(|row| self.samples[*row]).collect(),
+            numbers: rows.iter().map(|row| self.numbers[*row]).collect(),
         }
+    }
+
+    /// These rows as a whole measurement.
+    pub fn as_whole(&self, rows: &[usize]) -> Self {
+        Self { numbers: (0..rows.len()).collect(), ..self.picked(rows) }
     }
 
     /// For each row, whether it goes on with the time series of the row before it.

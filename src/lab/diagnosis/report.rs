@@ -8,6 +8,8 @@ use super::target::Target;
 pub struct Diagnosis {
     /// Names of the channels.
     pub channels: Vec<String>,
+    /// Each channel's full scale: its largest reading by the model.
+    pub full_scale: Vec<f64>,
     /// In one word.
     pub verdict: Verdict,
     /// Root mean square of the channels' noise, in their unit.
@@ -84,6 +86,8 @@ pub struct Finding {
     pub target: Target,
     /// Its numbers.
     pub parameters: Vec<Estimate>,
+    /// The numbers of its course, which were fitted beside them.
+    pub shapes: Vec<(&'static str, f64)>,
     /// The probability of as much by chance.
     pub p_value: f64,
     /// Part of the weighted squared residual above noise and background that it removes.

@@ -2,12 +2,23 @@
 
 use super::report::Finding;
 
+/// What tells creep from a gain.
+const DWELLS: &str = "hold half of the contacts for 2 s and the others for 20 s, and write so under dwell_s: a gain does not know how long";
+
 /// Two causes, and what separates them.
-const PAIRS: [(&str, &str, &str); 8] = [
+const PAIRS: [(&str, &str, &str); 12] = [
     (
         "excitation_gain",
         "reference_gain",
         "place known weights on the pad: they need no force sensor, so only a wrong excitation still shows",
+    ),
+    ("creep", "excitation_gain", DWELLS),
+    ("creep", "reference_gain", DWELLS),
+    ("creep", "channel_gain", DWELLS),
+    (
+        "hysteresis",
+        "gauge_nonlinearity",
+        "come to half of the contacts from a higher load, and write so under approach: only what keeps the load differs",
     ),
     (
         "thermal_zero",

@@ -1,5 +1,6 @@
 //! What a pad and a measurement offer: which causes can be asked for, and where.
 
+use super::memory::Dwells;
 use super::target::Target;
 use crate::pad::device::{Device, Side};
 
@@ -56,6 +57,12 @@ pub(super) struct Setting {
     pub(super) has_temperature: bool,
     /// Whether the cycles of load differ from row to row.
     pub(super) has_cycles: bool,
+    /// Whether any rows are a time series.
+    pub(super) has_series: bool,
+    /// Whether loads were reached from both sides.
+    pub(super) has_both_ways: bool,
+    /// What is known of how long static loads were held.
+    pub(super) dwells: Dwells,
 }
 
 impl Setting {

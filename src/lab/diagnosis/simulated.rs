@@ -4,14 +4,16 @@ use std::sync::Arc;
 
 use super::cause::{Cause, Stage};
 use super::causes::CATALOGUE;
-use super::chain::{Chain, ChannelChain, MechanicsChain, Reference, RigChain};
+use super::chain::{Chain, Reference};
+use super::covariance::BACKGROUND_MAX;
 use super::mechanics::{Maps, Pad, at_places, changes, side_share};
-use super::model::{CommonError, Hypothesis, Linearised, Model, Signature};
+use super::memory::Course;
+use super::model::{CommonError, Hypothesis, Linearised, Model, Parameter, Signature};
 use super::observations::{Observations, Sample};
+use super::own::own_chain;
 use super::report::NotTestable;
 use super::setting::{Change, Setting};
 use crate::numeric::statistics::rms;
-use crate::pad::device::behaviour::{Behaviour, ModuleCrosstalk};
 use crate::pad::device::{Device, Side};
 use crate::pad::field::PadField;
 use crate::pad::influence::{Gains, InfluenceField};
@@ -30,7 +32,11 @@ const NOTHING: f64 = 1e-9;
 /// Nine channels by a pad's field.
 pub(super) struct Simulated<'f> {
     signals: InfluenceField,
-    observations: &'f Observations,
+    /// The whole measurement: what is remembered is so in its order.
+    all: &'f Observations,
+    course: Course,
+    /// The rows of it that are asked for.
+    picked: Vec<usize>,
     setting: Setting,
     reference: Reference,
     hypotheses: Vec<Hypothesis>,
@@ -56,10 +62,11 @@ impl<'f> Simulated<'f> {
     pub(super) fn new(
         pad: &Pad<'_>,
         (own, field): (&Device, &PadField),
-        all: &Observations,
-        observations: &'f Observations,
+        all: &'f Observations,
+        observations: &Observations,
     ) -> Self {
-        let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all);
+        let course = Course::of(&all.samples, &all.follows(), pad.device.contact.full_scale_n);
+        let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all, &course);
         let mut hypotheses = Vec::new();
         let mut causes: Vec<&'static dyn Cause> = Vec::new();
         let is_asked = |cause: &&dyn Cause| pad.asks_for(cause.effect()) && cause.missing(&setting).is_none();
@@ -73,14 +80,17 @@ impl<'f> Simulated<'f> {
                 causes.push(cause);
             }
         }
-        let places_mm: Vec<[f64; 2]> = observations.samples.iter().map(|sample| sample.place_mm).collect();
+        let places_mm: Vec<[f64; 2]> = all.samples.iter().map(|sample| sample.place_mm).collect();
+        let reference = reference(pad.device, pad.field, all);
         let weights = setting.own_weights(pad.device, own);
         Self {
-            own: own_chain(pad.device, weights),
+            own: own_chain(pad.device, weights, &reference),
             signals: field.signals.clone(),
-            reference: reference(pad.device, pad.field, all),
+            reference,
             changes: at_places(field, pad.flaws, pad.device.plate.radius_mm(), &places_mm),
-            observations,
+            all,
+            course,
+            picked: observations.numbers.clone(),
             setting,
             hypotheses,
             causes,
@@ -113,9 +123,11 @@ impl<'f> Simulated<'f> {
     }
 
     fn row(&self, at: usize, chain: &Chain) -> Row {
-        let sample = &self.observations.samples[at];
-        let place_mm = chain.rig.place_mm(sample.place_mm);
-        let force_n = chain.rig.force_n(sample.load);
+        let samples = &self.all.samples;
+        let then = self.course.moment(at, chain.rig.lag_s);
+        let place_mm = std::array::from_fn(|axis| then.of(|row| samples[row].place_mm[axis]));
+        let force_n = std::array::from_fn(|axis| then.of(|row| samples[row].load[axis]));
+        let (place_mm, force_n) = (chain.rig.place_mm(place_mm), chain.rig.force_n(force_n));
         Row {
             force_n,
             gains: continued(&self.signals, place_mm),
@@ -125,39 +137,93 @@ impl<'f> Simulated<'f> {
     }
 
     fn rows(&self, chain: &Chain) -> Vec<Row> {
-        (0..self.observations.rows()).map(|at| self.row(at, chain)).collect()
+        (0..self.all.rows()).map(|at| self.row(at, chain)).collect()
     }
 
-    fn reading(&self, at: usize, strain: &[f64; CHANNELS], chain: &Chain) -> Vec<f64> {
-        chain.channels.read(strain, &self.observations.samples[at], &self.reference)
+    /// Each channel's values at the rows that are asked for.
+    fn picked(&self, channels: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        channels.into_iter().map(|of| self.picked.iter().map(|row| of[*row]).collect()).collect()
+    }
+
+    /// The strains of all rows, with what the channels remember of them.
+    fn remembered(&self, mut strains: Vec<[f64; CHANNELS]>, chain: &Chain) -> Vec<[f64; CHANNELS]> {
+        for (channel, full_scale) in self.reference.full_scale.iter().enumerate() {
+            let own: Vec<f64> = strains.iter().map(|strain| strain[channel]).collect();
+            let added =
+                chain.memory.added(&self.course, channel, *full_scale, (&own, 0.0)).unwrap_or_default();
+            strains.iter_mut().zip(added).for_each(|(strain, added)| strain[channel] += added);
+        }
+        strains
+    }
+
+    /// What memory makes of an error of the strains, and of not knowing when between two rows a load has changed: half of what it adds
+    /// to strains that are too large by the largest background and come early, less what to ones that are too small and late.
+    fn doubts(&self, rows: &[Row], chain: &Chain) -> Vec<Vec<f64>> {
+        let magnitude = |row: &Row| libm::sqrt(row.force_n.iter().map(|n| n * n).sum());
+        let magnitudes: Vec<f64> = rows.iter().map(magnitude).collect();
+        let load_rms = rms(magnitudes.iter().copied());
+        let strains: Vec<[f64; CHANNELS]> = rows.iter().map(|row| row.strain(chain)).collect();
+        let doubt = |channel: usize| {
+            let (full_scale, size) = (self.reference.full_scale[channel], self.reference.sizes[channel]);
+            let added = |sign: f64| {
+                let off = |magnitude: f64| sign * BACKGROUND_MAX * size * magnitude / load_rms;
+                let own = strains.iter().zip(&magnitudes).map(|(strain, it)| strain[channel] + off(*it));
+                let own: Vec<f64> = own.collect();
+                chain.memory.added(&self.course, channel, full_scale, (&own, sign))
+            };
+            let (Some(above), Some(below)) = (added(1.0), added(-1.0)) else { return Vec::new() };
+            self.picked.iter().map(|row| 0.5 * (above[*row] - below[*row])).collect()
+        };
+        (0..CHANNELS).map(doubt).collect()
+    }
+
+    /// What the channels read at strains with their memory, at the rows that are asked for.
+    fn read(&self, strains: &[[f64; CHANNELS]], chain: &Chain) -> Vec<Vec<f64>> {
+        let rows = strains.iter().zip(&self.all.samples);
+        let mut channels =
+            transposed(rows.map(|(strain, sample)| chain.channels.read(strain, sample, &self.reference)));
+        let late = channels.iter_mut().zip(&chain.channels.skew_s).filter(|(_, skew_s)| **skew_s != 0.0);
+        for (channel, skew_s) in late {
+            let then = |row: usize| self.course.moment(row, -skew_s).of(|row| channel[row]);
+            *channel = (0..channel.len()).map(then).collect();
+        }
+        self.picked(channels)
     }
 
     /// The readings with one more hypothesis, of which only what it can change is computed anew.
     fn perturbed(
         &self,
         rows: &[Row],
-        strains: &[[f64; CHANNELS]],
+        remembered: &[[f64; CHANNELS]],
         stage: Stage,
         chain: &Chain,
     ) -> Vec<Vec<f64>> {
-        let read = |at: usize| match stage {
-            Stage::Contact => self.reading(at, &self.row(at, chain).strain(chain), chain),
-            Stage::Mechanics => self.reading(at, &rows[at].strain(chain), chain),
-            Stage::Channels => self.reading(at, &strains[at], chain),
+        let strains = match stage {
+            Stage::Contact => self.rows(chain).iter().map(|row| row.strain(chain)).collect(),
+            Stage::Mechanics => rows.iter().map(|row| row.strain(chain)).collect(),
+            Stage::Channels => return self.read(remembered, chain),
         };
-        transposed((0..self.observations.rows()).map(read))
+        self.read(&self.remembered(strains, chain), chain)
+    }
+
+    /// The strains of all rows, and with their memory.
+    fn strained(&self, rows: &[Row], chain: &Chain) -> Vec<[f64; CHANNELS]> {
+        self.remembered(rows.iter().map(|row| row.strain(chain)).collect(), chain)
     }
 
     /// ∂readings/∂ψ by one coordinate: a central difference.
     fn signature(
         &self,
         rows: &[Row],
-        strains: &[[f64; CHANNELS]],
+        remembered: &[[f64; CHANNELS]],
         applied: &[(usize, Vec<f64>)],
         [at, parameter]: [usize; 2],
     ) -> Signature {
         let hypothesis = &self.hypotheses[at];
-        let step = hypothesis.parameters[parameter].step;
+        let Parameter { step, shape, .. } = hypothesis.parameters[parameter];
+        if shape.is_some() && applied.iter().all(|(held, _)| *held != at) {
+            return vec![None; CHANNELS];
+        }
         let moved = |by: f64| {
             let mut applied = applied.to_vec();
             let own = match applied.iter().position(|(index, _)| *index == at) {
@@ -168,7 +234,7 @@ impl<'f> Simulated<'f> {
                 }
             };
             applied[own].1[parameter] += by;
-            self.perturbed(rows, strains, self.causes[at].stage(), &self.chain(&applied))
+            self.perturbed(rows, remembered, self.causes[at].stage(), &self.chain(&applied))
         };
         // A number that cannot be below none is changed upwards only.
         let is_one_sided = hypothesis.parameters[parameter].is_one_sided();
@@ -192,50 +258,57 @@ impl Model for Simulated<'_> {
 
     fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>> {
         let chain = self.chain(applied);
-        let rows = (0..self.observations.rows())
-            .map(|at| self.reading(at, &self.row(at, &chain).strain(&chain), &chain));
-        transposed(rows)
+        self.read(&self.strained(&self.rows(&chain), &chain), &chain)
     }
 
     fn sizes(&self) -> Vec<f64> {
         self.reference.sizes.clone()
     }
 
+    fn full_scale(&self) -> Vec<f64> {
+        self.reference.full_scale.clone()
+    }
+
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
         let chain = self.chain(applied);
         let rows = self.rows(&chain);
-        let strains: Vec<[f64; CHANNELS]> = rows.iter().map(|row| row.strain(&chain)).collect();
-        let readings =
-            transposed(strains.iter().enumerate().map(|(at, strain)| self.reading(at, strain, &chain)));
+        let remembered = self.strained(&rows, &chain);
+        let readings = self.read(&remembered, &chain);
         let signatures = self.hypotheses.iter().enumerate().map(|(at, hypothesis)| {
             (0..hypothesis.parameters.len())
-                .map(|parameter| self.signature(&rows, &strains, applied, [at, parameter]))
+                .map(|parameter| self.signature(&rows, &remembered, applied, [at, parameter]))
                 .collect()
         });
-        Linearised { signatures: signatures.collect(), readings }
+        Linearised {
+            signatures: signatures.collect(),
+            readings,
+            loads: self.picked.iter().map(|row| rows[*row].force_n).collect(),
+            doubts: self.doubts(&rows, &chain),
+        }
     }
 
     fn common_errors(&self) -> Vec<CommonError> {
         let chain = self.chain(&[]);
+        let rows = self.rows(&chain);
         let mut errors = Vec::new();
         for (axis, is_normal) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
             let signature = (0..CHANNELS).map(|channel| {
-                let of = |row: Row| {
+                let of = |row: &usize| {
+                    let row = &rows[*row];
                     let [fx_n, fy_n, fz_n] = row.force_n;
                     let force_n = if is_normal { [0.0, 0.0, fz_n] } else { [fx_n, fy_n, 0.0] };
                     response(&row.gains.value[channel], &force_n)
                 };
-                (channel % 3 == axis).then(|| self.rows(&chain).into_iter().map(of).collect())
+                (channel % 3 == axis).then(|| self.picked.iter().map(of).collect())
             });
             errors.push(CommonError { deviation: COMMON_ERROR, signature: signature.collect() });
         }
-        let rows = self.rows(&self.chain(&[]));
-        let strains: Vec<[f64; CHANNELS]> = rows.iter().map(|row| row.strain(&self.chain(&[]))).collect();
+        let remembered = self.strained(&rows, &chain);
         for (effect, deviation) in ERRORS_LIKE {
             let like = self.hypotheses.iter().position(|it| it.effect == effect);
             errors.extend(like.map(|at| CommonError {
                 deviation,
-                signature: self.signature(&rows, &strains, &[], [at, 0]),
+                signature: self.signature(&rows, &remembered, &[], [at, 0]),
             }));
         }
         errors
@@ -262,7 +335,7 @@ impl Row {
     }
 }
 
-fn setting(device: &Device, changes: Vec<Change>, observations: &Observations) -> Setting {
+fn setting(device: &Device, changes: Vec<Change>, observations: &Observations, course: &Course) -> Setting {
     let differs = |of: fn(&Sample) -> Option<f64>| {
         let mut values = observations.samples.iter().filter_map(of);
         values.next().is_some_and(|first| values.any(|value| value != first))
@@ -277,41 +350,10 @@ fn setting(device: &Device, changes: Vec<Change>, observations: &Observations) -
         has_time: differs(|sample| sample.t_s),
         has_temperature: differs(|sample| sample.temp_c),
         has_cycles: differs(|sample| sample.cycle),
+        has_series: course.has_series(),
+        has_both_ways: course.has_both_ways() || course.has_series(),
+        dwells: course.dwells(),
     }
-}
-
-/// What a device's file says of its channels and of the rig that measures it.
-fn own_chain(device: &Device, weights: Vec<f64>) -> Chain {
-    let Behaviour { thermal, crosstalk, module_crosstalk, noise, rig, .. } = &device.behaviour;
-    let modules = || device.modules.iter();
-    let nominal = Chain::nominal(CHANNELS, weights.len());
-    Chain {
-        rig: RigChain {
-            offset_mm: [rig.stage_x_mm, rig.stage_y_mm],
-            rotation_deg: rig.stage_rotation_deg,
-            scale: rig.stage_scale,
-            tilt_deg: [rig.reference_tilt_x_deg, rig.reference_tilt_y_deg],
-            gain: rig.reference_gain,
-            zero_n: rig.reference_zero_n,
-        },
-        channels: ChannelChain {
-            module_shares: module_crosstalk.iter().flat_map(by_axis).collect(),
-            gain: modules().flat_map(|module| module.gain).collect(),
-            gain_per_c: thermal.gain_per_c.to_vec(),
-            shares: crosstalk.iter().map(|it| (it.channel, it.with, it.share)).collect(),
-            offset: modules().flat_map(|module| module.offset_uv).collect(),
-            zero_per_c: thermal.zero_uv_per_c.to_vec(),
-            drift_per_h: noise.drift_uv_per_h.to_vec(),
-            ..nominal.channels
-        },
-        mechanics: MechanicsChain { weights, ..nominal.mechanics },
-    }
-}
-
-/// A module's share, channel by channel.
-fn by_axis(it: &ModuleCrosstalk) -> impl Iterator<Item = (usize, usize, f64)> + use<> {
-    let ModuleCrosstalk { module, with, share } = *it;
-    (0..3).map(move |axis| (3 * module + axis, 3 * with + axis, share))
 }
 
 fn reference(device: &Device, field: &PadField, observations: &Observations) -> Reference {

@@ -1,5 +1,6 @@
 //! Memory of the strains: hysteresis as play operators (Prandtl and Ishlinskii), creep as a Prony series.
 
+use crate::numeric::memory::{low_passed, pulled};
 use crate::pad::device::behaviour::{Behaviour, Play, Prony};
 use crate::quantity::CHANNELS;
 
@@ -31,8 +32,8 @@ impl Memory {
                 states.iter_mut().enumerate().filter(|(channel, _)| play.channels[*channel])
             {
                 let strain = strain_uv[channel];
-                // Play operator: p ← min(max(p, e − r), e + r), adds w (p − e).
-                *state = state.clamp(strain - play.threshold_uv, strain + play.threshold_uv);
+                // A play operator adds w (p − e).
+                *state = pulled(*state, strain, play.threshold_uv);
                 read_uv[channel] += play.share * (*state - strain);
             }
         }
@@ -50,18 +51,6 @@ impl Memory {
         self.strain_uv = *strain_uv;
         read_uv
     }
-}
-
-/// The state of a first-order low pass after `times` time constants in which its input went evenly between two values;
-/// `kept` is exp(−`times`).
-fn low_passed(state: f64, [from, to]: [f64; 2], times: f64, kept: f64) -> f64 {
-    if times <= 0.0 {
-        return state;
-    }
-    // The input is a ramp of slope v per time constant; the low pass follows it with the lag v, and what differs decays:
-    // y = to − v + (y₀ − from + v) exp(−times).
-    let lag = (to - from) / times;
-    to - lag + (state - from + lag) * kept
 }
 
 #[cfg(test)]

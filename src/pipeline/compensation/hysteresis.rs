@@ -7,6 +7,7 @@
 //! Source: M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis (1989), section 2; the inverse is that of K.
 //! Kuhnen, Eur. J. Control 9 (2003) 407.
 
+use crate::numeric::memory::pulled;
 use crate::quantity::CHANNELS;
 
 /// How many play operators a channel has.
@@ -33,9 +34,7 @@ impl Play {
 
     /// A channel's state when its strain without hysteresis went here. It stays within the threshold of the strain.
     pub const fn pulled(&self, channel: usize, state_uv: f64, free_uv: f64) -> f64 {
-        // The play operator: p ← min(max(p, e − r), e + r).
-        let threshold_uv = self.threshold_uv[channel];
-        state_uv.max(free_uv - threshold_uv).min(free_uv + threshold_uv)
+        pulled(state_uv, free_uv, self.threshold_uv[channel])
     }
 }
 

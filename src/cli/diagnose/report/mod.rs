@@ -105,6 +105,7 @@ mod tests {
         };
         Diagnosis {
             channels: (0..channels).map(|channel| format!("<s{channel}>&")).collect(),
+            full_scale: Vec::new(),
             verdict: Verdict::Explained,
             noise_floor: 1.0,
             rmse_nominal: 5.0,
@@ -115,6 +116,7 @@ mod tests {
                 effect: "channel_gain",
                 target: Target::Channel(0),
                 parameters: vec![Estimate { name: "gain", value: 1.1, interval95: [1.09, f64::INFINITY] }],
+                shapes: Vec::new(),
                 p_value: 0.0,
                 share: f64::NAN,
                 confounded_with: vec![("zero_drift", Target::Pad)],

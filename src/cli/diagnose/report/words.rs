@@ -257,6 +257,7 @@ mod tests {
             effect,
             target,
             parameters: parameters.iter().map(number).collect(),
+            shapes: Vec::new(),
             p_value: 1e-9,
             share: 0.5,
             confounded_with: Vec::new(),

@@ -286,6 +286,8 @@ impl Model for Later<'_> {
         };
         Linearised {
             readings: self.read(&signals, &changes),
+            loads: self.recording.observations.samples.iter().map(|sample| sample.load).collect(),
+            doubts: vec![Vec::new(); self.setting.columns.channels.len()],
             signatures: self.acts.iter().enumerate().map(of).collect(),
         }
     }

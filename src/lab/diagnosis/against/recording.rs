@@ -64,6 +64,7 @@ impl Recording {
                 channels: columns.channels.clone(),
                 is_told: vec![vec![true; rows.len()]; readings.len()],
                 readings,
+                numbers: (0..samples.len()).collect(),
                 samples,
             },
             inputs,

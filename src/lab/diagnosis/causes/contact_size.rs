@@ -26,6 +26,7 @@ impl Cause for ContactSize {
             range,
             step: 0.05 * none * none,
             coordinate: Coordinate::Square,
+            shape: None,
         }]
     }
 

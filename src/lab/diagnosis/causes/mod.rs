@@ -7,10 +7,13 @@ mod ageing;
 mod channel_crosstalk;
 mod channel_gain;
 mod channel_offset;
+mod channel_skew;
 mod contact_height;
 mod contact_size;
+pub(super) mod creep;
 mod excitation_gain;
 mod gauge_nonlinearity;
+pub(super) mod hysteresis;
 mod module_crosstalk;
 mod module_debonded;
 mod module_displaced;
@@ -27,16 +30,18 @@ mod stage_rotation;
 mod stage_scale;
 mod thermal_gain;
 mod thermal_zero;
+mod time_lag;
 mod zero_drift;
 
 use super::cause::Cause;
 
 /// All causes, in the order of reports.
-pub(super) const CATALOGUE: [&dyn Cause; 25] = [
+pub(super) const CATALOGUE: [&dyn Cause; 29] = [
     &channel_gain::ChannelGain,
     &channel_offset::ChannelOffset,
     &channel_crosstalk::ChannelCrosstalk,
     &gauge_nonlinearity::GaugeNonlinearity,
+    &channel_skew::ChannelSkew,
     &module_displaced::ModuleDisplaced,
     &module_rotated::ModuleRotated,
     &module_tilted::ModuleTilted,
@@ -49,6 +54,8 @@ pub(super) const CATALOGUE: [&dyn Cause; 25] = [
     &thermal_zero::ThermalZero,
     &thermal_gain::ThermalGain,
     &zero_drift::ZeroDrift,
+    &hysteresis::Hysteresis,
+    &creep::Creep,
     &ageing::Ageing,
     &reference_tilt::ReferenceTilt,
     &reference_gain::ReferenceGain,
@@ -58,4 +65,5 @@ pub(super) const CATALOGUE: [&dyn Cause; 25] = [
     &stage_scale::StageScale,
     &contact_height::ContactHeight,
     &contact_size::ContactSize,
+    &time_lag::TimeLag,
 ];

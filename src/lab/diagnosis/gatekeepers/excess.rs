@@ -114,6 +114,7 @@ fn finding(channel: usize, excess: f64, deviation: f64) -> Finding {
             value: libm::exp(excess),
             interval95: [-within, within].map(|by| libm::exp(excess + by)),
         }],
+        shapes: Vec::new(),
         p_value: 0.5 * chi_square::exceeded((excess / deviation).powi(2), 1),
         share: 0.0,
         confounded_with: Vec::new(),

@@ -75,7 +75,7 @@ impl Gate {
 
     /// Puts the rows in this order.
     pub(super) fn put_in_order(&mut self, order: &[usize]) {
-        self.observations = self.observations.picked(order);
+        self.observations = self.observations.as_whole(order);
         for channel in self.expected.iter_mut().flatten() {
             *channel = order.iter().map(|row| channel[*row]).collect();
         }
@@ -101,6 +101,7 @@ impl Gate {
             effect,
             target,
             parameters: Vec::new(),
+            shapes: Vec::new(),
             p_value,
             share,
             confounded_with: Vec::new(),

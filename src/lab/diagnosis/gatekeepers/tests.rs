@@ -45,6 +45,7 @@ fn observations(samples: Vec<Sample>, readings: Vec<Vec<f64>>) -> Observations {
     Observations {
         channels: (0..readings.len()).map(|channel| format!("c{channel}")).collect(),
         is_told: vec![vec![true; samples.len()]; readings.len()],
+        numbers: (0..samples.len()).collect(),
         readings,
         samples,
     }
@@ -195,7 +196,7 @@ fn held_channels_and_clocks_that_run_apart_are_told() {
 #[test]
 fn times_are_sorted_split_and_freed_of_doubles() {
     let sound = stream(900, 45.0);
-    let mut table = sound.picked(
+    let mut table = sound.as_whole(
         &(0..900)
             .map(|row| match row {
                 50 => 51,

@@ -13,8 +13,8 @@ use crate::toml_text::section::Section;
 /// The key of the channels that have a term.
 const WHERE: &str = "channels";
 
-/// More terms than this are no model of anything.
-const TERMS_MAX: usize = 16;
+/// More terms than this are no model of anything: 16 in each channel.
+const TERMS_MAX: usize = 16 * CHANNELS;
 
 /// A kind of term.
 struct Term<T: 'static> {

@@ -1,9 +1,11 @@
 //! The simulated pad about more than one field: its own, and those of changed pads that lie too far off for its tangent.
 
 use super::attribution::{Applied, Attribution, Fit, Search};
+use super::bench::contacts;
 use super::extension::with;
-use super::mechanics::Pad;
-use super::model::{CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter};
+use super::inverse::Written;
+use super::mechanics::{Pad, changed};
+use super::model::{CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter, Told};
 use super::observations::Observations;
 use super::report::NotTestable;
 use super::simulated::Simulated;
@@ -170,6 +172,15 @@ impl Model for Atlas<'_> {
 
     fn common_errors(&self) -> Vec<CommonError> {
         self.first.common_errors()
+    }
+
+    fn contacts(&self, applied: &[(usize, Vec<f64>)], told: &Told<'_>) -> Option<Vec<Option<Written>>> {
+        let nearest = self.nearest(applied);
+        let field = nearest.and_then(|k| self.solved.get(k)).map_or(self.pad.field, |solved| &solved.field);
+        let (about, plate_mm) = (self.about(applied), self.pad.device.plate.radius_mm());
+        let chain = about.chain(applied);
+        let changed = changed(field, self.pad.flaws, plate_mm, &chain.mechanics.weights);
+        Some(contacts(about, chain, changed, plate_mm, told))
     }
 }
 

@@ -5,7 +5,7 @@
 //! or those of changed pads (`atlas`); the residual's covariance is noise, a smooth background that every simulator leaves, and
 //! what the simulator is known to get wrong (`covariance`); group score tests with a cluster bootstrap choose causes
 //! (`attribution`); the encompassing rule says which of them may be named (`naming`); rows that had no part in it say what they
-//! are worth (`gain`).
+//! are worth (`gain`), in readings and in contacts that are decoded by the model backwards (`inverse`, of the pad `bench`).
 //!
 //! The engine knows nothing of nine channels, but for `simulated`.
 //!
@@ -15,6 +15,7 @@
 mod atlas;
 mod attribution;
 mod basis;
+mod bench;
 mod bootstrap;
 mod cause;
 mod causes;
@@ -25,6 +26,7 @@ pub mod extension;
 mod gain;
 mod gatekeepers;
 mod inference;
+mod inverse;
 mod mechanics;
 mod model;
 mod naming;
@@ -206,7 +208,8 @@ fn summary(
         background_mm: fit.background.prior.length_mm,
         background_share: rms(fit.background.shares.iter().flatten().copied()),
         ceiling_share: None,
-        gain: (!applied.is_empty() && locked.observations.rows() > 0).then(|| gain(open, locked, &applied)),
+        gain: (!applied.is_empty() && locked.observations.rows() > 0)
+            .then(|| gain([open, locked], &applied, &fit.systems.noise)),
         not_detected: search.not_detected(found)?,
         not_testable: missing.to_vec(),
         unnamed_share,

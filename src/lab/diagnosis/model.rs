@@ -1,5 +1,7 @@
 //! What the engine asks of a model of the channels, and what it knows of the hypotheses.
 
+use super::inverse::Written;
+use super::noise::NoiseLevel;
 use super::target::Target;
 
 /// A number of a hypothesis.
@@ -96,6 +98,14 @@ pub(super) struct Linearised {
     pub(super) signatures: Vec<Vec<Signature>>,
 }
 
+/// What is known of each channel beside its readings.
+pub(super) struct Told<'t> {
+    /// What it reads without load.
+    pub(super) zeros: &'t [f64],
+    /// Its noise.
+    pub(super) noise: &'t [NoiseLevel],
+}
+
 /// A model of N channels at the rows of a measurement.
 pub(super) trait Model {
     /// What may be wrong with it.
@@ -108,4 +118,9 @@ pub(super) trait Model {
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised;
     /// What is known of its own errors.
     fn common_errors(&self) -> Vec<CommonError>;
+    /// For each row, the contact that must have been written for these hypotheses to read what was read. None where the model
+    /// knows no contacts.
+    fn contacts(&self, _applied: &[(usize, Vec<f64>)], _told: &Told<'_>) -> Option<Vec<Option<Written>>> {
+        None
+    }
 }

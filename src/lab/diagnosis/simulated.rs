@@ -30,7 +30,7 @@ const NOTHING: f64 = 1e-9;
 /// Nine channels by a pad's field.
 pub(super) struct Simulated<'f> {
     signals: InfluenceField,
-    observations: &'f Observations,
+    pub(super) observations: &'f Observations,
     setting: Setting,
     reference: Reference,
     hypotheses: Vec<Hypothesis>,
@@ -101,7 +101,7 @@ impl<'f> Simulated<'f> {
     }
 
     /// The chain of these hypotheses.
-    fn chain(&self, applied: &[(usize, Vec<f64>)]) -> Chain {
+    pub(super) fn chain(&self, applied: &[(usize, Vec<f64>)]) -> Chain {
         let mut chain = self.own.clone();
         for (at, coordinates) in applied {
             let hypothesis = &self.hypotheses[*at];
@@ -124,11 +124,24 @@ impl<'f> Simulated<'f> {
         }
     }
 
+    /// What a unit of true force along each axis strains at a place that is written so, without the field's changes.
+    pub(super) fn maps(&self, written_mm: [f64; 2], chain: &Chain) -> Maps {
+        let place_mm = chain.rig.place_mm(written_mm);
+        let gains = continued(&self.signals, place_mm);
+        let laplacian = self.signals.laplacian(place_mm);
+        let axes: [[f64; CHANNELS]; 3] = std::array::from_fn(|axis| {
+            let force_n = std::array::from_fn(|other| f64::from(u8::from(other == axis)));
+            Row { force_n, gains, laplacian, changes: Vec::new() }.strain(chain)
+        });
+        std::array::from_fn(|channel| axes.map(|strain| strain[channel]))
+    }
+
     fn rows(&self, chain: &Chain) -> Vec<Row> {
         (0..self.observations.rows()).map(|at| self.row(at, chain)).collect()
     }
 
-    fn reading(&self, at: usize, strain: &[f64; CHANNELS], chain: &Chain) -> Vec<f64> {
+    /// What a row's channels read when they are strained so.
+    pub(super) fn reading(&self, at: usize, strain: &[f64; CHANNELS], chain: &Chain) -> Vec<f64> {
         chain.channels.read(strain, &self.observations.samples[at], &self.reference)
     }
 
@@ -346,7 +359,7 @@ fn continued(field: &InfluenceField, place_mm: [f64; 2]) -> Gains {
 }
 
 /// Σₐ Fₐ Gₐ.
-fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
+pub(super) fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
     map.iter().zip(force_n).map(|(map, n)| map * n).sum()
 }
 

@@ -101,8 +101,12 @@ pub(super) fn rmse(rows: &Rows<'_>, applied: &Applied, zeros: &[f64]) -> f64 {
     (rows.squares(applied, zeros).iter().sum::<f64>() / count).sqrt()
 }
 
-/// The gain of `applied` on the locked rows, whose channels have this noise. Zeros are those of the open ones.
-pub(super) fn gain([open, locked]: [&Rows<'_>; 2], applied: &Applied, noise: &[NoiseLevel]) -> Gain {
+/// The gain of `applied` on the locked rows, whose channels have this noise; none where nothing was found. Zeros are those of the
+/// open ones.
+pub(super) fn gain([open, locked]: [&Rows<'_>; 2], applied: &Applied, noise: &[NoiseLevel]) -> Option<Gain> {
+    if applied.is_empty() || locked.observations.rows() == 0 {
+        return None;
+    }
     let squares = |applied: &Applied| locked.squares(applied, &open.zeros(applied));
     let (nominal, extended) = (squares(&Vec::new()), squares(applied));
     let hypotheses = open.model.hypotheses();
@@ -121,14 +125,14 @@ pub(super) fn gain([open, locked]: [&Rows<'_>; 2], applied: &Applied, noise: &[N
     let decoded = errors(&Vec::new()).zip(errors(applied));
     let [position_mae, force_mae] =
         [0, 1].map(|at| decoded.as_ref().and_then(|(nominal, extended)| changed(nominal, extended, at)));
-    Gain {
+    Some(Gain {
         rows_locked: locked.observations.rows(),
         rmse_ratio: share(&all),
         rmse_ratio_interval95: interval95(nominal.len(), share),
         position_mae,
         force_mae,
         per_cause: (0..applied.len()).map(without).collect(),
-    }
+    })
 }
 
 /// How the mean error of places (0) or loads (1) changes; none where there is no contact.

@@ -208,8 +208,7 @@ fn summary(
         background_mm: fit.background.prior.length_mm,
         background_share: rms(fit.background.shares.iter().flatten().copied()),
         ceiling_share: None,
-        gain: (!applied.is_empty() && locked.observations.rows() > 0)
-            .then(|| gain([open, locked], &applied, &fit.systems.noise)),
+        gain: gain([open, locked], &applied, &fit.systems.noise),
         not_detected: search.not_detected(found)?,
         not_testable: missing.to_vec(),
         unnamed_share,

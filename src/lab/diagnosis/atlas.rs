@@ -182,6 +182,15 @@ impl Model for Atlas<'_> {
         let changed = changed(field, self.pad.flaws, plate_mm, &chain.mechanics.weights);
         Some(contacts(about, chain, changed, plate_mm, told))
     }
+
+    fn elsewhere(
+        &self,
+        rows: &Observations,
+        applied: &[(usize, Vec<f64>)],
+    ) -> Option<(Linearised, Vec<CommonError>)> {
+        let there = self.at(rows);
+        Some((there.linearised(applied), there.common_errors()))
+    }
 }
 
 fn coordinates(applied: &[(usize, Vec<f64>)], hypothesis: usize) -> Option<&Vec<f64>> {

@@ -2,6 +2,7 @@
 
 use super::inverse::Written;
 use super::noise::NoiseLevel;
+use super::observations::Observations;
 use super::target::Target;
 
 /// A number of a hypothesis.
@@ -121,6 +122,14 @@ pub(super) trait Model {
     /// For each row, the contact that must have been written for these hypotheses to read what was read. None where the model
     /// knows no contacts.
     fn contacts(&self, _applied: &[(usize, Vec<f64>)], _told: &Told<'_>) -> Option<Vec<Option<Written>>> {
+        None
+    }
+    /// The same at other rows, which nobody measured, and what the model gets wrong there. None where it cannot say.
+    fn elsewhere(
+        &self,
+        _rows: &Observations,
+        _applied: &[(usize, Vec<f64>)],
+    ) -> Option<(Linearised, Vec<CommonError>)> {
         None
     }
 }

@@ -91,10 +91,18 @@ struct Gain {
     rmse_ratio: f64,
     rmse_ratio_low95: f64,
     rmse_ratio_high95: f64,
-    /// Always `null`: no decoder takes part.
-    position_mae_mm: (),
-    force_mae_n: (),
+    position_mae_mm: Option<Decoded>,
+    force_mae_n: Option<Decoded>,
     per_cause: Vec<Without>,
+}
+
+/// Errors of decoded contacts.
+#[derive(Serialize)]
+struct Decoded {
+    nominal: f64,
+    extended: f64,
+    change_low95: f64,
+    change_high95: f64,
 }
 
 /// What a check of the recording found; `channel` is `all` where it was in whole rows.
@@ -175,6 +183,14 @@ impl<'d> Notice<'d> {
     }
 }
 
+impl Decoded {
+    const fn of(decoded: &report::Decoded) -> Self {
+        let report::Decoded { nominal, extended, change_interval95: [change_low95, change_high95] } =
+            *decoded;
+        Self { nominal, extended, change_low95, change_high95 }
+    }
+}
+
 impl Gain {
     fn of(gain: &report::Gain, channels: &[String]) -> Self {
         let [rmse_ratio_low95, rmse_ratio_high95] = gain.rmse_ratio_interval95;
@@ -187,8 +203,8 @@ impl Gain {
             rmse_ratio: gain.rmse_ratio,
             rmse_ratio_low95,
             rmse_ratio_high95,
-            position_mae_mm: (),
-            force_mae_n: (),
+            position_mae_mm: gain.position_mae.as_ref().map(Decoded::of),
+            force_mae_n: gain.force_mae.as_ref().map(Decoded::of),
             per_cause: gain.per_cause.iter().map(without).collect(),
         }
     }

@@ -1,6 +1,6 @@
 //! Words and numbers of a diagnosis.
 
-use tactpad::lab::diagnosis::report::{Estimate, Verdict};
+use tactpad::lab::diagnosis::report::{Estimate, Gain, Verdict};
 
 /// How parameters' names end, and the unit that people read.
 const UNITS: [(&str, &str); 11] = [
@@ -41,6 +41,26 @@ pub(super) fn estimate(estimate: &Estimate) -> String {
 pub(super) fn carried(value: f64, [low, high]: [f64; 2]) -> usize {
     let half = 0.5 * (high - low);
     decimals(if half.is_finite() { half } else { value })
+}
+
+/// Errors of decoded contacts as people read them.
+pub(super) struct Decoded {
+    pub(super) nominal: String,
+    pub(super) extended: String,
+    /// Ends of the interval of the change.
+    pub(super) change: [String; 2],
+}
+
+/// How far decoded places and loads are off, as far as a model has any.
+pub(super) fn decoded(gain: &Gain) -> impl Iterator<Item = (&'static str, Decoded)> {
+    let all = [("places", "mm", &gain.position_mae), ("forces", "N", &gain.force_mae)];
+    all.into_iter().filter_map(|(of, unit, errors)| {
+        let errors = errors.as_ref()?;
+        let digits = carried(errors.extended, errors.change_interval95).max(2);
+        let told = |value: f64| with_unit(&rounded(value, digits), unit);
+        let change = errors.change_interval95.map(told);
+        Some((of, Decoded { nominal: told(errors.nominal), extended: told(errors.extended), change }))
+    })
 }
 
 /// Values of a number, from the least to the greatest.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::numbers::{estimate, range};
+use super::numbers::{decoded, estimate, range};
 use crate::cli::wrapped::hanging;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, Verdict};
 use tactpad::lab::diagnosis::target::Target;
@@ -101,7 +101,14 @@ fn gained(gain: &Gain, diagnosis: &Diagnosis) -> String {
     if !without.is_empty() {
         text += &format!("; {}", without.join(", "));
     }
-    text + "."
+    text += ".";
+    for (of, decoded) in decoded(gain) {
+        text += &format!(
+            " The {of} decoded from them are off by {}, in place of {} (a change of {} to {}).",
+            decoded.extended, decoded.nominal, decoded.change[0], decoded.change[1]
+        );
+    }
+    text
 }
 
 /// What could not be asked for, by the column that it needs.

@@ -1,9 +1,11 @@
 //! The simulated pad about more than one field: its own, and those of changed pads that lie too far off for its tangent.
 
 use super::attribution::{Applied, Attribution, Fit, Search};
+use super::bench::contacts;
 use super::extension::{Circumstances, with};
-use super::mechanics::Pad;
-use super::model::{CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter};
+use super::inverse::Written;
+use super::mechanics::{Pad, changed};
+use super::model::{CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter, Told};
 use super::observations::Observations;
 use super::report::NotTestable;
 use super::simulated::Simulated;
@@ -34,6 +36,8 @@ struct Solved {
 pub(super) struct Atlas<'f> {
     pad: Pad<'f>,
     all: &'f Observations,
+    /// The rows in whose order `observations` are remembered: all, or those of another measurement.
+    sequence: &'f Observations,
     /// About the pad that is held to be right.
     first: Simulated<'f>,
     /// About the others, in the order of `solved`.
@@ -59,19 +63,40 @@ pub(super) fn attributed(atlas: &mut Atlas<'_>) -> Option<Attribution> {
 impl<'f> Atlas<'f> {
     /// The pad at some `observations` of `all`.
     pub(super) fn new(pad: &Pad<'f>, all: &'f Observations, observations: &'f Observations) -> Self {
-        let first = Simulated::new(pad, (pad.device, pad.field), all, observations);
+        Self::in_order(pad, all, (all, observations))
+    }
+
+    fn in_order(
+        pad: &Pad<'f>,
+        all: &'f Observations,
+        (sequence, observations): (&'f Observations, &'f Observations),
+    ) -> Self {
+        let first = Simulated::new(pad, (pad.device, pad.field), all, (sequence, observations));
         let module_mm = pad.device.sites.centre_radius_mm;
         let reaches = first.hypotheses().iter().enumerate().map(|(at, hypothesis)| {
             let reaches = hypothesis.parameters.iter().map(|it| reach(it, module_mm)).collect();
             first.changes_field(at).then_some(reaches)
         });
         let reaches = reaches.collect();
-        Self { pad: *pad, all, first, others: Vec::new(), solved: Vec::new(), reaches, observations }
+        Self {
+            pad: *pad,
+            all,
+            sequence,
+            first,
+            others: Vec::new(),
+            solved: Vec::new(),
+            reaches,
+            observations,
+        }
     }
 
-    /// The same pads at other observations.
+    /// The same pads at other observations of all.
     pub(super) fn at<'o>(&'o self, observations: &'o Observations) -> Atlas<'o> {
-        let mut other = Atlas::new(&self.pad, self.all, observations);
+        self.with(Atlas::new(&self.pad, self.all, observations))
+    }
+
+    /// Another atlas with the same pads.
+    fn with<'o>(&'o self, mut other: Atlas<'o>) -> Atlas<'o> {
         for Solved { at, device, field } in &self.solved {
             other.add(Solved { at: at.clone(), device: device.clone(), field: field.clone() });
         }
@@ -89,7 +114,7 @@ impl<'f> Atlas<'f> {
 
     fn add(&mut self, solved: Solved) {
         let own = (&solved.device, &solved.field);
-        self.others.push(Simulated::new(&self.pad, own, self.all, self.observations));
+        self.others.push(Simulated::new(&self.pad, own, self.all, (self.sequence, self.observations)));
         self.solved.push(solved);
     }
 
@@ -174,6 +199,24 @@ impl Model for Atlas<'_> {
 
     fn common_errors(&self) -> Vec<CommonError> {
         self.first.common_errors()
+    }
+
+    fn contacts(&self, applied: &[(usize, Vec<f64>)], told: &Told<'_>) -> Option<Vec<Option<Written>>> {
+        let nearest = self.nearest(applied);
+        let field = nearest.and_then(|k| self.solved.get(k)).map_or(self.pad.field, |solved| &solved.field);
+        let (about, plate_mm) = (self.about(applied), self.pad.device.plate.radius_mm());
+        let chain = about.chain(applied);
+        let changed = changed(field, self.pad.flaws, plate_mm, &chain.mechanics.weights);
+        Some(contacts(about, chain, changed, plate_mm, told))
+    }
+
+    fn elsewhere(
+        &self,
+        rows: &Observations,
+        applied: &[(usize, Vec<f64>)],
+    ) -> Option<(Linearised, Vec<CommonError>)> {
+        let there = self.with(Atlas::in_order(&self.pad, self.all, (rows, rows)));
+        Some((there.linearised(applied), there.common_errors()))
     }
 }
 

@@ -142,6 +142,14 @@ impl Systems {
         })
     }
 
+    /// The background's functions of a channel at other rows, where `whole` is its root mean square over the measurement.
+    pub(super) fn background_at(&self, channel: usize, whole: f64, rows: &Observations) -> Vec<Vec<f64>> {
+        let values: Vec<Vec<f64>> =
+            rows.samples.iter().map(|sample| self.basis.at(sample.place_mm)).collect();
+        let loads: Vec<[f64; 3]> = rows.samples.iter().map(|sample| sample.load).collect();
+        products(&loads, &values, self.extents[channel].sqrt() * whole)
+    }
+
     /// G z of a channel.
     fn extent(&self, channel: usize, z: &[f64]) -> Vec<f64> {
         self.mean_squares.times(z).into_iter().map(|value| value * self.extents[channel]).collect()

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::setting::Change;
-use crate::numeric::zernike::{Jet, count, jets};
+use crate::numeric::zernike::{Jet, Polynomial, count, jets};
 use crate::pad::changes::{FieldChange, Flaw};
 use crate::pad::device::unit::Unit;
 use crate::pad::device::{Device, Side, Stack};
 use crate::pad::field::{ForceMaps, PadField, Sensitivity};
-use crate::pad::influence::MAPS;
+use crate::pad::influence::{InfluenceField, MAPS};
 use crate::quantity::{CHANNELS, MODULES};
 
 /// The pad that is held to be right.
@@ -99,6 +99,54 @@ fn at_place(field: &PadField, flaws: &[FieldChange], place: [f64; 2]) -> Arc<[Ma
         turns.iter().zip(&turned).map(|(turn, polynomials)| turn.maps(&values(&it.maps, polynomials)))
     });
     numbers.chain(flaws).collect()
+}
+
+/// Σⱼ wⱼ Cⱼ as a field of its own, the changes in the order of [`changes`]; none where no weight acts.
+pub(super) fn changed(
+    field: &PadField,
+    flaws: &[FieldChange],
+    plate_mm: f64,
+    weights: &[f64],
+) -> Option<InfluenceField> {
+    if weights.iter().all(|weight| *weight == 0.0) {
+        return None;
+    }
+    let numbers: Vec<&Sensitivity> = free(field).collect();
+    let (of_numbers, of_flaws) = weights.split_at(numbers.len().min(weights.len()));
+    let smooth = mixed(numbers.iter().map(|it| &it.maps).zip(of_numbers));
+    let turns: Vec<Turn> = (0..MODULES).map(Turn::back).collect();
+    let turned: Vec<(&Turn, [ForceMaps; CHANNELS])> = (turns.iter().enumerate())
+        .map(|(module, turn)| {
+            let own = of_flaws.iter().skip(module).step_by(MODULES);
+            (turn, mixed(flaws.iter().map(|it| &it.maps).zip(own)))
+        })
+        .collect();
+    let at = |place_mm: [f64; 2]| {
+        let place = place_mm.map(|mm| mm / plate_mm);
+        let mut sum = values(&smooth, &jets(degree([&smooth].into_iter()), place));
+        for (turn, maps) in turned.iter().filter(|(_, maps)| !maps[0][0].coefficients.is_empty()) {
+            let change = turn.maps(&values(maps, &jets(degree([maps].into_iter()), turn.vector(place))));
+            sum.iter_mut().flatten().zip(change.iter().flatten()).for_each(|(sum, change)| *sum += change);
+        }
+        std::array::from_fn(|map| sum[map / 3][map % 3])
+    };
+    let [spacing_mm, radius_mm] = [field.signals.spacing_mm(), field.signals.radius_mm()].map(f64::from);
+    Some(InfluenceField::sampled(spacing_mm, radius_mm, plate_mm, at))
+}
+
+/// Σⱼ wⱼ of maps, coefficient by coefficient; empty where no weight acts.
+fn mixed<'m>(terms: impl Iterator<Item = (&'m [ForceMaps; CHANNELS], &'m f64)>) -> [ForceMaps; CHANNELS] {
+    let mut sum: [ForceMaps; CHANNELS] =
+        std::array::from_fn(|_| std::array::from_fn(|_| Polynomial { coefficients: Vec::new() }));
+    for (maps, weight) in terms.filter(|(_, weight)| **weight != 0.0) {
+        for (sum, map) in sum.iter_mut().flatten().zip(maps.iter().flatten()) {
+            let length = sum.coefficients.len().max(map.coefficients.len());
+            sum.coefficients.resize(length, 0.0);
+            let own = sum.coefficients.iter_mut().zip(&map.coefficients);
+            own.for_each(|(sum, coefficient)| *sum += weight * coefficient);
+        }
+    }
+    sum
 }
 
 /// The highest degree of these maps.

@@ -4,8 +4,9 @@
 //! says what they should read and how that changes with each hypothesis of the catalogue (`causes/`), about the pad's own field
 //! or those of changed pads (`atlas`); the residual's covariance is noise, a smooth background that every simulator leaves, and
 //! what the simulator is known to get wrong (`covariance`); group score tests with a cluster bootstrap choose causes
-//! (`attribution`); the encompassing rule says which of them may be named (`naming`); rows that had no part in it say what they
-//! are worth (`gain`).
+//! (`attribution`); the encompassing rule says which of them may be named (`naming`), and models of further measurements
+//! (`experiments`) which would tell the others apart (`separation`); rows that had no part in it say what they are worth (`gain`),
+//! in readings and in contacts that are decoded by the model backwards (`inverse`, of the pad `bench`).
 //!
 //! The engine knows nothing of nine channels, but for `simulated`.
 //!
@@ -16,16 +17,19 @@ pub mod against;
 mod atlas;
 mod attribution;
 mod basis;
+mod bench;
 mod bootstrap;
 mod cause;
 mod causes;
 mod chain;
 mod columns;
 mod covariance;
+mod experiments;
 pub mod extension;
 mod gain;
 mod gatekeepers;
 mod inference;
+mod inverse;
 mod mechanics;
 mod memory;
 mod model;
@@ -133,7 +137,8 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
 
 /// The observations after the checks of the recording.
 fn checked(observations: &Observations, pad: &Pad<'_>) -> Result<Gate, Unfit> {
-    let expected = Simulated::new(pad, (pad.device, pad.field), observations, observations).readings(&[]);
+    let expected = Simulated::new(pad, (pad.device, pad.field), observations, (observations, observations))
+        .readings(&[]);
     let gate = guarded(observations, Some(&expected), |effect| pad.asks_for(effect));
     let is_alive = |channel| gate.observations.is_alive(channel);
     if (0..gate.observations.channels.len()).any(is_alive) { Ok(gate) } else { Err(Unfit::Silent) }
@@ -190,11 +195,11 @@ fn summary(
         let channels = parts.iter().zip(&unnamed_by_channel).filter(|(part, _)| **part > PART_MIN);
         finding.share * whole > OVER_REMAINDER * channels.map(|(_, square)| square).sum::<f64>()
     });
+    for (at, finding) in &mut kept {
+        finding.separate_by = separate_by(search, found, *at, &finding.confounded_with);
+    }
     let applied: Applied = kept.iter().map(|(at, _)| fit.applied[*at].clone()).collect();
     let mut findings: Vec<Finding> = kept.into_iter().map(|(_, finding)| finding).collect();
-    for finding in &mut findings {
-        finding.separate_by = separate_by(finding);
-    }
     findings.extend(search.offsets(found, whole + search.offsets_square(found)?)?);
     let unnamed_share = if unnamed > 0.0 { unnamed / whole } else { 0.0 };
     let nothing = Vec::new();
@@ -209,7 +214,7 @@ fn summary(
         background_mm: fit.background.prior.length_mm,
         background_share: rms(fit.background.shares.iter().flatten().copied()),
         ceiling_share: None,
-        gain: (!applied.is_empty() && locked.observations.rows() > 0).then(|| gain(open, locked, &applied)),
+        gain: gain([open, locked], &applied, &fit.systems.noise),
         not_detected: search.not_detected(found)?,
         not_testable: missing.to_vec(),
         unnamed_share,

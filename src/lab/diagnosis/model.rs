@@ -1,5 +1,8 @@
 //! What the engine asks of a model of the channels, and what it knows of the hypotheses.
 
+use super::inverse::Written;
+use super::noise::NoiseLevel;
+use super::observations::Observations;
 use super::target::Target;
 
 /// A number of a hypothesis.
@@ -132,6 +135,14 @@ pub(super) struct Linearised {
     pub(super) signatures: Vec<Vec<Signature>>,
 }
 
+/// What is known of each channel beside its readings.
+pub(super) struct Told<'t> {
+    /// What it reads without load.
+    pub(super) zeros: &'t [f64],
+    /// Its noise.
+    pub(super) noise: &'t [NoiseLevel],
+}
+
 /// A model of N channels at the rows of a measurement.
 pub(super) trait Model {
     /// What may be wrong with it.
@@ -151,5 +162,18 @@ pub(super) trait Model {
     /// A channel's further errors, row by row: independent columns of deviation 1 each, which no other channel shares.
     fn stated_errors(&self, _channel: usize) -> &[Vec<f64>] {
         &[]
+    }
+    /// For each row, the contact that must have been written for these hypotheses to read what was read. None where the model
+    /// knows no contacts.
+    fn contacts(&self, _applied: &[(usize, Vec<f64>)], _told: &Told<'_>) -> Option<Vec<Option<Written>>> {
+        None
+    }
+    /// The same at other rows, which nobody measured, and what the model gets wrong there. None where it cannot say.
+    fn elsewhere(
+        &self,
+        _rows: &Observations,
+        _applied: &[(usize, Vec<f64>)],
+    ) -> Option<(Linearised, Vec<CommonError>)> {
+        None
     }
 }

@@ -16,7 +16,7 @@ use crate::numeric::chi_square;
 /// Quantile of a normal number: 95 % lie within.
 const WITHIN_95: f64 = 1.959_964;
 /// Share of measurements like this one in which a cause of the stated size is found.
-const POWER: f64 = 0.9;
+pub(super) const POWER: f64 = 0.9;
 
 impl Search<'_> {
     /// The findings with their places in the fit, the largest first. `whole` is the weighted squared residual above noise and

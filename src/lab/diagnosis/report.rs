@@ -140,8 +140,23 @@ pub struct Gain {
     pub rmse_ratio: f64,
     /// Ends of its 95 % interval.
     pub rmse_ratio_interval95: [f64; 2],
+    /// How far decoded places are from the written ones, in mm; none where the model knows no contacts.
+    pub position_mae: Option<Decoded>,
+    /// The same of the loads, in N.
+    pub force_mae: Option<Decoded>,
     /// What each cause is worth by itself.
     pub per_cause: Vec<Without>,
+}
+
+/// Mean magnitudes of the errors along each axis, of contacts decoded by the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decoded {
+    /// As it is.
+    pub nominal: f64,
+    /// With the findings.
+    pub extended: f64,
+    /// Ends of the 95 % interval of what the findings change.
+    pub change_interval95: [f64; 2],
 }
 
 /// The residual with all findings but one.

@@ -7,7 +7,7 @@ use super::causes::CATALOGUE;
 use super::chain::{Chain, Reference};
 use super::covariance::BACKGROUND_MAX;
 use super::mechanics::{Maps, Pad, at_places, changes, side_share};
-use super::memory::Course;
+use super::memory::{Course, MemoryChain};
 use super::model::{CommonError, Hypothesis, Linearised, Model, Parameter, Signature};
 use super::observations::{Observations, Sample};
 use super::own::own_chain;
@@ -32,11 +32,11 @@ const NOTHING: f64 = 1e-9;
 /// Nine channels by a pad's field.
 pub(super) struct Simulated<'f> {
     signals: InfluenceField,
-    /// The whole measurement: what is remembered is so in its order.
-    all: &'f Observations,
+    /// The rows in their order: what is remembered is so in that.
+    pub(super) sequence: &'f Observations,
     course: Course,
     /// The rows of it that are asked for.
-    picked: Vec<usize>,
+    pub(super) picked: Vec<usize>,
     setting: Setting,
     reference: Reference,
     hypotheses: Vec<Hypothesis>,
@@ -57,16 +57,17 @@ struct Row {
 }
 
 impl<'f> Simulated<'f> {
-    /// The pad at some `observations` of `all`, about the `field` of its `own` device: hypotheses and references are those of all
-    /// and of the pad that is held to be right, so that any part, about any field, has the same.
+    /// The pad at some `observations` of a `sequence`, about the `field` of its `own` device: hypotheses and references are those of
+    /// `all` rows and of the pad that is held to be right, so that any part, about any field, has the same.
     pub(super) fn new(
         pad: &Pad<'_>,
         (own, field): (&Device, &PadField),
-        all: &'f Observations,
-        observations: &Observations,
+        all: &Observations,
+        (sequence, observations): (&'f Observations, &Observations),
     ) -> Self {
-        let course = Course::of(&all.samples, &all.follows(), pad.device.contact.full_scale_n);
-        let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all, &course);
+        let course =
+            |of: &Observations| Course::of(&of.samples, &of.follows(), pad.device.contact.full_scale_n);
+        let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all, &course(all));
         let mut hypotheses = Vec::new();
         let mut causes: Vec<&'static dyn Cause> = Vec::new();
         let is_asked = |cause: &&dyn Cause| pad.asks_for(cause.effect()) && cause.missing(&setting).is_none();
@@ -80,7 +81,7 @@ impl<'f> Simulated<'f> {
                 causes.push(cause);
             }
         }
-        let places_mm: Vec<[f64; 2]> = all.samples.iter().map(|sample| sample.place_mm).collect();
+        let places_mm: Vec<[f64; 2]> = sequence.samples.iter().map(|sample| sample.place_mm).collect();
         let reference = reference(pad.device, pad.field, all);
         let weights = setting.own_weights(pad.device, own);
         Self {
@@ -88,8 +89,8 @@ impl<'f> Simulated<'f> {
             signals: field.signals.clone(),
             reference,
             changes: at_places(field, pad.flaws, pad.device.plate.radius_mm(), &places_mm),
-            all,
-            course,
+            sequence,
+            course: course(sequence),
             picked: observations.numbers.clone(),
             setting,
             hypotheses,
@@ -111,7 +112,7 @@ impl<'f> Simulated<'f> {
     }
 
     /// The chain of these hypotheses.
-    fn chain(&self, applied: &[(usize, Vec<f64>)]) -> Chain {
+    pub(super) fn chain(&self, applied: &[(usize, Vec<f64>)]) -> Chain {
         let mut chain = self.own.clone();
         for (at, coordinates) in applied {
             let hypothesis = &self.hypotheses[*at];
@@ -123,7 +124,7 @@ impl<'f> Simulated<'f> {
     }
 
     fn row(&self, at: usize, chain: &Chain) -> Row {
-        let samples = &self.all.samples;
+        let samples = &self.sequence.samples;
         let then = self.course.moment(at, chain.rig.lag_s);
         let place_mm = std::array::from_fn(|axis| then.of(|row| samples[row].place_mm[axis]));
         let force_n = std::array::from_fn(|axis| then.of(|row| samples[row].load[axis]));
@@ -136,8 +137,20 @@ impl<'f> Simulated<'f> {
         }
     }
 
+    /// What a unit of true force along each axis strains at a place that is written so, without the field's changes.
+    pub(super) fn maps(&self, written_mm: [f64; 2], chain: &Chain) -> Maps {
+        let place_mm = chain.rig.place_mm(written_mm);
+        let gains = continued(&self.signals, place_mm);
+        let laplacian = self.signals.laplacian(place_mm);
+        let axes: [[f64; CHANNELS]; 3] = std::array::from_fn(|axis| {
+            let force_n = std::array::from_fn(|other| f64::from(u8::from(other == axis)));
+            Row { force_n, gains, laplacian, changes: Vec::new() }.strain(chain)
+        });
+        std::array::from_fn(|channel| axes.map(|strain| strain[channel]))
+    }
+
     fn rows(&self, chain: &Chain) -> Vec<Row> {
-        (0..self.all.rows()).map(|at| self.row(at, chain)).collect()
+        (0..self.sequence.rows()).map(|at| self.row(at, chain)).collect()
     }
 
     /// Each channel's values at the rows that are asked for.
@@ -179,7 +192,7 @@ impl<'f> Simulated<'f> {
 
     /// What the channels read at strains with their memory, at the rows that are asked for.
     fn read(&self, strains: &[[f64; CHANNELS]], chain: &Chain) -> Vec<Vec<f64>> {
-        let rows = strains.iter().zip(&self.all.samples);
+        let rows = strains.iter().zip(&self.sequence.samples);
         let mut channels =
             transposed(rows.map(|(strain, sample)| chain.channels.read(strain, sample, &self.reference)));
         let late = channels.iter_mut().zip(&chain.channels.skew_s).filter(|(_, skew_s)| **skew_s != 0.0);
@@ -188,6 +201,21 @@ impl<'f> Simulated<'f> {
             *channel = (0..channel.len()).map(then).collect();
         }
         self.picked(channels)
+    }
+
+    /// What a row's channels read when they are strained so and remember nothing.
+    pub(super) fn reading(&self, at: usize, strain: &[f64; CHANNELS], chain: &Chain) -> Vec<f64> {
+        chain.channels.read(strain, &self.sequence.samples[at], &self.reference)
+    }
+
+    /// What each channel reads at the rows that are asked for because of the rows about them, by what was written.
+    pub(super) fn of_order(&self, chain: &Chain) -> Vec<Vec<f64>> {
+        let mut alone = Chain { memory: MemoryChain::default(), ..chain.clone() };
+        alone.rig.lag_s = 0.0;
+        alone.channels.skew_s.fill(0.0);
+        let read = |chain: &Chain| self.read(&self.strained(&self.rows(chain), chain), chain);
+        let channels = read(chain).into_iter().zip(read(&alone));
+        channels.map(|(all, alone)| all.iter().zip(alone).map(|(a, b)| a - b).collect()).collect()
     }
 
     /// The readings with one more hypothesis, of which only what it can change is computed anew.
@@ -388,7 +416,7 @@ fn continued(field: &InfluenceField, place_mm: [f64; 2]) -> Gains {
 }
 
 /// Σₐ Fₐ Gₐ.
-fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
+pub(super) fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
     map.iter().zip(force_n).map(|(map, n)| map * n).sum()
 }
 

@@ -1,6 +1,6 @@
 //! What the causes are worth on locked rows, what was noticed before, and how all of it was computed.
 
-use super::super::numbers::{carried, rounded};
+use super::super::numbers::{Decoded, carried, decoded, rounded};
 use super::causes::bar;
 use super::drawing::escaped;
 use super::subject::Subject;
@@ -16,9 +16,30 @@ pub(super) fn gain(subject: &Subject<'_>) -> String {
     let [ratio, low, high] = percent_left(gain);
     format!(
         "{head}<p>On {} rows that had no part in finding them, the causes bring the model’s error down to <strong>{ratio} %</strong> of \
-         what it was ({low} to {high} %).</p>{}</section>",
+         what it was ({low} to {high} %).</p>{}{}</section>",
         gain.rows_locked,
-        table(subject, gain)
+        table(subject, gain),
+        contacts(gain)
+    )
+}
+
+/// How far decoded contacts are off; empty where the model knows no contacts.
+fn contacts(gain: &Gain) -> String {
+    let row = |(of, it): (&str, Decoded)| {
+        let [low, high] = &it.change;
+        let cells = [&it.nominal, &it.extended, &format!("{low} to {high}")];
+        let cells = cells.map(|cell| format!("<td class=\"number\">{}</td>", escaped(cell))).concat();
+        format!("<tr><th scope=\"row\">{of}</th>{cells}</tr>")
+    };
+    let rows: String = decoded(gain).map(row).collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    format!(
+        "<p>Contacts that the model decodes from the channels of these rows are off by so much: the mean of the magnitudes along each \
+         axis, against what was written.</p><table><thead><tr><th scope=\"col\">decoded</th><th scope=\"col\" class=\"number\">by the \
+         model as it is</th><th scope=\"col\" class=\"number\">with all causes</th><th scope=\"col\" class=\"number\">change, 95 % \
+         interval</th></tr></thead><tbody>{rows}</tbody></table>"
     )
 }
 

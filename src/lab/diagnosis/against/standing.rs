@@ -47,8 +47,7 @@ pub(super) fn standing(diagnosis: &mut Diagnosis, [open, locked]: &[Rows<'_>; 2]
     let told: Applied = places.map(|at| found.fit.applied[at].clone()).collect();
     diagnosis.rmse_extended = rmse(open, &told, &open.zeros(&told));
     diagnosis.residuals.extended = open.centred(&told);
-    let has_gain = !told.is_empty() && locked.observations.rows() > 0;
-    diagnosis.gain = has_gain.then(|| gain(open, locked, &told));
+    diagnosis.gain = gain([open, locked], &told, &found.fit.systems.noise);
     let unnamed: f64 = withdrawn.iter().map(|finding| finding.share).sum();
     diagnosis.unnamed_share = (diagnosis.unnamed_share + unnamed).min(1.0);
     diagnosis.verdict = verdict(!diagnosis.findings.is_empty(), diagnosis.unnamed_share);

@@ -5,8 +5,10 @@ use std::io::BufReader;
 use std::io::Write as _;
 use std::path::Path;
 
+use super::arguments::{Arguments, folder};
 use super::document::Document;
-use super::{Arguments, file_name, folder, report, text, write_report};
+use super::files::{file_name, write_report};
+use super::{report, text};
 use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
 use crate::cli::written::{print_json, reason, stdout};

@@ -175,7 +175,7 @@ impl<'s, 'm> Both<'s, 'm> {
         let wanted = chi_square::noncentrality(threshold, freedom, POWER);
         for rival in &rest[1..] {
             let free = (0..self.pairs.len()).chain(held.iter().chain([rival]).flat_map(shifted)).collect();
-            if left(&fisher, &cause, psi, free)? < wanted {
+            if left(&fisher, &cause, &psi[..freedom], free)? < wanted {
                 return Some(false);
             }
         }
@@ -290,6 +290,7 @@ mod tests {
             channels: (0..CHANNELS).map(|channel| format!("s{channel}")).collect(),
             readings: vec![vec![0.0; rows]; CHANNELS],
             is_told: vec![vec![true; rows]; CHANNELS],
+            numbers: (0..rows).collect(),
             samples,
         }
     }

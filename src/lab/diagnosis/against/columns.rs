@@ -1,6 +1,6 @@
 //! Which columns of two tables are labels and which are channels.
 
-use super::Unfit;
+use super::unfit::Unfit;
 use crate::lab::diagnosis::regression::Group;
 use crate::tables::measured::sheet::Sheet;
 

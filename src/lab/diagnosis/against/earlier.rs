@@ -3,16 +3,14 @@
 //! A recording is cut into parts. What zero and gain of a channel differ by from part to part, beyond chance, is what a sensor does by
 //! itself; and so is a zero's drift over the recording. No more than that is expected of a later one, either.
 
-use super::Unfit;
 use super::columns::{Columns, extent};
 use super::recording::Recording;
+use super::unfit::{ROWS_MIN, Unfit};
 use crate::lab::diagnosis::model::Signature;
 use crate::lab::diagnosis::observations::Sample;
 use crate::lab::diagnosis::regression::{Fit, Labels, Regression};
 use crate::numeric::statistics::{mean, population_deviation, rms};
 
-/// Fewest rows, of a recording and of a channel of it.
-pub(super) const ROWS_MIN: usize = 60;
 /// Parts that a recording is held against itself in.
 pub(super) const PARTS: usize = 6;
 /// A row of which the regression knows less than this is beyond what was recorded.

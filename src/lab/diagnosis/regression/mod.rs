@@ -14,65 +14,27 @@
 //! Sources: C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning (2006), 2.7 and 5.4; S. Fine, K. Scheinberg,
 //! J. Machine Learning Research 2 (2001) 243 (pivots); D. J. C. MacKay, Neural Computation 4 (1992) 415 (evidence).
 
+mod choice;
+mod kernel;
+mod system;
+
+use self::choice::{Choice, RATIOS};
+pub(crate) use self::kernel::{Group, Labels};
+use self::kernel::{Kernel, pivots, scale, scaled};
+use self::system::{Solution, System};
 use super::noise::NoiseLevel;
 use super::whitening::Whitening;
-use crate::numeric::dense::{Matrix, gram};
-use crate::numeric::linear::{LargeFactor, dot};
-use crate::numeric::statistics::{population_deviation, rms};
 
-/// Pivots at most, and the part of the process' variance that they may leave.
+use crate::numeric::linear::{LargeFactor, dot};
+use crate::numeric::statistics::population_deviation;
+
+/// Pivots at most.
 const PIVOTS_MAX: usize = 220;
-const LEFT_MIN: f64 = 1e-6;
-/// Rows by which the kernel is chosen, and its pivots then.
-const ROWS_CHOICE: usize = 480;
-const PIVOTS_CHOICE: usize = 140;
-/// Ratios of noise to signal, as variances, at which the evidence is looked at while the kernel is chosen.
-const RATIOS: [f64; 6] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
-/// The first length, how far it goes, and by what factor it is changed.
-const LENGTH_FIRST: f64 = 1.2;
-const LENGTHS: [f64; 2] = [0.15, 12.0];
-const LENGTH_STEP: f64 = 1.45;
-/// Values of β where there are loads.
-const BLENDS: [f64; 4] = [1e-6, 1e-4, 1e-2, 1.0];
-/// Passes over all numbers of the kernel.
-const PASSES: usize = 3;
-/// What makes numbers without a prior unique, as a precision.
-const FREE: f64 = 1e-6;
 /// Steps of the search for a channel's ratio, by the golden section over its logarithm.
 const SECTIONS: usize = 12;
 const GOLDEN: f64 = 0.618_034;
 /// How often noise and regression are found in turn.
 const NOISE_ROUNDS: usize = 2;
-
-/// Inputs of one kind: those that turn into each other when the axes turn have one length.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Group {
-    /// Which inputs.
-    pub(super) inputs: Vec<usize>,
-    /// Whether they are loads: zero is nothing.
-    pub(super) is_load: bool,
-}
-
-/// What is written beside rows.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Labels {
-    /// The inputs' groups.
-    pub(super) groups: Vec<Group>,
-    /// For each row, its inputs.
-    pub(super) rows: Vec<Vec<f64>>,
-    /// For each row, what acts linearly and on its own: time, temperature.
-    pub(super) others: Vec<Vec<f64>>,
-}
-
-/// The kernel, in units of the inputs' extent.
-#[derive(Clone, Debug, PartialEq)]
-struct Kernel {
-    blend: f64,
-    /// For each group: λₚ.
-    linear: Vec<f64>,
-    /// For each group: λₓ.
-    smooth: Vec<f64>,
-}
 
 /// The functions of a regression.
 #[derive(Clone, Debug)]
@@ -268,264 +230,11 @@ impl Fit {
     }
 }
 
-impl Kernel {
-    fn of(&self, groups: &[Group], one: &[f64], other: &[f64]) -> f64 {
-        let (mut product, mut places, mut all) = (0.0, 0.0, 0.0);
-        let mut begin = 0;
-        for (at, group) in groups.iter().enumerate() {
-            let end = begin + group.inputs.len();
-            let pairs = || one[begin..end].iter().zip(&other[begin..end]);
-            let square: f64 = pairs().map(|(a, b)| (a - b) * (a - b)).sum();
-            all += square / (self.smooth[at] * self.smooth[at]);
-            if group.is_load {
-                product += pairs().map(|(a, b)| a * b).sum::<f64>();
-            } else {
-                places += square / (self.linear[at] * self.linear[at]);
-            }
-            begin = end;
-        }
-        let linear =
-            if self.blend < 1.0 && product != 0.0 { product * libm::exp(-0.5 * places) } else { 0.0 };
-        (1.0 - self.blend) * linear + self.blend * libm::exp(-0.5 * all)
-    }
-}
-
-/// A group's middles and extent: half of the widest range, or the root mean square of loads.
-fn scale(group: &Group, rows: &[Vec<f64>]) -> (Vec<f64>, f64) {
-    let along = |input: &usize| {
-        let of = || rows.iter().map(|row| row[*input]);
-        [of().fold(f64::INFINITY, f64::min), of().fold(f64::NEG_INFINITY, f64::max)]
-    };
-    let ranges: Vec<[f64; 2]> = group.inputs.iter().map(along).collect();
-    if group.is_load {
-        let size =
-            group.inputs.iter().map(|input| rms(rows.iter().map(|row| row[*input]))).fold(0.0, f64::max);
-        return (vec![0.0; ranges.len()], size.max(f64::MIN_POSITIVE.sqrt()));
-    }
-    let extent = ranges.iter().map(|[low, high]| 0.5 * (high - low)).fold(f64::MIN_POSITIVE.sqrt(), f64::max);
-    (ranges.iter().map(|[low, high]| f64::midpoint(*low, *high)).collect(), extent)
-}
-
-/// A row's inputs group by group, in units of their extent.
-fn scaled(groups: &[Group], scales: &[(Vec<f64>, f64)], row: &[f64]) -> Vec<f64> {
-    let of_group = |(group, (middles, extent)): (&Group, &(Vec<f64>, f64))| {
-        let inputs = group.inputs.iter().zip(middles);
-        inputs.map(|(input, middle)| (row[*input] - middle) / extent).collect::<Vec<_>>()
-    };
-    groups.iter().zip(scales).flat_map(of_group).collect()
-}
-
-/// The rows that a pivoted factorisation takes first, and the factor of their covariance.
-fn pivots(
-    groups: &[Group],
-    kernel: &Kernel,
-    rows: &[Vec<f64>],
-    most: usize,
-) -> Option<(Vec<usize>, LargeFactor)> {
-    let mut left: Vec<f64> = rows.iter().map(|row| kernel.of(groups, row, row)).collect();
-    let whole = left.iter().fold(0.0, |most: f64, it| most.max(*it));
-    let mut taken: Vec<usize> = Vec::new();
-    let mut lines: Vec<Vec<f64>> = Vec::new();
-    while taken.len() < most.min(rows.len()) {
-        let (next, largest) = left
-            .iter()
-            .enumerate()
-            .fold((0, 0.0), |best, (at, left)| if *left > best.1 { (at, *left) } else { best });
-        if largest <= LEFT_MIN * whole {
-            break;
-        }
-        let root = largest.sqrt();
-        let mut line: Vec<f64> = rows.iter().map(|row| kernel.of(groups, &rows[next], row)).collect();
-        for before in &lines {
-            let factor = before[next];
-            line.iter_mut().zip(before).for_each(|(value, before)| *value -= factor * before);
-        }
-        line.iter_mut().for_each(|value| *value /= root);
-        left.iter_mut().zip(&line).for_each(|(left, value)| *left = (*left - value * value).max(0.0));
-        left[next] = 0.0;
-        taken.push(next);
-        lines.push(line);
-    }
-    let mut covariance = Matrix::zeros(taken.len(), taken.len());
-    for (at, one) in taken.iter().enumerate() {
-        for (with, other) in taken.iter().enumerate() {
-            covariance.row_mut(at)[with] = kernel.of(groups, &rows[*one], &rows[*other]);
-        }
-        covariance.row_mut(at)[at] += 0.1 * LEFT_MIN * whole;
-    }
-    Some((taken, covariance.factorised()?))
-}
-
-/// Least squares with priors: the products of whitened columns.
-struct System {
-    gram: Matrix,
-    right: Vec<f64>,
-    square: f64,
-    free: usize,
-    rows: f64,
-}
-
-struct Solution {
-    factor: LargeFactor,
-    weights: Vec<f64>,
-    variance: f64,
-    evidence: f64,
-}
-
-impl System {
-    /// Of the columns the first `free` ones have no prior.
-    fn of(columns: &[Vec<f64>], readings: &[f64], free: usize, rows: usize) -> Self {
-        Self {
-            gram: gram(&columns.iter().map(Vec::as_slice).collect::<Vec<_>>()),
-            right: columns.iter().map(|column| dot(column, readings)).collect(),
-            square: dot(readings, readings),
-            free,
-            rows: rows as f64,
-        }
-    }
-
-    fn precision(&self, at: usize, ratio: f64) -> f64 {
-        ratio * if at < self.free { FREE } else { 1.0 }
-    }
-
-    fn factorised(&self, ratio: f64) -> Option<LargeFactor> {
-        let mut inner = self.gram.clone();
-        (0..inner.columns()).for_each(|at| inner.row_mut(at)[at] += self.precision(at, ratio));
-        inner.factorised()
-    }
-
-    /// With so much noise over signal, as variances. The evidence is that of the best noise: with n rows, K functions and
-    /// S = yᵀy − yᵀX w, −½ (n ln S/n + ln det(XᵀX + P) − K ln ratio).
-    fn at(&self, ratio: f64) -> Option<Solution> {
-        let factor = self.factorised(ratio)?;
-        let (weights, variance, evidence) = self.with(&factor, ratio, &self.right, self.square);
-        Some(Solution { factor, weights, variance, evidence })
-    }
-
-    fn with(&self, factor: &LargeFactor, ratio: f64, right: &[f64], square: f64) -> (Vec<f64>, f64, f64) {
-        let weights = factor.solve(right);
-        let rows = (self.rows - self.free as f64).max(1.0);
-        let variance =
-            ((square - dot(&weights, right)) / rows).max(1e-14 * square / rows).max(f64::MIN_POSITIVE);
-        let smooth = (self.gram.columns() - self.free) as f64;
-        let evidence = -0.5 * (rows * variance.ln() + factor.log_determinant() - smooth * ratio.ln());
-        (weights, variance, evidence)
-    }
-}
-
-/// Rows by which the kernel is chosen.
-struct Choice {
-    rows: Vec<Vec<f64>>,
-    others: Vec<Vec<f64>>,
-    readings: Vec<Vec<f64>>,
-}
-
-impl Choice {
-    fn of(labels: &Labels, rows: &[Vec<f64>], readings: &[Vec<f64>]) -> Self {
-        let count = rows.len().min(ROWS_CHOICE);
-        let picked: Vec<usize> = (0..count).map(|at| at * rows.len() / count).collect();
-        let centred = |channel: &Vec<f64>| -> Vec<f64> {
-            let size = population_deviation(channel).max(f64::MIN_POSITIVE.sqrt());
-            picked.iter().map(|row| channel[*row] / size).collect()
-        };
-        Self {
-            rows: picked.iter().map(|row| rows[*row].clone()).collect(),
-            others: picked.iter().map(|row| labels.others.get(*row).cloned().unwrap_or_default()).collect(),
-            readings: readings.iter().map(centred).collect(),
-        }
-    }
-
-    /// The kernel with the greatest evidence: each number in turn, by steps that go on while they help.
-    fn chosen(&self, labels: &Labels) -> Option<Kernel> {
-        let groups = &labels.groups;
-        let has_loads = groups.iter().any(|group| group.is_load);
-        let first = |blend: f64| Kernel {
-            blend,
-            linear: vec![LENGTH_FIRST; groups.len()],
-            smooth: vec![LENGTH_FIRST; groups.len()],
-        };
-        let mut best = first(if has_loads { BLENDS[1] } else { 1.0 });
-        let mut evidence = self.evidence(groups, &best)?;
-        let mut better = |kernel: Kernel, best: &mut Kernel| {
-            let found = self.evidence(groups, &kernel).unwrap_or(f64::NEG_INFINITY);
-            let is_better = found > evidence;
-            if is_better {
-                (evidence, *best) = (found, kernel);
-            }
-            is_better
-        };
-        for _ in 0..PASSES {
-            let before = best.clone();
-            for (at, is_linear) in numbers(groups, has_loads) {
-                for factor in [LENGTH_STEP, 1.0 / LENGTH_STEP] {
-                    while let Some(next) = stepped(&best, at, is_linear, factor) {
-                        if !better(next, &mut best) {
-                            break;
-                        }
-                    }
-                }
-            }
-            for blend in BLENDS.into_iter().filter(|_| has_loads) {
-                better(Kernel { blend, ..best.clone() }, &mut best);
-            }
-            if best == before {
-                break;
-            }
-        }
-        Some(best)
-    }
-
-    /// Over all channels, each with the ratio that suits it best.
-    fn evidence(&self, groups: &[Group], kernel: &Kernel) -> Option<f64> {
-        let (taken, factor) = pivots(groups, kernel, &self.rows, PIVOTS_CHOICE)?;
-        let functions = self.rows.iter().zip(&self.others).map(|(row, others)| {
-            let with: Vec<f64> = taken.iter().map(|at| kernel.of(groups, &self.rows[*at], row)).collect();
-            let mut functions = vec![1.0];
-            functions.extend(others);
-            functions.extend(factor.solve_lower(&with));
-            functions
-        });
-        let functions = Matrix::from_rows(&functions.collect::<Vec<_>>());
-        let columns: Vec<Vec<f64>> = (0..functions.columns()).map(|at| functions.column(at)).collect();
-        let free = 1 + self.others.first().map_or(0, Vec::len);
-        let system = System::of(&columns, &[], free, self.rows.len());
-        let rights: Vec<(Vec<f64>, f64)> = self
-            .readings
-            .iter()
-            .map(|readings| (functions.transposed_times(readings), dot(readings, readings)))
-            .collect();
-        let mut most = vec![f64::NEG_INFINITY; rights.len()];
-        for ratio in RATIOS {
-            let factor = system.factorised(ratio)?;
-            for (most, (right, square)) in most.iter_mut().zip(&rights) {
-                *most = most.max(system.with(&factor, ratio, right, *square).2);
-            }
-        }
-        Some(most.iter().sum())
-    }
-}
-
-/// The kernel's lengths that mean something: a group's number, and whether it is one of the linear part.
-fn numbers(groups: &[Group], has_loads: bool) -> Vec<(usize, bool)> {
-    let of_group = |(at, group): (usize, &Group)| {
-        let linear = (has_loads && !group.is_load).then_some((at, true));
-        linear.into_iter().chain([(at, false)])
-    };
-    groups.iter().enumerate().flat_map(of_group).collect()
-}
-
-/// The kernel with one length changed; `None` at the end of the range.
-fn stepped(kernel: &Kernel, at: usize, is_linear: bool, factor: f64) -> Option<Kernel> {
-    let mut next = kernel.clone();
-    let length = if is_linear { &mut next.linear[at] } else { &mut next.smooth[at] };
-    *length *= factor;
-    (*length >= LENGTHS[0] && *length <= LENGTHS[1]).then_some(next)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::numeric::random::SplitMix64;
+    use crate::numeric::statistics::rms;
 
     fn groups() -> Vec<Group> {
         vec![Group { inputs: vec![0, 1], is_load: false }, Group { inputs: vec![2, 3], is_load: true }]
@@ -591,7 +300,9 @@ mod tests {
     fn rows_far_from_all_others_are_unknown() {
         let (labels, readings, _) = measured(5, 200);
         let regression = Regression::of(&labels, &readings).unwrap();
-        assert!(regression.unknown(&labels.rows[7]) < 1e-3);
-        assert!(regression.unknown(&[90.0, 90.0, 1.0, 1.0]) > 0.5);
+        let known = regression.unknown(&labels.rows[7]);
+        assert!(known < 1e-3, "{known}");
+        let far = regression.unknown(&[90.0, 90.0, 8.0, 8.0]);
+        assert!(far > 0.5, "{far}");
     }
 }

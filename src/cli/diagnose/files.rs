@@ -1,0 +1,24 @@
+//! The report's files.
+
+use std::path::Path;
+
+use super::document::Document;
+use super::report;
+use crate::cli::destination::Folder;
+use crate::cli::failure::Failure;
+use crate::cli::written::{json_text, say};
+use tactpad::lab::diagnosis::report::Diagnosis;
+
+/// The last part of a path.
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Writes the page and its document.
+pub(super) fn write_report(folder: &Folder, page: &str, diagnosis: &Diagnosis) -> Result<(), Failure> {
+    let page = folder.write(report::PAGE, page.as_bytes())?;
+    let document =
+        folder.write(report::DOCUMENT, format!("{}\n", json_text(&Document::of(diagnosis))?).as_bytes())?;
+    say(format_args!("the report is {page}, its numbers are {document}"));
+    Ok(())
+}

@@ -1,0 +1,85 @@
+//! Why two tables cannot be compared.
+
+use std::fmt;
+
+/// Fewest rows, of a recording and of a channel of it.
+pub(super) const ROWS_MIN: usize = 60;
+/// Fewest places, or presses, by which changes can be told.
+pub(super) const BLOCKS_MIN: usize = 6;
+
+/// Why two tables cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Unfit {
+    /// A column that was asked for is not there.
+    Missing {
+        /// Its name.
+        name: String,
+        /// In which table.
+        which: &'static str,
+    },
+    /// A column that was asked for holds no numbers.
+    NoNumbers {
+        /// Its name.
+        name: String,
+        /// In which table.
+        which: &'static str,
+    },
+    /// No column can be a channel.
+    Channels,
+    /// No column can be a label.
+    Labels,
+    /// All labels stay the same.
+    Constant,
+    /// Too few rows.
+    Rows {
+        /// How many.
+        rows: usize,
+        /// In which table.
+        which: &'static str,
+    },
+    /// Too few rows within the labels of the earlier recording.
+    Apart(usize),
+    /// Too few places or presses.
+    Blocks(usize),
+    /// No channel goes with the labels.
+    Silent,
+    /// The numbers have no unique solution.
+    Singular,
+}
+
+impl fmt::Display for Unfit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing { name, which } => write!(f, "{which} has no column {name}"),
+            Self::NoNumbers { name, which } => write!(f, "column {name} of {which} holds no numbers"),
+            Self::Channels => f.write_str(
+                "the two tables have no channel in common: no column of numbers that varies and is no label has the same name in both; \
+                 name channels with --channels",
+            ),
+            Self::Labels => f.write_str(
+                "the two tables have no place and no load in common (x_mm, y_mm, z_mm, fx_n, fy_n, fz_n, scale_g); name labels with \
+                 --labels",
+            ),
+            Self::Constant => f.write_str(
+                "all labels stay the same in the earlier recording: what the channels should read under others is not known",
+            ),
+            Self::Rows { rows, which } => {
+                write!(f, "{which} has {rows} rows with labels: it takes {ROWS_MIN} at least")
+            }
+            Self::Apart(rows) => write!(
+                f,
+                "{rows} rows have labels that the earlier recording has, too: it takes {ROWS_MIN} at least; measure where the earlier one \
+                 was measured"
+            ),
+            Self::Blocks(blocks) => write!(
+                f,
+                "contacts at {blocks} places, or in as many presses: it takes {BLOCKS_MIN} at least to tell a change from chance"
+            ),
+            Self::Silent => f.write_str("no channel follows the labels as it did in the earlier recording; see that each row has the channels of its own contact"),
+            Self::Singular => f.write_str("these readings have no noise at all, or numbers too large to be readings: nothing can be told by them"),
+        }
+    }
+}
+
+impl std::error::Error for Unfit {}

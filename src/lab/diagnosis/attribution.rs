@@ -22,8 +22,8 @@ const REFITS: usize = 5;
 /// A refit that moves no coordinate by more than this many standard deviations stands.
 const STANDS: f64 = 0.1;
 
-/// A cause's signature is known no better than the field that it is made of: so much of what the largest cause explains may be that
-/// cause still, in another guise.
+/// A signature is known no better than the field that it is made of. Where it goes with the load in proportion the background holds that
+/// error; where it has a course of its own, so much of what the cause explains may be that cause still, in another guise.
 const SIGNATURE_ERROR: f64 = BACKGROUND_MAX;
 
 /// Hypotheses that hold, each with its coordinates.
@@ -261,9 +261,11 @@ impl<'m> Search<'m> {
         Some(worst.map(|(_, at)| at))
     }
 
-    /// What a cause must take off the weighted squares to be more than the largest one's signature may be wrong by.
+    /// What a cause must take off the weighted squares to be more than the signatures of those with a course may be wrong by.
     fn least_square(&self, fit: &Fit) -> Option<f64> {
-        let mut squares = (0..fit.applied.len()).map(|at| Some(self.test_within(fit, at)?.square));
+        let has_course = |at: &usize| !self.columns.shapes[fit.applied[*at].0].is_empty();
+        let mut squares =
+            (0..fit.applied.len()).filter(has_course).map(|at| Some(self.test_within(fit, at)?.square));
         let largest = squares.try_fold(0.0, |largest, square| Some(f64::max(largest, square?)))?;
         Some(SIGNATURE_ERROR * SIGNATURE_ERROR * largest)
     }

@@ -21,6 +21,7 @@ mod bench;
 mod bootstrap;
 mod cause;
 mod causes;
+mod ceiling;
 mod chain;
 mod columns;
 mod covariance;
@@ -52,6 +53,7 @@ use self::atlas::{Atlas, attributed};
 use self::attribution::{Applied, Attribution, Fit, Search};
 use self::cause::Cause;
 use self::causes::CATALOGUE;
+use self::ceiling::ceiling_share;
 use self::covariance::{REMAINDER_MAX, Remainder};
 use self::gain::{Rows, gain, rmse};
 use self::gatekeepers::excess::{EFFECT, Excess, excess};
@@ -213,7 +215,7 @@ fn summary(
         rmse_extended: rmse(open, &applied, &open.zeros(&applied)),
         background_mm: fit.background.prior.length_mm,
         background_share: rms(fit.background.shares.iter().flatten().copied()),
-        ceiling_share: None,
+        ceiling_share: ceiling_share([open, locked], &applied, &fit.systems.noise),
         gain: gain([open, locked], &applied, &fit.systems.noise),
         not_detected: search.not_detected(found)?,
         not_testable: missing.to_vec(),

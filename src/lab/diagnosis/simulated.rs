@@ -169,23 +169,37 @@ impl<'f> Simulated<'f> {
         strains
     }
 
-    /// What memory makes of an error of the strains, and of not knowing when between two rows a load has changed: half of what it adds
-    /// to strains that are too large by the largest background and come early, less what to ones that are too small and late.
+    /// Half of what friction adds to strains that are too large by the largest background, less what to ones that are too small; and
+    /// the same of creep under loads that came early, and late, between two rows.
     fn doubts(&self, rows: &[Row], chain: &Chain) -> Vec<Vec<f64>> {
         let magnitude = |row: &Row| libm::sqrt(row.force_n.iter().map(|n| n * n).sum());
         let magnitudes: Vec<f64> = rows.iter().map(magnitude).collect();
         let load_rms = rms(magnitudes.iter().copied());
         let strains: Vec<[f64; CHANNELS]> = rows.iter().map(|row| row.strain(chain)).collect();
+        let friction = MemoryChain { prony: Vec::new(), ..chain.memory.clone() };
+        let creep = MemoryChain { plays: Vec::new(), ..chain.memory.clone() };
         let doubt = |channel: usize| {
             let (full_scale, size) = (self.reference.full_scale[channel], self.reference.sizes[channel]);
-            let added = |sign: f64| {
-                let off = |magnitude: f64| sign * BACKGROUND_MAX * size * magnitude / load_rms;
+            let added = |memory: &MemoryChain, off: f64, early: f64| {
+                let off = |magnitude: f64| off * BACKGROUND_MAX * size * magnitude / load_rms;
                 let own = strains.iter().zip(&magnitudes).map(|(strain, it)| strain[channel] + off(*it));
-                let own: Vec<f64> = own.collect();
-                chain.memory.added(&self.course, channel, full_scale, (&own, sign))
+                memory.added(&self.course, channel, full_scale, (&own.collect::<Vec<_>>(), early))
             };
-            let (Some(above), Some(below)) = (added(1.0), added(-1.0)) else { return Vec::new() };
-            self.picked.iter().map(|row| 0.5 * (above[*row] - below[*row])).collect()
+            let pairs = [
+                [1.0, -1.0].map(|off| added(&friction, off, 0.0)),
+                [1.0, -1.0].map(|early| added(&creep, 0.0, early)),
+            ];
+            let halves = |pair: &[Option<Vec<f64>>; 2], row: usize| match pair {
+                [Some(above), Some(below)] => 0.5 * (above[row] - below[row]),
+                _ => 0.0,
+            };
+            if pairs.iter().flatten().all(Option::is_none) {
+                return Vec::new();
+            }
+            self.picked
+                .iter()
+                .map(|row| libm::hypot(halves(&pairs[0], *row), halves(&pairs[1], *row)))
+                .collect()
         };
         (0..CHANNELS).map(doubt).collect()
     }

@@ -1,8 +1,12 @@
 //! Which causes the residual calls for: forward selection with refits, backward removal.
 
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
 use super::bootstrap::Bootstrap;
 use super::columns::{Columns, ZERO};
-use super::covariance::{BACKGROUND_MAX, Background, Marginal, Systems};
+use super::covariance::{BACKGROUND_MAX, Background, Marginal, Smooth, Systems};
 use super::inference::{Projected, Test};
 use super::model::{Linearised, Model, Parameter};
 use super::observations::Observations;
@@ -53,8 +57,8 @@ pub(super) struct Attribution {
 pub(super) struct Search<'m> {
     pub(super) model: &'m dyn Model,
     pub(super) observations: &'m Observations,
-    /// Where the background's size is asked for.
-    all: &'m Observations,
+    /// The background's functions at their rows.
+    smooth: Arc<Smooth>,
     pub(super) columns: Columns,
     pub(super) clusters: Vec<usize>,
 }
@@ -63,7 +67,8 @@ impl<'m> Search<'m> {
     /// `observations` are the open rows of `all`.
     pub(super) fn new(model: &'m dyn Model, all: &'m Observations, observations: &'m Observations) -> Self {
         let columns = Columns::of(model.hypotheses(), &model.common_errors(), observations);
-        Self { model, all, observations, columns, clusters: observations.clusters() }
+        let smooth = Arc::new(Smooth::of(all, observations));
+        Self { model, observations, smooth, columns, clusters: observations.clusters() }
     }
 
     /// Forward selection from causes that are held to be there: whatever is not significant is taken out; while the best
@@ -74,7 +79,7 @@ impl<'m> Search<'m> {
         while let Some(least) = self.superfluous(&fit, critical)? {
             let mut applied = fit.applied.clone();
             applied.remove(least);
-            fit = self.fitted(&applied, Some(&fit.background))?;
+            fit = self.fitted(&applied, Some(&fit))?;
         }
         // What was taken out stays out, so that the search ends.
         let mut barred: Vec<usize> = Vec::new();
@@ -82,12 +87,12 @@ impl<'m> Search<'m> {
             let Some(next) = self.next(&fit, critical, &barred)? else { break };
             let mut applied = fit.applied.clone();
             applied.push((next, vec![0.0; self.model.hypotheses()[next].parameters.len()]));
-            fit = self.fitted(&applied, Some(&fit.background))?;
+            fit = self.fitted(&applied, Some(&fit))?;
             critical = self.critical(&fit)?;
             while let Some(least) = self.superfluous(&fit, critical)? {
                 let mut applied = fit.applied.clone();
                 barred.push(applied.remove(least).0);
-                fit = self.fitted(&applied, Some(&fit.background))?;
+                fit = self.fitted(&applied, Some(&fit))?;
             }
         }
         Some(Attribution { fit, critical })
@@ -97,20 +102,24 @@ impl<'m> Search<'m> {
         self.model.hypotheses()[hypothesis].effect == ZERO
     }
 
-    /// The fit of these hypotheses by Gauss and Newton's method, with the covariance that goes with it.
-    pub(super) fn fitted(&self, applied: &Applied, start: Option<&Background>) -> Option<Fit> {
+    /// The fit of these hypotheses by Gauss and Newton's method, with the covariance that goes with it. With `start`, a fit of nearly the
+    /// same ones, that is not sought from the beginning.
+    pub(super) fn fitted(&self, applied: &Applied, start: Option<&Fit>) -> Option<Fit> {
         let mut applied = applied.clone();
-        let mut background = start.cloned();
+        let mut before: Option<(Systems, Background)> = None;
         for step in 0..=REFITS {
             let linearised = self.model.linearised(&applied);
             let systems = Systems::of(
-                [self.all, self.observations],
+                (self.observations, &self.smooth),
                 self.model,
-                &linearised,
-                &self.columns.signatures(&linearised),
+                (&linearised, &self.columns.signatures(&linearised)),
+                before.as_ref().map(|(systems, _)| systems).or(start.map(|fit| &fit.systems)),
             )?;
             let fitted = self.columns.fitted(applied.iter().map(|(at, _)| *at));
-            let found = systems.background(&fitted, if step == 0 { None } else { background.as_ref() })?;
+            let found = match &before {
+                Some((_, background)) => systems.resized(&fitted, background)?,
+                None => systems.background(&fitted, start.map(|fit| &fit.background))?,
+            };
             let mut marginal = systems.marginal(&found)?;
             self.columns.pull(&mut marginal, &applied);
             let solved = fitted.solved(&marginal)?;
@@ -126,7 +135,7 @@ impl<'m> Search<'m> {
                 });
             }
             self.step(&mut applied, &solved.coordinates);
-            background = Some(found);
+            before = Some((systems, found));
         }
         None
     }
@@ -185,6 +194,7 @@ impl<'m> Search<'m> {
         let columns = &self.columns.of_hypothesis[hypothesis];
         let of_channel = |at: usize| {
             let own = fit.systems.channels[at]
+                .equations
                 .columns
                 .iter()
                 .enumerate()
@@ -220,10 +230,12 @@ impl<'m> Search<'m> {
             .map(|at| (self.test(&projected, at, &projected.score), at))
             .collect();
         candidates.sort_by(|(one, _), (other, _)| one.by_chance(other));
+        candidates.truncate(SHORTLIST);
+        // One that the held ones reproduce has no fit beside them.
+        let closely = |(_, at): &(Test, usize)| Some((*at, self.criterion(fit, *at)?));
+        let looked_at: Vec<(usize, (f64, Test))> = candidates.par_iter().filter_map(closely).collect();
         let mut best: Option<(f64, usize)> = None;
-        for (_, at) in candidates.into_iter().take(SHORTLIST) {
-            // One that the held ones reproduce has no fit beside them.
-            let Some((criterion, test)) = self.criterion(fit, at) else { continue };
+        for (at, (criterion, test)) in looked_at {
             let is_found = test.p_value() < critical && test.square > least;
             if is_found && best.is_none_or(|(least, _)| criterion < least) {
                 best = Some((criterion, at));
@@ -237,8 +249,8 @@ impl<'m> Search<'m> {
     fn criterion(&self, fit: &Fit, at: usize) -> Option<(f64, Test)> {
         let held = || fit.applied.iter().map(|(held, _)| *held);
         let both = self.columns.fitted(held().chain([at]));
-        let background = fit.systems.background(&both, Some(&fit.background))?;
-        let marginal = fit.systems.marginal(&background)?;
+        let background = fit.systems.resized(&both, &fit.background)?;
+        let marginal = fit.systems.marginal_with(&both.columns, &background)?;
         let projected = Projected::of(&marginal, &self.columns.fitted(held()))?;
         let test = self.test(&projected, at, &projected.score);
         let deviance = marginal.square - both.solved(&marginal)?.removed + marginal.log_determinant();

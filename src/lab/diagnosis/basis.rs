@@ -9,6 +9,7 @@
 //! (2020) 419 (the waves); J. Quiñonero-Candela, C. E. Rasmussen, J. Machine Learning Research 6 (2005) 1939 (projections).
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 use super::observations::Observations;
 use crate::numeric::dense::{Matrix, gram};
@@ -19,8 +20,9 @@ const REACH: f64 = 1.4;
 /// Functions along each side; of two sides together those within the circle of that radius.
 const PER_SIDE: usize = 8;
 /// Least and greatest correlation length, as shares of the places' half side: shorter ones are not resolved by so many functions,
-/// longer ones are all alike.
+/// longer ones are all alike. And how many are tried, evenly in their logarithms.
 const LENGTHS: [f64; 2] = [0.3, 1.2];
+pub(super) const LENGTHS_TRIED: usize = 11;
 /// Points by which the process is projected, and what makes a projection of functions that are nearly alike there unique, as a
 /// share of their mean square.
 const POINTS: usize = 200;
@@ -29,7 +31,7 @@ const RIDGE: f64 = 1e-6;
 const HALF_SIDE_MIN_MM: f64 = 1.0;
 
 /// The functions of a measurement's places.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub(super) struct Basis {
     /// Along x and y: the middle of the places, and half their extent.
     sides: [[f64; 2]; 2],
@@ -37,6 +39,8 @@ pub(super) struct Basis {
     orders: Vec<[f64; 2]>,
     /// For each row, the functions' values.
     pub(super) values: Vec<Vec<f64>>,
+    /// Of each length that is tried.
+    priors: [OnceLock<Option<Prior>>; LENGTHS_TRIED],
 }
 
 /// z ~ N(0, T).
@@ -79,7 +83,7 @@ impl Basis {
         });
         let all = (1..=PER_SIDE).flat_map(|i| (1..=PER_SIDE).map(move |j| [i as f64, j as f64]));
         let orders = all.filter(|[i, j]| libm::hypot(*i, *j) <= 1.0 + PER_SIDE as f64).collect();
-        let mut basis = Self { sides, orders, values: Vec::new() };
+        let mut basis = Self { sides, orders, values: Vec::new(), priors: Default::default() };
         basis.values = places().map(|place_mm| basis.at(place_mm)).collect();
         basis
     }
@@ -103,14 +107,21 @@ impl Basis {
         self.orders.len()
     }
 
-    /// The least and the greatest correlation length.
-    pub(super) fn lengths_mm(&self) -> [f64; 2] {
+    /// One of the correlation lengths that are tried, from the least to the greatest.
+    fn length_mm(&self, at: usize) -> f64 {
         let half_mm = self.sides[0][1].max(self.sides[1][1]);
-        LENGTHS.map(|share| share * half_mm)
+        let [least, most] = LENGTHS;
+        let share = least * libm::pow(most / least, at as f64 / (LENGTHS_TRIED - 1) as f64);
+        share * half_mm
+    }
+
+    /// The process of one of the lengths that are tried; it is computed once.
+    pub(super) fn prior(&self, at: usize) -> Option<&Prior> {
+        self.priors.get(at)?.get_or_init(|| self.process(self.length_mm(at))).as_ref()
     }
 
     /// The process of this length with a mean square of 1; `None` if the numbers do not allow it.
-    pub(super) fn prior(&self, length_mm: f64) -> Option<Prior> {
+    fn process(&self, length_mm: f64) -> Option<Prior> {
         let points = self.points();
         let values: Vec<Vec<f64>> = points.iter().map(|point| self.at(*point)).collect();
         let columns: Vec<Vec<f64>> =
@@ -175,7 +186,7 @@ mod tests {
         let basis = disc();
         // The projection is found to lose up to a tenth of the mean square; from where is not known.
         for length_mm in [10.0, 14.0, 20.0, 30.0] {
-            let prior = basis.prior(length_mm).unwrap();
+            let prior = basis.process(length_mm).unwrap();
             let covariance = |one: [f64; 2], other: [f64; 2]| {
                 let [one, other] = [one, other].map(|place| basis.at(place));
                 let factor = prior.precision.factorised().unwrap();
@@ -196,7 +207,6 @@ mod tests {
     fn places_on_one_spot_are_no_fault() {
         let samples = vec![Sample::default(); 3];
         let basis = Basis::of(&Observations { samples, ..Observations::default() });
-        let [least, most] = basis.lengths_mm();
-        assert!(basis.prior(least).is_some() && basis.prior(most).is_some());
+        assert!((0..LENGTHS_TRIED).all(|at| basis.prior(at).is_some()));
     }
 }

@@ -1,5 +1,7 @@
 //! The simulated pad as it would read contacts that nobody wrote, in the circumstances of rows that somebody did.
 
+use rayon::prelude::*;
+
 use super::chain::Chain;
 use super::inverse::{Forward, Inverse, UNKNOWNS, Weighted, Written};
 use super::mechanics::Maps;
@@ -41,7 +43,7 @@ pub(super) fn contacts(
         let tells = weights.iter().filter(|weight| **weight > 0.0).count() >= UNKNOWNS;
         inverse.contact(row, &Weighted { readings, weights }).filter(|_| tells)
     };
-    simulated.picked.iter().enumerate().map(contact).collect()
+    simulated.picked.par_iter().enumerate().map(contact).collect()
 }
 
 impl Forward for Bench<'_, '_> {

@@ -57,14 +57,14 @@ impl Bootstrap {
         let mut of_clusters = Matrix::zeros(count, systems.columns);
         let mut backgrounds = Vec::new();
         for (channel, (system, reduced)) in systems.channels.iter().zip(&marginal.channels).enumerate() {
-            let own: Vec<f64> = system.columns.iter().map(|number| coordinates[*number]).collect();
-            let z = reduced.factor.solve(&system.background_score(&own));
+            let own: Vec<f64> = system.equations.columns.iter().map(|number| coordinates[*number]).collect();
+            let z = reduced.factor.solve(&system.equations.background_score(&own));
             let left = system.left_over(&own, &z);
             let inflation = inflation(&left, system.whitening.told());
             let smooth: Vec<Vec<f64>> =
                 reduced.whitened_mixed.iter().map(|whitened| reduced.factor.solve_upper(whitened)).collect();
             let mut stated: Vec<Vec<f64>> = Vec::new();
-            for ((at, number), smooth) in system.columns.iter().enumerate().zip(&smooth) {
+            for ((at, number), smooth) in system.equations.columns.iter().enumerate().zip(&smooth) {
                 // D½ V⁻¹ A = D⁻½ (A − B H⁻¹ Bᵀ D⁻¹ A), row by row, times D⁻½ n̂.
                 let own = system.weighted(at, smooth);
                 for ((own, left), cluster) in own.iter().zip(&left).zip(clusters) {
@@ -74,7 +74,7 @@ impl Bootstrap {
                 stated.push(system.stated.columns.iter().map(|error| dot(error, &own)).collect());
             }
             if !system.stated.columns.is_empty() {
-                backgrounds.push((system.columns.clone(), Matrix::from_rows(&stated)));
+                backgrounds.push((system.equations.columns.clone(), Matrix::from_rows(&stated)));
             }
             // Aᵀ V⁻¹ B T½: Bᵀ V⁻¹ A = T⁻¹ H⁻¹ Bᵀ D⁻¹ A, and T½ T⁻¹ is L⁻¹/τ of each load.
             let shares = background.shares[channel];
@@ -87,7 +87,7 @@ impl Bootstrap {
                     .collect()
             };
             let rows: Vec<Vec<f64>> = smooth.iter().map(whitened).collect();
-            backgrounds.push((system.columns.clone(), Matrix::from_rows(&rows)));
+            backgrounds.push((system.equations.columns.clone(), Matrix::from_rows(&rows)));
         }
         let errors = columns.precisions.iter().enumerate().filter(|(_, precision)| **precision > 0.0);
         let errors = errors

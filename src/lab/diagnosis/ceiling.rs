@@ -26,11 +26,12 @@ pub(super) fn ceiling_share(
         return None;
     }
     let labels = [open, locked].map(|rows| labels(rows.observations));
-    let [nominal, flexible] = left([open, locked], &labels, &Vec::new(), noise)?;
-    let [extended, both] = match applied.as_slice() {
-        [] => [nominal.clone(), flexible.clone()],
-        _ => left([open, locked], &labels, applied, noise)?,
+    let left = |applied: &Applied| left([open, locked], &labels, applied, noise);
+    let (nominal, extended) = match applied.as_slice() {
+        [] => (left(applied), left(applied)),
+        _ => rayon::join(|| left(&Applied::new()), || left(applied)),
     };
+    let ([nominal, flexible], [extended, both]) = (nominal?, extended?);
     let sum = |squares: &[f64]| squares.iter().sum::<f64>();
     let least = if sum(&both) < sum(&flexible) { both } else { flexible };
     let least = if sum(&extended) < sum(&least) { extended.clone() } else { least };

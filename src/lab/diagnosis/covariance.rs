@@ -1,10 +1,15 @@
 //! The covariance of what no cause explains: noise, a smooth background, and errors that the model is known to have.
 
-use super::basis::{Basis, Prior};
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::basis::{Basis, LENGTHS_TRIED, Prior};
+use super::equations::{NormalEquations, Reduced};
 use super::model::{Linearised, Model};
 use super::noise::NoiseLevel;
 use super::observations::Observations;
-use super::system::{ChannelSystem, Reduced};
+use super::system::ChannelSystem;
 use super::whitening::Whitening;
 use crate::numeric::dense::{Matrix, gram};
 use crate::numeric::linear::{LargeFactor, dot};
@@ -24,21 +29,23 @@ const POOLED_FREEDOM: f64 = 6.0;
 /// Steps of the search for the background's sizes: at each length, and from sizes that are nearly right.
 const STEPS: usize = 5;
 const STEPS_AGAIN: usize = 6;
-/// Steps of the search for its length, each by the golden section.
-const SECTIONS: usize = 5;
-const GOLDEN: f64 = 0.618_034;
+/// Lengths from which the search goes on, by their number.
+const LENGTHS_FIRST: [usize; 3] = [2, 5, 8];
 /// A column's prior while noise is estimated, as a share of the channel's root mean square.
 const SIGNATURE_PRIOR: f64 = 0.1;
 /// How often noise and what surrounds it are found in turn.
 const NOISE_ROUNDS: usize = 3;
+/// The same from a noise that is nearly right.
+const NOISE_ROUNDS_AGAIN: usize = 1;
 /// Least part of the rows that count as degrees of freedom.
 const FREEDOM_RATIO_MIN: f64 = 0.1;
 
 /// Sizes of the smooth background.
 #[derive(Clone, Debug)]
 pub(super) struct Background {
-    /// The process.
+    /// The process, and the number of its length.
     pub(super) prior: Prior,
+    length: usize,
     /// For each channel and load: standard deviation as a share of the channel's root mean square.
     pub(super) shares: Vec<[f64; 3]>,
     /// For each channel: the degrees of freedom that its size is known by.
@@ -49,13 +56,26 @@ pub(super) struct Background {
 pub(super) struct Systems {
     pub(super) channels: Vec<ChannelSystem>,
     pub(super) noise: Vec<NoiseLevel>,
-    basis: Basis,
-    /// Σ (load φ)(load φ)ᵀ/n over the rows of the whole measurement.
-    mean_squares: Matrix,
+    smooth: Arc<Smooth>,
     /// For each channel, what makes that G: zᵀ G z is the mean square of B z over the channel's.
     extents: Vec<f64>,
     /// Number of all columns.
     pub(super) columns: usize,
+}
+
+/// The background's functions at the rows.
+pub(super) struct Smooth {
+    basis: Basis,
+    /// Σ (load φ)(load φ)ᵀ/n over the rows of the whole measurement.
+    mean_squares: Matrix,
+}
+
+impl Smooth {
+    /// `observations` are rows of `all`.
+    pub(super) fn of(all: &Observations, observations: &Observations) -> Self {
+        let basis = Basis::of(observations);
+        Self { mean_squares: mean_squares(all, &basis), basis }
+    }
 }
 
 /// What the background's functions say of a channel's residual.
@@ -87,97 +107,110 @@ pub(super) struct Marginal {
 pub(super) type Column<'c> = &'c [Option<Vec<f64>>];
 
 impl Systems {
-    /// `columns` are the signatures about the present point, `linearised` that point; `observations` are rows of `all`. The `model`
-    /// says what it knows of its channels.
+    /// `columns` are the signatures about the present point, `linearised` that point. The `model` says what it knows of its channels.
+    /// With `before`, the systems about another point, the noise is not sought from the beginning.
     pub(super) fn of(
-        [all, observations]: [&Observations; 2],
+        (observations, smooth): (&Observations, &Arc<Smooth>),
         model: &dyn Model,
-        linearised: &Linearised,
-        columns: &[Column<'_>],
+        (linearised, columns): (&Linearised, &[Column<'_>]),
+        before: Option<&Self>,
     ) -> Option<Self> {
-        let basis = Basis::of(observations);
+        let basis = &smooth.basis;
         let load_rms = observations.load_rms();
         let follows = observations.follows();
-        let wide = basis.prior(basis.lengths_mm()[0])?;
-        let mut noise = Vec::new();
-        let mut extents = Vec::new();
-        let mut channels = Vec::new();
-        for ((channel, readings), whole) in observations.readings.iter().enumerate().zip(model.sizes()) {
+        let wide = basis.prior(0)?;
+        let sizes = model.sizes();
+        let errors: Vec<&[Vec<f64>]> = (0..sizes.len()).map(|channel| model.stated_errors(channel)).collect();
+        let of_channel = |channel: usize| {
             let modelled = &linearised.readings[channel];
-            let residual: Vec<f64> = readings.iter().zip(modelled).map(|(y, f)| y - f).collect();
             let size = rms(modelled.iter().copied()) / load_rms;
-            let background = products(&linearised.loads, &basis.values, size);
-            let doubts = &linearised.doubts[channel];
-            extents.push((size / whole).powi(2));
-            let errors = model.stated_errors(channel);
-            let own: Vec<(usize, &[f64])> = columns
-                .iter()
-                .enumerate()
-                .filter_map(|(number, column)| Some((number, column[channel].as_deref()?)))
-                .collect();
-            let (mut level, mut memory) = (NoiseLevel::first(modelled), 0.0);
-            let system = |level: &NoiseLevel, memory: f64| {
-                let is_told = &observations.is_told[channel];
-                let variance = |(row, is_told): (usize, &bool)| {
-                    let doubt = doubts.get(row).copied().unwrap_or_default();
-                    if *is_told { level.variance(modelled[row]) + doubt * doubt } else { f64::INFINITY }
-                };
-                let variances: Vec<f64> = is_told.iter().enumerate().map(variance).collect();
-                let whitening = Whitening::of(&variances, &follows, memory);
-                ChannelSystem::of(&own, &background, errors, &residual, whitening)
+            let rows = ChannelRows {
+                observations,
+                channel,
+                modelled,
+                doubts: &linearised.doubts[channel],
+                errors: errors[channel],
+                background: products(&linearised.loads, &basis.values, size),
+                columns,
+                follows: &follows,
             };
-            for _ in 0..if observations.is_alive(channel) { NOISE_ROUNDS } else { 0 } {
-                (level, memory) = estimated_noise(&system(&level, memory)?, &level, modelled, &wide)?;
-            }
-            channels.push(system(&level, memory)?);
-            noise.push(level);
-        }
-        Some(Self {
-            channels,
-            noise,
-            mean_squares: mean_squares(all, &basis),
-            extents,
-            basis,
+            let before = before.map(|it| (it.noise[channel], it.channels[channel].whitening.memory()));
+            let (system, level) = rows.system(wide, before)?;
+            Some((system, level, (size / sizes[channel]).powi(2)))
+        };
+        let channels: Option<Vec<_>> = (0..sizes.len()).into_par_iter().map(of_channel).collect();
+        let mut systems = Self {
+            channels: Vec::new(),
+            noise: Vec::new(),
+            smooth: Arc::clone(smooth),
+            extents: Vec::new(),
             columns: columns.len(),
-        })
+        };
+        for (system, level, extent) in channels? {
+            systems.channels.push(system);
+            systems.noise.push(level);
+            systems.extents.push(extent);
+        }
+        Some(systems)
     }
 
     /// The background's functions of a channel at other rows, where `whole` is its root mean square over the measurement.
     pub(super) fn background_at(&self, channel: usize, whole: f64, rows: &Observations) -> Vec<Vec<f64>> {
         let values: Vec<Vec<f64>> =
-            rows.samples.iter().map(|sample| self.basis.at(sample.place_mm)).collect();
+            rows.samples.iter().map(|sample| self.smooth.basis.at(sample.place_mm)).collect();
         let loads: Vec<[f64; 3]> = rows.samples.iter().map(|sample| sample.load).collect();
         products(&loads, &values, self.extents[channel].sqrt() * whole)
     }
 
+    /// ẑ of a channel, with these coordinates of the columns.
+    pub(super) fn background_of(&self, channel: usize, fit: &Marginal, coordinates: &[f64]) -> Vec<f64> {
+        smooth(&self.channels[channel].equations, &fit.channels[channel], coordinates)
+    }
+
     /// G z of a channel.
     fn extent(&self, channel: usize, z: &[f64]) -> Vec<f64> {
-        self.mean_squares.times(z).into_iter().map(|value| value * self.extents[channel]).collect()
+        self.smooth.mean_squares.times(z).into_iter().map(|value| value * self.extents[channel]).collect()
     }
 
     /// The coordinates of the background's functions, load by load.
     fn by_load<'z>(&self, z: &'z [f64]) -> std::slice::Chunks<'z, f64> {
-        z.chunks(self.basis.len().max(1))
+        z.chunks(self.smooth.basis.len().max(1))
     }
 
     /// With this background; `None` where a system is not positive definite.
     pub(super) fn marginal(&self, background: &Background) -> Option<Marginal> {
+        let all: Vec<&NormalEquations> = self.channels.iter().map(|it| &it.equations).collect();
+        self.marginal_of(&all, background)
+    }
+
+    /// The same with some of the columns only; the others count as nothing.
+    pub(super) fn marginal_with(&self, columns: &[usize], background: &Background) -> Option<Marginal> {
+        let picked = self.picked(columns);
+        self.marginal_of(&picked.iter().collect::<Vec<_>>(), background)
+    }
+
+    fn picked(&self, columns: &[usize]) -> Vec<NormalEquations> {
+        self.channels.iter().map(|it| it.equations.picked(columns)).collect()
+    }
+
+    fn marginal_of(&self, equations: &[&NormalEquations], background: &Background) -> Option<Marginal> {
         let mut fisher = Matrix::zeros(self.columns, self.columns);
         let mut score = vec![0.0; self.columns];
         let (mut square, mut log_determinant) = (0.0, 0.0);
-        let mut channels = Vec::new();
-        for (at, system) in self.channels.iter().enumerate() {
-            let reduced = system.reduced(&background.prior, &background.shares[at])?;
-            for (row, number) in system.columns.iter().enumerate() {
+        let of_channel = |(it, shares): (&&NormalEquations, &[f64; 3])| it.reduced(&background.prior, shares);
+        let channels: Option<Vec<Reduced>> =
+            equations.par_iter().zip(&background.shares).map(of_channel).collect();
+        let channels = channels?;
+        for (NormalEquations { columns, .. }, reduced) in equations.iter().zip(&channels) {
+            for (row, number) in columns.iter().enumerate() {
                 score[*number] += reduced.score[row];
                 let line = fisher.row_mut(*number);
-                for (column, other) in system.columns.iter().enumerate() {
+                for (column, other) in columns.iter().enumerate() {
                     line[*other] += reduced.fisher.at(row, column);
                 }
             }
             square += reduced.square;
             log_determinant += reduced.log_determinant;
-            channels.push(reduced);
         }
         Some(Marginal { fisher, score, square, log_determinant, channels })
     }
@@ -186,7 +219,8 @@ impl Systems {
     pub(super) fn explained(&self, marginal: &Marginal, linearised: &Linearised) -> Option<Vec<f64>> {
         let mut precisions = vec![0.0; self.columns];
         for (system, modelled) in self.channels.iter().zip(&linearised.readings) {
-            for (number, precision) in system.columns.iter().zip(wide_precisions(system, modelled)) {
+            for (number, precision) in system.equations.columns.iter().zip(wide_precisions(system, modelled))
+            {
                 precisions[*number] = f64::max(precisions[*number], precision);
             }
         }
@@ -194,51 +228,70 @@ impl Systems {
         Some(Fitted { columns: known, precisions: &precisions }.solved(marginal)?.coordinates)
     }
 
-    /// The background with the greatest likelihood when the columns `fitted` are free, `start` being a guess.
+    /// The background with the greatest likelihood when the columns `fitted` are free. From a `start` its length is sought nearby.
     pub(super) fn background(&self, fitted: &Fitted<'_>, start: Option<&Background>) -> Option<Background> {
-        if let Some(start) = start {
-            return Some(self.sized(fitted, start, STEPS_AGAIN)?.1);
+        let first = match start {
+            Some(start) => self.sized(fitted, start, STEPS)?,
+            None => self.first(fitted)?,
+        };
+        let (mut likelihood, mut best) = first;
+        for step in [1, usize::MAX] {
+            // One length after the other while that helps: up, or down.
+            let mut is_better = true;
+            while is_better {
+                let Some(next) = self.of_length(best.length.wrapping_add(step), &best) else { break };
+                let (found, sized) = self.sized(fitted, &next, STEPS)?;
+                is_better = found > likelihood;
+                if is_better {
+                    (likelihood, best) = (found, sized);
+                }
+            }
         }
-        let [least, most] = self.basis.lengths_mm().map(f64::ln);
-        let mut best = Background {
-            prior: self.basis.prior(least.exp())?,
+        Some(best)
+    }
+
+    /// The same with the length of the `start`.
+    pub(super) fn resized(&self, fitted: &Fitted<'_>, start: &Background) -> Option<Background> {
+        Some(self.sized(fitted, start, STEPS_AGAIN)?.1)
+    }
+
+    /// The best of a few lengths, and its likelihood.
+    fn first(&self, fitted: &Fitted<'_>) -> Option<(f64, Background)> {
+        let mut start = Background {
+            prior: self.smooth.basis.prior(0)?.clone(),
+            length: 0,
             shares: vec![[BACKGROUND_FIRST; 3]; self.channels.len()],
             freedom: vec![0.0; self.channels.len()],
         };
-        // Golden section over ln l.
-        let at = |log_length: f64, best: &mut Background| -> Option<f64> {
-            best.prior = self.basis.prior(log_length.exp())?;
-            let (likelihood, sized) = self.sized(fitted, best, STEPS)?;
-            *best = sized;
-            Some(likelihood)
-        };
-        let (mut low, mut high) = (least, most);
-        let mut inner = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
-        let mut likelihood = [at(inner[0], &mut best)?, at(inner[1], &mut best)?];
-        for _ in 0..SECTIONS {
-            if likelihood[0] > likelihood[1] {
-                high = inner[1];
-                inner = [high - GOLDEN * (high - low), inner[0]];
-                likelihood = [at(inner[0], &mut best)?, likelihood[0]];
-            } else {
-                low = inner[0];
-                inner = [inner[1], low + GOLDEN * (high - low)];
-                likelihood = [likelihood[1], at(inner[1], &mut best)?];
+        let mut best: Option<(f64, Background)> = None;
+        for length in LENGTHS_FIRST {
+            let found = self.sized(fitted, &self.of_length(length, &start)?, STEPS)?;
+            start.shares.clone_from(&found.1.shares);
+            if best.as_ref().is_none_or(|(likelihood, _)| found.0 > *likelihood) {
+                best = Some(found);
             }
         }
-        at(f64::midpoint(low, high), &mut best)?;
-        Some(best)
+        best
+    }
+
+    /// With another of the lengths that are tried; none beyond them.
+    fn of_length(&self, length: usize, like: &Background) -> Option<Background> {
+        let is_tried = length < LENGTHS_TRIED;
+        let prior = self.smooth.basis.prior(length).filter(|_| is_tried)?.clone();
+        Some(Background { prior, length, ..like.clone() })
     }
 
     /// The sizes with the greatest likelihood for a length, and that likelihood.
     fn sized(&self, fitted: &Fitted<'_>, start: &Background, steps: usize) -> Option<(f64, Background)> {
         let mut background = start.clone();
         let mut likelihood = f64::NEG_INFINITY;
+        let equations = self.picked(&fitted.columns);
+        let equations: Vec<&NormalEquations> = equations.iter().collect();
         for _ in 0..steps {
-            let marginal = self.marginal(&background)?;
+            let marginal = self.marginal_of(&equations, &background)?;
             let solution = fitted.solved(&marginal)?;
             likelihood = -0.5 * (marginal.square - solution.removed + marginal.log_determinant);
-            background = self.updated(&background, &marginal, &solution.coordinates);
+            background = self.updated(&background, (&equations, &marginal), &solution.coordinates);
         }
         Some((likelihood, background))
     }
@@ -251,7 +304,7 @@ impl Systems {
         coordinates: &[f64],
     ) -> Vec<Remainder> {
         let remainder = |(at, (system, reduced)): (usize, (&ChannelSystem, &Reduced))| {
-            let z = smooth(system, reduced, coordinates);
+            let z = smooth(&system.equations, reduced, coordinates);
             let shares = background.shares[at];
             let slope = self.extent(at, &z);
             Remainder {
@@ -272,10 +325,15 @@ impl Systems {
     /// One step of MacKay's fixed point for each size τ: τ² = Σ zᵀ T⁻¹ z/Σ γ, with T the process' covariance at τ = 1 and
     /// γ = K − tr(T⁻¹ Var z)/τ² what the rows tell of its K functions; the pooled size counts as further observations. Of a
     /// remainder that is larger than a background may be, the background has as much as it may.
-    fn updated(&self, background: &Background, marginal: &Marginal, coordinates: &[f64]) -> Background {
+    fn updated(
+        &self,
+        background: &Background,
+        (equations, marginal): (&[&NormalEquations], &Marginal),
+        coordinates: &[f64],
+    ) -> Background {
         let prior = &background.prior;
-        let sums = |(channel, (system, reduced)): (usize, (&ChannelSystem, &Reduced))| -> [[f64; 2]; 3] {
-            let z = smooth(system, reduced, coordinates);
+        let sums = |(channel, (own, reduced)): (usize, (&&NormalEquations, &Reduced))| -> [[f64; 2]; 3] {
+            let z = smooth(own, reduced, coordinates);
             let mean_square = dot(&z, &self.extent(channel, &z));
             let allowed = (REMAINDER_MAX * REMAINDER_MAX / mean_square).min(1.0);
             let energies: Vec<f64> = self.by_load(&z).map(|z| allowed * prior.energy(z)).collect();
@@ -283,7 +341,7 @@ impl Systems {
             std::array::from_fn(|load| [energies[load], freedom[load]])
         };
         let sums: Vec<[[f64; 2]; 3]> =
-            self.channels.iter().zip(&marginal.channels).enumerate().map(sums).collect();
+            equations.par_iter().zip(&marginal.channels).enumerate().map(sums).collect();
         let all = sums.iter().flatten().fold([0.0; 2], |all, it| [all[0] + it[0], all[1] + it[1]]);
         let pooled = all[0] / all[1].max(1e-3);
         let size = |[energy, freedom]: [f64; 2]| {
@@ -292,6 +350,7 @@ impl Systems {
         };
         Background {
             prior: prior.clone(),
+            length: background.length,
             shares: sums.iter().map(|loads| loads.map(size)).collect(),
             freedom: sums.iter().map(|loads| loads.iter().map(|it| it[1]).sum()).collect(),
         }
@@ -340,10 +399,55 @@ impl Fitted<'_> {
     }
 }
 
+/// What a channel's system is made of.
+struct ChannelRows<'r> {
+    observations: &'r Observations,
+    channel: usize,
+    modelled: &'r [f64],
+    doubts: &'r [f64],
+    errors: &'r [Vec<f64>],
+    background: Vec<Vec<f64>>,
+    columns: &'r [Column<'r>],
+    follows: &'r [bool],
+}
+
+impl ChannelRows<'_> {
+    /// The system, with the noise that its own residual tells.
+    fn system(&self, wide: &Prior, before: Option<(NoiseLevel, f64)>) -> Option<(ChannelSystem, NoiseLevel)> {
+        let readings = &self.observations.readings[self.channel];
+        let residual: Vec<f64> = readings.iter().zip(self.modelled).map(|(y, f)| y - f).collect();
+        let rounds = if before.is_some() { NOISE_ROUNDS_AGAIN } else { NOISE_ROUNDS };
+        let (mut level, mut memory) = before.unwrap_or_else(|| (NoiseLevel::first(self.modelled), 0.0));
+        for _ in 0..if self.observations.is_alive(self.channel) { rounds } else { 0 } {
+            let system = self.with(&residual, &level, memory)?;
+            (level, memory) = estimated_noise(&system, &level, self.modelled, wide)?;
+        }
+        Some((self.with(&residual, &level, memory)?, level))
+    }
+
+    /// The system with this noise.
+    fn with(&self, residual: &[f64], level: &NoiseLevel, memory: f64) -> Option<ChannelSystem> {
+        let is_told = &self.observations.is_told[self.channel];
+        let variance = |(row, is_told): (usize, &bool)| {
+            let doubt = self.doubts.get(row).copied().unwrap_or_default();
+            if *is_told { level.variance(self.modelled[row]) + doubt * doubt } else { f64::INFINITY }
+        };
+        let variances: Vec<f64> = is_told.iter().enumerate().map(variance).collect();
+        let own: Vec<(usize, &[f64])> = self
+            .columns
+            .iter()
+            .enumerate()
+            .filter_map(|(number, column)| Some((number, column[self.channel].as_deref()?)))
+            .collect();
+        let whitening = Whitening::of(&variances, self.follows, memory);
+        ChannelSystem::of(&own, &self.background, self.errors, residual, whitening)
+    }
+}
+
 /// ẑ = H⁻¹ Bᵀ D⁻¹ (r − A ψ̂).
-fn smooth(system: &ChannelSystem, reduced: &Reduced, coordinates: &[f64]) -> Vec<f64> {
-    let own: Vec<f64> = system.columns.iter().map(|number| coordinates[*number]).collect();
-    reduced.factor.solve(&system.background_score(&own))
+fn smooth(equations: &NormalEquations, reduced: &Reduced, coordinates: &[f64]) -> Vec<f64> {
+    let own: Vec<f64> = equations.columns.iter().map(|number| coordinates[*number]).collect();
+    reduced.factor.solve(&equations.background_score(&own))
 }
 
 /// Σ (load φ)(load φ)ᵀ/n.
@@ -386,7 +490,7 @@ fn estimated_noise(
     wide: &Prior,
 ) -> Option<(NoiseLevel, f64)> {
     let shares = [2.0 * BACKGROUND_MAX; 3];
-    let reduced = system.reduced(wide, &shares)?;
+    let reduced = system.equations.reduced(wide, &shares)?;
     let mut inner = reduced.fisher.clone();
     let weights = &system.whitening.weights;
     let rows = system.whitening.told() as f64;
@@ -394,7 +498,7 @@ fn estimated_noise(
     priors.iter().enumerate().for_each(|(at, precision)| inner.row_mut(at)[at] += precision);
     let factor = inner.factorised()?;
     let coordinates = factor.solve(&reduced.score);
-    let z = reduced.factor.solve(&system.background_score(&coordinates));
+    let z = reduced.factor.solve(&system.equations.background_score(&coordinates));
     let left = system.left_over(&coordinates, &z);
     let told = left.iter().zip(weights).zip(modelled).filter(|((_, weight), _)| **weight > 0.0);
     let (residual, modelled): (Vec<f64>, Vec<f64>) =

@@ -1,26 +1,32 @@
 //! What the findings are worth on rows that had no part in finding them.
 
-use super::attribution::Applied;
+use super::attribution::{Applied, Fit, Search};
+use super::mean_square::{Counts, Draw, Squares, interval95};
 use super::model::{Hypothesis, Model, Told};
 use super::noise::NoiseLevel;
 use super::observations::{Observations, Sample};
 use super::report::{Decoded, Gain, Without};
-use crate::numeric::random::SplitMix64;
 use crate::numeric::statistics::mean;
 use crate::tables::measured::zero::UNLOADED_N;
 
-/// Draws of the bootstrap over clusters.
-const DRAWS: usize = 1000;
-/// The same draws for the same data.
-const SEED: u64 = 0x6a19;
-
 /// A model at rows, and what the rows read.
+#[derive(Clone, Copy)]
 pub(super) struct Rows<'r> {
     pub(super) model: &'r dyn Model,
     pub(super) observations: &'r Observations,
+    /// The same rows before anything in them was repaired; none where nothing was.
+    pub(super) unrepaired: Option<&'r Self>,
 }
 
 impl Rows<'_> {
+    /// As they were measured.
+    pub(super) const fn measured(&self) -> &Self {
+        match self.unrepaired {
+            Some(unrepaired) => unrepaired,
+            None => self,
+        }
+    }
+
     /// Each channel's residuals with these hypotheses; NaN where a reading tells nothing.
     pub(super) fn residuals(&self, applied: &Applied) -> Vec<Vec<f64>> {
         let readings = self.model.readings(applied);
@@ -70,14 +76,47 @@ impl Rows<'_> {
 
     /// For each cluster, the sum of squares beside these zeros.
     fn squares(&self, applied: &Applied, zeros: &[f64]) -> Vec<f64> {
+        let left = self.residuals(applied);
+        let beside = |(channel, zero): (&Vec<f64>, &f64)| channel.iter().map(|it| it - zero).collect();
+        self.added(&left.iter().zip(zeros).map(beside).collect::<Vec<Vec<f64>>>(), |left| left * left)
+    }
+
+    /// For each cluster, the sum over all readings that are numbers.
+    fn added(&self, channels: &[Vec<f64>], of: impl Fn(f64) -> f64) -> Vec<f64> {
         let clusters = self.observations.clusters();
-        let mut squares = vec![0.0; clusters.iter().max().map_or(0, |last| last + 1)];
-        for (residuals, zero) in self.residuals(applied).iter().zip(zeros) {
-            for (residual, cluster) in residuals.iter().zip(&clusters).filter(|(it, _)| !it.is_nan()) {
-                squares[*cluster] += (residual - zero).powi(2);
+        let mut sums = vec![0.0; clusters.iter().max().map_or(0, |last| last + 1)];
+        for channel in channels {
+            for (value, cluster) in channel.iter().zip(&clusters).filter(|(it, _)| !it.is_nan()) {
+                sums[*cluster] += of(*value);
             }
         }
-        squares
+        sums
+    }
+
+    /// For each cluster, how many readings tell something.
+    fn counts(&self) -> Vec<f64> {
+        let is_told = &self.observations.is_told;
+        let told = |channel: &Vec<bool>| channel.iter().map(|it| if *it { 1.0 } else { f64::NAN }).collect();
+        self.added(&is_told.iter().map(told).collect::<Vec<Vec<f64>>>(), |one| one)
+    }
+
+    /// For each cluster, the squares that are to be expected beside these zeros, where the channels have this noise and `expected`
+    /// are the readings without it.
+    fn expected_squares(
+        &self,
+        (applied, zeros): (&Applied, &[f64]),
+        expected: &[Vec<f64>],
+        noise: &[NoiseLevel],
+    ) -> Vec<f64> {
+        let modelled = self.model.readings(applied);
+        let square = |channel: usize, row: usize| {
+            let is_told = self.observations.is_told[channel][row];
+            let left = expected[channel][row] - modelled[channel][row] - zeros[channel];
+            if is_told { left * left + noise[channel].variance(modelled[channel][row]) } else { f64::NAN }
+        };
+        let rows = self.observations.rows();
+        let squares = (0..modelled.len()).map(|channel| (0..rows).map(|row| square(channel, row)).collect());
+        self.added(&squares.collect::<Vec<Vec<f64>>>(), |square| square)
     }
 }
 
@@ -101,69 +140,139 @@ pub(super) fn rmse(rows: &Rows<'_>, applied: &Applied, zeros: &[f64]) -> f64 {
     (rows.squares(applied, zeros).iter().sum::<f64>() / count).sqrt()
 }
 
-/// The gain of `applied` on the locked rows, whose channels have this noise; none where nothing was found. Zeros are those of the
-/// open ones.
-pub(super) fn gain([open, locked]: [&Rows<'_>; 2], applied: &Applied, noise: &[NoiseLevel]) -> Option<Gain> {
-    if applied.is_empty() || locked.observations.rows() == 0 {
-        return None;
+/// Whether anything is left to say of the gain: something was found or repaired, and rows were locked.
+fn is_asked([open, locked]: [&Rows<'_>; 2], applied: &Applied) -> bool {
+    let is_changed = !applied.is_empty() || open.unrepaired.is_some();
+    is_changed && locked.observations.rows() > 0
+}
+
+impl Search<'_> {
+    /// The gain of `applied` on the locked rows; none where nothing was found. Zeros are those of the open ones.
+    pub(super) fn gain(&self, fit: &Fit, rows: [&Rows<'_>; 2], applied: &Applied) -> Option<Gain> {
+        if !is_asked(rows, applied) {
+            return None;
+        }
+        let [open, locked] = rows;
+        let measured = [open.measured(), locked.measured()];
+        let noise = &fit.systems.noise;
+        let expected = rows.map(|rows| self.expected(fit, rows));
+        let expected = Expected { readings: &expected, noise };
+        let squares = |applied: &Applied| squares(rows, applied, Some(&expected));
+        let (nothing, extended) = (Applied::new(), squares(applied));
+        // Nobody expected what was repaired.
+        let nominal = match open.unrepaired {
+            Some(_) => self::squares(measured, &nothing, None),
+            None => squares(&nothing),
+        };
+        let counts = Counts { locked: measured[1].counts(), open: measured[0].counts() };
+        let ratio = |extended: &Squares, draw: &Draw| {
+            (extended.mean(&counts, draw) / nominal.mean(&counts, draw)).sqrt()
+        };
+        let without = |at: usize| {
+            let others: Applied =
+                applied.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, it)| it.clone()).collect();
+            let Hypothesis { effect, target, .. } = self.model.hypotheses()[applied[at].0];
+            Without { effect, target, rmse_ratio: ratio(&squares(&others), &Draw::all(&counts)) }
+        };
+        let [position_mae, force_mae] = decoded(measured, rows, applied, (noise, &counts));
+        Some(Gain {
+            rows_locked: locked.observations.rows(),
+            rmse_ratio: ratio(&extended, &Draw::all(&counts)),
+            rmse_ratio_interval95: interval95(&counts, |draw| ratio(&extended, draw)),
+            position_mae,
+            force_mae,
+            per_cause: (0..applied.len()).map(without).collect(),
+        })
     }
-    let squares = |applied: &Applied| locked.squares(applied, &open.zeros(applied));
-    let (nominal, extended) = (squares(&Vec::new()), squares(applied));
-    let hypotheses = open.model.hypotheses();
-    let without = |at: usize| {
-        let others: Applied =
-            applied.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, it)| it.clone()).collect();
-        let Hypothesis { effect, target, .. } = hypotheses[applied[at].0];
-        Without { effect, target, rmse_ratio: ratio(&squares(&others), &nominal) }
+
+    /// The readings that the fit lets expect at rows, without noise: ŷ = f(ψ̂) + ẑero + Σ ê E + B ẑ.
+    fn expected(&self, fit: &Fit, rows: &Rows<'_>) -> Vec<Vec<f64>> {
+        let mut readings = rows.model.readings(&fit.applied);
+        let channels = readings.len();
+        for (channel, of) in readings.iter_mut().enumerate() {
+            of.iter_mut().for_each(|value| *value += fit.coordinates[channel]);
+            let z = fit.systems.background_of(channel, &fit.marginal, &fit.coordinates);
+            let size = self.model.sizes()[channel];
+            for (z, function) in z.iter().zip(fit.systems.background_at(channel, size, rows.observations)) {
+                of.iter_mut().zip(function).for_each(|(value, function)| *value += z * function);
+            }
+        }
+        for (error, by) in rows.model.common_errors().iter().zip(&fit.coordinates[channels..]) {
+            for (of, signature) in readings.iter_mut().zip(&error.signature) {
+                of.iter_mut().zip(signature.iter().flatten()).for_each(|(value, slope)| *value += by * slope);
+            }
+        }
+        readings
+    }
+}
+
+/// What the fit lets expect.
+struct Expected<'e> {
+    /// At the open and at the locked rows, channel by channel.
+    readings: &'e [Vec<Vec<f64>>; 2],
+    noise: &'e [NoiseLevel],
+}
+
+/// Squares of the residuals with these hypotheses, and those that are to be expected, if that is known.
+fn squares([open, locked]: [&Rows<'_>; 2], applied: &Applied, known: Option<&Expected<'_>>) -> Squares {
+    let zeros = open.zeros(applied);
+    let expected = known.map(|Expected { readings: [at_open, at_locked], noise }| {
+        [(locked, at_locked), (open, at_open)]
+            .map(|(rows, expected)| rows.expected_squares((applied, &zeros), expected, noise))
+    });
+    let mut found = locked.squares(applied, &zeros);
+    if let Some(silent) = silent([open, locked]) {
+        found.iter_mut().zip(silent).for_each(|(found, silent)| *found += silent);
+    }
+    Squares { found, expected }
+}
+
+/// For each cluster of the locked rows, the squares of a dead channel's readings, which stay where they are. What a converter cuts off
+/// is at its limit, and leaves nothing.
+fn silent([open, locked]: [&Rows<'_>; 2]) -> Option<Vec<f64>> {
+    let of = |rows: &Rows<'_>| -> Option<Vec<Vec<f64>>> {
+        let Observations { readings, is_told, .. } = rows.unrepaired?.observations;
+        let dead = |channel: &usize| !open.observations.is_alive(*channel);
+        let own = |channel: usize| -> Vec<f64> {
+            let readings = readings[channel].iter().zip(&is_told[channel]);
+            readings.map(|(y, is_told)| if *is_told { *y } else { f64::NAN }).collect()
+        };
+        Some((0..readings.len()).filter(dead).map(own).collect())
     };
-    let all: Vec<usize> = (0..nominal.len()).collect();
-    let share = |drawn: &[usize]| {
-        let sum = |squares: &[f64]| drawn.iter().map(|at| squares[*at]).sum::<f64>();
-        (sum(&extended) / sum(&nominal)).sqrt()
+    let (at_open, mut at_locked) = (of(open)?, of(locked)?);
+    for (channel, of) in at_open.iter().zip(&mut at_locked) {
+        let middle = mean(channel.iter().copied().filter(|y| !y.is_nan()));
+        of.iter_mut().for_each(|y| *y -= middle);
+    }
+    Some(locked.added(&at_locked, |left| left * left))
+}
+
+/// How the mean errors of decoded places and loads change.
+fn decoded(
+    measured: [&Rows<'_>; 2],
+    rows: [&Rows<'_>; 2],
+    applied: &Applied,
+    (noise, counts): (&[NoiseLevel], &Counts),
+) -> [Option<Decoded>; 2] {
+    let errors = |[open, locked]: [&Rows<'_>; 2], applied: &Applied| {
+        locked.errors(applied, &Told { zeros: &open.zeros(applied), noise })
     };
-    let errors = |applied: &Applied| locked.errors(applied, &Told { zeros: &open.zeros(applied), noise });
-    let decoded = errors(&Vec::new()).zip(errors(applied));
-    let [position_mae, force_mae] =
-        [0, 1].map(|at| decoded.as_ref().and_then(|(nominal, extended)| changed(nominal, extended, at)));
-    Some(Gain {
-        rows_locked: locked.observations.rows(),
-        rmse_ratio: share(&all),
-        rmse_ratio_interval95: interval95(nominal.len(), share),
-        position_mae,
-        force_mae,
-        per_cause: (0..applied.len()).map(without).collect(),
-    })
+    let both = errors(measured, &Applied::new()).zip(errors(rows, applied));
+    [0, 1].map(|at| both.as_ref().and_then(|(nominal, extended)| changed(nominal, extended, at, counts)))
 }
 
 /// How the mean error of places (0) or loads (1) changes; none where there is no contact.
-fn changed(nominal: &[Errors], extended: &[Errors], at: usize) -> Option<Decoded> {
+fn changed(nominal: &[Errors], extended: &[Errors], at: usize, counts: &Counts) -> Option<Decoded> {
     let of = |errors: &[Errors], drawn: &[usize]| {
         let sum = |it: fn(&Errors, usize) -> f64| drawn.iter().map(|k| it(&errors[*k], at)).sum::<f64>();
         sum(|errors, at| errors.sums[at]) / sum(|errors, _| errors.rows)
     };
     let all: Vec<usize> = (0..nominal.len()).collect();
-    let change = |drawn: &[usize]| of(extended, drawn) - of(nominal, drawn);
+    let change = |draw: &Draw| of(extended, &draw.locked) - of(nominal, &draw.locked);
     let (nominal_mean, extended_mean) = (of(nominal, &all), of(extended, &all));
     (nominal_mean.is_finite() && extended_mean.is_finite()).then(|| Decoded {
         nominal: nominal_mean,
         extended: extended_mean,
-        change_interval95: interval95(nominal.len(), change),
+        change_interval95: interval95(counts, change),
     })
-}
-
-/// Ends of the 95 % interval of what is computed of clusters, by drawing as many of them as there are.
-fn interval95(clusters: usize, of: impl Fn(&[usize]) -> f64) -> [f64; 2] {
-    let mut random = SplitMix64::new(SEED);
-    let mut drawn: Vec<f64> = (0..DRAWS)
-        .map(|_| {
-            let draw = (0..clusters).map(|_| (random.next_bits() % clusters as u64) as usize);
-            of(&draw.collect::<Vec<_>>())
-        })
-        .collect();
-    drawn.sort_by(f64::total_cmp);
-    [0.025, 0.975].map(|share| drawn[(share * DRAWS as f64) as usize])
-}
-
-fn ratio(extended: &[f64], nominal: &[f64]) -> f64 {
-    (extended.iter().sum::<f64>() / nominal.iter().sum::<f64>()).sqrt()
 }

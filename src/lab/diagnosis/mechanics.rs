@@ -21,7 +21,7 @@ pub struct Pad<'p> {
     /// What flaws of its module 0 change; none, and nobody asks for them.
     pub flaws: &'p [FieldChange],
     /// The field of another pad, which may take seconds; none where it cannot be had.
-    pub solve: &'p dyn Fn(&Device) -> Option<PadField>,
+    pub solve: &'p (dyn Fn(&Device) -> Option<PadField> + Sync),
     /// Effects that are not asked for.
     pub without: &'p [String],
 }

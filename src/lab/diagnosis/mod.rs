@@ -25,12 +25,14 @@ mod ceiling;
 mod chain;
 mod columns;
 mod covariance;
+mod equations;
 mod experiments;
 pub mod extension;
 mod gain;
 mod gatekeepers;
 mod inference;
 mod inverse;
+mod mean_square;
 mod mechanics;
 mod memory;
 mod model;
@@ -55,14 +57,14 @@ use self::cause::Cause;
 use self::causes::CATALOGUE;
 use self::ceiling::ceiling_share;
 use self::covariance::{REMAINDER_MAX, Remainder};
-use self::gain::{Rows, gain, rmse};
+use self::gain::{Rows, rmse};
 use self::gatekeepers::excess::{EFFECT, Excess, excess};
 use self::gatekeepers::{Gate, guarded};
 pub use self::mechanics::Pad;
 use self::model::Model;
 use self::observations::Observations;
 use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
-use self::separation::separate_by;
+use self::separation::Separation;
 use self::simulated::Simulated;
 use crate::numeric::chi_square;
 use crate::numeric::statistics::{mean, rms};
@@ -127,8 +129,19 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
     let found = attributed(&mut model).ok_or(Unfit::Singular)?;
     let at_locked = model.at(&locked);
     let search = Search::new(&model, all, &open);
-    let rows =
-        [Rows { model: &model, observations: &open }, Rows { model: &at_locked, observations: &locked }];
+    let measured = gate.unrepaired.as_ref();
+    let parts = measured.map(|whole| [&open, &locked].map(|part| (whole, whole.picked(&part.numbers))));
+    let models = parts
+        .as_ref()
+        .map(|parts| parts.each_ref().map(|(whole, part)| (Atlas::new(pad, whole, part), part)));
+    let unrepaired = models.as_ref().map(|models| {
+        models.each_ref().map(|(model, observations)| Rows { model, observations, unrepaired: None })
+    });
+    let as_measured = |at: usize| unrepaired.as_ref().map(|rows| &rows[at]);
+    let rows = [
+        Rows { model: &model, observations: &open, unrepaired: as_measured(0) },
+        Rows { model: &at_locked, observations: &locked, unrepaired: as_measured(1) },
+    ];
     let diagnosis = summary(&search, &found, &rows, &model.missing()).ok_or(Unfit::Singular)?;
     let excess =
         pad.asks_for(EFFECT).then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
@@ -197,8 +210,9 @@ fn summary(
         let channels = parts.iter().zip(&unnamed_by_channel).filter(|(part, _)| **part > PART_MIN);
         finding.share * whole > OVER_REMAINDER * channels.map(|(_, square)| square).sum::<f64>()
     });
+    let separation = Separation::new(search, found);
     for (at, finding) in &mut kept {
-        finding.separate_by = separate_by(search, found, *at, &finding.confounded_with);
+        finding.separate_by = separation.told(*at, &finding.confounded_with);
     }
     let applied: Applied = kept.iter().map(|(at, _)| fit.applied[*at].clone()).collect();
     let mut findings: Vec<Finding> = kept.into_iter().map(|(_, finding)| finding).collect();
@@ -211,12 +225,12 @@ fn summary(
         full_scale: search.model.full_scale(),
         verdict: verdict(!findings.is_empty(), unnamed_share),
         noise_floor: noise_floor(open, fit),
-        rmse_nominal: rmse(open, &nothing, &open.zeros(&nothing)),
+        rmse_nominal: rmse(open.measured(), &nothing, &open.measured().zeros(&nothing)),
         rmse_extended: rmse(open, &applied, &open.zeros(&applied)),
         background_mm: fit.background.prior.length_mm,
         background_share: rms(fit.background.shares.iter().flatten().copied()),
         ceiling_share: ceiling_share([open, locked], &applied, &fit.systems.noise),
-        gain: gain([open, locked], &applied, &fit.systems.noise),
+        gain: search.gain(fit, [open, locked], &applied),
         not_detected: search.not_detected(found)?,
         not_testable: missing.to_vec(),
         unnamed_share,

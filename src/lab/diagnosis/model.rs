@@ -144,7 +144,7 @@ pub(super) struct Told<'t> {
 }
 
 /// A model of N channels at the rows of a measurement.
-pub(super) trait Model {
+pub(super) trait Model: Sync {
     /// What may be wrong with it.
     fn hypotheses(&self) -> &[Hypothesis];
     /// Each channel's readings, row by row, when hypotheses hold with these coordinates.

@@ -13,6 +13,10 @@
 //!
 //! Source: A. C. Atkinson, V. V. Fedorov, Biometrika 62 (1975) 57 (T-optimality).
 
+use std::cell::OnceCell;
+
+use rayon::prelude::*;
+
 use super::attribution::{Attribution, Search};
 use super::experiments::{Experiment, TURNING, catalogue};
 use super::model::{CommonError, Linearised, Signature};
@@ -42,41 +46,61 @@ struct Both<'s, 'm> {
     search: &'s Search<'m>,
     found: &'s Attribution,
     experiment: &'s Experiment,
-    further: Linearised,
+    further: &'s Linearised,
     pairs: Vec<Pair>,
 }
 
-/// The measurement that separates the fitted cause at this place from its rivals, as a sentence; none where the model cannot say.
-pub(super) fn separate_by(
-    search: &Search<'_>,
-    found: &Attribution,
-    at: usize,
-    rivals: &[(&'static str, Target)],
-) -> Option<String> {
-    let hypotheses = search.model.hypotheses();
-    let is_rival = |(number, _): &(usize, _)| {
-        let it = &hypotheses[*number];
-        rivals.contains(&(it.effect, it.target))
-    };
-    let rivals: Vec<usize> =
-        hypotheses.iter().enumerate().filter(is_rival).map(|(number, _)| number).collect();
-    if rivals.is_empty() {
-        return None;
+/// The measurements that could be made, each with what the model says of it once that is asked for.
+pub(super) struct Separation<'s, 'm> {
+    search: &'s Search<'m>,
+    found: &'s Attribution,
+    experiments: Vec<Experiment>,
+    elsewhere: Vec<OnceCell<Option<Elsewhere>>>,
+}
+
+/// The model at the rows of an experiment.
+type Elsewhere = (Linearised, Vec<CommonError>);
+
+impl<'s, 'm> Separation<'s, 'm> {
+    pub(super) fn new(search: &'s Search<'m>, found: &'s Attribution) -> Self {
+        let worth = |it: &Experiment| it.rows.rows() > 0 || it.by_hand.is_some();
+        let experiments: Vec<Experiment> = catalogue(search.observations).into_iter().filter(worth).collect();
+        let elsewhere = experiments.iter().map(|_| OnceCell::new()).collect();
+        Self { search, found, experiments, elsewhere }
     }
-    let mut best: Option<(f64, usize, Experiment)> = None;
-    let worth = |it: &Experiment| it.rows.rows() > 0 || it.by_hand.is_some();
-    for experiment in catalogue(search.observations).into_iter().filter(worth) {
-        if best.as_ref().is_some_and(|(minutes, ..)| *minutes <= experiment.minutes) {
-            break;
+
+    /// The measurement that separates the fitted cause at this place from its rivals, as a sentence; none where the model cannot say.
+    pub(super) fn told(&self, at: usize, rivals: &[(&'static str, Target)]) -> Option<String> {
+        let hypotheses = self.search.model.hypotheses();
+        let is_rival = |number: &usize| {
+            let it = &hypotheses[*number];
+            rivals.contains(&(it.effect, it.target))
+        };
+        let rivals: Vec<usize> = (0..hypotheses.len()).filter(is_rival).collect();
+        if rivals.is_empty() {
+            return None;
         }
-        let both = Both::of(search, found, &experiment)?;
-        let Some(repeats) = both.repeats(at, &rivals) else { continue };
-        let minutes = repeats as f64 * experiment.minutes;
-        if best.as_ref().is_none_or(|(least, ..)| minutes < *least) {
-            best = Some((minutes, repeats, experiment));
+        let mut best: Option<(f64, usize, &Experiment)> = None;
+        for (number, experiment) in self.experiments.iter().enumerate() {
+            if best.is_some_and(|(minutes, ..)| minutes <= experiment.minutes) {
+                break;
+            }
+            let Some(repeats) = self.both(number)?.repeats(at, &rivals) else { continue };
+            let minutes = repeats as f64 * experiment.minutes;
+            if best.is_none_or(|(least, ..)| minutes < least) {
+                best = Some((minutes, repeats, experiment));
+            }
         }
+        Some(best.map_or_else(|| NONE.to_owned(), |(_, repeats, experiment)| sentence(repeats, experiment)))
     }
-    Some(best.map_or_else(|| NONE.to_owned(), |(_, repeats, experiment)| sentence(repeats, &experiment)))
+
+    /// With an experiment; none where the model cannot say.
+    fn both(&self, number: usize) -> Option<Both<'_, 'm>> {
+        let (experiment, applied) = (&self.experiments[number], &self.found.fit.applied);
+        let model = self.search.model;
+        let elsewhere = self.elsewhere[number].get_or_init(|| model.elsewhere(&experiment.rows, applied));
+        Some(Both::of(self.search, self.found, (experiment, elsewhere.as_ref()?)))
+    }
 }
 
 fn sentence(repeats: usize, experiment: &Experiment) -> String {
@@ -90,10 +114,12 @@ fn sentence(repeats: usize, experiment: &Experiment) -> String {
 }
 
 impl<'s, 'm> Both<'s, 'm> {
-    fn of(search: &'s Search<'m>, found: &'s Attribution, experiment: &'s Experiment) -> Option<Self> {
-        let fit = &found.fit;
+    fn of(
+        search: &'s Search<'m>,
+        found: &'s Attribution,
+        (experiment, (further, errors)): (&'s Experiment, &'s Elsewhere),
+    ) -> Self {
         let channels = search.observations.channels.len();
-        let (further, errors) = search.model.elsewhere(&experiment.rows, &fit.applied)?;
         let rows = [search.observations.rows(), experiment.rows.rows()];
         // Each measurement has its own zeros.
         let zero = |channel: usize, rows: usize| -> Signature {
@@ -109,9 +135,9 @@ impl<'s, 'm> Both<'s, 'm> {
         pairs.extend(search.model.common_errors().into_iter().zip(errors).map(|(present, further)| {
             let CommonError { deviation, signature } = present;
             let precision = 1.0 / (deviation * deviation);
-            Pair { present: signature, further: further.signature, precision }
+            Pair { present: signature, further: further.signature.clone(), precision }
         }));
-        Some(Self { search, found, experiment, further, pairs })
+        Self { search, found, experiment, further, pairs }
     }
 
     /// A hypothesis' columns here and there.
@@ -185,9 +211,15 @@ impl<'s, 'm> Both<'s, 'm> {
     /// What both measurements tell of the columns, and what was known of them before.
     fn fisher(&self, columns: &[&Pair], repeats: usize) -> Option<Matrix> {
         let mut fisher = Matrix::zeros(columns.len(), columns.len());
-        for channel in 0..self.further.readings.len() {
-            if self.search.observations.is_alive(channel) {
-                self.add(channel, columns, repeats, &mut fisher)?;
+        let alive = (0..self.further.readings.len()).into_par_iter();
+        let alive = alive.filter(|channel| self.search.observations.is_alive(*channel));
+        let channels: Option<Vec<_>> =
+            alive.map(|channel| self.of_channel(channel, columns, repeats)).collect();
+        for (numbers, own) in channels? {
+            for (row, number) in numbers.iter().enumerate() {
+                for (column, other) in numbers.iter().enumerate() {
+                    fisher.row_mut(*number)[*other] += own.at(row, column);
+                }
             }
         }
         for (at, column) in columns.iter().enumerate() {
@@ -198,7 +230,8 @@ impl<'s, 'm> Both<'s, 'm> {
         Some(fisher)
     }
 
-    fn add(&self, channel: usize, columns: &[&Pair], repeats: usize, fisher: &mut Matrix) -> Option<()> {
+    /// The numbers of the columns that a channel knows, and what it tells of them.
+    fn of_channel(&self, channel: usize, columns: &[&Pair], repeats: usize) -> Option<(Vec<usize>, Matrix)> {
         let (fit, rows) = (&self.found.fit, &self.experiment.rows);
         let (system, noise) = (&fit.systems.channels[channel], &fit.systems.noise[channel]);
         let weight = |f: &f64| (repeats as f64 / noise.variance(*f)).sqrt();
@@ -232,13 +265,8 @@ impl<'s, 'm> Both<'s, 'm> {
         let signatures: Vec<(usize, &[f64])> =
             known.iter().map(|(at, column)| (*at, column.as_slice())).collect();
         let joint = ChannelSystem::of(&signatures, &background, &[], &vec![0.0; count], white)?;
-        let reduced = joint.reduced(&fit.background.prior, &fit.background.shares[channel])?;
-        for (row, number) in joint.columns.iter().enumerate() {
-            for (column, other) in joint.columns.iter().enumerate() {
-                fisher.row_mut(*number)[*other] += reduced.fisher.at(row, column);
-            }
-        }
-        Some(())
+        let reduced = joint.equations.reduced(&fit.background.prior, &fit.background.shares[channel])?;
+        Some((joint.equations.columns, reduced.fisher))
     }
 }
 
@@ -318,12 +346,11 @@ mod tests {
             model.hypotheses().iter().filter(of).map(|it| (it.effect, it.target)).collect();
         let numbers: Vec<usize> =
             (0..model.hypotheses().len()).filter(|number| of(&&model.hypotheses()[*number])).collect();
-        let each = catalogue(&measured).into_iter().map(|experiment| {
-            let repeats = Both::of(&search, &found, &experiment).unwrap().repeats(0, &numbers);
-            (experiment.what, repeats)
+        let separation = Separation::new(&search, &found);
+        let each = separation.experiments.iter().enumerate().map(|(number, experiment)| {
+            (experiment.what.clone(), separation.both(number).unwrap().repeats(0, &numbers))
         });
-        let each = each.collect();
-        (separate_by(&search, &found, 0, &rivals).unwrap(), each)
+        (separation.told(0, &rivals).unwrap(), each.collect())
     }
 
     #[test]

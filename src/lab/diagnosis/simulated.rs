@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::cause::{Cause, Stage};
 use super::causes::CATALOGUE;
 use super::chain::{Chain, Reference};
@@ -316,7 +318,7 @@ impl Model for Simulated<'_> {
         let rows = self.rows(&chain);
         let remembered = self.strained(&rows, &chain);
         let readings = self.read(&remembered, &chain);
-        let signatures = self.hypotheses.iter().enumerate().map(|(at, hypothesis)| {
+        let signatures = self.hypotheses.par_iter().enumerate().map(|(at, hypothesis)| {
             (0..hypothesis.parameters.len())
                 .map(|parameter| self.signature(&rows, &remembered, applied, [at, parameter]))
                 .collect()

@@ -1,24 +1,19 @@
-//! The linear system of each channel, reduced to products: rows are read once, everything after works on these.
+//! The linear system of each channel: its rows in standard deviations of their noise, and their products.
 //!
 //! A channel's residual is r = A ψ + B z + n with the signatures A of all hypotheses, the background's functions B with
-//! z ~ N(0, T), and noise n ~ N(0, D). With V = D + B T Bᵀ,
-//!
-//! ```text
-//! Aᵀ V⁻¹ A = Aᵀ D⁻¹ A − (Bᵀ D⁻¹ A)ᵀ H⁻¹ (Bᵀ D⁻¹ A),   H = T⁻¹ + Bᵀ D⁻¹ B,   ln det V = ln det D + ln det T + ln det H
-//! ```
-//!
-//! (M. A. Woodbury, Princeton Statistical Research Group 42 (1950)). Errors E e of the model with e ~ N(0, 1), if it states any, are
-//! taken into D once, the same way: u D⁻¹ v stands for uᵀ D⁻¹ v − u_Eᵀ v_E with u_E = L⁻¹ Eᵀ D⁻¹ u and L Lᵀ = 1 + Eᵀ D⁻¹ E.
+//! z ~ N(0, T), and noise n ~ N(0, D). Errors E e of the model with e ~ N(0, 1), if it states any, are taken into D: u D⁻¹ v stands
+//! for uᵀ D⁻¹ v − u_Eᵀ v_E with u_E = L⁻¹ Eᵀ D⁻¹ u and L Lᵀ = 1 + Eᵀ D⁻¹ E (M. A. Woodbury, Princeton Statistical Research Group 42
+//! (1950)).
 
-use super::basis::Prior;
+use super::equations::NormalEquations;
 use super::whitening::Whitening;
 use crate::numeric::dense::{Matrix, gram};
 use crate::numeric::linear::{LargeFactor, dot};
 
-/// The products of one channel.
+/// One channel.
 pub(super) struct ChannelSystem {
-    /// The columns that this channel knows, by their number among all.
-    pub(super) columns: Vec<usize>,
+    /// What its rows come to.
+    pub(super) equations: NormalEquations,
     /// Of each row.
     pub(super) whitening: Whitening,
     /// D⁻½ A, column by column.
@@ -29,18 +24,6 @@ pub(super) struct ChannelSystem {
     pub(super) residual: Vec<f64>,
     /// What the model states of its own errors.
     pub(super) stated: Stated,
-    /// Bᵀ D⁻¹ B.
-    background_gram: Matrix,
-    /// (Bᵀ D⁻¹ A)ᵀ, a row for each signature.
-    mixed: Matrix,
-    /// Aᵀ D⁻¹ A.
-    signature_gram: Matrix,
-    /// Bᵀ D⁻¹ r.
-    background_residual: Vec<f64>,
-    /// Aᵀ D⁻¹ r.
-    signature_residual: Vec<f64>,
-    square: f64,
-    log_determinant: f64,
 }
 
 /// The model's stated errors E, and the other columns' products with them.
@@ -94,36 +77,6 @@ impl Stated {
     }
 }
 
-/// The channel with its background marginalised.
-pub(super) struct Reduced {
-    /// Of H.
-    pub(super) factor: LargeFactor,
-    /// L⁻¹ Bᵀ D⁻¹ A, a row for each signature, with H = L Lᵀ.
-    pub(super) whitened_mixed: Vec<Vec<f64>>,
-    /// Aᵀ V⁻¹ A.
-    pub(super) fisher: Matrix,
-    /// Aᵀ V⁻¹ r.
-    pub(super) score: Vec<f64>,
-    /// rᵀ V⁻¹ r.
-    pub(super) square: f64,
-    /// ln det V.
-    pub(super) log_determinant: f64,
-}
-
-impl Reduced {
-    /// For each load, the degrees of freedom that the rows tell of the background: K − tr(T⁻¹ Var z).
-    pub(super) fn freedom(&self, prior: &Prior, shares: &[f64]) -> Vec<f64> {
-        let width = prior.precision.columns();
-        let blocks = self.factor.inverse_blocks(width);
-        let untold = |(block, share): (&Vec<Vec<f64>>, &f64)| {
-            let trace: f64 =
-                block.iter().enumerate().map(|(at, row)| dot(row, prior.precision.row(at))).sum();
-            (width as f64 - trace / (share * share)).max(0.0)
-        };
-        blocks.iter().zip(shares).map(untold).collect()
-    }
-}
-
 impl ChannelSystem {
     /// `signatures` are columns with their numbers, `errors` are those that the model states; `None` if they are not finite.
     pub(super) fn of(
@@ -149,7 +102,7 @@ impl ChannelSystem {
             others.map(|(other, theirs)| dot(column, other) - dot(own, theirs)).collect()
         };
         let rows: Vec<Vec<f64>> = signatures.iter().zip(&stated.signatures).map(mixed).collect();
-        Some(Self {
+        let equations = NormalEquations {
             background_gram: less(products(&background), &products(&stated.background)),
             mixed: Matrix::from_rows(&rows),
             signature_gram: less(products(&signatures), &products(&stated.signatures)),
@@ -159,62 +112,8 @@ impl ChannelSystem {
             log_determinant: whitening.log_determinant()
                 + stated.factor.as_ref().map_or(0.0, LargeFactor::log_determinant),
             columns,
-            whitening,
-            signatures,
-            background,
-            residual,
-            stated,
-        })
-    }
-
-    /// With a background of T = diag(τ²) ⊗ the process' own, τ being its share for each load; `None` if H is not positive definite.
-    pub(super) fn reduced(&self, prior: &Prior, shares: &[f64]) -> Option<Reduced> {
-        let mut inner = self.background_gram.clone();
-        let width = prior.precision.columns();
-        for (load, share) in shares.iter().enumerate() {
-            for at in 0..width {
-                let entries = &mut inner.row_mut(load * width + at)[load * width..][..width];
-                entries
-                    .iter_mut()
-                    .zip(prior.precision.row(at))
-                    .for_each(|(entry, own)| *entry += own / (share * share));
-            }
-        }
-        let factor = inner.factorised()?;
-        let whitened_mixed: Vec<Vec<f64>> =
-            (0..self.signatures.len()).map(|at| factor.solve_lower(self.mixed.row(at))).collect();
-        let whitened_residual = factor.solve_lower(&self.background_residual);
-        let mut fisher = self.signature_gram.clone();
-        for (row, left) in whitened_mixed.iter().enumerate() {
-            for (column, right) in whitened_mixed.iter().enumerate().take(row + 1) {
-                let value = fisher.at(row, column) - dot(left, right);
-                fisher.row_mut(row)[column] = value;
-                fisher.row_mut(column)[row] = value;
-            }
-        }
-        let score = self.signature_residual.iter().zip(&whitened_mixed);
-        Some(Reduced {
-            fisher,
-            score: score.map(|(own, mixed)| own - dot(mixed, &whitened_residual)).collect(),
-            square: self.square - dot(&whitened_residual, &whitened_residual),
-            log_determinant: self.log_determinant
-                + factor.log_determinant()
-                + shares
-                    .iter()
-                    .map(|share| prior.log_determinant() + 2.0 * width as f64 * share.ln())
-                    .sum::<f64>(),
-            whitened_mixed,
-            factor,
-        })
-    }
-
-    /// Bᵀ D⁻¹ (r − A ψ), where ψ are the coordinates of the channel's own columns.
-    pub(super) fn background_score(&self, coordinates: &[f64]) -> Vec<f64> {
-        let mut score = self.background_residual.clone();
-        for (at, psi) in coordinates.iter().enumerate().filter(|(_, psi)| **psi != 0.0) {
-            score.iter_mut().zip(self.mixed.row(at)).for_each(|(score, mixed)| *score -= psi * mixed);
-        }
-        score
+        };
+        Some(Self { equations, whitening, signatures, background, residual, stated })
     }
 
     /// D⁻½ (r − A ψ − B z − E ê).

@@ -29,6 +29,11 @@ impl Whitening {
         Self { follows: follows.iter().enumerate().map(goes_on).collect(), weights, memory }
     }
 
+    /// ρ.
+    pub(super) const fn memory(&self) -> f64 {
+        self.memory
+    }
+
     /// D⁻½ v.
     pub(super) fn whitened(&self, column: &[f64]) -> Vec<f64> {
         let fresh = (1.0 - self.memory * self.memory).sqrt();

@@ -130,10 +130,13 @@ fn told(
     let (model, at_locked) = (Later::new(setting, &open), Later::new(setting, &locked));
     let search = Search::new(&model, all, &open.observations);
     let found = search.run(&Vec::new()).ok_or(Unfit::Singular)?;
-    let rows = [(&model, &open), (&at_locked, &locked)]
-        .map(|(model, part)| Rows { model: model as &dyn Model, observations: &part.observations });
+    let rows = [(&model, &open), (&at_locked, &locked)].map(|(model, part)| Rows {
+        model: model as &dyn Model,
+        observations: &part.observations,
+        unrepaired: None,
+    });
     let mut diagnosis = summary(&search, &found, &rows, &missing(columns, there)).ok_or(Unfit::Singular)?;
-    standing(&mut diagnosis, &rows, &found);
+    standing(&mut diagnosis, &search, &rows, &found);
     let signals = &found.fit.linearised.readings;
     let excess =
         asked.asks_for(EFFECT).then(|| excess(&open.observations, &found.fit.systems.noise, signals));

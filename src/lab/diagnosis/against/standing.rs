@@ -4,9 +4,9 @@
 //! smaller, each channel's in units of its noise, and by more than these gains scatter from cluster to cluster. What does not is no
 //! chance, as the tests have it, but no name either: it is unnamed.
 
-use crate::lab::diagnosis::attribution::{Applied, Attribution};
+use crate::lab::diagnosis::attribution::{Applied, Attribution, Search};
 use crate::lab::diagnosis::columns::ZERO;
-use crate::lab::diagnosis::gain::{Rows, gain, rmse};
+use crate::lab::diagnosis::gain::{Rows, rmse};
 use crate::lab::diagnosis::report::{Diagnosis, Finding};
 use crate::lab::diagnosis::verdict;
 
@@ -14,7 +14,12 @@ use crate::lab::diagnosis::verdict;
 const STANDS: f64 = 2.5;
 
 /// Withdraws what does not stand by the plain squares of the open rows.
-pub(super) fn standing(diagnosis: &mut Diagnosis, [open, locked]: &[Rows<'_>; 2], found: &Attribution) {
+pub(super) fn standing(
+    diagnosis: &mut Diagnosis,
+    search: &Search<'_>,
+    [open, locked]: &[Rows<'_>; 2],
+    found: &Attribution,
+) {
     let noise = diagnosis.residuals.noise.clone();
     let hypotheses = open.model.hypotheses();
     let place = |finding: &Finding| {
@@ -47,7 +52,7 @@ pub(super) fn standing(diagnosis: &mut Diagnosis, [open, locked]: &[Rows<'_>; 2]
     let told: Applied = places.map(|at| found.fit.applied[at].clone()).collect();
     diagnosis.rmse_extended = rmse(open, &told, &open.zeros(&told));
     diagnosis.residuals.extended = open.centred(&told);
-    diagnosis.gain = gain([open, locked], &told, &found.fit.systems.noise);
+    diagnosis.gain = search.gain(&found.fit, [open, locked], &told);
     let unnamed: f64 = withdrawn.iter().map(|finding| finding.share).sum();
     diagnosis.unnamed_share = (diagnosis.unnamed_share + unnamed).min(1.0);
     diagnosis.verdict = verdict(!diagnosis.findings.is_empty(), diagnosis.unnamed_share);

@@ -13,6 +13,8 @@ pub(super) const LEVEL: f64 = 1e-3;
 pub(crate) struct Gate {
     /// As far as they are mended.
     pub(crate) observations: Observations,
+    /// The same before what channels and electronics do was mended, where anything was.
+    pub(crate) unrepaired: Option<Observations>,
     /// What the channels should read, if a model says so.
     pub(super) expected: Option<Vec<Vec<f64>>>,
     /// What was found and done.

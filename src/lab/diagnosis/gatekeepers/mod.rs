@@ -5,7 +5,7 @@
 //! too. Nothing here knows of nine channels or of a pad: where a model says what the channels should read, that helps, and
 //! where none does, the channels are held against each other and against themselves.
 //!
-//! A check is a file, and a line in [`CHECKS`].
+//! A check is a file, and a name in [`OF_TABLE`] or [`OF_CHANNELS`].
 
 mod clipping;
 mod clock;
@@ -24,19 +24,11 @@ mod wiring;
 pub(super) use self::gate::Gate;
 use super::observations::Observations;
 
-/// All checks, in their order: times before series, codes before anything that calculates, wires before whatever holds a
-/// channel against its own model.
-const CHECKS: [fn(&mut Gate); 9] = [
-    clock::check,
-    missing::check,
-    stuck::check,
-    rates::check,
-    dead::check,
-    wiring::check,
-    clipping::check,
-    steps::check,
-    mains::check,
-];
+type Check = fn(&mut Gate);
+/// Checks of the table, in their order: times before series, codes before anything that calculates.
+const OF_TABLE: [Check; 4] = [clock::check, missing::check, stuck::check, rates::check];
+/// Checks of channels and electronics: wires before whatever holds a channel against its own model.
+const OF_CHANNELS: [Check; 5] = [dead::check, wiring::check, clipping::check, steps::check, mains::check];
 
 /// What the checks name, this one and [`excess`] among them.
 pub(super) const EFFECTS: [&str; 6] =
@@ -52,6 +44,7 @@ pub(super) fn guarded(
 ) -> Gate {
     let mut gate = Gate {
         observations: observations.clone(),
+        unrepaired: None,
         expected: expected.map(<[Vec<f64>]>::to_vec),
         notices: Vec::new(),
         findings: Vec::new(),
@@ -59,14 +52,20 @@ pub(super) fn guarded(
         not_testable: Vec::new(),
         left: 1.0,
     };
-    for check in CHECKS {
-        let before = gate.clone();
-        check(&mut gate);
-        let own = &gate.findings[before.findings.len()..];
-        if own.iter().any(|finding| !asks_for(finding.effect)) {
-            gate = before;
+    let pass = |gate: &mut Gate, checks: &[Check]| {
+        for check in checks {
+            let before = gate.clone();
+            check(gate);
+            let own = &gate.findings[before.findings.len()..];
+            if own.iter().any(|finding| !asks_for(finding.effect)) {
+                *gate = before;
+            }
         }
-    }
+    };
+    pass(&mut gate, &OF_TABLE);
+    let (measured, found) = (gate.observations.clone(), gate.findings.len());
+    pass(&mut gate, &OF_CHANNELS);
+    gate.unrepaired = (gate.findings.len() > found).then_some(measured);
     gate
 }
 

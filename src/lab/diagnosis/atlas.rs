@@ -124,7 +124,7 @@ impl<'f> Atlas<'f> {
         for (hypothesis, coordinates) in applied {
             let Some(reaches) = &self.reaches[*hypothesis] else { continue };
             let coordinates: Vec<f64> = coordinates.iter().zip(reaches).map(rounded).collect();
-            let Hypothesis { effect, target, ref parameters } = self.first.hypotheses()[*hypothesis];
+            let Hypothesis { effect, target, ref parameters, .. } = self.first.hypotheses()[*hypothesis];
             let values = parameters.iter().zip(&coordinates);
             let numbers: Vec<_> = values.map(|(it, psi)| (it.name, it.value(*psi))).collect();
             if let Some(changed) = with(&device, (effect, target), &numbers, &Circumstances::default()) {

@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use super::bootstrap::Bootstrap;
 use super::columns::{Columns, ZERO};
-use super::covariance::{BACKGROUND_MAX, Background, Marginal, Smooth, Systems};
+use super::covariance::{Background, Marginal, Smooth, Systems};
 use super::inference::{Projected, Test};
-use super::model::{Linearised, Model, Parameter};
+use super::model::{Linearised, Model, Parameter, SIGNATURE_ERROR};
 use super::observations::Observations;
 use crate::numeric::dense::Matrix;
 use crate::numeric::linear::dot;
@@ -25,10 +25,6 @@ const CAUSES_MAX: usize = 12;
 const REFITS: usize = 5;
 /// A refit that moves no coordinate by more than this many standard deviations stands.
 const STANDS: f64 = 0.1;
-
-/// A signature is known no better than the field that it is made of. Where it goes with the load in proportion the background holds that
-/// error; where it has a course of its own, so much of what the cause explains may be that cause still, in another guise.
-const SIGNATURE_ERROR: f64 = BACKGROUND_MAX;
 
 /// Hypotheses that hold, each with its coordinates.
 pub(super) type Applied = Vec<(usize, Vec<f64>)>;
@@ -273,7 +269,9 @@ impl<'m> Search<'m> {
         Some(worst.map(|(_, at)| at))
     }
 
-    /// What a cause must take off the weighted squares to be more than the signatures of those with a course may be wrong by.
+    /// What a cause must take off the weighted squares to be more than the signatures of those with a course may be wrong by: where a
+    /// signature goes with the load in proportion the background holds its error; where it has a course of its own, so much of what the
+    /// cause explains may be that cause still, in another guise.
     fn least_square(&self, fit: &Fit) -> Option<f64> {
         let has_course = |at: &usize| !self.columns.shapes[fit.applied[*at].0].is_empty();
         let mut squares =

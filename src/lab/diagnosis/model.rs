@@ -1,5 +1,6 @@
 //! What the engine asks of a model of the channels, and what it knows of the hypotheses.
 
+use super::covariance::BACKGROUND_MAX;
 use super::inverse::Written;
 use super::noise::NoiseLevel;
 use super::observations::Observations;
@@ -99,7 +100,12 @@ pub(super) struct Hypothesis {
     pub(super) target: Target,
     /// Its numbers.
     pub(super) parameters: Vec<Parameter>,
+    /// Standard deviation of how large its signature is, as a share: by so much of themselves its numbers are known at best.
+    pub(super) signature_error: f64,
 }
+
+/// A field is known no better than the largest background that is left beside it, and so are signatures that are made of it.
+pub(super) const SIGNATURE_ERROR: f64 = BACKGROUND_MAX;
 
 impl Hypothesis {
     /// The numbers that are asked for.

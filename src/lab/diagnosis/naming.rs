@@ -12,6 +12,13 @@ use super::inference::{Projected, Test};
 use super::report::{Estimate, Finding, NotDetected};
 use super::target::Target;
 use crate::numeric::chi_square;
+use crate::numeric::dense::Matrix;
+
+/// How large coordinates are, in units of their own deviations: of several the root of the sum of squares.
+fn norm(coordinates: &[f64], covariance: &Matrix) -> f64 {
+    let square = |(k, psi): (usize, &f64)| psi * psi / covariance.at(k, k).max(f64::MIN_POSITIVE);
+    coordinates.iter().enumerate().map(square).sum::<f64>().sqrt()
+}
 
 /// Quantile of a normal number: 95 % lie within.
 const WITHIN_95: f64 = 1.959_964;
@@ -50,9 +57,13 @@ impl Search<'_> {
     fn estimates(&self, found: &Attribution, at: usize) -> Option<Vec<Estimate>> {
         let covariance = self.covariance(&found.fit, at)?;
         let (hypothesis, coordinates) = &found.fit.applied[at];
-        let parameters = self.model.hypotheses()[*hypothesis].asked();
+        let it = &self.model.hypotheses()[*hypothesis];
+        let parameters = it.asked();
+        let size = norm(&coordinates[..parameters.len()], &covariance);
         let estimate = |(k, parameter): (usize, &super::model::Parameter)| {
-            let spread = WITHIN_95 * covariance.at(k, k).max(0.0).sqrt();
+            let deviation = covariance.at(k, k).max(0.0).sqrt();
+            // An error of the signature moves all numbers in proportion, and turns them by as much.
+            let spread = WITHIN_95 * deviation * libm::hypot(1.0, it.signature_error * size);
             Estimate {
                 name: parameter.name,
                 value: parameter.value(coordinates[k]),

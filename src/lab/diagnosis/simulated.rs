@@ -10,7 +10,7 @@ use super::chain::{Chain, Reference};
 use super::covariance::BACKGROUND_MAX;
 use super::mechanics::{Maps, Pad, at_places, changes, side_share};
 use super::memory::{Course, MemoryChain};
-use super::model::{CommonError, Hypothesis, Linearised, Model, Parameter, Signature};
+use super::model::{CommonError, Hypothesis, Linearised, Model, Parameter, SIGNATURE_ERROR, Signature};
 use super::observations::{Observations, Sample};
 use super::own::own_chain;
 use super::report::NotTestable;
@@ -79,6 +79,7 @@ impl<'f> Simulated<'f> {
                     effect: cause.effect(),
                     target,
                     parameters: cause.parameters(&setting),
+                    signature_error: if cause.stage() == Stage::Channels { 0.0 } else { SIGNATURE_ERROR },
                 });
                 causes.push(cause);
             }

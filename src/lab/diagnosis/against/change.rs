@@ -150,7 +150,10 @@ pub(super) fn hypotheses(
         all.push(("time_lag", Target::All, vec![Parameter::additive("ms", [-1e4, 1e4], 1.0)], Act::Lag));
     }
     let all = all.into_iter().filter(|(effect, ..)| asks_for(effect));
-    all.map(|(effect, target, parameters, act)| (Hypothesis { effect, target, parameters }, act)).collect()
+    all.map(|(effect, target, parameters, act)| {
+        (Hypothesis { effect, target, parameters, signature_error: 0.0 }, act)
+    })
+    .collect()
 }
 
 /// What cannot be asked for, and what is missing.

@@ -68,13 +68,21 @@ pub(super) struct Smooth {
     basis: Basis,
     /// Σ (load φ)(load φ)ᵀ/n over the rows of the whole measurement.
     mean_squares: Matrix,
+    /// The largest remainder that counts as background.
+    most: f64,
 }
 
 impl Smooth {
     /// `observations` are rows of `all`.
     pub(super) fn of(all: &Observations, observations: &Observations) -> Self {
         let basis = Basis::of(observations);
-        Self { mean_squares: mean_squares(all, &basis), basis }
+        Self { mean_squares: mean_squares(all, &basis), basis, most: REMAINDER_MAX }
+    }
+
+    /// Without a background.
+    #[cfg(test)]
+    pub(super) fn without(self) -> Self {
+        Self { most: 0.0, ..self }
     }
 }
 
@@ -335,7 +343,7 @@ impl Systems {
         let sums = |(channel, (own, reduced)): (usize, (&&NormalEquations, &Reduced))| -> [[f64; 2]; 3] {
             let z = smooth(own, reduced, coordinates);
             let mean_square = dot(&z, &self.extent(channel, &z));
-            let allowed = (REMAINDER_MAX * REMAINDER_MAX / mean_square).min(1.0);
+            let allowed = (self.smooth.most * self.smooth.most / mean_square).min(1.0);
             let energies: Vec<f64> = self.by_load(&z).map(|z| allowed * prior.energy(z)).collect();
             let freedom = reduced.freedom(prior, &background.shares[channel]);
             std::array::from_fn(|load| [energies[load], freedom[load]])

@@ -82,6 +82,11 @@ impl Contacts {
         self.rows.len()
     }
 
+    /// Their places in the tables, counted through all of them.
+    pub fn places(&self) -> &[usize] {
+        &self.places
+    }
+
     /// Whether channels are relative to the untouched pad.
     pub fn is_tared(&self) -> bool {
         self.recording.is_tared()

@@ -1,4 +1,4 @@
-//! `tactpad adapt`: which tables a decoder is made of, which are refused, and of what it warns.
+//! `tactpad adapt`: which tables a decoder is made of, which are refused, of what it warns, and what it names.
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
 
 use std::fs;
@@ -203,4 +203,86 @@ fn two_faults_are_one_too_many() {
         assert!(output.status.code() == Some(2) && !is_written, "{}", said(&output));
         assert!(words.iter().all(|word| said(&output).contains(word)), "{}", said(&output));
     }
+}
+
+/// A table of the paper's plan, measured on a pad of which one channel's gain is wrong.
+fn one_gain_wrong(folder: &Path) {
+    let pad = "[[module]]\nindex = 1\ngain = [1, 1, 1.12]\n[noise]\nadditive_uv = 10.0\n";
+    fs::write(folder.join("one.toml"), pad).unwrap();
+    let output = tactpad(folder, "twin --plan paper --seed 1 --imperfections one.toml --out m.csv");
+    assert!(output.status.success(), "{}", said(&output));
+}
+
+/// What `adapt` finds by so many rows of it.
+fn document(folder: &Path, rows: usize) -> serde_json::Value {
+    let line = format!("adapt --method inverse --measured m.csv --out pad.decoder --rows {rows} --json");
+    let output = tactpad(folder, &line);
+    assert!(output.status.success(), "{}", said(&output));
+    serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()["pad"].clone()
+}
+
+fn all(value: &serde_json::Value) -> &[serde_json::Value] {
+    value.as_array().unwrap_or_else(|| panic!("{value}"))
+}
+
+#[test]
+fn only_what_a_diagnosis_names_has_a_name() {
+    let folder = tempfile::tempdir().unwrap();
+    one_gain_wrong(folder.path());
+    let found = document(folder.path(), 200);
+    let [finding, ..] = all(&found["findings"]) else { panic!("{found}") };
+    assert_eq!(
+        [&finding["status"], &finding["effect"], &finding["target"]],
+        ["NAMED", "channel_gain", "m1z"]
+    );
+    assert!((finding["parameters"]["gain"]["value"].as_f64().unwrap() - 1.12).abs() < 0.005, "{finding}");
+    let numbers = all(&found["numbers"]);
+    // 9 gains, 24 poses and stiffnesses, 72 crosstalks, the blur.
+    assert!(numbers.len() >= 106, "{}", numbers.len());
+    for number in numbers {
+        let [deviation, prior] =
+            ["deviation", "prior_deviation"].map(|key| number[key].as_f64().unwrap_or_default());
+        assert!(deviation > 0.0 && deviation < 1.001 * prior, "{number}");
+        let told_by = if deviation <= 0.5 * prior { "data" } else { "prior" };
+        assert_eq!(number["told_by"], told_by, "{number}");
+        let is_the_gain = number["name"] == "gain" && number["target"] == "m1z";
+        assert_eq!(number["named"], is_the_gain, "{number}");
+    }
+    let parameters = all(&found["parameters"]);
+    assert!(parameters.len() == 24 && parameters.iter().all(|it| it["named"] == false), "{found}");
+    // A frame that stretches a gauge less and a gauge of a smaller gain look alike.
+    let apart = all(&found["not_told_apart"]);
+    let correlation = |it: &serde_json::Value| it["correlation"].as_f64().unwrap().abs();
+    assert!(!apart.is_empty() && apart.iter().all(|it| (0.9..1.0).contains(&correlation(it))), "{apart:?}");
+}
+
+#[test]
+fn people_read_names_first_and_no_pose_or_stiffness_beside_a_size() {
+    let folder = tempfile::tempdir().unwrap();
+    one_gain_wrong(folder.path());
+    let line = "adapt --method inverse --measured m.csv --out pad.decoder --rows 200";
+    let output = tactpad(folder.path(), line);
+    let text = String::from_utf8(output.stdout).unwrap();
+    let (findings, coefficients) = text.split_once("The decoder's own coefficients.").unwrap();
+    assert!(findings.contains("  channel_gain of m1z: gain 1.12"), "{text}");
+    assert!(!text.contains("module.") && !findings.contains("module"), "{text}");
+    for line in coefficients.lines().filter(|line| line.contains('±') && !line.contains("± is")) {
+        assert!(CHANNEL_NAMES.iter().any(|name| line.starts_with(name)), "{line}");
+        assert!(!["stiffness", "tilt", "turn", "displacement"].iter().any(|it| line.contains(it)), "{line}");
+    }
+    assert_eq!(coefficients.lines().filter(|line| line.contains(" ± 0.0")).count(), CHANNELS, "{text}");
+    assert!(coefficients.contains("24 poses and stiffnesses (") && coefficients.contains("no findings"));
+    assert!(coefficients.contains("The data cannot tell "), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+}
+
+#[test]
+fn tables_that_tell_no_causes_apart_name_nothing_and_say_why() {
+    let folder = tempfile::tempdir().unwrap();
+    one_gain_wrong(folder.path());
+    let found = document(folder.path(), 20);
+    assert!(all(&found["findings"]).is_empty(), "{found}");
+    assert!(all(&found["numbers"]).iter().all(|it| it["named"] == false), "{found}");
+    let [why] = all(&found["not_diagnosed"]) else { panic!("{found}") };
+    assert!(why.as_str().unwrap().contains("it takes 60 at least"), "{why}");
 }

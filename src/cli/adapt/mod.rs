@@ -2,8 +2,11 @@
 
 mod measured;
 mod method;
+mod named;
+mod numbers;
 mod own;
 mod scdf;
+mod thermal;
 
 use std::fmt;
 use std::io::Write;
@@ -14,6 +17,8 @@ use serde::Serialize;
 
 use self::measured::Measured;
 use self::method::Method;
+use self::named::Named;
+use self::numbers::Pad as FoundPad;
 use super::decoder_file;
 use super::destination::Destination;
 use super::device::Pad;
@@ -75,7 +80,11 @@ struct Outcome {
 #[serde(untagged)]
 enum Fit {
     Network(scdf::Fit),
-    Own(Box<own::Fit>),
+    /// What the inverse decoder's calibration found; nothing for the other methods.
+    Own {
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pad: Option<Box<FoundPad>>,
+    },
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -85,7 +94,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     arguments.spare()?;
     let device = arguments.pad.read()?;
-    let measured = Measured::read(&arguments.measured, &device, arguments.rows, arguments.seed)?;
+    let measured = Measured::read(&arguments.measured, &device, (arguments.rows, arguments.seed), *method)?;
     let to = Destination::of(out)?;
     let from = arguments.from.as_deref();
     let earlier = own::earlier(*method, from)?;
@@ -96,10 +105,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         decoder_file::write_network(&to, &network)?;
         Fit::Network(fit)
     } else {
-        let (decoder, fit) = own::adapt(*method, &measured, earlier.as_ref(), (&device, &field))?;
+        let (decoder, found) = own::adapt(*method, &measured, earlier.as_ref(), (&device, &field))?;
         let note = format!("{} contacts of {}", measured.contacts.count(), measured.names);
         to.write(&decoder.to_bytes(&note).unwrap_or_default())?;
-        Fit::Own(Box::new(fit))
+        let pad = found.map(|found| FoundPad::of(found, Named::by(&measured.tables, &device, &field)));
+        Fit::Own { pad: pad.map(Box::new) }
     };
     let (rows, tared) = (measured.contacts.count(), measured.contacts.is_tared());
     let warnings: Vec<String> = fault.map(|fault| measured.warning(fault)).into_iter().collect();
@@ -135,7 +145,8 @@ impl fmt::Display for Fit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Network(fit) => fit.fmt(f),
-            Self::Own(fit) => fit.fmt(f),
+            Self::Own { pad: Some(pad) } => pad.fmt(f),
+            Self::Own { pad: None } => f.write_str("fitted"),
         }
     }
 }

@@ -52,8 +52,9 @@ struct Cause {
     side: Option<&'static str>,
 }
 
+/// What was found, with its numbers.
 #[derive(Serialize)]
-struct Finding<'d> {
+pub(crate) struct Finding<'d> {
     status: &'static str,
     #[serde(flatten)]
     cause: Cause,
@@ -158,7 +159,7 @@ impl Cause {
 }
 
 impl<'d> Finding<'d> {
-    fn of(finding: &'d report::Finding, channels: &[String]) -> Self {
+    pub(crate) fn of(finding: &'d report::Finding, channels: &[String]) -> Self {
         let estimate = |it: &report::Estimate| {
             let [low95, high95] = it.interval95;
             (it.name, Estimate { value: it.value, low95, high95 })

@@ -2,28 +2,28 @@
 
 mod against;
 mod arguments;
-mod document;
+pub(super) mod document;
+pub(super) mod engine;
 mod files;
 mod numbers;
 mod report;
-mod text;
+pub(super) mod text;
 
 use std::path::Path;
 
 pub(super) use self::arguments::Arguments;
 use self::arguments::{destination, folder};
 use self::document::Document;
+use self::engine::diagnosed;
 use self::files::{file_name, write_report};
 use super::destination::Destination;
 use super::failure::Failure;
-use super::field::{changes_of, field_of};
-use super::progress::Progress;
+use super::field::field_of;
 use super::tables;
 use super::written::{is_stdout, print_json, say, stdout};
 use tactpad::lab::diagnosis::extension::extended;
 use tactpad::lab::diagnosis::report::Diagnosis;
 use tactpad::lab::diagnosis::{self, Unfit};
-use tactpad::pad::changes::FieldChange;
 use tactpad::pad::device::Device;
 use tactpad::tables::measured::Table;
 use tactpad::tables::measured::columns::Kind;
@@ -39,10 +39,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let table = tables::read(measured, Kind::Measured, device.plate.radius_mm())?;
     // It takes a while until the engine itself could say so.
     diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
-    let diagnosis = diagnosed(&table, &device, without).map_err(|why| match why {
-        Why::Unfit(why) => unfit(measured, &why),
-        Why::NoField(failure) => failure,
-    })?;
+    let field = field_of(&device)?;
+    let diagnosis = diagnosed(&table, (&device, &field), without).map_err(|why| unfit(measured, &why))?;
     if let Some(to) = saved {
         save(&to, &device, &diagnosis, &table)?;
     }
@@ -66,33 +64,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     use std::io::Write as _;
     Ok(write!(stdout(), "{}", text::Report(&diagnosis))?)
-}
-
-/// Why there is no diagnosis.
-enum Why {
-    Unfit(Unfit),
-    NoField(Failure),
-}
-
-fn diagnosed(table: &Table, device: &Device, without: &[String]) -> Result<Diagnosis, Why> {
-    let field = field_of(device).map_err(Why::NoField)?;
-    let flaws = flaws(device);
-    let solve = |device: &Device| field_of(device).ok();
-    let pad = diagnosis::Pad { device, field: &field, flaws: &flaws, solve: &solve, without };
-    let _progress = Progress::begin("looking for causes");
-    diagnosis::diagnose(table, &pad).map_err(Why::Unfit)
-}
-
-/// What flaws of a module change; none where that cannot be had.
-fn flaws(device: &Device) -> Vec<FieldChange> {
-    match changes_of(device) {
-        Ok(changes) => changes.0,
-        Err(Failure::Failed(why) | Failure::Unusable(why)) => {
-            say(format_args!("open frames and loose bonds are not looked for: {why}"));
-            Vec::new()
-        }
-        Err(Failure::Unread) => Vec::new(),
-    }
 }
 
 fn unfit(measured: &Path, why: &Unfit) -> Failure {

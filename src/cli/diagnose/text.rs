@@ -67,16 +67,18 @@ fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
     format!("{effect} of {}{with}{side}", target.name(channels))
 }
 
-fn found(finding: &Finding, channels: &[String]) -> String {
+/// A cause with its numbers and their intervals.
+pub(crate) fn sized(finding: &Finding, channels: &[String]) -> String {
     let numbers: Vec<String> = finding.parameters.iter().map(estimate).collect();
     let first = cause(finding.effect, &finding.target, channels);
-    let share = 100.0 * finding.share;
     let colon = if numbers.is_empty() { "" } else { ": " };
-    let mut text = format!(
-        "{first}{colon}{}; p {:.0e}, {share:.0} % of the residual",
-        numbers.join(", "),
-        finding.p_value
-    );
+    format!("{first}{colon}{}", numbers.join(", "))
+}
+
+fn found(finding: &Finding, channels: &[String]) -> String {
+    let share = 100.0 * finding.share;
+    let first = sized(finding, channels);
+    let mut text = format!("{first}; p {:.0e}, {share:.0} % of the residual", finding.p_value);
     if !finding.confounded_with.is_empty() {
         let others = finding.confounded_with.iter().map(|(effect, target)| cause(effect, target, channels));
         let others: Vec<String> = others.collect();

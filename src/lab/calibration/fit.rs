@@ -10,12 +10,12 @@ use rayon::prelude::*;
 use super::earlier::Earlier;
 use super::model::Layout;
 use super::noise;
+use super::numbers::{Asked, Number, Pair};
 use super::prepared::Prepared;
 use super::prior::Prior;
 use super::problem::{Fit, Problem, Settings};
 use super::thermal_fit::ThermalFit;
 use crate::pad::device::Device;
-use crate::pad::device::parameter::Parameter;
 use crate::pad::field::PadField;
 use crate::pad::influence::InfluenceField;
 use crate::pipeline::compensation::Compensation;
@@ -80,8 +80,10 @@ pub struct Calibration {
     pub noise: Noise,
     /// Each channel's gain.
     pub gain: [f64; CHANNELS],
-    /// Poses and stiffnesses: parameter, value, posterior standard deviation.
-    pub physical: Vec<(Parameter, f64, f64)>,
+    /// The fit's numbers, each with its deviation and with who tells it.
+    pub numbers: Vec<Number>,
+    /// Pairs of them that the contacts do not tell apart, the strongest first.
+    pub not_told_apart: Vec<Pair>,
     /// Prior standard deviation of the smooth background that the evidence chose, as a share of each map.
     pub background: f64,
     /// Whether the prior is centred on another pad's field, not on the simulated one.
@@ -156,11 +158,14 @@ impl Calibration {
         let decoder = Inverse::new(field.clone(), noise);
         let (zero_uv, thermal_fit) = (prepared.zero_uv(fit), prepared.thermal(fit));
         let thermal = thermal_fit.map(|fit| fit.coefficients);
+        let asked = Asked { zero_uv, gains_follow_temperature: prepared.tells_gains() };
+        let (numbers, not_told_apart) = Number::all(&problem.layout, fit, &asked);
         Self {
             noise: Noise { gain: noise::common_gain(&decoder, &contacts, problem.noise_prior()), ..noise },
             field,
             gain: std::array::from_fn(|channel| Layout::gain(values, channel)),
-            physical: problem.physical(fit),
+            numbers,
+            not_told_apart,
             background: settings.background,
             from_earlier,
             compensation: Compensation { zero_uv, thermal, creep, hysteresis },

@@ -25,6 +25,7 @@ mod moments;
 mod noise;
 mod noise_model;
 mod normal_equations;
+pub mod numbers;
 mod plate;
 mod prepared;
 mod prior;

@@ -174,6 +174,31 @@ impl Layout {
         PHYSICAL
     }
 
+    /// Place of a channel's zero.
+    pub(super) const fn zero_at(channel: usize) -> usize {
+        ZEROS + channel
+    }
+
+    /// Place of a channel's gain.
+    pub(super) const fn gain_at(channel: usize) -> usize {
+        GAINS + channel
+    }
+
+    /// Place of the crosstalk into a channel from another one.
+    pub(super) const fn crosstalk_at(into: usize, from: usize) -> usize {
+        CROSSTALKS + into * CHANNELS + from
+    }
+
+    /// Places of a channel's share of a play operator: that of all channels, and its own difference from it.
+    pub(super) const fn share_at(play: usize, channel: usize) -> [usize; 2] {
+        [SHARES + play, OWN_SHARES + play * CHANNELS + channel]
+    }
+
+    /// Places of creep's share, and of the blur.
+    pub(super) const fn creep_and_blur_at() -> [usize; 2] {
+        [CREEP, BLUR]
+    }
+
     /// The strain maps E at a place, µV/N before gains.
     fn strain_maps(&self, values: &[f64], scale: &Maps, place: &Place) -> Maps {
         // E = G + b ∇²G …

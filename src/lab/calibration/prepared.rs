@@ -61,10 +61,15 @@ impl Prepared {
         self.zero_uv.map(|zero_uv| std::array::from_fn(|k| zero_uv[k] + remainder_uv[k]))
     }
 
+    /// Whether a fit tells the gains' temperature coefficients.
+    pub(super) const fn tells_gains(&self) -> bool {
+        self.thermal.is_some() && self.tells_gains
+    }
+
     /// The temperature coefficients, completed by those of a fit.
     pub(super) fn thermal(&self, fit: &Fit) -> Option<ThermalFit> {
         let thermal = self.thermal?;
-        if !self.tells_gains {
+        if !self.tells_gains() {
             return Some(thermal);
         }
         let at = |channel: usize| Layout::first_gain_slope() + channel;

@@ -18,9 +18,8 @@ use super::normal_equations::{NormalEquations, Step};
 use super::plate::{places, scale};
 use super::prior::Prior;
 use super::prior_deviations::PriorDeviations;
-use crate::numeric::linear::LargeFactor;
+use crate::numeric::linear::{LargeFactor, dot};
 use crate::pad::device::Device;
-use crate::pad::device::parameter::Parameter;
 use crate::pad::field::Sensitivity;
 use crate::pad::influence::{InfluenceField, MAPS};
 use crate::pipeline::compensation::creep::Creep;
@@ -110,9 +109,16 @@ impl Fit {
     /// Posterior standard deviation of a parameter.
     pub(super) fn deviation(&self, at: usize) -> f64 {
         // √(H⁻¹)ᵢᵢ = √(eᵢᵀ H⁻¹ eᵢ).
-        let mut unit = vec![0.0; self.values.len()];
-        unit[at] = 1.0;
-        self.factor.solve(&unit)[at].sqrt()
+        let half = self.halved(&[(at, 1.0)]);
+        dot(&half, &half).sqrt()
+    }
+
+    /// L⁻¹c of a linear combination cᵀθ of few parameters, where H = L Lᵀ: the posterior covariance of two combinations is
+    /// cᵀ H⁻¹ d = (L⁻¹c)ᵀ (L⁻¹d).
+    pub(super) fn halved(&self, combination: &[(usize, f64)]) -> Vec<f64> {
+        let mut whole = vec![0.0; self.values.len()];
+        combination.iter().for_each(|(at, factor)| whole[*at] = *factor);
+        self.factor.solve_lower(&whole)
     }
 }
 
@@ -395,12 +401,6 @@ impl<'f> Problem<'f> {
             })
         };
         places(self.reach_mm).flat_map(covariances).collect()
-    }
-
-    /// The physical parameters: value and posterior standard deviation.
-    pub(super) fn physical(&self, fit: &Fit) -> Vec<(Parameter, f64, f64)> {
-        let numbers = self.layout.physical.iter().zip(Layout::first_physical()..);
-        numbers.map(|(parameter, at)| (*parameter, fit.values[at], fit.deviation(at))).collect()
     }
 
     /// The pad's own field.

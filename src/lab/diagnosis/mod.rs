@@ -14,6 +14,7 @@
 //! Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014) 114007 (without it parameters are wrong and too sure).
 
 pub mod against;
+pub mod agreement;
 mod atlas;
 mod attribution;
 mod basis;

@@ -1,0 +1,37 @@
+//! The engine with what the program knows of a pad.
+
+use crate::cli::failure::Failure;
+use crate::cli::field::{changes_of, field_of};
+use crate::cli::progress::Progress;
+use crate::cli::written::say;
+use tactpad::lab::diagnosis::report::Diagnosis;
+use tactpad::lab::diagnosis::{self, Unfit};
+use tactpad::pad::changes::FieldChange;
+use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
+use tactpad::tables::measured::Table;
+
+/// Holds a table against a device, whose field this is; a line says so meanwhile.
+pub(crate) fn diagnosed(
+    table: &Table,
+    (device, field): (&Device, &PadField),
+    without: &[String],
+) -> Result<Diagnosis, Unfit> {
+    let flaws = flaws(device);
+    let solve = |device: &Device| field_of(device).ok();
+    let pad = diagnosis::Pad { device, field, flaws: &flaws, solve: &solve, without };
+    let _progress = Progress::begin("looking for causes");
+    diagnosis::diagnose(table, &pad)
+}
+
+/// What flaws of a module change; none where that cannot be had.
+fn flaws(device: &Device) -> Vec<FieldChange> {
+    match changes_of(device) {
+        Ok(changes) => changes.0,
+        Err(Failure::Failed(why) | Failure::Unusable(why)) => {
+            say(format_args!("open frames and loose bonds are not looked for: {why}"));
+            Vec::new()
+        }
+        Err(Failure::Unread) => Vec::new(),
+    }
+}

@@ -227,6 +227,18 @@ fn words(number: &Number) -> String {
     format!("{}'s {}{from}", number.target.name(&channels), number.quantity.words())
 }
 
+/// The kind under which a number without a column is counted.
+const fn kind_of(quantity: Quantity) -> Option<&'static str> {
+    match quantity {
+        Quantity::Module(_) => Some("poses and stiffnesses"),
+        Quantity::Crosstalk => Some("crosstalks"),
+        Quantity::Friction { .. } => Some("frictions"),
+        Quantity::Creep => Some("creep"),
+        Quantity::Blur => Some("blur"),
+        Quantity::Gain | Quantity::GainSlope | Quantity::Zero => None,
+    }
+}
+
 /// Behind a number that only the prior holds.
 fn mark(number: &Number) -> &'static str {
     match number.told_by() {
@@ -295,21 +307,15 @@ impl Pad {
 
     /// How many others there are, and how many of them the data hold.
     fn nameless(&self) -> String {
-        let kinds: [(&str, fn(&Quantity) -> bool); 5] = [
-            ("poses and stiffnesses", |it| matches!(it, Quantity::Module(_))),
-            ("crosstalks", |it| *it == Quantity::Crosstalk),
-            ("frictions", |it| matches!(it, Quantity::Friction { .. })),
-            ("creep", |it| *it == Quantity::Creep),
-            ("blur", |it| *it == Quantity::Blur),
-        ];
-        let counted = kinds.iter().filter_map(|(name, is_of)| {
-            let of_kind: Vec<&Number> =
-                self.numbers().filter(|it| is_of(&it.quantity) && !self.named.names(it)).collect();
+        let kinds = ["poses and stiffnesses", "crosstalks", "frictions", "creep", "blur"];
+        let counted = kinds.into_iter().filter_map(|kind| {
+            let is_of_kind = |it: &&Number| kind_of(it.quantity) == Some(kind) && !self.named.names(it);
+            let of_kind: Vec<&Number> = self.numbers().filter(is_of_kind).collect();
             let told = of_kind.iter().filter(|it| it.told_by() == ToldBy::Data).count();
             match of_kind.len() {
                 0 => None,
-                1 => Some(format!("{name} ({told})")),
-                count => Some(format!("{count} {name} ({told})")),
+                1 => Some(format!("{kind} ({told})")),
+                count => Some(format!("{count} {kind} ({told})")),
             }
         });
         format!(

@@ -1,7 +1,7 @@
 //! All columns of the linear systems: each channel's zero, the model's own errors, and the hypotheses' signatures.
 
-use super::covariance::{Column, Fitted, Marginal};
-use super::model::{CommonError, Hypothesis, Linearised, Parameter, Signature};
+use super::covariance::{Fitted, Marginal};
+use super::model::{Column, CommonError, Hypothesis, Linearised, Parameter, Signature};
 use super::observations::Observations;
 use super::target::Target;
 

@@ -24,6 +24,7 @@ mod cause;
 mod causes;
 mod ceiling;
 mod chain;
+mod channel_rows;
 mod columns;
 mod covariance;
 mod equations;

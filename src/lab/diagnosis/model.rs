@@ -1,6 +1,5 @@
 //! What the engine asks of a model of the channels, and what it knows of the hypotheses.
 
-use super::covariance::BACKGROUND_MAX;
 use super::inverse::Written;
 use super::noise::NoiseLevel;
 use super::observations::Observations;
@@ -104,6 +103,8 @@ pub(super) struct Hypothesis {
     pub(super) signature_error: f64,
 }
 
+/// Largest background, as a share of a channel's root mean square.
+pub(super) const BACKGROUND_MAX: f64 = 0.03;
 /// A field is known no better than the largest background that is left beside it, and so are signatures that are made of it.
 pub(super) const SIGNATURE_ERROR: f64 = BACKGROUND_MAX;
 
@@ -117,6 +118,9 @@ impl Hypothesis {
 
 /// Readings that change together: each channel's, or `None` where nothing changes.
 pub(super) type Signature = Vec<Option<Vec<f64>>>;
+
+/// A column of all: its signature, channel by channel.
+pub(super) type Column<'c> = &'c [Option<Vec<f64>>];
 
 /// Something that the model gets wrong by a known amount, in all contacts alike.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,10 +7,11 @@ use rayon::prelude::*;
 use super::cause::{Cause, Stage};
 use super::causes::CATALOGUE;
 use super::chain::{Chain, Reference};
-use super::covariance::BACKGROUND_MAX;
 use super::mechanics::{Maps, Pad, at_places, changes, side_share};
 use super::memory::{Course, MemoryChain};
-use super::model::{CommonError, Hypothesis, Linearised, Model, Parameter, SIGNATURE_ERROR, Signature};
+use super::model::{
+    BACKGROUND_MAX, CommonError, Hypothesis, Linearised, Model, Parameter, SIGNATURE_ERROR, Signature,
+};
 use super::observations::{Observations, Sample};
 use super::own::own_chain;
 use super::report::NotTestable;

@@ -38,7 +38,7 @@ fn overlap(all: &[&Finding]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::report::{Estimate, Residuals, Verdict};
+    use super::super::report::Estimate;
     use super::super::target::Target;
     use super::*;
 
@@ -56,24 +56,7 @@ mod tests {
     }
 
     fn diagnosis(findings: Vec<Finding>) -> Diagnosis {
-        Diagnosis {
-            channels: Vec::new(),
-            full_scale: Vec::new(),
-            verdict: Verdict::Explained,
-            noise_floor: 1.0,
-            rmse_nominal: 2.0,
-            rmse_extended: 1.0,
-            background_mm: 20.0,
-            background_share: 0.0,
-            findings,
-            not_detected: Vec::new(),
-            not_testable: Vec::new(),
-            unnamed_share: 0.0,
-            ceiling_share: None,
-            gain: None,
-            gatekeepers: Vec::new(),
-            residuals: Residuals::default(),
-        }
+        Diagnosis::of(Vec::new(), Vec::new(), findings)
     }
 
     #[test]

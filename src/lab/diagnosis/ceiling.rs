@@ -62,14 +62,7 @@ fn left(
         residuals[channel].iter().map(|it| if it.is_nan() { zeros[channel] } else { *it }).collect()
     };
     let regression = Regression::of(learnt, &alive.iter().map(|channel| told(*channel)).collect::<Vec<_>>())?;
-    let [at_open, at_locked] = [learnt, judged].map(|labels| -> Vec<Vec<f64>> {
-        labels
-            .rows
-            .iter()
-            .zip(&labels.others)
-            .map(|(row, others)| regression.functions(row, others))
-            .collect()
-    });
+    let [at_open, at_locked] = [learnt, judged].map(|labels| regression.functions_at(labels));
     let follows = open.observations.follows();
     for channel in alive {
         let is_told = &open.observations.is_told[channel];

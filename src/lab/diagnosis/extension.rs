@@ -253,7 +253,7 @@ fn names(number: &str, target: Target) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::report::{Estimate, Finding, Verdict};
+    use super::super::report::{Estimate, Finding};
     use super::*;
     use crate::pad::device::behaviour::Behaviour;
 
@@ -276,24 +276,7 @@ mod tests {
     }
 
     fn diagnosis(findings: Vec<Finding>) -> Diagnosis {
-        Diagnosis {
-            channels: CHANNEL_NAMES.map(str::to_owned).to_vec(),
-            full_scale: vec![5000.0; CHANNELS],
-            verdict: Verdict::Explained,
-            noise_floor: 10.0,
-            rmse_nominal: 80.0,
-            rmse_extended: 11.0,
-            background_mm: 10.0,
-            background_share: 0.01,
-            findings,
-            not_detected: Vec::new(),
-            not_testable: Vec::new(),
-            unnamed_share: 0.0,
-            ceiling_share: None,
-            gain: None,
-            residuals: super::super::report::Residuals::default(),
-            gatekeepers: Vec::new(),
-        }
+        Diagnosis::of(CHANNEL_NAMES.map(str::to_owned).to_vec(), vec![5000.0; CHANNELS], findings)
     }
 
     fn near(value: f64, wanted: f64) {

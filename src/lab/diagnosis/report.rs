@@ -40,6 +40,31 @@ pub struct Diagnosis {
     pub residuals: Residuals,
 }
 
+#[cfg(test)]
+impl Diagnosis {
+    /// One that found this and says no more.
+    pub(super) fn of(channels: Vec<String>, full_scale: Vec<f64>, findings: Vec<Finding>) -> Self {
+        Self {
+            channels,
+            full_scale,
+            verdict: Verdict::Explained,
+            noise_floor: 10.0,
+            rmse_nominal: 80.0,
+            rmse_extended: 11.0,
+            background_mm: 10.0,
+            background_share: 0.01,
+            findings,
+            not_detected: Vec::new(),
+            not_testable: Vec::new(),
+            unnamed_share: 0.0,
+            ceiling_share: None,
+            gain: None,
+            gatekeepers: Vec::new(),
+            residuals: Residuals::default(),
+        }
+    }
+}
+
 /// What the model misses at the rows by which causes were found, each channel's zero taken off.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Residuals {

@@ -77,12 +77,7 @@ impl Earlier {
             .collect();
         let readings: Vec<Vec<f64>> = alive.iter().map(|channel| centred(recording, *channel)).collect();
         let regression = Regression::of(&labels, &readings).ok_or(Unfit::Singular)?;
-        let functions: Vec<Vec<f64>> = labels
-            .rows
-            .iter()
-            .zip(&labels.others)
-            .map(|(row, others)| regression.functions(row, others))
-            .collect();
+        let functions = regression.functions_at(&labels);
         let mut channels = vec![None; observations.channels.len()];
         for channel in alive {
             let known = Known { recording, functions: &functions, channel };

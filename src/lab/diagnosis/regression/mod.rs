@@ -86,6 +86,11 @@ impl Regression {
         functions
     }
 
+    /// The functions at each row of these labels.
+    pub(super) fn functions_at(&self, labels: &Labels) -> Vec<Vec<f64>> {
+        labels.rows.iter().zip(&labels.others).map(|(row, others)| self.functions(row, others)).collect()
+    }
+
     /// The part of the process' variance of which the functions know nothing at a row: how far that is from all that were seen.
     pub(super) fn unknown(&self, row: &[f64]) -> f64 {
         let (functions, whole) = self.smooth(row);
@@ -268,19 +273,12 @@ mod tests {
     fn predictions_miss_by_as_much_as_they_say() {
         let (labels, readings, _) = measured(3, 300);
         let regression = Regression::of(&labels, &readings).unwrap();
-        let of = |labels: &Labels| -> Vec<Vec<f64>> {
-            labels
-                .rows
-                .iter()
-                .zip(&labels.others)
-                .map(|(row, others)| regression.functions(row, others))
-                .collect()
-        };
         let (new, _, truths) = measured(4, 300);
         for channel in 0..2 {
-            let fit =
-                regression.fitted(&of(&labels), &readings[channel], &[true; 300], &[false; 300]).unwrap();
-            let at = of(&new);
+            let fit = regression
+                .fitted(&regression.functions_at(&labels), &readings[channel], &[true; 300], &[false; 300])
+                .unwrap();
+            let at = regression.functions_at(&new);
             let scores = truths[channel]
                 .iter()
                 .zip(&at)

@@ -20,21 +20,29 @@ pub(crate) struct Quality {
     pub(crate) memory: f64,
     /// Factors of the kinds of channel: within the table's own numerical error.
     pub(crate) kinds: [f64; 3],
+    /// Static samples are means of so many readings, of which the samples of a series beside them are one each.
+    pub(crate) readings: f64,
 }
 
 impl Quality {
     /// The quality for which the smallest sizes that are asked for are stated.
-    pub(crate) const STATED: Self =
-        Self { background: [0.015, 14.0], noise: [[0.004; 2]; 9], memory: 0.0, kinds: [1.0; 3] };
+    pub(crate) const STATED: Self = Self {
+        background: [0.015, 14.0],
+        noise: [[0.004; 2]; 9],
+        memory: 0.0,
+        kinds: [1.0; 3],
+        readings: 1.0,
+    };
 
     /// Background of 1 to 3 % and 10 to 20 mm, noise of 0.2 to 0.8 % each, correlated up to a half from sample to sample of
-    /// a series, and the table's stated error.
+    /// a series, the table's stated error, and static samples of 1 to 16 readings.
     pub(crate) fn drawn(random: &mut Random) -> Self {
         Self {
             background: [random.between(0.01, 0.03), random.between(10.0, 20.0)],
             noise: std::array::from_fn(|_| [random.between(0.002, 0.008), random.between(0.002, 0.008)]),
             memory: random.between(0.0, 0.5),
             kinds: [0.005, 0.003, 0.005].map(|error| 1.0 + random.between(-error, error)),
+            readings: random.between(1.0, 16.0),
         }
     }
 }
@@ -111,16 +119,19 @@ fn add_noise(
     quality: &Quality,
     random: &mut Random,
 ) {
+    let is_mixed = rows.iter().any(|row| row.in_trial_s.is_none());
     let mut last = [0.0; 9];
     for (index, signal) in signals.iter_mut().enumerate() {
         let goes_on =
             rows[index].in_trial_s.is_some() && index > 0 && rows[index - 1].trial == rows[index].trial;
+        let in_series = is_mixed && rows[index].in_trial_s.is_some();
+        let kind = if in_series { quality.readings.sqrt() } else { 1.0 };
         let memory = if goes_on { quality.memory } else { 0.0 };
         for channel in 0..9 {
             last[channel] = memory * last[channel] + (1.0 - memory * memory).sqrt() * random.normal();
             let [additive, multiplicative] = quality.noise[channel];
             let deviation = (additive * rms[channel]).hypot(multiplicative * signal[channel]);
-            signal[channel] += deviation * electrical::noise_factor(truths, channel) * last[channel];
+            signal[channel] += kind * deviation * electrical::noise_factor(truths, channel) * last[channel];
         }
     }
 }

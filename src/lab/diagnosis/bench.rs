@@ -34,10 +34,13 @@ pub(super) fn contacts(
         let channels = observations.readings.iter().zip(&of_order).zip(told.zeros);
         let readings: Vec<f64> =
             channels.map(|((channel, of_order), zero)| channel[row] - of_order[at] - zero).collect();
+        let in_series = observations.samples[row].is_in_series();
         let channels = readings.iter().zip(told.noise).zip(&observations.is_told);
         let weights: Vec<f64> = channels
             .map(
-                |((reading, noise), is_told)| if is_told[row] { 1.0 / noise.variance(*reading) } else { 0.0 },
+                |((reading, noise), is_told)| {
+                    if is_told[row] { 1.0 / noise.variance(*reading, in_series) } else { 0.0 }
+                },
             )
             .collect();
         let tells = weights.iter().filter(|weight| **weight > 0.0).count() >= UNKNOWNS;
@@ -70,7 +73,7 @@ impl Forward for Bench<'_, '_> {
 mod tests {
     use crate::lab::diagnosis::atlas::Atlas;
     use crate::lab::diagnosis::model::{Model, Told};
-    use crate::lab::diagnosis::noise::NoiseLevel;
+    use crate::lab::diagnosis::noise::Noise;
     use crate::lab::diagnosis::observations::{Observations, Sample};
     use crate::lab::diagnosis::{Applied, Pad};
     use crate::numeric::random::SplitMix64;
@@ -115,12 +118,12 @@ mod tests {
         };
         let model = Atlas::new(&pad, &written, &written);
         let read = model.readings(&applied(&model, holds));
-        let levels: Vec<NoiseLevel> = read.iter().map(|channel| NoiseLevel::first(channel)).collect();
+        let levels: Vec<Noise> = read.iter().map(|channel| Noise::first(channel)).collect();
         let mut random = SplitMix64::new(12);
         let mut measured = written.clone();
         for ((to, from), level) in measured.readings.iter_mut().zip(&read).zip(&levels) {
             to.clone_from(from);
-            let mut off = |uv: f64| noise * level.variance(uv).sqrt() * f64::from(random.normal());
+            let mut off = |uv: f64| noise * level.variance(uv, false).sqrt() * f64::from(random.normal());
             to.iter_mut().for_each(|uv| *uv += off(*uv));
         }
         // One reading is no reading, and another row tells too little.

@@ -9,7 +9,7 @@
 
 use super::attribution::Applied;
 use super::gain::Rows;
-use super::noise::NoiseLevel;
+use super::noise::Noise;
 use super::observations::{Observations, Sample};
 use super::regression::{Group, Labels, Regression};
 
@@ -20,7 +20,7 @@ const SURE: f64 = 2.0;
 pub(super) fn ceiling_share(
     [open, locked]: [&Rows<'_>; 2],
     applied: &Applied,
-    noise: &[NoiseLevel],
+    noise: &[Noise],
 ) -> Option<f64> {
     if locked.observations.rows() == 0 {
         return None;
@@ -48,7 +48,7 @@ fn left(
     [open, locked]: [&Rows<'_>; 2],
     [learnt, judged]: &[Labels; 2],
     applied: &Applied,
-    noise: &[NoiseLevel],
+    noise: &[Noise],
 ) -> Option<[Vec<f64>; 2]> {
     let (zeros, residuals) = (open.zeros(applied), open.residuals(applied));
     let judged_residuals = locked.residuals(applied);
@@ -64,6 +64,7 @@ fn left(
     let regression = Regression::of(learnt, &alive.iter().map(|channel| told(*channel)).collect::<Vec<_>>())?;
     let [at_open, at_locked] = [learnt, judged].map(|labels| regression.functions_at(labels));
     let follows = open.observations.follows();
+    let in_series = locked.observations.in_series();
     for channel in alive {
         let is_told = &open.observations.is_told[channel];
         let fit = regression.fitted(&at_open, &told(channel), is_told, &follows)?;
@@ -71,7 +72,7 @@ fn left(
             if residual.is_nan() {
                 continue;
             }
-            let variance = noise[channel].variance(readings[channel][row]);
+            let variance = noise[channel].variance(readings[channel][row], in_series[row]);
             squares[0][clusters[row]] += (residual - zeros[channel]).powi(2) / variance;
             squares[1][clusters[row]] += (residual - fit.value(&at_locked[row])).powi(2) / variance;
         }

@@ -8,7 +8,7 @@ use super::basis::{Basis, LENGTHS_TRIED, Prior};
 use super::channel_rows::{ChannelRows, wide_precisions};
 use super::equations::{NormalEquations, Reduced};
 use super::model::{BACKGROUND_MAX, Column, Linearised, Model};
-use super::noise::NoiseLevel;
+use super::noise::Noise;
 use super::observations::Observations;
 use super::system::ChannelSystem;
 use crate::numeric::dense::{Matrix, gram};
@@ -45,7 +45,7 @@ pub(super) struct Background {
 /// The rows of a measurement as systems of its channels.
 pub(super) struct Systems {
     pub(super) channels: Vec<ChannelSystem>,
-    pub(super) noise: Vec<NoiseLevel>,
+    pub(super) noise: Vec<Noise>,
     smooth: Arc<Smooth>,
     /// For each channel, what makes that G: zᵀ G z is the mean square of B z over the channel's.
     extents: Vec<f64>,
@@ -112,7 +112,7 @@ impl Systems {
     ) -> Option<Self> {
         let basis = &smooth.basis;
         let load_rms = observations.load_rms();
-        let follows = observations.follows();
+        let (in_series, follows) = (observations.in_series(), observations.follows());
         let wide = basis.prior(0)?;
         let sizes = model.sizes();
         let errors: Vec<&[Vec<f64>]> = (0..sizes.len()).map(|channel| model.stated_errors(channel)).collect();
@@ -127,6 +127,7 @@ impl Systems {
                 errors: errors[channel],
                 background: products(&linearised.loads, &basis.values, size),
                 columns,
+                in_series: &in_series,
                 follows: &follows,
             };
             let before = before.map(|it| (it.noise[channel], it.channels[channel].whitening.memory()));

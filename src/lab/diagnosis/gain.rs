@@ -3,7 +3,7 @@
 use super::attribution::{Applied, Fit, Search};
 use super::mean_square::{Counts, Draw, Squares, interval95};
 use super::model::{Hypothesis, Model, Told};
-use super::noise::NoiseLevel;
+use super::noise::Noise;
 use super::observations::{Observations, Sample};
 use super::report::{Decoded, Gain, Without};
 use crate::numeric::statistics::mean;
@@ -106,13 +106,15 @@ impl Rows<'_> {
         &self,
         (applied, zeros): (&Applied, &[f64]),
         expected: &[Vec<f64>],
-        noise: &[NoiseLevel],
+        noise: &[Noise],
     ) -> Vec<f64> {
         let modelled = self.model.readings(applied);
         let square = |channel: usize, row: usize| {
             let is_told = self.observations.is_told[channel][row];
             let left = expected[channel][row] - modelled[channel][row] - zeros[channel];
-            if is_told { left * left + noise[channel].variance(modelled[channel][row]) } else { f64::NAN }
+            let variance = noise[channel]
+                .variance(modelled[channel][row], self.observations.samples[row].is_in_series());
+            if is_told { left * left + variance } else { f64::NAN }
         };
         let rows = self.observations.rows();
         let squares = (0..modelled.len()).map(|channel| (0..rows).map(|row| square(channel, row)).collect());
@@ -210,7 +212,7 @@ impl Search<'_> {
 struct Expected<'e> {
     /// At the open and at the locked rows, channel by channel.
     readings: &'e [Vec<Vec<f64>>; 2],
-    noise: &'e [NoiseLevel],
+    noise: &'e [Noise],
 }
 
 /// Squares of the residuals with these hypotheses, and those that are to be expected, if that is known.
@@ -252,7 +254,7 @@ fn decoded(
     measured: [&Rows<'_>; 2],
     rows: [&Rows<'_>; 2],
     applied: &Applied,
-    (noise, counts): (&[NoiseLevel], &Counts),
+    (noise, counts): (&[Noise], &Counts),
 ) -> [Option<Decoded>; 2] {
     let errors = |[open, locked]: [&Rows<'_>; 2], applied: &Applied| {
         locked.errors(applied, &Told { zeros: &open.zeros(applied), noise })

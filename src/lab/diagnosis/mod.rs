@@ -245,15 +245,17 @@ fn summary(
 fn noise_floor(open: &Rows<'_>, fit: &Fit) -> f64 {
     let noise = fit.systems.noise.iter().zip(&fit.linearised.readings).enumerate();
     let alive = noise.filter(|(channel, _)| open.observations.is_alive(*channel));
-    mean(alive.map(|(_, (noise, signal))| noise.mean_square(signal))).sqrt()
+    let in_series = open.observations.in_series();
+    mean(alive.map(|(_, (noise, signal))| noise.mean_square(signal, &in_series))).sqrt()
 }
 
 /// What the model misses at the open rows, as it is and with what was found.
 fn residuals(open: &Rows<'_>, found: &Attribution, applied: &Applied) -> Residuals {
     let noise = found.fit.systems.noise.iter().zip(&found.fit.linearised.readings);
+    let in_series = open.observations.in_series();
     Residuals {
         samples: open.observations.samples.clone(),
-        noise: noise.map(|(noise, signal)| noise.mean_square(signal).sqrt()).collect(),
+        noise: noise.map(|(noise, signal)| noise.mean_square(signal, &in_series).sqrt()).collect(),
         nominal: open.centred(&Vec::new()),
         extended: open.centred(applied),
     }

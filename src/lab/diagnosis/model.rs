@@ -1,7 +1,7 @@
 //! What the engine asks of a model of the channels, and what it knows of the hypotheses.
 
 use super::inverse::Written;
-use super::noise::NoiseLevel;
+use super::noise::Noise;
 use super::observations::Observations;
 use super::target::Target;
 
@@ -150,7 +150,7 @@ pub(super) struct Told<'t> {
     /// What it reads without load.
     pub(super) zeros: &'t [f64],
     /// Its noise.
-    pub(super) noise: &'t [NoiseLevel],
+    pub(super) noise: &'t [Noise],
 }
 
 /// A model of N channels at the rows of a measurement.

@@ -37,6 +37,13 @@ pub struct Sample {
     pub block: Option<usize>,
 }
 
+impl Sample {
+    /// Whether it is of a time series, and not static.
+    pub const fn is_in_series(&self) -> bool {
+        self.trial.is_some()
+    }
+}
+
 /// Rows of a measurement.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Observations {
@@ -101,6 +108,11 @@ impl Observations {
     /// These rows as a whole measurement.
     pub fn as_whole(&self, rows: &[usize]) -> Self {
         Self { numbers: (0..rows.len()).collect(), ..self.picked(rows) }
+    }
+
+    /// For each row, whether it is of a time series, and not static.
+    pub fn in_series(&self) -> Vec<bool> {
+        self.samples.iter().map(Sample::is_in_series).collect()
     }
 
     /// For each row, whether it goes on with the time series of the row before it.

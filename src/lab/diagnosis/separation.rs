@@ -21,6 +21,7 @@ use super::attribution::{Attribution, Search};
 use super::experiments::{Experiment, TURNING, catalogue};
 use super::model::{CommonError, Linearised, Signature};
 use super::naming::POWER;
+use super::observations::Sample;
 use super::system::ChannelSystem;
 use super::target::Target;
 use super::whitening::Whitening;
@@ -234,8 +235,11 @@ impl<'s, 'm> Both<'s, 'm> {
     fn of_channel(&self, channel: usize, columns: &[&Pair], repeats: usize) -> Option<(Vec<usize>, Matrix)> {
         let (fit, rows) = (&self.found.fit, &self.experiment.rows);
         let (system, noise) = (&fit.systems.channels[channel], &fit.systems.noise[channel]);
-        let weight = |f: &f64| (repeats as f64 / noise.variance(*f)).sqrt();
-        let weights: Vec<f64> = self.further.readings[channel].iter().map(weight).collect();
+        let weight = |(row, f): (usize, &f64)| {
+            let in_series = rows.samples.get(row).is_some_and(Sample::is_in_series);
+            (repeats as f64 / noise.variance(*f, in_series)).sqrt()
+        };
+        let weights: Vec<f64> = self.further.readings[channel].iter().enumerate().map(weight).collect();
         let stacked = |present: Option<Vec<f64>>, further: Option<&Vec<f64>>| -> Vec<f64> {
             let mut column = present.unwrap_or_else(|| vec![0.0; system.residual.len()]);
             match further {

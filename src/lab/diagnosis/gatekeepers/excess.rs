@@ -1,10 +1,11 @@
 //! Noise that is larger than it should be.
 //!
-//! No device states what each of its channels should have, so each is held against the others. Noise goes with the signal or is
-//! the same in all channels: ln σ = a + b ln S + e, where b is 1 or 0, whichever leaves the others nearer together. Sound channels
-//! differ by the standard deviation [`NATURAL`] of e, or by what the others differ by where that is no chance.
+//! No device states what each of its channels should have, so each is held against the others. Sound channels have a part of noise
+//! that is the same in all and one that goes with the signal: ln σ = ln b √(r² + S²) + e with S the signal's root mean square and
+//! r = a/b. They differ by the standard deviation [`NATURAL`] of e, or by what the others differ by where that is no chance. Static samples and
+//! series are looked at apart where their noise is; what counts is the mean of both excesses.
 
-use crate::lab::diagnosis::noise::NoiseLevel;
+use crate::lab::diagnosis::noise::Noise;
 use crate::lab::diagnosis::observations::Observations;
 use crate::lab::diagnosis::report::{Estimate, Finding, NotDetected, Notice};
 use crate::lab::diagnosis::target::Target;
@@ -17,6 +18,9 @@ const NATURAL: f64 = 0.3;
 const WIDER: f64 = 0.05;
 /// How often any channel of a sound pad may be found.
 const LEVEL: f64 = 0.01;
+/// How many ratios are tried, and how far beyond the least and largest signal, as a logarithm.
+const RATIOS: usize = 40;
+const BEYOND: f64 = 2.3;
 /// Fewest others to hold a channel against.
 const OTHERS_MIN: usize = 4;
 /// Normal quantiles: of 95 %, and of nine in ten.
@@ -44,27 +48,42 @@ struct Level {
     variance: f64,
 }
 
+/// A channel's noise beside what the others let expect, as logarithms.
+#[derive(Clone, Copy)]
+struct Beside {
+    noise: f64,
+    excess: f64,
+    variance: f64,
+}
+
 /// Holds the channels' noise against each other; `signals` are the readings that the fit expects.
-pub(crate) fn excess(observations: &Observations, noise: &[NoiseLevel], signals: &[Vec<f64>]) -> Excess {
-    let levels: Vec<Level> =
-        noise.iter().zip(signals).enumerate().filter_map(|it| level(observations, it)).collect();
+pub(crate) fn excess(observations: &Observations, noise: &[Noise], signals: &[Vec<f64>]) -> Excess {
+    let kinds = if noise.iter().any(Noise::is_by_kind) {
+        vec![vec![false], vec![true]]
+    } else {
+        vec![vec![false, true]]
+    };
+    let by_kind: Vec<Vec<Level>> = kinds
+        .iter()
+        .map(|kinds| {
+            let all = noise.iter().zip(signals).enumerate();
+            all.filter_map(|it| level(observations, it, kinds)).collect::<Vec<Level>>()
+        })
+        .filter(|levels| levels.len() > OTHERS_MIN)
+        .collect();
     let mut found = Excess::default();
-    if levels.len() <= OTHERS_MIN {
-        return found;
-    }
-    let critical = chi_square::quantile(2.0 * LEVEL / levels.len() as f64, 1).sqrt();
-    for own in &levels {
-        let others: Vec<Level> = levels.iter().filter(|it| it.channel != own.channel).copied().collect();
-        let [should, variance] = predicted(&others, own.signal);
-        let deviation = (variance + own.variance).sqrt();
-        let excess = own.noise - should;
-        if excess > critical * deviation {
-            found.findings.push(finding(own.channel, excess, deviation));
-            found.notices.push(notice(observations, own, excess));
+    let all: Vec<(usize, Beside)> =
+        (0..noise.len()).filter_map(|channel| Some((channel, beside(&by_kind, channel)?))).collect();
+    let critical = chi_square::quantile(2.0 * LEVEL / all.len() as f64, 1).sqrt();
+    for (channel, own) in all {
+        let deviation = own.variance.sqrt();
+        if own.excess > critical * deviation {
+            found.findings.push(finding(channel, own.excess, deviation));
+            found.notices.push(notice(observations, channel, &own));
         } else {
             found.not_detected.push(NotDetected {
                 effect: EFFECT,
-                target: Target::Channel(own.channel),
+                target: Target::Channel(channel),
                 minimum_detectable: vec![("factor", libm::exp((critical + POWER_90) * deviation) - 1.0)],
                 rival_share: 0.0,
             });
@@ -73,35 +92,69 @@ pub(crate) fn excess(observations: &Observations, noise: &[NoiseLevel], signals:
     found
 }
 
+/// A channel's level in rows of these kinds.
 fn level(
     observations: &Observations,
-    (channel, (noise, signal)): (usize, (&NoiseLevel, &Vec<f64>)),
+    (channel, (noise, signal)): (usize, (&Noise, &Vec<f64>)),
+    kinds: &[bool],
 ) -> Option<Level> {
-    let told = signal.iter().zip(&observations.is_told[channel]).filter(|(_, is_told)| **is_told);
-    let signal: Vec<f64> = told.map(|(signal, _)| *signal).collect();
+    let rows = signal.iter().zip(&observations.samples).zip(&observations.is_told[channel]);
+    let told = rows.filter(|((_, sample), is_told)| **is_told && kinds.contains(&sample.is_in_series()));
+    let (signal, in_series): (Vec<f64>, Vec<bool>) =
+        told.map(|((signal, sample), _)| (*signal, sample.is_in_series())).unzip();
     let level = Level {
         channel,
         signal: rms(signal.iter().copied()).ln(),
-        noise: 0.5 * noise.mean_square(&signal).ln(),
+        noise: 0.5 * noise.mean_square(&signal, &in_series).ln(),
         variance: 0.5 / signal.len() as f64,
     };
     (level.signal.is_finite() && level.noise.is_finite()).then_some(level)
 }
 
-/// What a channel's noise should be by others', and the variance by which sound ones differ from that.
-fn predicted(others: &[Level], signal: f64) -> [f64; 2] {
-    let by = |slope: f64| {
-        let level = mean(others.iter().map(|it| it.noise - slope * it.signal));
-        let square: f64 = others.iter().map(|it| (it.noise - slope * it.signal - level).powi(2)).sum();
-        (level + slope * signal, square)
+/// A channel's noise beside what the others let expect: the mean over the kinds of row, which sound channels need not have at random.
+fn beside(by_kind: &[Vec<Level>], channel: usize) -> Option<Beside> {
+    let of_kind = |levels: &Vec<Level>| {
+        let own = levels.iter().find(|it| it.channel == channel)?;
+        let others: Vec<Level> = levels.iter().filter(|it| it.channel != channel).copied().collect();
+        let [should, variance] = predicted(&others, own);
+        Some(Beside { noise: own.noise, excess: own.noise - should, variance: variance + own.variance })
     };
-    let [alike, relative] = [by(0.0), by(1.0)];
-    let (should, square) = if alike.1 < relative.1 { alike } else { relative };
-    let natural = NATURAL * NATURAL;
+    let kinds: Vec<Beside> = by_kind.iter().filter_map(of_kind).collect();
+    let of = |value: fn(&Beside) -> f64| mean(kinds.iter().map(value));
+    let all = Beside { noise: of(|it| it.noise), excess: of(|it| it.excess), variance: of(|it| it.variance) };
+    (!kinds.is_empty()).then_some(all)
+}
+
+/// What a channel's noise should be by others', and the variance by which sound ones differ from that: the mean over the
+/// ratios a/b, each as likely as the others make it.
+fn predicted(others: &[Level], own: &Level) -> [f64; 2] {
+    let by = |ratio: f64| {
+        // ln √(r² + S²), of which the constant part is the same in all.
+        let shape = |it: &Level| 0.5 * libm::log(ratio * ratio + libm::exp(2.0 * it.signal));
+        let level = mean(others.iter().map(|it| it.noise - shape(it)));
+        let square: f64 = others.iter().map(|it| (it.noise - shape(it) - level).powi(2)).sum();
+        [level + shape(own), square]
+    };
+    let signals = || others.iter().chain([own]).map(|it| it.signal);
+    let (low, high) = (signals().fold(f64::MAX, f64::min), signals().fold(f64::MIN, f64::max));
+    // From a noise that is all in proportion to the signal to one that is the same everywhere.
+    let steps = (0..=RATIOS).map(|step| step as f64 / RATIOS as f64);
+    let tried: Vec<[f64; 2]> =
+        steps.map(|part| by(libm::exp(low - BEYOND + part * (high - low + 2.0 * BEYOND)))).collect();
+    let least = tried.iter().map(|[_, square]| *square).fold(f64::MAX, f64::min);
     let freedom = others.len() - 1;
-    let is_wider = chi_square::exceeded(square / natural, freedom) < WIDER;
-    let variance = if is_wider { square / freedom as f64 } else { natural };
-    [should, variance * (1.0 + 1.0 / others.len() as f64)]
+    let natural = NATURAL * NATURAL;
+    let is_wider = chi_square::exceeded(least / natural, freedom) < WIDER;
+    let variance = if is_wider { least / freedom as f64 } else { natural };
+    let weights: Vec<f64> =
+        tried.iter().map(|[_, square]| libm::exp(0.5 * (least - square) / variance)).collect();
+    let whole: f64 = weights.iter().sum();
+    let over = |of: &dyn Fn(f64) -> f64| {
+        tried.iter().zip(&weights).map(|([should, _], weight)| weight * of(*should)).sum::<f64>() / whole
+    };
+    let should = over(&|it| it);
+    let by_ratio = over(&|it| (it - should).powi(2));
+    [should, variance * (1.0 + 1.0 / others.len() as f64) + by_ratio]
 }
 
 fn finding(channel: usize, excess: f64, deviation: f64) -> Finding {
@@ -122,51 +175,62 @@ fn finding(channel: usize, excess: f64, deviation: f64) -> Finding {
     }
 }
 
-fn notice(observations: &Observations, level: &Level, excess: f64) -> Notice {
+fn notice(observations: &Observations, channel: usize, own: &Beside) -> Notice {
     let detail = format!(
         "{} has {:.1} times the noise that the other channels let expect: {:.1} instead of {:.1}; its rows keep as little weight \
          as that; look at its wires, and at its spectrum in a series at rest",
-        observations.channels.get(level.channel).map_or("?", String::as_str),
-        libm::exp(excess),
-        libm::exp(level.noise),
-        libm::exp(level.noise - excess)
+        observations.channels.get(channel).map_or("?", String::as_str),
+        libm::exp(own.excess),
+        libm::exp(own.noise),
+        libm::exp(own.noise - own.excess)
     );
-    Notice { check: "noise", channel: Some(level.channel), detail }
+    Notice { check: "noise", channel: Some(channel), detail }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::diagnosis::observations::Sample;
     use crate::numeric::random::SplitMix64;
 
-    /// Nine channels of signals between 100 and 4,000, the fifth with so many times its noise of 0.2 to 0.8 % each.
-    fn found(seed: u64, factor: f64) -> Excess {
+    /// Nine channels of signals between 100 and 4,000, the fifth with so many times its noise of 0.2 to 0.8 % each; half of the rows
+    /// are of series, whose noise is `of_series` times as large, and in which the first channel has ten times its signal.
+    fn found(seed: u64, factor: f64, of_series: f64) -> Excess {
         let mut random = SplitMix64::new(seed);
         let mut between = |low: f64, high: f64| low + (high - low) * f64::from(random.fraction());
         let (mut noise, mut signals) = (Vec::new(), Vec::new());
+        let in_series = |row: usize| row >= 200;
         for channel in 0..9 {
             let size = between(100.0, 4000.0);
-            let signal: Vec<f64> = (0..400).map(|row| size * libm::sin(f64::from(row))).collect();
-            let mut level = NoiseLevel::first(&signal);
-            let times = if channel == 4 { factor } else { 1.0 };
-            level.additive = times * between(0.002, 0.008) * size * 0.5_f64.sqrt();
-            level.share = times * between(0.002, 0.008);
-            noise.push(level);
+            let times =
+                |row: usize| if channel == 0 && of_series > 1.0 && in_series(row) { 10.0 } else { 1.0 };
+            let signal: Vec<f64> = (0..400).map(|row| size * times(row) * libm::sin(row as f64)).collect();
+            let own = if channel == 4 { factor } else { 1.0 };
+            let level =
+                [between(0.002, 0.008) * size * 0.5_f64.sqrt(), between(0.002, 0.008)].map(|it| own * it);
+            noise.push(Noise::known([level, level.map(|it| of_series * it)]));
             signals.push(signal);
         }
-        let observations = Observations { is_told: vec![vec![true; 400]; 9], ..Observations::default() };
+        let sample = |row: usize| Sample { trial: in_series(row).then_some(0), ..Sample::default() };
+        let observations = Observations {
+            is_told: vec![vec![true; 400]; 9],
+            samples: (0..400).map(sample).collect(),
+            ..Observations::default()
+        };
         excess(&observations, &noise, &signals)
     }
 
     #[test]
     fn sound_channels_differ_and_a_loud_one_is_told() {
-        let alarms = (0..400).filter(|seed| !found(*seed, 1.0).findings.is_empty()).count();
-        assert!(alarms <= 8, "{alarms} of 400");
+        for of_series in [1.0, 5.0] {
+            let alarms = (0..400).filter(|seed| !found(*seed, 1.0, of_series).findings.is_empty()).count();
+            assert!(alarms <= 8, "{alarms} of 400");
+        }
         let right = |it: &Excess| it.findings.len() == 1 && it.findings[0].target == Target::Channel(4);
-        let told = |factor: f64| (0..400).filter(|seed| right(&found(*seed, factor))).count();
-        assert!(told(3.0) > 200 && told(5.0) > 380, "{} and {} of 400", told(3.0), told(5.0));
+        let told = |factor: f64| (0..400).filter(|seed| right(&found(*seed, factor, 1.0))).count();
+        assert!(told(3.0) > 200 && told(5.0) > 360, "{} and {} of 400", told(3.0), told(5.0));
         let holds = |it: &Excess| it.findings[0].parameters[0].interval95;
-        let loud: Vec<Excess> = (0..400).map(|seed| found(seed, 5.0)).filter(right).collect();
+        let loud: Vec<Excess> = (0..400).map(|seed| found(seed, 5.0, 1.0)).filter(right).collect();
         let covered = loud.iter().filter(|it| holds(it)[0] <= 5.0 && holds(it)[1] >= 5.0).count();
         assert!(covered as f64 > 0.9 * loud.len() as f64, "{covered} of {}", loud.len());
     }

@@ -26,7 +26,7 @@ use super::noise::NoiseLevel;
 use super::whitening::Whitening;
 
 use crate::numeric::linear::{LargeFactor, dot};
-use crate::numeric::statistics::population_deviation;
+use crate::numeric::statistics::{population_deviation, rms};
 
 /// Pivots at most.
 const PIVOTS_MAX: usize = 220;
@@ -148,7 +148,9 @@ impl Regression {
                     of.iter().zip(is_told).filter(|(_, told)| **told).map(|(value, _)| *value).collect()
                 };
                 let ratio = (1.0 - found.freedom / told.len() as f64).max(0.1);
-                level = NoiseLevel::of(&kept(&plain), &kept(&signal), ratio);
+                let squares: Vec<f64> = kept(&plain).iter().map(|left| left * left / ratio).collect();
+                let signal_told = kept(&signal);
+                level = NoiseLevel::of(&squares, &signal_told, rms(signal_told.iter().copied()));
                 variances = signal.iter().map(|signal| level.variance(*signal)).collect();
                 memory = whitening.memory_of(&left);
             }
@@ -290,7 +292,7 @@ mod tests {
             assert!(missed < 1.5, "{missed}");
             let [slope, deviation] = fit.slope(0);
             assert!((slope - 4.0).abs() < 4.0 * deviation && deviation < 2.0, "{slope} {deviation}");
-            assert!((fit.noise.mean_square(&[0.0]).sqrt() - 1.5).abs() < 0.4, "{:?}", fit.noise);
+            assert!((fit.noise.variance(0.0).sqrt() - 1.5).abs() < 0.4, "{:?}", fit.noise);
         }
     }
 

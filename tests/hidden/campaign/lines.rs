@@ -18,20 +18,20 @@ pub(super) struct Lines {
     known: Mutex<BTreeMap<String, Value>>,
 }
 
-/// One file for each program and generator: what another one found is not taken over.
-fn place() -> PathBuf {
+/// One file for each program, generator and first seed: what another one found is not taken over.
+fn place(first: u64) -> PathBuf {
     let programs = [PathBuf::from(env!("CARGO_BIN_EXE_tactpad")), std::env::current_exe().unwrap()];
     let bytes = programs.into_iter().flat_map(|program| fs::read(program).unwrap());
     let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     });
-    folder("").join(format!("campaign-{hash:016x}.jsonl"))
+    folder("").join(format!("campaign-{hash:016x}-{first}.jsonl"))
 }
 
 impl Lines {
     /// Takes up the file where it was left. A line that was broken off in writing is not one.
-    pub(super) fn open() -> Self {
-        let place = place();
+    pub(super) fn open(first: u64) -> Self {
+        let place = place(first);
         let text = fs::read_to_string(&place).unwrap_or_default();
         let line = |line: &str| {
             let value: Value = serde_json::from_str(line).ok()?;

@@ -1,6 +1,7 @@
 //! The parts of the campaign, each a list of runs.
 
 use std::fs;
+use std::ops::RangeInclusive;
 use std::time::Instant;
 
 use serde_json::{Value, json};
@@ -93,7 +94,7 @@ fn relative_widths(case: &Case, diagnosis: &Value) -> Option<Vec<f64>> {
 /// Tables without a fault, for the sizes of the others.
 fn least(length: Length) -> Vec<Job> {
     let mut jobs = Vec::new();
-    for seed in 1..=length.seeds {
+    for seed in length.seeds(length.seeds) {
         for (plan, columns) in Plan::BOTH.into_iter().flat_map(|plan| COLUMNS.map(|columns| (plan, columns)))
         {
             let case = quiet(plan, seed, columns);
@@ -108,7 +109,7 @@ fn nulls(length: Length) -> Vec<Job> {
     let job = |seed: u64| {
         let plan = Plan::BOTH[seed as usize % 2];
         let key = format!("null-{seed}");
-        let case = Case::new(&key, 10_000 + seed, plan, Vec::new());
+        let case = Case::new(&key, 10_000 * length.first + seed, plan, Vec::new());
         Job { key, part: "nulls", plan, effect: "", run: Box::new(move |_| line(&case, &[])) }
     };
     (1..=length.nulls).map(job).collect()
@@ -131,12 +132,12 @@ fn sized(effect: &str, times: f64, plan: Plan, seed: u64, lines: &Lines) -> Opti
 
 fn all_causes(
     part: &'static str,
-    seeds: u64,
+    seeds: RangeInclusive<u64>,
     times: &[f64],
     run: fn(Case, &'static str) -> Value,
 ) -> Vec<Job> {
     let mut jobs = Vec::new();
-    for seed in 1..=seeds {
+    for seed in seeds {
         for plan in Plan::BOTH {
             for (effect, times) in
                 CAUSES.iter().flat_map(|effect| times.iter().map(move |times| (*effect, *times)))
@@ -159,17 +160,17 @@ fn all_causes(
 }
 
 fn sizes(length: Length) -> Vec<Job> {
-    all_causes("sizes", length.seeds, &[1.0, 3.0], |case, _| line(&case, &[]))
+    all_causes("sizes", length.seeds(length.seeds), &[1.0, 3.0], |case, _| line(&case, &[]))
 }
 
 /// With the hidden cause struck from the catalogue: the program must not name another in its place.
-fn struck(_: Length) -> Vec<Job> {
-    all_causes("struck", 1, &[3.0], |case, effect| line(&case, &["--without", effect]))
+fn struck(length: Length) -> Vec<Job> {
+    all_causes("struck", length.seeds(1), &[3.0], |case, effect| line(&case, &["--without", effect]))
 }
 
 /// The extended pad on another recording, by the other plan.
 fn second(length: Length) -> Vec<Job> {
-    all_causes("second", length.seeds.min(2), &[3.0], |case, _| {
+    all_causes("second", length.seeds(length.seeds.min(2)), &[3.0], |case, _| {
         let saved = folder("saved").join(format!("{}.toml", case.key));
         let mut line = line(&case, &["--save-device", saved.to_str().unwrap_or_default()]);
         line["error_ratio"] = json!(error_ratio(&case, &saved));

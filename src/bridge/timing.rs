@@ -50,7 +50,7 @@ pub struct Timed {
 pub struct Policy {
     /// The mean filter's: half of its window.
     pub filter: f64,
-    /// Until a press is long.
+    /// Until a press is long, or can no longer become a double one.
     pub hold: f64,
 }
 
@@ -59,12 +59,12 @@ impl Policy {
     pub fn of(profile: &Profile, period_us: u64) -> Self {
         let window = profile.filter_samples.max(1);
         let hold_us = profile.buttons.iter().map(|button| match button.action {
-            Action::TapHold { long_press_us, .. } => long_press_us,
-            Action::Hold(_) => 0,
+            Action::ByTime { double, hold, .. } => [double, hold].into_iter().flatten().map(|it| it.us).max(),
+            Action::Hold(_) => None,
         });
         Self {
             filter: (window - 1) as f64 / 2.0 * period_us as f64 * 1e-3,
-            hold: hold_us.max().unwrap_or(0) as f64 * 1e-3,
+            hold: hold_us.flatten().max().unwrap_or(0) as f64 * 1e-3,
         }
     }
 }

@@ -256,6 +256,22 @@ impl<'t> Section<'t> {
         }
     }
 
+    /// Reports it if the first number is not less than the second, at whichever of them is written.
+    pub(crate) fn require_less<T: PartialOrd + fmt::Display>(
+        &self,
+        (low_key, low): (&str, Option<Placed<T>>),
+        (high_key, high): (&str, Option<Placed<T>>),
+        findings: &mut Findings<'_>,
+    ) {
+        let (Some(low), Some(high)) = (low, high) else { return };
+        if low.value >= high.value {
+            let at = if self.place_of(low_key).is_some() { low.at } else { high.at };
+            let message =
+                format!("\"{low_key}\" ({}) must be less than \"{high_key}\" ({})", low.value, high.value);
+            findings.error(at, message, "");
+        }
+    }
+
     /// The text under `key`; `None` where it is absent, and where it is no text (which is reported).
     pub(crate) fn text(&self, key: &str, findings: &mut Findings<'_>) -> Option<Placed<&'t str>> {
         let value = self.get(key)?;

@@ -3,11 +3,11 @@
 use arrayvec::ArrayVec;
 
 use crate::pipeline::control::{Code, OutputDevice};
-use crate::pipeline::mapping::profile::Binding;
+use crate::pipeline::mapping::profile::{Binding, KEYS_MAX, Keys};
 use crate::quantity::Contact;
 
 /// Two directions and one button.
-pub(super) const HELD_MAX: usize = 3;
+pub(super) const HELD_MAX: usize = 3 * KEYS_MAX;
 
 /// What is held, in the order in which a group of events states it: horizontal, vertical, button.
 pub(super) type Held = ArrayVec<Binding, HELD_MAX>;
@@ -21,9 +21,15 @@ pub(super) struct Step {
     /// What the player means to hold at the end of this step.
     pub(super) held: Held,
     /// What the player has tapped by making this step.
-    pub(super) tapped: Option<Binding>,
+    pub(super) tapped: Option<Keys>,
     /// The button that the force is meant to press, by its place in the profile.
     pub(super) pressed: Option<usize>,
+}
+
+impl Step {
+    fn tapped(&self) -> impl Iterator<Item = Binding> + use<> {
+        self.tapped.into_iter().flat_map(|keys| keys.iter())
+    }
 }
 
 /// One contact. Every step changes one thing only, so that the order of the events is certain.
@@ -53,7 +59,7 @@ impl Gesture {
             let kept =
                 |binding: &Binding| before.iter().all(|b| b.code != binding.code || b.value == binding.value);
             let fine = step.held.iter().all(|binding| alone(binding.code) && kept(binding))
-                && step.tapped.is_none_or(|tap| step.held.iter().chain(&before).all(|b| b.code != tap.code));
+                && step.tapped().all(|tap| step.held.iter().chain(&before).all(|b| b.code != tap.code));
             before.clone_from(&step.held);
             fine
         })
@@ -65,9 +71,9 @@ impl Gesture {
         for step in &self.steps {
             let released = before.iter().filter(|binding| !step.held.contains(binding));
             expected.extend(released.map(|binding| (binding.device, binding.code, 0)));
-            let pressed = step.held.iter().chain(&step.tapped).filter(|binding| !before.contains(binding));
+            let pressed = step.held.iter().copied().chain(step.tapped()).filter(|it| !before.contains(it));
             expected.extend(pressed.map(|binding| (binding.device, binding.code, binding.value)));
-            expected.extend(step.tapped.map(|tap| (tap.device, tap.code, 0)));
+            expected.extend(step.tapped().map(|tap| (tap.device, tap.code, 0)));
             before.clone_from(&step.held);
         }
     }
@@ -84,6 +90,7 @@ mod tests {
     const JUMP: Binding = Binding { device: OutputDevice::Gamepad, code: SOUTH, value: 1 };
 
     fn step(held: &[Binding], tapped: Option<Binding>) -> Step {
+        let tapped = tapped.map(|binding| Keys::new([binding]));
         let held = held.iter().copied().collect();
         Step { contact: Contact::default(), ramp_us: 40, stay_us: 100, held, tapped, pressed: None }
     }

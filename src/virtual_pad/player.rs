@@ -4,7 +4,7 @@
 //! threshold.
 
 use crate::pipeline::contact::touch;
-use crate::pipeline::mapping::profile::{Action, Binding, Button, Dpad, DpadMode, Force, Profile};
+use crate::pipeline::mapping::profile::{Action, Button, Dpad, DpadMode, Effect, Force, Keys, Mode, Profile};
 use crate::quantity::Contact;
 use crate::virtual_pad::gesture::{Gesture, Held, Step};
 
@@ -47,6 +47,18 @@ pub(super) fn gestures(profile: &Profile) -> Vec<Gesture> {
 struct Aim {
     angle_deg: f32,
     held: Held,
+}
+
+/// What a short press gives, and how long after its end.
+#[derive(Clone, Copy)]
+struct Tap {
+    keys: Keys,
+    after_us: u64,
+}
+
+/// The keys of an effect that follows the press; none of another one.
+fn plain(effect: Effect) -> Option<Keys> {
+    (effect.mode == Mode::Plain).then_some(effect.keys)
 }
 
 struct Player<'p> {
@@ -125,7 +137,7 @@ impl<'p> Player<'p> {
         if cardinal_half_deg(dpad) < ANGLE_SLACK_DEG {
             return Vec::new();
         }
-        let aim = |angle_deg, binding: Binding| Aim { angle_deg, held: Held::from_iter([binding]) };
+        let aim = |angle_deg, keys: Keys| Aim { angle_deg, held: keys.iter().collect() };
         vec![aim(0.0, dpad.right), aim(90.0, dpad.up), aim(180.0, dpad.left), aim(270.0, dpad.down)]
     }
 
@@ -176,15 +188,20 @@ impl<'p> Player<'p> {
         self.lifted(steps, None)
     }
 
-    /// Presses a button and lets go soon. A tap button taps, a hold button holds meanwhile.
+    /// Presses a button and lets go soon. A tap button taps, a hold button holds meanwhile; a tap that a double press might follow
+    /// comes when that is over. Double presses, and keys that are toggled or in turbo, the player leaves out.
     fn short_press(&self, index: usize, aim: Option<&Aim>) -> Option<Gesture> {
         let button = self.profile.buttons.get(index)?;
         let (held, tapped, stay_us) = match button.action {
-            Action::Hold(binding) => (Some(binding), None, self.pause_us),
-            Action::TapHold { tap, long_press_us, .. } => (None, Some(tap), self.tap_us(long_press_us)?),
+            Action::Hold(effect) => (Some(plain(effect)?), None, self.pause_us),
+            Action::ByTime { tap, double, hold } => {
+                let after_us = double.map_or(0, |double| double.us);
+                let stay_us = hold.map_or(Some(self.pause_us), |hold| self.tap_us(hold.us))?;
+                (None, Some(Tap { keys: plain(tap)?, after_us }), stay_us)
+            }
         };
         let mut press = self.press_step(index, button, aim);
-        press.held.extend(held);
+        press.held.extend(held.into_iter().flat_map(|keys| keys.iter()));
         press.stay_us = stay_us;
         Some(self.around_press(vec![press], aim, tapped))
     }
@@ -192,14 +209,14 @@ impl<'p> Player<'p> {
     /// Presses a tap-or-hold button until it holds.
     fn long_press(&self, index: usize, aim: Option<&Aim>) -> Option<Gesture> {
         let button = self.profile.buttons.get(index)?;
-        let Action::TapHold { hold, long_press_us, .. } = button.action else { return None };
-        if long_press_us > LONG_PRESS_MAX_US {
+        let Action::ByTime { hold: Some(hold), .. } = button.action else { return None };
+        if hold.us > LONG_PRESS_MAX_US {
             return None;
         }
         let mut wait = self.press_step(index, button, aim);
-        wait.stay_us = long_press_us;
+        wait.stay_us = hold.us;
         let mut held = Step { ramp_us: 0, stay_us: self.pause_us, ..wait.clone() };
-        held.held.push(hold);
+        held.held.extend(plain(hold.effect)?.iter());
         Some(self.around_press(vec![wait, held], aim, None))
     }
 
@@ -213,14 +230,17 @@ impl<'p> Player<'p> {
 
     /// A press on a direction, or by shear, starts and ends with a light touch, so that one thing happens at
     /// a time.
-    fn around_press(&self, press: Vec<Step>, aim: Option<&Aim>, tapped: Option<Binding>) -> Gesture {
+    fn around_press(&self, press: Vec<Step>, aim: Option<&Aim>, tapped: Option<Tap>) -> Gesture {
         let sheared = press.iter().any(|step| step.contact.fx_n != 0.0 || step.contact.fy_n != 0.0);
         if aim.is_none() && !sheared {
             return self.lifted(press, tapped);
         }
         let mut steps = vec![self.rest_on(aim)];
         steps.extend(press);
-        steps.push(Step { tapped, ..self.rest_on(aim) });
+        let mut rest = self.rest_on(aim);
+        rest.tapped = tapped.map(|tap| tap.keys);
+        rest.stay_us = rest.stay_us.saturating_add(tapped.map_or(0, |tap| tap.after_us));
+        steps.push(rest);
         self.lifted(steps, None)
     }
 
@@ -257,13 +277,14 @@ impl<'p> Player<'p> {
         }
     }
 
-    fn lifted(&self, mut steps: Vec<Step>, tapped: Option<Binding>) -> Gesture {
+    fn lifted(&self, mut steps: Vec<Step>, tapped: Option<Tap>) -> Gesture {
         let mut lift = self.rest_on(None);
         if let Some(last) = steps.last() {
             lift.contact = Contact { x_mm: last.contact.x_mm, y_mm: last.contact.y_mm, ..Contact::default() };
         }
-        lift.tapped = tapped;
-        lift.stay_us = self.pause_us.saturating_add(SLACK_US);
+        lift.tapped = tapped.map(|tap| tap.keys);
+        let after_us = tapped.map_or(0, |tap| tap.after_us);
+        lift.stay_us = self.pause_us.saturating_add(SLACK_US).saturating_add(after_us);
         steps.push(lift);
         Gesture { steps }
     }

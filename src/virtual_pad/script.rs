@@ -123,7 +123,7 @@ fn between(from: &Keyframe, to: &Keyframe, t_us: u64) -> Contact {
 mod tests {
     use super::*;
     use crate::pipeline::contact::statics::Statics;
-    use crate::pipeline::mapping::profile::{Action, Binding, Dpad, DpadMode, Force};
+    use crate::pipeline::mapping::profile::{Action, Binding, Dpad, DpadMode, Force, Keys};
     use crate::quantity::{CHANNELS, Strain};
     use crate::virtual_pad::firmware::VirtualPad;
     use crate::virtual_pad::fixture::{EAST, HAT_X, HAT_Y, SOUTH, messages, shipped_profiles};
@@ -280,8 +280,8 @@ mod tests {
         let weak = script_with(|profile| profile.buttons[0].press_n = 0.4);
         assert_eq!(edges(&weak).iter().filter(|(code, _)| *code == HAT_X).count(), 0, "every touch presses");
         let hasty = script_with(|profile| {
-            let Action::TapHold { long_press_us, .. } = &mut profile.buttons[0].action else { panic!() };
-            *long_press_us = 120_000;
+            let Action::ByTime { hold: Some(hold), .. } = &mut profile.buttons[0].action else { panic!() };
+            hold.us = 120_000;
         });
         assert!(!has(&hasty, SOUTH) && has(&hasty, EAST), "no press is short enough");
         let slow = script_with(|profile| profile.filter_samples = usize::MAX);
@@ -306,7 +306,7 @@ mod tests {
     #[test]
     fn controls_that_share_a_key_stay_balanced() {
         let script = script_with(|profile| {
-            let shared = Binding { device: OutputDevice::Gamepad, code: SOUTH, value: 1 };
+            let shared = Keys::new([Binding { device: OutputDevice::Gamepad, code: SOUTH, value: 1 }]);
             dpad(profile).right = shared;
             dpad(profile).up = shared;
             dpad(profile).mode = DpadMode::EightWay;

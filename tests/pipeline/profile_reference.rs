@@ -13,7 +13,7 @@ fn every_example_of_the_reference_is_a_profile() {
     let text = REFERENCE;
     let examples: Vec<_> =
         text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(examples.len(), 4);
+    assert_eq!(examples.len(), 5);
     for example in examples {
         let whole = if example.contains("schema") { example.to_owned() } else { format!("{HEAD}{example}") };
         let (profile, found) = read(&whole, OutputChoice::AsWritten);
@@ -46,6 +46,7 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
     let (partner_table, partner) = match key {
         "min_press_ms" => ("[[button]]", "long_press_ms = 10000"),
         "long_press_ms" => ("itself", "min_press_ms = 0"),
+        "double_press_ms" => ("[[button]]", "long_press_ms = 10000"),
         "radius_hysteresis_mm" => ("[dpad]", "centre_radius_mm = 29"),
         "diagonal_deg" => ("[dpad]", "mode = \"8way\"\nhysteresis_deg = 2"),
         "release_force_n" if heading.contains("[dpad]") => ("[dpad]", "min_force_n = 50"),
@@ -64,16 +65,22 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
     let pointer = lines_of("[pointer]");
     let press = if key == "press_n" || key == "release_n" { "" } else { "press_n = 2" };
     let tap = r#"tap = { gamepad = "BTN_A", keyboard = "KEY_Z" }"#;
-    let hold = r#"hold = { gamepad = "BTN_B", keyboard = "KEY_X" }"#;
+    let in_hold = if key == "turbo_ms" { format!(", {line}") } else { String::new() };
+    let hold = format!(r#"hold = {{ gamepad = "BTN_B", keyboard = "KEY_X"{in_hold} }}"#);
+    let double = match key {
+        "double_press_ms" => r#"double = { gamepad = "BTN_X", keyboard = "KEY_C" }"#,
+        _ => "",
+    };
+    let button = if key == "turbo_ms" { String::new() } else { button };
     format!(
-        "{HEAD}{root}[dpad]\n{dpad}[pointer]\n{pointer}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{button}"
+        "{HEAD}{root}[dpad]\n{dpad}[pointer]\n{pointer}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{double}\n{button}"
     )
 }
 
 #[test]
 fn the_reference_states_the_ranges_that_hold() {
     let rows = documented_numbers();
-    assert_eq!(rows.len(), 18, "{rows:?}");
+    assert_eq!(rows.len(), 20, "{rows:?}");
     for (heading, key, _, low, high) in rows {
         let errors = |value: f32| {
             let text = profile_with(&heading, &key, &format!("{key} = {value}"));
@@ -100,7 +107,7 @@ fn the_reference_states_the_defaults_that_hold() {
         assert_eq!(written, read_with(""), "{key}");
         checked += 1;
     }
-    assert_eq!(checked, 14);
+    assert_eq!(checked, 15);
 }
 
 #[test]

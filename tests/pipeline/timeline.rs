@@ -170,5 +170,5 @@ fn timelines() {
         }
     }
     assert!(failures.is_empty(), "{failures}");
-    assert!(cases >= 40, "only {cases} cases were found");
+    assert!(cases >= 60, "only {cases} cases were found");
 }

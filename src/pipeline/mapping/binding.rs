@@ -1,6 +1,6 @@
-//! Outputs as a profile writes them: `"BTN_SOUTH"`, `"ABS_HAT0X+"`, `"KEY_Z"`, `"BTN_LEFT"`.
+//! Outputs as a profile writes them: `"BTN_SOUTH"`, `"ABS_HAT0X+"`, `"KEY_LEFTCTRL+KEY_C"`, `"BTN_LEFT"`.
 
-use super::profile::Binding;
+use super::profile::{Binding, KEYS_MAX, Keys};
 use crate::pipeline::control::names::{self, GAMEPAD_BUTTONS, HAT_AXES, POINTER_BUTTONS, POINTER_MOTION};
 use crate::pipeline::control::{Code, OutputDevice};
 use crate::toml_text::diag::{Findings, quoted};
@@ -11,21 +11,21 @@ use crate::toml_text::spelling;
 const PLAYED: [OutputDevice; 2] = [OutputDevice::Gamepad, OutputDevice::Keyboard];
 
 /// The keys of a binding's table.
-pub(super) const DEVICE_KEYS: [&str; 3] =
+const DEVICE_KEYS: [&str; 3] =
     [OutputDevice::Gamepad.name(), OutputDevice::Keyboard.name(), OutputDevice::Pointer.name()];
 
 /// What one control of the profile does: on the gamepad or the keyboard, whichever is played, or on the pointer
 /// in any case. `None` where there is none or the text is unusable (and reported).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Outputs {
-    pub(super) gamepad: Option<Placed<Binding>>,
-    pub(super) keyboard: Option<Placed<Binding>>,
-    pub(super) pointer: Option<Placed<Binding>>,
+    pub(super) gamepad: Option<Placed<Keys>>,
+    pub(super) keyboard: Option<Placed<Keys>>,
+    pub(super) pointer: Option<Placed<Keys>>,
 }
 
 impl Outputs {
     /// What it does on `device`.
-    pub(super) const fn on(self, device: OutputDevice) -> Option<Placed<Binding>> {
+    pub(super) const fn on(self, device: OutputDevice) -> Option<Placed<Keys>> {
         match device {
             OutputDevice::Gamepad => self.gamepad,
             OutputDevice::Keyboard => self.keyboard,
@@ -34,8 +34,8 @@ impl Outputs {
     }
 
     /// What it does where `output` is played.
-    pub(super) fn settle(self, output: OutputDevice) -> Option<Binding> {
-        self.pointer.or(self.on(output)).map(|binding| binding.value)
+    pub(super) fn settle(self, output: OutputDevice) -> Option<Keys> {
+        self.pointer.or(self.on(output)).map(|keys| keys.value)
     }
 
     /// Reads `{ gamepad = "…", keyboard = "…" }` or `{ pointer = "…" }`, a table with [`DEVICE_KEYS`].
@@ -57,6 +57,11 @@ impl Outputs {
     }
 }
 
+/// [`DEVICE_KEYS`] and these.
+pub(super) fn with_keys(more: &[&'static str]) -> Vec<&'static str> {
+    DEVICE_KEYS.iter().chain(more).copied().collect()
+}
+
 /// The binding under `key`, or `default` (which must be one) where there is none.
 pub(super) fn written_or(
     device: OutputDevice,
@@ -64,10 +69,10 @@ pub(super) fn written_or(
     key: &str,
     default: Placed<&str>,
     findings: &mut Findings<'_>,
-) -> Option<Placed<Binding>> {
+) -> Option<Placed<Keys>> {
     match table {
         Some(table) if table.place_of(key).is_some() => written(device, table, key, findings),
-        _ => parse(device, default.value).ok().map(|value| Placed { value, at: default.at }),
+        _ => parse_all(device, default.value).ok().map(|value| Placed { value, at: default.at }),
     }
 }
 
@@ -76,9 +81,9 @@ fn written(
     table: &Section<'_>,
     key: &str,
     findings: &mut Findings<'_>,
-) -> Option<Placed<Binding>> {
+) -> Option<Placed<Keys>> {
     let Placed { value: text, at } = table.text(key, findings)?;
-    match parse(device, text) {
+    match parse_all(device, text) {
         Ok(value) => Some(Placed { value, at }),
         Err(Misfit { message, help }) => {
             findings.error(at, message, help);
@@ -96,6 +101,30 @@ struct Misfit {
 
 fn misfit<T>(message: String, help: impl Into<String>) -> Result<T, Misfit> {
     Err(Misfit { message, help: help.into() })
+}
+
+/// Names with + between them. A + or - right after an axis is its direction: `ABS_HAT0X++BTN_SOUTH`.
+fn parse_all(device: OutputDevice, text: &str) -> Result<Keys, Misfit> {
+    let mut names: Vec<String> = Vec::new();
+    for part in text.split('+') {
+        match names.last_mut() {
+            // What is empty lies between a direction's + and the next name, or at the end.
+            Some(before) if part.is_empty() => before.push('+'),
+            _ => names.push(part.trim().to_owned()),
+        }
+    }
+    if names.len() > KEYS_MAX {
+        return misfit(format!("{} are more than {KEYS_MAX} keys", quoted(text)), "leave some out");
+    }
+    let mut all: Vec<Binding> = Vec::new();
+    for name in &names {
+        let binding = parse(device, name)?;
+        if all.iter().any(|before| before.code == binding.code) {
+            return misfit(format!("{} stands twice in {}", binding.code, quoted(text)), "write it once");
+        }
+        all.push(binding);
+    }
+    Ok(Keys::new(all))
 }
 
 fn parse(device: OutputDevice, text: &str) -> Result<Binding, Misfit> {
@@ -221,6 +250,31 @@ mod tests {
         ];
         for (device, text, code, value) in cases {
             assert_eq!(parse(device, text).unwrap(), Binding { device, code, value });
+        }
+    }
+
+    #[test]
+    fn several_names_bind_together() {
+        let codes = |text: &str| {
+            parse_all(OutputDevice::Gamepad, text)
+                .unwrap()
+                .iter()
+                .map(|it| (it.code, it.value))
+                .collect::<Vec<_>>()
+        };
+        let (south, axis) = ((Code::Key(0x130), 1), Code::Axis(0x10));
+        assert_eq!(codes("BTN_SOUTH + btn_east"), [south, (Code::Key(0x131), 1)]);
+        assert_eq!(codes("ABS_HAT0X++BTN_SOUTH"), [(axis, 1), south]);
+        assert_eq!(codes("ABS_HAT0X-+BTN_SOUTH"), [(axis, -1), south]);
+        assert_eq!(codes("BTN_SOUTH+ABS_HAT0X+"), [south, (axis, 1)]);
+        for (text, expected) in [
+            ("KEY_A+KEY_B+KEY_C+KEY_D+KEY_E", "more than 4 keys"),
+            ("KEY_A+key_a", "KEY_A stands twice"),
+            ("KEY_A+", "KEY_A has no direction"),
+            ("KEY_LEFTCTRL+KEY_CC", "\"KEY_CC\" is no key"),
+        ] {
+            let Misfit { message, .. } = parse_all(OutputDevice::Keyboard, text).unwrap_err();
+            assert!(message.contains(expected), "{text}: {message}");
         }
     }
 

@@ -4,14 +4,15 @@
 
 use arrayvec::ArrayVec;
 
-use super::binding::{DEVICE_KEYS, Outputs, written_or};
+use super::binding::{Outputs, written_or};
+use super::button::{BUTTON_KEYS, ButtonDraft};
 use super::conflict::{self, Owner, Use};
 use super::limits::{
     CENTRE_RADIUS_MM, CURVE, DIAGONAL_DEG, FILTER_SAMPLES, FORCE_N, FULL_RADIUS_MM, HYSTERESIS_DEG,
-    LONG_PRESS_MS, MIN_PRESS_MS, POINTER_CENTRE_MM, RADIUS_HYSTERESIS_MM, RELEASE_RATIO, RELEASE_SHARE,
-    ROTATION_DEG, SPEED_COUNTS_PER_S, STICKY_DIAGONAL_DEG,
+    MIN_PRESS_MS, POINTER_CENTRE_MM, RADIUS_HYSTERESIS_MM, RELEASE_RATIO, ROTATION_DEG, SPEED_COUNTS_PER_S,
+    STICKY_DIAGONAL_DEG,
 };
-use super::profile::{Action, BUTTONS_MAX, Button, Dpad, DpadMode, Force, Pointer, Profile};
+use super::profile::{BUTTONS_MAX, Dpad, DpadMode, Pointer, Profile};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text;
 use crate::toml_text::diag::{Diagnostic, Findings};
@@ -28,13 +29,6 @@ pub enum OutputChoice {
 
 const MODES: [(&str, DpadMode); 3] =
     [("4way", DpadMode::FourWay), ("4way-sticky", DpadMode::FourWaySticky), ("8way", DpadMode::EightWay)];
-const FORCES: [(&str, Force); 5] = [
-    ("fz", Force::Fz),
-    ("fy", Force::FyPositive),
-    ("-fy", Force::FyNegative),
-    ("fx", Force::FxPositive),
-    ("-fx", Force::FxNegative),
-];
 const OUTPUTS: [(&str, OutputDevice); 2] =
     [("gamepad", OutputDevice::Gamepad), ("keyboard", OutputDevice::Keyboard)];
 
@@ -54,7 +48,6 @@ const DPAD_KEYS: [&str; 10] = [
 ];
 const POINTER_KEYS: [&str; 6] =
     ["centre_radius_mm", "full_radius_mm", "speed_counts_per_s", "curve", "min_force_n", "release_force_n"];
-const BUTTON_KEYS: [&str; 7] = ["force", "press_n", "release_n", "out", "tap", "hold", "long_press_ms"];
 const DIRECTION_KEYS: [&str; 4] = ["up", "down", "left", "right"];
 /// Each direction with its default bindings on the gamepad and the keyboard.
 const DIRECTIONS: [(&str, &str, &str); 4] = [
@@ -112,18 +105,6 @@ struct Shape {
     release_force_n: f32,
 }
 
-struct ButtonDraft {
-    force: Option<Force>,
-    press_n: Option<f32>,
-    release_n: Option<f32>,
-    action: Option<ActionDraft>,
-}
-
-enum ActionDraft {
-    Hold(Outputs),
-    TapHold { tap: Outputs, hold: Outputs, long_press_ms: Option<u32> },
-}
-
 impl Draft {
     fn read(root: &Section<'_>, findings: &mut Findings<'_>) -> Self {
         read_schema(root, findings);
@@ -165,20 +146,14 @@ impl Draft {
         let mut uses = Vec::new();
         if let Some(DpadDraft { directions, .. }) = &self.dpad {
             let named = directions.iter().zip(DIRECTIONS);
-            uses.extend(
-                named.map(|(outputs, (name, ..))| Use { owner: Owner::Direction(name), outputs: *outputs }),
-            );
+            uses.extend(named.map(|(outputs, (name, ..))| Use {
+                owner: Owner::Direction(name),
+                outputs: *outputs,
+                toggles: false,
+            }));
         }
         for (number, button) in (1..).zip(&self.buttons) {
-            let owner = |role| Owner::Button { number, role };
-            match &button.action {
-                Some(ActionDraft::Hold(out)) => uses.push(Use { owner: owner("out"), outputs: *out }),
-                Some(ActionDraft::TapHold { tap, hold, .. }) => {
-                    uses.push(Use { owner: owner("tap"), outputs: *tap });
-                    uses.push(Use { owner: owner("hold"), outputs: *hold });
-                }
-                None => {}
-            }
+            uses.extend(button.uses(number));
         }
         conflict::check(&uses, self.dpad.as_ref().and_then(|dpad| dpad.mode), findings);
     }
@@ -255,7 +230,7 @@ impl DpadDraft {
 fn read_shape(table: &Section<'_>, mode: Option<DpadMode>, findings: &mut Findings<'_>) -> Option<Shape> {
     let centre = table.number("centre_radius_mm", CENTRE_RADIUS_MM, findings);
     let slack = table.number("radius_hysteresis_mm", RADIUS_HYSTERESIS_MM, findings);
-    require_less(table, ("radius_hysteresis_mm", slack), ("centre_radius_mm", centre), findings);
+    table.require_less(("radius_hysteresis_mm", slack), ("centre_radius_mm", centre), findings);
     let rotation = table.number("rotation_deg", ROTATION_DEG, findings);
     let (diagonal, hysteresis) = read_zones(table, mode, findings);
     let (min_force_n, release_force_n) = read_gate(table, findings);
@@ -275,14 +250,14 @@ fn read_gate(table: &Section<'_>, findings: &mut Findings<'_>) -> (Option<f32>, 
     let min_force = table.number("min_force_n", FORCE_N, findings);
     let share = min_force.map_or(FORCE_N.default, |force| force.value) / RELEASE_RATIO;
     let release = table.number("release_force_n", Bounds { low: 0.0, default: share, ..FORCE_N }, findings);
-    require_less(table, ("release_force_n", release), ("min_force_n", min_force), findings);
+    table.require_less(("release_force_n", release), ("min_force_n", min_force), findings);
     (min_force.map(|force| force.value), release.map(|force| force.value))
 }
 
 fn read_pointer(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<Pointer> {
     let centre = table.number("centre_radius_mm", POINTER_CENTRE_MM, findings);
     let full = table.number("full_radius_mm", FULL_RADIUS_MM, findings);
-    require_less(table, ("centre_radius_mm", centre), ("full_radius_mm", full), findings);
+    table.require_less(("centre_radius_mm", centre), ("full_radius_mm", full), findings);
     let speed = table.number("speed_counts_per_s", SPEED_COUNTS_PER_S, findings);
     let curve = table.number("curve", CURVE, findings);
     let (min_force_n, release_force_n) = read_gate(table, findings);
@@ -347,22 +322,6 @@ fn check_hysteresis(
     }
 }
 
-/// Reports it if the first number is not less than the second, at whichever of them is written.
-fn require_less(
-    table: &Section<'_>,
-    (low_key, low): (&str, Option<Placed<f32>>),
-    (high_key, high): (&str, Option<Placed<f32>>),
-    findings: &mut Findings<'_>,
-) {
-    let (Some(low), Some(high)) = (low, high) else { return };
-    if low.value >= high.value {
-        let at = if table.place_of(low_key).is_some() { low.at } else { high.at };
-        let message =
-            format!("\"{low_key}\" ({}) must be less than \"{high_key}\" ({})", low.value, high.value);
-        findings.error(at, message, "");
-    }
-}
-
 fn read_directions(table: &Section<'_>, findings: &mut Findings<'_>) -> [Outputs; 4] {
     let gamepad = table.table("gamepad", "[dpad.gamepad]".to_owned(), &DIRECTION_KEYS, findings);
     let keyboard = table.table("keyboard", "[dpad.keyboard]".to_owned(), &DIRECTION_KEYS, findings);
@@ -374,73 +333,4 @@ fn read_directions(table: &Section<'_>, findings: &mut Findings<'_>) -> [Outputs
             pointer: None,
         }
     })
-}
-
-impl ButtonDraft {
-    fn read(table: &Section<'_>, min_press_ms: Option<u32>, findings: &mut Findings<'_>) -> Self {
-        table.require("force", "write the force that presses it, as force = \"fz\"", findings);
-        let force = table.word("force", &FORCES, findings).map(|word| word.value);
-        table.require("press_n", "write the force in newtons that presses it, as press_n = 2.0", findings);
-        let press = table.number("press_n", FORCE_N, findings);
-        let share = press.map_or(FORCE_N.default, |force| force.value) * RELEASE_SHARE;
-        let release = table.number("release_n", Bounds { low: 0.0, default: share, ..FORCE_N }, findings);
-        require_less(table, ("release_n", release), ("press_n", press), findings);
-        let action = ActionDraft::read(table, min_press_ms, findings);
-        Self { force, press_n: press.map(|n| n.value), release_n: release.map(|n| n.value), action }
-    }
-
-    fn settle(self, device: OutputDevice) -> Option<Button> {
-        let action = match self.action? {
-            ActionDraft::Hold(out) => Action::Hold(out.settle(device)?),
-            ActionDraft::TapHold { tap, hold, long_press_ms } => Action::TapHold {
-                tap: tap.settle(device)?,
-                hold: hold.settle(device)?,
-                long_press_us: u64::from(long_press_ms?) * 1_000,
-            },
-        };
-        Some(Button { force: self.force?, press_n: self.press_n?, release_n: self.release_n?, action })
-    }
-}
-
-impl ActionDraft {
-    fn read(table: &Section<'_>, min_press_ms: Option<u32>, findings: &mut Findings<'_>) -> Option<Self> {
-        const HELP: &str =
-            "write out = { gamepad = \"BTN_…\", keyboard = \"KEY_…\" }, or tap and hold instead of out";
-        let [out, tap, hold] = ["out", "tap", "hold"].map(|key| {
-            let section =
-                table.table(key, format!("\"{key}\" of {}", table.title), &DEVICE_KEYS, findings)?;
-            Some(Outputs::read(&section, findings))
-        });
-        let [has_out, has_tap, has_hold, has_long] =
-            ["out", "tap", "hold", "long_press_ms"].map(|key| table.place_of(key));
-        if let (Some(_), Some(at)) = (has_out, has_tap.or(has_hold).or(has_long)) {
-            let message = format!("{} has both \"out\" and keys of a tap/hold button", table.title);
-            findings.error(at, message, "remove \"out\", or remove \"tap\", \"hold\" and \"long_press_ms\"");
-            return None;
-        }
-        match (has_out, has_tap, has_hold) {
-            (Some(_), ..) => return out.map(Self::Hold),
-            (_, None, None) => table.require("out", HELP, findings),
-            (_, Some(_), None) => {
-                table.require("hold", "a button with \"tap\" needs \"hold\", too", findings);
-            }
-            (_, None, Some(_)) => table.require("tap", "a button with \"hold\" needs \"tap\", too", findings),
-            _ => {}
-        }
-        let long_press_ms = read_long_press(table, min_press_ms, findings);
-        Some(Self::TapHold { tap: tap?, hold: hold?, long_press_ms })
-    }
-}
-
-fn read_long_press(
-    table: &Section<'_>,
-    min_press_ms: Option<u32>,
-    findings: &mut Findings<'_>,
-) -> Option<u32> {
-    let Placed { value: long_ms, at } = table.whole("long_press_ms", LONG_PRESS_MS, findings)?;
-    if let Some(min_ms) = min_press_ms.filter(|min_ms| *min_ms >= long_ms) {
-        let message = format!("\"long_press_ms\" ({long_ms}) must be more than \"min_press_ms\" ({min_ms})");
-        findings.error(at, message, "");
-    }
-    Some(long_ms)
 }

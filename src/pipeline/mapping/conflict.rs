@@ -7,17 +7,20 @@
 use std::fmt;
 
 use super::binding::Outputs;
-use super::profile::{Binding, DpadMode};
+use super::profile::{Binding, CONTROLS_MAX, DpadMode, Keys};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::Placed;
+
+/// The pointer's buttons: they are driven beside the keyboard or the gamepad.
+const POINTER_CONTROLS_MAX: usize = 3;
 
 /// What drives a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Owner {
     /// A direction of the D-pad: `up`, `down`, `left` or `right`.
     Direction(&'static str),
-    /// A button, counted from 1, and which of its outputs: `out`, `tap` or `hold`.
+    /// A button, counted from 1, and which of its outputs: `out`, `tap`, `double` or `hold`.
     Button { number: usize, role: &'static str },
 }
 
@@ -35,38 +38,79 @@ impl fmt::Display for Owner {
 pub(super) struct Use {
     pub(super) owner: Owner,
     pub(super) outputs: Outputs,
+    /// Whether it stays down when its press is over.
+    pub(super) toggles: bool,
+}
+
+/// One control of an owner on a device.
+#[derive(Clone, Copy)]
+struct Bound {
+    by: Use,
+    /// All that goes down with it.
+    keys: Keys,
+    binding: Placed<Binding>,
 }
 
 /// Reports every pair of owners that drives the same control of a device; `mode` is that of the directions.
 pub(super) fn check(uses: &[Use], mode: Option<DpadMode>, findings: &mut Findings<'_>) {
     for device in [OutputDevice::Gamepad, OutputDevice::Keyboard, OutputDevice::Pointer] {
-        let on_device = |uses: &Use| uses.outputs.on(device).map(|binding| (uses.owner, binding));
-        let bound: Vec<_> = uses.iter().filter_map(on_device).collect();
+        let bound: Vec<Bound> = uses.iter().flat_map(|by| bound(by, device)).collect();
+        check_count(device, &bound, findings);
         for (index, later) in bound.iter().enumerate() {
-            let clash = bound.iter().take(index).find(|earlier| {
-                earlier.1.value.code == later.1.value.code
-                    && (earlier.1.value.value == later.1.value.value || meet(earlier.0, later.0, mode))
-            });
-            if let Some(earlier) = clash {
-                judge(*earlier, *later, findings);
+            if let Some(earlier) = bound.iter().take(index).find(|it| clash(it, later, mode)) {
+                judge(earlier, later, findings);
             }
         }
     }
 }
 
-fn judge(earlier: (Owner, Placed<Binding>), later: (Owner, Placed<Binding>), findings: &mut Findings<'_>) {
-    let (Placed { value: first, .. }, Placed { value: second, at }) = (earlier.1, later.1);
-    let code = second.code;
+fn bound(by: &Use, device: OutputDevice) -> impl Iterator<Item = Bound> + use<> {
+    let by = *by;
+    by.outputs.on(device).into_iter().flat_map(move |Placed { value: keys, at }| {
+        keys.iter().map(move |value| Bound { by, keys, binding: Placed { value, at } })
+    })
+}
+
+/// Whether both drive one control in a way that is worth a word. Kinds of press of one button may share some of their keys.
+fn clash(earlier: &Bound, later: &Bound, mode: Option<DpadMode>) -> bool {
+    let (first, second) = (earlier.binding.value, later.binding.value);
+    let is_said = if first.value == second.value {
+        !same_button(earlier.by.owner, later.by.owner) || earlier.keys == later.keys
+    } else {
+        meet(&earlier.by, &later.by, mode)
+    };
+    first.code == second.code && is_said
+}
+
+/// Reports the first control beyond those that a profile can drive.
+fn check_count(device: OutputDevice, bound: &[Bound], findings: &mut Findings<'_>) {
+    let mut codes = Vec::new();
+    for Placed { value, at } in bound.iter().map(|it| it.binding) {
+        if codes.contains(&value.code) {
+            continue;
+        }
+        codes.push(value.code);
+        if codes.len() == CONTROLS_MAX - POINTER_CONTROLS_MAX + 1 {
+            let message =
+                format!("a profile drives at most {} controls of the {}", codes.len() - 1, device.name());
+            findings.error(at, message, "leave this one out, or bind it to one that is there");
+        }
+    }
+}
+
+fn judge(earlier: &Bound, later: &Bound, findings: &mut Findings<'_>) {
+    let (Placed { value: first, .. }, Placed { value: second, at }) = (earlier.binding, later.binding);
+    let (code, owners) = (second.code, [earlier.by.owner, later.by.owner]);
     // A default binding stands nowhere in the text, so the finding goes to the later of the two places.
-    let at = at.max(earlier.1.at);
+    let at = at.max(earlier.binding.at);
     if first.value != second.value {
-        let message = format!("{code} is pushed both ways, by {} and by {}", earlier.0, later.0);
+        let message = format!("{code} is pushed both ways, by {} and by {}", owners[0], owners[1]);
         findings.error(at, message, "bind one of them to another control");
-    } else if same_button(earlier.0, later.0) {
-        let message = format!("a short and a long press both give {code}");
+    } else if same_button(owners[0], owners[1]) {
+        let message = format!("two kinds of press of one button both give {code}");
         findings.warning(at, message, "a button that only holds is written with \"out\"");
     } else {
-        let message = format!("{code} is driven by {} and by {}", earlier.0, later.0);
+        let message = format!("{code} is driven by {} and by {}", owners[0], owners[1]);
         findings.warning(
             at,
             message,
@@ -80,12 +124,12 @@ const fn same_button(left: Owner, right: Owner) -> bool {
 }
 
 /// Whether both owners can be active at the same moment.
-fn meet(left: Owner, right: Owner, mode: Option<DpadMode>) -> bool {
-    match (left, right) {
+fn meet(left: &Use, right: &Use, mode: Option<DpadMode>) -> bool {
+    match (left.owner, right.owner) {
         (Owner::Direction(left), Owner::Direction(right)) => {
             let vertical = |name: &str| name == "up" || name == "down";
             mode == Some(DpadMode::EightWay) && vertical(left) != vertical(right)
         }
-        _ => !same_button(left, right),
+        (one, other) => !same_button(one, other) || left.toggles || right.toggles,
     }
 }

@@ -2,7 +2,8 @@
 
 use arrayvec::ArrayVec;
 
-use super::intent::{Intents, LEVELS_MAX, Level};
+use super::effect::Playing;
+use super::intent::{Intents, Level};
 use super::press::Press;
 use super::profile::{BUTTONS_MAX, Binding, Button, Dpad, Force, Profile};
 use super::sector::{self, Horizontal, Sector, Vertical};
@@ -11,9 +12,6 @@ use crate::pipeline::control::OutputDevice;
 use crate::pipeline::control::names::POINTER_MOTION;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
-
-// Every button states at most one level, the D-pad and the pointer at most two each.
-const _: () = assert!(BUTTONS_MAX + 4 <= LEVELS_MAX);
 
 /// Plays one profile. `mappings/README.md` states its rules.
 ///
@@ -24,14 +22,14 @@ pub struct Engine {
     profile: Profile,
     held: Option<Sector>,
     moving: Option<Velocity>,
-    presses: ArrayVec<Press, BUTTONS_MAX>,
+    presses: ArrayVec<(Press, Playing), BUTTONS_MAX>,
     last: Option<Contact>,
 }
 
 impl Engine {
     /// An engine that has seen no contact yet.
     pub fn new(profile: Profile) -> Self {
-        let presses = profile.buttons.iter().map(|_| Press::Up).collect();
+        let presses = profile.buttons.iter().map(|_| (Press::Up, Playing::nothing())).collect();
         Self { profile, held: None, moving: None, presses, last: None }
     }
 
@@ -62,9 +60,10 @@ impl Engine {
         if let Some((dpad, sector)) = self.profile.dpad.as_ref().zip(self.held) {
             levels.state_directions(dpad, sector);
         }
-        for (button, press) in self.profile.buttons.iter().zip(&mut self.presses) {
+        for (button, (press, playing)) in self.profile.buttons.iter().zip(&mut self.presses) {
             let force_n = contact.map(|contact| force_of(button.force, contact));
-            levels.state(press.step(button, t, force_n));
+            let role = press.step(button, t, force_n);
+            playing.step(button, t, role).for_each(|binding| levels.state(binding));
         }
         self.moving = self
             .profile
@@ -76,7 +75,7 @@ impl Engine {
         levels.stated
     }
 
-    /// After a fault (lost link, dead channel, pause): forgets directions, the pointer's way and presses;
+    /// After a fault (lost link, dead channel, pause): forgets directions, the pointer's way, presses and what they toggled;
     /// nothing is tapped for them.
     ///
     /// A press that was under way stays forgotten until its force was released once, even if the contact goes
@@ -84,17 +83,21 @@ impl Engine {
     pub fn cancel(&mut self) {
         self.held = None;
         self.moving = None;
-        self.presses.iter_mut().for_each(Press::forget);
+        for (press, playing) in &mut self.presses {
+            press.forget();
+            *playing = Playing::nothing();
+        }
     }
 
     /// Goes on with another profile, also in the middle of a contact.
     ///
     /// The next step states the levels of the new profile, so whatever both profiles hold stays held. The
-    /// direction and the pointer's way continue (the thresholds that end them apply, not those that start them). A press that was
-    /// under way, or that the new profile would see as under way, does nothing in the new profile until its
+    /// direction and the pointer's way continue (the thresholds that end them apply, not those that start them); what was toggled
+    /// does not. A press that was under way, or that the new profile would see as under way, does nothing in the new profile until its
     /// force was released once.
     pub fn replace_profile(&mut self, profile: Profile) {
-        let presses = profile.buttons.iter().map(|button| self.press_for(button)).collect();
+        let presses =
+            profile.buttons.iter().map(|button| (self.press_for(button), Playing::nothing())).collect();
         self.presses = presses;
         self.profile = profile;
     }
@@ -103,7 +106,7 @@ impl Engine {
     fn press_for(&self, button: &Button) -> Press {
         let same_force =
             self.profile.buttons.iter().zip(&self.presses).filter(|(old, _)| old.force == button.force);
-        let taken_over = same_force.into_iter().any(|(_, press)| press.is_under_way());
+        let taken_over = same_force.into_iter().any(|(_, (press, _))| press.is_under_way());
         let beyond = self.last.is_some_and(|contact| force_of(button.force, &contact) >= button.press_n);
         if taken_over || beyond { Press::Spent } else { Press::Up }
     }
@@ -116,21 +119,20 @@ struct Levels {
 
 impl Levels {
     fn state_directions(&mut self, dpad: &Dpad, sector: Sector) {
-        self.state(sector.horizontal().map(|horizontal| match horizontal {
+        let horizontal = sector.horizontal().map(|horizontal| match horizontal {
             Horizontal::Left => dpad.left,
             Horizontal::Right => dpad.right,
-        }));
-        self.state(sector.vertical().map(|vertical| match vertical {
+        });
+        let vertical = sector.vertical().map(|vertical| match vertical {
             Vertical::Up => dpad.up,
             Vertical::Down => dpad.down,
-        }));
+        });
+        horizontal.into_iter().chain(vertical).flat_map(|keys| keys.iter()).for_each(|it| self.state(it));
     }
 
     /// Adds a level. A control that is stated already keeps its first value: each control stands there once.
-    fn state(&mut self, binding: Option<Binding>) {
-        if let Some(Binding { device, code, value }) = binding {
-            self.push(Level { device, code, value });
-        }
+    fn state(&mut self, Binding { device, code, value }: Binding) {
+        self.push(Level { device, code, value });
     }
 
     fn state_motion(&mut self, velocity: Option<Velocity>) {
@@ -143,7 +145,7 @@ impl Levels {
 
     fn push(&mut self, level: Level) {
         if self.stated.iter().all(|stated| (stated.device, stated.code) != (level.device, level.code)) {
-            // There is room: see the assertion above.
+            // A profile has at most CONTROLS_MAX controls, so there is always room.
             let _ = self.stated.try_push(level);
         }
     }

@@ -2,10 +2,11 @@
 
 use arrayvec::ArrayVec;
 
+use super::profile::CONTROLS_MAX;
 use crate::pipeline::control::{Code, OutputDevice};
 
-/// The most controls a profile can hold at once.
-pub const LEVELS_MAX: usize = 16;
+/// The most that a profile can state at once: all its controls, and the pointer's two movements.
+pub const LEVELS_MAX: usize = CONTROLS_MAX + 2;
 
 /// One control that should be held at `value` now. A control that no level names is neutral.
 ///

@@ -6,6 +6,8 @@ use crate::toml_text::section::Bounds;
 pub(super) const FILTER_SAMPLES: Bounds<u32> = Bounds { low: 1, high: 64, default: 6 };
 pub(super) const MIN_PRESS_MS: Bounds<u32> = Bounds { low: 0, high: 1_000, default: 40 };
 pub(super) const LONG_PRESS_MS: Bounds<u32> = Bounds { low: 1, high: 10_000, default: 400 };
+pub(super) const DOUBLE_PRESS_MS: Bounds<u32> = Bounds { low: 50, high: 2_000, default: 250 };
+pub(super) const TURBO_MS: Bounds<u32> = Bounds { low: 2, high: 10_000, default: 100 };
 /// The plate's radius is 30 mm; on its rim there is nothing left to steer with.
 pub(super) const CENTRE_RADIUS_MM: Bounds<f32> = Bounds { low: 2.0, high: 29.0, default: 8.0 };
 pub(super) const RADIUS_HYSTERESIS_MM: Bounds<f32> = Bounds { low: 0.0, high: 29.0, default: 1.5 };

@@ -1,6 +1,6 @@
-//! One button's press: when it starts, ends, becomes long, or no longer counts.
+//! One button's press: when it starts, ends, becomes long, comes twice, or no longer counts.
 
-use super::profile::{Action, Binding, Button};
+use super::profile::{Action, Button, Role};
 use crate::time::StreamInstant;
 
 /// Where a button stands.
@@ -8,90 +8,128 @@ use crate::time::StreamInstant;
 pub(super) enum Press {
     /// Not pressed.
     Up,
-    /// Pressed since then; `long` once the long press's output was stated.
+    /// Pressed since then; `long` once it was stated as a long press.
     Down { since: StreamInstant, long: bool },
+    /// A short press ended then, and a double press may come.
+    Between { since: StreamInstant },
+    /// Pressed a second time.
+    Twice,
     /// The force is still on from a press that was forgotten; nothing happens until it was released once.
     Spent,
 }
 
 impl Press {
-    /// What the button holds at `t`, given its force; `None` for the force means that the contact has ended.
-    pub(super) fn step(
-        &mut self,
-        button: &Button,
-        t: StreamInstant,
-        force_n: Option<f32>,
-    ) -> Option<Binding> {
+    /// The kind of press that is on at `t`, given the button's force; `None` for the force means that the contact has ended.
+    pub(super) fn step(&mut self, button: &Button, t: StreamInstant, force_n: Option<f32>) -> Option<Role> {
         let released = force_n.is_none_or(|force_n| force_n < button.release_n);
         let pressed = force_n.is_some_and(|force_n| force_n >= button.press_n);
         match *self {
             Self::Up if pressed => {
                 *self = Self::Down { since: t, long: false };
-                self.hold(button, t)
+                self.on(button.action, t)
             }
-            Self::Down { since, long } if released => {
-                *self = Self::Up;
-                on_release(button.action, t.us_since(since), long)
-            }
-            Self::Spent if released => {
+            Self::Between { since } => self.wait(button.action, (since, t), pressed),
+            Self::Down { since, long } if released => self.end(button.action, (since, t), long),
+            Self::Twice | Self::Spent if released => {
                 *self = Self::Up;
                 None
             }
-            _ => self.hold(button, t),
+            _ => self.on(button.action, t),
         }
     }
 
-    /// Forgets a press under way: it neither taps nor holds any more.
+    /// Forgets a press under way, and a short one that may become a double one: neither does anything any more.
     pub(super) fn forget(&mut self) {
-        if self.is_under_way() {
-            *self = Self::Spent;
-        }
+        *self = if self.is_under_way() { Self::Spent } else { Self::Up };
     }
 
     /// Whether the force is on, counting or not.
     pub(super) const fn is_under_way(self) -> bool {
-        !matches!(self, Self::Up)
+        !matches!(self, Self::Up | Self::Between { .. })
     }
 
-    fn hold(&mut self, button: &Button, t: StreamInstant) -> Option<Binding> {
-        let Self::Down { since, long } = self else { return None };
-        match button.action {
-            Action::Hold(out) => Some(out),
-            Action::TapHold { hold, long_press_us, .. } => {
-                *long |= t.us_since(*since) >= long_press_us;
-                long.then_some(hold)
+    /// What a press under way is.
+    fn on(&mut self, action: Action, t: StreamInstant) -> Option<Role> {
+        match (&mut *self, action) {
+            (Self::Down { .. }, Action::Hold(_)) => Some(Role::Out),
+            (Self::Down { since, long }, Action::ByTime { hold: Some(hold), .. }) => {
+                *long |= t.us_since(*since) >= hold.us;
+                long.then_some(Role::Hold)
             }
+            (Self::Twice, _) => Some(Role::Double),
+            _ => None,
         }
     }
-}
 
-/// What a press that lasted `lasted_us` states in the step that ends it.
-///
-/// A long press between whose long moment and its end no sample came states its output here, or it would be
-/// lost.
-fn on_release(action: Action, lasted_us: u64, long: bool) -> Option<Binding> {
-    match action {
-        Action::TapHold { tap, long_press_us, .. } if lasted_us < long_press_us => Some(tap),
-        Action::TapHold { hold, .. } if !long => Some(hold),
-        Action::Hold(_) | Action::TapHold { .. } => None,
+    /// What a press that ends is. A long one between whose long moment and its end no sample came is stated here, or it would be
+    /// lost.
+    fn end(
+        &mut self,
+        action: Action,
+        (since, t): (StreamInstant, StreamInstant),
+        long: bool,
+    ) -> Option<Role> {
+        *self = Self::Up;
+        let Action::ByTime { double, hold, .. } = action else { return None };
+        if hold.is_some_and(|hold| t.us_since(since) >= hold.us) {
+            return (!long).then_some(Role::Hold);
+        }
+        if double.is_some() {
+            *self = Self::Between { since: t };
+            return None;
+        }
+        Some(Role::Tap)
+    }
+
+    /// What comes of a short press that a second one may follow.
+    fn wait(
+        &mut self,
+        action: Action,
+        (since, t): (StreamInstant, StreamInstant),
+        pressed: bool,
+    ) -> Option<Role> {
+        let window_us = match action {
+            Action::ByTime { double: Some(double), .. } => double.us,
+            Action::ByTime { .. } | Action::Hold(_) => 0,
+        };
+        let is_over = t.us_since(since) >= window_us;
+        match (is_over, pressed) {
+            (false, true) => *self = Self::Twice,
+            (false, false) => {}
+            (true, true) => *self = Self::Down { since: t, long: false },
+            (true, false) => *self = Self::Up,
+        }
+        match (is_over, pressed) {
+            (true, _) => Some(Role::Tap),
+            (false, true) => Some(Role::Double),
+            (false, false) => None,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::control::{Code, OutputDevice};
-    use crate::pipeline::mapping::profile::Force;
+    use crate::pipeline::mapping::profile::{Effect, Force, Keys, Mode, Timed};
 
-    const TAP: Binding = Binding { device: OutputDevice::Gamepad, code: Code::Key(1), value: 1 };
-    const HOLD: Binding = Binding { device: OutputDevice::Gamepad, code: Code::Key(2), value: 1 };
+    const OUT: Option<Role> = Some(Role::Out);
+    const TAP: Option<Role> = Some(Role::Tap);
+    const HOLD: Option<Role> = Some(Role::Hold);
+    const DOUBLE: Option<Role> = Some(Role::Double);
 
     const fn button(action: Action) -> Button {
         Button { force: Force::Fz, press_n: 2.0, release_n: 1.5, action }
     }
 
-    /// Steps a fresh press through (milliseconds, force) and returns what each step held.
-    fn played(button: &Button, steps: &[(u64, Option<f32>)]) -> Vec<Option<Binding>> {
+    /// A button with these times in milliseconds.
+    fn by_time(double_ms: Option<u64>, hold_ms: Option<u64>) -> Button {
+        let effect = Effect { keys: Keys::new([]), mode: Mode::Plain };
+        let [double, hold] = [double_ms, hold_ms].map(|ms| ms.map(|ms| Timed { effect, us: 1_000 * ms }));
+        button(Action::ByTime { tap: effect, double, hold })
+    }
+
+    /// Steps a fresh press through (milliseconds, force) and returns what was on at each step.
+    fn played(button: &Button, steps: &[(u64, Option<f32>)]) -> Vec<Option<Role>> {
         let mut press = Press::Up;
         steps
             .iter()
@@ -101,7 +139,7 @@ mod tests {
 
     #[test]
     fn a_hold_button_follows_the_press() {
-        let button = button(Action::Hold(HOLD));
+        let button = button(Action::Hold(Effect { keys: Keys::new([]), mode: Mode::Plain }));
         let steps = [
             (0, Some(1.99)),
             (1, Some(2.0)),
@@ -110,31 +148,63 @@ mod tests {
             (4, Some(1.99)),
             (5, Some(2.5)),
         ];
-        assert_eq!(played(&button, &steps), [None, Some(HOLD), Some(HOLD), None, None, Some(HOLD)]);
-        assert_eq!(played(&button, &[(0, Some(3.0)), (1, None), (2, None)]), [Some(HOLD), None, None]);
+        assert_eq!(played(&button, &steps), [None, OUT, OUT, None, None, OUT]);
+        assert_eq!(played(&button, &[(0, Some(3.0)), (1, None), (2, None)]), [OUT, None, None]);
     }
 
     #[test]
     fn a_press_taps_below_the_long_press_and_holds_from_there() {
-        let button = button(Action::TapHold { tap: TAP, hold: HOLD, long_press_us: 400_000 });
-        assert_eq!(played(&button, &[(7, Some(2.0)), (406, None), (407, None)]), [None, Some(TAP), None]);
+        let button = by_time(None, Some(400));
+        assert_eq!(played(&button, &[(7, Some(2.0)), (406, None), (407, None)]), [None, TAP, None]);
         assert_eq!(
             played(
                 &button,
                 &[(0, Some(2.0)), (399, Some(2.0)), (400, Some(1.6)), (401, Some(1.0)), (402, None)]
             ),
-            [None, None, Some(HOLD), None, None]
+            [None, None, HOLD, None, None]
         );
-        assert_eq!(played(&button, &[(0, Some(2.0)), (400, None), (401, None)]), [None, Some(HOLD), None]);
+        assert_eq!(played(&button, &[(0, Some(2.0)), (400, None), (401, None)]), [None, HOLD, None]);
     }
 
     #[test]
     fn a_forgotten_press_does_nothing_until_released() {
-        let button = button(Action::TapHold { tap: TAP, hold: HOLD, long_press_us: 400_000 });
+        let button = by_time(None, Some(400));
         let mut press = Press::Down { since: StreamInstant::from_us(0), long: false };
         press.forget();
         let mut step = |ms: u64, force_n| press.step(&button, StreamInstant::from_us(ms * 1_000), force_n);
         assert_eq!([step(10, Some(2.5)), step(900, Some(1.5)), step(901, Some(1.0))], [None; 3]);
-        assert_eq!([step(902, Some(2.0)), step(903, Some(1.0))], [None, Some(TAP)]);
+        assert_eq!([step(902, Some(2.0)), step(903, Some(1.0))], [None, TAP]);
+    }
+
+    #[test]
+    fn a_second_press_in_time_is_a_double_one() {
+        let button = by_time(Some(300), None);
+        let short = [(0, Some(2.0)), (100, None)];
+        let then = |rest: &[(u64, Option<f32>)]| played(&button, &[&short, rest].concat())[2..].to_vec();
+        assert_eq!(then(&[(399, Some(2.0)), (5_000, Some(1.5)), (5_001, None)]), [DOUBLE, DOUBLE, None]);
+        assert_eq!(then(&[(399, None), (400, None), (401, None)]), [None, TAP, None]);
+        // Too late: the first press taps, and this one is the first of its own.
+        assert_eq!(then(&[(400, Some(2.0)), (410, None), (420, Some(2.0))]), [TAP, None, DOUBLE]);
+        // Two double presses in a row are four presses.
+        assert_eq!(
+            then(&[(110, Some(2.0)), (120, None), (130, Some(2.0)), (140, None)]),
+            [DOUBLE, None, None, None]
+        );
+    }
+
+    #[test]
+    fn a_long_press_is_no_first_of_two() {
+        let button = by_time(Some(300), Some(400));
+        let steps =
+            [(0, Some(2.0)), (400, Some(2.0)), (500, None), (510, Some(2.0)), (600, None), (900, None)];
+        assert_eq!(played(&button, &steps), [None, HOLD, None, None, None, TAP]);
+    }
+
+    #[test]
+    fn a_forgotten_short_press_never_taps() {
+        let button = by_time(Some(300), None);
+        let mut press = Press::Between { since: StreamInstant::from_us(0) };
+        press.forget();
+        assert_eq!(press.step(&button, StreamInstant::from_us(300_000), None), None);
     }
 }

@@ -7,6 +7,12 @@ use crate::pipeline::control::{Code, OutputDevice};
 /// The most buttons a profile can bind.
 pub const BUTTONS_MAX: usize = 8;
 
+/// The most keys that one press gives at once.
+pub const KEYS_MAX: usize = 4;
+
+/// The most controls that a profile drives on one device, and with the pointer.
+pub const CONTROLS_MAX: usize = 32;
+
 /// The fastest pointer that a profile can ask for, in counts per second.
 pub const POINTER_SPEED_MAX: i32 = 5_000;
 
@@ -19,6 +25,58 @@ pub struct Binding {
     pub code: Code,
     /// 1 for keys, −1 or 1 for the hat.
     pub value: i32,
+}
+
+/// Controls that go down and up together, the first one first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Keys {
+    all: [Option<Binding>; KEYS_MAX],
+}
+
+impl Keys {
+    /// The first [`KEYS_MAX`] of these.
+    pub fn new(bindings: impl IntoIterator<Item = Binding>) -> Self {
+        let mut all = [None; KEYS_MAX];
+        all.iter_mut().zip(bindings).for_each(|(place, binding)| *place = Some(binding));
+        Self { all }
+    }
+
+    /// In their order.
+    pub fn iter(&self) -> impl Iterator<Item = Binding> + use<> {
+        self.all.into_iter().flatten()
+    }
+}
+
+/// How keys follow what is pressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Down as long as it lasts.
+    Plain,
+    /// Each time it begins they go down and stay, or go up again.
+    Toggle,
+    /// Down in the first half of each period as long as it lasts.
+    Turbo {
+        /// From one press to the next.
+        period_us: u64,
+    },
+}
+
+/// What a kind of press does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effect {
+    /// What goes down.
+    pub keys: Keys,
+    /// And how.
+    pub mode: Mode,
+}
+
+/// A kind of press that is told by a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Timed {
+    /// What it does.
+    pub effect: Effect,
+    /// The time that tells it.
+    pub us: u64,
 }
 
 /// How the directions divide the plate.
@@ -54,13 +112,13 @@ pub struct Dpad {
     /// It ends below this normal force.
     pub release_force_n: f32,
     /// Up.
-    pub up: Binding,
+    pub up: Keys,
     /// Down.
-    pub down: Binding,
+    pub down: Keys,
     /// Left.
-    pub left: Binding,
+    pub left: Keys,
     /// Right.
-    pub right: Binding,
+    pub right: Keys,
 }
 
 /// The pointer steered like a joystick: the place of the contact is a velocity.
@@ -98,17 +156,45 @@ pub enum Force {
 /// What a press does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// Held as long as the press lasts.
-    Hold(Binding),
-    /// A press that ends before `long_press_us` taps `tap`; one that lasts as long holds `hold` until it ends.
-    TapHold {
-        /// Output of a short press.
-        tap: Binding,
-        /// Output of a long press.
-        hold: Binding,
-        /// From this duration on a press is long.
-        long_press_us: u64,
+    /// Any press, as long as it lasts.
+    Hold(Effect),
+    /// By how long a press lasts, and how soon it comes after another one.
+    ByTime {
+        /// A short press, when it ends. Where there is a double press: when that can no longer come.
+        tap: Effect,
+        /// A press that begins less than this time after the end of a short one, as long as it lasts.
+        double: Option<Timed>,
+        /// A press from this duration on, until it ends; without it none is long.
+        hold: Option<Timed>,
     },
+}
+
+/// A kind of press.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Any press.
+    Out,
+    /// A short one that has ended.
+    Tap,
+    /// One soon after a short one.
+    Double,
+    /// A long one.
+    Hold,
+}
+
+impl Role {
+    /// In the order of a button's effects.
+    pub const ALL: [Self; 4] = [Self::Out, Self::Tap, Self::Double, Self::Hold];
+
+    /// Its key in a profile.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Out => "out",
+            Self::Tap => "tap",
+            Self::Double => "double",
+            Self::Hold => "hold",
+        }
+    }
 }
 
 /// A button pressed by a force.
@@ -153,17 +239,23 @@ impl Profile {
     /// All bindings in the order of the output: left, right, up, down, then those of the buttons.
     pub fn bindings(&self) -> impl Iterator<Item = Binding> + '_ {
         let directions = self.dpad.iter().flat_map(|dpad| [dpad.left, dpad.right, dpad.up, dpad.down]);
-        directions.chain(self.buttons.iter().flat_map(Button::bindings))
+        directions.flat_map(|keys| keys.iter()).chain(self.buttons.iter().flat_map(Button::bindings))
     }
 }
 
 impl Button {
-    /// What it can press: one control, or the tapped and the held one.
+    /// What its kinds of press do, in the order of [`Role::ALL`].
+    pub fn effects(&self) -> [Option<Effect>; Role::ALL.len()] {
+        match self.action {
+            Action::Hold(effect) => [Some(effect), None, None, None],
+            Action::ByTime { tap, double, hold } => {
+                [None, Some(tap), double.map(|it| it.effect), hold.map(|it| it.effect)]
+            }
+        }
+    }
+
+    /// What it can press.
     pub fn bindings(&self) -> impl Iterator<Item = Binding> + use<> {
-        let (first, second) = match self.action {
-            Action::Hold(binding) => (binding, None),
-            Action::TapHold { tap, hold, .. } => (tap, Some(hold)),
-        };
-        std::iter::once(first).chain(second)
+        self.effects().into_iter().flatten().flat_map(|effect| effect.keys.iter())
     }
 }

@@ -155,12 +155,12 @@ fn wrapped(angle_deg: f32) -> f32 {
 mod tests {
     use super::*;
     use crate::pipeline::control::{Code, OutputDevice};
-    use crate::pipeline::mapping::profile::Binding;
+    use crate::pipeline::mapping::profile::{Binding, Keys};
 
     const RIGHT_UP: Sector = Sector(1);
 
     fn dpad(mode: DpadMode, diagonal_deg: f32) -> Dpad {
-        let unused = Binding { device: OutputDevice::Gamepad, code: Code::Key(1), value: 1 };
+        let unused = Keys::new([Binding { device: OutputDevice::Gamepad, code: Code::Key(1), value: 1 }]);
         Dpad {
             mode,
             centre_radius_mm: 8.0,

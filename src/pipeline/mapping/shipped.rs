@@ -23,12 +23,18 @@ mod tests {
     use super::*;
     use crate::pipeline::control::{Code, OutputDevice};
     use crate::pipeline::mapping::check::{OutputChoice, read};
-    use crate::pipeline::mapping::profile::{Action, Binding, DpadMode, Force, Profile};
+    use crate::pipeline::mapping::profile::{
+        Action, Binding, DpadMode, Effect, Force, Keys, Mode, Profile, Timed,
+    };
 
     const SOUTH: Binding = Binding { device: OutputDevice::Gamepad, code: Code::Key(0x130), value: 1 };
     const EAST: Binding = Binding { device: OutputDevice::Gamepad, code: Code::Key(0x131), value: 1 };
     const KEY_Z: Binding = Binding { device: OutputDevice::Keyboard, code: Code::Key(44), value: 1 };
     const KEY_X: Binding = Binding { device: OutputDevice::Keyboard, code: Code::Key(45), value: 1 };
+
+    fn plain(binding: Binding) -> Effect {
+        Effect { keys: Keys::new([binding]), mode: Mode::Plain }
+    }
 
     fn shipped(name: &str, output: OutputChoice) -> Profile {
         read(text(name).unwrap(), output).0.unwrap()
@@ -52,7 +58,8 @@ mod tests {
                 let profile = shipped(name, output);
                 assert_eq!(profile.dpad.map(|dpad| dpad.mode), Some(mode));
                 assert_eq!(forces(&profile), [(Force::Fz, 2.0, 1.4)]);
-                assert_eq!(profile.buttons[0].action, Action::TapHold { tap, hold, long_press_us: 400_000 });
+                let hold = Some(Timed { effect: plain(hold), us: 400_000 });
+                assert_eq!(profile.buttons[0].action, Action::ByTime { tap: plain(tap), double: None, hold });
             }
         }
     }
@@ -66,7 +73,7 @@ mod tests {
             assert_eq!(profile.dpad.map(|dpad| dpad.mode), Some(DpadMode::EightWay));
             assert_eq!(forces(&profile), [(Force::Fz, 2.0, 1.4), (Force::FyPositive, 1.2, 0.8)]);
             let actions: Vec<_> = profile.buttons.iter().map(|button| button.action).collect();
-            assert_eq!(actions, [Action::Hold(jump), Action::Hold(fire)]);
+            assert_eq!(actions, [Action::Hold(plain(jump)), Action::Hold(plain(fire))]);
         }
     }
 

@@ -8,15 +8,12 @@ use arrayvec::ArrayVec;
 
 use crate::pipeline::control::{Code, OutputDevice, OutputEvent};
 use crate::pipeline::mapping::intent::{Intents, Level};
-use crate::pipeline::mapping::profile::Profile;
+use crate::pipeline::mapping::profile::{CONTROLS_MAX, Profile};
 use crate::pipeline::output::motion::{Motion, STEPS_MAX};
 use crate::time::StreamInstant;
 
-/// The most controls a profile can name: four directions, and two for each button.
-const SLOTS_MAX: usize = 20;
-
 /// The most edges of one call: the pointer moved, everything released, everything else pressed.
-pub const EDGES_MAX: usize = STEPS_MAX + 2 * SLOTS_MAX;
+pub const EDGES_MAX: usize = STEPS_MAX + 2 * CONTROLS_MAX;
 
 /// The edges of one call, simultaneous for a game: the pointer's steps, then releases, then presses. So a press or
 /// release of the pointer's button counts where the pointer has arrived.
@@ -35,7 +32,7 @@ struct Slot {
 /// What is held, in the profile's order: horizontal direction, vertical direction, buttons, the pointer's way.
 #[derive(Clone, Debug)]
 pub struct Ledger {
-    slots: ArrayVec<Slot, SLOTS_MAX>,
+    slots: ArrayVec<Slot, CONTROLS_MAX>,
     motion: Motion,
     min_press_us: u64,
 }
@@ -138,9 +135,9 @@ fn wanted(levels: &Intents, slot: &Slot) -> i32 {
 }
 
 /// Adds a control once, however many bindings name it.
-fn add_slot(slots: &mut ArrayVec<Slot, SLOTS_MAX>, device: OutputDevice, code: Code) {
+fn add_slot(slots: &mut ArrayVec<Slot, CONTROLS_MAX>, device: OutputDevice, code: Code) {
     if slots.iter().all(|slot| (slot.device, slot.code) != (device, code)) {
-        // A profile names at most SLOTS_MAX controls, so there is always room.
+        // A profile names at most CONTROLS_MAX controls, so there is always room.
         let _ = slots.try_push(Slot { device, code, held: 0, wanted: 0, since: StreamInstant::default() });
     }
 }

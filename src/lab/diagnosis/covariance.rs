@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::basis::{Basis, LENGTHS_TRIED, Prior};
 use super::channel_rows::{ChannelRows, wide_precisions};
 use super::equations::{NormalEquations, Reduced};
-use super::model::{BACKGROUND_MAX, Column, Linearised, Model};
+use super::model::{BACKGROUND_MAX, Column, Linearised, Model, Signature};
 use super::noise::Noise;
 use super::observations::Observations;
 use super::system::ChannelSystem;
@@ -176,22 +176,46 @@ impl Systems {
     /// With this background; `None` where a system is not positive definite.
     pub(super) fn marginal(&self, background: &Background) -> Option<Marginal> {
         let all: Vec<&NormalEquations> = self.channels.iter().map(|it| &it.equations).collect();
-        self.marginal_of(&all, background)
+        self.marginal_of(&all, self.columns, background)
     }
 
     /// The same with some of the columns only; the others count as nothing.
     pub(super) fn marginal_with(&self, columns: &[usize], background: &Background) -> Option<Marginal> {
         let picked = self.picked(columns);
-        self.marginal_of(&picked.iter().collect::<Vec<_>>(), background)
+        self.marginal_of(&picked.iter().collect::<Vec<_>>(), self.columns, background)
+    }
+
+    /// The same with some of the columns and `further` ones, which are numbered after all others.
+    pub(super) fn marginal_beside(
+        &self,
+        columns: &[usize],
+        further: &[Signature],
+        background: &Background,
+    ) -> Option<Marginal> {
+        let of_channel = |(channel, system): (usize, &ChannelSystem)| {
+            let own = further.iter().enumerate().filter_map(|(at, it)| {
+                let values = it[channel].as_deref()?;
+                Some((self.columns + at, values))
+            });
+            system.beside(columns, &own.collect::<Vec<_>>())
+        };
+        let all: Option<Vec<NormalEquations>> = self.channels.iter().enumerate().map(of_channel).collect();
+        self.marginal_of(&all?.iter().collect::<Vec<_>>(), self.columns + further.len(), background)
     }
 
     fn picked(&self, columns: &[usize]) -> Vec<NormalEquations> {
         self.channels.iter().map(|it| it.equations.picked(columns)).collect()
     }
 
-    fn marginal_of(&self, equations: &[&NormalEquations], background: &Background) -> Option<Marginal> {
-        let mut fisher = Matrix::zeros(self.columns, self.columns);
-        let mut score = vec![0.0; self.columns];
+    /// `count` is the number of all columns.
+    fn marginal_of(
+        &self,
+        equations: &[&NormalEquations],
+        count: usize,
+        background: &Background,
+    ) -> Option<Marginal> {
+        let mut fisher = Matrix::zeros(count, count);
+        let mut score = vec![0.0; count];
         let (mut square, mut log_determinant) = (0.0, 0.0);
         let of_channel = |(it, shares): (&&NormalEquations, &[f64; 3])| it.reduced(&background.prior, shares);
         let channels: Option<Vec<Reduced>> =
@@ -284,7 +308,7 @@ impl Systems {
         let equations = self.picked(&fitted.columns);
         let equations: Vec<&NormalEquations> = equations.iter().collect();
         for _ in 0..steps {
-            let marginal = self.marginal_of(&equations, &background)?;
+            let marginal = self.marginal_of(&equations, self.columns, &background)?;
             let solution = fitted.solved(&marginal)?;
             likelihood = -0.5 * (marginal.square - solution.removed + marginal.log_determinant);
             background = self.updated(&background, (&equations, &marginal), &solution.coordinates);

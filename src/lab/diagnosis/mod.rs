@@ -47,6 +47,7 @@ pub mod report;
 mod separation;
 mod setting;
 mod simulated;
+mod specification;
 mod system;
 pub mod target;
 mod whitening;
@@ -64,10 +65,12 @@ use self::gatekeepers::excess::{EFFECT, Excess, excess};
 use self::gatekeepers::{Gate, guarded};
 pub use self::mechanics::Pad;
 use self::model::Model;
+use self::naming::OVER_REMAINDER;
 use self::observations::Observations;
 use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
 use self::separation::Separation;
 use self::simulated::Simulated;
+use self::target::Target;
 use crate::numeric::chi_square;
 use crate::numeric::statistics::{mean, rms};
 use crate::tables::measured::Table;
@@ -75,9 +78,7 @@ use crate::tables::measured::Table;
 /// Fewest rows, and fewest locations among them, by which causes can be told.
 const ROWS_MIN: usize = 60;
 const LOCATIONS_MIN: usize = 12;
-/// A cause is named where it explains so many times what is left unexplained in the channels that tell of it; and the least part of
-/// what is known of a cause by which a channel tells of it.
-const OVER_REMAINDER: f64 = 10.0;
+/// The least part of what is known of a cause by which a channel tells of it.
 const PART_MIN: f64 = 0.01;
 
 /// Why a table cannot be diagnosed.
@@ -165,7 +166,13 @@ fn checked(observations: &Observations, pad: &Pad<'_>) -> Result<Gate, Unfit> {
 fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Diagnosis {
     // Shares are of the residual before the repairs.
     diagnosis.findings.iter_mut().for_each(|finding| finding.share *= gate.left);
-    let own = gate.findings.into_iter().chain(excess.findings);
+    // What has no name looks like noise.
+    let has_a_name = |it: &Finding| match it.target {
+        Target::Channel(channel) => diagnosis.unnamed_by_channel.get(channel).is_none_or(|it| *it <= 0.0),
+        _ => true,
+    };
+    let excess_findings = excess.findings.into_iter().filter(has_a_name).collect::<Vec<_>>();
+    let own = gate.findings.into_iter().chain(excess_findings);
     diagnosis.findings.splice(..0, own);
     diagnosis.verdict = verdict(!diagnosis.findings.is_empty(), diagnosis.unnamed_share);
     diagnosis.not_detected.extend(gate.not_detected.into_iter().chain(excess.not_detected));
@@ -202,23 +209,17 @@ fn summary(
     missing: &[NotTestable],
 ) -> Option<Diagnosis> {
     let fit = &found.fit;
-    let unnamed_by_channel = unnamed_squares(found);
+    let remainders = unnamed_squares(found);
+    let whole = search.removed(fit)? + remainders.iter().sum::<f64>();
+    let Named { findings: mut kept, unnamed_by_channel } = named(search, found, (whole, remainders))?;
     let unnamed: f64 = unnamed_by_channel.iter().sum();
-    let whole = search.removed(fit)? + unnamed;
-    let mut kept = search.findings(found, whole)?;
-    // A smooth remainder is a rival of every cause that acts on the same channels: while it survives, that is only the nearest name.
-    kept.retain(|(at, finding)| {
-        let parts = search.parts(fit, fit.applied[*at].0);
-        let channels = parts.iter().zip(&unnamed_by_channel).filter(|(part, _)| **part > PART_MIN);
-        finding.share * whole > OVER_REMAINDER * channels.map(|(_, square)| square).sum::<f64>()
-    });
     let separation = Separation::new(search, found);
     for (at, finding) in &mut kept {
         finding.separate_by = separation.told(*at, &finding.confounded_with);
     }
     let applied: Applied = kept.iter().map(|(at, _)| fit.applied[*at].clone()).collect();
     let mut findings: Vec<Finding> = kept.into_iter().map(|(_, finding)| finding).collect();
-    findings.extend(search.offsets(found, whole + search.offsets_square(found)?)?);
+    findings.extend(search.offsets(found, whole + search.offsets_square(found)?, &unnamed_by_channel)?);
     let unnamed_share = if unnamed > 0.0 { unnamed / whole } else { 0.0 };
     let nothing = Vec::new();
     Some(Diagnosis {
@@ -236,9 +237,40 @@ fn summary(
         not_detected: search.not_detected(found)?,
         not_testable: missing.to_vec(),
         unnamed_share,
+        unnamed_by_channel,
         findings,
         gatekeepers: Vec::new(),
     })
+}
+
+/// What may be named.
+struct Named {
+    /// Each with its place in the fit.
+    findings: Vec<(usize, Finding)>,
+    /// For each channel, the weighted squares that are left without a name.
+    unnamed_by_channel: Vec<f64>,
+}
+
+/// The findings that may be named; without a name are the remainders, and what causes explain that hold in some parts of the
+/// measurement only. Such a cause is the nearest name for something else, and so is one that explains little beside that.
+fn named(search: &Search<'_>, found: &Attribution, (whole, mut unnamed): (f64, Vec<f64>)) -> Option<Named> {
+    let fit = &found.fit;
+    let parts = |at: usize| search.parts(fit, fit.applied[at].0);
+    let mut kept = Vec::new();
+    for (at, finding) in search.findings(found, whole)? {
+        if finding.confounded_with.is_empty() && !search.holds_throughout(fit, at)? {
+            let own = parts(at).into_iter().map(|part| part * finding.share * whole);
+            unnamed.iter_mut().zip(own).for_each(|(unnamed, own)| *unnamed += own);
+        } else {
+            kept.push((at, finding));
+        }
+    }
+    kept.retain(|(at, finding)| {
+        let own = parts(*at);
+        let channels = own.iter().zip(&unnamed).filter(|(part, _)| **part > PART_MIN);
+        finding.share * whole > OVER_REMAINDER * channels.map(|(_, square)| square).sum::<f64>()
+    });
+    Some(Named { findings: kept, unnamed_by_channel: unnamed })
 }
 
 /// Root mean square of the channels' noise.

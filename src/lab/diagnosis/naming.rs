@@ -22,6 +22,8 @@ fn norm(coordinates: &[f64], covariance: &Matrix) -> f64 {
 
 /// Quantile of a normal number: 95 % lie within.
 const WITHIN_95: f64 = 1.959_964;
+/// A cause is named where it explains so many times what is left unexplained in the channels that tell of it.
+pub(super) const OVER_REMAINDER: f64 = 10.0;
 /// Share of measurements like this one in which a cause of the stated size is found.
 pub(super) const POWER: f64 = 0.9;
 
@@ -186,13 +188,21 @@ impl Search<'_> {
         Some(squares.filter(|square| chi_square::exceeded(*square, 1) < found.critical).sum())
     }
 
-    /// The zeros that are not zero.
-    pub(super) fn offsets(&self, found: &Attribution, whole: f64) -> Option<Vec<Finding>> {
+    /// The zeros that are not zero; none of channels that have about as much left without a name.
+    pub(super) fn offsets(
+        &self,
+        found: &Attribution,
+        whole: f64,
+        unnamed_by_channel: &[f64],
+    ) -> Option<Vec<Finding>> {
         let finding = |(channel, [zero, variance]): (usize, [f64; 2])| {
             let square = zero * zero / variance;
             let spread = WITHIN_95 * variance.sqrt();
             let p_value = chi_square::exceeded(square, 1);
-            (p_value < found.critical).then(|| Finding {
+            let is_found = p_value < found.critical
+                && square > OVER_REMAINDER * unnamed_by_channel[channel]
+                && self.zero_holds_throughout(&found.fit, channel, square).unwrap_or(false);
+            is_found.then(|| Finding {
                 effect: ZERO,
                 target: Target::Channel(channel),
                 parameters: vec![Estimate {

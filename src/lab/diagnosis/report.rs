@@ -30,6 +30,8 @@ pub struct Diagnosis {
     pub not_testable: Vec<NotTestable>,
     /// Part of the weighted squared residual above noise and background that no cause explains; 0 where that is chance.
     pub unnamed_share: f64,
+    /// For each channel, the weighted squares of what no cause explains.
+    pub unnamed_by_channel: Vec<f64>,
     /// What the findings remove of what a flexible model could; `None`: no such model was fitted.
     pub ceiling_share: Option<f64>,
     /// On the locked rows; `None` where nothing was found.
@@ -57,6 +59,7 @@ impl Diagnosis {
             not_detected: Vec::new(),
             not_testable: Vec::new(),
             unnamed_share: 0.0,
+            unnamed_by_channel: Vec::new(),
             ceiling_share: None,
             gain: None,
             gatekeepers: Vec::new(),

@@ -265,7 +265,7 @@ impl<'s, 'm> Both<'s, 'm> {
             .map(|(at, present)| stacked(Some(present.clone()), functions.get(at)))
             .collect();
         let count = system.residual.len() + weights.len();
-        let white = Whitening::of(&vec![1.0; count], &vec![false; count], 0.0);
+        let white = Whitening::none(count);
         let signatures: Vec<(usize, &[f64])> =
             known.iter().map(|(at, column)| (*at, column.as_slice())).collect();
         let joint = ChannelSystem::of(&signatures, &background, &[], &vec![0.0; count], white)?;

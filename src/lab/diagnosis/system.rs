@@ -116,6 +116,19 @@ impl ChannelSystem {
         Some(Self { equations, whitening, signatures, background, residual, stated })
     }
 
+    /// The normal equations of some of its columns, and of `further` ones with their numbers.
+    pub(super) fn beside(&self, columns: &[usize], further: &[(usize, &[f64])]) -> Option<NormalEquations> {
+        let further: Vec<(usize, Vec<f64>)> =
+            further.iter().map(|(number, values)| (*number, self.whitening.whitened(values))).collect();
+        let own = self.equations.columns.iter().zip(&self.signatures);
+        let own = own.filter(|(number, _)| columns.contains(number));
+        let further = further.iter().map(|(number, values)| (*number, values.as_slice()));
+        let all: Vec<(usize, &[f64])> =
+            own.map(|(number, values)| (*number, values.as_slice())).chain(further).collect();
+        let white = Whitening::none(self.residual.len());
+        Some(Self::of(&all, &self.background, &self.stated.columns, &self.residual, white)?.equations)
+    }
+
     /// D⁻½ (r − A ψ − B z − E ê).
     pub(super) fn left_over(&self, coordinates: &[f64], background: &[f64]) -> Vec<f64> {
         let mut left = self.residual.clone();

@@ -29,6 +29,11 @@ impl Whitening {
         Self { follows: follows.iter().enumerate().map(goes_on).collect(), weights, memory }
     }
 
+    /// Of rows that are white.
+    pub(super) fn none(rows: usize) -> Self {
+        Self::of(&vec![1.0; rows], &vec![false; rows], 0.0)
+    }
+
     /// ρ.
     pub(super) const fn memory(&self) -> f64 {
         self.memory

@@ -125,6 +125,7 @@ mod tests {
             not_detected: Vec::new(),
             not_testable: Vec::new(),
             unnamed_share: 0.0,
+            unnamed_by_channel: Vec::new(),
             ceiling_share: None,
             gatekeepers: vec![Notice { check: "stuck", channel: Some(1), detail: "a & b".to_owned() }],
             gain: None,

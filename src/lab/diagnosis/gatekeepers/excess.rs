@@ -3,7 +3,7 @@
 //! No device states what each of its channels should have, so each is held against the others. Sound channels have a part of noise
 //! that is the same in all and one that goes with the signal: ln σ = ln b √(r² + S²) + e with S the signal's root mean square and
 //! r = a/b. They differ by the standard deviation [`NATURAL`] of e, or by what the others differ by where that is no chance. Static samples and
-//! series are looked at apart where their noise is; what counts is the mean of both excesses.
+//! series are looked at apart where their noise is; what counts is the kind that tells more.
 
 use crate::lab::diagnosis::noise::Noise;
 use crate::lab::diagnosis::observations::Observations;
@@ -111,7 +111,7 @@ fn level(
     (level.signal.is_finite() && level.noise.is_finite()).then_some(level)
 }
 
-/// A channel's noise beside what the others let expect: the mean over the kinds of row, which sound channels need not have at random.
+/// A channel's noise beside what the others let expect, in the kind of row that tells it best.
 fn beside(by_kind: &[Vec<Level>], channel: usize) -> Option<Beside> {
     let of_kind = |levels: &Vec<Level>| {
         let own = levels.iter().find(|it| it.channel == channel)?;
@@ -119,10 +119,7 @@ fn beside(by_kind: &[Vec<Level>], channel: usize) -> Option<Beside> {
         let [should, variance] = predicted(&others, own);
         Some(Beside { noise: own.noise, excess: own.noise - should, variance: variance + own.variance })
     };
-    let kinds: Vec<Beside> = by_kind.iter().filter_map(of_kind).collect();
-    let of = |value: fn(&Beside) -> f64| mean(kinds.iter().map(value));
-    let all = Beside { noise: of(|it| it.noise), excess: of(|it| it.excess), variance: of(|it| it.variance) };
-    (!kinds.is_empty()).then_some(all)
+    by_kind.iter().filter_map(of_kind).min_by(|one, other| one.variance.total_cmp(&other.variance))
 }
 
 /// What a channel's noise should be by others', and the variance by which sound ones differ from that: the mean over the

@@ -4,9 +4,10 @@
 //! says what they should read and how that changes with each hypothesis of the catalogue (`causes/`), about the pad's own field
 //! or those of changed pads (`atlas`); the residual's covariance is noise, a smooth background that every simulator leaves, and
 //! what the simulator is known to get wrong (`covariance`); group score tests with a cluster bootstrap choose causes
-//! (`attribution`); the encompassing rule says which of them may be named (`naming`), and models of further measurements
-//! (`experiments`) which would tell the others apart (`separation`); rows that had no part in it say what they are worth (`gain`),
-//! in readings and in contacts that are decoded by the model backwards (`inverse`, of the pad `bench`).
+//! (`attribution`); the encompassing rule says which of them may be named (`naming`), as long as they hold in all parts of the
+//! measurement (`specification`), and models of further measurements (`experiments`) which would tell the others apart
+//! (`separation`); rows that had no part in it say what they are worth (`gain`), in readings and in contacts that are decoded by the
+//! model backwards (`inverse`, of the pad `bench`).
 //!
 //! The engine knows nothing of nine channels, but for `simulated`.
 //!
@@ -70,7 +71,6 @@ use self::observations::Observations;
 use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
 use self::separation::Separation;
 use self::simulated::Simulated;
-use self::target::Target;
 use crate::numeric::chi_square;
 use crate::numeric::statistics::{mean, rms};
 use crate::tables::measured::Table;
@@ -166,13 +166,8 @@ fn checked(observations: &Observations, pad: &Pad<'_>) -> Result<Gate, Unfit> {
 fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Diagnosis {
     // Shares are of the residual before the repairs.
     diagnosis.findings.iter_mut().for_each(|finding| finding.share *= gate.left);
-    // What has no name looks like noise.
-    let has_a_name = |it: &Finding| match it.target {
-        Target::Channel(channel) => diagnosis.unnamed_by_channel.get(channel).is_none_or(|it| *it <= 0.0),
-        _ => true,
-    };
-    let excess_findings = excess.findings.into_iter().filter(has_a_name).collect::<Vec<_>>();
-    let own = gate.findings.into_iter().chain(excess_findings);
+    let excess = excess.of_channels(|channel| diagnosis.unnamed_by_channel[channel] <= 0.0);
+    let own = gate.findings.into_iter().chain(excess.findings);
     diagnosis.findings.splice(..0, own);
     diagnosis.verdict = verdict(!diagnosis.findings.is_empty(), diagnosis.unnamed_share);
     diagnosis.not_detected.extend(gate.not_detected.into_iter().chain(excess.not_detected));

@@ -2,8 +2,8 @@
 //!
 //! No device states what each of its channels should have, so each is held against the others. Sound channels have a part of noise
 //! that is the same in all and one that goes with the signal: ln σ = ln b √(r² + S²) + e with S the signal's root mean square and
-//! r = a/b. They differ by the standard deviation [`NATURAL`] of e, or by what the others differ by where that is no chance. Static samples and
-//! series are looked at apart where their noise is; what counts is the kind that tells more.
+//! r = a/b. They differ by the standard deviation [`NATURAL`] of e, or by what the others differ by where that is no chance. Static
+//! samples and series, where each has its own noise, are looked at apart; what counts is the kind that tells more.
 
 use crate::lab::diagnosis::noise::Noise;
 use crate::lab::diagnosis::observations::Observations;
@@ -36,6 +36,15 @@ pub(crate) struct Excess {
     pub(crate) notices: Vec<Notice>,
     pub(crate) findings: Vec<Finding>,
     pub(crate) not_detected: Vec<NotDetected>,
+}
+
+impl Excess {
+    /// What it says of some channels: what has no name in the others looks like noise.
+    pub(crate) fn of_channels(mut self, is_asked: impl Fn(usize) -> bool) -> Self {
+        self.findings.retain(|it| matches!(it.target, Target::Channel(channel) if is_asked(channel)));
+        self.notices.retain(|it| it.channel.is_some_and(&is_asked));
+        self
+    }
 }
 
 /// A channel's noise and signal, as logarithms.

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::numbers::{decoded, estimate, range};
 use crate::cli::wrapped::hanging;
-use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, Verdict};
+use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, UNLISTED, Verdict};
 use tactpad::lab::diagnosis::target::Target;
 
 /// A diagnosis in lines of a terminal.
@@ -61,6 +61,9 @@ fn sizes(diagnosis: &Diagnosis) -> String {
 
 /// A cause and where it is.
 fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
+    if effect == UNLISTED {
+        return "one reason that it has in common with others, and that is not in the catalogue".to_owned();
+    }
     let joint = if effect == "channels_swapped" { "with" } else { "from" };
     let with = target.with(channels).map(|with| format!(" {joint} {with}")).unwrap_or_default();
     let side = target.side().map(|it| format!(" on its {} side", it.name())).unwrap_or_default();

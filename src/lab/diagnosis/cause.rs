@@ -30,6 +30,10 @@ pub(super) trait Cause: Sync {
     fn missing(&self, _setting: &Setting) -> Option<&'static str> {
         None
     }
+    /// Whether each target has its own by make or by wear. Several at once of another cause call for one reason.
+    fn is_individual(&self) -> bool {
+        false
+    }
     /// Puts it into the chain, with these values of its numbers.
     fn apply(&self, target: &Target, values: &[f64], setting: &Setting, chain: &mut Chain);
 }

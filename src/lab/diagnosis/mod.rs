@@ -5,7 +5,7 @@
 //! or those of changed pads (`atlas`); the residual's covariance is noise, a smooth background that every simulator leaves, and
 //! what the simulator is known to get wrong (`covariance`); group score tests with a cluster bootstrap choose causes
 //! (`attribution`); the encompassing rule says which of them may be named (`naming`), as long as they hold in all parts of the
-//! measurement (`specification`), and models of further measurements (`experiments`) which would tell the others apart
+//! measurement (`specification`) and do not look like parts of something else (`withdrawal`), and models of further measurements (`experiments`) which would tell the others apart
 //! (`separation`); rows that had no part in it say what they are worth (`gain`), in readings and in contacts that are decoded by the
 //! model backwards (`inverse`, of the pad `bench`).
 //!
@@ -52,6 +52,7 @@ mod specification;
 mod system;
 pub mod target;
 mod whitening;
+mod withdrawal;
 
 use std::fmt;
 
@@ -66,11 +67,11 @@ use self::gatekeepers::excess::{EFFECT, Excess, excess};
 use self::gatekeepers::{Gate, guarded};
 pub use self::mechanics::Pad;
 use self::model::Model;
-use self::naming::OVER_REMAINDER;
 use self::observations::Observations;
 use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
 use self::separation::Separation;
 use self::simulated::Simulated;
+use self::withdrawal::{Named, in_common, named};
 use crate::numeric::chi_square;
 use crate::numeric::statistics::{mean, rms};
 use crate::tables::measured::Table;
@@ -78,8 +79,6 @@ use crate::tables::measured::Table;
 /// Fewest rows, and fewest locations among them, by which causes can be told.
 const ROWS_MIN: usize = 60;
 const LOCATIONS_MIN: usize = 12;
-/// The least part of what is known of a cause by which a channel tells of it.
-const PART_MIN: f64 = 0.01;
 
 /// Why a table cannot be diagnosed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -150,6 +149,7 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
         pad.asks_for(EFFECT).then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
     diagnosis.not_detected.retain(|it| pad.asks_for(it.effect));
+    in_common(&mut diagnosis.findings);
     Ok(diagnosis)
 }
 
@@ -236,36 +236,6 @@ fn summary(
         findings,
         gatekeepers: Vec::new(),
     })
-}
-
-/// What may be named.
-struct Named {
-    /// Each with its place in the fit.
-    findings: Vec<(usize, Finding)>,
-    /// For each channel, the weighted squares that are left without a name.
-    unnamed_by_channel: Vec<f64>,
-}
-
-/// The findings that may be named; without a name are the remainders, and what causes explain that hold in some parts of the
-/// measurement only. Such a cause is the nearest name for something else, and so is one that explains little beside that.
-fn named(search: &Search<'_>, found: &Attribution, (whole, mut unnamed): (f64, Vec<f64>)) -> Option<Named> {
-    let fit = &found.fit;
-    let parts = |at: usize| search.parts(fit, fit.applied[at].0);
-    let mut kept = Vec::new();
-    for (at, finding) in search.findings(found, whole)? {
-        if finding.confounded_with.is_empty() && !search.holds_throughout(fit, at)? {
-            let own = parts(at).into_iter().map(|part| part * finding.share * whole);
-            unnamed.iter_mut().zip(own).for_each(|(unnamed, own)| *unnamed += own);
-        } else {
-            kept.push((at, finding));
-        }
-    }
-    kept.retain(|(at, finding)| {
-        let own = parts(*at);
-        let channels = own.iter().zip(&unnamed).filter(|(part, _)| **part > PART_MIN);
-        finding.share * whole > OVER_REMAINDER * channels.map(|(_, square)| square).sum::<f64>()
-    });
-    Some(Named { findings: kept, unnamed_by_channel: unnamed })
 }
 
 /// Root mean square of the channels' noise.

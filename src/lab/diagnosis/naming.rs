@@ -11,6 +11,7 @@ use super::columns::ZERO;
 use super::inference::{Projected, Test};
 use super::report::{Estimate, Finding, NotDetected};
 use super::target::Target;
+use super::withdrawal::is_over;
 use crate::numeric::chi_square;
 use crate::numeric::dense::Matrix;
 
@@ -22,8 +23,6 @@ fn norm(coordinates: &[f64], covariance: &Matrix) -> f64 {
 
 /// Quantile of a normal number: 95 % lie within.
 const WITHIN_95: f64 = 1.959_964;
-/// A cause is named where it explains so many times what is left unexplained in the channels that tell of it.
-pub(super) const OVER_REMAINDER: f64 = 10.0;
 /// Share of measurements like this one in which a cause of the stated size is found.
 pub(super) const POWER: f64 = 0.9;
 
@@ -188,7 +187,7 @@ impl Search<'_> {
         Some(squares.filter(|square| chi_square::exceeded(*square, 1) < found.critical).sum())
     }
 
-    /// The zeros that are not zero; none of channels that have about as much left without a name.
+    /// The zeros that are not zero; none of channels in which anything is left without a name.
     pub(super) fn offsets(
         &self,
         found: &Attribution,
@@ -200,7 +199,8 @@ impl Search<'_> {
             let spread = WITHIN_95 * variance.sqrt();
             let p_value = chi_square::exceeded(square, 1);
             let is_found = p_value < found.critical
-                && square > OVER_REMAINDER * unnamed_by_channel[channel]
+                && unnamed_by_channel[channel] <= 0.0
+                && is_over(square, unnamed_by_channel)
                 && self.zero_holds_throughout(&found.fit, channel, square).unwrap_or(false);
             is_found.then(|| Finding {
                 effect: ZERO,

@@ -3,6 +3,9 @@
 use super::observations::Sample;
 use super::target::Target;
 
+/// As what it stands among the rivals that several findings may have one reason in common, which is none of the catalogue.
+pub const UNLISTED: &str = "unlisted_cause";
+
 /// The whole answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnosis {

@@ -33,7 +33,7 @@ const REPEATS_MAX: usize = 30;
 /// What makes columns unique that others reproduce, as a part of their information.
 const RIDGE: f64 = 1e-9;
 /// What is said where nothing helps.
-const NONE: &str = "no measurement in the catalogue separates these";
+pub(super) const NONE: &str = "no measurement in the catalogue separates these";
 
 /// A column in the present rows and in further ones.
 struct Pair {

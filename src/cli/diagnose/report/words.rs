@@ -1,7 +1,7 @@
 //! Causes in plain English.
 
 use super::super::numbers::{carried, decimals, estimate, parts, rounded, with_unit};
-use tactpad::lab::diagnosis::report::{Estimate, Finding};
+use tactpad::lab::diagnosis::report::{Estimate, Finding, UNLISTED};
 use tactpad::lab::diagnosis::target::Target;
 
 /// Each effect's name for people, and the sentence that a finding makes of it.
@@ -9,7 +9,7 @@ use tactpad::lab::diagnosis::target::Target;
 /// `{gain|too much|too little}` is how far the number lies from none, with the word of its sign; `{uv_per_c}` is the number
 /// with its own sign, `{x_mm|in x}` with a word behind it. Of numbers that `&` joins those are told that are not none within
 /// their intervals. Numbers without a unit are told in per cent.
-const EFFECTS: [(&str, &str, &str); 35] = [
+const EFFECTS: [(&str, &str, &str); 36] = [
     ("channel_gain", "wrong gain", "{target} reads {gain|too much|too little}"),
     ("channel_offset", "offset", "{target} reads {offset_uv} without load"),
     ("noise_excess", "too much noise", "{target} is {factor|noisier|quieter} than it should be"),
@@ -81,6 +81,7 @@ const EFFECTS: [(&str, &str, &str); 35] = [
     ("contact_height", "height of the contact", "the forces act {mm|above|below} the plate’s surface"),
     ("contact_size", "size of the contact", "the contact has a radius of {radius_mm}"),
     ("time_lag", "labels out of step", "the labels are {ms|late|early}"),
+    (UNLISTED, "one reason for all of these that is not in the catalogue", "something else is wrong"),
 ];
 
 /// An effect's name for people.

@@ -31,6 +31,10 @@ impl Cause for Ageing {
     fn missing(&self, setting: &Setting) -> Option<&'static str> {
         (!setting.has_cycles).then_some("cycle")
     }
+    fn is_individual(&self) -> bool {
+        true
+    }
+
     fn apply(&self, target: &Target, values: &[f64], _: &Setting, chain: &mut Chain) {
         each_channel(target, &mut chain.channels.loss, values[0]);
     }

@@ -28,6 +28,10 @@ impl Cause for ChannelGain {
         setting.each_channel().collect()
     }
 
+    fn is_individual(&self) -> bool {
+        true
+    }
+
     fn apply(&self, target: &Target, values: &[f64], _: &Setting, chain: &mut Chain) {
         if let Target::Channel(channel) = *target {
             chain.channels.gain[channel] *= values[0];

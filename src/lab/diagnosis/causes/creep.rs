@@ -46,6 +46,10 @@ impl Cause for Creep {
         (!setting.has_series && setting.dwells == Dwells::Unknown).then_some("dwell_s")
     }
 
+    fn is_individual(&self) -> bool {
+        true
+    }
+
     fn apply(&self, target: &Target, values: &[f64], setting: &Setting, chain: &mut Chain) {
         for channel in channels_of(target, setting) {
             let term = |[time_s, share]: [f64; 2]| Prony { channel, time_s, share };

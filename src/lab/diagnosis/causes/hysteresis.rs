@@ -49,6 +49,10 @@ impl Cause for Hysteresis {
         if setting.has_both_ways { pad_and_channels(setting) } else { vec![Target::Pad] }
     }
 
+    fn is_individual(&self) -> bool {
+        true
+    }
+
     fn apply(&self, target: &Target, values: &[f64], setting: &Setting, chain: &mut Chain) {
         let above = values[1 + THRESHOLDS.len()];
         for channel in channels_of(target, setting) {

@@ -31,6 +31,10 @@ impl Cause for ThermalGain {
     fn missing(&self, setting: &Setting) -> Option<&'static str> {
         (!setting.has_temperature).then_some("temp_c")
     }
+    fn is_individual(&self) -> bool {
+        true
+    }
+
     fn apply(&self, target: &Target, values: &[f64], _: &Setting, chain: &mut Chain) {
         each_channel(target, &mut chain.channels.gain_per_c, values[0]);
     }

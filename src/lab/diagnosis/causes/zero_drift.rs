@@ -31,6 +31,10 @@ impl Cause for ZeroDrift {
     fn missing(&self, setting: &Setting) -> Option<&'static str> {
         (!setting.has_time).then_some("t_s")
     }
+    fn is_individual(&self) -> bool {
+        true
+    }
+
     fn apply(&self, target: &Target, values: &[f64], _: &Setting, chain: &mut Chain) {
         each_channel(target, &mut chain.channels.drift_per_h, values[0]);
     }

@@ -19,7 +19,7 @@ use crate::bridge::transport::Transport;
 use crate::pipeline::call::Call;
 use crate::pipeline::capture::reader::{CaptureError, CaptureReader};
 use crate::pipeline::control::{OutputDevice, OutputEvent};
-use crate::pipeline::mapping::profile::{Action, Profile};
+use crate::pipeline::mapping::profile::{Action, Profile, Skip};
 use crate::pipeline::{Pipeline, Probe, Stage};
 use crate::time::HostInstant;
 
@@ -50,7 +50,7 @@ pub struct Timed {
 pub struct Policy {
     /// The mean filter's: half of its window.
     pub filter: f64,
-    /// Until a press is long, or can no longer become a double one.
+    /// Until a press is long, or can no longer become a double or a hard one.
     pub hold: f64,
 }
 
@@ -60,7 +60,8 @@ impl Policy {
         let window = profile.filter_samples.max(1);
         let hold_us = profile.buttons.iter().map(|button| match button.action {
             Action::ByTime { double, hold, .. } => [double, hold].into_iter().flatten().map(|it| it.us).max(),
-            Action::Hold(_) => None,
+            Action::ByForce { skip: Skip::May { us } | Skip::Must { us }, .. } => Some(us),
+            Action::ByForce { skip: Skip::No, .. } | Action::Hold(_) => None,
         });
         Self {
             filter: (window - 1) as f64 / 2.0 * period_us as f64 * 1e-3,

@@ -4,7 +4,9 @@
 //! threshold.
 
 use crate::pipeline::contact::touch;
-use crate::pipeline::mapping::profile::{Action, Button, Dpad, DpadMode, Effect, Force, Keys, Mode, Profile};
+use crate::pipeline::mapping::profile::{
+    Action, Button, Dpad, DpadMode, Effect, Force, Gain, Keys, Mode, Profile,
+};
 use crate::quantity::Contact;
 use crate::virtual_pad::gesture::{Gesture, Held, Step};
 
@@ -134,7 +136,9 @@ impl<'p> Player<'p> {
             let angles_deg = self.profile.pointer.iter().flat_map(|_| [0.0, 90.0, 180.0, 270.0]);
             return angles_deg.map(|angle_deg| Aim { angle_deg, held: Held::new() }).collect();
         };
-        if cardinal_half_deg(dpad) < ANGLE_SLACK_DEG {
+        let Gain { right, left, up, down } = self.profile.gain;
+        let least_gain = [right, left, up, down].into_iter().fold(f32::INFINITY, f32::min);
+        if cardinal_half_deg(dpad) < ANGLE_SLACK_DEG || self.radius_mm > least_gain * RADIUS_MAX_MM {
             return Vec::new();
         }
         let aim = |angle_deg, keys: Keys| Aim { angle_deg, held: keys.iter().collect() };
@@ -188,11 +192,23 @@ impl<'p> Player<'p> {
         self.lifted(steps, None)
     }
 
+    /// A button that its force presses wherever the finger is; `None` where another one of that force goes with a zone, a hair trigger
+    /// or stages, so that this player would not know what a press gives.
+    fn simple(&self, index: usize) -> Option<&'p Button> {
+        let button = self.profile.buttons.get(index)?;
+        let is_simple = |it: &Button| {
+            it.place.is_none() && it.hair_n.is_none() && !matches!(it.action, Action::ByForce { .. })
+        };
+        let mut same_force = self.profile.buttons.iter().filter(|it| it.force == button.force);
+        same_force.all(is_simple).then_some(button)
+    }
+
     /// Presses a button and lets go soon. A tap button taps, a hold button holds meanwhile; a tap that a double press might follow
     /// comes when that is over. Double presses, and keys that are toggled or in turbo, the player leaves out.
     fn short_press(&self, index: usize, aim: Option<&Aim>) -> Option<Gesture> {
-        let button = self.profile.buttons.get(index)?;
+        let button = self.simple(index)?;
         let (held, tapped, stay_us) = match button.action {
+            Action::ByForce { .. } => return None,
             Action::Hold(effect) => (Some(plain(effect)?), None, self.pause_us),
             Action::ByTime { tap, double, hold } => {
                 let after_us = double.map_or(0, |double| double.us);
@@ -208,7 +224,7 @@ impl<'p> Player<'p> {
 
     /// Presses a tap-or-hold button until it holds.
     fn long_press(&self, index: usize, aim: Option<&Aim>) -> Option<Gesture> {
-        let button = self.profile.buttons.get(index)?;
+        let button = self.simple(index)?;
         let Action::ByTime { hold: Some(hold), .. } = button.action else { return None };
         if hold.us > LONG_PRESS_MAX_US {
             return None;
@@ -266,7 +282,7 @@ impl<'p> Player<'p> {
         let (radius_mm, angle_deg) =
             aim.map_or((0.0, 0.0), |aim| (self.radius_mm, aim.angle_deg + rotation_deg));
         let (sin, cos) = libm::sincosf(angle_deg.to_radians());
-        let (x_mm, y_mm) = (radius_mm * cos, radius_mm * sin);
+        let (x_mm, y_mm) = self.profile.gain.undone([radius_mm * cos, radius_mm * sin]);
         Step {
             contact: Contact { x_mm, y_mm, fx_n: 0.0, fy_n: 0.0, fz_n: self.light_n },
             ramp_us: RAMP_US,

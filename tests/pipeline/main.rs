@@ -5,6 +5,7 @@ mod calls;
 #[path = "../support/decoders.rs"]
 mod decoders;
 mod diagnostics;
+mod dither;
 mod hysteresis;
 mod loaded;
 mod mapping_properties;

@@ -84,6 +84,60 @@ press_n = 1
 tap = { gamepad = "BTN_TL+BTN_TR", keyboard = "KEY_Q", toggle = true }
 "#;
 
+/// Zones, stages, hair triggers, another hand.
+const PLACED: &str = r#"
+schema = 1
+name = "Placed"
+output = "gamepad"
+left_handed = true
+[gain]
+up = 1.5
+left = 0.5
+[dpad]
+mode = "8way"
+hysteresis_mm = 2.5
+rotation_deg = 30
+[[zone]]
+name = "top"
+from_deg = 30
+to_deg = 150
+inner_radius_mm = 5
+[[zone]]
+name = "ring"
+inner_radius_mm = 8
+outer_radius_mm = 16
+[[button]]
+force = "fz"
+press_n = 1
+zone = "top"
+light = { gamepad = "BTN_SOUTH", keyboard = "KEY_Z" }
+hard = { gamepad = "BTN_EAST", keyboard = "KEY_X", toggle = true }
+hard_press_n = 2
+skip = "may"
+skip_ms = 30
+[[button]]
+force = "fz"
+press_n = 1
+zone = "ring"
+light = { gamepad = "BTN_TL", keyboard = "KEY_A" }
+hard = { gamepad = "BTN_TR", keyboard = "KEY_S", turbo_ms = 80 }
+hard_press_n = 2
+skip = "must"
+skip_ms = 30
+[[button]]
+force = "fx"
+press_n = 1
+hair_n = 0.2
+tap = { gamepad = "BTN_NORTH", keyboard = "KEY_Q" }
+hold = { gamepad = "BTN_WEST", keyboard = "KEY_W" }
+long_press_ms = 60
+[[button]]
+force = "fz"
+press_n = 2
+zone = "left"
+out = { pointer = "BTN_LEFT" }
+"#;
+
 /// Whether keys may be down while nothing touches the plate: toggled ones, or the tap that might have become a double press.
 fn may_hold_untouched(profile: &Profile) -> bool {
     let toggles = |effect: &Option<_>| matches!(effect, Some(Effect { mode: Mode::Toggle, .. }));
@@ -101,7 +155,7 @@ enum Call {
 }
 
 fn profiles() -> impl Strategy<Value = Profile> {
-    let texts: Vec<_> = shipped::names().filter_map(shipped::text).chain([CROWDED, LIVELY]).collect();
+    let texts: Vec<_> = shipped::names().filter_map(shipped::text).chain([CROWDED, LIVELY, PLACED]).collect();
     let output = prop_oneof![Just(OutputChoice::AsWritten), Just(OutputChoice::Keyboard)];
     (prop::sample::select(texts), output)
         .prop_filter_map("a usable profile", |(text, output)| read(text, output).0)
@@ -143,7 +197,7 @@ fn assert_sound(levels: &Intents, profile: &Profile) {
 
 #[test]
 fn the_profiles_of_these_tests_are_usable() {
-    for text in [CROWDED, LIVELY] {
+    for text in [CROWDED, LIVELY, PLACED] {
         let (profile, found) = read(text, OutputChoice::Keyboard);
         assert!(profile.is_some(), "{found:?}");
     }

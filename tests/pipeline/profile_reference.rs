@@ -13,7 +13,7 @@ fn every_example_of_the_reference_is_a_profile() {
     let text = REFERENCE;
     let examples: Vec<_> =
         text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(examples.len(), 5);
+    assert_eq!(examples.len(), 8);
     for example in examples {
         let whole = if example.contains("schema") { example.to_owned() } else { format!("{HEAD}{example}") };
         let (profile, found) = read(&whole, OutputChoice::AsWritten);
@@ -54,6 +54,9 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
         "centre_radius_mm" if heading.contains("[pointer]") => ("[pointer]", "full_radius_mm = 30"),
         "full_radius_mm" => ("[pointer]", "centre_radius_mm = 2"),
         "release_n" => ("[[button]]", "press_n = 50"),
+        "hard_release_n" => ("[[button]]", "hard_press_n = 50"),
+        "skip_ms" => ("[[button]]", "hard_press_n = 50\nskip = \"may\""),
+        "inner_radius_mm" => ("[[zone]]", "outer_radius_mm = 40"),
         _ => ("", ""),
     };
     let lines_of = |table: &str| {
@@ -62,25 +65,28 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
         format!("{line}\n{partner}\n")
     };
     let (root, dpad, button) = (lines_of("itself"), lines_of("[dpad]"), lines_of("[[button]]"));
-    let pointer = lines_of("[pointer]");
+    let (pointer, gain) = (lines_of("[pointer]"), lines_of("[gain]"));
+    let zone = lines_of("[[zone]]");
     let press = if key == "press_n" || key == "release_n" { "" } else { "press_n = 2" };
-    let tap = r#"tap = { gamepad = "BTN_A", keyboard = "KEY_Z" }"#;
+    let stages = ["hard_press_n", "hard_release_n", "skip_ms"].contains(&key);
+    let [short, long] = if stages { ["light", "hard"] } else { ["tap", "hold"] };
+    let tap = format!(r#"{short} = {{ gamepad = "BTN_A", keyboard = "KEY_Z" }}"#);
     let in_hold = if key == "turbo_ms" { format!(", {line}") } else { String::new() };
-    let hold = format!(r#"hold = {{ gamepad = "BTN_B", keyboard = "KEY_X"{in_hold} }}"#);
+    let hold = format!(r#"{long} = {{ gamepad = "BTN_B", keyboard = "KEY_X"{in_hold} }}"#);
     let double = match key {
         "double_press_ms" => r#"double = { gamepad = "BTN_X", keyboard = "KEY_C" }"#,
         _ => "",
     };
     let button = if key == "turbo_ms" { String::new() } else { button };
     format!(
-        "{HEAD}{root}[dpad]\n{dpad}[pointer]\n{pointer}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{double}\n{button}"
+        "{HEAD}{root}[gain]\n{gain}[dpad]\n{dpad}[pointer]\n{pointer}[[zone]]\nname = \"here\"\n{zone}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{double}\n{button}"
     )
 }
 
 #[test]
 fn the_reference_states_the_ranges_that_hold() {
     let rows = documented_numbers();
-    assert_eq!(rows.len(), 20, "{rows:?}");
+    assert_eq!(rows.len(), 34, "{rows:?}");
     for (heading, key, _, low, high) in rows {
         let errors = |value: f32| {
             let text = profile_with(&heading, &key, &format!("{key} = {value}"));
@@ -107,7 +113,7 @@ fn the_reference_states_the_defaults_that_hold() {
         assert_eq!(written, read_with(""), "{key}");
         checked += 1;
     }
-    assert_eq!(checked, 15);
+    assert_eq!(checked, 25);
 }
 
 #[test]

@@ -7,6 +7,8 @@
 //! case a short press taps
 //! profile super-mario                  a shipped profile
 //! set dpad.hysteresis_deg = 10         changes or adds a line; button.1.press_n is the first button's
+//! remove button.1                      takes a button away
+//! add [[button]]                       a line at the end
 //! output keyboard                      play the keyboard's bindings
 //!
 //! 0ms x=20 y=0 fz=1.0                  one sample; fx, fy, fz, x, y are 0 if absent
@@ -54,6 +56,15 @@ fn assigned(text: &str, assignment: &str) -> String {
     lines.join("\n")
 }
 
+/// The text of a profile without a button (`button.1` is the first one).
+fn without(text: &str, button: &str) -> String {
+    let number: usize = button.strip_prefix("button.").and_then(|n| n.parse().ok()).expect("remove button.N");
+    let mut parts: Vec<&str> = text.split("[[button]]").collect();
+    assert!((1..parts.len()).contains(&number), "{button} is in the profile");
+    parts.remove(number);
+    parts.join("[[button]]")
+}
+
 fn profile(text: &str, output: OutputChoice) -> Profile {
     let (profile, found) = read(text, output);
     profile.unwrap_or_else(|| panic!("{found:?}\n{text}"))
@@ -66,6 +77,8 @@ fn head(block: &[&str]) -> (String, Profile) {
             ("case", rest) => name = rest.to_owned(),
             ("profile", shipped) => text = shipped::text(shipped).expect("a shipped profile").to_owned(),
             ("set", assignment) => text = assigned(&text, assignment),
+            ("remove", button) => text = without(&text, button),
+            ("add", line) => text = format!("{}\n{line}\n", text.trim_end()),
             ("output", "keyboard") => output = OutputChoice::Keyboard,
             other => panic!("unknown line {other:?}"),
         }

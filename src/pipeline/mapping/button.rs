@@ -2,8 +2,10 @@
 
 use super::binding::{Outputs, with_keys};
 use super::conflict::{Owner, Use};
-use super::limits::{DOUBLE_PRESS_MS, FORCE_N, LONG_PRESS_MS, RELEASE_SHARE, TURBO_MS};
-use super::profile::{Action, Button, Effect, Force, Mode, Role, Timed};
+use super::limits::{DOUBLE_PRESS_MS, FORCE_N, HAIR_N, LONG_PRESS_MS, RELEASE_SHARE, TURBO_MS};
+use super::plate;
+use super::profile::{Action, Button, Effect, Force, Mode, Place, Role, Timed, Zone};
+use super::stages::{self, Stages};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::{Bounds, Placed, Section};
@@ -15,8 +17,25 @@ const FORCES: [(&str, Force); 5] = [
     ("fx", Force::FxPositive),
     ("-fx", Force::FxNegative),
 ];
-pub(super) const BUTTON_KEYS: [&str; 9] =
-    ["force", "press_n", "release_n", "out", "tap", "double", "hold", "double_press_ms", "long_press_ms"];
+pub(super) const BUTTON_KEYS: [&str; 17] = [
+    "force",
+    "press_n",
+    "release_n",
+    "hair_n",
+    "zone",
+    "out",
+    "tap",
+    "double",
+    "hold",
+    "double_press_ms",
+    "long_press_ms",
+    "light",
+    "hard",
+    "hard_press_n",
+    "hard_release_n",
+    "skip",
+    "skip_ms",
+];
 /// What an effect has beside its outputs.
 const MODE_KEYS: [&str; 2] = ["toggle", "turbo_ms"];
 
@@ -25,6 +44,8 @@ pub(super) struct ButtonDraft {
     force: Option<Force>,
     press_n: Option<f32>,
     release_n: Option<f32>,
+    hair_n: Option<f32>,
+    place: Option<Place>,
     action: Option<ActionDraft>,
 }
 
@@ -40,11 +61,21 @@ struct ActionDraft {
     effects: [Option<EffectDraft>; Role::ALL.len()],
     double_press_ms: Option<u32>,
     long_press_ms: Option<u32>,
+    stages: Option<Stages>,
+}
+
+/// What a button is read beside.
+#[derive(Clone, Copy)]
+pub(super) struct Surroundings<'p> {
+    /// Nothing may be shorter than this.
+    pub(super) min_press_ms: Option<u32>,
+    pub(super) zones: &'p [Zone],
+    pub(super) has_dpad: bool,
 }
 
 impl ButtonDraft {
-    /// Reads a `[[button]]`; nothing may be shorter than `min_press_ms`.
-    pub(super) fn read(table: &Section<'_>, min_press_ms: Option<u32>, findings: &mut Findings<'_>) -> Self {
+    /// Reads a `[[button]]`.
+    pub(super) fn read(table: &Section<'_>, around: Surroundings<'_>, findings: &mut Findings<'_>) -> Self {
         table.require("force", "write the force that presses it, as force = \"fz\"", findings);
         let force = table.word("force", &FORCES, findings).map(|word| word.value);
         table.require("press_n", "write the force in newtons that presses it, as press_n = 2.0", findings);
@@ -52,8 +83,19 @@ impl ButtonDraft {
         let share = press.map_or(FORCE_N.default, |force| force.value) * RELEASE_SHARE;
         let release = table.number("release_n", Bounds { low: 0.0, default: share, ..FORCE_N }, findings);
         table.require_less(("release_n", release), ("press_n", press), findings);
-        let action = ActionDraft::read(table, min_press_ms, findings);
-        Self { force, press_n: press.map(|n| n.value), release_n: release.map(|n| n.value), action }
+        let hair_n = table.place_of("hair_n").and_then(|_| table.number("hair_n", HAIR_N, findings));
+        let name = table.text("zone", findings);
+        let place = name.and_then(|name| plate::find(name, (around.zones, around.has_dpad), findings));
+        let action = ActionDraft::read(table, (around.min_press_ms, press), findings);
+        let newtons = |force: Option<Placed<f32>>| force.map(|force| force.value);
+        Self {
+            force,
+            press_n: newtons(press),
+            release_n: newtons(release),
+            hair_n: newtons(hair_n),
+            place,
+            action,
+        }
     }
 
     /// What the kinds of press of this button, the `number`th, drive.
@@ -70,7 +112,9 @@ impl ButtonDraft {
     /// The button on `device`; `None` if a part of it is missing.
     pub(super) fn settle(self, device: OutputDevice) -> Option<Button> {
         let action = self.action?.settle(device)?;
-        Some(Button { force: self.force?, press_n: self.press_n?, release_n: self.release_n?, action })
+        let Self { hair_n, place, .. } = self;
+        let (press_n, release_n) = (self.press_n?, self.release_n?);
+        Some(Button { force: self.force?, press_n, release_n, hair_n, place, action })
     }
 }
 
@@ -128,36 +172,64 @@ fn read_turbo(section: &Section<'_>, min_press_ms: Option<u32>, findings: &mut F
 }
 
 impl ActionDraft {
-    fn read(table: &Section<'_>, min_press_ms: Option<u32>, findings: &mut Findings<'_>) -> Option<Self> {
+    fn read(
+        table: &Section<'_>,
+        (min_press_ms, press): (Option<u32>, Option<Placed<f32>>),
+        findings: &mut Findings<'_>,
+    ) -> Option<Self> {
         let effects = Role::ALL.map(|role| EffectDraft::read(table, role, min_press_ms, findings));
         let double = read_time(table, (Role::Double, "double_press_ms"), DOUBLE_PRESS_MS, findings);
         let long = read_time(table, (Role::Hold, "long_press_ms"), LONG_PRESS_MS, findings);
-        let place = |role: Role| table.place_of(role.name());
-        let by_time = [Role::Tap, Role::Double, Role::Hold].into_iter().find_map(place);
-        match (place(Role::Out), by_time) {
-            (Some(_), Some(at)) => {
-                let message = format!("{} has both \"out\" and keys of a tap/hold button", table.title);
-                findings.error(at, message, "remove \"out\", or remove \"tap\", \"double\" and \"hold\"");
-                return None;
-            }
-            (Some(_), None) => {}
-            (None, _) => require_tap(table, by_time, findings),
-        }
+        let stages = stages::read(table, press, findings);
+        check_roles(table, findings)?;
         check_times(table, [double, long], min_press_ms, findings);
         let ms = |time: Option<Placed<u32>>| time.map(|time| time.value);
-        Some(Self { effects, double_press_ms: ms(double), long_press_ms: ms(long) })
+        Some(Self { effects, double_press_ms: ms(double), long_press_ms: ms(long), stages })
     }
 
     fn settle(self, device: OutputDevice) -> Option<Action> {
-        let [out, tap, double, hold] =
+        let [out, tap, double, hold, light, hard] =
             self.effects.map(|effect| effect.and_then(|effect| effect.settle(device)));
         let timed = |effect: Option<Effect>, ms: Option<u32>| {
             effect.zip(ms).map(|(effect, ms)| Timed { effect, us: u64::from(ms) * 1_000 })
         };
         let (double, hold) = (timed(double, self.double_press_ms), timed(hold, self.long_press_ms));
-        out.map(Action::Hold).or_else(|| tap.map(|tap| Action::ByTime { tap, double, hold }))
+        let by_time = || tap.map(|tap| Action::ByTime { tap, double, hold });
+        let by_force = || {
+            let Stages { press_n: hard_press_n, release_n: hard_release_n, skip } = self.stages?;
+            Some(Action::ByForce { light: light?, hard: hard?, hard_press_n, hard_release_n, skip })
+        };
+        out.map(Action::Hold).or_else(by_time).or_else(by_force)
     }
 }
+
+/// The three ways to write what a button does, each with its kinds of press.
+const WAYS: [&[Role]; 3] = [&[Role::Out], &[Role::Tap, Role::Double, Role::Hold], &[Role::Light, Role::Hard]];
+
+/// Reports it if the kinds of press are not those of one way; `None` if they are of several.
+fn check_roles(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<()> {
+    let first = |way: &[Role]| way.iter().find_map(|role| Some((*role, table.place_of(role.name())?)));
+    let written: Vec<(Role, usize)> = WAYS.iter().filter_map(|way| first(way)).collect();
+    match written.as_slice() {
+        [] => table.require("out", OUT_HELP, findings),
+        [(Role::Out, _)] => {}
+        [(Role::Light | Role::Hard, _)] => {
+            table.require("light", "a button with \"hard\" needs \"light\", too", findings);
+            table.require("hard", "a button with \"light\" needs \"hard\", too", findings);
+        }
+        [_] => require_tap(table, findings),
+        [(one, _), (other, at), ..] => {
+            let message = format!("{} has both \"{}\" and \"{}\"", table.title, one.name(), other.name());
+            findings.error(*at, message, WAYS_HELP);
+            return None;
+        }
+    }
+    Some(())
+}
+
+const WAYS_HELP: &str = "write \"out\"; or \"tap\", \"double\" and \"hold\"; or \"light\" and \"hard\"";
+const OUT_HELP: &str =
+    "write out = { gamepad = \"BTN_…\", keyboard = \"KEY_…\" }, or tap, double and hold instead of out";
 
 /// The time that tells a kind of press; none where there is no such kind.
 fn read_time(
@@ -177,14 +249,12 @@ fn read_time(
 }
 
 /// A button that does something by time has at least a tap.
-fn require_tap(table: &Section<'_>, by_time: Option<usize>, findings: &mut Findings<'_>) {
-    const HELP: &str =
-        "write out = { gamepad = \"BTN_…\", keyboard = \"KEY_…\" }, or tap, double and hold instead of out";
-    match (by_time, table.place_of(Role::Hold.name())) {
-        (None, _) => table.require("out", HELP, findings),
-        (Some(_), Some(_)) => table.require("tap", "a button with \"hold\" needs \"tap\", too", findings),
-        (Some(_), None) => table.require("tap", "a button with \"double\" needs \"tap\", too", findings),
-    }
+fn require_tap(table: &Section<'_>, findings: &mut Findings<'_>) {
+    let help = match table.place_of(Role::Hold.name()) {
+        Some(_) => "a button with \"hold\" needs \"tap\", too",
+        None => "a button with \"double\" needs \"tap\", too",
+    };
+    table.require("tap", help, findings);
 }
 
 /// Reports times that hide each other.

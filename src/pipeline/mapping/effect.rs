@@ -1,15 +1,15 @@
 //! How a button's keys follow its kinds of press: down as long as they last, toggled, or again and again.
 
-use super::profile::{Binding, Button, Mode, Role};
+use super::profile::{Binding, Button, Mode, Role, Roles};
 use crate::time::StreamInstant;
 
 /// What goes on at a button.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Playing {
-    /// The kind of press that is on.
-    role: Option<Role>,
-    /// Since when.
-    since: StreamInstant,
+    /// The kinds of press that are on.
+    roles: Roles,
+    /// Each since when.
+    since: [StreamInstant; Role::ALL.len()],
     /// The kinds whose keys were toggled down.
     toggled: [bool; Role::ALL.len()],
 }
@@ -17,25 +17,26 @@ pub(super) struct Playing {
 impl Playing {
     /// Nothing.
     pub(super) const fn nothing() -> Self {
-        Self { role: None, since: StreamInstant::from_us(0), toggled: [false; Role::ALL.len()] }
+        let since = [StreamInstant::from_us(0); Role::ALL.len()];
+        Self { roles: Roles::NONE, since, toggled: [false; Role::ALL.len()] }
     }
 
-    /// Goes on to `role` at `t`; the bindings that are then down.
+    /// Goes on to `roles` at `t`; the bindings that are then down.
     pub(super) fn step(
         &mut self,
         button: &Button,
         t: StreamInstant,
-        role: Option<Role>,
+        roles: Roles,
     ) -> impl Iterator<Item = Binding> + use<> {
-        let begins = role != self.role;
-        if begins {
-            (self.role, self.since) = (role, t);
-        }
-        let lasts_us = t.us_since(self.since);
         let mut down = button.effects();
-        for ((own, toggled), effect) in Role::ALL.into_iter().zip(&mut self.toggled).zip(&mut down) {
-            let is_on = role == Some(own);
-            *toggled ^= begins && is_on;
+        let places = self.since.iter_mut().zip(&mut self.toggled).zip(&mut down);
+        for (role, ((since, toggled), effect)) in Role::ALL.into_iter().zip(places) {
+            let is_on = roles.has(role);
+            if is_on && !self.roles.has(role) {
+                *since = t;
+                *toggled = !*toggled;
+            }
+            let lasts_us = t.us_since(*since);
             *effect = effect.filter(|effect| match effect.mode {
                 Mode::Plain => is_on,
                 Mode::Toggle => *toggled,
@@ -43,6 +44,7 @@ impl Playing {
                 Mode::Turbo { period_us } => is_on && 2 * (lasts_us % period_us.max(1)) < period_us,
             });
         }
+        self.roles = roles;
         down.into_iter().flatten().flat_map(|effect| effect.keys.iter())
     }
 }
@@ -57,11 +59,12 @@ mod tests {
     fn down(mode: Mode, steps: &[(u64, bool)]) -> Vec<usize> {
         let key = |code| Binding { device: OutputDevice::Keyboard, code: Code::Key(code), value: 1 };
         let action = Action::Hold(Effect { keys: Keys::new([key(1), key(2)]), mode });
-        let button = Button { force: Force::Fz, press_n: 2.0, release_n: 1.5, action };
+        let button =
+            Button { force: Force::Fz, press_n: 2.0, release_n: 1.5, hair_n: None, place: None, action };
         let mut playing = Playing::nothing();
         let step = |(ms, is_on): &(u64, bool)| {
-            let role = is_on.then_some(Role::Out);
-            playing.step(&button, StreamInstant::from_us(1_000 * ms), role).count()
+            let roles = if *is_on { Role::Out.into() } else { Roles::NONE };
+            playing.step(&button, StreamInstant::from_us(1_000 * ms), roles).count()
         };
         steps.iter().map(step).collect()
     }

@@ -2,12 +2,12 @@
 
 use arrayvec::ArrayVec;
 
-use super::effect::Playing;
 use super::intent::{Intents, Level};
-use super::press::Press;
-use super::profile::{BUTTONS_MAX, Binding, Button, Dpad, Force, Profile};
+use super::profile::{BUTTONS_MAX, Binding, Button, Dpad, Place, Profile};
 use super::sector::{self, Horizontal, Sector, Vertical};
 use super::steer::{self, Velocity};
+use super::touched::{Touched, force_of};
+use super::zone;
 use crate::pipeline::control::OutputDevice;
 use crate::pipeline::control::names::POINTER_MOTION;
 use crate::quantity::Contact;
@@ -21,16 +21,17 @@ use crate::time::StreamInstant;
 pub struct Engine {
     profile: Profile,
     held: Option<Sector>,
+    zone: Option<usize>,
     moving: Option<Velocity>,
-    presses: ArrayVec<(Press, Playing), BUTTONS_MAX>,
+    buttons: ArrayVec<Touched, BUTTONS_MAX>,
     last: Option<Contact>,
 }
 
 impl Engine {
     /// An engine that has seen no contact yet.
     pub fn new(profile: Profile) -> Self {
-        let presses = profile.buttons.iter().map(|_| (Press::Up, Playing::nothing())).collect();
-        Self { profile, held: None, moving: None, presses, last: None }
+        let buttons = profile.buttons.iter().map(|_| Touched::fresh()).collect();
+        Self { profile, held: None, zone: None, moving: None, buttons, last: None }
     }
 
     /// The profile that is played.
@@ -50,6 +51,8 @@ impl Engine {
             return Intents::new();
         }
         self.last = contact.copied();
+        let stretched = contact.map(|contact| self.profile.gain.applied(contact));
+        let contact = stretched.as_ref();
         let mut levels = Levels { stated: Intents::new() };
         self.held = self
             .profile
@@ -60,10 +63,16 @@ impl Engine {
         if let Some((dpad, sector)) = self.profile.dpad.as_ref().zip(self.held) {
             levels.state_directions(dpad, sector);
         }
-        for (button, (press, playing)) in self.profile.buttons.iter().zip(&mut self.presses) {
-            let force_n = contact.map(|contact| force_of(button.force, contact));
-            let role = press.step(button, t, force_n);
-            playing.step(button, t, role).for_each(|binding| levels.state(binding));
+        self.zone = contact.and_then(|contact| zone::follow(&self.profile.zones, self.zone, contact));
+        let is_in = |place: Option<Place>| match place {
+            None => true,
+            Some(Place::Zone(number)) => self.zone == Some(number),
+            Some(Place::Direction(direction)) => self.held.is_some_and(|held| held.has(direction)),
+        };
+        for (button, touched) in self.profile.buttons.iter().zip(&mut self.buttons) {
+            // A lifted contact was where it was.
+            let is_in_place = contact.is_none() || is_in(button.place);
+            touched.step(button, t, (contact, is_in_place)).for_each(|binding| levels.state(binding));
         }
         self.moving = self
             .profile
@@ -81,12 +90,8 @@ impl Engine {
     /// A press that was under way stays forgotten until its force was released once, even if the contact goes
     /// on.
     pub fn cancel(&mut self) {
-        self.held = None;
-        self.moving = None;
-        for (press, playing) in &mut self.presses {
-            press.forget();
-            *playing = Playing::nothing();
-        }
+        (self.held, self.zone, self.moving) = (None, None, None);
+        self.buttons.iter_mut().for_each(Touched::forget);
     }
 
     /// Goes on with another profile, also in the middle of a contact.
@@ -96,19 +101,18 @@ impl Engine {
     /// does not. A press that was under way, or that the new profile would see as under way, does nothing in the new profile until its
     /// force was released once.
     pub fn replace_profile(&mut self, profile: Profile) {
-        let presses =
-            profile.buttons.iter().map(|button| (self.press_for(button), Playing::nothing())).collect();
-        self.presses = presses;
+        self.buttons = profile.buttons.iter().map(|button| self.taken_over(button)).collect();
+        self.zone = None;
         self.profile = profile;
     }
 
     /// Where a button of another profile stands that takes over now.
-    fn press_for(&self, button: &Button) -> Press {
-        let same_force =
-            self.profile.buttons.iter().zip(&self.presses).filter(|(old, _)| old.force == button.force);
-        let taken_over = same_force.into_iter().any(|(_, (press, _))| press.is_under_way());
-        let beyond = self.last.is_some_and(|contact| force_of(button.force, &contact) >= button.press_n);
-        if taken_over || beyond { Press::Spent } else { Press::Up }
+    fn taken_over(&self, button: &Button) -> Touched {
+        let force_n = self.last.map_or(0.0, |contact| force_of(button.force, &contact));
+        let mut same_force =
+            self.profile.buttons.iter().zip(&self.buttons).filter(|(old, _)| old.force == button.force);
+        let is_under_way = same_force.any(|(_, touched)| touched.is_under_way());
+        if is_under_way || force_n >= button.press_n { Touched::spent(force_n) } else { Touched::fresh() }
     }
 }
 
@@ -148,17 +152,6 @@ impl Levels {
             // A profile has at most CONTROLS_MAX controls, so there is always room.
             let _ = self.stated.try_push(level);
         }
-    }
-}
-
-/// The part of the contact's force that counts for a button, in newtons.
-const fn force_of(force: Force, contact: &Contact) -> f32 {
-    match force {
-        Force::Fz => contact.fz_n,
-        Force::FxPositive => contact.fx_n,
-        Force::FxNegative => -contact.fx_n,
-        Force::FyPositive => contact.fy_n,
-        Force::FyNegative => -contact.fy_n,
     }
 }
 

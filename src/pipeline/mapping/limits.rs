@@ -13,9 +13,22 @@ pub(super) const CENTRE_RADIUS_MM: Bounds<f32> = Bounds { low: 2.0, high: 29.0, 
 pub(super) const RADIUS_HYSTERESIS_MM: Bounds<f32> = Bounds { low: 0.0, high: 29.0, default: 1.5 };
 pub(super) const ROTATION_DEG: Bounds<f32> = Bounds { low: -180.0, high: 180.0, default: 0.0 };
 pub(super) const HYSTERESIS_DEG: Bounds<f32> = Bounds { low: 0.0, high: 45.0, default: 8.0 };
+pub(super) const HYSTERESIS_MM: Bounds<f32> = Bounds { low: 0.0, high: 10.0, default: 0.0 };
+/// Zones are new with this key, so that theirs need not be as before.
+pub(super) const ZONE_HYSTERESIS_MM: Bounds<f32> = Bounds { default: 2.5, ..HYSTERESIS_MM };
+pub(super) const ANGLE_DEG: Bounds<f32> = Bounds { low: -360.0, high: 360.0, default: 0.0 };
+pub(super) const INNER_RADIUS_MM: Bounds<f32> = Bounds { low: 0.0, high: 29.0, default: 0.0 };
+/// The plate's rim, and a finger that lies over it.
+pub(super) const OUTER_RADIUS_MM: Bounds<f32> = Bounds { low: 1.0, high: 40.0, default: 40.0 };
+pub(super) const ZONE_DEG_MIN: f32 = 10.0;
+pub(super) const ZONE_MM_MIN: f32 = 3.0;
+pub(super) const GAIN: Bounds<f32> = Bounds { low: 0.25, high: 4.0, default: 1.0 };
 pub(super) const DIAGONAL_DEG: Bounds<f32> = Bounds { low: 5.0, high: 85.0, default: 45.0 };
 pub(super) const STICKY_DIAGONAL_DEG: f32 = 30.0;
 pub(super) const FORCE_N: Bounds<f32> = Bounds { low: 0.05, high: 50.0, default: 0.3 };
+pub(super) const HARD_N: Bounds<f32> = Bounds { default: 3.0, ..FORCE_N };
+pub(super) const HAIR_N: Bounds<f32> = Bounds { low: 0.05, high: 10.0, default: 0.2 };
+pub(super) const SKIP_MS: Bounds<u32> = Bounds { low: 10, high: 2_000, default: 150 };
 /// Default of a button's release force over its press force.
 pub(super) const RELEASE_SHARE: f32 = 0.7;
 /// Force that starts a direction, or the pointer, over the default of the force that ends it.

@@ -2,21 +2,29 @@
 //!
 //! The mapping states *levels*; it never emits. `output::ledger` turns levels into edges.
 //!
-//! A profile's text becomes a [`profile::Profile`] in `binding` → `conflict` → `button` → `check`; each of these uses only
-//! those before it. The live part is `sector`, `steer`, `press` and
-//! `effect`, put together by `engine`.
+//! A profile's text becomes a [`profile::Profile`] in `binding` → `conflict`, `plate`, `stages` → `dpad`, `button` → `check`; each of these uses only
+//! those before it. The live part is where a contact is (`sector`, `zone`, `steer`) and what goes on at a button (`gate` → `press`,
+//! `stage` → `effect`, together in `touched`), put together by `engine`.
 
+mod angle;
 mod binding;
 mod button;
 pub mod check;
 mod conflict;
+mod dpad;
 mod effect;
 pub mod engine;
+mod gate;
 pub mod intent;
 mod limits;
+mod plate;
 mod press;
 pub mod profile;
 pub mod read;
 mod sector;
 pub mod shipped;
+mod stage;
+mod stages;
 mod steer;
+mod touched;
+mod zone;

@@ -1,6 +1,7 @@
 //! One button's press: when it starts, ends, becomes long, comes twice, or no longer counts.
 
-use super::profile::{Action, Button, Role};
+use super::gate::Touch;
+use super::profile::{Action, Role};
 use crate::time::StreamInstant;
 
 /// Where a button stands.
@@ -19,37 +20,36 @@ pub(super) enum Press {
 }
 
 impl Press {
-    /// The kind of press that is on at `t`, given the button's force; `None` for the force means that the contact has ended.
-    pub(super) fn step(&mut self, button: &Button, t: StreamInstant, force_n: Option<f32>) -> Option<Role> {
-        let released = force_n.is_none_or(|force_n| force_n < button.release_n);
-        let pressed = force_n.is_some_and(|force_n| force_n >= button.press_n);
+    /// The kind of press that is on at `t`.
+    pub(super) fn step(&mut self, action: &Action, t: StreamInstant, touch: Touch) -> Option<Role> {
+        let Touch { is_on, is_in_place, .. } = touch;
         match *self {
-            Self::Up if pressed => {
+            Self::Up if is_on && is_in_place => {
                 *self = Self::Down { since: t, long: false };
-                self.on(button.action, t)
+                self.on(action, t)
             }
-            Self::Between { since } => self.wait(button.action, (since, t), pressed),
-            Self::Down { since, long } if released => self.end(button.action, (since, t), long),
-            Self::Twice | Self::Spent if released => {
+            Self::Between { since } => self.wait(action, (since, t), is_on && is_in_place),
+            // Who slides off a button has changed their mind: nothing is tapped.
+            Self::Down { .. } | Self::Twice if !is_in_place => {
                 *self = Self::Up;
                 None
             }
-            _ => self.on(button.action, t),
+            Self::Down { since, long } if !is_on => self.end(action, (since, t), long),
+            Self::Twice | Self::Spent if !is_on => {
+                *self = Self::Up;
+                None
+            }
+            _ => self.on(action, t),
         }
     }
 
     /// Forgets a press under way, and a short one that may become a double one: neither does anything any more.
-    pub(super) fn forget(&mut self) {
-        *self = if self.is_under_way() { Self::Spent } else { Self::Up };
-    }
-
-    /// Whether the force is on, counting or not.
-    pub(super) const fn is_under_way(self) -> bool {
-        !matches!(self, Self::Up | Self::Between { .. })
+    pub(super) const fn forget(&mut self, is_on: bool) {
+        *self = if is_on { Self::Spent } else { Self::Up };
     }
 
     /// What a press under way is.
-    fn on(&mut self, action: Action, t: StreamInstant) -> Option<Role> {
+    fn on(&mut self, action: &Action, t: StreamInstant) -> Option<Role> {
         match (&mut *self, action) {
             (Self::Down { .. }, Action::Hold(_)) => Some(Role::Out),
             (Self::Down { since, long }, Action::ByTime { hold: Some(hold), .. }) => {
@@ -65,7 +65,7 @@ impl Press {
     /// lost.
     fn end(
         &mut self,
-        action: Action,
+        action: &Action,
         (since, t): (StreamInstant, StreamInstant),
         long: bool,
     ) -> Option<Role> {
@@ -84,13 +84,13 @@ impl Press {
     /// What comes of a short press that a second one may follow.
     fn wait(
         &mut self,
-        action: Action,
+        action: &Action,
         (since, t): (StreamInstant, StreamInstant),
         pressed: bool,
     ) -> Option<Role> {
         let window_us = match action {
             Action::ByTime { double: Some(double), .. } => double.us,
-            Action::ByTime { .. } | Action::Hold(_) => 0,
+            Action::ByTime { .. } | Action::Hold(_) | Action::ByForce { .. } => 0,
         };
         let is_over = t.us_since(since) >= window_us;
         match (is_over, pressed) {
@@ -110,36 +110,45 @@ impl Press {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::mapping::profile::{Effect, Force, Keys, Mode, Timed};
+    use crate::pipeline::mapping::gate::{Gate, Thresholds};
+    use crate::pipeline::mapping::profile::{Effect, Keys, Mode, Timed};
 
     const OUT: Option<Role> = Some(Role::Out);
     const TAP: Option<Role> = Some(Role::Tap);
     const HOLD: Option<Role> = Some(Role::Hold);
     const DOUBLE: Option<Role> = Some(Role::Double);
 
-    const fn button(action: Action) -> Button {
-        Button { force: Force::Fz, press_n: 2.0, release_n: 1.5, action }
-    }
+    const THRESHOLDS: Thresholds = Thresholds { press_n: 2.0, release_n: 1.5, hair_n: None };
 
     /// A button with these times in milliseconds.
-    fn by_time(double_ms: Option<u64>, hold_ms: Option<u64>) -> Button {
+    fn by_time(double_ms: Option<u64>, hold_ms: Option<u64>) -> Action {
         let effect = Effect { keys: Keys::new([]), mode: Mode::Plain };
         let [double, hold] = [double_ms, hold_ms].map(|ms| ms.map(|ms| Timed { effect, us: 1_000 * ms }));
-        button(Action::ByTime { tap: effect, double, hold })
+        Action::ByTime { tap: effect, double, hold }
     }
 
     /// Steps a fresh press through (milliseconds, force) and returns what was on at each step.
-    fn played(button: &Button, steps: &[(u64, Option<f32>)]) -> Vec<Option<Role>> {
-        let mut press = Press::Up;
-        steps
-            .iter()
-            .map(|(ms, force_n)| press.step(button, StreamInstant::from_us(ms * 1_000), *force_n))
-            .collect()
+    fn played(action: &Action, steps: &[(u64, Option<f32>)]) -> Vec<Option<Role>> {
+        let (mut press, mut gate) = (Press::Up, Gate::Off);
+        steps.iter().map(|step| stepped((&mut press, &mut gate), action, *step)).collect()
+    }
+
+    fn stepped(
+        (press, gate): (&mut Press, &mut Gate),
+        action: &Action,
+        (ms, force_n): (u64, Option<f32>),
+    ) -> Option<Role> {
+        let is_on = gate.step(THRESHOLDS, force_n);
+        press.step(
+            action,
+            StreamInstant::from_us(ms * 1_000),
+            Touch { is_on, is_hard: false, is_in_place: true },
+        )
     }
 
     #[test]
     fn a_hold_button_follows_the_press() {
-        let button = button(Action::Hold(Effect { keys: Keys::new([]), mode: Mode::Plain }));
+        let button = Action::Hold(Effect { keys: Keys::new([]), mode: Mode::Plain });
         let steps = [
             (0, Some(1.99)),
             (1, Some(2.0)),
@@ -170,8 +179,9 @@ mod tests {
     fn a_forgotten_press_does_nothing_until_released() {
         let button = by_time(None, Some(400));
         let mut press = Press::Down { since: StreamInstant::from_us(0), long: false };
-        press.forget();
-        let mut step = |ms: u64, force_n| press.step(&button, StreamInstant::from_us(ms * 1_000), force_n);
+        press.forget(true);
+        let mut gate = Gate::On { highest_n: 2.5 };
+        let mut step = |ms, force_n| stepped((&mut press, &mut gate), &button, (ms, force_n));
         assert_eq!([step(10, Some(2.5)), step(900, Some(1.5)), step(901, Some(1.0))], [None; 3]);
         assert_eq!([step(902, Some(2.0)), step(903, Some(1.0))], [None, TAP]);
     }
@@ -204,7 +214,18 @@ mod tests {
     fn a_forgotten_short_press_never_taps() {
         let button = by_time(Some(300), None);
         let mut press = Press::Between { since: StreamInstant::from_us(0) };
-        press.forget();
-        assert_eq!(press.step(&button, StreamInstant::from_us(300_000), None), None);
+        press.forget(false);
+        assert_eq!(stepped((&mut press, &mut Gate::Off), &button, (300, None)), None);
+    }
+
+    #[test]
+    fn who_slides_off_taps_nothing() {
+        let button = by_time(None, None);
+        let mut press = Press::Down { since: StreamInstant::from_us(0), long: false };
+        let touch = |is_in_place| Touch { is_on: true, is_hard: false, is_in_place };
+        assert_eq!(press.step(&button, StreamInstant::from_us(1_000), touch(false)), None);
+        assert_eq!(press, Press::Up);
+        assert_eq!(press.step(&button, StreamInstant::from_us(2_000), touch(true)), None);
+        assert!(matches!(press, Press::Down { .. }), "who slides back presses anew");
     }
 }

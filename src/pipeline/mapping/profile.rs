@@ -2,10 +2,15 @@
 
 use arrayvec::ArrayVec;
 
+use super::angle::wrapped;
 use crate::pipeline::control::{Code, OutputDevice};
+use crate::quantity::Contact;
 
 /// The most buttons a profile can bind.
-pub const BUTTONS_MAX: usize = 8;
+pub const BUTTONS_MAX: usize = 16;
+
+/// The most zones that a profile can have.
+pub const ZONES_MAX: usize = 16;
 
 /// The most keys that one press gives at once.
 pub const KEYS_MAX: usize = 4;
@@ -105,6 +110,9 @@ pub struct Dpad {
     /// A direction changes only when the contact is this far past the sector's edge. 0 in the sticky 4-way
     /// mode, whose diagonal zones are its hysteresis.
     pub hysteresis_deg: f32,
+    /// The same along the arc at the contact's distance from the centre; the larger of the two counts, and half of the
+    /// neighbouring zone at most. 0 in the sticky 4-way mode.
+    pub hysteresis_mm: f32,
     /// Turns the sectors counter-clockwise seen from above.
     pub rotation_deg: f32,
     /// A direction starts at this normal force or more.
@@ -138,6 +146,83 @@ pub struct Pointer {
     pub release_force_n: f32,
 }
 
+/// By how much farther than it is a contact counts to each side, for a hand that does not reach as far everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gain {
+    /// To the right.
+    pub right: f32,
+    /// To the left.
+    pub left: f32,
+    /// Upwards.
+    pub up: f32,
+    /// Downwards.
+    pub down: f32,
+}
+
+impl Gain {
+    /// As it is.
+    pub const ONE: Self = Self { right: 1.0, left: 1.0, up: 1.0, down: 1.0 };
+
+    /// The place that counts as this one.
+    pub fn undone(&self, [x_mm, y_mm]: [f32; 2]) -> (f32, f32) {
+        let x_gain = if x_mm < 0.0 { self.left } else { self.right };
+        let y_gain = if y_mm < 0.0 { self.down } else { self.up };
+        (x_mm / x_gain, y_mm / y_gain)
+    }
+
+    /// The contact with its place stretched.
+    pub fn applied(&self, contact: &Contact) -> Contact {
+        let x_gain = if contact.x_mm < 0.0 { self.left } else { self.right };
+        let y_gain = if contact.y_mm < 0.0 { self.down } else { self.up };
+        Contact { x_mm: x_gain * contact.x_mm, y_mm: y_gain * contact.y_mm, ..*contact }
+    }
+}
+
+/// A part of the plate: a sector, a ring, or a part of a ring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Zone {
+    /// The name by which buttons ask for it.
+    pub name: String,
+    /// Its middle, counter-clockwise from right.
+    pub middle_deg: f32,
+    /// How far it reaches to both sides of that; 180 for a ring.
+    pub half_width_deg: f32,
+    /// It begins at this distance from the centre
+    pub inner_radius_mm: f32,
+    /// and ends before this one.
+    pub outer_radius_mm: f32,
+    /// While it is held it reaches so much farther to both sides,
+    pub hysteresis_deg: f32,
+    /// or so far along the arc, whichever is more; but no farther than half of the narrowest other zone.
+    pub hysteresis_mm: f32,
+    /// See [`Self::hysteresis_mm`].
+    pub hysteresis_max_deg: f32,
+    /// While it is held it reaches so far inwards and outwards.
+    pub radius_hysteresis_mm: f32,
+}
+
+/// Where a button counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In the zone of this number.
+    Zone(usize),
+    /// While the D-pad holds this direction.
+    Direction(Direction),
+}
+
+/// A direction of the D-pad.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Up.
+    Up,
+    /// Down.
+    Down,
+    /// Left.
+    Left,
+    /// Right.
+    Right,
+}
+
 /// Which force presses a button. The sign says which direction counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Force {
@@ -154,7 +239,7 @@ pub enum Force {
 }
 
 /// What a press does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// Any press, as long as it lasts.
     Hold(Effect),
@@ -166,6 +251,36 @@ pub enum Action {
         double: Option<Timed>,
         /// A press from this duration on, until it ends; without it none is long.
         hold: Option<Timed>,
+    },
+    /// By how hard a press is.
+    ByForce {
+        /// A light one.
+        light: Effect,
+        /// A hard one.
+        hard: Effect,
+        /// Hard at this force or more; more than the button's.
+        hard_press_n: f32,
+        /// No longer hard below this force; less than `hard_press_n`.
+        hard_release_n: f32,
+        /// What becomes of the light one on the way to a hard one.
+        skip: Skip,
+    },
+}
+
+/// What becomes of a light press on the way to a hard one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Skip {
+    /// The light one begins at once, the hard one comes on top.
+    No,
+    /// A press that is hard within this time is hard alone; after a slower one hard may come on top.
+    May {
+        /// The time.
+        us: u64,
+    },
+    /// A press that is hard within this time is hard alone; once light has begun hard never comes.
+    Must {
+        /// The time.
+        us: u64,
     },
 }
 
@@ -180,11 +295,15 @@ pub enum Role {
     Double,
     /// A long one.
     Hold,
+    /// One that is not hard.
+    Light,
+    /// A hard one.
+    Hard,
 }
 
 impl Role {
     /// In the order of a button's effects.
-    pub const ALL: [Self; 4] = [Self::Out, Self::Tap, Self::Double, Self::Hold];
+    pub const ALL: [Self; 6] = [Self::Out, Self::Tap, Self::Double, Self::Hold, Self::Light, Self::Hard];
 
     /// Its key in a profile.
     pub const fn name(self) -> &'static str {
@@ -193,7 +312,35 @@ impl Role {
             Self::Tap => "tap",
             Self::Double => "double",
             Self::Hold => "hold",
+            Self::Light => "light",
+            Self::Hard => "hard",
         }
+    }
+}
+
+/// The kinds of press that are on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Roles(u8);
+
+impl Roles {
+    /// None.
+    pub const NONE: Self = Self(0);
+
+    /// With one more.
+    #[must_use]
+    pub const fn with(self, role: Role) -> Self {
+        Self(self.0 | 1 << role as u8)
+    }
+
+    /// Whether it is among them.
+    pub const fn has(self, role: Role) -> bool {
+        self.0 & 1 << role as u8 != 0
+    }
+}
+
+impl From<Role> for Roles {
+    fn from(role: Role) -> Self {
+        Self::NONE.with(role)
     }
 }
 
@@ -206,6 +353,10 @@ pub struct Button {
     pub press_n: f32,
     /// Released below this force; less than `press_n`.
     pub release_n: f32,
+    /// Released as soon as the force has fallen by so much, and pressed again when it has risen by as much.
+    pub hair_n: Option<f32>,
+    /// Where it counts; everywhere if that is not said.
+    pub place: Option<Place>,
     /// What a press does.
     pub action: Action,
 }
@@ -221,6 +372,10 @@ pub struct Profile {
     pub filter_samples: usize,
     /// An output, once down, stays down at least this long, so that a game that polls once a frame sees it.
     pub min_press_us: u64,
+    /// By how much farther places count.
+    pub gain: Gain,
+    /// Zones, in the file's order; where two overlap the first one counts.
+    pub zones: Vec<Zone>,
     /// Directions; `None` where the profile has none.
     pub dpad: Option<Dpad>,
     /// The pointer's movement; `None` where the profile moves none.
@@ -243,14 +398,44 @@ impl Profile {
     }
 }
 
+impl Profile {
+    /// The same layout for the other hand: zones, gains and sideways forces change sides, the D-pad turns the other way. What is to the
+    /// right stays to the right.
+    #[must_use]
+    pub fn mirrored(mut self) -> Self {
+        self.gain = Gain { right: self.gain.left, left: self.gain.right, ..self.gain };
+        for zone in &mut self.zones {
+            zone.middle_deg = wrapped(180.0 - zone.middle_deg);
+        }
+        if let Some(dpad) = &mut self.dpad {
+            dpad.rotation_deg = -dpad.rotation_deg;
+        }
+        for button in &mut self.buttons {
+            button.force = button.force.mirrored();
+        }
+        self
+    }
+}
+
+impl Force {
+    const fn mirrored(self) -> Self {
+        match self {
+            Self::FxPositive => Self::FxNegative,
+            Self::FxNegative => Self::FxPositive,
+            other => other,
+        }
+    }
+}
+
 impl Button {
     /// What its kinds of press do, in the order of [`Role::ALL`].
     pub fn effects(&self) -> [Option<Effect>; Role::ALL.len()] {
         match self.action {
-            Action::Hold(effect) => [Some(effect), None, None, None],
+            Action::Hold(effect) => [Some(effect), None, None, None, None, None],
             Action::ByTime { tap, double, hold } => {
-                [None, Some(tap), double.map(|it| it.effect), hold.map(|it| it.effect)]
+                [None, Some(tap), double.map(|it| it.effect), hold.map(|it| it.effect), None, None]
             }
+            Action::ByForce { light, hard, .. } => [None, None, None, None, Some(light), Some(hard)],
         }
     }
 

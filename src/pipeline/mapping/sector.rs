@@ -1,6 +1,7 @@
 //! Which direction a place on the plate means.
 
-use super::profile::{Dpad, DpadMode};
+use super::angle::{along_deg, wrapped};
+use super::profile::{Direction, Dpad, DpadMode};
 use crate::quantity::Contact;
 
 /// One of eight directions, counted in steps of 45° counter-clockwise from right; odd ones are diagonals.
@@ -42,6 +43,16 @@ impl Sector {
             1..=3 => Some(Vertical::Up),
             5..=7 => Some(Vertical::Down),
             _ => None,
+        }
+    }
+
+    /// Whether it holds this direction.
+    pub(super) fn has(self, direction: Direction) -> bool {
+        match direction {
+            Direction::Left => self.horizontal() == Some(Horizontal::Left),
+            Direction::Right => self.horizontal() == Some(Horizontal::Right),
+            Direction::Up => self.vertical() == Some(Vertical::Up),
+            Direction::Down => self.vertical() == Some(Vertical::Down),
         }
     }
 
@@ -92,17 +103,17 @@ pub(super) fn follow(dpad: &Dpad, held: Option<Sector>, contact: &Contact) -> Op
         }
     };
     let angle_deg = libm::atan2f(contact.y_mm, contact.x_mm).to_degrees() - dpad.rotation_deg;
-    open.then(|| turn(dpad, held, wrapped(angle_deg)))
+    open.then(|| turn(dpad, held, wrapped(angle_deg), radius_mm))
 }
 
-/// The sector for an angle from −180° to 180°, given the one held before.
-fn turn(dpad: &Dpad, held: Option<Sector>, angle_deg: f32) -> Sector {
+/// The sector for an angle from −180° to 180° at a distance from the centre, given the one held before.
+fn turn(dpad: &Dpad, held: Option<Sector>, angle_deg: f32, radius_mm: f32) -> Sector {
     let here = zone(dpad, angle_deg);
     // A diagonal may be left over from a profile with other zones.
     let Some(held) = held.filter(|held| dpad.mode == DpadMode::EightWay || !held.is_diagonal()) else {
         return settled(dpad, here, angle_deg);
     };
-    if held.distance_deg(angle_deg) <= half_width_deg(dpad, held) + dpad.hysteresis_deg {
+    if held.distance_deg(angle_deg) <= half_width_deg(dpad, held) + slack_deg(dpad, held, radius_mm) {
         return held;
     }
     // A diagonal on the far side of the plate is not beside the held direction: there it would steer
@@ -132,22 +143,20 @@ fn zone(dpad: &Dpad, angle_deg: f32) -> Sector {
     }
 }
 
+/// How far a held sector reaches into its neighbours: the larger of an angle and an arc, and half of a neighbour at most.
+fn slack_deg(dpad: &Dpad, held: Sector, radius_mm: f32) -> f32 {
+    let neighbour = match dpad.mode {
+        DpadMode::EightWay => Sector((held.0 + 1) % 8),
+        DpadMode::FourWay | DpadMode::FourWaySticky => held,
+    };
+    dpad.hysteresis_deg.max(along_deg(dpad.hysteresis_mm, radius_mm).min(half_width_deg(dpad, neighbour)))
+}
+
 fn half_width_deg(dpad: &Dpad, sector: Sector) -> f32 {
     match (dpad.mode, sector.is_diagonal()) {
         (DpadMode::FourWay, _) => 45.0,
         (_, true) => dpad.diagonal_deg / 2.0,
         (_, false) => 45.0 - dpad.diagonal_deg / 2.0,
-    }
-}
-
-/// The same angle between −180° and 180°, for one between −540° and 540°.
-fn wrapped(angle_deg: f32) -> f32 {
-    if angle_deg > 180.0 {
-        angle_deg - 360.0
-    } else if angle_deg < -180.0 {
-        angle_deg + 360.0
-    } else {
-        angle_deg
     }
 }
 
@@ -167,6 +176,7 @@ mod tests {
             radius_hysteresis_mm: 1.5,
             diagonal_deg,
             hysteresis_deg: if mode == DpadMode::FourWaySticky { 0.0 } else { 8.0 },
+            hysteresis_mm: 0.0,
             rotation_deg: 0.0,
             min_force_n: 0.5,
             release_force_n: 0.25,
@@ -206,50 +216,50 @@ mod tests {
             (-25.1, 0, 7),
             (-25.0, 0, 0),
         ] {
-            assert_eq!(turn(&four, None, angle), Sector(in_four), "4way at {angle}");
-            assert_eq!(turn(&eight, None, angle), Sector(in_eight), "8way at {angle}");
-            assert_eq!(turn(&sticky, None, angle), Sector(in_four), "sticky at {angle}");
+            assert_eq!(turn(&four, None, angle, 20.0), Sector(in_four), "4way at {angle}");
+            assert_eq!(turn(&eight, None, angle, 20.0), Sector(in_eight), "8way at {angle}");
+            assert_eq!(turn(&sticky, None, angle, 20.0), Sector(in_four), "sticky at {angle}");
         }
     }
 
     #[test]
     fn a_held_direction_changes_only_past_the_hysteresis() {
         let four = dpad(DpadMode::FourWay, 45.0);
-        assert_eq!(turn(&four, Some(Sector::RIGHT), 53.0), Sector::RIGHT, "exactly 8° past the edge");
-        assert_eq!(turn(&four, Some(Sector::RIGHT), 53.1), Sector::UP);
-        assert_eq!(turn(&four, Some(Sector::UP), 37.0), Sector::UP);
-        assert_eq!(turn(&four, Some(Sector::UP), 36.9), Sector::RIGHT);
-        assert_eq!(turn(&four, Some(Sector::LEFT), -127.0), Sector::LEFT, "across the ±180° seam");
-        assert_eq!(turn(&four, Some(Sector::LEFT), -126.9), Sector::DOWN);
+        assert_eq!(turn(&four, Some(Sector::RIGHT), 53.0, 20.0), Sector::RIGHT, "exactly 8° past the edge");
+        assert_eq!(turn(&four, Some(Sector::RIGHT), 53.1, 20.0), Sector::UP);
+        assert_eq!(turn(&four, Some(Sector::UP), 37.0, 20.0), Sector::UP);
+        assert_eq!(turn(&four, Some(Sector::UP), 36.9, 20.0), Sector::RIGHT);
+        assert_eq!(turn(&four, Some(Sector::LEFT), -127.0, 20.0), Sector::LEFT, "across the ±180° seam");
+        assert_eq!(turn(&four, Some(Sector::LEFT), -126.9, 20.0), Sector::DOWN);
         let eight = dpad(DpadMode::EightWay, 40.0);
-        assert_eq!(turn(&eight, Some(Sector::RIGHT), 33.0), Sector::RIGHT);
-        assert_eq!(turn(&eight, Some(Sector::RIGHT), 33.1), RIGHT_UP);
-        assert_eq!(turn(&eight, Some(RIGHT_UP), 17.0), RIGHT_UP);
-        assert_eq!(turn(&eight, Some(RIGHT_UP), 16.9), Sector::RIGHT);
+        assert_eq!(turn(&eight, Some(Sector::RIGHT), 33.0, 20.0), Sector::RIGHT);
+        assert_eq!(turn(&eight, Some(Sector::RIGHT), 33.1, 20.0), RIGHT_UP);
+        assert_eq!(turn(&eight, Some(RIGHT_UP), 17.0, 20.0), RIGHT_UP);
+        assert_eq!(turn(&eight, Some(RIGHT_UP), 16.9, 20.0), Sector::RIGHT);
     }
 
     #[test]
     fn sticky_diagonals_keep_the_last_direction_beside_them() {
         let sticky = dpad(DpadMode::FourWaySticky, 40.0);
-        assert_eq!(turn(&sticky, Some(Sector::RIGHT), 64.9), Sector::RIGHT);
-        assert_eq!(turn(&sticky, Some(Sector::RIGHT), 65.0), Sector::UP);
-        assert_eq!(turn(&sticky, Some(Sector::UP), 25.1), Sector::UP);
-        assert_eq!(turn(&sticky, Some(Sector::UP), 25.0), Sector::RIGHT);
+        assert_eq!(turn(&sticky, Some(Sector::RIGHT), 64.9, 20.0), Sector::RIGHT);
+        assert_eq!(turn(&sticky, Some(Sector::RIGHT), 65.0, 20.0), Sector::UP);
+        assert_eq!(turn(&sticky, Some(Sector::UP), 25.1, 20.0), Sector::UP);
+        assert_eq!(turn(&sticky, Some(Sector::UP), 25.0, 20.0), Sector::RIGHT);
         assert_eq!(
-            turn(&sticky, Some(Sector::RIGHT), 130.0),
+            turn(&sticky, Some(Sector::RIGHT), 130.0, 20.0),
             Sector::UP,
             "a diagonal that is not beside right"
         );
         let narrow = dpad(DpadMode::FourWaySticky, 6.0);
-        assert_eq!(turn(&narrow, Some(Sector::RIGHT), 47.9), Sector::RIGHT);
-        assert_eq!(turn(&narrow, Some(Sector::RIGHT), 48.1), Sector::UP);
+        assert_eq!(turn(&narrow, Some(Sector::RIGHT), 47.9, 20.0), Sector::RIGHT);
+        assert_eq!(turn(&narrow, Some(Sector::RIGHT), 48.1, 20.0), Sector::UP);
     }
 
     #[test]
     fn a_diagonal_left_over_from_another_profile_settles() {
-        assert_eq!(turn(&dpad(DpadMode::FourWay, 45.0), Some(RIGHT_UP), 46.0), Sector::UP);
-        assert_eq!(turn(&dpad(DpadMode::FourWaySticky, 30.0), Some(RIGHT_UP), 44.0), Sector::RIGHT);
-        assert_eq!(turn(&dpad(DpadMode::EightWay, 45.0), Some(RIGHT_UP), 70.0), RIGHT_UP);
+        assert_eq!(turn(&dpad(DpadMode::FourWay, 45.0), Some(RIGHT_UP), 46.0, 20.0), Sector::UP);
+        assert_eq!(turn(&dpad(DpadMode::FourWaySticky, 30.0), Some(RIGHT_UP), 44.0, 20.0), Sector::RIGHT);
+        assert_eq!(turn(&dpad(DpadMode::EightWay, 45.0), Some(RIGHT_UP), 70.0, 20.0), RIGHT_UP);
     }
 
     #[test]
@@ -290,5 +300,21 @@ mod tests {
         assert_eq!(shown(5), (Some(Horizontal::Left), Some(Vertical::Down)));
         assert_eq!(shown(6), (None, Some(Vertical::Down)));
         assert_eq!(shown(7), (Some(Horizontal::Right), Some(Vertical::Down)));
+    }
+
+    #[test]
+    fn along_the_arc_a_direction_reaches_as_far_at_any_radius_and_half_a_neighbour_at_most() {
+        let four = Dpad { hysteresis_mm: 2.5, ..dpad(DpadMode::FourWay, 45.0) };
+        let eight = Dpad { hysteresis_mm: 2.5, ..dpad(DpadMode::EightWay, 40.0) };
+        // 2.5 mm are 14.3° at 10 mm and 7.2° at 20 mm, where 8° are more; at 3 mm they are 47.7°.
+        for (radius_mm, slack_deg) in [(10.0, 14.32), (20.0, 8.0), (3.0, 45.0)] {
+            assert_eq!(turn(&four, Some(Sector::RIGHT), 45.0 + slack_deg - 0.1, radius_mm), Sector::RIGHT);
+            assert_eq!(turn(&four, Some(Sector::RIGHT), 45.0 + slack_deg + 0.1, radius_mm), Sector::UP);
+        }
+        // Half of the diagonal zone is 20°, half of a plain one 25°.
+        assert_eq!(turn(&eight, Some(Sector::RIGHT), 44.9, 3.0), Sector::RIGHT);
+        assert_eq!(turn(&eight, Some(Sector::RIGHT), 45.1, 3.0), RIGHT_UP);
+        assert_eq!(turn(&eight, Some(RIGHT_UP), 0.1, 3.0), RIGHT_UP);
+        assert_eq!(turn(&eight, Some(RIGHT_UP), -0.1, 3.0), Sector::RIGHT);
     }
 }

@@ -1,0 +1,203 @@
+//! How a profile divides the plate: how far each side counts, and zones.
+
+use super::angle::wrapped;
+use super::limits::{
+    ANGLE_DEG, GAIN, HYSTERESIS_DEG, INNER_RADIUS_MM, OUTER_RADIUS_MM, RADIUS_HYSTERESIS_MM, ZONE_DEG_MIN,
+    ZONE_HYSTERESIS_MM, ZONE_MM_MIN,
+};
+use super::profile::{Direction, Gain, Place, ZONES_MAX, Zone};
+use crate::toml_text::diag::{Findings, quoted};
+use crate::toml_text::section::{Placed, Section};
+use crate::toml_text::spelling;
+
+pub(super) const GAIN_KEYS: [&str; 4] = ["up", "down", "left", "right"];
+pub(super) const ZONE_KEYS: [&str; 8] = [
+    "name",
+    "from_deg",
+    "to_deg",
+    "inner_radius_mm",
+    "outer_radius_mm",
+    "hysteresis_deg",
+    "hysteresis_mm",
+    "radius_hysteresis_mm",
+];
+/// The D-pad's own places.
+const DIRECTIONS: [(&str, Direction); 4] = [
+    ("up", Direction::Up),
+    ("down", Direction::Down),
+    ("left", Direction::Left),
+    ("right", Direction::Right),
+];
+
+/// Reads `[gain]`; none where a number is unusable.
+pub(super) fn read_gain(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<Gain> {
+    let [up, down, left, right] =
+        GAIN_KEYS.map(|key| table.number(key, GAIN, findings).map(|gain| gain.value));
+    Some(Gain { right: right?, left: left?, up: up?, down: down? })
+}
+
+/// Reads all `[[zone]]`s; what is unusable is left out and reported.
+pub(super) fn read_zones(tables: &[Section<'_>], has_dpad: bool, findings: &mut Findings<'_>) -> Vec<Zone> {
+    if let Some(extra) = tables.get(ZONES_MAX) {
+        findings.error(extra.at, format!("a profile has at most {ZONES_MAX} zones"), "remove this one");
+    }
+    let mut zones: Vec<Zone> = Vec::new();
+    for table in tables {
+        table.require("name", "write name = \"…\", by which buttons ask for it", findings);
+        let name = table.name("name", findings).map(str::to_owned);
+        if let Some((name, at)) = name.as_ref().zip(table.place_of("name")) {
+            check_name(name, at, (&zones, has_dpad), findings);
+        }
+        // A broken one keeps its name, so that no button misses it.
+        let shape = read_shape(table, findings).unwrap_or_else(whole_plate);
+        zones.extend(name.map(|name| Zone { name, ..shape }));
+    }
+    limit_hysteresis(&mut zones);
+    zones
+}
+
+fn check_name(name: &str, at: usize, (zones, has_dpad): (&[Zone], bool), findings: &mut Findings<'_>) {
+    if zones.iter().any(|zone| zone.name == name) {
+        findings.error(
+            at,
+            format!("a zone {} stands above already", quoted(name)),
+            "give this one another name",
+        );
+    }
+    if has_dpad && DIRECTIONS.iter().any(|(own, _)| *own == name) {
+        let message = format!("{} is a direction of [dpad]", quoted(name));
+        findings.error(at, message, "give the zone another name");
+    }
+}
+
+/// A zone that is everywhere.
+fn whole_plate() -> Zone {
+    Zone {
+        name: String::new(),
+        middle_deg: 0.0,
+        half_width_deg: 180.0,
+        inner_radius_mm: INNER_RADIUS_MM.default,
+        outer_radius_mm: OUTER_RADIUS_MM.default,
+        hysteresis_deg: HYSTERESIS_DEG.default,
+        hysteresis_mm: ZONE_HYSTERESIS_MM.default,
+        hysteresis_max_deg: 0.0,
+        radius_hysteresis_mm: RADIUS_HYSTERESIS_MM.default,
+    }
+}
+
+/// A zone but for its name.
+fn read_shape(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<Zone> {
+    let (middle_deg, half_width_deg) = read_sector(table, findings)?;
+    let inner = table.number("inner_radius_mm", INNER_RADIUS_MM, findings);
+    let outer = table.number("outer_radius_mm", OUTER_RADIUS_MM, findings);
+    let hysteresis_deg = table.number("hysteresis_deg", HYSTERESIS_DEG, findings);
+    let hysteresis_mm = table.number("hysteresis_mm", ZONE_HYSTERESIS_MM, findings);
+    let radius_hysteresis_mm = table.number("radius_hysteresis_mm", RADIUS_HYSTERESIS_MM, findings);
+    let (inner, outer) = (inner?, outer?);
+    if outer.value - inner.value < ZONE_MM_MIN {
+        let message = format!(
+            "{} is {} mm wide from \"inner_radius_mm\" ({}) to \"outer_radius_mm\" ({})",
+            table.title,
+            outer.value - inner.value,
+            inner.value,
+            outer.value
+        );
+        findings.error(outer.at.max(inner.at), message, format!("make it {ZONE_MM_MIN} mm wide at least"));
+    }
+    Some(Zone {
+        middle_deg,
+        half_width_deg,
+        inner_radius_mm: inner.value,
+        outer_radius_mm: outer.value,
+        hysteresis_deg: hysteresis_deg?.value,
+        hysteresis_mm: hysteresis_mm?.value,
+        radius_hysteresis_mm: radius_hysteresis_mm?.value,
+        ..whole_plate()
+    })
+}
+
+/// The middle and half the width of a sector from `from_deg` counter-clockwise to `to_deg`; of the whole circle where neither is
+/// written.
+fn read_sector(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<(f32, f32)> {
+    let [from, to] = ["from_deg", "to_deg"].map(|key| table.place_of(key));
+    if from.is_none() && to.is_none() {
+        return Some((0.0, 180.0));
+    }
+    let help = "a sector goes counter-clockwise from \"from_deg\" to \"to_deg\"; leave both out for a ring";
+    table.require("from_deg", help, findings);
+    table.require("to_deg", help, findings);
+    let [from, to] = ["from_deg", "to_deg"]
+        .map(|key| table.place_of(key).and_then(|_| table.number(key, ANGLE_DEG, findings)));
+    let (Placed { value: from_deg, .. }, Placed { value: to_deg, at }) = (from?, to?);
+    let width_deg = (to_deg - from_deg).rem_euclid(360.0);
+    if width_deg < ZONE_DEG_MIN {
+        let message = format!("{} is {width_deg}° wide from {from_deg}° to {to_deg}°", table.title);
+        findings.error(at, message, format!("make it {ZONE_DEG_MIN}° wide at least"));
+        return None;
+    }
+    Some((wrapped((from_deg + width_deg / 2.0).rem_euclid(360.0)), width_deg / 2.0))
+}
+
+/// No zone may reach farther than half of any other one, neither around nor in or out.
+fn limit_hysteresis(zones: &mut [Zone]) {
+    let sizes: Vec<[f32; 2]> = zones
+        .iter()
+        .map(|zone| [zone.half_width_deg, (zone.outer_radius_mm - zone.inner_radius_mm) / 2.0])
+        .collect();
+    for (at, zone) in zones.iter_mut().enumerate() {
+        let others = sizes.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, size)| size);
+        let [half_deg, half_mm] =
+            others.fold([180.0, 40.0], |[a, b]: [f32; 2], [deg, mm]| [a.min(*deg), b.min(*mm)]);
+        zone.hysteresis_max_deg = half_deg;
+        zone.radius_hysteresis_mm = zone.radius_hysteresis_mm.min(half_mm);
+    }
+}
+
+/// The place that a button asks for by its name; none (and a finding) where there is no such place.
+pub(super) fn find(
+    Placed { value: name, at }: Placed<&str>,
+    (zones, has_dpad): (&[Zone], bool),
+    findings: &mut Findings<'_>,
+) -> Option<Place> {
+    let direction = DIRECTIONS.iter().find(|(own, _)| has_dpad && *own == name);
+    let zone = zones.iter().position(|zone| zone.name == name);
+    let place = direction.map(|(_, it)| Place::Direction(*it)).or(zone.map(Place::Zone));
+    if place.is_none() {
+        let own = if has_dpad { &DIRECTIONS[..] } else { &[] };
+        let known: Vec<&str> =
+            zones.iter().map(|zone| zone.name.as_str()).chain(own.iter().map(|(name, _)| *name)).collect();
+        let help = match spelling::nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean \"{near}\"?"),
+            None if known.is_empty() => "write a [[zone]] of that name".to_owned(),
+            None => format!("known here: {}", known.join(", ")),
+        };
+        findings.error(at, format!("there is no zone {}", quoted(name)), help);
+    }
+    place
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_zone_reaches_beyond_half_of_another() {
+        let zone = |half_width_deg: f32, [inner_radius_mm, outer_radius_mm]: [f32; 2]| Zone {
+            name: String::new(),
+            middle_deg: 0.0,
+            half_width_deg,
+            inner_radius_mm,
+            outer_radius_mm,
+            hysteresis_deg: 8.0,
+            hysteresis_mm: 2.5,
+            hysteresis_max_deg: 0.0,
+            radius_hysteresis_mm: 5.0,
+        };
+        let mut zones = vec![zone(20.0, [0.0, 30.0]), zone(60.0, [10.0, 14.0])];
+        limit_hysteresis(&mut zones);
+        assert_eq!(zones[0].hysteresis_max_deg, 60.0);
+        assert_eq!(zones[0].radius_hysteresis_mm, 2.0);
+        assert_eq!(zones[1].hysteresis_max_deg, 20.0);
+        assert_eq!(zones[1].radius_hysteresis_mm, 5.0);
+    }
+}

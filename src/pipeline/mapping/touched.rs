@@ -1,0 +1,89 @@
+//! All that goes on at one button.
+
+use super::effect::Playing;
+use super::gate::{Gate, Thresholds, Touch};
+use super::press::Press;
+use super::profile::{Action, Binding, Button, Force, Roles};
+use super::stage::Stage;
+use crate::quantity::Contact;
+use crate::time::StreamInstant;
+
+/// Where a button stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touched {
+    gate: Gate,
+    hard: Gate,
+    press: Press,
+    stage: Stage,
+    playing: Playing,
+}
+
+impl Touched {
+    /// Where a button stands that nothing has pressed yet.
+    pub(super) const fn fresh() -> Self {
+        Self {
+            gate: Gate::Off,
+            hard: Gate::Off,
+            press: Press::Up,
+            stage: Stage::Up,
+            playing: Playing::nothing(),
+        }
+    }
+
+    /// Where a button stands that was pressed before it was there.
+    pub(super) const fn spent(force_n: f32) -> Self {
+        Self {
+            gate: Gate::On { highest_n: force_n },
+            press: Press::Spent,
+            stage: Stage::Spent,
+            ..Self::fresh()
+        }
+    }
+
+    /// Goes on to `t`; the bindings that are then down. `is_in_place` says whether the contact is where the button counts.
+    pub(super) fn step(
+        &mut self,
+        button: &Button,
+        t: StreamInstant,
+        (contact, is_in_place): (Option<&Contact>, bool),
+    ) -> impl Iterator<Item = Binding> + use<> {
+        let force_n = contact.map(|contact| force_of(button.force, contact));
+        let Button { press_n, release_n, hair_n, .. } = *button;
+        let is_on = self.gate.step(Thresholds { press_n, release_n, hair_n }, force_n);
+        let mut touch = Touch { is_on, is_hard: false, is_in_place };
+        let roles = match &button.action {
+            Action::ByForce { hard_press_n, hard_release_n, skip, .. } => {
+                let thresholds =
+                    Thresholds { press_n: *hard_press_n, release_n: *hard_release_n, hair_n: None };
+                touch.is_hard = self.hard.step(thresholds, force_n);
+                self.stage.step(*skip, t, touch)
+            }
+            action => self.press.step(action, t, touch).map_or(Roles::NONE, Roles::from),
+        };
+        self.playing.step(button, t, roles)
+    }
+
+    /// Forgets what is under way and what was toggled. A force that is on does nothing until it was released once.
+    pub(super) const fn forget(&mut self) {
+        let is_on = self.gate.is_on();
+        self.press.forget(is_on);
+        self.stage.forget(is_on);
+        self.playing = Playing::nothing();
+    }
+
+    /// Whether the force is on, counting or not.
+    pub(super) const fn is_under_way(&self) -> bool {
+        self.gate.is_on()
+    }
+}
+
+/// The part of the contact's force that counts for a button, in newtons.
+pub(super) const fn force_of(force: Force, contact: &Contact) -> f32 {
+    match force {
+        Force::Fz => contact.fz_n,
+        Force::FxPositive => contact.fx_n,
+        Force::FxNegative => -contact.fx_n,
+        Force::FyPositive => contact.fy_n,
+        Force::FyNegative => -contact.fy_n,
+    }
+}

@@ -333,6 +333,7 @@ fn look(now: HostInstant, driver: &Driver, keeper: &Keeper, decoder: &str) -> Sn
         contact: pipeline.contact().copied(),
         held: pipeline.held().collect(),
         warning: pipeline.warning(),
+        presses: pipeline.presses(),
         health: BridgeHealth { pipeline: *pipeline.health(), drops: driver.drops() },
         latency_us: driver.latency().percentiles(),
     };

@@ -8,6 +8,7 @@ use crate::bridge::state::State;
 use crate::pipeline::contact::uncertainty::Estimate;
 use crate::pipeline::contact::watch::Warning;
 use crate::pipeline::health::Health;
+use crate::pipeline::mapping::accept::Presses;
 use crate::pipeline::mapping::intent::Level;
 use crate::quantity::{CHANNELS, Contact};
 use crate::time::HostInstant;
@@ -49,6 +50,8 @@ pub struct Status {
     pub held: Vec<Level>,
     /// What the player should know of the touches.
     pub warning: Option<Warning>,
+    /// How many presses of buttons counted, and how many did not (Slow Keys, Bounce Keys, dwell).
+    pub presses: Presses,
     /// What went wrong so far.
     pub health: BridgeHealth,
     /// From bytes readable to events written.
@@ -127,6 +130,7 @@ mod tests {
             contact: Some(Contact { x_mm: 0.1, fz_n: 2.0, ..Contact::default() }),
             held: vec![held],
             warning: None,
+            presses: Presses { accepted: 4, rejected: 1 },
             health: BridgeHealth {
                 pipeline: Health { samples: 7, ..Health::default() },
                 drops: Drops { groups_dropped: 3, ..Drops::default() },
@@ -144,7 +148,7 @@ mod tests {
         let expected = concat!(
             r#"{"state":"playing","pad":"A-1","profile":"Contra","decoder":"inverse","output":"nowhere","#,
             r#""contact":{"x_mm":0.1,"y_mm":0.0,"fx_n":0.0,"fy_n":0.0,"fz_n":2.0},"held":["KEY_UP"],"#,
-            r#""warning":null,"health":{"samples":7,"#
+            r#""warning":null,"presses":{"accepted":4,"rejected":1},"health":{"samples":7,"#
         );
         assert!(text.starts_with(expected), "{text}");
         assert!(text.contains(r#","groups_dropped":3,"calls_unrecorded":0},"latency_us""#), "{text}");

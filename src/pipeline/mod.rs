@@ -37,6 +37,7 @@ use crate::pipeline::control::OutputEvent;
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::{Cause, Effect};
 use crate::pipeline::link::{Fault, Link, LinkEvent};
+use crate::pipeline::mapping::accept::Presses;
 use crate::pipeline::mapping::engine::Engine;
 use crate::pipeline::mapping::intent::Level;
 use crate::pipeline::mapping::profile::Profile;
@@ -232,6 +233,11 @@ impl Pipeline {
     /// The profile in use.
     pub const fn profile(&self) -> &Profile {
         self.engine.profile()
+    }
+
+    /// How many presses of buttons counted, and how many did not.
+    pub const fn presses(&self) -> Presses {
+        self.engine.presses()
     }
 
     /// The contact that is being mapped; `None` while there is none.

@@ -90,6 +90,10 @@ schema = 1
 name = "Placed"
 output = "gamepad"
 left_handed = true
+[access]
+slow_ms = 20
+bounce_ms = 40
+tremor_hz = 2
 [gain]
 up = 1.5
 left = 0.5
@@ -128,7 +132,8 @@ skip_ms = 30
 force = "fx"
 press_n = 1
 hair_n = 0.2
-tap = { gamepad = "BTN_NORTH", keyboard = "KEY_Q" }
+dwell_ms = 50
+tap = { gamepad = "BTN_NORTH", keyboard = "KEY_Q", sticky = true }
 hold = { gamepad = "BTN_WEST", keyboard = "KEY_W" }
 long_press_ms = 60
 [[button]]
@@ -140,7 +145,8 @@ out = { pointer = "BTN_LEFT" }
 
 /// Whether keys may be down while nothing touches the plate: toggled ones, or the tap that might have become a double press.
 fn may_hold_untouched(profile: &Profile) -> bool {
-    let toggles = |effect: &Option<_>| matches!(effect, Some(Effect { mode: Mode::Toggle, .. }));
+    let toggles =
+        |effect: &Option<_>| matches!(effect, Some(Effect { mode: Mode::Toggle | Mode::Sticky, .. }));
     profile.buttons.iter().any(|button| {
         button.effects().iter().any(toggles)
             || matches!(button.action, Action::ByTime { double: Some(_), .. })

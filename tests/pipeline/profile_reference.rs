@@ -13,7 +13,7 @@ fn every_example_of_the_reference_is_a_profile() {
     let text = REFERENCE;
     let examples: Vec<_> =
         text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(examples.len(), 8);
+    assert_eq!(examples.len(), 9);
     for example in examples {
         let whole = if example.contains("schema") { example.to_owned() } else { format!("{HEAD}{example}") };
         let (profile, found) = read(&whole, OutputChoice::AsWritten);
@@ -55,6 +55,8 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
         "full_radius_mm" => ("[pointer]", "centre_radius_mm = 2"),
         "release_n" => ("[[button]]", "press_n = 50"),
         "hard_release_n" => ("[[button]]", "hard_press_n = 50"),
+        "tremor_per_mm" => ("[access]", "tremor_hz = 2"),
+        "dwell_mm" => ("[[button]]", "dwell_ms = 100"),
         "skip_ms" => ("[[button]]", "hard_press_n = 50\nskip = \"may\""),
         "inner_radius_mm" => ("[[zone]]", "outer_radius_mm = 40"),
         _ => ("", ""),
@@ -66,7 +68,7 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
     };
     let (root, dpad, button) = (lines_of("itself"), lines_of("[dpad]"), lines_of("[[button]]"));
     let (pointer, gain) = (lines_of("[pointer]"), lines_of("[gain]"));
-    let zone = lines_of("[[zone]]");
+    let (zone, access) = (lines_of("[[zone]]"), lines_of("[access]"));
     let press = if key == "press_n" || key == "release_n" { "" } else { "press_n = 2" };
     let stages = ["hard_press_n", "hard_release_n", "skip_ms"].contains(&key);
     let [short, long] = if stages { ["light", "hard"] } else { ["tap", "hold"] };
@@ -79,14 +81,14 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
     };
     let button = if key == "turbo_ms" { String::new() } else { button };
     format!(
-        "{HEAD}{root}[gain]\n{gain}[dpad]\n{dpad}[pointer]\n{pointer}[[zone]]\nname = \"here\"\n{zone}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{double}\n{button}"
+        "{HEAD}{root}[access]\n{access}[gain]\n{gain}[dpad]\n{dpad}[pointer]\n{pointer}[[zone]]\nname = \"here\"\n{zone}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{double}\n{button}"
     )
 }
 
 #[test]
 fn the_reference_states_the_ranges_that_hold() {
     let rows = documented_numbers();
-    assert_eq!(rows.len(), 34, "{rows:?}");
+    assert_eq!(rows.len(), 40, "{rows:?}");
     for (heading, key, _, low, high) in rows {
         let errors = |value: f32| {
             let text = profile_with(&heading, &key, &format!("{key} = {value}"));
@@ -113,7 +115,7 @@ fn the_reference_states_the_defaults_that_hold() {
         assert_eq!(written, read_with(""), "{key}");
         checked += 1;
     }
-    assert_eq!(checked, 25);
+    assert_eq!(checked, 29);
 }
 
 #[test]

@@ -183,5 +183,5 @@ fn timelines() {
         }
     }
     assert!(failures.is_empty(), "{failures}");
-    assert!(cases >= 60, "only {cases} cases were found");
+    assert!(cases >= 120, "only {cases} cases were found");
 }

@@ -127,6 +127,9 @@ fn print_status(status: &Value) -> io::Result<()> {
     if let Some(warning) = warning(status) {
         writeln!(out, "warning  {warning}")?;
     }
+    let presses =
+        |key: &str| status.get("presses").and_then(|it| it.get(key)).and_then(Value::as_u64).unwrap_or(0);
+    writeln!(out, "presses  {} accepted, {} rejected", presses("accepted"), presses("rejected"))?;
     for (name, count) in status.get("health").and_then(Value::as_object).into_iter().flatten() {
         if count.as_u64() != Some(0) {
             writeln!(out, "{name:<18} {count}")?;

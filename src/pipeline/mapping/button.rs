@@ -1,10 +1,11 @@
 //! A profile's buttons: which force presses them, and what their kinds of press do.
 
+use super::access;
 use super::binding::{Outputs, with_keys};
 use super::conflict::{Owner, Use};
 use super::limits::{DOUBLE_PRESS_MS, FORCE_N, HAIR_N, LONG_PRESS_MS, RELEASE_SHARE, TURBO_MS};
 use super::plate;
-use super::profile::{Action, Button, Effect, Force, Mode, Place, Role, Timed, Zone};
+use super::profile::{Action, Button, Dwell, Effect, Force, Mode, Place, Role, Timed, Zone};
 use super::stages::{self, Stages};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
@@ -17,11 +18,13 @@ const FORCES: [(&str, Force); 5] = [
     ("fx", Force::FxPositive),
     ("-fx", Force::FxNegative),
 ];
-pub(super) const BUTTON_KEYS: [&str; 17] = [
+pub(super) const BUTTON_KEYS: [&str; 19] = [
     "force",
     "press_n",
     "release_n",
     "hair_n",
+    "dwell_ms",
+    "dwell_mm",
     "zone",
     "out",
     "tap",
@@ -37,7 +40,7 @@ pub(super) const BUTTON_KEYS: [&str; 17] = [
     "skip_ms",
 ];
 /// What an effect has beside its outputs.
-const MODE_KEYS: [&str; 2] = ["toggle", "turbo_ms"];
+const MODE_KEYS: [&str; 3] = ["toggle", "sticky", "turbo_ms"];
 
 /// A button while it is read: what is unusable is `None` and reported.
 pub(super) struct ButtonDraft {
@@ -45,6 +48,7 @@ pub(super) struct ButtonDraft {
     press_n: Option<f32>,
     release_n: Option<f32>,
     hair_n: Option<f32>,
+    dwell: Option<Option<Dwell>>,
     place: Option<Place>,
     action: Option<ActionDraft>,
 }
@@ -93,6 +97,7 @@ impl ButtonDraft {
             press_n: newtons(press),
             release_n: newtons(release),
             hair_n: newtons(hair_n),
+            dwell: access::read_dwell(table, findings),
             place,
             action,
         }
@@ -105,7 +110,7 @@ impl ButtonDraft {
         all.filter_map(move |(role, effect)| {
             let EffectDraft { outputs, mode } = effect?;
             let owner = Owner::Button { number, role: role.name() };
-            Some(Use { owner, outputs, toggles: mode == Some(Mode::Toggle) })
+            Some(Use { owner, outputs, toggles: matches!(mode, Some(Mode::Toggle | Mode::Sticky)) })
         })
     }
 
@@ -113,8 +118,9 @@ impl ButtonDraft {
     pub(super) fn settle(self, device: OutputDevice) -> Option<Button> {
         let action = self.action?.settle(device)?;
         let Self { hair_n, place, .. } = self;
+        let dwell = self.dwell?;
         let (press_n, release_n) = (self.press_n?, self.release_n?);
-        Some(Button { force: self.force?, press_n, release_n, hair_n, place, action })
+        Some(Button { force: self.force?, press_n, release_n, hair_n, dwell, place, action })
     }
 }
 
@@ -129,15 +135,19 @@ impl EffectDraft {
         let title = format!("\"{}\" of {}", role.name(), table.title);
         let section = table.table(role.name(), title, &with_keys(&MODE_KEYS), findings)?;
         let outputs = Outputs::read(&section, findings);
-        let toggles = match section.place_of("toggle") {
-            Some(_) => section.flag("toggle", findings),
-            None => Some(false),
-        };
         let turbo = section.place_of("turbo_ms").map(|at| (at, read_turbo(&section, min_press_ms, findings)));
-        if let (Some(true), Some((at, _))) = (toggles, turbo) {
+        let flag = |key: &'static str, findings: &mut Findings<'_>| match section.place_of(key) {
+            Some(at) => section.flag(key, findings).map(|is_set| is_set.then_some((key, at))),
+            None => Some(None),
+        };
+        let [toggle, sticky] = ["toggle", "sticky"].map(|key| flag(key, findings));
+        let turned = turbo.map(|(at, _)| ("turbo_ms", at));
+        let mut modes = [toggle?, sticky?, turned].into_iter().flatten();
+        let first = modes.next();
+        if let (Some((one, _)), Some((other, at))) = (first, modes.next()) {
             findings.error(
                 at,
-                format!("{} is both \"toggle\" and \"turbo_ms\"", section.title),
+                format!("{} is both \"{one}\" and \"{other}\"", section.title),
                 "remove one of them",
             );
         }
@@ -148,10 +158,11 @@ impl EffectDraft {
                 "write it into \"out\", \"double\" or \"hold\"",
             );
         }
-        let mode = match (toggles?, turbo) {
-            (true, _) => Some(Mode::Toggle),
-            (false, None) => Some(Mode::Plain),
-            (false, Some((_, ms))) => ms.map(|ms| Mode::Turbo { period_us: u64::from(ms) * 1_000 }),
+        let mode = match (first, turbo) {
+            (Some(("toggle", _)), _) => Some(Mode::Toggle),
+            (Some(("sticky", _)), _) => Some(Mode::Sticky),
+            (_, None) => Some(Mode::Plain),
+            (_, Some((_, ms))) => ms.map(|ms| Mode::Turbo { period_us: u64::from(ms) * 1_000 }),
         };
         Some(Self { outputs, mode })
     }

@@ -4,6 +4,7 @@
 
 use arrayvec::ArrayVec;
 
+use super::access::{self, ACCESS_KEYS};
 use super::button::{BUTTON_KEYS, ButtonDraft, Surroundings};
 use super::conflict::{self, Use};
 use super::dpad::{DPAD_KEYS, DpadDraft, read_gate};
@@ -11,7 +12,7 @@ use super::limits::{
     CURVE, FILTER_SAMPLES, FULL_RADIUS_MM, MIN_PRESS_MS, POINTER_CENTRE_MM, SPEED_COUNTS_PER_S,
 };
 use super::plate::{self, GAIN_KEYS, ZONE_KEYS};
-use super::profile::{BUTTONS_MAX, Gain, Pointer, Profile, ZONES_MAX, Zone};
+use super::profile::{Access, BUTTONS_MAX, Gain, Pointer, Profile, ZONES_MAX, Zone};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text;
 use crate::toml_text::diag::{Diagnostic, Findings};
@@ -29,13 +30,14 @@ pub enum OutputChoice {
 const OUTPUTS: [(&str, OutputDevice); 2] =
     [("gamepad", OutputDevice::Gamepad), ("keyboard", OutputDevice::Keyboard)];
 
-const ROOT_KEYS: [&str; 11] = [
+const ROOT_KEYS: [&str; 12] = [
     "schema",
     "name",
     "output",
     "filter_samples",
     "min_press_ms",
     "left_handed",
+    "access",
     "gain",
     "dpad",
     "pointer",
@@ -68,6 +70,7 @@ struct Draft {
     filter_samples: Option<usize>,
     min_press_ms: Option<u32>,
     left_handed: Option<bool>,
+    access: Option<Access>,
     gain: Option<Gain>,
     zones: Vec<Zone>,
     dpad: Option<DpadDraft>,
@@ -84,6 +87,7 @@ impl Draft {
         let min_press_ms = root.whole("min_press_ms", MIN_PRESS_MS, findings).map(|ms| ms.value);
         let dpad = root.table("dpad", "[dpad]".to_owned(), &DPAD_KEYS, findings);
         let pointer = root.table("pointer", "[pointer]".to_owned(), &POINTER_KEYS, findings);
+        let access = root.table("access", "[access]".to_owned(), &ACCESS_KEYS, findings);
         let gain = root.table("gain", "[gain]".to_owned(), &GAIN_KEYS, findings);
         let has_dpad = root.place_of("dpad").is_some();
         // One more than there can be, so that the first one too many is known by its place.
@@ -102,6 +106,7 @@ impl Draft {
             left_handed: root
                 .place_of("left_handed")
                 .map_or(Some(false), |_| root.flag("left_handed", findings)),
+            access: access.map_or(Some(Access::default()), |access| access::read(&access, findings)),
             gain: gain.map_or(Some(Gain::ONE), |gain| plate::read_gain(&gain, findings)),
             dpad: dpad.map(|dpad| DpadDraft::read(&dpad, findings)),
             pointer: pointer.map(|pointer| read_pointer(&pointer, findings)),
@@ -141,6 +146,7 @@ impl Draft {
             output,
             filter_samples: self.filter_samples?,
             min_press_us: u64::from(self.min_press_ms?) * 1_000,
+            access: self.access?,
             gain: self.gain?,
             zones: self.zones,
             dpad,

@@ -10,15 +10,36 @@ pub(super) struct Playing {
     roles: Roles,
     /// Each since when.
     since: [StreamInstant; Role::ALL.len()],
-    /// The kinds whose keys were toggled down.
-    toggled: [bool; Role::ALL.len()],
+    /// The kinds whose keys stay down.
+    stays: [Stay; Role::ALL.len()],
+}
+
+/// Whether keys stay down when their press is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stay {
+    Up,
+    /// Until another press has ended.
+    Latched,
+    /// Until the next press of its own.
+    Locked,
+}
+
+impl Stay {
+    /// What a press makes of it.
+    const fn pressed(self, mode: Mode) -> Self {
+        match (self, mode) {
+            (Self::Up, Mode::Sticky) => Self::Latched,
+            (Self::Up, _) | (Self::Latched, _) => Self::Locked,
+            (Self::Locked, _) => Self::Up,
+        }
+    }
 }
 
 impl Playing {
     /// Nothing.
     pub(super) const fn nothing() -> Self {
         let since = [StreamInstant::from_us(0); Role::ALL.len()];
-        Self { roles: Roles::NONE, since, toggled: [false; Role::ALL.len()] }
+        Self { roles: Roles::NONE, since, stays: [Stay::Up; Role::ALL.len()] }
     }
 
     /// Goes on to `roles` at `t`; the bindings that are then down.
@@ -29,23 +50,36 @@ impl Playing {
         roles: Roles,
     ) -> impl Iterator<Item = Binding> + use<> {
         let mut down = button.effects();
-        let places = self.since.iter_mut().zip(&mut self.toggled).zip(&mut down);
-        for (role, ((since, toggled), effect)) in Role::ALL.into_iter().zip(places) {
+        let places = self.since.iter_mut().zip(&mut self.stays).zip(&mut down);
+        for (role, ((since, stay), effect)) in Role::ALL.into_iter().zip(places) {
             let is_on = roles.has(role);
             if is_on && !self.roles.has(role) {
                 *since = t;
-                *toggled = !*toggled;
+                *stay = stay.pressed(effect.map_or(Mode::Plain, |effect| effect.mode));
             }
             let lasts_us = t.us_since(*since);
             *effect = effect.filter(|effect| match effect.mode {
                 Mode::Plain => is_on,
-                Mode::Toggle => *toggled,
+                Mode::Toggle | Mode::Sticky => *stay != Stay::Up,
                 // Down in [0, T/2) of each period T.
                 Mode::Turbo { period_us } => is_on && 2 * (lasts_us % period_us.max(1)) < period_us,
             });
         }
         self.roles = roles;
         down.into_iter().flatten().flat_map(|effect| effect.keys.iter())
+    }
+
+    /// Whether any kind of press is on whose keys are not sticky ones: an action, that is, on which latched keys are meant to work.
+    pub(super) fn is_acting(&self, button: &Button) -> bool {
+        let of_role = Role::ALL.into_iter().zip(button.effects());
+        of_role.into_iter().any(|(role, effect)| {
+            self.roles.has(role) && effect.is_some_and(|effect| effect.mode != Mode::Sticky)
+        })
+    }
+
+    /// Another press has ended: what was latched goes up.
+    pub(super) fn unlatch(&mut self) {
+        self.stays.iter_mut().filter(|stay| **stay == Stay::Latched).for_each(|stay| *stay = Stay::Up);
     }
 }
 
@@ -59,8 +93,15 @@ mod tests {
     fn down(mode: Mode, steps: &[(u64, bool)]) -> Vec<usize> {
         let key = |code| Binding { device: OutputDevice::Keyboard, code: Code::Key(code), value: 1 };
         let action = Action::Hold(Effect { keys: Keys::new([key(1), key(2)]), mode });
-        let button =
-            Button { force: Force::Fz, press_n: 2.0, release_n: 1.5, hair_n: None, place: None, action };
+        let button = Button {
+            force: Force::Fz,
+            press_n: 2.0,
+            release_n: 1.5,
+            hair_n: None,
+            dwell: None,
+            place: None,
+            action,
+        };
         let mut playing = Playing::nothing();
         let step = |(ms, is_on): &(u64, bool)| {
             let roles = if *is_on { Role::Out.into() } else { Roles::NONE };

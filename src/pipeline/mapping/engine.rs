@@ -2,11 +2,13 @@
 
 use arrayvec::ArrayVec;
 
+use super::accept::Presses;
 use super::intent::{Intents, Level};
 use super::profile::{BUTTONS_MAX, Binding, Button, Dpad, Place, Profile};
 use super::sector::{self, Horizontal, Sector, Vertical};
 use super::steer::{self, Velocity};
 use super::touched::{Touched, force_of};
+use super::tremor::Calm;
 use super::zone;
 use crate::pipeline::control::OutputDevice;
 use crate::pipeline::control::names::POINTER_MOTION;
@@ -25,13 +27,26 @@ pub struct Engine {
     moving: Option<Velocity>,
     buttons: ArrayVec<Touched, BUTTONS_MAX>,
     last: Option<Contact>,
+    calm: Option<Calm>,
+    is_acting: bool,
+    presses: Presses,
 }
 
 impl Engine {
     /// An engine that has seen no contact yet.
     pub fn new(profile: Profile) -> Self {
         let buttons = profile.buttons.iter().map(|_| Touched::fresh()).collect();
-        Self { profile, held: None, zone: None, moving: None, buttons, last: None }
+        Self {
+            profile,
+            held: None,
+            zone: None,
+            moving: None,
+            buttons,
+            last: None,
+            calm: None,
+            is_acting: false,
+            presses: Presses::default(),
+        }
     }
 
     /// The profile that is played.
@@ -51,8 +66,8 @@ impl Engine {
             return Intents::new();
         }
         self.last = contact.copied();
-        let stretched = contact.map(|contact| self.profile.gain.applied(contact));
-        let contact = stretched.as_ref();
+        let meant = self.meant(t, contact);
+        let contact = meant.as_ref();
         let mut levels = Levels { stated: Intents::new() };
         self.held = self
             .profile
@@ -72,8 +87,10 @@ impl Engine {
         for (button, touched) in self.profile.buttons.iter().zip(&mut self.buttons) {
             // A lifted contact was where it was.
             let is_in_place = contact.is_none() || is_in(button.place);
-            touched.step(button, t, (contact, is_in_place)).for_each(|binding| levels.state(binding));
+            let help = (self.profile.access, &mut self.presses);
+            touched.step(button, t, (contact, is_in_place), help).for_each(|binding| levels.state(binding));
         }
+        self.unlatch();
         self.moving = self
             .profile
             .pointer
@@ -84,13 +101,42 @@ impl Engine {
         levels.stated
     }
 
+    /// The place that the hand means: calmed, and stretched where it does not reach.
+    fn meant(&mut self, t: StreamInstant, contact: Option<&Contact>) -> Option<Contact> {
+        let Some(contact) = contact else {
+            self.calm = None;
+            return None;
+        };
+        let calmed = match &self.profile.access.tremor {
+            Some(tremor) => Calm::step(&mut self.calm, tremor, t, contact),
+            None => *contact,
+        };
+        Some(self.profile.gain.applied(&calmed))
+    }
+
+    /// Lets latched keys go where an action has ended.
+    fn unlatch(&mut self) {
+        let buttons = || self.profile.buttons.iter().zip(&self.buttons);
+        let is_acting = self.held.is_some() || buttons().any(|(button, touched)| touched.is_acting(button));
+        if self.is_acting && !is_acting {
+            self.buttons.iter_mut().for_each(Touched::unlatch);
+        }
+        self.is_acting = is_acting;
+    }
+
+    /// How many presses counted since the engine began, and how many did not.
+    pub const fn presses(&self) -> Presses {
+        self.presses
+    }
+
     /// After a fault (lost link, dead channel, pause): forgets directions, the pointer's way, presses and what they toggled;
     /// nothing is tapped for them.
     ///
     /// A press that was under way stays forgotten until its force was released once, even if the contact goes
     /// on.
     pub fn cancel(&mut self) {
-        (self.held, self.zone, self.moving) = (None, None, None);
+        (self.held, self.zone, self.moving, self.calm) = (None, None, None, None);
+        self.is_acting = false;
         self.buttons.iter_mut().for_each(Touched::forget);
     }
 
@@ -102,7 +148,7 @@ impl Engine {
     /// force was released once.
     pub fn replace_profile(&mut self, profile: Profile) {
         self.buttons = profile.buttons.iter().map(|button| self.taken_over(button)).collect();
-        self.zone = None;
+        (self.zone, self.calm, self.is_acting) = (None, None, false);
         self.profile = profile;
     }
 

@@ -29,6 +29,12 @@ pub(super) const FORCE_N: Bounds<f32> = Bounds { low: 0.05, high: 50.0, default:
 pub(super) const HARD_N: Bounds<f32> = Bounds { default: 3.0, ..FORCE_N };
 pub(super) const HAIR_N: Bounds<f32> = Bounds { low: 0.05, high: 10.0, default: 0.2 };
 pub(super) const SKIP_MS: Bounds<u32> = Bounds { low: 10, high: 2_000, default: 150 };
+pub(super) const SLOW_MS: Bounds<u32> = Bounds { low: 0, high: 5_000, default: 0 };
+pub(super) const BOUNCE_MS: Bounds<u32> = Bounds { low: 0, high: 5_000, default: 0 };
+pub(super) const DWELL_MS: Bounds<u32> = Bounds { low: 50, high: 10_000, default: 800 };
+pub(super) const DWELL_MM: Bounds<f32> = Bounds { low: 0.5, high: 15.0, default: 3.0 };
+pub(super) const TREMOR_HZ: Bounds<f32> = Bounds { low: 0.3, high: 10.0, default: 1.0 };
+pub(super) const TREMOR_PER_MM: Bounds<f32> = Bounds { low: 0.0, high: 1.0, default: 0.05 };
 /// Default of a button's release force over its press force.
 pub(super) const RELEASE_SHARE: f32 = 0.7;
 /// Force that starts a direction, or the pointer, over the default of the force that ends it.

@@ -2,10 +2,12 @@
 //!
 //! The mapping states *levels*; it never emits. `output::ledger` turns levels into edges.
 //!
-//! A profile's text becomes a [`profile::Profile`] in `binding` → `conflict`, `plate`, `stages` → `dpad`, `button` → `check`; each of these uses only
-//! those before it. The live part is where a contact is (`sector`, `zone`, `steer`) and what goes on at a button (`gate` → `press`,
-//! `stage` → `effect`, together in `touched`), put together by `engine`.
+//! A profile's text becomes a [`profile::Profile`] in `binding` → `conflict`, `plate`, `stages`, `access` → `dpad`, `button` →
+//! `check`; each of these uses only those before it. The live part is where a contact is (`tremor` → `sector`, `zone`, `steer`) and
+//! what goes on at a button (`gate` → `accept` → `press`, `stage` → `effect`, together in `touched`), put together by `engine`.
 
+pub mod accept;
+mod access;
 mod angle;
 mod binding;
 mod button;
@@ -27,4 +29,5 @@ mod stage;
 mod stages;
 mod steer;
 mod touched;
+mod tremor;
 mod zone;

@@ -59,6 +59,8 @@ pub enum Mode {
     Plain,
     /// Each time it begins they go down and stay, or go up again.
     Toggle,
+    /// Sticky Keys: the first press lets them stay down until another press has ended, a second one locks them, a third lets go.
+    Sticky,
     /// Down in the first half of each period as long as it lasts.
     Turbo {
         /// From one press to the next.
@@ -144,6 +146,35 @@ pub struct Pointer {
     pub min_force_n: f32,
     /// It rests below this normal force.
     pub release_force_n: f32,
+}
+
+/// Help for hands that press what they do not mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Access {
+    /// Slow Keys: a press counts once it has lasted this long.
+    pub slow_us: u64,
+    /// Bounce Keys: a press that begins less than this after the last one of its button ended does not count.
+    pub bounce_us: u64,
+    /// Calms the place of the contact.
+    pub tremor: Option<Tremor>,
+}
+
+/// A low-pass of the contact's place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tremor {
+    /// What trembles faster than this is calmed where the finger rests.
+    pub cutoff_hz: f32,
+    /// By so much the cutoff grows, in Hz, with each mm/s of the finger's speed.
+    pub per_mm: f32,
+}
+
+/// A press that counts when the finger has rested.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dwell {
+    /// For so long,
+    pub us: u64,
+    /// within this distance of where it came to rest.
+    pub radius_mm: f32,
 }
 
 /// By how much farther than it is a contact counts to each side, for a hand that does not reach as far everywhere.
@@ -355,6 +386,8 @@ pub struct Button {
     pub release_n: f32,
     /// Released as soon as the force has fallen by so much, and pressed again when it has risen by as much.
     pub hair_n: Option<f32>,
+    /// It counts when the finger has rested.
+    pub dwell: Option<Dwell>,
     /// Where it counts; everywhere if that is not said.
     pub place: Option<Place>,
     /// What a press does.
@@ -372,6 +405,8 @@ pub struct Profile {
     pub filter_samples: usize,
     /// An output, once down, stays down at least this long, so that a game that polls once a frame sees it.
     pub min_press_us: u64,
+    /// Help for hands that press what they do not mean.
+    pub access: Access,
     /// By how much farther places count.
     pub gain: Gain,
     /// Zones, in the file's order; where two overlap the first one counts.

@@ -1,9 +1,10 @@
 //! All that goes on at one button.
 
+use super::accept::{Accept, Conditions, Presses};
 use super::effect::Playing;
 use super::gate::{Gate, Thresholds, Touch};
 use super::press::Press;
-use super::profile::{Action, Binding, Button, Force, Roles};
+use super::profile::{Access, Action, Binding, Button, Force, Roles};
 use super::stage::Stage;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
@@ -13,6 +14,7 @@ use crate::time::StreamInstant;
 pub(super) struct Touched {
     gate: Gate,
     hard: Gate,
+    accept: Accept,
     press: Press,
     stage: Stage,
     playing: Playing,
@@ -24,6 +26,7 @@ impl Touched {
         Self {
             gate: Gate::Off,
             hard: Gate::Off,
+            accept: Accept::Off { since: None },
             press: Press::Up,
             stage: Stage::Up,
             playing: Playing::nothing(),
@@ -46,11 +49,22 @@ impl Touched {
         button: &Button,
         t: StreamInstant,
         (contact, is_in_place): (Option<&Contact>, bool),
+        (access, presses): (Access, &mut Presses),
     ) -> impl Iterator<Item = Binding> + use<> {
         let force_n = contact.map(|contact| force_of(button.force, contact));
         let Button { press_n, release_n, hair_n, .. } = *button;
         let is_on = self.gate.step(Thresholds { press_n, release_n, hair_n }, force_n);
         let mut touch = Touch { is_on, is_hard: false, is_in_place };
+        let conditions = Conditions { access, dwell: button.dwell };
+        // A forgotten press is over when its force is, whether it would count or not.
+        let is_spent = match button.action {
+            Action::ByForce { .. } => self.stage == Stage::Spent,
+            Action::Hold(_) | Action::ByTime { .. } => self.press == Press::Spent,
+        };
+        if !is_spent {
+            let is_accepted = self.accept.step(conditions, t, (touch, contact), presses);
+            touch.is_on = is_accepted || (is_on && !is_in_place);
+        }
         let roles = match &button.action {
             Action::ByForce { hard_press_n, hard_release_n, skip, .. } => {
                 let thresholds =
@@ -69,6 +83,17 @@ impl Touched {
         self.press.forget(is_on);
         self.stage.forget(is_on);
         self.playing = Playing::nothing();
+        self.accept.forget();
+    }
+
+    /// Whether an action is on, see [`Playing::is_acting`].
+    pub(super) fn is_acting(&self, button: &Button) -> bool {
+        self.playing.is_acting(button)
+    }
+
+    /// Another press has ended.
+    pub(super) fn unlatch(&mut self) {
+        self.playing.unlatch();
     }
 
     /// Whether the force is on, counting or not.

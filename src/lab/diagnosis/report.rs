@@ -6,6 +6,9 @@ use super::target::Target;
 /// As what it stands among the rivals that several findings may have one reason in common, which is none of the catalogue.
 pub const UNLISTED: &str = "unlisted_cause";
 
+/// What is said where nothing tells confounded causes apart.
+pub(super) const INSEPARABLE: &str = "no measurement in the catalogue separates these";
+
 /// The whole answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnosis {

@@ -22,6 +22,7 @@ use super::experiments::{Experiment, TURNING, catalogue};
 use super::model::{CommonError, Linearised, Signature};
 use super::naming::POWER;
 use super::observations::Sample;
+use super::report::INSEPARABLE;
 use super::system::ChannelSystem;
 use super::target::Target;
 use super::whitening::Whitening;
@@ -32,9 +33,6 @@ use crate::numeric::dense::Matrix;
 const REPEATS_MAX: usize = 30;
 /// What makes columns unique that others reproduce, as a part of their information.
 const RIDGE: f64 = 1e-9;
-/// What is said where nothing helps.
-pub(super) const NONE: &str = "no measurement in the catalogue separates these";
-
 /// A column in the present rows and in further ones.
 struct Pair {
     present: Signature,
@@ -92,7 +90,12 @@ impl<'s, 'm> Separation<'s, 'm> {
                 best = Some((minutes, repeats, experiment));
             }
         }
-        Some(best.map_or_else(|| NONE.to_owned(), |(_, repeats, experiment)| sentence(repeats, experiment)))
+        Some(
+            best.map_or_else(
+                || INSEPARABLE.to_owned(),
+                |(_, repeats, experiment)| sentence(repeats, experiment),
+            ),
+        )
     }
 
     /// With an experiment; none where the model cannot say.
@@ -372,7 +375,7 @@ mod tests {
         let (sentence, each) = told(("stage_offset", &[0.15, 0.05]), &["module_displaced"]);
         let turned = each.iter().find(|(what, _)| what.contains("120 degrees")).unwrap();
         assert!(turned.1.is_some_and(|repeats| repeats <= 3), "{each:?}");
-        assert_ne!(sentence, NONE);
+        assert_ne!(sentence, INSEPARABLE);
         // A small cause takes more repeats than a large one.
         let repeats = |mm: f64| told(("stage_offset", &[mm, 0.0]), &["module_displaced"]).1;
         for ((what, small), (_, large)) in repeats(0.02).into_iter().zip(repeats(0.3)) {

@@ -6,8 +6,7 @@
 
 use super::attribution::{Attribution, Search};
 use super::causes::CATALOGUE;
-use super::report::{Finding, UNLISTED};
-use super::separation::NONE;
+use super::report::{Finding, INSEPARABLE, UNLISTED};
 use super::target::Target;
 
 /// A cause is named where it explains so many times what is left unexplained in the channels that tell of it,
@@ -92,7 +91,7 @@ pub(super) fn in_common(findings: &mut [Finding]) {
     for finding in findings.iter_mut().filter(|it| asks(it.effect)) {
         if alike(finding.effect) > ALIKE_MAX || effects.len() > CAUSES_MAX {
             finding.confounded_with.push((UNLISTED, Target::Pad));
-            finding.separate_by.get_or_insert_with(|| NONE.to_owned());
+            finding.separate_by.get_or_insert_with(|| INSEPARABLE.to_owned());
         }
     }
 }

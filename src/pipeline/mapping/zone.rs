@@ -67,7 +67,7 @@ mod tests {
             [zone(-180.0, 180.0, [0.0, 8.0]), zone(-180.0, 180.0, [8.0, 20.0]), zone(0.0, 90.0, [0.0, 30.0])];
         for (radius_mm, held, wanted) in [
             (7.99, None, Some(0)),
-            (8.0, None, Some(1)),
+            (8.01, None, Some(1)),
             (9.49, Some(0), Some(0)),
             (9.51, Some(0), Some(1)),
             (6.51, Some(1), Some(1)),

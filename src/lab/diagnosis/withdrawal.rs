@@ -82,14 +82,17 @@ pub(super) fn is_over(square: f64, unnamed_by_channel: &[f64]) -> bool {
 }
 
 /// Sets beside findings that one reason may have in common that it may be none of the catalogue: beside those of one effect at several
-/// targets, and beside three or more of any effects. What each target has of its own does not count, nor what the checks of the
-/// recording found, which is seen in the readings themselves.
+/// targets, beside three or more of any effects, and then also beside what each target has of its own, as that may be a part of it.
+/// What the checks of the recording found does not count: it is seen in the readings themselves.
 pub(super) fn in_common(findings: &mut [Finding]) {
-    let asks = |effect: &str| CATALOGUE.iter().any(|it| it.effect() == effect && !it.is_individual());
+    let of_catalogue = |effect: &str| CATALOGUE.iter().find(|it| it.effect() == effect);
+    let asks = |effect: &str| of_catalogue(effect).is_some_and(|it| !it.is_individual());
     let effects: Vec<&str> = findings.iter().map(|it| it.effect).filter(|effect| asks(effect)).collect();
     let alike = |effect: &str| effects.iter().filter(|it| **it == effect).count();
-    for finding in findings.iter_mut().filter(|it| asks(it.effect)) {
-        if alike(finding.effect) > ALIKE_MAX || effects.len() > CAUSES_MAX {
+    let is_doubted = |effect: &str| alike(effect) > ALIKE_MAX || effects.len() > CAUSES_MAX;
+    let is_any = effects.iter().any(|effect| is_doubted(effect));
+    for finding in findings.iter_mut().filter(|it| of_catalogue(it.effect).is_some()) {
+        if is_doubted(finding.effect) || is_any && !asks(finding.effect) {
             finding.confounded_with.push((UNLISTED, Target::Pad));
             finding.separate_by.get_or_insert_with(|| INSEPARABLE.to_owned());
         }
@@ -147,5 +150,9 @@ mod tests {
             of_channels("channel_gain").chain([("module_rotated", Target::Module(1))]).collect();
         assert_eq!(doubted(&gains), [0; 0]);
         assert_eq!(doubted(&of_channels("channel_dead").collect::<Vec<_>>()), [0; 0]);
+        let leaks = [0, 1].map(|from| ("channel_crosstalk", Target::Channels { into: 4, from }));
+        let beside =
+            [("channel_gain", Target::Channel(4)), leaks[0], leaks[1], ("channel_dead", Target::Channel(8))];
+        assert_eq!(doubted(&beside), [0, 1, 2]);
     }
 }

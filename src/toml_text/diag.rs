@@ -4,6 +4,8 @@ use std::fmt::{self, Write};
 
 use serde::Serialize;
 
+use super::{excerpt, token};
+
 /// Whether what the text describes can still be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -36,14 +38,21 @@ pub struct Diagnostic {
     pub column: usize,
     /// What to do about it, where that can be said.
     pub help: Option<String>,
+    /// Characters from the column on that it is about, at least 1; they may reach beyond the line.
+    #[serde(skip)]
+    pub length: usize,
+    /// The line as it is written, without its end; empty for what is about the whole text.
+    #[serde(skip)]
+    pub source: String,
 }
 
 impl Diagnostic {
-    /// The finding for people, as `FILE:LINE:COLUMN: error: message` and a second line `  help: …`; no final
-    /// newline.
+    /// The finding for people, as `FILE:LINE:COLUMN: error: message`, the line of the text with the place underlined,
+    /// and a last line `  help: …`; no final newline.
     pub fn render(&self, file: &str) -> String {
-        let Self { severity, message, line, column, help } = self;
+        let Self { severity, message, line, column, help, length, source } = self;
         let mut text = format!("{file}:{line}:{column}: {severity}: {message}");
+        excerpt::write(&mut text, source, *line, *column, *length);
         if let Some(help) = help {
             // Writing to a string cannot fail.
             let _ = write!(text, "\n  help: {help}");
@@ -78,8 +87,7 @@ impl<'t> Findings<'t> {
             self.dropped = Some(Severity::Error);
             return;
         }
-        let (line, column) = position(self.text, at);
-        self.broken_lines.push(line);
+        self.broken_lines.push(position(self.text, at).0);
         // A bare word is the usual slip, and the parser names what it took the word for.
         let is_word = message.contains("boolean") || message.contains("must be quoted");
         let help = if is_word {
@@ -87,13 +95,15 @@ impl<'t> Findings<'t> {
         } else {
             decimal_comma(self.text, at).map(|number| format!("write a decimal point: {number}"))
         };
-        self.found.push(Diagnostic {
-            severity: Severity::Error,
-            message: message.to_owned(),
-            line,
-            column,
-            help,
-        });
+        self.found.push(self.finding(Severity::Error, at, message.to_owned(), help));
+    }
+
+    /// Notes an error of the text as a whole, which no line shows; an empty `help` is none.
+    pub(crate) fn unreadable(&mut self, message: impl Into<String>, help: impl Into<String>) {
+        self.error(0, message, help);
+        if let Some(last) = self.found.last_mut() {
+            last.source.clear();
+        }
     }
 
     /// Notes an error at the byte offset `at`; an empty `help` is none.
@@ -120,11 +130,17 @@ impl<'t> Findings<'t> {
             self.dropped = Some(if is_error { Severity::Error } else { severity });
             return;
         }
-        let (line, column) = position(self.text, at);
-        if !self.broken_lines.contains(&line) {
-            let help = if help.is_empty() { None } else { Some(help) };
-            self.found.push(Diagnostic { severity, message, line, column, help });
+        let help = if help.is_empty() { None } else { Some(help) };
+        let finding = self.finding(severity, at, message, help);
+        if !self.broken_lines.contains(&finding.line) {
+            self.found.push(finding);
         }
+    }
+
+    fn finding(&self, severity: Severity, at: usize, message: String, help: Option<String>) -> Diagnostic {
+        let (line, column) = position(self.text, at);
+        let (length, source) = (token::length(self.text, at), line_of(self.text, at).to_owned());
+        Diagnostic { severity, message, line, column, help, length, source }
     }
 
     /// Whether there are so many findings that no other is kept.
@@ -142,9 +158,9 @@ impl<'t> Findings<'t> {
     pub(crate) fn finish(mut self) -> Vec<Diagnostic> {
         self.found.sort_by_key(|finding| (finding.line, finding.column));
         if let Some(severity) = self.dropped {
-            let (line, column) = position(self.text, usize::MAX);
             let message = format!("and more: only {FINDINGS_MAX} findings are listed");
-            self.found.push(Diagnostic { severity, message, line, column, help: None });
+            let more = self.finding(severity, usize::MAX, message, None);
+            self.found.push(Diagnostic { source: String::new(), ..more });
         }
         self.found
     }
@@ -158,6 +174,14 @@ fn position(text: &str, at: usize) -> (usize, usize) {
         (1, 1),
         |(line, column), letter| if letter == '\n' { (line + 1, 1) } else { (line, column + 1) },
     )
+}
+
+/// The line with the byte offset `at`, without its end; behind the end means the last one.
+fn line_of(text: &str, at: usize) -> &str {
+    let (before, after) = text.split_at_checked(at).unwrap_or((text, ""));
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    let end = before.len() + after.find('\n').unwrap_or(after.len());
+    text.get(start..end).unwrap_or_default().trim_end_matches('\r')
 }
 
 /// The number whose decimal comma is at the byte offset `at`, with a point; `None` if there is none.
@@ -209,12 +233,30 @@ mod tests {
         assert!(findings.failed());
         let found = findings.finish();
         let lines: Vec<_> = found.iter().map(|finding| finding.render("p.toml")).collect();
-        assert_eq!(lines, ["p.toml:1:5: error: early\n  help: write 2", "p.toml:2:5: warning: late"]);
+        assert_eq!(
+            lines,
+            [
+                "p.toml:1:5: error: early\n  1 | a = 1\n    |     ^\n  help: write 2",
+                "p.toml:2:5: warning: late\n  2 | b = 2\n    |     ^"
+            ]
+        );
         assert_eq!(
             serde_json::to_string(&found).unwrap(),
             r#"[{"severity":"error","message":"early","line":1,"column":5,"help":"write 2"},"#.to_owned()
                 + r#"{"severity":"warning","message":"late","line":2,"column":5,"help":null}]"#
         );
+    }
+
+    #[test]
+    fn lines_are_those_of_the_place() {
+        let text = "ä = 1\r\n\nbc";
+        for (at, line) in [(0, "ä = 1"), (2, "ä = 1"), (6, "ä = 1"), (8, ""), (9, "bc"), (1_000, "bc")] {
+            assert_eq!(line_of(text, at), line, "{at}");
+        }
+        assert_eq!(line_of("", 3), "");
+        let mut findings = Findings::new("a = 1\n");
+        findings.unreadable("too long", "");
+        assert_eq!(findings.finish()[0].render("p.toml"), "p.toml:1:1: error: too long");
     }
 
     #[test]

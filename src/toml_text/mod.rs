@@ -9,8 +9,10 @@ use toml::de::DeTable;
 use self::diag::Findings;
 
 pub mod diag;
+mod excerpt;
 pub(crate) mod section;
 pub mod spelling;
+mod token;
 
 /// A longer text is not read; the limit bounds what reading one can cost.
 pub const TEXT_BYTES_MAX: usize = 256_000;
@@ -28,7 +30,7 @@ pub(crate) fn parse<'t>(
     findings: &mut Findings<'_>,
 ) -> Option<Spanned<DeTable<'t>>> {
     if text.len() > TEXT_BYTES_MAX {
-        findings.error(0, too_long(), help);
+        findings.unreadable(too_long(), help);
         return None;
     }
     let (tree, faults) = DeTable::parse_recoverable(text);

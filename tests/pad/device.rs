@@ -32,7 +32,7 @@ fn tomls(folder: &str) -> Vec<PathBuf> {
     paths
 }
 
-fn annotation(Diagnostic { severity, message, line, column, help }: &Diagnostic) -> String {
+fn annotation(Diagnostic { severity, message, line, column, help, .. }: &Diagnostic) -> String {
     let help = help.as_ref().map(|help| format!("\n# help: {help}")).unwrap_or_default();
     format!("# {severity}: {line}:{column} {message}{help}")
 }

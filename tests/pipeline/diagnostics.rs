@@ -18,7 +18,7 @@ fn folder(path: &str) -> PathBuf {
 }
 
 fn annotation(finding: &Diagnostic) -> String {
-    let Diagnostic { severity, message, line, column, help } = finding;
+    let Diagnostic { severity, message, line, column, help, .. } = finding;
     let help = help.as_ref().map(|help| format!("\n# help: {help}")).unwrap_or_default();
     format!("# {severity}: {line}:{column} {message}{help}")
 }

@@ -18,6 +18,14 @@ pub fn text(name: &str) -> Option<&'static str> {
     SHIPPED.iter().find(|(shipped, _)| *shipped == name).map(|(_, text)| *text)
 }
 
+/// The profiles' language as a JSON Schema, which editors read.
+pub const fn schema() -> &'static str {
+    include_str!("../../../mappings/profile.schema.json")
+}
+
+/// The first line of a profile beside which the schema lies: editors look for it.
+pub const SCHEMA_LINE: &str = "#:schema ./profile.schema.json\n";
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,7 +104,7 @@ mod tests {
             names().collect::<Vec<_>>(),
             ["super-mario", "tetris", "tank-battle", "contra", "pointer"]
         );
-        assert!(names().all(|name| text(name).is_some()));
+        assert!(names().all(|name| text(name).is_some_and(|text| text.starts_with(SCHEMA_LINE))));
         assert_eq!(text("Contra"), None);
     }
 }

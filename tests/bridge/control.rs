@@ -76,6 +76,32 @@ fn a_bridge_is_asked_paused_changed_and_ended() {
 }
 
 #[test]
+fn a_profile_of_ones_own_stands_before_the_shipped_one_in_the_bridge_too() {
+    let bridge = start(&["--pad", "virtual"]);
+    let folder = bridge.folder.path();
+    await_status(&bridge, "plays", |status| status["state"] == "playing");
+    // A file of this name where `ctl` is asked is not what the name means.
+    fs::write(folder.join("contra"), "nothing").unwrap();
+    let chosen = tactpad(folder).args(["ctl", "profile", "contra"]).status().unwrap();
+    assert!(chosen.success());
+    assert_eq!(bridge.status()["profile"], "Contra");
+    let edited = tactpad(folder).args(["profile", "edit", "contra"]).stdout(Stdio::piped()).output().unwrap();
+    let path = String::from_utf8(edited.stdout).unwrap();
+    let path = Path::new(path.trim());
+    assert!(path.starts_with(folder), "{path:?}");
+    let text = fs::read_to_string(path).unwrap();
+    fs::write(path, text.replace("name = \"Contra\"", "name = \"My Contra\"")).unwrap();
+    assert!(bridge.ctl("reload").status.success());
+    assert_eq!(bridge.status()["profile"], "My Contra");
+    fs::write(path, text.replace("press_n = 2.0", "press_n = 99")).unwrap();
+    let refused = bridge.ctl("profile contra");
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    assert!(said.contains(&format!("{}:", path.display())) && said.contains("| press_n = 99\n"), "{said}");
+    assert_eq!(bridge.status()["profile"], "My Contra");
+}
+
+#[test]
 fn a_bridge_without_a_pad_waits_and_says_so() {
     let bridge = start(&["--pad", "serial:pad", "--wait", "--decoder", "scdf"]);
     let status = await_status(&bridge, "waits", |status| status["state"] == "waiting");

@@ -42,6 +42,7 @@ impl Running {
             .arg(name)
             .current_dir(folder)
             .env("XDG_RUNTIME_DIR", folder)
+            .env("XDG_CONFIG_HOME", folder)
             .stdin(Stdio::null())
             .stdout(Stdio::null());
         program

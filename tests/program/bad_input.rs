@@ -25,7 +25,7 @@ mod decoders;
 /// The program, with backtraces on, so that a panic shows.
 fn tactpad() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
-    command.env("RUST_BACKTRACE", "1").stdin(Stdio::null());
+    command.env("RUST_BACKTRACE", "1").env("XDG_CONFIG_HOME", "/no-such-folder").stdin(Stdio::null());
     command
 }
 

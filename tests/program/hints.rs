@@ -8,7 +8,8 @@ use std::process::{Command, Output, Stdio};
 fn tactpad(folder: &Path, line: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
     command.args(line.split(' ')).current_dir(folder).stdin(Stdio::null());
-    command.env("XDG_RUNTIME_DIR", folder).env("XDG_CACHE_HOME", folder.join("cache")).output().unwrap()
+    command.env("XDG_RUNTIME_DIR", folder).env("XDG_CONFIG_HOME", folder.join("config"));
+    command.env("XDG_CACHE_HOME", folder.join("cache")).output().unwrap()
 }
 
 fn said(output: &Output) -> String {

@@ -13,6 +13,8 @@ mod hints;
 mod large_tables;
 mod networks;
 mod plot;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod profiles;
 mod simulate;
 #[cfg(feature = "simulator")]
 mod simulate_figures;

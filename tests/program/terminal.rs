@@ -33,6 +33,7 @@ impl Terminal {
         let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
         command.args(line.split(' ')).current_dir(folder).env("TERM", term);
         command.env("XDG_RUNTIME_DIR", folder).env("XDG_CACHE_HOME", folder.join("cache"));
+        command.env("XDG_CONFIG_HOME", folder.join("config"));
         let child = command.stdin(Stdio::null()).stdout(host()).stderr(host()).spawn().unwrap();
         let screen = vt100::Parser::new(rows, columns, 10_000);
         Self { child, device: device.into(), screen, written: Vec::new() }

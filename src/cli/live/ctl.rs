@@ -8,6 +8,7 @@ use clap::{Args, Subcommand};
 use serde_json::Value;
 
 use crate::cli::failure::Failure;
+use crate::cli::profile;
 use crate::cli::written::{printable, reason, stdout};
 use tactpad::bridge::control::ask;
 
@@ -100,12 +101,13 @@ fn no_answer(path: &Path, error: &io::Error) -> String {
     }
 }
 
-/// The bridge has a folder of its own: a file is named by its whole path.
+/// The bridge has a working folder of its own: a file is named by its whole path. A profile's name is the bridge's to
+/// find, whatever lies here under that name.
 fn absolute(name: &str) -> Result<String, Failure> {
     if name.contains('\n') {
         return Err(Failure::Unusable("a profile's name has one line".into()));
     }
-    if !Path::new(name).is_file() {
+    if profile::is_known(name) || !Path::new(name).is_file() {
         return Ok(name.to_owned());
     }
     let path = std::path::absolute(name)?;

@@ -6,10 +6,10 @@ use std::path::Path;
 
 use super::output::Output;
 use crate::cli::failure::Failure;
+use crate::cli::profile;
 use crate::cli::written::{is_same, is_stdout, say, written_over};
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::pipeline::capture::reader::{CaptureError, CaptureReader};
-use tactpad::pipeline::mapping::shipped;
 
 /// What a live verb reads and writes.
 pub(super) struct Files<'a> {
@@ -42,11 +42,11 @@ impl Files<'_> {
             Output::Log(path) => Some(path.as_path()),
             _ => None,
         };
-        let profile = shipped::text(self.profile).is_none().then(|| Path::new(self.profile));
+        let profile = profile::file(self.profile);
         for written in [self.capture, log].into_iter().flatten() {
             let read = [
                 (source, "is what is played"),
-                (profile, "is the profile"),
+                (profile.as_deref(), "is the profile"),
                 (self.decoder, "is the decoder"),
             ];
             for (read, what) in read {

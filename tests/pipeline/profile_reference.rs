@@ -21,6 +21,15 @@ fn every_example_of_the_reference_is_a_profile() {
     }
 }
 
+#[test]
+fn the_reference_shows_a_finding_as_it_is_told() {
+    let shown = REFERENCE.split("```text\n").nth(1).and_then(|rest| rest.split("\n```").next());
+    let text = format!("{HEAD}\n[dpad]\nmode = \"5way\"\n");
+    let found = read(&text, OutputChoice::AsWritten).1;
+    let told: Vec<_> = found.iter().map(|finding| finding.render("mine.toml")).collect();
+    assert_eq!(shown, Some(told.join("\n").as_str()));
+}
+
 /// The number keys of the reference's tables: section heading, key, default, lowest, highest.
 fn documented_numbers() -> Vec<(String, String, Option<f32>, f32, f32)> {
     let mut heading = String::new();

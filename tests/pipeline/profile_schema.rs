@@ -27,8 +27,11 @@ fn base() -> Value {
         "schema": 1,
         "name": "Test",
         "output": "gamepad",
+        "access": { "tremor_hz": 1 },
+        "gain": {},
         "dpad": {},
         "pointer": {},
+        "zone": [{ "name": "top" }],
         "button": [
             {
                 "force": "fz",
@@ -37,7 +40,23 @@ fn base() -> Value {
                 "double": { "gamepad": "BTN_EAST", "keyboard": "KEY_B" },
                 "hold": { "gamepad": "BTN_WEST", "keyboard": "KEY_C" },
             },
-            { "force": "fx", "press_n": 2, "out": { "gamepad": "BTN_TL", "keyboard": "KEY_D" } },
+            {
+                "force": "fx",
+                "press_n": 2,
+                "dwell_ms": 800,
+                "dwell_mm": 3,
+                "out": { "gamepad": "BTN_TL", "keyboard": "KEY_D" },
+            },
+            {
+                "force": "-fx",
+                "press_n": 2,
+                "light": { "gamepad": "BTN_TR", "keyboard": "KEY_E" },
+                "hard": { "gamepad": "BTN_START", "keyboard": "KEY_F" },
+                "hard_press_n": 3,
+                "hard_release_n": 2,
+                "skip": "may",
+                "skip_ms": 150,
+            },
         ],
     })
 }
@@ -332,7 +351,7 @@ fn slips_do_not_fit_the_schema() {
         ("button.[].tap", json!({ "gamepad": "BTN_SOUTH" }), "button.0.tap fits 0 of"),
         ("button", json!([{ "force": "fz", "press_n": 1, "hold": { "pointer": "BTN_LEFT" } }]), "lacks tap"),
         ("button", json!([{ "force": "fz", "out": { "pointer": "BTN_LEFT" } }]), "button.0 lacks press_n"),
-        ("button", json!(vec![base()["button"][1].clone(); 9]), "button has more than 8"),
+        ("button", json!(vec![base()["button"][1].clone(); 17]), "button has more than 16"),
     ] {
         // The first button taps: that is where these go.
         let mut document = base();

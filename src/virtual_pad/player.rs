@@ -73,6 +73,8 @@ struct Player<'p> {
     radius_mm: f32,
     /// Long enough for filter and ledger to follow.
     pause_us: u64,
+    /// How long a press lasts before it counts.
+    slow_us: u64,
 }
 
 impl<'p> Player<'p> {
@@ -89,13 +91,16 @@ impl<'p> Player<'p> {
             .fold((touch::ON_N, 0.0_f32), |most, gate| (most.0.max(gate.0), most.1.max(gate.1)));
         let (floor_n, ceiling_n) = (1.5 * touch_n, (0.7 * press_n).min(0.8 * release_n));
         let filter_us = SAMPLE_US.saturating_mul(profile.filter_samples as u64);
-        let follow_us = profile.min_press_us.saturating_add(filter_us).saturating_add(SLACK_US);
+        let (slow_us, bounce_us) = (profile.access.slow_us, profile.access.bounce_us);
+        let follow_us =
+            profile.min_press_us.max(bounce_us).saturating_add(filter_us).saturating_add(SLACK_US);
         Self {
             profile,
             light_n: floor_n + 0.6 * (ceiling_n - floor_n),
             grip_n: 0.75 * press_n,
             radius_mm: (0.5 * (centre_mm + 27.0)).min(RADIUS_MAX_MM),
             pause_us: follow_us.max(PAUSE_MIN_US),
+            slow_us,
         }
     }
 
@@ -197,7 +202,10 @@ impl<'p> Player<'p> {
     fn simple(&self, index: usize) -> Option<&'p Button> {
         let button = self.profile.buttons.get(index)?;
         let is_simple = |it: &Button| {
-            it.place.is_none() && it.hair_n.is_none() && !matches!(it.action, Action::ByForce { .. })
+            it.place.is_none()
+                && it.hair_n.is_none()
+                && it.dwell.is_none()
+                && !matches!(it.action, Action::ByForce { .. })
         };
         let mut same_force = self.profile.buttons.iter().filter(|it| it.force == button.force);
         same_force.all(is_simple).then_some(button)
@@ -218,7 +226,7 @@ impl<'p> Player<'p> {
         };
         let mut press = self.press_step(index, button, aim);
         press.held.extend(held.into_iter().flat_map(|keys| keys.iter()));
-        press.stay_us = stay_us;
+        press.stay_us = stay_us.saturating_add(self.slow_us);
         Some(self.around_press(vec![press], aim, tapped))
     }
 
@@ -230,7 +238,7 @@ impl<'p> Player<'p> {
             return None;
         }
         let mut wait = self.press_step(index, button, aim);
-        wait.stay_us = hold.us;
+        wait.stay_us = hold.us.saturating_add(self.slow_us);
         let mut held = Step { ramp_us: 0, stay_us: self.pause_us, ..wait.clone() };
         held.held.extend(plain(hold.effect)?.iter());
         Some(self.around_press(vec![wait, held], aim, None))

@@ -114,7 +114,10 @@ fn ones_own_profile_stands_before_the_shipped_one() {
     let folder = folder.path();
     let shipped = printed(&tactpad(folder, "profile show contra"));
     let list = printed(&tactpad(folder, "profile list"));
-    assert_eq!(list, "super-mario\ntetris\ntank-battle\ncontra\npointer\n");
+    assert_eq!(
+        list,
+        "super-mario\ntetris\ntank-battle\ncontra\npointer\none-button\nsuper-mario-left\nsuper-mario-light\n"
+    );
     let edited = tactpad(folder, "profile edit contra");
     let path = own(folder, "contra.toml");
     assert_eq!(printed(&edited).trim(), path.display().to_string());

@@ -1,11 +1,14 @@
 //! The profiles that are inside the program, so that it runs from any folder.
 
-const SHIPPED: [(&str, &str); 5] = [
+const SHIPPED: [(&str, &str); 8] = [
     ("super-mario", include_str!("../../../mappings/super-mario.toml")),
     ("tetris", include_str!("../../../mappings/tetris.toml")),
     ("tank-battle", include_str!("../../../mappings/tank-battle.toml")),
     ("contra", include_str!("../../../mappings/contra.toml")),
     ("pointer", include_str!("../../../mappings/pointer.toml")),
+    ("one-button", include_str!("../../../mappings/one-button.toml")),
+    ("super-mario-left", include_str!("../../../mappings/super-mario-left.toml")),
+    ("super-mario-light", include_str!("../../../mappings/super-mario-light.toml")),
 ];
 
 /// The names under which profiles are shipped.
@@ -102,7 +105,16 @@ mod tests {
     fn every_name_has_a_text_and_no_other() {
         assert_eq!(
             names().collect::<Vec<_>>(),
-            ["super-mario", "tetris", "tank-battle", "contra", "pointer"]
+            [
+                "super-mario",
+                "tetris",
+                "tank-battle",
+                "contra",
+                "pointer",
+                "one-button",
+                "super-mario-left",
+                "super-mario-light"
+            ]
         );
         assert!(names().all(|name| text(name).is_some_and(|text| text.starts_with(SCHEMA_LINE))));
         assert_eq!(text("Contra"), None);

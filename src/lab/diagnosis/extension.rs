@@ -4,7 +4,7 @@ use super::causes::{creep, hysteresis};
 use super::mechanics::side_share;
 use super::report::Diagnosis;
 use super::target::Target;
-use crate::pad::device::behaviour::{Ageing, Crosstalk, ModuleCrosstalk, Play, Prony};
+use crate::pad::device::behaviour::{Crosstalk, ModuleCrosstalk, Play, Prony};
 use crate::pad::device::parameter::Parameter;
 use crate::pad::device::{Device, Module, Side};
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
@@ -214,7 +214,8 @@ fn set_numbers(
         let (_, _, number, change) = NUMBERS.iter().find(known)?;
         let mut value = *value;
         if effect == "ageing" {
-            value *= whole_per_part(&device.behaviour.ageing, last_cycle?)?;
+            // The device file says what is lost after its own number of cycles.
+            value /= Some(device.behaviour.ageing.part(last_cycle?)).filter(|part| *part > 0.0)?;
         }
         for name in names(number, target) {
             let parameter: Parameter = name.parse().ok()?;
@@ -228,12 +229,6 @@ fn set_numbers(
         }
     }
     Some(())
-}
-
-/// A device file says what is lost after its own number of cycles: how many times as much as after these.
-fn whole_per_part(ageing: &Ageing, cycles: f64) -> Option<f64> {
-    let lost = |cycles: f64| libm::log1p(cycles / ageing.onset_cycles);
-    (cycles > 0.0).then(|| lost(ageing.cycles) / lost(cycles))
 }
 
 /// The device's numbers of this name; where a channel's is wanted and the target is the whole pad, those of all channels.

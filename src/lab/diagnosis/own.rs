@@ -8,8 +8,18 @@ use crate::quantity::CHANNELS;
 
 /// What a device's file says of its channels and of the rig that measures it.
 pub(super) fn own_chain(device: &Device, weights: Vec<f64>, reference: &Reference) -> Chain {
-    let Behaviour { thermal, crosstalk, module_crosstalk, hysteresis, creep, noise, sampling, rig, .. } =
-        &device.behaviour;
+    let Behaviour {
+        thermal,
+        crosstalk,
+        module_crosstalk,
+        hysteresis,
+        creep,
+        ageing,
+        noise,
+        sampling,
+        rig,
+        ..
+    } = &device.behaviour;
     let modules = || device.modules.iter();
     let nominal = Chain::nominal(CHANNELS, weights.len());
     Chain {
@@ -29,6 +39,8 @@ pub(super) fn own_chain(device: &Device, weights: Vec<f64>, reference: &Referenc
         channels: ChannelChain {
             module_shares: module_crosstalk.iter().flat_map(by_axis).collect(),
             gain: modules().flat_map(|module| module.gain).collect(),
+            // What is lost by the recording's last cycle.
+            loss: ageing.share.iter().map(|share| share * ageing.part(reference.cycle)).collect(),
             gain_per_c: thermal.gain_per_c.to_vec(),
             shares: crosstalk.iter().map(|it| (it.channel, it.with, it.share)).collect(),
             offset: modules().flat_map(|module| module.offset_uv).collect(),
@@ -60,4 +72,27 @@ fn prony(it: &behaviour::Prony) -> impl Iterator<Item = Prony> + use<'_> {
 fn by_axis(it: &ModuleCrosstalk) -> impl Iterator<Item = (usize, usize, f64)> + use<> {
     let ModuleCrosstalk { module, with, share } = *it;
     (0..3).map(move |axis| (3 * module + axis, 3 * with + axis, share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_channel_has_lost_its_share_at_its_number_of_cycles() {
+        let mut device = Device::nominal();
+        device.behaviour.ageing.share[4] = 0.2;
+        let reference = |cycle: f64| Reference {
+            temp_c: 25.0,
+            t_s: 0.0,
+            cycle,
+            full_scale: vec![1.0; CHANNELS],
+            sizes: vec![1.0; CHANNELS],
+        };
+        let loss = |cycle: f64| own_chain(&device, Vec::new(), &reference(cycle)).channels.loss;
+        let whole = device.behaviour.ageing.cycles;
+        assert!((loss(whole)[4] - 0.2).abs() < 1e-12 && loss(whole)[3] == 0.0);
+        assert!((0.05..0.2).contains(&loss(0.1 * whole)[4]), "{}", loss(0.1 * whole)[4]);
+        assert_eq!(loss(0.0)[4], 0.0);
+    }
 }

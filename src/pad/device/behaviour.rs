@@ -107,6 +107,13 @@ pub struct Ageing {
     pub onset_cycles: f64,
 }
 
+impl Ageing {
+    /// The part of `share` that is lost after n cycles: ln(1 + n/n₀)/ln(1 + N/n₀).
+    pub fn part(&self, cycles: f64) -> f64 {
+        libm::log1p(cycles / self.onset_cycles) / libm::log1p(self.cycles / self.onset_cycles)
+    }
+}
+
 /// Random parts of each channel, and drift of its zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {

@@ -103,8 +103,7 @@ impl TwinPad {
 
     /// Share of a channel's strain that is left after these cycles of load.
     fn left(&self, channel: usize, cycles: f64) -> f64 {
-        let Ageing { share, cycles: whole, onset_cycles } = &self.ageing;
-        1.0 - share[channel] * libm::log1p(cycles / onset_cycles) / libm::log1p(whole / onset_cycles)
+        1.0 - self.ageing.share[channel] * self.ageing.part(cycles)
     }
 
     /// Noise, drift and pickup.

@@ -39,8 +39,8 @@ pub(super) fn run(json: bool) -> Result<(), Failure> {
     for Entry { name, own, shipped, .. } in profiles {
         text += &match (own, shipped) {
             (false, _) => format!("{name}\n"),
-            (true, false) => format!("{name:<16} your own\n"),
-            (true, true) => format!("{name:<16} your own, before the shipped one\n"),
+            (true, false) => format!("{name:<18} your own\n"),
+            (true, true) => format!("{name:<18} your own, before the shipped one\n"),
         };
     }
     Ok(stdout().write_all(text.as_bytes())?)

@@ -55,7 +55,7 @@ pub struct Pointer {
     pub centre_radius_mm: f32,
     /// From this distance on it has its full speed; more than `centre_radius_mm`.
     pub full_radius_mm: f32,
-    /// The full speed, at most [`POINTER_SPEED_MAX`].
+    /// The full speed, at most [`POINTER_SPEED_MAX`](super::profile::POINTER_SPEED_MAX).
     pub speed_counts_per_s: f32,
     /// Between the two distances the speed grows with this power of the part of the way.
     pub curve: f32,

@@ -105,12 +105,13 @@ impl ButtonDraft {
 
     /// What the kinds of press of this button, the `number`th, drive.
     pub(super) fn uses(&self, number: usize) -> impl Iterator<Item = Use> + use<> {
+        let place = self.place;
         let effects = self.action.as_ref().map(|action| action.effects);
         let all = effects.into_iter().flat_map(|effects| Role::ALL.into_iter().zip(effects));
         all.filter_map(move |(role, effect)| {
             let EffectDraft { outputs, mode } = effect?;
             let owner = Owner::Button { number, role: role.name() };
-            Some(Use { owner, outputs, toggles: matches!(mode, Some(Mode::Toggle | Mode::Sticky)) })
+            Some(Use { owner, outputs, toggles: matches!(mode, Some(Mode::Toggle | Mode::Sticky)), place })
         })
     }
 

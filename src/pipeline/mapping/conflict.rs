@@ -7,7 +7,7 @@
 use std::fmt;
 
 use super::binding::Outputs;
-use super::profile::{Binding, CONTROLS_MAX, DpadMode, Keys};
+use super::profile::{Binding, CONTROLS_MAX, Direction, DpadMode, Keys, Place};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::Placed;
@@ -40,6 +40,8 @@ pub(super) struct Use {
     pub(super) outputs: Outputs,
     /// Whether it stays down when its press is over.
     pub(super) toggles: bool,
+    /// Where it counts, if not everywhere.
+    pub(super) place: Option<Place>,
 }
 
 /// One control of an owner on a device.
@@ -130,6 +132,21 @@ fn meet(left: &Use, right: &Use, mode: Option<DpadMode>) -> bool {
             let vertical = |name: &str| name == "up" || name == "down";
             mode == Some(DpadMode::EightWay) && vertical(left) != vertical(right)
         }
-        (one, other) => !same_button(one, other) || left.toggles || right.toggles,
+        (one, other) => {
+            let is_apart = same_button(one, other) || are_apart(left.place, right.place);
+            !is_apart || left.toggles || right.toggles
+        }
+    }
+}
+
+/// Whether no contact is at both places: it is in one zone at a time, and holds no two opposite directions.
+const fn are_apart(left: Option<Place>, right: Option<Place>) -> bool {
+    use Direction::{Down, Left, Right, Up};
+    match (left, right) {
+        (Some(Place::Zone(one)), Some(Place::Zone(other))) => one != other,
+        (Some(Place::Direction(one)), Some(Place::Direction(other))) => {
+            matches!((one, other), (Left, Right) | (Right, Left) | (Up, Down) | (Down, Up))
+        }
+        _ => false,
     }
 }

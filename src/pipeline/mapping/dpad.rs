@@ -69,7 +69,12 @@ impl DpadDraft {
     /// What its directions drive.
     pub(super) fn uses(&self) -> impl Iterator<Item = Use> + use<> {
         let named = self.directions.into_iter().zip(DIRECTIONS);
-        named.map(|(outputs, (name, ..))| Use { owner: Owner::Direction(name), outputs, toggles: false })
+        named.map(|(outputs, (name, ..))| Use {
+            owner: Owner::Direction(name),
+            outputs,
+            toggles: false,
+            place: None,
+        })
     }
 
     /// The D-pad on `device`; `None` if a part of it is missing.

@@ -1,7 +1,7 @@
 //! What the findings are worth on rows that had no part in finding them.
 
 use super::attribution::{Applied, Fit, Search};
-use super::mean_square::{Counts, Draw, Squares, interval95};
+use super::mean_square::{Draw, Population, Squares};
 use super::model::{Hypothesis, Model, Told};
 use super::noise::Noise;
 use super::observations::{Observations, Sample};
@@ -55,52 +55,53 @@ impl Rows<'_> {
         residuals
     }
 
-    /// For each cluster, how far decoded contacts are from those that were written; rows without one have none. None where the
-    /// model knows no contacts.
+    /// For each row, how far the decoded contact is from the one that was written; one without a contact counts nothing. None where
+    /// the model knows no contacts.
     fn errors(&self, applied: &Applied, told: &Told<'_>) -> Option<Vec<Errors>> {
         let contacts = self.model.contacts(applied, told)?;
-        let clusters = self.observations.clusters();
-        let mut errors = vec![Errors::default(); clusters.iter().max().map_or(0, |last| last + 1)];
-        let rows = self.observations.samples.iter().zip(contacts).zip(clusters);
-        for ((sample, contact), cluster) in rows.filter(|((sample, _), _)| is_loaded(sample)) {
-            let Some([x, y, fx, fy, fz]) = contact else { continue };
-            let off =
-                |found: &[f64], written: &[f64]| mean(found.iter().zip(written).map(|(a, b)| (a - b).abs()));
-            let Errors { rows, sums: [place, load] } = &mut errors[cluster];
-            *rows += 1.0;
-            *place += off(&[x, y], &sample.place_mm);
-            *load += off(&[fx, fy, fz], &sample.load);
-        }
-        Some(errors)
+        let off =
+            |found: &[f64], written: &[f64]| mean(found.iter().zip(written).map(|(a, b)| (a - b).abs()));
+        let error = |(sample, contact): (&Sample, Option<[f64; 5]>)| match contact {
+            Some([x, y, fx, fy, fz]) if is_loaded(sample) => Errors {
+                contacts: 1.0,
+                errors: [off(&[x, y], &sample.place_mm), off(&[fx, fy, fz], &sample.load)],
+            },
+            _ => Errors::default(),
+        };
+        Some(self.observations.samples.iter().zip(contacts).map(error).collect())
     }
 
-    /// For each cluster, the sum of squares beside these zeros.
+    /// For each row, the sum of squares beside these zeros.
     fn squares(&self, applied: &Applied, zeros: &[f64]) -> Vec<f64> {
         let left = self.residuals(applied);
         let beside = |(channel, zero): (&Vec<f64>, &f64)| channel.iter().map(|it| it - zero).collect();
         self.added(&left.iter().zip(zeros).map(beside).collect::<Vec<Vec<f64>>>(), |left| left * left)
     }
 
-    /// For each cluster, the sum over all readings that are numbers.
+    /// For each row, the sum over all readings that are numbers.
     fn added(&self, channels: &[Vec<f64>], of: impl Fn(f64) -> f64) -> Vec<f64> {
-        let clusters = self.observations.clusters();
-        let mut sums = vec![0.0; clusters.iter().max().map_or(0, |last| last + 1)];
+        let mut sums = vec![0.0; self.observations.rows()];
         for channel in channels {
-            for (value, cluster) in channel.iter().zip(&clusters).filter(|(it, _)| !it.is_nan()) {
-                sums[*cluster] += of(*value);
+            for (sum, value) in sums.iter_mut().zip(channel).filter(|(_, it)| !it.is_nan()) {
+                *sum += of(*value);
             }
         }
         sums
     }
 
-    /// For each cluster, how many readings tell something.
-    fn counts(&self) -> Vec<f64> {
-        let is_told = &self.observations.is_told;
-        let told = |channel: &Vec<bool>| channel.iter().map(|it| if *it { 1.0 } else { f64::NAN }).collect();
-        self.added(&is_told.iter().map(told).collect::<Vec<Vec<f64>>>(), |one| one)
+    /// For each row, the variance of its readings' noise, where these are expected without it.
+    fn noise_squares(&self, expected: &[Vec<f64>], noise: &[Noise]) -> Vec<f64> {
+        let variance = |channel: usize, row: usize| {
+            let in_series = self.observations.samples[row].is_in_series();
+            let is_told = self.observations.is_told[channel][row];
+            if is_told { noise[channel].variance(expected[channel][row], in_series) } else { f64::NAN }
+        };
+        let rows = self.observations.rows();
+        let squares = (0..noise.len()).map(|channel| (0..rows).map(|row| variance(channel, row)).collect());
+        self.added(&squares.collect::<Vec<Vec<f64>>>(), |square| square)
     }
 
-    /// For each cluster, the squares that are to be expected beside these zeros, where the channels have this noise and `expected`
+    /// For each row, the squares that are to be expected beside these zeros, where the channels have this noise and `expected`
     /// are the readings without it.
     fn expected_squares(
         &self,
@@ -127,13 +128,13 @@ fn is_loaded(sample: &Sample) -> bool {
     sample.load.iter().map(|n| n * n).sum::<f64>() > UNLOADED_N * UNLOADED_N
 }
 
-/// Errors of the decoded contacts of a cluster, added up.
+/// How far a decoded contact is off.
 #[derive(Clone, Copy, Default)]
 struct Errors {
-    /// How many contacts.
-    rows: f64,
-    /// Of each, the mean magnitude of the error along the axes: of its place, of its load.
-    sums: [f64; 2],
+    /// 1, or 0 where there is none.
+    contacts: f64,
+    /// The mean magnitude of the error along the axes: of its place, of its load.
+    errors: [f64; 2],
 }
 
 /// Root mean square of residuals beside zeros.
@@ -166,21 +167,24 @@ impl Search<'_> {
             Some(_) => self::squares(measured, &nothing, None),
             None => squares(&nothing),
         };
-        let counts = Counts { locked: measured[1].counts(), open: measured[0].counts() };
+        let noise_squares = [(locked, &expected.readings[1]), (open, &expected.readings[0])]
+            .map(|(rows, at)| rows.noise_squares(at, noise));
+        let population = Population::of([measured[1].observations, measured[0].observations], noise_squares);
         let ratio = |extended: &Squares, draw: &Draw| {
-            (extended.mean(&counts, draw) / nominal.mean(&counts, draw)).sqrt()
+            (population.mean(extended, draw) / population.mean(&nominal, draw)).sqrt()
         };
+        let as_measured = population.as_measured();
         let without = |at: usize| {
             let others: Applied =
                 applied.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, it)| it.clone()).collect();
             let Hypothesis { effect, target, .. } = self.model.hypotheses()[applied[at].0];
-            Without { effect, target, rmse_ratio: ratio(&squares(&others), &Draw::all(&counts)) }
+            Without { effect, target, rmse_ratio: ratio(&squares(&others), &as_measured) }
         };
-        let [position_mae, force_mae] = decoded(measured, rows, applied, (noise, &counts));
+        let [position_mae, force_mae] = decoded(measured, rows, applied, (noise, &population));
         Some(Gain {
             rows_locked: locked.observations.rows(),
-            rmse_ratio: ratio(&extended, &Draw::all(&counts)),
-            rmse_ratio_interval95: interval95(&counts, |draw| ratio(&extended, draw)),
+            rmse_ratio: ratio(&extended, &as_measured),
+            rmse_ratio_interval95: population.interval95(|draw| ratio(&extended, draw)),
             position_mae,
             force_mae,
             per_cause: (0..applied.len()).map(without).collect(),
@@ -229,7 +233,7 @@ fn squares([open, locked]: [&Rows<'_>; 2], applied: &Applied, known: Option<&Exp
     Squares { found, expected }
 }
 
-/// For each cluster of the locked rows, the squares of a dead channel's readings, which stay where they are. What a converter cuts off
+/// For each of the locked rows, the squares of a dead channel's readings, which stay where they are. What a converter cuts off
 /// is at its limit, and leaves nothing.
 fn silent([open, locked]: [&Rows<'_>; 2]) -> Option<Vec<f64>> {
     let of = |rows: &Rows<'_>| -> Option<Vec<Vec<f64>>> {
@@ -254,27 +258,29 @@ fn decoded(
     measured: [&Rows<'_>; 2],
     rows: [&Rows<'_>; 2],
     applied: &Applied,
-    (noise, counts): (&[Noise], &Counts),
+    (noise, population): (&[Noise], &Population),
 ) -> [Option<Decoded>; 2] {
     let errors = |[open, locked]: [&Rows<'_>; 2], applied: &Applied| {
         locked.errors(applied, &Told { zeros: &open.zeros(applied), noise })
     };
     let both = errors(measured, &Applied::new()).zip(errors(rows, applied));
-    [0, 1].map(|at| both.as_ref().and_then(|(nominal, extended)| changed(nominal, extended, at, counts)))
+    [0, 1].map(|at| both.as_ref().and_then(|(nominal, extended)| changed(nominal, extended, at, population)))
 }
 
 /// How the mean error of places (0) or loads (1) changes; none where there is no contact.
-fn changed(nominal: &[Errors], extended: &[Errors], at: usize, counts: &Counts) -> Option<Decoded> {
-    let of = |errors: &[Errors], drawn: &[usize]| {
-        let sum = |it: fn(&Errors, usize) -> f64| drawn.iter().map(|k| it(&errors[*k], at)).sum::<f64>();
-        sum(|errors, at| errors.sums[at]) / sum(|errors, _| errors.rows)
+fn changed(nominal: &[Errors], extended: &[Errors], at: usize, population: &Population) -> Option<Decoded> {
+    let of = |errors: &[Errors], draw: &Draw| {
+        let sum = |it: &dyn Fn(&Errors) -> f64| -> f64 {
+            draw.weights[0].iter().zip(errors).map(|(weight, error)| weight * it(error)).sum()
+        };
+        sum(&|error| error.errors[at]) / sum(&|error| error.contacts)
     };
-    let all: Vec<usize> = (0..nominal.len()).collect();
-    let change = |draw: &Draw| of(extended, &draw.locked) - of(nominal, &draw.locked);
-    let (nominal_mean, extended_mean) = (of(nominal, &all), of(extended, &all));
+    let change = |draw: &Draw| of(extended, draw) - of(nominal, draw);
+    let as_measured = population.as_measured();
+    let (nominal_mean, extended_mean) = (of(nominal, &as_measured), of(extended, &as_measured));
     (nominal_mean.is_finite() && extended_mean.is_finite()).then(|| Decoded {
         nominal: nominal_mean,
         extended: extended_mean,
-        change_interval95: interval95(counts, change),
+        change_interval95: population.interval95(change),
     })
 }

@@ -12,6 +12,7 @@ use crate::bridge::snapshot::Drops;
 use crate::pipeline::call::Call;
 use crate::pipeline::control::OutputDevice;
 use crate::pipeline::mapping::profile::Profile;
+use crate::pipeline::mapping::stated::Commands;
 use crate::pipeline::{NoProbe, Pipeline};
 use crate::time::HostInstant;
 
@@ -23,6 +24,8 @@ pub(super) struct Driver {
     pub(super) clock: Clock,
     /// From bytes readable to events written, one per group. Some sinks write in a thread of their own.
     pub(super) latency: Arc<Mutex<Durations>>,
+    /// What presses asked for, and was not done yet.
+    pub(super) commands: Commands,
 }
 
 impl Driver {
@@ -32,6 +35,10 @@ impl Driver {
         while let Some(call) = left {
             left = self.pipeline.apply(now, call, &mut NoProbe);
             self.deliver(now, call)?;
+            for command in self.pipeline.commands() {
+                // More in one read than there is room for: nobody presses so fast.
+                let _ = self.commands.try_push(*command);
+            }
         }
         match &mut self.recorder {
             Some(recorder) => recorder.write(now, call).map_err(BridgeError::Io),

@@ -10,6 +10,13 @@ pub trait Host {
     /// It cannot be used; the text is for people.
     fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String>;
 
+    /// Reads the profile that comes after the one in use. Only those are taken from which a press leads on, so that nobody who has no
+    /// other input is left in one.
+    ///
+    /// # Errors
+    /// There is none; the text is for people.
+    fn next_profile(&mut self) -> Result<ReadProfile, String>;
+
     /// Tells people what the bridge is doing, when that changed.
     fn tell(&mut self, line: &str);
 }

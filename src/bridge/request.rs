@@ -23,6 +23,8 @@ pub enum Request {
     Retare,
     /// Go over to another profile; `None` reads the one in use again.
     Profile(Option<String>),
+    /// Go over to the next profile that a press can leave again.
+    NextProfile,
     /// Tell what the bridge is doing.
     Status,
 }
@@ -39,6 +41,7 @@ impl Request {
                 "resume" => Some(Self::Resume),
                 "panic" => Some(Self::ReleaseAll),
                 "tare" => Some(Self::Retare),
+                "next-profile" => Some(Self::NextProfile),
                 "reload" => Some(Self::Profile(None)),
                 "quit" => Some(Self::End),
                 _ => None,
@@ -101,6 +104,7 @@ mod tests {
         for (line, request) in [
             ("status\n", Some(Request::Status)),
             ("panic\r\n", Some(Request::ReleaseAll)),
+            ("next-profile\n", Some(Request::NextProfile)),
             ("reload\n", Some(Request::Profile(None))),
             ("profile my game.toml\n", Some(Request::Profile(Some("my game.toml".into())))),
             ("profile \n", None),

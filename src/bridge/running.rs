@@ -23,7 +23,9 @@ use crate::bridge::state::State;
 use crate::pipeline::call::Call;
 use crate::pipeline::capture::head::Head;
 use crate::pipeline::health::Health;
+use crate::pipeline::mapping::profile::Command;
 use crate::pipeline::mapping::read::ReadProfile;
+use crate::pipeline::mapping::stated::Commands;
 use crate::pipeline::{Phase, Pipeline};
 use crate::time::HostInstant;
 
@@ -77,7 +79,8 @@ impl Bridge {
         let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
         let head = Head { decoder: decoder.file, profile: Some(profile) };
         let recorder = record.map(|to| Recorder::begin(to, now, &head)).transpose()?;
-        let driver = Driver { pipeline, sink, recorder, clock, latency: Arc::default() };
+        let driver =
+            Driver { pipeline, sink, recorder, clock, latency: Arc::default(), commands: Commands::new() };
         let keeper = Keeper::new(pad, patience, now);
         let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, &decoder.name)));
         Ok(Self {
@@ -161,6 +164,7 @@ impl Bridge {
             if self.read_pad(now)? {
                 return Ok(Some(Ending::CaptureEnded));
             }
+            self.obey(now)?;
         } else {
             self.driver.call_if_due(now)?;
         }
@@ -246,7 +250,14 @@ impl Bridge {
     fn answer(&mut self, now: HostInstant, asked: &Asked) -> Result<(), BridgeError> {
         let answer = match &asked.request {
             Request::Status => self.status(now),
-            Request::Profile(name) => self.change_profile(now, name.as_deref())?,
+            Request::Profile(name) => {
+                let read = self.host.read_profile(name.as_deref());
+                self.change_profile(now, read)?
+            }
+            Request::NextProfile => {
+                let read = self.host.next_profile();
+                self.change_profile(now, read)?
+            }
             request => {
                 let call = match request {
                     Request::ReleaseAll => Call::ReleaseAll,
@@ -263,9 +274,28 @@ impl Bridge {
         Ok(())
     }
 
+    /// Does what presses asked for.
+    fn obey(&mut self, now: HostInstant) -> Result<(), BridgeError> {
+        for command in std::mem::take(&mut self.driver.commands) {
+            let request = match command {
+                Command::NextProfile => Request::NextProfile,
+                Command::Profile(name) => Request::Profile(Some(name.to_string())),
+                Command::TogglePause => Request::TogglePause,
+                Command::Panic => Request::ReleaseAll,
+                Command::Tare => Request::Retare,
+            };
+            self.answer(now, &Asked::unanswered(request))?;
+        }
+        Ok(())
+    }
+
     /// Goes over to another profile; one that cannot be used changes nothing.
-    fn change_profile(&mut self, now: HostInstant, name: Option<&str>) -> Result<String, BridgeError> {
-        match self.ready_profile(name) {
+    fn change_profile(
+        &mut self,
+        now: HostInstant,
+        read: Result<ReadProfile, String>,
+    ) -> Result<String, BridgeError> {
+        match read.and_then(|read| self.made_ready(read)) {
             Ok(read) => {
                 self.host.tell(&format!("profile {}", read.profile().name));
                 self.driver.call(now, Call::Profile(&read))?;
@@ -278,9 +308,8 @@ impl Bridge {
         }
     }
 
-    /// A profile whose devices are there; the error is for people.
-    fn ready_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
-        let read = self.host.read_profile(name)?;
+    /// The profile, now that its devices are there; the error is for people.
+    fn made_ready(&mut self, read: ReadProfile) -> Result<ReadProfile, String> {
         match prepare(self.driver.sink.as_mut(), read.profile()) {
             Ok(()) => Ok(read),
             Err(error) => Err(error.to_string()),
@@ -328,6 +357,7 @@ fn look(now: HostInstant, driver: &Driver, keeper: &Keeper, decoder: &str) -> Sn
         state: state(driver, keeper),
         pad: pipeline.identity().map(|identity| identity.serial_number),
         profile: pipeline.profile().name.clone(),
+        layer: pipeline.layer().map(str::to_owned),
         decoder: decoder.to_owned(),
         output: sink.describe(),
         contact: pipeline.contact().copied(),
@@ -383,6 +413,10 @@ mod tests {
         fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
             let text = name.and_then(profiles::text).ok_or("there is none")?;
             ReadProfile::read(text, OutputChoice::AsWritten).0.ok_or("it has errors".into())
+        }
+
+        fn next_profile(&mut self) -> Result<ReadProfile, String> {
+            Err("there is no next one".into())
         }
 
         fn tell(&mut self, line: &str) {
@@ -441,11 +475,35 @@ mod tests {
     fn another_profile_is_taken_and_one_that_cannot_be_read_is_told() {
         let (mut bridge, ear, _) = without_pad();
         let now = bridge.snapshot_at;
-        assert_eq!(bridge.change_profile(now, Some("tetris")).unwrap(), done());
+        assert_eq!(
+            {
+                let read = bridge.host.read_profile(Some("tetris"));
+                bridge.change_profile(now, read).unwrap()
+            },
+            done()
+        );
         assert_eq!(bridge.look(now).status.profile, "Tetris");
-        let answer = bridge.change_profile(now, None).unwrap();
+        let read = bridge.host.read_profile(None);
+        let answer = bridge.change_profile(now, read).unwrap();
         assert_eq!(answer, r#"{"error":"there is none","ok":false}"#);
         assert_eq!(*ear.0.lock().unwrap(), ["profile Tetris", "there is none\nthe profile in use stays"]);
+    }
+
+    #[test]
+    fn what_a_press_asks_for_is_done() {
+        let (mut bridge, ear, _) = without_pad();
+        let now = bridge.snapshot_at;
+        let mut ask = |command| {
+            bridge.driver.commands.push(command);
+            bridge.obey(now).unwrap();
+            (bridge.driver.pipeline.phase(), bridge.look(now).status.profile)
+        };
+        assert_eq!(ask(Command::TogglePause).0, Phase::Paused);
+        assert_eq!(ask(Command::TogglePause).0, Phase::Waiting);
+        assert_eq!(ask(Command::Profile("tetris".try_into().unwrap())).1, "Tetris");
+        assert_eq!(ask(Command::NextProfile).1, "Tetris");
+        let told = ear.0.lock().unwrap();
+        assert_eq!(*told, ["profile Tetris", "there is no next one\nthe profile in use stays"]);
     }
 
     #[test]

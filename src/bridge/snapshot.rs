@@ -39,6 +39,8 @@ pub struct Status {
     pub pad: Option<SerialNumber>,
     /// The profile's name.
     pub profile: String,
+    /// The layer of it that is on.
+    pub layer: Option<String>,
     /// What people call the decoder.
     pub decoder: String,
     /// Where events go.
@@ -125,6 +127,7 @@ mod tests {
             state: State::Playing,
             pad: SerialNumber::from_ascii("A-1"),
             profile: "Contra".into(),
+            layer: None,
             decoder: "inverse".into(),
             output: "nowhere".into(),
             contact: Some(Contact { x_mm: 0.1, fz_n: 2.0, ..Contact::default() }),
@@ -146,7 +149,7 @@ mod tests {
     fn the_status_keeps_its_keys_and_their_order() {
         let text = serde_json::to_string(&snapshot().status).unwrap();
         let expected = concat!(
-            r#"{"state":"playing","pad":"A-1","profile":"Contra","decoder":"inverse","output":"nowhere","#,
+            r#"{"state":"playing","pad":"A-1","profile":"Contra","layer":null,"decoder":"inverse","output":"nowhere","#,
             r#""contact":{"x_mm":0.1,"y_mm":0.0,"fx_n":0.0,"fy_n":0.0,"fz_n":2.0},"held":["KEY_UP"],"#,
             r#""warning":null,"presses":{"accepted":4,"rejected":1},"health":{"samples":7,"#
         );

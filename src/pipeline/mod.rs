@@ -40,7 +40,8 @@ use crate::pipeline::link::{Fault, Link, LinkEvent};
 use crate::pipeline::mapping::accept::Presses;
 use crate::pipeline::mapping::engine::Engine;
 use crate::pipeline::mapping::intent::Level;
-use crate::pipeline::mapping::profile::Profile;
+use crate::pipeline::mapping::profile::{Command, Profile};
+use crate::pipeline::mapping::stated::Commands;
 use crate::pipeline::output::ledger::{Edges, Ledger};
 pub use crate::pipeline::probe::{NoProbe, Probe, Stage};
 use crate::pipeline::refusal::Refusal;
@@ -91,6 +92,7 @@ pub struct Pipeline {
     /// From here on contacts are believed.
     trusted_at: StreamInstant,
     edges: Edges,
+    commands: Commands,
 }
 
 impl Pipeline {
@@ -110,6 +112,7 @@ impl Pipeline {
             at: StreamInstant::default(),
             trusted_at: StreamInstant::default(),
             edges: Edges::new(),
+            commands: Commands::new(),
         }
     }
 
@@ -143,7 +146,7 @@ impl Pipeline {
     /// Takes bytes that came from the pad by `now`. Returns how many it took: it stops as soon as there are events,
     /// so that they get out first. Emit [`Pipeline::events`], then call again with the rest.
     pub fn handle_bytes<P: Probe>(&mut self, now: HostInstant, bytes: &[u8], probe: &mut P) -> usize {
-        self.edges.clear();
+        self.begin();
         for (index, &byte) in bytes.iter().enumerate() {
             if let Some(event) = self.link.push(now, byte, &mut self.health) {
                 self.handle_link(now, &event, probe);
@@ -158,7 +161,7 @@ impl Pipeline {
 
     /// Does what is due at `now`: releases what the minimum press held back, and everything if the pad is silent.
     pub fn handle_timeout(&mut self, now: HostInstant) {
-        self.edges.clear();
+        self.begin();
         // Silence first: what the minimum press held back must not go down only to come up in the same group.
         self.check_silence(now);
         if let Some(due) = self.ledger.next_due().filter(|&due| self.link.host_at(due) <= now) {
@@ -169,7 +172,7 @@ impl Pipeline {
 
     /// The pad was unplugged. Whatever comes next may be another pad: it identifies itself and is tared anew.
     pub fn handle_unplugged(&mut self, now: HostInstant) {
-        self.edges.clear();
+        self.begin();
         self.lose(now, Cause::Unplugged);
         (self.identity, self.refusal) = (None, None);
     }
@@ -185,7 +188,14 @@ impl Pipeline {
         &self.edges
     }
 
-    /// Releases everything and ignores contacts until [`Pipeline::resume`].
+    /// What presses asked of the bridge in the last call, in their order. Valid until the next call. The pipeline does none of it by
+    /// itself: who drives it makes the call that is meant, so that a capture has it, too.
+    pub fn commands(&self) -> &[Command] {
+        &self.commands
+    }
+
+    /// Releases everything and ignores contacts until [`Pipeline::resume`]. Only a profile's own commands still count, so that who has
+    /// no other input can go on.
     pub fn pause(&mut self, now: HostInstant) {
         self.paused = true;
         self.release_all(now);
@@ -193,27 +203,31 @@ impl Pipeline {
 
     /// Ends a pause. A finger that is on the pad begins a new contact.
     pub fn resume(&mut self) {
-        self.edges.clear();
+        self.begin();
+        if self.profile().commands().next().is_some() {
+            // The press that asked for it does nothing else.
+            self.engine.cancel();
+        }
         self.paused = false;
     }
 
     /// Releases everything at once. A finger that stays on the pad begins a new contact a moment later.
     pub fn release_all(&mut self, now: HostInstant) {
-        self.edges.clear();
+        self.begin();
         self.advance(self.link.stream_at(now));
         self.interrupt(Cause::Released);
     }
 
     /// Measures the zero again; the pad must lie untouched.
     pub fn retare(&mut self, now: HostInstant) {
-        self.edges.clear();
+        self.begin();
         self.advance(self.link.stream_at(now));
         self.interrupt(Cause::Retared);
     }
 
     /// Goes over to another profile: releases what it does not hold, keeps what both hold.
     pub fn set_profile(&mut self, now: HostInstant, profile: Profile) {
-        self.edges.clear();
+        self.begin();
         self.advance(self.link.stream_at(now));
         self.ledger.change_profile(self.at, &profile, &mut self.edges);
         self.stage.set_filter_samples(profile.filter_samples);
@@ -235,7 +249,12 @@ impl Pipeline {
         self.engine.profile()
     }
 
-    /// How many presses of buttons counted, and how many did not.
+    /// The name of the profile's layer that is on.
+    pub fn layer(&self) -> Option<&str> {
+        self.engine.layer()
+    }
+
+    /// How many presses of buttons and directions counted, and how many did not.
     pub const fn presses(&self) -> Presses {
         self.engine.presses()
     }
@@ -360,14 +379,30 @@ impl Pipeline {
 
     /// Maps the contact and settles with the ledger; does nothing while contacts are not believed.
     fn map(&mut self, contact: Option<Contact>) {
-        if self.paused || self.refusal.is_some() || self.at < self.trusted_at {
+        if self.refusal.is_some() || self.at < self.trusted_at {
             // The engine is not told of a lift: a press that a fault cut short stays dead until it really ends.
+            return;
+        }
+        if self.paused {
+            if self.profile().commands().next().is_some() {
+                let _ = self.engine.step(self.at, contact.as_ref());
+                self.take_commands();
+            }
             return;
         }
         self.health.contacts += u64::from(contact.is_some() && self.contact.is_none());
         self.contact = contact;
         let levels = self.engine.step(self.at, self.contact.as_ref());
+        self.take_commands();
         self.ledger.update(self.at, &levels, &mut self.edges);
+    }
+
+    /// Takes up what the engine's last step asks of the bridge.
+    fn take_commands(&mut self) {
+        for command in self.engine.commands() {
+            // More in one call than there is room for: nobody presses so fast.
+            let _ = self.commands.try_push(*command);
+        }
     }
 
     /// Does to each part what [`Cause::effects`] says.
@@ -393,6 +428,12 @@ impl Pipeline {
         self.advance(self.link.stream_at(now));
         self.phase = Phase::Waiting;
         self.interrupt(cause);
+    }
+
+    /// Nothing has come of this call yet.
+    fn begin(&mut self) {
+        self.edges.clear();
+        self.commands.clear();
     }
 
     fn advance(&mut self, at: StreamInstant) {

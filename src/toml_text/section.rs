@@ -78,6 +78,11 @@ impl<'t> Section<'t> {
         self.get(key).map(|value| value.span().start)
     }
 
+    /// Whether `key` is this text; says nothing about another one.
+    pub(crate) fn word_is(&self, key: &str, word: &str) -> bool {
+        self.get(key).and_then(|value| value.get_ref().as_str()) == Some(word)
+    }
+
     /// A table whose keys are checked: those that are not in `known` are reported.
     fn closed(
         title: String,

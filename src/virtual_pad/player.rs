@@ -5,7 +5,7 @@
 
 use crate::pipeline::contact::touch;
 use crate::pipeline::mapping::profile::{
-    Action, Button, Dpad, DpadMode, Effect, Force, Gain, Keys, Mode, Profile,
+    Action, Button, Dpad, DpadMode, Effect, Force, Gain, Keys, Mode, Output, Profile,
 };
 use crate::quantity::Contact;
 use crate::virtual_pad::gesture::{Gesture, Held, Step};
@@ -60,7 +60,10 @@ struct Tap {
 
 /// The keys of an effect that follows the press; none of another one.
 fn plain(effect: Effect) -> Option<Keys> {
-    (effect.mode == Mode::Plain).then_some(effect.keys)
+    match effect {
+        Effect { output: Output::Keys(keys), mode: Mode::Plain } => Some(keys),
+        _ => None,
+    }
 }
 
 struct Player<'p> {

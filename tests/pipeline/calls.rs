@@ -7,6 +7,8 @@ use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::Status;
 use tactpad::pipeline::Phase;
+use tactpad::pipeline::mapping::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::profile::Command;
 use tactpad::pipeline::refusal::Refusal;
 use tactpad::quantity::Contact;
 
@@ -202,6 +204,42 @@ fn pausing_releases_and_ignores_contacts_until_the_player_goes_on() {
     rig.pipeline.resume();
     rig.hold(RIGHT, 10);
     assert_eq!(rig.take_events(), ["ABS_HAT0X=1"]);
+}
+
+/// A profile whose short press is BTN_SOUTH, and whose long one pauses and goes on.
+const PAUSES: &str = r#"
+schema = 1
+name = "Pauses"
+output = "gamepad"
+[dpad]
+[[button]]
+force = "fz"
+press_n = 2
+tap = { gamepad = "BTN_SOUTH", keyboard = "KEY_Z" }
+hold = { bridge = "pause" }
+"#;
+
+#[test]
+fn a_press_can_pause_and_go_on_and_does_nothing_else_meanwhile() {
+    let mut rig = Rig::rested(read(PAUSES, OutputChoice::AsWritten).0.unwrap());
+    let long = Contact { fz_n: 3.0, ..RIGHT };
+    rig.hold(long, 600);
+    assert_eq!(std::mem::take(&mut rig.commands), [Command::TogglePause]);
+    rig.pipeline.pause(rig.host());
+    rig.collect();
+    rig.hold(long, 600);
+    rig.rest(100);
+    // A short press is no command: it does nothing in a pause.
+    rig.hold(long, 100);
+    rig.rest(100);
+    assert_eq!(rig.take_events(), ["ABS_HAT0X=1", "ABS_HAT0X=0"]);
+    rig.hold(long, 600);
+    assert_eq!(std::mem::take(&mut rig.commands), [Command::TogglePause]);
+    rig.pipeline.resume();
+    rig.hold(long, 600);
+    rig.rest(100);
+    assert_eq!(rig.take_events(), ["ABS_HAT0X=1", "ABS_HAT0X=0"], "the press that went on taps nothing");
+    assert_eq!(rig.commands, []);
 }
 
 #[test]

@@ -143,14 +143,72 @@ zone = "left"
 out = { pointer = "BTN_LEFT" }
 "#;
 
-/// Whether keys may be down while nothing touches the plate: toggled ones, or the tap that might have become a double press.
+/// Layers, macros, commands, axes, a hand that rests.
+const LAYERED: &str = r#"
+schema = 1
+name = "Layered"
+output = "gamepad"
+[access]
+rest_n = 0.5
+slow_ms = 10
+[dpad]
+[[layer]]
+name = "menu"
+gamepad = { up = "BTN_SELECT", left = "BTN_MODE" }
+keyboard = { up = "KEY_PAGEUP", left = "KEY_HOME" }
+[[macro]]
+name = "combo"
+steps = [
+  { gamepad = "ABS_HAT0Y++ABS_HAT0X+", keyboard = "KEY_DOWN+KEY_RIGHT" },
+  { wait_ms = 20 },
+  { gamepad = "BTN_SOUTH", keyboard = "KEY_Z", for_ms = 60 },
+  { pointer = "BTN_MIDDLE" },
+]
+[[stick]]
+stick = "left"
+centre_radius_mm = 2
+[[stick]]
+stick = "right"
+from = "shear"
+curve = 2
+[[trigger]]
+trigger = "left"
+zone = "up"
+[[button]]
+force = "fx"
+press_n = 1
+tap = { macro = "combo" }
+hold = { layer = "menu", toggle = true }
+long_press_ms = 60
+[[button]]
+force = "-fx"
+press_n = 1
+out = { layer = "menu", sticky = true }
+[[button]]
+force = "fy"
+press_n = 1
+layer = "menu"
+tap = { bridge = "next-profile" }
+hold = { gamepad = "BTN_START", keyboard = "KEY_ENTER", toggle = true }
+long_press_ms = 60
+[[button]]
+force = "fz"
+press_n = 1
+layer = "base"
+out = { gamepad = "BTN_SOUTH", keyboard = "KEY_Z" }
+"#;
+
+/// Whether keys may be down while nothing touches the plate: toggled ones, a macro, or the tap that might have become a
+/// double press.
 fn may_hold_untouched(profile: &Profile) -> bool {
     let toggles =
         |effect: &Option<_>| matches!(effect, Some(Effect { mode: Mode::Toggle | Mode::Sticky, .. }));
-    profile.buttons.iter().any(|button| {
-        button.effects().iter().any(toggles)
-            || matches!(button.action, Action::ByTime { double: Some(_), .. })
-    })
+    let has_macros = !profile.macros.is_empty();
+    has_macros
+        || profile.buttons.iter().any(|button| {
+            button.effects().iter().any(toggles)
+                || matches!(button.action, Action::ByTime { double: Some(_), .. })
+        })
 }
 
 #[derive(Clone, Debug)]
@@ -161,7 +219,8 @@ enum Call {
 }
 
 fn profiles() -> impl Strategy<Value = Profile> {
-    let texts: Vec<_> = shipped::names().filter_map(shipped::text).chain([CROWDED, LIVELY, PLACED]).collect();
+    let texts: Vec<_> =
+        shipped::names().filter_map(shipped::text).chain([CROWDED, LIVELY, PLACED, LAYERED]).collect();
     let output = prop_oneof![Just(OutputChoice::AsWritten), Just(OutputChoice::Keyboard)];
     (prop::sample::select(texts), output)
         .prop_filter_map("a usable profile", |(text, output)| read(text, output).0)
@@ -196,6 +255,9 @@ fn assert_sound(levels: &Intents, profile: &Profile) {
             Code::Relative(_) => {
                 assert!(level.value != 0 && level.value.abs() <= POINTER_SPEED_MAX, "{level:?}");
             }
+            Code::Axis(0..6) => {
+                assert!(level.value != 0 && (-32_768..32_768).contains(&level.value), "{level:?}");
+            }
             Code::Key(_) | Code::Axis(_) => assert!(level.value == 1 || level.value == -1, "{level:?}"),
         }
     }
@@ -203,7 +265,7 @@ fn assert_sound(levels: &Intents, profile: &Profile) {
 
 #[test]
 fn the_profiles_of_these_tests_are_usable() {
-    for text in [CROWDED, LIVELY, PLACED] {
+    for text in [CROWDED, LIVELY, PLACED, LAYERED] {
         let (profile, found) = read(text, OutputChoice::Keyboard);
         assert!(profile.is_some(), "{found:?}");
     }

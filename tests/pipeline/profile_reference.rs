@@ -13,7 +13,7 @@ fn every_example_of_the_reference_is_a_profile() {
     let text = REFERENCE;
     let examples: Vec<_> =
         text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert_eq!(examples.len(), 9);
+    assert_eq!(examples.len(), 13);
     for example in examples {
         let whole = if example.contains("schema") { example.to_owned() } else { format!("{HEAD}{example}") };
         let (profile, found) = read(&whole, OutputChoice::AsWritten);
@@ -53,6 +53,15 @@ fn documented_numbers() -> Vec<(String, String, Option<f32>, f32, f32)> {
 /// A key that is bounded by another one gets that other one as a partner, so that only its own range matters.
 fn profile_with(heading: &str, key: &str, line: &str) -> String {
     let (partner_table, partner) = match key {
+        "centre_radius_mm" if heading.contains("[[stick]]") => ("[[stick]]", "full_radius_mm = 30"),
+        "full_radius_mm" if heading.contains("[[stick]]") => ("[[stick]]", "centre_radius_mm = 0"),
+        "centre_n" => ("[[stick]]", "from = \"shear\"\nfull_n = 20"),
+        "full_n" if heading.contains("[[stick]]") => ("[[stick]]", "from = \"shear\"\ncentre_n = 0"),
+        "release_force_n" if heading.contains("[[stick]]") => ("[[stick]]", "min_force_n = 50"),
+        "from_n" => ("[[trigger]]", "full_n = 50"),
+        "full_n" => ("[[trigger]]", "from_n = 0.05"),
+        "for_ms" => ("itself", "min_press_ms = 0"),
+        "rest_ms" => ("[access]", "rest_n = 1"),
         "min_press_ms" => ("[[button]]", "long_press_ms = 10000"),
         "long_press_ms" => ("itself", "min_press_ms = 0"),
         "double_press_ms" => ("[[button]]", "long_press_ms = 10000"),
@@ -89,15 +98,26 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
         _ => "",
     };
     let button = if key == "turbo_ms" { String::new() } else { button };
+    let step = match key {
+        "wait_ms" => line.to_owned(),
+        "for_ms" => format!(r#"gamepad = "BTN_TL", keyboard = "KEY_Q", {line}"#),
+        _ => r#"gamepad = "BTN_TL", keyboard = "KEY_Q""#.to_owned(),
+    };
+    let step = step.trim_end_matches(", ");
+    let axes = format!(
+        "[[stick]]\nstick = \"left\"\n{}[[trigger]]\ntrigger = \"left\"\n{}[[macro]]\nname = \"m\"\nsteps = [{{ {step} }}]\n",
+        lines_of("[[stick]]"),
+        lines_of("[[trigger]]")
+    );
     format!(
-        "{HEAD}{root}[access]\n{access}[gain]\n{gain}[dpad]\n{dpad}[pointer]\n{pointer}[[zone]]\nname = \"here\"\n{zone}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{double}\n{button}"
+        "{HEAD}{root}[access]\n{access}[gain]\n{gain}[dpad]\n{dpad}[pointer]\n{pointer}[[zone]]\nname = \"here\"\n{zone}{axes}[[button]]\nforce = \"fz\"\n{press}\n{tap}\n{hold}\n{double}\n{button}"
     )
 }
 
 #[test]
 fn the_reference_states_the_ranges_that_hold() {
     let rows = documented_numbers();
-    assert_eq!(rows.len(), 40, "{rows:?}");
+    assert_eq!(rows.len(), 54, "{rows:?}");
     for (heading, key, _, low, high) in rows {
         let errors = |value: f32| {
             let text = profile_with(&heading, &key, &format!("{key} = {value}"));
@@ -124,7 +144,7 @@ fn the_reference_states_the_defaults_that_hold() {
         assert_eq!(written, read_with(""), "{key}");
         checked += 1;
     }
-    assert_eq!(checked, 29);
+    assert_eq!(checked, 40);
 }
 
 #[test]

@@ -27,11 +27,15 @@ fn base() -> Value {
         "schema": 1,
         "name": "Test",
         "output": "gamepad",
-        "access": { "tremor_hz": 1 },
+        "access": { "tremor_hz": 1, "rest_n": 1 },
         "gain": {},
         "dpad": {},
         "pointer": {},
         "zone": [{ "name": "top" }],
+        "stick": [{ "stick": "left" }, { "stick": "right", "from": "shear", "centre_n": 0.2, "full_n": 2 }],
+        "trigger": [{ "trigger": "left" }],
+        "layer": [{ "name": "menu" }],
+        "macro": [{ "name": "jump", "steps": [{ "gamepad": "BTN_MODE", "keyboard": "KEY_G" }] }],
         "button": [
             {
                 "force": "fz",

@@ -8,7 +8,7 @@ use tactpad::pad::field::PadField;
 use tactpad::pad::influence::InfluenceField;
 use tactpad::pipeline::control::{Code, OutputDevice};
 use tactpad::pipeline::mapping::check::{self, OutputChoice};
-use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::profile::{Command, Profile};
 use tactpad::pipeline::mapping::shipped;
 use tactpad::pipeline::{NoProbe, Pipeline};
 use tactpad::quantity::Contact;
@@ -40,6 +40,8 @@ pub(crate) struct Rig {
     pub(crate) events: Vec<Event>,
     /// What the pointer has moved: to the right, down.
     pub(crate) moved: [i32; 2],
+    /// What presses have asked of the bridge.
+    pub(crate) commands: Vec<Command>,
 }
 
 impl Rig {
@@ -55,6 +57,7 @@ impl Rig {
             random: 88_172_645_463_325_252,
             events: Vec::new(),
             moved: [0; 2],
+            commands: Vec::new(),
         }
     }
 
@@ -130,6 +133,7 @@ impl Rig {
 
     /// Takes the events of the last call.
     pub(crate) fn collect(&mut self) {
+        self.commands.extend(self.pipeline.commands());
         for event in self.pipeline.events() {
             if let Code::Relative(axis) = event.code {
                 assert_eq!(event.device, OutputDevice::Pointer);

@@ -16,7 +16,8 @@
 //! 10ms..100ms angle=0..90 r=20 fz=1.0  one sample each millisecond, values on a straight line
 //! 110ms lift                           the contact ends; `fault` cancels; `switch NAME` plays another
 //!
-//! 0ms ABS_HAT0X 1                      the expected edges, releases first, or the word `nothing`
+//! 0ms ABS_HAT0X 1                      the expected edges, releases first, or the word `nothing`;
+//! 0ms bridge panic                     what is asked of the bridge comes after them
 //! ```
 
 #![allow(clippy::expect_used, reason = "a timeline that cannot be read must fail its test")]
@@ -27,7 +28,7 @@ use std::path::Path;
 use tactpad::pipeline::mapping::check::{OutputChoice, read};
 use tactpad::pipeline::mapping::engine::Engine;
 use tactpad::pipeline::mapping::intent::Intents;
-use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::profile::{Command, Profile};
 use tactpad::pipeline::mapping::shipped;
 use tactpad::quantity::Contact;
 use tactpad::time::StreamInstant;
@@ -119,17 +120,32 @@ fn milliseconds(text: &str) -> u64 {
     text.strip_suffix("ms").and_then(|n| n.parse().ok()).unwrap_or_else(|| panic!("{text} is no time"))
 }
 
-/// The steps that one input line stands for, each with the levels after it.
-fn play(engine: &mut Engine, line: &str) -> Vec<(u64, Intents)> {
+/// A command as a profile writes it.
+fn shown(command: &Command) -> String {
+    match command {
+        Command::NextProfile => "next-profile".into(),
+        Command::Profile(name) => format!("profile {name}"),
+        Command::TogglePause => "pause".into(),
+        Command::Panic => "panic".into(),
+        Command::Tare => "tare".into(),
+    }
+}
+
+/// The steps that one input line stands for, each with the levels after it and what is asked of the bridge.
+fn play(engine: &mut Engine, line: &str) -> Vec<(u64, Intents, Vec<String>)> {
     let words: Vec<_> = line.split_whitespace().collect();
     let (time, action) = words.split_first().expect("a time");
     let (from, to) = time.split_once("..").unwrap_or((time, time));
     let (from, to) = (milliseconds(from), milliseconds(to));
-    let at = |ms: u64| StreamInstant::from_us(ms * 1_000);
+    let mut step = |ms: u64, contact: Option<&Contact>| {
+        let levels = engine.step(StreamInstant::from_us(ms * 1_000), contact);
+        let asked = engine.commands().iter().map(|command| format!("{ms}ms bridge {}", shown(command)));
+        (ms, levels, asked.collect())
+    };
     match action {
         ["fault"] => {
             engine.cancel();
-            vec![(from, Intents::new())]
+            vec![(from, Intents::new(), Vec::new())]
         }
         ["switch", name] => {
             engine.replace_profile(profile(
@@ -138,10 +154,10 @@ fn play(engine: &mut Engine, line: &str) -> Vec<(u64, Intents)> {
             ));
             Vec::new()
         }
-        ["lift"] => (from..=to).map(|ms| (ms, engine.step(at(ms), None))).collect(),
+        ["lift"] => (from..=to).map(|ms| step(ms, None)).collect(),
         _ => {
             let share = |ms: u64| (ms - from) as f64 / (to - from).max(1) as f64;
-            (from..=to).map(|ms| (ms, engine.step(at(ms), Some(&contact(action, share(ms)))))).collect()
+            (from..=to).map(|ms| step(ms, Some(&contact(action, share(ms))))).collect()
         }
     }
 }
@@ -151,8 +167,9 @@ fn played(profile: Profile, input: &[&str]) -> Vec<String> {
     let mut held = Intents::new();
     let mut found = Vec::new();
     for line in input {
-        for (ms, levels) in play(&mut engine, line) {
+        for (ms, levels, asked) in play(&mut engine, line) {
             found.extend(edges(ms, &held, &levels));
+            found.extend(asked);
             held = levels;
         }
     }

@@ -89,6 +89,7 @@ fn why_not(root: &Value, (word, said): (&str, &Value), value: &Value) -> Option<
         "maximum" => (value.as_f64()? > said.as_f64()?).then(|| format!("is above {said}")),
         "minLength" => (letters()? < count).then(|| "is too short".into()),
         "maxLength" => (letters()? > count).then(|| "is too long".into()),
+        "minItems" => (value.as_array()?.len() < count).then(|| format!("has less than {count}")),
         "maxItems" => (value.as_array()?.len() > count).then(|| format!("has more than {count}")),
         "required" => lacking(table?, said),
         "dependentRequired" => {

@@ -46,6 +46,9 @@ enum Action {
         /// A profile's name or file.
         name: String,
     },
+    /// Go over to the next profile of `profile list` that a press can leave again.
+    #[command(after_help = "Example: tactpad ctl next-profile")]
+    NextProfile,
     /// Read the profile in use again, after it was changed.
     #[command(after_help = "Example: tactpad ctl reload")]
     Reload,
@@ -69,6 +72,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Resume => "resume".to_owned(),
         Action::Panic => "panic".to_owned(),
         Action::Tare => "tare".to_owned(),
+        Action::NextProfile => "next-profile".to_owned(),
         Action::Reload => "reload".to_owned(),
         Action::Quit => "quit".to_owned(),
         Action::Profile { name } => format!("profile {}", absolute(name)?),
@@ -122,6 +126,9 @@ fn print_status(status: &Value) -> io::Result<()> {
     writeln!(out, "state    {}", text("state"))?;
     writeln!(out, "pad      {}", text("pad"))?;
     writeln!(out, "profile  {}", text("profile"))?;
+    if let Some(layer) = status.get("layer").and_then(Value::as_str) {
+        writeln!(out, "layer    {}", printable(layer))?;
+    }
     writeln!(out, "decoder  {}", text("decoder"))?;
     writeln!(out, "output   {}", text("output"))?;
     let held = status.get("held").and_then(Value::as_array).into_iter().flatten();

@@ -146,6 +146,14 @@ impl Host for Terminal {
         Ok(read)
     }
 
+    fn next_profile(&mut self) -> Result<ReadProfile, String> {
+        let (chosen, read) = profile::next(&self.profile, self.output).ok_or(
+            "there is no other profile from which a press leads on: add one with bridge = \"next-profile\"",
+        )?;
+        self.profile = chosen;
+        Ok(read)
+    }
+
     fn tell(&mut self, line: &str) {
         if let Some(told) = &self.told {
             // Where nobody reads, the bridge plays on.

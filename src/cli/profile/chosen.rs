@@ -62,6 +62,18 @@ pub(super) fn find(name: &str) -> Result<Chosen, Failure> {
     Ok(Chosen { text, place })
 }
 
+/// The profile after `name`, in the order of `profile list`, that can be used and from which a press leads on, with its name.
+#[cfg(all(feature = "live", target_os = "linux"))]
+pub(crate) fn next(name: &str, output: OutputChoice) -> Option<(String, ReadProfile)> {
+    let known = known();
+    let at = known.iter().position(|it| it == name).map_or(0, |at| at + 1);
+    let others = known.iter().cycle().skip(at).take(known.len()).filter(|it| *it != name);
+    others.cloned().find_map(|name| {
+        let read = ReadProfile::read(&find(&name).ok()?.text, output).0?;
+        read.profile().leads_on().then_some((name, read))
+    })
+}
+
 /// Reads a profile that is to be used. Warnings go to stderr; errors make it unusable.
 pub(crate) fn read(name: &str, output: OutputChoice) -> Result<ReadProfile, Failure> {
     let Chosen { text, place } = find(name)?;

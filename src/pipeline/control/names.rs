@@ -26,6 +26,13 @@ pub const GAMEPAD_BUTTONS: [Code; 11] = [
 /// The hat of a gamepad: left and right, then up and down.
 pub const HAT_AXES: [Code; 2] = [Code::Axis(0x10), Code::Axis(0x11)];
 
+/// The sticks of a gamepad, left and right: of each the axis to the right, then down.
+pub const STICKS: [[Code; 2]; 2] =
+    [[Code::Axis(0x00), Code::Axis(0x01)], [Code::Axis(0x03), Code::Axis(0x04)]];
+
+/// The triggers of a gamepad, left and right.
+pub const TRIGGERS: [Code; 2] = [Code::Axis(0x02), Code::Axis(0x05)];
+
 /// Movement of the pointer: to the right, then down.
 pub const POINTER_MOTION: [Code; 2] = [Code::Relative(0x00), Code::Relative(0x01)];
 

@@ -1,11 +1,12 @@
 //! A profile's help for hands that press what they do not mean.
 
-use super::limits::{BOUNCE_MS, DWELL_MM, DWELL_MS, SLOW_MS, TREMOR_HZ, TREMOR_PER_MM};
-use super::profile::{Access, Dwell, Tremor};
+use super::limits::{BOUNCE_MS, DWELL_MM, DWELL_MS, REST_MS, REST_N, SLOW_MS, TREMOR_HZ, TREMOR_PER_MM};
+use super::profile::{Access, Dwell, Rest, Tremor};
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::Section;
 
-pub(super) const ACCESS_KEYS: [&str; 4] = ["slow_ms", "bounce_ms", "tremor_hz", "tremor_per_mm"];
+pub(super) const ACCESS_KEYS: [&str; 6] =
+    ["slow_ms", "bounce_ms", "tremor_hz", "tremor_per_mm", "rest_n", "rest_ms"];
 
 /// Reads `[access]`; none where a number is unusable.
 pub(super) fn read(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<Access> {
@@ -13,19 +14,23 @@ pub(super) fn read(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<A
     let bounce = table.whole("bounce_ms", BOUNCE_MS, findings);
     let cutoff = table.number("tremor_hz", TREMOR_HZ, findings);
     let per_mm = table.number("tremor_per_mm", TREMOR_PER_MM, findings);
-    let is_calmed = table.place_of("tremor_hz").is_some();
-    if let (false, Some(at)) = (is_calmed, table.place_of("tremor_per_mm")) {
-        findings.error(
-            at,
-            "\"tremor_per_mm\" does nothing without \"tremor_hz\"",
-            "remove it, or write \"tremor_hz\"",
-        );
-    }
+    let force = table.number("rest_n", REST_N, findings);
+    let time = table.whole("rest_ms", REST_MS, findings);
+    let [is_calmed, rests] = [("tremor_hz", "tremor_per_mm"), ("rest_n", "rest_ms")].map(|(main, other)| {
+        let is_written = table.place_of(main).is_some();
+        if let (false, Some(at)) = (is_written, table.place_of(other)) {
+            let message = format!("\"{other}\" does nothing without \"{main}\"");
+            findings.error(at, message, format!("remove it, or write \"{main}\""));
+        }
+        is_written
+    });
     let tremor = Tremor { cutoff_hz: cutoff?.value, per_mm: per_mm?.value };
+    let rest = Rest { n: force?.value, us: u64::from(time?.value) * 1_000 };
     Some(Access {
         slow_us: u64::from(slow?.value) * 1_000,
         bounce_us: u64::from(bounce?.value) * 1_000,
         tremor: is_calmed.then_some(tremor),
+        rest: rests.then_some(rest),
     })
 }
 

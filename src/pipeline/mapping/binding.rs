@@ -11,7 +11,7 @@ use crate::toml_text::spelling;
 const PLAYED: [OutputDevice; 2] = [OutputDevice::Gamepad, OutputDevice::Keyboard];
 
 /// The keys of a binding's table.
-const DEVICE_KEYS: [&str; 3] =
+pub(super) const DEVICE_KEYS: [&str; 3] =
     [OutputDevice::Gamepad.name(), OutputDevice::Keyboard.name(), OutputDevice::Pointer.name()];
 
 /// What one control of the profile does: on the gamepad or the keyboard, whichever is played, or on the pointer
@@ -62,17 +62,19 @@ pub(super) fn with_keys(more: &[&'static str]) -> Vec<&'static str> {
     DEVICE_KEYS.iter().chain(more).copied().collect()
 }
 
-/// The binding under `key`, or `default` (which must be one) where there is none.
+/// The binding under `key`, or `default` (which must be one, if there is one) where it is not written.
 pub(super) fn written_or(
     device: OutputDevice,
     table: Option<&Section<'_>>,
     key: &str,
-    default: Placed<&str>,
+    default: Option<Placed<&str>>,
     findings: &mut Findings<'_>,
 ) -> Option<Placed<Keys>> {
     match table {
         Some(table) if table.place_of(key).is_some() => written(device, table, key, findings),
-        _ => parse_all(device, default.value).ok().map(|value| Placed { value, at: default.at }),
+        _ => default.and_then(|default| {
+            Some(Placed { value: parse_all(device, default.value).ok()?, at: default.at })
+        }),
     }
 }
 

@@ -1,11 +1,13 @@
 //! A profile's buttons: which force presses them, and what their kinds of press do.
 
 use super::access;
-use super::binding::{Outputs, with_keys};
 use super::conflict::{Owner, Use};
-use super::limits::{DOUBLE_PRESS_MS, FORCE_N, HAIR_N, LONG_PRESS_MS, RELEASE_SHARE, TURBO_MS};
+use super::effects::{Around, EffectDraft};
+use super::layers::BASE;
+use super::limits::{DOUBLE_PRESS_MS, FORCE_N, HAIR_N, LONG_PRESS_MS, RELEASE_SHARE};
+use super::named;
 use super::plate;
-use super::profile::{Action, Button, Dwell, Effect, Force, Mode, Place, Role, Timed, Zone};
+use super::profile::{Action, Button, Dwell, Effect, Force, Place, Role, Timed, When, Zone};
 use super::stages::{self, Stages};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
@@ -18,7 +20,7 @@ const FORCES: [(&str, Force); 5] = [
     ("fx", Force::FxPositive),
     ("-fx", Force::FxNegative),
 ];
-pub(super) const BUTTON_KEYS: [&str; 19] = [
+pub(super) const BUTTON_KEYS: [&str; 20] = [
     "force",
     "press_n",
     "release_n",
@@ -26,6 +28,7 @@ pub(super) const BUTTON_KEYS: [&str; 19] = [
     "dwell_ms",
     "dwell_mm",
     "zone",
+    "layer",
     "out",
     "tap",
     "double",
@@ -39,8 +42,6 @@ pub(super) const BUTTON_KEYS: [&str; 19] = [
     "skip",
     "skip_ms",
 ];
-/// What an effect has beside its outputs.
-const MODE_KEYS: [&str; 3] = ["toggle", "sticky", "turbo_ms"];
 
 /// A button while it is read: what is unusable is `None` and reported.
 pub(super) struct ButtonDraft {
@@ -50,14 +51,8 @@ pub(super) struct ButtonDraft {
     hair_n: Option<f32>,
     dwell: Option<Option<Dwell>>,
     place: Option<Place>,
+    when: Option<When>,
     action: Option<ActionDraft>,
-}
-
-/// What a kind of press does.
-#[derive(Clone, Copy)]
-struct EffectDraft {
-    outputs: Outputs,
-    mode: Option<Mode>,
 }
 
 /// What its kinds of press do, in the order of [`Role::ALL`], and the times that tell them.
@@ -71,8 +66,7 @@ struct ActionDraft {
 /// What a button is read beside.
 #[derive(Clone, Copy)]
 pub(super) struct Surroundings<'p> {
-    /// Nothing may be shorter than this.
-    pub(super) min_press_ms: Option<u32>,
+    pub(super) effects: Around<'p>,
     pub(super) zones: &'p [Zone],
     pub(super) has_dpad: bool,
 }
@@ -90,7 +84,7 @@ impl ButtonDraft {
         let hair_n = table.place_of("hair_n").and_then(|_| table.number("hair_n", HAIR_N, findings));
         let name = table.text("zone", findings);
         let place = name.and_then(|name| plate::find(name, (around.zones, around.has_dpad), findings));
-        let action = ActionDraft::read(table, (around.min_press_ms, press), findings);
+        let action = ActionDraft::read(table, (around.effects, press), findings);
         let newtons = |force: Option<Placed<f32>>| force.map(|force| force.value);
         Self {
             force,
@@ -99,19 +93,20 @@ impl ButtonDraft {
             hair_n: newtons(hair_n),
             dwell: access::read_dwell(table, findings),
             place,
+            when: read_when(table, around.effects.layers, findings),
             action,
         }
     }
 
     /// What the kinds of press of this button, the `number`th, drive.
     pub(super) fn uses(&self, number: usize) -> impl Iterator<Item = Use> + use<> {
-        let place = self.place;
+        let (place, when) = (self.place, self.when.unwrap_or(When::Always));
         let effects = self.action.as_ref().map(|action| action.effects);
         let all = effects.into_iter().flat_map(|effects| Role::ALL.into_iter().zip(effects));
         all.filter_map(move |(role, effect)| {
-            let EffectDraft { outputs, mode } = effect?;
+            let effect = effect?;
             let owner = Owner::Button { number, role: role.name() };
-            Some(Use { owner, outputs, toggles: matches!(mode, Some(Mode::Toggle | Mode::Sticky)), place })
+            Some(Use { owner, outputs: effect.outputs()?, toggles: effect.stays(), place, when })
         })
     }
 
@@ -119,82 +114,35 @@ impl ButtonDraft {
     pub(super) fn settle(self, device: OutputDevice) -> Option<Button> {
         let action = self.action?.settle(device)?;
         let Self { hair_n, place, .. } = self;
-        let dwell = self.dwell?;
+        let (dwell, when) = (self.dwell?, self.when?);
         let (press_n, release_n) = (self.press_n?, self.release_n?);
-        Some(Button { force: self.force?, press_n, release_n, hair_n, dwell, place, action })
+        Some(Button { force: self.force?, press_n, release_n, hair_n, dwell, place, when, action })
     }
 }
 
-impl EffectDraft {
-    /// Reads the table of a kind of press, if it is there.
-    fn read(
-        table: &Section<'_>,
-        role: Role,
-        min_press_ms: Option<u32>,
-        findings: &mut Findings<'_>,
-    ) -> Option<Self> {
-        let title = format!("\"{}\" of {}", role.name(), table.title);
-        let section = table.table(role.name(), title, &with_keys(&MODE_KEYS), findings)?;
-        let outputs = Outputs::read(&section, findings);
-        let turbo = section.place_of("turbo_ms").map(|at| (at, read_turbo(&section, min_press_ms, findings)));
-        let flag = |key: &'static str, findings: &mut Findings<'_>| match section.place_of(key) {
-            Some(at) => section.flag(key, findings).map(|is_set| is_set.then_some((key, at))),
-            None => Some(None),
-        };
-        let [toggle, sticky] = ["toggle", "sticky"].map(|key| flag(key, findings));
-        let turned = turbo.map(|(at, _)| ("turbo_ms", at));
-        let mut modes = [toggle?, sticky?, turned].into_iter().flatten();
-        let first = modes.next();
-        if let (Some((one, _)), Some((other, at))) = (first, modes.next()) {
-            findings.error(
-                at,
-                format!("{} is both \"{one}\" and \"{other}\"", section.title),
-                "remove one of them",
-            );
-        }
-        if let (Role::Tap, Some((at, _))) = (role, turbo) {
-            findings.error(
-                at,
-                "a tap is over at once: it has no \"turbo_ms\"",
-                "write it into \"out\", \"double\" or \"hold\"",
-            );
-        }
-        let mode = match (first, turbo) {
-            (Some(("toggle", _)), _) => Some(Mode::Toggle),
-            (Some(("sticky", _)), _) => Some(Mode::Sticky),
-            (_, None) => Some(Mode::Plain),
-            (_, Some((_, ms))) => ms.map(|ms| Mode::Turbo { period_us: u64::from(ms) * 1_000 }),
-        };
-        Some(Self { outputs, mode })
+/// When a button counts: in the layer that it names, while there is none, or always.
+fn read_when(table: &Section<'_>, layers: &[&str], findings: &mut Findings<'_>) -> Option<When> {
+    if table.place_of("layer").is_none() {
+        return Some(When::Always);
     }
-
-    fn settle(self, device: OutputDevice) -> Option<Effect> {
-        Some(Effect { keys: self.outputs.settle(device)?, mode: self.mode? })
-    }
-}
-
-/// The period of presses, half of which must have room for the minimum press.
-fn read_turbo(section: &Section<'_>, min_press_ms: Option<u32>, findings: &mut Findings<'_>) -> Option<u32> {
-    let Placed { value: ms, at } = section.whole("turbo_ms", TURBO_MS, findings)?;
-    if let Some(min_ms) = min_press_ms.filter(|min_ms| 2 * min_ms > ms) {
-        let message = format!("\"turbo_ms\" ({ms}) is faster than \"min_press_ms\" ({min_ms}) allows");
-        findings.error(at, message, format!("write at least {}, or a shorter \"min_press_ms\"", 2 * min_ms));
-    }
-    Some(ms)
+    let asked = table.text("layer", findings)?;
+    let known: Vec<&str> = [BASE].into_iter().chain(layers.iter().copied()).collect();
+    let number = named::find(asked, "layer", &known, findings)?;
+    Some(number.checked_sub(1).map_or(When::Base, When::Layer))
 }
 
 impl ActionDraft {
     fn read(
         table: &Section<'_>,
-        (min_press_ms, press): (Option<u32>, Option<Placed<f32>>),
+        (around, press): (Around<'_>, Option<Placed<f32>>),
         findings: &mut Findings<'_>,
     ) -> Option<Self> {
-        let effects = Role::ALL.map(|role| EffectDraft::read(table, role, min_press_ms, findings));
+        let effects = Role::ALL.map(|role| EffectDraft::read(table, role, around, findings));
         let double = read_time(table, (Role::Double, "double_press_ms"), DOUBLE_PRESS_MS, findings);
         let long = read_time(table, (Role::Hold, "long_press_ms"), LONG_PRESS_MS, findings);
         let stages = stages::read(table, press, findings);
         check_roles(table, findings)?;
-        check_times(table, [double, long], min_press_ms, findings);
+        check_times(table, [double, long], around.min_press_ms, findings);
         let ms = |time: Option<Placed<u32>>| time.map(|time| time.value);
         Some(Self { effects, double_press_ms: ms(double), long_press_ms: ms(long), stages })
     }

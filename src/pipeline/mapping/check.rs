@@ -5,14 +5,18 @@
 use arrayvec::ArrayVec;
 
 use super::access::{self, ACCESS_KEYS};
+use super::analogues;
 use super::button::{BUTTON_KEYS, ButtonDraft, Surroundings};
 use super::conflict::{self, Use};
 use super::dpad::{DPAD_KEYS, DpadDraft, read_gate};
+use super::effects::Around;
+use super::layers::LayerDraft;
 use super::limits::{
     CURVE, FILTER_SAMPLES, FULL_RADIUS_MM, MIN_PRESS_MS, POINTER_CENTRE_MM, SPEED_COUNTS_PER_S,
 };
-use super::plate::{self, GAIN_KEYS, ZONE_KEYS};
-use super::profile::{Access, BUTTONS_MAX, Gain, Pointer, Profile, ZONES_MAX, Zone};
+use super::macros::MacroDraft;
+use super::plate::{self, GAIN_KEYS};
+use super::profile::{Access, BUTTONS_MAX, Gain, Pointer, Profile, Stick, Trigger, Zone};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text;
 use crate::toml_text::diag::{Diagnostic, Findings};
@@ -30,7 +34,7 @@ pub enum OutputChoice {
 const OUTPUTS: [(&str, OutputDevice); 2] =
     [("gamepad", OutputDevice::Gamepad), ("keyboard", OutputDevice::Keyboard)];
 
-const ROOT_KEYS: [&str; 12] = [
+const ROOT_KEYS: [&str; 16] = [
     "schema",
     "name",
     "output",
@@ -42,6 +46,10 @@ const ROOT_KEYS: [&str; 12] = [
     "dpad",
     "pointer",
     "zone",
+    "layer",
+    "macro",
+    "stick",
+    "trigger",
     "button",
 ];
 const POINTER_KEYS: [&str; 6] =
@@ -73,9 +81,13 @@ struct Draft {
     access: Option<Access>,
     gain: Option<Gain>,
     zones: Vec<Zone>,
+    layers: Vec<LayerDraft>,
+    macros: Vec<MacroDraft>,
     dpad: Option<DpadDraft>,
     /// The inner `None` where a part of it is unusable.
     pointer: Option<Option<Pointer>>,
+    sticks: Vec<Option<Stick>>,
+    triggers: Vec<Option<Trigger>>,
     buttons: Vec<ButtonDraft>,
 }
 
@@ -90,10 +102,14 @@ impl Draft {
         let access = root.table("access", "[access]".to_owned(), &ACCESS_KEYS, findings);
         let gain = root.table("gain", "[gain]".to_owned(), &GAIN_KEYS, findings);
         let has_dpad = root.place_of("dpad").is_some();
+        let zones = plate::read_zones(root, has_dpad, findings);
+        let layers = LayerDraft::read_all(root, has_dpad, findings);
+        let macros = MacroDraft::read_all(root, min_press_ms, findings);
+        let layer_names: Vec<&str> = layers.iter().map(|it| it.name.as_str()).collect();
+        let macro_names: Vec<&str> = macros.iter().map(|it| it.name.as_str()).collect();
+        let effects = Around { min_press_ms, layers: &layer_names, macros: &macro_names };
+        let around = Surroundings { effects, zones: &zones, has_dpad };
         // One more than there can be, so that the first one too many is known by its place.
-        let zones = root.tables("zone", &ZONE_KEYS, ZONES_MAX + 1, findings);
-        let zones = plate::read_zones(&zones, has_dpad, findings);
-        let around = Surroundings { min_press_ms, zones: &zones, has_dpad };
         let buttons = root.tables("button", &BUTTON_KEYS, BUTTONS_MAX + 1, findings);
         check_counts(root, &buttons, findings);
         Self {
@@ -110,16 +126,20 @@ impl Draft {
             gain: gain.map_or(Some(Gain::ONE), |gain| plate::read_gain(&gain, findings)),
             dpad: dpad.map(|dpad| DpadDraft::read(&dpad, findings)),
             pointer: pointer.map(|pointer| read_pointer(&pointer, findings)),
+            sticks: analogues::read_sticks(root, findings),
+            triggers: analogues::read_triggers(root, (&zones, has_dpad), findings),
             buttons: buttons.iter().map(|button| ButtonDraft::read(button, around, findings)).collect(),
             zones,
+            layers,
+            macros,
         }
     }
 
     fn check_conflicts(&self, findings: &mut Findings<'_>) {
         let mut uses: Vec<Use> = self.dpad.iter().flat_map(DpadDraft::uses).collect();
-        for (number, button) in (1..).zip(&self.buttons) {
-            uses.extend(button.uses(number));
-        }
+        uses.extend(self.layers.iter().enumerate().flat_map(|(number, layer)| layer.uses(number)));
+        uses.extend((1..).zip(&self.buttons).flat_map(|(number, button)| button.uses(number)));
+        uses.extend((1..).zip(&self.macros).flat_map(|(number, it)| it.uses(number)));
         conflict::check(&uses, self.dpad.as_ref().and_then(|dpad| dpad.mode), findings);
     }
 
@@ -141,6 +161,7 @@ impl Draft {
         for draft in self.buttons {
             buttons.try_push(draft.settle(output)?).ok()?;
         }
+        let macros = self.macros.into_iter().map(|it| it.settle(output)).collect::<Option<_>>()?;
         let profile = Profile {
             name: self.name?,
             output,
@@ -149,8 +170,12 @@ impl Draft {
             access: self.access?,
             gain: self.gain?,
             zones: self.zones,
+            layers: self.layers.into_iter().map(|layer| layer.settle(output)).collect(),
+            macros,
             dpad,
             pointer,
+            sticks: played(self.sticks, output)?,
+            triggers: played(self.triggers, output)?,
             buttons,
         };
         Some(if self.left_handed? { profile.mirrored() } else { profile })
@@ -159,12 +184,22 @@ impl Draft {
 
 /// Reports a profile that does nothing, and one button too many.
 fn check_counts(root: &Section<'_>, buttons: &[Section<'_>], findings: &mut Findings<'_>) {
-    if ["dpad", "pointer", "button"].iter().all(|key| root.place_of(key).is_none()) {
-        findings.warning(root.at, "the profile does nothing", "add a [dpad], [pointer] or [[button]] table");
+    if ["dpad", "pointer", "stick", "trigger", "button"].iter().all(|key| root.place_of(key).is_none()) {
+        findings.warning(
+            root.at,
+            "the profile does nothing",
+            "add a [dpad], [pointer], [[stick]], [[trigger]] or [[button]] table",
+        );
     }
     if let Some(extra) = buttons.get(BUTTONS_MAX) {
         findings.error(extra.at, format!("a profile has at most {BUTTONS_MAX} buttons"), "remove this one");
     }
+}
+
+/// What is played of the gamepad's axes on `output`; `None` if one is missing.
+fn played<T, const N: usize>(all: Vec<Option<T>>, output: OutputDevice) -> Option<ArrayVec<T, N>> {
+    let all = all.into_iter().collect::<Option<Vec<T>>>()?;
+    Some(all.into_iter().filter(|_| output == OutputDevice::Gamepad).take(N).collect())
 }
 
 fn read_schema(root: &Section<'_>, findings: &mut Findings<'_>) {

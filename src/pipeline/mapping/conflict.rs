@@ -7,7 +7,7 @@
 use std::fmt;
 
 use super::binding::Outputs;
-use super::profile::{Binding, CONTROLS_MAX, Direction, DpadMode, Keys, Place};
+use super::profile::{Binding, CONTROLS_MAX, Direction, DpadMode, Keys, Place, When};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::Placed;
@@ -22,6 +22,8 @@ pub(super) enum Owner {
     Direction(&'static str),
     /// A button, counted from 1, and which of its outputs: `out`, `tap`, `double` or `hold`.
     Button { number: usize, role: &'static str },
+    /// A macro, counted from 1.
+    Macro(usize),
 }
 
 impl fmt::Display for Owner {
@@ -29,6 +31,7 @@ impl fmt::Display for Owner {
         match self {
             Self::Direction(name) => write!(f, "direction \"{name}\""),
             Self::Button { number, role } => write!(f, "\"{role}\" of button {number}"),
+            Self::Macro(number) => write!(f, "macro {number}"),
         }
     }
 }
@@ -42,6 +45,8 @@ pub(super) struct Use {
     pub(super) toggles: bool,
     /// Where it counts, if not everywhere.
     pub(super) place: Option<Place>,
+    /// And when.
+    pub(super) when: When,
 }
 
 /// One control of an owner on a device.
@@ -76,6 +81,11 @@ fn bound(by: &Use, device: OutputDevice) -> impl Iterator<Item = Bound> + use<> 
 /// Whether both drive one control in a way that is worth a word. Kinds of press of one button may share some of their keys.
 fn clash(earlier: &Bound, later: &Bound, mode: Option<DpadMode>) -> bool {
     let (first, second) = (earlier.binding.value, later.binding.value);
+    // What a macro presses is its own while it plays; and what counts at different times never meets.
+    let of_macro = [earlier, later].iter().any(|it| matches!(it.by.owner, Owner::Macro(_)));
+    if of_macro || are_apart_in_time(&earlier.by, &later.by) {
+        return false;
+    }
     let is_said = if first.value == second.value {
         !same_button(earlier.by.owner, later.by.owner) || earlier.keys == later.keys
     } else {
@@ -137,6 +147,12 @@ fn meet(left: &Use, right: &Use, mode: Option<DpadMode>) -> bool {
             !is_apart || left.toggles || right.toggles
         }
     }
+}
+
+/// Whether one is on only while the other is not. What stays down when its press is over stays in other layers, too.
+fn are_apart_in_time(left: &Use, right: &Use) -> bool {
+    let is_tied = |it: &Use| it.when != When::Always && !it.toggles;
+    is_tied(left) && is_tied(right) && left.when != right.when
 }
 
 /// Whether no contact is at both places: it is in one zone at a time, and holds no two opposite directions.

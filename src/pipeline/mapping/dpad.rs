@@ -6,7 +6,7 @@ use super::limits::{
     CENTRE_RADIUS_MM, DIAGONAL_DEG, FORCE_N, HYSTERESIS_DEG, HYSTERESIS_MM, RADIUS_HYSTERESIS_MM,
     RELEASE_RATIO, ROTATION_DEG, STICKY_DIAGONAL_DEG,
 };
-use super::profile::{Dpad, DpadMode};
+use super::profile::{Dpad, DpadMode, When};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::{Bounds, Placed, Section};
@@ -26,7 +26,7 @@ pub(super) const DPAD_KEYS: [&str; 11] = [
     "gamepad",
     "keyboard",
 ];
-const DIRECTION_KEYS: [&str; 4] = ["up", "down", "left", "right"];
+pub(super) const DIRECTION_KEYS: [&str; 4] = ["up", "down", "left", "right"];
 /// Each direction with its default bindings on the gamepad and the keyboard.
 const DIRECTIONS: [(&str, &str, &str); 4] = [
     ("up", "ABS_HAT0Y-", "KEY_UP"),
@@ -74,6 +74,7 @@ impl DpadDraft {
             outputs,
             toggles: false,
             place: None,
+            when: When::Always,
         })
     }
 
@@ -184,14 +185,34 @@ fn check_hysteresis(
 }
 
 fn read_directions(table: &Section<'_>, findings: &mut Findings<'_>) -> [Outputs; 4] {
-    let gamepad = table.table("gamepad", "[dpad.gamepad]".to_owned(), &DIRECTION_KEYS, findings);
-    let keyboard = table.table("keyboard", "[dpad.keyboard]".to_owned(), &DIRECTION_KEYS, findings);
+    let tables = direction_tables(table, "dpad", findings);
     DIRECTIONS.map(|(name, pad, key)| {
-        let default = |value| Placed { value, at: table.at };
-        Outputs {
-            gamepad: written_or(OutputDevice::Gamepad, gamepad.as_ref(), name, default(pad), findings),
-            keyboard: written_or(OutputDevice::Keyboard, keyboard.as_ref(), name, default(key), findings),
-            pointer: None,
-        }
+        let defaults = [pad, key].map(|value| Placed { value, at: table.at });
+        written_direction(&tables, name, Some(defaults), findings)
     })
+}
+
+/// The tables `gamepad` and `keyboard` of directions.
+pub(super) fn direction_tables<'t>(
+    table: &Section<'t>,
+    title: &str,
+    findings: &mut Findings<'_>,
+) -> [Option<Section<'t>>; 2] {
+    ["gamepad", "keyboard"]
+        .map(|device| table.table(device, format!("[{title}.{device}]"), &DIRECTION_KEYS, findings))
+}
+
+/// The direction `name` on both devices; its default, if it has one, where it is not written.
+pub(super) fn written_direction(
+    [gamepad, keyboard]: &[Option<Section<'_>>; 2],
+    name: &str,
+    defaults: Option<[Placed<&str>; 2]>,
+    findings: &mut Findings<'_>,
+) -> Outputs {
+    let [pad, key] = defaults.map_or([None; 2], |defaults| defaults.map(Some));
+    Outputs {
+        gamepad: written_or(OutputDevice::Gamepad, gamepad.as_ref(), name, pad, findings),
+        keyboard: written_or(OutputDevice::Keyboard, keyboard.as_ref(), name, key, findings),
+        pointer: None,
+    }
 }

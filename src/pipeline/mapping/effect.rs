@@ -1,11 +1,19 @@
-//! How a button's keys follow its kinds of press: down as long as they last, toggled, or again and again.
+//! How what a button acts on follows its kinds of press: on as long as they last, toggled, or again and again.
 
-use super::profile::{Binding, Button, Mode, Role, Roles};
+use super::profile::{Button, Mode, Output, Role, Roles};
 use crate::time::StreamInstant;
+
+/// Something that is on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Playing {
+    pub(super) output: Output,
+    /// Whether its press begins now.
+    pub(super) begins: bool,
+}
 
 /// What goes on at a button.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Playing {
+pub(super) struct Follower {
     /// The kinds of press that are on.
     roles: Roles,
     /// Each since when.
@@ -35,38 +43,42 @@ impl Stay {
     }
 }
 
-impl Playing {
+impl Follower {
     /// Nothing.
     pub(super) const fn nothing() -> Self {
         let since = [StreamInstant::from_us(0); Role::ALL.len()];
         Self { roles: Roles::NONE, since, stays: [Stay::Up; Role::ALL.len()] }
     }
 
-    /// Goes on to `roles` at `t`; the bindings that are then down.
+    /// Goes on to `roles` at `t`; what is then on.
     pub(super) fn step(
         &mut self,
         button: &Button,
         t: StreamInstant,
         roles: Roles,
-    ) -> impl Iterator<Item = Binding> + use<> {
-        let mut down = button.effects();
-        let places = self.since.iter_mut().zip(&mut self.stays).zip(&mut down);
-        for (role, ((since, stay), effect)) in Role::ALL.into_iter().zip(places) {
-            let is_on = roles.has(role);
-            if is_on && !self.roles.has(role) {
+    ) -> impl Iterator<Item = Playing> + use<> {
+        let mut on = [None; Role::ALL.len()];
+        let places = self.since.iter_mut().zip(&mut self.stays).zip(&mut on);
+        for ((role, effect), ((since, stay), on)) in Role::ALL.into_iter().zip(button.effects()).zip(places) {
+            let Some(effect) = effect else { continue };
+            let is_pressed = roles.has(role);
+            let begins = is_pressed && !self.roles.has(role);
+            if begins {
                 *since = t;
-                *stay = stay.pressed(effect.map_or(Mode::Plain, |effect| effect.mode));
+                *stay = stay.pressed(effect.mode);
             }
-            let lasts_us = t.us_since(*since);
-            *effect = effect.filter(|effect| match effect.mode {
-                Mode::Plain => is_on,
+            let is_on = match effect.mode {
+                Mode::Plain => is_pressed,
                 Mode::Toggle | Mode::Sticky => *stay != Stay::Up,
                 // Down in [0, T/2) of each period T.
-                Mode::Turbo { period_us } => is_on && 2 * (lasts_us % period_us.max(1)) < period_us,
-            });
+                Mode::Turbo { period_us } => {
+                    is_pressed && 2 * (t.us_since(*since) % period_us.max(1)) < period_us
+                }
+            };
+            *on = is_on.then_some(Playing { output: effect.output, begins });
         }
         self.roles = roles;
-        down.into_iter().flatten().flat_map(|effect| effect.keys.iter())
+        on.into_iter().flatten()
     }
 
     /// Whether any kind of press is on whose keys are not sticky ones: an action, that is, on which latched keys are meant to work.
@@ -87,12 +99,12 @@ impl Playing {
 mod tests {
     use super::*;
     use crate::pipeline::control::{Code, OutputDevice};
-    use crate::pipeline::mapping::profile::{Action, Effect, Force, Keys};
+    use crate::pipeline::mapping::profile::{Action, Binding, Effect, Force, Keys, When};
 
     /// How many keys are down at each of these milliseconds and kinds of press.
     fn down(mode: Mode, steps: &[(u64, bool)]) -> Vec<usize> {
         let key = |code| Binding { device: OutputDevice::Keyboard, code: Code::Key(code), value: 1 };
-        let action = Action::Hold(Effect { keys: Keys::new([key(1), key(2)]), mode });
+        let action = Action::Hold(Effect { output: Output::Keys(Keys::new([key(1), key(2)])), mode });
         let button = Button {
             force: Force::Fz,
             press_n: 2.0,
@@ -100,12 +112,16 @@ mod tests {
             hair_n: None,
             dwell: None,
             place: None,
+            when: When::Always,
             action,
         };
-        let mut playing = Playing::nothing();
+        let mut follower = Follower::nothing();
         let step = |(ms, is_on): &(u64, bool)| {
             let roles = if *is_on { Role::Out.into() } else { Roles::NONE };
-            playing.step(&button, StreamInstant::from_us(1_000 * ms), roles).count()
+            follower
+                .step(&button, StreamInstant::from_us(1_000 * ms), roles)
+                .flat_map(|playing| playing.output.bindings())
+                .count()
         };
         steps.iter().map(step).collect()
     }

@@ -3,17 +3,22 @@
 use arrayvec::ArrayVec;
 
 use super::accept::Presses;
-use super::intent::{Intents, Level};
-use super::profile::{BUTTONS_MAX, Binding, Button, Dpad, Place, Profile};
-use super::sector::{self, Horizontal, Sector, Vertical};
+use super::directed::{Directed, Directions};
+use super::intent::Intents;
+use super::profile::{BUTTONS_MAX, Button, Direction, Place, Profile};
+use super::rest::Resting;
+use super::running::Running;
+use super::sector::{self, Sector};
+use super::stated::{Commands, Stated};
 use super::steer::{self, Velocity};
 use super::touched::{Touched, force_of};
 use super::tremor::Calm;
 use super::zone;
-use crate::pipeline::control::OutputDevice;
-use crate::pipeline::control::names::POINTER_MOTION;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
+
+/// A gamepad has two sticks.
+const SIDES: usize = 2;
 
 /// Plays one profile. `mappings/README.md` states its rules.
 ///
@@ -28,6 +33,16 @@ pub struct Engine {
     buttons: ArrayVec<Touched, BUTTONS_MAX>,
     last: Option<Contact>,
     calm: Option<Calm>,
+    resting: Option<Resting>,
+    directed: Directed,
+    directions: Directions,
+    /// The layer that is on.
+    layer: Option<usize>,
+    running: Running,
+    /// Whether each stick is moved.
+    sticks: [bool; SIDES],
+    /// What presses of the last step ask of the bridge.
+    commands: Commands,
     is_acting: bool,
     presses: Presses,
 }
@@ -44,6 +59,13 @@ impl Engine {
             buttons,
             last: None,
             calm: None,
+            resting: None,
+            directed: Directed::fresh(),
+            directions: Directions::default(),
+            layer: None,
+            running: Running::default(),
+            sticks: [false; SIDES],
+            commands: Commands::new(),
             is_acting: false,
             presses: Presses::default(),
         }
@@ -68,28 +90,10 @@ impl Engine {
         self.last = contact.copied();
         let meant = self.meant(t, contact);
         let contact = meant.as_ref();
-        let mut levels = Levels { stated: Intents::new() };
-        self.held = self
-            .profile
-            .dpad
-            .as_ref()
-            .zip(contact)
-            .and_then(|(dpad, contact)| sector::follow(dpad, self.held, contact));
-        if let Some((dpad, sector)) = self.profile.dpad.as_ref().zip(self.held) {
-            levels.state_directions(dpad, sector);
-        }
+        let mut stated = Stated::default();
+        self.direct(t, contact, &mut stated);
         self.zone = contact.and_then(|contact| zone::follow(&self.profile.zones, self.zone, contact));
-        let is_in = |place: Option<Place>| match place {
-            None => true,
-            Some(Place::Zone(number)) => self.zone == Some(number),
-            Some(Place::Direction(direction)) => self.held.is_some_and(|held| held.has(direction)),
-        };
-        for (button, touched) in self.profile.buttons.iter().zip(&mut self.buttons) {
-            // A lifted contact was where it was.
-            let is_in_place = contact.is_none() || is_in(button.place);
-            let help = (self.profile.access, &mut self.presses);
-            touched.step(button, t, (contact, is_in_place), help).for_each(|binding| levels.state(binding));
-        }
+        self.press(t, contact, &mut stated);
         self.unlatch();
         self.moving = self
             .profile
@@ -97,17 +101,77 @@ impl Engine {
             .as_ref()
             .zip(contact)
             .and_then(|(pointer, contact)| steer::follow(pointer, self.moving, contact));
-        levels.state_motion(self.moving);
-        levels.stated
+        stated.state_motion(self.moving);
+        self.steer(contact, &mut stated);
+        self.running.step(&self.profile.macros, t, &mut stated);
+        self.layer = stated.layer;
+        self.commands = stated.commands;
+        stated.levels
+    }
+
+    /// States the directions.
+    fn direct(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut Stated) {
+        let Some(dpad) = &self.profile.dpad else { return };
+        self.held = contact.and_then(|contact| sector::follow(dpad, self.held, contact));
+        let asked = (self.held, contact);
+        self.directions = self.directed.step(self.profile.access, t, asked, &mut self.presses);
+        let layer = self.layer.and_then(|number| self.profile.layers.get(number));
+        for direction in self.directions.iter() {
+            let (own, in_layer) = match direction {
+                Direction::Left => (dpad.left, layer.and_then(|layer| layer.left)),
+                Direction::Right => (dpad.right, layer.and_then(|layer| layer.right)),
+                Direction::Up => (dpad.up, layer.and_then(|layer| layer.up)),
+                Direction::Down => (dpad.down, layer.and_then(|layer| layer.down)),
+            };
+            in_layer.unwrap_or(own).iter().for_each(|binding| stated.state(binding));
+        }
+    }
+
+    /// States where sticks and triggers are.
+    fn steer(&mut self, contact: Option<&Contact>, stated: &mut Stated) {
+        for (stick, is_held) in self.profile.sticks.iter().zip(&mut self.sticks) {
+            let position = contact.and_then(|contact| stick.follow(*is_held, contact));
+            *is_held = position.is_some();
+            stick
+                .axes()
+                .into_iter()
+                .zip(position.unwrap_or_default())
+                .for_each(|axis| stated.state_axis(axis));
+        }
+        let at = (self.zone, self.directions);
+        for trigger in self.profile.triggers.iter().filter(|trigger| is_in(at, trigger.place)) {
+            let position = contact.map_or(0, |contact| trigger.position(contact.fz_n));
+            stated.state_axis((trigger.axis(), position));
+        }
+    }
+
+    /// States what the buttons do. A layer that one of them switches counts from the next sample on.
+    fn press(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut Stated) {
+        let at = (self.zone, self.directions);
+        for (button, touched) in self.profile.buttons.iter().zip(&mut self.buttons) {
+            if !button.when.is_met(self.layer) {
+                touched.sleep(button, t, contact).for_each(|playing| stated.take(playing));
+                continue;
+            }
+            // A lifted contact was where it was.
+            let is_in_place = contact.is_none() || is_in(at, button.place);
+            let help = (self.profile.access, &mut self.presses);
+            touched.step(button, t, (contact, is_in_place), help).for_each(|playing| stated.take(playing));
+        }
     }
 
     /// The place that the hand means: calmed, and stretched where it does not reach.
     fn meant(&mut self, t: StreamInstant, contact: Option<&Contact>) -> Option<Contact> {
         let Some(contact) = contact else {
-            self.calm = None;
+            (self.calm, self.resting) = (None, None);
             return None;
         };
-        let calmed = match &self.profile.access.tremor {
+        let access = &self.profile.access;
+        if access.rest.is_some_and(|rest| !Resting::step(&mut self.resting, rest, t, contact)) {
+            self.calm = None;
+            return None;
+        }
+        let calmed = match &access.tremor {
             Some(tremor) => Calm::step(&mut self.calm, tremor, t, contact),
             None => *contact,
         };
@@ -117,11 +181,22 @@ impl Engine {
     /// Lets latched keys go where an action has ended.
     fn unlatch(&mut self) {
         let buttons = || self.profile.buttons.iter().zip(&self.buttons);
-        let is_acting = self.held.is_some() || buttons().any(|(button, touched)| touched.is_acting(button));
+        let is_acting =
+            !self.directions.is_empty() || buttons().any(|(button, touched)| touched.is_acting(button));
         if self.is_acting && !is_acting {
             self.buttons.iter_mut().for_each(Touched::unlatch);
         }
         self.is_acting = is_acting;
+    }
+
+    /// What presses of the last step ask of the bridge.
+    pub const fn commands(&self) -> &Commands {
+        &self.commands
+    }
+
+    /// The name of the layer that is on.
+    pub fn layer(&self) -> Option<&str> {
+        self.layer.and_then(|number| self.profile.layers.get(number)).map(|layer| layer.name.as_str())
     }
 
     /// How many presses counted since the engine began, and how many did not.
@@ -135,8 +210,11 @@ impl Engine {
     /// A press that was under way stays forgotten until its force was released once, even if the contact goes
     /// on.
     pub fn cancel(&mut self) {
-        (self.held, self.zone, self.moving, self.calm) = (None, None, None, None);
-        self.is_acting = false;
+        (self.held, self.zone, self.moving, self.calm, self.resting) = (None, None, None, None, None);
+        (self.layer, self.running, self.is_acting) = (None, Running::default(), false);
+        (self.directed, self.directions) = (Directed::fresh(), Directions::default());
+        self.sticks = [false; SIDES];
+        self.commands.clear();
         self.buttons.iter_mut().for_each(Touched::forget);
     }
 
@@ -149,6 +227,7 @@ impl Engine {
     pub fn replace_profile(&mut self, profile: Profile) {
         self.buttons = profile.buttons.iter().map(|button| self.taken_over(button)).collect();
         (self.zone, self.calm, self.is_acting) = (None, None, false);
+        (self.layer, self.running, self.sticks) = (None, Running::default(), [false; SIDES]);
         self.profile = profile;
     }
 
@@ -162,42 +241,12 @@ impl Engine {
     }
 }
 
-/// The levels of one step while they are collected.
-struct Levels {
-    stated: Intents,
-}
-
-impl Levels {
-    fn state_directions(&mut self, dpad: &Dpad, sector: Sector) {
-        let horizontal = sector.horizontal().map(|horizontal| match horizontal {
-            Horizontal::Left => dpad.left,
-            Horizontal::Right => dpad.right,
-        });
-        let vertical = sector.vertical().map(|vertical| match vertical {
-            Vertical::Up => dpad.up,
-            Vertical::Down => dpad.down,
-        });
-        horizontal.into_iter().chain(vertical).flat_map(|keys| keys.iter()).for_each(|it| self.state(it));
-    }
-
-    /// Adds a level. A control that is stated already keeps its first value: each control stands there once.
-    fn state(&mut self, Binding { device, code, value }: Binding) {
-        self.push(Level { device, code, value });
-    }
-
-    fn state_motion(&mut self, velocity: Option<Velocity>) {
-        let Some(Velocity { right, down }) = velocity else { return };
-        let rates = POINTER_MOTION.into_iter().zip([right, down]);
-        for (code, value) in rates.filter(|(_, rate)| *rate != 0) {
-            self.push(Level { device: OutputDevice::Pointer, code, value });
-        }
-    }
-
-    fn push(&mut self, level: Level) {
-        if self.stated.iter().all(|stated| (stated.device, stated.code) != (level.device, level.code)) {
-            // A profile has at most CONTROLS_MAX controls, so there is always room.
-            let _ = self.stated.try_push(level);
-        }
+/// Whether the contact is there, being in this zone and having these directions.
+fn is_in((zone, directions): (Option<usize>, Directions), place: Option<Place>) -> bool {
+    match place {
+        None => true,
+        Some(Place::Zone(number)) => zone == Some(number),
+        Some(Place::Direction(direction)) => directions.has(direction),
     }
 }
 

@@ -8,6 +8,9 @@ pub(super) const MIN_PRESS_MS: Bounds<u32> = Bounds { low: 0, high: 1_000, defau
 pub(super) const LONG_PRESS_MS: Bounds<u32> = Bounds { low: 1, high: 10_000, default: 400 };
 pub(super) const DOUBLE_PRESS_MS: Bounds<u32> = Bounds { low: 50, high: 2_000, default: 250 };
 pub(super) const TURBO_MS: Bounds<u32> = Bounds { low: 2, high: 10_000, default: 100 };
+/// Two frames of a game, and some.
+pub(super) const STEP_MS: Bounds<u32> = Bounds { low: 1, high: 10_000, default: 50 };
+pub(super) const WAIT_MS: Bounds<u32> = Bounds { low: 1, high: 10_000, default: 50 };
 /// The plate's radius is 30 mm; on its rim there is nothing left to steer with.
 pub(super) const CENTRE_RADIUS_MM: Bounds<f32> = Bounds { low: 2.0, high: 29.0, default: 8.0 };
 pub(super) const RADIUS_HYSTERESIS_MM: Bounds<f32> = Bounds { low: 0.0, high: 29.0, default: 1.5 };
@@ -35,11 +38,19 @@ pub(super) const DWELL_MS: Bounds<u32> = Bounds { low: 50, high: 10_000, default
 pub(super) const DWELL_MM: Bounds<f32> = Bounds { low: 0.5, high: 15.0, default: 3.0 };
 pub(super) const TREMOR_HZ: Bounds<f32> = Bounds { low: 0.3, high: 10.0, default: 1.0 };
 pub(super) const TREMOR_PER_MM: Bounds<f32> = Bounds { low: 0.0, high: 1.0, default: 0.05 };
+pub(super) const REST_N: Bounds<f32> = Bounds { low: 0.05, high: 10.0, default: 0.5 };
+pub(super) const REST_MS: Bounds<u32> = Bounds { low: 50, high: 5_000, default: 500 };
 /// Default of a button's release force over its press force.
 pub(super) const RELEASE_SHARE: f32 = 0.7;
 /// Force that starts a direction, or the pointer, over the default of the force that ends it.
 pub(super) const RELEASE_RATIO: f32 = 1.5;
 pub(super) const POINTER_CENTRE_MM: Bounds<f32> = Bounds { default: 5.0, ..CENTRE_RADIUS_MM };
+pub(super) const STICK_CENTRE_MM: Bounds<f32> = Bounds { low: 0.0, high: 29.0, default: 3.0 };
+pub(super) const SHEAR_REST_N: Bounds<f32> = Bounds { low: 0.0, high: 10.0, default: 0.2 };
+pub(super) const SHEAR_FULL_N: Bounds<f32> = Bounds { low: 0.1, high: 20.0, default: 2.0 };
+pub(super) const TRIGGER_FROM_N: Bounds<f32> = Bounds { low: 0.05, high: 20.0, default: 0.5 };
+pub(super) const TRIGGER_FULL_N: Bounds<f32> = Bounds { low: 0.1, high: 50.0, default: 4.0 };
+pub(super) const STICK_CURVE: Bounds<f32> = Bounds { low: 1.0, high: 3.0, default: 1.0 };
 pub(super) const FULL_RADIUS_MM: Bounds<f32> = Bounds { low: 3.0, high: 30.0, default: 24.0 };
 pub(super) const SPEED_COUNTS_PER_S: Bounds<f32> =
     Bounds { low: 10.0, high: POINTER_SPEED_MAX as f32, default: 800.0 };

@@ -5,13 +5,13 @@ use super::limits::{
     ANGLE_DEG, GAIN, HYSTERESIS_DEG, INNER_RADIUS_MM, OUTER_RADIUS_MM, RADIUS_HYSTERESIS_MM, ZONE_DEG_MIN,
     ZONE_HYSTERESIS_MM, ZONE_MM_MIN,
 };
+use super::named;
 use super::profile::{Direction, Gain, Place, ZONES_MAX, Zone};
 use crate::toml_text::diag::{Findings, quoted};
 use crate::toml_text::section::{Placed, Section};
-use crate::toml_text::spelling;
 
 pub(super) const GAIN_KEYS: [&str; 4] = ["up", "down", "left", "right"];
-pub(super) const ZONE_KEYS: [&str; 8] = [
+const ZONE_KEYS: [&str; 8] = [
     "name",
     "from_deg",
     "to_deg",
@@ -37,16 +37,16 @@ pub(super) fn read_gain(table: &Section<'_>, findings: &mut Findings<'_>) -> Opt
 }
 
 /// Reads all `[[zone]]`s; what is unusable is left out and reported.
-pub(super) fn read_zones(tables: &[Section<'_>], has_dpad: bool, findings: &mut Findings<'_>) -> Vec<Zone> {
-    if let Some(extra) = tables.get(ZONES_MAX) {
-        findings.error(extra.at, format!("a profile has at most {ZONES_MAX} zones"), "remove this one");
-    }
+pub(super) fn read_zones(root: &Section<'_>, has_dpad: bool, findings: &mut Findings<'_>) -> Vec<Zone> {
+    // One more than there can be, so that the first one too many is known by its place.
+    let tables = root.tables("zone", &ZONE_KEYS, ZONES_MAX + 1, findings);
+    named::check_count(&tables, "zone", ZONES_MAX, findings);
     let mut zones: Vec<Zone> = Vec::new();
-    for table in tables {
-        table.require("name", "write name = \"…\", by which buttons ask for it", findings);
-        let name = table.name("name", findings).map(str::to_owned);
-        if let Some((name, at)) = name.as_ref().zip(table.place_of("name")) {
-            check_name(name, at, (&zones, has_dpad), findings);
+    for table in &tables {
+        let is_taken = |name: &str| zones.iter().any(|zone| zone.name == name);
+        let name = named::read(table, "zone", is_taken, findings);
+        if let Some((name, at)) = name.as_ref().zip(table.place_of("name")).filter(|_| has_dpad) {
+            check_name(name, at, findings);
         }
         // A broken one keeps its name, so that no button misses it.
         let shape = read_shape(table, findings).unwrap_or_else(whole_plate);
@@ -56,15 +56,9 @@ pub(super) fn read_zones(tables: &[Section<'_>], has_dpad: bool, findings: &mut 
     zones
 }
 
-fn check_name(name: &str, at: usize, (zones, has_dpad): (&[Zone], bool), findings: &mut Findings<'_>) {
-    if zones.iter().any(|zone| zone.name == name) {
-        findings.error(
-            at,
-            format!("a zone {} stands above already", quoted(name)),
-            "give this one another name",
-        );
-    }
-    if has_dpad && DIRECTIONS.iter().any(|(own, _)| *own == name) {
+/// Reports a name that the D-pad has.
+fn check_name(name: &str, at: usize, findings: &mut Findings<'_>) {
+    if DIRECTIONS.iter().any(|(own, _)| *own == name) {
         let message = format!("{} is a direction of [dpad]", quoted(name));
         findings.error(at, message, "give the zone another name");
     }
@@ -155,25 +149,15 @@ fn limit_hysteresis(zones: &mut [Zone]) {
 
 /// The place that a button asks for by its name; none (and a finding) where there is no such place.
 pub(super) fn find(
-    Placed { value: name, at }: Placed<&str>,
+    asked: Placed<&str>,
     (zones, has_dpad): (&[Zone], bool),
     findings: &mut Findings<'_>,
 ) -> Option<Place> {
-    let direction = DIRECTIONS.iter().find(|(own, _)| has_dpad && *own == name);
-    let zone = zones.iter().position(|zone| zone.name == name);
-    let place = direction.map(|(_, it)| Place::Direction(*it)).or(zone.map(Place::Zone));
-    if place.is_none() {
-        let own = if has_dpad { &DIRECTIONS[..] } else { &[] };
-        let known: Vec<&str> =
-            zones.iter().map(|zone| zone.name.as_str()).chain(own.iter().map(|(name, _)| *name)).collect();
-        let help = match spelling::nearest(name, known.iter().copied()) {
-            Some(near) => format!("did you mean \"{near}\"?"),
-            None if known.is_empty() => "write a [[zone]] of that name".to_owned(),
-            None => format!("known here: {}", known.join(", ")),
-        };
-        findings.error(at, format!("there is no zone {}", quoted(name)), help);
-    }
-    place
+    let own = if has_dpad { &DIRECTIONS[..] } else { &[] };
+    let zones = zones.iter().map(|zone| zone.name.as_str());
+    let known: Vec<&str> = own.iter().map(|(name, _)| *name).chain(zones).collect();
+    let number = named::find(asked, "zone", &known, findings)?;
+    Some(own.get(number).map_or(Place::Zone(number - own.len().min(number)), |(_, it)| Place::Direction(*it)))
 }
 
 #[cfg(test)]

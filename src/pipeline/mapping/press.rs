@@ -111,7 +111,7 @@ impl Press {
 mod tests {
     use super::*;
     use crate::pipeline::mapping::gate::{Gate, Thresholds};
-    use crate::pipeline::mapping::profile::{Effect, Keys, Mode, Timed};
+    use crate::pipeline::mapping::profile::{Effect, Keys, Mode, Output, Timed};
 
     const OUT: Option<Role> = Some(Role::Out);
     const TAP: Option<Role> = Some(Role::Tap);
@@ -122,7 +122,7 @@ mod tests {
 
     /// A button with these times in milliseconds.
     fn by_time(double_ms: Option<u64>, hold_ms: Option<u64>) -> Action {
-        let effect = Effect { keys: Keys::new([]), mode: Mode::Plain };
+        let effect = Effect { output: Output::Keys(Keys::new([])), mode: Mode::Plain };
         let [double, hold] = [double_ms, hold_ms].map(|ms| ms.map(|ms| Timed { effect, us: 1_000 * ms }));
         Action::ByTime { tap: effect, double, hold }
     }
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn a_hold_button_follows_the_press() {
-        let button = Action::Hold(Effect { keys: Keys::new([]), mode: Mode::Plain });
+        let button = Action::Hold(Effect { output: Output::Keys(Keys::new([])), mode: Mode::Plain });
         let steps = [
             (0, Some(1.99)),
             (1, Some(2.0)),

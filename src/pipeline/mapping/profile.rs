@@ -2,10 +2,15 @@
 
 use arrayvec::ArrayVec;
 
+pub use super::action::{
+    Action, Command, Effect, Layer, Macro, Mode, Output, PROFILE_NAME_MAX, Role, Roles, Skip, Step, Timed,
+    When,
+};
+pub use super::analogue::{Side, Source, Stick, Trigger};
 use super::angle::wrapped;
 pub use super::keys::{Binding, KEYS_MAX, Keys};
 pub use super::place::{Direction, Dpad, DpadMode, Gain, Place, Pointer, Zone};
-use crate::pipeline::control::OutputDevice;
+use crate::pipeline::control::{Code, OutputDevice};
 
 /// The most buttons a profile can bind.
 pub const BUTTONS_MAX: usize = 16;
@@ -13,45 +18,20 @@ pub const BUTTONS_MAX: usize = 16;
 /// The most zones that a profile can have.
 pub const ZONES_MAX: usize = 16;
 
+/// The most layers that a profile can have.
+pub const LAYERS_MAX: usize = 8;
+
+/// The most macros that a profile can have.
+pub const MACROS_MAX: usize = 16;
+
+/// The most steps that a macro can have.
+pub const STEPS_MAX: usize = 32;
+
 /// The most controls that a profile drives on one device, and with the pointer.
 pub const CONTROLS_MAX: usize = 32;
 
 /// The fastest pointer that a profile can ask for, in counts per second.
 pub const POINTER_SPEED_MAX: i32 = 5_000;
-
-/// How keys follow what is pressed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// Down as long as it lasts.
-    Plain,
-    /// Each time it begins they go down and stay, or go up again.
-    Toggle,
-    /// Sticky Keys: the first press lets them stay down until another press has ended, a second one locks them, a third lets go.
-    Sticky,
-    /// Down in the first half of each period as long as it lasts.
-    Turbo {
-        /// From one press to the next.
-        period_us: u64,
-    },
-}
-
-/// What a kind of press does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Effect {
-    /// What goes down.
-    pub keys: Keys,
-    /// And how.
-    pub mode: Mode,
-}
-
-/// A kind of press that is told by a time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Timed {
-    /// What it does.
-    pub effect: Effect,
-    /// The time that tells it.
-    pub us: u64,
-}
 
 /// Help for hands that press what they do not mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,6 +42,8 @@ pub struct Access {
     pub bounce_us: u64,
     /// Calms the place of the contact.
     pub tremor: Option<Tremor>,
+    /// A hand that rests on the pad is no touch.
+    pub rest: Option<Rest>,
 }
 
 /// A low-pass of the contact's place.
@@ -71,6 +53,15 @@ pub struct Tremor {
     pub cutoff_hz: f32,
     /// By so much the cutoff grows, in Hz, with each mm/s of the finger's speed.
     pub per_mm: f32,
+}
+
+/// What tells a touch from a hand that rests.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    /// A touch is by so much above the load that rests, in newtons,
+    pub n: f32,
+    /// which follows slow changes in this time.
+    pub us: u64,
 }
 
 /// A press that counts when the finger has rested.
@@ -97,112 +88,6 @@ pub enum Force {
     FyNegative,
 }
 
-/// What a press does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Action {
-    /// Any press, as long as it lasts.
-    Hold(Effect),
-    /// By how long a press lasts, and how soon it comes after another one.
-    ByTime {
-        /// A short press, when it ends. Where there is a double press: when that can no longer come.
-        tap: Effect,
-        /// A press that begins less than this time after the end of a short one, as long as it lasts.
-        double: Option<Timed>,
-        /// A press from this duration on, until it ends; without it none is long.
-        hold: Option<Timed>,
-    },
-    /// By how hard a press is.
-    ByForce {
-        /// A light one.
-        light: Effect,
-        /// A hard one.
-        hard: Effect,
-        /// Hard at this force or more; more than the button's.
-        hard_press_n: f32,
-        /// No longer hard below this force; less than `hard_press_n`.
-        hard_release_n: f32,
-        /// What becomes of the light one on the way to a hard one.
-        skip: Skip,
-    },
-}
-
-/// What becomes of a light press on the way to a hard one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Skip {
-    /// The light one begins at once, the hard one comes on top.
-    No,
-    /// A press that is hard within this time is hard alone; after a slower one hard may come on top.
-    May {
-        /// The time.
-        us: u64,
-    },
-    /// A press that is hard within this time is hard alone; once light has begun hard never comes.
-    Must {
-        /// The time.
-        us: u64,
-    },
-}
-
-/// A kind of press.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
-    /// Any press.
-    Out,
-    /// A short one that has ended.
-    Tap,
-    /// One soon after a short one.
-    Double,
-    /// A long one.
-    Hold,
-    /// One that is not hard.
-    Light,
-    /// A hard one.
-    Hard,
-}
-
-impl Role {
-    /// In the order of a button's effects.
-    pub const ALL: [Self; 6] = [Self::Out, Self::Tap, Self::Double, Self::Hold, Self::Light, Self::Hard];
-
-    /// Its key in a profile.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Out => "out",
-            Self::Tap => "tap",
-            Self::Double => "double",
-            Self::Hold => "hold",
-            Self::Light => "light",
-            Self::Hard => "hard",
-        }
-    }
-}
-
-/// The kinds of press that are on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Roles(u8);
-
-impl Roles {
-    /// None.
-    pub const NONE: Self = Self(0);
-
-    /// With one more.
-    #[must_use]
-    pub const fn with(self, role: Role) -> Self {
-        Self(self.0 | 1 << role as u8)
-    }
-
-    /// Whether it is among them.
-    pub const fn has(self, role: Role) -> bool {
-        self.0 & 1 << role as u8 != 0
-    }
-}
-
-impl From<Role> for Roles {
-    fn from(role: Role) -> Self {
-        Self::NONE.with(role)
-    }
-}
-
 /// A button pressed by a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Button {
@@ -218,6 +103,8 @@ pub struct Button {
     pub dwell: Option<Dwell>,
     /// Where it counts; everywhere if that is not said.
     pub place: Option<Place>,
+    /// When it counts.
+    pub when: When,
     /// What a press does.
     pub action: Action,
 }
@@ -239,10 +126,18 @@ pub struct Profile {
     pub gain: Gain,
     /// Zones, in the file's order; where two overlap the first one counts.
     pub zones: Vec<Zone>,
+    /// Layers, in the file's order.
+    pub layers: Vec<Layer>,
+    /// Macros, in the file's order.
+    pub macros: Vec<Macro>,
     /// Directions; `None` where the profile has none.
     pub dpad: Option<Dpad>,
     /// The pointer's movement; `None` where the profile moves none.
     pub pointer: Option<Pointer>,
+    /// Sticks of the gamepad; none where the keyboard is played.
+    pub sticks: ArrayVec<Stick, 2>,
+    /// Triggers of the gamepad; none where the keyboard is played.
+    pub triggers: ArrayVec<Trigger, 2>,
     /// Buttons, in the file's order.
     pub buttons: ArrayVec<Button, BUTTONS_MAX>,
 }
@@ -254,10 +149,38 @@ impl Profile {
         moves || self.bindings().any(|binding| binding.device == device)
     }
 
-    /// All bindings in the order of the output: left, right, up, down, then those of the buttons.
+    /// All bindings in the order of the output: left, right, up, down, then those of the layers, the buttons, the macros and the
+    /// axes.
     pub fn bindings(&self) -> impl Iterator<Item = Binding> + '_ {
         let directions = self.dpad.iter().flat_map(|dpad| [dpad.left, dpad.right, dpad.up, dpad.down]);
-        directions.flat_map(|keys| keys.iter()).chain(self.buttons.iter().flat_map(Button::bindings))
+        let in_layers =
+            self.layers.iter().flat_map(|layer| [layer.left, layer.right, layer.up, layer.down]).flatten();
+        let in_macros = self.macros.iter().flat_map(|it| it.steps.iter().filter_map(|step| step.keys));
+        let buttons = self.buttons.iter().flat_map(Button::bindings);
+        let keys = |keys: Keys| keys.iter();
+        let controls =
+            directions.chain(in_layers).flat_map(keys).chain(buttons).chain(in_macros.flat_map(keys));
+        controls.chain(self.axes().map(|code| Binding { device: OutputDevice::Gamepad, code, value: 1 }))
+    }
+
+    /// The axes of its sticks and triggers.
+    fn axes(&self) -> impl Iterator<Item = Code> + '_ {
+        let sticks = self.sticks.iter().flat_map(Stick::axes);
+        sticks.chain(self.triggers.iter().map(Trigger::axis))
+    }
+
+    /// What its presses can ask of the bridge.
+    pub fn commands(&self) -> impl Iterator<Item = Command> + '_ {
+        let effects = self.buttons.iter().flat_map(|button| button.effects().into_iter().flatten());
+        effects.filter_map(|effect| match effect.output {
+            Output::Bridge(command) => Some(command),
+            Output::Keys(_) | Output::Layer(_) | Output::Macro(_) => None,
+        })
+    }
+
+    /// Whether a press leads to another profile.
+    pub fn leads_on(&self) -> bool {
+        self.commands().any(|command| matches!(command, Command::NextProfile | Command::Profile(_)))
     }
 }
 
@@ -304,6 +227,6 @@ impl Button {
 
     /// What it can press.
     pub fn bindings(&self) -> impl Iterator<Item = Binding> + use<> {
-        self.effects().into_iter().flatten().flat_map(|effect| effect.keys.iter())
+        self.effects().into_iter().flatten().flat_map(|effect| effect.output.bindings())
     }
 }

@@ -35,7 +35,7 @@ mod tests {
     use crate::pipeline::control::{Code, OutputDevice};
     use crate::pipeline::mapping::check::{OutputChoice, read};
     use crate::pipeline::mapping::profile::{
-        Action, Binding, DpadMode, Effect, Force, Keys, Mode, Profile, Timed,
+        Action, Binding, DpadMode, Effect, Force, Keys, Mode, Output, Profile, Timed,
     };
 
     const SOUTH: Binding = Binding { device: OutputDevice::Gamepad, code: Code::Key(0x130), value: 1 };
@@ -44,7 +44,7 @@ mod tests {
     const KEY_X: Binding = Binding { device: OutputDevice::Keyboard, code: Code::Key(45), value: 1 };
 
     fn plain(binding: Binding) -> Effect {
-        Effect { keys: Keys::new([binding]), mode: Mode::Plain }
+        Effect { output: Output::Keys(Keys::new([binding])), mode: Mode::Plain }
     }
 
     fn shipped(name: &str, output: OutputChoice) -> Profile {

@@ -1,5 +1,6 @@
 //! How fast the pointer moves for a place on the plate.
 
+use super::curve::share;
 use super::profile::Pointer;
 use crate::quantity::Contact;
 
@@ -32,9 +33,8 @@ fn velocity(pointer: &Pointer, contact: &Contact) -> Velocity {
 
 /// The speed at this distance from the centre, in counts per second.
 fn speed_counts_per_s(pointer: &Pointer, radius_mm: f32) -> f32 {
-    let way_mm = pointer.full_radius_mm - pointer.centre_radius_mm;
-    let part = ((radius_mm - pointer.centre_radius_mm) / way_mm).clamp(0.0, 1.0);
-    pointer.speed_counts_per_s * libm::powf(part, pointer.curve)
+    let ends_mm = [pointer.centre_radius_mm, pointer.full_radius_mm];
+    pointer.speed_counts_per_s * share(radius_mm, ends_mm, pointer.curve)
 }
 
 #[cfg(test)]

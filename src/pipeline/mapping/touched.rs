@@ -1,10 +1,10 @@
 //! All that goes on at one button.
 
 use super::accept::{Accept, Conditions, Presses};
-use super::effect::Playing;
+use super::effect::{Follower, Playing};
 use super::gate::{Gate, Thresholds, Touch};
 use super::press::Press;
-use super::profile::{Access, Action, Binding, Button, Force, Roles};
+use super::profile::{Access, Action, Button, Force, Roles};
 use super::stage::Stage;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
@@ -17,7 +17,7 @@ pub(super) struct Touched {
     accept: Accept,
     press: Press,
     stage: Stage,
-    playing: Playing,
+    follower: Follower,
 }
 
 impl Touched {
@@ -29,7 +29,7 @@ impl Touched {
             accept: Accept::Off { since: None },
             press: Press::Up,
             stage: Stage::Up,
-            playing: Playing::nothing(),
+            follower: Follower::nothing(),
         }
     }
 
@@ -43,14 +43,14 @@ impl Touched {
         }
     }
 
-    /// Goes on to `t`; the bindings that are then down. `is_in_place` says whether the contact is where the button counts.
+    /// Goes on to `t`; what is then on. `is_in_place` says whether the contact is where the button counts.
     pub(super) fn step(
         &mut self,
         button: &Button,
         t: StreamInstant,
         (contact, is_in_place): (Option<&Contact>, bool),
         (access, presses): (Access, &mut Presses),
-    ) -> impl Iterator<Item = Binding> + use<> {
+    ) -> impl Iterator<Item = Playing> + use<> {
         let force_n = contact.map(|contact| force_of(button.force, contact));
         let Button { press_n, release_n, hair_n, .. } = *button;
         let is_on = self.gate.step(Thresholds { press_n, release_n, hair_n }, force_n);
@@ -74,7 +74,23 @@ impl Touched {
             }
             action => self.press.step(action, t, touch).map_or(Roles::NONE, Roles::from),
         };
-        self.playing.step(button, t, roles)
+        self.follower.step(button, t, roles)
+    }
+
+    /// Goes on to `t` while the button does not count: presses are forgotten, what was toggled stays.
+    pub(super) fn sleep(
+        &mut self,
+        button: &Button,
+        t: StreamInstant,
+        contact: Option<&Contact>,
+    ) -> impl Iterator<Item = Playing> + use<> {
+        let force_n = contact.map(|contact| force_of(button.force, contact));
+        let Button { press_n, release_n, hair_n, .. } = *button;
+        let is_on = self.gate.step(Thresholds { press_n, release_n, hair_n }, force_n);
+        self.press.forget(is_on);
+        self.stage.forget(is_on);
+        self.accept.forget();
+        self.follower.step(button, t, Roles::NONE)
     }
 
     /// Forgets what is under way and what was toggled. A force that is on does nothing until it was released once.
@@ -82,18 +98,18 @@ impl Touched {
         let is_on = self.gate.is_on();
         self.press.forget(is_on);
         self.stage.forget(is_on);
-        self.playing = Playing::nothing();
+        self.follower = Follower::nothing();
         self.accept.forget();
     }
 
-    /// Whether an action is on, see [`Playing::is_acting`].
+    /// Whether an action is on, see [`Follower::is_acting`].
     pub(super) fn is_acting(&self, button: &Button) -> bool {
-        self.playing.is_acting(button)
+        self.follower.is_acting(button)
     }
 
     /// Another press has ended.
     pub(super) fn unlatch(&mut self) {
-        self.playing.unlatch();
+        self.follower.unlatch();
     }
 
     /// Whether the force is on, counting or not.

@@ -6,6 +6,7 @@
 
 use arrayvec::ArrayVec;
 
+use crate::pipeline::control::names::{STICKS, TRIGGERS};
 use crate::pipeline::control::{Code, OutputDevice, OutputEvent};
 use crate::pipeline::mapping::intent::{Intents, Level};
 use crate::pipeline::mapping::profile::{CONTROLS_MAX, Profile};
@@ -14,6 +15,9 @@ use crate::time::StreamInstant;
 
 /// The most edges of one call: the pointer moved, everything released, everything else pressed.
 pub const EDGES_MAX: usize = STEPS_MAX + 2 * CONTROLS_MAX;
+
+/// A stick or trigger moves at most once in this time: no game looks more often, and a pad at 8 kHz would flood every reader.
+const AXIS_SPACING_US: u64 = 4_000;
 
 /// The edges of one call, simultaneous for a game: the pointer's steps, then releases, then presses. So a press or
 /// release of the pointer's button counts where the pointer has arrived.
@@ -64,7 +68,8 @@ impl Ledger {
     /// Writes the edges that the minimum press held back until now.
     pub fn settle(&mut self, at: StreamInstant, edges: &mut Edges) {
         let min_press_us = self.min_press_us;
-        let due = |slot: &Slot| slot.held != slot.wanted && at.us_since(slot.since) >= min_press_us;
+        let due =
+            |slot: &Slot| slot.held != slot.wanted && at.us_since(slot.since) >= slot.hold_us(min_press_us);
         for slot in self.slots.iter_mut().filter(|slot| slot.held != 0 && slot.wanted == 0 && due(slot)) {
             slot.set(at, 0, edges);
         }
@@ -78,7 +83,7 @@ impl Ledger {
     /// When the next edge that the minimum press holds back is due.
     pub fn next_due(&self) -> Option<StreamInstant> {
         let back = self.slots.iter().filter(|slot| slot.held != 0 && slot.held != slot.wanted);
-        back.map(|slot| slot.since.plus_us(self.min_press_us)).min()
+        back.map(|slot| slot.since.plus_us(slot.hold_us(self.min_press_us))).min()
     }
 
     /// Releases everything at once: fault, pause, panic, exit. The minimum press does not count here, and the pointer
@@ -119,6 +124,17 @@ impl Ledger {
 }
 
 impl Slot {
+    /// How long it stays where it is before it may change.
+    fn hold_us(&self, min_press_us: u64) -> u64 {
+        let is_analogue = self.device == OutputDevice::Gamepad
+            && (STICKS.as_flattened().contains(&self.code) || TRIGGERS.contains(&self.code));
+        match (is_analogue, self.wanted) {
+            (false, _) => min_press_us,
+            (true, 0) => 0,
+            (true, _) => AXIS_SPACING_US,
+        }
+    }
+
     fn set(&mut self, at: StreamInstant, value: i32, edges: &mut Edges) {
         if self.held != value {
             self.held = value;

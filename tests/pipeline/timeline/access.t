@@ -192,3 +192,42 @@ add tremor_per_mm = 0
 581ms..620ms angle=30..50 r=20 fz=1
 
 0ms ABS_HAT0X 1
+
+case Slow Keys: a direction counts when it has lasted 150 ms
+profile tank-battle
+add [access]
+add slow_ms = 150
+
+0ms x=20 fz=1
+149ms x=20 fz=1
+150ms x=20 fz=1
+200ms y=20 fz=1
+349ms y=20 fz=1
+350ms y=20 fz=1
+400ms lift
+
+150ms ABS_HAT0X 1
+200ms ABS_HAT0X 0
+350ms ABS_HAT0Y -1
+400ms ABS_HAT0Y 0
+
+case Bounce Keys: a direction that comes back within 300 ms does not count, another one does
+profile tank-battle
+add [access]
+add bounce_ms = 300
+
+0ms x=20 fz=1
+100ms lift
+399ms x=20 fz=1
+450ms lift
+500ms y=20 fz=1
+600ms lift
+760ms x=20 fz=1
+800ms lift
+
+0ms ABS_HAT0X 1
+100ms ABS_HAT0X 0
+500ms ABS_HAT0Y -1
+600ms ABS_HAT0Y 0
+760ms ABS_HAT0X 1
+800ms ABS_HAT0X 0

@@ -1,0 +1,72 @@
+//! What one step of the engine states: levels, a layer, macros that begin, commands.
+
+use arrayvec::ArrayVec;
+
+use super::effect::Playing;
+use super::intent::{Intents, Level};
+use super::profile::{Binding, Command, Keys, MACROS_MAX, Output};
+use super::steer::Velocity;
+use crate::pipeline::control::names::POINTER_MOTION;
+use crate::pipeline::control::{Code, OutputDevice};
+
+/// The most commands of one step.
+pub const COMMANDS_MAX: usize = 4;
+
+/// What presses ask of the bridge, in their order.
+pub type Commands = ArrayVec<Command, COMMANDS_MAX>;
+
+/// What one step states, while it is collected.
+#[derive(Default)]
+pub(super) struct Stated {
+    pub(super) levels: Intents,
+    pub(super) layer: Option<usize>,
+    pub(super) begun: [bool; MACROS_MAX],
+    pub(super) commands: Commands,
+}
+
+impl Stated {
+    /// Takes up what is on. Of several layers the last one counts.
+    pub(super) fn take(&mut self, Playing { output, begins }: Playing) {
+        match output {
+            Output::Keys(keys) => keys.iter().for_each(|binding| self.state(binding)),
+            Output::Layer(number) => self.layer = Some(number),
+            Output::Macro(number) if begins => {
+                self.begun.get_mut(number).into_iter().for_each(|begun| *begun = true);
+            }
+            // More at once than there is room for: nobody has so many fingers.
+            Output::Bridge(command) if begins => {
+                let _ = self.commands.try_push(command);
+            }
+            Output::Macro(_) | Output::Bridge(_) => {}
+        }
+    }
+
+    /// Adds a level. A control that is stated already keeps its first value: each control stands there once.
+    pub(super) fn state(&mut self, Binding { device, code, value }: Binding) {
+        if self.levels.iter().all(|stated| (stated.device, stated.code) != (device, code)) {
+            // A profile has at most CONTROLS_MAX controls, so there is always room.
+            let _ = self.levels.try_push(Level { device, code, value });
+        }
+    }
+
+    /// Adds the position of an axis; at rest it needs none.
+    pub(super) fn state_axis(&mut self, (code, value): (Code, i32)) {
+        if value != 0 {
+            self.state(Binding { device: OutputDevice::Gamepad, code, value });
+        }
+    }
+
+    /// Takes keys out that a macro has for its own.
+    pub(super) fn free(&mut self, keys: &Keys) {
+        self.levels.retain(|level| !keys.iter().any(|it| (it.device, it.code) == (level.device, level.code)));
+    }
+
+    /// Adds the pointer's way.
+    pub(super) fn state_motion(&mut self, velocity: Option<Velocity>) {
+        let Some(Velocity { right, down }) = velocity else { return };
+        let rates = POINTER_MOTION.into_iter().zip([right, down]);
+        for (code, value) in rates.filter(|(_, rate)| *rate != 0) {
+            self.state(Binding { device: OutputDevice::Pointer, code, value });
+        }
+    }
+}

@@ -52,6 +52,10 @@ pub struct Policy {
     pub filter: f64,
     /// Until a press is long, or can no longer become a double or a hard one.
     pub hold: f64,
+    /// Until a press counts at all: Slow Keys, and the longest dwell.
+    pub slow: f64,
+    /// The tremor filter's at rest; a finger that moves is followed faster.
+    pub tremor: f64,
 }
 
 impl Policy {
@@ -63,9 +67,13 @@ impl Policy {
             Action::ByForce { skip: Skip::May { us } | Skip::Must { us }, .. } => Some(us),
             Action::ByForce { skip: Skip::No, .. } | Action::Hold(_) => None,
         });
+        let dwell_us = profile.buttons.iter().filter_map(|button| Some(button.dwell?.us));
+        let slow_us = dwell_us.chain([profile.access.slow_us]).max().unwrap_or(0);
         Self {
             filter: (window - 1) as f64 / 2.0 * period_us as f64 * 1e-3,
             hold: hold_us.flatten().max().unwrap_or(0) as f64 * 1e-3,
+            slow: slow_us as f64 * 1e-3,
+            tremor: profile.access.tremor.map_or(0.0, |tremor| f64::from(tremor.delay_s()) * 1e3),
         }
     }
 }
@@ -252,5 +260,23 @@ impl Write for Calls {
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::mapping::check::{OutputChoice, read};
+
+    #[test]
+    fn a_profile_says_how_much_later_it_wants_everything() {
+        let text = "schema = 1\nname = \"Slow\"\noutput = \"keyboard\"\nfilter_samples = 5\n[access]\nslow_ms = 150\n\
+                    tremor_hz = 2\n[[button]]\nforce = \"fz\"\npress_n = 1\ndwell_ms = 800\n\
+                    tap = { gamepad = \"BTN_SOUTH\", keyboard = \"KEY_A\" }\n\
+                    hold = { gamepad = \"BTN_EAST\", keyboard = \"KEY_B\" }\n";
+        let profile = read(text, OutputChoice::AsWritten).0.unwrap();
+        let Policy { filter, hold, slow, tremor } = Policy::of(&profile, 1_000);
+        assert_eq!((filter, hold, slow), (2.0, 400.0, 800.0));
+        assert!((tremor - 79.58).abs() < 0.01, "{tremor}");
     }
 }

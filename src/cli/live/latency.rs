@@ -120,6 +120,12 @@ fn print(report: &LatencyReport, out: &mut impl Write) -> io::Result<()> {
     for (name, Percentiles { p50, p95, p99, max }) in rows {
         writeln!(out, "{name:<11} {p50:>9.1} {p95:>9.1} {p99:>9.1} {max:>9.1}")?;
     }
-    let Policy { filter, hold } = report.policy_ms;
-    writeln!(out, "asked for by the profile: filter {filter:.1} ms, long press {hold:.0} ms")
+    let Policy { filter, hold, slow, tremor } = report.policy_ms;
+    write!(out, "asked for by the profile: filter {filter:.1} ms, long press {hold:.0} ms")?;
+    for (name, delay_ms) in [("slow press", slow), ("tremor", tremor)] {
+        if delay_ms > 0.0 {
+            write!(out, ", {name} {delay_ms:.0} ms")?;
+        }
+    }
+    writeln!(out)
 }

@@ -55,6 +55,13 @@ pub struct Tremor {
     pub per_mm: f32,
 }
 
+impl Tremor {
+    /// By how much a place comes later where the finger rests: 1/(2π f), the time constant of a low-pass of the first order.
+    pub fn delay_s(&self) -> f32 {
+        1.0 / (core::f32::consts::TAU * self.cutoff_hz)
+    }
+}
+
 /// What tells a touch from a hand that rests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {

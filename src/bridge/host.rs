@@ -1,5 +1,6 @@
 //! What a bridge needs of the program that it runs in.
 
+use crate::bridge::offer::Offer;
 use crate::pipeline::mapping::read::ReadProfile;
 
 /// The program that a bridge runs in. It is called between two turns of the loop, so it should answer soon.
@@ -16,6 +17,11 @@ pub trait Host {
     /// # Errors
     /// There is none; the text is for people.
     fn next_profile(&mut self) -> Result<ReadProfile, String>;
+
+    /// Whether a profile that is offered is still wanted: people may have asked for another one meanwhile.
+    fn wants(&self, _offer: &Offer) -> bool {
+        true
+    }
 
     /// Tells people what the bridge is doing, when that changed.
     fn tell(&mut self, line: &str);

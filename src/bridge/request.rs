@@ -4,8 +4,10 @@ use std::io::{self, Write};
 use std::os::unix::net::UnixStream;
 use std::sync::mpsc::{Sender, SyncSender};
 
+use crate::bridge::offer::Offer;
+
 /// What is asked for.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// Release everything and end.
     End,
@@ -25,6 +27,8 @@ pub enum Request {
     Profile(Option<String>),
     /// Go over to the next profile that a press can leave again.
     NextProfile,
+    /// Take a profile that was read away from the loop, if it is still wanted.
+    Offer(Box<Offer>),
     /// Tell what the bridge is doing.
     Status,
 }

@@ -13,6 +13,7 @@ use crate::bridge::herald::Herald;
 use crate::bridge::host::Host;
 use crate::bridge::keeper::Keeper;
 use crate::bridge::latency::Durations;
+use crate::bridge::offer::{Offer, Standing, kept};
 use crate::bridge::parts::Parts;
 use crate::bridge::recorder::Recorder;
 use crate::bridge::request::{Asked, Request};
@@ -47,6 +48,7 @@ pub enum Ending {
 pub struct Bridge {
     driver: Driver,
     decoder: String,
+    standing: Standing,
     keeper: Keeper,
     requests: Requests,
     host: Box<dyn Host>,
@@ -82,10 +84,12 @@ impl Bridge {
         let driver =
             Driver { pipeline, sink, recorder, clock, latency: Arc::default(), commands: Commands::new() };
         let keeper = Keeper::new(pad, patience, now);
-        let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, &decoder.name)));
+        let standing = Standing::begun();
+        let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, (&decoder.name, &standing))));
         Ok(Self {
             driver,
             decoder: decoder.name,
+            standing,
             keeper,
             requests,
             host,
@@ -252,12 +256,13 @@ impl Bridge {
             Request::Status => self.status(now),
             Request::Profile(name) => {
                 let read = self.host.read_profile(name.as_deref());
-                self.change_profile(now, read)?
+                self.change_profile(now, read, name.is_some())?
             }
             Request::NextProfile => {
                 let read = self.host.next_profile();
-                self.change_profile(now, read)?
+                self.change_profile(now, read, true)?
             }
+            Request::Offer(offer) => self.consider(now, offer)?,
             request => {
                 let call = match request {
                     Request::ReleaseAll => Call::ReleaseAll,
@@ -294,22 +299,43 @@ impl Bridge {
         &mut self,
         now: HostInstant,
         read: Result<ReadProfile, String>,
+        is_named: bool,
     ) -> Result<String, BridgeError> {
-        match read.and_then(|read| self.made_ready(read)) {
+        match read.and_then(|read| self.prepared(read)) {
             Ok(read) => {
                 self.host.tell(&format!("profile {}", read.profile().name));
+                self.standing.asked(is_named);
                 self.driver.call(now, Call::Profile(&read))?;
                 Ok(done())
             }
             Err(error) => {
-                self.host.tell(&format!("{error}\nthe profile in use stays"));
+                self.host.tell(&kept(&error));
                 Ok(serde_json::json!({"ok": false, "error": error}).to_string())
             }
         }
     }
 
-    /// The profile, now that its devices are there; the error is for people.
-    fn made_ready(&mut self, read: ReadProfile) -> Result<ReadProfile, String> {
+    /// Goes over to a profile that is offered, if people have not asked for another one meanwhile. What does not differ from the one
+    /// that is played changes nothing, nor does one that cannot be used.
+    fn consider(&mut self, now: HostInstant, offer: &Offer) -> Result<String, BridgeError> {
+        if !self.host.wants(offer) {
+            return Ok(done());
+        }
+        let read = offer.read.clone().and_then(|read| self.prepared(read));
+        let is_same = read.as_ref().is_ok_and(|read| read.profile() == self.driver.pipeline.profile());
+        if let Some(line) = self.standing.offered(offer, read.as_ref().map(|read| (read.profile(), is_same)))
+        {
+            self.host.tell(&line);
+        }
+        match &read {
+            Ok(read) if !is_same => self.driver.call(now, Call::Profile(read))?,
+            _ => {}
+        }
+        Ok(done())
+    }
+
+    /// A profile whose devices are there; the error is for people.
+    fn prepared(&mut self, read: ReadProfile) -> Result<ReadProfile, String> {
         match prepare(self.driver.sink.as_mut(), read.profile()) {
             Ok(()) => Ok(read),
             Err(error) => Err(error.to_string()),
@@ -317,7 +343,7 @@ impl Bridge {
     }
 
     fn look(&self, now: HostInstant) -> Snapshot {
-        look(now, &self.driver, &self.keeper, &self.decoder)
+        look(now, &self.driver, &self.keeper, (&self.decoder, &self.standing))
     }
 
     fn status(&self, now: HostInstant) -> String {
@@ -351,13 +377,20 @@ fn state(driver: &Driver, keeper: &Keeper) -> State {
 }
 
 /// All that there is to see at `now`.
-fn look(now: HostInstant, driver: &Driver, keeper: &Keeper, decoder: &str) -> Snapshot {
+fn look(
+    now: HostInstant,
+    driver: &Driver,
+    keeper: &Keeper,
+    (decoder, standing): (&str, &Standing),
+) -> Snapshot {
     let Driver { pipeline, sink, .. } = driver;
     let status = Status {
         state: state(driver, keeper),
         pad: pipeline.identity().map(|identity| identity.serial_number),
         profile: pipeline.profile().name.clone(),
         layer: pipeline.layer().map(str::to_owned),
+        profile_reason: standing.reason.clone(),
+        profile_error: standing.error.clone(),
         decoder: decoder.to_owned(),
         output: sink.describe(),
         contact: pipeline.contact().copied(),
@@ -475,16 +508,11 @@ mod tests {
     fn another_profile_is_taken_and_one_that_cannot_be_read_is_told() {
         let (mut bridge, ear, _) = without_pad();
         let now = bridge.snapshot_at;
-        assert_eq!(
-            {
-                let read = bridge.host.read_profile(Some("tetris"));
-                bridge.change_profile(now, read).unwrap()
-            },
-            done()
-        );
+        let read = bridge.host.read_profile(Some("tetris"));
+        assert_eq!(bridge.change_profile(now, read, true).unwrap(), done());
         assert_eq!(bridge.look(now).status.profile, "Tetris");
         let read = bridge.host.read_profile(None);
-        let answer = bridge.change_profile(now, read).unwrap();
+        let answer = bridge.change_profile(now, read, false).unwrap();
         assert_eq!(answer, r#"{"error":"there is none","ok":false}"#);
         assert_eq!(*ear.0.lock().unwrap(), ["profile Tetris", "there is none\nthe profile in use stays"]);
     }

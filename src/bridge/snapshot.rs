@@ -41,6 +41,10 @@ pub struct Status {
     pub profile: String,
     /// The layer of it that is on.
     pub layer: Option<String>,
+    /// Why it is this one, for people.
+    pub profile_reason: String,
+    /// What is wrong with the one that would be played else, for people.
+    pub profile_error: Option<String>,
     /// What people call the decoder.
     pub decoder: String,
     /// Where events go.
@@ -128,6 +132,8 @@ mod tests {
             pad: SerialNumber::from_ascii("A-1"),
             profile: "Contra".into(),
             layer: None,
+            profile_reason: "asked for".into(),
+            profile_error: None,
             decoder: "inverse".into(),
             output: "nowhere".into(),
             contact: Some(Contact { x_mm: 0.1, fz_n: 2.0, ..Contact::default() }),
@@ -149,7 +155,8 @@ mod tests {
     fn the_status_keeps_its_keys_and_their_order() {
         let text = serde_json::to_string(&snapshot().status).unwrap();
         let expected = concat!(
-            r#"{"state":"playing","pad":"A-1","profile":"Contra","layer":null,"decoder":"inverse","output":"nowhere","#,
+            r#"{"state":"playing","pad":"A-1","profile":"Contra","profile_reason":"asked for","#,
+            r#""profile_error":null,"layer":null,"decoder":"inverse","output":"nowhere","#,
             r#""contact":{"x_mm":0.1,"y_mm":0.0,"fx_n":0.0,"fy_n":0.0,"fz_n":2.0},"held":["KEY_UP"],"#,
             r#""warning":null,"presses":{"accepted":4,"rejected":1},"health":{"samples":7,"#
         );

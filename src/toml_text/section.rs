@@ -73,6 +73,11 @@ impl<'t> Section<'t> {
         self.table.get(key)
     }
 
+    /// Whether nothing stands in it.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.table.is_empty()
+    }
+
     /// The byte offset of `key`'s value, if it is written.
     pub(crate) fn place_of(&self, key: &str) -> Option<usize> {
         self.get(key).map(|value| value.span().start)

@@ -26,7 +26,7 @@ fn start(arguments: &[&str]) -> Running {
 }
 
 /// Waits until the status satisfies `holds`; panics after ten seconds.
-fn await_status(bridge: &Running, what: &str, holds: impl Fn(&Value) -> bool) -> Value {
+pub(crate) fn await_status(bridge: &Running, what: &str, holds: impl Fn(&Value) -> bool) -> Value {
     let mut status = Value::Null;
     let found = comes_true(10_000, || {
         status = bridge.status();

@@ -16,9 +16,13 @@ mod firmware;
 mod nostd;
 #[cfg(feature = "live")]
 mod presses;
+#[cfg(feature = "live")]
+mod programs;
 #[cfg(all(test, feature = "live"))]
 #[path = "../support/proof.rs"]
 mod proof;
+#[cfg(feature = "live")]
+mod reload;
 #[cfg(feature = "live")]
 mod replay;
 #[cfg(feature = "live")]

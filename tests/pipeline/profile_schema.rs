@@ -27,6 +27,7 @@ fn base() -> Value {
         "schema": 1,
         "name": "Test",
         "output": "gamepad",
+        "program": [{ "class": "Game", "executable": "game" }],
         "access": { "tremor_hz": 1, "rest_n": 1 },
         "gain": {},
         "dpad": {},

@@ -91,6 +91,7 @@ fn why_not(root: &Value, (word, said): (&str, &Value), value: &Value) -> Option<
         "maxLength" => (letters()? > count).then(|| "is too long".into()),
         "minItems" => (value.as_array()?.len() < count).then(|| format!("has less than {count}")),
         "maxItems" => (value.as_array()?.len() > count).then(|| format!("has more than {count}")),
+        "minProperties" => (table?.len() < count).then(|| format!("has less than {count}")),
         "required" => lacking(table?, said),
         "dependentRequired" => {
             let needed =

@@ -125,9 +125,12 @@ fn print_status(status: &Value) -> io::Result<()> {
     let text = |key: &str| status.get(key).and_then(Value::as_str).map_or("unknown".into(), printable);
     writeln!(out, "state    {}", text("state"))?;
     writeln!(out, "pad      {}", text("pad"))?;
-    writeln!(out, "profile  {}", text("profile"))?;
+    writeln!(out, "profile  {}: {}", text("profile"), text("profile_reason"))?;
     if let Some(layer) = status.get("layer").and_then(Value::as_str) {
         writeln!(out, "layer    {}", printable(layer))?;
+    }
+    for line in status.get("profile_error").and_then(Value::as_str).into_iter().flat_map(str::lines) {
+        writeln!(out, "         {}", printable(line))?;
     }
     writeln!(out, "decoder  {}", text("decoder"))?;
     writeln!(out, "output   {}", text("output"))?;

@@ -6,6 +6,7 @@ mod demo;
 mod devices;
 mod doctor;
 mod files;
+mod follower;
 mod latency;
 mod newest;
 mod output;
@@ -14,6 +15,7 @@ mod record;
 mod run;
 mod screen;
 mod seconds;
+mod wish;
 
 use clap::Subcommand;
 

@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
+use super::wish::Wish;
 use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::field::field_of;
@@ -11,6 +13,7 @@ use crate::cli::written::{is_stdout, reason, say};
 use tactpad::bridge::destination::Destination;
 use tactpad::bridge::error::BridgeError;
 use tactpad::bridge::host::Host;
+use tactpad::bridge::offer::Offer;
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
 use tactpad::bridge::queue::{Group, Queue};
 use tactpad::bridge::requests::Requests;
@@ -116,8 +119,8 @@ const TOLD_BYTES_MAX: usize = 16 << 10;
 
 /// The program around a bridge that was started from a command line.
 pub(super) struct Terminal {
-    /// The profile that is read again when nobody names another one: its name or file.
-    profile: String,
+    /// The profile that is read again when nobody names another one.
+    wish: Arc<Mutex<Wish>>,
     output: OutputChoice,
     /// Stderr, if somebody reads it. A terminal that is held with Ctrl-S must not keep the bridge waiting.
     told: Option<Queue>,
@@ -130,28 +133,36 @@ impl Terminal {
             Audience::Stderr => Some(Queue::start("told", io::stderr(), TOLD_BYTES_MAX)?),
             Audience::Nobody => None,
         };
-        Ok(Self { profile: profile.to_owned(), output, told })
+        Ok(Self { wish: Arc::new(Mutex::new(Wish::of(profile))), output, told })
+    }
+
+    /// What people wish to be played, for whoever follows it.
+    pub(super) fn wish(&self) -> Arc<Mutex<Wish>> {
+        Arc::clone(&self.wish)
     }
 }
 
 impl Host for Terminal {
     fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
-        let chosen = name.unwrap_or(&self.profile).to_owned();
-        let read = profile::read(&chosen, self.output).map_err(|failure| match failure {
-            Failure::Unusable(message) | Failure::Failed(message) => message,
-            Failure::Unread => "nobody reads the warnings".into(),
-        })?;
+        let mut wish = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
+        let asked = wish.asked(name);
+        let read = profile::read(&asked.name, self.output).map_err(sentence)?;
         // A profile that was chosen and can be used is the one to be read again.
-        self.profile = chosen;
+        *wish = asked;
         Ok(read)
     }
 
     fn next_profile(&mut self) -> Result<ReadProfile, String> {
-        let (chosen, read) = profile::next(&self.profile, self.output).ok_or(
+        let mut wish = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
+        let (chosen, read) = profile::next(&wish.name, self.output).ok_or(
             "there is no other profile from which a press leads on: add one with bridge = \"next-profile\"",
         )?;
-        self.profile = chosen;
+        *wish = wish.asked(Some(&chosen));
         Ok(read)
+    }
+
+    fn wants(&self, offer: &Offer) -> bool {
+        offer.asked == self.wish.lock().unwrap_or_else(PoisonError::into_inner).asked
     }
 
     fn tell(&mut self, line: &str) {
@@ -159,6 +170,14 @@ impl Host for Terminal {
             // Where nobody reads, the bridge plays on.
             let _ = told.push(Group { bytes: format!("{line}\n").into(), ..Group::default() });
         }
+    }
+}
+
+/// A failure as people read it.
+pub(super) fn sentence(failure: Failure) -> String {
+    match failure {
+        Failure::Unusable(message) | Failure::Failed(message) => message,
+        Failure::Unread => "nobody reads the warnings".into(),
     }
 }
 

@@ -6,10 +6,12 @@ use clap::Args;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::files::Files;
+use super::follower;
 use super::newest::Newest;
 use super::output::Output;
 use super::playing::{Audience, Terminal, Waits, microseconds, open_pad, patience, play, requests};
 use super::screen::Screen;
+use super::wish;
 use super::{chosen, ctl, seconds};
 use crate::cli::decoder_file::Choice;
 use crate::cli::device::Pad;
@@ -36,7 +38,7 @@ pub(crate) struct Arguments {
     wait: bool,
     #[command(flatten)]
     device: Pad,
-    /// A profile's name or file.
+    /// A profile's name or file; it is read again when it is changed. Or auto[:NAME]: the one whose [[program]] is in front, else NAME.
     #[arg(long, default_value = "super-mario")]
     profile: String,
     #[command(flatten)]
@@ -55,11 +57,15 @@ pub(crate) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { pad, profile, output, decoder, .. } = arguments;
+    let profile = wish::first(profile);
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
     let decoder = chosen::read(decoder)?;
+    let audience = audience(output);
+    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
+    let wish = host.wish();
     let profile = profile::read(profile, output.choice())?;
     let patience = patience(&arguments.pad, if arguments.wait { Waits::Asked } else { Waits::NotAsked });
-    let is_shown = *output != Output::Stdout && terminal::moves_cursor(&io::stdout());
+    let is_shown = audience == Audience::Nobody;
     let newest = Newest::default();
     let (sink, missing) = output.open_or(|| newest.sink(is_shown))?;
     let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
@@ -67,21 +73,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = &profile.profile().name;
     let title = format!("{} → {} → {name} → {}", arguments.pad, decoder.name, sink.describe());
     let title = printable(&title);
-    // The live picture has the title and the state; without one they are told in words.
-    let audience = if is_shown { Audience::Nobody } else { Audience::Stderr };
     let prints = *output == Output::Stdout || (missing.is_some() && !is_shown);
     if let Some(missing) = missing {
         say(missing);
     }
     audience.tell(&title);
-    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
+    let requests = requests(Some(&ctl::socket_path()), audience)?;
+    follower::start(wish, output.choice(), requests.asker()?)?;
     let mut bridge = Bridge::new(Parts {
         pad: opened,
         patience,
         decoder,
         profile,
         sink,
-        requests: requests(Some(&ctl::socket_path()), audience)?,
+        requests,
         host: Box::new(host),
         record: None,
         duration_us: arguments.seconds.map(microseconds),
@@ -89,6 +94,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.lines()));
     let ending = play(&mut bridge, &arguments.pad);
     drop(screen);
+    ended(ending, prints)
+}
+
+/// How the run ended, told where nobody sees it.
+fn ended(ending: Result<Ending, Failure>, prints: bool) -> Result<(), Failure> {
     match ending {
         Err(_) if prints && is_unread() => return Err(Failure::Unread),
         Ok(Ending::CaptureEnded) => say("the capture has ended"),
@@ -96,6 +106,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Err(failure) => return Err(failure),
     }
     Ok(())
+}
+
+/// The live picture has the title and the state; without one they are told in words.
+fn audience(output: &Output) -> Audience {
+    let is_shown = *output != Output::Stdout && terminal::moves_cursor(&io::stdout());
+    if is_shown { Audience::Nobody } else { Audience::Stderr }
 }
 
 /// Whether the reader of standard output went away.

@@ -154,7 +154,7 @@ fn cut(line: &str, columns: usize) -> String {
 }
 
 fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
-    let Status { state, contact, held, warning, health, latency_us, .. } = &seen.status;
+    let Status { state, contact, held, warning, health, latency_us, profile_error, .. } = &seen.status;
     let BridgeHealth { pipeline, drops } = health;
     let forces = contact.unwrap_or_default();
     let mut facts = vec![
@@ -172,6 +172,8 @@ fn facts(seen: &Snapshot, events: &[String]) -> Vec<String> {
         ),
         format!("read to written  p50 {:.0} µs   p99 {:.0} µs", latency_us.p50, latency_us.p99),
     ];
+    let unusable = profile_error.as_ref().and_then(|error| error.lines().next());
+    facts.extend(unusable.map(|error| format!("! {error}: see `tactpad ctl status`")));
     facts.extend(warning.map(|warning| format!("! {warning}")));
     facts.extend((drops.groups_dropped > 0).then(|| format!("! {} groups not logged", drops.groups_dropped)));
     facts

@@ -28,7 +28,7 @@ pub(crate) fn is_known(name: &str) -> bool {
 }
 
 /// All names that are known.
-pub(super) fn known() -> Vec<String> {
+pub(crate) fn known() -> Vec<String> {
     let own = own::names();
     let shipped = shipped::names().map(str::to_owned);
     let more: Vec<_> = own.into_iter().filter(|name| shipped::text(name).is_none()).collect();
@@ -76,15 +76,19 @@ pub(crate) fn next(name: &str, output: OutputChoice) -> Option<(String, ReadProf
 
 /// Reads a profile that is to be used. Warnings go to stderr; errors make it unusable.
 pub(crate) fn read(name: &str, output: OutputChoice) -> Result<ReadProfile, Failure> {
+    let (read, told) = read_aside(name, output)?;
+    // Where people cannot be warned, the profile still plays.
+    let _ = io::stderr().write_all(told.as_bytes());
+    Ok(read)
+}
+
+/// The same, and the warnings for whoever tells them.
+pub(crate) fn read_aside(name: &str, output: OutputChoice) -> Result<(ReadProfile, String), Failure> {
     let Chosen { text, place } = find(name)?;
     let (read, diagnostics) = ReadProfile::read(&text, output);
     let mut told: String = diagnostics.iter().map(|diagnostic| diagnostic.render(&place) + "\n").collect();
     match read {
-        Some(read) => {
-            // Where people cannot be warned, the profile still plays.
-            let _ = io::stderr().write_all(told.as_bytes());
-            Ok(read)
-        }
+        Some(read) => Ok((read, told)),
         None => {
             told.insert_str(0, &format!("profile {place} cannot be used\n"));
             Err(Failure::Unusable(told.trim_end().to_owned()))

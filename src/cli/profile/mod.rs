@@ -16,7 +16,7 @@ mod verdict;
 
 pub(super) use chosen::read;
 #[cfg(all(feature = "live", target_os = "linux"))]
-pub(super) use chosen::{file, is_known, next};
+pub(super) use chosen::{file, is_known, known, next, read_aside};
 
 /// Arguments of `tactpad profile`.
 #[derive(Debug, Args)]

@@ -14,6 +14,9 @@ use tactpad::pipeline::mapping::shipped;
 /// The longest name of a new profile, which is its name for people, too.
 const NAME_CHARS_MAX: usize = 64;
 
+/// `run --profile` takes this for the profile whose program is in front.
+const AUTO: &str = "auto";
+
 /// What the schema is called, as the first line of profiles says.
 const SCHEMA_FILE: &str = "profile.schema.json";
 
@@ -61,12 +64,12 @@ fn name_of(path: &Path) -> Option<String> {
 /// Refuses a name that a new profile cannot have.
 pub(super) fn check_name(name: &str) -> Result<(), Failure> {
     let is_plain = |letter: char| letter.is_alphanumeric() || matches!(letter, '-' | '_' | ' ');
-    let is_short = name.chars().count() <= NAME_CHARS_MAX;
+    let is_short = name.chars().count() <= NAME_CHARS_MAX && name != AUTO;
     if is_name(name) && is_short && name.chars().all(is_plain) && name.trim() == name {
         return Ok(());
     }
     Err(Failure::Unusable(format!(
-        "{name:?} cannot be the name of a new profile: take up to {NAME_CHARS_MAX} letters, digits, - and _"
+        "{name:?} cannot be the name of a new profile: take up to {NAME_CHARS_MAX} letters, digits, - and _, but not {AUTO}"
     )))
 }
 
@@ -143,7 +146,7 @@ mod tests {
         for name in ["mine", "My game", "größe", "x_1-y"] {
             assert!(is_name(name) && check_name(name).is_ok(), "{name:?}");
         }
-        for name in [" x", "x ", "a\"b", "a$b", &"x".repeat(65)] {
+        for name in [" x", "x ", "a\"b", "a$b", &"x".repeat(65), "auto"] {
             assert!(check_name(name).is_err(), "{name:?}");
         }
     }

@@ -17,6 +17,7 @@ use super::limits::{
 use super::macros::MacroDraft;
 use super::plate::{self, GAIN_KEYS};
 use super::profile::{Access, BUTTONS_MAX, Gain, Pointer, Profile, Stick, Trigger, Zone};
+use super::program::{self, PROGRAM_KEYS, PROGRAMS_MAX, Program};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text;
 use crate::toml_text::diag::{Diagnostic, Findings};
@@ -34,9 +35,10 @@ pub enum OutputChoice {
 const OUTPUTS: [(&str, OutputDevice); 2] =
     [("gamepad", OutputDevice::Gamepad), ("keyboard", OutputDevice::Keyboard)];
 
-const ROOT_KEYS: [&str; 16] = [
+const ROOT_KEYS: [&str; 17] = [
     "schema",
     "name",
+    "program",
     "output",
     "filter_samples",
     "min_press_ms",
@@ -74,6 +76,7 @@ pub fn read(text: &str, output: OutputChoice) -> (Option<Profile>, Vec<Diagnosti
 /// A profile while it is read: what is unusable is `None` and reported.
 struct Draft {
     name: Option<String>,
+    programs: Vec<Program>,
     output: Option<OutputDevice>,
     filter_samples: Option<usize>,
     min_press_ms: Option<u32>,
@@ -112,8 +115,10 @@ impl Draft {
         // One more than there can be, so that the first one too many is known by its place.
         let buttons = root.tables("button", &BUTTON_KEYS, BUTTONS_MAX + 1, findings);
         check_counts(root, &buttons, findings);
+        let programs = root.tables("program", &PROGRAM_KEYS, PROGRAMS_MAX + 1, findings);
         Self {
             name: read_name(root, findings),
+            programs: program::read(&programs, findings),
             output,
             filter_samples: root
                 .whole("filter_samples", FILTER_SAMPLES, findings)
@@ -164,6 +169,7 @@ impl Draft {
         let macros = self.macros.into_iter().map(|it| it.settle(output)).collect::<Option<_>>()?;
         let profile = Profile {
             name: self.name?,
+            programs: self.programs,
             output,
             filter_samples: self.filter_samples?,
             min_press_us: u64::from(self.min_press_ms?) * 1_000,

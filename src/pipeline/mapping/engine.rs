@@ -220,15 +220,39 @@ impl Engine {
 
     /// Goes on with another profile, also in the middle of a contact.
     ///
+    /// If it is the same profile, but for what was changed in it, then a button that stands unchanged goes on as if nothing had been.
+    ///
     /// The next step states the levels of the new profile, so whatever both profiles hold stays held. The
     /// direction and the pointer's way continue (the thresholds that end them apply, not those that start them); what was toggled
     /// does not. A press that was under way, or that the new profile would see as under way, does nothing in the new profile until its
     /// force was released once.
     pub fn replace_profile(&mut self, profile: Profile) {
-        self.buttons = profile.buttons.iter().map(|button| self.taken_over(button)).collect();
-        (self.zone, self.calm, self.is_acting) = (None, None, false);
-        (self.layer, self.running, self.sticks) = (None, Running::default(), [false; SIDES]);
+        let is_changed_only = self.profile.name == profile.name;
+        let taken_over = |button: &Button| match self.unchanged(button) {
+            Some(touched) if is_changed_only => touched,
+            _ => self.taken_over(button),
+        };
+        self.buttons = profile.buttons.iter().map(taken_over).collect();
+        if self.profile.zones != profile.zones {
+            self.zone = None;
+        }
+        if self.profile.access != profile.access {
+            self.calm = None;
+        }
+        if self.profile.layers != profile.layers {
+            self.layer = None;
+        }
+        if self.profile.macros != profile.macros {
+            self.running = Running::default();
+        }
+        (self.sticks, self.is_acting) = ([false; SIDES], false);
         self.profile = profile;
+    }
+
+    /// Where the same button stands.
+    fn unchanged(&self, button: &Button) -> Option<Touched> {
+        let mut all = self.profile.buttons.iter().zip(&self.buttons);
+        all.find(|(old, _)| *old == button).map(|(_, touched)| *touched)
     }
 
     /// Where a button of another profile stands that takes over now.

@@ -35,6 +35,7 @@ mod place;
 mod plate;
 mod press;
 pub mod profile;
+pub mod program;
 pub mod read;
 mod rest;
 mod running;

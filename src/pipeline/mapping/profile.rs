@@ -10,6 +10,7 @@ pub use super::analogue::{Side, Source, Stick, Trigger};
 use super::angle::wrapped;
 pub use super::keys::{Binding, KEYS_MAX, Keys};
 pub use super::place::{Direction, Dpad, DpadMode, Gain, Place, Pointer, Zone};
+use super::program::Program;
 use crate::pipeline::control::{Code, OutputDevice};
 
 /// The most buttons a profile can bind.
@@ -121,6 +122,8 @@ pub struct Button {
 pub struct Profile {
     /// Name for people.
     pub name: String,
+    /// The programs that it is for; none where it is chosen by name alone.
+    pub programs: Vec<Program>,
     /// The device that the directions and those buttons that name no pointer's belong to.
     pub output: OutputDevice,
     /// Window of the mean filter, in samples.

@@ -115,3 +115,25 @@ set button.1.press_n = 1.6
 104ms fz=2.2
 
 104ms BTN_SOUTH 1
+
+case the same profile read again: a button that stands unchanged goes on
+profile contra
+
+0ms x=20 fz=2.5
+100ms switch contra
+101ms x=20 fz=2.5
+200ms x=20 fz=1.39
+
+0ms ABS_HAT0X 1
+0ms BTN_SOUTH 1
+200ms BTN_SOUTH 0
+
+case the same profile read again: a long press is counted from its beginning
+profile super-mario
+
+0ms fz=2.5
+399ms switch super-mario
+399ms fz=2.5
+400ms fz=2.5
+
+400ms BTN_EAST 1

@@ -18,6 +18,7 @@ mod pictures;
 mod profile;
 mod progress;
 mod protocol;
+mod recording;
 mod replay;
 mod simulate;
 mod summary;
@@ -25,6 +26,7 @@ mod tables;
 mod terminal;
 mod text_file;
 mod train;
+mod tune;
 mod twin;
 mod wrapped;
 mod written;
@@ -66,6 +68,8 @@ enum Verb {
     Evaluate(evaluate::Arguments),
     /// Compare all decoders on the twin: the paper's Table 3, and what the noise allows.
     Ablation(ablation::Arguments),
+    /// Fit a profile to a hand, by a recording and a table of what was meant when.
+    Tune(tune::Arguments),
     /// List, show and check profiles.
     Profile(profile::Arguments),
     /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
@@ -91,6 +95,7 @@ pub(super) fn run() -> ExitCode {
         Verb::Adapt(arguments) => adapt::run(&arguments),
         Verb::Evaluate(arguments) => evaluate::run(&arguments),
         Verb::Ablation(arguments) => ablation::run(&arguments),
+        Verb::Tune(arguments) => tune::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
         Verb::Layout(arguments) => layout::run(&arguments),
         Verb::Metrology(arguments) => metrology::run(&arguments),

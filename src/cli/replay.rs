@@ -1,20 +1,18 @@
 //! `tactpad replay`: the event log of a capture, or of a list of contacts.
 
-use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Write};
+use std::fmt;
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::decoder_file::Choice;
 use super::failure::{Failure, if_read};
-use super::written::{say, stdout};
+use super::recording::{Profiles, Recording};
+use super::written::{print_json, stdout};
 use super::{profile, tables};
-use tactpad::pipeline::call::Call;
-use tactpad::pipeline::capture::head::Head;
-use tactpad::pipeline::capture::reader::{CaptureError, CaptureReader};
-use tactpad::pipeline::contact::{Decoder, read};
-use tactpad::pipeline::control::OutputEvent;
+use tactpad::lab::tuning::difference::{Difference, Only, Side};
+use tactpad::pipeline::control::{Code, OutputEvent};
 use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::pipeline::output::event_log;
@@ -22,7 +20,7 @@ use tactpad::pipeline::replay::ContactReplay;
 use tactpad::pipeline::{NoProbe, Pipeline};
 use tactpad::quantity::Contact;
 use tactpad::tables::measured::columns::Kind;
-use tactpad::time::{HostInstant, StreamInstant};
+use tactpad::time::StreamInstant;
 
 /// The plate of the pads that profiles are made for.
 const PLATE_RADIUS_MM: f64 = 30.0;
@@ -32,7 +30,8 @@ const PERIOD_US: u64 = 1_000;
 
 /// Arguments of `tactpad replay`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tactpad record game.cap, then tactpad replay game.cap")]
+#[command(after_help = "Example: tactpad record game.cap, then tactpad replay game.cap\n\n\
+    What another profile would have done: tactpad replay game.cap --profile mine.toml --compare super-mario")]
 #[group(skip)]
 pub(super) struct Arguments {
     /// A capture, made by `tactpad record`.
@@ -47,92 +46,130 @@ pub(super) struct Arguments {
     /// A profile's name or file. Without it a capture replays with the one it was recorded with.
     #[arg(long)]
     profile: Option<String>,
+    /// Print instead what --profile changes: presses that only it gives (+), or only this older profile (-).
+    #[arg(long, value_name = "OLD", requires = "profile")]
+    compare: Option<String>,
+    /// With --compare: print one JSON document.
+    #[arg(long, requires = "compare")]
+    json: bool,
     /// Without it a capture replays with the one it was recorded with.
     #[command(flatten)]
     decoder: Choice,
 }
 
+/// Takes simultaneous events.
+type See<'s> = dyn FnMut(&[OutputEvent]) -> Result<(), Failure> + 's;
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let chosen = arguments.profile.as_deref().map(|name| profile::read(name, OutputChoice::AsWritten));
-    let chosen = chosen.transpose()?.map(|read| read.profile().clone());
-    let mut log = BufWriter::new(stdout());
-    match (&arguments.capture, &arguments.contacts, chosen) {
-        (Some(path), _, chosen) => replay_capture(path, chosen, &arguments.decoder, &mut log)?,
-        (None, Some(_), _) if arguments.decoder.is_given() => {
-            return Err(Failure::Unusable("--contacts are decoded already: leave out --decoder".into()));
+    let read =
+        |name: &String| profile::read(name, OutputChoice::AsWritten).map(|read| read.profile().clone());
+    let chosen = arguments.profile.as_ref().map(read).transpose()?;
+    match (&arguments.compare, chosen) {
+        (Some(old), Some(new)) => compare(arguments, read(old)?, new),
+        (_, chosen) => {
+            let mut log = BufWriter::new(stdout());
+            let played = arguments.play(chosen, &mut |events| Ok(event_log::write(&mut log, events)?));
+            // What a damaged recording held is printed before the verdict, even where nobody reads it.
+            if_read(log.flush().map_err(Failure::from))?;
+            played
         }
-        (None, Some(path), Some(profile)) => replay_contacts(path, profile, &mut log)?,
-        _ => return Err(Failure::Unusable("give a capture, or --contacts and --profile".into())),
     }
-    Ok(log.flush()?)
+}
+
+/// Prints what only one of two profiles gives.
+fn compare(arguments: &Arguments, old: Profile, new: Profile) -> Result<(), Failure> {
+    let events = |profile: Profile| {
+        let mut events = Vec::new();
+        arguments.play(Some(profile), &mut |group| {
+            events.extend_from_slice(group);
+            Ok(())
+        })?;
+        Ok::<_, Failure>(events)
+    };
+    let difference = Difference::between(&events(old)?, &events(new)?);
+    if arguments.json { print_json(&difference) } else { Ok(writeln!(stdout(), "{}", Told(&difference))?) }
+}
+
+/// A difference for people.
+struct Told<'d>(&'d Difference);
+
+impl fmt::Display for Told<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Difference { both, shift_max_us, only, pointer_counts: [old, new] } = self.0;
+        for Only { with, press } in only {
+            let sign = match with {
+                Side::Old => '-',
+                Side::New => '+',
+            };
+            let side = match (press.code, press.value) {
+                (Code::Axis(_), value) if value < 0 => "-",
+                (Code::Axis(_), _) => "+",
+                _ => "",
+            };
+            let seconds = |us: u64| us as f64 * 1e-6;
+            let (at_s, for_s) = (seconds(press.t_us), seconds(press.duration_us));
+            writeln!(f, "{sign} {at_s:10.3} s  {}{side}  for {for_s:.3} s", press.code)?;
+        }
+        let count = |side: Side| only.iter().filter(|it| it.with == side).count();
+        write!(f, "{both} presses with both",)?;
+        if *shift_max_us > 0 {
+            write!(f, ", at most {:.0} ms apart", *shift_max_us as f64 * 1e-3)?;
+        }
+        write!(
+            f,
+            "; {} only with the old profile (-), {} only with the new one (+)",
+            count(Side::Old),
+            count(Side::New)
+        )?;
+        if [old, new] != [&0, &0] {
+            write!(f, "\nthe pointer goes {old} counts with the old profile, {new} with the new one")?;
+        }
+        Ok(())
+    }
+}
+
+impl Arguments {
+    /// Plays the capture or the contacts.
+    fn play(&self, chosen: Option<Profile>, see: &mut See<'_>) -> Result<(), Failure> {
+        match (&self.capture, &self.contacts, chosen) {
+            (Some(path), _, chosen) => replay_capture(path, chosen, &self.decoder, see),
+            (None, Some(_), _) if self.decoder.is_given() => {
+                Err(Failure::Unusable("--contacts are decoded already: leave out --decoder".into()))
+            }
+            (None, Some(path), Some(profile)) => replay_contacts(path, profile, see),
+            _ => Err(Failure::Unusable("give a capture, or --contacts and --profile".into())),
+        }
+    }
 }
 
 fn replay_capture(
     path: &Path,
     chosen: Option<Profile>,
     decoder: &Choice,
-    log: &mut impl Write,
+    see: &mut See<'_>,
 ) -> Result<(), Failure> {
-    let unusable = |error: CaptureError| Failure::Unusable(format!("{} {error}", path.display()));
-    let file = File::open(path).map_err(|error| unusable(CaptureError::Io(error)))?;
-    let mut capture = CaptureReader::new(BufReader::new(file)).map_err(unusable)?;
-    let keeps_profile = chosen.is_none();
-    let recorded = || capture.head().profile.as_ref().map(|read| read.profile().clone());
-    let profile = chosen.or_else(recorded).ok_or_else(|| {
-        Failure::Unusable(format!("{} names no usable profile; choose one with --profile", path.display()))
-    })?;
-    let mut pipeline = Pipeline::new(playing(path, decoder, capture.head())?, profile);
-    while let Some(call) = capture.next_call() {
-        match call {
-            Ok((_, Call::Profile(_))) | Err(CaptureError::Profile { .. }) if !keeps_profile => {}
-            Ok((now, call)) => replay_call(&mut pipeline, now, call, log)?,
-            Err(error @ (CaptureError::CutOff { .. } | CaptureError::Missing { .. })) => {
-                say(format_args!("{} {error}", path.display()));
-            }
-            Err(error) => {
-                // The damage is the verdict, even where nobody reads the events before it.
-                if_read(log.flush().map_err(Failure::from))?;
-                return Err(unusable(error));
-            }
+    let mut recording = Recording::open(path)?;
+    let profiles = if chosen.is_some() { Profiles::Skipped } else { Profiles::Followed };
+    let profile = match chosen {
+        Some(profile) => profile,
+        None => recording.profile()?,
+    };
+    let mut pipeline = Pipeline::new(recording.decoder(decoder)?, profile);
+    recording.each(profiles, |now, call| {
+        let mut left = Some(call);
+        while let Some(call) = left {
+            left = pipeline.apply(now, call, &mut NoProbe);
+            see(pipeline.events())?;
         }
-    }
-    Ok(())
-}
-
-fn replay_call(
-    pipeline: &mut Pipeline,
-    now: HostInstant,
-    call: Call<'_>,
-    log: &mut impl Write,
-) -> io::Result<()> {
-    let mut left = Some(call);
-    while let Some(call) = left {
-        left = pipeline.apply(now, call, &mut NoProbe);
-        event_log::write(log, pipeline.events())?;
-    }
-    Ok(())
-}
-
-/// The decoder that is chosen, else the recorded one.
-fn playing(path: &Path, chosen: &Choice, recorded: &Head) -> Result<Decoder, Failure> {
-    if chosen.is_given() {
-        // What it plays is looked at, not felt: one that cannot play will do.
-        return Ok(chosen.read_by(read::tared)?.0);
-    }
-    recorded.read_decoder().map_err(|why| {
-        let path = path.display();
-        Failure::Unusable(format!(
-            "{path} was recorded with a decoder that cannot be read: {why}; replay it with the tactpad that recorded \
-             it, or choose a decoder with --decoder"
-        ))
+        Ok(())
     })
 }
 
 /// Maps contacts as they stand: each row is a sample, a row without normal force is a lift.
-fn replay_contacts(path: &Path, profile: Profile, log: &mut impl Write) -> Result<(), Failure> {
+fn replay_contacts(path: &Path, profile: Profile, see: &mut See<'_>) -> Result<(), Failure> {
     let rows = tables::read(path, Kind::Contacts, PLATE_RADIUS_MM)?.rows;
     let mut replay = ContactReplay::new(profile);
-    let mut deliver = |events: &[OutputEvent]| event_log::write(log, events);
+    let mut deliver = |events: &[OutputEvent]| see(events);
     let mut end = StreamInstant::default();
     for (index, row) in rows.iter().enumerate() {
         let us = row.t_s.map_or_else(|| index as u64 * PERIOD_US, |t_s| (t_s * 1e6).round() as u64);
@@ -142,5 +179,5 @@ fn replay_contacts(path: &Path, profile: Profile, log: &mut impl Write) -> Resul
     }
     // The list ends with a lift, so that nothing stays held.
     replay.step(end, None, &mut deliver)?;
-    Ok(replay.settle(StreamInstant::from_us(u64::MAX), &mut deliver)?)
+    replay.settle(StreamInstant::from_us(u64::MAX), &mut deliver)
 }

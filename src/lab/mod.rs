@@ -10,3 +10,4 @@ pub mod layout;
 pub mod metrology;
 pub mod rig;
 pub mod scdf;
+pub mod tuning;

@@ -244,6 +244,11 @@ impl Pipeline {
         self.link.silent_at().is_some()
     }
 
+    /// Stream time of the newest event or sample.
+    pub const fn at(&self) -> StreamInstant {
+        self.at
+    }
+
     /// The profile in use.
     pub const fn profile(&self) -> &Profile {
         self.engine.profile()

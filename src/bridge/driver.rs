@@ -107,7 +107,8 @@ fn timed(latency: &Arc<Mutex<Durations>>, clock: Clock, since: HostInstant) -> W
 
 /// Makes the devices that `profile` plays on.
 pub(super) fn prepare(sink: &mut dyn Sink, profile: &Profile) -> Result<(), BridgeError> {
-    let devices = [OutputDevice::Gamepad, OutputDevice::Keyboard, OutputDevice::Pointer];
+    let devices =
+        [OutputDevice::Gamepad, OutputDevice::Keyboard, OutputDevice::Pointer, OutputDevice::Tablet];
     let mut used = devices.into_iter().filter(|device| profile.uses(*device));
     used.try_for_each(|device| sink.prepare(device)).map_err(BridgeError::Sink)
 }

@@ -230,6 +230,27 @@ fn the_pointer_moves_and_clicks_where_it_is() {
 }
 
 #[test]
+fn the_pointer_goes_to_places_of_the_screen() {
+    if !require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    let server = Server::start();
+    let client = Client::open(&server.display);
+    let screen = &client.connection.setup().roots[0];
+    let (right, bottom) = (screen.width_in_pixels as i16 - 1, screen.height_in_pixels as i16 - 1);
+    client.connection.warp_pointer(x11rb::NONE, screen.root, 0, 0, 0, 0, 50, 40).unwrap();
+    client.pointed();
+    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    sink.prepare(OutputDevice::Tablet).unwrap();
+    let place =
+        |axis, value| OutputEvent { device: OutputDevice::Tablet, ..pointer(Code::Axis(axis), value) };
+    sink.write(&[place(0, 1), place(1, 1)]).unwrap();
+    sink.write(&[place(0, 32_767), place(1, 32_767)]).unwrap();
+    use Pointed::At;
+    assert_eq!(client.pointed(), [At(0, 40), At(0, 0), At(right, 0), At(right, bottom)]);
+}
+
+#[test]
 fn what_x_cannot_do_is_refused_before_a_key_goes_out() {
     if !require("Xvfb", "apt-get install xvfb") {
         return;

@@ -61,6 +61,11 @@ fn pointer_is_a_mouse_of_its_own_and_moves() {
 }
 
 #[test]
+fn tablet_is_a_device_of_its_own_and_goes_where_the_finger_is() {
+    in_guest("tablet_is_a_device_of_its_own_and_goes_where_the_finger_is", playing::tablet);
+}
+
+#[test]
 fn sdl_sees_a_game_controller() {
     if sdl::probe_is_there() {
         in_guest("sdl_sees_a_game_controller", sdl::game_controller);

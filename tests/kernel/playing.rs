@@ -124,6 +124,27 @@ pub(crate) fn pointer() {
     }
 }
 
+/// An absolute pointer is a device of places and no movements; the pointer stays where the finger left it.
+pub(crate) fn tablet() {
+    let path = std::env::temp_dir().join("tablet.toml");
+    let text = "schema = 1\nname = \"Tablet\"\noutput = \"gamepad\"\n[pointer]\nmode = \"absolute\"\n";
+    std::fs::write(&path, text).expect("a profile");
+    let mut bridge = Bridge::start(path.to_str().expect("text"), KeyCode::BTN_LEFT);
+    let device = &bridge.reader.device;
+    assert_eq!(device.name(), Some("tactpad tablet"));
+    assert!(device.supported_relative_axes().is_none_or(|axes| axes.iter().next().is_none()));
+    let axes: Vec<_> = device.get_absinfo().expect("axes").map(|(axis, _)| axis).collect();
+    assert_eq!(axes, [AbsoluteAxisCode::ABS_X, AbsoluteAxisCode::ABS_Y]);
+    for (touch, axis, share) in [(RIGHT, "ABS_X", 0.75), (UP, "ABS_Y", 0.25)] {
+        touch_for(&mut bridge, touch, 300);
+        bridge.reader.read_available();
+        let place = bridge.reader.seen.iter().rev().find(|change| change.name == axis);
+        let place = f64::from(place.expect("a place").value) / 32_767.0;
+        // 12 mm of 24 mm; half a millimetre is a hundredth of the screen.
+        assert!((place - share).abs() < 0.02, "{axis} {place}");
+    }
+}
+
 fn check_identity(device: &RawDevice) {
     let id = device.input_id();
     assert_eq!(device.name(), Some("Microsoft X-Box 360 pad"));

@@ -4,7 +4,9 @@
 //! recognise controllers by their numbers and count buttons and axes by the order of the codes. Version
 //! 0x0114 matters: SDL's controller database maps the D-pad of version 1 upside down.
 
-use crate::pipeline::control::names::{GAMEPAD_BUTTONS, POINTER_BUTTONS, canonical, is_keyboard_key, name};
+use crate::pipeline::control::names::{
+    GAMEPAD_BUTTONS, POINTER_BUTTONS, POINTER_PLACE, POINTER_PLACE_MAX, canonical, is_keyboard_key, name,
+};
 use crate::pipeline::control::{Code, OutputDevice};
 
 /// `BUS_USB` of `linux/input.h`.
@@ -45,6 +47,10 @@ pub const KEYBOARD: Identity =
 pub const POINTER: Identity =
     Identity { bus: BUS_VIRTUAL, name: "tactpad pointer", vendor: 0x1209, product: 0x0003, version: 0x0001 };
 
+/// The tablet, told from others by its name alone.
+pub const TABLET: Identity =
+    Identity { bus: BUS_VIRTUAL, name: "tactpad tablet", vendor: 0x1209, product: 0x0004, version: 0x0001 };
+
 /// One axis of the pad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Axis {
@@ -75,6 +81,12 @@ const fn trigger(code: u16) -> Axis {
 const fn hat(code: u16) -> Axis {
     Axis { code, min: -1, max: 1, fuzz: 0, flat: 0 }
 }
+
+/// The axes of the tablet.
+pub const TABLET_AXES: [Axis; 2] = [
+    Axis { code: 0x00, min: 1, max: POINTER_PLACE_MAX, fuzz: 0, flat: 0 },
+    Axis { code: 0x01, min: 1, max: POINTER_PLACE_MAX, fuzz: 0, flat: 0 },
+];
 
 /// The numbers of all keys of `device`.
 ///
@@ -107,6 +119,7 @@ pub fn declares(device: OutputDevice, code: Code) -> bool {
         (OutputDevice::Keyboard, _) => is_keyboard_key(code) && name(code).is_some(),
         (OutputDevice::Pointer, Code::Relative(movement)) => movements().any(|declared| declared == movement),
         (OutputDevice::Pointer, _) => POINTER_BUTTONS.contains(&code),
+        (OutputDevice::Tablet, _) => POINTER_PLACE.contains(&code),
     }
 }
 

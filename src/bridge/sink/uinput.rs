@@ -14,7 +14,9 @@ use evdev::{
 use rustix::event::{Timespec, poll};
 use rustix::io::Errno;
 
-use super::identity::{GAMEPAD, GAMEPAD_AXES, Identity, KEYBOARD, POINTER, declares, keys, movements};
+use super::identity::{
+    GAMEPAD, GAMEPAD_AXES, Identity, KEYBOARD, POINTER, TABLET, TABLET_AXES, declares, keys, movements,
+};
 use super::{Sink, SinkError};
 use crate::pipeline::control::{Code, OutputDevice, OutputEvent};
 
@@ -43,7 +45,9 @@ const EV_ABS: u16 = 3;
 const SYN_REPORT: u16 = 0;
 
 /// Every device, in the order in which a group is written.
-const DEVICES: [OutputDevice; 3] = [OutputDevice::Gamepad, OutputDevice::Keyboard, OutputDevice::Pointer];
+/// The pointer is where it goes before its buttons change.
+const DEVICES: [OutputDevice; 4] =
+    [OutputDevice::Gamepad, OutputDevice::Keyboard, OutputDevice::Tablet, OutputDevice::Pointer];
 
 /// The virtual gamepad, keyboard and pointer. Each is made when it is first prepared.
 #[derive(Debug)]
@@ -51,6 +55,7 @@ pub struct UinputSink {
     gamepad: Option<Unit>,
     keyboard: Option<Unit>,
     pointer: Option<Unit>,
+    tablet: Option<Unit>,
 }
 
 impl UinputSink {
@@ -64,7 +69,7 @@ impl UinputSink {
     }
 
     const fn empty() -> Self {
-        Self { gamepad: None, keyboard: None, pointer: None }
+        Self { gamepad: None, keyboard: None, pointer: None, tablet: None }
     }
 
     /// The node that readers of `device` open; `None` before it is prepared.
@@ -73,6 +78,7 @@ impl UinputSink {
             OutputDevice::Gamepad => &self.gamepad,
             OutputDevice::Keyboard => &self.keyboard,
             OutputDevice::Pointer => &self.pointer,
+            OutputDevice::Tablet => &self.tablet,
         };
         unit.as_ref().map(|unit| unit.node.as_path())
     }
@@ -82,6 +88,7 @@ impl UinputSink {
             OutputDevice::Gamepad => &mut self.gamepad,
             OutputDevice::Keyboard => &mut self.keyboard,
             OutputDevice::Pointer => &mut self.pointer,
+            OutputDevice::Tablet => &mut self.tablet,
         };
         match place {
             Some(unit) => Ok(unit),
@@ -148,6 +155,7 @@ impl Unit {
             OutputDevice::Gamepad => (make_gamepad(), GAMEPAD.name),
             OutputDevice::Keyboard => (make_keyboard(), KEYBOARD.name),
             OutputDevice::Pointer => (make_pointer(), POINTER.name),
+            OutputDevice::Tablet => (make_tablet(), TABLET.name),
         };
         let mut device = made.map_err(|error| cannot_make(&error))?;
         let node = wait_for_node(&mut device).ok_or_else(|| no_node(name))?;
@@ -159,7 +167,8 @@ impl Unit {
         self.bytes.clear();
         for (code, value) in events {
             self.held.retain(|held| *held != code);
-            if value != 0 && !matches!(code, Code::Relative(_)) {
+            // A tablet's place is nothing that is held.
+            if value != 0 && !matches!(code, Code::Relative(_)) && self.name != TABLET.name {
                 self.held.push(code);
             }
             encode(code, value, &mut self.bytes);
@@ -235,6 +244,19 @@ fn make_keyboard() -> io::Result<VirtualDevice> {
     let keys: AttributeSet<KeyCode> = keys(OutputDevice::Keyboard).map(KeyCode::new).collect();
     let builder = VirtualDevice::builder()?.name(KEYBOARD.name).input_id(input_id(&KEYBOARD));
     builder.with_keys(&keys)?.build()
+}
+
+/// A device of places and no movements, as virtual machines have it: a mouse's buttons tell input stacks what it is, though none of them
+/// is ever pressed here.
+fn make_tablet() -> io::Result<VirtualDevice> {
+    let keys: AttributeSet<KeyCode> = keys(OutputDevice::Pointer).map(KeyCode::new).collect();
+    let builder = VirtualDevice::builder()?.name(TABLET.name).input_id(input_id(&TABLET));
+    let mut builder = builder.with_keys(&keys)?;
+    for axis in TABLET_AXES {
+        let range = AbsInfo::new(0, axis.min, axis.max, axis.fuzz, axis.flat, 0);
+        builder = builder.with_absolute_axis(&UinputAbsSetup::new(AbsoluteAxisCode(axis.code), range))?;
+    }
+    builder.build()
 }
 
 fn make_pointer() -> io::Result<VirtualDevice> {

@@ -10,7 +10,7 @@
 
 use std::fmt;
 
-use enigo::{Button, Coordinate, Direction, Enigo, Mouse, NewConError, Settings};
+use enigo::{Button, Coordinate, Direction, Enigo, InputResult, Mouse, NewConError, Settings};
 use x11rb::connection::Connection;
 use x11rb::errors::{ConnectError, ReplyError};
 use x11rb::protocol::xproto::{ConnectionExt as _, KEY_PRESS_EVENT, KEY_RELEASE_EVENT};
@@ -18,6 +18,7 @@ use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 
 use super::{Sink, SinkError};
+use crate::pipeline::control::names::POINTER_PLACE_MAX;
 use crate::pipeline::control::{Code, OutputDevice, OutputEvent};
 
 /// What the X server adds to the kernel's number of a key.
@@ -46,6 +47,10 @@ enum Act {
     Button(Button, Direction),
     /// The pointer by so many counts to the right and down.
     Move(i32, i32),
+    /// The pointer to this share of the screen's width.
+    Across(i32),
+    /// The pointer to this share of the screen's height.
+    Down(i32),
 }
 
 impl X11Sink {
@@ -71,7 +76,9 @@ impl X11Sink {
             (OutputDevice::Pointer, Code::Key(0x110)) => Ok(Act::Button(Button::Left, direction)),
             (OutputDevice::Pointer, Code::Key(0x111)) => Ok(Act::Button(Button::Right, direction)),
             (OutputDevice::Pointer, Code::Key(0x112)) => Ok(Act::Button(Button::Middle, direction)),
-            (OutputDevice::Pointer, code) => Err(no_such_movement(code)),
+            (OutputDevice::Tablet, Code::Axis(0x00)) => Ok(Act::Across(event.value)),
+            (OutputDevice::Tablet, Code::Axis(0x01)) => Ok(Act::Down(event.value)),
+            (OutputDevice::Pointer | OutputDevice::Tablet, code) => Err(no_such_movement(code)),
         }
     }
 
@@ -88,6 +95,11 @@ impl X11Sink {
             Act::Key(key, direction) => self.send_key(key, direction)?,
             Act::Button(button, direction) => {
                 let done = self.enigo()?.button(button, direction);
+                done.map_err(|error| lost(&self.display, &error))?;
+            }
+            Act::Across(share) | Act::Down(share) => {
+                let is_across = matches!(act, Act::Across(_));
+                let done = go_to(self.enigo()?, share, is_across);
                 done.map_err(|error| lost(&self.display, &error))?;
             }
             Act::Move(right, down) => {
@@ -111,7 +123,7 @@ impl X11Sink {
         let release = match act {
             Act::Key(key, _) => Act::Key(key, Direction::Release),
             Act::Button(button, _) => Act::Button(button, Direction::Release),
-            Act::Move(..) => return,
+            Act::Move(..) | Act::Across(_) | Act::Down(_) => return,
         };
         self.held.retain(|held| *held != release);
         if act != release {
@@ -141,6 +153,18 @@ impl X11Sink {
     }
 }
 
+/// Puts the pointer to a share of the screen, across it or down; along the other side it stays where it is.
+fn go_to(enigo: &mut Enigo, share: i32, is_across: bool) -> InputResult<()> {
+    let ((width, height), (x, y)) = (enigo.main_display()?, enigo.location()?);
+    // Share 1 is the first pixel, the last share is the last one.
+    let pixel = |size: i32| {
+        let way = i64::from(share - 1) * i64::from(size - 1) / i64::from(POINTER_PLACE_MAX - 1);
+        i32::try_from(way).unwrap_or(0)
+    };
+    let (x, y) = if is_across { (pixel(width), y) } else { (x, pixel(height)) };
+    enigo.move_mouse(x, y, Coordinate::Abs)
+}
+
 /// For each key number of the server, whether it has a symbol; checks on the way that key presses can be
 /// sent.
 fn read_layout(connection: &impl Connection, place: &str) -> Result<Vec<bool>, SinkError> {
@@ -167,7 +191,7 @@ impl Sink for X11Sink {
         match device {
             OutputDevice::Keyboard => Ok(()),
             OutputDevice::Gamepad => Err(no_gamepad()),
-            OutputDevice::Pointer => self.enigo().map(|_| ()),
+            OutputDevice::Pointer | OutputDevice::Tablet => self.enigo().map(|_| ()),
         }
     }
 

@@ -29,7 +29,7 @@ impl Vocabulary {
             let is_one = effects.len() == 1;
             words.extend(effects.into_iter().map(|(role, effect)| {
                 let kind = if is_one { String::new() } else { format!(" {}", role.name()) };
-                (format!("button {number}{kind}"), effect.keys.iter().collect())
+                (format!("button {number}{kind}"), effect.output.bindings().collect())
             }));
         }
         for binding in profile.bindings() {

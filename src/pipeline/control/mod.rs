@@ -13,15 +13,17 @@ pub enum OutputDevice {
     Keyboard,
     /// The virtual mouse.
     Pointer,
+    /// What puts the pointer to a place of the screen, as a tablet does. Its buttons are the mouse's.
+    Tablet,
 }
 
 impl OutputDevice {
-    /// The word that files and the event log use: `gamepad`, `keyboard` or `pointer`.
+    /// The word that files and the event log use: `gamepad`, `keyboard` or, for mouse and tablet, `pointer`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gamepad => "gamepad",
             Self::Keyboard => "keyboard",
-            Self::Pointer => "pointer",
+            Self::Pointer | Self::Tablet => "pointer",
         }
     }
 }

@@ -36,6 +36,12 @@ pub const TRIGGERS: [Code; 2] = [Code::Axis(0x02), Code::Axis(0x05)];
 /// Movement of the pointer: to the right, then down.
 pub const POINTER_MOTION: [Code; 2] = [Code::Relative(0x00), Code::Relative(0x01)];
 
+/// Places of the pointer on the screen: from the left, then from the top.
+pub const POINTER_PLACE: [Code; 2] = [Code::Axis(0x00), Code::Axis(0x01)];
+
+/// The far edge of the screen in [`POINTER_PLACE`]; the near one is 1.
+pub const POINTER_PLACE_MAX: i32 = 32_767;
+
 /// The buttons of the virtual mouse: left, right, middle.
 pub const POINTER_BUTTONS: [Code; 3] = [Code::Key(0x110), Code::Key(0x111), Code::Key(0x112)];
 

@@ -29,7 +29,7 @@ impl Outputs {
         match device {
             OutputDevice::Gamepad => self.gamepad,
             OutputDevice::Keyboard => self.keyboard,
-            OutputDevice::Pointer => self.pointer,
+            OutputDevice::Pointer | OutputDevice::Tablet => self.pointer,
         }
     }
 
@@ -152,7 +152,7 @@ fn fits(device: OutputDevice, code: Code) -> bool {
     match device {
         OutputDevice::Gamepad => GAMEPAD_BUTTONS.contains(&code) || HAT_AXES.contains(&code),
         OutputDevice::Keyboard => names::is_keyboard_key(code),
-        OutputDevice::Pointer => POINTER_BUTTONS.contains(&code),
+        OutputDevice::Pointer | OutputDevice::Tablet => POINTER_BUTTONS.contains(&code),
     }
 }
 
@@ -160,7 +160,9 @@ fn unknown(device: OutputDevice, text: &str) -> String {
     match device {
         OutputDevice::Gamepad => format!("{} is no control of the gamepad", quoted(text)),
         OutputDevice::Keyboard => format!("{} is no key of the keyboard", quoted(text)),
-        OutputDevice::Pointer => format!("{} is no button of the pointer", quoted(text)),
+        OutputDevice::Pointer | OutputDevice::Tablet => {
+            format!("{} is no button of the pointer", quoted(text))
+        }
     }
 }
 
@@ -176,7 +178,7 @@ fn wrong_device(device: OutputDevice, code: Code) -> String {
         OutputDevice::Pointer if POINTER_MOTION.contains(&code) => {
             format!("{code} is a movement, not a button")
         }
-        OutputDevice::Pointer => format!("{code} is not on the pointer"),
+        OutputDevice::Pointer | OutputDevice::Tablet => format!("{code} is not on the pointer"),
         OutputDevice::Keyboard if POINTER_BUTTONS.contains(&code) => {
             format!("{code} is a button of the pointer, not of the keyboard")
         }
@@ -200,7 +202,7 @@ fn near(device: OutputDevice, name: &str) -> String {
         (None, OutputDevice::Keyboard) => {
             "keys have the kernel's names, as KEY_Z, KEY_SPACE, KEY_LEFT".to_owned()
         }
-        (None, OutputDevice::Pointer) => POINTER_HELP.to_owned(),
+        (None, OutputDevice::Pointer | OutputDevice::Tablet) => POINTER_HELP.to_owned(),
     }
 }
 
@@ -217,7 +219,7 @@ fn instead(device: OutputDevice, name: &str, code: Code) -> String {
             "the table [pointer] moves the pointer; a button presses BTN_LEFT, BTN_RIGHT or BTN_MIDDLE"
                 .to_owned()
         }
-        (OutputDevice::Pointer, _) => POINTER_HELP.to_owned(),
+        (OutputDevice::Pointer | OutputDevice::Tablet, _) => POINTER_HELP.to_owned(),
         (OutputDevice::Keyboard, _) => {
             format!("write {code} as the gamepad's binding and a key, as \"KEY_Z\", here")
         }

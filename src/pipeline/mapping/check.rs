@@ -16,7 +16,7 @@ use super::limits::{
 };
 use super::macros::MacroDraft;
 use super::plate::{self, GAIN_KEYS};
-use super::profile::{Access, BUTTONS_MAX, Gain, Pointer, Profile, Stick, Trigger, Zone};
+use super::profile::{Access, BUTTONS_MAX, Gain, Pointer, PointerMode, Profile, Stick, Trigger, Zone};
 use super::program::{self, PROGRAM_KEYS, PROGRAMS_MAX, Program};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text;
@@ -54,8 +54,20 @@ const ROOT_KEYS: [&str; 17] = [
     "trigger",
     "button",
 ];
-const POINTER_KEYS: [&str; 6] =
-    ["centre_radius_mm", "full_radius_mm", "speed_counts_per_s", "curve", "min_force_n", "release_force_n"];
+const POINTER_KEYS: [&str; 7] = [
+    "mode",
+    "centre_radius_mm",
+    "full_radius_mm",
+    "speed_counts_per_s",
+    "curve",
+    "min_force_n",
+    "release_force_n",
+];
+const POINTER_MODES: [(&str, PointerMode); 2] =
+    [("relative", PointerMode::Relative), ("absolute", PointerMode::Absolute)];
+/// Those that say how fast it moves.
+const SPEED_KEYS: [&str; 3] = ["centre_radius_mm", "speed_counts_per_s", "curve"];
+
 /// Reads a profile from TOML text.
 ///
 /// Returns what there is to say about the text, in its order; after 50 findings a closing one says that there is
@@ -219,6 +231,15 @@ fn read_name(root: &Section<'_>, findings: &mut Findings<'_>) -> Option<String> 
 }
 
 fn read_pointer(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<Pointer> {
+    let mode = match table.place_of("mode") {
+        Some(_) => table.word("mode", &POINTER_MODES, findings).map(|word| word.value),
+        None => Some(PointerMode::Relative),
+    };
+    if mode == Some(PointerMode::Absolute) {
+        for (key, at) in SPEED_KEYS.iter().filter_map(|key| Some((key, table.place_of(key)?))) {
+            findings.warning(at, format!("\"{key}\" does nothing in mode \"absolute\""), "remove it");
+        }
+    }
     let centre = table.number("centre_radius_mm", POINTER_CENTRE_MM, findings);
     let full = table.number("full_radius_mm", FULL_RADIUS_MM, findings);
     table.require_less(("centre_radius_mm", centre), ("full_radius_mm", full), findings);
@@ -226,6 +247,7 @@ fn read_pointer(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<Poin
     let curve = table.number("curve", CURVE, findings);
     let (min_force_n, release_force_n) = read_gate(table, findings);
     Some(Pointer {
+        mode: mode?,
         centre_radius_mm: centre?.value,
         full_radius_mm: full?.value,
         speed_counts_per_s: speed?.value,

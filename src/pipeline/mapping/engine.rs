@@ -10,7 +10,7 @@ use super::rest::Resting;
 use super::running::Running;
 use super::sector::{self, Sector};
 use super::stated::{Commands, Stated};
-use super::steer::{self, Velocity};
+use super::steer::{self, Steered};
 use super::touched::{Touched, force_of};
 use super::tremor::Calm;
 use super::zone;
@@ -29,7 +29,7 @@ pub struct Engine {
     profile: Profile,
     held: Option<Sector>,
     zone: Option<usize>,
-    moving: Option<Velocity>,
+    moving: Option<Steered>,
     buttons: ArrayVec<Touched, BUTTONS_MAX>,
     last: Option<Contact>,
     calm: Option<Calm>,

@@ -48,9 +48,20 @@ pub struct Dpad {
     pub right: Keys,
 }
 
-/// The pointer steered like a joystick: the place of the contact is a velocity.
+/// How a contact moves the pointer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PointerMode {
+    /// Like a joystick: the place of the contact is a velocity.
+    Relative,
+    /// Like a tablet: the place of the contact is a place of the screen, and `full_radius_mm` from the centre is its edge.
+    Absolute,
+}
+
+/// The pointer, moved by the place of the contact. What is said of speeds counts where the mode is relative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointer {
+    /// How it is moved.
+    pub mode: PointerMode,
     /// Up to this distance from the centre the pointer rests.
     pub centre_radius_mm: f32,
     /// From this distance on it has its full speed; more than `centre_radius_mm`.

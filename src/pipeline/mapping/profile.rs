@@ -9,7 +9,7 @@ pub use super::action::{
 pub use super::analogue::{Side, Source, Stick, Trigger};
 use super::angle::wrapped;
 pub use super::keys::{Binding, KEYS_MAX, Keys};
-pub use super::place::{Direction, Dpad, DpadMode, Gain, Place, Pointer, Zone};
+pub use super::place::{Direction, Dpad, DpadMode, Gain, Place, Pointer, PointerMode, Zone};
 use super::program::Program;
 use crate::pipeline::control::{Code, OutputDevice};
 
@@ -155,8 +155,11 @@ pub struct Profile {
 impl Profile {
     /// Whether the profile plays on `device`, so that it must be there.
     pub fn uses(&self, device: OutputDevice) -> bool {
-        let moves = self.pointer.is_some() && device == OutputDevice::Pointer;
-        moves || self.bindings().any(|binding| binding.device == device)
+        let moved = self.pointer.map(|pointer| match pointer.mode {
+            PointerMode::Relative => OutputDevice::Pointer,
+            PointerMode::Absolute => OutputDevice::Tablet,
+        });
+        moved == Some(device) || self.bindings().any(|binding| binding.device == device)
     }
 
     /// All bindings in the order of the output: left, right, up, down, then those of the layers, the buttons, the macros and the

@@ -5,8 +5,8 @@ use arrayvec::ArrayVec;
 use super::effect::Playing;
 use super::intent::{Intents, Level};
 use super::profile::{Binding, Command, Keys, MACROS_MAX, Output};
-use super::steer::Velocity;
-use crate::pipeline::control::names::POINTER_MOTION;
+use super::steer::{Steered, Velocity};
+use crate::pipeline::control::names::{POINTER_MOTION, POINTER_PLACE};
 use crate::pipeline::control::{Code, OutputDevice};
 
 /// The most commands of one step.
@@ -61,12 +61,17 @@ impl Stated {
         self.levels.retain(|level| !keys.iter().any(|it| (it.device, it.code) == (level.device, level.code)));
     }
 
-    /// Adds the pointer's way.
-    pub(super) fn state_motion(&mut self, velocity: Option<Velocity>) {
-        let Some(Velocity { right, down }) = velocity else { return };
-        let rates = POINTER_MOTION.into_iter().zip([right, down]);
-        for (code, value) in rates.filter(|(_, rate)| *rate != 0) {
-            self.state(Binding { device: OutputDevice::Pointer, code, value });
+    /// Adds the pointer's way, or its place.
+    pub(super) fn state_motion(&mut self, steered: Option<Steered>) {
+        let (device, codes, values) = match steered {
+            None => return,
+            Some(Steered::Moving(Velocity { right, down })) => {
+                (OutputDevice::Pointer, POINTER_MOTION, [right, down])
+            }
+            Some(Steered::At(place)) => (OutputDevice::Tablet, POINTER_PLACE, place),
+        };
+        for (code, value) in codes.into_iter().zip(values).filter(|(_, value)| *value != 0) {
+            self.state(Binding { device, code, value });
         }
     }
 }

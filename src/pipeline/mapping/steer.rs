@@ -1,7 +1,8 @@
-//! How fast the pointer moves for a place on the plate.
+//! How fast the pointer moves for a place on the plate, or where it goes.
 
 use super::curve::share;
-use super::profile::Pointer;
+use super::profile::{Pointer, PointerMode};
+use crate::pipeline::control::names::POINTER_PLACE_MAX;
 use crate::quantity::Contact;
 
 /// A velocity of the pointer in whole counts per second: to the right, and down as screens count.
@@ -11,13 +12,31 @@ pub(super) struct Velocity {
     pub(super) down: i32,
 }
 
-/// The velocity for a finite contact; `None` while the normal force is not enough. `held` says whether it was in the
+/// What becomes of the pointer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Steered {
+    /// It moves.
+    Moving(Velocity),
+    /// It goes to this place of the screen, from the left and from the top, in 1 to [`POINTER_PLACE_MAX`].
+    At([i32; 2]),
+}
+
+/// What becomes of it for a finite contact; `None` while the normal force is not enough. `held` says whether it was in the
 /// step before.
 ///
 /// The speed is continuous at the centre's edge, so the place needs no hysteresis as that of a direction does.
-pub(super) fn follow(pointer: &Pointer, held: Option<Velocity>, contact: &Contact) -> Option<Velocity> {
+pub(super) fn follow(pointer: &Pointer, held: Option<Steered>, contact: &Contact) -> Option<Steered> {
     let gate_n = if held.is_some() { pointer.release_force_n } else { pointer.min_force_n };
-    (contact.fz_n >= gate_n).then(|| velocity(pointer, contact))
+    (contact.fz_n >= gate_n).then(|| match pointer.mode {
+        PointerMode::Relative => Steered::Moving(velocity(pointer, contact)),
+        PointerMode::Absolute => Steered::At([contact.x_mm, -contact.y_mm].map(|mm| place(pointer, mm))),
+    })
+}
+
+/// The place of the screen that is so far to the right of its middle, or below it, on the plate.
+fn place(pointer: &Pointer, mm: f32) -> i32 {
+    let share = share(mm, [-pointer.full_radius_mm, pointer.full_radius_mm], 1.0);
+    1 + libm::roundf(share * (POINTER_PLACE_MAX - 1) as f32) as i32
 }
 
 fn velocity(pointer: &Pointer, contact: &Contact) -> Velocity {
@@ -42,6 +61,7 @@ mod tests {
     use super::*;
 
     const POINTER: Pointer = Pointer {
+        mode: PointerMode::Relative,
         centre_radius_mm: 5.0,
         full_radius_mm: 25.0,
         speed_counts_per_s: 800.0,
@@ -52,7 +72,11 @@ mod tests {
 
     fn at(x_mm: f32, y_mm: f32) -> (i32, i32) {
         let contact = Contact { x_mm, y_mm, fz_n: 1.0, ..Contact::default() };
-        let Velocity { right, down } = follow(&POINTER, None, &contact).unwrap();
+        right_and_down(follow(&POINTER, None, &contact))
+    }
+
+    fn right_and_down(steered: Option<Steered>) -> (i32, i32) {
+        let Some(Steered::Moving(Velocity { right, down })) = steered else { panic!("{steered:?}") };
         (right, down)
     }
 
@@ -71,9 +95,9 @@ mod tests {
     fn the_curve_is_the_power() {
         let at_half = |curve| {
             let contact = Contact { x_mm: 15.0, fz_n: 1.0, ..Contact::default() };
-            follow(&Pointer { curve, ..POINTER }, None, &contact).map(|velocity| velocity.right)
+            right_and_down(follow(&Pointer { curve, ..POINTER }, None, &contact)).0
         };
-        assert_eq!([1.0, 2.0, 3.0].map(at_half), [400, 200, 100].map(Some));
+        assert_eq!([1.0, 2.0, 3.0].map(at_half), [400, 200, 100]);
     }
 
     #[test]
@@ -92,8 +116,18 @@ mod tests {
     }
 
     #[test]
+    fn an_absolute_pointer_goes_to_the_edges_and_no_farther() {
+        let pointer = Pointer { mode: PointerMode::Absolute, ..POINTER };
+        let at =
+            |x_mm, y_mm| follow(&pointer, None, &Contact { x_mm, y_mm, fz_n: 1.0, ..Contact::default() });
+        assert_eq!(at(0.0, 0.0), Some(Steered::At([16_384, 16_384])));
+        assert_eq!(at(-25.0, 25.0), Some(Steered::At([1, 1])));
+        assert_eq!(at(f32::MAX, -26.0), Some(Steered::At([32_767, 32_767])));
+    }
+
+    #[test]
     fn the_gate_has_a_hysteresis() {
-        let moving = Some(Velocity { right: 0, down: 0 });
+        let moving = Some(Steered::Moving(Velocity { right: 0, down: 0 }));
         let pressed = |held, fz_n| {
             let contact = Contact { x_mm: 20.0, fz_n, ..Contact::default() };
             follow(&POINTER, held, &contact).is_some()

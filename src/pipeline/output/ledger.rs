@@ -55,9 +55,9 @@ impl Ledger {
     /// is due. A level of a control that the profile does not name is ignored. The pointer moves here only, with a sample.
     pub fn update(&mut self, at: StreamInstant, levels: &Intents, edges: &mut Edges) {
         self.motion.update(at, levels);
-        for (code, value) in self.motion.take_steps().into_iter().flatten() {
+        for (device, code, value) in self.motion.take_steps().into_iter().flatten() {
             // At most STEPS_MAX, so there is always room.
-            let _ = edges.try_push(OutputEvent { at, device: OutputDevice::Pointer, code, value });
+            let _ = edges.try_push(OutputEvent { at, device, code, value });
         }
         for slot in &mut self.slots {
             slot.wanted = wanted(levels, slot);

@@ -1,17 +1,20 @@
-//! From rates to steps: what the pointer is moved by.
+//! From rates to steps: what the pointer is moved by. And places of the screen that it goes to.
 //!
 //! The mapping says how fast the pointer should move (a level), and a mouse tells how far it has moved (a sum). Between
 //! the two lies the stream's time. The sum is taken in whole numbers, so that it has no error and no preference: the
 //! same way forth and back ends where it began.
 
-use crate::pipeline::control::Code;
-use crate::pipeline::control::names::POINTER_MOTION;
+use crate::pipeline::control::names::{POINTER_MOTION, POINTER_PLACE};
+use crate::pipeline::control::{Code, OutputDevice};
 use crate::pipeline::mapping::intent::Intents;
 use crate::pipeline::mapping::profile::POINTER_SPEED_MAX;
 use crate::time::StreamInstant;
 
-/// Movements that can come of one call: right or left, up or down.
-pub(super) const STEPS_MAX: usize = POINTER_MOTION.len();
+/// Movements that can come of one call: right or left, up or down, and a place of the screen.
+pub(super) const STEPS_MAX: usize = POINTER_MOTION.len() + POINTER_PLACE.len();
+
+/// A step of the pointer: the device, and by how far, or where to.
+pub(super) type MotionStep = (OutputDevice, Code, i32);
 
 /// Steps come at least this far apart: a screen shows fewer, and a pad at 8 kHz would flood every reader.
 const SPACING_US: u64 = 4_000;
@@ -34,7 +37,8 @@ const _: () = assert!(
 /// The pointer's rates and what they have summed up to.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
-    axes: [Axis; STEPS_MAX],
+    axes: [Axis; POINTER_MOTION.len()],
+    places: [Place; POINTER_PLACE.len()],
     /// Up to here the rates are summed.
     at: StreamInstant,
     /// From here on the next step may come.
@@ -50,11 +54,20 @@ struct Axis {
     rest: i64,
 }
 
+/// Where the pointer goes along one side of the screen; 0 is nowhere.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    code: Code,
+    wanted: i32,
+    told: i32,
+}
+
 impl Motion {
     /// The pointer at rest.
     pub(super) fn new() -> Self {
         let axes = POINTER_MOTION.map(|code| Axis { code, rate: 0, rest: 0 });
-        Self { axes, at: StreamInstant::default(), next_at: StreamInstant::default() }
+        let places = POINTER_PLACE.map(|code| Place { code, wanted: 0, told: 0 });
+        Self { axes, places, at: StreamInstant::default(), next_at: StreamInstant::default() }
     }
 
     /// Sums up to `at` with the rates that held until now, then takes those of `levels`, none being rest.
@@ -68,14 +81,22 @@ impl Motion {
             let level = levels.iter().find(|level| level.code == axis.code);
             axis.rate = level.map_or(0, |level| level.value.clamp(-POINTER_SPEED_MAX, POINTER_SPEED_MAX));
         }
+        let of_tablet = || levels.iter().filter(|level| level.device == OutputDevice::Tablet);
+        for place in &mut self.places {
+            // A lifted finger leaves the pointer where it is.
+            place.wanted =
+                of_tablet().find(|level| level.code == place.code).map_or(place.wanted, |level| level.value);
+        }
     }
 
     /// Takes the whole counts that are due, each movement with its step; none before `SPACING_US` after the last.
-    pub(super) fn take_steps(&mut self) -> [Option<(Code, i32)>; STEPS_MAX] {
+    pub(super) fn take_steps(&mut self) -> [Option<MotionStep>; STEPS_MAX] {
         if self.at < self.next_at {
             return [None; STEPS_MAX];
         }
-        let steps = self.axes.each_mut().map(Axis::take_step);
+        let [right, down] = self.axes.each_mut().map(Axis::take_step);
+        let [left, top] = self.places.each_mut().map(Place::take_step);
+        let steps = [right, down, left, top];
         if steps.iter().any(Option::is_some) {
             self.next_at = self.at.plus_us(SPACING_US);
         }
@@ -88,6 +109,9 @@ impl Motion {
         for axis in &mut self.axes {
             (axis.rate, axis.rest) = (0, 0);
         }
+        for place in &mut self.places {
+            place.wanted = place.told;
+        }
     }
 
     /// The movements under way with their rates in counts per second.
@@ -98,11 +122,20 @@ impl Motion {
 
 impl Axis {
     /// The whole counts of the rest; the division rounds towards rest in both directions.
-    fn take_step(&mut self) -> Option<(Code, i32)> {
+    fn take_step(&mut self) -> Option<MotionStep> {
         let bound = i64::from(STEP_MAX);
         let step = (self.rest / SECOND_US).clamp(-bound, bound);
         self.rest -= step * SECOND_US;
-        (step != 0).then_some((self.code, step as i32))
+        (step != 0).then_some((OutputDevice::Pointer, self.code, step as i32))
+    }
+}
+
+impl Place {
+    /// The place, if it is another one than was told last.
+    fn take_step(&mut self) -> Option<MotionStep> {
+        let is_new = self.wanted != self.told;
+        self.told = self.wanted;
+        is_new.then_some((OutputDevice::Tablet, self.code, self.told))
     }
 }
 
@@ -125,7 +158,7 @@ mod tests {
         for (length_us, right, down) in stretches {
             for _ in 0..length_us / period_us {
                 motion.update(at, &rates(*right, *down));
-                let [x, y] = motion.take_steps().map(|step| step.map_or(0, |(_, counts)| counts));
+                let [x, y, ..] = motion.take_steps().map(|step| step.map_or(0, |(_, _, counts)| counts));
                 if (x, y) != (0, 0) {
                     all.push((at.as_us(), x, y));
                 }
@@ -175,7 +208,10 @@ mod tests {
         let mut motion = Motion::new();
         motion.update(StreamInstant::from_us(0), &rates(1_000, 0));
         motion.update(StreamInstant::from_us(GAP_MAX_US + 60_000), &rates(0, 0));
-        assert_eq!(motion.take_steps(), [Some((POINTER_MOTION[0], 20)), None]);
+        assert_eq!(
+            motion.take_steps(),
+            [Some((OutputDevice::Pointer, POINTER_MOTION[0], 20)), None, None, None]
+        );
     }
 
     #[test]
@@ -186,7 +222,7 @@ mod tests {
         motion.stop(StreamInstant::from_us(3_000));
         assert_eq!(motion.rates().count(), 0);
         motion.update(StreamInstant::from_us(50_000), &rates(0, 0));
-        assert_eq!(motion.take_steps(), [None, None]);
+        assert_eq!(motion.take_steps(), [None; STEPS_MAX]);
     }
 
     #[test]
@@ -195,7 +231,27 @@ mod tests {
         motion.update(StreamInstant::from_us(9_000), &rates(1_000, 0));
         motion.update(StreamInstant::from_us(1_000), &rates(1_000, 0));
         motion.update(StreamInstant::from_us(10_000), &rates(1_000, 0));
-        assert_eq!(motion.take_steps(), [Some((POINTER_MOTION[0], 1)), None]);
+        assert_eq!(
+            motion.take_steps(),
+            [Some((OutputDevice::Pointer, POINTER_MOTION[0], 1)), None, None, None]
+        );
+    }
+
+    #[test]
+    fn a_place_is_told_when_it_is_another_one_and_stays_after_a_lift() {
+        let mut motion = Motion::new();
+        let mut told = |ms: u64, place: Option<[i32; 2]>| {
+            let level = |(code, value)| Level { device: OutputDevice::Tablet, code, value };
+            let levels = POINTER_PLACE.into_iter().zip(place.unwrap_or_default()).map(level);
+            let levels: Intents = levels.filter(|level| level.value != 0).collect();
+            motion.update(StreamInstant::from_us(ms * 1_000), &levels);
+            motion.take_steps().into_iter().flatten().map(|(_, _, value)| value).collect::<Vec<_>>()
+        };
+        assert_eq!(told(0, Some([5, 7])), [5, 7]);
+        assert!(told(3, Some([6, 7])).is_empty(), "less than 4 ms later");
+        assert_eq!(told(4, Some([6, 7])), [6]);
+        assert!(told(20, None).is_empty());
+        assert!(told(30, Some([6, 7])).is_empty());
     }
 
     proptest! {
@@ -209,7 +265,7 @@ mod tests {
                 at = at.plus_us(wait_us);
                 motion.update(at, &rates(right, down));
                 let steps = motion.take_steps();
-                for (_, step) in steps.iter().flatten() {
+                for (_, _, step) in steps.iter().flatten() {
                     prop_assert!(*step != 0 && step.abs() <= STEP_MAX);
                     prop_assert!(motion.axes.iter().all(|axis| axis.rest.abs() < SECOND_US), "nothing is left over");
                 }

@@ -12,6 +12,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::bridge::clock::Clock;
 use crate::bridge::request::{Asked, Asker, Request};
+use crate::bridge::watchers::Watchers;
 use crate::time::HostInstant;
 
 /// A client that has not asked for this long is sent away.
@@ -25,6 +26,9 @@ const ANSWER_LIMIT: Duration = Duration::from_secs(2);
 
 /// The longest request.
 const REQUEST_BYTES_MAX: usize = 4_096;
+
+/// Asks for a line for each press from now on.
+const WATCH: &str = "watch";
 
 /// How often clients that say nothing are looked at.
 const LOOK: Timespec = Timespec { tv_sec: 0, tv_nsec: 250_000_000 };
@@ -45,6 +49,7 @@ pub(super) struct Server {
     asker: Asker,
     /// Held while a client gets its answer.
     answering: Arc<Mutex<()>>,
+    watchers: Watchers,
 }
 
 impl Server {
@@ -52,9 +57,14 @@ impl Server {
     ///
     /// # Errors
     /// The listener cannot be polled.
-    pub(super) fn new(listener: UnixListener, asker: Asker, answering: Arc<Mutex<()>>) -> io::Result<Self> {
+    pub(super) fn new(
+        listener: UnixListener,
+        asker: Asker,
+        answering: Arc<Mutex<()>>,
+        watchers: Watchers,
+    ) -> io::Result<Self> {
         listener.set_nonblocking(true)?;
-        Ok(Self { listener, clients: VecDeque::new(), clock: Clock::start(), asker, answering })
+        Ok(Self { listener, clients: VecDeque::new(), clock: Clock::start(), asker, answering, watchers })
     }
 
     /// Serves until the process ends.
@@ -113,6 +123,15 @@ impl Server {
     }
 
     fn serve(&self, client: &Client) -> io::Result<()> {
+        if client.line.trim_ascii_end() == WATCH.as_bytes() {
+            if self.watchers.add(&client.stream)? {
+                return Ok(());
+            }
+            return writeln!(
+                &client.stream,
+                r#"{{"ok":false,"error":"too many watch already: end one of them"}}"#
+            );
+        }
         let Some(request) = Request::parse(&String::from_utf8_lossy(&client.line)) else {
             return writeln!(&client.stream, r#"{{"ok":false,"error":"unknown request"}}"#);
         };
@@ -168,6 +187,26 @@ pub fn ask(path: &Path, request: &str) -> io::Result<String> {
     }
 }
 
+/// Watches what becomes of each press at the bridge that listens at `path`, until that ends or `each` fails: first its answer, then a line of
+/// JSON for each press.
+///
+/// # Errors
+/// Nobody listens there, or no answer came: then the kind is `TimedOut`; or what `each` gave.
+pub fn watch(path: &Path, mut each: impl FnMut(&str) -> io::Result<()>) -> io::Result<()> {
+    let client = UnixStream::connect(path)?;
+    client.set_read_timeout(Some(2 * ANSWER_LIMIT))?;
+    writeln!(&client, "{WATCH}")?;
+    let mut lines = BufReader::new(&client).lines();
+    let answer = lines.next().transpose().map_err(|error| match is_no_answer(error.kind()) {
+        true => io::ErrorKind::TimedOut.into(),
+        false => error,
+    })?;
+    each(&answer.ok_or(io::ErrorKind::TimedOut)?)?;
+    // From here on it says something only when somebody presses.
+    client.set_read_timeout(None)?;
+    lines.try_for_each(|line| each(&line?))
+}
+
 /// Whether somebody listened, and did not answer.
 const fn is_no_answer(kind: io::ErrorKind) -> bool {
     use io::ErrorKind::{BrokenPipe, ConnectionReset, TimedOut, WouldBlock};
@@ -186,7 +225,8 @@ mod tests {
         let (ask, _) = channel();
         let wake = UnixStream::pair().unwrap().0;
         let listener = UnixListener::bind(&path).unwrap();
-        (Server::new(listener, Asker { ask, wake }, Arc::default()).unwrap(), path)
+        let watchers = Watchers::default();
+        (Server::new(listener, Asker { ask, wake }, Arc::default(), watchers).unwrap(), path)
     }
 
     /// What the client was answered; `None` if it was sent away.

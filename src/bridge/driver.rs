@@ -9,6 +9,7 @@ use crate::bridge::queue::Written;
 use crate::bridge::recorder::Recorder;
 use crate::bridge::sink::Sink;
 use crate::bridge::snapshot::Drops;
+use crate::bridge::watchers::Watchers;
 use crate::pipeline::call::Call;
 use crate::pipeline::control::OutputDevice;
 use crate::pipeline::mapping::profile::Profile;
@@ -26,6 +27,8 @@ pub(super) struct Driver {
     pub(super) latency: Arc<Mutex<Durations>>,
     /// What presses asked for, and was not done yet.
     pub(super) commands: Commands,
+    /// Told what becomes of each press.
+    pub(super) watchers: Watchers,
 }
 
 impl Driver {
@@ -39,6 +42,8 @@ impl Driver {
                 // More in one read than there is room for: nobody presses so fast.
                 let _ = self.commands.try_push(*command);
             }
+            self.watchers.tell(self.pipeline.verdicts());
+            self.pipeline.forget_verdicts();
         }
         match &mut self.recorder {
             Some(recorder) => recorder.write(now, call).map_err(BridgeError::Io),
@@ -105,10 +110,12 @@ fn timed(latency: &Arc<Mutex<Durations>>, clock: Clock, since: HostInstant) -> W
     })
 }
 
-/// Makes the devices that `profile` plays on.
+/// Makes the devices that `profile` plays on, and sees that they have all of its controls.
 pub(super) fn prepare(sink: &mut dyn Sink, profile: &Profile) -> Result<(), BridgeError> {
     let devices =
         [OutputDevice::Gamepad, OutputDevice::Keyboard, OutputDevice::Pointer, OutputDevice::Tablet];
     let mut used = devices.into_iter().filter(|device| profile.uses(*device));
-    used.try_for_each(|device| sink.prepare(device)).map_err(BridgeError::Sink)
+    used.try_for_each(|device| sink.prepare(device)).map_err(BridgeError::Sink)?;
+    let bindings: Vec<_> = profile.bindings().collect();
+    sink.accepts(&bindings).map_err(BridgeError::Sink)
 }

@@ -29,3 +29,4 @@ pub mod snapshot;
 pub mod state;
 pub mod timing;
 pub mod transport;
+mod watchers;

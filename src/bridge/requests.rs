@@ -16,6 +16,7 @@ use signal_hook::{flag, low_level};
 use crate::bridge::control::Server;
 use crate::bridge::request::{Asked, Asker, Request};
 use crate::bridge::signals::Start;
+use crate::bridge::watchers::Watchers;
 
 /// Requests as a descriptor to poll and a queue to take from.
 #[derive(Debug)]
@@ -27,6 +28,7 @@ pub struct Requests {
     ask: Sender<Asked>,
     /// Held while a client gets its answer.
     answering: Arc<Mutex<()>>,
+    watchers: Watchers,
     socket: Option<PathBuf>,
 }
 
@@ -39,7 +41,8 @@ impl Requests {
         let (woken, wake) = UnixStream::pair()?;
         woken.set_nonblocking(true)?;
         let (ask, queue) = channel();
-        Ok(Self { woken, wake, flags: Vec::new(), queue, ask, answering: Arc::default(), socket: None })
+        let (flags, answering, watchers) = (Vec::new(), Arc::default(), Watchers::default());
+        Ok(Self { woken, wake, flags, queue, ask, answering, watchers, socket: None })
     }
 
     /// Takes the process's signals, and the end of its terminal, as requests from now on. A program that has its own use for them does not call this.
@@ -78,9 +81,15 @@ impl Requests {
         let listener = UnixListener::bind(path)?;
         fs::set_permissions(path, Permissions::from_mode(0o600))?;
         self.socket = Some(path.to_owned());
-        let mut server = Server::new(listener, self.asker()?, Arc::clone(&self.answering))?;
+        let (answering, watchers) = (Arc::clone(&self.answering), self.watchers.clone());
+        let mut server = Server::new(listener, self.asker()?, answering, watchers)?;
         thread::Builder::new().name("control".into()).spawn(move || server.run())?;
         Ok(())
+    }
+
+    /// Those who watch what becomes of presses.
+    pub(super) fn watchers(&self) -> Watchers {
+        self.watchers.clone()
     }
 
     /// Polls readable when something was asked.

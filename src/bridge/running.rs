@@ -81,8 +81,9 @@ impl Bridge {
         let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
         let head = Head { decoder: decoder.file, profile: Some(profile) };
         let recorder = record.map(|to| Recorder::begin(to, now, &head)).transpose()?;
-        let driver =
-            Driver { pipeline, sink, recorder, clock, latency: Arc::default(), commands: Commands::new() };
+        let (latency, watchers) = (Arc::default(), requests.watchers());
+        let commands = Commands::new();
+        let driver = Driver { pipeline, sink, recorder, clock, latency, commands, watchers };
         let keeper = Keeper::new(pad, patience, now);
         let standing = Standing::begun();
         let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, (&decoder.name, &standing))));

@@ -42,6 +42,7 @@ use crate::pipeline::mapping::engine::Engine;
 use crate::pipeline::mapping::intent::Level;
 use crate::pipeline::mapping::profile::{Command, Profile};
 use crate::pipeline::mapping::stated::Commands;
+use crate::pipeline::mapping::verdict::Verdict;
 use crate::pipeline::output::ledger::{Edges, Ledger};
 pub use crate::pipeline::probe::{NoProbe, Probe, Stage};
 use crate::pipeline::refusal::Refusal;
@@ -262,6 +263,16 @@ impl Pipeline {
     /// How many presses of buttons and directions counted, and how many did not.
     pub const fn presses(&self) -> Presses {
         self.engine.presses()
+    }
+
+    /// What became of presses since [`Pipeline::forget_verdicts`]: who is told of each takes them after each call.
+    pub fn verdicts(&self) -> &[Verdict] {
+        self.engine.verdicts()
+    }
+
+    /// Forgets what became of presses.
+    pub fn forget_verdicts(&mut self) {
+        self.engine.forget_verdicts();
     }
 
     /// The contact that is being mapped; `None` while there is none.

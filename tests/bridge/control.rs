@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -9,6 +10,7 @@ use std::process::{Command, Stdio};
 use rustix::process::Signal;
 use serde_json::Value;
 
+use crate::presses;
 use crate::running::{Running, comes_true};
 
 const TACTPAD: &str = env!("CARGO_BIN_EXE_tactpad");
@@ -159,4 +161,40 @@ fn a_bridge_that_does_not_answer_is_one_sentence() {
     assert_eq!(answer.status.code(), Some(1), "{text}");
     assert!(text.contains("does not answer") && text.contains("`fg`"), "{text}");
     assert!(!text.contains("os error") && text.trim_end().lines().count() == 1, "{text}");
+}
+
+#[test]
+fn each_press_that_is_accepted_or_rejected_is_told_to_who_watches() {
+    let folder = tempfile::tempdir().unwrap();
+    let capture = format!("capture:{}", presses::write_capture(folder.path()).display());
+    let text = "schema = 1\nname = \"Mine\"\noutput = \"gamepad\"\n[access]\nbounce_ms = 1000\n\
+                [[button]]\nforce = \"fy\"\npress_n = 1\nout = { gamepad = \"BTN_EAST\", keyboard = \"KEY_X\" }\n\
+                [[button]]\nforce = \"fz\"\npress_n = 1\nout = { gamepad = \"BTN_SOUTH\", keyboard = \"KEY_Z\" }\n\
+                [[button]]\nforce = \"fz\"\npress_n = 1\ndwell_ms = 9000\nout = { gamepad = \"BTN_TL\", keyboard = \"KEY_A\" }\n";
+    fs::write(folder.path().join("mine.toml"), text).unwrap();
+    let mut program = tactpad(folder.path());
+    program.args(["run", "--profile", "mine.toml", "--output", "none", "--pad", &capture]);
+    let mut bridge = Running::start(folder, program);
+    await_status(&bridge, "plays", |status| status["state"] != "waiting" && !status["state"].is_null());
+    let mut watching = tactpad(bridge.folder.path());
+    let mut watching = watching.args(["ctl", "watch"]).stdout(Stdio::piped()).spawn().unwrap();
+    let lines = BufReader::new(watching.stdout.take().unwrap()).lines().map(Result::unwrap);
+    let told: Vec<Value> = lines.take(5).map(|line| serde_json::from_str(&line).unwrap()).collect();
+    let seen: Vec<_> = told
+        .iter()
+        .map(|told| {
+            (told["button"].as_u64().unwrap(), told["press"].as_str().unwrap(), told["reason"].as_str())
+        })
+        .collect();
+    let [accepted, bounced, moved] =
+        [(2, "accepted", None), (2, "rejected", Some("bounce")), (3, "rejected", Some("dwell"))];
+    // The first press may have begun before anybody watched.
+    let expected = [accepted, moved, bounced, moved, accepted, moved];
+    let from = usize::from(seen[0] != accepted);
+    assert_eq!(seen, expected[from..from + 5]);
+    let times: Vec<_> = told.iter().map(|told| told["t_us"].as_u64().unwrap()).collect();
+    assert!(times.is_sorted(), "{times:?}");
+    assert!(bridge.ctl("quit").status.success());
+    assert!(bridge.ends_within(5_000).is_some());
+    assert!(watching.wait().unwrap().code().is_some());
 }

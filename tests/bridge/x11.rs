@@ -9,6 +9,7 @@ use tactpad::bridge::latency::{Durations, Percentiles};
 use tactpad::bridge::sink::Sink;
 use tactpad::bridge::sink::x11::X11Sink;
 use tactpad::pipeline::control::{Code, OutputDevice, OutputEvent};
+use tactpad::pipeline::mapping::profile::Binding;
 use tactpad::time::StreamInstant;
 use x11rb::COPY_DEPTH_FROM_PARENT;
 use x11rb::connection::Connection;
@@ -225,6 +226,10 @@ fn the_pointer_moves_and_clicks_where_it_is() {
     sink.write(&[pointer(x, -20), pointer(left, 0), pointer(Code::Key(0x111), 1)]).unwrap();
     use Pointed::{At, Down, Up};
     assert_eq!(client.pointed(), [At(57, 40), At(57, 37), Down(1), At(37, 37), Up(1), Down(3)]);
+    let wheel = Code::Relative(8);
+    sink.write(&[pointer(wheel, 1)]).unwrap();
+    sink.write(&[pointer(wheel, -1)]).unwrap();
+    assert_eq!(client.pointed(), [Down(4), Up(4), Down(5), Up(5)]);
     drop(sink);
     assert_eq!(client.pointed(), [Up(3)], "what was held is released");
 }
@@ -263,14 +268,19 @@ fn what_x_cannot_do_is_refused_before_a_key_goes_out() {
     let bare = client.symbols.iter().position(|symbols| symbols.iter().all(|symbol| *symbol == 0)).unwrap();
     assert_eq!(client.first_key, 8, "the kernel's key 0");
     // 247 is the highest number that X has room for.
-    let wheel = pointer(Code::Relative(8), 1);
+    let sideways = pointer(Code::Relative(6), 1);
     let moved_key = OutputEvent { code: Code::Relative(0), ..event(0, 1) };
     let outside = [event(248, 1), event(0x110, 1), event(0x130, 1), event(u16::MAX, 1)];
-    for refused in [hat, event(0, 1), event(bare as u16, 1), wheel, moved_key].into_iter().chain(outside) {
+    for refused in [hat, event(0, 1), event(bare as u16, 1), sideways, moved_key].into_iter().chain(outside) {
         let error = sink.write(&[event(Z, 1), refused]).unwrap_err();
         assert!(error.message.contains("--output uinput"), "{error}");
     }
     assert_eq!(client.seen(), []);
+    let binding = |number| Binding { device: OutputDevice::Keyboard, code: Code::Key(number), value: 1 };
+    assert!(sink.accepts(&[binding(Z), binding(UP)]).is_ok());
+    let error = sink.accepts(&[binding(Z), binding(249), binding(X), binding(bare as u16)]).unwrap_err();
+    let [outside, bare] = [249, bare as u16].map(|number| Code::Key(number).to_string());
+    assert!(error.message.contains(&format!("has no {outside}, {bare}:")), "{error}");
 }
 
 #[test]

@@ -320,7 +320,9 @@ fn the_words_of_bindings_are_those_of_the_devices() {
     let hat = HAT_AXES.iter().flat_map(|axis| [format!("{axis}-"), format!("{axis}+")]);
     let pad = GAMEPAD_BUTTONS.iter().map(ToString::to_string).chain(hat);
     assert_eq!(listed("gamepad"), pad.collect());
-    assert_eq!(listed("pointer_button"), POINTER_BUTTONS.iter().map(ToString::to_string).collect());
+    let wheel = ["REL_WHEEL+", "REL_WHEEL-"].map(str::to_owned);
+    let pointer = POINTER_BUTTONS.iter().map(ToString::to_string).chain(wheel);
+    assert_eq!(listed("pointer_button"), pointer.collect());
 }
 
 #[test]

@@ -12,6 +12,7 @@ use std::fmt;
 
 use crate::bridge::queue::Written;
 use crate::pipeline::control::{OutputDevice, OutputEvent};
+use crate::pipeline::mapping::profile::Binding;
 
 /// A place for output events.
 pub trait Sink {
@@ -21,6 +22,14 @@ pub trait Sink {
     /// # Errors
     /// The device cannot be made; the text says what would help.
     fn prepare(&mut self, device: OutputDevice) -> Result<(), SinkError>;
+
+    /// Says whether all of these controls can be played, before one is pressed. `prepare` comes first.
+    ///
+    /// # Errors
+    /// Some cannot; the text names them all.
+    fn accepts(&self, _bindings: &[Binding]) -> Result<(), SinkError> {
+        Ok(())
+    }
 
     /// Writes one group of simultaneous events: one system call per device, ended by one report.
     ///

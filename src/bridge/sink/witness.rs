@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 use super::{Sink, SinkError};
 use crate::bridge::queue::Written;
 use crate::pipeline::control::{Code, OutputDevice, OutputEvent};
+use crate::pipeline::mapping::profile::Binding;
 
 /// The newest events that an account keeps of all.
 const NEWEST: usize = 8;
@@ -114,6 +115,10 @@ impl Witness {
 impl Sink for Witness {
     fn prepare(&mut self, device: OutputDevice) -> Result<(), SinkError> {
         self.sink.prepare(device)
+    }
+
+    fn accepts(&self, bindings: &[Binding]) -> Result<(), SinkError> {
+        self.sink.accepts(bindings)
     }
 
     fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {

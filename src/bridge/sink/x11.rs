@@ -10,7 +10,7 @@
 
 use std::fmt;
 
-use enigo::{Button, Coordinate, Direction, Enigo, InputResult, Mouse, NewConError, Settings};
+use enigo::{Axis, Button, Coordinate, Direction, Enigo, InputResult, Mouse, NewConError, Settings};
 use x11rb::connection::Connection;
 use x11rb::errors::{ConnectError, ReplyError};
 use x11rb::protocol::xproto::{ConnectionExt as _, KEY_PRESS_EVENT, KEY_RELEASE_EVENT};
@@ -18,8 +18,9 @@ use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 
 use super::{Sink, SinkError};
-use crate::pipeline::control::names::POINTER_PLACE_MAX;
+use crate::pipeline::control::names::{POINTER_PLACE_MAX, POINTER_WHEEL};
 use crate::pipeline::control::{Code, OutputDevice, OutputEvent};
+use crate::pipeline::mapping::profile::Binding;
 
 /// What the X server adds to the kernel's number of a key.
 const OFFSET: u16 = 8;
@@ -51,6 +52,8 @@ enum Act {
     Across(i32),
     /// The pointer to this share of the screen's height.
     Down(i32),
+    /// The wheel by so many notches towards the hand.
+    Scroll(i32),
 }
 
 impl X11Sink {
@@ -73,6 +76,7 @@ impl X11Sink {
             (OutputDevice::Keyboard, code) => self.key(code).map(|key| Act::Key(key, direction)),
             (OutputDevice::Pointer, Code::Relative(0x00)) => Ok(Act::Move(event.value, 0)),
             (OutputDevice::Pointer, Code::Relative(0x01)) => Ok(Act::Move(0, event.value)),
+            (OutputDevice::Pointer, POINTER_WHEEL) => Ok(Act::Scroll(-event.value)),
             (OutputDevice::Pointer, Code::Key(0x110)) => Ok(Act::Button(Button::Left, direction)),
             (OutputDevice::Pointer, Code::Key(0x111)) => Ok(Act::Button(Button::Right, direction)),
             (OutputDevice::Pointer, Code::Key(0x112)) => Ok(Act::Button(Button::Middle, direction)),
@@ -106,6 +110,10 @@ impl X11Sink {
                 let done = self.enigo()?.move_mouse(right, down, Coordinate::Rel);
                 done.map_err(|error| lost(&self.display, &error))?;
             }
+            Act::Scroll(notches) => {
+                let done = self.enigo()?.scroll(notches, Axis::Vertical);
+                done.map_err(|error| lost(&self.display, &error))?;
+            }
         }
         self.remember(act);
         Ok(())
@@ -123,7 +131,7 @@ impl X11Sink {
         let release = match act {
             Act::Key(key, _) => Act::Key(key, Direction::Release),
             Act::Button(button, _) => Act::Button(button, Direction::Release),
-            Act::Move(..) | Act::Across(_) | Act::Down(_) => return,
+            Act::Move(..) | Act::Across(_) | Act::Down(_) | Act::Scroll(_) => return,
         };
         self.held.retain(|held| *held != release);
         if act != release {
@@ -145,8 +153,12 @@ impl X11Sink {
     }
 
     fn no_key(&self, code: Code) -> SinkError {
+        self.no_keys(&code.to_string())
+    }
+
+    fn no_keys(&self, names: &str) -> SinkError {
         let message = format!(
-            "the keyboard layout of X display {} has no {code}: bind another key or use `--output uinput`",
+            "the keyboard layout of X display {} has no {names}: bind other keys or use `--output uinput`",
             self.display
         );
         SinkError { message }
@@ -193,6 +205,14 @@ impl Sink for X11Sink {
             OutputDevice::Gamepad => Err(no_gamepad()),
             OutputDevice::Pointer | OutputDevice::Tablet => self.enigo().map(|_| ()),
         }
+    }
+
+    fn accepts(&self, bindings: &[Binding]) -> Result<(), SinkError> {
+        let keys = bindings.iter().filter(|binding| binding.device == OutputDevice::Keyboard);
+        let mut lacking: Vec<String> =
+            keys.filter(|it| self.key(it.code).is_err()).map(|it| it.code.to_string()).collect();
+        lacking.dedup();
+        if lacking.is_empty() { Ok(()) } else { Err(self.no_keys(&lacking.join(", "))) }
     }
 
     /// Sends one event after the other: the X server knows no groups.

@@ -10,7 +10,7 @@ use serde_json::Value;
 use crate::cli::failure::Failure;
 use crate::cli::profile;
 use crate::cli::written::{printable, reason, stdout};
-use tactpad::bridge::control::ask;
+use tactpad::bridge::control::{ask, watch};
 
 /// Arguments of `tactpad ctl`.
 #[derive(Debug, Args)]
@@ -28,6 +28,9 @@ enum Action {
     /// What the bridge is doing.
     #[command(after_help = "Example: tactpad ctl status --json")]
     Status,
+    /// Print one line of JSON for each press that is accepted or rejected, until the bridge ends.
+    #[command(after_help = "Example: tactpad ctl watch")]
+    Watch,
     /// Release everything and ignore the pad.
     #[command(after_help = "Example: tactpad ctl pause")]
     Pause,
@@ -66,7 +69,9 @@ pub(super) fn socket_path() -> PathBuf {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let path = socket_path();
     let request = match &arguments.action {
+        Action::Watch => return watch_presses(&path),
         Action::Status => "status".to_owned(),
         Action::Pause => "pause".to_owned(),
         Action::Resume => "resume".to_owned(),
@@ -77,7 +82,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Quit => "quit".to_owned(),
         Action::Profile { name } => format!("profile {}", absolute(name)?),
     };
-    let path = socket_path();
     let answer = ask(&path, &request).map_err(|error| Failure::Failed(no_answer(&path, &error)))?;
     let document: Value =
         serde_json::from_str(&answer).map_err(|error| Failure::Failed(error.to_string()))?;
@@ -89,6 +93,26 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Status => Ok(print_status(&document)?),
         _ => Ok(()),
     }
+}
+
+/// Prints what becomes of each press.
+fn watch_presses(path: &Path) -> Result<(), Failure> {
+    let mut is_answered = false;
+    let mut out = stdout();
+    let mut printed: Result<(), Failure> = Ok(());
+    let watched = watch(path, |line| {
+        if !std::mem::replace(&mut is_answered, true) {
+            let refused =
+                serde_json::from_str(line).ok().and_then(|it: Value| Some(it.get("error")?.to_string()));
+            printed = refused.map_or(Ok(()), |error| Err(Failure::Failed(error)));
+        } else {
+            printed = writeln!(out, "{line}").and_then(|()| out.flush()).map_err(Failure::from);
+        }
+        // What is wrong here is told by whoever reads `printed`.
+        if printed.is_ok() { Ok(()) } else { Err(io::ErrorKind::Other.into()) }
+    });
+    printed?;
+    watched.map_err(|error| Failure::Failed(no_answer(path, &error)))
 }
 
 /// Why no bridge answers, and what to do about it.

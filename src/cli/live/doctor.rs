@@ -14,6 +14,7 @@ use super::ctl;
 use crate::cli::failure::{Failure, if_read};
 use crate::cli::written::{print_json, stdout};
 use tactpad::bridge::control::ask;
+use tactpad::bridge::sink::identity::PLACE;
 use tactpad::bridge::sink::uinput;
 use tactpad::bridge::transport::pads::{self, FoundPad};
 
@@ -178,10 +179,13 @@ fn check_pads(pads: &[FoundPad]) -> Vec<Check> {
     pads.iter().map(check).collect()
 }
 
-/// Xbox 360 pads that are there already. One of version 1 is a trap: SDL's database turns its D-pad upside down.
+/// Xbox 360 pads that are there already, but for a running bridge's own. One of version 1 is a trap: SDL's database turns its D-pad upside
+/// down.
 fn check_other_gamepads(devices: &str) -> Vec<Check> {
     let name = "other gamepads";
-    let lines = devices.lines().filter(|line| line.starts_with("I:"));
+    let own = format!("P: Phys={}", PLACE.to_string_lossy());
+    let others = devices.split("\n\n").filter(|device| device.lines().all(|line| line.trim_end() != own));
+    let lines = others.flat_map(str::lines).filter(|line| line.starts_with("I:"));
     let pads: Vec<_> = lines.filter(|line| line.contains("Vendor=045e Product=028e")).collect();
     let mut checks = Vec::new();
     if pads.iter().any(|line| line.contains("Version=0001")) {
@@ -302,6 +306,23 @@ mod tests {
         assert_eq!(check_other_gamepads("").len(), 0);
         assert_eq!(check_other_gamepads(&device("0114")).len(), 1);
         assert_eq!(check_other_gamepads(&device("0001")).len(), 2);
+    }
+
+    #[test]
+    fn our_own_pad_is_no_other_one() {
+        let device = |place| {
+            format!(
+                "I: Bus=0003 Vendor=045e Product=028e Version=0114\nN: Name=\"Microsoft X-Box 360 pad\"\n\
+                 P: Phys={place}\nS: Sysfs=/devices/virtual/input/input9\n\n"
+            )
+        };
+        let [ours, wired, others] =
+            [device("tactpad/virtual"), device("usb-0000:00:14.0-1/input0"), device("")];
+        assert_eq!(check_other_gamepads(&ours).len(), 0);
+        for foreign in [wired, others] {
+            assert_eq!(check_other_gamepads(&foreign).len(), 1);
+            assert_eq!(check_other_gamepads(&format!("{ours}{foreign}")).len(), 1);
+        }
     }
 
     #[test]

@@ -101,4 +101,22 @@ mod tests {
         let (whole, found) = read(&lines.join("\n"), OutputChoice::AsWritten);
         assert_eq!((whole, found), (profile, vec![]));
     }
+
+    #[test]
+    fn what_the_template_shows_as_possible_is_and_no_key_is_left_out() {
+        let could_be: String =
+            TEMPLATE.lines().map(|line| line.strip_prefix("#  ").unwrap_or(line).to_owned() + "\n").collect();
+        let (profile, found) = read(&could_be, OutputChoice::AsWritten);
+        assert_eq!((profile.map(|it| it.buttons.len()), found), (Some(6), vec![]));
+        let schema: serde_json::Value = serde_json::from_str(shipped::schema()).unwrap();
+        for table in ["program", "access", "gain", "zone", "dpad", "button"] {
+            for key in schema["$defs"][table]["properties"].as_object().unwrap().keys() {
+                // Names of devices stand in the bindings.
+                let is_shown = TEMPLATE
+                    .lines()
+                    .any(|line| line.trim_start_matches(['#', ' ']).starts_with(&format!("{key} =")));
+                assert!(is_shown || (table, &**key) == ("dpad", "gamepad"), "{table}: {key}");
+            }
+        }
+    }
 }

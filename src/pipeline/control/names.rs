@@ -42,6 +42,9 @@ pub const POINTER_PLACE: [Code; 2] = [Code::Axis(0x00), Code::Axis(0x01)];
 /// The far edge of the screen in [`POINTER_PLACE`]; the near one is 1.
 pub const POINTER_PLACE_MAX: i32 = 32_767;
 
+/// The wheel of the virtual mouse: a notch away from the hand is positive.
+pub const POINTER_WHEEL: Code = Code::Relative(0x08);
+
 /// The buttons of the virtual mouse: left, right, middle.
 pub const POINTER_BUTTONS: [Code; 3] = [Code::Key(0x110), Code::Key(0x111), Code::Key(0x112)];
 
@@ -153,6 +156,11 @@ pub fn parse(text: &str) -> Option<Code> {
 /// Whether `code` is a key of a keyboard.
 pub const fn is_keyboard_key(code: Code) -> bool {
     matches!(code, Code::Key(number) if number < FIRST_BUTTON)
+}
+
+/// Whether `code` is on the virtual mouse.
+pub fn is_pointers(code: Code) -> bool {
+    matches!(code, Code::Relative(_)) || POINTER_BUTTONS.contains(&code)
 }
 
 /// Every control of the table with its kernel name: keys, axes, movements.

@@ -1,7 +1,9 @@
 //! Outputs as a profile writes them: `"BTN_SOUTH"`, `"ABS_HAT0X+"`, `"KEY_LEFTCTRL+KEY_C"`, `"BTN_LEFT"`.
 
 use super::profile::{Binding, KEYS_MAX, Keys};
-use crate::pipeline::control::names::{self, GAMEPAD_BUTTONS, HAT_AXES, POINTER_BUTTONS, POINTER_MOTION};
+use crate::pipeline::control::names::{
+    self, GAMEPAD_BUTTONS, HAT_AXES, POINTER_BUTTONS, POINTER_MOTION, POINTER_WHEEL,
+};
 use crate::pipeline::control::{Code, OutputDevice};
 use crate::toml_text::diag::{Findings, quoted};
 use crate::toml_text::section::{Placed, Section};
@@ -138,12 +140,12 @@ fn parse(device: OutputDevice, text: &str) -> Result<Binding, Misfit> {
     let Some(code) = names::parse(name) else { return misfit(unknown(device, text), near(device, name)) };
     match (code, sign) {
         _ if !fits(device, code) => misfit(wrong_device(device, code), instead(device, name, code)),
-        (Code::Axis(_), Some(value)) => Ok(Binding { device, code, value }),
-        (Code::Axis(_), None) => {
+        (Code::Axis(_) | Code::Relative(_), Some(value)) => Ok(Binding { device, code, value }),
+        (Code::Axis(_) | Code::Relative(_), None) => {
             misfit(format!("{code} needs a direction"), format!("write \"{code}+\" or \"{code}-\""))
         }
-        (_, Some(_)) => misfit(format!("{code} has no direction"), format!("write \"{code}\"")),
-        (_, None) => Ok(Binding { device, code, value: 1 }),
+        (Code::Key(_), Some(_)) => misfit(format!("{code} has no direction"), format!("write \"{code}\"")),
+        (Code::Key(_), None) => Ok(Binding { device, code, value: 1 }),
     }
 }
 
@@ -152,7 +154,9 @@ fn fits(device: OutputDevice, code: Code) -> bool {
     match device {
         OutputDevice::Gamepad => GAMEPAD_BUTTONS.contains(&code) || HAT_AXES.contains(&code),
         OutputDevice::Keyboard => names::is_keyboard_key(code),
-        OutputDevice::Pointer | OutputDevice::Tablet => POINTER_BUTTONS.contains(&code),
+        OutputDevice::Pointer | OutputDevice::Tablet => {
+            POINTER_BUTTONS.contains(&code) || code == POINTER_WHEEL
+        }
     }
 }
 
@@ -171,16 +175,16 @@ fn wrong_device(device: OutputDevice, code: Code) -> String {
         OutputDevice::Gamepad if names::is_keyboard_key(code) => {
             format!("{code} is a key of the keyboard, not of the gamepad")
         }
-        OutputDevice::Gamepad if POINTER_BUTTONS.contains(&code) => {
-            format!("{code} is a button of the pointer, not of the gamepad")
+        OutputDevice::Gamepad if names::is_pointers(code) => {
+            format!("{code} belongs to the pointer, not to the gamepad")
         }
         OutputDevice::Gamepad => format!("{code} is not on the Xbox 360 pad"),
         OutputDevice::Pointer if POINTER_MOTION.contains(&code) => {
             format!("{code} is a movement, not a button")
         }
         OutputDevice::Pointer | OutputDevice::Tablet => format!("{code} is not on the pointer"),
-        OutputDevice::Keyboard if POINTER_BUTTONS.contains(&code) => {
-            format!("{code} is a button of the pointer, not of the keyboard")
+        OutputDevice::Keyboard if names::is_pointers(code) => {
+            format!("{code} belongs to the pointer, not to the keyboard")
         }
         OutputDevice::Keyboard => format!("{code} belongs to the gamepad, not to the keyboard"),
     }
@@ -211,6 +215,9 @@ fn instead(device: OutputDevice, name: &str, code: Code) -> String {
         (OutputDevice::Gamepad | OutputDevice::Pointer, Some(button)) if fits(device, button) => {
             format!("did you mean \"{button}\"?")
         }
+        (OutputDevice::Gamepad | OutputDevice::Keyboard, _) if code == POINTER_WHEEL => {
+            format!("in a [[button]] it stands alone, as {{ pointer = \"{code}+\" }}")
+        }
         (OutputDevice::Gamepad | OutputDevice::Keyboard, _) if POINTER_BUTTONS.contains(&code) => {
             format!("in a [[button]] it stands alone, as {{ pointer = \"{code}\" }}")
         }
@@ -226,7 +233,8 @@ fn instead(device: OutputDevice, name: &str, code: Code) -> String {
     }
 }
 
-const POINTER_HELP: &str = "the pointer has BTN_LEFT, BTN_RIGHT and BTN_MIDDLE";
+const POINTER_HELP: &str =
+    "the pointer has BTN_LEFT, BTN_RIGHT and BTN_MIDDLE, and REL_WHEEL with + (away from you) or -";
 
 fn pad_controls() -> String {
     let buttons: Vec<_> = GAMEPAD_BUTTONS.iter().map(Code::to_string).collect();
@@ -251,6 +259,8 @@ mod tests {
             (OutputDevice::Keyboard, "z", Code::Key(44), 1),
             (OutputDevice::Keyboard, "KEY_MINUS", Code::Key(12), 1),
             (OutputDevice::Pointer, "btn_right", Code::Key(0x111), 1),
+            (OutputDevice::Pointer, "rel_wheel+", Code::Relative(8), 1),
+            (OutputDevice::Pointer, "REL_WHEEL-", Code::Relative(8), -1),
         ];
         for (device, text, code, value) in cases {
             assert_eq!(parse(device, text).unwrap(), Binding { device, code, value });
@@ -305,6 +315,8 @@ mod tests {
             (OutputDevice::Pointer, "left", "did you mean \"BTN_LEFT\"?"),
             (OutputDevice::Pointer, "BTN_LEFFT", "did you mean \"BTN_LEFT\"?"),
             (OutputDevice::Pointer, "BTN_SOUTH", "BTN_SOUTH is not on the pointer; the pointer has BTN_LEFT"),
+            (OutputDevice::Pointer, "REL_WHEEL", "write \"REL_WHEEL+\" or \"REL_WHEEL-\""),
+            (OutputDevice::Keyboard, "REL_WHEEL+", "{ pointer = \"REL_WHEEL+\" }"),
             (OutputDevice::Pointer, "click", "is no button of the pointer; the pointer has BTN_LEFT"),
             (OutputDevice::Pointer, "REL_X", "REL_X is a movement, not a button; the table [pointer] moves"),
         ];

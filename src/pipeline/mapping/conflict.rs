@@ -8,12 +8,12 @@ use std::fmt;
 
 use super::binding::Outputs;
 use super::profile::{Binding, CONTROLS_MAX, Direction, DpadMode, Keys, Place, When};
-use crate::pipeline::control::OutputDevice;
+use crate::pipeline::control::{Code, OutputDevice};
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::Placed;
 
-/// The pointer's buttons: they are driven beside the keyboard or the gamepad.
-const POINTER_CONTROLS_MAX: usize = 3;
+/// The pointer's buttons and its wheel: they are driven beside the keyboard or the gamepad.
+const POINTER_CONTROLS_MAX: usize = 4;
 
 /// What drives a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,7 +89,8 @@ fn clash(earlier: &Bound, later: &Bound, mode: Option<DpadMode>) -> bool {
     let is_said = if first.value == second.value {
         !same_button(earlier.by.owner, later.by.owner) || earlier.keys == later.keys
     } else {
-        meet(&earlier.by, &later.by, mode)
+        // A wheel that is turned both ways stays where it is: nothing is held.
+        !matches!(second.code, Code::Relative(_)) && meet(&earlier.by, &later.by, mode)
     };
     first.code == second.code && is_said
 }

@@ -13,6 +13,7 @@ use super::stated::{Commands, Stated};
 use super::steer::{self, Steered};
 use super::touched::{Touched, force_of};
 use super::tremor::Calm;
+use super::verdict::{Verdict, Verdicts};
 use super::zone;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
@@ -45,6 +46,7 @@ pub struct Engine {
     commands: Commands,
     is_acting: bool,
     presses: Presses,
+    verdicts: Verdicts,
 }
 
 impl Engine {
@@ -68,6 +70,7 @@ impl Engine {
             commands: Commands::new(),
             is_acting: false,
             presses: Presses::default(),
+            verdicts: Verdicts::default(),
         }
     }
 
@@ -148,15 +151,22 @@ impl Engine {
     /// States what the buttons do. A layer that one of them switches counts from the next sample on.
     fn press(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut Stated) {
         let at = (self.zone, self.directions);
-        for (button, touched) in self.profile.buttons.iter().zip(&mut self.buttons) {
+        let access = self.profile.access;
+        for (number, (button, touched)) in (1..).zip(self.profile.buttons.iter().zip(&mut self.buttons)) {
             if !button.when.is_met(self.layer) {
                 touched.sleep(button, t, contact).for_each(|playing| stated.take(playing));
                 continue;
             }
             // A lifted contact was where it was.
             let is_in_place = contact.is_none() || is_in(at, button.place);
-            let help = (self.profile.access, &mut self.presses);
+            let before = self.presses;
+            let help = (access, &mut self.presses);
             touched.step(button, t, (contact, is_in_place), help).for_each(|playing| stated.take(playing));
+            if self.presses != before {
+                let is_rejected = self.presses.rejected > before.rejected;
+                let rejected = is_rejected.then(|| touched.why_rejected(button, access));
+                self.verdicts.keep(Verdict { t, button: number, rejected });
+            }
         }
     }
 
@@ -202,6 +212,16 @@ impl Engine {
     /// How many presses counted since the engine began, and how many did not.
     pub const fn presses(&self) -> Presses {
         self.presses
+    }
+
+    /// What became of presses since [`Self::forget_verdicts`], as far as there was room: the oldest first.
+    pub fn verdicts(&self) -> &[Verdict] {
+        self.verdicts.all()
+    }
+
+    /// Forgets what became of presses.
+    pub fn forget_verdicts(&mut self) {
+        self.verdicts.clear();
     }
 
     /// After a fault (lost link, dead channel, pause): forgets directions, the pointer's way, presses and what they toggled;

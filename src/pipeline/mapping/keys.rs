@@ -12,7 +12,7 @@ pub struct Binding {
     pub device: OutputDevice,
     /// The key or axis.
     pub code: Code,
-    /// 1 for keys, −1 or 1 for the hat.
+    /// 1 for keys, −1 or 1 for the hat and the wheel.
     pub value: i32,
 }
 

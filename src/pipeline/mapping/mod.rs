@@ -47,4 +47,5 @@ pub mod stated;
 mod steer;
 mod touched;
 mod tremor;
+pub mod verdict;
 mod zone;

@@ -29,7 +29,7 @@ pub const MACROS_MAX: usize = 16;
 pub const STEPS_MAX: usize = 32;
 
 /// The most controls that a profile drives on one device, and with the pointer.
-pub const CONTROLS_MAX: usize = 32;
+pub const CONTROLS_MAX: usize = 33;
 
 /// The fastest pointer that a profile can ask for, in counts per second.
 pub const POINTER_SPEED_MAX: i32 = 5_000;

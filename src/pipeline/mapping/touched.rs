@@ -6,6 +6,7 @@ use super::gate::{Gate, Thresholds, Touch};
 use super::press::Press;
 use super::profile::{Access, Action, Button, Force, Roles};
 use super::stage::Stage;
+use super::verdict::Reason;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
 
@@ -91,6 +92,15 @@ impl Touched {
         self.stage.forget(is_on);
         self.accept.forget();
         self.follower.step(button, t, Roles::NONE)
+    }
+
+    /// Why its press does not count, if it was rejected just now.
+    pub(super) fn why_rejected(&self, button: &Button, access: Access) -> Reason {
+        match (self.accept, button.dwell) {
+            (Accept::Rejected { .. }, _) => Reason::Bounce,
+            (_, Some(dwell)) if dwell.us > access.slow_us => Reason::Dwell,
+            _ => Reason::Slow,
+        }
     }
 
     /// Forgets what is under way and what was toggled. A force that is on does nothing until it was released once.

@@ -139,6 +139,10 @@ impl Slot {
         if self.held != value {
             self.held = value;
             self.since = at;
+            if value == 0 && matches!(self.code, Code::Relative(_)) {
+                // A notch of the wheel is done once it is told.
+                return;
+            }
             // One edge per slot and call at most, so there is always room.
             let _ = edges.try_push(OutputEvent { at, device: self.device, code: self.code, value });
         }
@@ -270,6 +274,28 @@ mod tests {
             edges.iter().map(|e| (e.at.as_us() / 1_000, e.code.to_string(), e.value)).collect();
         let expected = [(1, "REL_X", 2), (1, "BTN_LEFT", 1), (50, "REL_X", 40), (60, "BTN_LEFT", 0)];
         assert_eq!(seen, expected.map(|(ms, code, value)| (ms, code.to_owned(), value)));
+    }
+
+    #[test]
+    fn the_wheel_turns_by_a_notch_where_a_press_begins() {
+        let text = "schema = 1\nname = \"W\"\noutput = \"gamepad\"\n\
+                    [[button]]\nforce = \"fy\"\npress_n = 1\nout = { pointer = \"REL_WHEEL+\" }\n\
+                    [[button]]\nforce = \"-fy\"\npress_n = 1\nout = { pointer = \"REL_WHEEL-\" }\n";
+        let (profile, found) = check::read(text, OutputChoice::AsWritten);
+        assert_eq!(found, []);
+        let mut ledger = Ledger::new(&profile.unwrap());
+        let mut edges = Edges::new();
+        let notch = |value| Level { device: OutputDevice::Pointer, code: Code::Relative(8), value };
+        for (ms, levels) in
+            [(0, &[notch(1)][..]), (10, &[notch(1)]), (50, &[]), (60, &[notch(-1)]), (200, &[])]
+        {
+            ledger.update(StreamInstant::from_us(ms * 1_000), &levels.iter().copied().collect(), &mut edges);
+        }
+        ledger.release_all(StreamInstant::from_us(300_000), &mut edges);
+        let seen: Vec<_> =
+            edges.iter().map(|e| (e.at.as_us() / 1_000, e.code.to_string(), e.value)).collect();
+        assert_eq!(seen, [(0, "REL_WHEEL".to_owned(), 1), (60, "REL_WHEEL".to_owned(), -1)]);
+        assert_eq!(ledger.held().count(), 0);
     }
 
     #[test]

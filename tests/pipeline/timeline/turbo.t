@@ -58,3 +58,14 @@ set button.1.hold = { gamepad = "BTN_EAST", keyboard = "KEY_X", turbo_ms = 80 }
 440ms BTN_EAST 0
 480ms BTN_EAST 1
 490ms BTN_EAST 0
+
+case the wheel of the pointer turns by a notch in each period
+profile contra
+set button.1.out = { pointer = "REL_WHEEL-", turbo_ms = 100 }
+
+0ms..250ms fz=2.5
+251ms lift
+
+0ms REL_WHEEL -1
+100ms REL_WHEEL -1
+200ms REL_WHEEL -1

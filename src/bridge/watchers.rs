@@ -6,6 +6,7 @@ use std::os::unix::net::UnixStream;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use serde::Serialize;
 
 use crate::bridge::queue::{Group, Queue};
@@ -57,6 +58,7 @@ impl Watchers {
     /// The system has no thread or descriptor to give.
     pub(super) fn add(&self, stream: &UnixStream) -> io::Result<bool> {
         let mut all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
+        all.retain(|watcher| !watcher.has_left());
         if all.len() == WATCHERS_MAX {
             return Ok(false);
         }
@@ -81,6 +83,14 @@ impl Watchers {
 }
 
 impl Watcher {
+    /// Whether its other end is gone.
+    fn has_left(&self) -> bool {
+        let mut asked = [PollFd::new(&self.stream, PollFlags::empty())];
+        let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
+        poll(&mut asked, Some(&at_once)).is_ok()
+            && asked[0].revents().intersects(PollFlags::HUP | PollFlags::ERR)
+    }
+
     /// Hands a line on, or counts it as lost.
     fn tell(&mut self, verdict: &Verdict) -> io::Result<()> {
         let line = Line {
@@ -174,6 +184,10 @@ mod tests {
         assert!(pairs.iter().all(|(_, served)| watchers.add(served).unwrap()));
         assert!(!watchers.add(&pairs[0].1).unwrap());
         drop(pairs);
+        let late = UnixStream::pair().unwrap();
+        assert!(watchers.add(&late.1).unwrap(), "the others are gone");
+        assert_eq!(watchers.all.lock().unwrap().len(), 1);
+        drop(late);
         while watchers.count.load(Ordering::Acquire) > 0 {
             watchers.tell(&[verdict(1, None)]);
         }

@@ -3,7 +3,7 @@
 use arrayvec::ArrayVec;
 
 use crate::pipeline::control::{Code, OutputDevice};
-use crate::pipeline::mapping::profile::{Binding, KEYS_MAX, Keys};
+use crate::pipeline::mapping::profile::{Binding, KEYS_MAX, Keys, Place};
 use crate::quantity::Contact;
 
 /// Two directions and one button.
@@ -24,6 +24,8 @@ pub(super) struct Step {
     pub(super) tapped: Option<Keys>,
     /// The button that the force is meant to press, by its place in the profile.
     pub(super) pressed: Option<usize>,
+    /// Where the player means to touch: a zone or a direction; `None` if that does not matter.
+    pub(super) place: Option<Place>,
 }
 
 impl Step {
@@ -92,7 +94,15 @@ mod tests {
     fn step(held: &[Binding], tapped: Option<Binding>) -> Step {
         let tapped = tapped.map(|binding| Keys::new([binding]));
         let held = held.iter().copied().collect();
-        Step { contact: Contact::default(), ramp_us: 40, stay_us: 100, held, tapped, pressed: None }
+        Step {
+            contact: Contact::default(),
+            ramp_us: 40,
+            stay_us: 100,
+            held,
+            tapped,
+            pressed: None,
+            place: None,
+        }
     }
 
     fn expected(steps: Vec<Step>) -> Vec<(Code, i32)> {

@@ -10,4 +10,5 @@ mod fixture;
 pub mod front_end;
 mod gesture;
 mod player;
+mod repertoire;
 pub mod script;

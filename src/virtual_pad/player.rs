@@ -1,29 +1,29 @@
-//! The player: which gestures a profile's bindings and numbers allow.
+//! The player: how it touches the pad in a profile, and the gestures of directions and of buttons whose keys follow the finger.
 //!
-//! Gestures are first made for every binding, then those go whose forces or places come too near to a
-//! threshold.
+//! `repertoire` has the others, and leaves out those whose forces or places come too near to a threshold.
 
 use crate::pipeline::contact::touch;
+use crate::pipeline::control::Code;
 use crate::pipeline::mapping::profile::{
-    Action, Button, Dpad, DpadMode, Effect, Force, Gain, Keys, Mode, Output, Profile,
+    Action, Button, Dpad, DpadMode, Effect, Force, Gain, Keys, Mode, Output, Place, Profile,
 };
 use crate::quantity::Contact;
 use crate::virtual_pad::gesture::{Gesture, Held, Step};
 
 /// A ramp of force, as quick as a finger's.
-const RAMP_US: u64 = 45_000;
+pub(super) const RAMP_US: u64 = 45_000;
 /// A slide or roll of the finger between two places.
 const SLIDE_US: u64 = 60_000;
 /// Slack in every time that something else must fit into.
-const SLACK_US: u64 = 60_000;
+pub(super) const SLACK_US: u64 = 60_000;
 const PAUSE_MIN_US: u64 = 100_000;
 const SAMPLE_US: u64 = 1_000;
-const LONG_PRESS_MAX_US: u64 = 3_000_000;
+pub(super) const LONG_PRESS_MAX_US: u64 = 3_000_000;
 
 const FORCE_MAX_N: f32 = 4.5;
-const RADIUS_MAX_MM: f32 = 25.0;
-const PLACE_SLACK_MM: f32 = 2.0;
-const ANGLE_SLACK_DEG: f32 = 5.0;
+pub(super) const RADIUS_MAX_MM: f32 = 25.0;
+pub(super) const PLACE_SLACK_MM: f32 = 2.0;
+pub(super) const ANGLE_SLACK_DEG: f32 = 5.0;
 
 /// Less hysteresis than this lets noise turn one crossing into several.
 const FORCE_HYSTERESIS_MIN_N: f32 = 0.02;
@@ -33,55 +33,47 @@ const ANGLE_HYSTERESIS_MIN_DEG: f32 = 2.0;
 /// A normal force reads as at most this much shear, per newton, within [`RADIUS_MAX_MM`].
 const FALSE_SHEAR: f32 = 0.12;
 /// A force is read this well.
-const FORCE_ERROR: f32 = 0.02;
-
-/// Everything the player does with `profile`, in a lively order. Empty if the profile leaves nothing to do.
-pub(super) fn gestures(profile: &Profile) -> Vec<Gesture> {
-    let player = Player::new(profile);
-    let mut gestures = player.first_round();
-    gestures.extend(player.second_round());
-    gestures.retain(|gesture| gesture.is_consistent() && player.is_clear(gesture));
-    gestures
-}
+pub(super) const FORCE_ERROR: f32 = 0.02;
 
 /// A direction from the centre and what it holds.
 #[derive(Clone)]
-struct Aim {
-    angle_deg: f32,
-    held: Held,
+pub(super) struct Aim {
+    pub(super) angle_deg: f32,
+    pub(super) held: Held,
 }
 
 /// What a short press gives, and how long after its end.
 #[derive(Clone, Copy)]
-struct Tap {
+pub(super) struct Tap {
     keys: Keys,
     after_us: u64,
 }
 
 /// The keys of an effect that follows the press; none of another one.
-fn plain(effect: Effect) -> Option<Keys> {
-    match effect {
-        Effect { output: Output::Keys(keys), mode: Mode::Plain } => Some(keys),
-        _ => None,
-    }
+pub(super) fn plain(effect: Effect) -> Option<Keys> {
+    let Effect { output: Output::Keys(keys), mode: Mode::Plain } = effect else { return None };
+    let turns = keys.iter().any(|binding| matches!(binding.code, Code::Relative(_)));
+    (!turns).then_some(keys)
 }
 
-struct Player<'p> {
-    profile: &'p Profile,
+/// Who plays a profile.
+pub(super) struct Player<'p> {
+    pub(super) profile: &'p Profile,
     /// Normal force that holds a direction and presses nothing.
-    light_n: f32,
+    pub(super) light_n: f32,
     /// Normal force under a shear.
     grip_n: f32,
     /// Distance at which directions are pressed.
-    radius_mm: f32,
+    pub(super) radius_mm: f32,
     /// Long enough for filter and ledger to follow.
-    pause_us: u64,
+    pub(super) pause_us: u64,
     /// How long a press lasts before it counts.
-    slow_us: u64,
+    pub(super) slow_us: u64,
 }
 
 impl<'p> Player<'p> {
-    fn new(profile: &'p Profile) -> Self {
+    /// With what the profile asks of forces, places and times.
+    pub(super) fn new(profile: &'p Profile) -> Self {
         let (mut press_n, mut release_n) = (2.0_f32, 1.5_f32);
         for button in profile.buttons.iter().filter(|button| button.force == Force::Fz) {
             press_n = press_n.min(button.press_n);
@@ -108,7 +100,7 @@ impl<'p> Player<'p> {
     }
 
     /// Every binding once: directions, then buttons at the centre.
-    fn first_round(&self) -> Vec<Gesture> {
+    pub(super) fn first_round(&self) -> Vec<Gesture> {
         let mut gestures: Vec<Gesture> = self.cardinals().iter().map(|aim| self.press_aim(aim)).collect();
         for button in 0..self.profile.buttons.len() {
             gestures.extend(self.short_press(button, None));
@@ -118,7 +110,7 @@ impl<'p> Player<'p> {
     }
 
     /// Directions that change, and buttons together with directions.
-    fn second_round(&self) -> Vec<Gesture> {
+    pub(super) fn second_round(&self) -> Vec<Gesture> {
         let cardinals = self.cardinals();
         let mut gestures = Vec::new();
         if let [right, up, left, down] = cardinals.as_slice() {
@@ -139,7 +131,7 @@ impl<'p> Player<'p> {
 
     /// Right, up, left, down; none where the sectors are too narrow to hit. Without directions the pointer goes there,
     /// if there is one, and nothing is held.
-    fn cardinals(&self) -> Vec<Aim> {
+    pub(super) fn cardinals(&self) -> Vec<Aim> {
         let Some(dpad) = &self.profile.dpad else {
             let angles_deg = self.profile.pointer.iter().flat_map(|_| [0.0, 90.0, 180.0, 270.0]);
             return angles_deg.map(|angle_deg| Aim { angle_deg, held: Held::new() }).collect();
@@ -202,7 +194,7 @@ impl<'p> Player<'p> {
 
     /// A button that its force presses wherever the finger is; `None` where another one of that force goes with a zone, a hair trigger
     /// or stages, so that this player would not know what a press gives.
-    fn simple(&self, index: usize) -> Option<&'p Button> {
+    pub(super) fn simple(&self, index: usize) -> Option<&'p Button> {
         let button = self.profile.buttons.get(index)?;
         let is_simple = |it: &Button| {
             it.place.is_none()
@@ -215,7 +207,7 @@ impl<'p> Player<'p> {
     }
 
     /// Presses a button and lets go soon. A tap button taps, a hold button holds meanwhile; a tap that a double press might follow
-    /// comes when that is over. Double presses, and keys that are toggled or in turbo, the player leaves out.
+    /// comes when that is over.
     fn short_press(&self, index: usize, aim: Option<&Aim>) -> Option<Gesture> {
         let button = self.simple(index)?;
         let (held, tapped, stay_us) = match button.action {
@@ -248,7 +240,7 @@ impl<'p> Player<'p> {
     }
 
     /// How long a short press stays at its force; `None` if it could come out long or be filtered away.
-    fn tap_us(&self, long_press_us: u64) -> Option<u64> {
+    pub(super) fn tap_us(&self, long_press_us: u64) -> Option<u64> {
         let filter_us = SAMPLE_US.saturating_mul(self.profile.filter_samples as u64);
         let shortest_us = filter_us.saturating_add(SLACK_US / 2);
         let room_us = (long_press_us / 5 * 4).checked_sub(2 * RAMP_US)?.checked_sub(filter_us)?;
@@ -272,23 +264,28 @@ impl<'p> Player<'p> {
     }
 
     fn press_step(&self, index: usize, button: &Button, aim: Option<&Aim>) -> Step {
-        let mut step = self.rest_on(aim);
+        let factor = if button.force == Force::Fz { 1.4 } else { 1.3 };
+        let mut step = self.forced(self.rest_on(aim), button.force, factor * button.press_n);
         step.pressed = Some(index);
-        let shear_n = 1.3 * button.press_n;
+        step
+    }
+
+    /// The step with so much of a force, instead of a light touch.
+    pub(super) fn forced(&self, mut step: Step, force: Force, force_n: f32) -> Step {
         let contact = &mut step.contact;
-        contact.fz_n = if button.force == Force::Fz { 1.4 * button.press_n } else { self.grip_n };
-        match button.force {
+        contact.fz_n = if force == Force::Fz { force_n } else { self.grip_n };
+        match force {
             Force::Fz => {}
-            Force::FxPositive => contact.fx_n = shear_n,
-            Force::FxNegative => contact.fx_n = -shear_n,
-            Force::FyPositive => contact.fy_n = shear_n,
-            Force::FyNegative => contact.fy_n = -shear_n,
+            Force::FxPositive => contact.fx_n = force_n,
+            Force::FxNegative => contact.fx_n = -force_n,
+            Force::FyPositive => contact.fy_n = force_n,
+            Force::FyNegative => contact.fy_n = -force_n,
         }
         step
     }
 
     /// A light touch on a direction, or at the centre.
-    fn rest_on(&self, aim: Option<&Aim>) -> Step {
+    pub(super) fn rest_on(&self, aim: Option<&Aim>) -> Step {
         let rotation_deg = self.profile.dpad.as_ref().map_or(0.0, |dpad| dpad.rotation_deg);
         let (radius_mm, angle_deg) =
             aim.map_or((0.0, 0.0), |aim| (self.radius_mm, aim.angle_deg + rotation_deg));
@@ -301,10 +298,11 @@ impl<'p> Player<'p> {
             held: aim.map_or_else(Held::new, |aim| aim.held.clone()),
             tapped: None,
             pressed: None,
+            place: None,
         }
     }
 
-    fn lifted(&self, mut steps: Vec<Step>, tapped: Option<Tap>) -> Gesture {
+    pub(super) fn lifted(&self, mut steps: Vec<Step>, tapped: Option<Tap>) -> Gesture {
         let mut lift = self.rest_on(None);
         if let Some(last) = steps.last() {
             lift.contact = Contact { x_mm: last.contact.x_mm, y_mm: last.contact.y_mm, ..Contact::default() };
@@ -317,7 +315,7 @@ impl<'p> Player<'p> {
     }
 
     /// Whether every step before the lift keeps clear of the thresholds that it is not meant to cross.
-    fn is_clear(&self, gesture: &Gesture) -> bool {
+    pub(super) fn is_clear(&self, gesture: &Gesture) -> bool {
         let Some((_, touching)) = gesture.steps.split_last() else { return false };
         let mut pressed_before = Vec::new();
         touching.iter().all(|step| {
@@ -327,7 +325,8 @@ impl<'p> Player<'p> {
                 && step.contact.fz_n.max(shear_n(&step.contact)) <= FORCE_MAX_N
                 && self.is_place_clear(step)
                 && buttons.into_iter().all(|(index, button)| {
-                    button_is_clear(button, step, index, pressed_before.contains(&index))
+                    is_elsewhere(button, step)
+                        || button_is_clear(button, step, index, pressed_before.contains(&index))
                 })
         })
     }
@@ -335,7 +334,7 @@ impl<'p> Player<'p> {
     fn is_place_clear(&self, step: &Step) -> bool {
         let Some(dpad) = &self.profile.dpad else { return true };
         let radius_mm = libm::hypotf(step.contact.x_mm, step.contact.y_mm);
-        if radius_mm > 0.0 {
+        if radius_mm > dpad.centre_radius_mm - dpad.radius_hysteresis_mm - PLACE_SLACK_MM {
             dpad.radius_hysteresis_mm >= RADIUS_HYSTERESIS_MIN_MM
                 && dpad.min_force_n - dpad.release_force_n >= FORCE_HYSTERESIS_MIN_N
                 && radius_mm >= dpad.centre_radius_mm + PLACE_SLACK_MM
@@ -354,7 +353,7 @@ fn both(a: &Aim, b: &Aim) -> Held {
 }
 
 /// Half the angle in which a touch certainly means this cardinal direction.
-fn cardinal_half_deg(dpad: &Dpad) -> f32 {
+pub(super) fn cardinal_half_deg(dpad: &Dpad) -> f32 {
     match dpad.mode {
         DpadMode::FourWay => 45.0,
         DpadMode::FourWaySticky | DpadMode::EightWay => 0.5 * (90.0 - dpad.diagonal_deg),
@@ -363,6 +362,15 @@ fn cardinal_half_deg(dpad: &Dpad) -> f32 {
 
 fn shear_n(contact: &Contact) -> f32 {
     libm::hypotf(contact.fx_n, contact.fy_n)
+}
+
+/// Whether the button counts only where the step certainly is not.
+fn is_elsewhere(button: &Button, step: &Step) -> bool {
+    match (button.place, step.place) {
+        (Some(Place::Zone(one)), Some(Place::Zone(other))) => one != other,
+        (Some(Place::Direction(one)), Some(Place::Direction(other))) => one != other,
+        _ => false,
+    }
 }
 
 /// Whether the button is clearly pressed where it is meant to be, and clearly not where it is not.

@@ -4,7 +4,7 @@ use crate::pipeline::control::{Code, OutputDevice};
 use crate::pipeline::mapping::profile::Profile;
 use crate::quantity::Contact;
 use crate::virtual_pad::gesture::Gesture;
-use crate::virtual_pad::player::gestures;
+use crate::virtual_pad::repertoire::gestures;
 
 /// Nothing touches the pad this long after the start, so that the bridge can find the channels' zero.
 pub const REST_AT_START_US: u64 = 600_000;

@@ -67,3 +67,93 @@ fn what_the_player_means_is_what_comes_out() {
         }
     }
 }
+
+/// Every kind of press that a profile may have, each where nothing else is pressed by the same force.
+const LIVELY: &str = r#"
+schema = 1
+name = "Lively"
+output = "gamepad"
+[dpad]
+mode = "8way"
+centre_radius_mm = 10
+[[zone]]
+name = "middle"
+outer_radius_mm = 6
+[[zone]]
+name = "ring"
+inner_radius_mm = 12
+[[button]]
+zone = "middle"
+force = "fz"
+press_n = 1.2
+light = { gamepad = "BTN_SOUTH", keyboard = "KEY_A" }
+hard = { gamepad = "BTN_EAST", keyboard = "KEY_B" }
+hard_press_n = 3.0
+skip = "may"
+[[button]]
+zone = "ring"
+force = "fz"
+press_n = 1.5
+hair_n = 0.25
+out = { gamepad = "BTN_NORTH", keyboard = "KEY_C" }
+[[button]]
+force = "fx"
+press_n = 0.8
+out = { gamepad = "BTN_WEST", keyboard = "KEY_D", toggle = true }
+[[button]]
+force = "-fx"
+press_n = 0.8
+tap = { gamepad = "BTN_TL", keyboard = "KEY_E", sticky = true }
+[[button]]
+force = "fy"
+press_n = 0.8
+out = { gamepad = "BTN_TR", keyboard = "KEY_F", turbo_ms = 120 }
+[[button]]
+force = "-fy"
+press_n = 0.8
+dwell_ms = 300
+tap = { gamepad = "BTN_START", keyboard = "KEY_G" }
+hold = { gamepad = "BTN_SELECT", keyboard = "KEY_H" }
+"#;
+
+/// Double presses, and one of two stages that exclude each other.
+const DOUBLE: &str = r#"
+schema = 1
+name = "Double"
+output = "gamepad"
+[[button]]
+force = "fz"
+press_n = 1.2
+light = { gamepad = "BTN_SOUTH", keyboard = "KEY_A" }
+hard = { gamepad = "BTN_EAST", keyboard = "KEY_B" }
+hard_press_n = 3.0
+skip = "must"
+[[button]]
+force = "fy"
+press_n = 0.8
+tap = { gamepad = "BTN_NORTH", keyboard = "KEY_C" }
+double = { gamepad = "BTN_WEST", keyboard = "KEY_D" }
+hold = { gamepad = "BTN_TL", keyboard = "KEY_E" }
+"#;
+
+#[test]
+fn the_player_shows_each_kind_of_press_that_a_profile_has() {
+    for (text, buttons) in [
+        (LIVELY, &["SOUTH", "EAST", "NORTH", "WEST", "TL", "TR", "START", "SELECT"][..]),
+        (DOUBLE, &["SOUTH", "EAST", "NORTH", "WEST", "TL"]),
+    ] {
+        let (profile, found) = check::read(text, OutputChoice::AsWritten);
+        let Some(profile) = profile else { panic!("{found:?}") };
+        let script = Script::for_profile(&profile, 2 * DURATION_US);
+        for button in buttons {
+            let code = format!("BTN_{button}");
+            let downs = script.expected().iter().filter(|it| it.1.to_string() == code && it.2 == 1).count();
+            assert!(downs > 0, "{}: {code} is left out", profile.name);
+        }
+        for seed in 0..4 {
+            let (seen, _) = play(profile.clone(), Script::for_profile(&profile, DURATION_US), seed);
+            let script = Script::for_profile(&profile, DURATION_US);
+            assert_eq!(seen, script.expected(), "{}, seed {seed}", profile.name);
+        }
+    }
+}

@@ -252,7 +252,7 @@ fn make_keyboard() -> io::Result<VirtualDevice> {
 /// is ever pressed here.
 fn make_tablet() -> io::Result<VirtualDevice> {
     let keys: AttributeSet<KeyCode> = keys(OutputDevice::Pointer).map(KeyCode::new).collect();
-    let builder = VirtualDevice::builder()?.name(TABLET.name).input_id(input_id(&TABLET));
+    let builder = VirtualDevice::builder()?.name(TABLET.name).input_id(input_id(&TABLET)).with_phys(PLACE)?;
     let mut builder = builder.with_keys(&keys)?;
     for axis in TABLET_AXES {
         let range = AbsInfo::new(0, axis.min, axis.max, axis.fuzz, axis.flat, 0);

@@ -8,6 +8,7 @@
 //! sends the key, which takes more than twice as long; and a symbol that the layout has only with Shift it
 //! moves to a spare key, after which each press comes 12 ms late (enigo-rs/enigo#489).
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use enigo::{Axis, Button, Coordinate, Direction, Enigo, InputResult, Mouse, NewConError, Settings};
@@ -209,9 +210,9 @@ impl Sink for X11Sink {
 
     fn accepts(&self, bindings: &[Binding]) -> Result<(), SinkError> {
         let keys = bindings.iter().filter(|binding| binding.device == OutputDevice::Keyboard);
-        let mut lacking: Vec<String> =
-            keys.filter(|it| self.key(it.code).is_err()).map(|it| it.code.to_string()).collect();
-        lacking.dedup();
+        let lacking: BTreeSet<Code> =
+            keys.map(|binding| binding.code).filter(|code| self.key(*code).is_err()).collect();
+        let lacking: Vec<String> = lacking.iter().map(Code::to_string).collect();
         if lacking.is_empty() { Ok(()) } else { Err(self.no_keys(&lacking.join(", "))) }
     }
 

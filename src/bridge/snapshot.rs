@@ -155,8 +155,8 @@ mod tests {
     fn the_status_keeps_its_keys_and_their_order() {
         let text = serde_json::to_string(&snapshot().status).unwrap();
         let expected = concat!(
-            r#"{"state":"playing","pad":"A-1","profile":"Contra","profile_reason":"asked for","#,
-            r#""profile_error":null,"layer":null,"decoder":"inverse","output":"nowhere","#,
+            r#"{"state":"playing","pad":"A-1","profile":"Contra","layer":null,"profile_reason":"asked for","#,
+            r#""profile_error":null,"decoder":"inverse","output":"nowhere","#,
             r#""contact":{"x_mm":0.1,"y_mm":0.0,"fx_n":0.0,"fy_n":0.0,"fz_n":2.0},"held":["KEY_UP"],"#,
             r#""warning":null,"presses":{"accepted":4,"rejected":1},"health":{"samples":7,"#
         );

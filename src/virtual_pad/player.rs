@@ -5,7 +5,7 @@
 use crate::pipeline::contact::touch;
 use crate::pipeline::control::Code;
 use crate::pipeline::mapping::profile::{
-    Action, Button, Dpad, DpadMode, Effect, Force, Gain, Keys, Mode, Output, Place, Profile,
+    Action, Button, Dpad, DpadMode, Effect, Force, Gain, Keys, Mode, Output, Place, Profile, When,
 };
 use crate::quantity::Contact;
 use crate::virtual_pad::gesture::{Gesture, Held, Step};
@@ -81,14 +81,15 @@ impl<'p> Player<'p> {
         }
         let directions = profile.dpad.iter().map(|dpad| (dpad.min_force_n, dpad.centre_radius_mm));
         let motion = profile.pointer.iter().map(|pointer| (pointer.min_force_n, pointer.centre_radius_mm));
+        let least_n = profile.access.rest.map_or(touch::ON_N, |rest| rest.n.max(touch::ON_N));
         let (touch_n, centre_mm) = directions
             .chain(motion)
-            .fold((touch::ON_N, 0.0_f32), |most, gate| (most.0.max(gate.0), most.1.max(gate.1)));
+            .fold((least_n, 0.0_f32), |most, gate| (most.0.max(gate.0), most.1.max(gate.1)));
         let (floor_n, ceiling_n) = (1.5 * touch_n, (0.7 * press_n).min(0.8 * release_n));
         let filter_us = SAMPLE_US.saturating_mul(profile.filter_samples as u64);
         let (slow_us, bounce_us) = (profile.access.slow_us, profile.access.bounce_us);
-        let follow_us =
-            profile.min_press_us.max(bounce_us).saturating_add(filter_us).saturating_add(SLACK_US);
+        let apart_us = profile.min_press_us.max(bounce_us);
+        let follow_us = [slow_us, filter_us, SLACK_US].into_iter().fold(apart_us, u64::saturating_add);
         Self {
             profile,
             light_n: floor_n + 0.6 * (ceiling_n - floor_n),
@@ -202,8 +203,21 @@ impl<'p> Player<'p> {
                 && it.dwell.is_none()
                 && !matches!(it.action, Action::ByForce { .. })
         };
-        let mut same_force = self.profile.buttons.iter().filter(|it| it.force == button.force);
-        same_force.all(is_simple).then_some(button)
+        (self.acts_on_keys(button.force) && self.of_force(button.force).all(is_simple)).then_some(button)
+    }
+
+    /// The buttons that a force presses.
+    fn of_force(&self, force: Force) -> impl Iterator<Item = &'p Button> {
+        self.profile.buttons.iter().filter(move |it| it.force == force)
+    }
+
+    /// Whether all that a force presses are keys, and at any time. What layers and macros do, and what is asked of the bridge, this
+    /// player does not show.
+    pub(super) fn acts_on_keys(&self, force: Force) -> bool {
+        self.of_force(force).all(|button| {
+            let mut effects = button.effects().into_iter().flatten();
+            button.when == When::Always && effects.all(|effect| matches!(effect.output, Output::Keys(_)))
+        })
     }
 
     /// Presses a button and lets go soon. A tap button taps, a hold button holds meanwhile; a tap that a double press might follow

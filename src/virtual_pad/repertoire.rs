@@ -56,7 +56,7 @@ fn special(player: &Player<'_>, index: usize) -> Option<Vec<Gesture>> {
     let dwell = button.dwell.filter(|dwell| dwell.radius_mm >= DWELL_MIN_MM);
     let is_certain = button.hair_n.is_none_or(|hair_n| hair_n >= HAIR_MIN_N) && dwell == button.dwell;
     let dwell_us = dwell.map_or(0, |Dwell { us, .. }| us);
-    if !is_certain || dwell_us > LONG_PRESS_MAX_US {
+    if !is_certain || !player.acts_on_keys(button.force) || dwell_us > LONG_PRESS_MAX_US {
         return None;
     }
     let wait_us = dwell_us.max(player.slow_us);

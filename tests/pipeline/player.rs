@@ -136,10 +136,46 @@ double = { gamepad = "BTN_WEST", keyboard = "KEY_D" }
 hold = { gamepad = "BTN_TL", keyboard = "KEY_E" }
 "#;
 
+/// Presses that this player leaves out, beside such that it shows; directions that must last, and a hand that may rest.
+const LAYERED: &str = r#"
+schema = 1
+name = "Layered"
+output = "gamepad"
+[access]
+slow_ms = 60
+rest_n = 0.3
+[dpad]
+[[layer]]
+name = "menu"
+[[macro]]
+name = "combo"
+steps = [{ gamepad = "BTN_TL", keyboard = "KEY_Q" }]
+[[button]]
+force = "fz"
+press_n = 2.0
+tap = { gamepad = "BTN_SOUTH", keyboard = "KEY_A" }
+hold = { gamepad = "BTN_EAST", keyboard = "KEY_B" }
+[[button]]
+force = "fx"
+press_n = 0.8
+out = { layer = "menu" }
+[[button]]
+force = "-fx"
+press_n = 0.8
+layer = "menu"
+out = { gamepad = "BTN_TR", keyboard = "KEY_E" }
+[[button]]
+force = "fy"
+press_n = 0.8
+tap = { macro = "combo" }
+hold = { bridge = "pause" }
+"#;
+
 #[test]
 fn the_player_shows_each_kind_of_press_that_a_profile_has() {
     for (text, buttons) in [
         (LIVELY, &["SOUTH", "EAST", "NORTH", "WEST", "TL", "TR", "START", "SELECT"][..]),
+        (LAYERED, &["SOUTH", "EAST"]),
         (DOUBLE, &["SOUTH", "EAST", "NORTH", "WEST", "TL"]),
     ] {
         let (profile, found) = check::read(text, OutputChoice::AsWritten);

@@ -59,7 +59,7 @@ set button.1.hold = { gamepad = "BTN_EAST", keyboard = "KEY_X", turbo_ms = 80 }
 480ms BTN_EAST 1
 490ms BTN_EAST 0
 
-case the wheel of the pointer turns by a notch in each period
+case the wheel of the pointer turns by a notch where a level begins, in each period
 profile contra
 set button.1.out = { pointer = "REL_WHEEL-", turbo_ms = 100 }
 
@@ -67,5 +67,8 @@ set button.1.out = { pointer = "REL_WHEEL-", turbo_ms = 100 }
 251ms lift
 
 0ms REL_WHEEL -1
+50ms REL_WHEEL 0
 100ms REL_WHEEL -1
+150ms REL_WHEEL 0
 200ms REL_WHEEL -1
+250ms REL_WHEEL 0

@@ -19,6 +19,7 @@ pub mod interruption;
 pub mod link;
 pub mod mapping;
 pub mod output;
+mod phase;
 pub mod probe;
 pub mod refusal;
 pub mod replay;
@@ -44,6 +45,7 @@ use crate::pipeline::mapping::profile::{Command, Profile};
 use crate::pipeline::mapping::stated::Commands;
 use crate::pipeline::mapping::verdict::Verdict;
 use crate::pipeline::output::ledger::{Edges, Ledger};
+pub use crate::pipeline::phase::Phase;
 pub use crate::pipeline::probe::{NoProbe, Probe, Stage};
 use crate::pipeline::refusal::Refusal;
 use crate::pipeline::signal::Scale;
@@ -52,28 +54,6 @@ use crate::time::{HostInstant, StreamInstant};
 
 /// After a fault a contact is believed again when the stream has been sound for this long.
 pub const DISTRUST_US: u64 = 50_000;
-
-/// What the pipeline is doing, for people.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Phase {
-    /// No pad is heard.
-    Waiting,
-    /// The zero is being measured; the pad must lie untouched.
-    Taring,
-    /// The zero cannot be measured: something lies on the pad.
-    Loaded,
-    /// Contacts become events.
-    Playing,
-    /// The line was at fault just now; contacts are not believed yet.
-    Doubtful,
-    /// A channel cannot be trusted.
-    Faulty,
-    /// The player paused.
-    Paused,
-    /// The pad cannot be played with.
-    Refused,
-}
 
 /// The state machine. See the module's text for how to drive it.
 #[derive(Debug)]

@@ -139,7 +139,9 @@ impl<'p> Player<'p> {
         };
         let Gain { right, left, up, down } = self.profile.gain;
         let least_gain = [right, left, up, down].into_iter().fold(f32::INFINITY, f32::min);
-        if cardinal_half_deg(dpad) < ANGLE_SLACK_DEG || self.radius_mm > least_gain * RADIUS_MAX_MM {
+        let [x_mm, y_mm] = self.profile.centre_mm;
+        let reach_mm = RADIUS_MAX_MM - libm::hypotf(x_mm, y_mm);
+        if cardinal_half_deg(dpad) < ANGLE_SLACK_DEG || self.radius_mm > least_gain * reach_mm {
             return Vec::new();
         }
         let aim = |angle_deg, keys: Keys| Aim { angle_deg, held: keys.iter().collect() };
@@ -305,6 +307,8 @@ impl<'p> Player<'p> {
             aim.map_or((0.0, 0.0), |aim| (self.radius_mm, aim.angle_deg + rotation_deg));
         let (sin, cos) = libm::sincosf(angle_deg.to_radians());
         let (x_mm, y_mm) = self.profile.gain.undone([radius_mm * cos, radius_mm * sin]);
+        let [centre_x_mm, centre_y_mm] = self.profile.centre_mm;
+        let (x_mm, y_mm) = (x_mm + centre_x_mm, y_mm + centre_y_mm);
         Step {
             contact: Contact { x_mm, y_mm, fx_n: 0.0, fy_n: 0.0, fz_n: self.light_n },
             ramp_us: RAMP_US,

@@ -117,7 +117,7 @@ fn profile_with(heading: &str, key: &str, line: &str) -> String {
 #[test]
 fn the_reference_states_the_ranges_that_hold() {
     let rows = documented_numbers();
-    assert_eq!(rows.len(), 54, "{rows:?}");
+    assert_eq!(rows.len(), 56, "{rows:?}");
     for (heading, key, _, low, high) in rows {
         let errors = |value: f32| {
             let text = profile_with(&heading, &key, &format!("{key} = {value}"));
@@ -144,7 +144,7 @@ fn the_reference_states_the_defaults_that_hold() {
         assert_eq!(written, read_with(""), "{key}");
         checked += 1;
     }
-    assert_eq!(checked, 40);
+    assert_eq!(checked, 42);
 }
 
 #[test]

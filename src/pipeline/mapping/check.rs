@@ -35,7 +35,7 @@ pub enum OutputChoice {
 const OUTPUTS: [(&str, OutputDevice); 2] =
     [("gamepad", OutputDevice::Gamepad), ("keyboard", OutputDevice::Keyboard)];
 
-const ROOT_KEYS: [&str; 17] = [
+const ROOT_KEYS: [&str; 19] = [
     "schema",
     "name",
     "program",
@@ -43,6 +43,8 @@ const ROOT_KEYS: [&str; 17] = [
     "filter_samples",
     "min_press_ms",
     "left_handed",
+    "centre_x_mm",
+    "centre_y_mm",
     "access",
     "gain",
     "dpad",
@@ -94,6 +96,7 @@ struct Draft {
     min_press_ms: Option<u32>,
     left_handed: Option<bool>,
     access: Option<Access>,
+    centre_mm: Option<[f32; 2]>,
     gain: Option<Gain>,
     zones: Vec<Zone>,
     layers: Vec<LayerDraft>,
@@ -140,6 +143,7 @@ impl Draft {
                 .place_of("left_handed")
                 .map_or(Some(false), |_| root.flag("left_handed", findings)),
             access: access.map_or(Some(Access::default()), |access| access::read(&access, findings)),
+            centre_mm: plate::read_centre(root, findings),
             gain: gain.map_or(Some(Gain::ONE), |gain| plate::read_gain(&gain, findings)),
             dpad: dpad.map(|dpad| DpadDraft::read(&dpad, findings)),
             pointer: pointer.map(|pointer| read_pointer(&pointer, findings)),
@@ -186,6 +190,7 @@ impl Draft {
             filter_samples: self.filter_samples?,
             min_press_us: u64::from(self.min_press_ms?) * 1_000,
             access: self.access?,
+            centre_mm: self.centre_mm?,
             gain: self.gain?,
             zones: self.zones,
             layers: self.layers.into_iter().map(|layer| layer.settle(output)).collect(),

@@ -170,7 +170,7 @@ impl Engine {
         }
     }
 
-    /// The place that the hand means: calmed, and stretched where it does not reach.
+    /// The place that the hand means: calmed, counted from its centre, and stretched where it does not reach.
     fn meant(&mut self, t: StreamInstant, contact: Option<&Contact>) -> Option<Contact> {
         let Some(contact) = contact else {
             (self.calm, self.resting) = (None, None);
@@ -185,7 +185,9 @@ impl Engine {
             Some(tremor) => Calm::step(&mut self.calm, tremor, t, contact),
             None => *contact,
         };
-        Some(self.profile.gain.applied(&calmed))
+        let [x_mm, y_mm] = self.profile.centre_mm;
+        let from_centre = Contact { x_mm: calmed.x_mm - x_mm, y_mm: calmed.y_mm - y_mm, ..calmed };
+        Some(self.profile.gain.applied(&from_centre))
     }
 
     /// Lets latched keys go where an action has ended.

@@ -14,6 +14,8 @@ pub(super) const WAIT_MS: Bounds<u32> = Bounds { low: 1, high: 10_000, default: 
 /// The plate's radius is 30 mm; on its rim there is nothing left to steer with.
 pub(super) const CENTRE_RADIUS_MM: Bounds<f32> = Bounds { low: 2.0, high: 29.0, default: 8.0 };
 pub(super) const RADIUS_HYSTERESIS_MM: Bounds<f32> = Bounds { low: 0.0, high: 29.0, default: 1.5 };
+/// A hand that rests farther from the middle leaves no room on its side.
+pub(super) const CENTRE_MM: Bounds<f32> = Bounds { low: -15.0, high: 15.0, default: 0.0 };
 pub(super) const ROTATION_DEG: Bounds<f32> = Bounds { low: -180.0, high: 180.0, default: 0.0 };
 pub(super) const HYSTERESIS_DEG: Bounds<f32> = Bounds { low: 0.0, high: 45.0, default: 8.0 };
 pub(super) const HYSTERESIS_MM: Bounds<f32> = Bounds { low: 0.0, high: 10.0, default: 0.0 };

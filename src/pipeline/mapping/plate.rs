@@ -2,8 +2,8 @@
 
 use super::angle::wrapped;
 use super::limits::{
-    ANGLE_DEG, GAIN, HYSTERESIS_DEG, INNER_RADIUS_MM, OUTER_RADIUS_MM, RADIUS_HYSTERESIS_MM, ZONE_DEG_MIN,
-    ZONE_HYSTERESIS_MM, ZONE_MM_MIN,
+    ANGLE_DEG, CENTRE_MM, GAIN, HYSTERESIS_DEG, INNER_RADIUS_MM, OUTER_RADIUS_MM, RADIUS_HYSTERESIS_MM,
+    ZONE_DEG_MIN, ZONE_HYSTERESIS_MM, ZONE_MM_MIN,
 };
 use super::named;
 use super::profile::{Direction, Gain, Place, ZONES_MAX, Zone};
@@ -28,6 +28,12 @@ const DIRECTIONS: [(&str, Direction); 4] = [
     ("left", Direction::Left),
     ("right", Direction::Right),
 ];
+
+/// Reads the place of the hand's centre; none where a number is unusable.
+pub(super) fn read_centre(root: &Section<'_>, findings: &mut Findings<'_>) -> Option<[f32; 2]> {
+    let [x, y] = ["centre_x_mm", "centre_y_mm"].map(|key| root.number(key, CENTRE_MM, findings));
+    Some([x?.value, y?.value])
+}
 
 /// Reads `[gain]`; none where a number is unusable.
 pub(super) fn read_gain(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<Gain> {

@@ -132,6 +132,8 @@ pub struct Profile {
     pub min_press_us: u64,
     /// Help for hands that press what they do not mean.
     pub access: Access,
+    /// Where the hand has its centre: places are counted from there.
+    pub centre_mm: [f32; 2],
     /// By how much farther places count.
     pub gain: Gain,
     /// Zones, in the file's order; where two overlap the first one counts.
@@ -198,11 +200,12 @@ impl Profile {
 }
 
 impl Profile {
-    /// The same layout for the other hand: zones, gains and sideways forces change sides, the D-pad turns the other way. What is to the
+    /// The same layout for the other hand: its centre, zones, gains and sideways forces change sides, the D-pad turns the other way. What is to the
     /// right stays to the right.
     #[must_use]
     pub fn mirrored(mut self) -> Self {
         self.gain = Gain { right: self.gain.left, left: self.gain.right, ..self.gain };
+        self.centre_mm = [-self.centre_mm[0], self.centre_mm[1]];
         for zone in &mut self.zones {
             zone.middle_deg = wrapped(180.0 - zone.middle_deg);
         }

@@ -80,3 +80,32 @@ add out = { pointer = "BTN_MIDDLE" }
 3ms BTN_MIDDLE 1
 4ms BTN_MIDDLE 0
 5ms BTN_MIDDLE 1
+
+case a hand off the middle has its directions around its own centre
+profile super-mario
+set centre_x_mm = 5
+set centre_y_mm = -3
+
+0ms x=12.9 y=-3 fz=1
+1ms x=13 y=-3 fz=1
+2ms lift
+3ms x=-2.9 y=-3 fz=1
+4ms x=-3 y=-3 fz=1
+5ms lift
+6ms x=5 y=5 fz=1
+
+1ms ABS_HAT0X 1
+2ms ABS_HAT0X 0
+4ms ABS_HAT0X -1
+5ms ABS_HAT0X 0
+6ms ABS_HAT0Y -1
+
+case for the other hand its centre changes sides
+profile super-mario
+set centre_x_mm = 5
+set left_handed = true
+
+0ms x=2.9 fz=1
+1ms x=3 fz=1
+
+1ms ABS_HAT0X 1

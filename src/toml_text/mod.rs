@@ -9,6 +9,8 @@ use toml::de::DeTable;
 use self::diag::Findings;
 
 pub mod diag;
+#[cfg(feature = "lab")]
+pub mod edit;
 mod excerpt;
 pub(crate) mod section;
 pub mod spelling;

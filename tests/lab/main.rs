@@ -13,3 +13,4 @@ mod onnxruntime;
 mod scdf;
 #[path = "../support/mod.rs"]
 mod support;
+mod tuning;

@@ -24,6 +24,8 @@ mod simulate_pad;
 mod support;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod terminal;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod tune;
 mod twin_verb;
 mod vtk;
 mod written;

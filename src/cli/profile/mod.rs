@@ -12,11 +12,13 @@ mod begun;
 mod chosen;
 mod list;
 mod own;
+mod stored;
 mod verdict;
 
 pub(super) use chosen::read;
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub(super) use chosen::{file, is_known, known, next, read_aside};
+pub(super) use stored::Stored;
 
 /// Arguments of `tactpad profile`.
 #[derive(Debug, Args)]

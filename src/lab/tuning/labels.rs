@@ -169,3 +169,51 @@ fn microseconds(name: &str, cell: &str) -> Result<u64, String> {
     })?;
     Ok((seconds * 1e6).round() as u64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::mapping::check::{OutputChoice, read};
+    use crate::pipeline::mapping::shipped;
+
+    fn labels(lines: &str) -> Result<Labels, String> {
+        let profile = read(shipped::text("super-mario").unwrap(), OutputChoice::AsWritten).0.unwrap();
+        Labels::read(lines, &profile).map_err(|why| why.to_string())
+    }
+
+    #[test]
+    fn people_write_names_as_they_like() {
+        let table = "\u{feff}begin_s, end_s, meant\r\n\n3,4.5,Right\n1,2,\"btn_a\"\n5,6,right + button 1 tap\n\
+                     6,7,ABS_HAT0X++BTN_SOUTH\n7,8,None\n8,9,ABS_HAT0X+\n9,10,button  1  hold\n10,11,east\n";
+        let read = labels(table).unwrap();
+        let names: Vec<_> =
+            read.labels().iter().map(|label| read.classes()[label.class].name.as_str()).collect();
+        let both = "BTN_SOUTH+right";
+        assert_eq!(names, ["BTN_SOUTH", "right", both, both, "none", "right", "BTN_EAST", "BTN_EAST"]);
+        assert_eq!((read.labels()[0].begin_us, read.labels()[1].end_us), (1_000_000, 4_500_000));
+        assert_eq!(read.classes().last().unwrap().controls, []);
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_said_with_its_line() {
+        for (lines, told) in [
+            ("", "1: the first line must be begin_s,end_s,meant"),
+            ("begin,end,meant\n", "1: the first line must be begin_s,end_s,meant"),
+            ("begin_s,end_s,meant\n", "2: the table has no labels"),
+            ("begin_s,end_s,meant\n1,2\n", "2: it has 2 cells; write begin_s,end_s,meant"),
+            ("begin_s,end_s,meant\n1,2,up\n2,1,up\n", "3: it ends at 1 s, which is not after"),
+            ("begin_s,end_s,meant\nx,2,up\n", "2: begin_s is \"x\"; write seconds"),
+            ("begin_s,end_s,meant\n1,inf,up\n", "2: end_s is \"inf\"; write seconds"),
+            ("begin_s,end_s,meant\n1,2,\n", "2: it does not say what was meant"),
+            (
+                "begin_s,end_s,meant\n1,2,rigth\n",
+                "2: the profile has nothing that is called \"rigth\": did you mean \"right\"?",
+            ),
+            ("begin_s,end_s,meant\n1,2,button 2\n", "2: the profile has nothing that is called \"button 2\""),
+            ("begin_s,end_s,meant\n1,2,up\n5,6,up\n1.5,3,up\n", "4: it begins before that of line 2 ends"),
+        ] {
+            let why = labels(lines).unwrap_err();
+            assert!(why.starts_with(told), "{why}");
+        }
+    }
+}

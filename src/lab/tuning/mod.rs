@@ -14,8 +14,12 @@
 //! changed profile would have done to an old recording.
 
 pub mod confusion;
+pub mod delay;
 pub mod difference;
+pub mod fitting;
+pub mod knobs;
 pub mod labels;
+pub mod places;
 pub mod scoring;
 pub mod trace;
 pub mod vocabulary;

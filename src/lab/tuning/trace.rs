@@ -37,6 +37,11 @@ pub struct Trace {
 }
 
 impl Trace {
+    /// Of these samples, which must be in order of time.
+    pub const fn new(moments: Vec<Moment>) -> Self {
+        Self { moments }
+    }
+
     /// The samples, in order of time.
     pub fn moments(&self) -> &[Moment] {
         &self.moments

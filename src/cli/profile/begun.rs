@@ -107,14 +107,16 @@ mod tests {
         let could_be: String =
             TEMPLATE.lines().map(|line| line.strip_prefix("#  ").unwrap_or(line).to_owned() + "\n").collect();
         let (profile, found) = read(&could_be, OutputChoice::AsWritten);
-        assert_eq!((profile.map(|it| it.buttons.len()), found), (Some(6), vec![]));
+        assert_eq!((profile.map(|it| it.buttons.len()), found), (Some(8), vec![]));
         let schema: serde_json::Value = serde_json::from_str(shipped::schema()).unwrap();
-        for table in ["program", "access", "gain", "zone", "dpad", "button"] {
+        let tables = [
+            "program", "access", "gain", "zone", "dpad", "button", "layer", "macro", "step", "stick",
+            "trigger", "pointer",
+        ];
+        for table in tables {
             for key in schema["$defs"][table]["properties"].as_object().unwrap().keys() {
                 // Names of devices stand in the bindings.
-                let is_shown = TEMPLATE
-                    .lines()
-                    .any(|line| line.trim_start_matches(['#', ' ']).starts_with(&format!("{key} =")));
+                let is_shown = TEMPLATE.contains(&format!("{key} ="));
                 assert!(is_shown || (table, &**key) == ("dpad", "gamepad"), "{table}: {key}");
             }
         }

@@ -4,8 +4,6 @@
 //! recognise controllers by their numbers and count buttons and axes by the order of the codes. Version
 //! 0x0114 matters: SDL's controller database maps the D-pad of version 1 upside down.
 
-use std::ffi::CStr;
-
 use crate::pipeline::control::names::{
     GAMEPAD_BUTTONS, POINTER_BUTTONS, POINTER_PLACE, POINTER_PLACE_MAX, canonical, is_keyboard_key, name,
 };
@@ -52,10 +50,6 @@ pub const POINTER: Identity =
 /// The tablet, told from others by its name alone.
 pub const TABLET: Identity =
     Identity { bus: BUS_VIRTUAL, name: "tactpad tablet", vendor: 0x1209, product: 0x0004, version: 0x0001 };
-
-/// Where the devices say that they are plugged in. Games do not look at it: so our gamepad is told from a real one, and from others' virtual
-/// ones.
-pub const PLACE: &CStr = c"tactpad/virtual";
 
 /// One axis of the pad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

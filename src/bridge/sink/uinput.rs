@@ -15,7 +15,7 @@ use rustix::event::{Timespec, poll};
 use rustix::io::Errno;
 
 use super::identity::{
-    GAMEPAD, GAMEPAD_AXES, Identity, KEYBOARD, PLACE, POINTER, TABLET, TABLET_AXES, declares, keys, movements,
+    GAMEPAD, GAMEPAD_AXES, Identity, KEYBOARD, POINTER, TABLET, TABLET_AXES, declares, keys, movements,
 };
 use super::{Sink, SinkError};
 use crate::pipeline::control::{Code, OutputDevice, OutputEvent};
@@ -230,8 +230,7 @@ fn encode_event(kind: u16, code: u16, value: i32, bytes: &mut Vec<u8>) {
 
 fn make_gamepad() -> io::Result<VirtualDevice> {
     let keys: AttributeSet<KeyCode> = keys(OutputDevice::Gamepad).map(KeyCode::new).collect();
-    let builder =
-        VirtualDevice::builder()?.name(GAMEPAD.name).input_id(input_id(&GAMEPAD)).with_phys(PLACE)?;
+    let builder = VirtualDevice::builder()?.name(GAMEPAD.name).input_id(input_id(&GAMEPAD));
     let mut builder = builder.with_keys(&keys)?;
     for axis in GAMEPAD_AXES {
         let range = AbsInfo::new(0, axis.min, axis.max, axis.fuzz, axis.flat, 0);
@@ -243,8 +242,7 @@ fn make_gamepad() -> io::Result<VirtualDevice> {
 /// The keyboard does not repeat keys by itself (no `EV_REP`): what is held is the mapping's to say.
 fn make_keyboard() -> io::Result<VirtualDevice> {
     let keys: AttributeSet<KeyCode> = keys(OutputDevice::Keyboard).map(KeyCode::new).collect();
-    let builder =
-        VirtualDevice::builder()?.name(KEYBOARD.name).input_id(input_id(&KEYBOARD)).with_phys(PLACE)?;
+    let builder = VirtualDevice::builder()?.name(KEYBOARD.name).input_id(input_id(&KEYBOARD));
     builder.with_keys(&keys)?.build()
 }
 
@@ -252,7 +250,7 @@ fn make_keyboard() -> io::Result<VirtualDevice> {
 /// is ever pressed here.
 fn make_tablet() -> io::Result<VirtualDevice> {
     let keys: AttributeSet<KeyCode> = keys(OutputDevice::Pointer).map(KeyCode::new).collect();
-    let builder = VirtualDevice::builder()?.name(TABLET.name).input_id(input_id(&TABLET)).with_phys(PLACE)?;
+    let builder = VirtualDevice::builder()?.name(TABLET.name).input_id(input_id(&TABLET));
     let mut builder = builder.with_keys(&keys)?;
     for axis in TABLET_AXES {
         let range = AbsInfo::new(0, axis.min, axis.max, axis.fuzz, axis.flat, 0);
@@ -264,8 +262,7 @@ fn make_tablet() -> io::Result<VirtualDevice> {
 fn make_pointer() -> io::Result<VirtualDevice> {
     let keys: AttributeSet<KeyCode> = keys(OutputDevice::Pointer).map(KeyCode::new).collect();
     let movements: AttributeSet<RelativeAxisCode> = movements().map(RelativeAxisCode).collect();
-    let builder =
-        VirtualDevice::builder()?.name(POINTER.name).input_id(input_id(&POINTER)).with_phys(PLACE)?;
+    let builder = VirtualDevice::builder()?.name(POINTER.name).input_id(input_id(&POINTER));
     builder.with_keys(&keys)?.with_relative_axes(&movements)?.build()
 }
 

@@ -14,7 +14,6 @@ use super::ctl;
 use crate::cli::failure::{Failure, if_read};
 use crate::cli::written::{print_json, stdout};
 use tactpad::bridge::control::ask;
-use tactpad::bridge::sink::identity::PLACE;
 use tactpad::bridge::sink::uinput;
 use tactpad::bridge::transport::pads::{self, FoundPad};
 
@@ -88,11 +87,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let root = Path::new("/");
     let mut checks = vec![check_uinput(), check_rules(root)];
     checks.extend(check_pads(&pads::attached()));
-    checks.extend(check_other_gamepads(&read(root, "proc/bus/input/devices")));
+    let bridge = ask(&ctl::socket_path(), "status");
+    let own = bridge.as_deref().map(own_nodes).unwrap_or_default();
+    checks.extend(check_other_gamepads(&read(root, "proc/bus/input/devices"), &own));
     checks.push(check_joydev(root));
     checks.extend(check_sdl(|name| env::var(name).ok()));
     checks.extend(check_session(|name| env::var(name).ok()));
-    checks.push(check_bridge());
+    checks.push(check_bridge(&bridge));
     let report = DoctorReport { ok: checks.iter().all(|check| check.finding != Finding::Bad), checks };
     let printed = if arguments.json { print_json(&report) } else { print(&report).map_err(Failure::from) };
     if_read(printed)?;
@@ -179,12 +180,15 @@ fn check_pads(pads: &[FoundPad]) -> Vec<Check> {
     pads.iter().map(check).collect()
 }
 
-/// Xbox 360 pads that are there already, but for a running bridge's own. One of version 1 is a trap: SDL's database turns its D-pad upside
+/// Xbox 360 pads that are there already, but for those of a running bridge, which has these nodes. One of version 1 is a trap: SDL's database turns its D-pad upside
 /// down.
-fn check_other_gamepads(devices: &str) -> Vec<Check> {
+fn check_other_gamepads(devices: &str, own_nodes: &[String]) -> Vec<Check> {
     let name = "other gamepads";
-    let own = format!("P: Phys={}", PLACE.to_string_lossy());
-    let others = devices.split("\n\n").filter(|device| device.lines().all(|line| line.trim_end() != own));
+    let is_own = |device: &str| {
+        let handlers = device.lines().find_map(|line| line.strip_prefix("H: Handlers="));
+        handlers.is_some_and(|it| it.split_whitespace().any(|node| own_nodes.iter().any(|own| own == node)))
+    };
+    let others = devices.split("\n\n").filter(|device| !is_own(device));
     let lines = others.flat_map(str::lines).filter(|line| line.starts_with("I:"));
     let pads: Vec<_> = lines.filter(|line| line.contains("Vendor=045e Product=028e")).collect();
     let mut checks = Vec::new();
@@ -248,9 +252,17 @@ fn check_session(variable: impl Fn(&str) -> Option<String>) -> Vec<Check> {
     }
 }
 
-fn check_bridge() -> Check {
-    match ask(&ctl::socket_path(), "status") {
-        Ok(status) => Check::note("bridge", bridge_message(&status)),
+/// The nodes of a bridge's devices, as `event7`, by its status.
+fn own_nodes(status: &str) -> Vec<String> {
+    let status: Value = serde_json::from_str(status).unwrap_or_default();
+    let output = status.get("output").and_then(Value::as_str).unwrap_or_default();
+    let words = output.split([' ', ',']);
+    words.filter_map(|word| word.strip_prefix("/dev/input/")).map(str::to_owned).collect()
+}
+
+fn check_bridge(answer: &io::Result<String>) -> Check {
+    match answer {
+        Ok(status) => Check::note("bridge", bridge_message(status)),
         Err(error) if error.kind() == io::ErrorKind::TimedOut => Check::note(
             "bridge",
             "one is there and does not answer: if it was stopped, continue it with `fg`",
@@ -303,26 +315,26 @@ mod tests {
     fn a_pad_with_the_trap_version_is_told_from_one_without() {
         let device =
             |version| format!("I: Bus=0003 Vendor=045e Product=028e Version={version}\nN: Name=\"X\"\n");
-        assert_eq!(check_other_gamepads("").len(), 0);
-        assert_eq!(check_other_gamepads(&device("0114")).len(), 1);
-        assert_eq!(check_other_gamepads(&device("0001")).len(), 2);
+        assert_eq!(check_other_gamepads("", &[]).len(), 0);
+        assert_eq!(check_other_gamepads(&device("0114"), &[]).len(), 1);
+        assert_eq!(check_other_gamepads(&device("0001"), &[]).len(), 2);
     }
 
     #[test]
     fn our_own_pad_is_no_other_one() {
-        let device = |place| {
+        let device = |node| {
             format!(
                 "I: Bus=0003 Vendor=045e Product=028e Version=0114\nN: Name=\"Microsoft X-Box 360 pad\"\n\
-                 P: Phys={place}\nS: Sysfs=/devices/virtual/input/input9\n\n"
+                 S: Sysfs=/devices/virtual/input/input9\nH: Handlers={node} js0 \n\n"
             )
         };
-        let [ours, wired, others] =
-            [device("tactpad/virtual"), device("usb-0000:00:14.0-1/input0"), device("")];
-        assert_eq!(check_other_gamepads(&ours).len(), 0);
-        for foreign in [wired, others] {
-            assert_eq!(check_other_gamepads(&foreign).len(), 1);
-            assert_eq!(check_other_gamepads(&format!("{ours}{foreign}")).len(), 1);
-        }
+        let own = own_nodes(
+            r#"{"output":"virtual gamepad at /dev/input/event7, virtual pointer at /dev/input/event8"}"#,
+        );
+        assert_eq!(own, ["event7", "event8"]);
+        assert_eq!(check_other_gamepads(&device("event7"), &own).len(), 0);
+        assert_eq!(check_other_gamepads(&device("event70"), &own).len(), 1);
+        assert_eq!(check_other_gamepads(&(device("event7") + &device("event3")), &own).len(), 1);
     }
 
     #[test]

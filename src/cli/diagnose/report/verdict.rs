@@ -10,7 +10,7 @@ const TOLD_MAX: usize = 2;
 /// And of a set that cannot be told apart, so many.
 const RIVALS_MAX: usize = 2;
 
-/// `Channel m1z reads 12 % too much; nothing else is wrong beyond noise and background.`
+/// `Channel m1z reads 12 % too much; noise, background and a model’s usual errors account for the rest.`
 pub(super) fn headline(subject: &Subject<'_>) -> String {
     let diagnosis = subject.diagnosis;
     let told = capital(&told(diagnosis));
@@ -19,7 +19,9 @@ pub(super) fn headline(subject: &Subject<'_>) -> String {
         Verdict::NoDiscrepancy => {
             "The model accounts for these rows: nothing is wrong beyond noise and background.".to_owned()
         }
-        Verdict::Explained => format!("{told}; nothing else is wrong beyond noise and background."),
+        Verdict::Explained => {
+            format!("{told}; noise, background and a model’s usual errors account for the rest.")
+        }
         Verdict::PartlyExplained => {
             format!("{told}; {percent:.0} % of what the model gets wrong has no known cause.")
         }

@@ -13,6 +13,9 @@ const STICK_STEP: f32 = 128.0;
 /// The far end of a trigger.
 const TRIGGER_FULL: f32 = 255.0;
 
+/// So many sticks has a gamepad, and so many triggers.
+pub const SIDES: usize = STICKS.len();
+
 /// Which of the gamepad's two sticks or triggers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {

@@ -5,7 +5,7 @@ use arrayvec::ArrayVec;
 use super::accept::Presses;
 use super::directed::{Directed, Directions};
 use super::intent::Intents;
-use super::profile::{BUTTONS_MAX, Button, Direction, Place, Profile};
+use super::profile::{BUTTONS_MAX, Button, Direction, Place, Profile, SIDES};
 use super::rest::Resting;
 use super::running::Running;
 use super::sector::{self, Sector};
@@ -17,9 +17,6 @@ use super::verdict::{Verdict, Verdicts};
 use super::zone;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
-
-/// A gamepad has two sticks.
-const SIDES: usize = 2;
 
 /// Plays one profile. `mappings/README.md` states its rules.
 ///
@@ -114,7 +111,11 @@ impl Engine {
 
     /// States the directions.
     fn direct(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut Stated) {
-        let Some(dpad) = &self.profile.dpad else { return };
+        let Some(dpad) = &self.profile.dpad else {
+            // The profile before may have had directions.
+            (self.held, self.directed, self.directions) = (None, Directed::fresh(), Directions::default());
+            return;
+        };
         self.held = contact.and_then(|contact| sector::follow(dpad, self.held, contact));
         let asked = (self.held, contact);
         self.directions = self.directed.step(self.profile.access, t, asked, &mut self.presses);

@@ -6,7 +6,7 @@ pub use super::action::{
     Action, Command, Effect, Layer, Macro, Mode, Output, PROFILE_NAME_MAX, Role, Roles, Skip, Step, Timed,
     When,
 };
-pub use super::analogue::{Side, Source, Stick, Trigger};
+pub use super::analogue::{SIDES, Side, Source, Stick, Trigger};
 use super::angle::wrapped;
 pub use super::keys::{Binding, KEYS_MAX, Keys};
 pub use super::place::{Direction, Dpad, DpadMode, Gain, Place, Pointer, PointerMode, Zone};
@@ -147,9 +147,9 @@ pub struct Profile {
     /// The pointer's movement; `None` where the profile moves none.
     pub pointer: Option<Pointer>,
     /// Sticks of the gamepad; none where the keyboard is played.
-    pub sticks: ArrayVec<Stick, 2>,
+    pub sticks: ArrayVec<Stick, SIDES>,
     /// Triggers of the gamepad; none where the keyboard is played.
-    pub triggers: ArrayVec<Trigger, 2>,
+    pub triggers: ArrayVec<Trigger, SIDES>,
     /// Buttons, in the file's order.
     pub buttons: ArrayVec<Button, BUTTONS_MAX>,
 }

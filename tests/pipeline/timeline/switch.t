@@ -137,3 +137,17 @@ profile super-mario
 400ms fz=2.5
 
 400ms BTN_EAST 1
+
+case a direction does not outlive a profile without directions
+profile super-mario
+
+0ms x=20 fz=1
+5ms switch one-button
+10ms x=20 fz=1
+20ms lift
+25ms switch super-mario
+30ms x=7 fz=1
+40ms lift
+
+0ms ABS_HAT0X 1
+10ms ABS_HAT0X 0

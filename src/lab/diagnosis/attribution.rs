@@ -86,7 +86,7 @@ impl<'m> Search<'m> {
             let Some(next) = self.next(&fit, critical, &barred)? else { break };
             let mut applied = fit.applied.clone();
             applied.push((next, vec![0.0; self.model.hypotheses()[next].parameters.len()]));
-            fit = self.fitted(&applied, Some(&fit))?;
+            fit = self.within_range(self.fitted(&applied, Some(&fit))?, critical)?;
             critical = self.critical(&fit)?;
             while let Some(least) = self.superfluous(&fit, critical)? {
                 let mut applied = fit.applied.clone();
@@ -95,6 +95,25 @@ impl<'m> Search<'m> {
             }
         }
         Some(Attribution { fit, critical })
+    }
+
+    /// The fit, or where its last cause ended at an end of its range, that with a rival in its place which explains the data as well
+    /// and does not; if there is one.
+    fn within_range(&self, fit: Fit, critical: f64) -> Option<Fit> {
+        let Some(last) = fit.applied.len().checked_sub(1).filter(|last| self.is_at_an_end(&fit, *last))
+        else {
+            return Some(fit);
+        };
+        let (projected, score) = self.without(&fit, last)?;
+        for rival in self.rivals(&fit, critical, last, (&projected, &score)) {
+            let mut applied = fit.applied.clone();
+            applied[last] = (rival, vec![0.0; self.model.hypotheses()[rival].parameters.len()]);
+            let other = self.fitted(&applied, Some(&fit))?;
+            if !self.is_at_an_end(&other, last) {
+                return Some(other);
+            }
+        }
+        Some(fit)
     }
 
     pub(super) fn is_zero(&self, hypothesis: usize) -> bool {

@@ -68,10 +68,10 @@ use self::gatekeepers::{Gate, guarded};
 pub use self::mechanics::Pad;
 use self::model::Model;
 use self::observations::Observations;
-use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
+use self::report::{Diagnosis, Finding, NotTestable, Residuals, UNLISTED, Verdict};
 use self::separation::Separation;
 use self::simulated::Simulated;
-use self::withdrawal::{Named, in_common, named};
+use self::withdrawal::{Candidate, Named, doubted, in_common, named};
 use crate::numeric::chi_square;
 use crate::numeric::statistics::{mean, rms};
 use crate::tables::measured::Table;
@@ -149,7 +149,7 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
         pad.asks_for(EFFECT).then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
     diagnosis.not_detected.retain(|it| pad.asks_for(it.effect));
-    in_common(&mut diagnosis.findings);
+    diagnosis.findings = in_common(diagnosis.findings);
     Ok(diagnosis)
 }
 
@@ -169,7 +169,7 @@ fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Dia
     let excess = excess.of_channels(|channel| diagnosis.unnamed_by_channel[channel] <= 0.0);
     let own = gate.findings.into_iter().chain(excess.findings);
     diagnosis.findings.splice(..0, own);
-    diagnosis.verdict = verdict(!diagnosis.findings.is_empty(), diagnosis.unnamed_share);
+    diagnosis.verdict = verdict(&diagnosis.findings, diagnosis.unnamed_share);
     diagnosis.not_detected.extend(gate.not_detected.into_iter().chain(excess.not_detected));
     diagnosis.not_testable.extend(gate.not_testable);
     diagnosis.gatekeepers = gate.notices.into_iter().chain(excess.notices).collect();
@@ -206,22 +206,25 @@ fn summary(
     let fit = &found.fit;
     let remainders = unnamed_squares(found);
     let whole = search.removed(fit)? + remainders.iter().sum::<f64>();
-    let Named { findings: mut kept, unnamed_by_channel } = named(search, found, (whole, remainders))?;
+    let Named { candidates, unnamed_by_channel, doubted_by_channel } =
+        named(search, found, (whole, remainders))?;
     let unnamed: f64 = unnamed_by_channel.iter().sum();
     let separation = Separation::new(search, found);
-    for (at, finding) in &mut kept {
-        finding.separate_by = separation.told(*at, &finding.confounded_with);
-    }
-    let applied: Applied = kept.iter().map(|(at, _)| fit.applied[*at].clone()).collect();
-    let mut findings: Vec<Finding> = kept.into_iter().map(|(_, finding)| finding).collect();
-    findings.extend(search.offsets(found, whole + search.offsets_square(found)?, &unnamed_by_channel)?);
+    let applied: Applied = candidates.iter().map(|it| fit.applied[it.place].clone()).collect();
+    let told = |Candidate { place, finding, is_doubted }| {
+        let separate_by = separation.told(place, &finding.confounded_with);
+        let finding = Finding { separate_by, ..finding };
+        if is_doubted { doubted(finding) } else { finding }
+    };
+    let mut findings: Vec<Finding> = candidates.into_iter().map(told).collect();
+    findings.extend(search.offsets(found, whole + search.offsets_square(found)?, &doubted_by_channel)?);
     let unnamed_share = if unnamed > 0.0 { unnamed / whole } else { 0.0 };
     let nothing = Vec::new();
     Some(Diagnosis {
         residuals: residuals(open, found, &applied),
         channels: open.observations.channels.clone(),
         full_scale: search.model.full_scale(),
-        verdict: verdict(!findings.is_empty(), unnamed_share),
+        verdict: verdict(&findings, unnamed_share),
         noise_floor: noise_floor(open, fit),
         rmse_nominal: rmse(open.measured(), &nothing, &open.measured().zeros(&nothing)),
         rmse_extended: rmse(open, &applied, &open.zeros(&applied)),
@@ -271,7 +274,9 @@ fn unnamed_squares(found: &Attribution) -> Vec<f64> {
     remainders.iter().map(square).collect()
 }
 
-const fn verdict(explains: bool, unnamed_share: f64) -> Verdict {
+/// A finding that may be a part of something else explains nothing.
+fn verdict(findings: &[Finding], unnamed_share: f64) -> Verdict {
+    let explains = findings.iter().any(|it| it.confounded_with.iter().all(|(effect, _)| *effect != UNLISTED));
     match (explains, unnamed_share > 0.0) {
         (false, false) => Verdict::NoDiscrepancy,
         (true, false) => Verdict::Explained,

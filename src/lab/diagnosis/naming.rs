@@ -11,7 +11,7 @@ use super::columns::ZERO;
 use super::inference::{Projected, Test};
 use super::report::{Estimate, Finding, NotDetected};
 use super::target::Target;
-use super::withdrawal::is_over;
+use super::withdrawal::{OVER_NEAR, doubted, is_over};
 use crate::numeric::chi_square;
 use crate::numeric::dense::Matrix;
 
@@ -45,7 +45,11 @@ impl Search<'_> {
                 shapes: self.shapes(found, at),
                 p_value: test.p_value(),
                 share: (test.square / whole).clamp(0.0, 1.0),
-                confounded_with: self.rivals(found, at, &projected, &score).into_iter().map(named).collect(),
+                confounded_with: self
+                    .rivals(&found.fit, found.critical, at, (&projected, &score))
+                    .into_iter()
+                    .map(named)
+                    .collect(),
                 separate_by: None,
             };
             findings.push((at, finding));
@@ -83,10 +87,16 @@ impl Search<'_> {
     }
 
     /// The rivals that explain the data as well as a fitted cause, `projected` and `score` being without it.
-    fn rivals(&self, found: &Attribution, at: usize, projected: &Projected, score: &[f64]) -> Vec<usize> {
-        let (own, _) = found.fit.applied[at];
+    pub(super) fn rivals(
+        &self,
+        fit: &Fit,
+        critical: f64,
+        at: usize,
+        (projected, score): (&Projected, &[f64]),
+    ) -> Vec<usize> {
+        let (own, _) = fit.applied[at];
         let columns = &self.columns.of_hypothesis[own];
-        let held = |rival: &usize| found.fit.applied.iter().any(|(held, _)| held == rival);
+        let held = |rival: &usize| fit.applied.iter().any(|(held, _)| held == rival);
         (0..self.columns.of_hypothesis.len())
             .filter(|rival| !held(rival) && !self.is_zero(*rival))
             .filter(|rival| {
@@ -97,7 +107,7 @@ impl Search<'_> {
                     square: (both.square - alone.square).max(0.0),
                     freedom: both.freedom - alone.freedom,
                 };
-                beyond.p_value() > found.critical && self.is_possible(*rival, projected, score)
+                beyond.p_value() > critical && self.is_possible(*rival, projected, score)
             })
             .collect()
     }
@@ -150,7 +160,7 @@ impl Search<'_> {
         let mut least = self.zeros(found)?;
         for at in 0..found.fit.applied.len() {
             let (projected, score) = self.without(&found.fit, at)?;
-            for rival in self.rivals(found, at, &projected, &score) {
+            for rival in self.rivals(&found.fit, found.critical, at, (&projected, &score)) {
                 let zeros = self.zeros_with(&found.fit, at, rival).into_iter().flatten();
                 let square = |[zero, variance]: [f64; 2]| zero * zero / variance;
                 for (least, other) in
@@ -187,22 +197,23 @@ impl Search<'_> {
         Some(squares.filter(|square| chi_square::exceeded(*square, 1) < found.critical).sum())
     }
 
-    /// The zeros that are not zero; none of channels in which anything is left without a name.
+    /// The zeros that are not zero. Beside what is `left_by_channel` without a name each is doubted, if it is far more than that; else it
+    /// is none.
     pub(super) fn offsets(
         &self,
         found: &Attribution,
         whole: f64,
-        unnamed_by_channel: &[f64],
+        left_by_channel: &[f64],
     ) -> Option<Vec<Finding>> {
         let finding = |(channel, [zero, variance]): (usize, [f64; 2])| {
             let square = zero * zero / variance;
             let spread = WITHIN_95 * variance.sqrt();
             let p_value = chi_square::exceeded(square, 1);
+            let is_clear = left_by_channel[channel] <= 0.0 && is_over(square, left_by_channel);
             let is_found = p_value < found.critical
-                && unnamed_by_channel[channel] <= 0.0
-                && is_over(square, unnamed_by_channel)
+                && square > OVER_NEAR * left_by_channel[channel]
                 && self.zero_holds_throughout(&found.fit, channel, square).unwrap_or(false);
-            is_found.then(|| Finding {
+            let finding = Finding {
                 effect: ZERO,
                 target: Target::Channel(channel),
                 parameters: vec![Estimate {
@@ -215,7 +226,8 @@ impl Search<'_> {
                 share: square / whole,
                 confounded_with: Vec::new(),
                 separate_by: None,
-            })
+            };
+            is_found.then(|| if is_clear { finding } else { doubted(finding) })
         };
         Some(self.least_zeros(found)?.into_iter().enumerate().filter_map(finding).collect())
     }

@@ -36,7 +36,7 @@ impl Search<'_> {
     }
 
     /// Whether a number that is asked for ended at an end of its range that is not its none.
-    fn is_at_an_end(&self, fit: &Fit, at: usize) -> bool {
+    pub(super) fn is_at_an_end(&self, fit: &Fit, at: usize) -> bool {
         let (hypothesis, coordinates) = &fit.applied[at];
         self.model.hypotheses()[*hypothesis].asked().iter().zip(coordinates).any(|(it, psi)| {
             let is_there = |end: f64| end != it.none && (it.coordinate(end) - psi).abs() <= AT_END;

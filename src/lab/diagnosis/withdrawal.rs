@@ -1,16 +1,18 @@
 //! Which findings lose their names: those that look like parts of something that the catalogue does not have.
 //!
 //! An effect that is not in the catalogue is explained by what is nearest to it, in part. Three things give that away: a cause that does
-//! not hold in all parts of the measurement (`specification`); a remainder that no cause explains, beside which a name means little;
-//! and many findings at once, above all of one effect, for which one reason is likelier than as many.
+//! not hold in all parts of the measurement (`specification`), which is no finding; a remainder that no cause explains, beside which a
+//! name means little; and many findings at once, above all of one effect, for which one reason is likelier than as many. The latter two
+//! stay in the report as a set with `unlisted_cause`.
 
 use super::attribution::{Attribution, Search};
+use super::cause::Cause;
 use super::causes::CATALOGUE;
 use super::report::{Finding, INSEPARABLE, UNLISTED};
 use super::target::Target;
 
 /// A cause is named where it explains so many times what is left unexplained in the channels that tell of it,
-const OVER_NEAR: f64 = 10.0;
+pub(super) const OVER_NEAR: f64 = 10.0;
 /// and so many times what is left unexplained in all of them.
 const OVER_ALL: f64 = 4.0;
 /// So many findings of one effect need no reason in common,
@@ -20,60 +22,69 @@ const CAUSES_MAX: usize = 2;
 /// The least part of what is known of a cause by which a channel tells of it.
 const PART_MIN: f64 = 0.01;
 
-/// What may be named.
-pub(super) struct Named {
-    /// Each with its place in the fit.
-    pub(super) findings: Vec<(usize, Finding)>,
-    /// For each channel, the weighted squares that are left without a name.
-    pub(super) unnamed_by_channel: Vec<f64>,
+/// A finding of the search.
+pub(super) struct Candidate {
+    /// Its place in the fit.
+    pub(super) place: usize,
+    pub(super) finding: Finding,
+    /// Too much is left beside it: it may be a part of that.
+    pub(super) is_doubted: bool,
 }
 
-/// The findings that may be named, of `whole` weighted squares. Without a name are the remainders, what causes explain that hold in
-/// some parts of the measurement only, and what explains little beside these.
+/// What was found, and what was not.
+pub(super) struct Named {
+    pub(super) candidates: Vec<Candidate>,
+    /// For each channel, the weighted squares that are left without an explanation.
+    pub(super) unnamed_by_channel: Vec<f64>,
+    /// The same with those of the doubted findings.
+    pub(super) doubted_by_channel: Vec<f64>,
+}
+
+/// The findings of `whole` weighted squares, and which of them may be named. Without an explanation are the remainders, and what causes
+/// explain that hold in some parts of the measurement only. What explains little beside these is doubted, and then so is what explains
+/// little beside that.
 pub(super) fn named(
     search: &Search<'_>,
     found: &Attribution,
     (whole, remainders): (f64, Vec<f64>),
 ) -> Option<Named> {
     let fit = &found.fit;
-    let mut named = Named { findings: search.findings(found, whole)?, unnamed_by_channel: remainders };
-    let mut at = 0;
-    while let Some((place, finding)) = named.findings.get(at) {
-        if finding.confounded_with.is_empty() && !search.holds_throughout(fit, *place)? {
-            named.withdraw(at, search, found, whole);
+    let squares = |place: usize, finding: &Finding| -> Vec<f64> {
+        let parts = search.parts(fit, fit.applied[place].0);
+        parts.into_iter().map(|part| part * finding.share * whole).collect()
+    };
+    let (mut candidates, mut unnamed_by_channel) = (Vec::new(), remainders);
+    for (place, finding) in search.findings(found, whole)? {
+        if finding.confounded_with.is_empty() && !search.holds_throughout(fit, place)? {
+            add(&mut unnamed_by_channel, &squares(place, &finding));
         } else {
-            at += 1;
+            candidates.push(Candidate { place, finding, is_doubted: false });
         }
     }
-    // What lost its name is a remainder, too.
-    while let Some(at) = named.findings.iter().rposition(|it| !named.is_told(it, search, found, whole)) {
-        named.withdraw(at, search, found, whole);
+    let mut doubted_by_channel = unnamed_by_channel.clone();
+    let is_little =
+        |it: &Candidate, left: &[f64]| !it.is_doubted && !is_told(&squares(it.place, &it.finding), left);
+    while let Some(at) = candidates.iter().rposition(|it| is_little(it, &doubted_by_channel)) {
+        candidates[at].is_doubted = true;
+        add(&mut doubted_by_channel, &squares(candidates[at].place, &candidates[at].finding));
     }
-    Some(named)
+    Some(Named { candidates, unnamed_by_channel, doubted_by_channel })
 }
 
-impl Named {
-    fn withdraw(&mut self, at: usize, search: &Search<'_>, found: &Attribution, whole: f64) {
-        let (place, finding) = self.findings.remove(at);
-        let parts = search.parts(&found.fit, found.fit.applied[place].0);
-        let squares = parts.into_iter().map(|part| part * finding.share * whole);
-        self.unnamed_by_channel.iter_mut().zip(squares).for_each(|(unnamed, own)| *unnamed += own);
-    }
+fn add(to: &mut [f64], squares: &[f64]) {
+    to.iter_mut().zip(squares).for_each(|(sum, own)| *sum += own);
+}
 
-    /// Whether a finding explains far more than what is left.
-    fn is_told(
-        &self,
-        (place, finding): &(usize, Finding),
-        search: &Search<'_>,
-        found: &Attribution,
-        whole: f64,
-    ) -> bool {
-        let parts = search.parts(&found.fit, found.fit.applied[*place].0);
-        let channels = self.unnamed_by_channel.iter().zip(&parts);
-        let near: f64 = channels.filter(|(_, part)| **part > PART_MIN).map(|(square, _)| square).sum();
-        let square = finding.share * whole;
-        square > OVER_NEAR * near && is_over(square, &self.unnamed_by_channel)
-    }
+/// Whether a finding explains far more, by its `squares` in each channel, than what is `left` in them.
+fn is_told(squares: &[f64], left: &[f64]) -> bool {
+    let square: f64 = squares.iter().sum();
+    let channels = squares.iter().zip(left);
+    let near: f64 = channels.filter(|(own, _)| **own > PART_MIN * square).map(|(_, left)| left).sum();
+    square > OVER_NEAR * near && is_over(square, left)
+}
+
+fn of_catalogue(effect: &str) -> Option<&'static dyn Cause> {
+    CATALOGUE.into_iter().find(|it| it.effect() == effect)
 }
 
 /// Whether the weighted squares that a cause explains are far more than those that are left in all channels.
@@ -84,19 +95,25 @@ pub(super) fn is_over(square: f64, unnamed_by_channel: &[f64]) -> bool {
 /// Sets beside findings that one reason may have in common that it may be none of the catalogue: beside those of one effect at several
 /// targets, beside three or more of any effects, and then also beside what each target has of its own, as that may be a part of it.
 /// What the checks of the recording found does not count: it is seen in the readings themselves.
-pub(super) fn in_common(findings: &mut [Finding]) {
-    let of_catalogue = |effect: &str| CATALOGUE.iter().find(|it| it.effect() == effect);
+pub(super) fn in_common(findings: Vec<Finding>) -> Vec<Finding> {
     let asks = |effect: &str| of_catalogue(effect).is_some_and(|it| !it.is_individual());
     let effects: Vec<&str> = findings.iter().map(|it| it.effect).filter(|effect| asks(effect)).collect();
     let alike = |effect: &str| effects.iter().filter(|it| **it == effect).count();
     let is_doubted = |effect: &str| alike(effect) > ALIKE_MAX || effects.len() > CAUSES_MAX;
     let is_any = effects.iter().any(|effect| is_doubted(effect));
-    for finding in findings.iter_mut().filter(|it| of_catalogue(it.effect).is_some()) {
-        if is_doubted(finding.effect) || is_any && !asks(finding.effect) {
-            finding.confounded_with.push((UNLISTED, Target::Pad));
-            finding.separate_by.get_or_insert_with(|| INSEPARABLE.to_owned());
-        }
+    let is_common = |it: &Finding| is_doubted(it.effect) || is_any && !asks(it.effect);
+    let set =
+        |it: Finding| if of_catalogue(it.effect).is_some() && is_common(&it) { doubted(it) } else { it };
+    findings.into_iter().map(set).collect()
+}
+
+/// The finding as one that may be a part of what is not in the catalogue.
+pub(super) fn doubted(mut finding: Finding) -> Finding {
+    if finding.confounded_with.iter().all(|(effect, _)| *effect != UNLISTED) {
+        finding.confounded_with.push((UNLISTED, Target::Pad));
+        finding.separate_by.get_or_insert_with(|| INSEPARABLE.to_owned());
     }
+    finding
 }
 
 #[cfg(test)]
@@ -117,8 +134,7 @@ mod tests {
     }
 
     fn doubted(causes: &[(&'static str, Target)]) -> Vec<usize> {
-        let mut findings: Vec<Finding> = causes.iter().copied().map(finding).collect();
-        in_common(&mut findings);
+        let findings = in_common(causes.iter().copied().map(finding).collect());
         (0..findings.len()).filter(|at| findings[*at].confounded_with == [(UNLISTED, Target::Pad)]).collect()
     }
 

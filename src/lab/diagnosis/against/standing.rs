@@ -55,7 +55,7 @@ pub(super) fn standing(
     diagnosis.gain = search.gain(&found.fit, [open, locked], &told);
     let unnamed: f64 = withdrawn.iter().map(|finding| finding.share).sum();
     diagnosis.unnamed_share = (diagnosis.unnamed_share + unnamed).min(1.0);
-    diagnosis.verdict = verdict(!diagnosis.findings.is_empty(), diagnosis.unnamed_share);
+    diagnosis.verdict = verdict(&diagnosis.findings, diagnosis.unnamed_share);
 }
 
 /// For each cluster the sum of squares beside each channel's zero, in units of its noise.

@@ -42,6 +42,9 @@ pub(super) struct Arguments {
     /// The true contacts, row for row, which no rig would know.
     #[arg(long, value_name = "FILE")]
     truth: Option<PathBuf>,
+    /// Write the cycles of load up to each row as `cycle`, as a rig can count them: by them ageing is told.
+    #[arg(long)]
+    count_cycles: bool,
     /// Print one JSON document: what was made.
     #[arg(long)]
     json: bool,
@@ -57,7 +60,7 @@ struct Outcome {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { plan, pad, seed, out, truth, json } = arguments;
+    let Arguments { plan, pad, seed, out, truth, count_cycles, json } = arguments;
     if *json && is_stdout(out) {
         return Err(both_print("--out -"));
     }
@@ -76,6 +79,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let field = field_of(&device)?;
     let progress = Progress::begin("carrying out the plan");
     let measurement = carry_out(&plan, &device, &field, *seed);
+    let measurement = if *count_cycles { measurement.counted() } else { measurement };
     drop(progress);
     tables::write(&to, &measurement.table)?;
     if let Some(to) = truth_to {

@@ -130,6 +130,24 @@ fn two_effects_at_once_are_both_found() {
     }
 }
 
+/// No pad creeps by a third. Where all loads are held equally long a common gain looks like creep, but not one that large.
+#[test]
+fn gains_beyond_what_creep_can_be_are_found() {
+    if extent() < Extent::Part {
+        return;
+    }
+    let gain = |effect: &str, target: &str, value: f64| Truth::new(effect, target, &[("gain", value)]);
+    let truths = vec![
+        gain("excitation_gain", "pad", 1.35),
+        gain("channel_gain", "m0z", 0.75),
+        gain("channel_gain", "m2z", 0.76),
+    ];
+    let (_, score) = run(&Case::new("gains", 1, Plan::Paper, truths));
+    assert!(score.complete() && score.wrong.is_empty(), "{score:?}");
+    assert_eq!(score.found[1..], [Found::Named, Found::Named], "{score:?}");
+    assert_eq!(score.verdict, "explained");
+}
+
 #[test]
 fn what_no_catalogue_has_stays_unnamed() {
     if extent() < Extent::Part {

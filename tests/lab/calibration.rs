@@ -68,7 +68,7 @@ impl Measured {
     }
 
     fn on(field: &PadField, device: &Device, plan: &Table, seed: u64) -> Self {
-        let Measurement { table, truth: truths } = carry_out(plan, device, field, seed);
+        let Measurement { table, truth: truths, .. } = carry_out(plan, device, field, seed);
         Self { recording: Recording::of(table, device.contact.full_scale_n).unwrap(), truths }
     }
 

@@ -36,7 +36,7 @@ fn assert_near(found: f64, wanted: f64, tolerance: f64, what: &str) {
 #[test]
 fn a_perfect_pad_on_a_perfect_rig_reads_the_simulation() {
     let rows = vec![Row::of(PRESS), Row::of(Label { x_mm: -20.0, ..PRESS })];
-    let Measurement { table, truth } = measured(rows, 1, |_| ());
+    let Measurement { table, truth, .. } = measured(rows, 1, |_| ());
     for (row, truth) in table.rows.iter().zip(&truth) {
         assert_eq!((row.label, *truth), (row.label, row.label));
         let ideal_uv = ideal_uv(row.label);
@@ -48,6 +48,19 @@ fn a_perfect_pad_on_a_perfect_rig_reads_the_simulation() {
     }
     let times: Vec<f64> = table.rows.iter().map(|row| row.t_s.unwrap()).collect();
     assert_eq!(times, [5.0, 10.0], "lifted, rested, pressed, held, read for a second");
+}
+
+#[test]
+fn each_load_is_a_cycle_that_a_rig_can_count() {
+    let untouched = Row::of(Label { fx_n: 0.0, fz_n: 0.0, ..PRESS });
+    let pressed = Row::of(PRESS);
+    let counted = measured(vec![pressed, untouched, pressed], 1, |_| ()).counted();
+    let cycles: Vec<Option<f64>> = counted.table.rows.iter().map(|row| row.cycle).collect();
+    assert_eq!(cycles, [Some(1.0), Some(1.0), Some(2.0)]);
+    // A plan that says how many loads are behind a row is kept to.
+    let aged = measured(vec![Row { cycle: Some(900.0), ..pressed }, pressed], 1, |_| ());
+    assert_eq!(aged.cycles, [900.0, 901.0]);
+    assert_eq!(aged.table.rows[1].cycle, None, "what nobody counted is not written");
 }
 
 #[test]
@@ -90,7 +103,7 @@ fn ramp(trial: usize) -> Vec<Row> {
 
 #[test]
 fn late_labels_tell_the_past() {
-    let Measurement { table, truth } = measured(ramp(0), 1, |it| it.rig.label_lag_ms = 35.0);
+    let Measurement { table, truth, .. } = measured(ramp(0), 1, |it| it.rig.label_lag_ms = 35.0);
     for (index, row) in table.rows.iter().enumerate().skip(10) {
         assert_near(truth[index].fz_n, index as f64 / 100.0, 1e-6, "truth");
         assert_near(row.label.fz_n, index as f64 / 100.0 - 0.035, 1e-6, "label");
@@ -111,7 +124,7 @@ fn stage_and_reference_are_wrong_as_said() {
     let change = |it: &mut Behaviour| {
         (it.rig.stage_x_mm, it.rig.reference_gain, it.rig.reference_zero_n) = (0.3, 1.1, [0.0, 0.2, 0.0]);
     };
-    let Measurement { table, truth } = measured(vec![Row::of(PRESS)], 1, change);
+    let Measurement { table, truth, .. } = measured(vec![Row::of(PRESS)], 1, change);
     assert_eq!(truth[0], Label { x_mm: 4.3, ..PRESS });
     let written = table.rows[0].label;
     assert_near(written.x_mm, 4.0, 1e-9, "x");

@@ -39,8 +39,13 @@ fn verdict(diagnosis: &Diagnosis) -> String {
             "Partly explained: the causes below hold, but {percent:.0} % of what the model gets wrong here has no \
              known cause."
         ),
-        Verdict::Unexplained => {
+        Verdict::Unexplained if diagnosis.findings.is_empty() => {
             "Unexplained: the model is wrong here, and no known cause accounts for it.".into()
+        }
+        Verdict::Unexplained => {
+            "Unexplained: the model is wrong here. What is listed below describes how, but so much is left \
+            beside it that each may be a part of something that is not in the catalogue."
+                .into()
         }
     }
 }
@@ -62,7 +67,7 @@ fn sizes(diagnosis: &Diagnosis) -> String {
 /// A cause and where it is.
 fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
     if effect == UNLISTED {
-        return "one reason that it has in common with others, and that is not in the catalogue".to_owned();
+        return "a part of something that is not in the catalogue".to_owned();
     }
     let joint = if effect == "channels_swapped" { "with" } else { "from" };
     let with = target.with(channels).map(|with| format!(" {joint} {with}")).unwrap_or_default();
@@ -87,7 +92,8 @@ fn found(finding: &Finding, channels: &[String]) -> String {
         let others: Vec<String> = others.collect();
         text += &format!(". These rows do not tell it from {}", others.join(", or from "));
     }
-    if let Some(measurement) = &finding.separate_by {
+    let is_alone = finding.confounded_with.iter().all(|(effect, _)| *effect == UNLISTED);
+    if let Some(measurement) = finding.separate_by.as_ref().filter(|_| !is_alone) {
         text += &format!(". To tell: {}", measurement.trim_end_matches('.'));
     }
     text + "."

@@ -21,7 +21,7 @@ impl CarriedOut {
     #[expect(clippy::expect_used, reason = "no plan comes from outside, and tests carry out each of them")]
     pub(super) fn of(subject: &Subject<'_>, plan: &Table, seed: u64) -> Self {
         let pad = subject.actual;
-        let Measurement { table, truth } = carry_out(plan, pad.device, pad.field, seed);
+        let Measurement { table, truth, .. } = carry_out(plan, pad.device, pad.field, seed);
         let raw = table.rows.clone();
         let recording = Recording::of(table, pad.device.contact.full_scale_n);
         Self { recording: recording.expect("a plan begins with the untouched pad"), raw, truths: truth }

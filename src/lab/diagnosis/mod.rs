@@ -68,7 +68,7 @@ use self::gatekeepers::{Gate, guarded};
 pub use self::mechanics::Pad;
 use self::model::Model;
 use self::observations::Observations;
-use self::report::{Diagnosis, Finding, NotTestable, Residuals, UNLISTED, Verdict};
+use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
 use self::separation::Separation;
 use self::simulated::Simulated;
 use self::withdrawal::{Candidate, Named, doubted, in_common, named};
@@ -276,7 +276,7 @@ fn unnamed_squares(found: &Attribution) -> Vec<f64> {
 
 /// A finding that may be a part of something else explains nothing.
 fn verdict(findings: &[Finding], unnamed_share: f64) -> Verdict {
-    let explains = findings.iter().any(|it| it.confounded_with.iter().all(|(effect, _)| *effect != UNLISTED));
+    let explains = findings.iter().any(|it| !it.is_doubted());
     match (explains, unnamed_share > 0.0) {
         (false, false) => Verdict::NoDiscrepancy,
         (true, false) => Verdict::Explained,

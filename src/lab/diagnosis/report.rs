@@ -3,7 +3,8 @@
 use super::observations::Sample;
 use super::target::Target;
 
-/// As what it stands among the rivals that several findings may have one reason in common, which is none of the catalogue.
+/// As what it stands among the rivals that a finding may be a part of something that is not in the catalogue: of what is left
+/// unexplained, or of one reason that several findings have in common.
 pub const UNLISTED: &str = "unlisted_cause";
 
 /// What is said where nothing tells confounded causes apart.
@@ -130,6 +131,13 @@ pub struct Finding {
     pub confounded_with: Vec<(&'static str, Target)>,
     /// The measurement that would tell them apart.
     pub separate_by: Option<String>,
+}
+
+impl Finding {
+    /// Whether it may be a part of something that is not in the catalogue.
+    pub fn is_doubted(&self) -> bool {
+        self.confounded_with.iter().any(|(effect, _)| *effect == UNLISTED)
+    }
 }
 
 /// A number with its interval.

@@ -109,7 +109,7 @@ pub(super) fn in_common(findings: Vec<Finding>) -> Vec<Finding> {
 
 /// The finding as one that may be a part of what is not in the catalogue.
 pub(super) fn doubted(mut finding: Finding) -> Finding {
-    if finding.confounded_with.iter().all(|(effect, _)| *effect != UNLISTED) {
+    if !finding.is_doubted() {
         finding.confounded_with.push((UNLISTED, Target::Pad));
         finding.separate_by.get_or_insert_with(|| INSEPARABLE.to_owned());
     }
@@ -136,6 +136,16 @@ mod tests {
     fn doubted(causes: &[(&'static str, Target)]) -> Vec<usize> {
         let findings = in_common(causes.iter().copied().map(finding).collect());
         (0..findings.len()).filter(|at| findings[*at].confounded_with == [(UNLISTED, Target::Pad)]).collect()
+    }
+
+    #[test]
+    fn a_finding_is_told_by_far_more_than_what_is_left() {
+        // Ten times what is left in its own channels, four times what is left in all.
+        assert!(is_told(&[100.0, 0.0], &[9.9, 0.0]) && !is_told(&[100.0, 0.0], &[10.1, 0.0]));
+        assert!(is_told(&[100.0, 0.0], &[0.0, 24.9]) && !is_told(&[100.0, 0.0], &[0.0, 25.1]));
+        // Channels that have next to nothing of it are not its own.
+        assert!(is_told(&[100.0, 0.9], &[0.0, 20.0]) && !is_told(&[100.0, 1.1], &[0.0, 20.0]));
+        assert_eq!(doubted(doubted(finding(("creep", Target::Pad)))).confounded_with.len(), 1);
     }
 
     #[test]

@@ -32,6 +32,16 @@ pub struct Measurement {
     pub table: Table,
     /// The true contact of each row.
     pub truth: Vec<Label>,
+    /// The cycles of load up to each row, its own among them.
+    pub cycles: Vec<f64>,
+}
+
+impl Measurement {
+    /// The table with the cycles of load, as a rig can count them.
+    pub fn counted(mut self) -> Self {
+        self.table.rows.iter_mut().zip(&self.cycles).for_each(|(row, cycles)| row.cycle = Some(*cycles));
+        self
+    }
 }
 
 /// Carries out a plan on the pad of `device` whose field is `field`, with what the seed draws.
@@ -40,6 +50,7 @@ pub fn carry_out(plan: &Table, device: &Device, field: &PadField, seed: u64) -> 
     let mut measurement = Measurement {
         table: Table { rows: Vec::with_capacity(plan.rows.len()), ..plan.clone() },
         truth: Vec::with_capacity(plan.rows.len()),
+        cycles: Vec::with_capacity(plan.rows.len()),
     };
     for rows in plan.rows.chunk_by(|one, next| one.trial.is_some() && one.trial == next.trial) {
         match rows {
@@ -136,6 +147,7 @@ impl Bench {
             ..*row
         });
         into.truth.push(rounded(&truth));
+        into.cycles.push(self.around.cycles);
     }
 
     /// The load from which a static one is reached downwards.
@@ -159,6 +171,7 @@ impl Bench {
             let (truth, uv) = self.touch(after_s.max(0.0), &row.label);
             into.table.rows.push(Row { t_s: Some(whole_micros(self.at_s)), uv: Some(uv), ..*row });
             into.truth.push(rounded(&truth));
+            into.cycles.push(self.around.cycles);
         }
         let (rows, truths) = (into.table.rows.split_at_mut(begins_at).1, into.truth.split_at(begins_at).1);
         self.write_labels(rows, truths);

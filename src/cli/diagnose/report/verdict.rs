@@ -25,7 +25,13 @@ pub(super) fn headline(subject: &Subject<'_>) -> String {
         Verdict::PartlyExplained => {
             format!("{told}; {percent:.0} % of what the model gets wrong has no known cause.")
         }
-        Verdict::Unexplained => "The model is wrong here, and no known cause accounts for it.".to_owned(),
+        Verdict::Unexplained if diagnosis.findings.is_empty() => {
+            "The model is wrong here, and no known cause accounts for it.".to_owned()
+        }
+        Verdict::Unexplained => {
+            "The model is wrong here, in a way that no known causes account for. Those below describe it."
+                .to_owned()
+        }
     }
 }
 

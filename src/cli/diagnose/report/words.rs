@@ -81,7 +81,7 @@ const EFFECTS: [(&str, &str, &str); 36] = [
     ("contact_height", "height of the contact", "the forces act {mm|above|below} the plate’s surface"),
     ("contact_size", "size of the contact", "the contact has a radius of {radius_mm}"),
     ("time_lag", "labels out of step", "the labels are {ms|late|early}"),
-    (UNLISTED, "one reason for all of these that is not in the catalogue", "something else is wrong"),
+    (UNLISTED, "a part of something that is not in the catalogue", "something else is wrong"),
 ];
 
 /// An effect's name for people.

@@ -248,6 +248,6 @@ fn knob_of(key: Key, present: Option<f64>, values: Vec<f64>) -> Knob {
 }
 
 /// The number as people wrote it: 0.3 and not what is nearest to it in single precision.
-fn shortest(value: f32) -> f64 {
+pub(super) fn shortest(value: f32) -> f64 {
     value.to_string().parse().unwrap_or_else(|_| f64::from(value))
 }

@@ -11,12 +11,13 @@
 //! ```
 //!
 //! `docs/tuning.md` says what counts as right, how late a profile decides, and how values are chosen. [`difference`] says what a
-//! changed profile would have done to an old recording.
+//! changed profile would have done to an old recording. [`force_range`] fits forces alone, to a person who only presses.
 
 pub mod confusion;
 pub mod delay;
 pub mod difference;
 pub mod fitting;
+pub mod force_range;
 pub mod knobs;
 pub mod labels;
 pub mod places;

@@ -2,6 +2,7 @@
 
 mod ablation;
 mod calibration;
+mod force_range;
 #[cfg(feature = "foreign-onnx")]
 mod foreign;
 mod layout;

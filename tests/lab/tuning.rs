@@ -158,16 +158,16 @@ impl Hand {
 }
 
 /// A pad that writes down the calls on a pipeline, and the table of what was meant.
-struct Recording {
-    tracer: Tracer,
+pub(crate) struct Recording {
+    pub(crate) tracer: Tracer,
     field: InfluenceField,
     noise: SplitMix64,
-    now_ms: u64,
+    pub(crate) now_ms: u64,
     table: String,
 }
 
 impl Recording {
-    fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         let profile = read(PROFILE, OutputChoice::AsWritten).0.unwrap();
         Self {
             tracer: Tracer::new(shipped::decoder(), profile),
@@ -178,7 +178,7 @@ impl Recording {
         }
     }
 
-    fn sample(&mut self, contact: &Contact) {
+    pub(crate) fn sample(&mut self, contact: &Contact) {
         self.now_ms += 1;
         let uv = self.field.strain_uv(contact).uv;
         let counts = uv.map(|uv| {
@@ -197,7 +197,7 @@ impl Recording {
         self.tracer.apply(now, Call::Bytes(&frame[..length]));
     }
 
-    fn rest(&mut self, ms: f64) {
+    pub(crate) fn rest(&mut self, ms: f64) {
         for _ in 0..ms as u64 {
             self.sample(&Contact::default());
         }

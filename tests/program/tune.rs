@@ -6,7 +6,17 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use firmware_proto::ENCODED_MAX;
+use firmware_proto::frame::Message;
+use firmware_proto::link::encode_message;
+use firmware_proto::sample::{Sample, Status};
 use serde_json::Value;
+use tactpad::pad::field::PadField;
+use tactpad::pipeline::call::Call;
+use tactpad::pipeline::capture::head::Head;
+use tactpad::pipeline::capture::writer::CaptureWriter;
+use tactpad::quantity::Contact;
+use tactpad::time::HostInstant;
 
 fn tactpad(folder: &Path, line: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
@@ -138,4 +148,90 @@ fn what_cannot_be_used_is_said() {
     ] {
         refuses(folder, line, words);
     }
+}
+
+/// A recording of 30 s: presses of these forces in its first half and in its second, again and again.
+fn write_presses(path: &Path, [light_n, hard_n]: [&[f32]; 2]) {
+    let field = PadField::nominal().signals;
+    let mut writer = CaptureWriter::begin(Vec::new(), HostInstant::default(), &Head::default()).unwrap();
+    for sequence in 0..30_000 {
+        let (second, ms) = (sequence as usize / 1_000, sequence % 1_000);
+        let forces_n = if second < 15 { light_n } else { hard_n };
+        let fz_n = forces_n[second % forces_n.len()];
+        let is_down = second > 0 && (300..600).contains(&ms);
+        let contact = Contact { fz_n: if is_down { fz_n } else { 0.0 }, ..Contact::default() };
+        let counts = field.strain_uv(&contact).uv.map(|uv| (uv * 100.0) as i32);
+        let time_us = u64::from(sequence) * 1_000;
+        let sample = Sample { sequence, time_us, counts, temperature_centi_c: 2_500, status: Status::OK };
+        let mut frame = [0; ENCODED_MAX];
+        let length = encode_message(&Message::Sample(sample), &mut frame);
+        let now = HostInstant::default().plus_us(time_us);
+        writer.write(now, Call::Bytes(&frame[..length])).unwrap();
+    }
+    fs::write(path, writer.get_mut()).unwrap();
+}
+
+#[test]
+fn forces_are_fitted_to_presses_that_are_light_and_hard() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write_presses(&folder.join("range.cap"), [&[0.5, 0.6, 0.7], &[1.5, 1.6]]);
+    let line = "tune range.cap --force-range --profile super-mario --write mine --json";
+    let found = json(folder, line);
+    assert_eq!(found["presses"], serde_json::json!({ "light": 13, "hard": 14 }), "{found}");
+    let [light, most, hard] =
+        ["light_n", "light_most_n", "hard_n"].map(|key| found["range"][key].as_f64().unwrap());
+    assert!((0.45..0.55).contains(&light) && (0.65..0.75).contains(&most), "{found}");
+    assert!((1.45..1.55).contains(&hard), "{found}");
+    let reach = |when: &str| &found["reach"][when];
+    assert_eq!(
+        reach("before"),
+        &serde_json::json!({ "light_lowest": 13, "light_highest": 0, "hard_highest": 0 })
+    );
+    let after = serde_json::json!({ "light_lowest": 13, "light_highest": 0, "hard_highest": 14 });
+    assert_eq!(reach("after"), &after);
+    let later = serde_json::json!({ "light_lowest": 7, "light_highest": 0, "hard_highest": 7 });
+    assert_eq!(found["held_out"]["reach"]["after"], later);
+    assert_eq!(found["thresholds"][1]["key"], "button.1.press_n");
+    let highest = found["thresholds"][1]["after"]["force_n"].as_f64().unwrap();
+    let written = fs::read_to_string(found["written"].as_str().unwrap()).unwrap();
+    assert!(written.contains(&format!("press_n = {highest}\n")) && written.contains("# or \"keyboard\""));
+    printed(&tactpad(folder, "profile check mine"));
+    let told = printed(&tactpad(folder, "tune range.cap --force-range --profile mine --write mine"));
+    assert!(told.contains("nothing changes") && !told.contains("is written"), "{told}");
+    let told = printed(&tactpad(folder, "tune range.cap --force-range --profile contra --write c.toml"));
+    for words in ["13 light presses and 14 hard ones\n", "button.1.press_n    2.00 N", "c.toml is written\n"]
+    {
+        assert!(told.contains(words), "{told}");
+    }
+    assert!(told.lines().all(|line| line.chars().count() <= 80), "{told}");
+    refuses(folder, line, "is there already");
+}
+
+#[test]
+fn forces_that_cannot_be_fitted_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write_presses(&folder.join("flat.cap"), [&[0.5, 0.8], &[0.9]]);
+    let line = "tune flat.cap --force-range --profile super-mario --write mine.toml";
+    refuses(folder, line, "choose a profile that needs one force, as one-button, or tell presses by time");
+    assert!(!folder.join("mine.toml").exists());
+    let told = printed(&tactpad(folder, "tune flat.cap --force-range --profile one-button"));
+    assert!(told.contains("of 13 light presses are enough"), "{told}");
+    write_presses(&folder.join("few.cap"), [&[0.0], &[2.0]]);
+    refuses(
+        folder,
+        "tune few.cap --force-range --profile contra",
+        "0 presses in its first half and 14 in its second",
+    );
+    fs::write(
+        folder.join("flat.toml"),
+        "schema = 1\nname = \"F\"\noutput = \"gamepad\"\n[[button]]\nforce = \"fx\"\npress_n = 1\n\
+         out = { gamepad = \"BTN_TL\", keyboard = \"KEY_A\" }\n",
+    )
+    .unwrap();
+    refuses(folder, "tune flat.cap --force-range --profile flat.toml", "asks for no normal force");
+    refuses(folder, "tune --force-range --profile contra", "CAPTURE");
+    refuses(folder, "tune flat.cap --profile contra", "--labelled");
+    refuses(folder, "tune flat.cap --force-range --labelled a.csv --profile contra", "cannot be used with");
 }

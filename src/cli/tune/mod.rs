@@ -1,5 +1,6 @@
 //! `tactpad tune`: fits a profile to a hand.
 
+mod force_range;
 mod report;
 mod words;
 
@@ -31,14 +32,20 @@ const HELD_OUT_MIN: usize = 40;
     after_help = "Example: tactpad tune game.cap --labelled game.csv --profile super-mario --write mine\n\n\
     The table begins with the line begin_s,end_s,meant. Each line below it is a press: seconds since the recording's \
     first sample by the pad's clock, and what was meant: up, down, left, right, button 1, a control's name as \
-    BTN_SOUTH, several as right+BTN_SOUTH, or none."
+    BTN_SOUTH, several as right+BTN_SOUTH, or none.\n\n\
+    Without a table: tactpad record range.cap --seconds 30, in which the person presses again and again, up to the \
+    middle as lightly as feels sure and after it as hard as is comfortable; then tactpad tune range.cap --force-range \
+    --profile super-mario --write mine"
 )]
 pub(super) struct Arguments {
     /// The capture that tactpad record made; without it the one beside the table, game.cap for game.csv.
     capture: Option<PathBuf>,
     /// A CSV of what was meant when: begin_s,end_s,meant.
-    #[arg(long, value_name = "FILE")]
-    labelled: PathBuf,
+    #[arg(long, value_name = "FILE", required_unless_present = "force_range")]
+    labelled: Option<PathBuf>,
+    /// Fit the normal forces alone, to presses that are light in the recording's first half and hard in its second.
+    #[arg(long, conflicts_with_all = ["labelled", "delay_ms"], requires = "capture")]
+    force_range: bool,
     /// The profile to begin with: a name or a file.
     #[arg(long)]
     profile: String,
@@ -57,10 +64,19 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { labelled, profile: name, write, json, .. } = arguments;
+    match (&arguments.labelled, &arguments.capture) {
+        (Some(labelled), _) => fit_labelled(arguments, labelled),
+        (None, Some(capture)) => force_range::run(arguments, capture),
+        // The arguments ask for one of them.
+        (None, None) => Err(Failure::Unusable("name a recording".into())),
+    }
+}
+
+fn fit_labelled(arguments: &Arguments, labelled: &Path) -> Result<(), Failure> {
+    let Arguments { profile: name, write, json, .. } = arguments;
     let read = profile::read(name, OutputChoice::AsWritten)?;
     let labels = read_labels(labelled, read.profile())?;
-    let capture = arguments.capture()?;
+    let capture = arguments.capture(labelled)?;
     let stored = write.as_deref().map(|to| arguments.stored(to, &capture)).transpose()?;
     let trace = arguments.trace(&capture, read.profile())?;
     let last = labels.labels().last().map_or(0, |label| label.begin_us);
@@ -115,25 +131,26 @@ fn read_labels(path: &Path, profile: &Profile) -> Result<Labels, Failure> {
 
 impl Arguments {
     /// The capture, or the one beside the table.
-    fn capture(&self) -> Result<PathBuf, Failure> {
+    fn capture(&self, labelled: &Path) -> Result<PathBuf, Failure> {
         if let Some(capture) = &self.capture {
             return Ok(capture.clone());
         }
-        let beside = self.labelled.with_extension("cap");
+        let beside = labelled.with_extension("cap");
         if beside.exists() {
             return Ok(beside);
         }
         Err(Failure::Unusable(format!(
             "there is no {} beside the table: name the capture, as tactpad tune game.cap --labelled {}",
             beside.display(),
-            self.labelled.display()
+            labelled.display()
         )))
     }
 
     /// Where the profile is to be written, which is no file that is read.
     fn stored(&self, to: &str, capture: &Path) -> Result<Stored, Failure> {
         let stored = Stored::of(to, &self.profile)?;
-        for (read, what) in [(capture, "is the recording"), (&self.labelled, "is the table")] {
+        let table = self.labelled.as_deref().map(|labelled| (labelled, "is the table"));
+        for (read, what) in [(capture, "is the recording")].into_iter().chain(table) {
             if let Some(path) = stored.path().filter(|path| is_same(path, read)) {
                 return Err(written_over(path, what));
             }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use tactpad::lab::tuning::fitting::Change;
+use tactpad::lab::tuning::knobs::Key;
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::toml_text::edit::Table;
 
@@ -29,11 +30,18 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("dpad", "radius_hysteresis_mm", "a direction ends {} closer to the centre than it begins"),
     ("dpad", "hysteresis_mm", "a held direction reaches {} into its neighbours, along the arc"),
     ("dpad", "diagonal_deg", "a diagonal is {} wide"),
+    ("pointer", "min_force_n", "the pointer starts at {}"),
+    ("pointer", "release_force_n", "the pointer rests below {}"),
+    ("stick", "min_force_n", "it starts at {}"),
+    ("stick", "release_force_n", "it rests below {}"),
+    ("trigger", "from_n", "it rests up to {}"),
+    ("trigger", "full_n", "it is at its end from {} on"),
     ("zone", "inner_radius_mm", "it begins {} from the centre"),
     ("zone", "outer_radius_mm", "it ends {} from the centre"),
     ("zone", "radius_hysteresis_mm", "while the finger is in it, it reaches {} farther in and out"),
     ("button", "press_n", "a press begins at {}"),
     ("button", "release_n", "a press ends below {}"),
+    ("button", "hair_n", "a press ends {} below its highest force"),
     ("button", "hard_press_n", "a press is hard from {} on"),
     ("button", "hard_release_n", "a press is no longer hard below {}"),
     ("button", "long_press_ms", "a press is long from {} on"),
@@ -41,6 +49,7 @@ const MEANINGS: &[(&str, &str, &str)] = &[
     ("button", "dwell_ms", "a press counts once the finger has rested for {}"),
     ("button", "dwell_mm", "a finger rests if it stays within {}"),
     ("access", "tremor_hz", "what trembles faster than {} is calmed"),
+    ("access", "rest_n", "a touch is {} more than what rests"),
     ("access", "slow_ms", "a press counts once it has lasted {}"),
     ("access", "bounce_ms", "a press that begins less than {} after the last one does not count"),
 ];
@@ -49,20 +58,29 @@ const MEANINGS: &[(&str, &str, &str)] = &[
 const UNITS: [(&str, &str); 5] =
     [("_mm", " mm"), ("_ms", " ms"), ("_deg", "°"), ("_hz", " Hz"), ("_n", " N")];
 
+/// A key with the table it stands in, as `button.1.press_n`.
+pub(super) fn path((table, key): Key) -> String {
+    match table {
+        Table::Root => key.to_owned(),
+        Table::Named(name) => format!("{name}.{key}"),
+        Table::Listed(name, index) => format!("{name}.{}.{key}", index + 1),
+    }
+}
+
 impl Told {
     /// Says what a change means in this profile.
     pub(super) fn of(change: &Change, profile: &Profile) -> Self {
         let Change { table, key, from, to } = *change;
-        let (name, path, whose) = match table {
-            Table::Root => ("", String::new(), String::new()),
-            Table::Named(name) => (name, format!("{name}."), String::new()),
+        let (name, whose) = match table {
+            Table::Root => ("", String::new()),
+            Table::Named(name) => (name, String::new()),
             Table::Listed(name, index) => {
                 let zone = profile.zones.get(index).filter(|_| name == "zone");
                 let whose = zone.map_or_else(
                     || format!("{name} {}", index + 1),
                     |zone| format!("zone \"{}\"", zone.name),
                 );
-                (name, format!("{name}.{}.", index + 1), format!("{whose}: "))
+                (name, format!("{whose}: "))
             }
         };
         let meaning = MEANINGS.iter().find(|(table, known, _)| *table == name && *known == key);
@@ -70,18 +88,14 @@ impl Told {
         let unit = UNITS.iter().find(|(end, _)| key.ends_with(end)).map_or("", |(_, unit)| *unit);
         let before = from.map_or_else(|| "not at all".to_owned(), |from| format!("{from}{unit}"));
         let said = meaning.replace("{}", &format!("{to}{unit}"));
-        Self {
-            key: format!("{path}{key}"),
-            from,
-            to,
-            words: format!("{whose}{said}; before: {before} ({key})"),
-        }
+        Self { key: path((table, key)), from, to, words: format!("{whose}{said}; before: {before} ({key})") }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use tactpad::lab::tuning::force_range::levels;
     use tactpad::lab::tuning::knobs;
     use tactpad::pipeline::mapping::check::{OutputChoice, read};
 
@@ -113,5 +127,24 @@ mod tests {
             "zone \"ring\": it ends 6.5 mm from the centre; before: 15 mm (outer_radius_mm)"
         );
         assert_eq!(told.key, "zone.1.outer_radius_mm");
+    }
+
+    #[test]
+    fn each_force_that_is_fitted_to_a_hand_has_its_words() {
+        let text = "schema = 1\nname = \"All\"\noutput = \"gamepad\"\n[dpad]\n[pointer]\n[[stick]]\nstick = \"left\"\n\
+            [[trigger]]\ntrigger = \"left\"\n[[button]]\nforce = \"fz\"\npress_n = 2\nhair_n = 0.2\n\
+            light = { gamepad = \"BTN_TL\", keyboard = \"KEY_A\" }\nhard = { gamepad = \"BTN_TR\", keyboard = \"KEY_S\" }\n\
+            hard_press_n = 3\n";
+        let profile = read(text, OutputChoice::AsWritten).0.unwrap();
+        let levels = levels::all(&profile, text);
+        assert_eq!(levels.len(), 7);
+        let releases = [("pointer", "release_force_n"), ("access", "rest_n")]
+            .map(|(name, key)| (Table::Named(name), key));
+        let listed = [("stick", "release_force_n"), ("button", "hair_n")]
+            .map(|(name, key)| (Table::Listed(name, 0), key));
+        for (table, key) in levels.iter().map(|level| level.key).chain(releases).chain(listed) {
+            let told = Told::of(&Change { table, key, from: Some(2.0), to: 1.0 }, &profile);
+            assert!(!told.words.contains("it is 1 N"), "{}", told.words);
+        }
     }
 }

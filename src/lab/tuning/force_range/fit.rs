@@ -120,10 +120,10 @@ mod tests {
     #[test]
     fn the_ends_become_the_hands_and_releases_keep_their_share() {
         let text = shipped::text("super-mario").unwrap();
-        // 0.7 × 0.4, and √(0.8 × 1.25).
-        let wanted = [("min_force_n", 0.28), ("release_force_n", 0.19), ("press_n", 1.0), ("release_n", 0.7)];
+        // 0.5 × 0.4, and √(0.8 × 1.25).
+        let wanted = [("min_force_n", 0.2), ("release_force_n", 0.13), ("press_n", 1.0), ("release_n", 0.7)];
         assert_eq!(changes(text, &HAND), wanted);
-        // What is between is so in the logarithm: 0.3, 1.0 and 3.0 to 0.28, and half-way to 1.
+        // What is between is so in the logarithm: 0.3, half-way, and 3.0 to 0.2, half-way, and 1.0.
         let stages = text
             .replace("press_n = 2.0", "press_n = 0.9487\nhard_press_n = 3\nhair_n = 0.06")
             .replace("release_n = 1.4", "")
@@ -131,11 +131,11 @@ mod tests {
             .replace("tap =", "light =")
             .replace("hold =", "hard =");
         let wanted = [
-            ("min_force_n", 0.28),
-            ("release_force_n", 0.19),
+            ("min_force_n", 0.2),
+            ("release_force_n", 0.13),
             ("hair_n", 0.05),
             ("hard_press_n", 1.0),
-            ("press_n", 0.53),
+            ("press_n", 0.45),
         ];
         assert_eq!(changes(&stages, &HAND), wanted);
     }
@@ -153,7 +153,7 @@ mod tests {
     #[test]
     fn one_force_needs_no_range_and_several_do() {
         let one = shipped::text("one-button").unwrap();
-        assert_eq!(changes(one, &FLAT), [("press_n", 0.28), ("release_n", 0.16)]);
+        assert_eq!(changes(one, &FLAT), [("press_n", 0.2), ("release_n", 0.11)]);
         let several = fitted(shipped::text("contra").unwrap(), &FLAT);
         assert_eq!(several.unwrap_err(), Unfit::NotApart(FLAT));
     }
@@ -164,11 +164,11 @@ mod tests {
             [[trigger]]\ntrigger = \"left\"\nfrom_n = 1\nfull_n = 1.001\n\
             [access]\nrest_n = 0.5\n";
         let wanted = [
-            ("rest_n", 0.28),
+            ("rest_n", 0.2),
             ("min_force_n", 1.0),
             ("release_force_n", 0.99),
-            ("from_n", 0.28),
-            ("full_n", 0.29),
+            ("from_n", 0.2),
+            ("full_n", 0.21),
         ];
         assert_eq!(changes(text, &HAND), wanted);
         assert_eq!(

@@ -1,4 +1,4 @@
-//! Those who watch what becomes of each press: a line of JSON for each, behind a queue, so that nobody holds up the bridge.
+//! Those who watch what becomes of presses: a line of JSON for each, behind a queue, so that nobody holds up the bridge.
 
 use std::io;
 use std::net::Shutdown;
@@ -10,7 +10,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use serde::Serialize;
 
 use crate::bridge::queue::{Group, Queue};
-use crate::pipeline::mapping::verdict::{Reason, Verdict};
+use crate::pipeline::mapping::verdict::{Reason, Told, Verdict};
 
 /// So many may watch at a time.
 const WATCHERS_MAX: usize = 8;
@@ -37,7 +37,10 @@ struct Watcher {
 #[derive(Serialize)]
 struct Line {
     t_us: u64,
-    button: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    button: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    direction: Option<&'static str>,
     press: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<Reason>,
@@ -49,6 +52,23 @@ struct Line {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
 const fn is_none(lost: &u64) -> bool {
     *lost == 0
+}
+
+impl Line {
+    /// That of a verdict, before which so many were lost.
+    fn of(verdict: &Verdict, lost: u64) -> Self {
+        let (button, direction, rejected) = match verdict.told {
+            Told::Button { number, rejected } => (Some(number), None, rejected),
+            Told::Direction { direction, rejected } => (None, Some(direction.name()), rejected),
+            Told::Rest => (None, None, None),
+        };
+        let press = match verdict.told {
+            Told::Rest => "rest",
+            _ if rejected.is_some() => "rejected",
+            _ => "accepted",
+        };
+        Self { t_us: verdict.t.as_us(), button, direction, press, reason: rejected, lost }
+    }
 }
 
 impl Watchers {
@@ -93,13 +113,7 @@ impl Watcher {
 
     /// Hands a line on, or counts it as lost.
     fn tell(&mut self, verdict: &Verdict) -> io::Result<()> {
-        let line = Line {
-            t_us: verdict.t.as_us(),
-            button: verdict.button,
-            press: if verdict.rejected.is_some() { "rejected" } else { "accepted" },
-            reason: verdict.rejected,
-            lost: self.lost,
-        };
+        let line = Line::of(verdict, self.lost);
         let bytes = (serde_json::to_string(&line).map_err(io::Error::other)? + "\n").into_bytes();
         let is_taken = self.lines.push(Group { bytes, count: 1, written: None })?;
         self.lost = if is_taken { 0 } else { self.lost + 1 };
@@ -127,10 +141,26 @@ mod tests {
     use std::io::{BufRead, BufReader};
 
     use super::*;
+    use crate::pipeline::mapping::profile::Direction;
     use crate::time::StreamInstant;
 
     fn verdict(us: u64, rejected: Option<Reason>) -> Verdict {
-        Verdict { t: StreamInstant::from_us(us), button: 2, rejected }
+        Verdict { t: StreamInstant::from_us(us), told: Told::Button { number: 2, rejected } }
+    }
+
+    #[test]
+    fn directions_and_hands_that_rest_have_lines_of_their_own() {
+        let line = |told| {
+            let verdict = Verdict { t: StreamInstant::from_us(7), told };
+            serde_json::to_string(&Line::of(&verdict, 0)).unwrap()
+        };
+        let left = |rejected| Told::Direction { direction: Direction::Left, rejected };
+        assert_eq!(line(left(None)), r#"{"t_us":7,"direction":"left","press":"accepted"}"#);
+        assert_eq!(
+            line(left(Some(Reason::Slow))),
+            r#"{"t_us":7,"direction":"left","press":"rejected","reason":"slow"}"#
+        );
+        assert_eq!(line(Told::Rest), r#"{"t_us":7,"press":"rest"}"#);
     }
 
     #[test]

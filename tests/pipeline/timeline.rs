@@ -10,6 +10,7 @@
 //! remove button.1                      takes a button away
 //! add [[button]]                       a line at the end
 //! output keyboard                      play the keyboard's bindings
+//! watch presses                        what becomes of presses is expected, too, see below
 //!
 //! 0ms x=20 y=0 fz=1.0                  one sample; fx, fy, fz, x, y are 0 if absent
 //! 5ms angle=30 r=20 fz=1.0             the place in polar coordinates
@@ -17,7 +18,8 @@
 //! 110ms lift                           the contact ends; `fault` cancels; `switch NAME` plays another
 //!
 //! 0ms ABS_HAT0X 1                      the expected edges, releases first, or the word `nothing`;
-//! 0ms bridge panic                     what is asked of the bridge comes after them
+//! 0ms bridge panic                     what is asked of the bridge comes after them,
+//! 0ms accepted button 1                and what becomes of presses after that: `rejected left slow`, `rest`
 //! ```
 
 #![allow(clippy::expect_used, reason = "a timeline that cannot be read must fail its test")]
@@ -30,6 +32,7 @@ use tactpad::pipeline::mapping::engine::Engine;
 use tactpad::pipeline::mapping::intent::Intents;
 use tactpad::pipeline::mapping::profile::{Command, Profile};
 use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::verdict::{Reason, Told};
 use tactpad::quantity::Contact;
 use tactpad::time::StreamInstant;
 
@@ -71,8 +74,10 @@ fn profile(text: &str, output: OutputChoice) -> Profile {
     profile.unwrap_or_else(|| panic!("{found:?}\n{text}"))
 }
 
-fn head(block: &[&str]) -> (String, Profile) {
+/// A case: its name, its profile, and whether what becomes of presses is expected.
+fn head(block: &[&str]) -> (String, Profile, bool) {
     let (mut name, mut text, mut output) = (String::new(), String::new(), OutputChoice::AsWritten);
+    let mut is_watched = false;
     for line in block {
         match line.split_once(' ').expect("a word and its value") {
             ("case", rest) => name = rest.to_owned(),
@@ -81,10 +86,11 @@ fn head(block: &[&str]) -> (String, Profile) {
             ("remove", button) => text = without(&text, button),
             ("add", line) => text = format!("{}\n{line}\n", text.trim_end()),
             ("output", "keyboard") => output = OutputChoice::Keyboard,
+            ("watch", "presses") => is_watched = true,
             other => panic!("unknown line {other:?}"),
         }
     }
-    (name, profile(&text, output))
+    (name, profile(&text, output), is_watched)
 }
 
 /// A value that runs from its first to its last over the samples of a line.
@@ -131,8 +137,23 @@ fn shown(command: &Command) -> String {
     }
 }
 
-/// The steps that one input line stands for, each with the levels after it and what is asked of the bridge.
-fn play(engine: &mut Engine, line: &str) -> Vec<(u64, Intents, Vec<String>)> {
+/// What became of a press.
+fn judged(told: &Told) -> String {
+    let (whose, rejected) = match told {
+        Told::Button { number, rejected } => (format!("button {number}"), rejected),
+        Told::Direction { direction, rejected } => (direction.name().to_owned(), rejected),
+        Told::Rest => return "rest".into(),
+    };
+    match rejected {
+        None => format!("accepted {whose}"),
+        Some(Reason::Slow) => format!("rejected {whose} slow"),
+        Some(Reason::Bounce) => format!("rejected {whose} bounce"),
+        Some(Reason::Dwell) => format!("rejected {whose} dwell"),
+    }
+}
+
+/// The steps that one input line stands for, each with the levels after it and what is asked of the bridge, or told.
+fn play(engine: &mut Engine, is_watched: bool, line: &str) -> Vec<(u64, Intents, Vec<String>)> {
     let words: Vec<_> = line.split_whitespace().collect();
     let (time, action) = words.split_first().expect("a time");
     let (from, to) = time.split_once("..").unwrap_or((time, time));
@@ -140,7 +161,10 @@ fn play(engine: &mut Engine, line: &str) -> Vec<(u64, Intents, Vec<String>)> {
     let mut step = |ms: u64, contact: Option<&Contact>| {
         let levels = engine.step(StreamInstant::from_us(ms * 1_000), contact);
         let asked = engine.commands().iter().map(|command| format!("{ms}ms bridge {}", shown(command)));
-        (ms, levels, asked.collect())
+        let told = engine.verdicts().iter().filter(|_| is_watched);
+        let asked = asked.chain(told.map(|verdict| format!("{ms}ms {}", judged(&verdict.told)))).collect();
+        engine.forget_verdicts();
+        (ms, levels, asked)
     };
     match action {
         ["fault"] => {
@@ -162,12 +186,12 @@ fn play(engine: &mut Engine, line: &str) -> Vec<(u64, Intents, Vec<String>)> {
     }
 }
 
-fn played(profile: Profile, input: &[&str]) -> Vec<String> {
+fn played(profile: Profile, is_watched: bool, input: &[&str]) -> Vec<String> {
     let mut engine = Engine::new(profile);
     let mut held = Intents::new();
     let mut found = Vec::new();
     for line in input {
-        for (ms, levels, asked) in play(&mut engine, line) {
+        for (ms, levels, asked) in play(&mut engine, is_watched, line) {
             found.extend(edges(ms, &held, &levels));
             found.extend(asked);
             held = levels;
@@ -189,9 +213,9 @@ fn timelines() {
         let blocks: Vec<_> = lines.split(|line| line.is_empty()).filter(|block| !block.is_empty()).collect();
         assert_eq!(blocks.len() % 3, 0, "{}: three blocks per case", path.display());
         for case in blocks.chunks(3) {
-            let (name, profile) = head(case[0]);
+            let (name, profile, is_watched) = head(case[0]);
             let expected: Vec<_> = case[2].iter().filter(|line| **line != "nothing").copied().collect();
-            let found = played(profile, case[1]);
+            let found = played(profile, is_watched, case[1]);
             cases += 1;
             if found != expected {
                 failures +=

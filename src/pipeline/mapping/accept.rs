@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::gate::Touch;
 use super::profile::{Access, Dwell};
+use super::verdict::Reason;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
 
@@ -14,6 +15,13 @@ pub struct Presses {
     pub accepted: u64,
     /// Those that were too short, too soon, or moved about.
     pub rejected: u64,
+}
+
+impl Presses {
+    /// What was added since `before`: nothing, or a press, and whether it was rejected.
+    pub(super) fn since(self, before: Self) -> Option<bool> {
+        (self != before).then_some(self.rejected > before.rejected)
+    }
 }
 
 /// Where a force stands.
@@ -68,6 +76,15 @@ impl Accept {
             || matches!((before, *self), (Self::Waiting { .. }, Self::Off { .. }));
         presses.rejected += u64::from(is_refused);
         *self == Self::Accepted
+    }
+
+    /// Why what it stands for does not count, if it was rejected just now.
+    pub(super) const fn why_rejected(self, Conditions { access, dwell }: Conditions) -> Reason {
+        match (self, dwell) {
+            (Self::Rejected { .. }, _) => Reason::Bounce,
+            (_, Some(dwell)) if dwell.us > access.slow_us => Reason::Dwell,
+            _ => Reason::Slow,
+        }
     }
 
     /// Forgets what waits.

@@ -4,6 +4,7 @@ use super::accept::{Accept, Conditions, Presses};
 use super::gate::Touch;
 use super::profile::{Access, Direction};
 use super::sector::Sector;
+use super::verdict::{Told, Verdict, Verdicts};
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
 
@@ -26,20 +27,27 @@ impl Directed {
         Self { accepts: [Accept::Off { since: None }; DIRECTIONS.len()] }
     }
 
-    /// Goes on to `t`, where the contact is in `sector`; the directions that count.
+    /// Goes on to `t`, where the contact is in `sector`; the directions that count. Of those that could be rejected it is told what became
+    /// of them.
     pub(super) fn step(
         &mut self,
         access: Access,
         t: StreamInstant,
         (sector, contact): (Option<Sector>, Option<&Contact>),
-        presses: &mut Presses,
+        (presses, verdicts): (&mut Presses, &mut Verdicts),
     ) -> Directions {
         let conditions = Conditions { access, dwell: None };
+        let may_reject = [access.slow_us, access.bounce_us] != [0, 0];
         let mut on = Directions::default();
         for ((direction, accept), is_on) in DIRECTIONS.into_iter().zip(&mut self.accepts).zip(&mut on.0) {
             let is_asked = sector.is_some_and(|sector| sector.has(direction));
             let touch = Touch { is_on: is_asked, is_hard: false, is_in_place: true };
+            let before = *presses;
             *is_on = accept.step(conditions, t, (touch, contact), presses);
+            if let Some(is_rejected) = presses.since(before).filter(|_| may_reject) {
+                let rejected = is_rejected.then(|| accept.why_rejected(conditions));
+                verdicts.keep(Verdict { t, told: Told::Direction { direction, rejected } });
+            }
         }
         on
     }

@@ -6,14 +6,14 @@ use super::accept::Presses;
 use super::directed::{Directed, Directions};
 use super::intent::Intents;
 use super::profile::{BUTTONS_MAX, Button, Direction, Place, Profile, SIDES};
-use super::rest::Resting;
+use super::rest::{Load, Resting};
 use super::running::Running;
 use super::sector::{self, Sector};
 use super::stated::{Commands, Stated};
 use super::steer::{self, Steered};
 use super::touched::{Touched, force_of};
 use super::tremor::Calm;
-use super::verdict::{Verdict, Verdicts};
+use super::verdict::{Told, Verdict, Verdicts};
 use super::zone;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
@@ -118,7 +118,8 @@ impl Engine {
         };
         self.held = contact.and_then(|contact| sector::follow(dpad, self.held, contact));
         let asked = (self.held, contact);
-        self.directions = self.directed.step(self.profile.access, t, asked, &mut self.presses);
+        let heard = (&mut self.presses, &mut self.verdicts);
+        self.directions = self.directed.step(self.profile.access, t, asked, heard);
         let layer = self.layer.and_then(|number| self.profile.layers.get(number));
         for direction in self.directions.iter() {
             let (own, in_layer) = match direction {
@@ -163,10 +164,9 @@ impl Engine {
             let before = self.presses;
             let help = (access, &mut self.presses);
             touched.step(button, t, (contact, is_in_place), help).for_each(|playing| stated.take(playing));
-            if self.presses != before {
-                let is_rejected = self.presses.rejected > before.rejected;
+            if let Some(is_rejected) = self.presses.since(before) {
                 let rejected = is_rejected.then(|| touched.why_rejected(button, access));
-                self.verdicts.keep(Verdict { t, button: number, rejected });
+                self.verdicts.keep(Verdict { t, told: Told::Button { number, rejected } });
             }
         }
     }
@@ -177,8 +177,12 @@ impl Engine {
             (self.calm, self.resting) = (None, None);
             return None;
         };
-        let access = &self.profile.access;
-        if access.rest.is_some_and(|rest| !Resting::step(&mut self.resting, rest, t, contact)) {
+        let access = self.profile.access;
+        let load = access.rest.map_or(Load::Touch, |rest| Resting::step(&mut self.resting, rest, t, contact));
+        if let Load::Rest { is_news } = load {
+            if is_news {
+                self.verdicts.keep(Verdict { t, told: Told::Rest });
+            }
             self.calm = None;
             return None;
         }
@@ -217,7 +221,7 @@ impl Engine {
         self.presses
     }
 
-    /// What became of presses since [`Self::forget_verdicts`], as far as there was room: the oldest first.
+    /// What became of presses, and when a hand began to rest, since [`Self::forget_verdicts`], as far as there was room: the oldest first.
     pub fn verdicts(&self) -> &[Verdict] {
         self.verdicts.all()
     }

@@ -5,7 +5,7 @@
 //! A profile's text becomes a [`profile::Profile`] in `binding` → `conflict`, `named` → `plate`, `stages`, `access`, `macros`, `effects` →
 //! `dpad`, `layers`, `analogues`, `button` → `check`; each of these uses only those before it. The live part is what a touch is and where
 //! (`rest` → `tremor` → `sector` → `directed`, `zone`, `steer`, `analogue`) and what goes on at a button (`gate` → `accept` → `press`, `stage` →
-//! `effect`, together in `touched`). What that comes to is collected in `stated`, where macros (`running`) have the last word. `engine`
+//! `effect`, together in `touched`). `verdict` is what people are told of it. What that comes to is collected in `stated`, where macros (`running`) have the last word. `engine`
 //! puts it all together.
 
 pub mod accept;

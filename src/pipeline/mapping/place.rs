@@ -152,3 +152,15 @@ pub enum Direction {
     /// Right.
     Right,
 }
+
+impl Direction {
+    /// How a profile writes it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Up => "up",
+            Self::Down => "down",
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}

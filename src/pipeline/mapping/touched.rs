@@ -96,11 +96,7 @@ impl Touched {
 
     /// Why its press does not count, if it was rejected just now.
     pub(super) fn why_rejected(&self, button: &Button, access: Access) -> Reason {
-        match (self.accept, button.dwell) {
-            (Accept::Rejected { .. }, _) => Reason::Bounce,
-            (_, Some(dwell)) if dwell.us > access.slow_us => Reason::Dwell,
-            _ => Reason::Slow,
-        }
+        self.accept.why_rejected(Conditions { access, dwell: button.dwell })
     }
 
     /// Forgets what is under way and what was toggled. A force that is on does nothing until it was released once.

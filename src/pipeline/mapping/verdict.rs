@@ -1,8 +1,9 @@
-//! What became of each press: for people who want to hear or see it.
+//! What became of each press, and when a hand began to rest: for people who want to hear or see it.
 
 use arrayvec::ArrayVec;
 use serde::Serialize;
 
+use super::profile::Direction;
 use crate::time::StreamInstant;
 
 /// So many are kept until somebody takes them: more than a read of the pad's bytes brings.
@@ -14,21 +15,41 @@ const KEPT_MAX: usize = 64;
 pub enum Reason {
     /// It was shorter than Slow Keys ask for.
     Slow,
-    /// It came too soon after the last one of its button, for Bounce Keys.
+    /// It came too soon after the last one of its button or direction, for Bounce Keys.
     Bounce,
     /// The finger did not rest for long enough.
     Dwell,
 }
 
-/// What became of a press.
+/// What became of a press, or of a hand that lies on the pad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Verdict {
     /// Stream time at which it was clear.
     pub t: StreamInstant,
-    /// The button, counted from 1 in the file's order.
-    pub button: usize,
-    /// Why it did not count; `None` if it did.
-    pub rejected: Option<Reason>,
+    /// What is told.
+    pub told: Told,
+}
+
+/// What a verdict tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Told {
+    /// A press of a button.
+    Button {
+        /// Counted from 1 in the file's order.
+        number: usize,
+        /// Why it did not count; `None` if it did.
+        rejected: Option<Reason>,
+    },
+    /// A direction that Slow Keys or Bounce Keys may reject; without them every one counts, and none is told.
+    Direction {
+        /// Which one.
+        direction: Direction,
+        /// Why it did not count; `None` if it did.
+        rejected: Option<Reason>,
+    },
+    /// A load that would be a touch is taken for a hand that rests. Told once after a lift or a touch, when it has lasted as long as the
+    /// profile gives a load to settle.
+    Rest,
 }
 
 /// What became of the presses since somebody looked.

@@ -3,11 +3,12 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader};
+use std::os::unix::fs::PermissionsExt;
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use rustix::process::Signal;
+use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 
 use crate::presses;
@@ -163,8 +164,8 @@ fn a_bridge_that_does_not_answer_is_one_sentence() {
     assert!(!text.contains("os error") && text.trim_end().lines().count() == 1, "{text}");
 }
 
-#[test]
-fn each_press_that_is_accepted_or_rejected_is_told_to_who_watches() {
+/// A bridge that plays presses of which some are accepted and some rejected.
+fn start_with_presses() -> Running {
     let folder = tempfile::tempdir().unwrap();
     let capture = format!("capture:{}", presses::write_capture(folder.path()).display());
     let text = "schema = 1\nname = \"Mine\"\noutput = \"gamepad\"\n[access]\nbounce_ms = 1000\n\
@@ -174,8 +175,14 @@ fn each_press_that_is_accepted_or_rejected_is_told_to_who_watches() {
     fs::write(folder.path().join("mine.toml"), text).unwrap();
     let mut program = tactpad(folder.path());
     program.args(["run", "--profile", "mine.toml", "--output", "none", "--pad", &capture]);
-    let mut bridge = Running::start(folder, program);
+    let bridge = Running::start(folder, program);
     await_status(&bridge, "plays", |status| status["state"] != "waiting" && !status["state"].is_null());
+    bridge
+}
+
+#[test]
+fn each_press_that_is_accepted_or_rejected_is_told_to_who_watches() {
+    let mut bridge = start_with_presses();
     let mut watching = tactpad(bridge.folder.path());
     let mut watching = watching.args(["ctl", "watch"]).stdout(Stdio::piped()).spawn().unwrap();
     let lines = BufReader::new(watching.stdout.take().unwrap()).lines().map(Result::unwrap);
@@ -197,4 +204,72 @@ fn each_press_that_is_accepted_or_rejected_is_told_to_who_watches() {
     assert!(bridge.ctl("quit").status.success());
     assert!(bridge.ends_within(5_000).is_some());
     assert!(watching.wait().unwrap().code().is_some());
+}
+
+/// A player that writes down what it plays and its number, and then stands still until it is continued.
+fn write_player(folder: &Path) {
+    let (played, numbers) = (folder.join("played"), folder.join("numbers"));
+    let text = format!(
+        "#!/bin/sh\necho \"$*\" >> '{}'\necho $$ >> '{}'\nkill -STOP $$\n",
+        played.display(),
+        numbers.display()
+    );
+    let player = folder.join("paplay");
+    fs::write(&player, text).unwrap();
+    fs::set_permissions(&player, fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+/// The lines of a file that may not be there yet; one that is being written is none.
+fn lines(path: &Path) -> Vec<String> {
+    let text = fs::read_to_string(path).unwrap_or_default();
+    text.split_inclusive('\n').filter_map(|line| Some(line.strip_suffix('\n')?.to_owned())).collect()
+}
+
+#[test]
+fn presses_sound_one_at_a_time_and_hold_up_no_line() {
+    let mut bridge = start_with_presses();
+    let folder = bridge.folder.path().to_owned();
+    write_player(&folder);
+    let mut watching = Command::new(TACTPAD);
+    watching.args(["ctl", "watch", "--sound", "all"]).env("PATH", &folder).env("XDG_RUNTIME_DIR", &folder);
+    let mut watching = watching.stdout(Stdio::piped()).spawn().unwrap();
+    let mut told = BufReader::new(watching.stdout.take().unwrap()).lines().map(Result::unwrap);
+    let mut press = || -> Value { serde_json::from_str(&told.next().unwrap()).unwrap() };
+    let [played, numbers] = ["played", "numbers"].map(|name| folder.join(name));
+    // While the first sound stands still, two more presses are told.
+    for count in 1..=2 {
+        let heard = press()["press"].as_str().unwrap().to_owned();
+        assert!(comes_true(10_000, || lines(&numbers).len() == count), "{:?}", lines(&played));
+        let wanted = folder.join(format!("tactpad-{heard}.wav"));
+        assert_eq!(lines(&played)[count - 1], wanted.display().to_string());
+        assert_eq!(fs::read(wanted).unwrap()[..4], *b"RIFF");
+        let _others = [press(), press()];
+        assert_eq!(lines(&played).len(), count);
+        if count == 2 {
+            // So that none is left standing at the end.
+            fs::remove_file(folder.join("paplay")).unwrap();
+        }
+        let number = lines(&numbers)[count - 1].clone();
+        let player = Pid::from_raw(number.parse().unwrap()).unwrap();
+        kill_process(player, Signal::CONT).unwrap();
+        // It is gone, and no trace is left.
+        assert!(comes_true(5_000, || !Path::new("/proc").join(&number).exists()));
+    }
+    assert!(bridge.ctl("quit").status.success());
+    assert!(bridge.ends_within(5_000).is_some());
+    assert!(watching.wait().unwrap().code().is_some());
+}
+
+#[test]
+fn without_a_player_there_is_one_sentence() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut watching = Command::new(TACTPAD);
+    watching
+        .args(["ctl", "watch", "--sound"])
+        .env("PATH", folder.path())
+        .env("XDG_RUNTIME_DIR", folder.path());
+    let output = watching.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("install one of pw-play (pipewire-bin)") && said.lines().count() == 1, "{said}");
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde_json::Value;
 
+use super::sound::{Sounds, Which};
 use crate::cli::failure::Failure;
 use crate::cli::profile;
 use crate::cli::written::{printable, reason, stdout};
@@ -29,8 +30,12 @@ enum Action {
     #[command(after_help = "Example: tactpad ctl status --json")]
     Status,
     /// Print one line of JSON for each press that is accepted or rejected, until the bridge ends.
-    #[command(after_help = "Example: tactpad ctl watch")]
-    Watch,
+    #[command(after_help = "Example: tactpad ctl watch --sound")]
+    Watch {
+        /// Play a sound for each rejected press, or with "all" for accepted ones, too.
+        #[arg(long, value_name = "WHICH", num_args = 0..=1, default_missing_value = "rejected")]
+        sound: Option<Which>,
+    },
     /// Release everything and ignore the pad.
     #[command(after_help = "Example: tactpad ctl pause")]
     Pause,
@@ -71,7 +76,7 @@ pub(super) fn socket_path() -> PathBuf {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = socket_path();
     let request = match &arguments.action {
-        Action::Watch => return watch_presses(&path),
+        Action::Watch { sound } => return watch_presses(&path, *sound),
         Action::Status => "status".to_owned(),
         Action::Pause => "pause".to_owned(),
         Action::Resume => "resume".to_owned(),
@@ -95,8 +100,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Prints what becomes of each press.
-fn watch_presses(path: &Path) -> Result<(), Failure> {
+/// Prints what becomes of each press, and plays a sound for it if that is asked for.
+fn watch_presses(path: &Path, sound: Option<Which>) -> Result<(), Failure> {
+    let sounds = sound.map(Sounds::start).transpose()?;
     let mut is_answered = false;
     let mut out = stdout();
     let mut printed: Result<(), Failure> = Ok(());
@@ -107,6 +113,7 @@ fn watch_presses(path: &Path) -> Result<(), Failure> {
             printed = refused.map_or(Ok(()), |error| Err(Failure::Failed(error)));
         } else {
             printed = writeln!(out, "{line}").and_then(|()| out.flush()).map_err(Failure::from);
+            sounds.iter().for_each(|sounds| sounds.play(line));
         }
         // What is wrong here is told by whoever reads `printed`.
         if printed.is_ok() { Ok(()) } else { Err(io::ErrorKind::Other.into()) }

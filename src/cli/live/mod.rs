@@ -15,6 +15,7 @@ mod record;
 mod run;
 mod screen;
 mod seconds;
+mod sound;
 mod wish;
 
 use clap::Subcommand;

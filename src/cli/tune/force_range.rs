@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::Arguments;
+use super::arguments::Arguments;
 use super::report::Pair;
 use super::words::{Told, path};
 use crate::cli::failure::Failure;

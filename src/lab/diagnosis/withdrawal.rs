@@ -145,7 +145,7 @@ mod tests {
         assert!(is_told(&[100.0, 0.0], &[0.0, 24.9]) && !is_told(&[100.0, 0.0], &[0.0, 25.1]));
         // Channels that have next to nothing of it are not its own.
         assert!(is_told(&[100.0, 0.9], &[0.0, 20.0]) && !is_told(&[100.0, 1.1], &[0.0, 20.0]));
-        assert_eq!(doubted(doubted(finding(("creep", Target::Pad)))).confounded_with.len(), 1);
+        assert_eq!(super::doubted(super::doubted(finding(("creep", Target::Pad)))).confounded_with.len(), 1);
     }
 
     #[test]

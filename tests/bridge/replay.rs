@@ -105,6 +105,15 @@ fn a_cut_off_recording_replays_as_far_as_it_reaches() {
 }
 
 #[test]
+fn a_recording_for_the_force_range_says_when_to_press_how() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = tactpad(&["record", "range.cap", "--force-range", "--seconds", "2"], folder.path());
+    let said = String::from_utf8(output.stderr).unwrap();
+    let [light, hard] = ["as lightly as feels sure", "as hard as is comfortable"].map(|cue| said.find(cue));
+    assert!(output.status.success() && light.is_some() && light < hard, "{said}");
+}
+
+#[test]
 fn contacts_are_mapped_as_they_stand() {
     let folder = tempfile::tempdir().unwrap();
     let rows = "t_s,x_mm,y_mm,fx_n,fy_n,fz_n\n0,20,0,0,0,1\n0.5,20,0,0,0,0\n1,0,0,0,0,3\n1.1,0,0,0,0,0\n1.2,0,0,0,0,0\n";

@@ -1,6 +1,8 @@
 //! `tactpad record`: plays like `run` and writes down every call, so that `replay` gives the same events.
 
 use std::path::PathBuf;
+use std::thread;
+use std::time::Duration;
 
 use clap::Args;
 
@@ -53,7 +55,17 @@ pub(crate) struct Arguments {
     /// End after this many seconds; without it Ctrl-C ends.
     #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
+    /// Say when to press lightly and when hard, for tune --force-range; it ends after 30 s, or after --seconds.
+    #[arg(long)]
+    force_range: bool,
 }
+
+/// How long presses for the force range are recorded, and what is said at the begin and in the middle.
+const FORCE_RANGE_S: f64 = 30.0;
+const FORCE_RANGE_CUES: [&str; 2] = [
+    "press again and again as lightly as feels sure, and lift the finger after each press",
+    "and now again and again as hard as is comfortable",
+];
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { capture, pad, profile, output, decoder, .. } = arguments;
@@ -75,6 +87,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     say(format_args!("recording {} in {place}", arguments.pad));
     let audience = Audience::Stderr;
     let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
+    let seconds = arguments.seconds.or(arguments.force_range.then_some(FORCE_RANGE_S));
     let mut bridge = Bridge::new(Parts {
         pad: opened,
         patience,
@@ -84,8 +97,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         requests: requests(Some(&ctl::socket_path()), audience)?,
         host: Box::new(host),
         record: Some(Box::new(capture)),
-        duration_us: arguments.seconds.map(microseconds),
+        duration_us: seconds.map(microseconds),
     })?;
+    if let Some(seconds) = seconds.filter(|_| arguments.force_range) {
+        cue(seconds);
+    }
     play(&mut bridge, &arguments.pad)?;
     match bridge.drops().calls_unrecorded {
         0 => {
@@ -97,4 +113,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
              see that the pipe is read"
         ))),
     }
+}
+
+/// Says what to press, now and in the middle of so many seconds.
+fn cue(seconds: f64) {
+    let [light, hard] = FORCE_RANGE_CUES;
+    say(light);
+    let half = Duration::from_secs_f64(seconds / 2.0);
+    // It ends with the program, if that ends before.
+    thread::spawn(move || {
+        thread::sleep(half);
+        say(hard);
+    });
 }

@@ -1,6 +1,7 @@
 //! `tactpad record`: plays like `run` and writes down every call, so that `replay` gives the same events.
 
 use std::path::PathBuf;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::Duration;
 
@@ -99,10 +100,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         record: Some(Box::new(capture)),
         duration_us: seconds.map(microseconds),
     })?;
-    if let Some(seconds) = seconds.filter(|_| arguments.force_range) {
-        cue(seconds);
-    }
+    let cue = seconds.filter(|_| arguments.force_range).map(cue);
     play(&mut bridge, &arguments.pad)?;
+    drop(cue);
     match bridge.drops().calls_unrecorded {
         0 => {
             say(format_args!("{} samples recorded", bridge.health().samples));
@@ -115,14 +115,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Says what to press, now and in the middle of so many seconds.
-fn cue(seconds: f64) {
+/// Says what to press: now, and in the middle of so many seconds, unless what it gives back is gone by then.
+fn cue(seconds: f64) -> Sender<()> {
     let [light, hard] = FORCE_RANGE_CUES;
     say(light);
+    let (held, gone) = channel();
     let half = Duration::from_secs_f64(seconds / 2.0);
-    // It ends with the program, if that ends before.
     thread::spawn(move || {
-        thread::sleep(half);
-        say(hard);
+        if gone.recv_timeout(half) == Err(RecvTimeoutError::Timeout) {
+            say(hard);
+        }
     });
+    held
 }

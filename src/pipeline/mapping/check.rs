@@ -15,8 +15,10 @@ use super::limits::{
     CURVE, FILTER_SAMPLES, FULL_RADIUS_MM, MIN_PRESS_MS, POINTER_CENTRE_MM, SPEED_COUNTS_PER_S,
 };
 use super::macros::MacroDraft;
-use super::plate::{self, GAIN_KEYS};
-use super::profile::{Access, BUTTONS_MAX, Gain, Pointer, PointerMode, Profile, Stick, Trigger, Zone};
+use super::plate;
+use super::profile::{
+    Access, BUTTONS_MAX, Direction, Gain, Pointer, PointerMode, Profile, Stick, Trigger, Zone,
+};
 use super::program::{self, PROGRAM_KEYS, PROGRAMS_MAX, Program};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text;
@@ -118,7 +120,7 @@ impl Draft {
         let dpad = root.table("dpad", "[dpad]".to_owned(), &DPAD_KEYS, findings);
         let pointer = root.table("pointer", "[pointer]".to_owned(), &POINTER_KEYS, findings);
         let access = root.table("access", "[access]".to_owned(), &ACCESS_KEYS, findings);
-        let gain = root.table("gain", "[gain]".to_owned(), &GAIN_KEYS, findings);
+        let gain = root.table("gain", "[gain]".to_owned(), &Direction::NAMES, findings);
         let has_dpad = root.place_of("dpad").is_some();
         let zones = plate::read_zones(root, has_dpad, findings);
         let layers = LayerDraft::read_all(root, has_dpad, findings);

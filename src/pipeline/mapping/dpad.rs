@@ -6,7 +6,7 @@ use super::limits::{
     CENTRE_RADIUS_MM, DIAGONAL_DEG, FORCE_N, HYSTERESIS_DEG, HYSTERESIS_MM, RADIUS_HYSTERESIS_MM,
     RELEASE_RATIO, ROTATION_DEG, STICKY_DIAGONAL_DEG,
 };
-use super::profile::{Dpad, DpadMode, When};
+use super::profile::{Direction, Dpad, DpadMode, When};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::{Bounds, Placed, Section};
@@ -26,14 +26,15 @@ pub(super) const DPAD_KEYS: [&str; 11] = [
     "gamepad",
     "keyboard",
 ];
-pub(super) const DIRECTION_KEYS: [&str; 4] = ["up", "down", "left", "right"];
-/// Each direction with its default bindings on the gamepad and the keyboard.
-const DIRECTIONS: [(&str, &str, &str); 4] = [
-    ("up", "ABS_HAT0Y-", "KEY_UP"),
-    ("down", "ABS_HAT0Y+", "KEY_DOWN"),
-    ("left", "ABS_HAT0X-", "KEY_LEFT"),
-    ("right", "ABS_HAT0X+", "KEY_RIGHT"),
-];
+/// A direction's bindings on the gamepad and the keyboard, where none is written.
+const fn defaults(direction: Direction) -> [&'static str; 2] {
+    match direction {
+        Direction::Up => ["ABS_HAT0Y-", "KEY_UP"],
+        Direction::Down => ["ABS_HAT0Y+", "KEY_DOWN"],
+        Direction::Left => ["ABS_HAT0X-", "KEY_LEFT"],
+        Direction::Right => ["ABS_HAT0X+", "KEY_RIGHT"],
+    }
+}
 
 /// A D-pad while it is read: what is unusable is `None` and reported.
 pub(super) struct DpadDraft {
@@ -68,8 +69,8 @@ impl DpadDraft {
 
     /// What its directions drive.
     pub(super) fn uses(&self) -> impl Iterator<Item = Use> + use<> {
-        let named = self.directions.into_iter().zip(DIRECTIONS);
-        named.map(|(outputs, (name, ..))| Use {
+        let named = self.directions.into_iter().zip(Direction::NAMES);
+        named.map(|(outputs, name)| Use {
             owner: Owner::Direction(name),
             outputs,
             toggles: false,
@@ -186,9 +187,9 @@ fn check_hysteresis(
 
 fn read_directions(table: &Section<'_>, findings: &mut Findings<'_>) -> [Outputs; 4] {
     let tables = direction_tables(table, "dpad", findings);
-    DIRECTIONS.map(|(name, pad, key)| {
-        let defaults = [pad, key].map(|value| Placed { value, at: table.at });
-        written_direction(&tables, name, Some(defaults), findings)
+    Direction::ALL.map(|direction| {
+        let defaults = defaults(direction).map(|value| Placed { value, at: table.at });
+        written_direction(&tables, direction.name(), Some(defaults), findings)
     })
 }
 
@@ -199,7 +200,7 @@ pub(super) fn direction_tables<'t>(
     findings: &mut Findings<'_>,
 ) -> [Option<Section<'t>>; 2] {
     ["gamepad", "keyboard"]
-        .map(|device| table.table(device, format!("[{title}.{device}]"), &DIRECTION_KEYS, findings))
+        .map(|device| table.table(device, format!("[{title}.{device}]"), &Direction::NAMES, findings))
 }
 
 /// The direction `name` on both devices; its default, if it has one, where it is not written.

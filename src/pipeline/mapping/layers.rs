@@ -2,9 +2,9 @@
 
 use super::binding::Outputs;
 use super::conflict::{Owner, Use};
-use super::dpad::{DIRECTION_KEYS, direction_tables, written_direction};
+use super::dpad::{direction_tables, written_direction};
 use super::named;
-use super::profile::{LAYERS_MAX, Layer, When};
+use super::profile::{Direction, LAYERS_MAX, Layer, When};
 use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::Section;
@@ -16,8 +16,8 @@ pub(super) const BASE: &str = "base";
 /// A layer while it is read.
 pub(super) struct LayerDraft {
     pub(super) name: String,
-    /// In the order of [`DIRECTION_KEYS`].
-    directions: [Option<Outputs>; DIRECTION_KEYS.len()],
+    /// In the order of [`Direction::ALL`].
+    directions: [Option<Outputs>; Direction::NAMES.len()],
 }
 
 impl LayerDraft {
@@ -41,7 +41,7 @@ impl LayerDraft {
 
     /// What the directions of this layer, the `number`th from 0, drive.
     pub(super) fn uses(&self, number: usize) -> impl Iterator<Item = Use> + use<> {
-        DIRECTION_KEYS.into_iter().zip(self.directions).filter_map(move |(name, outputs)| {
+        Direction::NAMES.into_iter().zip(self.directions).filter_map(move |(name, outputs)| {
             let owner = Owner::Direction(name);
             Some(Use { owner, outputs: outputs?, toggles: false, place: None, when: When::Layer(number) })
         })
@@ -58,13 +58,13 @@ fn read_directions(
     table: &Section<'_>,
     has_dpad: bool,
     findings: &mut Findings<'_>,
-) -> [Option<Outputs>; DIRECTION_KEYS.len()] {
+) -> [Option<Outputs>; Direction::NAMES.len()] {
     let tables = direction_tables(table, &table.title, findings);
     if let (false, Some(at)) = (has_dpad, tables.iter().flatten().map(|table| table.at).next()) {
         let message = format!("the directions of {} do nothing without [dpad]", table.title);
         findings.error(at, message, "add a [dpad], or remove them");
     }
-    DIRECTION_KEYS.map(|name| {
+    Direction::NAMES.map(|name| {
         let written = tables.iter().flatten().find_map(|table| table.place_of(name))?;
         if tables.iter().any(|table| table.as_ref().is_none_or(|table| table.place_of(name).is_none())) {
             let message = format!("{} names \"{name}\" on one device only", table.title);

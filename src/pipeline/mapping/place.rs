@@ -154,6 +154,12 @@ pub enum Direction {
 }
 
 impl Direction {
+    /// All, in the order in which a profile has them.
+    pub const ALL: [Self; 4] = [Self::Up, Self::Down, Self::Left, Self::Right];
+    /// How a profile writes them.
+    pub const NAMES: [&'static str; 4] =
+        [Self::Up.name(), Self::Down.name(), Self::Left.name(), Self::Right.name()];
+
     /// How a profile writes it.
     pub const fn name(self) -> &'static str {
         match self {

@@ -10,7 +10,6 @@ use super::profile::{Direction, Gain, Place, ZONES_MAX, Zone};
 use crate::toml_text::diag::{Findings, quoted};
 use crate::toml_text::section::{Placed, Section};
 
-pub(super) const GAIN_KEYS: [&str; 4] = ["up", "down", "left", "right"];
 const ZONE_KEYS: [&str; 8] = [
     "name",
     "from_deg",
@@ -20,13 +19,6 @@ const ZONE_KEYS: [&str; 8] = [
     "hysteresis_deg",
     "hysteresis_mm",
     "radius_hysteresis_mm",
-];
-/// The D-pad's own places.
-const DIRECTIONS: [(&str, Direction); 4] = [
-    ("up", Direction::Up),
-    ("down", Direction::Down),
-    ("left", Direction::Left),
-    ("right", Direction::Right),
 ];
 
 /// Reads the place of the hand's centre; none where a number is unusable.
@@ -38,7 +30,7 @@ pub(super) fn read_centre(root: &Section<'_>, findings: &mut Findings<'_>) -> Op
 /// Reads `[gain]`; none where a number is unusable.
 pub(super) fn read_gain(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<Gain> {
     let [up, down, left, right] =
-        GAIN_KEYS.map(|key| table.number(key, GAIN, findings).map(|gain| gain.value));
+        Direction::NAMES.map(|key| table.number(key, GAIN, findings).map(|gain| gain.value));
     Some(Gain { right: right?, left: left?, up: up?, down: down? })
 }
 
@@ -64,7 +56,7 @@ pub(super) fn read_zones(root: &Section<'_>, has_dpad: bool, findings: &mut Find
 
 /// Reports a name that the D-pad has.
 fn check_name(name: &str, at: usize, findings: &mut Findings<'_>) {
-    if DIRECTIONS.iter().any(|(own, _)| *own == name) {
+    if Direction::NAMES.contains(&name) {
         let message = format!("{} is a direction of [dpad]", quoted(name));
         findings.error(at, message, "give the zone another name");
     }
@@ -159,11 +151,11 @@ pub(super) fn find(
     (zones, has_dpad): (&[Zone], bool),
     findings: &mut Findings<'_>,
 ) -> Option<Place> {
-    let own = if has_dpad { &DIRECTIONS[..] } else { &[] };
+    let own = if has_dpad { &Direction::ALL[..] } else { &[] };
     let zones = zones.iter().map(|zone| zone.name.as_str());
-    let known: Vec<&str> = own.iter().map(|(name, _)| *name).chain(zones).collect();
+    let known: Vec<&str> = own.iter().map(|it| it.name()).chain(zones).collect();
     let number = named::find(asked, "zone", &known, findings)?;
-    Some(own.get(number).map_or(Place::Zone(number - own.len().min(number)), |(_, it)| Place::Direction(*it)))
+    Some(own.get(number).map_or(Place::Zone(number - own.len().min(number)), |it| Place::Direction(*it)))
 }
 
 #[cfg(test)]

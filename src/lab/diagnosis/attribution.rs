@@ -80,13 +80,13 @@ impl<'m> Search<'m> {
             applied.remove(least);
             fit = self.fitted(&applied, Some(&fit))?;
         }
-        // What was taken out stays out, so that the search ends.
+        // What was taken out or replaced stays out, so that the search ends.
         let mut barred: Vec<usize> = Vec::new();
         while fit.applied.len() < CAUSES_MAX {
             let Some(next) = self.next(&fit, critical, &barred)? else { break };
             let mut applied = fit.applied.clone();
             applied.push((next, vec![0.0; self.model.hypotheses()[next].parameters.len()]));
-            fit = self.within_range(self.fitted(&applied, Some(&fit))?, critical)?;
+            fit = self.within_range(self.fitted(&applied, Some(&fit))?, critical, &mut barred)?;
             critical = self.critical(&fit)?;
             while let Some(least) = self.superfluous(&fit, critical)? {
                 let mut applied = fit.applied.clone();
@@ -98,18 +98,21 @@ impl<'m> Search<'m> {
     }
 
     /// The fit, or where its last cause ended at an end of its range, that with a rival in its place which explains the data as well
-    /// and does not; if there is one.
-    fn within_range(&self, fit: Fit, critical: f64) -> Option<Fit> {
+    /// and does not; if there is one that is not barred. Then the cause is.
+    fn within_range(&self, fit: Fit, critical: f64, barred: &mut Vec<usize>) -> Option<Fit> {
         let Some(last) = fit.applied.len().checked_sub(1).filter(|last| self.is_at_an_end(&fit, *last))
         else {
             return Some(fit);
         };
         let (projected, score) = self.without(&fit, last)?;
-        for rival in self.rivals(&fit, critical, last, (&projected, &score)) {
+        let mut rivals = self.rivals(&fit, critical, last, (&projected, &score));
+        rivals.retain(|rival| !barred.contains(rival));
+        for rival in rivals {
             let mut applied = fit.applied.clone();
             applied[last] = (rival, vec![0.0; self.model.hypotheses()[rival].parameters.len()]);
             let other = self.fitted(&applied, Some(&fit))?;
             if !self.is_at_an_end(&other, last) {
+                barred.push(fit.applied[last].0);
                 return Some(other);
             }
         }

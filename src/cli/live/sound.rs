@@ -221,9 +221,9 @@ mod tests {
         assert_eq!([samples[0], samples[4_409]], [0, 0]);
         let loudest = samples.iter().map(|sample| sample.unsigned_abs()).max().unwrap();
         assert!((13_000..13_108).contains(&loudest), "{loudest}");
-        // It rises through zero once in a period: 44 times, the first from the begin.
+        // It rises to zero at the end of each of its 44 periods, of the last with the last sample.
         let rises = samples.windows(2).filter(|pair| pair[0] < 0 && pair[1] >= 0).count();
-        assert_eq!(rises, 43);
+        assert_eq!(rises, 44);
         assert_ne!(Tone::Accepted.wave(), Tone::Rejected.wave());
     }
 

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use crate::bridge::clock::Clock;
 use crate::bridge::error::BridgeError;
 use crate::bridge::latency::Durations;
+use crate::bridge::observer::Observer;
 use crate::bridge::queue::Written;
 use crate::bridge::recorder::Recorder;
 use crate::bridge::sink::Sink;
@@ -29,6 +30,8 @@ pub(super) struct Driver {
     pub(super) commands: Commands,
     /// Told what becomes of each press.
     pub(super) watchers: Watchers,
+    /// Told of each call.
+    pub(super) observer: Option<Observer>,
 }
 
 impl Driver {
@@ -44,6 +47,9 @@ impl Driver {
             }
             self.watchers.tell(self.pipeline.verdicts());
             self.pipeline.forget_verdicts();
+        }
+        if let Some(observer) = &mut self.observer {
+            observer.tell(self.clock, now, call, &self.pipeline);
         }
         match &mut self.recorder {
             Some(recorder) => recorder.write(now, call).map_err(BridgeError::Io),

@@ -15,6 +15,7 @@ mod herald;
 pub mod host;
 mod keeper;
 pub mod latency;
+pub mod observer;
 pub mod offer;
 pub mod opening;
 pub mod parts;

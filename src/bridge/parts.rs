@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use crate::bridge::host::Host;
+use crate::bridge::observer::Observer;
 use crate::bridge::opening::{OpenedPad, Patience};
 use crate::bridge::requests::Requests;
 use crate::bridge::sink::Sink;
@@ -38,6 +39,8 @@ pub struct Parts {
     pub host: Box<dyn Host>,
     /// Where calls are recorded.
     pub record: Option<Box<dyn Write + Send>>,
+    /// Who is told of each call.
+    pub observer: Option<Observer>,
     /// Ends the run after this time.
     pub duration_us: Option<u64>,
 }

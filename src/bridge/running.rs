@@ -77,13 +77,16 @@ impl Bridge {
     pub fn new(parts: Parts) -> io::Result<Self> {
         let clock = Clock::start();
         let now = clock.now();
-        let Parts { pad, patience, decoder, profile, sink, requests, host, record, duration_us } = parts;
+        let Parts { pad, patience, decoder, profile, sink, requests, host, record, mut observer, duration_us } = parts;
         let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
         let head = Head { decoder: decoder.file, profile: Some(profile) };
         let recorder = record.map(|to| Recorder::begin(to, now, &head)).transpose()?;
         let (latency, watchers) = (Arc::default(), requests.watchers());
         let commands = Commands::new();
-        let driver = Driver { pipeline, sink, recorder, clock, latency, commands, watchers };
+        if let Some(observer) = &mut observer {
+            observer.begin(clock, now, &pipeline);
+        }
+        let driver = Driver { pipeline, sink, recorder, clock, latency, commands, watchers, observer };
         let keeper = Keeper::new(pad, patience, now);
         let standing = Standing::begun();
         let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, (&decoder.name, &standing))));
@@ -475,6 +478,7 @@ mod tests {
             requests: Requests::new().unwrap(),
             host: Box::new(ear.clone()),
             record: None,
+            observer: None,
             duration_us: None,
         });
         (bridge.unwrap(), ear, looked)

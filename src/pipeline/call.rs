@@ -1,5 +1,7 @@
 //! What can happen to a pipeline, as one type: the bridge makes calls, a capture keeps them, a replay makes them again.
 
+use std::sync::Arc;
+
 use crate::pipeline::mapping::read::ReadProfile;
 
 /// One call on the pipeline; see [`crate::pipeline::Pipeline::apply`]. It borrows what it carries.
@@ -21,4 +23,41 @@ pub enum Call<'a> {
     Retare,
     /// Another profile was chosen.
     Profile(&'a ReadProfile),
+}
+
+/// A call that owns what it carries, for whoever makes it later; clones share that.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OwnedCall {
+    /// Bytes came from the pad.
+    Bytes(Arc<[u8]>),
+    /// Another profile was chosen.
+    Profile(Arc<ReadProfile>),
+    /// What carries nothing.
+    Plain(Call<'static>),
+}
+
+impl OwnedCall {
+    /// The call itself.
+    pub fn as_call(&self) -> Call<'_> {
+        match self {
+            Self::Bytes(bytes) => Call::Bytes(bytes),
+            Self::Profile(read) => Call::Profile(read),
+            Self::Plain(call) => *call,
+        }
+    }
+}
+
+impl From<Call<'_>> for OwnedCall {
+    fn from(call: Call<'_>) -> Self {
+        match call {
+            Call::Bytes(bytes) => Self::Bytes(bytes.into()),
+            Call::Profile(read) => Self::Profile(Arc::new(read.clone())),
+            Call::Timeout => Self::Plain(Call::Timeout),
+            Call::Unplugged => Self::Plain(Call::Unplugged),
+            Call::Pause => Self::Plain(Call::Pause),
+            Call::Resume => Self::Plain(Call::Resume),
+            Call::ReleaseAll => Self::Plain(Call::ReleaseAll),
+            Call::Retare => Self::Plain(Call::Retare),
+        }
+    }
 }

@@ -56,7 +56,7 @@ use crate::time::{HostInstant, StreamInstant};
 pub const DISTRUST_US: u64 = 50_000;
 
 /// The state machine. See the module's text for how to drive it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Pipeline {
     link: Link,
     stage: ContactStage,

@@ -98,6 +98,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         requests: requests(None, audience)?,
         host: Box::new(host),
         record: None,
+        observer: None,
         duration_us: Some(microseconds(arguments.seconds)),
     })?;
     let screen =

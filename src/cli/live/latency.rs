@@ -81,6 +81,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         requests: requests(None, audience)?,
         host: Box::new(host),
         record: Some(timing.record()),
+        observer: None,
         duration_us: Some(microseconds(arguments.seconds)),
     })?;
     play(&mut bridge, pad)?;

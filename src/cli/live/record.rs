@@ -98,6 +98,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         requests: requests(Some(&ctl::socket_path()), audience)?,
         host: Box::new(host),
         record: Some(Box::new(capture)),
+        observer: None,
         duration_us: seconds.map(microseconds),
     })?;
     let cue = seconds.filter(|_| arguments.force_range).map(cue);

@@ -89,6 +89,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         requests,
         host: Box::new(host),
         record: None,
+        observer: None,
         duration_us: arguments.seconds.map(microseconds),
     })?;
     let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.lines()));

@@ -22,7 +22,7 @@ use crate::time::StreamInstant;
 ///
 /// All decisions are taken at samples, from their stream times: a long press starts to hold with the first
 /// sample at or after its moment. There is no timer.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Engine {
     profile: Profile,
     held: Option<Sector>,

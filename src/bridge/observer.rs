@@ -1,0 +1,123 @@
+//! Lets another thread see every call that is made on the pipeline, so that it can make them again on a pipeline of its own. The same
+//! calls give the same events, so that thread sees all that the live one does, and the live one waits for nobody.
+
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+
+use crate::bridge::clock::Clock;
+use crate::pipeline::Pipeline;
+use crate::pipeline::call::{Call, OwnedCall};
+use crate::time::HostInstant;
+
+/// So many calls may wait: two seconds of a pad at 8 kHz, whose reads bring a frame each.
+const CALLS_MAX: usize = 16 << 10;
+
+/// What an observer hears.
+#[derive(Clone, Debug)]
+pub enum Observed {
+    /// The pipeline as it stands, at the begin and after calls that found no room. What follows goes on from here.
+    Whole {
+        /// The clock of all instants.
+        clock: Clock,
+        /// When it stood so.
+        at: HostInstant,
+        /// The pipeline.
+        pipeline: Box<Pipeline>,
+    },
+    /// A call that was made on it.
+    Call {
+        /// When it was made.
+        at: HostInstant,
+        /// The call.
+        call: OwnedCall,
+    },
+}
+
+/// The bridge's end.
+#[derive(Debug)]
+pub struct Observer {
+    to: SyncSender<Observed>,
+    /// Whether the other end has to begin anew, as calls are missing.
+    is_behind: bool,
+    has_left: bool,
+}
+
+/// An observer for a bridge, and what hears it. Nothing wakes the one who hears: it looks when it wants to.
+pub fn observe() -> (Observer, Receiver<Observed>) {
+    let (to, from) = sync_channel(CALLS_MAX);
+    (Observer { to, is_behind: true, has_left: false }, from)
+}
+
+impl Observer {
+    /// Tells of the pipeline before its first call.
+    pub(super) fn begin(&mut self, clock: Clock, at: HostInstant, pipeline: &Pipeline) {
+        self.tell_whole(clock, at, pipeline);
+    }
+
+    /// Tells of a call that was made. After calls that found no room it tells of the whole pipeline, as soon as there is room.
+    pub(super) fn tell(&mut self, clock: Clock, at: HostInstant, call: Call<'_>, pipeline: &Pipeline) {
+        if self.has_left {
+            return;
+        }
+        if self.is_behind {
+            self.tell_whole(clock, at, pipeline);
+            return;
+        }
+        self.send(Observed::Call { at, call: call.into() });
+    }
+
+    fn tell_whole(&mut self, clock: Clock, at: HostInstant, pipeline: &Pipeline) {
+        self.send(Observed::Whole { clock, at, pipeline: Box::new(pipeline.clone()) });
+    }
+
+    fn send(&mut self, observed: Observed) {
+        match self.to.try_send(observed) {
+            Ok(()) => self.is_behind = false,
+            Err(TrySendError::Full(_)) => self.is_behind = true,
+            Err(TrySendError::Disconnected(_)) => self.has_left = true,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::NoProbe;
+    use crate::pipeline::mapping::check::{OutputChoice, read};
+    use crate::pipeline::mapping::shipped as profiles;
+    use crate::pipeline::shipped;
+
+    fn pipeline() -> Pipeline {
+        let profile = read(profiles::text("contra").unwrap(), OutputChoice::AsWritten).0.unwrap();
+        Pipeline::new(shipped::decoder(), profile)
+    }
+
+    #[test]
+    fn who_hears_too_late_begins_anew_with_the_whole() {
+        let (mut observer, from) = observe();
+        let (clock, mut live) = (Clock::start(), pipeline());
+        observer.begin(clock, HostInstant::default(), &live);
+        for us in 0..CALLS_MAX as u64 + 10 {
+            let at = HostInstant::default().plus_us(us);
+            let _ = live.apply(at, Call::Pause, &mut NoProbe);
+            observer.tell(clock, at, Call::Pause, &live);
+        }
+        let heard: Vec<_> = from.try_iter().collect();
+        assert_eq!(heard.len(), CALLS_MAX);
+        assert!(matches!(heard[0], Observed::Whole { .. }));
+        assert!(heard[1..].iter().all(|it| matches!(it, Observed::Call { .. })));
+        let _ = live.apply(HostInstant::default(), Call::Resume, &mut NoProbe);
+        observer.tell(clock, HostInstant::default(), Call::Resume, &live);
+        observer.tell(clock, HostInstant::default(), Call::Pause, &live);
+        let heard: Vec<_> = from.try_iter().collect();
+        assert!(matches!(&heard[0], Observed::Whole { pipeline, .. } if pipeline.phase() == live.phase()));
+        assert!(matches!(&heard[1], Observed::Call { call: OwnedCall::Plain(Call::Pause), .. }));
+    }
+
+    #[test]
+    fn who_went_away_is_told_nothing_more() {
+        let (mut observer, from) = observe();
+        drop(from);
+        observer.begin(Clock::start(), HostInstant::default(), &pipeline());
+        assert!(observer.has_left);
+    }
+}

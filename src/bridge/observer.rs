@@ -11,6 +11,9 @@ use crate::time::HostInstant;
 /// So many calls may wait: two seconds of a pad at 8 kHz, whose reads bring a frame each.
 const CALLS_MAX: usize = 16 << 10;
 
+/// After calls that found no room the whole is offered this often: copying it takes longer than a call.
+const WHOLE_US: u64 = 100_000;
+
 /// What an observer hears.
 #[derive(Clone, Debug)]
 pub enum Observed {
@@ -36,15 +39,15 @@ pub enum Observed {
 #[derive(Debug)]
 pub struct Observer {
     to: SyncSender<Observed>,
-    /// Whether the other end has to begin anew, as calls are missing.
-    is_behind: bool,
+    /// The other end has to begin anew, as calls are missing: from then on.
+    begin_at: Option<HostInstant>,
     has_left: bool,
 }
 
 /// An observer for a bridge, and what hears it. Nothing wakes the one who hears: it looks when it wants to.
 pub fn observe() -> (Observer, Receiver<Observed>) {
     let (to, from) = sync_channel(CALLS_MAX);
-    (Observer { to, is_behind: true, has_left: false }, from)
+    (Observer { to, begin_at: None, has_left: false }, from)
 }
 
 impl Observer {
@@ -58,21 +61,21 @@ impl Observer {
         if self.has_left {
             return;
         }
-        if self.is_behind {
-            self.tell_whole(clock, at, pipeline);
-            return;
+        match self.begin_at {
+            None => self.send(at, Observed::Call { at, call: call.into() }),
+            Some(begin_at) if begin_at <= at => self.tell_whole(clock, at, pipeline),
+            Some(_) => {}
         }
-        self.send(Observed::Call { at, call: call.into() });
     }
 
     fn tell_whole(&mut self, clock: Clock, at: HostInstant, pipeline: &Pipeline) {
-        self.send(Observed::Whole { clock, at, pipeline: Box::new(pipeline.clone()) });
+        self.send(at, Observed::Whole { clock, at, pipeline: Box::new(pipeline.clone()) });
     }
 
-    fn send(&mut self, observed: Observed) {
+    fn send(&mut self, at: HostInstant, observed: Observed) {
         match self.to.try_send(observed) {
-            Ok(()) => self.is_behind = false,
-            Err(TrySendError::Full(_)) => self.is_behind = true,
+            Ok(()) => self.begin_at = None,
+            Err(TrySendError::Full(_)) => self.begin_at = Some(at.plus_us(WHOLE_US)),
             Err(TrySendError::Disconnected(_)) => self.has_left = true,
         }
     }
@@ -106,8 +109,11 @@ mod tests {
         assert!(matches!(heard[0], Observed::Whole { .. }));
         assert!(heard[1..].iter().all(|it| matches!(it, Observed::Call { .. })));
         let _ = live.apply(HostInstant::default(), Call::Resume, &mut NoProbe);
+        let [soon, later] = [1, 2].map(|part| HostInstant::default().plus_us(CALLS_MAX as u64 + part * WHOLE_US));
         observer.tell(clock, HostInstant::default(), Call::Resume, &live);
-        observer.tell(clock, HostInstant::default(), Call::Pause, &live);
+        assert_eq!(from.try_iter().count(), 0, "it was offered just now");
+        observer.tell(clock, soon, Call::Resume, &live);
+        observer.tell(clock, later, Call::Pause, &live);
         let heard: Vec<_> = from.try_iter().collect();
         assert!(matches!(&heard[0], Observed::Whole { pipeline, .. } if pipeline.phase() == live.phase()));
         assert!(matches!(&heard[1], Observed::Call { call: OwnedCall::Plain(Call::Pause), .. }));

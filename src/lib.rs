@@ -40,6 +40,7 @@
 //! | `lab` | calibration, evaluation, metrology and other studies | `lab` |
 //! | `mechanics` | the finite-element simulator | `simulator` |
 //! | `bridge` | ports, virtual devices and the loop between them (Linux) | `live` |
+//! | `dashboard` | the page that shows a running bridge (Linux) | `dashboard` |
 //!
 //! The program `tactpad` itself is the feature `cli`. Without features five small dependencies are left.
 //! `examples/` has whole programs. `ARCHITECTURE.md` says which rules hold between the rooms.
@@ -63,5 +64,7 @@ pub mod virtual_pad;
 
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub mod bridge;
+#[cfg(all(feature = "dashboard", target_os = "linux"))]
+pub mod dashboard;
 
 pub use firmware_proto;

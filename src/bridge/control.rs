@@ -4,14 +4,14 @@ use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::Path;
-use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::net::sockopt::socket_peercred;
+use rustix::process::getuid;
 
 use crate::bridge::clock::Clock;
-use crate::bridge::request::{Asked, Asker, Request};
+use crate::bridge::request::{ANSWER_LIMIT, Asker, Request};
 use crate::bridge::watchers::Watchers;
 use crate::time::HostInstant;
 
@@ -20,9 +20,6 @@ const CLIENT_LIMIT_US: u64 = 1_000_000;
 
 /// So many clients may be about to ask. One more, and the oldest is sent away.
 const CLIENTS_MAX: usize = 32;
-
-/// The bridge answers in well under a millisecond; one that does not has ended or is stopped.
-const ANSWER_LIMIT: Duration = Duration::from_secs(2);
 
 /// The longest request.
 const REQUEST_BYTES_MAX: usize = 4_096;
@@ -95,7 +92,7 @@ impl Server {
             if self.clients.len() == CLIENTS_MAX {
                 self.make_room();
             }
-            if stream.set_nonblocking(true).is_ok() {
+            if is_own(&stream) && stream.set_nonblocking(true).is_ok() {
                 self.clients.push_back(Client { stream, since: now, line: Vec::new() });
             }
         }
@@ -135,10 +132,8 @@ impl Server {
         let Some(request) = Request::parse(&String::from_utf8_lossy(&client.line)) else {
             return writeln!(&client.stream, r#"{{"ok":false,"error":"unknown request"}}"#);
         };
-        let (answer, answered) = sync_channel(1);
         let _answering = self.answering.lock();
-        self.asker.send(Asked { request, answer: Some(answer) })?;
-        let answer = answered.recv_timeout(ANSWER_LIMIT).map_err(io::Error::other)?;
+        let answer = self.asker.answer(request)?;
         // An answer has room in the socket; who leaves none is not waited for.
         (&client.stream).write_all(format!("{answer}\n").as_bytes())
     }
@@ -169,12 +164,23 @@ impl Client {
     }
 }
 
+/// Whether the other end belongs to the user of this process. The socket's permissions say the same, from the moment on at which they are set.
+fn is_own(stream: &UnixStream) -> bool {
+    socket_peercred(stream).is_ok_and(|peer| peer.uid == getuid())
+}
+
+/// A connection to the bridge that listens at `path`, which must be the same user's: the folder of temporary files is everybody's.
+fn connect(path: &Path) -> io::Result<UnixStream> {
+    let stream = UnixStream::connect(path)?;
+    if is_own(&stream) { Ok(stream) } else { Err(io::ErrorKind::PermissionDenied.into()) }
+}
+
 /// Asks the bridge that listens at `path`; gives its line of JSON.
 ///
 /// # Errors
 /// Nobody listens there, or no answer came: then the kind is `TimedOut`.
 pub fn ask(path: &Path, request: &str) -> io::Result<String> {
-    let client = UnixStream::connect(path)?;
+    let client = connect(path)?;
     client.set_read_timeout(Some(2 * ANSWER_LIMIT))?;
     client.set_write_timeout(Some(ANSWER_LIMIT))?;
     let mut answer = String::new();
@@ -193,7 +199,7 @@ pub fn ask(path: &Path, request: &str) -> io::Result<String> {
 /// # Errors
 /// Nobody listens there, or no answer came: then the kind is `TimedOut`; or what `each` gave.
 pub fn watch(path: &Path, mut each: impl FnMut(&str) -> io::Result<()>) -> io::Result<()> {
-    let client = UnixStream::connect(path)?;
+    let client = connect(path)?;
     client.set_read_timeout(Some(2 * ANSWER_LIMIT))?;
     writeln!(&client, "{WATCH}")?;
     let mut lines = BufReader::new(&client).lines();

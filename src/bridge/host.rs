@@ -23,6 +23,11 @@ pub trait Host {
         true
     }
 
+    /// The address of the page that shows the bridge, if it has one.
+    fn page(&self) -> Option<String> {
+        None
+    }
+
     /// Tells people what the bridge is doing, when that changed.
     fn tell(&mut self, line: &str);
 }

@@ -6,6 +6,9 @@ use serde::Serialize;
 /// Longer times are counted as this.
 const LONGEST_NS: u64 = 10_000_000_000;
 
+/// The first bin of a picture ends here.
+const FIRST_BIN_NS: u64 = 1_000;
+
 /// A collection of durations, each kept to 1 %. Recording allocates nothing.
 #[derive(Clone, Debug)]
 pub struct Durations {
@@ -55,6 +58,18 @@ impl Durations {
         self.len() == 0
     }
 
+    /// How many were counted, by their length: each bin from the end of the one before up to its own, in microseconds. Bins grow by a factor
+    /// of √2, from 1 µs on; those at both ends that are empty are left out.
+    pub fn bins_us(&self) -> Vec<(f64, u64)> {
+        let Some(histogram) = &self.histogram else { return Vec::new() };
+        let bins = histogram.iter_log(FIRST_BIN_NS, std::f64::consts::SQRT_2);
+        let bins: Vec<_> = bins
+            .map(|bin| (bin.value_iterated_to() as f64 / 1_000.0, bin.count_since_last_iteration()))
+            .collect();
+        let first = bins.iter().position(|(_, count)| *count > 0).unwrap_or(bins.len());
+        bins.into_iter().skip(first).collect()
+    }
+
     /// The percentiles so far.
     pub fn percentiles(&self) -> Percentiles {
         let Some(histogram) = self.histogram.as_ref().filter(|histogram| !histogram.is_empty()) else {
@@ -77,6 +92,18 @@ mod tests {
         for (measured, expected) in [(p50, 500.0), (p95, 950.0), (p99, 990.0), (max, 1_000.0)] {
             assert!((measured - expected).abs() <= 0.01 * expected, "{measured} is not {expected}");
         }
+    }
+
+    #[test]
+    fn every_duration_is_in_one_bin() {
+        let mut durations = Durations::new();
+        assert_eq!(durations.bins_us(), []);
+        [10_000, 11_000, 900_000].into_iter().for_each(|ns| durations.record_ns(ns));
+        let bins = durations.bins_us();
+        assert_eq!(bins.iter().map(|(_, count)| count).sum::<u64>(), 3);
+        let (first, last) = (bins[0], bins[bins.len() - 1]);
+        assert!(first.1 == 2 && (11.0..16.0).contains(&first.0), "{bins:?}");
+        assert!(last.1 == 1 && (900.0..1_300.0).contains(&last.0), "{bins:?}");
     }
 
     #[test]

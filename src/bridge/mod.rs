@@ -30,4 +30,4 @@ pub mod snapshot;
 pub mod state;
 pub mod timing;
 pub mod transport;
-mod watchers;
+pub mod watchers;

@@ -109,7 +109,8 @@ mod tests {
         assert!(matches!(heard[0], Observed::Whole { .. }));
         assert!(heard[1..].iter().all(|it| matches!(it, Observed::Call { .. })));
         let _ = live.apply(HostInstant::default(), Call::Resume, &mut NoProbe);
-        let [soon, later] = [1, 2].map(|part| HostInstant::default().plus_us(CALLS_MAX as u64 + part * WHOLE_US));
+        let [soon, later] =
+            [1, 2].map(|part| HostInstant::default().plus_us(CALLS_MAX as u64 + part * WHOLE_US));
         observer.tell(clock, HostInstant::default(), Call::Resume, &live);
         assert_eq!(from.try_iter().count(), 0, "it was offered just now");
         observer.tell(clock, soon, Call::Resume, &live);

@@ -21,20 +21,27 @@ pub(super) struct Standing {
     pub(super) reason: String,
     /// What is wrong with the one that would be played else.
     pub(super) error: Option<String>,
+    /// Whether what is played is only tried, and is not kept.
+    pub(super) is_preview: bool,
 }
 
 impl Standing {
     /// At the start.
     pub(super) fn begun() -> Self {
-        Self { reason: "chosen at the start".into(), error: None }
+        Self { reason: "chosen at the start".into(), error: None, is_preview: false }
     }
 
     /// People asked for it: by its name, or to be read again.
     pub(super) fn asked(&mut self, is_named: bool) {
-        self.error = None;
+        (self.error, self.is_preview) = (None, false);
         if is_named {
             self.reason = "asked for".into();
         }
+    }
+
+    /// A profile is tried that is not kept.
+    pub(super) fn previewed(&mut self) {
+        (self.error, self.is_preview) = (None, true);
     }
 
     /// Goes on with what came of an offer: the profile and whether it is the one that is played, or why it cannot be used. The line to
@@ -52,6 +59,7 @@ impl Standing {
                 return is_new.then(|| kept(error));
             }
         };
+        self.is_preview = false;
         let had_error = self.error.take().is_some();
         let is_silent = is_same && !had_error && offer.reason.as_ref().is_none_or(|it| *it == self.reason);
         self.reason = offer.reason.clone().unwrap_or_else(|| std::mem::take(&mut self.reason));

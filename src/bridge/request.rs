@@ -2,9 +2,14 @@
 
 use std::io::{self, Write};
 use std::os::unix::net::UnixStream;
-use std::sync::mpsc::{Sender, SyncSender};
+use std::sync::mpsc::{Sender, SyncSender, sync_channel};
+use std::time::Duration;
 
 use crate::bridge::offer::Offer;
+use crate::pipeline::mapping::read::ReadProfile;
+
+/// The bridge answers in well under a millisecond; one that does not has ended or is stopped.
+pub(super) const ANSWER_LIMIT: Duration = Duration::from_secs(2);
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,8 +34,12 @@ pub enum Request {
     NextProfile,
     /// Take a profile that was read away from the loop, if it is still wanted.
     Offer(Box<Offer>),
+    /// Play a profile that is not kept yet, until another one is asked for or offered, or this one is read again.
+    Preview(Box<ReadProfile>),
     /// Tell what the bridge is doing.
     Status,
+    /// Tell the address of the page that shows it.
+    Page,
 }
 
 impl Request {
@@ -41,6 +50,7 @@ impl Request {
             Some(_) => None,
             None => match line.trim_end() {
                 "status" => Some(Self::Status),
+                "dashboard" => Some(Self::Page),
                 "pause" => Some(Self::Pause),
                 "resume" => Some(Self::Resume),
                 "panic" => Some(Self::ReleaseAll),
@@ -93,6 +103,16 @@ impl Asker {
         self.send(Asked::unanswered(request))
     }
 
+    /// Asks, and waits for the answer: a line of JSON.
+    ///
+    /// # Errors
+    /// The bridge has ended, or does not answer: then the kind is `TimedOut`.
+    pub fn answer(&self, request: Request) -> io::Result<String> {
+        let (answer, answered) = sync_channel(1);
+        self.send(Asked { request, answer: Some(answer) })?;
+        answered.recv_timeout(ANSWER_LIMIT).map_err(|_| io::ErrorKind::TimedOut.into())
+    }
+
     pub(super) fn send(&self, asked: Asked) -> io::Result<()> {
         self.ask.send(asked).map_err(|_| io::Error::from(io::ErrorKind::BrokenPipe))?;
         (&self.wake).write_all(&[1])
@@ -108,6 +128,7 @@ mod tests {
         for (line, request) in [
             ("status\n", Some(Request::Status)),
             ("panic\r\n", Some(Request::ReleaseAll)),
+            ("dashboard\n", Some(Request::Page)),
             ("next-profile\n", Some(Request::NextProfile)),
             ("reload\n", Some(Request::Profile(None))),
             ("profile my game.toml\n", Some(Request::Profile(Some("my game.toml".into())))),

@@ -77,7 +77,18 @@ impl Bridge {
     pub fn new(parts: Parts) -> io::Result<Self> {
         let clock = Clock::start();
         let now = clock.now();
-        let Parts { pad, patience, decoder, profile, sink, requests, host, record, mut observer, duration_us } = parts;
+        let Parts {
+            pad,
+            patience,
+            decoder,
+            profile,
+            sink,
+            requests,
+            host,
+            record,
+            mut observer,
+            duration_us,
+        } = parts;
         let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
         let head = Head { decoder: decoder.file, profile: Some(profile) };
         let recorder = record.map(|to| Recorder::begin(to, now, &head)).transpose()?;
@@ -115,6 +126,11 @@ impl Bridge {
     /// Durations from bytes readable to events written, one per group.
     pub fn latency(&self) -> Durations {
         self.driver.latency().clone()
+    }
+
+    /// The same, as they grow.
+    pub fn shared_latency(&self) -> Arc<Mutex<Durations>> {
+        Arc::clone(&self.driver.latency)
     }
 
     /// What went wrong so far.
@@ -258,6 +274,8 @@ impl Bridge {
     fn answer(&mut self, now: HostInstant, asked: &Asked) -> Result<(), BridgeError> {
         let answer = match &asked.request {
             Request::Status => self.status(now),
+            Request::Page => page(self.host.page()),
+            Request::Preview(read) => self.preview(now, read)?,
             Request::Profile(name) => {
                 let read = self.host.read_profile(name.as_deref());
                 self.change_profile(now, read, name.is_some())?
@@ -314,8 +332,20 @@ impl Bridge {
             }
             Err(error) => {
                 self.host.tell(&kept(&error));
-                Ok(serde_json::json!({"ok": false, "error": error}).to_string())
+                Ok(refused(&error))
             }
+        }
+    }
+
+    /// Plays a profile that is not kept yet. One that cannot be used changes nothing.
+    fn preview(&mut self, now: HostInstant, read: &ReadProfile) -> Result<String, BridgeError> {
+        match prepare(self.driver.sink.as_mut(), read.profile()) {
+            Ok(()) => {
+                self.standing.previewed();
+                self.driver.call(now, Call::Profile(read))?;
+                Ok(done())
+            }
+            Err(error) => Ok(refused(&error.to_string())),
         }
     }
 
@@ -395,6 +425,7 @@ fn look(
         layer: pipeline.layer().map(str::to_owned),
         profile_reason: standing.reason.clone(),
         profile_error: standing.error.clone(),
+        preview: standing.is_preview,
         decoder: decoder.to_owned(),
         output: sink.describe(),
         contact: pipeline.contact().copied(),
@@ -410,6 +441,18 @@ fn look(
 
 fn done() -> String {
     r#"{"ok":true}"#.into()
+}
+
+fn refused(error: &str) -> String {
+    serde_json::json!({"ok": false, "error": error}).to_string()
+}
+
+/// Where the page is, as an answer.
+fn page(url: Option<String>) -> String {
+    url.map_or_else(
+        || refused("this bridge shows no page: start it with --dashboard"),
+        |url| serde_json::json!({"ok": true, "url": url}).to_string(),
+    )
 }
 
 fn is_woken(fd: &PollFd<'_>) -> bool {

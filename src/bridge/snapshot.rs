@@ -45,6 +45,8 @@ pub struct Status {
     pub profile_reason: String,
     /// What is wrong with the one that would be played else, for people.
     pub profile_error: Option<String>,
+    /// Whether it is played for a try, and is not kept.
+    pub preview: bool,
     /// What people call the decoder.
     pub decoder: String,
     /// Where events go.
@@ -101,7 +103,7 @@ pub struct Uncertainty {
 
 impl Uncertainty {
     /// The square roots of the covariance's diagonal.
-    pub(super) fn of(estimate: &Estimate) -> Self {
+    pub fn of(estimate: &Estimate) -> Self {
         let covariance = &estimate.covariance;
         let [x_mm, y_mm, fx_n, fy_n, fz_n] = std::array::from_fn(|k| covariance[k][k].sqrt());
         Self { x_mm, y_mm, fx_n, fy_n, fz_n }
@@ -134,6 +136,7 @@ mod tests {
             layer: None,
             profile_reason: "asked for".into(),
             profile_error: None,
+            preview: false,
             decoder: "inverse".into(),
             output: "nowhere".into(),
             contact: Some(Contact { x_mm: 0.1, fz_n: 2.0, ..Contact::default() }),
@@ -156,7 +159,7 @@ mod tests {
         let text = serde_json::to_string(&snapshot().status).unwrap();
         let expected = concat!(
             r#"{"state":"playing","pad":"A-1","profile":"Contra","layer":null,"profile_reason":"asked for","#,
-            r#""profile_error":null,"decoder":"inverse","output":"nowhere","#,
+            r#""profile_error":null,"preview":false,"decoder":"inverse","output":"nowhere","#,
             r#""contact":{"x_mm":0.1,"y_mm":0.0,"fx_n":0.0,"fy_n":0.0,"fz_n":2.0},"held":["KEY_UP"],"#,
             r#""warning":null,"presses":{"accepted":4,"rejected":1},"health":{"samples":7,"#
         );

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::bridge::clock::Clock;
 use crate::bridge::latency::{Durations, Percentiles};
-use crate::bridge::opening::OpenedPad;
+use crate::bridge::opening::{OpenedPad, Reopen};
 use crate::bridge::queue::Written;
 use crate::bridge::sink::{Sink, SinkError};
 use crate::bridge::transport::Transport;
@@ -86,11 +86,14 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// The same pad; its reads are timed.
+    /// The same pad; its reads are timed, also after it was opened again.
     #[must_use]
     pub fn pad(&self, mut opened: OpenedPad) -> OpenedPad {
-        let timed = |pad| Box::new(TimedPad { pad, live: self.live.clone() }) as Box<dyn Transport>;
-        opened.pad = opened.pad.take().map(timed);
+        let live = self.live.clone();
+        let timed = move |pad| Box::new(TimedPad { pad, live: live.clone() }) as Box<dyn Transport>;
+        opened.pad = opened.pad.take().map(&timed);
+        let opener = opened.opener.take();
+        opened.opener = opener.map(|mut open| -> Reopen { Box::new(move || open().map(&timed)) });
         opened
     }
 
@@ -98,6 +101,11 @@ impl Timing {
     #[must_use]
     pub fn sink(&self, sink: Box<dyn Sink>) -> Box<dyn Sink> {
         Box::new(TimedSink { sink, live: self.live.clone() })
+    }
+
+    /// The durations of reading and of writing so far.
+    pub fn live(&self) -> Stages<Durations> {
+        self.live.0.lock().map(|stages| stages.clone()).unwrap_or_default()
     }
 
     /// Where the run has to be recorded.
@@ -123,14 +131,14 @@ fn replay_timed(
     mut pipeline: Pipeline,
     stages: &mut Stages<Durations>,
 ) -> Result<u64, CaptureError> {
-    let mut probe = Stopwatch { clock: Clock::start(), last: HostInstant::default(), stages };
+    let clock = Clock::start();
     let mut capture = CaptureReader::new(calls)?;
     let (mut first, mut last) = (None, HostInstant::default());
     while let Some(call) = capture.next_call() {
         let (now, call) = call?;
         first.get_or_insert(now);
         last = now;
-        probe.last = probe.clock.now();
+        let mut probe = Stopwatch::start(clock, stages);
         let mut left: Option<Call<'_>> = Some(call);
         while let Some(call) = left {
             left = pipeline.apply(now, call, &mut probe);
@@ -141,10 +149,18 @@ fn replay_timed(
 }
 
 /// A probe that reads the clock at each stage.
-struct Stopwatch<'a> {
+#[derive(Debug)]
+pub struct Stopwatch<'a> {
     clock: Clock,
     last: HostInstant,
     stages: &'a mut Stages<Durations>,
+}
+
+impl<'a> Stopwatch<'a> {
+    /// One that adds to the durations of decoding and of mapping. Its first stage begins now.
+    pub fn start(clock: Clock, stages: &'a mut Stages<Durations>) -> Self {
+        Self { clock, last: clock.now(), stages }
+    }
 }
 
 impl Probe for Stopwatch<'_> {
@@ -161,14 +177,17 @@ impl Probe for Stopwatch<'_> {
     }
 }
 
+impl<T> Stages<T> {
+    /// The same for each stage.
+    pub fn map<U>(&self, of: impl Fn(&T) -> U) -> Stages<U> {
+        Stages { read: of(&self.read), decode: of(&self.decode), map: of(&self.map), write: of(&self.write) }
+    }
+}
+
 impl Stages<Durations> {
-    fn percentiles(&self) -> Stages<Percentiles> {
-        Stages {
-            read: self.read.percentiles(),
-            decode: self.decode.percentiles(),
-            map: self.map.percentiles(),
-            write: self.write.percentiles(),
-        }
+    /// The percentiles of each stage.
+    pub fn percentiles(&self) -> Stages<Percentiles> {
+        self.map(Durations::percentiles)
     }
 }
 

@@ -34,8 +34,8 @@ struct Watcher {
 }
 
 /// A press as watchers read it.
-#[derive(Serialize)]
-struct Line {
+#[derive(Clone, Debug, Serialize)]
+pub struct Line {
     t_us: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
     button: Option<usize>,
@@ -56,7 +56,7 @@ const fn is_none(lost: &u64) -> bool {
 
 impl Line {
     /// That of a verdict, before which so many were lost.
-    fn of(verdict: &Verdict, lost: u64) -> Self {
+    pub fn of(verdict: &Verdict, lost: u64) -> Self {
         let (button, direction, rejected) = match verdict.told {
             Told::Button { number, rejected } => (Some(number), None, rejected),
             Told::Direction { direction, rejected } => (None, Some(direction.name()), rejected),

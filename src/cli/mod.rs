@@ -20,6 +20,7 @@ mod progress;
 mod protocol;
 mod recording;
 mod replay;
+mod reports;
 mod simulate;
 mod summary;
 mod tables;

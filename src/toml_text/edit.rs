@@ -37,6 +37,26 @@ pub struct Edit {
     pub value: Option<Value>,
 }
 
+/// A step on the way to a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Into the table of this key.
+    Key(String),
+    /// Into the table of this number in a list, from 0.
+    Index(usize),
+}
+
+/// One change of a table that is found step by step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// The way to the table; nothing for the text itself. A last key that is not there is made.
+    pub table: Vec<Step>,
+    /// The key.
+    pub key: String,
+    /// What it says from now on; without a value the key goes.
+    pub value: Option<Value>,
+}
+
 /// Why a text cannot be changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unedited {
@@ -71,6 +91,64 @@ pub fn edited(text: &str, edits: &[Edit]) -> Result<String, Unedited> {
         }
     }
     Ok(document.to_string())
+}
+
+/// The text with these changes, one after the other.
+///
+/// # Errors
+/// It is no TOML, or there is no such table.
+pub fn changed(text: &str, changes: &[Change]) -> Result<String, Unedited> {
+    let mut document = parsed(text)?;
+    for Change { table, key, value } in changes {
+        let (found, way) = follow(document.as_item_mut(), table)?;
+        match value {
+            Some(value) => set(opened(found, way, table.len() > 1)?, key, value),
+            None => {
+                if let Some(table) = way.is_empty().then(|| found.as_table_like_mut()).flatten() {
+                    table.remove(key);
+                }
+            }
+        }
+    }
+    Ok(document.to_string())
+}
+
+/// Goes as far as there is something; what is left of the way is one key at most.
+fn follow<'i, 'w>(root: &'i mut Item, way: &'w [Step]) -> Result<(&'i mut Item, &'w [Step]), Unedited> {
+    let mut item = root;
+    for (index, step) in way.iter().enumerate() {
+        let rest = way.get(index..).unwrap_or_default();
+        let is_last_key = matches!(rest, [Step::Key(_)]);
+        let is_there = match step {
+            Step::Key(key) => item.as_table_like().is_some_and(|table| table.contains_key(key)),
+            Step::Index(index) => item.get(*index).is_some(),
+        };
+        if !is_there && is_last_key && item.is_table_like() {
+            return Ok((item, rest));
+        }
+        let next = match step {
+            Step::Key(key) => item.as_table_like_mut().and_then(|table| table.get_mut(key)),
+            Step::Index(index) => item.get_mut(*index),
+        };
+        item = next.ok_or_else(|| no_table(way))?;
+    }
+    if item.is_table_like() { Ok((item, &[])) } else { Err(no_table(way)) }
+}
+
+/// The table itself; one that is not there is made: beside others with a line of its own, inside another one in its line.
+fn opened<'i>(found: &'i mut Item, way: &[Step], is_inside: bool) -> Result<&'i mut dyn TableLike, Unedited> {
+    let table = found.as_table_like_mut().ok_or_else(|| no_table(way))?;
+    let [Step::Key(key)] = way else { return Ok(table) };
+    let new = if is_inside { toml_edit::value(toml_edit::InlineTable::new()) } else { Item::Table(begun()) };
+    table.entry(key).or_insert(new).as_table_like_mut().ok_or_else(|| no_table(way))
+}
+
+fn no_table(way: &[Step]) -> Unedited {
+    let name = |step: &Step| match step {
+        Step::Key(key) => key.clone(),
+        Step::Index(index) => (index + 1).to_string(),
+    };
+    Unedited::NoTable(way.iter().map(name).collect::<Vec<_>>().join(" "))
 }
 
 /// What a key says, if it is written as one of these.

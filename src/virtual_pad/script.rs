@@ -34,6 +34,8 @@ pub struct Script {
     keyframes: Vec<Keyframe>,
     contacts: usize,
     expected: Vec<(OutputDevice, Code, i32)>,
+    /// After so long it begins anew.
+    round_us: Option<u64>,
 }
 
 impl Script {
@@ -43,7 +45,7 @@ impl Script {
     ///
     /// The timing is right for a pad at 1 kHz or faster; the profile's filter is slower on a slower pad.
     pub fn for_profile(profile: &Profile, duration_us: u64) -> Self {
-        let mut script = Self { keyframes: Vec::new(), contacts: 0, expected: Vec::new() };
+        let mut script = Self { keyframes: Vec::new(), contacts: 0, expected: Vec::new(), round_us: None };
         let duration_us = duration_us.min(DURATION_MAX_US);
         let mut now_us = REST_AT_START_US;
         for gesture in gestures(profile).iter().cycle() {
@@ -59,9 +61,18 @@ impl Script {
         script
     }
 
+    /// Plays all gestures one after the other, and again from the beginning, without an end. Contacts and events are those of one round.
+    pub fn endless(profile: &Profile) -> Self {
+        let all = gestures(profile);
+        let length_us: u64 = all.iter().map(|gesture| gesture.duration_us().max(gesture.contact_us())).sum();
+        let round_us = (REST_AT_START_US + length_us + REST_AT_END_US).min(DURATION_MAX_US);
+        Self { round_us: Some(round_us), ..Self::for_profile(profile, round_us) }
+    }
+
     /// The true contact at `t_us` from the start; no force between gestures, before the first and after the
     /// last.
     pub fn contact_at(&self, t_us: u64) -> Contact {
+        let t_us = self.round_us.map_or(t_us, |round_us| t_us % round_us);
         let next = self.keyframes.partition_point(|keyframe| keyframe.at_us <= t_us);
         let Some(from) = next.checked_sub(1).and_then(|last| self.keyframes.get(last)) else {
             return Contact::default();
@@ -130,6 +141,20 @@ mod tests {
     use firmware_proto::frame::Message;
 
     const TEN_SECONDS_US: u64 = 10_000_000;
+
+    #[test]
+    fn an_endless_script_plays_every_gesture_in_each_round() {
+        for profile in shipped_profiles() {
+            let script = Script::endless(&profile);
+            assert_eq!(script.contacts(), gestures(&profile).len(), "{}", profile.name);
+            let round_us = script.round_us.unwrap();
+            let once = |begin_us: u64| -> Vec<_> {
+                (0..round_us).step_by(10_000).map(|t_us| script.contact_at(begin_us + t_us)).collect()
+            };
+            assert_eq!(once(0), once(7 * round_us), "{}", profile.name);
+            assert!(once(0).iter().any(|contact| contact.fz_n > 1.0), "{}", profile.name);
+        }
+    }
 
     fn edges(script: &Script) -> Vec<(Code, i32)> {
         script.expected().iter().map(|(_, code, value)| (*code, *value)).collect()

@@ -17,8 +17,11 @@ pub type Expected = (OutputDevice, Code, i32);
 /// What went out, in order. The pointer's steps are many and no two runs have the same: they are counted.
 #[derive(Clone, Debug, Default)]
 pub struct Account {
-    /// All but the pointer's steps.
+    /// All but the pointer's steps, where they are kept.
     pub edges: Vec<OutputEvent>,
+    keeps_edges: bool,
+    tally: Tally,
+    held: BTreeMap<(OutputDevice, Code), i32>,
     /// How many steps the pointer made.
     pub pointer_moves: usize,
     /// The newest events, of whatever kind.
@@ -41,7 +44,7 @@ impl Account {
         for event in group {
             match event.code {
                 Code::Relative(_) => self.pointer_moves += 1,
-                Code::Key(_) | Code::Axis(_) => self.edges.push(*event),
+                Code::Key(_) | Code::Axis(_) => self.count(event),
             }
             if self.newest.len() == NEWEST {
                 self.newest.pop_front();
@@ -50,18 +53,19 @@ impl Account {
         }
     }
 
+    fn count(&mut self, event: &OutputEvent) {
+        // A hat that goes over from one side to the other is an up and a down in one event.
+        let before = self.held.insert((event.device, event.code), event.value).unwrap_or(0);
+        self.tally.ups += usize::from(before != 0);
+        self.tally.downs += usize::from(event.value != 0);
+        if self.keeps_edges {
+            self.edges.push(*event);
+        }
+    }
+
     /// How often controls went down and up.
     pub fn tally(&self) -> Tally {
-        let mut tally = Tally::default();
-        let mut held = BTreeMap::new();
-        for event in &self.edges {
-            // A hat that goes over from one side to the other is an up and a down in one event.
-            let before = held.insert((event.device, event.code), event.value).unwrap_or(0);
-            tally.ups += usize::from(before != 0);
-            tally.downs += usize::from(event.value != 0);
-        }
-        tally.held = held.values().filter(|value| **value != 0).count();
-        tally
+        Tally { held: self.held.values().filter(|value| **value != 0).count(), ..self.tally }
     }
 
     /// Holds the edges against those of a script; times do not count.
@@ -101,8 +105,13 @@ pub struct Witness {
 }
 
 impl Witness {
-    /// Watches over what goes to `sink`.
+    /// Watches over what goes to `sink`, and keeps each edge.
     pub fn new(sink: Box<dyn Sink>) -> Self {
+        Self { sink, seen: Arc::new(Mutex::new(Account { keeps_edges: true, ..Account::default() })) }
+    }
+
+    /// Watches over what goes to `sink`, however long that goes on: edges are counted, and the newest ones are kept.
+    pub fn counting(sink: Box<dyn Sink>) -> Self {
         Self { sink, seen: Arc::default() }
     }
 

@@ -6,6 +6,7 @@ use super::document::Document;
 use super::report;
 use crate::cli::destination::Folder;
 use crate::cli::failure::Failure;
+use crate::cli::reports;
 use crate::cli::written::{json_text, say};
 use tactpad::lab::diagnosis::report::Diagnosis;
 
@@ -19,6 +20,7 @@ pub(super) fn write_report(folder: &Folder, page: &str, diagnosis: &Diagnosis) -
     let page = folder.write(report::PAGE, page.as_bytes())?;
     let document =
         folder.write(report::DOCUMENT, format!("{}\n", json_text(&Document::of(diagnosis))?).as_bytes())?;
+    reports::remember(Path::new(&page).parent().unwrap_or(Path::new(".")));
     say(format_args!("the report is {page}, its numbers are {document}"));
     Ok(())
 }

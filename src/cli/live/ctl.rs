@@ -60,6 +60,9 @@ enum Action {
     /// Read the profile in use again, after it was changed.
     #[command(after_help = "Example: tactpad ctl reload")]
     Reload,
+    /// Print the address of the page that shows the bridge; whoever has it can use the bridge.
+    #[command(after_help = "Example: xdg-open $(tactpad ctl dashboard)")]
+    Dashboard,
     /// End the bridge.
     #[command(after_help = "Example: tactpad ctl quit")]
     Quit,
@@ -84,6 +87,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Tare => "tare".to_owned(),
         Action::NextProfile => "next-profile".to_owned(),
         Action::Reload => "reload".to_owned(),
+        Action::Dashboard => "dashboard".to_owned(),
         Action::Quit => "quit".to_owned(),
         Action::Profile { name } => format!("profile {}", absolute(name)?),
     };
@@ -96,6 +100,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments.action {
         _ if arguments.json => Ok(writeln!(stdout(), "{answer}")?),
         Action::Status => Ok(print_status(&document)?),
+        Action::Dashboard => {
+            let url = document.get("url").and_then(Value::as_str).map_or_else(String::new, printable);
+            Ok(writeln!(stdout(), "{url}")?)
+        }
         _ => Ok(()),
     }
 }

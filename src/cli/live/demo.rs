@@ -11,6 +11,7 @@ use super::newest::line;
 use super::output::{Output, log_to};
 use super::playing::{Audience, Terminal, microseconds, open_virtual, play, requests};
 use super::screen::Screen;
+use super::shown::Shown;
 use super::{chosen, seconds};
 use crate::cli::decoder_file::Choice;
 use crate::cli::device::Pad;
@@ -34,9 +35,9 @@ use tactpad::virtual_pad::script::Script;
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tactpad demo --seconds 10 --profile contra")]
 pub(crate) struct Arguments {
-    /// How long to play.
-    #[arg(long, default_value = "20", value_parser = seconds::parse, allow_hyphen_values = true)]
-    seconds: f64,
+    /// How long to play: 20 without it, and with --dashboard until it is stopped.
+    #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
+    seconds: Option<f64>,
     /// A profile's name or file.
     #[arg(long, default_value = "super-mario")]
     profile: String,
@@ -47,10 +48,15 @@ pub(crate) struct Arguments {
     /// Where events go: auto (a virtual gamepad, else the screen), uinput, x11, log:FILE (- is stdout), none.
     #[arg(long, default_value = "auto")]
     output: Output,
+    #[command(flatten)]
+    shown: Shown,
     /// Print one JSON document on stdout.
     #[arg(long)]
     json: bool,
 }
+
+/// It plays so long unless people say how long.
+const SECONDS: f64 = 20.0;
 
 /// No gesture of the player takes longer.
 const SECONDS_OF_A_GESTURE_MAX: u32 = 60;
@@ -75,32 +81,34 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .check()?;
     let decoder = chosen::read(decoder)?;
     let profile = profile::read(profile, output.choice())?;
-    let script = script(profile.profile(), arguments.seconds)?;
-    let contacts = script.contacts() as u64;
-    let verdict = Verdict {
-        expected: script.expected().to_vec(),
-        contacts,
-        steered: profile.profile().pointer.is_some() && contacts > 0,
-    };
+    let duration = arguments.duration();
+    let script = script(profile.profile(), duration)?;
+    let verdict = Verdict::of(&script, profile.profile());
     let name = profile.profile().name.clone();
     let (sink, title) = open_sink(arguments, profile.profile())?;
     if_read(tell(arguments, &title))?;
-    let witness = Witness::new(sink);
+    let witness = if duration.is_some() { Witness::new(sink) } else { Witness::counting(sink) };
     let seen = witness.seen();
     let audience = Audience::Nobody;
     let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
+    let requests = requests(None, audience)?;
+    let mut prepared = arguments.shown.prepare(requests.asker()?, host.wish(), output.choice())?;
+    if let Some(url) = &prepared.url {
+        if_read(tell(arguments, &format!("Dashboard: {url}")))?;
+    }
     let mut bridge = Bridge::new(Parts {
-        pad: open_virtual(&arguments.device, script)?,
+        pad: prepared.pad(open_virtual(&arguments.device, script)?),
         patience: Patience::Limited,
         decoder,
         profile,
-        sink: Box::new(witness),
-        requests: requests(None, audience)?,
-        host: Box::new(host),
+        sink: prepared.sink(Box::new(witness)),
+        requests,
+        host: Box::new(host.with_page(prepared.url.clone())),
         record: None,
-        observer: None,
-        duration_us: Some(microseconds(arguments.seconds)),
+        observer: prepared.observer.take(),
+        duration_us: duration.map(microseconds),
     })?;
+    prepared.start(&bridge)?;
     let screen =
         is_shown(arguments).then(|| start_screen(format!("{name} on a virtual pad"), &bridge, &seen));
     let played = play(&mut bridge, &PadAddress::Virtual);
@@ -108,16 +116,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let ending = played?;
     let seen = seen.lock().map(|seen| seen.clone()).unwrap_or_default();
     if_read(report(arguments, &bridge, &seen))?;
+    if arguments.shown.has_page() {
+        // Whoever sees the page may have changed what is played.
+        return Ok(());
+    }
     verdict.check(ending, &seen, &bridge)?;
-    let events = seen.edges.len();
-    if_read(tell(
-        arguments,
-        &format!("all {events} events and {contacts} contacts are those that the player meant"),
-    ))
+    if_read(tell(arguments, &verdict.words()))
+}
+
+impl Arguments {
+    /// How long it plays, in seconds; `None` where it plays until it is stopped.
+    fn duration(&self) -> Option<f64> {
+        self.seconds.or((!self.shown.has_page()).then_some(SECONDS))
+    }
 }
 
 /// What the player plays. A time in which nothing can be played is refused, unless nothing ever can.
-fn script(profile: &Profile, seconds: f64) -> Result<Script, Failure> {
+fn script(profile: &Profile, seconds: Option<f64>) -> Result<Script, Failure> {
+    let Some(seconds) = seconds else { return Ok(Script::endless(profile)) };
     let script = Script::for_profile(profile, microseconds(seconds));
     let plays =
         |seconds: &u32| Script::for_profile(profile, microseconds(f64::from(*seconds))).contacts() > 0;
@@ -141,6 +157,21 @@ struct Verdict {
 }
 
 impl Verdict {
+    fn of(script: &Script, profile: &Profile) -> Self {
+        let contacts = script.contacts() as u64;
+        Self {
+            expected: script.expected().to_vec(),
+            contacts,
+            steered: profile.pointer.is_some() && contacts > 0,
+        }
+    }
+
+    /// What is told where everything is as the player meant it.
+    fn words(&self) -> String {
+        let (events, contacts) = (self.expected.len(), self.contacts);
+        format!("all {events} events and {contacts} contacts are those that the player meant")
+    }
+
     fn check(&self, ending: Ending, seen: &Account, bridge: &Bridge) -> Result<(), Failure> {
         if ending != Ending::TimeOver {
             return Err(Failure::Failed("interrupted: the events were not compared with the script".into()));

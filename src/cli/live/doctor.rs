@@ -74,8 +74,9 @@ impl Check {
     }
 }
 
+/// What stands in the way, and what does not.
 #[derive(Serialize)]
-struct DoctorReport {
+pub(super) struct DoctorReport {
     ok: bool,
     checks: Vec<Check>,
 }
@@ -84,6 +85,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.udev_rules {
         return Ok(stdout().write_all(RULES.as_bytes())?);
     }
+    let report = examine();
+    let printed = if arguments.json { print_json(&report) } else { print(&report).map_err(Failure::from) };
+    if_read(printed)?;
+    if report.ok { Ok(()) } else { Err(Failure::Failed("something stands in the way".into())) }
+}
+
+/// Looks at this machine.
+pub(super) fn examine() -> DoctorReport {
     let root = Path::new("/");
     let mut checks = vec![check_uinput(), check_rules(root)];
     checks.extend(check_pads(&pads::attached()));
@@ -94,10 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     checks.extend(check_sdl(|name| env::var(name).ok()));
     checks.extend(check_session(|name| env::var(name).ok()));
     checks.push(check_bridge(&bridge));
-    let report = DoctorReport { ok: checks.iter().all(|check| check.finding != Finding::Bad), checks };
-    let printed = if arguments.json { print_json(&report) } else { print(&report).map_err(Failure::from) };
-    if_read(printed)?;
-    if report.ok { Ok(()) } else { Err(Failure::Failed("something stands in the way".into())) }
+    DoctorReport { ok: checks.iter().all(|check| check.finding != Finding::Bad), checks }
 }
 
 fn print(report: &DoctorReport) -> io::Result<()> {

@@ -10,11 +10,16 @@ mod follower;
 mod latency;
 mod newest;
 mod output;
+#[cfg(feature = "dashboard")]
+mod page;
 mod playing;
 mod record;
+#[cfg(feature = "dashboard")]
+mod reported;
 mod run;
 mod screen;
 mod seconds;
+mod shown;
 mod sound;
 mod wish;
 

@@ -122,6 +122,8 @@ pub(super) struct Terminal {
     /// The profile that is read again when nobody names another one.
     wish: Arc<Mutex<Wish>>,
     output: OutputChoice,
+    /// Where the page of the bridge is.
+    page: Option<String>,
     /// Stderr, if somebody reads it. A terminal that is held with Ctrl-S must not keep the bridge waiting.
     told: Option<Queue>,
 }
@@ -133,7 +135,12 @@ impl Terminal {
             Audience::Stderr => Some(Queue::start("told", io::stderr(), TOLD_BYTES_MAX)?),
             Audience::Nobody => None,
         };
-        Ok(Self { wish: Arc::new(Mutex::new(Wish::of(profile))), output, told })
+        Ok(Self { wish: Arc::new(Mutex::new(Wish::of(profile))), output, page: None, told })
+    }
+
+    /// The same, of a bridge that is shown at this address.
+    pub(super) fn with_page(self, page: Option<String>) -> Self {
+        Self { page, ..self }
     }
 
     /// What people wish to be played, for whoever follows it.
@@ -159,6 +166,10 @@ impl Host for Terminal {
         )?;
         *wish = wish.asked(Some(&chosen));
         Ok(read)
+    }
+
+    fn page(&self) -> Option<String> {
+        self.page.clone()
     }
 
     fn wants(&self, offer: &Offer) -> bool {

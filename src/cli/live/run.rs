@@ -1,6 +1,7 @@
 //! `tactpad run`: the live bridge.
 
 use std::io;
+use std::sync::Arc;
 
 use clap::Args;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -11,6 +12,7 @@ use super::newest::Newest;
 use super::output::Output;
 use super::playing::{Audience, Terminal, Waits, microseconds, open_pad, patience, play, requests};
 use super::screen::Screen;
+use super::shown::Shown;
 use super::wish;
 use super::{chosen, ctl, seconds};
 use crate::cli::decoder_file::Choice;
@@ -46,6 +48,8 @@ pub(crate) struct Arguments {
     /// Where events go: auto (virtual devices, else an event log here), uinput, x11, log:FILE (- is stdout), none.
     #[arg(long, default_value = "auto")]
     output: Output,
+    #[command(flatten)]
+    shown: Shown,
     /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
     /// probability is per frame, and 0.001 where only a seed is given.
     #[arg(long, value_name = "FAULTS")]
@@ -79,19 +83,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     audience.tell(&title);
     let requests = requests(Some(&ctl::socket_path()), audience)?;
+    let mut prepared = arguments.shown.prepare(requests.asker()?, Arc::clone(&wish), output.choice())?;
+    if let Some(url) = &prepared.url {
+        say(format_args!("Dashboard: {url}"));
+    }
     follower::start(wish, output.choice(), requests.asker()?)?;
     let mut bridge = Bridge::new(Parts {
-        pad: opened,
+        pad: prepared.pad(opened),
         patience,
         decoder,
         profile,
-        sink,
+        sink: prepared.sink(sink),
         requests,
-        host: Box::new(host),
+        host: Box::new(host.with_page(prepared.url.clone())),
         record: None,
-        observer: None,
+        observer: prepared.observer.take(),
         duration_us: arguments.seconds.map(microseconds),
     })?;
+    prepared.start(&bridge)?;
     let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.lines()));
     let ending = play(&mut bridge, &arguments.pad);
     drop(screen);

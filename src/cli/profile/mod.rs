@@ -10,6 +10,8 @@ use tactpad::pipeline::mapping::shipped;
 
 mod begun;
 mod chosen;
+#[cfg(all(feature = "dashboard", target_os = "linux"))]
+mod kept;
 mod list;
 mod own;
 mod stored;
@@ -18,6 +20,8 @@ mod verdict;
 pub(super) use chosen::read;
 #[cfg(all(feature = "live", target_os = "linux"))]
 pub(super) use chosen::{file, is_known, known, next, read_aside};
+#[cfg(all(feature = "dashboard", target_os = "linux"))]
+pub(super) use kept::{entries, save, stored};
 pub(super) use stored::Stored;
 
 /// Arguments of `tactpad profile`.

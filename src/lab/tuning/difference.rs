@@ -125,7 +125,7 @@ impl Press {
 }
 
 /// The presses of an event log, in order of their begin. One that never ends lasts as long as the log.
-fn presses(events: &[OutputEvent]) -> Vec<Press> {
+pub fn presses(events: &[OutputEvent]) -> Vec<Press> {
     let mut presses: Vec<Press> = Vec::new();
     let mut open: Vec<usize> = Vec::new();
     let end = events.last().map_or(StreamInstant::default(), |event| event.at);

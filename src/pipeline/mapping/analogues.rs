@@ -26,7 +26,7 @@ const STICK_KEYS: [&str; 9] = [
 const TRIGGER_KEYS: [&str; 5] = ["trigger", "from_n", "full_n", "curve", "zone"];
 /// The gamepad has one on each side.
 const SIDES: [(&str, Side); 2] = [("left", Side::Left), ("right", Side::Right)];
-const SOURCES: [(&str, Source); 2] = [("place", Source::Place), ("shear", Source::Shear)];
+pub(super) const SOURCES: [(&str, Source); 2] = [("place", Source::Place), ("shear", Source::Shear)];
 /// The numbers of each source.
 const PLACE_KEYS: [&str; 2] = ["centre_radius_mm", "full_radius_mm"];
 const SHEAR_KEYS: [&str; 2] = ["centre_n", "full_n"];

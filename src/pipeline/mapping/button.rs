@@ -13,7 +13,7 @@ use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::{Bounds, Placed, Section};
 
-const FORCES: [(&str, Force); 5] = [
+pub(super) const FORCES: [(&str, Force); 5] = [
     ("fz", Force::Fz),
     ("fy", Force::FyPositive),
     ("-fy", Force::FyNegative),

@@ -67,7 +67,7 @@ const POINTER_KEYS: [&str; 7] = [
     "min_force_n",
     "release_force_n",
 ];
-const POINTER_MODES: [(&str, PointerMode); 2] =
+pub(super) const POINTER_MODES: [(&str, PointerMode); 2] =
     [("relative", PointerMode::Relative), ("absolute", PointerMode::Absolute)];
 /// Those that say how fast it moves.
 const SPEED_KEYS: [&str; 3] = ["centre_radius_mm", "speed_counts_per_s", "curve"];

@@ -11,7 +11,7 @@ use crate::pipeline::control::OutputDevice;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::{Bounds, Placed, Section};
 
-const MODES: [(&str, DpadMode); 3] =
+pub(super) const MODES: [(&str, DpadMode); 3] =
     [("4way", DpadMode::FourWay), ("4way-sticky", DpadMode::FourWaySticky), ("8way", DpadMode::EightWay)];
 pub(super) const DPAD_KEYS: [&str; 11] = [
     "mode",

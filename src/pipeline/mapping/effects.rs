@@ -15,7 +15,7 @@ const TARGET_KEYS: [&str; 3] = ["layer", "macro", "bridge"];
 /// How it follows the press.
 const MODE_KEYS: [&str; 3] = ["toggle", "sticky", "turbo_ms"];
 /// What can be asked of the bridge, but for going over to a profile of a name.
-const COMMANDS: [(&str, Command); 4] = [
+pub(super) const COMMANDS: [(&str, Command); 4] = [
     ("next-profile", Command::NextProfile),
     ("pause", Command::TogglePause),
     ("panic", Command::Panic),

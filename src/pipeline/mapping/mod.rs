@@ -41,6 +41,7 @@ mod rest;
 mod running;
 mod sector;
 pub mod shipped;
+pub mod sketch;
 mod stage;
 mod stages;
 pub mod stated;

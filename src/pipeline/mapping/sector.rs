@@ -143,6 +143,18 @@ fn zone(dpad: &Dpad, angle_deg: f32) -> Sector {
     }
 }
 
+/// The parts of the plate, counter-clockwise from right: where each begins and ends, in degrees, and whether it holds a direction. In a
+/// diagonal part of the sticky mode the last direction stays.
+pub(super) fn parts(dpad: &Dpad) -> impl Iterator<Item = (f32, f32, impl Fn(Direction) -> bool)> + '_ {
+    let step = if dpad.mode == DpadMode::FourWay { 2 } else { 1 };
+    (0..8).step_by(step).map(Sector).map(|sector| {
+        let middle_deg = 45.0 * f32::from(sector.0) + dpad.rotation_deg;
+        let half_deg = half_width_deg(dpad, sector);
+        let stays = dpad.mode == DpadMode::FourWaySticky && sector.is_diagonal();
+        (middle_deg - half_deg, middle_deg + half_deg, move |direction| !stays && sector.has(direction))
+    })
+}
+
 /// How far a held sector reaches into its neighbours: the larger of an angle and an arc, and half of a neighbour at most.
 fn slack_deg(dpad: &Dpad, held: Sector, radius_mm: f32) -> f32 {
     let neighbour = match dpad.mode {

@@ -22,9 +22,9 @@ pub(super) use self::subject::{Plate, Subject};
 use tactpad::lab::diagnosis::report::Diagnosis;
 
 /// Names of the files in the report's folder.
-pub(super) const PAGE: &str = "report.html";
+pub(in crate::cli) const PAGE: &str = "report.html";
 /// See [`PAGE`].
-pub(super) const DOCUMENT: &str = "report.json";
+pub(in crate::cli) const DOCUMENT: &str = "report.json";
 
 const STYLE: &str = include_str!("style.css");
 

@@ -225,3 +225,35 @@ pub(super) async fn report(State(office): Shared, Path(id): Path<String>) -> Ans
         )
     })
 }
+
+/// `GET /api/guides`: how all guides stand.
+pub(super) async fn guides(State(office): Shared) -> Answer {
+    let told = office.with_guides(|guides, _| guides.told());
+    Ok(Json(json!({"guides": told})).into_response())
+}
+
+#[derive(Deserialize)]
+pub(super) struct Action {
+    #[serde(rename = "do")]
+    action: String,
+}
+
+/// `POST /api/guides/ID`: begins a guide, stops it, or does what a step offers.
+pub(super) async fn guide(
+    State(office): Shared,
+    Path(id): Path<String>,
+    asked: Result<Json<Action>, JsonRejection>,
+) -> Answer {
+    let Action { action } = body(asked)?;
+    wait(move || {
+        let done = office.with_guides(|guides, scene| guides.act(&id, &action, scene));
+        let done =
+            done.ok_or_else(|| Refusal::new(StatusCode::NOT_FOUND, format!("there is no guide {id:?}")))?;
+        let done = done.map_err(|error| Refusal::new(StatusCode::CONFLICT, error))?;
+        if let Some(request) = done.request {
+            office.ask(request)?;
+        }
+        Ok(Json(done.told).into_response())
+    })
+    .await?
+}

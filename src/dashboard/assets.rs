@@ -20,7 +20,51 @@ const KINDS: [(&str, &str); 4] = [
 ];
 
 /// All files of the page.
-const FILES: &[(&str, &str)] = &files!["index.html"];
+const FILES: &[(&str, &str)] = &files![
+    "announce.js",
+    "api.js",
+    "capture.js",
+    "channels.js",
+    "clock.js",
+    "colours.js",
+    "doctor.js",
+    "dom.js",
+    "draft.js",
+    "editor.css",
+    "editor.js",
+    "events.js",
+    "field.js",
+    "force_handles.js",
+    "form.js",
+    "geometry.js",
+    "guides.js",
+    "handles.js",
+    "history.js",
+    "index.html",
+    "instruments.css",
+    "keys.js",
+    "latency.js",
+    "live.js",
+    "main.js",
+    "meter.js",
+    "plate.js",
+    "plate_handles.js",
+    "preview.js",
+    "reports.js",
+    "rewind.js",
+    "router.js",
+    "saving.js",
+    "schema.js",
+    "screen.js",
+    "settings.js",
+    "socket.js",
+    "status.js",
+    "style.css",
+    "templates.js",
+    "text.js",
+    "trace.js",
+    "values.js",
+];
 
 /// Answers `GET /`.
 pub(super) async fn index() -> Response {

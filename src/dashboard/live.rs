@@ -16,6 +16,9 @@ use super::refusal::Refusal;
 /// How often what changes slowly is told.
 const SLOW: Duration = Duration::from_millis(250);
 
+/// How often guides look.
+const GUIDES: Duration = Duration::from_millis(100);
+
 /// A page that takes nothing for so long has gone.
 const PATIENCE: Duration = Duration::from_secs(10);
 
@@ -56,6 +59,8 @@ async fn serve(mut socket: WebSocket, office: &Office, _page: Page) -> Result<()
     let mut cursor = Cursor::now(&office.feed);
     let mut slow = interval(SLOW);
     slow.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let (mut guides, mut changes) = (interval(GUIDES), 0);
+    guides.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
         let messages = tokio::select! {
             changed = added.changed() => {
@@ -65,6 +70,7 @@ async fn serve(mut socket: WebSocket, office: &Office, _page: Page) -> Result<()
                 cursor.messages(&office.feed)
             }
             _ = slow.tick() => vec![office.slow()],
+            _ = guides.tick() => guided(office, &mut changes),
             said = socket.recv() => match said {
                 Some(Ok(Message::Text(said))) => answer(office, &said).into_iter().collect(),
                 Some(Ok(Message::Binary(_) | Message::Ping(_) | Message::Pong(_))) => Vec::new(),
@@ -79,6 +85,15 @@ async fn serve(mut socket: WebSocket, office: &Office, _page: Page) -> Result<()
             }
         }
     }
+}
+
+/// Lets the guides look, and tells of them if anything changed.
+fn guided(office: &Office, changes: &mut u64) -> Vec<String> {
+    office.with_guides(|guides, scene| {
+        guides.look(scene);
+        let before = std::mem::replace(changes, guides.changes());
+        if before == *changes { Vec::new() } else { guides.messages() }
+    })
 }
 
 /// What a page is answered. What it says beside the form has no answer.

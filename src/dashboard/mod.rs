@@ -16,6 +16,7 @@ mod draft;
 mod feed;
 mod frame;
 mod guard;
+mod guides;
 pub mod library;
 mod live;
 mod office;

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::feed::Feed;
 use super::frame::{Told, slow};
+use super::guides::{Guides, Scene};
 use super::library::Library;
 use super::past::Past;
 use super::refusal::Refusal;
@@ -31,6 +32,7 @@ pub(super) struct Office {
     /// How long reading and writing take, where the bridge's pad and sink tell it.
     pub(super) timing: Timing,
     pub(super) end_to_end: Arc<Mutex<Durations>>,
+    guides: Mutex<Guides>,
     /// Pages that look.
     pages: AtomicUsize,
     /// Whether one of them lets a profile be tried.
@@ -56,7 +58,8 @@ impl Office {
         Sight { snapshot, timing, end_to_end }: Sight,
     ) -> Self {
         let (pages, previews) = (AtomicUsize::new(0), AtomicBool::new(false));
-        Self { asker, library, feed, known, snapshot, timing, end_to_end, pages, previews }
+        let guides = Mutex::new(Guides::new());
+        Self { asker, library, feed, known, snapshot, timing, end_to_end, guides, pages, previews }
     }
 
     /// Asks the bridge and waits for its answer.
@@ -95,6 +98,22 @@ impl Office {
             (pages < PAGES_MAX).then_some(pages + 1)
         });
         entered.ok().map(|_| Page(Arc::clone(self)))
+    }
+
+    /// The guides, and what they see now.
+    pub(super) fn with_guides<T>(&self, work: impl FnOnce(&mut Guides, &Scene<'_>) -> T) -> T {
+        let snapshot = self.snapshot.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let now = self.feed.newest().now.as_ref().map(|now| now.clock.now());
+        let scene = Scene {
+            now: now.unwrap_or(snapshot.at),
+            status: &snapshot.status,
+            profile: &|| {
+                let name = self.library.playing();
+                self.library.read(&name).map(|stored| (name, stored.text))
+            },
+            past: &|| self.past(),
+        };
+        work(&mut self.guides.lock().unwrap_or_else(PoisonError::into_inner), &scene)
     }
 
     /// The last minute of play.

@@ -90,6 +90,8 @@ fn router(office: Arc<Office>, guard: Arc<Guard>) -> Router {
         .route("/api/rewind", post(api::rewind))
         .route("/api/doctor", get(api::doctor))
         .route("/api/reports", get(api::reports))
+        .route("/api/guides", get(api::guides))
+        .route("/api/guides/{id}", post(api::guide))
         .route("/api/{action}", post(api::act))
         .with_state(office)
         .layer(DefaultBodyLimit::max(BODY_BYTES_MAX))

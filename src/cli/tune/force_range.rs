@@ -8,7 +8,6 @@ use serde::Serialize;
 
 use super::arguments::Arguments;
 use super::report::Pair;
-use super::words::{Told, path};
 use crate::cli::failure::Failure;
 use crate::cli::profile;
 use crate::cli::written::{print_json, stdout};
@@ -17,6 +16,7 @@ use tactpad::lab::tuning::force_range::fit::{Reached, Unfit, fit};
 use tactpad::lab::tuning::force_range::levels::{self, ends_n, is_one_force};
 use tactpad::lab::tuning::force_range::peaks::Peaks;
 use tactpad::lab::tuning::force_range::range::{PRESSES_MIN, Range};
+use tactpad::lab::tuning::words::{Told, path};
 use tactpad::pipeline::mapping::check::{OutputChoice, read};
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::pipeline::mapping::shipped;

@@ -3,7 +3,6 @@
 mod arguments;
 mod force_range;
 mod report;
-mod words;
 
 use std::io::Write;
 use std::path::Path;

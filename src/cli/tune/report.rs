@@ -4,10 +4,10 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::words::Told;
 use tactpad::lab::tuning::confusion::Confusion;
 use tactpad::lab::tuning::delay::delay_us;
 use tactpad::lab::tuning::fitting::{Fitted, Study};
+use tactpad::lab::tuning::words::Told;
 use tactpad::pipeline::mapping::profile::Profile;
 
 /// With the profile that was given, and with the fitted one.

@@ -24,3 +24,4 @@ pub mod places;
 pub mod scoring;
 pub mod trace;
 pub mod vocabulary;
+pub mod words;

@@ -135,6 +135,12 @@ impl Tracer {
         Self { pipeline: Pipeline::new(decoder, profile), begin: None, samples: 0, moments: Vec::new() }
     }
 
+    /// One that goes on from a pipeline that has heard something.
+    pub fn going_on(pipeline: Pipeline) -> Self {
+        let samples = pipeline.health().samples;
+        Self { pipeline, begin: None, samples, moments: Vec::new() }
+    }
+
     /// Makes one call. A change of the profile is left out: the question is what another one makes of the contacts.
     pub fn apply(&mut self, now: HostInstant, call: Call<'_>) {
         match call {

@@ -2,21 +2,22 @@
 
 use serde::Serialize;
 
-use tactpad::lab::tuning::fitting::Change;
-use tactpad::lab::tuning::knobs::Key;
-use tactpad::pipeline::mapping::profile::Profile;
-use tactpad::toml_text::edit::Table;
+use super::fitting::Change;
+use super::knobs::Key;
+use crate::pipeline::mapping::profile::Profile;
+use crate::toml_text::edit::Table;
 
 /// A changed number for people and programs.
-#[derive(Serialize)]
-pub(super) struct Told {
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Told {
     /// The key with the table it stands in, as `button.1.press_n`.
-    key: String,
+    pub key: String,
     /// What it was; nothing where it was not there and meant nothing then.
-    from: Option<f64>,
-    to: f64,
+    pub from: Option<f64>,
+    /// What it is.
+    pub to: f64,
     /// What that means.
-    pub(super) words: String,
+    pub words: String,
 }
 
 /// Keys, each with the table it stands in (none where any will do) and what it says of its value.
@@ -59,7 +60,7 @@ const UNITS: [(&str, &str); 5] =
     [("_mm", " mm"), ("_ms", " ms"), ("_deg", "°"), ("_hz", " Hz"), ("_n", " N")];
 
 /// A key with the table it stands in, as `button.1.press_n`.
-pub(super) fn path((table, key): Key) -> String {
+pub fn path((table, key): Key) -> String {
     match table {
         Table::Root => key.to_owned(),
         Table::Named(name) => format!("{name}.{key}"),
@@ -69,7 +70,7 @@ pub(super) fn path((table, key): Key) -> String {
 
 impl Told {
     /// Says what a change means in this profile.
-    pub(super) fn of(change: &Change, profile: &Profile) -> Self {
+    pub fn of(change: &Change, profile: &Profile) -> Self {
         let Change { table, key, from, to } = *change;
         let (name, whose) = match table {
             Table::Root => ("", String::new()),
@@ -95,9 +96,9 @@ impl Told {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad::lab::tuning::force_range::levels;
-    use tactpad::lab::tuning::knobs;
-    use tactpad::pipeline::mapping::check::{OutputChoice, read};
+    use crate::lab::tuning::force_range::levels;
+    use crate::lab::tuning::knobs;
+    use crate::pipeline::mapping::check::{OutputChoice, read};
 
     /// A profile with everything that is fitted.
     const TEXT: &str = "schema = 1\nname = \"All\"\noutput = \"gamepad\"\naccess = { tremor_hz = 2 }\n\

@@ -1,0 +1,51 @@
+// Speaks to screen readers: at most one sentence a second, with counts in place of repetitions.
+
+import { announces } from "./settings.js";
+
+const BETWEEN_MS = 1000;
+const REASONS = { slow: "too short", bounce: "too soon after the last", dwell: "not at rest" };
+
+const region = () => document.getElementById("announcer");
+/** @type {Map<string, number>} */
+const counts = new Map();
+let sentences = [];
+let last_ms = -Infinity;
+let timer = null;
+
+function flush() {
+  timer = null;
+  const parts = [...sentences];
+  for (const [what, count] of counts) parts.push(count === 1 ? what : `${what}, ${count} times`);
+  sentences = [];
+  counts.clear();
+  if (parts.length === 0) return;
+  last_ms = performance.now();
+  // A text that is repeated word for word is not spoken again, so it alternates with a blank behind it.
+  const text = parts.join(". ");
+  region().textContent = region().textContent === text ? `${text}\u00a0` : text;
+}
+
+function schedule() {
+  if (timer === null) timer = setTimeout(flush, Math.max(0, last_ms + BETWEEN_MS - performance.now()));
+}
+
+/** Says a sentence, whatever was chosen for presses: it answers something that a person did. */
+export function announce(sentence) {
+  sentences.push(sentence);
+  schedule();
+}
+
+/** Says what became of a press, if presses are to be spoken. */
+export function announcePress(press) {
+  if (!announces()) return;
+  const what = pressInWords(press);
+  counts.set(what, (counts.get(what) ?? 0) + 1);
+  schedule();
+}
+
+/** "Button 1 accepted", "left rejected: too short", "resting hand". */
+export function pressInWords({ button, direction, press, reason }) {
+  if (press === "rest") return "hand at rest";
+  const who = button === undefined || button === null ? direction : `button ${button}`;
+  return press === "rejected" ? `${who} rejected: ${REASONS[reason] ?? reason}` : `${who} accepted`;
+}

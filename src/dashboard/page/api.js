@@ -1,0 +1,80 @@
+// Requests to the program: the token, JSON both ways, and one kind of error.
+
+const TOKEN = "tactpad-token";
+
+/** An answer that is no success; `message` is one sentence for people. */
+export class RequestError extends Error {
+  constructor(status, body) {
+    super(body?.error ?? `The program answered ${status}.`);
+    this.status = status;
+    this.body = body;
+  }
+}
+
+/** Takes the token from the address, where it must not stay, and keeps it for this tab. */
+export function takeToken() {
+  const address = new URL(location.href);
+  const token = address.searchParams.get("token");
+  if (token !== null) {
+    sessionStorage.setItem(TOKEN, token);
+    address.searchParams.delete("token");
+    history.replaceState(null, "", address);
+  }
+  return sessionStorage.getItem(TOKEN);
+}
+
+const token = () => sessionStorage.getItem(TOKEN) ?? "";
+
+/** The address of the live socket. */
+export function liveAddress() {
+  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+  return `${scheme}//${location.host}/api/live?token=${encodeURIComponent(token())}`;
+}
+
+/** @type {() => void} */
+let refused = () => {};
+
+/** Says what happens when the program does not know this page's token. */
+export function onRefused(listener) {
+  refused = listener;
+}
+
+async function bodyOf(response) {
+  const text = await response.text();
+  if (text === "") return {};
+  try {
+    return JSON.parse(text);
+  } catch {
+    return { ok: false, error: text };
+  }
+}
+
+/**
+ * Sends one request.
+ * @param {string} method
+ * @param {string} path
+ * @param {object | string | null} body an object goes as JSON, a string as plain text
+ * @param {Record<string, string>} headers
+ */
+export async function request(method, path, body = null, headers = {}) {
+  const plain = typeof body === "string";
+  const type = plain ? "text/plain; charset=utf-8" : "application/json";
+  let response;
+  try {
+    response = await fetch(path, {
+      method,
+      cache: "no-store",
+      headers: { Authorization: `Bearer ${token()}`, ...(body === null ? {} : { "Content-Type": type }), ...headers },
+      body: body === null || plain ? body : JSON.stringify(body),
+    });
+  } catch {
+    throw new RequestError(0, { error: "The program does not answer." });
+  }
+  const answer = await bodyOf(response);
+  if (response.status === 401) refused();
+  if (!response.ok) throw new RequestError(response.status, answer);
+  return answer;
+}
+
+export const get = (path) => request("GET", path);
+export const post = (path, body = {}) => request("POST", path, body);

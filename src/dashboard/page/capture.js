@@ -1,0 +1,78 @@
+// "Press a key …": listens for one key, with those held beside it, or for one button of a gamepad. Escape leaves it.
+
+import { announce } from "./announce.js";
+import { button } from "./dom.js";
+import { isModifier, keyName, padNames } from "./keys.js";
+
+const LABELS = { keyboard: "Press a key …", gamepad: "Press a button …" };
+const ASKS = { keyboard: "Press a key now. Escape leaves it as it is.", gamepad: "Press a button of a gamepad now. Escape leaves it as it is." };
+
+/**
+ * A button that asks for a key or a gamepad's button.
+ * @param {"keyboard" | "gamepad"} device
+ * @param {string} of what it is for
+ * @param {(names: string) => void} take
+ */
+export function captureButton(device, of, take) {
+  const node = button(LABELS[device], () => new Capture(node, device, take), { class: "capture", "aria-label": `${LABELS[device]} for ${of}` });
+  return node;
+}
+
+class Capture {
+  #ended = false;
+  #modifiers = [];
+
+  constructor(node, device, take) {
+    Object.assign(this, { node, device, take, label: node.textContent, name: node.getAttribute("aria-label") });
+    this.down = (event) => this.#keyDown(event);
+    this.up = (event) => this.#keyUp(event);
+    this.leave = () => this.#end(null);
+    addEventListener("keydown", this.down, true);
+    addEventListener("keyup", this.up, true);
+    node.addEventListener("blur", this.leave);
+    node.textContent = "Listening – Esc leaves";
+    node.classList.add("listening");
+    announce(ASKS[device]);
+    if (device === "gamepad") this.#poll(padNames());
+  }
+
+  #keyDown(event) {
+    event.preventDefault();
+    event.stopPropagation();
+    if (event.repeat) return;
+    if (event.code === "Escape") return this.#end(null);
+    const name = keyName(event.code);
+    if (this.device !== "keyboard" || name === null) return;
+    if (isModifier(event.code)) this.#modifiers.push(name);
+    else this.#end([...this.#modifiers.slice(0, 3), name].join("+"));
+  }
+
+  /** A key that is held beside others counts by itself when it goes up alone. */
+  #keyUp(event) {
+    event.preventDefault();
+    event.stopPropagation();
+    const name = keyName(event.code);
+    if (this.#modifiers.includes(name)) this.#end(this.#modifiers.slice(0, 4).join("+"));
+  }
+
+  /** Only what goes down from now on counts. */
+  #poll(before) {
+    if (this.#ended) return;
+    const now = padNames();
+    const fresh = [...now].find((name) => !before.has(name));
+    if (fresh !== undefined) this.#end(fresh);
+    else requestAnimationFrame(() => this.#poll(now));
+  }
+
+  #end(names) {
+    if (this.#ended) return;
+    this.#ended = true;
+    removeEventListener("keydown", this.down, true);
+    removeEventListener("keyup", this.up, true);
+    this.node.removeEventListener("blur", this.leave);
+    this.node.textContent = this.label;
+    this.node.classList.remove("listening");
+    announce(names === null ? "Left as it is." : `${names} is taken.`);
+    if (names !== null) this.take(names);
+  }
+}

@@ -1,0 +1,52 @@
+// The view "Doctor": what the program found on this machine, and the command that mends each finding.
+
+import { announce } from "./announce.js";
+import { get } from "./api.js";
+import { button, el, say } from "./dom.js";
+
+const STATES = {
+  ok: { sign: "✓", word: "ok", look: "good" },
+  warning: { sign: "⚠", word: "warning", look: "warn" },
+  bad: { sign: "✕", word: "bad", look: "bad" },
+};
+
+export class DoctorView {
+  constructor(section) {
+    this.about = el("p");
+    this.list = el("ul", { class: "entries" });
+    section.append(el("p", {}, button("Look again", () => this.show())), this.about, this.list);
+  }
+
+  async show() {
+    say(this.about, "Looking …");
+    try {
+      const { ok, checks } = await get("/api/doctor");
+      const open = checks.filter((check) => check.state !== "ok").length;
+      say(this.about, ok && open === 0 ? "Everything is well." : `${open} of ${checks.length} findings want something.`);
+      this.list.replaceChildren(...checks.map(entry));
+    } catch (error) {
+      say(this.about, error.message);
+    }
+  }
+}
+
+function entry({ name, state, message, command }) {
+  const { sign, word, look } = STATES[state] ?? STATES.warning;
+  return el("li", { class: "card" },
+    el("h3", {}, el("span", { class: look, text: `${sign} ${word}` }), ` ${name}`),
+    el("p", { text: message }), command === null ? null : commandLine(name, command));
+}
+
+function commandLine(name, command) {
+  const copy = button("Copy", () => copyText(command), { "aria-label": `Copy the command for ${name}` });
+  return el("p", { class: "command" }, el("code", { text: command }), copy);
+}
+
+async function copyText(text) {
+  try {
+    await navigator.clipboard.writeText(text);
+    announce("The command is copied.");
+  } catch {
+    announce("The browser does not allow copying: select the command instead.");
+  }
+}

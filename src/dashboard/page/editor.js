@@ -1,0 +1,215 @@
+// The view "Profile": the plate and the forces with handles, the form, the text; all of them edit one draft.
+
+import { announce } from "./announce.js";
+import { get } from "./api.js";
+import { button, el, say } from "./dom.js";
+import { Draft } from "./draft.js";
+import { ForceHandles } from "./force_handles.js";
+import { Form } from "./form.js";
+import { Finger, Plate } from "./plate.js";
+import { PlateHandles } from "./plate_handles.js";
+import { Preview } from "./preview.js";
+import { Rewind } from "./rewind.js";
+import { askConflict, askDrop, askName, readProfile, writeProfile } from "./saving.js";
+import { Schema } from "./schema.js";
+import { TextPane, plural } from "./text.js";
+import { Values } from "./values.js";
+
+export class ProfileView {
+  #name = null;
+  /** The version of one's own file, or null while the profile is only the program's. */
+  #version = null;
+  #ready = null;
+  #previewed = false;
+
+  constructor(section) {
+    this.section = section;
+    this.draft = new Draft();
+    this.preview = new Preview(this.draft, (sentence) => this.#tell(sentence));
+    this.#makeBar();
+    this.body = el("div");
+    section.append(this.bar, this.message, this.body);
+    section.addEventListener("keydown", (event) => this.#shortcut(event));
+    addEventListener("beforeunload", (event) => this.draft.dirty && event.preventDefault());
+    this.draft.addEventListener("text", () => this.text?.showText());
+    this.draft.addEventListener("checked", () => this.#checked());
+    this.draft.addEventListener("failed", ({ detail }) => this.#tell(detail));
+  }
+
+  #makeBar() {
+    this.choice = el("select", { id: "profile-open", class: "main", onchange: () => this.#open(this.choice.value) });
+    this.undo = button("Undo", () => this.draft.move(-1), { id: "undo", class: "main", "aria-keyshortcuts": "Control+Z" });
+    this.redo = button("Redo", () => this.draft.move(1), { id: "redo", class: "main", "aria-keyshortcuts": "Control+Y" });
+    this.save = button("Save", () => this.#save(), { id: "save", class: "main primary", "aria-keyshortcuts": "Control+S" });
+    this.revert = button("Revert", () => this.draft.replace(this.draft.saved), { id: "revert", class: "main" });
+    const live = el("input", { type: "checkbox", id: "preview", checked: true, onchange: () => this.#allowPreview(live.checked) });
+    this.state = el("span", { id: "draft-state" });
+    this.message = el("p", { class: "editor-message", role: "status" });
+    this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
+      el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert,
+      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), el("label", { class: "check main" }, live, "Play the draft live"), this.state));
+  }
+
+  /** Makes what needs the schema, once. */
+  async #prepare() {
+    const schema = new Schema(await get("/api/schema"));
+    this.values = new Values(this.draft, schema);
+    this.plate = new Plate("Plate with the handles of the profile that is edited");
+    this.finger = new Finger(this.plate, "editor-contact");
+    this.plateHandles = new PlateHandles(this.plate, this.values);
+    this.forceHandles = new ForceHandles(this.values);
+    this.form = new Form(this.values, schema);
+    this.text = new TextPane(this.draft);
+    this.rewind = new Rewind(this.draft);
+    const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab: arrow keys move it, Page Up and Page Down move it far, Home and End to its limits. Each has a field below." });
+    this.body.replaceChildren(el("div", { class: "editor-grid" },
+      el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node, hint), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node)),
+      el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Keys" }), this.form.node)),
+      el("div", { class: "area-text" }, el("div", { class: "card" }, el("h3", { text: "Text" }), this.text.node), this.rewind.node)));
+  }
+
+  /** The view comes into sight. */
+  async show() {
+    try {
+      this.#ready ??= this.#prepare();
+      await this.#ready;
+      const playing = await this.#list();
+      if (this.#name === null) await this.#load(playing);
+    } catch (error) {
+      this.#ready = null;
+      this.#tell(error.message);
+    }
+  }
+
+  async #list() {
+    const { profiles, playing } = await get("/api/profiles");
+    this.choice.replaceChildren(...profiles.map(({ name, own }) => el("option", { value: name, text: own ? `${name} (yours)` : name })));
+    this.choice.value = this.#name ?? playing;
+    return playing;
+  }
+
+  async #open(name) {
+    if (this.draft.dirty && !(await askDrop(this.#name))) {
+      this.choice.value = this.#name;
+      return;
+    }
+    await this.#load(name).catch((error) => this.#tell(error.message));
+  }
+
+  async #load(name, text = undefined) {
+    const profile = await readProfile(name);
+    this.#name = name;
+    this.#version = profile.own ? profile.version : null;
+    this.choice.value = name;
+    this.plateHandles.forget();
+    this.forceHandles.forget();
+    this.draft.load(profile.text, text);
+  }
+
+  /** Opens a draft that a guide has made. */
+  async openDraft({ profile, text }) {
+    location.hash = "#profile";
+    await this.show();
+    if (this.draft.dirty && !(await askDrop(this.#name))) return;
+    await this.#load(profile, text).catch((error) => this.#tell(error.message));
+  }
+
+  #tell(sentence) {
+    say(this.message, sentence);
+  }
+
+  #checked() {
+    const focus = document.activeElement?.closest?.("[data-handle], [data-field]");
+    this.text.showDiagnostics();
+    if (this.draft.sketch !== null) this.plate.setSketch(this.draft.sketch);
+    this.plateHandles.refresh();
+    this.forceHandles.refresh();
+    this.form.refresh();
+    refocus(focus);
+    this.preview.follow();
+    this.#showState();
+  }
+
+  #showState() {
+    const { dirty, history, valid } = this.draft;
+    this.undo.disabled = !history.canUndo;
+    this.redo.disabled = !history.canRedo;
+    this.save.disabled = !dirty && this.#version !== null;
+    this.revert.disabled = !dirty;
+    this.section.classList.toggle("stale", this.draft.stale);
+    say(this.state, `${dirty ? "● not saved" : "✓ saved"}${valid ? "" : ", ✕ has errors"}`);
+  }
+
+  #allowPreview(allowed) {
+    this.preview.enabled = allowed;
+    this.preview.follow();
+  }
+
+  #shortcut(event) {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+    const key = event.key.toLowerCase();
+    const action = { s: () => this.#save(), y: () => this.draft.move(1), z: () => this.draft.move(event.shiftKey ? 1 : -1) }[key];
+    if (action === undefined) return;
+    event.preventDefault();
+    action();
+  }
+
+  async #save() {
+    if (this.#name === null) return;
+    await this.#write(this.#name, this.#version);
+  }
+
+  async #write(name, version) {
+    const { text } = this.draft;
+    try {
+      const answer = await writeProfile(name, text, version);
+      this.#name = name;
+      this.#version = answer.version;
+      this.draft.markSaved(text);
+      this.#tell(`Saved to ${answer.path}.`);
+      await this.#list();
+    } catch (error) {
+      await this.#notSaved(error, name);
+    }
+  }
+
+  async #notSaved(error, name) {
+    if (error.status === 422) {
+      const count = error.body.diagnostics.filter(({ severity }) => severity === "error").length;
+      return this.#tell(`Not saved: the text has ${plural(count, "error")}.`);
+    }
+    if (error.status !== 412) return this.#tell(`Not saved: ${error.message}`);
+    const answer = await askConflict(error.message);
+    if (answer === "theirs") await this.#load(name);
+    if (answer === "overwrite") await this.#write(name, (await readProfile(name)).version);
+  }
+
+  async #saveAs() {
+    const name = await askName(`${this.#name}-2`);
+    if (name !== null) await this.#write(name, null);
+  }
+
+  /** Follows the finger. */
+  draw(frame) {
+    if (this.text === undefined || frame === undefined) return;
+    this.finger.draw(frame.contact, frame.uncertainty, null);
+    this.forceHandles.forces.draw(frame.contact);
+  }
+
+  /** Says at the top of every view when a draft is played. */
+  setStatus({ preview }) {
+    if (preview === this.#previewed) return;
+    this.#previewed = preview;
+    const notice = document.getElementById("preview-notice");
+    const sentence = "The preview is being played, not saved.";
+    notice.replaceChildren(...(preview ? [el("span", { text: `◐ ${sentence}` }), button("Back to the file", () => this.preview.end())] : []));
+    announce(preview ? sentence : "The saved profile is played.");
+  }
+}
+
+/** Gives the focus back to a handle or field that was made anew. */
+function refocus(before) {
+  if (!before || before.isConnected) return;
+  const name = before.dataset.handle === undefined ? `[data-field="${before.dataset.field}"]` : `[data-handle="${before.dataset.handle}"]`;
+  document.querySelector(name)?.focus();
+}

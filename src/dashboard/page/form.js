@@ -1,0 +1,166 @@
+// The form of all keys of a profile, made from the JSON Schema and the draft's document.
+
+import { button, el, say } from "./dom.js";
+import { Field } from "./field.js";
+import { nameOf } from "./schema.js";
+import { TABLES, withBindings, withEffect, withTable, withoutTable } from "./templates.js";
+import { written } from "./values.js";
+
+/** Keys that stand in sight even while they are not written: handles and the usual choices. */
+const IN_SIGHT = new Set(["release_n", "release_force_n", "min_force_n", "mode", "centre_radius_mm", "radius_hysteresis_mm", "rotation_deg",
+  "diagonal_deg", "centre_x_mm", "centre_y_mm", "from_deg", "to_deg", "inner_radius_mm", "outer_radius_mm", "hysteresis_mm", "left_handed", "filter_samples",
+  "min_press_ms", "slow_ms", "bounce_ms", "gamepad", "keyboard", "from_n", "full_n", "full_radius_mm", "speed_counts_per_s", "zone", "up", "down", "left", "right", "class", "executable", "from"]);
+const IN_SIGHT_BESIDE = { long_press_ms: "hold", double_press_ms: "double", hard_press_n: "hard", hard_release_n: "hard", skip: "hard", skip_ms: "skip", dwell_mm: "dwell_ms" };
+const EFFECTS = ["out", "tap", "double", "hold", "light", "hard"];
+const TITLES = { access: "Help for hands (access)", gain: "Gains of the sides (gain)", dpad: "Directions (dpad)", pointer: "Mouse pointer (pointer)" };
+
+export class Form {
+  /** @type {Field[]} */
+  #fields = [];
+  #shape = "";
+  #closed = new Set(["access", "gain", "program"]);
+
+  /** @param {import("./values.js").Values} values @param {import("./schema.js").Schema} schema */
+  constructor(values, schema) {
+    Object.assign(this, { values, schema });
+    this.groups = el("div", { class: "groups" });
+    this.state = el("p", { class: "warn" });
+    this.lists = ["gamepad", "pointer_button"].map((kind) => el("datalist", { id: `names-${kind.replace("_button", "")}` },
+      ...(schema.json.$defs[kind].anyOf[0].enum).map((value) => el("option", { value }))));
+    const explain = el("input", { type: "checkbox", checked: true, onchange: () => this.node.classList.toggle("unexplained", !explain.checked) });
+    this.adders = el("div", { class: "commands adders" });
+    this.set = el("fieldset", { class: "form-set" }, el("legend", { class: "unseen", text: "Keys of the profile" }), this.groups, el("h4", { text: "Add" }), this.adders);
+    this.node = el("div", { class: "form" }, el("label", { class: "check" }, explain, "Explanations"), this.state, this.set, ...this.lists);
+  }
+
+  get #draft() {
+    return this.values.draft;
+  }
+
+  /** Shows the draft; makes fields anew when tables or bindings came or went. */
+  refresh() {
+    const { document } = this.#draft;
+    if (document === null) return;
+    const broken = this.#draft.unreadable;
+    this.set.disabled = broken;
+    say(this.state, broken ? "The text cannot be read: mend it first. The fields show its last state." : "");
+    const shape = shapeOf(document);
+    if (shape !== this.#shape) this.#make(document, shape);
+    for (const field of this.#fields) field.refresh();
+  }
+
+  #make(document, shape) {
+    this.#shape = shape;
+    this.#fields = [];
+    const groups = [this.#group("profile", "The profile itself", [], document, null)];
+    for (const table of Object.keys(this.schema.json.properties)) {
+      const value = document[table];
+      if (value === undefined || typeof value !== "object") continue;
+      if (!Array.isArray(value)) groups.push(this.#group(table, TITLES[table] ?? table, [table], value, () => this.#remove(table, 0)));
+      else value.forEach((one, index) => groups.push(this.#group(nameOf([table, index]), titleOf(table, index, one), [table, index], one, () => this.#remove(table, index))));
+    }
+    this.groups.replaceChildren(...groups);
+    const missing = Object.entries(TABLES).filter(([table, { many }]) => many || document[table] === undefined);
+    this.adders.replaceChildren(...missing.map(([table, { name }]) => button(`+ ${name}`, () => this.#draft.replace(withTable(this.#draft.text, table)), { "data-add": table })));
+  }
+
+  #remove(table, index) {
+    this.#draft.replace(withoutTable(this.#draft.text, table, index));
+  }
+
+  /** A table's keys; those that are not written and seldom wanted are folded away. */
+  #group(name, title, path, value, remove) {
+    const keys = this.schema.keys(path).filter(({ kind }) => kind !== "fixed" && kind !== "list");
+    const plain = keys.filter(({ kind }) => kind !== "table" && kind !== "effect");
+    const seen = plain.filter(({ key, required }) => required || value[key] !== undefined || inSight(key, value));
+    const folded = plain.filter((about) => !seen.includes(about));
+    const node = el("details", { class: "group", open: !this.#closed.has(name.split(".")[0]) },
+      el("summary", {}, el("strong", { text: title })),
+      ...seen.map((about) => this.#field(path, about)),
+      ...this.#inner(path, value, keys),
+      folded.length === 0 ? null : el("details", { class: "folded" }, el("summary", { text: `Keys that are not written (${folded.length})` }), ...folded.map((about) => this.#field(path, about))),
+      remove === null ? null : button(`Remove ${title}`, remove, { class: "remove" }));
+    node.addEventListener("toggle", () => (node.open ? this.#closed.delete(name) : this.#closed.add(name)));
+    return node;
+  }
+
+  #field(path, about, values = this.values) {
+    const field = new Field([...path, about.key], about, values);
+    this.#fields.push(field);
+    return field.node;
+  }
+
+  /** What lies within a table: effects of a button, bindings of directions, steps of a macro. */
+  #inner(path, value, keys) {
+    if (path[0] === "button") return this.#effects(path, value);
+    if (path[0] === "macro") return (value.steps ?? []).map((step, index) => this.#part([...path, "steps", index], `step ${index + 1}`, null));
+    return keys.filter(({ kind }) => kind === "table" && path.length > 0).map(({ key }) => this.#bindings(path, key));
+  }
+
+  #part(path, title, remove) {
+    const value = written(this.#draft.document, path) ?? {};
+    const keys = this.schema.keys(path);
+    const seen = keys.filter(({ key }) => value[key] !== undefined);
+    const folded = keys.filter((about) => !seen.includes(about));
+    return el("fieldset", { class: "part" }, el("legend", { text: title }), ...seen.map((about) => this.#field(path, about)),
+      folded.length === 0 ? null : el("details", { class: "folded" }, el("summary", { text: `More for ${title} (${folded.length})` }), ...folded.map((about) => this.#field(path, about))),
+      remove === null ? null : button(`Remove ${title}`, remove, { class: "remove" }));
+  }
+
+  #effects(path, value) {
+    const present = EFFECTS.filter((effect) => value[effect] !== undefined);
+    const parts = present.map((effect) => this.#part([...path, effect], effect, () => this.values.write([...path, effect], null)));
+    const fitting = present.length === 0 ? ["out", "tap"] : { out: [], tap: ["double", "hold"], light: ["hard"] }[present[0]] ?? [];
+    const adders = fitting.filter((effect) => !present.includes(effect))
+      .map((effect) => button(`+ ${effect}`, () => this.#draft.replace(withEffect(this.#draft.text, path[1], effect, value.press_n)), { "aria-label": `+ ${effect} of button ${path[1] + 1}` }));
+    return adders.length === 0 ? parts : [...parts, el("div", { class: "commands" }, ...adders)];
+  }
+
+  #bindings(path, device) {
+    const inner = [...path, device];
+    const values = this.values.isWritten(inner) || path.length > 1 ? this.values : new FirstBinding(this.values, path[0], device);
+    return el("details", { class: "folded" }, el("summary", { text: `What directions are on the ${device}` }),
+      ...this.schema.keys(inner).map((about) => this.#field(inner, about, values)));
+  }
+}
+
+/** Values of a table of bindings that does not stand in the text yet: the first one makes it. */
+class FirstBinding {
+  constructor(values, table, device) {
+    Object.assign(this, { values, table, device });
+  }
+
+  at(path) {
+    return this.values.at(path);
+  }
+
+  isWritten(path) {
+    return this.values.isWritten(path);
+  }
+
+  write(path, value) {
+    const { draft } = this.values;
+    if (value !== null) draft.replace(withBindings(draft.text, this.table, this.device, path.at(-1), value));
+  }
+}
+
+function inSight(key, value) {
+  return IN_SIGHT.has(key) || (key in IN_SIGHT_BESIDE && value[IN_SIGHT_BESIDE[key]] !== undefined);
+}
+
+function titleOf(table, index, { name, force }) {
+  const which = name ?? (table === "button" ? force : undefined);
+  const title = table[0].toUpperCase() + table.slice(1);
+  return `${title} ${index + 1}${which === undefined ? "" : `: ${which}`}`;
+}
+
+/** What decides which fields there are. */
+function shapeOf(document) {
+  const shape = (value, depth) => {
+    if (Array.isArray(value)) return value.map((one) => shape(one, depth + 1));
+    if (typeof value !== "object") return 0;
+    return Object.entries(value).filter(([, inner]) => typeof inner === "object").map(([key, inner]) => [key, shape(inner, depth + 1)]);
+  };
+  const names = ["zone", "layer", "macro", "button"].map((table) => (document[table] ?? []).map(({ name, force }) => name ?? force));
+  return JSON.stringify([shape(document, 0), names]);
+}

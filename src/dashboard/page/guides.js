@@ -1,0 +1,128 @@
+// The view "Guides": step by step, as the program tells them. It knows no guide by itself.
+
+import { announce } from "./announce.js";
+import { get, post } from "./api.js";
+import { button, el, number, say } from "./dom.js";
+
+const STEPS = {
+  todo: { sign: "○", word: "to do" },
+  doing: { sign: "▶", word: "now" },
+  done: { sign: "✓", word: "done" },
+  failed: { sign: "✕", word: "failed" },
+};
+const STATES = { idle: "not started", running: "running", done: "done", failed: "failed" };
+
+export class GuidesView {
+  /** @type {Map<string, GuideCard>} */
+  #cards = new Map();
+
+  /** @param {(draft: { profile: string, text: string }) => void} openDraft */
+  constructor(section, openDraft) {
+    this.openDraft = openDraft;
+    this.about = el("p", { class: "quiet" });
+    this.list = el("div", { class: "entries" });
+    section.append(this.about, this.list);
+  }
+
+  async show() {
+    try {
+      const { guides } = await get("/api/guides");
+      say(this.about, guides.length === 0 ? "There are no guides." : "Each guide leads you step by step; nothing is saved before you say so.");
+      for (const guide of guides) this.update(guide);
+    } catch (error) {
+      say(this.about, error.message);
+    }
+  }
+
+  /** Shows a guide as it is now. */
+  update(guide) {
+    if (!this.#cards.has(guide.id)) {
+      this.#cards.set(guide.id, new GuideCard(guide, this));
+      this.list.append(this.#cards.get(guide.id).node);
+    }
+    this.#cards.get(guide.id).draw(guide);
+  }
+
+  async act(id, action) {
+    try {
+      this.update(await post(`/api/guides/${encodeURIComponent(id)}`, { do: action }));
+      say(this.about, "");
+    } catch (error) {
+      announce(error.message);
+      say(this.about, error.message);
+    }
+  }
+}
+
+/** One guide. What it is made of is rebuilt only when a state changes, so that the focus stays while a bar grows. */
+class GuideCard {
+  #shape = "";
+  #spoken = "";
+
+  constructor({ id, title, about }, view) {
+    Object.assign(this, { id, view });
+    this.state = el("span", { class: "tag" });
+    this.steps = el("ol", { class: "steps" });
+    this.actions = el("div", { class: "commands" });
+    this.result = el("div", { class: "result", hidden: true });
+    this.node = el("article", { class: "card guide", "aria-labelledby": `guide-${id}` },
+      el("h3", { id: `guide-${id}`, text: title }), el("p", { text: about }), this.state, this.steps, this.actions, this.result);
+  }
+
+  draw(guide) {
+    const shape = JSON.stringify([guide.state, guide.steps.map(({ id, state, actions }) => [id, state, actions]), guide.result]);
+    if (shape !== this.#shape) this.#rebuild(guide, shape);
+    guide.steps.forEach((step, index) => this.#feedback(step, this.parts[index]));
+    this.#speak(guide);
+  }
+
+  #rebuild(guide, shape) {
+    const inside = this.actions.contains(document.activeElement) || this.steps.contains(document.activeElement);
+    this.#shape = shape;
+    say(this.state, STATES[guide.state] ?? guide.state);
+    this.parts = guide.steps.map((step) => this.#step(step));
+    this.steps.replaceChildren(...this.parts.map(({ node }) => node));
+    const running = guide.state === "running";
+    this.actions.replaceChildren(...(running
+      ? [button("Next step", () => this.view.act(this.id, "next"), { class: "main primary" }), button("Stop", () => this.view.act(this.id, "stop"), { class: "main" })]
+      : [button(guide.state === "idle" ? "Start" : "Start again", () => this.view.act(this.id, "start"), { class: "main primary" })]));
+    this.#showResult(guide.result);
+    if (inside) this.actions.querySelector("button")?.focus();
+  }
+
+  #step({ title, text, state, actions }) {
+    const { sign, word } = STEPS[state] ?? STEPS.todo;
+    const bar = el("progress", { max: 1, "aria-label": `Progress of ${title}` });
+    const detail = el("span");
+    const doing = state === "doing";
+    const node = el("li", { class: `step ${state}`, "aria-current": doing ? "step" : null },
+      el("p", {}, el("span", { class: "step-sign", text: `${sign} ${word}` }), " ", el("strong", { text: title })),
+      doing || state === "failed" ? el("p", { text }) : null,
+      el("p", { class: "feedback" }, bar, " ", detail),
+      el("div", { class: "commands" }, ...(doing ? actions : []).map((action) => button(action.label, () => this.view.act(this.id, action.do)))));
+    return { node, bar, detail };
+  }
+
+  #feedback({ progress, detail, state }, part) {
+    part.bar.hidden = progress === null || state !== "doing";
+    if (progress !== null) part.bar.value = progress;
+    const share = progress !== null && state === "doing" ? `${number(progress * 100, 0)} %` : "";
+    say(part.detail, [share, detail ?? ""].filter((text) => text !== "").join(" – "));
+  }
+
+  #showResult(result) {
+    this.result.hidden = result === null;
+    if (result === null) return;
+    this.result.replaceChildren(el("h4", { text: "Result" }), el("p", { text: result.text }),
+      ...(result.draft === null ? [] : [button(`Open ${result.draft.profile} with it in the editor`, () => this.view.openDraft(result.draft), { class: "main primary" })]));
+  }
+
+  #speak({ state, steps, result }) {
+    const step = steps.find((one) => one.state === "doing");
+    const text = state === "running" && step ? `${step.title}. ${step.text}` : result?.text ?? "";
+    const before = this.#spoken;
+    this.#spoken = `${state} ${text}`;
+    const changed = this.#spoken !== before && before !== "";
+    if (changed && text !== "") announce(text);
+  }
+}

@@ -1,0 +1,112 @@
+// The view "Live": plate, forces, held controls, events, channels, latency, state.
+
+import { announcePress } from "./announce.js";
+import { Channels } from "./channels.js";
+import { el, number, say, scroller, table } from "./dom.js";
+import { EventLanes } from "./events.js";
+import { Latency } from "./latency.js";
+import { Forces } from "./meter.js";
+import { Finger, Plate } from "./plate.js";
+import { Status } from "./status.js";
+
+const FIGURES_MS = 100;
+const QUANTITIES = [["x", "x_mm", "mm", 1], ["y", "y_mm", "mm", 1], ["Fx", "fx_n", "N", 2], ["Fy", "fy_n", "N", 2], ["Fz", "fz_n", "N", 2]];
+
+/** Place and force as numbers, each with its standard deviation. */
+class Readout {
+  #last_ms = 0;
+
+  constructor() {
+    const { node, body } = table("Finger", ["Quantity", "Value", "±"], { class: "figures" });
+    this.node = node;
+    this.rows = QUANTITIES.map(([name, key, unit, digits]) => {
+      const value = el("td");
+      const sigma = el("td");
+      body.append(el("tr", {}, el("th", { scope: "row", text: name }), value, sigma));
+      return { key, unit, digits, value, sigma };
+    });
+  }
+
+  draw(contact, uncertainty) {
+    const now = performance.now();
+    if (now - this.#last_ms < FIGURES_MS) return;
+    this.#last_ms = now;
+    for (const { key, unit, digits, value, sigma } of this.rows) {
+      say(value, contact === null ? "–" : `${number(contact[key], digits)} ${unit}`);
+      say(sigma, contact === null || !uncertainty ? "–" : number(uncertainty[key], digits));
+    }
+  }
+}
+
+function card(title, ...children) {
+  return el("div", { class: "card" }, el("h3", { text: title }), ...children);
+}
+
+export class LiveView {
+  /** @param {import("./trace.js").Trace} trace */
+  constructor(section, trace) {
+    this.trace = trace;
+    this.plate = new Plate("Plate of the pad with the profile in play and the finger");
+    this.finger = new Finger(this.plate, "contact");
+    this.forces = new Forces();
+    this.readout = new Readout();
+    this.held = el("ul", { class: "chips", "aria-label": "Held controls" });
+    this.title = el("span", { class: "quiet" });
+    this.freshness = el("p", { class: "quiet freshness", id: "freshness" });
+    this.status = new Status();
+    this.channels = new Channels();
+    this.lanes = new EventLanes();
+    this.latency = new Latency();
+    const column = (...cards) => el("div", { class: "live-column" }, ...cards);
+    section.append(this.status.node, el("div", { class: "live-grid" },
+      column(card("Plate", this.title, this.plate.node, scroller("Finger", this.readout.node), this.freshness),
+        card("Channels", scroller("Channels", this.channels.node), this.channels.note)),
+      column(card("Forces", this.forces.node), card("Held now", this.held), card("Events", this.lanes.node)),
+      column(card("Latency", this.latency.node), card("Counters", this.status.counters))));
+  }
+
+  setSketch({ profile, sketch }) {
+    say(this.title, `${profile}, ${sketch.output}${sketch.left_handed ? ", left-handed" : ""}`);
+    this.plate.setSketch(sketch);
+    this.forces.setSketch(sketch);
+  }
+
+  /** Takes a frame, drawn or not. */
+  take(frame) {
+    this.frame = frame;
+    this.lanes.take(frame);
+    for (const press of frame.presses) announcePress(press);
+  }
+
+  /** Takes a status. */
+  setStatus(message) {
+    this.message = message;
+    this.status.draw(message);
+  }
+
+  /** Draws the last frame. */
+  draw() {
+    const { contact, uncertainty, channels_uv, held } = this.frame;
+    this.finger.draw(contact, uncertainty, this.trace);
+    this.forces.draw(contact);
+    this.readout.draw(contact, uncertainty);
+    this.#drawHeld(held);
+    this.lanes.draw();
+    this.channels.draw(channels_uv, this.message?.status.warning ?? null, this.message?.status.warning_sentence ?? null);
+  }
+
+  /** Draws what changes four times a second. */
+  drawSlow(ages) {
+    if (this.message !== undefined) this.latency.draw(this.message);
+    const age_ms = ages.p95();
+    const missed = this.frame?.missed ? `, ${this.frame.missed} missed` : "";
+    say(this.freshness, `${ages.perSecond()} updates per second; picture ${age_ms === null ? "–" : number(age_ms, 1)} ms old (p95)${missed}`);
+  }
+
+  #drawHeld(held) {
+    const text = held.join(" ");
+    if (text === this.heldText) return;
+    this.heldText = text;
+    this.held.replaceChildren(...(held.length === 0 ? ["nothing"] : held).map((name) => el("li", { text: name, class: held.length === 0 ? "none" : null })));
+  }
+}

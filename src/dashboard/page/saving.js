@@ -1,0 +1,65 @@
+// Saves profiles: over the file that was read, or under a new name; and asks when the file changed meanwhile.
+
+import { get, request } from "./api.js";
+import { button, el, say } from "./dom.js";
+
+const NAME = /^[^./\\:]+$/;
+const address = (name) => `/api/profile/${encodeURIComponent(name)}`;
+
+/** Reads a profile. */
+export const readProfile = (name) => get(address(name));
+
+/**
+ * Writes a text; a profile that is not one's own yet becomes a new file.
+ * @returns {Promise<{ version: string, path: string }>}
+ */
+export function writeProfile(name, text, version) {
+  const condition = version === null ? { "If-None-Match": "*" } : { "If-Match": version };
+  return request("PUT", address(name), text, condition);
+}
+
+/** A dialog of a question and answers; gives the answer, or null. */
+function ask(title, body, answers) {
+  const dialog = el("dialog", { class: "dialog", "aria-label": title });
+  return new Promise((done) => {
+    const close = (answer) => {
+      dialog.close();
+      dialog.remove();
+      done(answer);
+    };
+    dialog.append(el("h3", { text: title }), body, el("div", { class: "commands" },
+      ...answers.map(({ label, answer }, index) => button(label, () => close(answer()), { class: index === 0 ? "main primary" : "main" })),
+      button("Cancel", () => close(null), { class: "main" })));
+    dialog.addEventListener("cancel", (event) => {
+      event.preventDefault();
+      close(null);
+    });
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+}
+
+/** What to do with a file that changed meanwhile: "theirs", "overwrite" or null. */
+export function askConflict(sentence) {
+  return ask("The file was changed meanwhile", el("p", { text: sentence }), [
+    { label: "Load the file, drop my draft", answer: () => "theirs" },
+    { label: "Overwrite the file with my draft", answer: () => "overwrite" },
+  ]);
+}
+
+/** Whether a draft may be dropped. */
+export function askDrop(name) {
+  return ask("The draft is not saved", el("p", { text: `What you changed in ${name} will be gone.` }), [{ label: "Drop the draft", answer: () => true }]);
+}
+
+/** A new name, or null. */
+export async function askName(before) {
+  const field = el("input", { type: "text", id: "new-name", value: before, class: "main" });
+  const wrong = el("p", { class: "bad", role: "alert" });
+  const body = el("div", {}, el("label", { for: "new-name", text: "Name, without a dot, slash, backslash or colon" }), el("p", {}, field), wrong);
+  for (;;) {
+    const name = await ask("Save as …", body, [{ label: "Save", answer: () => field.value.trim() }]);
+    if (name === null || NAME.test(name)) return name;
+    say(wrong, "✕ A name has no dot, slash, backslash or colon, and is not empty.");
+  }
+}

@@ -49,7 +49,7 @@ pub(crate) fn save(name: &str, text: &str, over: &Over) -> Result<Saved, Unsaved
     }
     let there = stored(name).map(|stored| stored.version);
     match (over, &there) {
-        (Over::Nothing, Some(_)) => {
+        (Over::Nothing, _) if file.is_some() => {
             return Err(Unsaved::Changed(format!(
                 "there is a profile {name:?} already: choose another name"
             )));

@@ -144,7 +144,8 @@ impl Guide for Cues {
             title: "Do what is asked",
             text: "Every two seconds you are asked for something else. Do it at once, then lift the finger.",
             state,
-            detail: cue.map(|(number, meant)| format!("{number} of {CUES}: {}", meant.cue)),
+            detail: cue.map(|(number, _)| format!("{number} of {CUES}")),
+            cue: cue.map(|(_, meant)| meant.cue.clone()),
             progress: done.filter(|_| state == StepState::Doing),
             actions: Vec::new(),
         };

@@ -106,6 +106,7 @@ impl Guide for FirstRun {
                 } else {
                     self.sentence.filter(|_| is_doing).map(Into::into)
                 },
+                cue: None,
                 progress: (is_try && is_doing).then_some(self.touches as f64 / TOUCHES as f64),
                 actions: if index == 2 && self.state == Progress::Running { vec![TARE] } else { Vec::new() },
             }

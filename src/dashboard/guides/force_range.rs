@@ -73,6 +73,7 @@ impl Guide for ForceRange {
                 text,
                 state,
                 detail: (state == StepState::Doing).then(|| format!("{} presses so far", self.touches)),
+                cue: None,
                 progress: done.filter(|_| state == StepState::Doing),
                 actions: Vec::new(),
             }

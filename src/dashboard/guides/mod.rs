@@ -86,6 +86,8 @@ struct Step {
     state: StepState,
     /// What there is to say of it now.
     detail: Option<String>,
+    /// What to do at this very moment; it is read out as soon as it changes.
+    cue: Option<String>,
     /// How much of it is done, from 0 to 1.
     progress: Option<f64>,
     actions: Vec<Action>,

@@ -89,6 +89,7 @@ impl Recording {
             text: "This takes a few seconds; nothing is to be done.",
             state,
             detail: None,
+            cue: None,
             progress: None,
             actions: Vec::new(),
         }

@@ -25,6 +25,9 @@ export function takeToken() {
 
 const token = () => sessionStorage.getItem(TOKEN) ?? "";
 
+/** A path that a new tab can open. */
+export const withToken = (path) => `${path}?token=${encodeURIComponent(token())}`;
+
 /** The address of the live socket. */
 export function liveAddress() {
   const scheme = location.protocol === "https:" ? "wss:" : "ws:";

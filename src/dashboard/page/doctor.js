@@ -5,8 +5,8 @@ import { get } from "./api.js";
 import { button, el, say } from "./dom.js";
 
 const STATES = {
-  ok: { sign: "✓", word: "ok", look: "good" },
-  warning: { sign: "⚠", word: "warning", look: "warn" },
+  good: { sign: "✓", word: "good", look: "good" },
+  note: { sign: "⚠", word: "note", look: "warn" },
   bad: { sign: "✕", word: "bad", look: "bad" },
 };
 
@@ -21,7 +21,7 @@ export class DoctorView {
     say(this.about, "Looking …");
     try {
       const { ok, checks } = await get("/api/doctor");
-      const open = checks.filter((check) => check.state !== "ok").length;
+      const open = checks.filter((check) => check.finding !== "good").length;
       say(this.about, ok && open === 0 ? "Everything is well." : `${open} of ${checks.length} findings want something.`);
       this.list.replaceChildren(...checks.map(entry));
     } catch (error) {
@@ -30,11 +30,11 @@ export class DoctorView {
   }
 }
 
-function entry({ name, state, message, command }) {
-  const { sign, word, look } = STATES[state] ?? STATES.warning;
+function entry({ name, finding, message, mend }) {
+  const { sign, word, look } = STATES[finding] ?? STATES.note;
   return el("li", { class: "card" },
     el("h3", {}, el("span", { class: look, text: `${sign} ${word}` }), ` ${name}`),
-    el("p", { text: message }), command === null ? null : commandLine(name, command));
+    el("p", { text: message }), mend === null ? null : commandLine(name, mend));
 }
 
 function commandLine(name, command) {

@@ -84,7 +84,7 @@ class GuideCard {
     this.steps.replaceChildren(...this.parts.map(({ node }) => node));
     const running = guide.state === "running";
     this.actions.replaceChildren(...(running
-      ? [button("Next step", () => this.view.act(this.id, "next"), { class: "main primary" }), button("Stop", () => this.view.act(this.id, "stop"), { class: "main" })]
+      ? [button("Stop", () => this.view.act(this.id, "stop"), { class: "main" })]
       : [button(guide.state === "idle" ? "Start" : "Start again", () => this.view.act(this.id, "start"), { class: "main primary" })]));
     this.#showResult(guide.result);
     if (inside) this.actions.querySelector("button")?.focus();
@@ -94,16 +94,19 @@ class GuideCard {
     const { sign, word } = STEPS[state] ?? STEPS.todo;
     const bar = el("progress", { max: 1, "aria-label": `Progress of ${title}` });
     const detail = el("span");
+    const cue = el("p", { class: "cue", hidden: true });
     const doing = state === "doing";
     const node = el("li", { class: `step ${state}`, "aria-current": doing ? "step" : null },
       el("p", {}, el("span", { class: "step-sign", text: `${sign} ${word}` }), " ", el("strong", { text: title })),
       doing || state === "failed" ? el("p", { text }) : null,
-      el("p", { class: "feedback" }, bar, " ", detail),
+      cue, el("p", { class: "feedback" }, bar, " ", detail),
       el("div", { class: "commands" }, ...(doing ? actions : []).map((action) => button(action.label, () => this.view.act(this.id, action.do)))));
-    return { node, bar, detail };
+    return { node, bar, detail, cue };
   }
 
-  #feedback({ progress, detail, state }, part) {
+  #feedback({ progress, detail, cue, state }, part) {
+    part.cue.hidden = !cue;
+    say(part.cue, cue ?? "");
     part.bar.hidden = progress === null || state !== "doing";
     if (progress !== null) part.bar.value = progress;
     const share = progress !== null && state === "doing" ? `${number(progress * 100, 0)} %` : "";
@@ -119,7 +122,7 @@ class GuideCard {
 
   #speak({ state, steps, result }) {
     const step = steps.find((one) => one.state === "doing");
-    const text = state === "running" && step ? `${step.title}. ${step.text}` : result?.text ?? "";
+    const text = state === "running" && step ? step.cue ?? `${step.title}. ${step.text}` : result?.text ?? "";
     const before = this.#spoken;
     this.#spoken = `${state} ${text}`;
     const changed = this.#spoken !== before && before !== "";

@@ -1,6 +1,6 @@
 // The view "Reports": what diagnoses came to; each opens in a tab of its own.
 
-import { get } from "./api.js";
+import { get, withToken } from "./api.js";
 import { button, el, say } from "./dom.js";
 
 export class ReportsView {
@@ -12,8 +12,9 @@ export class ReportsView {
 
   async show() {
     try {
-      const { folder, reports } = await get("/api/reports");
-      say(this.about, reports.length === 0 ? `There are no reports in ${folder} yet.` : `Reports in ${folder}:`);
+      const { reports } = await get("/api/reports");
+      const hint = "There are no reports yet: `tactpad diagnose --measured M.csv --report FOLDER` writes one.";
+      say(this.about, reports.length === 0 ? hint : "Reports that were written on this machine, the newest first.");
       this.list.replaceChildren(...reports.map(entry));
     } catch (error) {
       say(this.about, error.message);
@@ -21,17 +22,11 @@ export class ReportsView {
   }
 }
 
-/** The address, if it is one of this program; anything else is not followed. */
-function own(address) {
-  const url = new URL(address, location.href);
-  return url.origin === location.origin ? url.href : null;
-}
-
-function entry({ name, modified, verdict, summary, address }) {
-  const href = own(address);
+function entry({ id, name, folder, modified_s, verdict, summary }) {
+  const written = new Date(1000 * modified_s).toLocaleString();
   return el("li", { class: "card" },
     el("h3", { text: name }),
-    el("p", {}, el("strong", { class: "tag", text: verdict }), " ", el("span", { class: "quiet", text: modified })),
+    el("p", {}, el("strong", { class: "tag", text: verdict.replaceAll("_", " ") }), " ", el("span", { class: "quiet", text: `${written}, ${folder}` })),
     el("p", { text: summary }),
-    href === null ? null : el("a", { class: "action", href, target: "_blank", rel: "noopener", text: `Open ${name} (new tab)` }));
+    el("a", { class: "action", href: withToken(`/report/${id}`), target: "_blank", rel: "noopener", text: `Open ${name} (new tab)` }));
 }

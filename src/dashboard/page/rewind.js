@@ -1,4 +1,4 @@
-// "What would this have done?": the last minute of play, once as it was and once with the draft.
+// "What would this have done?": the last minute of play, once as it is saved and once with the draft.
 
 import { announce } from "./announce.js";
 import { post } from "./api.js";
@@ -18,7 +18,7 @@ export class Rewind {
   async #ask() {
     this.answer.replaceChildren(el("p", { text: "Playing the last minute again …" }));
     try {
-      this.#show(await post("/api/rewind", { text: this.draft.text }));
+      this.#show(await post("/api/rewind", { text: this.draft.text, saved: this.draft.saved }));
     } catch (error) {
       const first = error.body?.diagnostics?.[0]?.message;
       this.#say(first ? `The draft has an error: ${first}` : error.message);
@@ -34,14 +34,14 @@ export class Rewind {
     if (ok === false) return this.#say(error ?? diagnostics?.[0]?.message ?? "It could not be played.");
     const difference = draft.downs - now.downs;
     const sentence = `In the last ${number(seconds, 0)} s the draft would have pressed ${draft.downs} times in place of ${now.downs}${difference === 0 ? "" : ` (${difference > 0 ? "+" : "−"}${Math.abs(difference)})`}.`;
-    const counts = table("Presses of each control", ["Control", "As played", "With the draft", "Difference"], { class: "figures" });
+    const counts = table("Presses of each control", ["Control", "As saved", "With the draft", "Difference"], { class: "figures" });
     const codes = [...new Set([...Object.keys(now.presses), ...Object.keys(draft.presses)])].sort();
     counts.body.append(...codes.map((code) => {
       const [before, after] = [now.presses[code] ?? 0, draft.presses[code] ?? 0];
       return row([code, before, after, after === before ? "same" : `${after > before ? "+" : "−"}${Math.abs(after - before)}`]);
     }));
     this.answer.replaceChildren(el("p", { text: sentence }), scroller("Presses of each control", counts.node),
-      list("Only as played", only_now), list("Only with the draft", only_draft));
+      list("Only as saved", only_now), list("Only with the draft", only_draft));
     announce(sentence);
   }
 }

@@ -1,0 +1,178 @@
+//! The page is used without a mouse, and without seeing well.
+
+use std::fs;
+use std::path::PathBuf;
+
+use crate::browser::{Browser, CONTROL, ENTER, LEFT, RIGHT, SHIFT, TAB};
+use crate::finger::Finger;
+use crate::running::comes_true;
+use crate::shown::Shown;
+use crate::support::leave_out;
+
+const VIEWS: [&str; 5] = ["live", "profile", "guides", "reports", "doctor"];
+
+/// The accessibility checker axe-core, where `TACTPAD_AXE` says that its file is.
+fn axe() -> Option<String> {
+    let path = std::env::var_os("TACTPAD_AXE").map(PathBuf::from);
+    let text = path.and_then(|path| fs::read_to_string(path).ok());
+    if text.is_none() {
+        leave_out("axe-core", "npm install axe-core && export TACTPAD_AXE=node_modules/axe-core/axe.min.js");
+    }
+    text
+}
+
+#[test]
+fn axe_finds_nothing_serious_on_any_view_light_and_dark() {
+    let Some(axe) = axe() else { return };
+    let shown = Shown::start("virtual", "super-mario");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    shown.wait_until_playing();
+    browser.run(&axe);
+    for theme in ["light", "dark"] {
+        let choose = format!(
+            "const theme = document.getElementById('setting-theme'); theme.value = '{theme}'; theme.dispatchEvent(new Event('change', {{ bubbles: true }}))"
+        );
+        browser.run(&choose);
+        browser.wait(&format!("document.documentElement.dataset.theme === '{theme}'"));
+        for view in VIEWS {
+            browser.view(view);
+            if view == "profile" {
+                browser.wait("document.querySelector('[data-handle]')");
+            }
+            let found =
+                browser.run("return axe.run().then((found) => [found.passes.length, found.violations])");
+            assert!(found[0].as_u64() > Some(5), "{view} {theme}: nothing was checked");
+            let violations = found[1].as_array().unwrap();
+            let serious: Vec<_> = violations
+                .iter()
+                .filter(|it| it["impact"] == "serious" || it["impact"] == "critical")
+                .map(|it| format!("{}: {} {}", it["id"], it["help"], it["nodes"][0]["html"]))
+                .collect();
+            assert!(serious.is_empty(), "{view} {theme}: {serious:#?}");
+        }
+    }
+}
+
+/// What has the focus, as its id or what names it.
+fn focus(browser: &Browser) -> String {
+    let name = "const it = document.activeElement; return it.id || it.dataset.handle || it.dataset.field || it.getAttribute('href') || it.textContent";
+    browser.run(name).as_str().unwrap_or_default().to_owned()
+}
+
+/// Goes on with Tab until this has the focus.
+fn tab_to(browser: &Browser, wanted: &str) {
+    let mut passed = Vec::new();
+    for _ in 0..200 {
+        if focus(browser) == wanted {
+            return;
+        }
+        passed.push(focus(browser));
+        browser.keys(&[], &[TAB]);
+    }
+    panic!("Tab does not lead to {wanted}: {passed:?}");
+}
+
+#[test]
+fn a_profile_is_changed_tried_and_kept_by_keys_alone() {
+    let finger = Finger::start();
+    let shown = Shown::start(&finger.address(), "contra");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    shown.wait_until_playing();
+    finger.press(15.0, 0.0, 1.6);
+    tab_to(&browser, "#profile");
+    browser.keys(&[], &[ENTER]);
+    browser.wait("document.querySelector(\"[data-handle='button.0.press_n']\")");
+    tab_to(&browser, "button.0.press_n");
+    let value = || {
+        browser
+            .run("return document.activeElement.getAttribute('aria-valuenow')")
+            .as_str()
+            .unwrap()
+            .parse::<f64>()
+            .unwrap()
+    };
+    assert_eq!(value(), 2.0);
+    for _ in 0..100 {
+        if value() < 1.4 {
+            break;
+        }
+        browser.keys(&[], &[LEFT]);
+    }
+    assert!(value() < 1.4);
+    let text = browser.run("return document.activeElement.getAttribute('aria-valuetext')");
+    assert!(text.as_str().is_some_and(|text| text.contains('N')), "{text}");
+    assert!(
+        comes_true(2_000, || shown.status()["held"].to_string().contains("BTN_SOUTH")),
+        "{}",
+        shown.status()
+    );
+    browser.keys(&[], &[RIGHT]);
+    browser.keys(&[CONTROL], &["s"]);
+    assert!(comes_true(2_000, || shown.profile("contra").exists()));
+    browser.keys(&[SHIFT], &[TAB]);
+    assert_ne!(focus(&browser), "button.0.press_n", "the focus is not caught");
+}
+
+#[test]
+fn a_bridge_is_paused_and_goes_on_by_keys_alone() {
+    let shown = Shown::start("virtual", "contra");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    shown.wait_until_playing();
+    tab_to(&browser, "pause");
+    browser.keys(&[], &[ENTER]);
+    assert!(comes_true(2_000, || shown.status()["state"] == "paused"));
+    browser.keys(&[], &[" "]);
+    assert!(comes_true(2_000, || shown.status()["state"] == "playing"));
+}
+
+#[test]
+fn at_four_hundred_percent_nothing_is_beside_the_window_and_targets_are_large() {
+    let shown = Shown::start("virtual", "contra");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    for view in VIEWS {
+        browser.view(view);
+        if view == "profile" {
+            browser.wait("document.querySelector('[data-handle]')");
+        }
+        // A window of 1280 pixels at 400 % has 320; headless windows are not made smaller than 500.
+        browser.run("document.documentElement.style.width = '320px'; document.body.style.width = '320px'");
+        let beside = "return Math.max(document.documentElement.scrollWidth, document.body.scrollWidth) - Math.max(500, innerWidth)";
+        assert!(browser.run(beside).as_f64().unwrap() <= 0.0, "{view}");
+        browser.run("document.documentElement.style.width = ''; document.body.style.width = ''");
+        let small = "return [...document.querySelectorAll('button, select, input, textarea, a, summary, [role=slider]')] \
+                     .filter((it) => it.checkVisibility()).map((it) => [it.getBoundingClientRect(), it]) \
+                     .filter(([box]) => box.width > 0 && (box.width < 24 || box.height < 24)) \
+                     .filter(([, it]) => !it.closest('.skip')).map(([box, it]) => `${it.outerHTML.slice(0, 90)} ${box.width}x${box.height}`)";
+        let small = browser.run(small);
+        assert_eq!(small.as_array().map(Vec::len), Some(0), "{view}: {small}");
+    }
+}
+
+#[test]
+fn presses_are_told_to_screen_readers_at_most_once_a_second_and_can_be_switched_off() {
+    let finger = Finger::start();
+    let shown = Shown::start(&finger.address(), "contra");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    shown.wait_until_playing();
+    browser.run(
+        "window.told = []; new MutationObserver(() => { const text = document.getElementById('announcer').textContent; \
+         if (text) window.told.push([performance.now(), text]); }).observe(document.getElementById('announcer'), { childList: true, characterData: true, subtree: true })",
+    );
+    let press = || {
+        finger.press(0.0, 0.0, 3.0);
+        assert!(comes_true(1_000, || shown.status()["held"].to_string().contains("BTN_SOUTH")));
+        finger.lift();
+        assert!(comes_true(1_000, || !shown.status()["held"].to_string().contains("BTN_SOUTH")));
+    };
+    (0..8).for_each(|_| press());
+    browser.wait("window.told.length > 0");
+    let told = browser.run("return window.told");
+    let times: Vec<f64> = told.as_array().unwrap().iter().map(|it| it[0].as_f64().unwrap()).collect();
+    assert!(times.windows(2).all(|pair| pair[1] - pair[0] > 950.0), "{told}");
+    assert!(told.to_string().contains("press"), "{told}");
+    browser.run("document.getElementById('settings').open = true; document.getElementById('setting-announce').click()");
+    let before = browser.run("return window.told.length");
+    (0..3).for_each(|_| press());
+    browser.run("return new Promise((done) => setTimeout(done, 1500))");
+    assert_eq!(browser.run("return window.told.length"), before, "{}", browser.run("return window.told"));
+}

@@ -1,0 +1,174 @@
+//! The profile editor: the picture, the text and the bridge say the same.
+
+use std::fs;
+
+use serde_json::Value;
+use tactpad::pipeline::mapping::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::shipped;
+
+use crate::browser::{Browser, CONTROL};
+use crate::finger::Finger;
+use crate::running::comes_true;
+use crate::shown::Shown;
+
+/// Where the threshold of the first button is drawn.
+const THRESHOLD: &str = "[data-handle='button.0.press_n']";
+
+/// An editor with Contra, whose first button needs 2 N, on a pad that is pressed with less.
+fn editor(finger: &Finger) -> Option<(Shown, Browser)> {
+    let shown = Shown::start(&finger.address(), "contra");
+    let browser = Browser::open(&shown.url)?;
+    shown.wait_until_playing();
+    browser.view("profile");
+    browser.wait(&format!("document.querySelector(\"{THRESHOLD}\")"));
+    Some((shown, browser))
+}
+
+fn text(browser: &Browser) -> String {
+    browser.run("return document.getElementById('profile-text').value").as_str().unwrap().to_owned()
+}
+
+fn write(browser: &Browser, text: &str) {
+    let text = serde_json::to_string(text).unwrap();
+    browser.run(&format!(
+        "const area = document.getElementById('profile-text'); area.value = {text}; area.dispatchEvent(new Event('input', {{ bubbles: true }}))"
+    ));
+}
+
+fn press_n(text: &str) -> f32 {
+    read(text, OutputChoice::AsWritten).0.unwrap().buttons[0].press_n
+}
+
+fn is_held(shown: &Shown, control: &str) -> bool {
+    shown.status()["held"].as_array().is_some_and(|held| held.iter().any(|it| it == control))
+}
+
+#[test]
+fn a_dragged_threshold_is_played_within_100_ms_kept_by_save_and_undone_by_revert() {
+    let finger = Finger::start();
+    let Some((shown, browser)) = editor(&finger) else { return };
+    finger.press(15.0, 0.0, 1.6);
+    assert!(comes_true(2_000, || is_held(&shown, "ABS_HAT0X")) && !is_held(&shown, "BTN_SOUTH"));
+    // From the last movement of the pointer before the key is down to the page that shows it.
+    browser.run(
+        "window.took = null; let moved = 0; \
+         addEventListener('pointermove', () => { if (window.took === null) moved = performance.now(); }, true); \
+         const socket = WebSocket.prototype; const real = Object.getOwnPropertyDescriptor(MessageEvent.prototype, 'data').get; \
+         Object.defineProperty(MessageEvent.prototype, 'data', { get() { const data = real.call(this); \
+         if (window.took === null && moved > 0 && typeof data === 'string' && data.startsWith('{\"kind\":\"frame\"') \
+         && JSON.parse(data).held.includes('BTN_SOUTH')) window.took = performance.now() - moved; return data; } });",
+    );
+    let before = text(&browser);
+    browser.drag(THRESHOLD, [-120, 0]);
+    browser.wait("window.took !== null");
+    let took_ms = browser.run("return window.took").as_f64().unwrap();
+    eprintln!("a drag is played after {took_ms:.0} ms");
+    assert!(took_ms < 100.0, "{took_ms} ms");
+    assert!(shown.log().contains("\"BTN_SOUTH\",\"value\":1"), "{}", shown.log());
+    assert_eq!(shown.status()["preview"], true);
+    assert!(!shown.profile("contra").exists(), "a preview is not kept");
+
+    let dragged = text(&browser);
+    assert!(press_n(&dragged) < 1.6, "{dragged}");
+    browser.click("#save");
+    assert!(comes_true(2_000, || shown.profile("contra").exists()));
+    assert!(comes_true(2_000, || shown.status()["preview"] == false));
+    let kept = fs::read_to_string(shown.profile("contra")).unwrap();
+    assert_eq!(kept, dragged);
+    let comments = |text: &str| text.matches('#').count();
+    assert_eq!(comments(&kept), comments(&before), "comments are kept");
+
+    browser.drag(THRESHOLD, [150, 0]);
+    assert!(comes_true(2_000, || !is_held(&shown, "BTN_SOUTH")), "{}", text(&browser));
+    browser.click("#revert");
+    browser.wait("document.getElementById('profile-text').value.length > 0");
+    assert!(comes_true(2_000, || text(&browser) == kept && is_held(&shown, "BTN_SOUTH")));
+    assert_eq!(fs::read_to_string(shown.profile("contra")).unwrap(), kept);
+}
+
+#[test]
+fn a_broken_text_shows_what_the_check_says_and_changes_nothing() {
+    let finger = Finger::start();
+    let Some((shown, browser)) = editor(&finger) else { return };
+    let broken = text(&browser).replace("8way", "9way").replace("press_n = 2.0", "press_n = \"two\"");
+    write(&browser, &broken);
+    let (_, expected) = read(&broken, OutputChoice::AsWritten);
+    assert!(expected.len() >= 2);
+    browser.wait(&format!(
+        "document.getElementById('diagnostics').innerText.includes({:?})",
+        expected[0].message
+    ));
+    let shows = browser.run("return document.getElementById('diagnostics').innerText");
+    let shows = shows.as_str().unwrap();
+    for finding in &expected {
+        let place = format!("{}:{}", finding.line, finding.column);
+        assert!(shows.contains(&finding.message) && shows.contains(&place), "{finding:?}\n{shows}");
+        assert!(finding.help.as_ref().is_none_or(|help| shows.contains(help)), "{finding:?}\n{shows}");
+    }
+    browser.run("document.getElementById('save').click()");
+    assert_eq!(shown.status()["profile"], "Contra");
+    assert!(!shown.profile("contra").exists());
+    write(&browser, &broken.replace("9way", "8way").replace("\"two\"", "2.5"));
+    browser.wait("!/error/i.test(document.getElementById('diagnostics').innerText)");
+}
+
+#[test]
+fn undo_and_redo_go_through_all_changes_of_text_and_picture() {
+    let finger = Finger::start();
+    let Some((_shown, browser)) = editor(&finger) else { return };
+    let first = text(&browser);
+    browser.drag(THRESHOLD, [60, 0]);
+    assert!(comes_true(2_000, || press_n(&text(&browser)) > 2.0));
+    let second = text(&browser);
+    browser.drag("[data-handle='dpad.centre_radius_mm']", [20, 0]);
+    assert!(comes_true(2_000, || text(&browser) != second));
+    let third = text(&browser);
+    browser.click("#undo");
+    assert!(comes_true(2_000, || text(&browser) == second), "{}", text(&browser));
+    browser.click("#undo");
+    assert!(comes_true(2_000, || text(&browser) == first), "each drag is one step");
+    browser.click("#redo");
+    browser.click("#redo");
+    assert!(comes_true(2_000, || text(&browser) == third));
+    browser.keys(&[CONTROL], &["z"]);
+    assert!(comes_true(2_000, || text(&browser) == second));
+}
+
+#[test]
+fn a_preview_ends_with_its_page() {
+    let finger = Finger::start();
+    let Some((shown, browser)) = editor(&finger) else { return };
+    finger.press(15.0, 0.0, 1.6);
+    browser.drag(THRESHOLD, [-120, 0]);
+    assert!(comes_true(2_000, || is_held(&shown, "BTN_SOUTH")));
+    drop(browser);
+    assert!(comes_true(5_000, || shown.status()["preview"] == false && !is_held(&shown, "BTN_SOUTH")));
+}
+
+#[test]
+fn the_last_minute_is_played_once_more_with_the_draft() {
+    let shown = Shown::start("virtual", "super-mario");
+    shown.wait_until_playing();
+    // Until a button was pressed: the player begins with directions.
+    assert!(comes_true(20_000, || shown.log().contains("BTN_SOUTH")), "{}", shown.log());
+    let text = shipped::text("super-mario").unwrap();
+    let rewind = |draft: &str| -> Value {
+        let asked = serde_json::json!({"text": draft, "saved": text}).to_string();
+        shown.ask("POST /api/rewind", &asked).json()
+    };
+    let same = rewind(text);
+    assert!(same["ok"] == true && same["now"]["presses"]["BTN_SOUTH"].as_u64() > Some(0), "{same}");
+    assert_eq!(
+        (same["only_now"].as_array().map(Vec::len), same["only_draft"].as_array().map(Vec::len)),
+        (Some(0), Some(0))
+    );
+    let deaf = rewind(
+        &text.replace("press_n = 2.0", "press_n = 30.0").replace("release_n = 1.4", "release_n = 20.0"),
+    );
+    assert_eq!(deaf["draft"]["presses"]["BTN_SOUTH"], Value::Null, "{deaf}");
+    assert!(
+        deaf["only_now"].as_array().is_some_and(|only| only.iter().any(|press| press["code"] == "BTN_SOUTH")),
+        "{deaf}"
+    );
+    assert_eq!(rewind("name = 1")["ok"], false);
+}

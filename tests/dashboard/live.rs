@@ -1,0 +1,70 @@
+//! The live view follows the pad.
+
+use crate::browser::Browser;
+use crate::finger::Finger;
+use crate::running::comes_true;
+use crate::shown::Shown;
+
+/// How far off the dot may be: the decoder's error and a pixel.
+const PLACE_MM: f64 = 1.0;
+
+#[test]
+fn the_dot_the_forces_and_what_is_held_follow_the_finger() {
+    let finger = Finger::start();
+    let shown = Shown::start(&finger.address(), "contra");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    shown.wait_until_playing();
+    for (x_mm, y_mm, fz_n, held) in
+        [(15.0, 0.0, 1.0, "ABS_HAT0X"), (0.0, -18.0, 1.0, "ABS_HAT0Y"), (-2.0, 3.0, 3.0, "BTN_SOUTH")]
+    {
+        finger.press(x_mm, y_mm, fz_n);
+        browser.wait(&format!("document.querySelector('#live').innerText.includes('{held}')"));
+        let seen = comes_true(2_000, || {
+            let at = browser.run("const dot = document.getElementById('contact'); return [Number(dot.getAttribute('cx')), Number(dot.getAttribute('cy'))]");
+            let off = |at: &serde_json::Value, mm: f32| (at.as_f64().unwrap_or(99.0) - f64::from(mm)).abs();
+            off(&at[0], x_mm) < PLACE_MM && off(&at[1], -y_mm) < PLACE_MM
+        });
+        assert!(seen, "{held}");
+    }
+    finger.lift();
+    browser.wait("!document.querySelector('#live').innerText.includes('BTN_SOUTH') || document.getElementById('contact')?.closest('[hidden]') !== undefined");
+    assert!(comes_true(2_000, || shown.status()["held"].as_array().is_some_and(Vec::is_empty)));
+}
+
+#[test]
+fn it_is_renewed_fifty_times_a_second_and_at_most_fifty_milliseconds_old() {
+    let shown = Shown::start("virtual", "super-mario");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    shown.wait_until_playing();
+    browser.wait("Number(document.documentElement.dataset.updates) > 100");
+    let rate = "const [data, begin] = [document.documentElement.dataset, performance.now()]; const before = Number(data.updates); \
+                return new Promise((done) => setTimeout(() => done(1000 * (Number(data.updates) - before) / (performance.now() - begin)), 4000))";
+    let rate_hz = browser.run(rate).as_f64().unwrap();
+    let age_ms = browser.run("return Number(document.documentElement.dataset.ageMs)").as_f64().unwrap();
+    eprintln!("{rate_hz:.1} updates a second, {age_ms:.1} ms old at the 95th percentile");
+    assert!(rate_hz >= 50.0 && age_ms <= 50.0, "{rate_hz} a second, {age_ms} ms");
+}
+
+#[test]
+fn a_bridge_that_went_away_is_told_and_one_that_is_paused_too() {
+    let shown = Shown::start("virtual", "super-mario");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    browser.wait("document.getElementById('state').textContent.includes('playing')");
+    browser.click("#pause");
+    browser.wait("document.getElementById('state').textContent.includes('paused')");
+    assert_eq!(shown.status()["state"], "paused");
+    browser.click("#pause");
+    browser.wait("document.getElementById('state').textContent.includes('playing')");
+    drop(shown);
+    browser.wait("document.getElementById('connection').textContent.length > 0");
+}
+
+#[test]
+fn the_profile_is_chosen_on_the_page() {
+    let shown = Shown::start("virtual", "super-mario");
+    let Some(browser) = Browser::open(&shown.url) else { return };
+    browser.wait("document.querySelectorAll('#profile-choice option').length > 4");
+    browser.run("const choice = document.getElementById('profile-choice'); choice.value = 'tetris'; choice.dispatchEvent(new Event('change', { bubbles: true }))");
+    assert!(comes_true(2_000, || shown.status()["profile"] == "Tetris"), "{}", shown.status());
+    browser.wait("document.getElementById('live').innerText.includes('Tetris')");
+}

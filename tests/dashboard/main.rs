@@ -1,0 +1,18 @@
+//! The page of a running bridge: asked by plain requests, and used in a headless browser as people use it.
+#![cfg(all(target_os = "linux", feature = "dashboard"))]
+
+mod access;
+mod browser;
+mod disturbance;
+mod editor;
+mod finger;
+mod guides;
+mod http;
+mod live;
+#[path = "../bridge/running.rs"]
+#[expect(dead_code, reason = "other tests use the rest of it")]
+mod running;
+mod security;
+mod shown;
+#[path = "../support/mod.rs"]
+mod support;

@@ -1,0 +1,170 @@
+//! Who may ask, and what nobody may.
+
+use std::fs;
+use std::net::TcpStream;
+
+use tactpad::pipeline::mapping::shipped;
+
+use crate::http::ask;
+use crate::shown::Shown;
+
+fn shown() -> Shown {
+    Shown::start("virtual", "contra")
+}
+
+#[test]
+fn without_the_token_nothing_is_told_and_nothing_is_done() {
+    let shown = shown();
+    let wrong = "Authorization: Bearer 00000000000000000000000000000000";
+    for request in
+        ["GET /api/status", "POST /api/pause", "PUT /api/profile/contra", "GET /api/live", "GET /report/0"]
+    {
+        for head in [&[][..], &[wrong]] {
+            let answer = ask(&shown.host, request, head, b"");
+            assert_eq!(answer.status, 401, "{request} {answer:?}");
+        }
+    }
+    assert_ne!(shown.status()["state"], "paused");
+    assert_eq!(shown.ask("POST /api/pause", "").status, 200);
+    assert_eq!(shown.status()["state"], "paused");
+}
+
+#[test]
+fn another_page_and_another_name_are_refused_even_with_the_token() {
+    let shown = shown();
+    let token = format!("Authorization: Bearer {}", shown.token);
+    let origins = ["Origin: http://evil.example", "Origin: null", "Sec-Fetch-Site: cross-site"];
+    for head in origins {
+        assert_eq!(ask(&shown.host, "POST /api/pause", &[&token, head], b"").status, 403, "{head}");
+    }
+    let upgrade = [&token, "Origin: http://evil.example", "Upgrade: websocket", "Connection: Upgrade"];
+    assert_eq!(ask(&shown.host, "GET /api/live", &upgrade, b"").status, 403);
+    for host in ["Host: evil.example", "Host: 127.0.0.1", "Host: 127.0.0.1:1"] {
+        for request in ["GET /", "GET /page/main.js", "GET /api/status"] {
+            assert_eq!(ask(&shown.host, request, &[&token, host], b"").status, 403, "{host} {request}");
+        }
+    }
+    assert_ne!(shown.status()["state"], "paused");
+}
+
+#[test]
+fn no_name_leads_out_of_the_folder_of_profiles() {
+    let shown = shown();
+    let text = shipped::text("contra").unwrap();
+    let secret = shown.running.folder.path().join("secret.toml");
+    fs::write(&secret, text).unwrap();
+    for name in [
+        "..%2F..%2Fsecret",
+        "../../secret",
+        "..%2f..%2fsecret.toml",
+        "%2Fetc%2Fpasswd",
+        "secret.toml",
+        ".",
+        "..",
+        "a%00b",
+    ] {
+        for (method, body) in [("GET", ""), ("PUT", text)] {
+            let answer = shown.ask(&format!("{method} /api/profile/{name}"), body);
+            assert!((400..500).contains(&answer.status), "{method} {name}: {answer:?}");
+            assert!(!String::from_utf8_lossy(&answer.body).contains("Contra"), "{name}");
+        }
+        let answer = shown.ask("POST /api/play", &serde_json::json!({"name": name}).to_string());
+        assert_eq!(answer.status, 404, "{name}");
+    }
+    let path = secret.display().to_string();
+    assert_eq!(shown.ask("POST /api/play", &serde_json::json!({"name": path}).to_string()).status, 404);
+    assert_eq!(fs::read_to_string(&secret).unwrap(), text);
+    assert!(!shown.profile("contra").exists());
+}
+
+#[test]
+fn a_body_of_100_megabytes_is_refused_whether_its_length_is_told_or_not() {
+    let shown = shown();
+    let token = format!("Authorization: Bearer {}", shown.token);
+    let body = vec![b'x'; 100 << 20];
+    assert_eq!(ask(&shown.host, "PUT /api/profile/big", &[&token], &body).status, 413);
+    let mut chunks = Vec::new();
+    for chunk in body.chunks(1 << 16) {
+        chunks.extend_from_slice(format!("{:x}\r\n", chunk.len()).as_bytes());
+        chunks.extend_from_slice(chunk);
+        chunks.extend_from_slice(b"\r\n");
+    }
+    let head = [token.as_str(), "Transfer-Encoding: chunked"];
+    assert_eq!(ask(&shown.host, "PUT /api/profile/big", &head, &chunks).status, 413);
+    assert_eq!(
+        ask(&shown.host, "POST /api/draft", &[&token, "Content-Type: application/json"], &body).status,
+        413
+    );
+    assert_eq!(shown.ask("GET /api/status", "").status, 200);
+}
+
+#[test]
+fn nothing_changes_by_a_get() {
+    let shown = shown();
+    for path in [
+        "/api/pause",
+        "/api/resume",
+        "/api/panic",
+        "/api/tare",
+        "/api/play",
+        "/api/preview",
+        "/api/draft",
+        "/api/rewind",
+    ] {
+        assert_eq!(shown.ask(&format!("GET {path}"), "").status, 405, "{path}");
+    }
+}
+
+#[test]
+fn each_answer_says_what_the_browser_may_do() {
+    let shown = shown();
+    for request in ["GET /", "GET /page/style.css", "GET /api/status", "GET /nothing"] {
+        let answer = shown.ask(request, "");
+        let told =
+            |name: &str| answer.head.iter().find(|line| line.starts_with(name)).cloned().unwrap_or_default();
+        let policy = told("content-security-policy");
+        assert!(
+            policy.contains("default-src 'none'") && policy.contains("frame-ancestors 'none'"),
+            "{request}: {policy}"
+        );
+        assert!(!policy.contains("unsafe"), "{policy}");
+        assert!(told("x-content-type-options").contains("nosniff"), "{request}");
+        assert!(told("cache-control").contains("no-store"), "{request}");
+        assert!(!answer.head.iter().any(|line| line.starts_with("access-control-allow")), "{request}");
+    }
+}
+
+#[test]
+fn it_listens_on_loopback_alone() {
+    let shown = shown();
+    let port: u16 = shown.host.rsplit(':').next().unwrap().parse().unwrap();
+    let table = fs::read_to_string("/proc/net/tcp").unwrap();
+    let listening = |address: &str| table.contains(&format!(" {address}:{port:04X} 00000000:0000 0A"));
+    assert!(listening("0100007F"), "{table}");
+    assert!(!listening("00000000"));
+    let sixth = fs::read_to_string("/proc/net/tcp6").unwrap_or_default();
+    assert!(!sixth.contains(&format!(":{port:04X} 00000000000000000000000000000000:0000 0A")), "{sixth}");
+    assert!(TcpStream::connect(("127.0.0.1", port)).is_ok());
+}
+
+#[test]
+fn a_profile_is_kept_only_as_it_was_seen_and_without_errors() {
+    let shown = shown();
+    let read = shown.ask("GET /api/profile/contra", "").json();
+    let (text, version) = (read["text"].as_str().unwrap(), read["version"].as_str().unwrap());
+    let token = format!("Authorization: Bearer {}", shown.token);
+    let put = |name: &str, head: &str, text: &str| {
+        ask(&shown.host, &format!("PUT /api/profile/{name}"), &[&token, head], text.as_bytes())
+    };
+    let broken = put("contra", &format!("If-Match: {version}"), &text.replace("8way", "9way"));
+    assert_eq!((broken.status, broken.json()["diagnostics"][0]["severity"].as_str()), (422, Some("error")));
+    assert!(!shown.profile("contra").exists(), "a shipped profile is copied only when it is kept");
+    let changed = text.replace("press_n = 2.0", "press_n = 2.5");
+    assert_eq!(put("contra", &format!("If-Match: {version}"), &changed).status, 200);
+    assert_eq!(fs::read_to_string(shown.profile("contra")).unwrap(), changed);
+    let stale = put("contra", &format!("If-Match: {version}"), text);
+    assert_eq!((stale.status, fs::read_to_string(shown.profile("contra")).unwrap()), (412, changed.clone()));
+    assert_eq!(put("contra", "If-None-Match: *", text).status, 412);
+    assert_eq!(put("mine", "If-None-Match: *", text).status, 200);
+    assert_eq!(put("not a/name", "If-None-Match: *", text).status, 404);
+}

@@ -52,7 +52,7 @@ impl Pulse {
 
     fn start() -> (VirtualPad, Arc<Mutex<VecDeque<Instant>>>) {
         let contact = Contact { fz_n: 1.0, ..Contact::default() };
-        let uv = PadField::nominal().influence().strain_uv(&contact).uv.map(f64::from);
+        let uv = PadField::nominal().signals.strain_uv(&contact).uv.map(f64::from);
         let edges = Arc::default();
         let pulse = Self { uv_per_n: uv, edges: Arc::clone(&edges), sequence: 0 };
         (VirtualPad::start(pulse).unwrap(), edges)

@@ -41,6 +41,7 @@
 //! | `mechanics` | the finite-element simulator | `simulator` |
 //! | `bridge` | ports, virtual devices and the loop between them (Linux) | `live` |
 //! | `dashboard` | the page that shows a running bridge (Linux) | `dashboard` |
+//! | `tray` | the icon on the desktop (Linux) | `tray` |
 //!
 //! The program `tactpad` itself is the feature `cli`. Without features five small dependencies are left.
 //! `examples/` has whole programs. `ARCHITECTURE.md` says which rules hold between the rooms.
@@ -66,5 +67,7 @@ pub mod virtual_pad;
 pub mod bridge;
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
 pub mod dashboard;
+#[cfg(all(feature = "tray", target_os = "linux"))]
+pub mod tray;
 
 pub use firmware_proto;

@@ -13,6 +13,7 @@ const ROWS: &[&[&str]] = &[
     &["mechanics", "pipeline"],
     &["tables", "virtual_pad"],
     &["bridge", "lab"],
+    &["dashboard", "tray"],
     &["cli"],
 ];
 

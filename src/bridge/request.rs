@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 use std::os::unix::net::UnixStream;
-use std::sync::mpsc::{Sender, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, Sender, SyncSender, sync_channel};
 use std::time::Duration;
 
 use crate::bridge::offer::Offer;
@@ -108,9 +108,17 @@ impl Asker {
     /// # Errors
     /// The bridge has ended, or does not answer: then the kind is `TimedOut`.
     pub fn answer(&self, request: Request) -> io::Result<String> {
+        self.question(request)?.recv_timeout(ANSWER_LIMIT).map_err(|_| io::ErrorKind::TimedOut.into())
+    }
+
+    /// Asks, and does not wait: the answer, a line of JSON, comes through what is returned.
+    ///
+    /// # Errors
+    /// The bridge has ended.
+    pub fn question(&self, request: Request) -> io::Result<Receiver<String>> {
         let (answer, answered) = sync_channel(1);
         self.send(Asked { request, answer: Some(answer) })?;
-        answered.recv_timeout(ANSWER_LIMIT).map_err(|_| io::ErrorKind::TimedOut.into())
+        Ok(answered)
     }
 
     pub(super) fn send(&self, asked: Asked) -> io::Result<()> {

@@ -32,6 +32,8 @@ mod twin;
 mod wrapped;
 mod written;
 
+use std::env;
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -83,9 +85,31 @@ enum Verb {
     Completions(completions::Arguments),
 }
 
+/// What stands on the command line, or what is meant where nothing does; `None` if that is done already.
+fn words() -> Result<Option<Vec<OsString>>, Failure> {
+    #[cfg(all(feature = "tray", target_os = "linux"))]
+    if env::args_os().len() < 2 && live::alone::is_on_desktop() {
+        return Ok(live::alone::command_line()?.map(|words| words.into_iter().map(OsString::from).collect()));
+    }
+    Ok(Some(env::args_os().collect()))
+}
+
 /// Runs the program with the process's arguments.
 pub(super) fn run() -> ExitCode {
-    let outcome = match Arguments::parse().verb {
+    let outcome =
+        words().and_then(|words| words.map_or(Ok(()), |words| obey(Arguments::parse_from(words).verb)));
+    let (code, message) = match outcome {
+        Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,
+        Err(Failure::Failed(message)) => (1, message),
+        Err(Failure::Unusable(message)) => (2, message),
+    };
+    // Where even the error cannot be written, the exit code still tells.
+    say(format_args!("tactpad: {message}"));
+    ExitCode::from(code)
+}
+
+fn obey(verb: Verb) -> Result<(), Failure> {
+    match verb {
         #[cfg(all(feature = "live", target_os = "linux"))]
         Verb::Live(verb) => live::run(&verb),
         Verb::Replay(arguments) => replay::run(&arguments),
@@ -102,15 +126,7 @@ pub(super) fn run() -> ExitCode {
         Verb::Metrology(arguments) => metrology::run(&arguments),
         Verb::Diagnose(arguments) => diagnose::run(&arguments),
         Verb::Completions(arguments) => completions::run(&arguments, &mut Arguments::command()),
-    };
-    let (code, message) = match outcome {
-        Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,
-        Err(Failure::Failed(message)) => (1, message),
-        Err(Failure::Unusable(message)) => (2, message),
-    };
-    // Where even the error cannot be written, the exit code still tells.
-    say(format_args!("tactpad: {message}"));
-    ExitCode::from(code)
+    }
 }
 
 #[cfg(test)]

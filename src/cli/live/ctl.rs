@@ -131,7 +131,7 @@ fn watch_presses(path: &Path, sound: Option<Which>) -> Result<(), Failure> {
 }
 
 /// Why no bridge answers, and what to do about it.
-fn no_answer(path: &Path, error: &io::Error) -> String {
+pub(super) fn no_answer(path: &Path, error: &io::Error) -> String {
     use io::ErrorKind::{ConnectionRefused, NotFound, TimedOut};
     let path = path.display();
     match error.kind() {

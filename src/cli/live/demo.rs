@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let audience = Audience::Nobody;
     let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
     let requests = requests(None, audience)?;
-    let mut prepared = arguments.shown.prepare(requests.asker()?, host.wish(), output.choice())?;
+    let mut prepared = arguments.shown.prepare(&requests, &host.wish(), output.choice())?;
     if let Some(url) = &prepared.url {
         if_read(tell(arguments, &format!("Dashboard: {url}")))?;
     }

@@ -1,12 +1,18 @@
 //! The live verbs: those that need ports, virtual devices and a clock.
 
+#[cfg(feature = "tray")]
+pub(super) mod alone;
 mod chosen;
 mod ctl;
 mod demo;
+#[cfg(feature = "tray")]
+mod desk;
 mod devices;
 mod doctor;
 mod files;
 mod follower;
+#[cfg(feature = "tray")]
+mod last_profile;
 mod latency;
 mod newest;
 mod output;

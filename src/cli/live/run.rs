@@ -1,7 +1,6 @@
 //! `tactpad run`: the live bridge.
 
 use std::io;
-use std::sync::Arc;
 
 use clap::Args;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -83,7 +82,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     audience.tell(&title);
     let requests = requests(Some(&ctl::socket_path()), audience)?;
-    let mut prepared = arguments.shown.prepare(requests.asker()?, Arc::clone(&wish), output.choice())?;
+    let mut prepared = arguments.shown.prepare(&requests, &wish, output.choice())?;
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));
     }

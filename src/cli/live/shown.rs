@@ -1,20 +1,28 @@
-//! How a running bridge is shown beside the terminal: by the dashboard.
+//! How a running bridge is shown beside the terminal: by the dashboard and the tray.
 
 use std::sync::{Arc, Mutex};
 
 use clap::Args;
 
+#[cfg(feature = "tray")]
+use super::desk::Around;
 #[cfg(feature = "dashboard")]
 use super::page::Page;
 use super::wish::Wish;
 use crate::cli::failure::Failure;
+#[cfg(feature = "tray")]
+use crate::cli::written::say;
 use tactpad::bridge::observer::Observer;
 use tactpad::bridge::opening::OpenedPad;
+#[cfg(any(feature = "dashboard", feature = "tray"))]
 use tactpad::bridge::request::Asker;
+use tactpad::bridge::requests::Requests;
 use tactpad::bridge::running::Bridge;
 use tactpad::bridge::sink::Sink;
 use tactpad::bridge::timing::Timing;
 use tactpad::pipeline::mapping::check::OutputChoice;
+#[cfg(feature = "tray")]
+use tactpad::tray;
 
 /// What people ask for.
 #[derive(Clone, Copy, Debug, Args)]
@@ -23,6 +31,10 @@ pub(super) struct Shown {
     #[cfg(feature = "dashboard")]
     #[arg(long)]
     dashboard: bool,
+    /// Show an icon among those of the desktop: what the bridge is doing, and a menu that asks it.
+    #[cfg(feature = "tray")]
+    #[arg(long)]
+    tray: bool,
 }
 
 /// What shows a bridge that is about to be made.
@@ -30,6 +42,8 @@ pub(super) struct Shown {
 pub(super) struct Prepared {
     #[cfg(feature = "dashboard")]
     page: Option<Page>,
+    #[cfg(feature = "tray")]
+    tray: Option<(Around, Asker)>,
     /// Who wants to hear of each call.
     pub(super) observer: Option<Observer>,
     /// Where the page is.
@@ -46,32 +60,42 @@ impl Shown {
         false
     }
 
-    /// Opens what shows the bridge that `asker` reaches.
+    /// Opens what shows the bridge that `requests` reach.
     pub(super) fn prepare(
         self,
-        asker: Asker,
-        wish: Arc<Mutex<Wish>>,
+        requests: &Requests,
+        wish: &Arc<Mutex<Wish>>,
         output: OutputChoice,
     ) -> Result<Prepared, Failure> {
-        if !self.has_page() {
-            return Ok(Prepared::default());
-        }
+        let mut prepared = Prepared::default();
         #[cfg(feature = "dashboard")]
-        {
-            let (page, observer) = Page::open(asker, wish, output)?;
-            let url = Some(page.url());
-            let (observer, timing) = (Some(observer), Some(Timing::default()));
-            Ok(Prepared { page: Some(page), observer, url, timing })
+        if self.dashboard {
+            prepared.open_page(requests.asker()?, Arc::clone(wish), output)?;
         }
-        #[cfg(not(feature = "dashboard"))]
-        {
-            let _ = (asker, wish, output);
-            Ok(Prepared::default())
+        #[cfg(feature = "tray")]
+        if self.tray {
+            let around = Around::new(Arc::clone(wish), prepared.url.clone());
+            prepared.tray = Some((around, requests.asker()?));
         }
+        let _ = (requests, wish, output);
+        Ok(prepared)
     }
 }
 
 impl Prepared {
+    #[cfg(feature = "dashboard")]
+    fn open_page(
+        &mut self,
+        asker: Asker,
+        wish: Arc<Mutex<Wish>>,
+        output: OutputChoice,
+    ) -> Result<(), Failure> {
+        let (page, observer) = Page::open(asker, wish, output)?;
+        (self.url, self.observer, self.timing) = (Some(page.url()), Some(observer), Some(Timing::default()));
+        self.page = Some(page);
+        Ok(())
+    }
+
     /// The same pad; its reads are timed for the page.
     pub(super) fn pad(&self, pad: OpenedPad) -> OpenedPad {
         match &self.timing {
@@ -88,11 +112,19 @@ impl Prepared {
         }
     }
 
-    /// Shows the bridge until the process ends.
+    /// Shows the bridge until the process ends. Where the desktop has no place for an icon, the bridge plays all the same.
     pub(super) fn start(self, bridge: &Bridge) -> Result<(), Failure> {
         #[cfg(feature = "dashboard")]
         if let Some(page) = self.page {
-            return page.start(bridge, self.timing.unwrap_or_default());
+            page.start(bridge, self.timing.unwrap_or_default())?;
+        }
+        #[cfg(feature = "tray")]
+        if let Some((around, asker)) = self.tray
+            && let Err(why) = tray::start(Box::new(around), bridge.snapshot(), asker)?
+        {
+            say(format_args!(
+                "there is no tray here ({why}): `tactpad ctl` does everything that its menu does"
+            ));
         }
         let _ = bridge;
         Ok(())

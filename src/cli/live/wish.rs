@@ -10,7 +10,7 @@ use crate::cli::profile;
 pub(super) const AUTO: &str = "auto";
 
 /// What is played while none is for the program in front, unless people say what.
-const FALLBACK: &str = "super-mario";
+pub(super) const FALLBACK: &str = "super-mario";
 
 /// What people wish.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -50,6 +50,15 @@ impl Wish {
         let fallback = fallback(asked).map(str::to_owned);
         let name = fallback.clone().unwrap_or_else(|| asked.to_owned());
         Self { stamp: Stamp::of(&name), name, fallback, asked: 0 }
+    }
+
+    /// What a command line says to wish the same, in whatever folder.
+    #[cfg(feature = "tray")]
+    pub(super) fn as_asked(&self) -> String {
+        let path = std::path::absolute(&self.name).ok().filter(|_| !profile::is_known(&self.name));
+        let whole = path.and_then(|path| path.into_os_string().into_string().ok());
+        let name = whole.unwrap_or_else(|| self.name.clone());
+        if self.fallback.is_some() { format!("{AUTO}:{name}") } else { name }
     }
 
     /// What is wished once somebody asks for another profile, or for the same one again.

@@ -37,5 +37,7 @@ mod stalled;
 mod stranger;
 #[path = "../support/mod.rs"]
 mod support;
+#[cfg(feature = "tray")]
+mod tray;
 #[cfg(feature = "live")]
 mod x11;

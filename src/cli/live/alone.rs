@@ -14,13 +14,13 @@ use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::tray::browser;
 
 /// Whether there is a desktop to play on.
-pub(in crate::cli) fn is_on_desktop() -> bool {
+pub(crate) fn is_on_desktop() -> bool {
     let is_set = |name| env::var_os(name).is_some_and(|value| !value.is_empty());
     is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
 }
 
 /// The command line that is meant; `None` if the running bridge's page was opened instead.
-pub(in crate::cli) fn command_line() -> Result<Option<Vec<String>>, Failure> {
+pub(crate) fn command_line() -> Result<Option<Vec<String>>, Failure> {
     use io::ErrorKind::{ConnectionRefused, NotFound};
     let path = ctl::socket_path();
     match ask(&path, "dashboard") {

@@ -13,6 +13,7 @@ use serde_json::Value;
 
 use crate::presses;
 use crate::running::{Running, comes_true};
+use crate::support::{leave_out, require};
 
 const TACTPAD: &str = env!("CARGO_BIN_EXE_tactpad");
 
@@ -272,4 +273,34 @@ fn without_a_player_there_is_one_sentence() {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.contains("install one of pw-play (pipewire-bin)") && said.lines().count() == 1, "{said}");
+}
+
+/// Says one line to a socket and prints what comes back.
+const STRANGER: &str = "import socket, sys\nit = socket.socket(socket.AF_UNIX)\nit.connect(sys.argv[1])\nit.sendall(b'pause\\n')\nprint(it.recv(99))";
+
+#[test]
+fn another_user_gets_no_answer_even_where_the_socket_is_open_to_all() {
+    if !rustix::process::getuid().is_root() {
+        leave_out("the right to become another user", "sudo cargo test");
+        return;
+    }
+    if !require("setpriv", "apt install util-linux") || !require("python3", "apt install python3") {
+        return;
+    }
+    let bridge = start(&["--pad", "virtual"]);
+    await_status(&bridge, "plays", |status| status["state"] == "playing");
+    let socket = bridge.folder.path().join("tactpad.sock");
+    for (path, mode) in [(bridge.folder.path(), 0o755), (&socket, 0o777)] {
+        fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
+    }
+    let said = |user: &str| {
+        let mut stranger = Command::new("setpriv");
+        stranger.args([&format!("--reuid={user}"), "--clear-groups", "python3", "-c", STRANGER]).arg(&socket);
+        stranger.output().unwrap()
+    };
+    let heard = said("65534");
+    assert!(!String::from_utf8_lossy(&heard.stdout).contains("ok"), "{heard:?}");
+    assert_eq!(bridge.status()["state"], "playing");
+    assert!(String::from_utf8_lossy(&said("0").stdout).contains("ok"), "its own user is heard");
+    assert_eq!(bridge.status()["state"], "paused");
 }

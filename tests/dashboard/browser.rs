@@ -142,6 +142,12 @@ impl Browser {
         self.post("actions", &json!({"actions": [pointer]}));
     }
 
+    /// What the window shows, as PNG.
+    pub(crate) fn picture(&self) -> Vec<u8> {
+        let picture = self.ask(&format!("GET /session/{}/screenshot", self.session), &Value::Null);
+        from_base64(picture.as_str().unwrap())
+    }
+
     /// Makes the window so large.
     pub(crate) fn resize(&self, width: u32, height: u32) {
         self.post("window/rect", &json!({"width": width, "height": height}));
@@ -156,4 +162,15 @@ impl Drop for Browser {
         let _ = self.driver.kill();
         let _ = self.driver.wait();
     }
+}
+
+/// The bytes of a text in base 64.
+fn from_base64(text: &str) -> Vec<u8> {
+    const DIGITS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let digits: Vec<u32> = text.chars().filter_map(|it| DIGITS.find(it)).map(|it| it as u32).collect();
+    let group = |four: &[u32]| {
+        let bits = (0..4).fold(0, |bits, index| bits << 6 | four.get(index).copied().unwrap_or(0));
+        bits.to_be_bytes()[1..four.len()].to_vec()
+    };
+    digits.chunks(4).flat_map(group).collect()
 }

@@ -9,6 +9,7 @@ mod finger;
 mod guides;
 mod http;
 mod live;
+mod pictures;
 #[path = "../bridge/running.rs"]
 #[expect(dead_code, reason = "other tests use the rest of it")]
 mod running;

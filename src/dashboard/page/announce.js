@@ -31,7 +31,7 @@ function schedule() {
 
 /** Says a sentence, whatever was chosen for presses: it answers something that a person did. */
 export function announce(sentence) {
-  sentences.push(sentence);
+  sentences.push(sentence.replace(/\.$/, ""));
   schedule();
 }
 

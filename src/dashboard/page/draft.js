@@ -128,7 +128,6 @@ export class Draft extends EventTarget {
       this.#unchecked = true;
       return;
     }
-    if (answer.error) this.#told("failed", answer.error);
     if (answer.ok && answer.text !== text) {
       this.text = answer.text;
       this.history.record(this.text, gesture);
@@ -140,5 +139,6 @@ export class Draft extends EventTarget {
     if (answer.document) this.document = answer.document;
     if (answer.sketch) this.sketch = answer.sketch;
     this.#told("checked");
+    if (answer.error) this.#told("failed", answer.error);
   }
 }

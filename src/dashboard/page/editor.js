@@ -120,8 +120,9 @@ export class ProfileView {
 
   #checked() {
     const focus = document.activeElement?.closest?.("[data-handle], [data-field]");
+    this.#tell("");
     this.text.showDiagnostics();
-    if (this.draft.sketch !== null) this.plate.setSketch(this.draft.sketch);
+    this.plate.setSketch(this.draft.sketch);
     this.plateHandles.refresh();
     this.forceHandles.refresh();
     this.form.refresh();
@@ -134,7 +135,7 @@ export class ProfileView {
     const { dirty, history, valid } = this.draft;
     this.undo.disabled = !history.canUndo;
     this.redo.disabled = !history.canRedo;
-    this.save.disabled = !dirty && this.#version !== null;
+    this.save.disabled = !dirty;
     this.revert.disabled = !dirty;
     this.section.classList.toggle("stale", this.draft.stale);
     say(this.state, `${dirty ? "● not saved" : "✓ saved"}${valid ? "" : ", ✕ has errors"}`);

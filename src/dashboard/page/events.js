@@ -46,6 +46,7 @@ export class EventLanes {
     this.#lanes.clear();
     this.#rejected = [];
     this.#newest = [];
+    this.#fresh = true;
   }
 
   #event(event) {

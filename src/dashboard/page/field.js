@@ -2,7 +2,7 @@
 
 import { captureButton } from "./capture.js";
 import { el, say, set } from "./dom.js";
-import { nameOf, stepOf, unitOf } from "./schema.js";
+import { nameOf, stepOf, tidy, unitOf } from "./schema.js";
 
 const CHOICES_WITH_OWN_WORDS = new Set(["gamepad", "pointer"]);
 let fields = 0;
@@ -45,7 +45,7 @@ export class Field {
     const { kind } = this.about;
     if (kind === "choice") return this.#select();
     if (kind === "boolean") return el("input", { type: "checkbox", onchange: (event) => this.#write(event.target.checked) });
-    if (this.#numeric) return this.#number("number", "change");
+    if (this.#numeric) return this.#number("number");
     return el("input", { type: "text", autocomplete: "off", spellcheck: "false", list: this.#list(), onchange: (event) => this.#write(event.target.value === "" ? null : event.target.value) });
   }
 
@@ -61,21 +61,21 @@ export class Field {
   }
 
   #number(type) {
-    const { key, kind, min, max } = this.about;
-    const step = type === "range" ? stepOf(key, kind) : kind === "integer" ? 1 : "any";
-    const node = el("input", { type, min, max, step, inputmode: type === "number" ? "decimal" : null,
+    const { kind, min, max } = this.about;
+    const node = el("input", { type, min, max, step: kind === "integer" ? 1 : "any", inputmode: type === "number" ? "decimal" : null,
       oninput: () => this.#typed(node), onblur: () => { this.#gesture = null; }, onkeydown: (event) => this.#stepped(event, node) });
     return node;
   }
 
   /** Arrow keys step by what suits the key, as the handle does. */
   #stepped(event, node) {
-    const by = { ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10 }[event.key];
-    if (by === undefined || node.type !== "number") return;
+    const sideways = node.type === "range" ? { ArrowRight: 1, ArrowLeft: -1 } : {};
+    const by = { ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10, ...sideways }[event.key];
+    if (by === undefined) return;
     event.preventDefault();
     const { key, kind, min = -Infinity, max = Infinity } = this.about;
     const value = Number(node.value === "" ? this.values.at(this.path) ?? 0 : node.value) + by * stepOf(key, kind);
-    node.value = String(Number(Math.min(Math.max(value, min), max).toFixed(4)));
+    node.value = String(tidy(Math.min(Math.max(value, min), max)));
     this.#typed(node);
   }
 

@@ -30,6 +30,8 @@ export class ForceHandles {
   /** Makes all handles anew the next time: another profile. */
   forget() {
     this.#shape = "";
+    this.#handles = [];
+    this.forces.setSketch(null);
   }
 
   #make(sketch, shape) {

@@ -4,7 +4,7 @@ import { button, el, say } from "./dom.js";
 import { Field } from "./field.js";
 import { nameOf } from "./schema.js";
 import { TABLES, withBindings, withEffect, withTable, withoutTable } from "./templates.js";
-import { written } from "./values.js";
+import { tablesOf, written } from "./values.js";
 
 /** Keys that stand in sight even while they are not written: handles and the usual choices. */
 const IN_SIGHT = new Set(["release_n", "release_force_n", "min_force_n", "mode", "centre_radius_mm", "radius_hysteresis_mm", "rotation_deg",
@@ -93,7 +93,7 @@ export class Form {
   /** What lies within a table: effects of a button, bindings of directions, steps of a macro. */
   #inner(path, value, keys) {
     if (path[0] === "button") return this.#effects(path, value);
-    if (path[0] === "macro") return (value.steps ?? []).map((step, index) => this.#part([...path, "steps", index], `step ${index + 1}`, null));
+    if (path[0] === "macro") return tablesOf(value, "steps").map((step, index) => this.#part([...path, "steps", index], `step ${index + 1}`, null));
     return keys.filter(({ kind }) => kind === "table" && path.length > 0).map(({ key }) => this.#bindings(path, key));
   }
 
@@ -161,6 +161,6 @@ function shapeOf(document) {
     if (typeof value !== "object") return 0;
     return Object.entries(value).filter(([, inner]) => typeof inner === "object").map(([key, inner]) => [key, shape(inner, depth + 1)]);
   };
-  const names = ["zone", "layer", "macro", "button"].map((table) => (document[table] ?? []).map(({ name, force }) => name ?? force));
+  const names = ["zone", "layer", "macro", "button"].map((table) => tablesOf(document, table).map(({ name, force }) => name ?? force));
   return JSON.stringify([shape(document, 0), names]);
 }

@@ -20,8 +20,9 @@ export class GuidesView {
   constructor(section, openDraft) {
     this.openDraft = openDraft;
     this.about = el("p", { class: "quiet" });
+    this.failed = el("p", { class: "bad", role: "alert" });
     this.list = el("div", { class: "entries" });
-    section.append(this.about, this.list);
+    section.append(this.about, this.failed, this.list);
   }
 
   async show() {
@@ -46,10 +47,9 @@ export class GuidesView {
   async act(id, action) {
     try {
       this.update(await post(`/api/guides/${encodeURIComponent(id)}`, { do: action }));
-      say(this.about, "");
+      say(this.failed, "");
     } catch (error) {
-      announce(error.message);
-      say(this.about, error.message);
+      say(this.failed, `✕ ${error.message}`);
     }
   }
 }

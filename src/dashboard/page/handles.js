@@ -46,7 +46,8 @@ export class Handle {
 
   /** Shows the value of the draft, unless a hand holds the handle. */
   refresh() {
-    if (!this.#dragged) this.#show(this.#values.at(this.path));
+    const value = this.#values.at(this.path);
+    if (!this.#dragged && typeof value === "number") this.#show(value);
   }
 
   #show(value) {

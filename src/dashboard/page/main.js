@@ -63,6 +63,7 @@ function followConnection(views) {
   live.on("open", () => {
     say(connection, "");
     views.live.status.listProfiles();
+    views.profile.preview.again();
   });
   live.on("lost", () => {
     if (connection.textContent !== NO_TOKEN) say(connection, "The connection to tactpad is lost. Trying again every second …");
@@ -74,6 +75,7 @@ function start() {
   startSettings();
   onRefused(refuse);
   const views = makeViews();
+  onShow("live", () => views.live.status.listProfiles());
   for (const view of ["profile", "guides", "reports", "doctor"]) onShow(view, () => views[view].show());
   startRouter();
   if (token === null) return refuse();

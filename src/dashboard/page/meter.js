@@ -14,6 +14,8 @@ export const MARKS = {
   release: { sign: "△", name: "release" },
   hard_press: { sign: "◆", name: "hard" },
   hard_release: { sign: "◇", name: "hard release" },
+  from: { sign: "△", name: "from" },
+  full: { sign: "▲", name: "full" },
 };
 
 /**
@@ -31,7 +33,7 @@ export function thresholdRows(sketch) {
   if (sketch.pointer) pair("pointer", ["pointer"], "min_force_n", sketch.pointer.min_force_n, "release_force_n", undefined);
   for (const [index, { trigger, from_n, full_n }] of sketch.triggers.entries()) {
     rows.push({ name: `${trigger} trigger`, force: "fz", path: ["trigger", index], marks: [
-      { kind: "release", key: "from_n", force_n: from_n }, { kind: "press", key: "full_n", force_n: full_n }] });
+      { kind: "from", key: "from_n", force_n: from_n }, { kind: "full", key: "full_n", force_n: full_n }] });
   }
   for (const button of sketch.buttons) rows.push(buttonRow(button));
   return rows;
@@ -62,7 +64,7 @@ class Meter {
     this.rows = el("div", { class: "meter-rows" });
     this.node = el("div", { class: `meter ${sides === 2 ? "two-sided" : ""}` },
       el("div", { class: "meter-head" }, el("strong", { text: name }), el("span", { class: "quiet", text: meaning }), this.value),
-      el("div", { class: "meter-body" }, el("div", { class: "meter-track" }, this.fill), this.rows, this.scale, this.cursor));
+      el("div", { class: "meter-body" }, el("div", { class: "meter-track" }, this.fill), this.rows, this.scale, el("div", { class: "meter-cursor-lane" }, this.cursor)));
   }
 
   /** The place of a force on the track, 0 to 1. */
@@ -104,7 +106,7 @@ class Meter {
     const from = this.part(0);
     const to = this.part(force_n ?? 0);
     this.fill.style.transform = `translateX(${Math.min(from, to) * 100}%) scaleX(${Math.abs(to - from)})`;
-    this.cursor.style.left = `${to * 100}%`;
+    this.cursor.style.transform = `translateX(${to * 100}%)`;
     this.cursor.hidden = force_n === null;
   }
 }

@@ -3,10 +3,10 @@
 import { svg } from "./dom.js";
 import { middleDeg, near, polar, seenFrom } from "./geometry.js";
 import { Handle } from "./handles.js";
-import { mirror, sameTurn } from "./values.js";
+import { mirror, sameTurn, tablesOf } from "./values.js";
 
 const RIM_MM = 32.5;
-const HIT_MM = 2.8;
+const HIT_MM = 3.3;
 const FAR_MM = 33;
 const ARM_MM = 5;
 
@@ -34,7 +34,8 @@ export class PlateHandles {
   refresh() {
     const { document } = this.values.draft;
     if (document === null) return;
-    const shape = JSON.stringify([document.dpad?.mode ?? typeof document.dpad, (document.zone ?? []).map(({ name, from_deg }) => [name, from_deg !== undefined])]);
+    const shape = JSON.stringify([document.dpad?.mode ?? typeof document.dpad, typeof document.pointer,
+      tablesOf(document, "stick").map(({ from }) => from), tablesOf(document, "zone").map(({ name, from_deg }) => [name, from_deg !== undefined])]);
     if (shape !== this.#shape) this.#make(document, shape);
     for (const handle of this.#handles) handle.refresh();
   }
@@ -42,6 +43,8 @@ export class PlateHandles {
   /** Makes all handles anew the next time: another profile. */
   forget() {
     this.#shape = "";
+    this.#handles = [];
+    this.plate.layers.handles.replaceChildren();
   }
 
   #make(document, shape) {
@@ -50,7 +53,19 @@ export class PlateHandles {
     this.plate.layers.handles.replaceChildren();
     this.#makeCentre();
     if (document.dpad !== undefined) this.#makeDirections(document.dpad.mode ?? "4way");
-    (document.zone ?? []).forEach((zone, index) => this.#makeZone(zone, index));
+    tablesOf(document, "zone").forEach((zone, index) => this.#makeZone(zone, index));
+    if (document.pointer !== undefined) this.#makePair(["pointer"], "Pointer", 20);
+    tablesOf(document, "stick").forEach(({ stick, from }, index) => {
+      if (from !== "shear") this.#makePair(["stick", index], `${stick} stick`, 150 + 15 * index);
+    });
+  }
+
+  /** The two radii of what moves with the place: where it rests, and where it is at its end. */
+  #makePair(table, name, deg) {
+    for (const [key, what] of [["centre_radius_mm", "rests up to here"], ["full_radius_mm", "at its end from here"]]) {
+      this.#add([...table, key], `${name}: ${what}`, RING,
+        (value) => polar(this.#centre, deg, value), (point) => seenFrom(this.#centre, point).radius_mm);
+    }
   }
 
   /** One handle of a shape, where `at` says for a value; `read` gives the value at a place of the picture. */

@@ -29,9 +29,10 @@ export class Preview {
     this.#want(null);
   }
 
-  /** The connection was lost, and with it the preview. */
-  forget() {
+  /** The connection was lost, and with it the preview; it begins anew. */
+  again() {
     this.#sent = null;
+    this.follow();
   }
 
   #want(text) {

@@ -10,6 +10,11 @@ export function written(document, path) {
   return value;
 }
 
+/** The tables of one name, however wrong the text may be. */
+export function tablesOf(document, name) {
+  return Array.isArray(document?.[name]) ? document[name] : [];
+}
+
 /** Values that follow from others when they are not written; the sketch has them. */
 function derived(sketch, path) {
   const [table, second, third] = path;
@@ -49,11 +54,13 @@ export class Values {
     const key = path.at(-1);
     const beside = (name) => this.at([...path.slice(0, -1), name]);
     const gap = 0.05;
+    const apart = 0.5;
     const upper = {
       release_n: () => beside("press_n") - gap,
       hard_release_n: () => beside("hard_press_n") - gap,
       release_force_n: () => beside("min_force_n") - gap,
-      radius_hysteresis_mm: () => beside("centre_radius_mm") - 0.5,
+      radius_hysteresis_mm: () => (path[0] === "dpad" ? beside("centre_radius_mm") - apart : max),
+      centre_radius_mm: () => (path[0] === "dpad" ? max : beside("full_radius_mm") - apart),
       inner_radius_mm: () => beside("outer_radius_mm") - 3,
       from_n: () => beside("full_n") - gap,
     };
@@ -61,11 +68,13 @@ export class Values {
       press_n: () => (this.isWritten([...path.slice(0, -1), "release_n"]) ? beside("release_n") + gap : min),
       hard_press_n: () => Math.max(beside("press_n"), this.isWritten([...path.slice(0, -1), "hard_release_n"]) ? beside("hard_release_n") : 0) + gap,
       min_force_n: () => (this.isWritten([...path.slice(0, -1), "release_force_n"]) ? beside("release_force_n") + gap : min),
-      centre_radius_mm: () => (path[0] === "dpad" ? beside("radius_hysteresis_mm") + 0.5 : min),
+      centre_radius_mm: () => (path[0] === "dpad" ? beside("radius_hysteresis_mm") + apart : min),
       outer_radius_mm: () => beside("inner_radius_mm") + 3,
+      full_radius_mm: () => beside("centre_radius_mm") + apart,
       full_n: () => beside("from_n") + gap,
     };
-    return { min: Math.max(min, tidy(lower[key]?.() ?? min)), max: Math.min(max, tidy(upper[key]?.() ?? max)) };
+    const known = (limit, otherwise) => (Number.isFinite(limit) ? tidy(limit) : otherwise);
+    return { min: Math.max(min, known(lower[key]?.(), min)), max: Math.min(max, known(upper[key]?.(), max)) };
   }
 }
 

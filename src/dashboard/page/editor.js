@@ -61,7 +61,7 @@ export class ProfileView {
     this.form = new Form(this.values, schema);
     this.text = new TextPane(this.draft);
     this.rewind = new Rewind(this.draft);
-    const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab: arrow keys move it, Page Up and Page Down move it far, Home and End to its limits. Each has a field below." });
+    const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab: arrow keys move it, Page Up and Page Down move it far, Home and End to its limits. Each has a field among the keys." });
     this.body.replaceChildren(el("div", { class: "editor-grid" },
       el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node, hint), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node)),
       el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Keys" }), this.form.node)),

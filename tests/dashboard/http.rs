@@ -54,7 +54,7 @@ fn answer(stream: TcpStream) -> Answer {
         head.push(line.trim_end().to_lowercase());
     }
     let status = head.first().and_then(|line| line.split(' ').nth(1)?.parse().ok()).unwrap_or(0);
-    let length = head.iter().find_map(|line| line.strip_prefix("content-length: ")?.parse().ok());
+    let length = head.iter().find_map(|line| line.strip_prefix("content-length:")?.trim().parse().ok());
     let mut body = vec![0; length.unwrap_or(0)];
     match length {
         Some(_) => reader.read_exact(&mut body).unwrap(),

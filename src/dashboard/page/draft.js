@@ -128,7 +128,7 @@ export class Draft extends EventTarget {
       this.#unchecked = true;
       return;
     }
-    if (answer.ok && answer.text !== text) {
+    if (!answer.error && answer.text !== text) {
       this.text = answer.text;
       this.history.record(this.text, gesture);
       this.#told("text");

@@ -17,7 +17,7 @@ import { Values } from "./values.js";
 
 export class ProfileView {
   #name = null;
-  /** The version of one's own file, or null while the profile is only the program's. */
+  /** The version of the text that was read: what a save may be written over. */
   #version = null;
   #ready = null;
   #previewed = false;
@@ -28,7 +28,7 @@ export class ProfileView {
     this.preview = new Preview(this.draft, (sentence) => this.#tell(sentence));
     this.#makeBar();
     this.body = el("div");
-    section.append(this.bar, this.message, this.body);
+    section.append(this.bar, this.body);
     section.addEventListener("keydown", (event) => this.#shortcut(event));
     addEventListener("beforeunload", (event) => this.draft.dirty && event.preventDefault());
     this.draft.addEventListener("text", () => this.text?.showText());
@@ -47,7 +47,7 @@ export class ProfileView {
     this.message = el("p", { class: "editor-message", role: "status" });
     this.bar = el("div", { class: "card bar-of-commands" }, el("div", { class: "commands" },
       el("label", { class: "chooser" }, "Profile to edit ", this.choice), this.undo, this.redo, this.save, this.revert,
-      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), el("label", { class: "check main" }, live, "Play the draft live"), this.state));
+      button("Save as …", () => this.#saveAs(), { id: "save-as", class: "main" }), el("label", { class: "check main" }, live, "Play the draft live"), this.state, this.message));
   }
 
   /** Makes what needs the schema, once. */
@@ -63,7 +63,7 @@ export class ProfileView {
     this.rewind = new Rewind(this.draft);
     const hint = el("p", { class: "quiet hint", text: "Drag a handle, or go to it with Tab: arrow keys move it, Page Up and Page Down move it far, Home and End to its limits. Each has a field among the keys." });
     this.body.replaceChildren(el("div", { class: "editor-grid" },
-      el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node, hint), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node)),
+      el("div", { class: "area-sketch" }, el("div", { class: "card" }, el("h3", { text: "Plate" }), this.plate.node), el("div", { class: "card" }, el("h3", { text: "Forces" }), this.forceHandles.node, hint)),
       el("div", { class: "area-form" }, el("div", { class: "card" }, el("h3", { text: "Keys" }), this.form.node)),
       el("div", { class: "area-text" }, el("div", { class: "card" }, el("h3", { text: "Text" }), this.text.node), this.rewind.node)));
   }
@@ -99,7 +99,7 @@ export class ProfileView {
   async #load(name, text = undefined) {
     const profile = await readProfile(name);
     this.#name = name;
-    this.#version = profile.own ? profile.version : null;
+    this.#version = profile.version;
     this.choice.value = name;
     this.plateHandles.forget();
     this.forceHandles.forget();
@@ -170,16 +170,16 @@ export class ProfileView {
       this.#tell(`Saved to ${answer.path}.`);
       await this.#list();
     } catch (error) {
-      await this.#notSaved(error, name);
+      await this.#notSaved(error, name, version);
     }
   }
 
-  async #notSaved(error, name) {
+  async #notSaved(error, name, version) {
     if (error.status === 422) {
       const count = error.body.diagnostics.filter(({ severity }) => severity === "error").length;
       return this.#tell(`Not saved: the text has ${plural(count, "error")}.`);
     }
-    if (error.status !== 412) return this.#tell(`Not saved: ${error.message}`);
+    if (error.status !== 412 || version === null) return this.#tell(`Not saved: ${error.message}`);
     const answer = await askConflict(error.message);
     if (answer === "theirs") await this.#load(name);
     if (answer === "overwrite") await this.#write(name, (await readProfile(name)).version);
@@ -198,7 +198,7 @@ export class ProfileView {
   }
 
   /** Says at the top of every view when a draft is played. */
-  setStatus({ preview }) {
+  setStatus({ status: { preview } }) {
     if (preview === this.#previewed) return;
     this.#previewed = preview;
     const notice = document.getElementById("preview-notice");

@@ -3,7 +3,7 @@
 import { button, el, say } from "./dom.js";
 import { Field } from "./field.js";
 import { nameOf } from "./schema.js";
-import { TABLES, withBindings, withEffect, withTable, withoutTable } from "./templates.js";
+import { TABLES, withEffect, withTable, withoutTable } from "./templates.js";
 import { tablesOf, written } from "./values.js";
 
 /** Keys that stand in sight even while they are not written: handles and the usual choices. */
@@ -18,7 +18,8 @@ export class Form {
   /** @type {Field[]} */
   #fields = [];
   #shape = "";
-  #closed = new Set(["access", "gain", "program"]);
+  /** What a person opened and closed, by its name. @type {Map<string, boolean>} */
+  #opened = new Map();
 
   /** @param {import("./values.js").Values} values @param {import("./schema.js").Schema} schema */
   constructor(values, schema) {
@@ -74,18 +75,28 @@ export class Form {
     const plain = keys.filter(({ kind }) => kind !== "table" && kind !== "effect");
     const seen = plain.filter(({ key, required }) => required || value[key] !== undefined || inSight(key, value));
     const folded = plain.filter((about) => !seen.includes(about));
-    const node = el("details", { class: "group", open: !this.#closed.has(name.split(".")[0]) },
-      el("summary", {}, el("strong", { text: title })),
+    return this.#fold(name, "group", el("strong", { text: title }), true, [
       ...seen.map((about) => this.#field(path, about)),
       ...this.#inner(path, value, keys),
-      folded.length === 0 ? null : el("details", { class: "folded" }, el("summary", { text: `Keys that are not written (${folded.length})` }), ...folded.map((about) => this.#field(path, about))),
-      remove === null ? null : button(`Remove ${title}`, remove, { class: "remove" }));
-    node.addEventListener("toggle", () => (node.open ? this.#closed.delete(name) : this.#closed.add(name)));
+      this.#folded(`${name} more`, `Keys that are not written (${folded.length})`, path, folded),
+      remove === null ? null : button(`Remove ${title}`, remove, { class: "remove" }),
+    ]);
+  }
+
+  /** Something to open and close; it stays as it is when fields are made anew. */
+  #fold(name, kind, title, open, children) {
+    const node = el("details", { class: kind, open: this.#opened.get(name) ?? open }, el("summary", {}, title), ...children);
+    node.addEventListener("toggle", () => this.#opened.set(name, node.open));
     return node;
   }
 
-  #field(path, about, values = this.values) {
-    const field = new Field([...path, about.key], about, values);
+  /** Keys that are folded away; nothing if there are none. */
+  #folded(name, title, path, keys) {
+    return keys.length === 0 ? null : this.#fold(name, "folded", title, false, keys.map((about) => this.#field(path, about)));
+  }
+
+  #field(path, about) {
+    const field = new Field([...path, about.key], about, this.values);
     this.#fields.push(field);
     return field.node;
   }
@@ -103,7 +114,7 @@ export class Form {
     const seen = keys.filter(({ key }) => value[key] !== undefined);
     const folded = keys.filter((about) => !seen.includes(about));
     return el("fieldset", { class: "part" }, el("legend", { text: title }), ...seen.map((about) => this.#field(path, about)),
-      folded.length === 0 ? null : el("details", { class: "folded" }, el("summary", { text: `More for ${title} (${folded.length})` }), ...folded.map((about) => this.#field(path, about))),
+      this.#folded(nameOf(path), `More for ${title} (${folded.length})`, path, folded),
       remove === null ? null : button(`Remove ${title}`, remove, { class: "remove" }));
   }
 
@@ -118,29 +129,7 @@ export class Form {
 
   #bindings(path, device) {
     const inner = [...path, device];
-    const values = this.values.isWritten(inner) || path.length > 1 ? this.values : new FirstBinding(this.values, path[0], device);
-    return el("details", { class: "folded" }, el("summary", { text: `What directions are on the ${device}` }),
-      ...this.schema.keys(inner).map((about) => this.#field(inner, about, values)));
-  }
-}
-
-/** Values of a table of bindings that does not stand in the text yet: the first one makes it. */
-class FirstBinding {
-  constructor(values, table, device) {
-    Object.assign(this, { values, table, device });
-  }
-
-  at(path) {
-    return this.values.at(path);
-  }
-
-  isWritten(path) {
-    return this.values.isWritten(path);
-  }
-
-  write(path, value) {
-    const { draft } = this.values;
-    if (value !== null) draft.replace(withBindings(draft.text, this.table, this.device, path.at(-1), value));
+    return this.#folded(nameOf(inner), `What directions are on the ${device}`, inner, this.schema.keys(inner));
   }
 }
 

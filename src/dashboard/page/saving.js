@@ -10,7 +10,7 @@ const address = (name) => `/api/profile/${encodeURIComponent(name)}`;
 export const readProfile = (name) => get(address(name));
 
 /**
- * Writes a text; a profile that is not one's own yet becomes a new file.
+ * Writes a text over that version, or as a new profile if it is null.
  * @returns {Promise<{ version: string, path: string }>}
  */
 export function writeProfile(name, text, version) {

@@ -82,7 +82,7 @@ export class Status {
   /** Shows a status message. */
   draw({ status }) {
     if (status.state !== this.#state) this.#changed(status);
-    say(this.sentence, status.sentence ?? "");
+    say(this.sentence, status.sentence === status.state ? "" : status.sentence ?? "");
     for (const [key, node] of this.lines) {
       say(node, status[key] ?? "–");
       set(node.parentElement, { "data-empty": status[key] === null || status[key] === undefined });

@@ -85,13 +85,3 @@ export function withEffect(text, index, effect, press_n) {
   if (effect === "hard") lines.push(`hard_press_n = ${Number((press_n * 2).toFixed(2))}`);
   return lines.reduce((result, line) => withLine(result, "button", index, line), text);
 }
-
-/** The text with a table of bindings within another one, such as [dpad.keyboard]. */
-export function withBindings(text, table, device, direction, names) {
-  const lines = text.split("\n");
-  const found = span(lines, table, 0);
-  if (found === null) return text;
-  const { to } = trimmed(lines, found);
-  lines.splice(to, 0, "", `[${table}.${device}]`, `${direction} = ${JSON.stringify(names)}`);
-  return lines.join("\n");
-}

@@ -180,7 +180,7 @@ export class ProfileView {
       return this.#tell(`Not saved: the text has ${plural(count, "error")}.`);
     }
     if (error.status !== 412 || version === null) return this.#tell(`Not saved: ${error.message}`);
-    const answer = await askConflict(error.message);
+    const answer = await askConflict();
     if (answer === "theirs") await this.#load(name);
     if (answer === "overwrite") await this.#write(name, (await readProfile(name)).version);
   }

@@ -28,7 +28,7 @@ function ask(title, body, answers) {
       done(answer);
     };
     dialog.append(el("h3", { text: title }), body, el("div", { class: "commands" },
-      ...answers.map(({ label, answer }, index) => button(label, () => close(answer()), { class: index === 0 ? "main primary" : "main" })),
+      ...answers.map(({ label, answer }) => button(label, () => close(answer()), { class: answers.length === 1 ? "main primary" : "main" })),
       button("Cancel", () => close(null), { class: "main" })));
     dialog.addEventListener("cancel", (event) => {
       event.preventDefault();
@@ -40,8 +40,8 @@ function ask(title, body, answers) {
 }
 
 /** What to do with a file that changed meanwhile: "theirs", "overwrite" or null. */
-export function askConflict(sentence) {
-  return ask("The file was changed meanwhile", el("p", { text: sentence }), [
+export function askConflict() {
+  return ask("The file was changed meanwhile", el("p", { text: "Load what is in the file now, or write your draft over it." }), [
     { label: "Load the file, drop my draft", answer: () => "theirs" },
     { label: "Overwrite the file with my draft", answer: () => "overwrite" },
   ]);

@@ -50,20 +50,9 @@ impl Browser {
         {
             return None;
         }
-        let mut command = Command::new("chromedriver");
-        let mut driver =
-            command.arg("--port=0").stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
-        let lines = BufReader::new(driver.stdout.take().unwrap()).lines();
-        let mut told = lines.map_while(Result::ok);
-        let port = told.find_map(|line| {
-            let rest =
-                line.split("on port ").nth(1).or_else(|| line.split("successfully on port ").nth(1))?;
-            rest.trim_end_matches('.').parse::<u16>().ok().filter(|port| *port != 0)
-        });
-        // Whatever it tells later must not stop it.
-        std::thread::spawn(move || told.count());
-        let mut browser =
-            Self { driver, host: format!("127.0.0.1:{}", port.unwrap()), session: String::new() };
+        // It looks for a free port first and takes it then: another one may have been faster.
+        let (driver, port) = (0..5).find_map(|_| start_driver()).unwrap();
+        let mut browser = Self { driver, host: format!("127.0.0.1:{port}"), session: String::new() };
         let binary =
             if std::path::Path::new("/usr/bin/chromium").exists() { "/usr/bin/chromium" } else { "chromium" };
         let options = json!({"goog:chromeOptions": {"binary": binary, "args": FLAGS}});
@@ -161,6 +150,24 @@ impl Drop for Browser {
         let _ = self.driver.kill();
         let _ = self.driver.wait();
     }
+}
+
+/// A driver, and its port.
+fn start_driver() -> Option<(Child, u16)> {
+    let mut command = Command::new("chromedriver");
+    let mut driver = command.arg("--port=0").stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    let mut told = BufReader::new(driver.stdout.take()?).lines().map_while(Result::ok);
+    let port = told.find_map(|line| {
+        let port = line.split("successfully on port ").nth(1)?;
+        port.trim_end_matches('.').parse().ok()
+    });
+    let Some(port) = port else {
+        let _ = driver.wait();
+        return None;
+    };
+    // Whatever it tells later must not stop it.
+    std::thread::spawn(move || told.count());
+    Some((driver, port))
 }
 
 /// The bytes of a text in base 64.

@@ -21,13 +21,36 @@ const SEED: u64 = 1;
 /// The pad; it is pulled out when this is dropped.
 pub(crate) struct Finger {
     pad: VirtualPad,
-    contact: Arc<Mutex<Option<Contact>>>,
+    does: Arc<Mutex<Does>>,
+}
+
+/// What the finger does.
+#[derive(Clone, Copy, Default)]
+enum Does {
+    /// It is away.
+    #[default]
+    Nothing,
+    /// It stays.
+    Press(Contact),
+    /// It presses, and hardly presses, 25 times a second.
+    Pulse(Contact),
+}
+
+impl Does {
+    fn contact(self, time_us: u64) -> Option<Contact> {
+        match self {
+            Self::Nothing => None,
+            Self::Press(contact) => Some(contact),
+            Self::Pulse(contact) if (time_us / 20_000).is_multiple_of(2) => Some(contact),
+            Self::Pulse(contact) => Some(Contact { fz_n: 0.4, ..contact }),
+        }
+    }
 }
 
 struct Firmware {
     pad: TwinPad,
     temperature_c: f64,
-    contact: Arc<Mutex<Option<Contact>>>,
+    does: Arc<Mutex<Does>>,
     period_us: u64,
     sequence: u32,
 }
@@ -35,15 +58,15 @@ struct Firmware {
 impl Finger {
     /// A pad at 1 kHz that nothing touches.
     pub(crate) fn start() -> Self {
-        let contact = Arc::default();
+        let does = Arc::default();
         let firmware = Firmware {
             pad: TwinPad::new(&Device::nominal(), &PadField::nominal(), SEED),
             temperature_c: Device::nominal().behaviour.thermal.reference_c,
-            contact: Arc::clone(&contact),
+            does: Arc::clone(&does),
             period_us: 1_000,
             sequence: 0,
         };
-        Self { pad: VirtualPad::start(firmware).unwrap(), contact }
+        Self { pad: VirtualPad::start(firmware).unwrap(), does }
     }
 
     /// The pad as `--pad` names it.
@@ -53,12 +76,17 @@ impl Finger {
 
     /// Presses so from now on.
     pub(crate) fn press(&self, x_mm: f32, y_mm: f32, fz_n: f32) {
-        *self.contact.lock().unwrap() = Some(Contact { x_mm, y_mm, fz_n, ..Contact::default() });
+        *self.does.lock().unwrap() = Does::Press(Contact { x_mm, y_mm, fz_n, ..Contact::default() });
+    }
+
+    /// Presses again and again so hard from now on: a force that is on when a profile changes counts only once it was off.
+    pub(crate) fn pulse(&self, x_mm: f32, y_mm: f32, fz_n: f32) {
+        *self.does.lock().unwrap() = Does::Pulse(Contact { x_mm, y_mm, fz_n, ..Contact::default() });
     }
 
     /// Lifts the finger.
     pub(crate) fn lift(&self) {
-        *self.contact.lock().unwrap() = None;
+        *self.does.lock().unwrap() = Does::Nothing;
     }
 }
 
@@ -73,7 +101,7 @@ impl PadFirmware for Firmware {
         while self.due_us() <= now_us {
             let time_us = self.due_us();
             self.sequence += 1;
-            let held: Vec<Contact> = self.contact.lock().unwrap().iter().copied().collect();
+            let held: Vec<Contact> = self.does.lock().unwrap().contact(time_us).into_iter().collect();
             let around = Circumstances { temperature_c: self.temperature_c, cycles: 0.0 };
             let uv = self.pad.read_all(self.period_us as f64 * 1e-6, &held, &around);
             let sample = Sample {

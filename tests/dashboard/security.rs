@@ -166,5 +166,5 @@ fn a_profile_is_kept_only_as_it_was_seen_and_without_errors() {
     assert_eq!((stale.status, fs::read_to_string(shown.profile("contra")).unwrap()), (412, changed.clone()));
     assert_eq!(put("contra", "If-None-Match: *", text).status, 412);
     assert_eq!(put("mine", "If-None-Match: *", text).status, 200);
-    assert_eq!(put("not a/name", "If-None-Match: *", text).status, 404);
+    assert_eq!(put("not%20a/name", "If-None-Match: *", text).status, 404);
 }

@@ -9,7 +9,7 @@ use crate::bridge::snapshot::{Status, Uncertainty};
 use crate::bridge::timing::{Policy, Stages};
 use crate::bridge::watchers::Line;
 use crate::pipeline::control::OutputEvent;
-use crate::pipeline::mapping::sketch::Sketch;
+use crate::pipeline::mapping::sketch::{Sketch, control};
 use crate::quantity::{CHANNELS, Contact};
 
 /// Where a reader of the feed goes on.
@@ -133,7 +133,7 @@ impl Cursor {
             contact,
             uncertainty,
             channels_uv,
-            held: held.iter().map(|level| level.code.to_string()).collect(),
+            held: held.iter().map(|level| control(level.code, level.value)).collect(),
             is_playing,
             trace: trace.copied().map(TracePoint).collect(),
             events: events.map(Event::from).collect(),

@@ -121,6 +121,7 @@ fn a_bridge_is_paused_and_goes_on_by_keys_alone() {
     tab_to(&browser, "pause");
     browser.keys(&[], &[ENTER]);
     assert!(comes_true(2_000, || shown.status()["state"] == "paused"));
+    browser.wait("document.getElementById('state').textContent.includes('paused')");
     browser.keys(&[], &[" "]);
     assert!(comes_true(10_000, || shown.status()["state"] == "playing"), "{}", shown.status());
 }

@@ -15,6 +15,8 @@ let timer = null;
 function flush() {
   timer = null;
   const parts = [...sentences];
+  // What was pressed before people switched this off is not spoken after it.
+  if (!announces()) counts.clear();
   for (const [what, count] of counts) parts.push(count === 1 ? what : `${what}, ${count} times`);
   sentences = [];
   counts.clear();

@@ -133,10 +133,10 @@ export class ProfileView {
 
   #showState() {
     const { dirty, history, valid } = this.draft;
-    this.undo.disabled = !history.canUndo;
-    this.redo.disabled = !history.canRedo;
-    this.save.disabled = !dirty;
-    this.revert.disabled = !dirty;
+    this.#offer(this.undo, history.canUndo);
+    this.#offer(this.redo, history.canRedo);
+    this.#offer(this.save, dirty);
+    this.#offer(this.revert, dirty);
     this.section.classList.toggle("stale", this.draft.stale);
     say(this.state, `${dirty ? "● not saved" : "✓ saved"}${valid ? "" : ", ✕ has errors"}`);
   }
@@ -144,6 +144,11 @@ export class ProfileView {
   #allowPreview(allowed) {
     this.preview.enabled = allowed;
     this.preview.follow();
+  }
+
+  /** A button that has nothing to do keeps the focus, else keys would lead nowhere after its last use. */
+  #offer(button, can) {
+    button.setAttribute("aria-disabled", String(!can));
   }
 
   #shortcut(event) {
@@ -156,7 +161,7 @@ export class ProfileView {
   }
 
   async #save() {
-    if (this.#name === null) return;
+    if (this.#name === null || !this.draft.dirty) return;
     await this.#write(this.#name, this.#version);
   }
 

@@ -3,6 +3,7 @@
 use serde::{Serialize, Serializer};
 
 use super::scoring::down;
+use crate::pipeline::control::names::{STICKS, TRIGGERS};
 use crate::pipeline::control::{Code, OutputDevice, OutputEvent};
 use crate::pipeline::mapping::profile::Binding;
 use crate::time::StreamInstant;
@@ -132,7 +133,7 @@ pub fn presses(events: &[OutputEvent]) -> Vec<Press> {
     let close = |press: &mut Press, at: StreamInstant| {
         press.duration_us = at.us_since(StreamInstant::from_us(press.t_us));
     };
-    for event in events.iter().filter(|event| !matches!(event.code, Code::Relative(_))) {
+    for event in events.iter().filter(|event| is_pressed(event.code)) {
         open.retain(|index| match presses.get_mut(*index) {
             Some(press) if (press.device, press.code) == (event.device, event.code) => {
                 close(press, event.at);
@@ -151,6 +152,11 @@ pub fn presses(events: &[OutputEvent]) -> Vec<Press> {
         }
     }
     presses
+}
+
+/// Whether a control is pressed, and not moved as the pointer, a stick or a trigger.
+fn is_pressed(code: Code) -> bool {
+    !matches!(code, Code::Relative(_)) && !STICKS.as_flattened().contains(&code) && !TRIGGERS.contains(&code)
 }
 
 /// How far the pointer goes, to all sides together.
@@ -191,6 +197,12 @@ mod tests {
         assert_eq!(only(&old, &new), told);
         let found = Difference::between(&events(&old), &events(&new));
         assert_eq!((found.both, found.shift_max_us), (1, 3_000));
+    }
+
+    #[test]
+    fn sticks_and_triggers_move_and_are_not_pressed() {
+        let moves = [(0, STICKS[0][0], 900), (4, STICKS[1][1], -700), (8, TRIGGERS[0], 30), (9, SOUTH, 1)];
+        assert_eq!(only(&[], &moves), [(Side::New, 9, 0, 1)]);
     }
 
     #[test]

@@ -337,7 +337,7 @@ impl Does {
 }
 
 /// A control with its side, as bindings have it.
-fn control(code: Code, value: i32) -> String {
+pub fn control(code: Code, value: i32) -> String {
     match code {
         Code::Key(_) => code.to_string(),
         Code::Axis(_) | Code::Relative(_) => format!("{code}{}", if value < 0 { '-' } else { '+' }),

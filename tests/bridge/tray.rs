@@ -165,6 +165,9 @@ struct Icon<'d> {
     name: String,
 }
 
+/// An entry's number, its properties, and those below it.
+type Told = (i32, HashMap<String, OwnedValue>, Vec<OwnedValue>);
+
 /// An entry of a menu.
 #[derive(Clone, Debug, Default)]
 struct Entry {
@@ -172,11 +175,11 @@ struct Entry {
     label: String,
     is_enabled: bool,
     is_checked: bool,
-    below: Vec<Entry>,
+    below: Vec<Self>,
 }
 
 impl Entry {
-    fn of(number: i32, properties: &HashMap<String, OwnedValue>, below: &[OwnedValue]) -> Self {
+    fn of((number, properties, below): Told) -> Self {
         let text = |name: &str| properties.get(name).and_then(|it| it.downcast_ref::<String>().ok());
         Self {
             number,
@@ -191,9 +194,7 @@ impl Entry {
 
     fn child(value: &OwnedValue) -> Self {
         let parts: Structure<'static> = value.try_clone().unwrap().try_into().unwrap();
-        let (number, properties, below): (i32, HashMap<String, OwnedValue>, Vec<OwnedValue>) =
-            parts.try_into().unwrap();
-        Self::of(number, &properties, &below)
+        Self::of(parts.try_into().unwrap())
     }
 
     /// The entry with this label, at any depth.
@@ -209,9 +210,8 @@ impl Icon<'_> {
     fn menu(&self) -> Entry {
         let asked = (0, -1, Vec::<String>::new());
         let answer = self.call(MENU, "GetLayout", &asked).unwrap();
-        let (_, (number, properties, below)): (u32, (i32, HashMap<String, OwnedValue>, Vec<OwnedValue>)) =
-            answer.body().deserialize().unwrap();
-        Entry::of(number, &properties, &below)
+        let (_, told): (u32, Told) = answer.body().deserialize().unwrap();
+        Entry::of(told)
     }
 
     fn call<B>(&self, interface: &str, method: &str, body: &B) -> zbus::Result<zbus::Message>

@@ -67,16 +67,17 @@ impl Shown {
         wish: &Arc<Mutex<Wish>>,
         output: OutputChoice,
     ) -> Result<Prepared, Failure> {
-        let mut prepared = Prepared::default();
+        let prepared = Prepared::default();
         #[cfg(feature = "dashboard")]
-        if self.dashboard {
-            prepared.open_page(requests.asker()?, Arc::clone(wish), output)?;
-        }
+        let prepared = match self.dashboard {
+            true => prepared.with_page(requests.asker()?, Arc::clone(wish), output)?,
+            false => prepared,
+        };
         #[cfg(feature = "tray")]
-        if self.tray {
-            let around = Around::new(Arc::clone(wish), prepared.url.clone());
-            prepared.tray = Some((around, requests.asker()?));
-        }
+        let prepared = match self.tray {
+            true => prepared.with_icon(requests.asker()?, Arc::clone(wish)),
+            false => prepared,
+        };
         let _ = (requests, wish, output);
         Ok(prepared)
     }
@@ -84,16 +85,16 @@ impl Shown {
 
 impl Prepared {
     #[cfg(feature = "dashboard")]
-    fn open_page(
-        &mut self,
-        asker: Asker,
-        wish: Arc<Mutex<Wish>>,
-        output: OutputChoice,
-    ) -> Result<(), Failure> {
+    fn with_page(self, asker: Asker, wish: Arc<Mutex<Wish>>, output: OutputChoice) -> Result<Self, Failure> {
         let (page, observer) = Page::open(asker, wish, output)?;
-        (self.url, self.observer, self.timing) = (Some(page.url()), Some(observer), Some(Timing::default()));
-        self.page = Some(page);
-        Ok(())
+        let (observer, url, timing) = (Some(observer), Some(page.url()), Some(Timing::default()));
+        Ok(Self { page: Some(page), observer, url, timing, ..self })
+    }
+
+    #[cfg(feature = "tray")]
+    fn with_icon(self, asker: Asker, wish: Arc<Mutex<Wish>>) -> Self {
+        let around = Around::new(wish, self.url.clone());
+        Self { tray: Some((around, asker)), ..self }
     }
 
     /// The same pad; its reads are timed for the page.

@@ -5,6 +5,7 @@
 //! it and tells people what happens (`host`), and makes a bridge of these (`parts`). Whoever shows what the bridge is
 //! doing takes the `snapshot`.
 
+mod answer;
 pub mod clock;
 pub mod control;
 pub mod destination;
@@ -24,6 +25,7 @@ mod recorder;
 pub mod request;
 pub mod requests;
 pub mod running;
+mod sight;
 mod signals;
 pub mod sink;
 pub mod snapshot;

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
+use crate::bridge::answer::{done, page, refused};
 use crate::bridge::clock::Clock;
 use crate::bridge::driver::{Driver, prepare};
 use crate::bridge::error::BridgeError;
@@ -18,9 +19,9 @@ use crate::bridge::parts::Parts;
 use crate::bridge::recorder::Recorder;
 use crate::bridge::request::{Asked, Request};
 use crate::bridge::requests::Requests;
+use crate::bridge::sight::{look, state};
 use crate::bridge::signals;
-use crate::bridge::snapshot::{BridgeHealth, Drops, Snapshot, Status, Uncertainty};
-use crate::bridge::state::State;
+use crate::bridge::snapshot::{Drops, Snapshot};
 use crate::pipeline::call::Call;
 use crate::pipeline::capture::head::Head;
 use crate::pipeline::health::Health;
@@ -404,55 +405,6 @@ impl Bridge {
             *snapshot = self.look(now);
         }
     }
-}
-
-fn state(driver: &Driver, keeper: &Keeper) -> State {
-    State::of(&driver.pipeline, keeper.absence())
-}
-
-/// All that there is to see at `now`.
-fn look(
-    now: HostInstant,
-    driver: &Driver,
-    keeper: &Keeper,
-    (decoder, standing): (&str, &Standing),
-) -> Snapshot {
-    let Driver { pipeline, sink, .. } = driver;
-    let status = Status {
-        state: state(driver, keeper),
-        pad: pipeline.identity().map(|identity| identity.serial_number),
-        profile: pipeline.profile().name.clone(),
-        layer: pipeline.layer().map(str::to_owned),
-        profile_reason: standing.reason.clone(),
-        profile_error: standing.error.clone(),
-        preview: standing.is_preview,
-        decoder: decoder.to_owned(),
-        output: sink.describe(),
-        contact: pipeline.contact().copied(),
-        held: pipeline.held().collect(),
-        warning: pipeline.warning(),
-        presses: pipeline.presses(),
-        health: BridgeHealth { pipeline: *pipeline.health(), drops: driver.drops() },
-        latency_us: driver.latency().percentiles(),
-    };
-    let uncertainty = pipeline.estimate().as_ref().map(Uncertainty::of);
-    Snapshot { at: now, status, channels_uv: pipeline.strain().map(|strain| strain.uv), uncertainty }
-}
-
-fn done() -> String {
-    r#"{"ok":true}"#.into()
-}
-
-fn refused(error: &str) -> String {
-    serde_json::json!({"ok": false, "error": error}).to_string()
-}
-
-/// Where the page is, as an answer.
-fn page(url: Option<String>) -> String {
-    url.map_or_else(
-        || refused("this bridge shows no page: start it with --dashboard"),
-        |url| serde_json::json!({"ok": true, "url": url}).to_string(),
-    )
 }
 
 fn is_woken(fd: &PollFd<'_>) -> bool {

@@ -22,6 +22,7 @@ mod recording;
 mod replay;
 mod reports;
 mod simulate;
+mod state_file;
 mod summary;
 mod tables;
 mod terminal;

@@ -8,7 +8,8 @@ use serde_json::Value;
 
 use super::feed::Feed;
 use super::frame::{Told, slow};
-use super::guides::{Guides, Scene};
+use super::guides::guide::Scene;
+use super::guides::list::Guides;
 use super::library::Library;
 use super::past::Past;
 use super::refusal::Refusal;

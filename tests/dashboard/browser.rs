@@ -156,7 +156,7 @@ impl Drop for Browser {
 fn start_driver() -> Option<(Child, u16)> {
     let mut command = Command::new("chromedriver");
     let mut driver = command.arg("--port=0").stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
-    let mut told = BufReader::new(driver.stdout.take()?).lines().map_while(Result::ok);
+    let mut told = BufReader::new(driver.stdout.take().unwrap()).lines().map_while(Result::ok);
     let port = told.find_map(|line| {
         let port = line.split("successfully on port ").nth(1)?;
         port.trim_end_matches('.').parse().ok()

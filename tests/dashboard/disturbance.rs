@@ -7,7 +7,6 @@ use std::collections::VecDeque;
 use std::io::{BufRead, BufReader};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
 use std::{env, fs, thread};
 
 use firmware_proto::ENCODED_MAX;
@@ -15,9 +14,11 @@ use firmware_proto::frame::Message;
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
 use rustix::fs::{CWD, FileType, Mode, mknodat};
+use tactpad::bridge::clock::Clock;
 use tactpad::bridge::transport::virtual_pad::{PadFirmware, VirtualPad};
 use tactpad::pad::field::PadField;
 use tactpad::quantity::Contact;
+use tactpad::time::HostInstant;
 
 use crate::browser::Browser;
 use crate::running::comes_true;
@@ -42,7 +43,8 @@ const RATIO_MAX: f64 = 1.3;
 /// A pad that presses and lets go, again and again; it tells when.
 struct Pulse {
     uv_per_n: [f64; 9],
-    edges: Arc<Mutex<VecDeque<Instant>>>,
+    clock: Clock,
+    edges: Arc<Mutex<VecDeque<HostInstant>>>,
     sequence: u32,
 }
 
@@ -50,11 +52,11 @@ impl Pulse {
     /// It rests for so many frames, in which the bridge measures its zero.
     const REST: u32 = 4_000;
 
-    fn start() -> (VirtualPad, Arc<Mutex<VecDeque<Instant>>>) {
+    fn start(clock: Clock) -> (VirtualPad, Arc<Mutex<VecDeque<HostInstant>>>) {
         let contact = Contact { fz_n: 1.0, ..Contact::default() };
         let uv = PadField::nominal().signals.strain_uv(&contact).uv.map(f64::from);
         let edges = Arc::default();
-        let pulse = Self { uv_per_n: uv, edges: Arc::clone(&edges), sequence: 0 };
+        let pulse = Self { uv_per_n: uv, clock, edges: Arc::clone(&edges), sequence: 0 };
         (VirtualPad::start(pulse).unwrap(), edges)
     }
 
@@ -92,7 +94,7 @@ impl PadFirmware for Pulse {
             let length = encode_message(&Message::Sample(sample), &mut frame);
             bytes.extend_from_slice(&frame[..length]);
             if self.sequence > Self::REST && self.sequence.is_multiple_of(FRAMES_PER_EDGE) {
-                self.edges.lock().unwrap().push_back(Instant::now());
+                self.edges.lock().unwrap().push_back(self.clock.now());
             }
         }
     }
@@ -107,7 +109,8 @@ struct Way {
 
 impl Way {
     fn start() -> Self {
-        let (pad, edges) = Pulse::start();
+        let clock = Clock::start();
+        let (pad, edges) = Pulse::start(clock);
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("way.toml"), PROFILE).unwrap();
         mknodat(CWD, folder.path().join("log"), FileType::Fifo, Mode::RWXU, 0).unwrap();
@@ -116,9 +119,9 @@ impl Way {
         thread::spawn(move || {
             let lines = BufReader::new(fs::File::open(path).unwrap()).lines();
             for _ in lines.map_while(Result::ok) {
-                let now = Instant::now();
+                let now = clock.now();
                 let sent = edges.lock().unwrap().pop_front();
-                if sent.is_some_and(|sent| tell.send((now - sent).as_secs_f64() * 1e6).is_err()) {
+                if sent.is_some_and(|sent| tell.send((now.as_ns() - sent.as_ns()) as f64 * 1e-3).is_err()) {
                     return;
                 }
             }

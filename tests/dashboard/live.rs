@@ -1,7 +1,13 @@
 //! The live view follows the pad.
 
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Command, Stdio};
+
+use rustix::process::{Pid, Signal, kill_process};
+
 use crate::browser::Browser;
 use crate::finger::Finger;
+use crate::http::ask;
 use crate::running::comes_true;
 use crate::shown::Shown;
 
@@ -67,4 +73,27 @@ fn the_profile_is_chosen_on_the_page() {
     browser.run("const choice = document.getElementById('profile-choice'); choice.value = 'tetris'; choice.dispatchEvent(new Event('change', { bubbles: true }))");
     assert!(comes_true(2_000, || shown.status()["profile"] == "Tetris"), "{}", shown.status());
     browser.wait("document.getElementById('live').innerText.includes('Tetris')");
+}
+
+#[test]
+fn the_demo_shows_its_page_until_it_is_stopped() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut demo = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+    demo.args(["demo", "--dashboard", "--output", "none"]).env("XDG_CONFIG_HOME", folder.path());
+    let mut demo = demo.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut told = BufReader::new(demo.stdout.take().unwrap());
+    let mut lines = [String::new(), String::new()];
+    for line in &mut lines {
+        told.read_line(line).unwrap();
+    }
+    let url = lines[1].trim_end().strip_prefix("Dashboard: http://").unwrap_or_else(|| panic!("{lines:?}"));
+    let (host, token) = url.split_once("/?token=").unwrap();
+    let status = || ask(host, &format!("GET /api/status?token={token}"), &[], b"").json();
+    // Longer than one round of the player's gestures begins with, and then again.
+    assert!(comes_true(20_000, || status()["health"]["contacts"].as_u64() > Some(20)), "{}", status());
+    assert_eq!((&status()["state"], &status()["health"]["frames_lost"]), (&"playing".into(), &0.into()));
+    kill_process(Pid::from_child(&demo), Signal::INT).unwrap();
+    let mut rest = String::new();
+    told.read_to_string(&mut rest).unwrap();
+    assert!(demo.wait().unwrap().success() && rest.contains("held at the end"), "{rest}");
 }

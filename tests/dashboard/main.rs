@@ -1,5 +1,6 @@
 //! The page of a running bridge: asked by plain requests, and used in a headless browser as people use it.
 #![cfg(all(target_os = "linux", feature = "dashboard"))]
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 mod access;
 mod browser;
@@ -10,6 +11,7 @@ mod guides;
 mod http;
 mod live;
 mod pictures;
+mod reports;
 #[path = "../bridge/running.rs"]
 #[expect(dead_code, reason = "other tests use the rest of it")]
 mod running;

@@ -11,6 +11,7 @@ const LABEL: &str = "x_mm,y_mm,fx_n,fy_n,fz_n";
 
 fn diagnose(folder: &Path, line: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+    command.env("XDG_STATE_HOME", folder);
     command.arg("diagnose").args(line.split_whitespace()).current_dir(folder).stdin(Stdio::null());
     let output = command.env("RUST_BACKTRACE", "1").output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);

@@ -7,6 +7,7 @@ use std::process::{Command, Output};
 
 fn tactpad(folder: &Path, line: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+    command.env("XDG_STATE_HOME", folder);
     command.args(line.split_whitespace()).current_dir(folder).output().unwrap()
 }
 
@@ -104,6 +105,9 @@ fn the_page_has_all_that_was_found_and_needs_nothing_else() {
     assert_eq!((page.matches("<h1>").count(), page.matches("&lt;i&gt;&amp;amp.csv").count()), (1, 2));
     done(folder, &format!("diagnose --measured {measured} --report again"));
     assert!(fs::read_to_string(folder.join("again/report.html")).unwrap() == page, "same input, same bytes");
+    let remembered = fs::read_to_string(folder.join("tactpad/reports")).unwrap();
+    let folders: Vec<_> = remembered.lines().map(|line| line.rsplit('/').next().unwrap()).collect();
+    assert_eq!(folders, ["report", "again"], "the dashboard lists them");
 }
 
 #[test]

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 
-use super::report;
 use crate::cli::destination::{Destination, Folder};
 use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
+use crate::cli::reports;
 use crate::cli::written::{both_print, is_same, is_stdout, written_over};
 use tactpad::lab::diagnosis;
 
@@ -63,7 +63,7 @@ pub(super) fn destination(path: &Path, arguments: &Arguments) -> Result<Destinat
 
 /// The folder of the report: none whose files of these names are read or written by another option.
 pub(super) fn folder(path: &Path, arguments: &Arguments) -> Result<Folder, Failure> {
-    for file in [report::PAGE, report::DOCUMENT].map(|name| path.join(name)) {
+    for file in [reports::PAGE, reports::DOCUMENT].map(|name| path.join(name)) {
         arguments.pad.spare(&file)?;
         if is_same(&arguments.measured, &file) {
             return Err(written_over(&file, "is the measured table"));

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use super::document::Document;
-use super::report;
 use crate::cli::destination::Folder;
 use crate::cli::failure::Failure;
 use crate::cli::reports;
@@ -17,9 +16,9 @@ pub(super) fn file_name(path: &Path) -> String {
 
 /// Writes the page and its document.
 pub(super) fn write_report(folder: &Folder, page: &str, diagnosis: &Diagnosis) -> Result<(), Failure> {
-    let page = folder.write(report::PAGE, page.as_bytes())?;
+    let page = folder.write(reports::PAGE, page.as_bytes())?;
     let document =
-        folder.write(report::DOCUMENT, format!("{}\n", json_text(&Document::of(diagnosis))?).as_bytes())?;
+        folder.write(reports::DOCUMENT, format!("{}\n", json_text(&Document::of(diagnosis))?).as_bytes())?;
     reports::remember(Path::new(&page).parent().unwrap_or(Path::new(".")));
     say(format_args!("the report is {page}, its numbers are {document}"));
     Ok(())

@@ -16,8 +16,6 @@ use self::arguments::{destination, folder};
 use self::document::Document;
 use self::engine::diagnosed;
 use self::files::{file_name, write_report};
-#[cfg(all(feature = "dashboard", target_os = "linux"))]
-pub(super) use self::report::{DOCUMENT, PAGE};
 use super::destination::Destination;
 use super::failure::Failure;
 use super::field::field_of;

@@ -6,8 +6,7 @@ use std::time::UNIX_EPOCH;
 
 use serde_json::Value;
 
-use crate::cli::diagnose::{DOCUMENT, PAGE};
-use crate::cli::reports::folders;
+use crate::cli::reports::{DOCUMENT, PAGE, folders};
 use tactpad::dashboard::library::Report;
 
 /// Reports that are still there, the newest first.

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use super::guide::{Guide, Outcome, Progress, Proposal, Scene, Step, StepState, Told};
 use super::recording::{NO_NAME, Recording};
-use super::{Guide, Outcome, Proposal, Scene, Step, StepState, Told};
 use crate::bridge::request::Request;
 use crate::lab::tuning::fitting::{Fitted, Study};
 use crate::lab::tuning::labels::{HEADER, Labels};
@@ -123,7 +123,7 @@ impl Guide for Cues {
     }
 
     fn look(&mut self, scene: &Scene<'_>) {
-        if self.recording.progress() != super::Progress::Running {
+        if self.recording.progress() != Progress::Running {
             return;
         }
         let ((name, text), table) = (self.profile.clone(), self.table());

@@ -1,6 +1,6 @@
 //! The first run: find the pad, may it be opened, measure its zero, press it.
 
-use super::{Action, Guide, Progress, Scene, Step, StepState, Told};
+use super::guide::{Action, Guide, Progress, Scene, Step, StepState, Told};
 use crate::bridge::request::Request;
 use crate::bridge::state::State;
 

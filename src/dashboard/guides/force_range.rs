@@ -1,7 +1,7 @@
 //! The force range: half a minute of presses, light and then hard, and a profile whose forces suit them.
 
-use super::recording::Recording;
-use super::{Guide, Outcome, Proposal, Scene, Step, StepState, Told};
+use super::guide::{Guide, Outcome, Proposal, Scene, Step, StepState, Told};
+use super::recording::{NO_NAME, Recording};
 use crate::bridge::request::Request;
 use crate::lab::tuning::fitting::Fitted;
 use crate::lab::tuning::force_range::fit::{Unfit, fit};
@@ -31,7 +31,7 @@ impl Guide for ForceRange {
     }
 
     fn start(&mut self, scene: &Scene<'_>) -> Result<(), String> {
-        let profile = (scene.profile)().ok_or(super::recording::NO_NAME)?;
+        let profile = (scene.profile)().ok_or(NO_NAME)?;
         let touches_before = scene.status.health.pipeline.contacts;
         *self = Self { recording: Recording::begin(scene), profile, touches_before, touches: 0 };
         Ok(())

@@ -3,7 +3,7 @@
 use std::sync::mpsc::{TryRecvError, channel};
 use std::thread;
 
-use super::{Outcome, Progress, Scene, Step, StepState, Worked};
+use super::guide::{Outcome, Progress, Scene, Step, StepState, Worked};
 use crate::dashboard::past::{Past, make};
 use crate::lab::tuning::trace::{Trace, Tracer};
 use crate::time::HostInstant;

@@ -66,7 +66,7 @@ export class LiveView {
   }
 
   setSketch({ profile, sketch }) {
-    say(this.title, `${profile}, ${sketch.output}${sketch.left_handed ? ", left-handed" : ""}`);
+    say(this.title, `${profile}, ${sketch.output}`);
     this.plate.setSketch(sketch);
     this.forces.setSketch(sketch);
   }

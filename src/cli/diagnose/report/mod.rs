@@ -21,11 +21,6 @@ use self::drawing::escaped;
 pub(super) use self::subject::{Plate, Subject};
 use tactpad::lab::diagnosis::report::Diagnosis;
 
-/// Names of the files in the report's folder.
-pub(in crate::cli) const PAGE: &str = "report.html";
-/// See [`PAGE`].
-pub(in crate::cli) const DOCUMENT: &str = "report.json";
-
 const STYLE: &str = include_str!("style.css");
 
 /// The page. Equal subjects give equal bytes.

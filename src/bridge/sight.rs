@@ -1,0 +1,42 @@
+//! What there is to see of a bridge at one moment.
+
+use crate::bridge::driver::Driver;
+use crate::bridge::keeper::Keeper;
+use crate::bridge::offer::Standing;
+use crate::bridge::snapshot::{BridgeHealth, Snapshot, Status, Uncertainty};
+use crate::bridge::state::State;
+use crate::time::HostInstant;
+
+/// What it is doing.
+pub(super) fn state(driver: &Driver, keeper: &Keeper) -> State {
+    State::of(&driver.pipeline, keeper.absence())
+}
+
+/// All that there is to see at `now`.
+pub(super) fn look(
+    now: HostInstant,
+    driver: &Driver,
+    keeper: &Keeper,
+    (decoder, standing): (&str, &Standing),
+) -> Snapshot {
+    let Driver { pipeline, sink, .. } = driver;
+    let status = Status {
+        state: state(driver, keeper),
+        pad: pipeline.identity().map(|identity| identity.serial_number),
+        profile: pipeline.profile().name.clone(),
+        layer: pipeline.layer().map(str::to_owned),
+        profile_reason: standing.reason.clone(),
+        profile_error: standing.error.clone(),
+        preview: standing.is_preview,
+        decoder: decoder.to_owned(),
+        output: sink.describe(),
+        contact: pipeline.contact().copied(),
+        held: pipeline.held().collect(),
+        warning: pipeline.warning(),
+        presses: pipeline.presses(),
+        health: BridgeHealth { pipeline: *pipeline.health(), drops: driver.drops() },
+        latency_us: driver.latency().percentiles(),
+    };
+    let uncertainty = pipeline.estimate().as_ref().map(Uncertainty::of);
+    Snapshot { at: now, status, channels_uv: pipeline.strain().map(|strain| strain.uv), uncertainty }
+}

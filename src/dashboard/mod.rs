@@ -6,7 +6,7 @@
 //! the page ─api→ requests on the bridge, profiles of the library
 //! ```
 //!
-//! It is served on the loopback interface alone. Each request is looked at by [`guard`]: its host, its origin, its token. The live path does
+//! It is served on the loopback interface alone. Each request is looked at by `guard.rs`: its host, its origin, its token. The live path does
 //! nothing for the page but hand over its calls ([`crate::bridge::observer`]); the page's own pipeline makes them again on another thread, so the
 //! page sees each event, and each stage is timed, without an instrument in the live path.
 

@@ -64,7 +64,8 @@ impl Browser {
 
     fn ask(&self, request: &str, body: &Value) -> Value {
         let head = ["Content-Type: application/json"];
-        let answer = http::ask(&self.host, request, &head, body.to_string().as_bytes());
+        let body = if body.is_null() { String::new() } else { body.to_string() };
+        let answer = http::ask(&self.host, request, &head, body.as_bytes());
         let value = answer.json()["value"].clone();
         assert_eq!(answer.status, 200, "{request}: {value}");
         value

@@ -8,11 +8,8 @@ use crate::running::comes_true;
 use crate::shown::Shown;
 
 /// A view, what of its window is taken, and the file.
-const PICTURES: [(&str, [u32; 2], &str); 3] = [
-    ("live", [1280, 1010], "dashboard-live.png"),
-    ("profile", [1280, 1010], "dashboard-profile.png"),
-    ("guides", [900, 700], "dashboard-guides.png"),
-];
+const PICTURES: [(&str, [u32; 2], &str); 2] =
+    [("live", [1280, 1010], "dashboard-live.png"), ("profile", [1280, 1010], "dashboard-profile.png")];
 
 #[test]
 fn each_view_is_taken_where_a_folder_is_named() {
@@ -26,11 +23,6 @@ fn each_view_is_taken_where_a_folder_is_named() {
         browser.view(view);
         if view == "profile" {
             browser.wait("document.querySelector('[data-handle]')");
-        }
-        if view == "guides" {
-            browser.wait("document.querySelector('#guides button')");
-            shown.ask("POST /api/guides/tune", "{\"do\":\"start\"}");
-            browser.wait("document.querySelector('.cue:not([hidden])')");
         }
         assert!(comes_true(2_000, || shown.status()["contact"]["fz_n"].as_f64() > Some(1.0)), "{view}");
         browser.run("document.activeElement.blur()");

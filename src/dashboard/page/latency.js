@@ -7,7 +7,7 @@ const STAGES = { read: "read", decode: "decode", map: "map", write: "write", end
 const FROM_US = 0.5;
 const TO_US = 100_000;
 const HEIGHT_PX = 46;
-const POLICIES = { filter: "filter of contacts", hold: "shortest press", slow: "Slow Keys", tremor: "calming of tremor" };
+const POLICIES = { filter: "filter of contacts", hold: "until a long, double or hard press is told", slow: "Slow Keys, dwell", tremor: "calming of tremor" };
 
 const part = (us) => Math.log(Math.max(us, FROM_US) / FROM_US) / Math.log(TO_US / FROM_US);
 

@@ -148,7 +148,7 @@ fn an_open_page_makes_the_live_path_hardly_slower() {
     let frames = env::var("TACTPAD_PAGE_FRAMES").ok().and_then(|frames| frames.parse().ok());
     let events = frames.unwrap_or(FRAMES) / FRAMES_PER_EDGE as usize;
     let (measured, other) = (Way::start(), Way::start());
-    let Some(browser) = Browser::open(&other.shown.url) else { return };
+    let Some(browser) = Browser::open_alone(&other.shown.url) else { return };
     let show = |way: &Way| {
         browser.run(&format!("location.href = '{}'", way.shown.url));
         browser.wait(&format!(

@@ -20,9 +20,9 @@ export class DoctorView {
   async show() {
     say(this.about, "Looking …");
     try {
-      const { ok, checks } = await get("/api/doctor");
-      const open = checks.filter((check) => check.finding !== "good").length;
-      say(this.about, ok && open === 0 ? "Everything is well." : `${open} of ${checks.length} findings want something.`);
+      const { checks } = await get("/api/doctor");
+      const [bad, notes] = ["bad", "note"].map((finding) => checks.filter((check) => check.finding === finding).length);
+      say(this.about, `${bad === 0 ? "Nothing stands in the way" : `${bad} of ${checks.length} findings stand in the way`}; ${notes} worth knowing.`);
       this.list.replaceChildren(...checks.map(entry));
     } catch (error) {
       say(this.about, error.message);

@@ -30,8 +30,7 @@ export const withToken = (path) => `${path}?token=${encodeURIComponent(token())}
 
 /** The address of the live socket. */
 export function liveAddress() {
-  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-  return `${scheme}//${location.host}/api/live?token=${encodeURIComponent(token())}`;
+  return `ws://${location.host}/api/live?token=${encodeURIComponent(token())}`;
 }
 
 /** @type {() => void} */

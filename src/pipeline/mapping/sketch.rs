@@ -368,7 +368,7 @@ mod tests {
 
     #[test]
     fn four_ways_have_no_diagonals_and_sticky_ones_hold_nothing() {
-        assert_eq!(sketch("tank-battle").dpad.map(|it| it.sectors.len()), Some(4));
+        assert_eq!(sketch("super-mario").dpad.map(|it| it.sectors.len()), Some(4));
         let sticky = sketch("tetris").dpad.unwrap();
         assert_eq!(
             (sticky.mode, sticky.sectors.len(), sticky.sectors[1].directions.len()),

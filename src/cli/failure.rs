@@ -13,6 +13,16 @@ pub(super) enum Failure {
     Unread,
 }
 
+impl Failure {
+    /// As people read it, where it ends nothing.
+    pub(super) fn sentence(self) -> String {
+        match self {
+            Self::Unusable(message) | Self::Failed(message) => message,
+            Self::Unread => "nobody reads the warnings".into(),
+        }
+    }
+}
+
 impl From<io::Error> for Failure {
     fn from(error: io::Error) -> Self {
         if error.kind() == io::ErrorKind::BrokenPipe { Self::Unread } else { Self::Failed(error.to_string()) }

@@ -228,7 +228,10 @@ pub(super) async fn report(State(office): Shared, Path(id): Path<String>) -> Ans
 
 /// `GET /api/guides`: how all guides stand.
 pub(super) async fn guides(State(office): Shared) -> Answer {
-    let told = office.with_guides(|guides, _| guides.told());
+    let told = office.with_guides(|guides, scene| {
+        guides.look(scene);
+        guides.told()
+    });
     Ok(Json(json!({"guides": told})).into_response())
 }
 

@@ -165,6 +165,9 @@ fn print_status(status: &Value) -> io::Result<()> {
     writeln!(out, "state    {}", text("state"))?;
     writeln!(out, "pad      {}", text("pad"))?;
     writeln!(out, "profile  {}: {}", text("profile"), text("profile_reason"))?;
+    if status.get("preview").and_then(Value::as_bool) == Some(true) {
+        writeln!(out, "         changed for a try in the dashboard; it is not kept")?;
+    }
     if let Some(layer) = status.get("layer").and_then(Value::as_str) {
         writeln!(out, "layer    {}", printable(layer))?;
     }

@@ -8,8 +8,8 @@ use std::thread;
 
 use rustix::event::{Timespec, poll};
 
-use super::playing::sentence;
 use super::wish::{Stamp, Wish};
+use crate::cli::failure::Failure;
 use crate::cli::profile;
 use tactpad::bridge::front::{Desktop, Front};
 use tactpad::bridge::offer::Offer;
@@ -207,7 +207,7 @@ impl Follower {
 
 /// Reads a profile; what is wrong with it is for people. Its warnings were told when it was checked.
 fn read(name: &str, output: OutputChoice) -> Result<ReadProfile, String> {
-    profile::read_aside(name, output).map(|(read, _)| read).map_err(sentence)
+    profile::read_aside(name, output).map(|(read, _)| read).map_err(Failure::sentence)
 }
 
 #[cfg(test)]

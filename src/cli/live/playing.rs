@@ -153,7 +153,7 @@ impl Host for Terminal {
     fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
         let mut wish = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
         let asked = wish.asked(name);
-        let read = profile::read(&asked.name, self.output).map_err(sentence)?;
+        let read = profile::read(&asked.name, self.output).map_err(Failure::sentence)?;
         // A profile that was chosen and can be used is the one to be read again.
         *wish = asked;
         Ok(read)
@@ -181,14 +181,6 @@ impl Host for Terminal {
             // Where nobody reads, the bridge plays on.
             let _ = told.push(Group { bytes: format!("{line}\n").into(), ..Group::default() });
         }
-    }
-}
-
-/// A failure as people read it.
-pub(super) fn sentence(failure: Failure) -> String {
-    match failure {
-        Failure::Unusable(message) | Failure::Failed(message) => message,
-        Failure::Unread => "nobody reads the warnings".into(),
     }
 }
 

@@ -41,7 +41,7 @@ fn version(text: &str) -> String {
 pub(crate) fn save(name: &str, text: &str, over: &Over) -> Result<Saved, Unsaved> {
     let file = own::file(name);
     if file.is_none() {
-        own::check_name(name).map_err(|failure| Unsaved::Name(words(failure)))?;
+        own::check_name(name).map_err(|failure| Unsaved::Name(failure.sentence()))?;
     }
     let (read, diagnostics) = ReadProfile::read(text, OutputChoice::AsWritten);
     if read.is_none() {
@@ -64,17 +64,10 @@ pub(crate) fn save(name: &str, text: &str, over: &Over) -> Result<Saved, Unsaved
         Some(path) => write_over(&path, text).map(|()| path),
         None => own::write(name, text),
     };
-    let path = path.map_err(|failure| Unsaved::Failed(words(failure)))?;
+    let path = path.map_err(|failure| Unsaved::Failed(failure.sentence()))?;
     Ok(Saved { version: version(text), path: path.display().to_string() })
 }
 
 fn write_over(path: &Path, text: &str) -> Result<(), Failure> {
     Destination::of(path)?.write(text.as_bytes())
-}
-
-fn words(failure: Failure) -> String {
-    match failure {
-        Failure::Unusable(message) | Failure::Failed(message) => message,
-        Failure::Unread => "nobody reads it".into(),
-    }
 }

@@ -13,6 +13,8 @@
 mod bridge;
 mod clock;
 mod demo;
+#[path = "../support/framebuffer.rs"]
+mod framebuffer;
 mod guest;
 mod hid;
 mod joystick;
@@ -23,6 +25,7 @@ mod pad;
 mod playing;
 mod program;
 mod reader;
+mod screen;
 mod sdl;
 #[path = "../support/mod.rs"]
 mod support;
@@ -43,6 +46,11 @@ fn test_frames_are_what_the_protocol_crate_reads() {
         assert_eq!((sample.sequence, sample.time_us, sample.counts), (sequence, time_us, counts));
         assert_eq!(sample.status.restarted(), sequence == 0);
     }
+}
+
+#[test]
+fn screen_dumps_are_read_as_they_say() {
+    screen::dumps_are_read_as_they_say();
 }
 
 #[test]

@@ -34,6 +34,8 @@ const REPLIES_MAX: usize = 16;
 #[derive(Clone, Debug)]
 pub struct VirtualPad {
     script: Script,
+    /// Pad time at which the script begins.
+    begin_us: u64,
     hand: Hand,
     pad: TwinPad,
     around: Circumstances,
@@ -74,6 +76,7 @@ impl VirtualPad {
         let temperature_c = device.behaviour.thermal.reference_c;
         Self {
             script,
+            begin_us: 0,
             hand: Hand::new(device.behaviour.finger, seed),
             pad: TwinPad::new(device, field, seed),
             around: Circumstances { temperature_c, cycles: 0.0 },
@@ -92,6 +95,13 @@ impl VirtualPad {
             commands: CommandReceiver::new(),
             replies: ArrayVec::new(),
         }
+    }
+
+    /// Plays `script` in place of what was played, from the next sample on, and says when that is, in pad time.
+    pub fn play(&mut self, script: Script) -> u64 {
+        self.script = script;
+        self.begin_us = self.due_us();
+        self.begin_us
     }
 
     /// Takes bytes from the host, whole commands or parts of them. Damaged commands get no answer; of more
@@ -155,7 +165,7 @@ impl VirtualPad {
         let time_us = self.due_us();
         let after_s = time_us.saturating_sub(self.read_us) as f64 * 1e-6;
         self.read_us = time_us;
-        let contact = self.hand.hold(after_s, &self.script.contact_at(time_us));
+        let contact = self.hand.hold(after_s, &self.script.contact_at(time_us.saturating_sub(self.begin_us)));
         let (counts, mut status) = front_end::convert(&self.pad.read(after_s, &contact, &self.around));
         if std::mem::take(&mut self.restarted) {
             status = status.with_restarted();
@@ -177,7 +187,9 @@ fn append(message: &Message, out: &mut Vec<u8>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::quantity::Contact;
     use crate::virtual_pad::fixture::{messages, shipped_profiles};
+    use crate::virtual_pad::script::Keyframe;
     use firmware_proto::link::encode_command;
 
     fn pad() -> VirtualPad {
@@ -200,6 +212,25 @@ mod tests {
         let mut frame = [0; ENCODED_MAX];
         let length = encode_command(command, &mut frame);
         frame[..length].to_vec()
+    }
+
+    #[test]
+    fn another_script_begins_with_the_next_sample() {
+        let press = Contact { fz_n: 3.0, ..Contact::default() };
+        let pressing = Script::of(vec![
+            Keyframe { at_us: 0, contact: Contact::default() },
+            Keyframe { at_us: 50_000, contact: press },
+        ]);
+        let mut pad = VirtualPad::new(Script::of(Vec::new()), 1);
+        let before = samples(&emitted(&mut pad, 100_000));
+        assert_eq!(pad.play(pressing), 101_000);
+        let after = samples(&emitted(&mut pad, 200_000));
+        let span = |samples: &[Sample]| {
+            let read = || samples.iter().map(|sample| sample.counts[2]);
+            read().max().unwrap() - read().min().unwrap()
+        };
+        assert!(span(&after) > 20 * span(&before), "{} {}", span(&after), span(&before));
+        assert_eq!(after[0].time_us, 101_000);
     }
 
     #[test]

@@ -116,7 +116,7 @@ fn ones_own_profile_stands_before_the_shipped_one() {
     let list = printed(&tactpad(folder, "profile list"));
     assert_eq!(
         list,
-        "super-mario\ntetris\ntank-battle\ncontra\npointer\none-button\nsuper-mario-left\nsuper-mario-light\n"
+        "super-mario\ntetris\ntank-battle\ncontra\npointer\none-button\nsuper-mario-left\nsuper-mario-light\nsupertux\n"
     );
     let edited = tactpad(folder, "profile edit contra");
     let path = own(folder, "contra.toml");
@@ -156,7 +156,7 @@ fn names_that_nothing_has_are_refused_with_a_way_out() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     printed(&tactpad(folder, "profile new zelda --save"));
-    refuses(folder, "profile check nope", &["there is no profile \"nope\"", "super-mario-light, zelda"]);
+    refuses(folder, "profile check nope", &["there is no profile \"nope\"", "supertux, zelda"]);
     refuses(folder, "profile edit nope", &["no profile \"nope\"", "`tactpad profile new --save \"nope\"`"]);
     refuses(folder, "profile edit ./x.toml", &["./x.toml is a file: open it in an editor"]);
     // A name with a slash is a file from here on, not from the folder.

@@ -1,6 +1,6 @@
 //! The profiles that are inside the program, so that it runs from any folder.
 
-const SHIPPED: [(&str, &str); 8] = [
+const SHIPPED: [(&str, &str); 9] = [
     ("super-mario", include_str!("../../../mappings/super-mario.toml")),
     ("tetris", include_str!("../../../mappings/tetris.toml")),
     ("tank-battle", include_str!("../../../mappings/tank-battle.toml")),
@@ -9,6 +9,7 @@ const SHIPPED: [(&str, &str); 8] = [
     ("one-button", include_str!("../../../mappings/one-button.toml")),
     ("super-mario-left", include_str!("../../../mappings/super-mario-left.toml")),
     ("super-mario-light", include_str!("../../../mappings/super-mario-light.toml")),
+    ("supertux", include_str!("../../../mappings/supertux.toml")),
 ];
 
 /// The names under which profiles are shipped.
@@ -113,7 +114,8 @@ mod tests {
                 "pointer",
                 "one-button",
                 "super-mario-left",
-                "super-mario-light"
+                "super-mario-light",
+                "supertux"
             ]
         );
         assert!(names().all(|name| text(name).is_some_and(|text| text.starts_with(SCHEMA_LINE))));

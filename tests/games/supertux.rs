@@ -1,0 +1,144 @@
+//! SuperTux, a jump-and-run: the first part of its second level, as the game ships it.
+//!
+//! The game is asked to write Tux's place over its picture (`--show-pos`); the landmark is read there.
+
+use std::process::Stdio;
+use std::sync::OnceLock;
+
+use tactpad::bridge::sink::Sink;
+use tactpad::bridge::sink::x11::X11Sink;
+use tactpad::pipeline::control::{Code, OutputDevice, OutputEvent};
+use tactpad::time::StreamInstant;
+
+use crate::desk::{Desk, Process, await_some, pause_ms};
+use crate::digits::{Area, Font};
+use crate::segment::Segment;
+use crate::trial::{Game, Progress};
+
+const LEVEL: &str = "/usr/share/games/supertux2/levels/world1/welcome_antarctica.stl";
+const WIDTH_PX: u32 = 640;
+const HEIGHT_PX: u32 = 480;
+/// Where the game writes Tux's place.
+const PLACE: Area = Area { left_px: 552, top_px: 67, width_px: 88, height_px: 17 };
+/// Two places by which the game shows all of its digits.
+const DIGITS: [&str; 2] = ["12345,6789", "10,10"];
+const SPACE: u16 = 57;
+
+/// Tux has come so far when the segment is done, in the level's own unit, of which a block has 32.
+const LANDMARK_X: i32 = 1_500;
+/// Below the ice.
+const LOST_Y: i32 = 700;
+
+/// What the player does: walks, turns back and on, hops, jumps.
+pub(crate) fn segment() -> Segment {
+    let jump = "button 1";
+    Segment::default()
+        .steer("right", 0, 900)
+        .steer("left", 1_050, 1_400)
+        .steer("right", 1_550, 6_000)
+        .press(jump, 2_200, 2_350)
+        .press(jump, 3_200, 3_700)
+}
+
+/// The game, at the begin of its level.
+pub(crate) struct SuperTux {
+    _program: Process,
+    desk: Desk,
+    font: Font,
+    /// Tux's place when it was last read.
+    place: Option<[i32; 2]>,
+}
+
+impl SuperTux {
+    /// Starts the level and waits until Tux stands in it.
+    pub(crate) fn start() -> Self {
+        let font = font();
+        let (program, desk) = started(&[]);
+        let mut game = Self { _program: program, desk, font, place: None };
+        let placed = await_some(20_000, || game.read());
+        assert!(placed.is_some(), "the level's title");
+        press_space(&game.desk);
+        let begun = await_some(10_000, || game.is_bright().then_some(()));
+        assert!(begun.is_some(), "the level");
+        game
+    }
+
+    /// Tux's place, as the game writes it.
+    fn read(&self) -> Option<[i32; 2]> {
+        let text = self.font.read(&self.desk.screen.picture(), &PLACE);
+        let (x, y) = text.strip_prefix("X:")?.split_once(" Y:")?;
+        Some([x.parse().ok()?, y.parse().ok()?])
+    }
+
+    /// Whether the level has come out of the dark: the sky is as bright as it gets.
+    fn is_bright(&self) -> bool {
+        let sky = self.desk.screen.picture().at(300, 8);
+        sky[2] > 245
+    }
+}
+
+impl Game for SuperTux {
+    fn desk(&self) -> &Desk {
+        &self.desk
+    }
+
+    fn progress(&mut self) -> Progress {
+        // A picture that is half drawn cannot be read.
+        self.place = self.read().or(self.place);
+        match self.place {
+            Some([_, y]) if y > LOST_Y => Progress::Lost(format!("Tux fell at {:?}", self.place)),
+            Some([x, _]) if x >= LANDMARK_X => Progress::Reached,
+            place => Progress::Going(format!("Tux is at {place:?}")),
+        }
+    }
+}
+
+/// The game's process with a level, and its desk.
+fn started(arguments: &[&str]) -> (Process, Desk) {
+    let desk = Desk::new(WIDTH_PX, HEIGHT_PX);
+    let mut command = desk.command("supertux2");
+    command.arg("--userdir").arg(desk.home.path());
+    command.args([
+        "-g",
+        &format!("{WIDTH_PX}x{HEIGHT_PX}"),
+        "-w",
+        "--renderer",
+        "sdl",
+        "--disable-sound",
+        "--disable-music",
+    ]);
+    command.arg("--show-pos").args(arguments).arg(LEVEL);
+    let program = Process(command.stdout(Stdio::null()).spawn().unwrap());
+    desk.focus();
+    (program, desk)
+}
+
+/// The font in which the game writes places, learned from two of them.
+fn font() -> Font {
+    static FONT: OnceLock<Font> = OnceLock::new();
+    let learn = || {
+        let mut font = Font::default();
+        for place in DIGITS {
+            let (_program, desk) = started(&["--spawn-pos", place]);
+            let text = format!("X:{}", place.replace(',', " Y:"));
+            let learned =
+                await_some(20_000, || font.learn(&desk.screen.picture(), &PLACE, &text).then_some(()));
+            assert!(learned.is_some(), "{text} on the level's title");
+        }
+        font
+    };
+    FONT.get_or_init(learn).clone()
+}
+
+fn press_space(desk: &Desk) {
+    let mut sink = X11Sink::open(Some(&desk.display)).unwrap();
+    let event = |value| OutputEvent {
+        at: StreamInstant::from_us(0),
+        device: OutputDevice::Keyboard,
+        code: Code::Key(SPACE),
+        value,
+    };
+    sink.write(&[event(1)]).unwrap();
+    pause_ms(60);
+    sink.write(&[event(0)]).unwrap();
+}

@@ -1,0 +1,148 @@
+//! One game, played once: who plays, and what came of it.
+
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use tactpad::bridge::sink::Sink;
+use tactpad::bridge::sink::x11::X11Sink;
+use tactpad::pipeline::mapping::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::profile::Profile;
+
+use crate::clock::{MS, monotonic_ns, wait_until};
+use crate::desk::{Desk, Process, await_some};
+use crate::player::{Player, Style};
+use crate::segment::Segment;
+
+/// A game that is on the screen and waits for its player.
+pub(crate) trait Game {
+    /// Where it is shown and listens.
+    fn desk(&self) -> &Desk;
+
+    /// What the screen says about how far the player has come.
+    fn progress(&mut self) -> Progress;
+}
+
+/// How far a player has come.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Progress {
+    /// On the way; where.
+    Going(String),
+    /// The landmark is reached.
+    Reached,
+    /// It cannot be reached any more; why.
+    Lost(String),
+}
+
+/// Who plays.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Way<'a> {
+    /// A finger on a pad, through the bridge; pad and finger are those of the seed.
+    Pad { style: Style, seed: u64, profile: &'a str },
+    /// The commands themselves, through the same output.
+    Plain { profile: &'a str },
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Outcome {
+    /// How long the landmark took, from the segment's begin; or what the screen showed at the end.
+    pub(crate) reached_s: Result<f64, String>,
+}
+
+impl Outcome {
+    pub(crate) fn is_passed(&self) -> bool {
+        self.reached_s.is_ok()
+    }
+}
+
+/// The landmark must be reached so long after the last command at the latest.
+const AFTER_MS: u64 = 1_500;
+/// The screen is looked at so often.
+const LOOK_MS: u64 = 15;
+
+/// Plays `segment` once and watches.
+pub(crate) fn play(game: &mut dyn Game, segment: &Segment, way: Way<'_>) -> Outcome {
+    match way {
+        Way::Pad { style, seed, profile } => {
+            let bridge = Bridge::start(game.desk(), Player::new(style, seed), profile);
+            bridge.player.play(segment);
+            watch(game, segment, |_| ())
+        }
+        Way::Plain { profile } => {
+            let mut sink = X11Sink::open(Some(&game.desk().display)).unwrap();
+            let commands = segment.commands(&profile_of(profile));
+            let mut next = commands.iter().peekable();
+            watch(game, segment, |at_us| {
+                while let Some(event) = next.next_if(|event| event.at.as_us() <= at_us) {
+                    sink.write(&[*event]).unwrap();
+                }
+            })
+        }
+    }
+}
+
+/// Looks at the screen until the landmark is reached or cannot be; `step` hears how long it has been.
+fn watch(game: &mut dyn Game, segment: &Segment, mut step: impl FnMut(u64)) -> Outcome {
+    let begin_ns = monotonic_ns();
+    let end_ns = begin_ns + (segment.length_ms() + AFTER_MS) * MS;
+    let mut look_ns = begin_ns;
+    let mut seen = Progress::Going("nothing".into());
+    while monotonic_ns() < end_ns {
+        step((monotonic_ns() - begin_ns) / 1_000);
+        if monotonic_ns() >= look_ns {
+            seen = game.progress();
+            look_ns = monotonic_ns() + LOOK_MS * MS;
+        }
+        match seen {
+            Progress::Reached => {
+                return Outcome { reached_s: Ok(1e-9 * (monotonic_ns() - begin_ns) as f64) };
+            }
+            Progress::Lost(why) => return Outcome { reached_s: Err(why) },
+            Progress::Going(_) => wait_until(monotonic_ns() + MS),
+        }
+    }
+    let Progress::Going(place) = seen else { unreachable!("others have returned") };
+    Outcome { reached_s: Err(place) }
+}
+
+/// The profile for X11; a shipped name or a file.
+pub(crate) fn profile_of(name: &str) -> Profile {
+    let shipped = tactpad::pipeline::mapping::shipped::text(name).map(str::to_owned);
+    let text = shipped.unwrap_or_else(|| std::fs::read_to_string(name).unwrap());
+    read(&text, OutputChoice::Keyboard).0.unwrap()
+}
+
+/// The program that plays the pad into the desk, and writes down what it hears.
+pub(crate) struct Bridge {
+    _program: Process,
+    pub(crate) player: Player,
+    pub(crate) capture: PathBuf,
+}
+
+impl Bridge {
+    /// Starts it and waits until it has found the pad's zero.
+    pub(crate) fn start(desk: &Desk, player: Player, profile: &str) -> Self {
+        let folder = tempfile::tempdir_in(desk.home.path()).unwrap().keep();
+        let capture = folder.join("play.cap");
+        let mut program = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+        program.arg("record").arg(&capture).args(["--output", "x11", "--profile", profile]);
+        program.args(["--pad", &format!("serial:{}", player.path())]);
+        program.env("DISPLAY", &desk.display).env("XDG_RUNTIME_DIR", &folder);
+        program
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(std::fs::File::create(folder.join("told")).unwrap());
+        let bridge = Self { _program: Process(program.spawn().unwrap()), player, capture };
+        let ready = await_some(10_000, || bridge.hears(&folder).then_some(()));
+        assert!(ready.is_some(), "{}", std::fs::read_to_string(folder.join("told")).unwrap());
+        bridge
+    }
+
+    /// Whether enough of a resting pad has been heard to know its zero.
+    fn hears(&self, folder: &std::path::Path) -> bool {
+        let mut ctl = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+        let told = ctl.env("XDG_RUNTIME_DIR", folder).args(["ctl", "status", "--json"]).output().unwrap();
+        let status: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap_or_default();
+        status["state"] == "playing" && status["health"]["samples"].as_u64() > Some(800)
+    }
+}

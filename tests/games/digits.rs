@@ -2,7 +2,7 @@
 //!
 //! A glyph is bright with a dark rim, so it stands out on any ground. Which pixels are bright is learned on black ground.
 
-use crate::framebuffer::Picture;
+use crate::framebuffer::{Area, Picture};
 
 /// A pixel of a glyph is at least so bright,
 const BRIGHT: u8 = 160;
@@ -13,16 +13,7 @@ const GAP_MAX_PX: usize = 4;
 /// and words so many.
 const SPACE_MAX_PX: usize = 14;
 /// So many of a glyph's pixels must be as they should.
-const LEAST_SHARE: f64 = 0.93;
-
-/// A part of the picture.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Area {
-    pub(crate) left_px: usize,
-    pub(crate) top_px: usize,
-    pub(crate) width_px: usize,
-    pub(crate) height_px: usize,
-}
+const LEAST_SHARE: f64 = 0.85;
 
 /// One character and how it looks.
 #[derive(Clone, Debug)]
@@ -117,7 +108,7 @@ impl Glyph {
             return 0.0;
         }
         let at = |[x, y]: &[usize; 2]| level(picture, area, [from + x, *y]);
-        let bright = self.bright.iter().filter(|pixel| at(pixel) >= BRIGHT - 20).count();
+        let bright = self.bright.iter().filter(|pixel| at(pixel) >= BRIGHT - 30).count();
         let dark = self.dark.iter().filter(|pixel| at(pixel) <= DARK).count();
         (bright + dark) as f64 / (self.bright.len() + self.dark.len()).max(1) as f64
     }

@@ -10,6 +10,7 @@ use tactpad::quantity::Contact;
 use tactpad::virtual_pad::firmware::VirtualPad;
 use tactpad::virtual_pad::script::{Keyframe, Script};
 
+use crate::clock::monotonic_ns;
 use crate::segment::{Segment, Touch};
 
 /// How a player presses.
@@ -23,6 +24,9 @@ pub(crate) struct Style {
 
 /// Presses as most people do.
 pub(crate) const ORDINARY: Style = Style { aim_mm: 1.5, force_share: 0.1 };
+
+/// Presses the same each time.
+pub(crate) const EXACT: Style = Style { aim_mm: 0.0, force_share: 0.0 };
 
 /// A thumb that rests on the middle reaches so far for a direction.
 const REACH_MM: f64 = 14.0;
@@ -99,7 +103,16 @@ fn script(segment: &Segment, style: Style, seed: u64) -> Script {
 #[derive(Default)]
 struct Cue {
     script: Option<Script>,
-    begun_us: Option<u64>,
+    begun: Option<Begun>,
+}
+
+/// When a script began.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Begun {
+    /// By the pad's clock.
+    pub(crate) pad_us: u64,
+    /// By the host's: the sample that is due then is sent at this time or up to a sample's period later.
+    pub(crate) host_ns: u64,
 }
 
 /// The pad on its wire. It rests until it is told to play.
@@ -120,7 +133,7 @@ impl PadFirmware for OnCue {
     fn emit(&mut self, now_us: u64, bytes: &mut Vec<u8>) {
         let mut cue = self.cue.lock().unwrap();
         if let Some(script) = cue.script.take() {
-            cue.begun_us = Some(self.pad.play(script));
+            cue.begun = Some(Begun { host_ns: monotonic_ns(), pad_us: self.pad.play(script) });
         }
         drop(cue);
         self.pad.emit(now_us, bytes);
@@ -154,11 +167,17 @@ impl Player {
     /// Begins now.
     pub(crate) fn play(&self, segment: &Segment) {
         let script = script(segment, self.style, self.seed);
-        *self.cue.lock().unwrap() = Cue { script: Some(script), begun_us: None };
+        *self.cue.lock().unwrap() = Cue { script: Some(script), begun: None };
     }
 
-    /// When the segment began, by the pad's clock.
-    pub(crate) fn begun_us(&self) -> Option<u64> {
-        self.cue.lock().unwrap().begun_us
+    /// When the segment began.
+    pub(crate) fn begun(&self) -> Option<Begun> {
+        self.cue.lock().unwrap().begun
+    }
+
+    /// How long after the segment's begin the finger first presses with this force.
+    pub(crate) fn passes_us(&self, segment: &Segment, fz_n: f32) -> Option<u64> {
+        let script = script(segment, self.style, self.seed);
+        (0..1_000 * segment.length_ms()).step_by(100).find(|at_us| script.contact_at(*at_us).fz_n >= fz_n)
     }
 }

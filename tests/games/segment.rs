@@ -74,6 +74,12 @@ impl Segment {
         Self(touches.map(|touch| Touch { towards: touch.towards.map(other), ..touch }).collect())
     }
 
+    /// As long, and nobody touches anything.
+    pub(crate) fn muted(&self) -> Self {
+        let end_ms = self.length_ms();
+        Self(vec![Touch { begin_ms: end_ms, end_ms, towards: None, presses: Vec::new() }])
+    }
+
     /// The same, later.
     pub(crate) fn after(&self, ms: u64) -> Self {
         let later =
@@ -85,6 +91,11 @@ impl Segment {
             presses: touch.presses.iter().map(later).collect(),
         };
         Self(self.0.iter().map(touch).collect())
+    }
+
+    /// Whether there is anything to do.
+    pub(crate) fn means_something(&self) -> bool {
+        self.0.iter().any(|touch| touch.towards.is_some() || !touch.presses.is_empty())
     }
 
     /// When the last finger is lifted.

@@ -1,6 +1,7 @@
 //! One game, played once: who plays, and what came of it.
 
-use std::path::PathBuf;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use tactpad::bridge::sink::Sink;
@@ -10,6 +11,7 @@ use tactpad::pipeline::mapping::profile::Profile;
 
 use crate::clock::{MS, monotonic_ns, wait_until};
 use crate::desk::{Desk, Process, await_some};
+use crate::heard::mispresses;
 use crate::player::{Player, Style};
 use crate::segment::Segment;
 
@@ -47,16 +49,14 @@ pub(crate) enum Way<'a> {
 pub(crate) struct Outcome {
     /// How long the landmark took, from the segment's begin; or what the screen showed at the end.
     pub(crate) reached_s: Result<f64, String>,
-}
-
-impl Outcome {
-    pub(crate) fn is_passed(&self) -> bool {
-        self.reached_s.is_ok()
-    }
+    /// Of a pad: things that did not come down as they were meant, or came down unasked.
+    pub(crate) mispresses: usize,
 }
 
 /// The landmark must be reached so long after the last command at the latest.
 const AFTER_MS: u64 = 1_500;
+/// What the last lift lets go has gone so long after it.
+const RELEASED_MS: u64 = 400;
 /// The screen is looked at so often.
 const LOOK_MS: u64 = 15;
 
@@ -66,23 +66,29 @@ pub(crate) fn play(game: &mut dyn Game, segment: &Segment, way: Way<'_>) -> Outc
         Way::Pad { style, seed, profile } => {
             let bridge = Bridge::start(game.desk(), Player::new(style, seed), profile);
             bridge.player.play(segment);
-            watch(game, segment, |_| ())
+            let begin_ns = monotonic_ns();
+            let reached_s = watch(game, segment, |_| ());
+            wait_until(begin_ns + (segment.length_ms() + RELEASED_MS) * MS);
+            let Recorded { capture, begun_us } = bridge.end();
+            let mispresses = mispresses(&capture, segment, begun_us, &profile_of(profile));
+            Outcome { reached_s, mispresses }
         }
         Way::Plain { profile } => {
             let mut sink = X11Sink::open(Some(&game.desk().display)).unwrap();
             let commands = segment.commands(&profile_of(profile));
             let mut next = commands.iter().peekable();
-            watch(game, segment, |at_us| {
+            let reached_s = watch(game, segment, |at_us| {
                 while let Some(event) = next.next_if(|event| event.at.as_us() <= at_us) {
                     sink.write(&[*event]).unwrap();
                 }
-            })
+            });
+            Outcome { reached_s, mispresses: 0 }
         }
     }
 }
 
 /// Looks at the screen until the landmark is reached or cannot be; `step` hears how long it has been.
-fn watch(game: &mut dyn Game, segment: &Segment, mut step: impl FnMut(u64)) -> Outcome {
+fn watch(game: &mut dyn Game, segment: &Segment, mut step: impl FnMut(u64)) -> Result<f64, String> {
     let begin_ns = monotonic_ns();
     let end_ns = begin_ns + (segment.length_ms() + AFTER_MS) * MS;
     let mut look_ns = begin_ns;
@@ -95,54 +101,78 @@ fn watch(game: &mut dyn Game, segment: &Segment, mut step: impl FnMut(u64)) -> O
         }
         match seen {
             Progress::Reached => {
-                return Outcome { reached_s: Ok(1e-9 * (monotonic_ns() - begin_ns) as f64) };
+                return Ok(1e-9 * (monotonic_ns() - begin_ns) as f64);
             }
-            Progress::Lost(why) => return Outcome { reached_s: Err(why) },
+            Progress::Lost(why) => return Err(why),
             Progress::Going(_) => wait_until(monotonic_ns() + MS),
         }
     }
     let Progress::Going(place) = seen else { unreachable!("others have returned") };
-    Outcome { reached_s: Err(place) }
+    Err(place)
 }
 
 /// The profile for X11; a shipped name or a file.
 pub(crate) fn profile_of(name: &str) -> Profile {
     let shipped = tactpad::pipeline::mapping::shipped::text(name).map(str::to_owned);
-    let text = shipped.unwrap_or_else(|| std::fs::read_to_string(name).unwrap());
+    let text = shipped.unwrap_or_else(|| fs::read_to_string(name).unwrap());
     read(&text, OutputChoice::Keyboard).0.unwrap()
 }
 
 /// The program that plays the pad into the desk, and writes down what it hears.
 pub(crate) struct Bridge {
-    _program: Process,
+    program: Process,
     pub(crate) player: Player,
+    folder: PathBuf,
+}
+
+/// What a bridge leaves.
+pub(crate) struct Recorded {
     pub(crate) capture: PathBuf,
+    /// When the segment began, by the pad's clock.
+    pub(crate) begun_us: u64,
 }
 
 impl Bridge {
     /// Starts it and waits until it has found the pad's zero.
     pub(crate) fn start(desk: &Desk, player: Player, profile: &str) -> Self {
         let folder = tempfile::tempdir_in(desk.home.path()).unwrap().keep();
-        let capture = folder.join("play.cap");
-        let mut program = Command::new(env!("CARGO_BIN_EXE_tactpad"));
-        program.arg("record").arg(&capture).args(["--output", "x11", "--profile", profile]);
-        program.args(["--pad", &format!("serial:{}", player.path())]);
-        program.env("DISPLAY", &desk.display).env("XDG_RUNTIME_DIR", &folder);
-        program
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(std::fs::File::create(folder.join("told")).unwrap());
-        let bridge = Self { _program: Process(program.spawn().unwrap()), player, capture };
-        let ready = await_some(10_000, || bridge.hears(&folder).then_some(()));
-        assert!(ready.is_some(), "{}", std::fs::read_to_string(folder.join("told")).unwrap());
+        let mut program = tactpad(&folder);
+        program.args(["record", CAPTURE, "--output", "x11", "--profile", profile]);
+        program.args(["--pad", &format!("serial:{}", player.path())]).env("DISPLAY", &desk.display);
+        let told = File::create(folder.join("told")).unwrap();
+        let program = program.stdout(Stdio::null()).stderr(told).spawn().unwrap();
+        let bridge = Self { program: Process(program), player, folder };
+        let ready = await_some(10_000, || bridge.hears().then_some(()));
+        assert!(ready.is_some(), "{}", fs::read_to_string(bridge.folder.join("told")).unwrap());
         bridge
     }
 
     /// Whether enough of a resting pad has been heard to know its zero.
-    fn hears(&self, folder: &std::path::Path) -> bool {
-        let mut ctl = Command::new(env!("CARGO_BIN_EXE_tactpad"));
-        let told = ctl.env("XDG_RUNTIME_DIR", folder).args(["ctl", "status", "--json"]).output().unwrap();
+    fn hears(&self) -> bool {
+        let told = tactpad(&self.folder).args(["ctl", "status", "--json"]).output().unwrap();
         let status: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap_or_default();
-        status["state"] == "playing" && status["health"]["samples"].as_u64() > Some(800)
+        status["state"] == "playing" && status["health"]["samples"].as_u64() > Some(RESTING_SAMPLES)
     }
+
+    /// Ends it.
+    pub(crate) fn end(mut self) -> Recorded {
+        assert!(tactpad(&self.folder).args(["ctl", "quit"]).output().unwrap().status.success());
+        assert!(self.program.0.wait().unwrap().success());
+        let begun_us = self.player.begun().expect("the player has begun").pad_us;
+        Recorded { capture: self.folder.join(CAPTURE), begun_us }
+    }
+}
+
+const CAPTURE: &str = "play.cap";
+/// After so many samples of a pad that rests its zero is known.
+const RESTING_SAMPLES: u64 = 800;
+
+/// The program under test, with its files in `folder`.
+pub(crate) fn tactpad(folder: &Path) -> Command {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+    for variable in ["XDG_RUNTIME_DIR", "XDG_CONFIG_HOME", "XDG_STATE_HOME"] {
+        program.env(variable, folder);
+    }
+    program.current_dir(folder).stdin(Stdio::null());
+    program
 }

@@ -80,6 +80,17 @@ impl Framebuffer {
         Picture { width: self.width, height: self.height, rgb }
     }
 
+    /// What a part of it shows now: less work than the whole.
+    pub(crate) fn picture_of(&self, area: &Area) -> Vec<[u8; 3]> {
+        let mut bytes = vec![0; self.line_len * area.height_px];
+        let from = self.start + (area.top_px * self.line_len) as u64;
+        self.file.read_exact_at(&mut bytes, from).expect("these lines");
+        let columns = area.left_px * self.pixel_len..(area.left_px + area.width_px) * self.pixel_len;
+        let pixels =
+            bytes.chunks(self.line_len).flat_map(|line| line[columns.clone()].chunks(self.pixel_len));
+        pixels.map(|bytes| self.masks.map(|mask| channel(self.pixel(bytes), mask))).collect()
+    }
+
     fn pixel(&self, bytes: &[u8]) -> u32 {
         let join = |pixel: u32, byte: &u8| pixel << 8 | u32::from(*byte);
         if self.most_significant_first {
@@ -113,4 +124,23 @@ impl Picture {
         assert!(x < self.width, "column {x} of {}", self.width);
         self.rgb[y * self.width + x]
     }
+    /// The pixels of a part, line by line.
+    pub(crate) fn part(&self, area: &Area) -> Vec<[u8; 3]> {
+        let line = |y: usize| (y * self.width + area.left_px, y * self.width + area.left_px + area.width_px);
+        let lines = (area.top_px..area.top_px + area.height_px).map(line);
+        lines.flat_map(|(from, to)| self.rgb[from..to].iter().copied()).collect()
+    }
+}
+
+/// A part of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Area {
+    /// Columns to the left of it.
+    pub(crate) left_px: usize,
+    /// Lines above it.
+    pub(crate) top_px: usize,
+    /// In pixels.
+    pub(crate) width_px: usize,
+    /// In pixels.
+    pub(crate) height_px: usize,
 }

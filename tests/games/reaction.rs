@@ -1,0 +1,142 @@
+//! How long a game takes from an event to the first frame that shows it.
+
+use tactpad::bridge::sink::Sink;
+use tactpad::bridge::sink::x11::X11Sink;
+use tactpad::numeric::random::SplitMix64;
+use tactpad::numeric::statistics::{deviation, mean, median};
+use tactpad::pipeline::control::{Code, OutputDevice, OutputEvent};
+use tactpad::time::StreamInstant;
+
+use crate::clock::{MS, monotonic_ns, wait_until};
+use crate::desk::{Desk, await_some, pause_ms};
+use crate::framebuffer::Area;
+use crate::player::{EXACT, Player};
+use crate::segment::Segment;
+use crate::trial::{Bridge, Game, profile_of};
+
+/// A thing that a key does at once, in a place where nothing else moves.
+pub(crate) struct Jump {
+    pub(crate) key: u16,
+    /// The profile's word for it.
+    pub(crate) meant: &'static str,
+    pub(crate) around: Area,
+}
+
+/// A game in which a key does that.
+pub(crate) trait Jumper: Game {
+    fn jump(&self) -> Jump;
+}
+
+/// The picture rests if it has not changed for so long.
+const STILL_MS: u64 = 150;
+/// Presses come at any time of a frame.
+const PHASE_MAX_MS: f64 = 40.0;
+/// A press lasts so long.
+const PRESS_MS: u64 = 80;
+/// What has not come by then does not come.
+const LIMIT_MS: u64 = 1_000;
+const SEED: u64 = 1;
+
+/// Watches a part of the screen.
+struct Watch<'a> {
+    desk: &'a Desk,
+    area: Area,
+    phase: SplitMix64,
+}
+
+impl<'a> Watch<'a> {
+    fn new(desk: &'a Desk, area: Area) -> Self {
+        Self { desk, area, phase: SplitMix64::named(SEED, "phase") }
+    }
+
+    fn seen(&self) -> Vec<[u8; 3]> {
+        self.desk.screen.picture_of(&self.area)
+    }
+
+    /// Waits until the picture rests, and then for a part of a frame.
+    fn rest(&mut self) -> Vec<[u8; 3]> {
+        let mut seen = self.seen();
+        let mut still_ns = self.still_ns();
+        let rests = await_some(20_000, || {
+            let now = self.seen();
+            if now != seen {
+                (seen, still_ns) = (now, self.still_ns());
+            }
+            (monotonic_ns() >= still_ns).then_some(())
+        });
+        assert!(rests.is_some(), "the picture never rests");
+        seen
+    }
+
+    /// How long the picture must stay as it is from now on.
+    fn still_ns(&mut self) -> u64 {
+        let phase_ms = f64::from(self.phase.fraction()) * PHASE_MAX_MS;
+        monotonic_ns() + STILL_MS * MS + (phase_ms * MS as f64) as u64
+    }
+
+    /// When the picture changes from what it was; `None` where it had changed before anything was done, or never does.
+    fn changes_ns(&self, before: &[[u8; 3]]) -> Option<u64> {
+        let end_ns = monotonic_ns() + LIMIT_MS * MS;
+        while monotonic_ns() < end_ns {
+            if self.seen() != before {
+                return Some(monotonic_ns());
+            }
+            wait_until(monotonic_ns() + MS / 4);
+        }
+        None
+    }
+}
+
+/// From a key's event at the X server to the first changed frame, `count` times, in milliseconds.
+pub(crate) fn of_events(game: &dyn Jumper, count: usize) -> Vec<f64> {
+    let Jump { key, around, .. } = game.jump();
+    let mut watch = Watch::new(game.desk(), around);
+    let mut sink = X11Sink::open(Some(&game.desk().display)).unwrap();
+    let event = |value| OutputEvent {
+        at: StreamInstant::from_us(0),
+        device: OutputDevice::Keyboard,
+        code: Code::Key(key),
+        value,
+    };
+    let once = |_| {
+        let before = watch.rest();
+        let begin_ns = monotonic_ns();
+        sink.write(&[event(1)]).unwrap();
+        let end_ns = watch.changes_ns(&before).expect("the game does something");
+        pause_ms(PRESS_MS);
+        sink.write(&[event(0)]).unwrap();
+        1e-6 * (end_ns - begin_ns) as f64
+    };
+    (0..count).map(once).collect()
+}
+
+/// From where the finger's force passes the profile's threshold to the first changed frame, `count` times, in milliseconds.
+pub(crate) fn of_presses(game: &dyn Jumper, profile: &str, count: usize) -> Vec<f64> {
+    let Jump { meant, around, .. } = game.jump();
+    let mut watch = Watch::new(game.desk(), around);
+    let bridge = Bridge::start(game.desk(), Player::new(EXACT, SEED), profile);
+    let press = Segment::default().tap(meant, 0, PRESS_MS);
+    let threshold_n = profile_of(profile).buttons[0].press_n;
+    let passes_us = bridge.player.passes_us(&press, threshold_n).expect("it presses hard enough");
+    let once = |_| {
+        let before = watch.rest();
+        bridge.player.play(&press);
+        let end_ns = watch.changes_ns(&before).expect("the game does something");
+        let begun = bridge.player.begun().expect("it has begun");
+        1e-6 * (end_ns as f64 - begun.host_ns as f64) - 1e-3 * passes_us as f64
+    };
+    (0..count).map(once).collect()
+}
+
+/// A line of a table.
+pub(crate) fn row(name: &str, times_ms: &[f64]) -> String {
+    let mut sorted = times_ms.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let late_ms = sorted[(sorted.len() * 95 / 100).min(sorted.len() - 1)];
+    let (mean_ms, deviation_ms) = (mean(times_ms), deviation(times_ms));
+    let median_ms = median(times_ms.iter().copied()).unwrap();
+    format!(
+        "| {name} | {} | {mean_ms:.1} ± {deviation_ms:.1} | {median_ms:.1} | {late_ms:.1} |",
+        times_ms.len()
+    )
+}

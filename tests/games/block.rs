@@ -57,11 +57,11 @@ impl Played<'_> {
     }
 
     /// The segment `count` times by the pad and `count` times by the commands themselves, in turn. Pads and fingers are those of the
-    /// seeds from 1 on.
+    /// seeds from [`BLOCK_SEED`] on.
     pub(crate) fn side_by_side(&self, count: u64) -> [Trials; 2] {
         let profile = self.profile;
         let [mut pad, mut plain] = [Trials::default(), Trials::default()];
-        for seed in 1..=count {
+        for seed in BLOCK_SEED..BLOCK_SEED + count {
             self.trial(&mut pad, Way::Pad { style: ORDINARY, seed, profile });
             self.trial(&mut plain, Way::Plain { profile });
         }
@@ -119,6 +119,7 @@ impl Played<'_> {
 /// How often the segment is played for a recording, and how long a player pauses between.
 const ROUNDS: u64 = 12;
 const BETWEEN_MS: u64 = 600;
-/// Seeds of warm-ups, and the first one of scattering players: none is one of the block's.
-const WARM_UP_SEED: u64 = 1_000;
-const SCATTERED_SEED: u64 = 2_001;
+/// First seeds of the block, of warm-ups and of players who scatter. Nothing was chosen by what these did.
+const BLOCK_SEED: u64 = 5_001;
+const WARM_UP_SEED: u64 = 6_001;
+const SCATTERED_SEED: u64 = 7_001;

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 use x11rb::connection::Connection;
-use x11rb::protocol::xproto::{ConnectionExt as _, InputFocus};
+use x11rb::protocol::xproto::{AtomEnum, ConfigureWindowAux, ConnectionExt as _, InputFocus, MapState};
 use x11rb::rust_connection::RustConnection;
 
 use crate::clock::{MS, monotonic_ns, wait_until};
@@ -71,22 +71,31 @@ impl Desk {
         command(program, &self.display, self.home.path())
     }
 
-    /// Waits for the program's window and gives it the keyboard, as nobody else does that here.
-    pub(crate) fn focus(&self) {
-        let root = self.connection.setup().roots[0].root;
-        let window = await_some(10_000, || {
-            let windows = self.connection.query_tree(root).unwrap().reply().unwrap().children;
-            windows.into_iter().rev().find(|window| self.is_seen(*window))
-        });
-        let window = window.expect("a window");
+    /// Waits for the window of a program, by its class; puts it into the upper left corner and gives it the keyboard, as there is
+    /// no window manager that does so.
+    pub(crate) fn focus(&self, class: &str) {
+        let window = await_some(20_000, || self.window(class)).expect("a window");
+        let corner = ConfigureWindowAux::new().x(0).y(0);
+        self.connection.configure_window(window, &corner).unwrap();
         self.connection.set_input_focus(InputFocus::POINTER_ROOT, window, x11rb::CURRENT_TIME).unwrap();
         self.connection.flush().unwrap();
     }
 
+    fn window(&self, class: &str) -> Option<u32> {
+        let root = self.connection.setup().roots[0].root;
+        let windows = self.connection.query_tree(root).unwrap().reply().unwrap().children;
+        windows.into_iter().rev().find(|window| self.is_seen(*window) && self.has_class(*window, class))
+    }
+
     fn is_seen(&self, window: u32) -> bool {
-        let size = || self.connection.get_geometry(window).ok()?.reply().ok();
-        let attributes = || self.connection.get_window_attributes(window).ok()?.reply().ok();
-        size().is_some_and(|it| it.width > 100) && attributes().is_some_and(|it| u8::from(it.map_state) == 2)
+        let attributes = self.connection.get_window_attributes(window).ok().and_then(|it| it.reply().ok());
+        attributes.is_some_and(|it| it.map_state == MapState::VIEWABLE)
+    }
+
+    fn has_class(&self, window: u32, class: &str) -> bool {
+        let asked = self.connection.get_property(false, window, AtomEnum::WM_CLASS, AtomEnum::STRING, 0, 64);
+        let told = asked.ok().and_then(|it| it.reply().ok()).map(|it| it.value).unwrap_or_default();
+        told.split(|byte| *byte == 0).any(|word| word.eq_ignore_ascii_case(class.as_bytes()))
     }
 }
 

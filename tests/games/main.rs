@@ -12,6 +12,7 @@ mod digits;
 #[path = "../support/framebuffer.rs"]
 mod framebuffer;
 mod heard;
+mod pictures;
 mod player;
 mod reaction;
 mod segment;
@@ -20,6 +21,7 @@ mod supertux;
 mod support;
 mod trial;
 
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use block::Played;
@@ -107,4 +109,11 @@ fn supertux_is_played_by_players_who_scatter() {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let segment = &supertux::segment();
     Played { start: &SUPERTUX, segment, profile: supertux::PROFILE }.scattered(&SCATTERED, count);
+}
+
+#[test]
+fn supertux_is_recorded() {
+    let Some(folder) = std::env::var_os("TACTPAD_PICTURES") else { return };
+    let mut game = SuperTux::start_on(pictures::desk());
+    pictures::record(&mut game, &supertux::segment(), supertux::PROFILE, "game-supertux", Path::new(&folder));
 }

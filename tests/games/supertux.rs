@@ -26,6 +26,8 @@ const HEIGHT_PX: u32 = 480;
 const PLACE: Area = Area { left_px: 552, top_px: 67, width_px: 88, height_px: 17 };
 /// Two places by which the game shows all of its digits.
 const DIGITS: [&str; 2] = ["12345,6789", "10,10"];
+/// Of its window.
+const CLASS: &str = "supertux2";
 /// The key that jumps, and its word in the profile.
 const SPACE: u16 = 57;
 const JUMP: &str = "button 1";
@@ -58,8 +60,8 @@ pub(crate) fn segment() -> Segment {
         .steer("left", 1_050, 1_400)
         .steer("right", 1_550, 8_000)
         .press(JUMP, 1_900, 2_020)
-        .press(JUMP, 2_450, 2_950)
-        .press(JUMP, 4_600, 5_100)
+        .press(JUMP, 2_430, 2_930)
+        .press(JUMP, 4_300, 4_800)
 }
 
 /// The game, at the begin of its level.
@@ -74,8 +76,13 @@ pub(crate) struct SuperTux {
 impl SuperTux {
     /// Starts the level and waits until Tux stands in it.
     pub(crate) fn start() -> Self {
+        Self::start_on(Desk::new(WIDTH_PX, HEIGHT_PX))
+    }
+
+    /// The same in the upper left corner of a larger desk.
+    pub(crate) fn start_on(desk: Desk) -> Self {
         let font = font();
-        let (program, desk) = started(&[]);
+        let program = started(&desk, &[]);
         let mut game = Self { _program: program, desk, font, places: [None; 2] };
         let placed = await_some(20_000, || game.read());
         assert!(placed.is_some(), "the level's title");
@@ -110,6 +117,10 @@ impl Game for SuperTux {
         &self.desk
     }
 
+    fn take_keyboard(&self) {
+        self.desk.focus(CLASS);
+    }
+
     fn progress(&mut self) -> Progress {
         // A picture that is half drawn cannot be read.
         if let Some(place) = self.read() {
@@ -129,9 +140,8 @@ impl Game for SuperTux {
     }
 }
 
-/// The game's process with a level, and its desk.
-fn started(arguments: &[&str]) -> (Process, Desk) {
-    let desk = Desk::new(WIDTH_PX, HEIGHT_PX);
+/// The game's process with a level, on a desk.
+fn started(desk: &Desk, arguments: &[&str]) -> Process {
     let mut command = desk.command("supertux2");
     command.arg("--userdir").arg(desk.home.path());
     command.args([
@@ -145,8 +155,8 @@ fn started(arguments: &[&str]) -> (Process, Desk) {
     ]);
     command.arg("--show-pos").args(arguments).arg(LEVEL);
     let program = Process(command.stdout(Stdio::null()).spawn().unwrap());
-    desk.focus();
-    (program, desk)
+    desk.focus(CLASS);
+    program
 }
 
 /// The font in which the game writes places, learned from two of them.
@@ -155,7 +165,8 @@ fn font() -> Font {
     let learn = || {
         let mut font = Font::default();
         for place in DIGITS {
-            let (_program, desk) = started(&["--spawn-pos", place]);
+            let desk = Desk::new(WIDTH_PX, HEIGHT_PX);
+            let _program = started(&desk, &["--spawn-pos", place]);
             let text = format!("X:{}", place.replace(',', " Y:"));
             // The title comes out of the dark.
             let learned = await_some(20_000, || {

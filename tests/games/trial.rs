@@ -20,6 +20,9 @@ pub(crate) trait Game {
     /// Where it is shown and listens.
     fn desk(&self) -> &Desk;
 
+    /// Gives it the keyboard, where something else may have taken that.
+    fn take_keyboard(&self);
+
     /// What the screen says about how far the player has come.
     fn progress(&mut self) -> Progress;
 }
@@ -135,9 +138,14 @@ pub(crate) struct Recorded {
 impl Bridge {
     /// Starts it and waits until it has found the pad's zero.
     pub(crate) fn start(desk: &Desk, player: Player, profile: &str) -> Self {
+        Self::start_as(desk, player, profile, &["record", CAPTURE])
+    }
+
+    /// The same with another verb than `record`.
+    pub(crate) fn start_as(desk: &Desk, player: Player, profile: &str, verb: &[&str]) -> Self {
         let folder = tempfile::tempdir_in(desk.home.path()).unwrap().keep();
         let mut program = tactpad(&folder);
-        program.args(["record", CAPTURE, "--output", "x11", "--profile", profile]);
+        program.args(verb).args(["--output", "x11", "--profile", profile]);
         program.args(["--pad", &format!("serial:{}", player.path())]).env("DISPLAY", &desk.display);
         let told = File::create(folder.join("told")).unwrap();
         let program = program.stdout(Stdio::null()).stderr(told).spawn().unwrap();
@@ -147,10 +155,16 @@ impl Bridge {
         bridge
     }
 
+    /// What `tactpad ctl` prints.
+    pub(crate) fn ctl(&self, request: &[&str]) -> String {
+        let told = tactpad(&self.folder).arg("ctl").args(request).output().unwrap();
+        String::from_utf8(told.stdout).unwrap()
+    }
+
     /// Whether enough of a resting pad has been heard to know its zero.
     fn hears(&self) -> bool {
-        let told = tactpad(&self.folder).args(["ctl", "status", "--json"]).output().unwrap();
-        let status: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap_or_default();
+        let status: serde_json::Value =
+            serde_json::from_str(&self.ctl(&["status", "--json"])).unwrap_or_default();
         status["state"] == "playing" && status["health"]["samples"].as_u64() > Some(RESTING_SAMPLES)
     }
 

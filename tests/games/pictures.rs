@@ -1,0 +1,88 @@
+//! A recording of a game beside the page that shows the pad.
+
+use std::path::Path;
+use std::process::Stdio;
+
+use crate::desk::{Desk, Process, pause_ms};
+use crate::player::{ORDINARY, Player};
+use crate::segment::Segment;
+use crate::trial::{Bridge, Game};
+
+/// Height of both; the game is as wide as it is, the page stands to its right.
+pub(crate) const HEIGHT_PX: u32 = 480;
+pub(crate) const GAME_WIDTH_PX: u32 = 640;
+const PAGE_WIDTH_PX: u32 = 560;
+/// Frames of the recording per second.
+const RATE_HZ: u32 = 12;
+const SEED: u64 = 1;
+
+/// A desk on which both have room.
+pub(crate) fn desk() -> Desk {
+    Desk::new(GAME_WIDTH_PX + PAGE_WIDTH_PX, HEIGHT_PX)
+}
+
+/// Plays `segment` and records it into `folder`: `NAME.webp`, which moves, and `NAME.png` from its middle.
+pub(crate) fn record(game: &mut dyn Game, segment: &Segment, profile: &str, name: &str, folder: &Path) {
+    let desk = game.desk();
+    let player = Player::new(ORDINARY, SEED);
+    let bridge = Bridge::start_as(desk, player, profile, &["run", "--dashboard"]);
+    let _page = browser(desk, bridge.ctl(&["dashboard"]).trim());
+    pause_ms(PAGE_MS);
+    game.take_keyboard();
+    let [film, still] = ["webp", "png"].map(|kind| folder.join(format!("{name}.{kind}")));
+    let mut recorder = ffmpeg(desk, segment.length_ms(), &film);
+    bridge.player.play(segment);
+    pause_ms(segment.length_ms() * 2 / 3);
+    assert!(shot(desk, &still).0.wait().unwrap().success());
+    assert!(recorder.0.wait().unwrap().success());
+    println!("{} and {} are written; at the end {:?}", film.display(), still.display(), game.progress());
+}
+
+/// A page is there after so long.
+const PAGE_MS: u64 = 6_000;
+
+fn browser(desk: &Desk, url: &str) -> Process {
+    let mut browser = desk.command("chromium");
+    browser.args(["--no-sandbox", "--disable-gpu", "--no-first-run", "--hide-scrollbars"]);
+    browser.arg(format!("--window-position={GAME_WIDTH_PX},0"));
+    browser.arg(format!("--window-size={PAGE_WIDTH_PX},{HEIGHT_PX}"));
+    browser.arg(format!("--user-data-dir={}", desk.home.path().join("browser").display()));
+    Process(browser.arg(format!("--app={url}")).spawn().unwrap())
+}
+
+/// Takes pictures of the whole screen.
+fn grab(desk: &Desk) -> std::process::Command {
+    let mut grab = desk.command("ffmpeg");
+    grab.args(["-loglevel", "error", "-y", "-f", "x11grab", "-framerate", &RATE_HZ.to_string()]);
+    grab.args([
+        "-video_size",
+        &format!("{}x{HEIGHT_PX}", GAME_WIDTH_PX + PAGE_WIDTH_PX),
+        "-i",
+        &desk.display,
+    ]);
+    grab.stderr(Stdio::inherit());
+    grab
+}
+
+fn ffmpeg(desk: &Desk, length_ms: u64, file: &Path) -> Process {
+    let mut film = grab(desk);
+    film.args(["-t", &format!("{}.{:03}", length_ms / 1_000, length_ms % 1_000), "-vf", "scale=800:-1"]);
+    film.args([
+        "-c:v",
+        "libwebp",
+        "-lossless",
+        "0",
+        "-quality",
+        "55",
+        "-compression_level",
+        "3",
+        "-loop",
+        "0",
+    ]);
+    Process(film.arg(file).spawn().unwrap())
+}
+
+fn shot(desk: &Desk, file: &Path) -> Process {
+    let mut shot = grab(desk);
+    Process(shot.args(["-frames:v", "1", "-update", "1"]).arg(file).spawn().unwrap())
+}

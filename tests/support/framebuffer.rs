@@ -75,8 +75,11 @@ impl Framebuffer {
         let mut bytes = vec![0; self.line_len * self.height];
         self.file.read_exact_at(&mut bytes, self.start).expect("all lines");
         let used = self.width * self.pixel_len;
-        let pixels = bytes.chunks(self.line_len).flat_map(|line| line[..used].chunks(self.pixel_len));
-        let rgb = pixels.map(|bytes| self.masks.map(|mask| channel(self.pixel(bytes), mask))).collect();
+        let mut rgb = Vec::with_capacity(self.width * self.height);
+        for line in bytes.chunks_exact(self.line_len) {
+            let pixels = line[..used].chunks_exact(self.pixel_len).map(|bytes| self.pixel(bytes));
+            rgb.extend(pixels.map(|pixel| self.masks.map(|mask| channel(pixel, mask))));
+        }
         Picture { width: self.width, height: self.height, rgb }
     }
 

@@ -16,6 +16,7 @@ mod demo;
 #[path = "../support/framebuffer.rs"]
 mod framebuffer;
 mod guest;
+mod hand;
 mod hid;
 mod joystick;
 mod latency;
@@ -25,8 +26,10 @@ mod pad;
 mod playing;
 mod program;
 mod reader;
+mod scene;
 mod screen;
 mod sdl;
+mod supertux;
 #[path = "../support/mod.rs"]
 mod support;
 mod wire;
@@ -54,6 +57,11 @@ fn screen_dumps_are_read_as_they_say() {
 }
 
 #[test]
+fn scenes_are_found_where_they_are() {
+    scene::scenes_are_found_where_they_are();
+}
+
+#[test]
 fn gamepad_is_an_xbox_360_pad_and_plays() {
     in_guest("gamepad_is_an_xbox_360_pad_and_plays", playing::gamepad);
 }
@@ -77,6 +85,13 @@ fn tablet_is_a_device_of_its_own_and_goes_where_the_finger_is() {
 fn sdl_sees_a_game_controller() {
     if sdl::probe_is_there() {
         in_guest("sdl_sees_a_game_controller", sdl::game_controller);
+    }
+}
+
+#[test]
+fn a_game_is_played() {
+    if supertux::is_there() {
+        in_guest("a_game_is_played", supertux::played);
     }
 }
 

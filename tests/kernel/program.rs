@@ -50,10 +50,15 @@ pub(crate) struct Running {
 impl Running {
     /// Starts `program`; its standard output is for [`Running::take_output`].
     pub(crate) fn start(program: impl AsRef<Path>, arguments: &[&str]) -> Self {
-        let name = program.as_ref().file_name().expect("a program's name").to_string_lossy().into_owned();
+        Self::start_command(Command::new(program.as_ref()).args(arguments))
+    }
+
+    /// The same with more than arguments.
+    pub(crate) fn start_command(command: &mut Command) -> Self {
+        let program = Path::new(command.get_program());
+        let name = program.file_name().expect("a program's name").to_string_lossy().into_owned();
         let complaints = std::env::temp_dir().join(format!("{name}.stderr"));
-        let child = Command::new(program.as_ref())
-            .args(arguments)
+        let child = command
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(File::create(&complaints).expect("a file for complaints"))

@@ -1,8 +1,50 @@
 //! A screen for games.
 
+use std::io::{BufRead, BufReader};
 use std::path::Path;
+use std::process::Command;
 
-use crate::framebuffer::Framebuffer;
+use crate::framebuffer::{Framebuffer, Picture};
+use crate::program::Running;
+
+/// Size of a screen, and bits of its pixels, as the server takes them.
+const SCREEN: &str = "640x480x24";
+
+/// A screen that a game can draw on and the test can see. It goes when this value goes.
+pub(crate) struct Screen {
+    _server: Running,
+    framebuffer: Framebuffer,
+    display: String,
+}
+
+impl Screen {
+    /// Starts a server of its own.
+    pub(crate) fn start() -> Self {
+        let folder = std::env::temp_dir().join("screen");
+        std::fs::create_dir(&folder).expect("a folder for the screen");
+        let mut server = Running::start_command(
+            Command::new("Xvfb")
+                .args(["-displayfd", "1", "-screen", "0", SCREEN, "-nolisten", "tcp", "-noreset", "-fbdir"])
+                .arg(&folder),
+        );
+        let mut number = String::new();
+        // It names its display once it takes connections.
+        BufReader::new(server.take_output()).read_line(&mut number).expect("a line");
+        assert!(!number.trim().is_empty(), "Xvfb did not start");
+        let framebuffer = Framebuffer::open(&folder.join("Xvfb_screen0"));
+        Self { _server: server, framebuffer, display: format!(":{}", number.trim()) }
+    }
+
+    /// What the X server calls it.
+    pub(crate) fn display(&self) -> &str {
+        &self.display
+    }
+
+    /// What it shows now.
+    pub(crate) fn look(&self) -> Picture {
+        self.framebuffer.picture()
+    }
+}
 
 /// A dump of `lines`, each of which holds two pixels of `bits` and is filled up to eight bytes.
 fn write_dump(path: &Path, bits: u32, most_significant_first: bool, masks: [u32; 3], lines: &[[u8; 8]]) {

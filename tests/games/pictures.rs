@@ -12,8 +12,10 @@ use crate::trial::{Bridge, Game};
 pub(crate) const HEIGHT_PX: u32 = 480;
 pub(crate) const GAME_WIDTH_PX: u32 = 640;
 const PAGE_WIDTH_PX: u32 = 560;
+/// A length on the page is so many pixels, so that the whole of it is to be seen.
+const PAGE_SCALE: f64 = 0.5;
 /// Frames of the recording per second.
-const RATE_HZ: u32 = 12;
+const RATE_HZ: u32 = 7;
 const SEED: u64 = 1;
 
 /// A desk on which both have room.
@@ -43,9 +45,13 @@ const PAGE_MS: u64 = 6_000;
 
 fn browser(desk: &Desk, url: &str) -> Process {
     let mut browser = desk.command("chromium");
-    browser.args(["--no-sandbox", "--disable-gpu", "--no-first-run", "--hide-scrollbars"]);
-    browser.arg(format!("--window-position={GAME_WIDTH_PX},0"));
-    browser.arg(format!("--window-size={PAGE_WIDTH_PX},{HEIGHT_PX}"));
+    browser.args(["--no-sandbox", "--test-type", "--disable-gpu", "--no-first-run", "--hide-scrollbars"]);
+    browser.arg(format!("--force-device-scale-factor={PAGE_SCALE}"));
+    let [left, width, height] =
+        [GAME_WIDTH_PX, PAGE_WIDTH_PX, HEIGHT_PX].map(|px| f64::from(px) / PAGE_SCALE);
+    browser
+        .arg(format!("--window-position={left:.0},0"))
+        .arg(format!("--window-size={width:.0},{height:.0}"));
     browser.arg(format!("--user-data-dir={}", desk.home.path().join("browser").display()));
     Process(browser.arg(format!("--app={url}")).spawn().unwrap())
 }
@@ -66,7 +72,7 @@ fn grab(desk: &Desk) -> std::process::Command {
 
 fn ffmpeg(desk: &Desk, length_ms: u64, file: &Path) -> Process {
     let mut film = grab(desk);
-    film.args(["-t", &format!("{}.{:03}", length_ms / 1_000, length_ms % 1_000), "-vf", "scale=800:-1"]);
+    film.args(["-t", &format!("{}.{:03}", length_ms / 1_000, length_ms % 1_000), "-vf", "scale=720:-1"]);
     film.args([
         "-c:v",
         "libwebp",

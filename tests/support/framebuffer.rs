@@ -127,6 +127,7 @@ impl Picture {
         assert!(x < self.width, "column {x} of {}", self.width);
         self.rgb[y * self.width + x]
     }
+
     /// The pixels of a part, line by line.
     pub(crate) fn part(&self, area: &Area) -> Vec<[u8; 3]> {
         let line = |y: usize| (y * self.width + area.left_px, y * self.width + area.left_px + area.width_px);

@@ -113,3 +113,53 @@ impl Glyph {
         (bright + dark) as f64 / (self.bright.len() + self.dark.len()).max(1) as f64
     }
 }
+
+/// A picture with these lines, in which `#` is white and `.` black, on ground of this brightness.
+#[cfg(test)]
+fn drawn(lines: &[&str], ground: u8) -> Picture {
+    let level = |mark: char| match mark {
+        '#' => 255,
+        '.' => 0,
+        _ => ground,
+    };
+    let rgb: Vec<_> = lines.iter().flat_map(|line| line.chars().map(|mark| [level(mark); 3])).collect();
+    Picture { width: lines[0].len(), height: lines.len(), rgb }
+}
+
+#[test]
+fn text_is_read_on_any_ground_and_only_where_it_stands() {
+    let mut font = Font::default();
+    let shown = [
+        "................",
+        "..###...#...#...",
+        "..#.#..##...#...",
+        "..#.#...#.......",
+        "..###...#...#...",
+        "................",
+    ];
+    let area = Area { left_px: 0, top_px: 0, width_px: 16, height_px: 6 };
+    assert!(!font.learn(&drawn(&shown, 0), &area, "01"), "there are three");
+    assert!(font.learn(&drawn(&shown, 0), &area, "01!"));
+    let ground = drawn(&[" ".repeat(16).as_str(); 6], 250);
+    assert_eq!(font.read(&ground, &area), "", "bright ground is no text");
+    let written = [
+        "                ",
+        "....      ..... ",
+        "..#..     .###. ",
+        ".##.      .#.#. ",
+        "..#.      .#.#. ",
+        "..#.      .###. ",
+    ];
+    assert_eq!(font.read(&drawn(&written, 250), &area), "", "it stands a line lower");
+    let written = [
+        "....      ..... ",
+        "..#.      .###. ",
+        ".##.      .#.#. ",
+        "..#.      .#.#. ",
+        "..#.      .###. ",
+        "....      ..... ",
+    ];
+    for ground in [0, 128, 250] {
+        assert_eq!(font.read(&drawn(&written, ground), &area), "1 0", "on {ground}");
+    }
+}

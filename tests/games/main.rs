@@ -5,7 +5,7 @@
 #![allow(clippy::print_stdout, reason = "the figures are what one looks for in a long test")]
 
 mod block;
-#[path = "../kernel/clock.rs"]
+#[path = "../support/clock.rs"]
 mod clock;
 mod desk;
 mod digits;
@@ -26,6 +26,7 @@ use std::sync::{Mutex, PoisonError};
 
 use block::Played;
 use player::{ORDINARY, Style};
+use reaction::Times;
 use segment::Segment;
 use supertux::SuperTux;
 use support::require;
@@ -90,8 +91,7 @@ fn supertux_shows_a_press_in_time() {
     let Some(count) = trials("latency") else { return };
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let game = SuperTux::start();
-    let events_ms = reaction::of_events(&game, count as usize);
-    let presses_ms = reaction::of_presses(&game, supertux::PROFILE, count as usize);
+    let Times { events_ms, presses_ms } = reaction::times(&game, supertux::PROFILE, count as usize);
     println!(
         "| from | presses | mean ± deviation, ms | median, ms | 95th percentile, ms |\n|---|---|---|---|---|"
     );

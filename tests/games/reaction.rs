@@ -87,45 +87,64 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// From a key's event at the X server to the first changed frame, `count` times, in milliseconds.
-pub(crate) fn of_events(game: &dyn Jumper, count: usize) -> Vec<f64> {
-    let Jump { key, around, .. } = game.jump();
-    let mut watch = Watch::new(game.desk(), around);
-    let mut sink = X11Sink::open(Some(&game.desk().display)).unwrap();
-    let event = |value| OutputEvent {
-        at: StreamInstant::from_us(0),
-        device: OutputDevice::Keyboard,
-        code: Code::Key(key),
-        value,
-    };
-    let once = |_| {
-        let before = watch.rest();
-        let begin_ns = monotonic_ns();
-        sink.write(&[event(1)]).unwrap();
-        let end_ns = watch.changes_ns(&before).expect("the game does something");
-        pause_ms(PRESS_MS);
-        sink.write(&[event(0)]).unwrap();
-        1e-6 * (end_ns - begin_ns) as f64
-    };
-    (0..count).map(once).collect()
+/// Times to the first changed frame, in milliseconds.
+#[derive(Default)]
+pub(crate) struct Times {
+    /// From a key's event at the X server.
+    pub(crate) events_ms: Vec<f64>,
+    /// From where the finger's force passes the profile's threshold.
+    pub(crate) presses_ms: Vec<f64>,
 }
 
-/// From where the finger's force passes the profile's threshold to the first changed frame, `count` times, in milliseconds.
-pub(crate) fn of_presses(game: &dyn Jumper, profile: &str, count: usize) -> Vec<f64> {
-    let Jump { meant, around, .. } = game.jump();
+/// Both, `count` times, in turn.
+pub(crate) fn times(game: &dyn Jumper, profile: &str, count: usize) -> Times {
+    let Jump { key, around, .. } = game.jump();
     let mut watch = Watch::new(game.desk(), around);
-    let bridge = Bridge::start(game.desk(), Player::new(EXACT, SEED), profile);
-    let press = Segment::default().tap(meant, 0, PRESS_MS);
-    let threshold_n = profile_of(profile).buttons[0].press_n;
-    let passes_us = bridge.player.passes_us(&press, threshold_n).expect("it presses hard enough");
-    let once = |_| {
+    let mut keys = X11Sink::open(Some(&game.desk().display)).unwrap();
+    let presser = Presser::new(game, profile);
+    let mut times = Times::default();
+    for _ in 0..count {
         let before = watch.rest();
-        bridge.player.play(&press);
+        let begin_ns = monotonic_ns();
+        keys.write(&[event(key, 1)]).unwrap();
         let end_ns = watch.changes_ns(&before).expect("the game does something");
-        let begun = bridge.player.begun().expect("it has begun");
-        1e-6 * (end_ns as f64 - begun.host_ns as f64) - 1e-3 * passes_us as f64
-    };
-    (0..count).map(once).collect()
+        times.events_ms.push(1e-6 * (end_ns - begin_ns) as f64);
+        pause_ms(PRESS_MS);
+        keys.write(&[event(key, 0)]).unwrap();
+        let before = watch.rest();
+        let begun = presser.press();
+        let end_ns = watch.changes_ns(&before).expect("the game does something");
+        times.presses_ms.push(1e-6 * (end_ns as f64 - begun() as f64));
+    }
+    times
+}
+
+fn event(key: u16, value: i32) -> OutputEvent {
+    OutputEvent { at: StreamInstant::from_us(0), device: OutputDevice::Keyboard, code: Code::Key(key), value }
+}
+
+/// A finger that presses the same each time.
+struct Presser {
+    bridge: Bridge,
+    press: Segment,
+    /// From the press's begin to the threshold.
+    passes_us: u64,
+}
+
+impl Presser {
+    fn new(game: &dyn Jumper, profile: &str) -> Self {
+        let bridge = Bridge::start(game.desk(), Player::new(EXACT, SEED), profile);
+        let press = Segment::default().tap(game.jump().meant, 0, PRESS_MS);
+        let threshold_n = profile_of(profile).buttons[0].press_n;
+        let passes_us = bridge.player.passes_us(&press, threshold_n).expect("it presses hard enough");
+        Self { bridge, press, passes_us }
+    }
+
+    /// Begins to press; afterwards it is known when the threshold was passed, by the monotonic clock.
+    fn press(&self) -> impl Fn() -> u64 {
+        self.bridge.player.play(&self.press);
+        || self.bridge.player.begun().expect("it has begun").host_ns + 1_000 * self.passes_us
+    }
 }
 
 /// A line of a table.

@@ -123,7 +123,8 @@ impl Segment {
             touch.towards.into_iter().for_each(|side| hold(side, touch.begin_ms, touch.end_ms));
             touch.presses.iter().for_each(|press| hold(press.meant, press.begin_ms, press.end_ms));
         }
-        events.sort_by_key(|event| event.at);
+        // Of one moment, what is let go goes first.
+        events.sort_by_key(|event| (event.at, event.value != 0));
         events
     }
 
@@ -138,27 +139,47 @@ impl Segment {
     }
 }
 
-/// A touch as lines of a table, in which each control stands once: a second press begins a second line.
+/// A touch as lines of a table: begin, end and what is meant. Each control stands once in a line, so a second press begins a
+/// second line.
 fn stretches(touch: &Touch) -> Vec<(u64, u64, String)> {
-    let begins = touch.presses.iter().skip(1).map(|press| press.begin_ms);
-    let mut from: Vec<_> =
-        std::iter::once(touch.begin_ms).chain(begins).map(|ms| ms.saturating_sub(LABEL_EARLY_MS)).collect();
-    from.push(touch.end_ms + LABEL_LATE_MS);
-    let side = touch.towards.map(str::to_owned);
-    let mut stretches: Vec<_> = from
-        .windows(2)
-        .zip(touch.presses.iter().map(Some).chain(std::iter::once(None)))
-        .map(|(ends, press)| {
-            let words = press.map(|press| press.meant.to_owned());
-            (ends[0], ends[1], words)
-        })
-        .enumerate()
-        .map(|(number, (from_ms, to_ms, press))| {
-            let side = side.clone().filter(|_| number == 0);
-            let words: Vec<_> = side.into_iter().chain(press).collect();
-            (from_ms, to_ms, words.join("+"))
-        })
+    let presses = touch.presses.iter();
+    let first = touch.towards.into_iter().chain(presses.clone().take(1).map(|press| press.meant));
+    let first = first.collect::<Vec<_>>().join("+");
+    let later = presses.skip(1).map(|press| (press.begin_ms, press.meant.to_owned()));
+    let lines: Vec<_> = std::iter::once((touch.begin_ms, first))
+        .chain(later)
+        .filter(|(_, meant)| !meant.is_empty())
         .collect();
-    stretches.retain(|(.., meant)| !meant.is_empty());
-    stretches
+    let begins_ms = lines.iter().map(|(begin_ms, _)| begin_ms.saturating_sub(LABEL_EARLY_MS));
+    let ends_ms = begins_ms.clone().skip(1).chain([touch.end_ms + LABEL_LATE_MS]);
+    let meant = lines.iter().map(|(_, meant)| meant.clone());
+    begins_ms.zip(ends_ms).zip(meant).map(|((begin_ms, end_ms), meant)| (begin_ms, end_ms, meant)).collect()
+}
+
+#[test]
+fn a_segment_is_commands_and_labels() {
+    let jump = "button 1";
+    let segment = Segment::default()
+        .steer("right", 100, 2_000)
+        .press(jump, 500, 700)
+        .press(jump, 1_000, 1_200)
+        .tap(jump, 2_500, 2_600)
+        .mirrored();
+    let labels = segment.labels(250_000);
+    let lines: Vec<_> = labels.lines().collect();
+    let expected = [HEADER, "0.320,1.220,left+button 1", "1.220,2.310,button 1", "2.720,2.910,button 1"];
+    assert_eq!(lines, expected);
+    let profile = crate::trial::profile_of("supertux");
+    let commands = segment.commands(&profile);
+    let told: Vec<_> = commands
+        .iter()
+        .map(|event| format!("{} {} {}", event.at.as_us() / 1_000, event.code, event.value))
+        .collect();
+    let jump = |begin: u64, end: u64| [format!("{begin} KEY_SPACE 1"), format!("{end} KEY_SPACE 0")];
+    let mut expected = vec!["100 KEY_LEFT 1".to_owned()];
+    expected.extend([jump(500, 700), jump(1_000, 1_200)].concat());
+    expected.push("2000 KEY_LEFT 0".into());
+    expected.extend(jump(2_500, 2_600));
+    assert_eq!(told, expected);
+    assert!(segment.muted().commands(&profile).is_empty() && segment.muted().length_ms() == 2_600);
 }

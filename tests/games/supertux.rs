@@ -83,7 +83,7 @@ impl SuperTux {
     pub(crate) fn start_on(desk: Desk) -> Self {
         let font = font();
         let program = started(&desk, &[]);
-        let mut game = Self { _program: program, desk, font, places: [None; 2] };
+        let game = Self { _program: program, desk, font, places: [None; 2] };
         let placed = await_some(20_000, || game.read());
         assert!(placed.is_some(), "the level's title");
         press_space(&game.desk);

@@ -11,6 +11,7 @@
 )]
 
 mod bridge;
+#[path = "../support/clock.rs"]
 mod clock;
 mod demo;
 #[path = "../support/framebuffer.rs"]

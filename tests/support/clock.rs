@@ -1,4 +1,10 @@
-//! The guest's clocks, and waiting with a deadline.
+//! The kernel's clocks, and waiting with a deadline.
+
+#![allow(
+    clippy::expect_used,
+    dead_code,
+    reason = "a test may stop at what it did not expect; each uses a part"
+)]
 
 use std::os::fd::BorrowedFd;
 
@@ -16,7 +22,7 @@ pub(crate) fn monotonic_ns() -> u64 {
 
 /// The clock of the kernel's event stamps, in nanoseconds.
 ///
-/// A reader of evdev gets wall-clock stamps unless it asks for others. Nothing sets the wall clock of the guest, so
+/// A reader of evdev gets wall-clock stamps unless it asks for others. Nothing sets the wall clock of a guest, so
 /// its differences are as good as those of the monotonic clock.
 pub(crate) fn stamp_ns() -> u64 {
     read(ClockId::Realtime)

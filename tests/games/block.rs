@@ -52,7 +52,7 @@ const HEAD: &str = "| player | succeeded | time, s | mis-presses per minute |\n|
 impl Played<'_> {
     fn trial(&self, trials: &mut Trials, way: Way<'_>) {
         let outcome = play((self.start)().as_mut(), self.segment, way);
-        println!("{way:?}: {outcome:?}");
+        println!("{way}: {outcome}");
         trials.0.push(outcome);
     }
 

@@ -1,5 +1,6 @@
 //! One game, played once: who plays, and what came of it.
 
+use std::fmt;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -47,6 +48,17 @@ pub(crate) enum Way<'a> {
     Plain { profile: &'a str },
 }
 
+impl fmt::Display for Way<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Plain { profile } => write!(f, "{profile}: the commands themselves"),
+            Self::Pad { style: Style { aim_mm, force_share }, seed, profile } => {
+                write!(f, "{profile}: finger and pad {seed}, {aim_mm} mm, {:.0} %,", 100.0 * force_share)
+            }
+        }
+    }
+}
+
 /// What came of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Outcome {
@@ -54,6 +66,19 @@ pub(crate) struct Outcome {
     pub(crate) reached_s: Result<f64, String>,
     /// Of a pad: things that did not come down as they were meant, or came down unasked.
     pub(crate) mispresses: usize,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.reached_s {
+            Ok(s) => write!(f, "reached the landmark after {s:.2} s")?,
+            Err(place) => write!(f, "did not reach the landmark: {place}")?,
+        }
+        match self.mispresses {
+            0 => Ok(()),
+            count => write!(f, "; {count} mis-presses"),
+        }
+    }
 }
 
 /// The landmark must be reached so long after the last command at the latest.

@@ -4,12 +4,19 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
+use tactpad::bridge::sink::Sink;
+use tactpad::bridge::sink::x11::X11Sink;
+use tactpad::pipeline::control::{Code, OutputDevice, OutputEvent};
+use tactpad::time::StreamInstant;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{AtomEnum, ConfigureWindowAux, ConnectionExt as _, InputFocus, MapState};
 use x11rb::rust_connection::RustConnection;
 
 use crate::clock::{MS, monotonic_ns, wait_until};
 use crate::framebuffer::Framebuffer;
+
+/// A key is down for so long, and not pressed again for so long.
+const KEY_MS: u64 = 60;
 
 /// A process that ends with its test.
 pub(crate) struct Process(pub(crate) Child);
@@ -85,6 +92,16 @@ impl Desk {
         let root = self.connection.setup().roots[0].root;
         let windows = self.connection.query_tree(root).unwrap().reply().unwrap().children;
         windows.into_iter().rev().find(|window| self.is_seen(*window) && self.has_class(*window, class))
+    }
+
+    /// Presses a key and lets it up again.
+    pub(crate) fn press(&self, key: u16) {
+        let mut sink = X11Sink::open(Some(&self.display)).unwrap();
+        for value in [1, 0] {
+            let (at, device) = (StreamInstant::from_us(0), OutputDevice::Keyboard);
+            sink.write(&[OutputEvent { at, device, code: Code::Key(key), value }]).unwrap();
+            pause_ms(KEY_MS);
+        }
     }
 
     fn is_seen(&self, window: u32) -> bool {

@@ -15,13 +15,16 @@ mod heard;
 mod pictures;
 mod player;
 mod reaction;
+mod scroll;
 mod segment;
 mod supertux;
 #[path = "../support/mod.rs"]
 mod support;
+mod tanks;
 mod trial;
+mod vitetris;
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use block::Played;
@@ -30,7 +33,9 @@ use reaction::Times;
 use segment::Segment;
 use supertux::SuperTux;
 use support::require;
+use tanks::Tanks;
 use trial::{Game, Way, play};
+use vitetris::Vitetris;
 
 /// Whether the machine has what every game here needs.
 fn has_desk() -> bool {
@@ -65,10 +70,50 @@ fn supertux_is_played() {
     }
 }
 
+#[test]
+fn vitetris_is_played() {
+    if has_desk() && vitetris::is_there() {
+        is_played(Vitetris::start, &vitetris::segment(), vitetris::PROFILE);
+    }
+}
+
+#[test]
+fn btanks_is_played() {
+    if has_desk() && tanks::is_there() {
+        is_played(Tanks::start, &tanks::segment(), tanks::PROFILE);
+    }
+}
+
 /// How often a long study plays a segment: `TACTPAD_GAMES` of its name, as `block=20`.
 fn trials(study: &str) -> Option<u64> {
     let asked = std::env::var("TACTPAD_GAMES").ok()?;
     asked.split(' ').find_map(|word| word.strip_prefix(study)?.strip_prefix('=')?.parse().ok())
+}
+
+/// Plays a segment `count` times by the pad and by commands; then with nobody at it, and with left and right exchanged.
+fn is_played_again(start: &dyn Fn() -> Box<dyn Game>, segment: &Segment, profile: &str, count: u64) {
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    let [pad, plain] = Played { start, segment, profile }.side_by_side(count);
+    assert!(pad.reached() as u64 >= count - count / 10, "{} of {count} by the pad", pad.reached());
+    assert!(plain.reached() as u64 >= count - count / 10, "{} of {count} by commands", plain.reached());
+    for (what, other) in [("muted", segment.muted()), ("mirrored", segment.mirrored())] {
+        println!("{what}:");
+        let reached =
+            Played { start, segment: &other, profile }.side_by_side(count).map(|them| them.reached());
+        assert_eq!(reached, [0, 0], "{what}");
+    }
+}
+
+#[test]
+fn vitetris_is_played_again() {
+    let Some(count) = trials("vitetris") else { return };
+    is_played_again(&|| Box::new(Vitetris::start()), &vitetris::segment(), vitetris::PROFILE, count);
+}
+
+#[test]
+fn btanks_is_played_again() {
+    let Some(count) = trials("btanks") else { return };
+    is_played_again(&|| Box::new(Tanks::start()), &tanks::segment(), tanks::PROFILE, count);
 }
 
 const SUPERTUX: fn() -> Box<dyn Game> = || Box::new(SuperTux::start());
@@ -111,9 +156,28 @@ fn supertux_is_played_by_players_who_scatter() {
     Played { start: &SUPERTUX, segment, profile: supertux::PROFILE }.scattered(&SCATTERED, count);
 }
 
+/// Where recordings of games go, if they are asked for.
+fn pictures() -> Option<PathBuf> {
+    std::env::var_os("TACTPAD_PICTURES").map(PathBuf::from)
+}
+
 #[test]
 fn supertux_is_recorded() {
-    let Some(folder) = std::env::var_os("TACTPAD_PICTURES") else { return };
-    let mut game = SuperTux::start_on(pictures::desk());
-    pictures::record(&mut game, &supertux::segment(), supertux::PROFILE, "game-supertux", Path::new(&folder));
+    let Some(folder) = pictures() else { return };
+    let mut game = SuperTux::start_on(pictures::desk(supertux::WIDTH_PX, supertux::HEIGHT_PX));
+    pictures::record(&mut game, &supertux::segment(), supertux::PROFILE, &folder);
+}
+
+#[test]
+fn vitetris_is_recorded() {
+    let Some(folder) = pictures() else { return };
+    let mut game = Vitetris::start_on(pictures::desk(vitetris::WIDTH_PX, vitetris::HEIGHT_PX));
+    pictures::record(&mut game, &vitetris::segment(), vitetris::PROFILE, &folder);
+}
+
+#[test]
+fn btanks_is_recorded() {
+    let Some(folder) = pictures() else { return };
+    let mut game = Tanks::start_on(pictures::desk(tanks::WIDTH_PX, tanks::HEIGHT_PX));
+    pictures::record(&mut game, &tanks::segment(), tanks::PROFILE, &folder);
 }

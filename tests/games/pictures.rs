@@ -8,9 +8,7 @@ use crate::player::{ORDINARY, Player};
 use crate::segment::Segment;
 use crate::trial::{Bridge, Game};
 
-/// Height of both; the game is as wide as it is, the page stands to its right.
-pub(crate) const HEIGHT_PX: u32 = 480;
-pub(crate) const GAME_WIDTH_PX: u32 = 640;
+/// The page stands to the right of the game, as high as that.
 const PAGE_WIDTH_PX: u32 = 560;
 /// A length on the page is so many pixels, so that the whole of it is to be seen.
 const PAGE_SCALE: f64 = 0.5;
@@ -18,20 +16,20 @@ const PAGE_SCALE: f64 = 0.5;
 const RATE_HZ: u32 = 7;
 const SEED: u64 = 1;
 
-/// A desk on which both have room.
-pub(crate) fn desk() -> Desk {
-    Desk::new(GAME_WIDTH_PX + PAGE_WIDTH_PX, HEIGHT_PX)
+/// A desk on which a game of this size and the page have room.
+pub(crate) fn desk(width_px: u32, height_px: u32) -> Desk {
+    Desk::new(width_px + PAGE_WIDTH_PX, height_px)
 }
 
-/// Plays `segment` and records it into `folder`: `NAME.webp`, which moves, and `NAME.png` from its middle.
-pub(crate) fn record(game: &mut dyn Game, segment: &Segment, profile: &str, name: &str, folder: &Path) {
+/// Plays `segment` and records it into `folder`: `PROFILE.webp`, which moves, and `PROFILE.png` from its later half.
+pub(crate) fn record(game: &mut dyn Game, segment: &Segment, profile: &str, folder: &Path) {
     let desk = game.desk();
     let player = Player::new(ORDINARY, SEED);
     let bridge = Bridge::start_as(desk, player, profile, &["run", "--dashboard"]);
     let _page = browser(desk, bridge.ctl(&["dashboard"]).trim());
     pause_ms(PAGE_MS);
     game.take_keyboard();
-    let [film, still] = ["webp", "png"].map(|kind| folder.join(format!("{name}.{kind}")));
+    let [film, still] = ["webp", "png"].map(|kind| folder.join(format!("{profile}.{kind}")));
     let mut recorder = ffmpeg(desk, segment.length_ms(), &film);
     bridge.player.play(segment);
     pause_ms(segment.length_ms() * 2 / 3);
@@ -47,8 +45,9 @@ fn browser(desk: &Desk, url: &str) -> Process {
     let mut browser = desk.command("chromium");
     browser.args(["--no-sandbox", "--test-type", "--disable-gpu", "--no-first-run", "--hide-scrollbars"]);
     browser.arg(format!("--force-device-scale-factor={PAGE_SCALE}"));
-    let [left, width, height] =
-        [GAME_WIDTH_PX, PAGE_WIDTH_PX, HEIGHT_PX].map(|px| f64::from(px) / PAGE_SCALE);
+    let width_px = f64::from(PAGE_WIDTH_PX);
+    let left_px = desk.screen.width() as f64 - width_px;
+    let [left, width, height] = [left_px, width_px, desk.screen.height() as f64].map(|px| px / PAGE_SCALE);
     browser
         .arg(format!("--window-position={left:.0},0"))
         .arg(format!("--window-size={width:.0},{height:.0}"));
@@ -62,7 +61,7 @@ fn grab(desk: &Desk) -> std::process::Command {
     grab.args(["-loglevel", "error", "-y", "-f", "x11grab", "-framerate", &RATE_HZ.to_string()]);
     grab.args([
         "-video_size",
-        &format!("{}x{HEIGHT_PX}", GAME_WIDTH_PX + PAGE_WIDTH_PX),
+        &format!("{}x{}", desk.screen.width(), desk.screen.height()),
         "-i",
         &desk.display,
     ]);

@@ -6,11 +6,6 @@ use std::path::Path;
 use std::process::Stdio;
 use std::sync::OnceLock;
 
-use tactpad::bridge::sink::Sink;
-use tactpad::bridge::sink::x11::X11Sink;
-use tactpad::pipeline::control::{Code, OutputDevice, OutputEvent};
-use tactpad::time::StreamInstant;
-
 use crate::desk::{Desk, Process, await_some, pause_ms};
 use crate::digits::Font;
 use crate::framebuffer::Area;
@@ -20,8 +15,8 @@ use crate::support::leave_out;
 use crate::trial::{Game, Progress};
 
 const LEVEL: &str = "/usr/share/games/supertux2/levels/world1/welcome_antarctica.stl";
-const WIDTH_PX: u32 = 640;
-const HEIGHT_PX: u32 = 480;
+pub(crate) const WIDTH_PX: u32 = 640;
+pub(crate) const HEIGHT_PX: u32 = 480;
 /// Where the game writes Tux's place.
 const PLACE: Area = Area { left_px: 552, top_px: 67, width_px: 88, height_px: 17 };
 /// Two places by which the game shows all of its digits.
@@ -31,8 +26,8 @@ const CLASS: &str = "supertux2";
 /// The key that jumps, and its word in the profile.
 const SPACE: u16 = 57;
 const JUMP: &str = "button 1";
-/// Where Tux stands at the begin.
-const TUX: Area = Area { left_px: 90, top_px: 220, width_px: 50, height_px: 55 };
+/// Where Tux stands at the begin, and above that as far as he jumps: who is out of sight does not rest.
+const TUX: Area = Area { left_px: 90, top_px: 40, width_px: 50, height_px: 235 };
 
 /// Tux has come so far when the segment is done, in the level's own unit, of which a block has 32.
 const LANDMARK_X: i32 = 1_600;
@@ -86,7 +81,7 @@ impl SuperTux {
         let game = Self { _program: program, desk, font, places: [None; 2] };
         let placed = await_some(20_000, || game.read());
         assert!(placed.is_some(), "the level's title");
-        press_space(&game.desk);
+        game.desk.press(SPACE);
         let begun = await_some(10_000, || game.is_bright().then_some(()));
         assert!(begun.is_some(), "the level");
         game
@@ -180,17 +175,4 @@ fn font() -> Font {
         font
     };
     FONT.get_or_init(learn).clone()
-}
-
-fn press_space(desk: &Desk) {
-    let mut sink = X11Sink::open(Some(&desk.display)).unwrap();
-    let event = |value| OutputEvent {
-        at: StreamInstant::from_us(0),
-        device: OutputDevice::Keyboard,
-        code: Code::Key(SPACE),
-        value,
-    };
-    sink.write(&[event(1)]).unwrap();
-    pause_ms(60);
-    sink.write(&[event(0)]).unwrap();
 }

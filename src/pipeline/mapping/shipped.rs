@@ -1,6 +1,6 @@
 //! The profiles that are inside the program, so that it runs from any folder.
 
-const SHIPPED: [(&str, &str); 9] = [
+const SHIPPED: [(&str, &str); 11] = [
     ("super-mario", include_str!("../../../mappings/super-mario.toml")),
     ("tetris", include_str!("../../../mappings/tetris.toml")),
     ("tank-battle", include_str!("../../../mappings/tank-battle.toml")),
@@ -10,6 +10,8 @@ const SHIPPED: [(&str, &str); 9] = [
     ("super-mario-left", include_str!("../../../mappings/super-mario-left.toml")),
     ("super-mario-light", include_str!("../../../mappings/super-mario-light.toml")),
     ("supertux", include_str!("../../../mappings/supertux.toml")),
+    ("vitetris", include_str!("../../../mappings/vitetris.toml")),
+    ("btanks", include_str!("../../../mappings/btanks.toml")),
 ];
 
 /// The names under which profiles are shipped.
@@ -115,7 +117,9 @@ mod tests {
                 "one-button",
                 "super-mario-left",
                 "super-mario-light",
-                "supertux"
+                "supertux",
+                "vitetris",
+                "btanks"
             ]
         );
         assert!(names().all(|name| text(name).is_some_and(|text| text.starts_with(SCHEMA_LINE))));

@@ -13,7 +13,7 @@ const PAGE_WIDTH_PX: u32 = 560;
 /// A length on the page is so many pixels, so that the whole of it is to be seen.
 const PAGE_SCALE: f64 = 0.5;
 /// Frames of the recording per second.
-const RATE_HZ: u32 = 7;
+const RATE_HZ: u32 = 6;
 const SEED: u64 = 1;
 
 /// A desk on which a game of this size and the page have room.
@@ -71,7 +71,7 @@ fn grab(desk: &Desk) -> std::process::Command {
 
 fn ffmpeg(desk: &Desk, length_ms: u64, file: &Path) -> Process {
     let mut film = grab(desk);
-    film.args(["-t", &format!("{}.{:03}", length_ms / 1_000, length_ms % 1_000), "-vf", "scale=720:-1"]);
+    film.args(["-t", &format!("{}.{:03}", length_ms / 1_000, length_ms % 1_000), "-vf", "scale=-2:240"]);
     film.args([
         "-c:v",
         "libwebp",
@@ -89,5 +89,5 @@ fn ffmpeg(desk: &Desk, length_ms: u64, file: &Path) -> Process {
 
 fn shot(desk: &Desk, file: &Path) -> Process {
     let mut shot = grab(desk);
-    Process(shot.args(["-frames:v", "1", "-update", "1"]).arg(file).spawn().unwrap())
+    Process(shot.args(["-frames:v", "1", "-update", "1", "-vf", "scale=900:-1"]).arg(file).spawn().unwrap())
 }

@@ -156,6 +156,15 @@ fn supertux_is_played_by_players_who_scatter() {
     Played { start: &SUPERTUX, segment, profile: supertux::PROFILE }.scattered(&SCATTERED, count);
 }
 
+#[test]
+fn vitetris_is_played_by_players_who_scatter() {
+    let Some(count) = trials("scatter") else { return };
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    let segment = &vitetris::segment();
+    let start: &dyn Fn() -> Box<dyn Game> = &|| Box::new(Vitetris::start());
+    Played { start, segment, profile: vitetris::PROFILE }.scattered(&SCATTERED, count);
+}
+
 /// Where recordings of games go, if they are asked for.
 fn pictures() -> Option<PathBuf> {
     std::env::var_os("TACTPAD_PICTURES").map(PathBuf::from)
@@ -164,20 +173,20 @@ fn pictures() -> Option<PathBuf> {
 #[test]
 fn supertux_is_recorded() {
     let Some(folder) = pictures() else { return };
-    let mut game = SuperTux::start_on(pictures::desk(supertux::WIDTH_PX, supertux::HEIGHT_PX));
-    pictures::record(&mut game, &supertux::segment(), supertux::PROFILE, &folder);
+    let desk = pictures::desk(supertux::WIDTH_PX, supertux::HEIGHT_PX);
+    pictures::record(desk, SuperTux::start_on, &supertux::segment(), supertux::PROFILE, &folder);
 }
 
 #[test]
 fn vitetris_is_recorded() {
     let Some(folder) = pictures() else { return };
-    let mut game = Vitetris::start_on(pictures::desk(vitetris::WIDTH_PX, vitetris::HEIGHT_PX));
-    pictures::record(&mut game, &vitetris::segment(), vitetris::PROFILE, &folder);
+    let desk = pictures::desk(vitetris::WIDTH_PX, vitetris::HEIGHT_PX);
+    pictures::record(desk, Vitetris::start_on, &vitetris::segment(), vitetris::PROFILE, &folder);
 }
 
 #[test]
 fn btanks_is_recorded() {
     let Some(folder) = pictures() else { return };
-    let mut game = Tanks::start_on(pictures::desk(tanks::WIDTH_PX, tanks::HEIGHT_PX));
-    pictures::record(&mut game, &tanks::segment(), tanks::PROFILE, &folder);
+    let desk = pictures::desk(tanks::WIDTH_PX, tanks::HEIGHT_PX);
+    pictures::record(desk, Tanks::start_on, &tanks::segment(), tanks::PROFILE, &folder);
 }

@@ -1,12 +1,12 @@
 //! A recording of a game beside the page that shows the pad.
 
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 
 use crate::desk::{Desk, Process, pause_ms};
 use crate::player::{ORDINARY, Player};
 use crate::segment::Segment;
-use crate::trial::{Bridge, Game};
+use crate::trial::{Bridge, Game, watch};
 
 /// The page stands to the right of the game, as high as that.
 const PAGE_WIDTH_PX: u32 = 560;
@@ -21,21 +21,36 @@ pub(crate) fn desk(width_px: u32, height_px: u32) -> Desk {
     Desk::new(width_px + PAGE_WIDTH_PX, height_px)
 }
 
-/// Plays `segment` and records it into `folder`: `PROFILE.webp`, which moves, and `PROFILE.png` from its later half.
-pub(crate) fn record(game: &mut dyn Game, segment: &Segment, profile: &str, folder: &Path) {
-    let desk = game.desk();
-    let player = Player::new(ORDINARY, SEED);
-    let bridge = Bridge::start_as(desk, player, profile, &["run", "--dashboard"]);
-    let _page = browser(desk, bridge.ctl(&["dashboard"]).trim());
+/// Plays a game and records it into `folder`: `PROFILE.webp`, which moves, and `PROFILE.png` from its later half.
+///
+/// The page is there before the game, which would pause if another window took the keyboard.
+///
+/// # Panics
+/// The landmark is not reached: that is no picture of how the game is played.
+pub(crate) fn record<G: Game>(
+    desk: Desk,
+    start: fn(Desk) -> G,
+    segment: &Segment,
+    profile: &str,
+    folder: &Path,
+) {
+    let bridge = Bridge::start_as(&desk, Player::new(ORDINARY, SEED), profile, &["run", "--dashboard"]);
+    let _page = browser(&desk, bridge.ctl(&["dashboard"]).trim());
     pause_ms(PAGE_MS);
-    game.take_keyboard();
     let [film, still] = ["webp", "png"].map(|kind| folder.join(format!("{profile}.{kind}")));
-    let mut recorder = ffmpeg(desk, segment.length_ms(), &film);
+    let mut game = start(desk);
+    let shown = Shown::on(game.desk());
+    let mut recorder = shown.film(segment.length_ms(), &film);
+    let mut shots = Vec::new();
     bridge.player.play(segment);
-    pause_ms(segment.length_ms() * 2 / 3);
-    assert!(shot(desk, &still).0.wait().unwrap().success());
-    assert!(recorder.0.wait().unwrap().success());
-    println!("{} and {} are written; at the end {:?}", film.display(), still.display(), game.progress());
+    let reached_s = watch(&mut game, segment, |at_us| {
+        if shots.is_empty() && at_us > 1_000 * segment.length_ms() * 2 / 3 {
+            shots.push(shown.shot(&still));
+        }
+    });
+    assert!(reached_s.is_ok(), "{profile}: {reached_s:?}");
+    assert!(shots.iter_mut().chain([&mut recorder]).all(|it| it.0.wait().unwrap().success()));
+    println!("{} and {} are written", film.display(), still.display());
 }
 
 /// A page is there after so long.
@@ -55,39 +70,36 @@ fn browser(desk: &Desk, url: &str) -> Process {
     Process(browser.arg(format!("--app={url}")).spawn().unwrap())
 }
 
-/// Takes pictures of the whole screen.
-fn grab(desk: &Desk) -> std::process::Command {
-    let mut grab = desk.command("ffmpeg");
-    grab.args(["-loglevel", "error", "-y", "-f", "x11grab", "-framerate", &RATE_HZ.to_string()]);
-    grab.args([
-        "-video_size",
-        &format!("{}x{}", desk.screen.width(), desk.screen.height()),
-        "-i",
-        &desk.display,
-    ]);
-    grab.stderr(Stdio::inherit());
-    grab
+/// What is on a desk, for whoever takes pictures of it while somebody else looks after the game.
+struct Shown {
+    display: String,
+    size_px: String,
 }
 
-fn ffmpeg(desk: &Desk, length_ms: u64, file: &Path) -> Process {
-    let mut film = grab(desk);
-    film.args(["-t", &format!("{}.{:03}", length_ms / 1_000, length_ms % 1_000), "-vf", "scale=-2:240"]);
-    film.args([
-        "-c:v",
-        "libwebp",
-        "-lossless",
-        "0",
-        "-quality",
-        "55",
-        "-compression_level",
-        "3",
-        "-loop",
-        "0",
-    ]);
-    Process(film.arg(file).spawn().unwrap())
-}
+impl Shown {
+    fn on(desk: &Desk) -> Self {
+        let size_px = format!("{}x{}", desk.screen.width(), desk.screen.height());
+        Self { display: desk.display.clone(), size_px }
+    }
 
-fn shot(desk: &Desk, file: &Path) -> Process {
-    let mut shot = grab(desk);
-    Process(shot.args(["-frames:v", "1", "-update", "1", "-vf", "scale=900:-1"]).arg(file).spawn().unwrap())
+    /// Takes pictures of the whole screen.
+    fn grab(&self) -> Command {
+        let mut grab = Command::new("ffmpeg");
+        grab.args(["-loglevel", "error", "-y", "-f", "x11grab", "-framerate", &RATE_HZ.to_string()]);
+        grab.args(["-video_size", &self.size_px, "-i", &self.display]).stdin(Stdio::null());
+        grab
+    }
+
+    fn film(&self, length_ms: u64, file: &Path) -> Process {
+        let mut film = self.grab();
+        film.args(["-t", &format!("{}.{:03}", length_ms / 1_000, length_ms % 1_000), "-vf", "scale=-2:240"]);
+        film.args(["-c:v", "libwebp", "-lossless", "0", "-quality", "22", "-compression_level", "3"]);
+        Process(film.args(["-loop", "0"]).arg(file).spawn().unwrap())
+    }
+
+    fn shot(&self, file: &Path) -> Process {
+        let mut shot = self.grab();
+        shot.args(["-frames:v", "1", "-update", "1", "-vf", "scale=900:-1"]);
+        Process(shot.arg(file).spawn().unwrap())
+    }
 }

@@ -112,10 +112,6 @@ impl Game for SuperTux {
         &self.desk
     }
 
-    fn take_keyboard(&self) {
-        self.desk.focus(CLASS);
-    }
-
     fn progress(&mut self) -> Progress {
         // A picture that is half drawn cannot be read.
         if let Some(place) = self.read() {

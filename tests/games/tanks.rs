@@ -174,10 +174,6 @@ impl Game for Tanks {
         &self.desk
     }
 
-    fn take_keyboard(&self) {
-        self.desk.focus(CLASS);
-    }
-
     fn progress(&mut self) -> Progress {
         if self.scroll.follow(self.desk.screen.picture()) {
             while LEGS.get(self.done).is_some_and(|leg| self.is_done(*leg)) {

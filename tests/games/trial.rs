@@ -21,9 +21,6 @@ pub(crate) trait Game {
     /// Where it is shown and listens.
     fn desk(&self) -> &Desk;
 
-    /// Gives it the keyboard, where something else may have taken that.
-    fn take_keyboard(&self);
-
     /// What the screen says about how far the player has come.
     fn progress(&mut self) -> Progress;
 }
@@ -116,7 +113,11 @@ pub(crate) fn play(game: &mut dyn Game, segment: &Segment, way: Way<'_>) -> Outc
 }
 
 /// Looks at the screen until the landmark is reached or cannot be; `step` hears how long it has been.
-fn watch(game: &mut dyn Game, segment: &Segment, mut step: impl FnMut(u64)) -> Result<f64, String> {
+pub(crate) fn watch(
+    game: &mut dyn Game,
+    segment: &Segment,
+    mut step: impl FnMut(u64),
+) -> Result<f64, String> {
     let begin_ns = monotonic_ns();
     let end_ns = begin_ns + (segment.length_ms() + AFTER_MS) * MS;
     let mut look_ns = begin_ns;

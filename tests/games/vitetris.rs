@@ -230,10 +230,6 @@ impl Game for Vitetris {
         &self.desk
     }
 
-    fn take_keyboard(&self) {
-        self.desk.focus(CLASS);
-    }
-
     fn progress(&mut self) -> Progress {
         self.read();
         match &self.wrong {

@@ -24,7 +24,7 @@ const GAME: &str = "/usr/games/supertux2";
 const LEVEL: &str = "/usr/share/games/supertux2/levels/world1/welcome_antarctica.stl";
 
 /// The button lasts as long as the press: a game that looks once per frame cannot miss it, however slow the machine.
-const PROFILE: &str = "contra";
+const PROFILE: &str = "supertux";
 
 /// How often the screen is looked at; more often would leave the game too little time.
 const LOOK_EVERY_MS: u64 = 50;

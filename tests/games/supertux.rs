@@ -79,7 +79,11 @@ impl SuperTux {
         let font = font();
         let program = started(&desk, &[]);
         let game = Self { _program: program, desk, font, places: [None; 2] };
-        let placed = await_some(20_000, || game.read());
+        let placed = await_some(20_000, || {
+            // The game puts its window into the middle once more when it has read its files.
+            game.desk.focus(CLASS);
+            game.read()
+        });
         assert!(placed.is_some(), "the level's title");
         game.desk.press(SPACE);
         let begun = await_some(10_000, || game.is_bright().then_some(()));

@@ -6,6 +6,7 @@
 use std::fs;
 use std::path::Path;
 
+use crate::clock::{MS, monotonic_ns};
 use crate::desk::{Desk, Process, await_some, pause_ms};
 use crate::framebuffer::{Area, Picture};
 use crate::scroll::Scroll;
@@ -22,8 +23,8 @@ pub(crate) const WIDTH_PX: u32 = 800;
 pub(crate) const HEIGHT_PX: u32 = 600;
 /// Where the window shows ground alone: below its upper edge, left of the radar, above the clock.
 const GROUND: [[usize; 2]; 2] = [[10, 40], [690, 540]];
-/// The last digit of the score at the begin, and the number of missiles.
-const SCORE: Area = Area { left_px: 780, top_px: 4, width_px: 20, height_px: 24 };
+/// The score at the begin, with the sign before it, which goes to the left when the score gets longer; and the number of missiles.
+const SCORE: Area = Area { left_px: 766, top_px: 4, width_px: 34, height_px: 24 };
 const MISSILES: Area = Area { left_px: 84, top_px: 4, width_px: 28, height_px: 24 };
 /// Menus: what to do, and which map.
 const MENU: Area = Area { left_px: 270, top_px: 200, width_px: 260, height_px: 210 };
@@ -34,8 +35,10 @@ const LETTERS: usize = 1_000;
 const BRIGHT: u8 = 150;
 const DIGIT: usize = 40;
 /// A number is another one when less of its pixels than this share are the same.
-const SAME_SHARE: f64 = 0.7;
+const SAME_SHARE: f64 = 0.9;
 const RETURN: u16 = 28;
+/// The window is looked at so often. It is large, and the game needs the time, too.
+const LOOK_MS: u64 = 50;
 
 /// The game's settings: who plays, on which map, and in a tank.
 const SETTINGS: &str = r#"<config>
@@ -61,7 +64,7 @@ enum Leg {
 }
 
 const LEGS: [Leg; 6] =
-    [Leg::Struck, Leg::Below(120), Leg::Above(40), Leg::Launched, Leg::RightOf(250), Leg::LeftOf(200)];
+    [Leg::Struck, Leg::Below(80), Leg::Above(40), Leg::Launched, Leg::RightOf(250), Leg::LeftOf(200)];
 
 /// What the player does: turns to a target and fires at it, crosses the road and comes back, launches missiles while driving along
 /// the road, and turns back.
@@ -69,15 +72,15 @@ pub(crate) fn segment() -> Segment {
     let (fire, launch) = ("button 1 tap", "button 1 hold");
     Segment::default()
         .steer("left", 0, 170)
-        .tap(fire, 450, 600)
-        .tap(fire, 800, 950)
-        .tap(fire, 1_150, 1_300)
-        .steer("down", 1_600, 3_000)
-        .steer("up", 3_200, 4_700)
-        .steer("down", 5_000, 5_200)
-        .steer("right", 5_500, 6_900)
-        .press(launch, 5_800, 6_500)
-        .steer("left", 7_200, 8_500)
+        .tap(fire, 450, 650)
+        .tap(fire, 850, 1_050)
+        .tap(fire, 1_250, 1_450)
+        .steer("down", 1_700, 3_000)
+        .steer("up", 3_200, 5_000)
+        .steer("down", 5_300, 5_500)
+        .steer("right", 5_800, 7_200)
+        .press(launch, 6_100, 6_800)
+        .steer("left", 7_500, 8_800)
 }
 
 /// Whether this machine has the game.
@@ -98,6 +101,8 @@ pub(crate) struct Tanks {
     missiles: Number,
     /// How many legs are done.
     done: usize,
+    /// When to look again.
+    look_ns: u64,
 }
 
 impl Tanks {
@@ -128,7 +133,7 @@ impl Tanks {
         let picture = desk.screen.picture();
         let [score, missiles] = [SCORE, MISSILES].map(|area| Number::of(&picture, &area));
         let scroll = Scroll::new(picture, GROUND[0], GROUND[1]);
-        Self { _program: program, desk, scroll, score, missiles, done: 0 }
+        Self { _program: program, desk, scroll, score, missiles, done: 0, look_ns: 0 }
     }
 
     fn is_done(&self, leg: Leg) -> bool {
@@ -175,7 +180,8 @@ impl Game for Tanks {
     }
 
     fn progress(&mut self) -> Progress {
-        if self.scroll.follow(self.desk.screen.picture()) {
+        if monotonic_ns() >= self.look_ns && self.scroll.follow(self.desk.screen.picture()) {
+            self.look_ns = monotonic_ns() + LOOK_MS * MS;
             while LEGS.get(self.done).is_some_and(|leg| self.is_done(*leg)) {
                 self.done += 1;
             }

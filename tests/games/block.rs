@@ -42,7 +42,8 @@ impl Trials {
     fn row(&self, name: &str, segment: &Segment) -> String {
         let [mean_s, deviation_s] = self.time_s();
         let (reached, count, each) = (self.reached(), self.0.len(), self.mispresses_per_minute(segment));
-        format!("| {name} | {reached} of {count} | {mean_s:.2} ± {deviation_s:.2} | {each:.1} |")
+        let time = if reached == 0 { "–".into() } else { format!("{mean_s:.2} ± {deviation_s:.2}") };
+        format!("| {name} | {reached} of {count} | {time} | {each:.1} |")
     }
 }
 

@@ -8,6 +8,7 @@ pub mod evaluation;
 pub mod field_cache;
 pub mod layout;
 pub mod metrology;
+pub mod play;
 pub mod rig;
 pub mod scdf;
 pub mod tuning;

@@ -49,7 +49,7 @@ pub use crate::pipeline::phase::Phase;
 pub use crate::pipeline::probe::{NoProbe, Probe, Stage};
 use crate::pipeline::refusal::Refusal;
 use crate::pipeline::signal::Scale;
-use crate::quantity::{Contact, Strain};
+use crate::quantity::{CHANNELS, Contact, Strain};
 use crate::time::{HostInstant, StreamInstant};
 
 /// After a fault a contact is believed again when the stream has been sound for this long.
@@ -263,6 +263,11 @@ impl Pipeline {
     /// The channels of the newest sample as the decoder got them; `None` while there are none that can be trusted.
     pub fn strain(&self) -> Option<&Strain> {
         self.stage.strain().filter(|_| self.is_heard())
+    }
+
+    /// What the channels of the newest sample read, in microvolts: raw, not tared; zeros before the first one.
+    pub const fn raw_uv(&self) -> &[f64; CHANNELS] {
+        self.stage.raw_uv()
     }
 
     /// How sure the contact is that is being mapped, if there is one and the decoder knows. Decodes it anew.

@@ -5,6 +5,7 @@ mod method;
 mod named;
 mod numbers;
 mod own;
+mod play;
 mod scdf;
 mod thermal;
 
@@ -29,18 +30,28 @@ use super::written::{both_print, is_same, is_stdout, print_json, say, stdout, wr
 /// Arguments of `tactpad adapt`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Example: tactpad adapt --method scdf --measured m.csv --from scdf.onnx --out mine.onnx"
+    after_help = "Examples:\n  tactpad adapt --method scdf --measured m.csv --from scdf.onnx --out mine.onnx\n  \
+                  tactpad adapt --play game.cap --weights w.csv --out mine.decoder"
 )]
 pub(super) struct Arguments {
-    /// How it is done.
-    #[arg(long, value_name = "METHOD")]
-    method: Method,
+    /// How it is done; from play there is only inverse.
+    #[arg(long, value_name = "METHOD", required_unless_present = "play")]
+    method: Option<Method>,
     /// A CSV of measured contacts with all nine channels, raw.
     ///
     /// Where it has readings of the untouched pad (session zero, or forces near 0), channels are taken relative to them. Given
     /// several times, the tables are read one after the other, each with its own zeros.
-    #[arg(long, value_name = "FILE", required = true)]
+    #[arg(long, value_name = "FILE", required_unless_present = "play")]
     measured: Vec<PathBuf>,
+    /// A capture of play instead: presses all over the plate, which nobody wrote down.
+    #[arg(long, value_name = "CAPTURE", conflicts_with_all = ["measured", "rows"])]
+    play: Option<PathBuf>,
+    /// A CSV of placements of a known weight while the capture was made: t_s,x_mm,y_mm,weight_g.
+    ///
+    /// t_s is any moment while it rests, in seconds on the pad's clock from the capture's first sample. Presses alone do not say how
+    /// strong a newton is.
+    #[arg(long, value_name = "W.csv", requires = "play")]
+    weights: Option<PathBuf>,
     /// Take N of the contacts only, drawn by the seed.
     #[arg(long, value_name = "N", value_parser = parse_rows, allow_hyphen_values = true)]
     rows: Option<usize>,
@@ -88,12 +99,16 @@ enum Fit {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { method, out, json, .. } = arguments;
+    let Arguments { out, json, .. } = arguments;
     if *json && is_stdout(out) {
         return Err(both_print("--out -"));
     }
     arguments.spare()?;
     let device = arguments.pad.read()?;
+    if let Some(play) = &arguments.play {
+        return play::run(arguments, play, &device);
+    }
+    let method = &arguments.method.unwrap_or(Method::Inverse);
     let measured = Measured::read(&arguments.measured, &device, (arguments.rows, arguments.seed), *method)?;
     let to = Destination::of(out)?;
     let from = arguments.from.as_deref();
@@ -136,6 +151,13 @@ impl Arguments {
         self.pad.spare(&self.out)?;
         if self.measured.iter().any(|measured| is_same(measured, &self.out)) {
             return Err(written_over(&self.out, "is the measured table"));
+        }
+        let is_out = |path: &Option<PathBuf>| path.as_ref().is_some_and(|path| is_same(path, &self.out));
+        if is_out(&self.play) {
+            return Err(written_over(&self.out, "is the capture"));
+        }
+        if is_out(&self.weights) {
+            return Err(written_over(&self.out, "is the table of weights"));
         }
         Ok(())
     }

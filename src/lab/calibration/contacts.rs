@@ -3,6 +3,7 @@
 use crate::numeric::zernike::{Jet, jets, norms};
 use crate::pad::field::{PadField, Sensitivity};
 use crate::pipeline::compensation::hysteresis::PLAYS;
+use crate::pipeline::contact::uncertainty::UNKNOWNS;
 use crate::quantity::{CHANNELS, Contact};
 use crate::tables::measured::Row;
 
@@ -17,6 +18,26 @@ pub(super) type Maps = [[f64; 3]; CHANNELS];
 /// For each play operator and channel: its state beside the strain, relative to the same of the untouched pad.
 pub(super) type Lags = [[f64; CHANNELS]; PLAYS];
 
+/// What is known of a contact beside its channels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Knowledge {
+    /// A reference wrote it down: how well, the fit finds.
+    Written,
+    /// Nothing, as of a press in play. Its label is where the search for it begins.
+    Unlabelled,
+    /// A known weight on a marked place: standard deviations of x, y (mm), Fx, Fy, Fz (N) around the label.
+    Placed([f64; UNKNOWNS]),
+}
+
+/// A contact to fit to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fitted {
+    /// Its row in the recording.
+    pub row: usize,
+    /// What is known of it.
+    pub knowledge: Knowledge,
+}
+
 /// The simulator's field at a place.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
@@ -28,13 +49,25 @@ pub(super) struct Place {
     pub(super) laplacian: Maps,
     /// ∂G/∂p: µV/N per unit of each physical parameter.
     pub(super) sensitivities: Vec<Maps>,
+    /// ∇∂G/∂p: the same per mm of x and of y.
+    pub(super) sensitivity_gradients: Vec<[Maps; 2]>,
     /// The background's polynomials, each with a root mean square of 1 over the plate.
     pub(super) terms: [f64; TERMS],
+    /// Their derivatives, per mm of x and of y.
+    pub(super) term_gradients: [[f64; TERMS]; 2],
 }
 
 /// One measured contact.
 #[derive(Clone, Debug)]
 pub(super) struct Measured {
+    /// What is known of it.
+    pub(super) knowledge: Knowledge,
+    /// x, y, Fx, Fy, Fz as they are written.
+    pub(super) label: [f64; UNKNOWNS],
+    /// On the pad's clock; zero where rows have no time.
+    pub(super) at_s: f64,
+    /// Where the contact is taken to be, and its force: the label's, or the most likely ones where the channels may correct it.
+    pub(super) place_mm: [f64; 2],
     pub(super) place: Place,
     pub(super) force_n: [f64; 3],
     /// Channels relative to the zero.
@@ -60,15 +93,26 @@ impl Place {
         let degree =
             sensitivities.iter().map(|it| degree_of(it.maps[0][0].coefficients.len())).max().unwrap_or(0);
         let jets = jets(degree.max(BACKGROUND_DEGREE), share);
-        let sensitivity =
-            |it: &&Sensitivity| it.maps.each_ref().map(|axes| axes.each_ref().map(|map| map.value(&jets)));
+        let (mut values, mut gradients) = (Vec::new(), Vec::new());
+        for sensitivity in sensitivities {
+            let jets = sensitivity.maps.each_ref().map(|axes| axes.each_ref().map(|map| map.jet(&jets)));
+            values.push(jets.map(|axes| axes.map(|jet| jet.value)));
+            let [dx, dy]: [fn(Jet) -> f64; 2] = [|jet| jet.dx, |jet| jet.dy];
+            gradients.push([dx, dy].map(|along| jets.map(|axes| axes.map(|jet| along(jet) / plate_mm))));
+        }
+        let factors = term_factors();
+        let term = |of: fn(&Jet) -> f64, scale: f64| {
+            std::array::from_fn(|term| factors[term] * of(&jets[term]) * scale)
+        };
         let gains = field.signals.gains(place_mm[0] as f32, place_mm[1] as f32);
         Self {
             gains: gains.value,
             gradient: [gains.dx, gains.dy],
             laplacian: field.signals.laplacian(place_mm),
-            sensitivities: sensitivities.iter().map(sensitivity).collect(),
-            terms: terms(&jets),
+            sensitivities: values,
+            sensitivity_gradients: gradients,
+            terms: term(|jet| jet.value, 1.0),
+            term_gradients: [term(|jet| jet.dx, 1.0 / plate_mm), term(|jet| jet.dy, 1.0 / plate_mm)],
         }
     }
 }
@@ -83,16 +127,21 @@ fn degree_of(coefficients: usize) -> usize {
     (0..).find(|degree| (degree + 1) * (degree + 2) / 2 >= coefficients).unwrap_or(0)
 }
 
-/// The polynomials divided by their root mean square over the disc, √(‖U‖²/π).
-fn terms(jets: &[Jet]) -> [f64; TERMS] {
+/// One over each polynomial's root mean square over the disc, √(‖U‖²/π).
+fn term_factors() -> [f64; TERMS] {
     let norms = norms(BACKGROUND_DEGREE);
-    std::array::from_fn(|term| jets[term].value * (std::f64::consts::PI / norms[term]).sqrt())
+    std::array::from_fn(|term| (std::f64::consts::PI / norms[term]).sqrt())
 }
 
 impl Measured {
     /// A contact without readings, for predictions.
-    pub(super) const fn unmeasured(place: Place, force_n: [f64; 3]) -> Self {
+    pub(super) const fn unmeasured(place_mm: [f64; 2], place: Place, force_n: [f64; 3]) -> Self {
+        let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) = (place_mm, force_n);
         Self {
+            knowledge: Knowledge::Written,
+            label: [x_mm, y_mm, fx_n, fy_n, fz_n],
+            at_s: 0.0,
+            place_mm,
             place,
             force_n,
             uv: [0.0; CHANNELS],
@@ -107,18 +156,27 @@ impl Measured {
         field: &PadField,
         sensitivities: &[&Sensitivity],
         plate_mm: f64,
-        row: &Row,
+        (row, knowledge): (&Row, Knowledge),
         reference_c: Option<f64>,
     ) -> Option<Self> {
         let Contact { x_mm, y_mm, .. } = Contact::from(row.label);
-        let place = Place::of(field, sensitivities, plate_mm, [x_mm, y_mm].map(f64::from));
+        let place_mm = [x_mm, y_mm].map(f64::from);
+        let place = Place::of(field, sensitivities, plate_mm, place_mm);
+        let force_n = [row.label.fx_n, row.label.fy_n, row.label.fz_n];
         Some(Self {
-            place,
-            force_n: [row.label.fx_n, row.label.fy_n, row.label.fz_n],
+            knowledge,
+            label: row.label.numbers(),
+            at_s: row.t_s.unwrap_or(0.0),
             uv: row.uv?,
             above_c: row.temp_c.zip(reference_c).map_or(0.0, |(temp_c, reference_c)| temp_c - reference_c),
-            lags: [[0.0; CHANNELS]; PLAYS],
-            crept_uv: [0.0; CHANNELS],
+            ..Self::unmeasured(place_mm, place, force_n)
         })
+    }
+
+    /// How far it is taken to be from its label.
+    pub(super) fn off_label(&self) -> [f64; UNKNOWNS] {
+        let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) = (self.place_mm, self.force_n);
+        let here = [x_mm, y_mm, fx_n, fy_n, fz_n];
+        std::array::from_fn(|k| here[k] - self.label[k])
     }
 }

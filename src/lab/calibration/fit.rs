@@ -7,7 +7,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
+use super::contacts::{Fitted, Knowledge};
 use super::earlier::Earlier;
+use super::known::Known;
 use super::model::Layout;
 use super::noise;
 use super::numbers::{Asked, Number, Pair};
@@ -35,6 +37,8 @@ const THRESHOLDS: i32 = 11;
 const HALVINGS: i32 = 3;
 /// Relaxation times that are tried: between the length of a press and that of a pause.
 const CREEP_TIMES_S: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
+/// Time constants of relative noise that are tried in play.
+const NOISE_TIMES_S: [f64; 4] = [0.7, 2.0, 6.0, 18.0];
 /// ln of the Bayes factor that a richer hypothesis (a play operator, creep, another pad's field) must exceed.
 const LOG_EVIDENCE_GAIN: f64 = 15.0;
 /// Plates that differ by less are of one kind.
@@ -57,7 +61,8 @@ impl<'r> Counted<'r> {
         let search =
             |known_uv: &f64| if *known_uv > 0.0 { refinements } else { THRESHOLDS as usize + refinements };
         let of_one = |it: &Hypothesis| {
-            1 + it.prior.thresholds_uv.iter().map(search).sum::<usize>()
+            NOISE_TIMES_S.len()
+                + it.prior.thresholds_uv.iter().map(search).sum::<usize>()
                 + CREEP_TIMES_S.len()
                 + BACKGROUNDS.len()
         };
@@ -94,6 +99,8 @@ pub struct Calibration {
     pub thermal: Option<ThermalFit>,
     /// Contacts that it was fitted to.
     pub contacts: usize,
+    /// How well the pad's field is known, at places all over the plate.
+    pub map: Vec<Known>,
 }
 
 /// Why there is no calibration.
@@ -154,8 +161,10 @@ impl Calibration {
         let contacts = problem.compensated(values, &hysteresis, &creep);
         // What the residuals do not show: drift of the zeros, hysteresis states, the field's posterior covariance.
         let noise = noise::with_zeros(fit.estimates.noise_model.noise, &fit.estimates.drift_uv, &hysteresis);
-        let noise = noise::with_field_covariance(&field, noise, &problem.field_covariances(fit));
+        let covariances = problem.field_covariances(fit);
+        let noise = noise::with_field_covariance(&field, noise, &covariances);
         let decoder = Inverse::new(field.clone(), noise);
+        let map = covariances.iter().filter_map(|it| Known::of(&decoder, it)).collect();
         let (zero_uv, thermal_fit) = (prepared.zero_uv(fit), prepared.thermal(fit));
         let thermal = thermal_fit.map(|fit| fit.coefficients);
         let asked = Asked { zero_uv, gains_follow_temperature: prepared.tells_gains() };
@@ -171,6 +180,7 @@ impl Calibration {
             compensation: Compensation { zero_uv, thermal, creep, hysteresis },
             thermal: thermal_fit,
             contacts: problem.contacts(),
+            map,
         }
     }
 
@@ -210,19 +220,36 @@ pub fn fit_reported(
     earlier: Option<Earlier<'_>>,
     report: Report<'_>,
 ) -> Result<Calibration, FitError> {
+    let written: Vec<Fitted> =
+        rows.iter().map(|row| Fitted { row: *row, knowledge: Knowledge::Written }).collect();
+    fit_known(recording, &written, device, field, earlier, report)
+}
+
+/// [`fit_reported`], where contacts may be known otherwise than by a written label.
+///
+/// # Errors
+/// The same.
+pub fn fit_known(
+    recording: &Recording,
+    fitted: &[Fitted],
+    device: &Device,
+    field: &PadField,
+    earlier: Option<Earlier<'_>>,
+    report: Report<'_>,
+) -> Result<Calibration, FitError> {
     let radius_mm = field.signals.radius_mm();
     if earlier.is_some_and(|it| (it.inverse.field().radius_mm() - radius_mm).abs() > PLATE_TOLERANCE_MM) {
         return Err(FitError::OtherPlate);
     }
-    if rows.is_empty() {
+    if fitted.is_empty() {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
-    let prepared = Prepared::of(recording, rows, device, field).ok_or(FitError::Senseless)?;
+    let prepared = Prepared::of(recording, fitted, device, field).ok_or(FitError::Senseless)?;
     let mut best: Option<(f64, Calibration)> = None;
     let hypotheses = hypotheses(field, earlier);
     let counted = Counted::of(&hypotheses, report);
     for Hypothesis { prior, log_prior_odds, from_earlier } in hypotheses {
-        let (problem, found) = calibrated(&prepared, rows, device, &prior, &counted)?;
+        let (problem, found) = calibrated(&prepared, fitted, device, &prior, &counted)?;
         // ln p(H | y) = ln p(y | H) + ln p(H), but for a constant that all hypotheses share.
         let log_probability = found.log_evidence + log_prior_odds;
         if best.as_ref().is_none_or(|(largest, _)| log_probability > *largest) {
@@ -257,17 +284,18 @@ fn hypotheses(field: &PadField, earlier: Option<Earlier<'_>>) -> Vec<Hypothesis>
 /// The problem of these contacts under this prior, and its fit with the background of the largest evidence.
 fn calibrated<'b>(
     prepared: &'b Prepared,
-    rows: &[usize],
+    fitted: &[Fitted],
     device: &Device,
     prior: &'b Prior,
     counted: &Counted<'_>,
 ) -> Result<(Problem<'b>, Fit), FitError> {
-    let problem = prepared.problem(rows, device, prior);
+    let problem = prepared.problem(fitted, device, prior);
     if problem.contacts() == 0 {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
     // The memory first, as a background would explain part of it; then the background's size with the memory's settings.
-    let plain = with_hysteresis(&problem, prior, counted).ok_or(FitError::Senseless)?;
+    let plain = with_lasting_noise(&problem, prior, counted).ok_or(FitError::Senseless)?;
+    let plain = with_hysteresis(&problem, prior, plain, counted);
     let plain = with_creep(&problem, plain, counted);
     let problem = problem.with_background();
     let best = most_probable(BACKGROUNDS.to_vec(), |background| {
@@ -276,12 +304,20 @@ fn calibrated<'b>(
     Ok((problem, best.ok_or(FitError::Senseless)?))
 }
 
-/// The fit without a background, with as many play operators as the evidence asks for. Known thresholds are only refined.
-fn with_hysteresis(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) -> Option<Fit> {
+/// The fit with nothing but what is known of pads of this kind. In play noise lasts from one contact to the next: as long as
+/// the evidence says.
+fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) -> Option<Fit> {
     let Prior { thresholds_uv, creep: Creep { time_s: creep_time_s, .. }, .. } = *prior;
-    let mut best =
-        counted.fitted(problem, Settings { background: 0.0, thresholds_uv, creep_time_s }, None)?;
-    for (play, known_uv) in thresholds_uv.into_iter().enumerate() {
+    let tried = |noise_time_s: f64| {
+        let settings = Settings { background: 0.0, thresholds_uv, creep_time_s, noise_time_s };
+        counted.fitted(problem, settings, None)
+    };
+    if problem.is_play() { most_probable(NOISE_TIMES_S.to_vec(), tried) } else { tried(0.0) }
+}
+
+/// The same with as many play operators as the evidence asks for. Known thresholds are only refined.
+fn with_hysteresis(problem: &Problem<'_>, prior: &Prior, mut best: Fit, counted: &Counted<'_>) -> Fit {
+    for (play, known_uv) in prior.thresholds_uv.into_iter().enumerate() {
         let tried = |threshold_uv| {
             let mut settings = best.settings;
             settings.thresholds_uv[play] = threshold_uv;
@@ -296,7 +332,7 @@ fn with_hysteresis(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) 
             _ => break,
         }
     }
-    Some(best)
+    best
 }
 
 /// The same with creep, if the evidence asks for it.

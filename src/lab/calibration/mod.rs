@@ -17,9 +17,12 @@
 //! Source: C. M. Bishop, Pattern Recognition and Machine Learning, section 3.5 (evidence); the model of a discrepancy
 //! beside physical parameters is M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425.
 
-mod contacts;
+pub mod contacts;
 pub mod earlier;
 pub mod fit;
+mod jumps;
+pub mod known;
+mod lasting;
 mod model;
 mod moments;
 mod noise;
@@ -27,6 +30,7 @@ mod noise_model;
 mod normal_equations;
 pub mod numbers;
 mod plate;
+mod posterior;
 mod prepared;
 mod prior;
 mod prior_deviations;

@@ -240,6 +240,25 @@ impl Layout {
         self.maps(values, scale, &contact.place).map(|map| response(&map, &contact.force_n))
     }
 
+    /// ∇E along x or y at a place, µV/N per mm. The blur is left out.
+    fn strain_gradient(&self, values: &[f64], scale: &Maps, place: &Place, axis: usize) -> Maps {
+        // ∇G + Σⱼ pⱼ ∇∂G/∂pⱼ + scale Σₜ βₜ ∇Uₜ(x, y).
+        let mut maps = place.gradient[axis];
+        for (value, slope) in values[PHYSICAL..].iter().zip(&place.sensitivity_gradients) {
+            for (map, slope) in maps.as_flattened_mut().iter_mut().zip(slope[axis].as_flattened()) {
+                *map += value * slope;
+            }
+        }
+        let background = values[self.background(0, 0)..].chunks_exact(TERMS);
+        for ((map, scale), terms) in
+            maps.as_flattened_mut().iter_mut().zip(scale.as_flattened()).zip(background)
+        {
+            let slopes = terms.iter().zip(&place.term_gradients[axis]);
+            *map += scale * slopes.map(|(value, term)| value * term).sum::<f64>();
+        }
+        maps
+    }
+
     /// The channels' derivatives by x, y (µV/mm), Fx, Fy, Fz (µV/N).
     pub(super) fn label_jacobian(
         &self,
@@ -248,9 +267,15 @@ impl Layout {
         contact: &Measured,
     ) -> [[f64; UNKNOWNS]; CHANNELS] {
         let maps = self.maps(values, scale, &contact.place);
-        // By the place gₖ Σₐ Fₐ ∇Gₖₐ of the simulated pad, which is near enough for label errors; by the force the maps.
+        // By the place gₖ Σₐ Fₐ ∇Eₖₐ + Σₗ Xₖₗ Σₐ Fₐ ∇Eₗₐ; by the force the maps.
+        let of_strains = [0, 1].map(|axis| {
+            let gradient = self.strain_gradient(values, scale, &contact.place, axis);
+            gradient.map(|map| response(&map, &contact.force_n))
+        });
         let by_place = |channel: usize, axis: usize| {
-            Self::gain(values, channel) * response(&contact.place.gradient[axis][channel], &contact.force_n)
+            let own = Self::gain(values, channel) * of_strains[axis][channel];
+            let shares = &values[CROSSTALKS + channel * CHANNELS..][..CHANNELS];
+            own + shares.iter().zip(&of_strains[axis]).map(|(share, slope)| share * slope).sum::<f64>()
         };
         std::array::from_fn(|channel| {
             let [fx, fy, fz] = maps[channel];

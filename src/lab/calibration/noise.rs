@@ -29,7 +29,7 @@ const FORCE_UV_PER_N: f64 = 1.0;
 const PARTS: usize = 3;
 /// Least standard deviations: no pad is quieter.
 const ADDITIVE_MIN_UV: f64 = 0.5;
-const SHARE_MIN: f64 = 5e-4;
+pub(super) const SHARE_MIN: f64 = 5e-4;
 /// Rounds of reweighting.
 const ROUNDS: usize = 40;
 
@@ -64,6 +64,11 @@ impl NoisePrior {
         let Noise { additive_uv, share, force_uv_per_n, gain, .. } = *noise;
         let noise = Noise { force_uv_per_n, gain, ..Noise::of_channels(additive_uv, share) };
         Self { noise, pseudo_readings: PSEUDO_READINGS_OF_KIND }
+    }
+
+    /// Readings that it counts as.
+    pub(super) const fn pseudo_readings(&self) -> f64 {
+        self.pseudo_readings
     }
 
     /// Variance components of a channel.
@@ -143,12 +148,16 @@ pub(super) fn with_field_covariance(
 }
 
 /// F².
-fn square(force_n: &[f64; 3]) -> f64 {
+pub(super) fn square(force_n: &[f64; 3]) -> f64 {
     force_n.iter().map(|n| n * n).sum()
 }
 
 /// Bilinear form leftᵀ M right.
-fn form(left: &[f64; CHANNELS], matrix: &[[f64; CHANNELS]; CHANNELS], right: &[f64; CHANNELS]) -> f64 {
+pub(super) fn form(
+    left: &[f64; CHANNELS],
+    matrix: &[[f64; CHANNELS]; CHANNELS],
+    right: &[f64; CHANNELS],
+) -> f64 {
     let line = |(left, line): (&f64, &[f64; CHANNELS])| {
         left * line.iter().zip(right).map(|(entry, right)| entry * right).sum::<f64>()
     };

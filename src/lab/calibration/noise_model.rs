@@ -11,6 +11,8 @@
 //! round. The variances are found by expectation and maximisation (A. P. Dempster, N. M. Laird, D. B. Rubin, J. R. Statist.
 //! Soc. B 39 (1977) 1).
 
+use super::contacts::Knowledge;
+use super::lasting::{Smoothed, Wander};
 use super::noise::{self, NoisePrior, SquaredResidual};
 use crate::numeric::linear::Factor;
 use crate::pipeline::contact::uncertainty::{Noise, UNKNOWNS};
@@ -23,8 +25,9 @@ const FORCE_N: f64 = 0.02;
 /// Least standard deviations of label errors: no reference is better.
 const PLACE_MIN_MM: f64 = 2e-3;
 const FORCE_MIN_N: f64 = 5e-4;
-/// EM steps for each estimate.
+/// EM steps for each estimate; the states of lasting noise make each dear.
 const ROUNDS: usize = 12;
+const ROUNDS_LASTING: usize = 4;
 
 /// Standard deviations of channel noise and label errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +38,8 @@ pub(super) struct NoiseModel {
     place_mm: f64,
     /// Error of each written force component.
     force_n: f64,
+    /// Time constant of the relative noise; zero: it is drawn anew for each contact.
+    pub(super) lasting_s: f64,
     /// Prior of the channel noise.
     prior: NoisePrior,
 }
@@ -42,7 +47,11 @@ pub(super) struct NoiseModel {
 /// A contact's residual r = y − f(θ).
 #[derive(Clone, Debug)]
 pub(super) struct Residual {
-    /// Its channels.
+    /// What is known of its label.
+    pub(super) knowledge: Knowledge,
+    /// On the pad's clock.
+    pub(super) at_s: f64,
+    /// The signals that relative noise is relative to.
     pub(super) uv: [f64; CHANNELS],
     /// Its force.
     pub(super) force_n: f64,
@@ -65,33 +74,48 @@ pub(super) struct MarginalPrecision {
 
 impl NoiseModel {
     /// The model before any measurement.
-    pub(super) const fn prior(prior: NoisePrior) -> Self {
-        Self { noise: prior.noise, place_mm: PLACE_MM, force_n: FORCE_N, prior }
+    pub(super) const fn prior(prior: NoisePrior, lasting_s: f64) -> Self {
+        Self { noise: prior.noise, place_mm: PLACE_MM, force_n: FORCE_N, lasting_s, prior }
     }
 
-    /// Diagonal of Λ: one over the variances of the label's errors.
-    fn label_precisions(&self) -> [f64; UNKNOWNS] {
-        let [place, force] = [self.place_mm, self.force_n].map(|deviation| 1.0 / (deviation * deviation));
-        [place, place, force, force, force]
+    /// How the gains wander, if relative noise lasts.
+    pub(super) fn wander(&self) -> Option<Wander> {
+        let Self { lasting_s: time_s, noise, .. } = self;
+        (*time_s > 0.0).then_some(Wander { time_s: *time_s, deviation: noise.share })
+    }
+
+    /// Diagonal of Λ: one over the variances of the label's errors; without a label nothing is known of it.
+    fn label_precisions(&self, knowledge: Knowledge) -> [f64; UNKNOWNS] {
+        let deviations = match knowledge {
+            Knowledge::Written => [self.place_mm, self.place_mm, self.force_n, self.force_n, self.force_n],
+            Knowledge::Placed(deviations) => deviations,
+            Knowledge::Unlabelled => return [0.0; UNKNOWNS],
+        };
+        deviations.map(|deviation| 1.0 / (deviation * deviation))
     }
 
     /// Factor of M = Λ + Jᵀ W J, the inverse covariance of the label's error given the channels.
     fn label_information(&self, residual: &Residual, weights: &[f64; CHANNELS]) -> Option<Factor<UNKNOWNS>> {
         let mut information = [[0.0; UNKNOWNS]; UNKNOWNS];
-        for (k, precision) in self.label_precisions().into_iter().enumerate() {
+        for (k, precision) in self.label_precisions(residual.knowledge).into_iter().enumerate() {
             information[k][k] = precision;
         }
-        // Σₖ wₖ Jₖᵀ Jₖ.
-        for (row, weight) in residual.label_jacobian.iter().zip(weights) {
-            for (line, left) in information.iter_mut().zip(row) {
-                line.iter_mut().zip(row).for_each(|(entry, right)| *entry += weight * left * right);
-            }
-        }
+        add_products(&mut information, &residual.label_jacobian, weights);
         Factor::of(&information)
     }
 
+    /// Of each channel, what is drawn anew for each contact.
     fn variances(&self, residual: &Residual) -> [f64; CHANNELS] {
-        self.noise.variances(&residual.uv, residual.force_n).noise
+        let uv = if self.lasting_s > 0.0 { [0.0; CHANNELS] } else { residual.uv };
+        self.noise.variances(&uv, residual.force_n).noise
+    }
+
+    /// The most likely error of the label, d̂ = M⁻¹ Jᵀ W r.
+    pub(super) fn label_error(&self, residual: &Residual) -> Option<[f64; UNKNOWNS]> {
+        // Lasting noise is noise here: each contact is taken by itself.
+        let variances = self.noise.variances(&residual.uv, residual.force_n).noise;
+        let weights = variances.map(|variance| 1.0 / variance);
+        Some(self.label_information(residual, &weights)?.solve(&projected(residual, &weights)))
     }
 
     /// `None` where M is not positive definite or not finite.
@@ -106,65 +130,162 @@ impl NoiseModel {
                 downdate[k] = weights[k] * value;
             }
         }
-        // det V = det W⁻¹ det M / det Λ.
-        let labels: f64 = self.label_precisions().iter().map(|precision| precision.ln()).sum();
         let channels: f64 = variances.iter().map(|variance| variance.ln()).sum();
         Some(MarginalPrecision {
             weights,
             downdates,
-            log_determinant: channels + label_information.log_determinant() - labels,
+            log_determinant: channels + label_information.log_determinant() - self.log_labels(residual)?,
         })
+    }
+
+    /// What ln det V = ln det W⁻¹ + ln det M − ln det Λ has of the label. Without one, the density is that of the four directions
+    /// that no contact explains, which det JᵀJ in the place of det Λ gives: it does not depend on the contact's units.
+    fn log_labels(&self, residual: &Residual) -> Option<f64> {
+        if residual.knowledge == Knowledge::Unlabelled {
+            let mut products = [[0.0; UNKNOWNS]; UNKNOWNS];
+            add_products(&mut products, &residual.label_jacobian, &[1.0; CHANNELS]);
+            return Some(Factor::of(&products)?.log_determinant());
+        }
+        Some(self.label_precisions(residual.knowledge).iter().map(|precision| precision.ln()).sum())
     }
 
     /// The maximum-likelihood estimate from these residuals, with the prior as pseudo-observations. `freedom_ratio` is the share
     /// of the readings that are residual degrees of freedom: squares of residuals are divided by it.
     pub(super) fn reestimated(self, residuals: &[Residual], freedom_ratio: f64) -> Self {
-        (0..ROUNDS).fold(self, |noise_model, _| noise_model.em_step(residuals, freedom_ratio))
+        let rounds = if self.lasting_s > 0.0 { ROUNDS_LASTING } else { ROUNDS };
+        (0..rounds).fold(self, |noise_model, _| noise_model.em_step(residuals, freedom_ratio))
     }
 
     /// E: expected squares of each label's error d and each channel's noise n, given the residual r.
     /// M: label variances are means of these squares, channel variances are fitted to them.
     fn em_step(&self, residuals: &[Residual], freedom_ratio: f64) -> Self {
-        let mut noise_squares: [Vec<SquaredResidual>; CHANNELS] = [const { Vec::new() }; CHANNELS];
-        let mut label_squares =
-            [2.0 * PSEUDO_CONTACTS * PLACE_MM * PLACE_MM, 3.0 * PSEUDO_CONTACTS * FORCE_N * FORCE_N];
-        for residual in residuals {
-            let weights = self.variances(residual).map(|variance| 1.0 / variance);
-            let Some(label_information) = self.label_information(residual, &weights) else { continue };
-            // Cov d = M⁻¹, d̂ = M⁻¹ Jᵀ W r.
-            let covariance = label_information.inverse();
-            let errors = label_information.solve(&projected(residual, &weights));
-            for (k, error) in errors.iter().enumerate() {
-                // E[d²] = d̂² + (M⁻¹)ₖₖ.
-                label_squares[usize::from(k > 1)] += error * error / freedom_ratio + covariance[k][k];
-            }
-            for (channel, row) in residual.label_jacobian.iter().enumerate() {
-                // E[n²] = (r − J d̂)² + J M⁻¹ Jᵀ.
-                let noise_uv = residual.residual_uv[channel] - dot(row, &errors);
-                let covariance_row = covariance.map(|line| dot(&line, row));
-                let square_uv2 = noise_uv * noise_uv / freedom_ratio + dot(row, &covariance_row);
-                let Residual { uv, force_n, .. } = *residual;
-                noise_squares[channel].push(SquaredResidual { uv: uv[channel], force_n, square_uv2 });
-            }
+        let smoothed = self.smoothed(residuals);
+        let mut squares = Squares::default();
+        for (at, residual) in residuals.iter().enumerate() {
+            let state = smoothed.as_ref().map(|it| (&it.mean[at], &it.covariance[at]));
+            self.add_squares(residual, state, freedom_ratio, &mut squares);
+        }
+        let mut noise = noise::from_residuals(&squares.noise, &self.prior);
+        if let Some(smoothed) = smoothed {
+            noise.share = self.lasting_share(&smoothed.variance, residuals.len());
         }
         // σ² = (κ σ₀² + Σ E[d²])/(κ + n), with κ pseudo-contacts of the prior σ₀; two coordinates and three forces each.
-        let count = residuals.len() as f64 + PSEUDO_CONTACTS;
+        let count = squares.labels as f64 + PSEUDO_CONTACTS;
+        let mean = |sum: f64, prior: f64, numbers: f64| {
+            ((sum + numbers * PSEUDO_CONTACTS * prior * prior) / (numbers * count)).sqrt()
+        };
         Self {
-            noise: noise::from_residuals(&noise_squares, &self.prior),
-            prior: self.prior,
-            place_mm: (label_squares[0] / (2.0 * count)).sqrt().max(PLACE_MIN_MM),
-            force_n: (label_squares[1] / (3.0 * count)).sqrt().max(FORCE_MIN_N),
+            noise,
+            place_mm: mean(squares.place_mm2, PLACE_MM, 2.0).max(PLACE_MIN_MM),
+            force_n: mean(squares.force_n2, FORCE_N, 3.0).max(FORCE_MIN_N),
+            ..*self
+        }
+    }
+
+    /// The states of lasting noise by all contacts; none where noise is drawn anew.
+    fn smoothed(&self, residuals: &[Residual]) -> Option<Smoothed> {
+        let wander = self.wander()?;
+        let seen = residuals.iter().map(|residual| Some((self.marginal_precision(residual)?, residual)));
+        wander.smoothed(&seen.collect::<Option<Vec<_>>>()?)
+    }
+
+    /// σ² = (κ σ₀² + n σ̂²)/(κ + n) of each channel's gain.
+    fn lasting_share(&self, variance: &[f64; CHANNELS], count: usize) -> [f64; CHANNELS] {
+        let (known, count) = (self.prior.pseudo_readings(), count as f64);
+        std::array::from_fn(|k| {
+            let prior = self.prior.noise.share[k];
+            ((known * prior * prior + count * variance[k]) / (known + count)).sqrt().max(noise::SHARE_MIN)
+        })
+    }
+
+    /// Adds a contact's expected squares. `state` are mean m and covariance P of the lasting noise there.
+    fn add_squares(
+        &self,
+        residual: &Residual,
+        state: Option<(&[f64; CHANNELS], &[[f64; CHANNELS]; CHANNELS])>,
+        freedom_ratio: f64,
+        squares: &mut Squares,
+    ) {
+        let weights = self.variances(residual).map(|variance| 1.0 / variance);
+        let Some(label_information) = self.label_information(residual, &weights) else { return };
+        // What the lasting noise does not explain: r − D m.
+        let mut residual = residual.clone();
+        if let Some((mean, _)) = state {
+            let own = residual.residual_uv.iter_mut().zip(residual.uv.iter().zip(mean));
+            own.for_each(|(left_uv, (uv, mean))| *left_uv -= uv * mean);
+        }
+        // Cov d = M⁻¹, d̂ = M⁻¹ Jᵀ W (r − D m).
+        let covariance = label_information.inverse();
+        let errors = label_information.solve(&projected(&residual, &weights));
+        if residual.knowledge == Knowledge::Written {
+            squares.labels += 1;
+            for (k, error) in errors.iter().enumerate() {
+                // E[d²] = d̂² + (M⁻¹)ₖₖ.
+                let sum = if k > 1 { &mut squares.force_n2 } else { &mut squares.place_mm2 };
+                *sum += error * error / freedom_ratio + covariance[k][k];
+            }
+        }
+        for (channel, row) in residual.label_jacobian.iter().enumerate() {
+            // E[n²] = (r − D m − J d̂)² + J M⁻¹ Jᵀ + G P Gᵀ, with G = (I − J M⁻¹ Jᵀ W) D.
+            let noise_uv = residual.residual_uv[channel] - dot(row, &errors);
+            let covariance_row = covariance.map(|line| dot(&line, row));
+            let mut square_uv2 = noise_uv * noise_uv / freedom_ratio + dot(row, &covariance_row);
+            if let Some((_, state)) = state {
+                let gain: [f64; CHANNELS] = std::array::from_fn(|other| {
+                    let own = f64::from(u8::from(other == channel));
+                    let through_label = dot(&residual.label_jacobian[other], &covariance_row);
+                    (own - through_label * weights[other]) * residual.uv[other]
+                });
+                square_uv2 += dot(&gain, &state.map(|line| dot(&line, &gain)));
+            }
+            let uv = if state.is_some() { 0.0 } else { residual.uv[channel] };
+            squares.noise[channel].push(SquaredResidual { uv, force_n: residual.force_n, square_uv2 });
         }
     }
 }
 
+/// Sums of expected squares over contacts.
+#[derive(Default)]
+struct Squares {
+    /// Of each channel's noise.
+    noise: [Vec<SquaredResidual>; CHANNELS],
+    /// Of written places, both coordinates.
+    place_mm2: f64,
+    /// Of written forces, all three components.
+    force_n2: f64,
+    /// Contacts with a written label.
+    labels: usize,
+}
+
 impl MarginalPrecision {
+    /// V⁻¹.
+    pub(super) fn matrix(&self) -> [[f64; CHANNELS]; CHANNELS] {
+        let entry = |i: usize, j: usize| {
+            let own = if i == j { self.weights[i] } else { 0.0 };
+            own - self.downdates.iter().map(|downdate| downdate[i] * downdate[j]).sum::<f64>()
+        };
+        std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+    }
+
     /// rᵀ V⁻¹ r + ln det V, that is −2 ln of the normal density but for a constant.
     pub(super) fn cost(&self, residual_uv: &[f64; CHANNELS]) -> f64 {
         // Σₖ wₖ rₖ² − Σᵢ (tᵢᵀr)².
         let own: f64 = self.weights.iter().zip(residual_uv).map(|(weight, r)| weight * r * r).sum();
         let by_labels: f64 = self.downdates.iter().map(|downdate| dot(downdate, residual_uv).powi(2)).sum();
         own - by_labels + self.log_determinant
+    }
+}
+
+/// Adds Σₖ wₖ Jₖᵀ Jₖ.
+fn add_products(
+    to: &mut [[f64; UNKNOWNS]; UNKNOWNS],
+    jacobian: &[[f64; UNKNOWNS]; CHANNELS],
+    weights: &[f64; CHANNELS],
+) {
+    for (row, weight) in jacobian.iter().zip(weights) {
+        for (line, left) in to.iter_mut().zip(row) {
+            line.iter_mut().zip(row).for_each(|(entry, right)| *entry += weight * left * right);
+        }
     }
 }
 
@@ -197,7 +318,14 @@ mod tests {
             let noise = |uv: f64, normal: &mut dyn FnMut(f64) -> f64| normal(5.0) + uv * normal(0.02);
             let residual_uv =
                 std::array::from_fn(|k| noise(uv[k], &mut normal) + dot(&label_jacobian[k], &errors));
-            Residual { uv, force_n: 0.0, residual_uv, label_jacobian }
+            Residual {
+                knowledge: Knowledge::Written,
+                at_s: 0.0,
+                uv,
+                force_n: 0.0,
+                residual_uv,
+                label_jacobian,
+            }
         };
         (0..1500).map(|_| residual()).collect()
     }
@@ -205,7 +333,7 @@ mod tests {
     #[test]
     fn channel_noise_and_label_errors_are_told_apart() {
         for (place_mm, force_n) in [(0.1, 0.02), (0.6, 0.02), (0.02, 0.1)] {
-            let found = (0..10).fold(NoiseModel::prior(NoisePrior::SIMULATED), |it, _| {
+            let found = (0..10).fold(NoiseModel::prior(NoisePrior::SIMULATED, 0.0), |it, _| {
                 it.reestimated(&residuals(place_mm, force_n), 1.0)
             });
             assert!((found.place_mm / place_mm - 1.0).abs() < 0.3, "{place_mm}: {found:?}");
@@ -218,10 +346,10 @@ mod tests {
     #[test]
     fn the_marginal_precision_is_the_inverse_covariance() {
         let residual = &residuals(0.1, 0.02)[0];
-        let noise_model = NoiseModel::prior(NoisePrior::SIMULATED);
+        let noise_model = NoiseModel::prior(NoisePrior::SIMULATED, 0.0);
         let marginal_precision = noise_model.marginal_precision(residual).unwrap();
         let variances = noise_model.variances(residual);
-        let label = noise_model.label_precisions().map(|precision| 1.0 / precision);
+        let label = noise_model.label_precisions(Knowledge::Written).map(|precision| 1.0 / precision);
         let covariance: [[f64; CHANNELS]; CHANNELS] = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
                 let by_label: f64 = (0..UNKNOWNS)

@@ -8,14 +8,18 @@
 //! their covariance V and A = ∂f/∂θ; the second ones over single numbers with a variance σ² and derivatives a.
 
 use super::noise_model::MarginalPrecision;
-use crate::numeric::linear::{LargeFactor, Symmetric};
-use crate::pipeline::contact::uncertainty::UNKNOWNS;
+use crate::numeric::linear::{LargeFactor, Symmetric, dot};
 use crate::quantity::CHANNELS;
+
+/// So many vectors are collected before their squares go into H: it is larger than a processor's cache.
+const COLLECTED: usize = 48;
 
 /// The sums H and g.
 pub(super) struct NormalEquations {
     curvature: Symmetric,
     gradient: Vec<f64>,
+    /// Vectors v whose ± v vᵀ is still to be added to H.
+    collected: Vec<(f64, Vec<f64>)>,
 }
 
 /// A Gauss-Newton step δ, and the factor of the curvature H.
@@ -31,10 +35,10 @@ impl NormalEquations {
         let gradient =
             precisions.iter().zip(mean.iter().zip(values)).map(|(p, (m, v))| p * (m - v)).collect();
         precisions.iter().enumerate().for_each(|(at, precision)| curvature.add_diagonal(at, *precision));
-        Self { curvature, gradient }
+        Self { curvature, gradient, collected: Vec::with_capacity(COLLECTED) }
     }
 
-    /// Adds a contact. `each_row` calls with each channel k and its derivatives, the row aₖ of A.
+    /// Adds a contact. `rows` are the channels' derivatives, the rows aₖ of A.
     ///
     /// The label's errors are marginalised: V⁻¹ = W − Σ tᵢ tᵢᵀ, with the weights W and the downdates tᵢ, hence
     ///
@@ -45,25 +49,32 @@ impl NormalEquations {
         &mut self,
         MarginalPrecision { weights, downdates, .. }: &MarginalPrecision,
         residual_uv: &[f64; CHANNELS],
-        each_row: impl FnOnce(&mut dyn FnMut(usize, &[f64])),
+        rows: &[Vec<f64>],
     ) {
-        let Self { curvature, gradient } = self;
-        // Row i is Aᵀtᵢ.
-        let mut projected = vec![vec![0.0; gradient.len()]; UNKNOWNS];
-        each_row(&mut |channel, derivatives| {
-            let weight = weights[channel];
-            curvature.add_product(weight, derivatives);
-            let weighted = weight * residual_uv[channel];
-            gradient.iter_mut().zip(derivatives).for_each(|(sum, slope)| *sum += weighted * slope);
-            for (row, downdate) in projected.iter_mut().zip(downdates) {
-                row.iter_mut().zip(derivatives).for_each(|(sum, slope)| *sum += downdate[channel] * slope);
-            }
-        });
-        for (row, downdate) in projected.iter().zip(downdates) {
-            let product: f64 = downdate.iter().zip(residual_uv).map(|(t, r)| t * r).sum();
-            gradient.iter_mut().zip(row).for_each(|(sum, entry)| *sum -= entry * product);
+        for ((row, weight), residual_uv) in rows.iter().zip(weights).zip(residual_uv) {
+            self.add(*residual_uv, 1.0 / weight, row);
         }
-        curvature.subtract_squares(&projected);
+        for downdate in downdates {
+            let mut projected = vec![0.0; self.gradient.len()];
+            for (row, share) in rows.iter().zip(downdate) {
+                projected.iter_mut().zip(row).for_each(|(sum, slope)| *sum += share * slope);
+            }
+            self.subtract(projected, dot(downdate, residual_uv));
+        }
+    }
+
+    /// H ← H − v vᵀ, g ← g − v s.
+    pub(super) fn subtract(&mut self, vector: Vec<f64>, residual: f64) {
+        self.gradient.iter_mut().zip(&vector).for_each(|(sum, entry)| *sum -= entry * residual);
+        self.collected.push((-1.0, vector));
+        if self.collected.len() >= COLLECTED {
+            self.add_collected();
+        }
+    }
+
+    fn add_collected(&mut self) {
+        self.curvature.add_squares(&self.collected);
+        self.collected.clear();
     }
 
     /// Adds a single number with its residual r, variance σ² and derivatives a.
@@ -74,7 +85,8 @@ impl NormalEquations {
     }
 
     /// δ = H⁻¹ g; `None` where H is not positive definite or not finite.
-    pub(super) fn solved(self) -> Option<Step> {
+    pub(super) fn solved(mut self) -> Option<Step> {
+        self.add_collected();
         let factor = self.curvature.factorised()?;
         Some(Step { delta: factor.solve(&self.gradient), factor })
     }

@@ -1,6 +1,7 @@
 //! A recording as the fit takes it: relative to zeros that follow the temperature, which are
 //! estimated where none was read.
 
+use super::contacts::Fitted;
 use super::model::Layout;
 use super::prior::Prior;
 use super::problem::{Fit, Problem, Settings};
@@ -28,14 +29,14 @@ impl Prepared {
     /// `None` where the zeros cannot be found, as the readings are beyond anything that a pad can read.
     pub(super) fn of(
         recording: &Recording,
-        rows: &[usize],
+        fitted: &[Fitted],
         device: &Device,
         field: &PadField,
     ) -> Option<Self> {
         let thermal = ThermalFit::of_zeros(recording);
         let recording = thermal
             .map_or_else(|| recording.clone(), |fit| recording.clone().at_reference(&fit.coefficients));
-        let contacts = rows.iter().filter_map(|at| recording.tared().rows.get(*at));
+        let contacts = fitted.iter().filter_map(|it| recording.tared().rows.get(it.row));
         let tells_gains = ThermalFit::is_told_by(contacts);
         let prepared = Self { recording, thermal, zero_uv: None, tells_gains };
         if prepared.recording.is_tared() {
@@ -43,16 +44,17 @@ impl Prepared {
         }
         // Hysteresis and noise go with what is beyond the zeros, so these have to be known about before anything else.
         let prior = Prior::simulated(field);
-        let plain = Settings { background: 0.0, thresholds_uv: [0.0; PLAYS], creep_time_s: 0.0 };
-        let fit = prepared.problem(rows, device, &prior).fitted(plain, None);
+        let plain =
+            Settings { background: 0.0, thresholds_uv: [0.0; PLAYS], creep_time_s: 0.0, noise_time_s: 0.0 };
+        let fit = prepared.problem(fitted, device, &prior).fitted(plain, None);
         let zero_uv = Layout::zeros(&fit?.values);
         Some(Self { recording: prepared.recording.less(&zero_uv), zero_uv: Some(zero_uv), ..prepared })
     }
 
     /// The least-squares problem of these contacts under a prior.
-    pub(super) fn problem<'p>(&'p self, rows: &[usize], device: &Device, prior: &'p Prior) -> Problem<'p> {
+    pub(super) fn problem<'p>(&'p self, fitted: &[Fitted], device: &Device, prior: &'p Prior) -> Problem<'p> {
         let reference_c = self.thermal.map(|fit| fit.coefficients.reference_c);
-        Problem::of(&self.recording, reference_c, rows, device, prior)
+        Problem::of(&self.recording, reference_c, fitted, device, prior)
     }
 
     /// The zeros, corrected by those of a fit.

@@ -12,7 +12,7 @@ use crate::pipeline::health::Health;
 use crate::pipeline::interruption::{Cause, Effect, Effects};
 use crate::pipeline::probe::{Probe, Stage};
 use crate::pipeline::signal::{Conditioned, PadState, Scale, Signal};
-use crate::quantity::{Contact, Strain};
+use crate::quantity::{CHANNELS, Contact, Strain};
 use crate::time::StreamInstant;
 
 /// What a sample comes to.
@@ -47,6 +47,8 @@ pub struct ContactStage {
     watch: Watch,
     /// What was decoded last; `None` if the last sample could not be.
     strain: Option<Strain>,
+    /// What the channels of the last sample read.
+    raw_uv: [f64; CHANNELS],
 }
 
 impl ContactStage {
@@ -60,12 +62,18 @@ impl ContactStage {
             watch: Watch::new(decoder.inverse()),
             decoder,
             strain: None,
+            raw_uv: [0.0; CHANNELS],
         }
     }
 
     /// The channels of the last sample as the decoder got them; `None` if they could not be trusted.
     pub const fn strain(&self) -> Option<&Strain> {
         self.strain.as_ref()
+    }
+
+    /// What the channels of the last sample read: not tared, nothing taken off.
+    pub const fn raw_uv(&self) -> &[f64; CHANNELS] {
+        &self.raw_uv
     }
 
     /// The contact of the last sample with its uncertainty, if the decoder knows. Decodes it anew.
@@ -101,6 +109,7 @@ impl ContactStage {
         self.thermometer.follow(at, sample, touched);
         let pad = PadState { touched, rest: self.memory.rest(), added_uv: self.thermometer.added_uv() };
         self.strain = None;
+        self.raw_uv = self.signal.raw_uv(sample);
         let load_n = |strain: &Strain| self.decoder.load_n(strain);
         match self.signal.condition(at, sample, &pad, load_n, health) {
             Conditioned::Strain(strain) => {

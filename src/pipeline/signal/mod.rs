@@ -126,6 +126,11 @@ impl Signal {
         }
     }
 
+    /// What the channels of a sample read.
+    pub fn raw_uv(&self, sample: &Sample) -> [f64; CHANNELS] {
+        sample.counts.map(|count| f64::from(count) * self.scale.uv_per_count)
+    }
+
     /// Conditions one sample. `load_n` is the normal force of a strain. Where it gives no strain, the caller tells the
     /// interruption.
     pub fn condition(

@@ -99,12 +99,16 @@ impl Zeros {
 
     /// Finds those that are `untouched`; `None` if there is none.
     pub fn by(table: &Table, untouched: &Untouched) -> Option<Self> {
+        let is_zero = |row: &Row| row.trial.is_none() && row.uv.is_some() && untouched.is(row);
+        let rows = (0..).zip(&table.rows).filter(|(_, row)| is_zero(row)).map(|(at, _)| at).collect();
+        Self::at_rows(table, rows)
+    }
+
+    /// Those that are known to be untouched, in order; `None` if there is none.
+    pub fn at_rows(table: &Table, rows: Vec<usize>) -> Option<Self> {
         let is_timed = table.rows.iter().all(|row| row.t_s.is_some());
         let places = (0_u32..).zip(&table.rows);
         let places = places.map(|(place, row)| row.t_s.filter(|_| is_timed).unwrap_or(f64::from(place)));
-        let is_zero = |row: &Row| row.trial.is_none() && row.uv.is_some() && untouched.is(row);
-        let rows: Vec<usize> =
-            (0..).zip(&table.rows).filter(|(_, row)| is_zero(row)).map(|(at, _)| at).collect();
         (!rows.is_empty()).then(|| Self { rows, places: places.collect() })
     }
 

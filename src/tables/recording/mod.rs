@@ -36,6 +36,13 @@ impl Recording {
         Some(Self::by(raw, zeros, full_scale_n))
     }
 
+    /// A time series of which it is known otherwise when nothing touches the pad: in these rows, in order. `None` if that is
+    /// never.
+    pub fn series(raw: Table, untouched: Vec<usize>, full_scale_n: f64) -> Option<Self> {
+        let zeros = Zeros::at_rows(&raw, untouched)?;
+        Some(Self::by(raw, zeros, full_scale_n))
+    }
+
     fn by(mut table: Table, zeros: Zeros, full_scale_n: f64) -> Self {
         let (rows, contacts) = (table.rows.len(), zero::contacts(&table));
         let readings = zeros.tare(&mut table);

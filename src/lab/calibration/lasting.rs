@@ -1,0 +1,239 @@
+//! Relative noise that lasts: each channel's gain wanders by itself, as Ornstein and Uhlenbeck's process.
+//!
+//! A minute of play is thousands of samples, but noise that lasts for seconds is drawn anew only some ten times in it. So it is a
+//! state of the model. Contact i reads, with the signals D = diag(f),
+//!
+//! ```text
+//! yᵢ = f(θ) + Dᵢ νᵢ + nᵢ        νᵢ = ρ νᵢ₋₁ + √(1 − ρ²) σ wᵢ        ρ = exp(−Δt/τ)
+//! ```
+//!
+//! The states are eliminated one after the other, in the order of time: an information filter whose vector is linear in the
+//! step δ of the parameters. Of what the contacts so far say of ν it keeps −½ νᵀ Y ν + νᵀ (z − Z δ).
+//!
+//! Source: P. de Jong, The diffuse Kalman filter, Ann. Statist. 19 (1991) 1073 (a filter whose vector is linear in unknown
+//! parameters); H. E. Rauch, F. Tung, C. T. Striebel, AIAA J. 3 (1965) 1445 (the smoother).
+
+use super::noise_model::{MarginalPrecision, Residual};
+use super::normal_equations::NormalEquations;
+use crate::numeric::linear::{Factor, dot};
+use crate::quantity::CHANNELS;
+
+type Matrix = [[f64; CHANNELS]; CHANNELS];
+
+/// How the gains wander.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Wander {
+    /// Time constant τ.
+    pub(super) time_s: f64,
+    /// Standard deviation σ of each channel's gain.
+    pub(super) deviation: [f64; CHANNELS],
+}
+
+/// The filter.
+pub(super) struct Filter<'w> {
+    wander: &'w Wander,
+    /// Y.
+    information: Matrix,
+    /// z.
+    vector: [f64; CHANNELS],
+    /// Z: for each channel its derivatives by the parameters; empty where none are asked for.
+    slopes: Vec<Vec<f64>>,
+    /// −2 ln of what was eliminated.
+    cost: f64,
+}
+
+/// What all contacts together say of the gains at each of them.
+pub(super) struct Smoothed {
+    /// Means of ν.
+    pub(super) mean: Vec<[f64; CHANNELS]>,
+    /// Their covariances.
+    pub(super) covariance: Vec<Matrix>,
+    /// Of each channel, the σ² that makes these states most likely, as a mean over so many of them.
+    pub(super) variance: [f64; CHANNELS],
+}
+
+/// A filtered state, and what came before it.
+struct Filtered {
+    mean: [f64; CHANNELS],
+    covariance: Matrix,
+    /// ρ, from the state before.
+    kept: f64,
+    /// Covariance before the contact was seen.
+    predicted: Matrix,
+}
+
+impl<'w> Filter<'w> {
+    /// Before the first contact: ν ~ N(0, σ²). There are so many parameters.
+    pub(super) fn new(wander: &'w Wander, parameters: usize) -> Self {
+        Self {
+            wander,
+            information: diagonal(|k| 1.0 / variance(wander, k)),
+            vector: [0.0; CHANNELS],
+            slopes: vec![vec![0.0; parameters]; CHANNELS],
+            cost: (0..CHANNELS).map(|k| variance(wander, k).ln()).sum(),
+        }
+    }
+
+    /// The time until the next contact passes.
+    ///
+    /// With S = (1 − ρ²) σ² and M = Y + ρ² S⁻¹ the last state is eliminated:
+    ///
+    /// ```text
+    /// Y ← S⁻¹ − ρ² S⁻¹ M⁻¹ S⁻¹      z ← ρ S⁻¹ M⁻¹ z      −½ |L⁻¹(z − Z δ)|² with M = L Lᵀ goes to the parameters
+    /// ```
+    pub(super) fn pass(&mut self, after_s: f64, equations: Option<&mut NormalEquations>) -> Option<()> {
+        let kept = self.wander.kept(after_s);
+        let fresh: [f64; CHANNELS] = std::array::from_fn(|k| (1.0 - kept * kept) * variance(self.wander, k));
+        let mut joint = self.information;
+        (0..CHANNELS).for_each(|k| joint[k][k] += kept * kept / fresh[k]);
+        let factor = Factor::of(&joint)?;
+        self.eliminate(&factor, equations);
+        let inverse = factor.inverse();
+        self.information = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let own = if i == j { 1.0 / fresh[i] } else { 0.0 };
+                own - kept * kept * inverse[i][j] / (fresh[i] * fresh[j])
+            })
+        });
+        let carried = std::array::from_fn(|i| inverse[i].map(|entry| kept * entry / fresh[i]));
+        self.vector = carried.map(|row: [f64; CHANNELS]| dot(&row, &self.vector));
+        self.slopes = combined(&carried, &self.slopes);
+        self.cost += fresh.iter().map(|variance| variance.ln()).sum::<f64>();
+        Some(())
+    }
+
+    /// A contact is seen: Y ← Y + D V⁻¹ D, z ← z + D V⁻¹ r, Z ← Z + D V⁻¹ A. `rows` are those of A.
+    pub(super) fn see(&mut self, precision: &MarginalPrecision, residual: &Residual, rows: &[Vec<f64>]) {
+        let matrix = precision.matrix();
+        for i in 0..CHANNELS {
+            for j in 0..CHANNELS {
+                let weight = residual.uv[i] * matrix[i][j];
+                self.information[i][j] += weight * residual.uv[j];
+                self.vector[i] += weight * residual.residual_uv[j];
+                if let (Some(sums), Some(row)) = (self.slopes.get_mut(i), rows.get(j)) {
+                    sums.iter_mut().zip(row).for_each(|(sum, slope)| *sum += weight * slope);
+                }
+            }
+        }
+    }
+
+    /// Behind the last contact. Gives −2 ln of all that was eliminated, with what is left of the states.
+    pub(super) fn end(mut self, equations: Option<&mut NormalEquations>) -> Option<f64> {
+        let factor = Factor::of(&self.information)?;
+        self.eliminate(&factor, equations);
+        Some(self.cost)
+    }
+
+    /// The state is integrated over: H ← H − (L⁻¹Z)ᵀ(L⁻¹Z), g ← g − (L⁻¹Z)ᵀ(L⁻¹z).
+    fn eliminate(&mut self, factor: &Factor<CHANNELS>, equations: Option<&mut NormalEquations>) {
+        let half = factor.solve_lower(&self.vector);
+        self.cost += factor.log_determinant() - dot(&half, &half);
+        let Some(equations) = equations else { return };
+        // L⁻¹, column by column.
+        let unit = |at: usize| std::array::from_fn(|k| f64::from(u8::from(k == at)));
+        let columns: Matrix = std::array::from_fn(|at| factor.solve_lower(&unit(at)));
+        let lower = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
+        combined(&lower, &self.slopes)
+            .into_iter()
+            .zip(half)
+            .for_each(|(row, half)| equations.subtract(row, half));
+    }
+
+    /// The state's mean and covariance by what was seen so far.
+    fn state(&self) -> Option<([f64; CHANNELS], Matrix)> {
+        let factor = Factor::of(&self.information)?;
+        Some((factor.solve(&self.vector), factor.inverse()))
+    }
+}
+
+impl Wander {
+    /// ρ.
+    fn kept(&self, after_s: f64) -> f64 {
+        // Samples of one moment would have no fresh part to divide by.
+        libm::exp(-after_s.max(1e-3 * self.time_s) / self.time_s)
+    }
+
+    /// The states by all contacts, which must be in order of time. `None` where a covariance has no inverse.
+    pub(super) fn smoothed(&self, contacts: &[(MarginalPrecision, &Residual)]) -> Option<Smoothed> {
+        let mut filter = Filter::new(self, 0);
+        let mut filtered: Vec<Filtered> = Vec::with_capacity(contacts.len());
+        let mut previous_s = None;
+        for (precision, residual) in contacts {
+            let after_s = previous_s.replace(residual.at_s).map(|previous_s| residual.at_s - previous_s);
+            if let Some(after_s) = after_s {
+                filter.pass(after_s, None)?;
+            }
+            let (_, predicted) = filter.state()?;
+            filter.see(precision, residual, &[]);
+            let (mean, covariance) = filter.state()?;
+            filtered.push(Filtered {
+                mean,
+                covariance,
+                kept: after_s.map_or(0.0, |after_s| self.kept(after_s)),
+                predicted,
+            });
+        }
+        smoothed(&filtered)
+    }
+}
+
+/// Backwards: with C = ρ Pᵢ (P⁻ᵢ₊₁)⁻¹ the mean is mᵢ + C (mᵢ₊₁ˢ − ρ mᵢ), the covariance Pᵢ + C (Pᵢ₊₁ˢ − P⁻ᵢ₊₁) Cᵀ.
+fn smoothed(filtered: &[Filtered]) -> Option<Smoothed> {
+    let last = filtered.last()?;
+    let (mut mean, mut covariance) = (vec![last.mean], vec![last.covariance]);
+    let mut squares = [0.0; CHANNELS];
+    for (here, next) in filtered.iter().zip(&filtered[1..]).rev() {
+        let (later_mean, later) = (mean[mean.len() - 1], covariance[covariance.len() - 1]);
+        let factor = Factor::of(&next.predicted)?;
+        // Row i of C.
+        let gain: Matrix = here.covariance.map(|row| factor.solve(&row.map(|entry| next.kept * entry)));
+        let change: Matrix =
+            std::array::from_fn(|i| std::array::from_fn(|j| later[i][j] - next.predicted[i][j]));
+        let off: [f64; CHANNELS] = std::array::from_fn(|k| later_mean[k] - next.kept * here.mean[k]);
+        let own_mean: [f64; CHANNELS] = std::array::from_fn(|k| here.mean[k] + dot(&gain[k], &off));
+        let half: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| dot(&change[i], &gain[j])));
+        let own: Matrix = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                here.covariance[i][j] + (0..CHANNELS).map(|k| gain[i][k] * half[k][j]).sum::<f64>()
+            })
+        });
+        for k in 0..CHANNELS {
+            // E (νᵢ₊₁ − ρ νᵢ)²/(1 − ρ²), with Cov(νᵢ₊₁, νᵢ) = Pᵢ₊₁ˢ Cᵀ.
+            let step = later_mean[k] - next.kept * own_mean[k];
+            let together = dot(&later[k], &gain[k]);
+            let square =
+                step * step + later[k][k] + next.kept * next.kept * own[k][k] - 2.0 * next.kept * together;
+            squares[k] += square / (1.0 - next.kept * next.kept);
+        }
+        mean.push(own_mean);
+        covariance.push(own);
+    }
+    let (first_mean, first) = (mean[mean.len() - 1], covariance[covariance.len() - 1]);
+    let count = filtered.len() as f64;
+    let variance =
+        std::array::from_fn(|k| (squares[k] + first_mean[k] * first_mean[k] + first[k][k]) / count);
+    mean.reverse();
+    covariance.reverse();
+    Some(Smoothed { mean, covariance, variance })
+}
+
+/// σ², which is never zero.
+fn variance(wander: &Wander, channel: usize) -> f64 {
+    wander.deviation[channel].max(1e-4).powi(2)
+}
+
+fn diagonal(of: impl Fn(usize) -> f64) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { of(i) } else { 0.0 }))
+}
+
+/// The product of a matrix with the matrix of these rows.
+fn combined(matrix: &Matrix, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let row = |factors: &[f64; CHANNELS]| {
+        let mut sum = vec![0.0; rows.first().map_or(0, Vec::len)];
+        for (factor, row) in factors.iter().zip(rows).filter(|(factor, _)| **factor != 0.0) {
+            sum.iter_mut().zip(row).for_each(|(sum, entry)| *sum += factor * entry);
+        }
+        sum
+    };
+    matrix.iter().map(row).collect()
+}

@@ -1,0 +1,9 @@
+//! Play as a calibration takes it: presses that nobody wrote down, and weights on marked places.
+//!
+//! A press of a finger has no label. But nine channels against five unknowns leave four equations, and a minute of play is sixty
+//! thousand samples. They are taken as means of a tenth of a second, whole periods of the mains.
+
+pub mod home;
+pub mod reader;
+pub mod weights;
+pub mod windows;

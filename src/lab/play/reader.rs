@@ -1,0 +1,66 @@
+//! From the calls of a recording to windows of its samples.
+
+use crate::lab::play::windows::{Gatherer, Seen, Window};
+use crate::pipeline::call::Call;
+use crate::pipeline::contact::Decoder;
+use crate::pipeline::mapping::profile::Profile;
+use crate::pipeline::{NoProbe, Phase, Pipeline};
+use crate::time::{HostInstant, StreamInstant};
+
+/// Makes a recording's calls again and gathers its samples.
+#[derive(Debug)]
+pub struct Reader {
+    pipeline: Pipeline,
+    /// Of the recording's first sample.
+    begin: Option<StreamInstant>,
+    samples: u64,
+    gatherer: Gatherer,
+}
+
+impl Reader {
+    /// One that has heard nothing. By the decoder touches are known, and about where they are: any that fits the pad roughly
+    /// will do. Of the profile only the filter matters.
+    pub fn new(decoder: Decoder, profile: Profile) -> Self {
+        let pipeline = Pipeline::new(decoder, profile);
+        Self { pipeline, begin: None, samples: 0, gatherer: Gatherer::default() }
+    }
+
+    /// Makes one call. Changes of the profile are left out.
+    pub fn apply(&mut self, now: HostInstant, call: Call<'_>) {
+        match call {
+            Call::Profile(_) => {}
+            // One by one, so that no sample is passed over.
+            Call::Bytes(bytes) => bytes.chunks(1).for_each(|byte| self.make(now, Call::Bytes(byte))),
+            other => self.make(now, other),
+        }
+    }
+
+    /// Seconds since the first sample, on the pad's clock.
+    pub fn now_s(&self) -> f64 {
+        self.begin.map_or(0.0, |begin| 1e-6 * self.pipeline.at().us_since(begin) as f64)
+    }
+
+    /// The windows, in order of time since the first sample.
+    pub fn finish(self) -> Vec<Window> {
+        self.gatherer.finish()
+    }
+
+    fn make(&mut self, now: HostInstant, call: Call<'_>) {
+        let mut left = Some(call);
+        while let Some(call) = left {
+            left = self.pipeline.apply(now, call, &mut NoProbe);
+        }
+        let samples = self.pipeline.health().samples;
+        if samples == self.samples {
+            return;
+        }
+        self.samples = samples;
+        self.begin.get_or_insert(self.pipeline.at());
+        let seen = match (self.pipeline.phase(), self.pipeline.contact()) {
+            (Phase::Playing | Phase::Paused, Some(contact)) => Seen::Contact(*contact),
+            (Phase::Playing | Phase::Paused, None) => Seen::Nothing,
+            _ => Seen::Doubt,
+        };
+        self.gatherer.push(self.now_s(), self.pipeline.raw_uv(), None, seen);
+    }
+}

@@ -33,6 +33,24 @@ impl<'b> Reader<'b> {
         self.number().map(f64::from_le_bytes)
     }
 
+    /// A double that is finite.
+    pub(crate) fn finite(&mut self) -> Option<f64> {
+        self.double().filter(|double| double.is_finite())
+    }
+
+    /// So many finite doubles.
+    pub(crate) fn finites<const N: usize>(&mut self) -> Option<[f64; N]> {
+        let mut doubles = [0.0; N];
+        for double in &mut doubles {
+            *double = self.finite()?;
+        }
+        Some(doubles)
+    }
+
+    pub(crate) fn bits(&mut self) -> Option<u64> {
+        self.number().map(u64::from_le_bytes)
+    }
+
     pub(crate) fn length(&mut self) -> Option<usize> {
         self.number().map(|bytes| u32::from_le_bytes(bytes) as usize)
     }
@@ -60,6 +78,11 @@ pub(crate) fn push_text(to: &mut Vec<u8>, text: &[u8]) {
 pub(crate) fn push_floats(to: &mut Vec<u8>, floats: &[f32]) {
     to.extend((floats.len() as u32).to_le_bytes());
     to.extend(floats.iter().flat_map(|float| float.to_le_bytes()));
+}
+
+/// Writes doubles, without their number.
+pub(crate) fn push_doubles(to: &mut Vec<u8>, doubles: &[f64]) {
+    to.extend(doubles.iter().flat_map(|double| double.to_le_bytes()));
 }
 
 /// A file's bytes: what says what it is, its body, the body's sum (FNV-1a, 64 bits).
@@ -112,6 +135,16 @@ mod tests {
         assert_eq!(reader.text(), Some(&b"a pad"[..]));
         assert_eq!(reader.floats(), Some(vec![1.5, -2.0]));
         assert_eq!((reader.double(), reader.is_at_end(), reader.float()), (Some(7.25), true, None));
+    }
+
+    #[test]
+    fn doubles_that_are_no_numbers_are_not_read() {
+        let mut body = Vec::new();
+        push_doubles(&mut body, &[1.5, -2.0, f64::NAN]);
+        body.extend(7_u64.to_le_bytes());
+        let mut reader = Reader::new(&body);
+        assert_eq!(reader.finites(), Some([1.5, -2.0]));
+        assert_eq!((reader.finite(), reader.bits()), (None, Some(7)));
     }
 
     #[test]

@@ -20,6 +20,11 @@ impl SplitMix64 {
         Self { state: seed }
     }
 
+    /// Where the stream stands: [`Self::new`] with it goes on from here.
+    pub const fn state(&self) -> u64 {
+        self.state
+    }
+
     /// One of many streams of this seed, by the name of what it is for: independent of the others.
     pub fn named(seed: u64, name: &str) -> Self {
         let letters = name.bytes().fold(0, |sum: u64, letter| sum.rotate_left(8) ^ u64::from(letter));
@@ -115,6 +120,14 @@ mod tests {
         }
         // Five standard deviations of 1000 expected.
         assert!(counts.len() == 24 && counts.values().all(|count| (count - 1000).abs() < 158), "{counts:?}");
+    }
+
+    #[test]
+    fn a_stream_goes_on_from_where_it_stands() {
+        let mut random = SplitMix64::new(11);
+        random.normal();
+        let mut taken_up = SplitMix64::new(random.state());
+        assert_eq!([random.next_bits(), random.next_bits()], [taken_up.next_bits(), taken_up.next_bits()]);
     }
 
     #[test]

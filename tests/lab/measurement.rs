@@ -2,10 +2,11 @@
 
 use std::sync::OnceLock;
 
-use tactpad::lab::rig::measurement::{Measurement, carry_out};
+use tactpad::lab::rig::measurement::{Measurement, carry_on, carry_out};
 use tactpad::pad::device::Device;
 use tactpad::pad::device::behaviour::{Behaviour, Play, Prony};
 use tactpad::pad::field::PadField;
+use tactpad::pad::twin::life::Life;
 use tactpad::quantity::{CHANNELS, Contact};
 use tactpad::tables::measured::{Approach, Label, Row, Table};
 use tactpad::tables::plans;
@@ -164,4 +165,68 @@ fn truth_stays_on_the_plate_and_seeds_decide() {
     assert!(one.truth.iter().all(|truth| truth.x_mm.hypot(truth.y_mm) <= patch.max_centre_radius_mm + 1e-4));
     assert_eq!(one, run(3));
     assert_ne!(one.table, run(4).table);
+}
+
+/// A pad that remembers, drifts and ages, under a hand and on a rig that draw nothing.
+fn remembering() -> Device {
+    let mut device = Device::nominal();
+    let it = &mut device.behaviour;
+    it.hysteresis = vec![Play { channels: ALL, threshold_uv: 100.0, share: 0.2 }];
+    it.creep = vec![Prony { channels: ALL, time_s: 30.0, share: 0.1 }];
+    it.noise.additive_uv = [10.0; CHANNELS];
+    it.noise.walk_uv = [300.0; CHANNELS];
+    it.ageing.share = [0.19; CHANNELS];
+    device
+}
+
+fn plan_of(rows: &[Row]) -> Table {
+    Table { rows: rows.to_vec(), trials: vec!["one".to_owned(), "two".to_owned()], ..Table::default() }
+}
+
+#[test]
+fn a_plan_cut_in_two_is_one_life_of_one_pad() {
+    let device = remembering();
+    let rows: Vec<Row> = (0..6)
+        .map(|index: i32| {
+            Row::of(Label { x_mm: 4.0 * f64::from(index - 3), fz_n: f64::from(index % 3 + 1), ..PRESS })
+        })
+        .chain(ramp(0))
+        .collect();
+    let whole = carry_out(&plan_of(&rows), &device, field(), 5);
+    let (first, second) = rows.split_at(4);
+    let (before, life) = carry_on(&plan_of(first), &device, field(), Life::new(&device, 5), 5);
+    let life = Life::from_bytes(&life.to_bytes(&device), &device).unwrap();
+    // The later seed draws another hand and another rig; these draw nothing, and the pad is the same.
+    let (after, life) = carry_on(&plan_of(second), &device, field(), life, 6);
+    let channels = |of: &Measurement| of.table.rows.iter().map(|row| row.uv).collect::<Vec<_>>();
+    assert_eq!([channels(&before), channels(&after)].concat(), channels(&whole), "bit by bit");
+    assert_eq!([&before.cycles[..], &after.cycles].concat(), whole.cycles, "loads go on being counted");
+    assert_eq!((after.cycles[0], life.around.cycles), (5.0, 7.0));
+    let begins_s = [before, after].map(|part| part.table.rows[0].t_s.unwrap());
+    assert_eq!(begins_s, [5.0, 5.0], "each table has its own time");
+}
+
+#[test]
+fn what_was_pressed_before_is_seen_afterwards() {
+    let mut device = remembering();
+    (device.behaviour.noise.additive_uv, device.behaviour.noise.walk_uv) = ([0.0; CHANNELS], [0.0; CHANNELS]);
+    let untouched = plan_of(&[Row::of(Label { fx_n: 0.0, fz_n: 0.0, ..PRESS })]);
+    let pressed = plan_of(&[Row { dwell_s: Some(60.0), ..Row::of(PRESS) }]);
+    let zero_uv = |life: Life| carry_on(&untouched, &device, field(), life, 2).0.table.rows[0].uv.unwrap()[2];
+    assert_eq!(zero_uv(Life::new(&device, 2)), 0.0);
+    let (_, life) = carry_on(&pressed, &device, field(), Life::new(&device, 2), 2);
+    // What friction keeps is share · threshold; creep adds what is left of a tenth of the strain.
+    let left_uv = zero_uv(life) - 0.2 * 100.0;
+    assert!(left_uv > 0.05 * ideal_uv(PRESS)[2] && left_uv < 0.1 * ideal_uv(PRESS)[2], "{left_uv}");
+}
+
+#[test]
+fn planned_times_count_from_the_runs_begin() {
+    let device = remembering();
+    let planned = plan_of(&[Row { t_s: Some(40.0), ..Row::of(PRESS) }]);
+    let (first, life) = carry_on(&planned, &device, field(), Life::new(&device, 2), 2);
+    let (second, life) = carry_on(&planned, &device, field(), life, 2);
+    let times = [&first, &second].map(|part| part.table.rows[0].t_s);
+    assert_eq!(times[0], times[1]);
+    assert_near(life.state.age_s(), 2.0 * times[0].unwrap(), 1e-6, "the pad's own clock goes on");
 }

@@ -7,6 +7,7 @@ use tactpad::numeric::statistics::{mean, population_deviation};
 use tactpad::pad::device::Device;
 use tactpad::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, Play, Prony};
 use tactpad::pad::field::PadField;
+use tactpad::pad::twin::life::{Life, LifeError};
 use tactpad::pad::twin::pad::{Circumstances, TwinPad};
 use tactpad::quantity::{CHANNELS, Contact};
 
@@ -204,4 +205,81 @@ fn the_seed_decides_and_nothing_else() {
     assert_ne!(read(12), read(13));
     let last = readings(&mut pad_of(noisy, 12), 5, 0.1, &PRESS).last().copied().unwrap();
     assert_eq!(last, *readings(&mut pad_of(noisy, 12), 5, 0.1, &PRESS).last().unwrap());
+}
+
+/// A pad with every imperfection that goes on in time.
+fn lively() -> Device {
+    let mut device = Device::nominal();
+    let it = &mut device.behaviour;
+    it.hysteresis = [60.0, 300.0]
+        .map(|threshold_uv| Play { channels: [true; CHANNELS], threshold_uv, share: 0.1 })
+        .to_vec();
+    it.creep = vec![Prony { channels: [true; CHANNELS], time_s: 20.0, share: 0.05 }];
+    it.ageing.share = [0.19; CHANNELS];
+    it.noise.additive_uv = [5.0; CHANNELS];
+    (it.noise.share, it.noise.share_time_s) = ([0.02; CHANNELS], 3.0);
+    (it.noise.walk_uv, it.noise.drift_uv_per_h) = ([500.0; CHANNELS], [90.0; CHANNELS]);
+    it.mains.amplitude_uv = [12.0; CHANNELS];
+    it.sampling.skew_us = std::array::from_fn(|channel| 700.0 * channel as f64);
+    it.thermal.zero_scatter_uv_per_c = 8.0;
+    device
+}
+
+/// What a pad reads in half a second of a press that grows, at 1 kHz.
+fn half_a_second(pad: &mut TwinPad, around: &Circumstances) -> Vec<[f64; CHANNELS]> {
+    let press = |millisecond: u16| Contact { fz_n: 5e-3 * f32::from(millisecond), ..PRESS };
+    (0..500).map(|millisecond| pad.read(1e-3, &press(millisecond), around)).collect()
+}
+
+#[test]
+fn a_life_that_was_kept_goes_on_as_if_it_had_not_ended() {
+    let device = lively();
+    let around = Circumstances { temperature_c: 31.0, cycles: 700.0 };
+    let mut whole = TwinPad::new(&device, field(), 21);
+    half_a_second(&mut whole, &around);
+
+    let mut first = TwinPad::new(&device, field(), 21);
+    half_a_second(&mut first, &around);
+    let bytes = Life { state: first.into_state(), around }.to_bytes(&device);
+    let Life { state, around: kept } = Life::from_bytes(&bytes, &device).unwrap();
+    assert_eq!((state.seed(), kept), (21, around));
+    assert_near(state.age_s(), 0.5, 1e-9, "age");
+    let mut second = TwinPad::going_on(&device, field(), state);
+    let (read, wanted) = (half_a_second(&mut second, &kept), half_a_second(&mut whole, &around));
+    assert_eq!(read, wanted, "bit by bit");
+    assert_ne!(read, half_a_second(&mut TwinPad::new(&device, field(), 21), &around), "and not anew");
+}
+
+#[test]
+fn cycles_pass_with_their_time_and_age_the_pad() {
+    let device = lively();
+    let old =
+        Life::new(&device, 3).after_cycles(5_000.0, &device, field()).after_cycles(200.0, &device, field());
+    assert_eq!(old.around.cycles, 5_200.0);
+    assert_near(old.state.age_s(), 5_200.0, 1e-6, "a second each");
+}
+
+#[test]
+fn a_life_is_refused_that_is_none_or_of_another_pad() {
+    let device = lively();
+    let mut pad = TwinPad::new(&device, field(), 1);
+    half_a_second(&mut pad, &AROUND);
+    let bytes = Life { state: pad.into_state(), around: AROUND }.to_bytes(&device);
+    let refusal = |bytes: &[u8], device: &Device| Life::from_bytes(bytes, device).err();
+    let mut other = device.clone();
+    other.behaviour.creep[0].share = 0.06;
+    assert_eq!(refusal(&bytes, &other), Some(LifeError::Device));
+    let mut other_hand = device.clone();
+    (other_hand.behaviour.finger.wander_mm, other_hand.behaviour.rig.stage_x_mm) = (1.0, 2.0);
+    assert_eq!(refusal(&bytes, &other_hand), None, "another hand on another rig");
+    assert_eq!(refusal(b"", &device), Some(LifeError::Version));
+    assert_eq!(refusal(&device.to_toml().into_bytes(), &device), Some(LifeError::Version));
+    for length in (22..bytes.len()).step_by(97) {
+        assert_eq!(refusal(&bytes[..length], &device), Some(LifeError::Damaged), "{length} bytes");
+    }
+    for at in (22..bytes.len()).step_by(61) {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 1;
+        assert_eq!(refusal(&damaged, &device), Some(LifeError::Damaged), "byte {at}");
+    }
 }

@@ -90,3 +90,77 @@ fn what_cannot_be_is_refused_with_its_line() {
     }
     assert!(!folder.path().join("m.csv").exists());
 }
+
+#[test]
+fn a_state_makes_many_runs_one_life_of_one_pad() {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = "x_mm,y_mm,fx_n,fy_n,fz_n\n0,0,0,0,2\n9,0,0,0,2\n";
+    fs::write(folder.path().join("plan.csv"), plan).unwrap();
+    let run = |seed: u32, more: &str| {
+        let line = format!(
+            "--plan plan.csv --seed {seed} --state pad.life --count-cycles --json --out m.csv {more}"
+        );
+        let said: serde_json::Value = serde_json::from_str(&made(folder.path(), &line)).unwrap();
+        let table = fs::read_to_string(folder.path().join("m.csv")).unwrap();
+        let counted: Vec<String> =
+            table.lines().skip(1).map(|line| line.split(',').nth(1).unwrap().to_owned()).collect();
+        assert!(table.starts_with("t_s,cycle,x_mm"), "{table}");
+        assert!(table.lines().nth(1).unwrap().starts_with("5,"), "each table has its own time: {table}");
+        (said["pad_cycles"].as_f64().unwrap(), said["pad_seconds"].as_f64().unwrap(), counted)
+    };
+    let (cycles, first_s, counted) = run(1, "");
+    assert_eq!((cycles, counted), (2.0, vec!["1".to_owned(), "2".to_owned()]));
+    let (cycles, second_s, counted) = run(2, "--cycles 5000");
+    assert_eq!((cycles, counted), (5004.0, vec!["5003".to_owned(), "5004".to_owned()]));
+    assert!((second_s - 2.0 * first_s - 5000.0).abs() < 1e-6, "{first_s} {second_s}");
+    let said = made(folder.path(), "--plan plan.csv --state pad.life --out m.csv");
+    assert!(said.contains("the pad is 50") && said.contains(" old and has 5006 cycles behind it"), "{said}");
+    let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left.len(), 4, "plan, imperfections, table and state; nothing unfinished: {left:?}");
+}
+
+#[test]
+fn a_state_that_does_not_fit_is_refused_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("plan.csv", "x_mm,y_mm,fx_n,fy_n,fz_n\n0,0,0,0,2\n");
+    write("young.csv", "cycle,x_mm,y_mm,fx_n,fy_n,fz_n\n20,0,0,0,0,2\n");
+    write("crept.toml", "[[creep]]\ntime_s = 8.0\nshare = 0.01\n");
+    made(
+        folder.path(),
+        "--plan plan.csv --imperfections noisy.toml --state pad.life --cycles 30 --out m.csv",
+    );
+    let kept = fs::read(folder.path().join("pad.life")).unwrap();
+    fs::write(folder.path().join("cut.life"), &kept[..kept.len() - 9]).unwrap();
+    fs::remove_file(folder.path().join("m.csv")).unwrap();
+    let other = "name another file, one that is not there yet for a new pad";
+    for (line, wanted) in [
+        (
+            "--plan plan.csv --imperfections crept.toml --state pad.life",
+            "it is of another pad than --device and",
+        ),
+        (
+            "--plan plan.csv --imperfections noisy.toml --state cut.life",
+            "cut.life cannot be taken up: it is damaged; ",
+        ),
+        ("--plan plan.csv --imperfections noisy.toml --state noisy.toml", "is the file of imperfections"),
+        (
+            "--plan plan.csv --imperfections noisy.toml --state crept.toml",
+            "it is no state of a twin's pad, or one of",
+        ),
+        ("--plan plan.csv --state plan.csv", "is the plan"),
+        ("--plan plan.csv --state m.csv", "--out and --state name one file"),
+        ("--plan plan.csv --state -", "--state is read and written"),
+        ("--plan plan.csv --state .", ". cannot be written"),
+        (
+            "--plan young.csv --imperfections noisy.toml --state pad.life",
+            "young.csv:2: cycle is 20, and the pad has 31 cycles of load behind it already; plan more",
+        ),
+    ] {
+        let said = refused(folder.path(), &format!("{line} --out m.csv"));
+        assert!(said.contains(wanted), "{line}: {said}");
+        assert!(!said.contains("cannot be taken up") || said.contains(other), "{said}");
+    }
+    assert_eq!(fs::read(folder.path().join("pad.life")).unwrap(), kept);
+    assert!(!folder.path().join("m.csv").exists());
+}

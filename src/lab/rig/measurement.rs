@@ -7,6 +7,7 @@ use crate::lab::rig::stage::Stage;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 use crate::pad::twin::hand::Hand;
+use crate::pad::twin::life::{CYCLE_S, Life};
 use crate::pad::twin::pad::{Circumstances, TwinPad};
 use crate::quantity::{CHANNELS, Contact};
 use crate::tables::measured::{Approach, DWELL_S, Label, Row, Table};
@@ -21,8 +22,6 @@ const REST_S: f64 = 2.0;
 const RAMP_S: f64 = 0.5;
 /// Wait at a new temperature.
 const SOAK_S: f64 = 1800.0;
-/// Time of a cycle of load that the plan only counts.
-const CYCLE_S: f64 = 1.0;
 const UNTOUCHED: Label = Label { x_mm: 0.0, y_mm: 0.0, fx_n: 0.0, fy_n: 0.0, fz_n: 0.0 };
 
 /// A plan, carried out.
@@ -44,9 +43,23 @@ impl Measurement {
     }
 }
 
-/// Carries out a plan on the pad of `device` whose field is `field`, with what the seed draws.
+/// Carries out a plan on a new pad of `device`, whose field is `field`; the seed draws the pad, the hand and the rig.
 pub fn carry_out(plan: &Table, device: &Device, field: &PadField, seed: u64) -> Measurement {
-    let mut bench = Bench::new(device, field, seed);
+    carry_on(plan, device, field, Life::new(device, seed), seed).0
+}
+
+/// Carries out a plan on a pad that has a life behind it, and gives the life after it; the seed draws the hand and the rig.
+///
+/// Times are counted from the plan's begin, cycles over the whole life. A planned `cycle` is the pad's from then on, also where
+/// it had more before.
+pub fn carry_on(
+    plan: &Table,
+    device: &Device,
+    field: &PadField,
+    life: Life,
+    seed: u64,
+) -> (Measurement, Life) {
+    let mut bench = Bench::new(device, field, life, seed);
     let mut measurement = Measurement {
         table: Table { rows: Vec::with_capacity(plan.rows.len()), ..plan.clone() },
         truth: Vec::with_capacity(plan.rows.len()),
@@ -58,7 +71,7 @@ pub fn carry_out(plan: &Table, device: &Device, field: &PadField, seed: u64) -> 
             rows => bench.series(rows, &mut measurement),
         }
     }
-    measurement
+    (measurement, Life { state: bench.pad.into_state(), around: bench.around })
 }
 
 struct Bench {
@@ -75,15 +88,14 @@ struct Bench {
 }
 
 impl Bench {
-    fn new(device: &Device, field: &PadField, seed: u64) -> Self {
+    fn new(device: &Device, field: &PadField, life: Life, seed: u64) -> Self {
         let behaviour = &device.behaviour;
-        let reference_c = behaviour.thermal.reference_c;
         Self {
-            pad: TwinPad::new(device, field, seed),
+            pad: TwinPad::going_on(device, field, life.state),
             hand: Hand::new(behaviour.finger, seed),
             stage: Stage::new(behaviour.rig, seed),
-            around: Circumstances { temperature_c: reference_c, cycles: 0.0 },
-            reference_c,
+            around: life.around,
+            reference_c: behaviour.thermal.reference_c,
             full_scale_n: device.contact.full_scale_n,
             reach_mm: device.contact.max_centre_radius_mm as f32,
             lag_s: behaviour.rig.label_lag_ms * 1e-3,

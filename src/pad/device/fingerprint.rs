@@ -3,6 +3,8 @@
 use std::fmt::Write;
 
 use super::Device;
+use super::behaviour::Behaviour;
+use super::imperfection;
 use super::parameter::Parameter;
 use super::schema::{DIRECTIONS, Effect, GAUGE_NAMES, SIDES};
 use crate::bytes::fnv1a;
@@ -40,12 +42,42 @@ impl Device {
     pub fn fingerprint(&self) -> u64 {
         fnv1a(self.field_text().as_bytes())
     }
+
+    /// The same of everything that the pad's channels follow from: the field, how the bridges are read out, and what the pad
+    /// does beyond its mechanics. Whoever touches it, and the rig that measures it, are no part of it.
+    pub fn pad_fingerprint(&self) -> u64 {
+        let Behaviour { finger, rig, .. } = Behaviour::IDEAL;
+        let alone = Self { behaviour: Behaviour { finger, rig, ..self.behaviour.clone() }, ..self.clone() };
+        let mut text = self.field_text();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "bridge_nonlinearity = {}", self.circuit.bridge_nonlinearity);
+        fnv1a((text + &imperfection::text(&alone)).as_bytes())
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::pad::device::Side;
+    use crate::pad::device::behaviour::Prony;
+    use crate::quantity::CHANNELS;
+
+    #[test]
+    fn a_pads_fingerprint_knows_the_pad_and_neither_hand_nor_rig() {
+        let nominal = Device::nominal();
+        for parameter in Parameter::all() {
+            let mut device = nominal.clone();
+            let value = parameter.get(&nominal);
+            parameter.set(&mut device, value + (value.abs() + 1.0) * 1e-12);
+            let is_pads = parameter.effect() != Effect::Nothing
+                && !["finger.", "rig."].iter().any(|table| parameter.name().starts_with(table));
+            assert_eq!(device.pad_fingerprint() != nominal.pad_fingerprint(), is_pads, "{parameter}");
+        }
+        let mut crept = nominal.clone();
+        let term = Prony { channels: [true; CHANNELS], time_s: 8.0, share: 0.01 };
+        crept.behaviour.creep.push(term);
+        assert_ne!(crept.pad_fingerprint(), nominal.pad_fingerprint());
+    }
 
     #[test]
     fn it_changes_with_the_field_and_with_nothing_else() {

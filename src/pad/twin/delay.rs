@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use crate::bytes::{Reader, push_doubles};
 use crate::quantity::CHANNELS;
 
 /// The signals of the last moments, as long as the longest delay.
@@ -30,6 +31,23 @@ impl Delay {
             self.past.pop_front();
         }
         std::array::from_fn(|channel| self.at(at_s - self.delay_s[channel], channel))
+    }
+
+    pub(super) fn write(&self, to: &mut Vec<u8>) {
+        to.extend((self.past.len() as u32).to_le_bytes());
+        for (at_s, uv) in &self.past {
+            push_doubles(to, &[*at_s]);
+            push_doubles(to, uv);
+        }
+    }
+
+    /// Takes up what [`Self::write`] wrote. Times that go back are refused.
+    pub(super) fn take_up(&mut self, from: &mut Reader<'_>) -> Option<()> {
+        self.past.clear();
+        for _ in 0..from.length()? {
+            self.past.push_back((from.finite()?, from.finites()?));
+        }
+        self.past.iter().is_sorted_by_key(|(at_s, _)| *at_s).then_some(())
     }
 
     fn at(&self, at_s: f64, channel: usize) -> f64 {

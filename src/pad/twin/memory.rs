@@ -1,5 +1,6 @@
 //! Memory of the strains: hysteresis as play operators (Prandtl and Ishlinskii), creep as a Prony series.
 
+use crate::bytes::{Reader, push_doubles};
 use crate::numeric::memory::{low_passed, pulled};
 use crate::pad::device::behaviour::{Behaviour, Play, Prony};
 use crate::quantity::CHANNELS;
@@ -50,6 +51,22 @@ impl Memory {
         }
         self.strain_uv = *strain_uv;
         read_uv
+    }
+
+    pub(super) fn write(&self, to: &mut Vec<u8>) {
+        self.plays.iter().for_each(|(_, states)| push_doubles(to, states));
+        self.terms.iter().for_each(|(_, states)| push_doubles(to, states));
+        push_doubles(to, &self.strain_uv);
+    }
+
+    /// Takes up what [`Self::write`] wrote of a pad with as many operators and terms.
+    pub(super) fn take_up(&mut self, from: &mut Reader<'_>) -> Option<()> {
+        let plays = self.plays.iter_mut().map(|(_, states)| states);
+        let terms = self.terms.iter_mut().map(|(_, states)| states);
+        for states in plays.chain(terms).chain([&mut self.strain_uv]) {
+            *states = from.finites()?;
+        }
+        Some(())
     }
 }
 

@@ -13,9 +13,11 @@ use crate::quantity::{CHANNELS, Contact};
 
 mod delay;
 pub mod hand;
+pub mod life;
 mod memory;
 mod noise;
 pub mod pad;
+pub mod state;
 
 /// The pad that a seed stands for: parameters that vary from pad to pad are drawn, and fixed from then on.
 pub fn drawn(device: &Device, seed: u64) -> Device {

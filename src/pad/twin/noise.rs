@@ -1,5 +1,6 @@
 //! Random processes: Ornstein-Uhlenbeck processes, random walks, and white noise.
 
+use crate::bytes::{Reader, push_doubles};
 use crate::numeric::random::SplitMix64;
 
 /// A random number of mean 0 that is forgotten with a time constant (Ornstein and Uhlenbeck's process), in units of its
@@ -26,6 +27,16 @@ impl Lasting {
         self.value = kept * self.value + fresh * f64::from(self.random.normal());
         self.value
     }
+
+    pub(super) fn write(&self, to: &mut Vec<u8>) {
+        write_stream(to, &self.random, self.value);
+    }
+
+    /// Takes up what [`Self::write`] wrote.
+    pub(super) fn take_up(&mut self, from: &mut Reader<'_>) -> Option<()> {
+        (self.random, self.value) = read_stream(from)?;
+        Some(())
+    }
 }
 
 /// A random walk that begins at zero; its standard deviation after an hour is 1.
@@ -45,6 +56,25 @@ impl Walk {
         self.value += libm::sqrt(after_s / 3600.0) * f64::from(self.random.normal());
         self.value
     }
+
+    pub(super) fn write(&self, to: &mut Vec<u8>) {
+        write_stream(to, &self.random, self.value);
+    }
+
+    /// Takes up what [`Self::write`] wrote.
+    pub(super) fn take_up(&mut self, from: &mut Reader<'_>) -> Option<()> {
+        (self.random, self.value) = read_stream(from)?;
+        Some(())
+    }
+}
+
+fn write_stream(to: &mut Vec<u8>, random: &SplitMix64, value: f64) {
+    to.extend(random.state().to_le_bytes());
+    push_doubles(to, &[value]);
+}
+
+fn read_stream(from: &mut Reader<'_>) -> Option<(SplitMix64, f64)> {
+    Some((SplitMix64::new(from.bits()?), from.finite()?))
 }
 
 #[cfg(test)]

@@ -3,10 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::bridges_of;
-use super::delay::Delay;
-use super::memory::Memory;
-use super::noise::{Lasting, Walk};
-use crate::numeric::random::SplitMix64;
+use super::state::PadState;
 use crate::pad::device::Device;
 use crate::pad::device::behaviour::{Ageing, Behaviour, Mains, Noise, Sampling};
 use crate::pad::field::PadField;
@@ -31,23 +28,19 @@ pub struct TwinPad {
     noise: Noise,
     mains: Mains,
     sampling: Sampling,
-    memory: Memory,
-    delay: Delay,
-    relative: [Lasting; CHANNELS],
-    walks: [Walk; CHANNELS],
-    white: SplitMix64,
-    /// Where the mains began, in turns.
-    mains_phase: f64,
-    at_s: f64,
+    state: PadState,
 }
 
 impl TwinPad {
     /// A pad at rest. `field` is that of `device`, whose scatter is drawn from the seed.
     pub fn new(device: &Device, field: &PadField, seed: u64) -> Self {
-        let device = super::drawn(device, seed);
+        Self::going_on(device, field, PadState::new(device, seed))
+    }
+
+    /// The pad whose state this is. `device` is the one that the state was made with, and `field` is its field.
+    pub fn going_on(device: &Device, field: &PadField, state: PadState) -> Self {
+        let device = super::drawn(device, state.seed);
         let Behaviour { ageing, noise, mains, sampling, .. } = device.behaviour;
-        let mut starts = SplitMix64::named(seed, "channels");
-        let mut stream = || SplitMix64::new(starts.next_bits());
         Self {
             field: PadField {
                 signals: field.signals.clone(),
@@ -59,14 +52,13 @@ impl TwinPad {
             noise,
             mains,
             sampling,
-            memory: Memory::new(&device.behaviour),
-            delay: Delay::new(sampling.skew_us),
-            relative: std::array::from_fn(|_| Lasting::new(stream(), noise.share_time_s)),
-            walks: std::array::from_fn(|_| Walk::new(stream())),
-            white: SplitMix64::named(seed, "white"),
-            mains_phase: f64::from(SplitMix64::named(seed, "mains").fraction()),
-            at_s: 0.0,
+            state,
         }
+    }
+
+    /// What of it goes on in time.
+    pub fn into_state(self) -> PadState {
+        self.state
     }
 
     /// What the channels read `after_s` after the last reading, in microvolts: raw, not tared.
@@ -84,16 +76,18 @@ impl TwinPad {
         contacts: &[Contact],
         around: &Circumstances,
     ) -> [f64; CHANNELS] {
-        self.at_s += after_s;
+        self.state.at_s += after_s;
         let strain_uv = self.readout.strain_uv(&bridges_of(&self.field, contacts));
-        let remembered_uv = self.memory.follow(after_s, &strain_uv);
+        let remembered_uv = self.state.memory.follow(after_s, &strain_uv);
         let aged_uv =
             std::array::from_fn(|channel| self.left(channel, around.cycles) * remembered_uv[channel]);
         let mut signal_uv = self.readout.signal_uv(&aged_uv, around.temperature_c);
-        for ((uv, relative), share) in signal_uv.iter_mut().zip(&mut self.relative).zip(self.noise.share) {
+        for ((uv, relative), share) in
+            signal_uv.iter_mut().zip(&mut self.state.relative).zip(self.noise.share)
+        {
             *uv *= 1.0 + share * relative.next(after_s);
         }
-        let shown_uv = self.delay.show(self.at_s, signal_uv);
+        let shown_uv = self.state.delay.show(self.state.at_s, signal_uv);
         let zero_uv = self.readout.zero_uv(around.temperature_c);
         std::array::from_fn(|channel| {
             let added_uv = self.added_uv(channel, after_s);
@@ -109,12 +103,12 @@ impl TwinPad {
     /// Noise, drift and pickup.
     fn added_uv(&mut self, channel: usize, after_s: f64) -> f64 {
         let Noise { additive_uv, drift_uv_per_h, walk_uv, .. } = &self.noise;
-        let white_uv = additive_uv[channel] * f64::from(self.white.normal());
-        let walk_uv = walk_uv[channel] * self.walks[channel].next(after_s);
-        let sampled_s = self.at_s - self.sampling.skew_us[channel] * 1e-6;
-        let turns = self.mains_phase + self.mains.frequency_hz * sampled_s;
+        let white_uv = additive_uv[channel] * f64::from(self.state.white.normal());
+        let walk_uv = walk_uv[channel] * self.state.walks[channel].next(after_s);
+        let sampled_s = self.state.at_s - self.sampling.skew_us[channel] * 1e-6;
+        let turns = self.state.mains_phase + self.mains.frequency_hz * sampled_s;
         let mains_uv = self.mains.amplitude_uv[channel] * libm::sin(TAU * (turns - libm::floor(turns)));
-        white_uv + walk_uv + drift_uv_per_h[channel] * self.at_s / 3600.0 + mains_uv
+        white_uv + walk_uv + drift_uv_per_h[channel] * self.state.at_s / 3600.0 + mains_uv
     }
 
     fn converted(&self, uv: f64) -> f64 {

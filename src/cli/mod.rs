@@ -21,6 +21,7 @@ mod protocol;
 mod recording;
 mod replay;
 mod reports;
+mod seconds;
 mod simulate;
 mod state_file;
 mod summary;

@@ -9,10 +9,12 @@ use firmware_proto::sample::Sample;
 use firmware_proto::{ENCODED_MAX, RATE_MAX_HZ, RATE_MIN_HZ};
 
 use crate::pad::device::Device;
+use crate::pad::device::behaviour::Behaviour;
 use crate::pad::field::PadField;
 use crate::pad::twin::hand::Hand;
+use crate::pad::twin::life::Life;
 use crate::pad::twin::pad::{Circumstances, TwinPad};
-use crate::quantity::CHANNELS;
+use crate::quantity::{CHANNELS, Contact};
 use crate::virtual_pad::front_end::{self, CONVERTER};
 use crate::virtual_pad::script::Script;
 
@@ -39,6 +41,8 @@ pub struct VirtualPad {
     hand: Hand,
     pad: TwinPad,
     around: Circumstances,
+    /// What touched it at the last sample.
+    contact: Contact,
     /// Pad time of the last sample.
     read_us: u64,
     identity: Identity,
@@ -71,15 +75,20 @@ impl VirtualPad {
     }
 
     /// The pad of `device`, whose field is `field`, on which `script` is played. `seed` decides what is random.
-    #[expect(clippy::expect_used, reason = "the serial number is a constant and a test reads it")]
     pub fn of(script: Script, device: &Device, field: &PadField, seed: u64) -> Self {
-        let temperature_c = device.behaviour.thermal.reference_c;
+        Self::going_on(script, device, field, Life::new(device, seed), seed)
+    }
+
+    /// The same of a pad that has a life behind it; `seed` decides the hand. Its board keeps the temperature that it has.
+    #[expect(clippy::expect_used, reason = "the serial number is a constant and a test reads it")]
+    pub fn going_on(script: Script, device: &Device, field: &PadField, life: Life, seed: u64) -> Self {
         Self {
             script,
             begin_us: 0,
             hand: Hand::new(device.behaviour.finger, seed),
-            pad: TwinPad::new(device, field, seed),
-            around: Circumstances { temperature_c, cycles: 0.0 },
+            pad: TwinPad::going_on(device, field, life.state),
+            around: life.around,
+            contact: Contact::default(),
             read_us: 0,
             identity: Identity {
                 serial_number: SerialNumber::from_ascii(SERIAL_NUMBER)
@@ -102,6 +111,28 @@ impl VirtualPad {
         self.script = script;
         self.begin_us = self.due_us();
         self.begin_us
+    }
+
+    /// The same with something that stays where it is put, as no finger does.
+    pub fn lay(&mut self, script: Script) -> u64 {
+        self.hand = Hand::new(Behaviour::IDEAL.finger, 0);
+        self.play(script)
+    }
+
+    /// What touched it at the last sample: the true contact.
+    pub const fn contact(&self) -> &Contact {
+        &self.contact
+    }
+
+    /// The pad's life up to here. Each touch was a cycle of load.
+    pub fn into_life(self) -> Life {
+        Life { state: self.pad.into_state(), around: self.around }
+    }
+
+    /// Tells who it is with the next bytes, as if somebody had asked.
+    pub fn introduce(&mut self) {
+        // A full queue means that nobody listens.
+        let _ = self.replies.try_push(Message::Identity(self.identity));
     }
 
     /// Takes bytes from the host, whole commands or parts of them. Damaged commands get no answer; of more
@@ -166,6 +197,9 @@ impl VirtualPad {
         let after_s = time_us.saturating_sub(self.read_us) as f64 * 1e-6;
         self.read_us = time_us;
         let contact = self.hand.hold(after_s, &self.script.contact_at(time_us.saturating_sub(self.begin_us)));
+        let is_new = contact.fz_n > 0.0 && self.contact.fz_n <= 0.0;
+        self.around.cycles += f64::from(u8::from(is_new));
+        self.contact = contact;
         let (counts, mut status) = front_end::convert(&self.pad.read(after_s, &contact, &self.around));
         if std::mem::take(&mut self.restarted) {
             status = status.with_restarted();

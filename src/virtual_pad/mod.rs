@@ -7,8 +7,10 @@
 pub mod firmware;
 #[cfg(test)]
 mod fixture;
+pub mod freehand;
 pub mod front_end;
 mod gesture;
 mod player;
+pub mod recording;
 mod repertoire;
 pub mod script;

@@ -5,6 +5,7 @@ mod calibration;
 mod force_range;
 #[cfg(feature = "foreign-onnx")]
 mod foreign;
+mod freehand;
 mod layout;
 mod measurement;
 mod metrology;

@@ -26,6 +26,7 @@ mod support;
 mod terminal;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod tune;
+mod twin_capture;
 mod twin_verb;
 mod vtk;
 mod written;

@@ -152,6 +152,7 @@ fn a_state_that_does_not_fit_is_refused_and_kept() {
         ("--plan plan.csv --state m.csv", "--out and --state name one file"),
         ("--plan plan.csv --state -", "--state is read and written"),
         ("--plan plan.csv --state .", ". cannot be written"),
+        ("--plan plan.csv --state /dev/null", "/dev/null cannot be taken up: it is a device or a pipe"),
         (
             "--plan young.csv --imperfections noisy.toml --state pad.life",
             "young.csv:2: cycle is 20, and the pad has 31 cycles of load behind it already; plan more",

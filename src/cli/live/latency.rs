@@ -5,14 +5,15 @@ use std::io::{self, Write};
 use clap::Args;
 use serde::Serialize;
 
+use super::chosen;
 use super::files::Files;
 use super::output::Output;
 use super::playing::{Audience, Terminal, microseconds, open_pad, play, requests};
-use super::{chosen, seconds};
 use crate::cli::decoder_file::Choice;
 use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::profile;
+use crate::cli::seconds;
 use crate::cli::written::{print_json, say, stdout};
 use tactpad::bridge::latency::Percentiles;
 use tactpad::bridge::opening::Patience;

@@ -24,7 +24,6 @@ mod record;
 mod reported;
 mod run;
 mod screen;
-mod seconds;
 mod shown;
 mod sound;
 mod wish;

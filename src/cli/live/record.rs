@@ -13,11 +13,12 @@ use super::output::Output;
 use super::playing::{
     Audience, Terminal, Waits, create_capture, microseconds, open_pad, patience, play, requests,
 };
-use super::{chosen, ctl, seconds};
+use super::{chosen, ctl};
 use crate::cli::decoder_file::Choice;
 use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::profile;
+use crate::cli::seconds;
 use crate::cli::written::{Named, say};
 use tactpad::bridge::parts::Parts;
 use tactpad::bridge::running::Bridge;

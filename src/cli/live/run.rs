@@ -13,11 +13,12 @@ use super::playing::{Audience, Terminal, Waits, microseconds, open_pad, patience
 use super::screen::Screen;
 use super::shown::Shown;
 use super::wish;
-use super::{chosen, ctl, seconds};
+use super::{chosen, ctl};
 use crate::cli::decoder_file::Choice;
 use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::profile;
+use crate::cli::seconds;
 use crate::cli::terminal;
 use crate::cli::written::{printable, say};
 use tactpad::bridge::parts::Parts;

@@ -17,9 +17,9 @@ mod own;
 mod stored;
 mod verdict;
 
-pub(super) use chosen::read;
+pub(super) use chosen::{file, read};
 #[cfg(all(feature = "live", target_os = "linux"))]
-pub(super) use chosen::{file, is_known, known, next, read_aside};
+pub(super) use chosen::{is_known, known, next, read_aside};
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
 pub(super) use kept::{entries, save, stored};
 pub(super) use stored::Stored;

@@ -1,6 +1,6 @@
 //! `--state`: the file that keeps a pad's life from one run to the next.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -40,10 +40,13 @@ impl Kept {
                 "state {path} cannot be taken up: {why}; name another file, one that is not there yet for a new pad"
             ))
         };
-        let file = match File::open(&self.path) {
+        // Asked before it is opened: opening a pipe would wait for its other end.
+        match fs::metadata(&self.path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            file => file.map_err(|error| unusable(&reason(&error)))?,
-        };
+            Ok(there) if !there.is_file() => return Err(unusable("it is a device or a pipe")),
+            _ => {}
+        }
+        let file = File::open(&self.path).map_err(|error| unusable(&reason(&error)))?;
         let mut bytes = Vec::new();
         file.take(BYTES_MAX).read_to_end(&mut bytes).map_err(|error| unusable(&reason(&error)))?;
         Life::from_bytes(&bytes, device).map(Some).map_err(|error| unusable(&error.to_string()))
@@ -59,6 +62,12 @@ impl Kept {
 pub(super) fn begun(kept: Option<&Kept>, device: &Device, seed: u64) -> Result<Life, Failure> {
     let known = kept.map_or(Ok(None), |kept| kept.read(device))?;
     Ok(known.unwrap_or_else(|| Life::new(device, seed)))
+}
+
+/// What people are told of it.
+pub(super) fn told(life: &Life) -> String {
+    let (age_s, cycles) = (life.state.age_s(), life.around.cycles);
+    format!("; the pad is {age_s:.0} s old and has {cycles} cycles behind it")
 }
 
 /// The same after so many cycles of load.

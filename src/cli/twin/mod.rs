@@ -1,6 +1,7 @@
 //! `tactpad twin`: measured-like data from the imperfect virtual pad.
 
 mod arguments;
+mod capture;
 mod life;
 mod table;
 
@@ -8,6 +9,7 @@ use super::failure::Failure;
 use super::written::{both_print, is_stdout};
 
 pub(super) use self::arguments::{Arguments, NUMERICAL};
+use self::capture::Hands;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let prints = is_stdout(&arguments.out);
@@ -15,5 +17,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Err(both_print("--out -"));
     }
     arguments.keep_apart()?;
-    table::make(arguments, prints)
+    let hands = match arguments.plan.to_str() {
+        Some("play") => Some(Hands::Play),
+        Some("presses") => Some(Hands::Presses),
+        _ => None,
+    };
+    arguments.refuse_foreign(hands.is_some())?;
+    match hands {
+        Some(hands) => capture::make(arguments, hands, prints),
+        None => table::make(arguments, prints),
+    }
 }

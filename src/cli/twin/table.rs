@@ -94,9 +94,9 @@ fn report(
     if arguments.json {
         return print_json(&outcome);
     }
-    let Outcome { rows, trials, seconds, pad_seconds, pad_cycles, .. } = outcome;
+    let Outcome { rows, trials, seconds, .. } = outcome;
     let lived = match arguments.state {
-        Some(_) => format!("; the pad is {pad_seconds:.0} s old and has {pad_cycles} cycles behind it"),
+        Some(_) => life::told(life),
         None => String::new(),
     };
     let told =

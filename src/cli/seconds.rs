@@ -4,7 +4,7 @@
 const SECONDS_MAX: f64 = 86_400.0;
 
 /// Reads a duration in seconds. Clap calls it before the verb begins, so before any file is touched.
-pub(super) fn parse(text: &str) -> Result<f64, String> {
+pub(crate) fn parse(text: &str) -> Result<f64, String> {
     let seconds = text.trim().parse().unwrap_or(f64::NAN);
     if seconds > 0.0 && seconds <= SECONDS_MAX {
         Ok(seconds)

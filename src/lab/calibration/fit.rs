@@ -312,7 +312,7 @@ fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_
         let settings = Settings { background: 0.0, thresholds_uv, creep_time_s, noise_time_s };
         counted.fitted(problem, settings, None)
     };
-    if problem.is_play() { most_probable(NOISE_TIMES_S.to_vec(), tried) } else { tried(0.0) }
+    if problem.layout.is_play { most_probable(NOISE_TIMES_S.to_vec(), tried) } else { tried(0.0) }
 }
 
 /// The same with as many play operators as the evidence asks for. Known thresholds are only refined.

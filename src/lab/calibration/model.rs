@@ -3,14 +3,14 @@
 //! Channel k reads at a contact
 //!
 //! ```text
-//! sₖ = zₖ + (1 + αₖ ΔT) gₖ eₖ + Σₗ Xₖₗ eₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ,    eₖ = Σₐ Fₐ Eₖₐ(x, y)
+//! sₖ = zₖ + S ((1 + αₖ ΔT) gₖ eₖ + Σₗ Xₖₗ eₗ) + Σᵢ wᵢₖ lᵢₖ + c uₖ,    eₖ = Σₐ Fₐ Eₖₐ(x, y)
 //! E = G + b ∇²G + Σⱼ pⱼ ∂G/∂pⱼ + background
 //! ```
 //!
-//! with zeros z, gains g and their temperature coefficients α, strains e before gains, crosstalk X, shares w and lags l of the
+//! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains, crosstalk X, shares w and lags l of the
 //! play operators, creep's share c and state u, blur b, and physical parameters p. G is the simulator's field.
 
-use super::contacts::{BACKGROUND_DEGREE, Lags, Maps, Measured, Place, TERMS, response};
+use super::contacts::{BACKGROUND_DEGREE, Knowledge, Lags, Maps, Measured, Place, TERMS, response};
 use super::prior::Prior;
 use super::prior_deviations::{Kind, PriorDeviations};
 use crate::pad::device::parameter::Parameter;
@@ -21,9 +21,14 @@ use crate::quantity::CHANNELS;
 
 /// Prior standard deviations. Of gains: the authors' earlier pad has 0.83 to 1.33.
 pub(super) const GAIN_DEVIATION: f64 = 0.3;
+/// Of ln S, the scale of all that a load makes, where no label tells newtons. Presses alone say nothing of it: with S twice as
+/// large all forces are half as large.
+const LOG_SCALE_DEVIATION: f64 = 0.5;
 /// Half the mean square of the distance at which a contact's force acts from its place, along each axis: an indenter of
-/// another size, or a finger that is not still.
+/// another size, or a finger that is not still. A disc of radius a has a²/8: fingertips have some 5 mm, weights 10 mm.
 const BLUR_DEVIATION_MM2: f64 = 0.5;
+const FINGER_BLUR_DEVIATION_MM2: f64 = 3.0;
+const WEIGHT_BLUR_DEVIATION_MM2: f64 = 8.0;
 /// Of a play operator in all channels.
 const SHARE_DEVIATION: f64 = 0.05;
 /// Of creep's share of a load in the end: adhesive and polyimide.
@@ -34,12 +39,15 @@ const GAIN_SLOPE_DEVIATION: f64 = 1e-3;
 const SHARE_MAX: f64 = 0.25;
 
 /// The parameter vector θ, by kind: zeros, gains, crosstalk (into, from), hysteresis (shares of all channels; each channel's
-/// difference), creep, blur, temperature coefficients of the gains, physical parameters, background (channel, force, polynomial).
+/// difference), creep, blur, temperature coefficients of the gains, ln S, blur of a weight, physical
+/// parameters, background (channel, force, polynomial).
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub(super) physical: Vec<Parameter>,
     /// Polynomials of the background for each channel and force: 0 or [`TERMS`].
     pub(super) terms: usize,
+    /// Whether no contact was written down by a reference.
+    pub(super) is_play: bool,
 }
 
 const ZEROS: usize = 0;
@@ -50,7 +58,9 @@ const OWN_SHARES: usize = SHARES + PLAYS;
 const CREEP: usize = OWN_SHARES + PLAYS * CHANNELS;
 const BLUR: usize = CREEP + 1;
 const GAIN_SLOPES: usize = BLUR + 1;
-const PHYSICAL: usize = GAIN_SLOPES + CHANNELS;
+const LOG_SCALE: usize = GAIN_SLOPES + CHANNELS;
+const WEIGHT_BLUR: usize = LOG_SCALE + 1;
+const PHYSICAL: usize = WEIGHT_BLUR + 1;
 
 impl Layout {
     pub(super) const fn size(&self) -> usize {
@@ -92,7 +102,12 @@ impl Layout {
         deviations[OWN_SHARES..CREEP].fill(prior_deviations.of(Kind::OwnHysteresis));
         deviations[CREEP] = CREEP_DEVIATION;
         deviations[BLUR] = BLUR_DEVIATION_MM2;
-        deviations[GAIN_SLOPES..PHYSICAL].fill(GAIN_SLOPE_DEVIATION);
+        deviations[GAIN_SLOPES..LOG_SCALE].fill(GAIN_SLOPE_DEVIATION);
+        if self.is_play {
+            deviations[BLUR] = FINGER_BLUR_DEVIATION_MM2;
+            (deviations[LOG_SCALE], deviations[WEIGHT_BLUR]) =
+                (LOG_SCALE_DEVIATION, WEIGHT_BLUR_DEVIATION_MM2);
+        }
         for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
             *deviation = prior_deviations.of(Kind::of(*parameter));
         }
@@ -115,8 +130,14 @@ impl Layout {
         zeros.chain(between.map(|index| (Kind::Crosstalk, CROSSTALKS + index))).chain(own).chain(physical)
     }
 
+    /// The scale S of all that a load makes.
+    fn scale_factor(values: &[f64]) -> f64 {
+        libm::exp(values[LOG_SCALE])
+    }
+
+    /// A channel's gain S gₖ.
     pub(super) fn gain(values: &[f64], channel: usize) -> f64 {
-        values[GAINS + channel]
+        Self::scale_factor(values) * values[GAINS + channel]
     }
 
     /// The hysteresis by these parameters. Thresholds are in strains before gains: rᵢₖ = thresholdᵢ |gₖ|.
@@ -179,9 +200,18 @@ impl Layout {
         ZEROS + channel
     }
 
-    /// Place of a channel's gain.
-    pub(super) const fn gain_at(channel: usize) -> usize {
-        GAINS + channel
+    /// What a channel has of the nine strains: S gₖ of its own, S Xₖₗ of the others.
+    fn mixture(values: &[f64], channel: usize) -> [f64; CHANNELS] {
+        let scale = Self::scale_factor(values);
+        std::array::from_fn(|from| {
+            let own = if from == channel { values[GAINS + channel] } else { 0.0 };
+            scale * (own + values[CROSSTALKS + channel * CHANNELS + from])
+        })
+    }
+
+    /// A channel's gain S gₖ as a sum of parameters, in linear order: ∂/∂gₖ = S, ∂/∂ln S = S gₖ.
+    pub(super) fn gain_terms(values: &[f64], channel: usize) -> [(usize, f64); 2] {
+        [(GAINS + channel, Self::scale_factor(values)), (LOG_SCALE, Self::gain(values, channel))]
     }
 
     /// Place of the crosstalk into a channel from another one.
@@ -200,11 +230,11 @@ impl Layout {
     }
 
     /// The strain maps E at a place, µV/N before gains.
-    fn strain_maps(&self, values: &[f64], scale: &Maps, place: &Place) -> Maps {
+    fn strain_maps(&self, values: &[f64], scale: &Maps, place: &Place, knowledge: Knowledge) -> Maps {
         // E = G + b ∇²G …
         let mut maps = place.gains;
         for (map, laplacian) in maps.as_flattened_mut().iter_mut().zip(place.laplacian.as_flattened()) {
-            *map += values[BLUR] * laplacian;
+            *map += values[blur_at(knowledge)] * laplacian;
         }
         // … + Σⱼ pⱼ ∂G/∂pⱼ …
         for (value, slope) in values[PHYSICAL..].iter().zip(&place.sensitivities) {
@@ -223,21 +253,21 @@ impl Layout {
     }
 
     /// The channels' maps at a place, µV/N.
-    pub(super) fn maps(&self, values: &[f64], scale: &Maps, place: &Place) -> Maps {
-        // gₖ Eₖₐ + Σₗ Xₖₗ Eₗₐ.
-        let strain_maps = self.strain_maps(values, scale, place);
+    pub(super) fn maps(&self, values: &[f64], scale: &Maps, place: &Place, knowledge: Knowledge) -> Maps {
+        // S (gₖ Eₖₐ + Σₗ Xₖₗ Eₗₐ).
+        let strain_maps = self.strain_maps(values, scale, place, knowledge);
         std::array::from_fn(|into| {
             std::array::from_fn(|axis| {
-                let own = Self::gain(values, into) * strain_maps[into][axis];
-                let others = &values[CROSSTALKS + into * CHANNELS..][..CHANNELS];
-                own + others.iter().zip(&strain_maps).map(|(share, from)| share * from[axis]).sum::<f64>()
+                let factors = Self::mixture(values, into);
+                factors.iter().zip(&strain_maps).map(|(factor, from)| factor * from[axis]).sum()
             })
         })
     }
 
     /// The channels' signals under a contact's load alone: without zeros, hysteresis and creep.
     pub(super) fn load_uv(&self, values: &[f64], scale: &Maps, contact: &Measured) -> [f64; CHANNELS] {
-        self.maps(values, scale, &contact.place).map(|map| response(&map, &contact.force_n))
+        self.maps(values, scale, &contact.place, contact.knowledge)
+            .map(|map| response(&map, &contact.force_n))
     }
 
     /// ∇E along x or y at a place, µV/N per mm. The blur is left out.
@@ -266,16 +296,15 @@ impl Layout {
         scale: &Maps,
         contact: &Measured,
     ) -> [[f64; UNKNOWNS]; CHANNELS] {
-        let maps = self.maps(values, scale, &contact.place);
-        // By the place gₖ Σₐ Fₐ ∇Eₖₐ + Σₗ Xₖₗ Σₐ Fₐ ∇Eₗₐ; by the force the maps.
+        let maps = self.maps(values, scale, &contact.place, contact.knowledge);
+        // By the place S (gₖ Σₐ Fₐ ∇Eₖₐ + Σₗ Xₖₗ Σₐ Fₐ ∇Eₗₐ); by the force the maps.
         let of_strains = [0, 1].map(|axis| {
             let gradient = self.strain_gradient(values, scale, &contact.place, axis);
             gradient.map(|map| response(&map, &contact.force_n))
         });
         let by_place = |channel: usize, axis: usize| {
-            let own = Self::gain(values, channel) * of_strains[axis][channel];
-            let shares = &values[CROSSTALKS + channel * CHANNELS..][..CHANNELS];
-            own + shares.iter().zip(&of_strains[axis]).map(|(share, slope)| share * slope).sum::<f64>()
+            let factors = Self::mixture(values, channel);
+            factors.iter().zip(&of_strains[axis]).map(|(factor, slope)| factor * slope).sum::<f64>()
         };
         std::array::from_fn(|channel| {
             let [fx, fy, fz] = maps[channel];
@@ -291,25 +320,30 @@ impl Layout {
         contact: &Measured,
         mut each: impl FnMut(usize, f64, &[f64]),
     ) {
-        let Measured { place, force_n, lags, crept_uv, above_c, .. } = contact;
-        let strain_maps = self.strain_maps(values, scale, place);
+        let Measured { knowledge, place, force_n, lags, crept_uv, above_c, .. } = contact;
+        let strain_maps = self.strain_maps(values, scale, place, *knowledge);
         let strains_uv = strain_maps.map(|map| response(&map, force_n));
         let mut derivatives = vec![0.0; self.size()];
         for channel in 0..CHANNELS {
             derivatives.fill(0.0);
-            // h = (1 + αₖ ΔT) gₖ.
+            // h = (1 + αₖ ΔT) S gₖ.
             let thermal_gain = 1.0 + values[GAIN_SLOPES + channel] * above_c;
-            let gain = thermal_gain * Self::gain(values, channel);
+            let own_gain = Self::gain(values, channel);
+            let (gain, factor) = (thermal_gain * own_gain, Self::scale_factor(values));
             let shares = &values[CROSSTALKS + channel * CHANNELS..][..CHANNELS];
-            let crosstalk_uv: f64 = shares.iter().zip(strains_uv).map(|(share, uv)| share * uv).sum();
-            // ∂/∂zₖ = 1, ∂/∂gₖ = (1 + αₖ ΔT) eₖ, ∂/∂αₖ = ΔT gₖ eₖ, ∂/∂Xₖₗ = eₗ.
+            let crosstalk_uv: f64 =
+                factor * shares.iter().zip(strains_uv).map(|(share, uv)| share * uv).sum::<f64>();
+            let loaded_uv = gain * strains_uv[channel] + crosstalk_uv;
+            // ∂/∂zₖ = 1, ∂/∂gₖ = (1 + αₖ ΔT) S eₖ, ∂/∂αₖ = ΔT S gₖ eₖ, ∂/∂Xₖₗ = S eₗ, ∂/∂ln S = h eₖ + S Σₗ Xₖₗ eₗ.
             derivatives[ZEROS + channel] = 1.0;
-            derivatives[GAINS + channel] = thermal_gain * strains_uv[channel];
-            derivatives[GAIN_SLOPES + channel] = above_c * Self::gain(values, channel) * strains_uv[channel];
-            derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&strains_uv);
+            derivatives[GAINS + channel] = thermal_gain * factor * strains_uv[channel];
+            derivatives[GAIN_SLOPES + channel] = above_c * own_gain * strains_uv[channel];
+            derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS]
+                .copy_from_slice(&strains_uv.map(|uv| factor * uv));
             derivatives[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
+            derivatives[LOG_SCALE] = loaded_uv;
             // ∂/∂b = h F·∇²Gₖ, ∂/∂pⱼ = h F·∂Gₖ/∂pⱼ, ∂/∂βₖₐₜ = h Fₐ scaleₖₐ Uₜ.
-            derivatives[BLUR] = gain * response(&place.laplacian[channel], force_n);
+            derivatives[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
             for (slope, maps) in derivatives[PHYSICAL..].iter_mut().zip(&place.sensitivities) {
                 *slope = gain * response(&maps[channel], force_n);
             }
@@ -319,10 +353,18 @@ impl Layout {
                 terms.for_each(|(slope, term)| *slope = factor * term);
             }
             let memory_uv = Self::memory_uv(values, channel, lags, crept_uv, &mut derivatives);
-            // sₖ = zₖ + h eₖ + Σₗ Xₖₗ eₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ.
-            let uv = values[ZEROS + channel] + gain * strains_uv[channel] + crosstalk_uv + memory_uv;
+            // sₖ = zₖ + h eₖ + S Σₗ Xₖₗ eₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ.
+            let uv = values[ZEROS + channel] + loaded_uv + memory_uv;
             each(channel, uv, &derivatives);
         }
+    }
+}
+
+/// Place of the blur of what presses: a weight has its own.
+const fn blur_at(knowledge: Knowledge) -> usize {
+    match knowledge {
+        Knowledge::Placed(_) => WEIGHT_BLUR,
+        Knowledge::Written | Knowledge::Unlabelled => BLUR,
     }
 }
 

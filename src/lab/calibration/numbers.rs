@@ -190,6 +190,7 @@ impl Number {
 fn value(quantity: Quantity, target: Target, sum: &[(usize, f64)], fit: &Fit, asked: &Asked) -> f64 {
     match (quantity, target, asked.zero_uv) {
         (Quantity::Zero, Target::Channel(channel), Some(zero_uv)) => zero_uv[channel],
+        (Quantity::Gain, Target::Channel(channel), _) => Layout::gain(&fit.values, channel),
         _ => sum.iter().map(|(at, factor)| factor * fit.values[*at]).sum(),
     }
 }
@@ -200,6 +201,9 @@ fn combined(layout: &Layout, fit: &Fit, asked: &Asked) -> Vec<Combined> {
         let channels = (0..CHANNELS).filter(move |_| is_asked);
         channels.map(move |channel| (quantity, Target::Channel(channel), vec![(at(channel), 1.0)]))
     };
+    let gains = (0..CHANNELS).map(|channel| {
+        (Quantity::Gain, Target::Channel(channel), Layout::gain_terms(&fit.values, channel).to_vec())
+    });
     let pairs = (0..CHANNELS).flat_map(|into| (0..CHANNELS).map(move |from| (into, from)));
     let crosstalks = pairs.filter(|(into, from)| into != from).map(|(into, from)| {
         let target = Target::Channels { into, from };
@@ -212,7 +216,7 @@ fn combined(layout: &Layout, fit: &Fit, asked: &Asked) -> Vec<Combined> {
     let [creep, blur] = Layout::creep_and_blur_at();
     let creep = (fit.settings.creep_time_s > 0.0).then(|| (Quantity::Creep, Target::Pad, vec![(creep, 1.0)]));
     let slope = |channel| Layout::first_gain_slope() + channel;
-    channels(Quantity::Gain, true, Layout::gain_at)
+    gains
         .chain(physical)
         .chain(crosstalks)
         .chain((0..PLAYS).flat_map(|play| frictions(play, fit.settings.thresholds_uv[play])))

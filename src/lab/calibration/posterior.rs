@@ -70,7 +70,7 @@ impl Problem<'_> {
         let signals = &self.prior.field.signals;
         InfluenceField::sampled(f64::from(signals.spacing_mm()), self.reach_mm, self.reach_mm, |place_mm| {
             let place = Place::of(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
-            let maps = self.layout.maps(values, &self.scale, &place);
+            let maps = self.layout.maps(values, &self.scale, &place, Knowledge::Written);
             std::array::from_fn::<f64, MAPS, _>(|map| maps[map / 3][map % 3])
         })
     }

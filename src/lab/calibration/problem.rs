@@ -126,7 +126,9 @@ impl<'f> Problem<'f> {
             Some((*row, Measured::of(field, &sensitivities, plate_mm, known, reference_c)?))
         };
         let contacts = fitted.iter().filter_map(measured).collect();
-        let layout = Layout { physical: sensitivities.iter().map(|it| it.parameter).collect(), terms: 0 };
+        let is_play = fitted.iter().all(|it| it.knowledge != Knowledge::Written);
+        let physical = sensitivities.iter().map(|it| it.parameter).collect();
+        let layout = Layout { physical, terms: 0, is_play };
         Self {
             jumps: Jumps::of(recording),
             prior,
@@ -144,11 +146,6 @@ impl<'f> Problem<'f> {
     /// How many contacts there are.
     pub(super) const fn contacts(&self) -> usize {
         self.contacts.len()
-    }
-
-    /// Whether contacts follow each other in play: none was written down by a reference.
-    pub(super) fn is_play(&self) -> bool {
-        self.contacts.iter().all(|(_, contact)| contact.knowledge != Knowledge::Written)
     }
 
     /// The prior of the channels' noise.

@@ -1,7 +1,7 @@
 //! Effects that are hidden in measured data, and what the program finds of them.
 //!
 //! The measured data come from a generator that shares no code with the program: its influence fields are tables of
-//! another program's solution, and each effect has a formula of its own.
+//! another program's solution, and each effect has a formula of its own. Pads are calibrated by such data, too.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -9,6 +9,7 @@
 )]
 
 mod background;
+mod calibrated;
 mod campaign;
 mod case;
 mod effects;

@@ -63,10 +63,31 @@ pub(crate) fn protocol(name: &str, seed: u64) -> String {
 pub(crate) fn diagnosed(measured: &Path, more: &[&str]) -> Result<Value, String> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
     command.args(["diagnose", "--json", "--measured"]).arg(measured).args(more);
-    // A campaign runs one for each processor.
+    document(command, measured)
+}
+
+/// What the program says of a pad that it calibrates; the decoder is written.
+pub(crate) fn calibrated(measured: &Path, decoder: &Path) -> Value {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+    command.args(["adapt", "--method", "inverse", "--json", "--measured"]).arg(measured);
+    command.arg("--out").arg(decoder);
+    document(command, measured).unwrap()
+}
+
+/// A decoder's errors on a table whose true contacts are known.
+pub(crate) fn evaluated(decoder: &Path, measured: &Path, truth: &Path) -> Value {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+    command.args(["evaluate", "--json", "--decoder"]).arg(decoder);
+    command.arg("--measured").arg(measured).arg("--truth").arg(truth);
+    document(command, measured).unwrap()
+}
+
+/// The program's JSON, or what it said instead.
+fn document(mut command: Command, about: &Path) -> Result<Value, String> {
+    // Several run side by side.
     let output = command.env("RAYON_NUM_THREADS", "1").output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
-    assert!(!said.contains("panicked"), "{}: {said}", measured.display());
+    assert!(!said.contains("panicked"), "{}: {said}", about.display());
     if !output.status.success() {
         return Err(said.into_owned());
     }

@@ -55,10 +55,7 @@ fn write_conflicts(out: &mut impl Write, rows: &[Row]) -> io::Result<()> {
     if conflicts.is_empty() {
         return Ok(());
     }
-    writeln!(
-        out,
-        "\n* Conflicts with the paper's other figures. As far off as a pad may be, the network comes to"
-    )?;
+    writeln!(out, "\n* Conflicts with the paper's other figures. As far off as a pad may be, it comes to")?;
     for (name, paper, reached) in conflicts {
         let PublishedErrors { position_mae_mm, force_mae_n } = reached;
         writeln!(
@@ -67,7 +64,7 @@ fn write_conflicts(out: &mut impl Write, rows: &[Row]) -> io::Result<()> {
             paper.position_mae_mm, paper.force_mae_n
         )?;
     }
-    writeln!(out, "  and then it is off in other figures: docs/network.md. Its mm are the distance.")
+    writeln!(out, "  and then it is off in other figures: docs/network.md. These mm are the distance.")
 }
 
 fn write_row(out: &mut impl Write, row: &Row, tried: &Tried) -> io::Result<()> {

@@ -27,6 +27,11 @@ impl CarriedOut {
         Self { recording: recording.expect("a plan begins with the untouched pad"), raw, truths: truth }
     }
 
+    /// Some of the rows as they were measured.
+    pub(super) fn raw_at(&self, places: &[usize]) -> Vec<Row> {
+        places.iter().map(|at| self.raw[*at]).collect()
+    }
+
     /// All rows as the decoder takes them.
     pub(super) fn taken(&self, decoder: &Decoder) -> Vec<Row> {
         if decoder.zero() == Zero::Raw { self.raw.clone() } else { self.recording.taken(decoder).rows }

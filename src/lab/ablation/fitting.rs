@@ -97,30 +97,27 @@ impl<'p> Known<'p> {
             Samples::Simulated | Samples::Untared => Vec::new(),
             Samples::First(count) => contacts().into_iter().take(count).collect(),
             Samples::Drawn(count) => drawn(contacts(), count, self.subject.seed),
+            Samples::Raw => contacts(),
         }
     }
 
     fn rows(&self, samples: Samples) -> Vec<Row> {
         match samples {
             Samples::Simulated | Samples::Untared => self.simulated.clone(),
+            Samples::Raw => self.measured.raw_at(&self.places(samples)),
             _ => self.places(samples).iter().map(|at| self.measured.recording.tared().rows[*at]).collect(),
         }
     }
 
     fn decoder(&self, entry: &Entry) -> Result<Decoder, Reason> {
-        let rows = || self.rows(entry.samples);
+        let (rows, zero) = (|| self.rows(entry.samples), entry.samples.zero());
         let fitted = match entry.method {
             Method::Statics => Ok(shipped::statics()),
-            Method::Network if entry.samples == Samples::Simulated => Ok(self.network.clone().into()),
-            Method::Network if entry.samples == Samples::Untared => {
-                let mut network = self.network.clone();
-                network.zero = Zero::Raw;
-                Ok(network.into())
-            }
-            Method::Network => return self.adapted(&rows()).map_err(Reason::Network),
-            Method::Knn => neighbours(&rows(), Zero::Tared).map(Decoder::from),
-            Method::Linear => self.regression(&rows(), Target::Contact),
-            Method::Wrench => self.regression(&rows(), Target::Wrench),
+            Method::Network if entry.samples.measured() == 0 => Ok(self.stage_1(zero).into()),
+            Method::Network => return self.adapted(&rows(), zero).map_err(Reason::Network),
+            Method::Knn => neighbours(&rows(), zero).map(Decoder::from),
+            Method::Linear => self.regression(&rows(), zero, Target::Contact),
+            Method::Wrench => self.regression(&rows(), zero, Target::Wrench),
             Method::Inverse if entry.samples == Samples::Simulated => {
                 Ok(shipped::uncalibrated(self.subject.designed.field.signals.clone()))
             }
@@ -135,15 +132,22 @@ impl<'p> Known<'p> {
         Ok(calibration.decoder())
     }
 
-    fn adapted(&self, rows: &[Row]) -> Result<Decoder, TooFew> {
+    /// The network of stage I, which takes these channels.
+    fn stage_1(&self, zero: Zero) -> Network {
+        let mut network = self.network.clone();
+        network.zero = zero;
+        network
+    }
+
+    fn adapted(&self, rows: &[Row], zero: Zero) -> Result<Decoder, TooFew> {
         let examples = adaptation::examples(rows);
-        let adapted = adapt(self.network, examples, self.subject.seed, |_, _| ())?;
+        let adapted = adapt(&self.stage_1(zero), examples, self.subject.seed, |_, _| ())?;
         Ok(adapted.trained.network.into())
     }
 
-    fn regression(&self, rows: &[Row], target: Target) -> Result<Decoder, FitError> {
+    fn regression(&self, rows: &[Row], zero: Zero, target: Target) -> Result<Decoder, FitError> {
         let reach_mm = self.subject.designed.device.contact.max_centre_radius_mm;
-        regression(rows, Zero::Tared, target, reach_mm).map(Decoder::from)
+        regression(rows, zero, target, reach_mm).map(Decoder::from)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The program as its users see it: what verbs print, what they refuse, the figures and files that they write.
 
 mod adapt;
+mod adapt_play;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod bad_input;
 mod diagnose;

@@ -13,8 +13,8 @@
 //! Source: P. de Jong, The diffuse Kalman filter, Ann. Statist. 19 (1991) 1073 (a filter whose vector is linear in unknown
 //! parameters); H. E. Rauch, F. Tung, C. T. Striebel, AIAA J. 3 (1965) 1445 (the smoother).
 
-use super::noise_model::{MarginalPrecision, Residual};
 use super::normal_equations::NormalEquations;
+use super::residual::{MarginalPrecision, Residual};
 use crate::numeric::linear::{Factor, dot};
 use crate::quantity::CHANNELS;
 
@@ -104,10 +104,9 @@ impl<'w> Filter<'w> {
 
     /// A contact is seen: Y ← Y + D V⁻¹ D, z ← z + D V⁻¹ r, Z ← Z + D V⁻¹ A. `rows` are those of A.
     pub(super) fn see(&mut self, precision: &MarginalPrecision, residual: &Residual, rows: &[Vec<f64>]) {
-        let matrix = precision.matrix();
-        for i in 0..CHANNELS {
-            for j in 0..CHANNELS {
-                let weight = residual.uv[i] * matrix[i][j];
+        for (i, line) in precision.matrix().iter().enumerate() {
+            for (j, entry) in line.iter().enumerate() {
+                let weight = residual.uv[i] * entry;
                 self.information[i][j] += weight * residual.uv[j];
                 self.vector[i] += weight * residual.residual_uv[j];
                 if let (Some(sums), Some(row)) = (self.slopes.get_mut(i), rows.get(j)) {
@@ -236,4 +235,142 @@ fn combined(matrix: &Matrix, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
         sum
     };
     matrix.iter().map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::calibration::contacts::Knowledge;
+    use crate::lab::calibration::noise::NoisePrior;
+    use crate::lab::calibration::noise_model::NoiseModel;
+    use crate::numeric::linear::Symmetric;
+    use crate::numeric::random::SplitMix64;
+    use crate::pipeline::contact::uncertainty::UNKNOWNS;
+
+    const CONTACTS: usize = 6;
+    const WANDER: Wander = Wander { time_s: 2.0, deviation: [0.03; CHANNELS] };
+
+    /// Contacts of random times, signals, slopes and residuals, and of all kinds.
+    fn contacts() -> Vec<Residual> {
+        let mut random = SplitMix64::new(8);
+        let mut at_s = 0.0;
+        let mut normal = |size: f64| size * f64::from(random.normal());
+        let mut contact = |index: usize| {
+            at_s += 0.2 + normal(0.5).abs();
+            Residual {
+                knowledge: [Knowledge::Unlabelled, Knowledge::Written, Knowledge::Placed([0.3; UNKNOWNS])]
+                    [index % 3],
+                at_s,
+                uv: [0; CHANNELS].map(|_| normal(1000.0)),
+                force_n: 1.0,
+                residual_uv: [0; CHANNELS].map(|_| normal(20.0)),
+                label_jacobian: [[0; UNKNOWNS]; CHANNELS].map(|row| row.map(|_| normal(200.0))),
+            }
+        };
+        (0..CONTACTS).map(&mut contact).collect()
+    }
+
+    fn seen() -> Vec<(MarginalPrecision, Residual)> {
+        let model = NoiseModel::prior(NoisePrior::SIMULATED, WANDER.time_s);
+        contacts()
+            .into_iter()
+            .map(|residual| (model.marginal_precision(&residual).unwrap(), residual))
+            .collect()
+    }
+
+    /// The joint information of all states, state after state, and its vector: by the definition, without a filter.
+    fn joint() -> (Symmetric, Vec<f64>, f64) {
+        let (seen, size) = (seen(), CONTACTS * CHANNELS);
+        let (mut information, mut vector, mut log_prior) = (Symmetric::zeros(size), vec![0.0; size], 0.0);
+        for (index, (precision, residual)) in seen.iter().enumerate() {
+            let kept = if index == 0 { 0.0 } else { WANDER.kept(residual.at_s - seen[index - 1].1.at_s) };
+            for (channel, line) in precision.matrix().iter().enumerate() {
+                let at = index * CHANNELS + channel;
+                let fresh = (1.0 - kept * kept) * WANDER.deviation[channel].powi(2);
+                log_prior += fresh.ln();
+                // (ν − ρ ν′)²/S.
+                let of = |factors: &[(usize, f64)]| {
+                    let mut whole = vec![0.0; size];
+                    factors.iter().for_each(|(at, factor)| whole[*at] += factor);
+                    whole
+                };
+                let before = if index == 0 { (at, 0.0) } else { (at - CHANNELS, -kept) };
+                information.add_product(1.0 / fresh, &of(&[(at, 1.0), before]));
+                for (other, entry) in line.iter().enumerate() {
+                    let (weight, beside) = (residual.uv[channel] * entry, index * CHANNELS + other);
+                    vector[at] += weight * residual.residual_uv[other];
+                    // a b = ½ ((a + b)² − a² − b²), each pair once from either side.
+                    let half = 0.5 * weight * residual.uv[other];
+                    information.add_product(half, &of(&[(at, 1.0), (beside, 1.0)]));
+                    information.add_product(-half, &of(&[(at, 1.0)]));
+                    information.add_product(-half, &of(&[(beside, 1.0)]));
+                }
+            }
+        }
+        (information, vector, log_prior)
+    }
+
+    #[test]
+    fn the_filter_is_the_joint_gaussian_of_all_states() {
+        let (information, vector, log_prior) = joint();
+        let factor = information.factorised().unwrap();
+        let half = factor.solve_lower(&vector);
+        let wanted = log_prior + factor.log_determinant() - dot(&half, &half);
+        let mut filter = Filter::new(&WANDER, 0);
+        let mut previous_s = None;
+        for (precision, residual) in &seen() {
+            if let Some(previous_s) = previous_s.replace(residual.at_s) {
+                filter.pass(residual.at_s - previous_s, None).unwrap();
+            }
+            filter.see(precision, residual, &[]);
+        }
+        let found = filter.end(None).unwrap();
+        assert!((found / wanted - 1.0).abs() < 1e-8, "{found} {wanted}");
+    }
+
+    #[test]
+    fn the_smoother_gives_means_and_covariances_of_the_joint_gaussian() {
+        let (information, vector, _) = joint();
+        let factor = information.factorised().unwrap();
+        let mean = factor.solve(&vector);
+        let blocks = factor.inverse_blocks(CHANNELS);
+        let seen = seen();
+        let pairs: Vec<_> = seen.iter().map(|(precision, residual)| (*precision, residual)).collect();
+        let smoothed = WANDER.smoothed(&pairs).unwrap();
+        for index in 0..CONTACTS {
+            for channel in 0..CHANNELS {
+                let off = smoothed.mean[index][channel] - mean[index * CHANNELS + channel];
+                assert!(off.abs() < 1e-9, "{index} {channel}: {off}");
+                let off = smoothed.covariance[index][channel][channel] - blocks[index][channel][channel];
+                assert!(off.abs() < 1e-10, "{index} {channel}: {off}");
+            }
+        }
+    }
+
+    #[test]
+    fn its_size_is_found_from_states_that_show() {
+        // Residuals that are nothing but a gain's wandering, on signals far above the noise.
+        let mut random = SplitMix64::new(3);
+        let model = NoiseModel::prior(NoisePrior::SIMULATED, WANDER.time_s);
+        let mut state = [0.0; CHANNELS];
+        let contacts: Vec<Residual> = (0..600)
+            .map(|index| {
+                let kept = WANDER.kept(0.5);
+                let fresh = (1.0 - kept * kept).sqrt() * 0.05;
+                state = state.map(|it| kept * it + fresh * f64::from(random.normal()));
+                let uv = [0; CHANNELS].map(|_| 3e4 + 1e4 * f64::from(random.uniform()));
+                Residual {
+                    knowledge: Knowledge::Written,
+                    at_s: 0.5 * f64::from(index),
+                    uv,
+                    force_n: 0.0,
+                    residual_uv: std::array::from_fn(|k| uv[k] * state[k]),
+                    label_jacobian: [[0.0; UNKNOWNS]; CHANNELS],
+                }
+            })
+            .collect();
+        let seen: Vec<_> = contacts.iter().map(|it| (model.marginal_precision(it).unwrap(), it)).collect();
+        let found = WANDER.smoothed(&seen).unwrap().variance.map(f64::sqrt);
+        assert!(found.iter().all(|deviation| (deviation / 0.05 - 1.0).abs() < 0.12), "{found:?}");
+    }
 }

@@ -36,5 +36,6 @@ mod prior;
 mod prior_deviations;
 mod problem;
 pub mod regression;
+mod residual;
 pub mod screening;
 pub mod thermal_fit;

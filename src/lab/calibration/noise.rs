@@ -124,12 +124,14 @@ pub(super) fn with_field_covariance(
     field_covariances: &[FieldCovariance],
 ) -> Noise {
     let count = field_covariances.len().max(1) as f64;
-    // √(mean of Σₖₖ/F²).
-    let channel = |k: usize| {
-        let per_n2 = |it: &FieldCovariance| it.uv2[k][k] / square(&it.force_n);
-        (field_covariances.iter().map(per_n2).sum::<f64>() / count).sqrt()
-    };
-    let noise = Noise { field_uv_per_n: std::array::from_fn(channel), ..noise };
+    // √(mean of Σₖₖ/F²), without what all channels share: an error of the scale is one of the force and of no channel.
+    let mut per_n2 = [0.0; CHANNELS];
+    for covariance in field_covariances {
+        let own_uv2 = own_variances(covariance, field, &noise);
+        let force_n2 = square(&covariance.force_n) * count;
+        per_n2.iter_mut().zip(own_uv2).for_each(|(sum, uv2)| *sum += uv2.max(0.0) / force_n2);
+    }
+    let noise = Noise { field_uv_per_n: per_n2.map(f64::sqrt), ..noise };
     let decoder = Inverse::new(field.clone(), noise);
     let mut by_field = noise.by_field;
     for FieldCovariance { place_mm, force_n, uv2 } in field_covariances {
@@ -145,6 +147,27 @@ pub(super) fn with_field_covariance(
         }
     }
     Noise { by_field, ..noise }
+}
+
+/// The channels' variances at a contact, without that of a factor that all of them share: the diagonal of P Σ Pᵀ with
+/// P = I − s sᵀW/(sᵀW s), where s are the signals and W one over their noise.
+fn own_variances(
+    FieldCovariance { place_mm, force_n, uv2 }: &FieldCovariance,
+    field: &InfluenceField,
+    noise: &Noise,
+) -> [f64; CHANNELS] {
+    let [x_mm, y_mm] = place_mm.map(|mm| mm as f32);
+    let maps = field.gains(x_mm, y_mm).value;
+    let signals_uv = maps.map(|map| map.iter().zip(force_n).map(|(map, n)| map * n).sum::<f64>());
+    let variances = noise.variances(&signals_uv, square(force_n).sqrt()).noise;
+    let weighted: [f64; CHANNELS] = std::array::from_fn(|k| signals_uv[k] / variances[k]);
+    let whole: f64 = weighted.iter().zip(signals_uv).map(|(weighted, uv)| weighted * uv).sum();
+    std::array::from_fn(|k| {
+        let row: [f64; CHANNELS] = std::array::from_fn(|l| {
+            f64::from(u8::from(k == l)) - signals_uv[k] * weighted[l] / whole.max(f64::MIN_POSITIVE)
+        });
+        form(&row, uv2, &row)
+    })
 }
 
 /// F².

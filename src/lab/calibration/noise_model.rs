@@ -14,7 +14,8 @@
 use super::contacts::Knowledge;
 use super::lasting::{Smoothed, Wander};
 use super::noise::{self, NoisePrior, SquaredResidual};
-use crate::numeric::linear::Factor;
+use super::residual::{MarginalPrecision, Residual};
+use crate::numeric::linear::{Factor, dot};
 use crate::pipeline::contact::uncertainty::{Noise, UNKNOWNS};
 use crate::quantity::CHANNELS;
 
@@ -42,34 +43,6 @@ pub(super) struct NoiseModel {
     pub(super) lasting_s: f64,
     /// Prior of the channel noise.
     prior: NoisePrior,
-}
-
-/// A contact's residual r = y − f(θ).
-#[derive(Clone, Debug)]
-pub(super) struct Residual {
-    /// What is known of its label.
-    pub(super) knowledge: Knowledge,
-    /// On the pad's clock.
-    pub(super) at_s: f64,
-    /// The signals that relative noise is relative to.
-    pub(super) uv: [f64; CHANNELS],
-    /// Its force.
-    pub(super) force_n: f64,
-    /// r.
-    pub(super) residual_uv: [f64; CHANNELS],
-    /// J: derivatives of each channel by x, y (µV/mm), Fx, Fy, Fz (µV/N).
-    pub(super) label_jacobian: [[f64; UNKNOWNS]; CHANNELS],
-}
-
-/// Inverse covariance of a residual with the label's error marginalised: V⁻¹ = W − Σᵢ tᵢ tᵢᵀ.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct MarginalPrecision {
-    /// Diagonal of W: one over the variance of each channel's noise.
-    pub(super) weights: [f64; CHANNELS],
-    /// The vectors tᵢ: columns of W J L⁻ᵀ, where M = L Lᵀ.
-    pub(super) downdates: [[f64; CHANNELS]; UNKNOWNS],
-    /// ln det V.
-    log_determinant: f64,
 }
 
 impl NoiseModel {
@@ -257,25 +230,6 @@ struct Squares {
     labels: usize,
 }
 
-impl MarginalPrecision {
-    /// V⁻¹.
-    pub(super) fn matrix(&self) -> [[f64; CHANNELS]; CHANNELS] {
-        let entry = |i: usize, j: usize| {
-            let own = if i == j { self.weights[i] } else { 0.0 };
-            own - self.downdates.iter().map(|downdate| downdate[i] * downdate[j]).sum::<f64>()
-        };
-        std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
-    }
-
-    /// rᵀ V⁻¹ r + ln det V, that is −2 ln of the normal density but for a constant.
-    pub(super) fn cost(&self, residual_uv: &[f64; CHANNELS]) -> f64 {
-        // Σₖ wₖ rₖ² − Σᵢ (tᵢᵀr)².
-        let own: f64 = self.weights.iter().zip(residual_uv).map(|(weight, r)| weight * r * r).sum();
-        let by_labels: f64 = self.downdates.iter().map(|downdate| dot(downdate, residual_uv).powi(2)).sum();
-        own - by_labels + self.log_determinant
-    }
-}
-
 /// Adds Σₖ wₖ Jₖᵀ Jₖ.
 fn add_products(
     to: &mut [[f64; UNKNOWNS]; UNKNOWNS],
@@ -296,10 +250,6 @@ fn projected(residual: &Residual, weights: &[f64; CHANNELS]) -> [f64; UNKNOWNS] 
         sums.iter_mut().zip(row).for_each(|(sum, slope)| *sum += weight * slope * r);
     }
     sums
-}
-
-fn dot(left: &[f64], right: &[f64]) -> f64 {
-    left.iter().zip(right).map(|(left, right)| left * right).sum()
 }
 
 #[cfg(test)]

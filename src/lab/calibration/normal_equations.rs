@@ -7,7 +7,7 @@
 //! P are the precisions of the prior and m its mean. The first sums are over contacts, with the residuals r of nine channels,
 //! their covariance V and A = ∂f/∂θ; the second ones over single numbers with a variance σ² and derivatives a.
 
-use super::noise_model::MarginalPrecision;
+use super::residual::MarginalPrecision;
 use crate::numeric::linear::{LargeFactor, Symmetric, dot};
 use crate::quantity::CHANNELS;
 

@@ -12,8 +12,9 @@ use crate::lab::play::windows::{Play, Window};
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 
-/// Fewer presses are no play.
+/// Fewer presses are no play; so many placements of a weight do without.
 const PRESSES_MIN: usize = 20;
+const PLACEMENTS_MIN: usize = 3;
 /// A region is open if its place is known so much worse than the median region's, and by no less than so many millimetres.
 const OPEN_RATIO: f64 = 1.5;
 const OPEN_MM: f64 = 0.1;
@@ -100,7 +101,7 @@ pub fn calibrated(
         .map_err(HomeError::Placement)?;
     let play = Play::of(windows, &placed, device.contact.full_scale_n).ok_or(HomeError::NoRest)?;
     let presses = play.fitted.iter().filter(|it| it.knowledge == Knowledge::Unlabelled).count();
-    if presses < PRESSES_MIN {
+    if presses < PRESSES_MIN && placed.len() < PLACEMENTS_MIN {
         return Err(HomeError::TooFew { presses });
     }
     let calibration = fit_known(&play.recording, &play.fitted, device, field, earlier, report);

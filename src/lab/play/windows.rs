@@ -54,6 +54,7 @@ pub struct Gatherer {
     windows: Vec<Window>,
     open: Option<Open>,
     stretch: usize,
+    was_touched: bool,
 }
 
 /// A window that samples are added to.
@@ -83,9 +84,10 @@ impl Gatherer {
             Seen::Nothing => None,
             Seen::Contact(contact) => Some(contact),
         };
-        if self.open.as_ref().is_some_and(|open| open.is_touched != contact.is_some()) {
+        if self.was_touched != contact.is_some() {
             self.close(false);
             self.stretch += 1;
+            self.was_touched = contact.is_some();
         }
         let open = self.open.get_or_insert_with(|| Open::new(at_s, contact.is_some()));
         open.add(at_s, raw_uv, temp_c, contact);
@@ -226,9 +228,81 @@ fn rests(windows: &[Window]) -> Vec<usize> {
         };
         let quiet = || (first..first + stretch.len()).filter(|at| is_quiet(&windows[*at]));
         found.extend(quiet().next());
-        found.extend(quiet().last());
+        found.extend(quiet().next_back());
         first += stretch.len();
     }
     found.dedup();
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A thousand samples a second: the pad untouched, touched, untouched, … for so many milliseconds each.
+    fn gathered(milliseconds: &[u32]) -> Vec<Window> {
+        let mut gatherer = Gatherer::default();
+        let mut at_ms = 0;
+        for (stretch, length_ms) in milliseconds.iter().enumerate() {
+            for _ in 0..*length_ms {
+                at_ms += 1;
+                let contact = Contact { x_mm: 4.0, fz_n: 2.0, ..Contact::default() };
+                let seen = if stretch % 2 == 1 { Seen::Contact(contact) } else { Seen::Nothing };
+                let uv = if stretch % 2 == 1 { 1000.0 } else { 10.0 };
+                gatherer.push(1e-3 * f64::from(at_ms), &[uv; CHANNELS], Some(25.0), seen);
+            }
+        }
+        gatherer.finish()
+    }
+
+    #[test]
+    fn windows_end_after_a_tenth_of_a_second_and_with_a_touch() {
+        let windows = gathered(&[250, 130, 70]);
+        let lengths: Vec<(bool, bool)> =
+            windows.iter().map(|it| (it.is_full, it.contact.is_some())).collect();
+        assert_eq!(
+            lengths,
+            [(true, false), (true, false), (false, false), (true, true), (false, true), (false, false)]
+        );
+        assert!(windows.iter().all(|it| it.uv[0] == if it.contact.is_some() { 1000.0 } else { 10.0 }));
+        assert_eq!(windows.iter().map(|it| it.stretch).collect::<Vec<_>>(), [0, 0, 0, 1, 1, 2]);
+        assert!((windows[3].end_s - windows[3].begin_s - 0.099).abs() < 1e-9, "a hundred samples");
+    }
+
+    #[test]
+    fn doubt_ends_a_window_and_belongs_to_none() {
+        let mut gatherer = Gatherer::default();
+        for ms in 0..40 {
+            let seen = if ms == 20 { Seen::Doubt } else { Seen::Nothing };
+            gatherer.push(1e-3 * f64::from(ms), &[if ms == 20 { 1e6 } else { 1.0 }; CHANNELS], None, seen);
+        }
+        let windows = gatherer.finish();
+        assert!(
+            windows.len() == 2 && windows.iter().all(|it| it.uv[0] == 1.0 && it.temp_c.is_none()),
+            "{windows:?}"
+        );
+    }
+
+    #[test]
+    fn presses_and_quiet_rests_are_taken() {
+        let windows = gathered(&[500, 350, 600, 350, 120, 200]);
+        let play = Play::of(&windows, &[], 5.0).unwrap();
+        assert_eq!(play.fitted.len(), 3 + 3 + 2);
+        assert!(play.fitted.iter().all(|it| windows[it.row].contact.is_some()));
+        // Two rests are long enough for two readings each; the short one has none that no finger is near.
+        assert_eq!(play.recording.zeros().map(|zeros| zeros.len()).sum::<usize>(), 4);
+        let uv = play.recording.tared().rows[play.fitted[0].row].uv.unwrap();
+        assert_eq!(uv, [990.0; CHANNELS]);
+        assert!(Play::of(&gathered(&[0, 500]), &[], 5.0).is_none(), "never untouched");
+    }
+
+    #[test]
+    fn of_a_touch_that_is_a_weight_only_one_window_is_taken() {
+        let windows = gathered(&[500, 900, 500, 300, 300]);
+        let weight = Label { fz_n: 1.96, ..Label::default() };
+        let at = windows.iter().position(|it| it.contact.is_some()).unwrap() + 4;
+        let play = Play::of(&windows, &[(at, weight, Knowledge::Placed([0.4; 5]))], 5.0).unwrap();
+        assert_eq!(play.fitted.len(), 1 + 3);
+        assert_eq!((play.fitted[0].row, play.recording.tared().rows[at].label), (at, weight));
+    }
 }

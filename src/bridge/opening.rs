@@ -12,11 +12,10 @@ use crate::bridge::transport::address::PadAddress;
 use crate::bridge::transport::fault::{FaultPlan, FaultyLine};
 use crate::bridge::transport::pads::{Opener, PadError};
 use crate::bridge::transport::playback::Playback;
-use crate::bridge::transport::virtual_pad::VirtualPad as PadOnTerminal;
+use crate::bridge::transport::virtual_pad::{PadFirmware, VirtualPad as PadOnTerminal};
 use crate::pipeline::call::Call;
 use crate::pipeline::capture::reader::{CaptureError, CaptureReader};
 use crate::time::HostInstant;
-use crate::virtual_pad::firmware::VirtualPad;
 
 /// A pad whose permissions are not set yet is tried again this often, …
 const PERMISSION_TRIES: u32 = 20;
@@ -94,7 +93,7 @@ impl OpenedPad {
     ///
     /// # Errors
     /// [`OpenError::Io`] if there is no terminal for it, [`OpenError::Pad`] if that cannot be opened.
-    pub fn simulated(pad: VirtualPad) -> Result<Self, OpenError> {
+    pub fn simulated<F: PadFirmware + Send + 'static>(pad: F) -> Result<Self, OpenError> {
         let pad = PadOnTerminal::start(pad).map_err(OpenError::Io)?;
         let terminal = PadAddress::Serial { path: pad.path().to_owned(), baud: firmware_proto::DEFAULT_BAUD };
         Ok(Self { _virtual_pad: Some(pad), ..Self::device(terminal, Patience::Limited)? })

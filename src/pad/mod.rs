@@ -6,5 +6,6 @@ pub mod changes;
 pub mod device;
 pub mod field;
 pub mod influence;
+pub mod marks;
 pub mod readout;
 pub mod twin;

@@ -6,6 +6,7 @@ mod force_range;
 #[cfg(feature = "foreign-onnx")]
 mod foreign;
 mod freehand;
+mod guide;
 mod home;
 mod layout;
 mod measurement;

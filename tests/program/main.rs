@@ -4,6 +4,8 @@ mod adapt;
 mod adapt_play;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod bad_input;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod calibrate;
 mod diagnose;
 mod diagnose_report;
 #[cfg(feature = "simulator")]

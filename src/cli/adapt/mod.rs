@@ -1,11 +1,12 @@
 //! `tactpad adapt`: fits a decoder to a pad by measured contacts.
 
+pub(super) mod at_home;
 mod measured;
 mod method;
 mod named;
 mod numbers;
 mod own;
-mod play;
+pub(super) mod play;
 mod scdf;
 mod thermal;
 

@@ -90,7 +90,7 @@ pub(super) fn keep_file(written: &Path, way_out: &str) -> Result<(), Failure> {
 }
 
 /// Whether it is a capture, be it damaged.
-fn holds_play(path: &Path) -> bool {
+pub(super) fn holds_play(path: &Path) -> bool {
     begun(path).is_some_and(|begun| {
         !matches!(begun, Err(CaptureError::NotACapture | CaptureError::NoPlay | CaptureError::Io(_)))
     })

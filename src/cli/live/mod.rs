@@ -2,6 +2,7 @@
 
 #[cfg(feature = "tray")]
 pub(super) mod alone;
+mod calibrate;
 mod chosen;
 mod ctl;
 mod demo;
@@ -46,6 +47,8 @@ pub(super) enum Verb {
     Doctor(doctor::Arguments),
     /// Record a pad, so that `replay` gives the same events again.
     Record(record::Arguments),
+    /// Calibrate a pad at home: presses, a weight on five marks, and a sheet that shows them.
+    Calibrate(calibrate::Arguments),
     /// Measure from pad bytes readable to event written, and where the time goes.
     Latency(latency::Arguments),
 }
@@ -58,6 +61,7 @@ pub(super) fn run(verb: &Verb) -> Result<(), Failure> {
         Verb::Devices(arguments) => devices::run(arguments),
         Verb::Doctor(arguments) => doctor::run(arguments),
         Verb::Record(arguments) => record::run(arguments),
+        Verb::Calibrate(arguments) => calibrate::run(arguments),
         Verb::Latency(arguments) => latency::run(arguments),
     }
 }

@@ -57,16 +57,19 @@ pub(super) fn open_pad(
 
 /// Starts a virtual pad that plays `script`.
 pub(super) fn open_virtual(pad: &Pad, script: Script) -> Result<OpenedPad, Failure> {
-    let virtual_pad = if pad.is_given() {
-        let device = pad.read()?;
-        VirtualPad::of(script, &device, &field_of(&device)?, VIRTUAL_SEED)
-    } else {
-        VirtualPad::new(script, VIRTUAL_SEED)
-    };
-    OpenedPad::simulated(virtual_pad).map_err(not_opened)
+    OpenedPad::simulated(virtual_pad(pad, script)?).map_err(not_opened)
 }
 
-fn not_opened(error: OpenError) -> Failure {
+/// The virtual pad, on which `script` is played.
+pub(super) fn virtual_pad(pad: &Pad, script: Script) -> Result<VirtualPad, Failure> {
+    if !pad.is_given() {
+        return Ok(VirtualPad::new(script, VIRTUAL_SEED));
+    }
+    let device = pad.read()?;
+    Ok(VirtualPad::of(script, &device, &field_of(&device)?, VIRTUAL_SEED))
+}
+
+pub(super) fn not_opened(error: OpenError) -> Failure {
     match error {
         OpenError::Io(error) => error.into(),
         error => Failure::Unusable(error.to_string()),

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
+use std::os::fd::AsFd;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::thread;
@@ -54,7 +55,7 @@ impl Screen {
             let mut last = None;
             while stopped.recv_timeout(REFRESH) == Err(RecvTimeoutError::Timeout) {
                 let Ok(seen) = snapshot.lock().map(|seen| seen.clone()) else { return };
-                let size = Size::of_terminal();
+                let size = Size::of(&io::stdout());
                 let picture = Picture {
                     size,
                     lines: picture(&title, facts(&seen, &events()), seen.status.contact.as_ref(), size),
@@ -85,15 +86,15 @@ fn draw(text: &str) -> io::Result<()> {
 
 /// Characters of the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Size {
+pub(super) struct Size {
     columns: usize,
     rows: usize,
 }
 
 impl Size {
     /// Some terminals do not know theirs: they are taken for the usual ones.
-    fn of_terminal() -> Self {
-        let told = tcgetwinsize(io::stdout()).ok().filter(|told| told.ws_col > 0 && told.ws_row > 0);
+    pub(super) fn of(terminal: &impl AsFd) -> Self {
+        let told = tcgetwinsize(terminal).ok().filter(|told| told.ws_col > 0 && told.ws_row > 0);
         told.map_or(Self { columns: 80, rows: 24 }, |told| Self {
             columns: usize::from(told.ws_col),
             rows: usize::from(told.ws_row),
@@ -106,17 +107,23 @@ impl Size {
 }
 
 /// What is drawn, for a terminal of this size.
-struct Picture {
+pub(super) struct Picture {
     size: Size,
     lines: Vec<String>,
 }
 
 impl Picture {
+    /// These lines, as far as the terminal has room; one row stays for the cursor.
+    pub(super) fn of(lines: &[String], size: Size) -> Self {
+        let rows = size.rows.saturating_sub(1).max(1);
+        Self { size, lines: lines.iter().take(rows).map(|line| cut(line, size.columns)).collect() }
+    }
+
     /// The characters that draw it over the last picture.
     ///
     /// No line wraps and the terminal never scrolls, else the way up to the first line would not be known. It is not known,
     /// either, once the terminal has another size: then all that is seen is wiped.
-    fn over(&self, last: Option<&Self>) -> String {
+    pub(super) fn over(&self, last: Option<&Self>) -> String {
         const NO_WRAP: &str = "\x1b[?7l";
         const WRAP: &str = "\x1b[?7h";
         let mut text = match last {

@@ -143,6 +143,40 @@ impl AtHome {
     }
 }
 
+/// Names of the plate's regions, in the order of [`AtHome::regions`].
+pub(super) const fn region_names() -> [&'static str; REGIONS.len()] {
+    REGIONS
+}
+
+/// What was pressed, weights aside.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Pressed {
+    /// So long a finger pressed firmly.
+    pub(super) seconds: f64,
+    /// Windows that a fit can take, in each of the regions.
+    pub(super) by_region: [usize; REGIONS.len()],
+}
+
+impl Pressed {
+    /// What was pressed in these windows; the touches of these weights do not count.
+    pub(super) fn of(windows: &[Window], placements: &[Placement]) -> Self {
+        let holds =
+            |it: &Placement, window: &Window| window.begin_s <= it.at_s && it.at_s <= window.end_s + 0.01;
+        let weighed: Vec<usize> = placements
+            .iter()
+            .filter_map(|it| windows.iter().find(|window| holds(it, window)).map(|window| window.stretch))
+            .collect();
+        let mut pressed = Self { seconds: 0.0, by_region: [0; REGIONS.len()] };
+        for window in windows.iter().filter(|it| it.is_firm() && !weighed.contains(&it.stretch)) {
+            pressed.seconds += window.end_s - window.begin_s;
+            if let Some(contact) = window.contact.filter(|_| window.is_press()) {
+                pressed.by_region[region_at([contact.x_mm, contact.y_mm].map(f64::from))] += 1;
+            }
+        }
+        pressed
+    }
+}
+
 /// Names of the regions; the sixths begin on the right and go counter-clockwise.
 const REGIONS: [&str; 13] = [
     "the middle",

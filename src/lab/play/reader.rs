@@ -40,6 +40,11 @@ impl Reader {
         self.begin.map_or(0.0, |begin| 1e-6 * self.pipeline.at().us_since(begin) as f64)
     }
 
+    /// The windows so far that nothing is added to any more.
+    pub fn windows(&self) -> &[Window] {
+        self.gatherer.windows()
+    }
+
     /// The windows, in order of time since the first sample.
     pub fn finish(self) -> Vec<Window> {
         self.gatherer.finish()

@@ -17,6 +17,23 @@ const SETTLE_S: f64 = 0.3;
 /// Weights that a pad can feel and bears, in grams.
 const GRAMS: [f64; 2] = [30.0, 1000.0];
 
+/// What a weight presses with: m g.
+pub(super) fn newton(weight_g: f64) -> f64 {
+    GRAVITY_N_PER_G * weight_g
+}
+
+/// Whether a pad can feel and bears a weight.
+///
+/// # Errors
+/// It cannot; the text says which ones it can.
+pub fn check_weight(weight_g: f64) -> Result<(), String> {
+    let [least_g, largest_g] = GRAMS;
+    if (least_g..=largest_g).contains(&weight_g) {
+        return Ok(());
+    }
+    Err(format!("{weight_g} g is no weight for this pad: take one of {least_g} to {largest_g} g"))
+}
+
 /// The columns of a table of placements.
 pub const HEADER: &str = "t_s,x_mm,y_mm,weight_g";
 
@@ -57,7 +74,7 @@ impl Placement {
     /// The contact that it is.
     pub fn label(&self) -> Label {
         let [x_mm, y_mm] = self.place_mm;
-        Label { x_mm, y_mm, fx_n: 0.0, fy_n: 0.0, fz_n: GRAVITY_N_PER_G * self.weight_g }
+        Label { x_mm, y_mm, fx_n: 0.0, fy_n: 0.0, fz_n: newton(self.weight_g) }
     }
 
     /// How well it is known.
@@ -110,6 +127,14 @@ fn nearest(windows: &[Window], at_s: f64) -> String {
         .map_or(String::new(), |window| format!(", but at {:.1} s", window.at_s()))
 }
 
+/// Placements as such a table.
+pub fn written(placements: &[Placement]) -> String {
+    let row =
+        |it: &Placement| format!("{:.3},{},{},{}\n", it.at_s, it.place_mm[0], it.place_mm[1], it.weight_g);
+    let rows: String = placements.iter().map(row).collect();
+    format!("{HEADER}\n{rows}")
+}
+
 /// Reads a table of placements with the columns [`HEADER`].
 ///
 /// # Errors
@@ -148,12 +173,7 @@ fn placement(line: usize, text: &str, reach_mm: f64) -> Result<Placement, String
     if x_mm.hypot(*y_mm) > reach_mm {
         return Err(format!("({x_mm}, {y_mm}) mm is beyond the plate, whose contacts reach {reach_mm} mm"));
     }
-    if !(GRAMS[0]..=GRAMS[1]).contains(weight_g) {
-        return Err(format!(
-            "{weight_g} g is no weight for this pad: take one of {} to {} g",
-            GRAMS[0], GRAMS[1]
-        ));
-    }
+    check_weight(*weight_g)?;
     Ok(Placement { line, at_s: *at_s, place_mm: [*x_mm, *y_mm], weight_g: *weight_g })
 }
 

@@ -103,6 +103,11 @@ impl Gatherer {
         self.windows.extend(self.open.take().map(|open| open.closed(is_full, stretch)));
     }
 
+    /// The windows that are closed.
+    pub fn windows(&self) -> &[Window] {
+        &self.windows
+    }
+
     /// All windows, in order of time.
     pub fn finish(mut self) -> Vec<Window> {
         self.close(false);
@@ -177,9 +182,14 @@ impl Window {
         }
     }
 
-    fn is_press(&self) -> bool {
-        let is_firm = self.contact.is_some_and(|contact| contact.fz_n >= FORCE_MIN_N);
-        self.is_full && is_firm && self.travel_mm <= TRAVEL_MAX_MM
+    /// Whether something presses so that it tells enough.
+    pub(super) fn is_firm(&self) -> bool {
+        self.contact.is_some_and(|contact| contact.fz_n >= FORCE_MIN_N)
+    }
+
+    /// Whether a fit can take it as a press.
+    pub(super) fn is_press(&self) -> bool {
+        self.is_full && self.is_firm() && self.travel_mm <= TRAVEL_MAX_MM
     }
 }
 

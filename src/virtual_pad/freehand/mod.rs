@@ -3,12 +3,14 @@
 //!
 //! How exact they are is no measurement of anybody's hand: the numbers are plausible ones.
 
+mod calibrator;
 mod course;
 mod draw;
 mod play;
 mod presses;
 mod weights;
 
+pub use self::calibrator::Calibrator;
 pub use self::course::{FORCE_MAX_N, LEAST_US, WITHIN_MM};
 pub use self::play::play;
 pub use self::presses::presses;

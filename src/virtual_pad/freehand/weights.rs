@@ -1,19 +1,18 @@
 //! A weight that is laid on marks of the plate, one after the other: a force that is known without any reference.
 
 use super::draw::{Draw, at, within};
+use crate::pad::marks::MARKS_MM;
 use crate::quantity::Contact;
 use crate::virtual_pad::script::{Keyframe, Script};
 
 /// Standard gravity, m/s² (CGPM 1901).
 const GRAVITY_M_PER_S2: f64 = 9.806_65;
 
-/// The marks.
-const MARKS_MM: [[f32; 2]; 5] = [[0.0, 0.0], [15.0, 0.0], [-15.0, 0.0], [0.0, 15.0], [0.0, -15.0]];
 /// How far from its mark it comes to rest: deviation along each axis, and at most.
-const MISS_MM: f32 = 0.35;
-const MISS_MAX_MM: f32 = 0.7;
+pub(super) const MISS_MM: f32 = 0.35;
+pub(super) const MISS_MAX_MM: f32 = 0.7;
 /// It is set down, and taken up, in this time,
-const RAMP_US: u64 = 200_000;
+pub(super) const RAMP_US: u64 = 200_000;
 /// rests,
 const REST_US: u64 = 2_000_000;
 /// and nothing touches the pad before the next one and after the last.
@@ -45,7 +44,7 @@ impl Weights {
         let mut draw = Draw::new(seed, "weights");
         let force_n = Self::force_n(weight_g) as f32;
         let (mut keyframes, mut placements, mut now_us) = (Vec::new(), Vec::new(), 0);
-        for mark_mm in MARKS_MM {
+        for mark_mm in MARKS_MM.map(|mark_mm| mark_mm.map(|mm| mm as f32)) {
             let miss = within([draw.normal(MISS_MM), draw.normal(MISS_MM)], MISS_MAX_MM);
             let laid = at([mark_mm[0] + miss[0], mark_mm[1] + miss[1]], [0.0; 2], force_n);
             let none = Contact { fz_n: 0.0, ..laid };

@@ -49,7 +49,7 @@ struct Part {
 }
 
 /// Fits; a bar shows how far it is.
-pub(in crate::cli) fn fitted(
+pub(crate) fn fitted(
     windows: &[Window],
     placements: &[Placement],
     pad: (&Device, &PadField),
@@ -61,7 +61,7 @@ pub(in crate::cli) fn fitted(
 }
 
 /// Writes the decoder, and says what came of it: on standard output, unless that gets the decoder.
-pub(in crate::cli) fn write(
+pub(crate) fn write(
     found: AtHome,
     windows: &[Window],
     (to, out): (&Destination, &Path),

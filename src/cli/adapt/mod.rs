@@ -107,7 +107,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.spare()?;
     let device = arguments.pad.read()?;
     if let Some(play) = &arguments.play {
-        return play::run(arguments, play, &device);
+        let (weights, from) = (arguments.weights.as_deref(), arguments.from.as_deref());
+        let wanted = play::Wanted { method: arguments.method, play, weights, from, out, json: *json };
+        return play::run(&wanted, &device);
     }
     let method = &arguments.method.unwrap_or(Method::Inverse);
     let measured = Measured::read(&arguments.measured, &device, (arguments.rows, arguments.seed), *method)?;

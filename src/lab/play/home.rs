@@ -144,8 +144,8 @@ impl AtHome {
 }
 
 /// Names of the plate's regions, in the order of [`AtHome::regions`].
-pub(super) const fn region_names() -> [&'static str; REGIONS.len()] {
-    REGIONS
+pub(super) const fn region_names() -> &'static [&'static str] {
+    &REGIONS
 }
 
 /// What was pressed, weights aside.
@@ -166,14 +166,14 @@ impl Pressed {
             .iter()
             .filter_map(|it| windows.iter().find(|window| holds(it, window)).map(|window| window.stretch))
             .collect();
-        let mut pressed = Self { seconds: 0.0, by_region: [0; REGIONS.len()] };
-        for window in windows.iter().filter(|it| it.is_firm() && !weighed.contains(&it.stretch)) {
-            pressed.seconds += window.end_s - window.begin_s;
-            if let Some(contact) = window.contact.filter(|_| window.is_press()) {
-                pressed.by_region[region_at([contact.x_mm, contact.y_mm].map(f64::from))] += 1;
-            }
-        }
-        pressed
+        let firm = || windows.iter().filter(|it| it.is_firm() && !weighed.contains(&it.stretch));
+        let seconds = firm().map(|it| it.end_s - it.begin_s).sum();
+        let mut by_region = [0; REGIONS.len()];
+        firm()
+            .filter(|window| window.is_press())
+            .filter_map(|window| window.contact)
+            .for_each(|it| by_region[region_at([it.x_mm, it.y_mm].map(f64::from))] += 1);
+        Self { seconds, by_region }
     }
 }
 

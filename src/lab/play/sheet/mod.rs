@@ -2,14 +2,14 @@
 //!
 //! One description of the drawing, in millimetres, and two writers: SVG and PDF.
 
+mod mark;
 mod pdf;
 mod svg;
 
+use self::mark::Mark;
 use crate::pad::device::Device;
 use crate::pad::marks::MARKS_MM;
 
-/// A4, upright.
-const PAGE_MM: [f64; 2] = [210.0, 297.0];
 /// Where the plate's centre lies on the page, from its upper left corner.
 const CENTRE_MM: [f64; 2] = [105.0, 125.0];
 /// A weight's foot is centred by a circle so wide.
@@ -34,27 +34,6 @@ const INSTRUCTIONS: [&str; 3] = [
     "2. Cut the plate's outline out and tape it onto the plate, its arrow to the pad's right.",
     "3. Run tactpad calibrate --weight-g GRAMS --out my.decoder, and do what it says.",
 ];
-
-/// Something that is drawn; places are on the page, from its upper left corner, y downwards.
-#[derive(Clone, Debug, PartialEq)]
-enum Mark {
-    Line {
-        from_mm: [f64; 2],
-        to_mm: [f64; 2],
-        width_mm: f64,
-    },
-    Circle {
-        centre_mm: [f64; 2],
-        radius_mm: f64,
-        width_mm: f64,
-    },
-    /// The text begins at the place, on its baseline.
-    Text {
-        at_mm: [f64; 2],
-        size_mm: f64,
-        text: String,
-    },
-}
 
 /// The drawing.
 #[derive(Clone, Debug, PartialEq)]
@@ -160,11 +139,6 @@ impl Sheet {
 /// Where a place of the plate lies on the page: y is upwards there, and downwards here.
 fn on_page([x_mm, y_mm]: [f64; 2]) -> [f64; 2] {
     [CENTRE_MM[0] + x_mm, CENTRE_MM[1] - y_mm]
-}
-
-/// To a thousandth, as nobody prints finer; zero has no sign.
-fn number(mm: f64) -> f64 {
-    (1e3 * mm).round() / 1e3 + 0.0
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Mark, PAGE_MM, number};
+use super::mark::{Mark, PAGE_MM, number};
 
 /// Points of 1/72 inch.
 const POINTS_PER_MM: f64 = 72.0 / 25.4;

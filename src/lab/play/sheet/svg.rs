@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Mark, PAGE_MM, number};
+use super::mark::{Mark, PAGE_MM, number};
 
 /// The document; its user unit is the millimetre.
 pub(super) fn written(marks: &[Mark]) -> String {

@@ -38,7 +38,7 @@ fn document(objects: &[String]) -> String {
     // Each entry is 20 bytes long, its line's end among them.
     let _ = write!(pdf, "xref\n0 {count}\n0000000000 65535 f \n");
     for begin in begins {
-        let _ = write!(pdf, "{begin:010} 00000 n \n");
+        let _ = writeln!(pdf, "{begin:010} 00000 n ");
     }
     let _ = write!(pdf, "trailer\n<< /Size {count} /Root 1 0 R >>\nstartxref\n{table}\n%%EOF\n");
     pdf

@@ -4,7 +4,7 @@ use tactpad::lab::play::guide::{Lying, PRESSED_S, REST_S, STILL_S, Step};
 use tactpad::pad::marks::{MARK_NAMES, MARKS_MM};
 
 /// Cells of a bar.
-const CELLS: usize = 24;
+const CELLS: usize = 12;
 
 /// What is said where no weight is given.
 pub(super) const WITHOUT_WEIGHT: &str = "without --weight-g GRAMS no weight is asked for, and the force's scale stays unknown: presses alone never tell it";
@@ -24,10 +24,8 @@ pub(super) fn instruction(step: &Step, weight_g: Option<f64>) -> String {
     match step {
         Step::Rest { .. } => format!("step 1 of {steps}: leave the pad alone for a second"),
         Step::Press { of_s, .. } => {
-            let often = if *of_s > PRESSED_S { ", some more" } else { "" };
-            format!(
-                "step 2 of {steps}: press anywhere, again and again, lightly and hard, and lift between{often}"
-            )
+            let presses = if *of_s > PRESSED_S { "press some more" } else { "press again and again" };
+            format!("step 2 of {steps}: {presses}, anywhere, lightly and hard; lift between")
         }
         Step::Put { mark, .. } => {
             format!(
@@ -48,8 +46,8 @@ pub(super) fn progress(step: &Step) -> String {
         Step::Press { pressed_s, of_s, next, missing } => {
             let parts = match missing {
                 0 => format!("pressed least: {next}"),
-                1 => format!("not pressed yet: {next}"),
-                _ => format!("not pressed yet: {next}, and {} other parts", missing - 1),
+                1 => format!("not yet: {next}"),
+                _ => format!("not yet: {next}, and {} more", missing - 1),
             };
             format!("{} {pressed_s:.0} of {of_s:.0} s; {parts}", bar(pressed_s / of_s))
         }
@@ -71,12 +69,12 @@ pub(super) fn wrong(step: &Step, weight_g: Option<f64>) -> Option<String> {
             // What a newton weighs, by standard gravity.
             let about_g = force_n / 9.80665e-3;
             Some(format!(
-                "what lies there presses like {about_g:.0} g, not like {:.0} g: put the weight alone on the mark",
+                "it presses like {about_g:.0} g, not {:.0} g: put the weight alone on the mark",
                 weight_g.unwrap_or_default()
             ))
         }
         Lying::Beside { place_mm: [x_mm, y_mm] } => Some(format!(
-            "it lies about at ({x_mm:.0}, {y_mm:.0}) mm, too far from mark {number} at ({}, {}) mm: move it there",
+            "it lies near ({x_mm:.0}, {y_mm:.0}) mm, far from mark {number} at ({}, {}) mm: move it",
             MARKS_MM[*mark][0], MARKS_MM[*mark][1]
         )),
         Lying::TakenTooEarly => {
@@ -105,13 +103,31 @@ mod tests {
         );
         assert_eq!(wrong(&put(Lying::Nothing), weight_g), None);
         let other = wrong(&put(Lying::OtherForce { force_n: 0.980_665 }), weight_g).unwrap_or_default();
-        assert!(other.contains("like 100 g, not like 200 g"), "{other}");
+        assert!(other.contains("like 100 g, not 200 g"), "{other}");
         let beside = wrong(&put(Lying::Beside { place_mm: [-14.6, 0.2] }), weight_g).unwrap_or_default();
-        assert!(beside.contains("(-15, 0) mm, too far from mark 2 at (15, 0) mm"), "{beside}");
+        assert!(beside.contains("(-15, 0) mm, far from mark 2 at (15, 0) mm"), "{beside}");
         let press = Step::Press { pressed_s: 30.0, of_s: 60.0, next: "the left rim", missing: 3 };
-        assert_eq!(
-            progress(&press),
-            "[############------------] 30 of 60 s; not pressed yet: the left rim, and 2 other parts"
-        );
+        assert_eq!(progress(&press), "[######------] 30 of 60 s; not yet: the left rim, and 2 more");
+    }
+
+    #[test]
+    fn lines_fit_an_ordinary_terminal() {
+        let press =
+            Step::Press { pressed_s: 89.0, of_s: 90.0, next: "half way to the upper right", missing: 13 };
+        let put = |lying| Step::Put { mark: 4, lying };
+        let steps = [
+            press,
+            put(Lying::Still { still_s: 1.9 }),
+            put(Lying::OtherForce { force_n: 4.9 }),
+            put(Lying::Beside { place_mm: [-15.0, -15.0] }),
+            put(Lying::TakenTooEarly),
+            Step::TakeAway { mark: 4 },
+        ];
+        for step in steps {
+            let weight_g = Some(1000.0);
+            let lines =
+                [instruction(&step, weight_g), progress(&step), wrong(&step, weight_g).unwrap_or_default()];
+            assert!(lines.iter().all(|line| line.chars().count() < 80), "{lines:#?}");
+        }
     }
 }

@@ -31,7 +31,7 @@ use super::written::{both_print, is_same, is_stdout, print_json, say, stdout, wr
 /// Arguments of `tactpad adapt`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  tactpad adapt --method scdf --measured m.csv --from scdf.onnx --out mine.onnx\n  \
+    after_help = "Example: tactpad adapt --method scdf --measured m.csv --from scdf.onnx --out mine.onnx, or \
                   tactpad adapt --play game.cap --weights w.csv --out mine.decoder"
 )]
 pub(super) struct Arguments {

@@ -44,9 +44,9 @@ use tactpad::pipeline::shipped;
 
 /// Arguments of `tactpad calibrate`.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  tactpad calibrate --sheet marks.pdf\n  \
-                        tactpad calibrate --weight-g 200 --out my.decoder\n  \
-                        tactpad calibrate --pad virtual --weight-g 200 --out my.decoder")]
+#[command(
+    after_help = "Example: tactpad calibrate --sheet marks.pdf, then tactpad calibrate --weight-g 200 --out my.decoder"
+)]
 pub(crate) struct Arguments {
     /// Write a sheet with the five marks in true size, for A4 paper; alone, nothing else is done.
     #[arg(long, value_name = "OUT.svg|OUT.pdf", required_unless_present = "out")]

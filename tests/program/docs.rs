@@ -89,6 +89,8 @@ impl Runs {
         let root = self.folder.path();
         self.done.entry(command.to_owned()).or_insert_with(|| {
             let figures = root.join(index.to_string());
+            // A command that writes one figure, not a folder of them, makes no folder.
+            fs::create_dir_all(&figures).unwrap();
             let words = command.split(' ').map(|word| word.replace(FOLDER, &figures.to_string_lossy()));
             println!("tactpad {command}");
             let mut program = Command::new(env!("CARGO_BIN_EXE_tactpad"));

@@ -2,7 +2,7 @@
 
 use crate::lab::play::home::{Pressed, region_names};
 use crate::lab::play::reader::Reader;
-use crate::lab::play::weights::{Placement, newton};
+use crate::lab::play::weights::{Placement, weight_n};
 use crate::lab::play::windows::{WINDOW_S, Window};
 use crate::pad::marks::MARKS_MM;
 use crate::pipeline::call::Call;
@@ -272,7 +272,7 @@ impl Guide {
 
 /// What is wrong with what lies there, as far as a pad tells that nobody calibrated yet.
 fn wrong(contact: &Contact, mark_mm: [f64; 2], weight_g: f64) -> Option<Lying> {
-    let (force_n, wanted_n) = (f64::from(contact.fz_n), newton(weight_g));
+    let (force_n, wanted_n) = (f64::from(contact.fz_n), weight_n(weight_g));
     if (force_n - wanted_n).abs() > FORCE_SHARE * wanted_n {
         return Some(Lying::OtherForce { force_n });
     }

@@ -4,10 +4,9 @@ use std::fmt;
 
 use crate::lab::calibration::contacts::Knowledge;
 use crate::lab::play::windows::Window;
+use crate::quantity::WEIGHT_N_PER_G;
 use crate::tables::measured::Label;
 
-/// Standard gravity, m/s² (CGPM 1901): what a kitchen scale's gram weighs.
-const GRAVITY_N_PER_G: f64 = 9.80665e-3;
 /// Standard deviations of a placement by hand: of its place, along each axis,
 const PLACE_MM: f64 = 0.4;
 /// of its weight, by a kitchen scale, and of what a table that is not level makes of it as shear, as shares of it.
@@ -18,8 +17,8 @@ const SETTLE_S: f64 = 0.3;
 const GRAMS: [f64; 2] = [30.0, 1000.0];
 
 /// What a weight presses with: m g.
-pub(super) fn newton(weight_g: f64) -> f64 {
-    GRAVITY_N_PER_G * weight_g
+pub(super) fn weight_n(weight_g: f64) -> f64 {
+    WEIGHT_N_PER_G * weight_g
 }
 
 /// Whether a pad can feel and bears a weight.
@@ -74,7 +73,7 @@ impl Placement {
     /// The contact that it is.
     pub fn label(&self) -> Label {
         let [x_mm, y_mm] = self.place_mm;
-        Label { x_mm, y_mm, fx_n: 0.0, fy_n: 0.0, fz_n: newton(self.weight_g) }
+        Label { x_mm, y_mm, fx_n: 0.0, fy_n: 0.0, fz_n: weight_n(self.weight_g) }
     }
 
     /// How well it is known.

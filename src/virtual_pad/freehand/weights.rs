@@ -2,11 +2,8 @@
 
 use super::draw::{Draw, at, within};
 use crate::pad::marks::MARKS_MM;
-use crate::quantity::Contact;
+use crate::quantity::{Contact, WEIGHT_N_PER_G};
 use crate::virtual_pad::script::{Keyframe, Script};
-
-/// Standard gravity, m/s² (CGPM 1901).
-const GRAVITY_M_PER_S2: f64 = 9.806_65;
 
 /// How far from its mark it comes to rest: deviation along each axis, and at most.
 pub(super) const MISS_MM: f32 = 0.35;
@@ -59,7 +56,7 @@ impl Weights {
 
     /// What so many grams press with: m g.
     pub fn force_n(weight_g: f64) -> f64 {
-        1e-3 * weight_g * GRAVITY_M_PER_S2
+        WEIGHT_N_PER_G * weight_g
     }
 }
 

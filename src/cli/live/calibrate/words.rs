@@ -2,6 +2,7 @@
 
 use tactpad::lab::play::guide::{Lying, PRESSED_S, REST_S, STILL_S, Step};
 use tactpad::pad::marks::{MARK_NAMES, MARKS_MM};
+use tactpad::quantity::WEIGHT_N_PER_G;
 
 /// Cells of a bar.
 const CELLS: usize = 12;
@@ -66,8 +67,7 @@ pub(super) fn wrong(step: &Step, weight_g: Option<f64>) -> Option<String> {
     let number = mark + 1;
     match lying {
         Lying::OtherForce { force_n } => {
-            // What a newton weighs, by standard gravity.
-            let about_g = force_n / 9.80665e-3;
+            let about_g = force_n / WEIGHT_N_PER_G;
             Some(format!(
                 "it presses like {about_g:.0} g, not {:.0} g: put the weight alone on the mark",
                 weight_g.unwrap_or_default()

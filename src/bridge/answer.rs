@@ -17,3 +17,8 @@ pub(super) fn page(url: Option<String>) -> String {
         |url| serde_json::json!({"ok": true, "url": url}).to_string(),
     )
 }
+
+/// Which weighing has begun, as an answer.
+pub(super) fn weighing(number: u64) -> String {
+    serde_json::json!({"ok": true, "weighing": number}).to_string()
+}

@@ -2,7 +2,9 @@
 
 use crate::bridge::snapshot::Drops;
 use crate::bridge::state::State;
+use crate::bridge::weighing::gain_sentence;
 use crate::pipeline::contact::watch::Warning;
+use crate::pipeline::weighing::{Account, Progress};
 use crate::time::HostInstant;
 
 /// Says a state when it has lasted, so that a flicker is not told; but at once what the player must do.
@@ -15,6 +17,8 @@ pub(super) struct Herald {
     warned: Option<Warning>,
     /// Whether it was told that groups are dropped, and that calls are not recorded.
     told_drops: (bool, bool),
+    /// The weighing whose end was told last.
+    weighed: u64,
 }
 
 /// A state that lasts this long is told.
@@ -29,6 +33,7 @@ impl Herald {
             since: now,
             warned: None,
             told_drops: (false, false),
+            weighed: 0,
         }
     }
 
@@ -52,6 +57,15 @@ impl Herald {
         lasting
     }
 
+    /// What came of a weighing, once it has ended.
+    pub(super) fn weighed(&mut self, account: Option<&Account>) -> Option<String> {
+        let Account { number, progress: Progress::Ended(outcome), .. } = account? else { return None };
+        (std::mem::replace(&mut self.weighed, *number) != *number).then(|| match outcome {
+            Ok(weighed) => gain_sentence(weighed.factor).unwrap_or_else(|| UNCHANGED.into()),
+            Err(error) => format!("the weighing failed: {error}"),
+        })
+    }
+
     /// What to tell of things that nobody took in time: each kind is told once.
     pub(super) fn drops(&mut self, drops: Drops) -> [Option<&'static str>; 2] {
         let Drops { groups_dropped, calls_unrecorded } = drops;
@@ -60,6 +74,8 @@ impl Herald {
         [(now.0 && !before.0).then_some(GROUPS_DROPPED), (now.1 && !before.1).then_some(CALLS_UNRECORDED)]
     }
 }
+
+const UNCHANGED: &str = "the pad reads what it read when it was calibrated";
 
 const GROUPS_DROPPED: &str =
     "the event log is not read in time: groups of events are dropped and counted until it is";

@@ -33,3 +33,4 @@ pub mod state;
 pub mod timing;
 pub mod transport;
 pub mod watchers;
+pub mod weighing;

@@ -17,6 +17,8 @@ pub struct PlayingDecoder {
     pub decoder: Decoder,
     /// What people call it.
     pub name: String,
+    /// Where it was read, for who reads it again: a file's whole path, or its name inside the program.
+    pub place: Option<String>,
     /// Its file, as captures keep it; `None` for the statics that are inside the program.
     pub file: Option<Vec<u8>>,
 }

@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, SyncSender, sync_channel};
 use std::time::Duration;
 
 use crate::bridge::offer::Offer;
+use crate::pad::weight::Weight;
 use crate::pipeline::mapping::read::ReadProfile;
 
 /// The bridge answers in well under a millisecond; one that does not has ended or is stopped.
@@ -28,6 +29,8 @@ pub enum Request {
     TogglePause,
     /// Measure the zero again.
     Retare,
+    /// Weigh a known weight: the answer has the weighing's number, by which the status tells how far it is.
+    Weigh(Weight),
     /// Go over to another profile; `None` reads the one in use again.
     Profile(Option<String>),
     /// Go over to the next profile that a press can leave again.
@@ -47,6 +50,7 @@ impl Request {
     pub(super) fn parse(line: &str) -> Option<Self> {
         match line.trim_end_matches(['\r', '\n']).split_once(' ') {
             Some(("profile", name)) if !name.is_empty() => Some(Self::Profile(Some(name.into()))),
+            Some(("weigh", grams)) => Some(Self::Weigh(Weight::of_g(grams.trim().parse().ok()?).ok()?)),
             Some(_) => None,
             None => match line.trim_end() {
                 "status" => Some(Self::Status),
@@ -140,6 +144,10 @@ mod tests {
             ("next-profile\n", Some(Request::NextProfile)),
             ("reload\n", Some(Request::Profile(None))),
             ("profile my game.toml\n", Some(Request::Profile(Some("my game.toml".into())))),
+            ("weigh 200.5\n", Some(Request::Weigh(Weight::of_g(200.5).unwrap()))),
+            ("weigh 2\n", None),
+            ("weigh much\n", None),
+            ("weigh\n", None),
             ("profile \n", None),
             ("profile\n", None),
             ("status now\n", None),

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-use crate::bridge::answer::{done, page, refused};
+use crate::bridge::answer::{done, page, refused, weighing};
 use crate::bridge::clock::Clock;
 use crate::bridge::driver::{Driver, prepare};
 use crate::bridge::error::BridgeError;
@@ -19,7 +19,7 @@ use crate::bridge::parts::Parts;
 use crate::bridge::recorder::Recorder;
 use crate::bridge::request::{Asked, Request};
 use crate::bridge::requests::Requests;
-use crate::bridge::sight::{look, state};
+use crate::bridge::sight::{Known, look, state};
 use crate::bridge::signals;
 use crate::bridge::snapshot::{Drops, Snapshot};
 use crate::pipeline::call::Call;
@@ -48,7 +48,7 @@ pub enum Ending {
 /// The running bridge.
 pub struct Bridge {
     driver: Driver,
-    decoder: String,
+    decoder: Known,
     standing: Standing,
     keeper: Keeper,
     requests: Requests,
@@ -92,6 +92,7 @@ impl Bridge {
         } = parts;
         let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
         let head = Head { decoder: decoder.file, profile: Some(profile) };
+        let decoder = Known { name: decoder.name, place: decoder.place };
         let recorder = record.map(|to| Recorder::begin(to, now, &head)).transpose()?;
         let (latency, watchers) = (Arc::default(), requests.watchers());
         let commands = Commands::new();
@@ -101,10 +102,10 @@ impl Bridge {
         let driver = Driver { pipeline, sink, recorder, clock, latency, commands, watchers, observer };
         let keeper = Keeper::new(pad, patience, now);
         let standing = Standing::begun();
-        let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, (&decoder.name, &standing))));
+        let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, (&decoder, &standing))));
         Ok(Self {
             driver,
-            decoder: decoder.name,
+            decoder,
             standing,
             keeper,
             requests,
@@ -286,6 +287,10 @@ impl Bridge {
                 self.change_profile(now, read, true)?
             }
             Request::Offer(offer) => self.consider(now, offer)?,
+            Request::Weigh(weight) => {
+                self.driver.call(now, Call::Weigh(*weight))?;
+                weighing(self.driver.pipeline.weighing().map_or(0, |it| it.number))
+            }
             request => {
                 let call = match request {
                     Request::ReleaseAll => Call::ReleaseAll,
@@ -397,6 +402,9 @@ impl Bridge {
         if let Some(warning) = self.herald.warn(self.driver.pipeline.warning()) {
             self.host.tell(&warning.to_string());
         }
+        if let Some(line) = self.herald.weighed(self.driver.pipeline.weighing()) {
+            self.host.tell(&line);
+        }
         for line in self.herald.drops(self.driver.drops()).into_iter().flatten() {
             self.host.tell(line);
         }
@@ -467,7 +475,12 @@ mod tests {
         let bridge = Bridge::new(Parts {
             pad,
             patience: Patience::Endless,
-            decoder: PlayingDecoder { decoder: shipped::decoder(), name: "inverse".into(), file: None },
+            decoder: PlayingDecoder {
+                decoder: shipped::decoder(),
+                name: "inverse".into(),
+                place: None,
+                file: None,
+            },
             profile: ear.clone().read_profile(Some("contra")).unwrap(),
             sink: Box::new(NullSink),
             requests: Requests::new().unwrap(),

@@ -5,6 +5,7 @@ use crate::bridge::keeper::Keeper;
 use crate::bridge::offer::Standing;
 use crate::bridge::snapshot::{BridgeHealth, Snapshot, Status, Uncertainty};
 use crate::bridge::state::State;
+use crate::bridge::weighing::WeighingStatus;
 use crate::time::HostInstant;
 
 /// What it is doing.
@@ -12,12 +13,20 @@ pub(super) fn state(driver: &Driver, keeper: &Keeper) -> State {
     State::of(&driver.pipeline, keeper.absence())
 }
 
+/// The decoder, as people know it.
+pub(super) struct Known {
+    /// What they call it.
+    pub(super) name: String,
+    /// Where it was read.
+    pub(super) place: Option<String>,
+}
+
 /// All that there is to see at `now`.
 pub(super) fn look(
     now: HostInstant,
     driver: &Driver,
     keeper: &Keeper,
-    (decoder, standing): (&str, &Standing),
+    (decoder, standing): (&Known, &Standing),
 ) -> Snapshot {
     let Driver { pipeline, sink, .. } = driver;
     let status = Status {
@@ -28,7 +37,7 @@ pub(super) fn look(
         profile_reason: standing.reason.clone(),
         profile_error: standing.error.clone(),
         preview: standing.is_preview,
-        decoder: decoder.to_owned(),
+        decoder: decoder.name.clone(),
         output: sink.describe(),
         contact: pipeline.contact().copied(),
         held: pipeline.held().collect(),
@@ -36,6 +45,9 @@ pub(super) fn look(
         presses: pipeline.presses(),
         health: BridgeHealth { pipeline: *pipeline.health(), drops: driver.drops() },
         latency_us: driver.latency().percentiles(),
+        decoder_file: decoder.place.clone(),
+        gain: pipeline.gain(),
+        weighing: pipeline.weighing().map(WeighingStatus::of),
     };
     let uncertainty = pipeline.estimate().as_ref().map(Uncertainty::of);
     Snapshot { at: now, status, channels_uv: pipeline.strain().map(|strain| strain.uv), uncertainty }

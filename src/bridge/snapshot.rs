@@ -5,6 +5,7 @@ use serde::{Serialize, Serializer};
 
 use crate::bridge::latency::Percentiles;
 use crate::bridge::state::State;
+use crate::bridge::weighing::WeighingStatus;
 use crate::pipeline::contact::uncertainty::Estimate;
 use crate::pipeline::contact::watch::Warning;
 use crate::pipeline::health::Health;
@@ -64,6 +65,12 @@ pub struct Status {
     pub health: BridgeHealth,
     /// From bytes readable to events written.
     pub latency_us: Percentiles,
+    /// The file of the decoder, by its whole path or its name in the program; `None` where nothing was read.
+    pub decoder_file: Option<String>,
+    /// What the pad reads over what it would read as it was calibrated: 1 unless a weighing told otherwise.
+    pub gain: f64,
+    /// The newest weighing.
+    pub weighing: Option<WeighingStatus>,
 }
 
 /// Everything that went wrong, on the way from the pad and on the way out.
@@ -148,6 +155,9 @@ mod tests {
                 drops: Drops { groups_dropped: 3, ..Drops::default() },
             },
             latency_us: Percentiles { p50: 12.5, ..Percentiles::default() },
+            decoder_file: Some("/pads/my.decoder".into()),
+            gain: 1.0,
+            weighing: None,
         };
         let uncertainty = Uncertainty { x_mm: 0.25, y_mm: 0.25, fx_n: 0.5, fy_n: 0.5, fz_n: 1.0 };
         let at = HostInstant::from_ns(1_500_000_000);
@@ -165,7 +175,11 @@ mod tests {
         );
         assert!(text.starts_with(expected), "{text}");
         assert!(text.contains(r#","groups_dropped":3,"calls_unrecorded":0},"latency_us""#), "{text}");
-        assert!(text.ends_with(r#""latency_us":{"p50":12.5,"p95":0.0,"p99":0.0,"max":0.0}}"#), "{text}");
+        let end = concat!(
+            r#""latency_us":{"p50":12.5,"p95":0.0,"p99":0.0,"max":0.0},"#,
+            r#""decoder_file":"/pads/my.decoder","gain":1.0,"weighing":null}"#
+        );
+        assert!(text.ends_with(end), "{text}");
     }
 
     #[test]

@@ -23,6 +23,8 @@ pub enum State {
     Loaded,
     /// Contacts become events.
     Playing,
+    /// A known weight is weighed, or lies there still.
+    Weighing,
     /// Frames are lost, repeated or damaged, so that no contact is believed.
     Doubtful,
     /// A channel cannot be trusted.
@@ -45,6 +47,7 @@ impl State {
             (Phase::Taring, None) => Self::Taring,
             (Phase::Loaded, None) => Self::Loaded,
             (Phase::Playing, None) => Self::Playing,
+            (Phase::Weighing, None) => Self::Weighing,
             (Phase::Doubtful, None) => Self::Doubtful,
             (Phase::Faulty, None) => Self::Faulty,
         }
@@ -60,6 +63,7 @@ impl State {
             Self::Taring => "taring",
             Self::Loaded => "loaded",
             Self::Playing => "playing",
+            Self::Weighing => "weighing",
             Self::Doubtful => "doubtful",
             Self::Faulty => "faulty",
             Self::Paused => "paused",
@@ -81,6 +85,9 @@ impl State {
             Self::Taring => "measuring the zero: leave the pad untouched for a moment",
             Self::Loaded => "lift the finger: the zero is measured when nothing lies on the pad",
             Self::Playing => "playing",
+            Self::Weighing => {
+                "weighing: nothing is pressed before the weight was put down and taken away again"
+            }
             Self::Doubtful => "frames are lost, repeated or damaged, nothing is pressed: check the line",
             Self::Faulty => {
                 "a channel is saturated, stuck or without supply, nothing is pressed: check the pad"

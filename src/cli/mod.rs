@@ -31,6 +31,7 @@ mod text_file;
 mod train;
 mod tune;
 mod twin;
+mod weigh;
 mod wrapped;
 mod written;
 
@@ -70,6 +71,8 @@ enum Verb {
     Train(train::Arguments),
     /// Fit a decoder to a pad by measured contacts.
     Adapt(adapt::Arguments),
+    /// Find by one known weight what gain a pad has lost, and keep it in its decoder.
+    Weigh(weigh::Arguments),
     /// Say how far a decoder's contacts are from measured ones, or from the truth.
     Evaluate(evaluate::Arguments),
     /// Compare all decoders on the twin: the paper's Table 3, and what the noise allows.
@@ -121,6 +124,7 @@ fn obey(verb: Verb) -> Result<(), Failure> {
         Verb::Twin(arguments) => twin::run(&arguments),
         Verb::Train(arguments) => train::run(&arguments),
         Verb::Adapt(arguments) => adapt::run(&arguments),
+        Verb::Weigh(arguments) => weigh::run(&arguments),
         Verb::Evaluate(arguments) => evaluate::run(&arguments),
         Verb::Ablation(arguments) => ablation::run(&arguments),
         Verb::Tune(arguments) => tune::run(&arguments),

@@ -1,7 +1,6 @@
 //! `tactpad train`: stage I of the paper's decoder.
 
 use std::fmt;
-use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -12,7 +11,7 @@ use super::device::Pad;
 use super::failure::Failure;
 use super::field::field_of;
 use super::progress::Progress;
-use super::written::{both_print, is_stdout, print_json, say, stdout};
+use super::written::{both_print, is_stdout, tell};
 use super::{decoder_file, pictures};
 use tactpad::lab::scdf::drawing::{self, NAMES};
 use tactpad::lab::scdf::simulation::{PAPER, Pretrained, examples, pretrain};
@@ -76,14 +75,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     let outcome = Outcome::of(&pretrained, *seed);
-    match (json, is_stdout(out)) {
-        (true, _) => print_json(&outcome),
-        (false, true) => {
-            say(&outcome);
-            Ok(())
-        }
-        (false, false) => Ok(writeln!(stdout(), "{outcome}\n{} is written", out.display())?),
-    }
+    tell(&outcome, out, *json)
 }
 
 fn trained(examples: Vec<Example>, seed: u64) -> Pretrained {

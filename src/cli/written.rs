@@ -33,6 +33,22 @@ pub(super) fn say(line: impl fmt::Display) {
     let _ = writeln!(io::stderr(), "{}", printable(&line.to_string()));
 }
 
+/// Tells what came of a verb that has written `out`: as a document, to people, or beside the output that it is in.
+pub(super) fn tell<O: fmt::Display + serde::Serialize>(
+    outcome: &O,
+    out: &Path,
+    json: bool,
+) -> Result<(), Failure> {
+    match (json, is_stdout(out)) {
+        (true, _) => print_json(outcome),
+        (false, true) => {
+            say(outcome);
+            Ok(())
+        }
+        (false, false) => Ok(writeln!(stdout(), "{outcome}\n{} is written", out.display())?),
+    }
+}
+
 /// The text without what a terminal would obey: names in it may come from files and devices.
 pub(super) fn printable(text: &str) -> String {
     let is_obeyed = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');

@@ -1,6 +1,7 @@
 //! The laboratory: what is computed offline from tables, pads and decoders. Nothing here runs while a game is played.
 
 pub mod ablation;
+pub mod ageing;
 pub mod calibration;
 pub mod contacts;
 pub mod diagnosis;

@@ -105,7 +105,16 @@ impl Symmetric {
     pub fn add_squares(&mut self, vectors: &[(f64, Vec<f64>)]) {
         for row in 0..self.size {
             let line = &mut self.rows[row * self.size..][..=row];
-            for (weight, vector) in vectors {
+            // Four at a time, so that an entry is loaded and stored once for all of them.
+            let (fours, rest) = vectors.as_chunks::<4>();
+            for four in fours {
+                let factors = four.each_ref().map(|(weight, vector)| weight * vector[row]);
+                let [a, b, c, d] = four.each_ref().map(|(_, vector)| &vector[..=row]);
+                for (entry, (((a, b), c), d)) in line.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
+                    *entry = *entry + factors[0] * a + factors[1] * b + factors[2] * c + factors[3] * d;
+                }
+            }
+            for (weight, vector) in rest {
                 let left = weight * vector[row];
                 line.iter_mut().zip(vector).for_each(|(entry, right)| *entry += left * right);
             }
@@ -119,18 +128,113 @@ impl Symmetric {
 
     /// Factorises in place; `None` if it is not positive definite.
     pub fn factorised(mut self) -> Option<LargeFactor> {
+        self.factorise(self.size)?;
+        Some(LargeFactor { size: self.size, lower: self.rows })
+    }
+
+    /// Rows of L, each up to the column `columns` or its diagonal.
+    fn factorise(&mut self, columns: usize) -> Option<()> {
         let size = self.size;
         for row in 0..size {
             // Row by row, as in [`Factor::of`]; the rows above are done.
             let (above, from_row) = self.rows.split_at_mut(row * size);
             let line = &mut from_row[..size];
-            for column in 0..row {
+            for column in 0..row.min(columns) {
                 let other = &above[column * size..][..=column];
                 line[column] = (line[column] - dot(&line[..column], &other[..column])) / other[column];
             }
-            line[row] = root(line[row] - dot(&line[..row], &line[..row]))?;
+            if row < columns {
+                line[row] = root(line[row] - dot(&line[..row], &line[..row]))?;
+            }
         }
-        Some(LargeFactor { size, lower: self.rows })
+        Some(())
+    }
+
+    /// The equations A x = b of all but the first unknowns, which are free: with A = [H Gᵀ; G K] and b = [h; k] the Schur complement
+    /// S = K − G H⁻¹ Gᵀ and s = k − G H⁻¹ h. `None` if H is not positive definite.
+    pub fn reduced(mut self, right: &[f64], first: usize) -> Option<Reduced> {
+        self.factorise(first)?;
+        let line = |row: usize| &self.rows[row * self.size..][..first];
+        // y = L⁻¹h, forwards as in [`Factor::solve_lower`].
+        let mut half = right[..first].to_vec();
+        for row in 0..first {
+            half[row] = (half[row] - dot(&line(row)[..row], &half[..row])) / line(row)[row];
+        }
+        // The rows below H are G L⁻ᵀ: S = K − (G L⁻ᵀ)(G L⁻ᵀ)ᵀ, s = k − (G L⁻ᵀ) y.
+        let entry = |row: usize, column: usize| {
+            let (low, high) = (row.min(column), row.max(column));
+            self.rows[high * self.size + low] - dot(line(row), line(column))
+        };
+        let rest = first..self.size;
+        let row = |row: usize| rest.clone().map(|column| entry(row, column)).collect();
+        Some(Reduced {
+            information: rest.clone().map(row).collect(),
+            score: rest.clone().map(|row| right[row] - dot(line(row), &half)).collect(),
+        })
+    }
+}
+
+/// What is left of equations when some of their unknowns are free: S and s of the others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reduced {
+    /// S, row by row.
+    pub information: Vec<Vec<f64>>,
+    /// s.
+    pub score: Vec<f64>,
+}
+
+impl Reduced {
+    /// The equations of the first unknowns alone, the others being zero, and those of the others alone.
+    pub fn split(&self, first: usize) -> (Self, Self) {
+        let part = |from: usize, to: usize| Self {
+            information: self.information[from..to].iter().map(|row| row[from..to].to_vec()).collect(),
+            score: self.score[from..to].to_vec(),
+        };
+        (part(0, first), part(first, self.score.len()))
+    }
+
+    /// The equations of linear combinations of the unknowns: CᵀSC and Cᵀs, with the columns of C one after the other.
+    pub fn combined(&self, columns: &[Vec<f64>]) -> Self {
+        let turned: Vec<Vec<f64>> = columns
+            .iter()
+            .map(|column| self.information.iter().map(|row| dot(row, column)).collect())
+            .collect();
+        let row = |column: &Vec<f64>| turned.iter().map(|turned| dot(turned, column)).collect();
+        Self {
+            information: columns.iter().map(row).collect(),
+            score: columns.iter().map(|column| dot(column, &self.score)).collect(),
+        }
+    }
+
+    /// The equations of all unknowns where some combinations of them are free: S − S C (CᵀSC)⁻¹ CᵀS and s − S C (CᵀSC)⁻¹ Cᵀs, with
+    /// the columns of C one after the other. `None` if CᵀSC is not positive definite.
+    pub fn beside(&self, free: &[Vec<f64>]) -> Option<Self> {
+        let small = self.combined(free);
+        let factor = Symmetric::of(free.len(), &small.information.concat()).factorised()?;
+        // Row by row L⁻¹CᵀS, one column for each unknown.
+        let turned = |row: &Vec<f64>| free.iter().map(|column| dot(row, column)).collect::<Vec<f64>>();
+        let halves: Vec<Vec<f64>> =
+            self.information.iter().map(|row| factor.solve_lower(&turned(row))).collect();
+        let half = factor.solve_lower(&small.score);
+        let row = |(row, one): (&Vec<f64>, &Vec<f64>)| {
+            row.iter().zip(&halves).map(|(entry, other)| entry - dot(one, other)).collect()
+        };
+        Some(Self {
+            information: self.information.iter().zip(&halves).map(row).collect(),
+            score: self.score.iter().zip(&halves).map(|(entry, one)| entry - dot(one, &half)).collect(),
+        })
+    }
+
+    /// The solution S⁻¹s, and the diagonal of S⁻¹; `None` if S is not positive definite.
+    pub fn solved(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+        let factor = Symmetric::of(self.score.len(), &self.information.concat()).factorised()?;
+        Some((factor.solve(&self.score), factor.inverse_diagonal()))
+    }
+
+    /// How much less the weighted squares are at the solution: sᵀ S⁻¹ s.
+    pub fn square(&self) -> Option<f64> {
+        let (solution, _) = self.solved()?;
+        Some(dot(&solution, &self.score))
     }
 }
 
@@ -277,6 +381,35 @@ mod tests {
         assert!((half - form).abs() < 1e-8);
         let determinant: f64 = (0..9).map(|k| small.lower[k][k].powi(2)).product();
         assert!((factor.log_determinant() - determinant.ln()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_left_of_equations_has_the_solution_of_all() {
+        let (a, b) = (matrix::<9>(3), [0.3, 1.0, -2.0, 3.0, 0.5, 7.0, 0.4, -1.0, 2.0]);
+        let reduced = Symmetric::of(9, a.as_flattened()).reduced(&b, 5).unwrap();
+        let small = Factor::of(&a).unwrap();
+        let (solution, variances) = reduced.solved().unwrap();
+        let (all, inverse) = (small.solve(&b), small.inverse());
+        for at in 0..4 {
+            assert!((solution[at] - all[5 + at]).abs() < 1e-8, "{solution:?} {all:?}");
+            assert!((variances[at] / inverse[5 + at][5 + at] - 1.0).abs() < 1e-8);
+        }
+        // bᵀA⁻¹b is what the first ones explain alone, and what the others do beside them.
+        let (first, rest) = Reduced { information: a.map(Vec::from).to_vec(), score: b.to_vec() }.split(5);
+        let whole: f64 = b.iter().zip(all).map(|(b, x)| b * x).sum();
+        assert!((first.square().unwrap() + reduced.square().unwrap() - whole).abs() < 1e-8);
+        assert_eq!(rest.score, b[5..]);
+        let picked: Vec<Vec<f64>> = vec![vec![1.0, 0.0, 2.0, 0.0]];
+        let combined = reduced.combined(&picked);
+        let form =
+            reduced.information[0][0] + 4.0 * reduced.information[2][0] + 4.0 * reduced.information[2][2];
+        assert!((combined.information[0][0] - form).abs() < 1e-9);
+        assert!((combined.score[0] - reduced.score[0] - 2.0 * reduced.score[2]).abs() < 1e-12);
+        // What one explains, and another beside it, is what both explain.
+        let other = vec![0.0, 1.0, 0.0, -1.0];
+        let both = reduced.combined(&[picked[0].clone(), other.clone()]).square().unwrap();
+        let beside = reduced.beside(&picked).unwrap().combined(&[other]).square().unwrap();
+        assert!((combined.square().unwrap() + beside - both).abs() < 1e-9);
     }
 
     #[test]

@@ -5,6 +5,7 @@ pub mod chi_square;
 pub mod dense;
 pub mod linear;
 pub mod memory;
+pub mod principal;
 pub mod random;
 pub mod statistics;
 pub mod zernike;

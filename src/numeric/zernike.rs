@@ -63,6 +63,16 @@ pub fn jets(degree: usize, [x, y]: [f64; 2]) -> Vec<Jet> {
     all
 }
 
+/// The values of the first `N` polynomials at a place of the plane, without asking for memory.
+pub fn values<const N: usize>([x, y]: [f64; 2]) -> [f64; N] {
+    let mut all = [Jet::ONE; N];
+    let degrees = (1..).flat_map(|n| (0..=n).map(move |m| (n, m)));
+    for (at, (n, m)) in (1..N).zip(degrees) {
+        all[at] = next(&all[..at], n, m, x, y);
+    }
+    all.map(|jet| jet.value)
+}
+
 /// U(n, m) from the polynomials of lower degree (Andersen 2018, equations for U by cases of m).
 fn next(all: &[Jet], n: usize, m: usize, x: f64, y: f64) -> Jet {
     let u = |n: usize, m: usize| all[n * (n + 1) / 2 + m];
@@ -218,6 +228,16 @@ mod tests {
             assert!((value - wanted).abs() < 1e-15, "{values:?}");
         }
         assert!(values.iter().any(|value| (value - (3.0 * r2 - 2.0) * x).abs() < 1e-15), "{values:?}");
+    }
+
+    #[test]
+    fn values_alone_are_the_same() {
+        let place = [0.55, -0.61];
+        let wanted: Vec<f64> = jets(9, place).iter().map(|jet| jet.value).collect();
+        assert_eq!(values::<{ count(9) }>(place).as_slice(), wanted);
+        // Any number of them, from the first one on.
+        assert_eq!(values::<8>(place).as_slice(), &wanted[..8]);
+        assert_eq!(values::<0>(place), [0.0; 0]);
     }
 
     #[test]

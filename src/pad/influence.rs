@@ -95,6 +95,13 @@ impl InfluenceField {
         self.reached().flat_map(|index| self.nodes[index]).collect()
     }
 
+    /// The field of a pad all of whose channels read so many times what they read.
+    #[must_use]
+    pub fn scaled(&self, by: f64) -> Self {
+        let scaled = |node: &Node| node.map(|coefficient| (by * f64::from(coefficient)) as f32);
+        Self { nodes: self.nodes.iter().map(scaled).collect(), ..*self }
+    }
+
     /// Writes spacing, radius and coefficients.
     pub(crate) fn write(&self, to: &mut Vec<u8>) {
         to.extend([self.spacing_mm, self.radius_mm].iter().flat_map(|mm| mm.to_le_bytes()));

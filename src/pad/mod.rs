@@ -9,3 +9,4 @@ pub mod influence;
 pub mod marks;
 pub mod readout;
 pub mod twin;
+pub mod weight;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::pad::weight::Weight;
 use crate::pipeline::mapping::read::ReadProfile;
 
 /// One call on the pipeline; see [`crate::pipeline::Pipeline::apply`]. It borrows what it carries.
@@ -21,6 +22,8 @@ pub enum Call<'a> {
     ReleaseAll,
     /// The zero was to be measured again.
     Retare,
+    /// A known weight was to be weighed.
+    Weigh(Weight),
     /// Another profile was chosen.
     Profile(&'a ReadProfile),
 }
@@ -32,7 +35,7 @@ pub enum OwnedCall {
     Bytes(Arc<[u8]>),
     /// Another profile was chosen.
     Profile(Arc<ReadProfile>),
-    /// What carries nothing.
+    /// What borrows nothing.
     Plain(Call<'static>),
 }
 
@@ -58,6 +61,7 @@ impl From<Call<'_>> for OwnedCall {
             Call::Resume => Self::Plain(Call::Resume),
             Call::ReleaseAll => Self::Plain(Call::ReleaseAll),
             Call::Retare => Self::Plain(Call::Retare),
+            Call::Weigh(weight) => Self::Plain(Call::Weigh(weight)),
         }
     }
 }

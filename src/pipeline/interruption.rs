@@ -16,6 +16,8 @@ pub enum Cause {
     Rescaled,
     /// The pad identified itself, with the scale that was thought.
     Identified,
+    /// The pad identified itself as another one than before, though it was not unplugged.
+    Exchanged,
     /// The pad identified itself with numbers that no pad of ours has.
     Unsuitable,
     /// The pad speaks a newer version of the protocol.
@@ -34,6 +36,8 @@ pub enum Cause {
     Retared,
     /// The player paused, or released everything.
     Released,
+    /// The player begins to weigh a known weight.
+    Weighing,
 }
 
 /// What becomes of a part of the pipeline.
@@ -47,11 +51,13 @@ pub enum Effect {
     Forget,
 }
 
-/// What becomes of all parts. Scale, filter and thermometer have nothing to doubt: they are kept or forgotten.
+/// What becomes of all parts. Scale, gain, filter and thermometer have nothing to doubt: they are kept or forgotten.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects {
     /// What a count means.
     pub scale: Effect,
+    /// By how much the pad's readings have changed since the calibration: it belongs to the pad.
+    pub gain: Effect,
     /// What was learnt of the raw channels; in doubt, what was learnt at rest is forgotten.
     pub channels: Effect,
     /// The mean filter.
@@ -66,6 +72,8 @@ pub struct Effects {
     pub touch: Effect,
     /// What is watched for warnings; in doubt, the stretch of time that was begun is not gone on with.
     pub watch: Effect,
+    /// A weighing that is under way; in doubt, its mean begins anew, and a second time ends it. Forgotten, it ends.
+    pub weighing: Effect,
     /// The contact that is mapped; in doubt, it ends, presses are forgotten, everything is released at once, and contacts
     /// are not believed for a while.
     pub contact: Effect,
@@ -76,27 +84,31 @@ impl Cause {
     #[rustfmt::skip]
     pub const fn effects(self) -> Effects {
         use Effect::{Doubt, Forget, Keep};
-        let [scale, channels, filter, zero, memory, thermometer, touch, watch, contact] = match self {
-            //                     scale   channels filter  zero    memory  thermo. touch   watch   contact
-            Self::Unplugged    => [Forget, Forget,  Forget, Forget, Forget, Forget, Doubt,  Forget, Doubt],
-            Self::Lost         => [Keep,   Keep,    Forget, Keep,   Doubt,  Keep,   Doubt,  Doubt,  Doubt],
-            Self::Restarted    => [Keep,   Forget,  Forget, Forget, Doubt,  Keep,   Forget, Doubt,  Doubt],
+        let [scale, gain, channels, filter, zero, memory, thermometer, touch, watch, weighing, contact] = match self {
+            //                     scale   gain    channels filter  zero    memory  thermo. touch   watch   weighing contact
+            Self::Unplugged    => [Forget, Forget, Forget,  Forget, Forget, Forget, Forget, Doubt,  Forget, Forget,  Doubt],
+            Self::Lost         => [Keep,   Keep,   Keep,    Forget, Keep,   Doubt,  Keep,   Doubt,  Doubt,  Forget,  Doubt],
+            Self::Restarted    => [Keep,   Keep,   Forget,  Forget, Forget, Doubt,  Keep,   Forget, Doubt,  Forget,  Doubt],
             // The new scale is set; whatever was measured in the old one is of no use.
-            Self::Rescaled     => [Keep,   Forget,  Forget, Forget, Doubt,  Keep,   Forget, Doubt,  Doubt],
-            Self::Identified   => [Keep,   Keep,    Keep,   Keep,   Doubt,  Keep,   Forget, Doubt,  Doubt],
-            Self::Unsuitable   => [Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Forget, Doubt,  Doubt],
-            Self::NewerVersion => [Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt],
-            Self::Damaged      => [Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt],
-            Self::Faulty       => [Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt],
+            Self::Rescaled     => [Keep,   Forget, Forget,  Forget, Forget, Doubt,  Keep,   Forget, Doubt,  Forget,  Doubt],
+            Self::Identified   => [Keep,   Keep,   Keep,    Keep,   Keep,   Doubt,  Keep,   Forget, Doubt,  Doubt,   Doubt],
+            Self::Exchanged    => [Keep,   Forget, Forget,  Forget, Forget, Forget, Forget, Forget, Forget, Forget,  Doubt],
+            Self::Unsuitable   => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Forget, Doubt,  Forget,  Doubt],
+            Self::NewerVersion => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Forget,  Doubt],
+            Self::Damaged      => [Keep,   Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt,   Doubt],
+            Self::Faulty       => [Keep,   Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt,   Doubt],
             // There is no contact, which is certain: it is mapped as a lift.
-            Self::Taring       => [Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep],
+            Self::Taring       => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep,    Keep],
             // Memory that was followed from a wrong zero is wrong, too. The touch has begun anew by itself, and is lifted.
-            Self::Drifted      => [Keep,   Doubt,   Keep,   Forget, Forget, Keep,   Keep,   Keep,   Keep],
-            Self::Loaded       => [Keep,   Doubt,   Keep,   Doubt,  Forget, Keep,   Keep,   Doubt,  Keep],
-            Self::Retared      => [Keep,   Doubt,   Keep,   Forget, Keep,   Keep,   Forget, Doubt,  Doubt],
-            Self::Released     => [Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt],
+            Self::Drifted      => [Keep,   Keep,   Doubt,   Keep,   Forget, Forget, Keep,   Keep,   Keep,   Keep,    Keep],
+            Self::Loaded       => [Keep,   Keep,   Doubt,   Keep,   Doubt,  Forget, Keep,   Keep,   Doubt,  Keep,    Keep],
+            // A weight that lies there would be the new zero.
+            Self::Retared      => [Keep,   Keep,   Doubt,   Keep,   Forget, Keep,   Keep,   Forget, Doubt,  Forget,  Doubt],
+            // A paused pad can be weighed on, too: nothing is pressed either way.
+            Self::Released     => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep,    Doubt],
+            Self::Weighing     => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep,    Doubt],
         };
-        Effects { scale, channels, filter, zero, memory, thermometer, touch, watch, contact }
+        Effects { scale, gain, channels, filter, zero, memory, thermometer, touch, watch, weighing, contact }
     }
 }
 
@@ -110,12 +122,13 @@ impl From<Fault> for Cause {
 mod tests {
     use super::*;
 
-    const ALL: [Cause; 14] = [
+    const ALL: [Cause; 16] = [
         Cause::Unplugged,
         Cause::Lost,
         Cause::Restarted,
         Cause::Rescaled,
         Cause::Identified,
+        Cause::Exchanged,
         Cause::Unsuitable,
         Cause::NewerVersion,
         Cause::Damaged,
@@ -125,25 +138,32 @@ mod tests {
         Cause::Loaded,
         Cause::Retared,
         Cause::Released,
+        Cause::Weighing,
     ];
 
     #[test]
     fn what_cannot_be_doubted_is_kept_or_forgotten() {
         for cause in ALL {
-            let Effects { scale, filter, thermometer, .. } = cause.effects();
-            assert!(![scale, filter, thermometer].contains(&Effect::Doubt), "{cause:?}");
+            let Effects { scale, gain, filter, thermometer, .. } = cause.effects();
+            assert!(![scale, gain, filter, thermometer].contains(&Effect::Doubt), "{cause:?}");
         }
     }
 
     #[test]
     fn what_hangs_on_another_part_goes_with_it() {
         for cause in ALL {
-            let Effects { scale, channels, zero, touch, watch, contact, .. } = cause.effects();
+            let Effects { scale, gain, channels, zero, touch, watch, weighing, contact, .. } =
+                cause.effects();
             let keeps = |effect| effect == Effect::Keep;
             assert!(keeps(scale) || !keeps(zero), "{cause:?}: a zero in another scale");
             assert!(keeps(zero) || !keeps(channels), "{cause:?}: a pad at rest that has no zero");
             assert!(keeps(touch) || !keeps(contact), "{cause:?}: a contact without a touch");
             assert!(keeps(contact) || !keeps(watch), "{cause:?}: a contact that ended is watched");
+            assert!(keeps(gain) || !keeps(zero), "{cause:?}: another pad with the zero of this one");
+            assert!(
+                keeps(gain) || weighing == Effect::Forget,
+                "{cause:?}: another pad under the same weight"
+            );
         }
     }
 }

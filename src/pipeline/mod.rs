@@ -17,6 +17,7 @@ pub mod control;
 pub mod health;
 pub mod interruption;
 pub mod link;
+mod look;
 pub mod mapping;
 pub mod output;
 mod phase;
@@ -25,31 +26,30 @@ pub mod refusal;
 pub mod replay;
 pub mod shipped;
 pub mod signal;
+pub mod weighing;
 
-use firmware_proto::identity::Identity;
+use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::sample::Sample;
 
+use crate::pad::weight::Weight;
 use crate::pipeline::call::Call;
 use crate::pipeline::contact::Decoder;
 use crate::pipeline::contact::stage::{ContactStage, Reading};
-use crate::pipeline::contact::uncertainty::Estimate;
-use crate::pipeline::contact::watch::Warning;
 use crate::pipeline::control::OutputEvent;
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::{Cause, Effect};
 use crate::pipeline::link::{Fault, Link, LinkEvent};
-use crate::pipeline::mapping::accept::Presses;
 use crate::pipeline::mapping::engine::Engine;
-use crate::pipeline::mapping::intent::Level;
 use crate::pipeline::mapping::profile::{Command, Profile};
 use crate::pipeline::mapping::stated::Commands;
-use crate::pipeline::mapping::verdict::Verdict;
 use crate::pipeline::output::ledger::{Edges, Ledger};
 pub use crate::pipeline::phase::Phase;
 pub use crate::pipeline::probe::{NoProbe, Probe, Stage};
 use crate::pipeline::refusal::Refusal;
 use crate::pipeline::signal::Scale;
-use crate::quantity::{CHANNELS, Contact, Strain};
+use crate::pipeline::weighing::refusal::WeighError;
+use crate::pipeline::weighing::{Seen, Weighing};
+use crate::quantity::Contact;
 use crate::time::{HostInstant, StreamInstant};
 
 /// After a fault a contact is believed again when the stream has been sound for this long.
@@ -64,6 +64,9 @@ pub struct Pipeline {
     ledger: Ledger,
     health: Health,
     identity: Option<Identity>,
+    /// The pad that told its name last, since it was plugged in.
+    pad: Option<SerialNumber>,
+    weighing: Weighing,
     refusal: Option<Refusal>,
     contact: Option<Contact>,
     phase: Phase,
@@ -86,6 +89,8 @@ impl Pipeline {
             engine: Engine::new(profile),
             health: Health::default(),
             identity: None,
+            pad: None,
+            weighing: Weighing::default(),
             refusal: None,
             contact: None,
             phase: Phase::Waiting,
@@ -119,6 +124,7 @@ impl Pipeline {
             Call::Resume => self.resume(),
             Call::ReleaseAll => self.release_all(now),
             Call::Retare => self.retare(now),
+            Call::Weigh(weight) => self.weigh(now, weight),
             Call::Profile(read) => self.set_profile(now, read.profile().clone()),
         }
         None
@@ -155,7 +161,7 @@ impl Pipeline {
     pub fn handle_unplugged(&mut self, now: HostInstant) {
         self.begin();
         self.lose(now, Cause::Unplugged);
-        (self.identity, self.refusal) = (None, None);
+        (self.identity, self.pad, self.refusal) = (None, None, None);
     }
 
     /// Host time of the next deadline; `None` if nothing is due before something else happens.
@@ -206,6 +212,18 @@ impl Pipeline {
         self.interrupt(Cause::Retared);
     }
 
+    /// Releases everything, and weighs a known weight that is put on the plate, see [`Pipeline::weighing`]. Contacts are not mapped until
+    /// it is taken away. What it tells of the pad counts at once, until the pad is another one.
+    pub fn weigh(&mut self, now: HostInstant, weight: Weight) {
+        self.begin();
+        self.advance(self.link.stream_at(now));
+        self.interrupt(Cause::Weighing);
+        self.weighing.begin(self.at, weight);
+        if !self.is_heard() || self.refusal.is_some() {
+            self.weighing.end(Err(WeighError::NoPad));
+        }
+    }
+
     /// Goes over to another profile: releases what it does not hold, keeps what both hold.
     pub fn set_profile(&mut self, now: HostInstant, profile: Profile) {
         self.begin();
@@ -217,96 +235,6 @@ impl Pipeline {
         if self.contact.is_some() {
             let levels = self.engine.step(self.at, self.contact.as_ref());
             self.ledger.update(self.at, &levels, &mut self.edges);
-        }
-    }
-
-    /// Whether a pad is being heard: a sample came and the link has not been lost since.
-    pub fn is_heard(&self) -> bool {
-        self.link.silent_at().is_some()
-    }
-
-    /// Stream time of the newest event or sample.
-    pub const fn at(&self) -> StreamInstant {
-        self.at
-    }
-
-    /// The profile in use.
-    pub const fn profile(&self) -> &Profile {
-        self.engine.profile()
-    }
-
-    /// The name of the profile's layer that is on.
-    pub fn layer(&self) -> Option<&str> {
-        self.engine.layer()
-    }
-
-    /// How many presses of buttons and directions counted, and how many did not.
-    pub const fn presses(&self) -> Presses {
-        self.engine.presses()
-    }
-
-    /// What became of presses since [`Pipeline::forget_verdicts`]: who is told of each takes them after each call.
-    pub fn verdicts(&self) -> &[Verdict] {
-        self.engine.verdicts()
-    }
-
-    /// Forgets what became of presses.
-    pub fn forget_verdicts(&mut self) {
-        self.engine.forget_verdicts();
-    }
-
-    /// The contact that is being mapped; `None` while there is none.
-    pub const fn contact(&self) -> Option<&Contact> {
-        self.contact.as_ref()
-    }
-
-    /// The channels of the newest sample as the decoder got them; `None` while there are none that can be trusted.
-    pub fn strain(&self) -> Option<&Strain> {
-        self.stage.strain().filter(|_| self.is_heard())
-    }
-
-    /// What the channels of the newest sample read, in microvolts: raw, not tared; zeros before the first one.
-    pub const fn raw_uv(&self) -> &[f64; CHANNELS] {
-        self.stage.raw_uv()
-    }
-
-    /// How sure the contact is that is being mapped, if there is one and the decoder knows. Decodes it anew.
-    pub fn estimate(&self) -> Option<Estimate> {
-        self.contact.and_then(|_| self.stage.estimate())
-    }
-
-    /// What the player should know of the touch at hand or the last one; only the inverse decoder tells it.
-    pub const fn warning(&self) -> Option<Warning> {
-        self.stage.warning()
-    }
-
-    /// What is held now.
-    pub fn held(&self) -> impl Iterator<Item = Level> + '_ {
-        self.ledger.held()
-    }
-
-    /// Everything that went wrong so far.
-    pub const fn health(&self) -> &Health {
-        &self.health
-    }
-
-    /// What the pad told of itself, if it did.
-    pub const fn identity(&self) -> Option<&Identity> {
-        self.identity.as_ref()
-    }
-
-    /// Why this pad cannot be played with, if so. Its samples are not mapped.
-    pub const fn refusal(&self) -> Option<&Refusal> {
-        self.refusal.as_ref()
-    }
-
-    /// What the pipeline is doing.
-    pub fn phase(&self) -> Phase {
-        match self.phase {
-            _ if self.paused => Phase::Paused,
-            _ if self.refusal.is_some() => Phase::Refused,
-            Phase::Playing if self.at < self.trusted_at => Phase::Doubtful,
-            phase => phase,
         }
     }
 
@@ -336,10 +264,12 @@ impl Pipeline {
     }
 
     fn handle_sample<P: Probe>(&mut self, sample: &Sample, probe: &mut P) {
-        match self.stage.take(self.at, sample, &mut self.health, probe) {
+        let reading = self.stage.take(self.at, sample, &mut self.health, probe);
+        self.look_at_weight(reading);
+        match reading {
             Reading::Contact(contact) => {
                 self.phase = Phase::Playing;
-                self.map(contact);
+                self.map(contact.filter(|_| !self.weighing.hides()));
             }
             Reading::Taring => self.tare(Phase::Taring),
             Reading::Loaded => self.tare(Phase::Loaded),
@@ -347,6 +277,18 @@ impl Pipeline {
                 self.phase = Phase::Faulty;
                 self.interrupt(Cause::Faulty);
             }
+        }
+    }
+
+    fn look_at_weight(&mut self, reading: Reading) {
+        let seen = match reading {
+            Reading::Contact(contact) => contact.and(self.stage.strain()).map_or(Seen::Nothing, Seen::Load),
+            Reading::Taring | Reading::Loaded => Seen::NoZero,
+            Reading::Faulty => Seen::Faulty,
+        };
+        let ratio = self.weighing.see(self.at, seen, self.stage.gain().factor(), self.stage.decoder());
+        if let Some(ratio) = ratio {
+            self.stage.regain(ratio);
         }
     }
 
@@ -370,8 +312,11 @@ impl Pipeline {
         }
         let scale = Scale::of(identity);
         self.refusal = if scale.is_some() { None } else { Some(Refusal::Unsuitable(*identity)) };
+        let is_other =
+            self.pad.replace(identity.serial_number).is_some_and(|pad| pad != identity.serial_number);
         let cause = match scale {
             Some(scale) if self.stage.set_scale(scale) => Cause::Rescaled,
+            Some(_) if is_other => Cause::Exchanged,
             Some(_) => Cause::Identified,
             None => Cause::Unsuitable,
         };
@@ -409,6 +354,7 @@ impl Pipeline {
     /// Does to each part what [`Cause::effects`] says.
     fn interrupt(&mut self, cause: Cause) {
         self.stage.interrupt(cause);
+        self.weighing.interrupt(cause.effects().weighing);
         if cause.effects().contact != Effect::Keep {
             self.contact = None;
             self.engine.cancel();

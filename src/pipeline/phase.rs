@@ -12,6 +12,8 @@ pub enum Phase {
     Loaded,
     /// Contacts become events.
     Playing,
+    /// A known weight is weighed, or lies there still: contacts do nothing.
+    Weighing,
     /// The line was at fault just now; contacts are not believed yet.
     Doubtful,
     /// A channel cannot be trusted.

@@ -95,6 +95,10 @@ fn decode(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("decode");
     for (name, decoder) in decoders::each() {
         group.bench_function(name, |bencher| bencher.iter(|| decoder.decode(black_box(&strain))));
+        if let Some(inverse) = decoder.inverse() {
+            let name = format!("{name}, with its uncertainty");
+            group.bench_function(name, |bencher| bencher.iter(|| inverse.estimate(black_box(&strain))));
+        }
     }
     group.bench_function("inverse, all of the live path", |bencher| live(bencher, &field, &strain));
     let layers = layers();

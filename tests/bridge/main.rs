@@ -40,4 +40,6 @@ mod support;
 #[cfg(feature = "tray")]
 mod tray;
 #[cfg(feature = "live")]
+mod weighing;
+#[cfg(feature = "live")]
 mod x11;

@@ -160,9 +160,12 @@ fn rows_are_what_twin_adapt_and_evaluate_give() {
     let folder = folder.path();
     fs::write(folder.join("stage1.onnx"), onnx::write(network())).unwrap();
     let report = document(folder, "ablation --seed 4 --network stage1.onnx --out figures --json");
-    assert!(tactpad(folder, "twin --plan paper --seed 4 --out m.csv").status.success());
+    assert!(tactpad(folder, "twin --plan paper --seed 4 --out m.csv --state new.state").status.success());
     for (plan, seed) in [("paper", 6), ("recommended", 5)] {
-        let line = format!("twin --plan {plan} --seed {seed} --out {plan}.csv --truth {plan}-truth.csv");
+        // Both begin where the calibration ended.
+        fs::copy(folder.join("new.state"), folder.join("pad.state")).unwrap();
+        let twin = format!("twin --plan {plan} --seed {seed} --state pad.state");
+        let line = format!("{twin} --out {plan}.csv --truth {plan}-truth.csv");
         assert!(tactpad(folder, &line).status.success());
     }
     for (method, samples, adapt) in [

@@ -39,14 +39,14 @@ const G_N_PER_G: f64 = 9.80665e-3;
 const AIM_MM: f64 = 3.0;
 
 /// A pad.
-struct Pad {
-    device: Device,
-    field: PadField,
+pub(super) struct Pad {
+    pub(super) device: Device,
+    pub(super) field: PadField,
     seed: u64,
 }
 
 impl Pad {
-    fn drawn(seed: u64) -> Self {
+    pub(super) fn drawn(seed: u64) -> Self {
         let mut random = SplitMix64::named(seed, "pads");
         let mut normal = |size: f64| size * f64::from(random.normal());
         let nominal = PadField::nominal();

@@ -2,6 +2,7 @@
 
 mod ablation;
 mod calibration;
+mod changes;
 mod force_range;
 #[cfg(feature = "foreign-onnx")]
 mod foreign;
@@ -18,3 +19,4 @@ mod scdf;
 #[path = "../support/mod.rs"]
 mod support;
 mod tuning;
+mod weighing;

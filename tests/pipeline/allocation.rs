@@ -96,15 +96,17 @@ fn every_decoder_decodes_anything_without_allocating_and_gives_finite_numbers() 
     let strains = strains();
     for (name, decoder) in crate::decoders::each() {
         let mut all_finite = true;
-        let mut pressed = 0;
+        let (mut pressed, mut estimated) = (0, 0);
         let allocated = allocation_counter::measure(|| {
             for strain in &strains {
                 let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = decoder.decode(strain);
                 all_finite &= [x_mm, y_mm, fx_n, fy_n, fz_n].iter().all(|number| number.is_finite());
                 pressed += u32::from(fz_n > 0.5);
+                estimated += usize::from(decoder.inverse().is_some_and(|it| it.estimate(strain).is_some()));
             }
         });
         assert!(all_finite && pressed > 200, "{name}: {pressed} presses");
+        assert!(estimated > 200 || decoder.inverse().is_none(), "{name}: {estimated} estimates");
         assert_eq!(allocated.count_total, 0, "{name}");
     }
 }

@@ -19,3 +19,4 @@ mod timeline;
 mod validation;
 mod warmth;
 mod warnings;
+mod weighing;

@@ -34,6 +34,8 @@ pub(crate) struct Rig {
     pub(crate) sequence: u32,
     /// Added to each channel, in counts.
     pub(crate) offset: [i32; 9],
+    /// What all channels are multiplied by: what an old pad has left.
+    pub(crate) gain: f32,
     /// Noise amplitude, in counts.
     pub(crate) noise: i32,
     random: u64,
@@ -53,6 +55,7 @@ impl Rig {
             now_us: 0,
             sequence: 0,
             offset: [120_000, -40_000, 7, 0, 999_999, -1, 35_000, -250_000, 66],
+            gain: 1.0,
             noise: 0,
             random: 88_172_645_463_325_252,
             events: Vec::new(),
@@ -88,7 +91,8 @@ impl Rig {
     pub(crate) fn sample(&mut self, contact: &Contact) -> Sample {
         self.now_us += 1_000;
         self.sequence = self.sequence.wrapping_add(1);
-        let mut counts = self.field.strain_uv(contact).uv.map(|uv| (uv / UV_PER_COUNT).round() as i32);
+        let mut counts =
+            self.field.strain_uv(contact).uv.map(|uv| (self.gain * uv / UV_PER_COUNT).round() as i32);
         for (k, count) in counts.iter_mut().enumerate() {
             *count += self.offset[k];
             if self.noise > 0 {

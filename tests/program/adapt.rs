@@ -3,27 +3,17 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
 use tactpad::numeric::random::SplitMix64;
 use tactpad::quantity::{CHANNEL_NAMES, CHANNELS};
+
+use crate::ran::{said, tactpad};
 
 /// A pad with unequal gains, offsets, noise and a drifting zero, whose field is the nominal one.
 const PAD: &str = "[[module]]\nindex = 0\ngain = [1.26, 1.33, 0.83]\noffset_uv = [300, -200, 500]\n\
     [[module]]\nindex = 1\ngain = [1.29, 1.26, 0.99]\noffset_uv = [-150, 80, 900]\n\
     [thermal]\nzero_uv_per_c = [30, 25, 20, 15, 10, 5, -5, -10, -15]\n[noise]\nadditive_uv = 30.0\n";
-
-fn tactpad(folder: &Path, line: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
-    command.args(line.split_whitespace()).current_dir(folder).stdin(Stdio::null());
-    let output = command.env("RUST_BACKTRACE", "1").output().unwrap();
-    assert!(!said(&output).contains("panicked"), "{}", said(&output));
-    output
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
 
 /// A table as it stands in a file: what is before the channels, the channels, what is behind.
 #[derive(Clone)]

@@ -3,35 +3,13 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
 
-use serde_json::Value;
+use crate::ran::{json, printed, refused};
 
 /// Other gains, noise that lasts, a finger that is not still: faults that need no field of their own.
 const PAD: &str = "[noise]\nadditive_uv = 10.0\nshare = 0.02\nshare_time_s = 3.0\n[finger]\nwander_mm = 0.3\nwander_time_s = 0.1\n\
                    [[module]]\nindex = 0\ngain = [1.3, 1.2, 0.9]\n[[module]]\nindex = 1\ngain = [1.2, 1.4, 1.1]\n\
                    [[module]]\nindex = 2\ngain = [1.35, 1.25, 1.0]\n";
-
-fn tactpad(folder: &Path, line: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
-    command.args(line.split(' ')).current_dir(folder).stdin(Stdio::null()).env("RUST_BACKTRACE", "1");
-    let output = command.output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(!said.contains("panicked") && !said.contains("stack backtrace"), "{said}");
-    output
-}
-
-fn json(folder: &Path, line: &str) -> Value {
-    let output = tactpad(folder, line);
-    assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn refused(folder: &Path, line: &str) -> String {
-    let output = tactpad(folder, line);
-    assert_eq!(output.status.code(), Some(2), "{line}");
-    String::from_utf8(output.stderr).unwrap()
-}
 
 /// A minute of play and five placements of 200 g.
 fn played(folder: &Path) {
@@ -75,8 +53,7 @@ fn without_a_weight_the_scale_is_said_to_be_unknown() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     played(folder);
-    let said = tactpad(folder, "adapt --play game.cap --out home.decoder");
-    let said = String::from_utf8(said.stdout).unwrap();
+    let said = printed(folder, "adapt --play game.cap --out home.decoder");
     assert!(said.contains("The force's scale is unknown") && said.contains("--weights"), "{said}");
     assert!(said.contains("0 placements of a weight") && said.contains("home.decoder is written"), "{said}");
 }

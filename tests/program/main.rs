@@ -7,6 +7,7 @@ mod bad_input;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod calibrate;
 mod diagnose;
+mod diagnose_play;
 mod diagnose_report;
 #[cfg(feature = "simulator")]
 mod docs;
@@ -18,6 +19,7 @@ mod networks;
 mod plot;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod profiles;
+mod ran;
 mod simulate;
 #[cfg(feature = "simulator")]
 mod simulate_figures;
@@ -32,4 +34,5 @@ mod tune;
 mod twin_capture;
 mod twin_verb;
 mod vtk;
+mod weigh;
 mod written;

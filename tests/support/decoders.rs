@@ -3,7 +3,8 @@
 use tactpad::lab::calibration::regression::{neighbours, regression};
 use tactpad::network::Zero;
 use tactpad::pad::field::PadField;
-use tactpad::pad::influence::InfluenceField;
+use tactpad::pad::influence::{InfluenceField, MAPS};
+use tactpad::pipeline::contact::field_error::{FieldError, MODES_MAX, Mode};
 use tactpad::pipeline::contact::inverse::Inverse;
 use tactpad::pipeline::contact::regression::Target;
 use tactpad::pipeline::contact::uncertainty::Noise;
@@ -28,11 +29,18 @@ pub(crate) fn each() -> Vec<(&'static str, Decoder)> {
         fitted(Target::Contact).ok(),
         neighbours(&rows, Zero::Tared).map(Decoder::from).ok(),
         of_the_program("scdf"),
-        Some(Decoder::from(Inverse::new(field, noise))),
+        FieldError::of(vec![mode(); MODES_MAX])
+            .map(|error| Decoder::from(Inverse::new(field, noise).with_field_error(error))),
     ];
     let decoders: Vec<_> = decoders.into_iter().flatten().map(|decoder| (decoder.name(), decoder)).collect();
     assert_eq!(decoders.len(), 6, "each was made");
     decoders
+}
+
+/// Each channel may be off by a thousandth of all, and by up to 2 µV/N.
+fn mode() -> Mode {
+    let maps = std::array::from_fn(|term| [2.0 / (1 + term) as f32; MAPS]);
+    Mode { mixture: [[1e-3; CHANNELS]; CHANNELS], maps }
 }
 
 /// A press on a spiral over the plate.

@@ -17,7 +17,8 @@ fn write(out: &mut impl Write, report: &AblationReport) -> io::Result<()> {
     writeln!(out, "{}", report.statement)?;
     writeln!(
         out,
-        "Decoders learn from twin --plan paper --seed {}; errors are means over each axis.",
+        "Decoders learn from twin --plan paper --seed {} --state pad.state, and the pad goes on from there;\n\
+         errors are means over each axis.",
         report.seed
     )?;
     let tables = report.rows.first().map_or(0, |row| row.unseen.len());
@@ -32,7 +33,7 @@ fn write_table(out: &mut impl Write, rows: &[Row], table: usize) -> io::Result<(
     let tried: Vec<(&Row, &Tried)> =
         rows.iter().filter_map(|row| Some((row, row.unseen.get(table)?))).collect();
     let Some((_, Tried { plan, seed, contacts, bound, .. })) = tried.first() else { return Ok(()) };
-    writeln!(out, "\n{contacts} unseen contacts: twin --plan {plan} --seed {seed}")?;
+    writeln!(out, "\n{contacts} unseen contacts: twin --plan {plan} --seed {seed} --state pad.state")?;
     let (mm, n) = (bound.position_mae_mm, bound.force_mae_n);
     writeln!(out, "The noise allows no less than {mm:.3} mm and {n:.4} N.\n")?;
     writeln!(

@@ -1,7 +1,6 @@
 //! A decoder from presses without labels and a weight on marks: how it is fitted, and what is told of it.
 
 use std::fmt;
-use std::io::Write;
 use std::path::Path;
 
 use serde::Serialize;
@@ -13,7 +12,7 @@ use crate::cli::destination::Destination;
 use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
 use crate::cli::wrapped::hanging;
-use crate::cli::written::{is_stdout, print_json, say, stdout};
+use crate::cli::written::tell;
 use tactpad::lab::calibration::earlier::Earlier;
 use tactpad::lab::play::home::{AtHome, HomeError, Region, calibrated};
 use tactpad::lab::play::weights::Placement;
@@ -70,14 +69,7 @@ pub(crate) fn write(
     let note = format!("{} presses of play, {} placements of a weight", found.presses, found.placements);
     to.write(&found.calibration.decoder().to_bytes(&note).unwrap_or_default())?;
     let outcome = Outcome::of(found, windows);
-    match (json, is_stdout(out)) {
-        (true, _) => print_json(&outcome),
-        (false, true) => {
-            say(&outcome);
-            Ok(())
-        }
-        (false, false) => Ok(writeln!(stdout(), "{outcome}\n{} is written", out.display())?),
-    }
+    tell(&outcome, out, json)
 }
 
 impl Outcome {

@@ -5,13 +5,13 @@ mod measured;
 mod method;
 mod named;
 mod numbers;
+mod open;
 mod own;
 pub(super) mod play;
 mod scdf;
 mod thermal;
 
 use std::fmt;
-use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -26,7 +26,7 @@ use super::destination::Destination;
 use super::device::Pad;
 use super::failure::Failure;
 use super::field::field_of;
-use super::written::{both_print, is_same, is_stdout, print_json, say, stdout, written_over};
+use super::written::{both_print, is_same, is_stdout, say, tell, written_over};
 
 /// Arguments of `tactpad adapt`.
 #[derive(Debug, Args)]
@@ -133,14 +133,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let warnings: Vec<String> = fault.map(|fault| measured.warning(fault)).into_iter().collect();
     warnings.iter().for_each(|warning| say(format_args!("warning: {warning}")));
     let outcome = Outcome { method: *method, rows, tared, warnings, fit };
-    match (json, is_stdout(out)) {
-        (true, _) => print_json(&outcome),
-        (false, true) => {
-            say(&outcome);
-            Ok(())
-        }
-        (false, false) => Ok(writeln!(stdout(), "{outcome}\n{} is written", out.display())?),
-    }
+    tell(&outcome, out, *json)
 }
 
 fn parse_rows(text: &str) -> Result<usize, String> {

@@ -6,6 +6,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::named::{FoundIn, Named};
+use super::open::Open;
 use super::thermal::FoundThermal;
 use crate::cli::wrapped::hanging;
 use tactpad::lab::calibration::fit::Calibration;
@@ -50,6 +51,8 @@ struct Document<'d> {
     thermal: Option<FoundThermal>,
     /// Whether the field of `--from` was nearer than the simulated one.
     field_from_earlier: bool,
+    /// What the rig leaves open.
+    open_by_rig: Vec<Open>,
 }
 
 /// How well a number is known, and whether a diagnosis names its cause.
@@ -147,6 +150,7 @@ impl Pad {
             zero_uv: compensation.zero_uv,
             thermal: thermal.as_ref().map(FoundThermal::of),
             field_from_earlier: self.calibration.from_earlier,
+            open_by_rig: self.calibration.open_by_rig.iter().map(Open::of).collect(),
         }
     }
 
@@ -174,8 +178,8 @@ impl Pad {
     }
 
     fn parameter(&self, number: &Number) -> Option<Parameter> {
-        let Quantity::Module(_) = number.quantity else { return None };
-        let (name, change) = (number.quantity.name(), number.value);
+        let Quantity::Physical(_) = number.quantity else { return None };
+        let (name, change) = (number.quantity.name(), number.value - number.expected);
         Some(Parameter { name, change, standing: self.standing(number) })
     }
 
@@ -230,11 +234,13 @@ fn words(number: &Number) -> String {
 /// The kind under which a number without a column is counted.
 const fn kind_of(quantity: Quantity) -> Option<&'static str> {
     match quantity {
-        Quantity::Module(_) => Some("poses and stiffnesses"),
+        Quantity::Physical(_) => Some("poses and stiffnesses"),
         Quantity::Crosstalk => Some("crosstalks"),
         Quantity::Friction { .. } => Some("frictions"),
         Quantity::Creep => Some("creep"),
         Quantity::Blur => Some("blur"),
+        Quantity::Ageing => Some("ageing"),
+        Quantity::Rig(_) => Some("errors of the rig"),
         Quantity::Gain | Quantity::GainSlope | Quantity::Zero => None,
     }
 }
@@ -261,6 +267,9 @@ impl fmt::Display for Pad {
         self.write_named(f)?;
         writeln!(f, "{}", hanging("", &self.nameless()))?;
         self.write_pairs(f)?;
+        for open in &self.calibration.open_by_rig {
+            writeln!(f, "{}", hanging("", &Open::of(open).words()))?;
+        }
         write!(f, "smooth background: {:.1} % of each map", 100.0 * self.calibration.background)?;
         let is_earlier = self.calibration.from_earlier;
         if is_earlier { write!(f, ", beside the earlier pad's field") } else { Ok(()) }
@@ -307,7 +316,15 @@ impl Pad {
 
     /// How many others there are, and how many of them the data hold.
     fn nameless(&self) -> String {
-        let kinds = ["poses and stiffnesses", "crosstalks", "frictions", "creep", "blur"];
+        let kinds = [
+            "poses and stiffnesses",
+            "crosstalks",
+            "frictions",
+            "creep",
+            "blur",
+            "ageing",
+            "errors of the rig",
+        ];
         let counted = kinds.into_iter().filter_map(|kind| {
             let is_of_kind = |it: &&Number| kind_of(it.quantity) == Some(kind) && !self.named.names(it);
             let of_kind: Vec<&Number> = self.numbers().filter(is_of_kind).collect();

@@ -67,6 +67,11 @@ pub(crate) fn read_weights(path: &Path, reach_mm: f64) -> Result<Vec<Placement>,
 
 /// The capture's windows. Touches are known by the earlier decoder, else by the nominal one.
 fn read(path: &Path, earlier: Option<&Decoder>) -> Result<Vec<Window>, Failure> {
+    Ok(heard(path, earlier)?.finish())
+}
+
+/// A capture that was read to its end.
+pub(crate) fn heard(path: &Path, earlier: Option<&Decoder>) -> Result<Reader, Failure> {
     let _progress = Progress::begin("reading the capture");
     let mut capture = Recording::open(path)?;
     let decoder = match earlier {
@@ -80,7 +85,7 @@ fn read(path: &Path, earlier: Option<&Decoder>) -> Result<Vec<Window>, Failure> 
         reader.apply(now, call);
         Ok(())
     })?;
-    Ok(reader.finish())
+    Ok(reader)
 }
 
 fn any_profile() -> Result<Profile, Failure> {

@@ -29,8 +29,8 @@ const UNITS: [(&str, &str); 8] = [
     ("_kpa", "kPa"),
 ];
 
-pub(super) fn run(arguments: &Arguments, earlier: &Path) -> Result<(), Failure> {
-    let Arguments { measured, save_device, report, labels, channels, without, json, pad, .. } = arguments;
+pub(super) fn run(arguments: &Arguments, measured: &Path, earlier: &Path) -> Result<(), Failure> {
+    let Arguments { save_device, report, labels, channels, without, json, pad, .. } = arguments;
     if save_device.is_some() {
         return Err(Failure::Unusable(
             "--save-device writes the model of a pad with what was found, and --against knows no model; leave one of them out".into(),

@@ -16,16 +16,27 @@ use tactpad::lab::diagnosis;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: tactpad diagnose --measured measured.csv --save-device found.toml\n         \
-                  tactpad diagnose --measured today.csv --against january.csv\n\n\
+                  tactpad diagnose --measured today.csv --against january.csv\n         \
+                  tactpad diagnose --play today.cap --against january.cap\n\n\
                   Without --device and --imperfections the model is the nominal pad. What the words mean stands in \
                   docs/diagnosis.md."
 )]
 pub(crate) struct Arguments {
     /// The measured file: raw channels, and what the reference wrote down.
-    #[arg(long, value_name = "M.csv")]
-    pub(super) measured: PathBuf,
+    #[arg(long, value_name = "M.csv", required_unless_present = "play")]
+    pub(super) measured: Option<PathBuf>,
+    /// A capture of play instead: what changed in the pad since an earlier one? Nobody needs to know what was pressed.
+    #[arg(
+        long,
+        value_name = "CAPTURE",
+        requires = "against",
+        conflicts_with_all = ["measured", "labels", "channels", "save_device", "report", "without"]
+    )]
+    pub(super) play: Option<PathBuf>,
     /// An earlier recording of the same sensor, whatever sensor that is: what changed since? Neither a model nor forces are needed.
-    #[arg(long, value_name = "EARLIER.csv")]
+    ///
+    /// With --play an earlier capture of the same pad.
+    #[arg(long, value_name = "EARLIER")]
     pub(super) against: Option<PathBuf>,
     /// With --against: the columns that are labels; else those of docs/diagnosis.md that both files have.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "against")]
@@ -49,13 +60,19 @@ pub(crate) struct Arguments {
     pub(super) json: bool,
 }
 
+impl Arguments {
+    fn is_measured(&self, path: &Path) -> bool {
+        self.measured.as_deref().is_some_and(|measured| is_same(measured, path))
+    }
+}
+
 /// Where the device goes: nowhere that is read, and not between the lines of a document.
 pub(super) fn destination(path: &Path, arguments: &Arguments) -> Result<Destination, Failure> {
     if arguments.json && is_stdout(path) {
         return Err(both_print("--save-device -"));
     }
     arguments.pad.spare(path)?;
-    if is_same(&arguments.measured, path) {
+    if arguments.is_measured(path) {
         return Err(written_over(path, "is the measured table"));
     }
     Destination::of(path)
@@ -65,7 +82,7 @@ pub(super) fn destination(path: &Path, arguments: &Arguments) -> Result<Destinat
 pub(super) fn folder(path: &Path, arguments: &Arguments) -> Result<Folder, Failure> {
     for file in [reports::PAGE, reports::DOCUMENT].map(|name| path.join(name)) {
         arguments.pad.spare(&file)?;
-        if is_same(&arguments.measured, &file) {
+        if arguments.is_measured(&file) {
             return Err(written_over(&file, "is the measured table"));
         }
         if arguments.against.as_deref().is_some_and(|earlier| is_same(earlier, &file)) {

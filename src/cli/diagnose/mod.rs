@@ -6,6 +6,7 @@ pub(super) mod document;
 pub(super) mod engine;
 mod files;
 mod numbers;
+mod play;
 mod report;
 pub(super) mod text;
 
@@ -29,10 +30,20 @@ use tactpad::tables::measured::Table;
 use tactpad::tables::measured::columns::Kind;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if let Some(earlier) = &arguments.against {
-        return against::run(arguments, earlier);
+    match (&arguments.play, &arguments.measured, &arguments.against) {
+        (Some(later), _, Some(earlier)) => play::run(arguments, [earlier, later]),
+        (_, Some(measured), Some(earlier)) => against::run(arguments, measured, earlier),
+        (_, Some(measured), None) => of_table(arguments, measured),
+        // The arguments' own rules leave nothing else.
+        _ => Err(Failure::Unusable(
+            "name a table with --measured, or captures with --play and --against".into(),
+        )),
     }
-    let Arguments { measured, pad, save_device, report, without, json, .. } = arguments;
+}
+
+/// What a table shows.
+fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
+    let Arguments { pad, save_device, report, without, json, .. } = arguments;
     let saved = save_device.as_deref().map(|path| destination(path, arguments)).transpose()?;
     let device = pad.read()?;
     let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;

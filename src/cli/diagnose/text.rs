@@ -65,7 +65,7 @@ fn sizes(diagnosis: &Diagnosis) -> String {
 }
 
 /// A cause and where it is.
-fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
+pub(super) fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
     if effect == UNLISTED {
         return "a part of something that is not in the catalogue".to_owned();
     }

@@ -32,7 +32,7 @@ pub(crate) fn command_line() -> Result<Option<Vec<String>>, Failure> {
             let words = ["tactpad", "run", &profile].into_iter().chain(shown.iter().copied());
             Ok(Some(words.map(str::to_owned).collect()))
         }
-        Err(error) => Err(Failure::Failed(ctl::no_answer(&path, &error))),
+        Err(error) => Err(Failure::Failed(ctl::asked::no_answer(&path, &error))),
     }
 }
 

@@ -13,7 +13,9 @@ pub(super) fn read(choice: &Choice) -> Result<PlayingDecoder, Failure> {
     let (decoder, bytes) = choice.read_by(read::playing)?;
     let (name, kind) = (choice.name(), decoder.name());
     let told = if name == kind { name.into() } else { format!("{kind} ({name})") };
-    Ok(PlayingDecoder { decoder, name: told, file: Some(bytes).filter(|_| name != shipped::STATICS) })
+    let whole = |path: &Path| std::path::absolute(path).ok()?.into_os_string().into_string().ok();
+    let place = file(choice).map_or_else(|| Some(name.to_owned()), whole);
+    Ok(PlayingDecoder { decoder, name: told, place, file: Some(bytes).filter(|_| name != shipped::STATICS) })
 }
 
 /// The file that is read, if it is one.

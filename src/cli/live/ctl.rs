@@ -1,5 +1,8 @@
 //! `tactpad ctl`: talks to the running bridge.
 
+pub(super) mod asked;
+mod weigh;
+
 use std::env;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -7,11 +10,13 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde_json::Value;
 
+use self::asked::{answered, no_answer};
 use super::sound::{Sounds, Which};
 use crate::cli::failure::Failure;
 use crate::cli::profile;
-use crate::cli::written::{printable, reason, stdout};
-use tactpad::bridge::control::{ask, watch};
+use crate::cli::written::{printable, stdout};
+use tactpad::bridge::control::watch;
+use tactpad::bridge::weighing::gain_sentence;
 
 /// Arguments of `tactpad ctl`.
 #[derive(Debug, Args)]
@@ -48,6 +53,16 @@ enum Action {
     /// Measure the zero again; leave the pad untouched.
     #[command(after_help = "Example: tactpad ctl tare")]
     Tare,
+    /// Put a known weight on the plate: it tells what gain the pad has lost, and forces are corrected by it.
+    ///
+    /// Begin with nothing on the plate. Anywhere will do, for three seconds; nothing is pressed meanwhile. It counts until the pad is
+    /// unplugged, and at the end it says how to keep it for good.
+    #[command(after_help = "Example: tactpad ctl weigh 200")]
+    Weigh {
+        /// The weight, in grams.
+        #[arg(value_name = "GRAMS", allow_hyphen_values = true)]
+        grams: f64,
+    },
     /// Go over to another profile.
     #[command(after_help = "Example: tactpad ctl profile tetris")]
     Profile {
@@ -80,6 +95,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = socket_path();
     let request = match &arguments.action {
         Action::Watch { sound } => return watch_presses(&path, *sound),
+        Action::Weigh { grams } => return weigh::run(&path, *grams, arguments.json),
         Action::Status => "status".to_owned(),
         Action::Pause => "pause".to_owned(),
         Action::Resume => "resume".to_owned(),
@@ -91,12 +107,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Quit => "quit".to_owned(),
         Action::Profile { name } => format!("profile {}", absolute(name)?),
     };
-    let answer = ask(&path, &request).map_err(|error| Failure::Failed(no_answer(&path, &error)))?;
-    let document: Value =
-        serde_json::from_str(&answer).map_err(|error| Failure::Failed(error.to_string()))?;
-    if let Some(error) = document.get("error").and_then(Value::as_str) {
-        return Err(Failure::Unusable(error.to_owned()));
-    }
+    let (answer, document) = answered(&path, &request)?;
     match arguments.action {
         _ if arguments.json => Ok(writeln!(stdout(), "{answer}")?),
         Action::Status => Ok(print_status(&document)?),
@@ -128,20 +139,6 @@ fn watch_presses(path: &Path, sound: Option<Which>) -> Result<(), Failure> {
     });
     printed?;
     watched.map_err(|error| Failure::Failed(no_answer(path, &error)))
-}
-
-/// Why no bridge answers, and what to do about it.
-pub(super) fn no_answer(path: &Path, error: &io::Error) -> String {
-    use io::ErrorKind::{ConnectionRefused, NotFound, TimedOut};
-    let path = path.display();
-    match error.kind() {
-        NotFound | ConnectionRefused => format!("no bridge answers at {path}: start one with `tactpad run`"),
-        TimedOut => format!(
-            "the bridge at {path} does not answer: if it was stopped (Ctrl-Z), continue it with `fg`; else end it and \
-             start one with `tactpad run`"
-        ),
-        _ => format!("the bridge at {path} cannot be asked: {}", reason(error)),
-    }
 }
 
 /// The bridge has a working folder of its own: a file is named by its whole path. A profile's name is the bridge's to
@@ -180,6 +177,9 @@ fn print_status(status: &Value) -> io::Result<()> {
     writeln!(out, "held     {}", held.filter_map(Value::as_str).collect::<Vec<_>>().join(" "))?;
     if let Some(warning) = warning(status) {
         writeln!(out, "warning  {warning}")?;
+    }
+    if let Some(sentence) = status.get("gain").and_then(Value::as_f64).and_then(gain_sentence) {
+        writeln!(out, "gain     {sentence}")?;
     }
     let presses =
         |key: &str| status.get("presses").and_then(|it| it.get(key)).and_then(Value::as_u64).unwrap_or(0);

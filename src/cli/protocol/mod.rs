@@ -3,7 +3,6 @@
 mod drawing;
 
 use std::fmt;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -12,7 +11,7 @@ use serde::Serialize;
 use super::destination::{Destination, Folder};
 use super::device::Pad;
 use super::failure::Failure;
-use super::written::{both_print, is_stdout, print_json, say, stdout};
+use super::written::{both_print, is_stdout, tell};
 use super::{pictures, tables};
 use tactpad::pad::device::Patch;
 use tactpad::tables::measured::Table;
@@ -131,14 +130,7 @@ impl PlanReport {
     }
 
     fn print(&self, out: &Path, json: bool) -> Result<(), Failure> {
-        match (json, is_stdout(out)) {
-            (true, _) => print_json(self),
-            (false, true) => {
-                say(self);
-                Ok(())
-            }
-            (false, false) => Ok(writeln!(stdout(), "{self}\n{} is written", out.display())?),
-        }
+        tell(self, out, json)
     }
 }
 

@@ -1,10 +1,12 @@
 //! A plan that was carried out on the pad.
 
-use super::Subject;
-use crate::lab::rig::measurement::{Measurement, carry_out};
+use super::{Pad, Subject};
+use crate::lab::rig::measurement::{Measurement, carry_on};
 use crate::network::Zero;
+use crate::pad::twin::life::Life;
 use crate::pipeline::contact::Decoder;
 use crate::tables::measured::{Label, Row, Table};
+use crate::tables::plans;
 use crate::tables::recording::Recording;
 
 /// What was measured, and what was true, row for row.
@@ -17,11 +19,22 @@ pub(super) struct CarriedOut {
 }
 
 impl CarriedOut {
-    /// Carries out one of our own plans: all of them begin with the untouched pad.
+    /// The paper's plan on the new pad: what decoders are fitted to.
+    pub(super) fn calibration(subject: &Subject<'_>) -> Self {
+        Self::of(subject, calibrated(subject).0)
+    }
+
+    /// Carries out a plan on the pad as it goes on after that.
+    pub(super) fn afterwards(subject: &Subject<'_>, plan: &Table, seed: u64) -> Self {
+        let Pad { device, field } = subject.actual;
+        let (_, life) = calibrated(subject);
+        Self::of(subject, carry_on(plan, device, field, life, seed).0)
+    }
+
+    /// What was measured by one of our own plans: all of them begin with the untouched pad.
     #[expect(clippy::expect_used, reason = "no plan comes from outside, and tests carry out each of them")]
-    pub(super) fn of(subject: &Subject<'_>, plan: &Table, seed: u64) -> Self {
+    fn of(subject: &Subject<'_>, Measurement { table, truth, .. }: Measurement) -> Self {
         let pad = subject.actual;
-        let Measurement { table, truth, .. } = carry_out(plan, pad.device, pad.field, seed);
         let raw = table.rows.clone();
         let recording = Recording::of(table, pad.device.contact.full_scale_n);
         Self { recording: recording.expect("a plan begins with the untouched pad"), raw, truths: truth }
@@ -36,4 +49,11 @@ impl CarriedOut {
     pub(super) fn taken(&self, decoder: &Decoder) -> Vec<Row> {
         if decoder.zero() == Zero::Raw { self.raw.clone() } else { self.recording.taken(decoder).rows }
     }
+}
+
+/// The paper's plan, carried out on a new pad, and the pad's life after it.
+fn calibrated(subject: &Subject<'_>) -> (Measurement, Life) {
+    let Pad { device, field } = subject.actual;
+    let plan = plans::paper::plan(&device.contact);
+    carry_on(&plan, device, field, Life::new(device, subject.seed), subject.seed)
 }

@@ -18,7 +18,6 @@ use crate::pipeline::contact::Decoder;
 use crate::pipeline::contact::regression::Target;
 use crate::pipeline::shipped;
 use crate::tables::measured::{Label, Row};
-use crate::tables::plans;
 
 /// Why a decoder cannot be fitted.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,8 +84,7 @@ impl<'p> Known<'p> {
     fn of(subject: Subject<'p>, network: &'p Network) -> Self {
         let designed = subject.designed;
         let simulated = simulation::examples(designed.device, designed.field, subject.seed);
-        let plan = plans::paper::plan(&subject.actual.device.contact);
-        let measured = CarriedOut::of(&subject, &plan, subject.seed);
+        let measured = CarriedOut::calibration(&subject);
         Self { subject, network, simulated: simulated.iter().map(row).collect(), measured }
     }
 

@@ -59,7 +59,7 @@ impl Touches {
     pub fn of(subject: &Subject<'_>) -> Self {
         let patch = &subject.actual.device.contact;
         let plan = plan(patch.max_centre_radius_mm, patch.full_scale_n);
-        Self { carried_out: CarriedOut::of(subject, &plan, subject.seed) }
+        Self { carried_out: CarriedOut::afterwards(subject, &plan, subject.seed) }
     }
 
     /// The decoded contacts, moment by moment.

@@ -63,7 +63,7 @@ pub fn unseen(subject: &Subject<'_>) -> [Unseen; 2] {
 
 impl Unseen {
     fn of(subject: &Subject<'_>, plan: &'static str, contacts: &Table, seed: u64) -> Self {
-        let carried_out = CarriedOut::of(subject, contacts, seed);
+        let carried_out = CarriedOut::afterwards(subject, contacts, seed);
         let contacts = carried_out.recording.contacts();
         let truths = contacts.iter().map(|at| carried_out.truths[*at]).collect();
         let bound = Bound::new(subject.actual.device, subject.actual.field, seed);

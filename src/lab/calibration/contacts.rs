@@ -1,5 +1,6 @@
 //! Measured contacts, with the simulator's field and its derivatives at their places: what stays fixed during a calibration.
 
+use super::rig::Written;
 use crate::numeric::zernike::{Jet, jets, norms};
 use crate::pad::field::{PadField, Sensitivity};
 use crate::pipeline::compensation::hysteresis::PLAYS;
@@ -62,7 +63,9 @@ pub(super) struct Place {
 pub(super) struct Measured {
     /// What is known of it.
     pub(super) knowledge: Knowledge,
-    /// x, y, Fx, Fy, Fz as they are written.
+    /// What was written down.
+    pub(super) written: Written,
+    /// x, y, Fx, Fy, Fz that this stands for.
     pub(super) label: [f64; UNKNOWNS],
     /// On the pad's clock; zero where rows have no time.
     pub(super) at_s: f64,
@@ -74,6 +77,8 @@ pub(super) struct Measured {
     pub(super) uv: [f64; CHANNELS],
     /// ΔT: temperature above the reference; zero where it is unknown.
     pub(super) above_c: f64,
+    /// b: the part of the measurement's ageing that was still to come.
+    pub(super) to_come: f64,
     /// Lags of the play operators, by the load path and the parameters.
     pub(super) lags: Lags,
     /// Creep states u.
@@ -139,6 +144,7 @@ impl Measured {
         let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) = (place_mm, force_n);
         Self {
             knowledge: Knowledge::Written,
+            written: Written::still([x_mm, y_mm, fx_n, fy_n, fz_n]),
             label: [x_mm, y_mm, fx_n, fy_n, fz_n],
             at_s: 0.0,
             place_mm,
@@ -146,26 +152,28 @@ impl Measured {
             force_n,
             uv: [0.0; CHANNELS],
             above_c: 0.0,
+            to_come: 0.0,
             lags: [[0.0; CHANNELS]; PLAYS],
             crept_uv: [0.0; CHANNELS],
         }
     }
 
-    /// A tared row; `None` without channels.
+    /// A row of a tared table; `None` without channels.
     pub(super) fn of(
         field: &PadField,
         sensitivities: &[&Sensitivity],
         plate_mm: f64,
-        (row, knowledge): (&Row, Knowledge),
+        (rows, at, knowledge): (&[Row], usize, Knowledge),
         reference_c: Option<f64>,
     ) -> Option<Self> {
+        let row = rows.get(at)?;
         let Contact { x_mm, y_mm, .. } = Contact::from(row.label);
         let place_mm = [x_mm, y_mm].map(f64::from);
         let place = Place::of(field, sensitivities, plate_mm, place_mm);
         let force_n = [row.label.fx_n, row.label.fy_n, row.label.fz_n];
         Some(Self {
             knowledge,
-            label: row.label.numbers(),
+            written: Written::of(rows, at)?,
             at_s: row.t_s.unwrap_or(0.0),
             uv: row.uv?,
             above_c: row.temp_c.zip(reference_c).map_or(0.0, |(temp_c, reference_c)| temp_c - reference_c),

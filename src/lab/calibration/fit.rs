@@ -9,13 +9,16 @@ use rayon::prelude::*;
 
 use super::contacts::{Fitted, Knowledge};
 use super::earlier::Earlier;
+use super::field_error;
+use super::hyperparameters::Settings;
 use super::known::Known;
 use super::model::Layout;
 use super::noise;
 use super::numbers::{Asked, Number, Pair};
+use super::open::{OpenByRig, by_rig};
 use super::prepared::Prepared;
 use super::prior::Prior;
-use super::problem::{Fit, Problem, Settings};
+use super::problem::{Fit, Problem};
 use super::thermal_fit::ThermalFit;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
@@ -23,13 +26,16 @@ use crate::pad::influence::InfluenceField;
 use crate::pipeline::compensation::Compensation;
 use crate::pipeline::compensation::creep::Creep;
 use crate::pipeline::contact::Decoder;
+use crate::pipeline::contact::field_error::FieldError;
 use crate::pipeline::contact::inverse::Inverse;
 use crate::pipeline::contact::uncertainty::Noise;
 use crate::quantity::CHANNELS;
 use crate::tables::recording::Recording;
 
-/// Prior standard deviations of the background that are tried, as a share of each map.
-const BACKGROUNDS: [f64; 5] = [1e-6, 0.004, 0.01, 0.025, 0.06];
+/// Prior standard deviations of the background that are tried beside none, as a share of each map: the larger ones where the
+/// larger of the small ones is best.
+const SMALL_BACKGROUNDS: [f64; 2] = [0.004, 0.01];
+const LARGE_BACKGROUNDS: [f64; 2] = [0.025, 0.06];
 /// Thresholds of play operators that are tried: a geometric sequence, then halved steps of its exponent around the best.
 const THRESHOLD_MIN_UV: f64 = 40.0;
 const THRESHOLD_RATIO: f64 = 1.6;
@@ -64,7 +70,8 @@ impl<'r> Counted<'r> {
             NOISE_TIMES_S.len()
                 + it.prior.thresholds_uv.iter().map(search).sum::<usize>()
                 + CREEP_TIMES_S.len()
-                + BACKGROUNDS.len()
+                + SMALL_BACKGROUNDS.len()
+                + LARGE_BACKGROUNDS.len()
         };
         Self { done: AtomicUsize::new(0), most: hypotheses.iter().map(of_one).sum(), report }
     }
@@ -81,6 +88,8 @@ impl<'r> Counted<'r> {
 pub struct Calibration {
     /// The pad's own field.
     pub field: InfluenceField,
+    /// How far it may be off.
+    pub field_error: FieldError,
     /// The channels' noise around it.
     pub noise: Noise,
     /// Each channel's gain.
@@ -101,6 +110,8 @@ pub struct Calibration {
     pub contacts: usize,
     /// How well the pad's field is known, at places all over the plate.
     pub map: Vec<Known>,
+    /// Errors of the rig that are a large part of what is open there.
+    pub open_by_rig: Vec<OpenByRig>,
 }
 
 /// Why there is no calibration.
@@ -155,23 +166,25 @@ impl std::error::Error for FitError {}
 impl Calibration {
     fn of(prepared: &Prepared, problem: &Problem<'_>, fit: &Fit, from_earlier: bool) -> Self {
         let Fit { settings, values, .. } = fit;
-        let field = problem.corrected(values);
         let hysteresis = Layout::hysteresis(values, &settings.thresholds_uv);
         let creep = Layout::creep(values, settings.creep_time_s);
         let contacts = problem.compensated(values, &hysteresis, &creep);
         // What the residuals do not show: drift of the zeros, hysteresis states, the field's posterior covariance.
         let noise = noise::with_zeros(fit.estimates.noise_model.noise, &fit.estimates.drift_uv, &hysteresis);
-        let covariances = problem.field_covariances(fit);
-        let noise = noise::with_field_covariance(&field, noise, &covariances);
-        let decoder = Inverse::new(field.clone(), noise);
-        let map = covariances.iter().filter_map(|it| Known::of(&decoder, it)).collect();
+        let decoder = field_error::decoder(problem, fit, noise);
         let (zero_uv, thermal_fit) = (prepared.zero_uv(fit), prepared.thermal(fit));
         let thermal = thermal_fit.map(|fit| fit.coefficients);
         let asked = Asked { zero_uv, gains_follow_temperature: prepared.tells_gains() };
         let (numbers, not_told_apart) = Number::all(&problem.layout, fit, &asked);
+        let map = Known::map(&decoder);
+        let open_by_rig = by_rig(&numbers, &map);
         Self {
-            noise: Noise { gain: noise::common_gain(&decoder, &contacts, problem.noise_prior()), ..noise },
-            field,
+            noise: Noise {
+                gain: noise::common_gain(&decoder, &contacts, problem.noise_prior()),
+                ..*decoder.noise()
+            },
+            field: decoder.field().clone(),
+            field_error: decoder.field_error().clone(),
             gain: std::array::from_fn(|channel| Layout::gain(values, channel)),
             numbers,
             not_told_apart,
@@ -180,13 +193,15 @@ impl Calibration {
             compensation: Compensation { zero_uv, thermal, creep, hysteresis },
             thermal: thermal_fit,
             contacts: problem.contacts(),
+            open_by_rig,
             map,
         }
     }
 
     /// The decoder of this pad.
     pub fn decoder(&self) -> Decoder {
-        Decoder::from(Inverse::new(self.field.clone(), self.noise)).compensated_by(self.compensation)
+        let inverse = Inverse::new(self.field.clone(), self.noise).with_field_error(self.field_error.clone());
+        Decoder::from(inverse).compensated_by(self.compensation)
     }
 }
 
@@ -294,14 +309,36 @@ fn calibrated<'b>(
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
     // The memory first, as a background would explain part of it; then the background's size with the memory's settings.
-    let plain = with_lasting_noise(&problem, prior, counted).ok_or(FitError::Senseless)?;
-    let plain = with_hysteresis(&problem, prior, plain, counted);
-    let plain = with_creep(&problem, plain, counted);
-    let problem = problem.with_background();
-    let best = most_probable(BACKGROUNDS.to_vec(), |background| {
-        counted.fitted(&problem, Settings { background, ..plain.settings }, Some(&plain))
-    });
-    Ok((problem, best.ok_or(FitError::Senseless)?))
+    let plain = settled(&problem, prior, counted).ok_or(FitError::Senseless)?;
+    Ok(with_background(problem, plain, counted))
+}
+
+/// The same with a background, if the evidence asks for one.
+fn with_background<'b>(problem: Problem<'b>, plain: Fit, counted: &Counted<'_>) -> (Problem<'b>, Fit) {
+    let smooth = problem.clone().with_background();
+    let tried = |background| counted.fitted(&smooth, Settings { background, ..plain.settings }, Some(&plain));
+    let [_, largest] = SMALL_BACKGROUNDS;
+    let small = most_probable(SMALL_BACKGROUNDS.to_vec(), tried);
+    let is_largest = small.as_ref().is_some_and(|it| it.settings.background == largest);
+    let large = if is_largest { most_probable(LARGE_BACKGROUNDS.to_vec(), tried) } else { None };
+    let evidence = |fit: &Fit| fit.log_evidence;
+    let found = small.into_iter().chain(large).max_by(|one, other| evidence(one).total_cmp(&evidence(other)));
+    match found.filter(|found| evidence(found) > evidence(&plain)) {
+        Some(found) => (smooth, found),
+        None => (problem, plain),
+    }
+}
+
+/// The fit without a background, whose memory and lasting noise are what the evidence asks for; `report` hears how far it is.
+pub(super) fn settled_reported(problem: &Problem<'_>, prior: &Prior, report: Report<'_>) -> Option<Fit> {
+    let hypothesis = Hypothesis { prior: prior.clone(), log_prior_odds: 0.0, from_earlier: false };
+    settled(problem, prior, &Counted::of(&[hypothesis], report))
+}
+
+fn settled(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) -> Option<Fit> {
+    let plain = with_lasting_noise(problem, prior, counted)?;
+    let plain = with_hysteresis(problem, prior, plain, counted);
+    Some(with_creep(problem, plain, counted))
 }
 
 /// The fit with nothing but what is known of pads of this kind. In play noise lasts from one contact to the next: as long as

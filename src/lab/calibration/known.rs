@@ -1,8 +1,9 @@
-//! How well a calibration knows the pad, place by place: what its field's posterior covariance does to a decoded contact.
+//! How well a calibration knows the pad, place by place: what its field's errors do to a decoded contact.
 
-use super::noise::{FieldCovariance, form, square};
+use super::noise::{contact, square};
+use super::plate::loads;
 use crate::pipeline::contact::inverse::Inverse;
-use crate::quantity::Contact;
+use crate::pipeline::contact::uncertainty::UNKNOWNS;
 
 /// A press, and how exactly it would be decoded by channels without noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,15 +17,17 @@ pub struct Known {
 }
 
 impl Known {
-    /// `None` where the field does not tell a contact.
-    pub(super) fn of(decoder: &Inverse, covariance: &FieldCovariance) -> Option<Self> {
-        let FieldCovariance { place_mm, force_n, uv2 } = covariance;
-        let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) = (place_mm.map(|mm| mm as f32), force_n.map(|n| n as f32));
-        let response = decoder.response(&Contact { x_mm, y_mm, fx_n, fy_n, fz_n })?;
-        // The diagonal of R Σ Rᵀ.
-        let [x, y, fx, fy, fz] = response.map(|row| form(&row, uv2, &row));
+    /// At loads all over the plate; without those where the field does not tell a contact.
+    pub(super) fn map(decoder: &Inverse) -> Vec<Self> {
+        let loads = loads(f64::from(decoder.field().radius_mm()));
+        loads.filter_map(|(place_mm, force_n)| Self::of(decoder, place_mm, &force_n)).collect()
+    }
+
+    fn of(decoder: &Inverse, place_mm: [f64; 2], force_n: &[f64; 3]) -> Option<Self> {
+        let by_field = decoder.expected(&contact(&place_mm, force_n))?.by_field;
+        let [x, y, fx, fy, fz]: [f64; UNKNOWNS] = std::array::from_fn(|k| by_field[k][k]);
         Some(Self {
-            place_mm: *place_mm,
+            place_mm,
             deviation_mm: (0.5 * (x + y)).sqrt(),
             force_share: ((fx + fy + fz) / 3.0).sqrt() / square(force_n).sqrt(),
         })

@@ -17,9 +17,12 @@
 //! Source: C. M. Bishop, Pattern Recognition and Machine Learning, section 3.5 (evidence); the model of a discrepancy
 //! beside physical parameters is M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425.
 
+pub mod change;
 pub mod contacts;
 pub mod earlier;
+mod field_error;
 pub mod fit;
+mod hyperparameters;
 mod jumps;
 pub mod known;
 mod lasting;
@@ -29,6 +32,8 @@ mod noise;
 mod noise_model;
 mod normal_equations;
 pub mod numbers;
+pub mod open;
+pub mod physical;
 mod plate;
 mod posterior;
 mod prepared;
@@ -37,5 +42,6 @@ mod prior_deviations;
 mod problem;
 pub mod regression;
 mod residual;
+pub mod rig;
 pub mod screening;
 pub mod thermal_fit;

@@ -3,17 +3,20 @@
 //! Channel k reads at a contact
 //!
 //! ```text
-//! sₖ = zₖ + S ((1 + αₖ ΔT) gₖ eₖ + Σₗ Xₖₗ eₗ) + Σᵢ wᵢₖ lᵢₖ + c uₖ,    eₖ = Σₐ Fₐ Eₖₐ(x, y)
-//! E = G + b ∇²G + Σⱼ pⱼ ∂G/∂pⱼ + background
+//! sₖ = zₖ + S ((1 + αₖ ΔT) gₖ eₖ + Σₗ Xₖₗ eₗ) + Σᵢ wᵢₖ lᵢₖ + c uₖ,    eₖ = (1 + A b) Σₐ Fₐ Eₖₐ(x, y)
+//! E = G + b ∇²G + Σⱼ wⱼ(qⱼ) ∂G/∂pⱼ + background
 //! ```
 //!
 //! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains, crosstalk X, shares w and lags l of the
-//! play operators, creep's share c and state u, blur b, and physical parameters p. G is the simulator's field.
+//! play operators, creep's share c and state u, blur b, and weights w of physical parameters q ([`physical`](super::physical)). G is the simulator's field. A is what ageing takes
+//! over the measurement, and b the part of it that was still to come at the contact ([`ageing`](super::ageing)): a decoder is
+//! of the pad as it was at last. Place and force of a written label are corrected by the rig's errors ρ ([`rig`](super::rig)).
 
 use super::contacts::{BACKGROUND_DEGREE, Knowledge, Lags, Maps, Measured, Place, TERMS, response};
+use super::physical::Physical;
 use super::prior::Prior;
 use super::prior_deviations::{Kind, PriorDeviations};
-use crate::pad::device::parameter::Parameter;
+use super::rig::{RIG_NUMBERS, RigPrior};
 use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
 use crate::pipeline::compensation::hysteresis::{Hysteresis, PLAYS, Play};
 use crate::pipeline::contact::uncertainty::UNKNOWNS;
@@ -35,15 +38,17 @@ const SHARE_DEVIATION: f64 = 0.05;
 const CREEP_DEVIATION: f64 = 0.01;
 /// Of a gain, per degree: adhesive and polyimide soften by a thousandth.
 const GAIN_SLOPE_DEVIATION: f64 = 1e-3;
+/// Of what ageing takes over a measurement.
+const AGEING_DEVIATION: f64 = 0.05;
 /// Largest magnitude of a play operator's share. A negative one corrects another.
 const SHARE_MAX: f64 = 0.25;
 
 /// The parameter vector θ, by kind: zeros, gains, crosstalk (into, from), hysteresis (shares of all channels; each channel's
-/// difference), creep, blur, temperature coefficients of the gains, ln S, blur of a weight, physical
+/// difference), creep, blur, temperature coefficients of the gains, ln S, blur of a weight, ageing, the rig, physical
 /// parameters, background (channel, force, polynomial).
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
-    pub(super) physical: Vec<Parameter>,
+    pub(super) physical: Vec<Physical>,
     /// Polynomials of the background for each channel and force: 0 or [`TERMS`].
     pub(super) terms: usize,
     /// Whether no contact was written down by a reference.
@@ -60,7 +65,9 @@ const BLUR: usize = CREEP + 1;
 const GAIN_SLOPES: usize = BLUR + 1;
 const LOG_SCALE: usize = GAIN_SLOPES + CHANNELS;
 const WEIGHT_BLUR: usize = LOG_SCALE + 1;
-const PHYSICAL: usize = WEIGHT_BLUR + 1;
+const AGEING: usize = WEIGHT_BLUR + 1;
+const RIG_AT: usize = AGEING + 1;
+const PHYSICAL: usize = RIG_AT + RIG_NUMBERS;
 
 impl Layout {
     pub(super) const fn size(&self) -> usize {
@@ -72,7 +79,7 @@ impl Layout {
     }
 
     /// The prior's mean m.
-    pub(super) fn prior_mean(&self, prior: &Prior) -> Vec<f64> {
+    pub(super) fn prior_mean(&self, prior: &Prior, rig: &RigPrior) -> Vec<f64> {
         let mut values = vec![0.0; self.size()];
         values[GAINS..CROSSTALKS].copy_from_slice(&prior.gain);
         for (play, shares) in prior.shares.iter().enumerate() {
@@ -83,12 +90,18 @@ impl Layout {
             }
         }
         values[CREEP] = prior.creep.share;
+        values[RIG_AT..PHYSICAL].copy_from_slice(&rig.mean);
         values
     }
 
     /// The diagonal P of the prior's precisions. `background` is the standard deviation of the field's smooth error, as a share of
     /// each map's root mean square `scale`; zero: no background.
-    pub(super) fn precisions(&self, background: f64, prior_deviations: &PriorDeviations) -> Vec<f64> {
+    pub(super) fn precisions(
+        &self,
+        background: f64,
+        prior_deviations: &PriorDeviations,
+        rig: &RigPrior,
+    ) -> Vec<f64> {
         let mut deviations = vec![0.0; self.size()];
         // P = 1/σ² with these σ, kind by kind.
         deviations[ZEROS..GAINS].fill(prior_deviations.of(Kind::Zero));
@@ -107,9 +120,14 @@ impl Layout {
             deviations[BLUR] = FINGER_BLUR_DEVIATION_MM2;
             (deviations[LOG_SCALE], deviations[WEIGHT_BLUR]) =
                 (LOG_SCALE_DEVIATION, WEIGHT_BLUR_DEVIATION_MM2);
+        } else {
+            // Only a reference tells what ageing takes, and only a rig has a rig's errors.
+            deviations[AGEING] = AGEING_DEVIATION;
+            let rig = deviations[RIG_AT..PHYSICAL].iter_mut().zip(rig.precision);
+            rig.for_each(|(deviation, precision)| *deviation = precision.sqrt().recip());
         }
         for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
-            *deviation = prior_deviations.of(Kind::of(*parameter));
+            *deviation = prior_deviations.of(parameter.kind());
         }
         // One share for each of the n + 1 polynomials of degree n.
         let shares: Vec<f64> =
@@ -124,7 +142,7 @@ impl Layout {
     /// Places of the parameters whose kinds share a prior standard deviation.
     pub(super) fn kinds(&self) -> impl Iterator<Item = (Kind, usize)> {
         let between = (0..CHANNELS * CHANNELS).filter(|index| index / CHANNELS != index % CHANNELS);
-        let physical = self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (Kind::of(*it), at));
+        let physical = self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (it.kind(), at));
         let own = (OWN_SHARES..CREEP).map(|at| (Kind::OwnHysteresis, at));
         let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, at));
         zeros.chain(between.map(|index| (Kind::Crosstalk, CROSSTALKS + index))).chain(own).chain(physical)
@@ -185,6 +203,31 @@ impl Layout {
         std::array::from_fn(|channel| values[ZEROS + channel])
     }
 
+    /// The rig's parameters ρ.
+    pub(super) fn rig(values: &[f64]) -> [f64; RIG_NUMBERS] {
+        std::array::from_fn(|at| values[RIG_AT + at])
+    }
+
+    /// Place of the first parameter of the rig.
+    pub(super) const fn first_of_rig() -> usize {
+        RIG_AT
+    }
+
+    /// Place of what ageing takes over the measurement.
+    pub(super) const fn ageing_at() -> usize {
+        AGEING
+    }
+
+    /// How much more a contact's load gave than it gives now: 1 + A b.
+    pub(super) fn younger_gain(values: &[f64], contact: &Measured) -> f64 {
+        1.0 + values[AGEING] * contact.to_come
+    }
+
+    /// The force that would give now what a contact's gave then.
+    fn force_now_n(values: &[f64], contact: &Measured) -> [f64; 3] {
+        contact.force_n.map(|n| Self::younger_gain(values, contact) * n)
+    }
+
     /// Place of the first channel's temperature coefficient of gain, 1/°C.
     pub(super) const fn first_gain_slope() -> usize {
         GAIN_SLOPES
@@ -229,6 +272,22 @@ impl Layout {
         [CREEP, BLUR]
     }
 
+    /// Places of what differs from play to play while the pad stays the same: the blur, the shares of all channels, creep.
+    pub(super) fn differing_at() -> [usize; 2 + PLAYS] {
+        std::array::from_fn(|at| [BLUR, CREEP].get(at).copied().unwrap_or(SHARES + at.saturating_sub(2)))
+    }
+
+    /// Prior standard deviations of these.
+    pub(super) fn differing_deviations() -> [f64; 2 + PLAYS] {
+        let first = [FINGER_BLUR_DEVIATION_MM2, CREEP_DEVIATION];
+        std::array::from_fn(|at| first.get(at).copied().unwrap_or(SHARE_DEVIATION))
+    }
+
+    /// The weights w of the field's derivatives by the physical parameters, and ∂w/∂q.
+    fn weights(&self, values: &[f64]) -> impl Iterator<Item = [f64; 2]> {
+        self.physical.iter().zip(&values[PHYSICAL..]).map(|(it, q)| it.weight(*q))
+    }
+
     /// The strain maps E at a place, µV/N before gains.
     fn strain_maps(&self, values: &[f64], scale: &Maps, place: &Place, knowledge: Knowledge) -> Maps {
         // E = G + b ∇²G …
@@ -236,10 +295,10 @@ impl Layout {
         for (map, laplacian) in maps.as_flattened_mut().iter_mut().zip(place.laplacian.as_flattened()) {
             *map += values[blur_at(knowledge)] * laplacian;
         }
-        // … + Σⱼ pⱼ ∂G/∂pⱼ …
-        for (value, slope) in values[PHYSICAL..].iter().zip(&place.sensitivities) {
+        // … + Σⱼ wⱼ ∂G/∂pⱼ …
+        for ([weight, _], slope) in self.weights(values).zip(&place.sensitivities) {
             for (map, slope) in maps.as_flattened_mut().iter_mut().zip(slope.as_flattened()) {
-                *map += value * slope;
+                *map += weight * slope;
             }
         }
         // … + scale Σₜ βₜ Uₜ(x, y), the background by its polynomials' coefficients β.
@@ -267,16 +326,16 @@ impl Layout {
     /// The channels' signals under a contact's load alone: without zeros, hysteresis and creep.
     pub(super) fn load_uv(&self, values: &[f64], scale: &Maps, contact: &Measured) -> [f64; CHANNELS] {
         self.maps(values, scale, &contact.place, contact.knowledge)
-            .map(|map| response(&map, &contact.force_n))
+            .map(|map| response(&map, &Self::force_now_n(values, contact)))
     }
 
     /// ∇E along x or y at a place, µV/N per mm. The blur is left out.
     fn strain_gradient(&self, values: &[f64], scale: &Maps, place: &Place, axis: usize) -> Maps {
-        // ∇G + Σⱼ pⱼ ∇∂G/∂pⱼ + scale Σₜ βₜ ∇Uₜ(x, y).
+        // ∇G + Σⱼ wⱼ ∇∂G/∂pⱼ + scale Σₜ βₜ ∇Uₜ(x, y).
         let mut maps = place.gradient[axis];
-        for (value, slope) in values[PHYSICAL..].iter().zip(&place.sensitivity_gradients) {
+        for ([weight, _], slope) in self.weights(values).zip(&place.sensitivity_gradients) {
             for (map, slope) in maps.as_flattened_mut().iter_mut().zip(slope[axis].as_flattened()) {
-                *map += value * slope;
+                *map += weight * slope;
             }
         }
         let background = values[self.background(0, 0)..].chunks_exact(TERMS);
@@ -297,17 +356,18 @@ impl Layout {
         contact: &Measured,
     ) -> [[f64; UNKNOWNS]; CHANNELS] {
         let maps = self.maps(values, scale, &contact.place, contact.knowledge);
+        let (gain, force_n) = (Self::younger_gain(values, contact), Self::force_now_n(values, contact));
         // By the place S (gₖ Σₐ Fₐ ∇Eₖₐ + Σₗ Xₖₗ Σₐ Fₐ ∇Eₗₐ); by the force the maps.
         let of_strains = [0, 1].map(|axis| {
             let gradient = self.strain_gradient(values, scale, &contact.place, axis);
-            gradient.map(|map| response(&map, &contact.force_n))
+            gradient.map(|map| response(&map, &force_n))
         });
         let by_place = |channel: usize, axis: usize| {
             let factors = Self::mixture(values, channel);
             factors.iter().zip(&of_strains[axis]).map(|(factor, slope)| factor * slope).sum::<f64>()
         };
         std::array::from_fn(|channel| {
-            let [fx, fy, fz] = maps[channel];
+            let [fx, fy, fz] = maps[channel].map(|uv_per_n| gain * uv_per_n);
             [by_place(channel, 0), by_place(channel, 1), fx, fy, fz]
         })
     }
@@ -320,9 +380,12 @@ impl Layout {
         contact: &Measured,
         mut each: impl FnMut(usize, f64, &[f64]),
     ) {
-        let Measured { knowledge, place, force_n, lags, crept_uv, above_c, .. } = contact;
+        let Measured { knowledge, place, lags, crept_uv, above_c, to_come, .. } = contact;
+        let younger_gain = Self::younger_gain(values, contact);
+        let force_n = &Self::force_now_n(values, contact);
         let strain_maps = self.strain_maps(values, scale, place, *knowledge);
         let strains_uv = strain_maps.map(|map| response(&map, force_n));
+        let weights: Vec<[f64; 2]> = self.weights(values).collect();
         let mut derivatives = vec![0.0; self.size()];
         for channel in 0..CHANNELS {
             derivatives.fill(0.0);
@@ -342,10 +405,13 @@ impl Layout {
                 .copy_from_slice(&strains_uv.map(|uv| factor * uv));
             derivatives[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
             derivatives[LOG_SCALE] = loaded_uv;
-            // ∂/∂b = h F·∇²Gₖ, ∂/∂pⱼ = h F·∂Gₖ/∂pⱼ, ∂/∂βₖₐₜ = h Fₐ scaleₖₐ Uₜ.
+            // ∂/∂A = b (h eₖ + S Σₗ Xₖₗ eₗ)/(1 + A b).
+            derivatives[AGEING] = to_come * loaded_uv / younger_gain;
+            // ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ, ∂/∂βₖₐₜ = h Fₐ scaleₖₐ Uₜ.
             derivatives[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
-            for (slope, maps) in derivatives[PHYSICAL..].iter_mut().zip(&place.sensitivities) {
-                *slope = gain * response(&maps[channel], force_n);
+            let physical = weights.iter().zip(&place.sensitivities);
+            for (slope, ([_, by_parameter], maps)) in derivatives[PHYSICAL..].iter_mut().zip(physical) {
+                *slope = gain * by_parameter * response(&maps[channel], force_n);
             }
             for axis in 0..3 {
                 let factor = gain * scale[channel][axis] * force_n[axis];

@@ -6,8 +6,8 @@
 use crate::numeric::linear::Factor;
 use crate::pad::influence::InfluenceField;
 use crate::pipeline::compensation::hysteresis::Hysteresis;
-use crate::pipeline::contact::inverse::Inverse;
-use crate::pipeline::contact::uncertainty::Noise;
+use crate::pipeline::contact::inverse::{Expected, Inverse};
+use crate::pipeline::contact::uncertainty::{Covariance, Noise, UNKNOWNS};
 use crate::quantity::{CHANNELS, Contact, Strain};
 
 /// Readings with the standard deviations below that the prior of the noise counts as.
@@ -116,9 +116,8 @@ pub(super) fn with_zeros(noise: Noise, drift_uv: &[f64; CHANNELS], hysteresis: &
     Noise { additive_uv: std::array::from_fn(|k| variance(k).sqrt()), ..noise }
 }
 
-/// The noise with the field's posterior covariance Σ, as means over these contacts: of each channel per newton, √(Σₖₖ/F²), and of
-/// the decoded contact, R Σ Rᵀ with R = ∂(x, y, Fx, Fy, Fz)/∂s and forces as shares of F.
-pub(super) fn with_field_covariance(
+/// The noise with the field's posterior covariance Σ, as a mean over these contacts: of each channel per newton, √(Σₖₖ/F²).
+pub(super) fn with_field_deviations(
     field: &InfluenceField,
     noise: Noise,
     field_covariances: &[FieldCovariance],
@@ -131,12 +130,16 @@ pub(super) fn with_field_covariance(
         let force_n2 = square(&covariance.force_n) * count;
         per_n2.iter_mut().zip(own_uv2).for_each(|(sum, uv2)| *sum += uv2.max(0.0) / force_n2);
     }
-    let noise = Noise { field_uv_per_n: per_n2.map(f64::sqrt), ..noise };
-    let decoder = Inverse::new(field.clone(), noise);
-    let mut by_field = noise.by_field;
+    Noise { field_uv_per_n: per_n2.map(f64::sqrt), ..noise }
+}
+
+/// What these covariances Σ of the channels do to decoded contacts, as a mean: R Σ Rᵀ with R = ∂(x, y, Fx, Fy, Fz)/∂s and forces as
+/// shares of the whole force.
+pub(super) fn mean_by_field(decoder: &Inverse, field_covariances: &[FieldCovariance]) -> Covariance {
+    let count = field_covariances.len().max(1) as f64;
+    let mut by_field = [[0.0; UNKNOWNS]; UNKNOWNS];
     for FieldCovariance { place_mm, force_n, uv2 } in field_covariances {
-        let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) = (place_mm.map(|mm| mm as f32), force_n.map(|n| n as f32));
-        let Some(response) = decoder.response(&Contact { x_mm, y_mm, fx_n, fy_n, fz_n }) else { continue };
+        let Some(Expected { response, .. }) = decoder.expected(&contact(place_mm, force_n)) else { continue };
         // Entry (i, j) of R Σ Rᵀ, with forces as shares of F.
         let whole_n = square(force_n).sqrt();
         let scale = [1.0, 1.0, whole_n, whole_n, whole_n];
@@ -146,7 +149,13 @@ pub(super) fn with_field_covariance(
             }
         }
     }
-    Noise { by_field, ..noise }
+    by_field
+}
+
+/// As a decoder has it.
+pub(super) fn contact([x_mm, y_mm]: &[f64; 2], [fx_n, fy_n, fz_n]: &[f64; 3]) -> Contact {
+    let [x_mm, y_mm, fx_n, fy_n, fz_n] = [x_mm, y_mm, fx_n, fy_n, fz_n].map(|number| *number as f32);
+    Contact { x_mm, y_mm, fx_n, fy_n, fz_n }
 }
 
 /// The channels' variances at a contact, without that of a factor that all of them share: the diagonal of P Σ Pᵀ with

@@ -8,7 +8,7 @@
 //! their covariance V and A = ∂f/∂θ; the second ones over single numbers with a variance σ² and derivatives a.
 
 use super::residual::MarginalPrecision;
-use crate::numeric::linear::{LargeFactor, Symmetric, dot};
+use crate::numeric::linear::{LargeFactor, Reduced, Symmetric, dot};
 use crate::quantity::CHANNELS;
 
 /// So many vectors are collected before their squares go into H: it is larger than a processor's cache.
@@ -89,5 +89,16 @@ impl NormalEquations {
         self.add_collected();
         let factor = self.curvature.factorised()?;
         Some(Step { delta: factor.solve(&self.gradient), factor })
+    }
+
+    /// How many unknowns there are.
+    pub(super) const fn size(&self) -> usize {
+        self.gradient.len()
+    }
+
+    /// The equations of all but the first unknowns, when these are free; `None` where H of the first ones is not positive definite.
+    pub(super) fn reduced(mut self, first: usize) -> Option<Reduced> {
+        self.add_collected();
+        self.curvature.reduced(&self.gradient, first)
     }
 }

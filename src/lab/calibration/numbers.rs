@@ -3,10 +3,11 @@
 //! They serve the decoder. None of them is a cause: what no parameter stands for is taken up by those that there are.
 
 use super::model::Layout;
+use super::physical::Physical;
 use super::problem::Fit;
+use super::rig::{RIG, RigNumber, RigPrior};
 use crate::lab::diagnosis::target::Target;
 use crate::numeric::linear::dot;
-use crate::pad::device::parameter::Parameter;
 use crate::pipeline::compensation::hysteresis::PLAYS;
 use crate::quantity::CHANNELS;
 
@@ -40,8 +41,12 @@ pub enum Quantity {
     GainSlope,
     /// What a channel reads untouched, µV.
     Zero,
-    /// The change of a module's pose or stiffness.
-    Module(Parameter),
+    /// A module's pose, as a change; a stiffness; the plate's thickness.
+    Physical(Physical),
+    /// What ageing took over the measurement, as a share of what there was before.
+    Ageing,
+    /// An error of the rig.
+    Rig(&'static RigNumber),
 }
 
 /// Who tells a number.
@@ -101,7 +106,9 @@ impl Quantity {
             Self::Blur => "blur_mm2",
             Self::GainSlope => "gain_per_c",
             Self::Zero => "zero_uv",
-            Self::Module(parameter) => parameter.name(),
+            Self::Physical(it) => it.parameter.name(),
+            Self::Ageing => "ageing.share_at_end",
+            Self::Rig(number) => number.name,
         }
     }
 
@@ -115,13 +122,34 @@ impl Quantity {
             Self::Blur => Some("contact_size"),
             Self::GainSlope => Some("thermal_gain"),
             Self::Zero => Some("channel_offset"),
-            Self::Module(_) => match self.key() {
+            Self::Ageing => Some("ageing"),
+            Self::Rig(number) => Some(number.effect),
+            Self::Physical(_) => match self.key() {
                 "radial_mm" | "tangential_mm" => Some("module_displaced"),
                 "rotation_deg" => Some("module_rotated"),
                 "tilt_tangential_deg" | "tilt_radial_deg" => Some("module_tilted"),
                 "frame_e_factor" => Some("module_stiffness"),
+                "thickness_mm" => Some("plate_stiffness"),
                 _ => None,
             },
+        }
+    }
+
+    /// What it is of a pad, or a rig, that does not differ.
+    fn expected(self) -> f64 {
+        match self {
+            Self::Gain | Self::Rig(RigNumber { is_factor: true, .. }) => 1.0,
+            Self::Physical(it) => it.value(0.0),
+            _ => 0.0,
+        }
+    }
+
+    /// What a deviation of the parameters is in its unit, at this value.
+    const fn unit(self, value: f64) -> f64 {
+        match self {
+            Self::Physical(it) if it.is_factor() => value,
+            Self::Rig(RigNumber { is_factor: true, .. }) => value,
+            _ => 1.0,
         }
     }
 
@@ -133,7 +161,9 @@ impl Quantity {
             Self::GainSlope => "gain by temperature",
             Self::Zero => "zero",
             Self::Gain | Self::Crosstalk | Self::Creep => self.name(),
-            Self::Module(_) => match self.key() {
+            Self::Ageing => "loss by ageing",
+            Self::Rig(number) => number.words,
+            Self::Physical(_) => match self.key() {
                 "radial_mm" => "displacement outwards",
                 "tangential_mm" => "displacement counter-clockwise",
                 "rotation_deg" => "turn",
@@ -142,10 +172,17 @@ impl Quantity {
                 "frame_e_factor" => "frame stiffness",
                 "bond_e_factor" => "bond stiffness",
                 "film_e_factor" => "film stiffness",
+                "thickness_mm" => "thickness",
+                "e_mpa" => return format!("modulus of {}", self.material()),
                 other => other,
             },
         };
         what.to_owned()
+    }
+
+    /// The material of `material.…`.
+    fn material(self) -> &'static str {
+        self.name().split('.').nth(1).unwrap_or_default()
     }
 
     /// The key of a module's number in the device file.
@@ -163,18 +200,24 @@ impl Number {
 
     /// All numbers of a fit, and the pairs that are not told apart.
     pub(super) fn all(layout: &Layout, fit: &Fit, asked: &Asked) -> (Vec<Self>, Vec<Pair>) {
-        let precisions = layout.precisions(fit.settings.background, &fit.estimates.prior_deviations);
+        let precisions =
+            layout.precisions(fit.settings.background, &fit.estimates.prior_deviations, &RigPrior::new());
         let combined = combined(layout, fit, asked);
         // A triangular solve for each, some 100 in all: nothing beside one step of the fit.
         let halves: Vec<Vec<f64>> = combined.iter().map(|(.., sum)| fit.halved(sum)).collect();
-        let number = |((quantity, target, sum), half): (&Combined, &Vec<f64>)| Self {
-            quantity: *quantity,
-            target: *target,
-            value: value(*quantity, *target, sum, fit, asked),
-            expected: if *quantity == Quantity::Gain { 1.0 } else { 0.0 },
-            deviation: dot(half, half).sqrt(),
+        let number = |((quantity, target, sum), half): (&Combined, &Vec<f64>)| {
+            let value = value(*quantity, *target, sum, fit, asked);
+            let unit = quantity.unit(value);
             // Var cᵀθ = Σ c²/P, as the prior's parameters are independent.
-            prior_deviation: sum.iter().map(|(at, c)| c * c / precisions[*at]).sum::<f64>().sqrt(),
+            let prior_variance: f64 = sum.iter().map(|(at, c)| c * c / precisions[*at]).sum();
+            Self {
+                quantity: *quantity,
+                target: *target,
+                value,
+                expected: quantity.expected(),
+                deviation: unit * dot(half, half).sqrt(),
+                prior_deviation: unit * prior_variance.sqrt(),
+            }
         };
         let numbers: Vec<Self> = combined.iter().zip(&halves).map(number).collect();
         let pairs = pairs(&numbers, &halves);
@@ -191,8 +234,17 @@ fn value(quantity: Quantity, target: Target, sum: &[(usize, f64)], fit: &Fit, as
     match (quantity, target, asked.zero_uv) {
         (Quantity::Zero, Target::Channel(channel), Some(zero_uv)) => zero_uv[channel],
         (Quantity::Gain, Target::Channel(channel), _) => Layout::gain(&fit.values, channel),
-        _ => sum.iter().map(|(at, factor)| factor * fit.values[*at]).sum(),
+        (Quantity::Physical(it), ..) => it.value(sum_of(sum, fit)),
+        (Quantity::Rig(RigNumber { is_factor: true, .. }), ..) => libm::exp(sum_of(sum, fit)),
+        // Of 1 + A nothing but 1 is left: A/(1 + A) was lost.
+        (Quantity::Ageing, ..) => sum_of(sum, fit) / (1.0 + sum_of(sum, fit)),
+        _ => sum_of(sum, fit),
     }
+}
+
+/// cᵀθ.
+fn sum_of(sum: &[(usize, f64)], fit: &Fit) -> f64 {
+    sum.iter().map(|(at, factor)| factor * fit.values[*at]).sum()
 }
 
 /// What the numbers are of, and of which parameters.
@@ -209,9 +261,9 @@ fn combined(layout: &Layout, fit: &Fit, asked: &Asked) -> Vec<Combined> {
         let target = Target::Channels { into, from };
         (Quantity::Crosstalk, target, vec![(Layout::crosstalk_at(into, from), 1.0)])
     });
-    let physical = layout.physical.iter().zip(Layout::first_physical()..).map(|(parameter, at)| {
-        let target = parameter.module().map_or(Target::Pad, Target::Module);
-        (Quantity::Module(*parameter), target, vec![(at, 1.0)])
+    let physical = layout.physical.iter().zip(Layout::first_physical()..).map(|(it, at)| {
+        let target = it.parameter.module().map_or(Target::Pad, Target::Module);
+        (Quantity::Physical(*it), target, vec![(at, 1.0)])
     });
     let [creep, blur] = Layout::creep_and_blur_at();
     let creep = (fit.settings.creep_time_s > 0.0).then(|| (Quantity::Creep, Target::Pad, vec![(creep, 1.0)]));
@@ -222,9 +274,21 @@ fn combined(layout: &Layout, fit: &Fit, asked: &Asked) -> Vec<Combined> {
         .chain((0..PLAYS).flat_map(|play| frictions(play, fit.settings.thresholds_uv[play])))
         .chain(creep)
         .chain([(Quantity::Blur, Target::Rig, vec![(blur, 1.0)])])
+        .chain(by_reference(layout))
         .chain(channels(Quantity::GainSlope, asked.gains_follow_temperature, slope))
         .chain(channels(Quantity::Zero, asked.zero_uv.is_some(), Layout::zero_at))
         .collect()
+}
+
+/// What only a reference tells: ageing, and its own errors.
+fn by_reference(layout: &Layout) -> Vec<Combined> {
+    if layout.is_play {
+        return Vec::new();
+    }
+    let ageing = (Quantity::Ageing, Target::Pad, vec![(Layout::ageing_at(), 1.0)]);
+    let rig = RIG.iter().zip(Layout::first_of_rig()..);
+    let rig = rig.map(|(number, at)| (Quantity::Rig(number), Target::Rig, vec![(at, 1.0)]));
+    std::iter::once(ageing).chain(rig).collect()
 }
 
 /// The shares of a play operator: the mean over the channels, then each channel's.
@@ -263,6 +327,9 @@ fn pairs(numbers: &[Number], halves: &[Vec<f64>]) -> Vec<Pair> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::calibration::physical::free;
+    use crate::pad::device::Device;
+    use crate::pad::field::PadField;
 
     fn number(deviation: f64, prior_deviation: f64) -> Number {
         let (quantity, target) = (Quantity::Gain, Target::Channel(0));
@@ -308,7 +375,10 @@ mod tests {
 
     #[test]
     fn each_number_has_a_name_and_only_what_a_diagnosis_knows_has_an_effect() {
-        let parameter = |name: &str| Quantity::Module(name.parse().unwrap());
+        let (device, field) = (Device::nominal(), PadField::nominal());
+        let (physical, _) = free(&field, &device);
+        let parameter =
+            |name: &str| Quantity::Physical(*physical.iter().find(|it| it.parameter.name() == name).unwrap());
         let effect = |name: &str| parameter(name).effect();
         assert_eq!(effect("module.1.tangential_mm"), Some("module_displaced"));
         assert_eq!(effect("module.2.frame_e_factor"), Some("module_stiffness"));

@@ -3,7 +3,7 @@
 use super::contacts::Maps;
 use super::earlier::Earlier;
 use super::noise::NoisePrior;
-use super::plate::places;
+use super::plate::{PLACES, places};
 use crate::pad::field::PadField;
 use crate::pad::influence::{InfluenceField, MAPS};
 use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
@@ -88,7 +88,7 @@ fn gains_at(field: &InfluenceField, [x_mm, y_mm]: [f64; 2]) -> Maps {
 /// gₖ = Σ G·G′/Σ G·G, with the sums over places and forces.
 fn gains(simulated: &InfluenceField, earlier: &InfluenceField) -> [f64; CHANNELS] {
     let mut sums = [[0.0; 2]; CHANNELS];
-    for place_mm in places(f64::from(simulated.radius_mm())) {
+    for place_mm in places(f64::from(simulated.radius_mm()), PLACES) {
         let (one, other) = (gains_at(simulated, place_mm), gains_at(earlier, place_mm));
         for ((sums, one), other) in sums.iter_mut().zip(&one).zip(&other) {
             for (one, other) in one.iter().zip(other) {
@@ -129,7 +129,7 @@ mod tests {
         let prior = Prior::centred_on(&field, &Earlier::of(&decoder).unwrap());
         assert!(prior.gain.iter().zip(gain).all(|(found, gain)| (found / gain - 1.0).abs() < 1e-3));
         assert!((prior.thresholds_uv[0] - 700.0).abs() < 1.0 && prior.thresholds_uv[1] == 0.0);
-        for place_mm in places(reach_mm) {
+        for place_mm in places(reach_mm, PLACES) {
             let (found, wanted) =
                 (gains_at(&prior.field.signals, place_mm), gains_at(&field.signals, place_mm));
             let pairs = found.as_flattened().iter().zip(wanted.as_flattened());

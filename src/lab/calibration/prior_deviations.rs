@@ -3,9 +3,6 @@
 //! They begin with what hands and parts are known to do. A pad that was built better shows it, as its parameters lie closer to
 //! the prior's mean: the deviations are found by the evidence (D. J. C. MacKay, Neural Computation 4 (1992) 415).
 
-use crate::pad::device::parameter::Parameter;
-use crate::pad::device::unit::Unit;
-
 /// Kinds of parameters that share a prior standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -13,8 +10,12 @@ pub(super) enum Kind {
     Shift,
     /// Of a module, degrees.
     Turn,
-    /// Of a module, as a share.
+    /// Of a module, a factor's logarithm.
     Stiffness,
+    /// Of the plate, a factor's logarithm.
+    PlateThickness,
+    /// Of a material of all modules, a factor's logarithm.
+    CommonModulus,
     /// Of another channel's microvolts.
     Crosstalk,
     /// Remainder of a zero that was taken off, µV.
@@ -23,11 +24,14 @@ pub(super) enum Kind {
     OwnHysteresis,
 }
 
-const KINDS: usize = 6;
+const KINDS: usize = 8;
 /// Standard deviations that the search begins with. Modules are assembled by hand; stiffness is that of a modulus.
 const SHIFT_MM: f64 = 0.3;
 const TURN_DEG: f64 = 2.0;
 const STIFFNESS: f64 = 0.3;
+/// Sheets are rolled to some percent, and another sheet may have been at hand; glues and laminates cure as they do.
+const PLATE_THICKNESS: f64 = 0.08;
+const COMMON_MODULUS: f64 = 0.2;
 const CROSSTALK: f64 = 0.02;
 const ZERO_UV: f64 = 20.0;
 /// Of unbalanced bridges: some tenths of a percent of a gauge.
@@ -44,17 +48,6 @@ pub(super) struct PriorDeviations {
     initial: [f64; KINDS],
 }
 
-impl Kind {
-    /// The kind of a module's parameter.
-    pub(super) fn of(parameter: Parameter) -> Self {
-        match parameter.unit() {
-            Unit::Millimetre => Self::Shift,
-            Unit::Degree => Self::Turn,
-            _ => Self::Stiffness,
-        }
-    }
-}
-
 impl PriorDeviations {
     /// At the beginning, where zeros are taken off.
     pub(super) const TARED: Self = Self::with_zeros(ZERO_UV);
@@ -62,7 +55,16 @@ impl PriorDeviations {
     pub(super) const RAW: Self = Self::with_zeros(RAW_ZERO_UV);
 
     const fn with_zeros(zero_uv: f64) -> Self {
-        let initial = [SHIFT_MM, TURN_DEG, STIFFNESS, CROSSTALK, zero_uv, HYSTERESIS_OWN];
+        let initial = [
+            SHIFT_MM,
+            TURN_DEG,
+            STIFFNESS,
+            PLATE_THICKNESS,
+            COMMON_MODULUS,
+            CROSSTALK,
+            zero_uv,
+            HYSTERESIS_OWN,
+        ];
         Self { deviations: initial, initial }
     }
 

@@ -11,22 +11,26 @@
 use std::collections::BTreeMap;
 
 use super::contacts::{Fitted, Knowledge, Maps, Measured, Place, TERMS};
-use super::jumps::{DRIFT_UV, Jump, Jumps};
+use super::hyperparameters::{Estimates, Settings};
+use super::jumps::{Jump, Jumps};
 use super::lasting::Filter;
 use super::model::Layout;
 use super::noise::NoisePrior;
 use super::noise_model::NoiseModel;
 use super::normal_equations::{NormalEquations, Step};
+use super::physical::free;
 use super::plate::scale;
 use super::prior::Prior;
-use super::prior_deviations::PriorDeviations;
 use super::residual::Residual;
+use super::rig::RigPrior;
+use crate::lab::ageing;
 use crate::numeric::linear::{LargeFactor, dot};
 use crate::pad::device::Device;
 use crate::pad::field::Sensitivity;
 use crate::pipeline::compensation::hysteresis::PLAYS;
 use crate::pipeline::contact::uncertainty::UNKNOWNS;
 use crate::quantity::CHANNELS;
+use crate::tables::measured::Row;
 use crate::tables::recording::Recording;
 
 /// Most Gauss-Newton steps of a fit; the channels are nearly linear in the parameters.
@@ -37,6 +41,7 @@ const LOG_EVIDENCE_TOLERANCE: f64 = 0.3;
 const RELOCATED_MM: f64 = 0.1;
 /// Least part of the readings that counts as degrees of freedom, however many parameters are fitted.
 const DEGREES_OF_FREEDOM_RATIO_MIN: f64 = 0.05;
+
 /// What is fitted, and to what.
 #[derive(Clone)]
 pub(super) struct Problem<'f> {
@@ -53,28 +58,6 @@ pub(super) struct Problem<'f> {
     pub(super) scale: Maps,
     pub(super) plate_mm: f64,
     pub(super) reach_mm: f64,
-}
-
-/// Hyperparameters that stay fixed while the parameters are fitted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Settings {
-    /// Prior standard deviation of the background, as a share of each map's root mean square; zero: none.
-    pub(super) background: f64,
-    /// Thresholds of the play operators, in strains before gains; an operator with zero does nothing.
-    pub(super) thresholds_uv: [f64; PLAYS],
-    /// Relaxation time of creep; zero: no creep.
-    pub(super) creep_time_s: f64,
-    /// Time constant of relative noise; zero: it is drawn anew for each contact.
-    pub(super) noise_time_s: f64,
-}
-
-/// Hyperparameters that are estimated anew at each step.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Estimates {
-    pub(super) noise_model: NoiseModel,
-    pub(super) prior_deviations: PriorDeviations,
-    /// Standard deviation of each zero's drift from one reading to the next.
-    pub(super) drift_uv: [f64; CHANNELS],
 }
 
 /// The posterior for some settings.
@@ -119,16 +102,17 @@ impl<'f> Problem<'f> {
         prior: &'f Prior,
     ) -> Self {
         let field = &prior.field;
-        let is_free = |it: &&Sensitivity| it.parameter.module().is_some();
-        let sensitivities: Vec<&Sensitivity> = field.sensitivities.iter().filter(is_free).collect();
+        let (physical, sensitivities) = free(field, device);
         let plate_mm = device.plate.radius_mm();
+        let rows = &recording.tared().rows;
+        let to_come = to_come(rows);
         let measured = |Fitted { row, knowledge }: &Fitted| {
-            let known = (recording.tared().rows.get(*row)?, *knowledge);
-            Some((*row, Measured::of(field, &sensitivities, plate_mm, known, reference_c)?))
+            let known = (rows.as_slice(), *row, *knowledge);
+            let contact = Measured::of(field, &sensitivities, plate_mm, known, reference_c)?;
+            Some((*row, Measured { to_come: to_come[*row], ..contact }))
         };
         let contacts = fitted.iter().filter_map(measured).collect();
         let is_play = fitted.iter().all(|it| it.knowledge != Knowledge::Written);
-        let physical = sensitivities.iter().map(|it| it.parameter).collect();
         let layout = Layout { physical, terms: 0, is_play };
         Self {
             jumps: Jumps::of(recording),
@@ -163,22 +147,26 @@ impl<'f> Problem<'f> {
     /// The maximum of the posterior. The search begins at `start`, or at the prior's mean. `None` where the curvature is not
     /// positive definite or a parameter not finite.
     pub(super) fn fitted(mut self, settings: Settings, start: Option<&Fit>) -> Option<Fit> {
-        let mean = self.layout.prior_mean(self.prior);
-        let mut values = mean.clone();
-        let mut estimates = self.first_estimates(settings.noise_time_s);
+        let mut estimates =
+            Estimates::first(self.prior.noise, settings.noise_time_s, self.recording.is_tared());
+        let mut values = self.layout.prior_mean(self.prior, &estimates.rig);
         if let Some(start) = start {
             values.iter_mut().zip(&start.values).for_each(|(value, start)| *value = *start);
             estimates = start.estimates;
             estimates.noise_model.lasting_s = settings.noise_time_s;
+            self.relabel(&values);
             self.locate(&start.located);
         }
         let mut found: Option<Fit> = None;
         for _ in 0..STEPS_MAX {
             // One Gauss-Newton step with the present hyperparameters.
-            let precisions = self.layout.precisions(settings.background, &estimates.prior_deviations);
+            let mean = self.layout.prior_mean(self.prior, &estimates.rig);
+            let precisions =
+                self.layout.precisions(settings.background, &estimates.prior_deviations, &estimates.rig);
             self.follow_load_path(&values, &settings);
             let Step { delta, factor } = self.step(&values, &estimates, &mean, &precisions)?;
             values.iter_mut().zip(&delta).for_each(|(value, delta)| *value += delta);
+            self.relabel(&values);
             self.relocate(&values, &estimates.noise_model);
             let residuals = self.residuals(&values);
             let variances = factor.inverse_diagonal();
@@ -199,6 +187,7 @@ impl<'f> Problem<'f> {
                 prior_deviations: estimates.prior_deviations.reestimated(differences),
                 noise_model: estimates.noise_model.reestimated(&residuals, freedom_ratio),
                 drift_uv: self.jumps.drift_uv(&self.layout, &values),
+                rig: self.rig_prior(&estimates.rig, &values, &variances),
             };
             if gain < LOG_EVIDENCE_TOLERANCE {
                 break;
@@ -207,17 +196,17 @@ impl<'f> Problem<'f> {
         found.filter(|fit| fit.values.iter().all(|value| value.is_finite()))
     }
 
-    fn first_estimates(&self, noise_time_s: f64) -> Estimates {
-        let is_tared = self.recording.is_tared();
-        Estimates {
-            noise_model: NoiseModel::prior(self.prior.noise, noise_time_s),
-            prior_deviations: if is_tared { PriorDeviations::TARED } else { PriorDeviations::RAW },
-            drift_uv: [DRIFT_UV; CHANNELS],
+    /// The prior of the rig's errors, by the present posterior; play has no rig.
+    fn rig_prior(&self, present: &RigPrior, values: &[f64], variances: &[f64]) -> RigPrior {
+        if self.layout.is_play {
+            *present
+        } else {
+            present.matched(&Layout::rig(values), &variances[Layout::first_of_rig()..])
         }
     }
 
     /// States of the play operators and of creep along the load path, by these parameters.
-    fn follow_load_path(&mut self, values: &[f64], settings: &Settings) {
+    pub(super) fn follow_load_path(&mut self, values: &[f64], settings: &Settings) {
         if settings.thresholds_uv == [0.0; PLAYS] && settings.creep_time_s == 0.0 {
             return;
         }
@@ -260,12 +249,26 @@ impl<'f> Problem<'f> {
 
     /// The Gauss-Newton step from θ (`values`).
     fn step(&self, values: &[f64], estimates: &Estimates, mean: &[f64], precisions: &[f64]) -> Option<Step> {
-        let mut equations = NormalEquations::of_prior(precisions, mean, values);
+        let prior = NormalEquations::of_prior(precisions, mean, values);
+        self.equations(prior, values, estimates, |_, _, _| ())?.solved()
+    }
+
+    /// What all contacts and jumps add to the equations of a prior about θ. Where these have more unknowns than θ, `widen` adds the
+    /// derivatives by them to those of each contact, which it is told by its place.
+    pub(super) fn equations(
+        &self,
+        mut equations: NormalEquations,
+        values: &[f64],
+        estimates: &Estimates,
+        widen: impl Fn(usize, &(usize, Measured), &mut [Vec<f64>]),
+    ) -> Option<NormalEquations> {
         let wander = estimates.noise_model.wander();
-        let mut filter = wander.as_ref().map(|wander| Filter::new(wander, values.len()));
+        let mut filter = wander.as_ref().map(|wander| Filter::new(wander, equations.size()));
         let mut previous_s = None;
-        for (_, contact) in &self.contacts {
-            let (residual, rows) = self.linearised(values, contact);
+        for (at, known) in self.contacts.iter().enumerate() {
+            let (_, contact) = known;
+            let (residual, mut rows) = self.linearised(values, contact);
+            widen(at, known, &mut rows);
             let precision = estimates.noise_model.marginal_precision(&residual)?;
             if let Some(filter) = &mut filter {
                 if let Some(previous_s) = previous_s.replace(contact.at_s) {
@@ -286,7 +289,14 @@ impl<'f> Problem<'f> {
                 equations.add(residual_uv, variance, derivatives);
             },
         );
-        equations.solved()
+        Some(equations)
+    }
+
+    /// Mean and precisions of the prior at a fit's hyperparameters.
+    pub(super) fn prior_of(&self, fit: &Fit) -> (Vec<f64>, Vec<f64>) {
+        let Estimates { prior_deviations, rig, .. } = &fit.estimates;
+        let precisions = self.layout.precisions(fit.settings.background, prior_deviations, rig);
+        (self.layout.prior_mean(self.prior, rig), precisions)
     }
 
     /// A contact's residual, and the channels' derivatives by the parameters.
@@ -298,6 +308,14 @@ impl<'f> Problem<'f> {
             rows.push(slopes.to_vec());
         });
         let label_jacobian = self.layout.label_jacobian(values, &self.scale, contact);
+        if contact.knowledge == Knowledge::Written {
+            // ∂f/∂ρⱼ = J ∂T/∂ρⱼ.
+            let slopes = contact.written.slopes(&Layout::rig(values));
+            for (row, jacobian) in rows.iter_mut().zip(&label_jacobian) {
+                let of_rig = row[Layout::first_of_rig()..].iter_mut().zip(&slopes);
+                of_rig.for_each(|(entry, slope)| *entry = dot(jacobian, slope));
+            }
+        }
         // r = y − f(θ) − J d, where the contact is taken to be off its label by d.
         let off = contact.off_label();
         let residual_uv =
@@ -314,8 +332,16 @@ impl<'f> Problem<'f> {
         self.contacts.iter().map(|(_, contact)| self.linearised(values, contact).0).collect()
     }
 
-    /// Takes each contact whose label the channels may correct to be where they say, by these parameters.
-    fn relocate(&mut self, values: &[f64], noise_model: &NoiseModel) {
+    /// What the written labels stand for, by these errors of the rig.
+    fn relabel(&mut self, values: &[f64]) {
+        let rig = Layout::rig(values);
+        let written = self.contacts.iter_mut().filter(|(_, contact)| contact.knowledge == Knowledge::Written);
+        written.for_each(|(_, contact)| contact.label = contact.written.contact(&rig));
+    }
+
+    /// Takes each contact whose label the channels may correct to be where they say, by these parameters; the others are where
+    /// their labels are.
+    pub(super) fn relocate(&mut self, values: &[f64], noise_model: &NoiseModel) {
         let here = |(_, contact): &(usize, Measured)| {
             let label = contact.label;
             if contact.knowledge == Knowledge::Written {
@@ -329,13 +355,10 @@ impl<'f> Problem<'f> {
         self.locate(&contacts);
     }
 
-    /// Takes the contacts whose labels the channels may correct to be these.
+    /// Takes the contacts to be these.
     fn locate(&mut self, contacts: &[[f64; UNKNOWNS]]) {
         let (field, plate_mm) = (&self.prior.field, self.plate_mm);
         for ((_, contact), here) in self.contacts.iter_mut().zip(contacts) {
-            if contact.knowledge == Knowledge::Written {
-                continue;
-            }
             let [x_mm, y_mm, fx_n, fy_n, fz_n] = *here;
             // No contact is beyond the plate that the field covers.
             let inward = (self.reach_mm / libm::hypot(x_mm, y_mm)).min(1.0);
@@ -372,6 +395,13 @@ impl<'f> Problem<'f> {
         let readings: usize = self.contacts.iter().map(readings).sum();
         (1.0 - effective / readings as f64).max(DEGREES_OF_FREEDOM_RATIO_MIN)
     }
+}
+
+/// For each row the part of the measurement's ageing that was still to come.
+fn to_come(rows: &[Row]) -> Vec<f64> {
+    let cycles = ageing::cycles(rows);
+    let last = cycles.iter().copied().fold(0.0, f64::max);
+    cycles.into_iter().map(|cycle| 1.0 - ageing::aged(cycle, last)).collect()
 }
 
 /// ln p(contacts | θ) = −½ Σ (rᵀ V⁻¹ r + ln det V), with lasting noise integrated over, but for a constant.

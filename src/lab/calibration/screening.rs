@@ -20,11 +20,12 @@ use std::fmt;
 use super::contacts::{Maps, Place, response};
 use super::model::GAIN_DEVIATION;
 use super::moments::Moments;
-use super::plate::places;
+use super::physical::free;
+use super::plate::{PLACES, places};
 use super::prior_deviations::{Kind, PriorDeviations};
 use crate::numeric::statistics::median;
 use crate::pad::device::Device;
-use crate::pad::field::{PadField, Sensitivity};
+use crate::pad::field::PadField;
 use crate::quantity::{CHANNEL_NAMES, CHANNELS, Contact};
 use crate::tables::measured::Row;
 
@@ -274,22 +275,22 @@ impl Screening {
 }
 
 /// Mean square over the plate by which the maps of two pads differ before gains, (µV/N)², by the calibration's priors: of
-/// poses and stiffnesses, and of crosstalk.
+/// poses, stiffnesses and the plate's thickness, and of crosstalk.
 fn differing(device: &Device, field: &PadField) -> Maps {
-    let sensitivities: Vec<&Sensitivity> =
-        field.sensitivities.iter().filter(|it| it.parameter.module().is_some()).collect();
+    let (physical, sensitivities) = free(field, device);
     let prior = PriorDeviations::TARED;
     let mut squares: Maps = [[0.0; 3]; CHANNELS];
     let mut count = 0.0;
-    for place_mm in places(f64::from(field.signals.radius_mm())) {
+    for place_mm in places(f64::from(field.signals.radius_mm()), PLACES) {
         count += 1.0;
         let place = Place::of(field, &sensitivities, device.plate.radius_mm(), place_mm);
         for (channel, squares) in squares.iter_mut().enumerate() {
             for (axis, square) in squares.iter_mut().enumerate() {
-                let by_parameters =
-                    place.sensitivities.iter().zip(&sensitivities).map(|(maps, sensitivity)| {
-                        (prior.of(Kind::of(sensitivity.parameter)) * maps[channel][axis]).powi(2)
-                    });
+                let by_parameters = place
+                    .sensitivities
+                    .iter()
+                    .zip(&physical)
+                    .map(|(maps, it)| (prior.of(it.kind()) * it.unit() * maps[channel][axis]).powi(2));
                 let by_crosstalk = place
                     .gains
                     .iter()

@@ -27,10 +27,20 @@ pub(super) fn contacts(
     told: &Told<'_>,
 ) -> Vec<Option<Written>> {
     let of_order = simulated.of_order(&chain);
-    let inverse = Inverse::new(Bench { simulated, chain, changed }, radius_mm);
     let observations = simulated.sequence;
+    let turned_deg = |row: usize| observations.samples[row].turned_deg;
+    let mut turns_deg: Vec<f64> = simulated.picked.iter().map(|row| turned_deg(*row)).collect();
+    turns_deg.sort_by(f64::total_cmp);
+    turns_deg.dedup();
+    // What is written stands for another place where the pad is turned on the stage.
+    let clamped = |turned_deg: &f64| {
+        let chain = Chain { rig: chain.rig.under(*turned_deg), ..chain.clone() };
+        Inverse::new(Bench { simulated, chain, changed: changed.clone() }, radius_mm)
+    };
+    let inverses: Vec<Inverse<Bench<'_, '_>>> = turns_deg.iter().map(clamped).collect();
     let contact = |(at, row): (usize, &usize)| {
         let row = *row;
+        let clamping = turns_deg.partition_point(|turn_deg| *turn_deg < turned_deg(row));
         let channels = observations.readings.iter().zip(&of_order).zip(told.zeros);
         let readings: Vec<f64> =
             channels.map(|((channel, of_order), zero)| channel[row] - of_order[at] - zero).collect();
@@ -44,7 +54,7 @@ pub(super) fn contacts(
             )
             .collect();
         let tells = weights.iter().filter(|weight| **weight > 0.0).count() >= UNKNOWNS;
-        inverse.contact(row, &Weighted { readings, weights }).filter(|_| tells)
+        inverses[clamping].contact(row, &Weighted { readings, weights }).filter(|_| tells)
     };
     simulated.picked.par_iter().enumerate().map(contact).collect()
 }

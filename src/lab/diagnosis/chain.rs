@@ -17,29 +17,9 @@
 use super::memory::MemoryChain;
 use super::observations::Sample;
 use super::setting::Setting;
+use crate::lab::ageing::aged;
+use crate::lab::rig::errors::RigErrors;
 use crate::pad::device::Side;
-
-/// Cycles at which ageing begins to slow down.
-const ONSET_CYCLES: f64 = 500.0;
-
-/// What differs in the rig that measured.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct RigChain {
-    /// True minus written place.
-    pub(super) offset_mm: [f64; 2],
-    /// From written to true place, counter-clockwise.
-    pub(super) rotation_deg: f64,
-    /// True over written distance from the axis.
-    pub(super) scale: f64,
-    /// Turn of the reference about x and y, from true to written force.
-    pub(super) tilt_deg: [f64; 2],
-    /// Written over true force.
-    pub(super) gain: f64,
-    /// Written minus true force.
-    pub(super) zero_n: [f64; 3],
-    /// By how much all that is late.
-    pub(super) lag_s: f64,
-}
 
 /// What differs in the contact and the mechanics.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,7 +61,7 @@ pub(super) struct ChannelChain {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Chain {
     /// The rig.
-    pub(super) rig: RigChain,
+    pub(super) rig: RigErrors,
     /// Contact and plate.
     pub(super) mechanics: MechanicsChain,
     /// What the channels remember.
@@ -109,15 +89,7 @@ impl Chain {
     /// N channels, and a field that may change in so many ways.
     pub(super) fn nominal(channels: usize, changes: usize) -> Self {
         Self {
-            rig: RigChain {
-                offset_mm: [0.0; 2],
-                rotation_deg: 0.0,
-                scale: 1.0,
-                tilt_deg: [0.0; 2],
-                gain: 1.0,
-                zero_n: [0.0; 3],
-                lag_s: 0.0,
-            },
+            rig: RigErrors::NONE,
             mechanics: MechanicsChain { height_mm: 0.0, patch_mm2: 0.0, weights: vec![0.0; changes] },
             memory: MemoryChain::default(),
             channels: ChannelChain {
@@ -167,28 +139,6 @@ impl MechanicsChain {
     }
 }
 
-impl RigChain {
-    /// The true place.
-    pub(super) fn place_mm(&self, written_mm: [f64; 2]) -> [f64; 2] {
-        let (sin, cos) =
-            (libm::sin(self.rotation_deg.to_radians()), libm::cos(self.rotation_deg.to_radians()));
-        let [x, y] = written_mm.map(|mm| self.scale * mm);
-        [self.offset_mm[0] + cos * x - sin * y, self.offset_mm[1] + sin * x + cos * y]
-    }
-
-    /// The true force.
-    pub(super) fn force_n(&self, written_n: [f64; 3]) -> [f64; 3] {
-        let mut force_n = written_n;
-        force_n.iter_mut().zip(self.zero_n).for_each(|(n, zero_n)| *n = (*n - zero_n) / self.gain);
-        // Written = R_y R_x true, with the pad's z up and Fz down; so the true one is turned back about y, then about x.
-        let [fx, fy, fz] = force_n;
-        let (sin, cos) = (libm::sin(self.tilt_deg[1].to_radians()), libm::cos(self.tilt_deg[1].to_radians()));
-        let (fx, fz) = (cos * fx + sin * fz, cos * fz - sin * fx);
-        let (sin, cos) = (libm::sin(self.tilt_deg[0].to_radians()), libm::cos(self.tilt_deg[0].to_radians()));
-        [fx, cos * fy - sin * fz, cos * fz + sin * fy]
-    }
-}
-
 impl ChannelChain {
     /// The readings of all channels by their strains, in these circumstances.
     pub(super) fn read(&self, strain: &[f64], sample: &Sample, reference: &Reference) -> Vec<f64> {
@@ -213,14 +163,5 @@ impl ChannelChain {
                 self.offset[channel] + self.zero_per_c[channel] * above_c + self.drift_per_h[channel] * hours;
         }
         read
-    }
-}
-
-/// How far ageing has come at a cycle: 1 at the last. ln(1 + n/n₀)/ln(1 + N/n₀)
-fn aged(cycle: f64, last: f64) -> f64 {
-    if last > 0.0 {
-        libm::log1p(cycle.max(0.0) / ONSET_CYCLES) / libm::log1p(last / ONSET_CYCLES)
-    } else {
-        0.0
     }
 }

@@ -3,8 +3,6 @@
 //! Each is a set of rows that nobody measured yet, what changes in how causes act on them, and what it costs. Or it is a dimension that
 //! is measured by hand: that tells of a cause's numbers directly.
 
-use std::f64::consts::TAU;
-
 use super::observations::{Observations, Sample};
 
 /// Seconds that a contact takes, to reach and to hold; the rows to repeat are those of one location in so many, and no more than this.
@@ -19,6 +17,7 @@ const UNTOUCHED: usize = 60;
 const UNTOUCHED_MIN: f64 = 60.0;
 /// What it takes to clamp a pad anew, to change a cap or an indenter and to measure it, to warm a pad and to let it cool.
 const CLAMP_MIN: f64 = 15.0;
+const CLAMPED_DEG: f64 = 120.0;
 const CHANGE_MIN: f64 = 10.0;
 const WARM_MIN: f64 = 60.0;
 /// How long contacts are held where that is asked for.
@@ -31,8 +30,6 @@ const BY_HAND_MIN: f64 = 20.0;
 
 /// The causes of the force sensor.
 const REFERENCE: [&str; 3] = ["reference_gain", "reference_tilt", "reference_zero"];
-/// Causes whose first two numbers are a vector in the frame of the stage.
-pub(super) const TURNING: [&str; 3] = ["stage_offset", "reference_tilt", "reference_zero"];
 
 /// A further measurement.
 pub(super) struct Experiment {
@@ -46,8 +43,6 @@ pub(super) struct Experiment {
     pub(super) rows: Observations,
     /// Causes that do not act on these rows.
     pub(super) silent: Vec<&'static str>,
-    /// By how much the pad is turned on the stage.
-    pub(super) turned: f64,
     /// Causes whose numbers it tells, and with which standard deviation.
     pub(super) by_hand: Option<(&'static str, f64)>,
 }
@@ -73,7 +68,7 @@ fn plain(
     samples: Vec<Sample>,
 ) -> Experiment {
     let rows = unread(like, samples);
-    Experiment { what, why, minutes, rows, silent: Vec::new(), turned: 0.0, by_hand: None }
+    Experiment { what, why, minutes, rows, silent: Vec::new(), by_hand: None }
 }
 
 /// The same contacts again, with something changed.
@@ -82,11 +77,11 @@ fn again(rows: &Observations, repeated: &[Sample]) -> Vec<Experiment> {
     let minutes = count as f64 * CONTACT_S / 60.0;
     let of =
         |what: String, why, more_min: f64| plain(rows, (what, why), more_min + minutes, repeated.to_vec());
-    let turned = of(
-        format!("clamp the pad turned by 120 degrees and repeat {count} contacts"),
-        "what is wrong with the rig stays with the rig, what is wrong with the pad turns with it",
-        CLAMP_MIN,
+    let clamped = format!(
+        "clamp the pad turned by {CLAMPED_DEG} degrees, repeat {count} contacts and write so under turned_deg"
     );
+    let why = "what is wrong with the rig stays with the rig, what is wrong with the pad turns with it";
+    let turned = plain(rows, (clamped, why), CLAMP_MIN + minutes, clamped_anew(repeated));
     let cap = of(
         format!("repeat {count} contacts with a cap of another height, which is measured"),
         "only the old cap's height is in doubt",
@@ -107,7 +102,7 @@ fn again(rows: &Observations, repeated: &[Sample]) -> Vec<Experiment> {
     let why = "time and cycles then no longer go with temperature";
     vec![
         of(format!("repeat {count} of the contacts"), "another draw of the noise is all that it takes", 0.0),
-        Experiment { turned: TAU / 3.0, ..turned },
+        turned,
         Experiment { silent: vec!["contact_height"], ..cap },
         Experiment { silent: vec!["contact_size"], ..indenter },
         plain(
@@ -215,6 +210,11 @@ fn held(samples: &[Sample]) -> Vec<Sample> {
 /// Every second one comes from above.
 fn from_above(samples: &[Sample]) -> Vec<Sample> {
     samples.iter().enumerate().map(|(at, it)| Sample { is_unloading: at % 2 == 0, ..*it }).collect()
+}
+
+/// On a pad that is turned on the stage, against how it was.
+fn clamped_anew(samples: &[Sample]) -> Vec<Sample> {
+    samples.iter().map(|it| Sample { turned_deg: it.turned_deg + CLAMPED_DEG, ..*it }).collect()
 }
 
 /// Up, down and back again, which the order in time knows nothing of.

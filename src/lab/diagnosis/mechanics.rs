@@ -34,10 +34,10 @@ impl Pad<'_> {
 }
 
 /// Per channel, what a unit force along each axis gives.
-pub(super) type Maps = [[f64; 3]; CHANNELS];
+pub(in crate::lab) type Maps = [[f64; 3]; CHANNELS];
 
 /// The changes that there are about the field of `own`, a pad that is held to be `nominal`.
-pub(super) fn changes(
+pub(in crate::lab) fn changes(
     nominal: &Device,
     own: &Device,
     field: &PadField,
@@ -88,7 +88,7 @@ pub(super) fn at_places(
 }
 
 /// The same at one place, in units of the plate's radius.
-fn at_place(field: &PadField, flaws: &[FieldChange], place: [f64; 2]) -> Arc<[Maps]> {
+pub(in crate::lab) fn at_place(field: &PadField, flaws: &[FieldChange], place: [f64; 2]) -> Arc<[Maps]> {
     let polynomials = jets(degree(free(field).map(|it| &it.maps)), place);
     let numbers = free(field).map(|it| values(&it.maps, &polynomials));
     // All modules are alike: the pad is turned until the flawed one is in the place of the first.
@@ -187,7 +187,7 @@ impl Turn {
 }
 
 /// The part of a frame's area that lies on a side, from corner to corner.
-pub(super) fn side_share(device: &Device, side: Side) -> f64 {
+pub(in crate::lab) fn side_share(device: &Device, side: Side) -> f64 {
     let Stack { film_length_x_mm: length, film_width_y_mm: width, frame_width_mm: frame, .. } = device.stack;
     let whole = length * width - (length - 2.0 * frame) * (width - 2.0 * frame);
     match side {

@@ -33,6 +33,8 @@ pub struct Sample {
     pub temp_c: Option<f64>,
     /// Cycles of load that the pad has behind it.
     pub cycle: Option<f64>,
+    /// By how much the pad was turned on the stage.
+    pub turned_deg: f64,
     /// Its cluster, where that is not its location and session.
     pub block: Option<usize>,
 }
@@ -75,6 +77,7 @@ impl Observations {
             is_unloading: row.approach == Some(Approach::Unloading),
             temp_c: row.temp_c,
             cycle: row.cycle,
+            turned_deg: row.turned_deg.unwrap_or(0.0),
             block: None,
         };
         Self {

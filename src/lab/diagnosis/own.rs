@@ -1,7 +1,8 @@
 //! The chain of a device: what its file says beside the field.
 
-use super::chain::{Chain, ChannelChain, MechanicsChain, Reference, RigChain};
+use super::chain::{Chain, ChannelChain, MechanicsChain, Reference};
 use super::memory::{MemoryChain, Play, Prony};
+use crate::lab::rig::errors::RigErrors;
 use crate::pad::device::Device;
 use crate::pad::device::behaviour::{self, Behaviour, ModuleCrosstalk};
 use crate::quantity::CHANNELS;
@@ -23,15 +24,7 @@ pub(super) fn own_chain(device: &Device, weights: Vec<f64>, reference: &Referenc
     let modules = || device.modules.iter();
     let nominal = Chain::nominal(CHANNELS, weights.len());
     Chain {
-        rig: RigChain {
-            offset_mm: [rig.stage_x_mm, rig.stage_y_mm],
-            rotation_deg: rig.stage_rotation_deg,
-            scale: rig.stage_scale,
-            tilt_deg: [rig.reference_tilt_x_deg, rig.reference_tilt_y_deg],
-            gain: rig.reference_gain,
-            zero_n: rig.reference_zero_n,
-            lag_s: 1e-3 * rig.label_lag_ms,
-        },
+        rig: RigErrors::of(rig),
         memory: MemoryChain {
             plays: hysteresis.iter().flat_map(|it| plays(it, reference)).collect(),
             prony: creep.iter().flat_map(prony).collect(),

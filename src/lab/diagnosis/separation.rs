@@ -18,7 +18,7 @@ use std::cell::OnceCell;
 use rayon::prelude::*;
 
 use super::attribution::{Attribution, Search};
-use super::experiments::{Experiment, TURNING, catalogue};
+use super::experiments::{Experiment, catalogue};
 use super::model::{CommonError, Linearised, Signature};
 use super::naming::POWER;
 use super::observations::Sample;
@@ -146,18 +146,12 @@ impl<'s, 'm> Both<'s, 'm> {
 
     /// A hypothesis' columns here and there.
     fn hypothesis(&self, number: usize) -> Vec<Pair> {
-        let Experiment { silent, turned, by_hand, .. } = self.experiment;
+        let Experiment { silent, by_hand, .. } = self.experiment;
         let effect = self.search.model.hypotheses()[number].effect;
         let present = self.found.fit.linearised.signatures[number].clone();
         let mut further = self.further.signatures[number].clone();
         if silent.contains(&effect) {
             further.iter_mut().flatten().for_each(|channel| *channel = None);
-        } else if TURNING.contains(&effect) && *turned != 0.0 {
-            // R(−α) d: what is along x of the stage is along (cos α, −sin α) of the pad.
-            let (sin, cos) = (libm::sin(*turned), libm::cos(*turned));
-            let [x, y] = [0, 1].map(|axis| further[axis].clone());
-            further[0] = combined([cos, -sin], [&x, &y]);
-            further[1] = combined([sin, cos], [&x, &y]);
         }
         let precision = by_hand.filter(|(of, _)| *of == effect).map_or(0.0, |(_, sd)| 1.0 / (sd * sd));
         let asked = self.search.model.hypotheses()[number].asked().len();
@@ -283,17 +277,6 @@ fn left(fisher: &Matrix, cause: &[usize], psi: &[f64], free: Vec<usize>) -> Opti
     let across = fisher.picked(&free, cause).times(psi);
     let whole: f64 = fisher.picked(cause, cause).times(psi).iter().zip(psi).map(|(a, b)| a * b).sum();
     Some(whole - factor.solve_lower(&across).iter().map(|it| it * it).sum::<f64>())
-}
-
-/// Σ aᵢ Jᵢ, channel by channel.
-fn combined(by: [f64; 2], signatures: [&Signature; 2]) -> Signature {
-    let [one, other] = signatures;
-    let channel = |(one, other): (&Option<Vec<f64>>, &Option<Vec<f64>>)| {
-        let rows = one.as_ref().or(other.as_ref())?.len();
-        let value = |of: &Option<Vec<f64>>, at: usize| of.as_ref().map_or(0.0, |values| values[at]);
-        Some((0..rows).map(|at| by[0] * value(one, at) + by[1] * value(other, at)).collect())
-    };
-    one.iter().zip(other).map(channel).collect()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::pad::device::{Device, Side};
 
 /// A way in which the field may change, by the mechanics.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Change {
+pub(in crate::lab) enum Change {
     /// A number of the device's file.
     Number {
         /// Its name.
@@ -26,7 +26,7 @@ pub(super) enum Change {
 
 impl Change {
     /// The weight of a number that is `factor` times the nominal one; of the nominal one where that is no stiffness.
-    pub(super) fn weight(&self, factor: f64) -> f64 {
+    pub(in crate::lab) fn weight(&self, factor: f64) -> f64 {
         match *self {
             // What gives way adds up, in series: first order in 1/k, with the slope k ∂/∂k at the field's own k.
             Self::Number { own, nominal, is_stiffness: true, .. } => own * (1.0 - own / (nominal * factor)),

@@ -132,7 +132,8 @@ impl<'f> Simulated<'f> {
         let then = self.course.moment(at, chain.rig.lag_s);
         let place_mm = std::array::from_fn(|axis| then.of(|row| samples[row].place_mm[axis]));
         let force_n = std::array::from_fn(|axis| then.of(|row| samples[row].load[axis]));
-        let (place_mm, force_n) = (chain.rig.place_mm(place_mm), chain.rig.force_n(force_n));
+        let rig = chain.rig.under(samples[at].turned_deg);
+        let (place_mm, force_n) = (rig.place_mm(place_mm), rig.force_n(force_n));
         Row {
             force_n,
             gains: continued(&self.signals, place_mm),

@@ -2,9 +2,10 @@
 
 use crate::lab::play::home::{Pressed, region_names};
 use crate::lab::play::reader::Reader;
-use crate::lab::play::weights::{Placement, weight_n};
+use crate::lab::play::weights::Placement;
 use crate::lab::play::windows::{WINDOW_S, Window};
 use crate::pad::marks::MARKS_MM;
+use crate::pad::weight::weight_n;
 use crate::pipeline::call::Call;
 use crate::quantity::Contact;
 use crate::time::HostInstant;

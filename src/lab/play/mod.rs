@@ -3,9 +3,11 @@
 //! A press of a finger has no label. But nine channels against five unknowns leave four equations, and a minute of play is sixty
 //! thousand samples. They are taken as means of a tenth of a second, whole periods of the mains.
 
+pub mod change;
 pub mod guide;
 pub mod home;
 pub mod reader;
 pub mod sheet;
+pub mod weighing;
 pub mod weights;
 pub mod windows;

@@ -1,5 +1,7 @@
 //! From the calls of a recording to windows of its samples.
 
+use firmware_proto::identity::SerialNumber;
+
 use crate::lab::play::windows::{Gatherer, Seen, Window};
 use crate::pipeline::call::Call;
 use crate::pipeline::contact::Decoder;
@@ -43,6 +45,11 @@ impl Reader {
     /// The windows so far that nothing is added to any more.
     pub fn windows(&self) -> &[Window] {
         self.gatherer.windows()
+    }
+
+    /// The pad that was played on, once it has told who it is.
+    pub fn serial_number(&self) -> Option<SerialNumber> {
+        self.pipeline.identity().map(|identity| identity.serial_number)
     }
 
     /// The windows, in order of time since the first sample.

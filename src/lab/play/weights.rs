@@ -4,34 +4,13 @@ use std::fmt;
 
 use crate::lab::calibration::contacts::Knowledge;
 use crate::lab::play::windows::Window;
-use crate::quantity::WEIGHT_N_PER_G;
+use crate::pad::weight::{WEIGHT_SHARE, check_weight, weight_n};
 use crate::tables::measured::Label;
 
-/// Standard deviations of a placement by hand: of its place, along each axis,
+/// Standard deviation of the place of a placement by hand, along each axis.
 const PLACE_MM: f64 = 0.4;
-/// of its weight, by a kitchen scale, and of what a table that is not level makes of it as shear, as shares of it.
-const WEIGHT_SHARE: f64 = 0.005;
 /// A weight rests at least so long after it came and before it goes.
 const SETTLE_S: f64 = 0.3;
-/// Weights that a pad can feel and bears, in grams.
-const GRAMS: [f64; 2] = [30.0, 1000.0];
-
-/// What a weight presses with: m g.
-pub(super) fn weight_n(weight_g: f64) -> f64 {
-    WEIGHT_N_PER_G * weight_g
-}
-
-/// Whether a pad can feel and bears a weight.
-///
-/// # Errors
-/// It cannot; the text says which ones it can.
-pub fn check_weight(weight_g: f64) -> Result<(), String> {
-    let [least_g, largest_g] = GRAMS;
-    if (least_g..=largest_g).contains(&weight_g) {
-        return Ok(());
-    }
-    Err(format!("{weight_g} g is no weight for this pad: take one of {least_g} to {largest_g} g"))
-}
 
 /// The columns of a table of placements.
 pub const HEADER: &str = "t_s,x_mm,y_mm,weight_g";

@@ -1,5 +1,6 @@
 //! The measuring rig: where the stage really puts a contact, and what the reference writes down.
 
+use super::errors::turned;
 use crate::numeric::random::SplitMix64;
 use crate::pad::device::behaviour::Rig;
 use crate::tables::measured::Label;
@@ -10,6 +11,8 @@ pub(super) struct Stage {
     rig: Rig,
     approaches: SplitMix64,
     reference: SplitMix64,
+    /// By how much the pad is turned on it.
+    turned_deg: f64,
     /// This approach's own error of place and relative error of force.
     place_mm: [f64; 2],
     force_share: f64,
@@ -19,7 +22,12 @@ impl Stage {
     pub(super) fn new(rig: Rig, seed: u64) -> Self {
         let approaches = SplitMix64::named(seed, "approach");
         let reference = SplitMix64::named(seed, "sensor");
-        Self { rig, approaches, reference, place_mm: [0.0; 2], force_share: 0.0 }
+        Self { rig, approaches, reference, turned_deg: 0.0, place_mm: [0.0; 2], force_share: 0.0 }
+    }
+
+    /// The pad is clamped so, counter-clockwise.
+    pub(super) const fn clamp(&mut self, turned_deg: f64) {
+        self.turned_deg = turned_deg;
     }
 
     /// Comes to a contact anew.
@@ -31,35 +39,28 @@ impl Stage {
     /// The contact that is, where this one is meant.
     pub(super) fn truth(&self, meant: &Label) -> Label {
         let Rig { stage_x_mm, stage_y_mm, stage_rotation_deg, stage_scale, .. } = self.rig;
-        // Place: offset + scale R(turn) meant + scatter. Force: (1 + scatter) meant.
-        let turn = stage_rotation_deg.to_radians();
-        let (sin, cos) = (stage_scale * libm::sin(turn), stage_scale * libm::cos(turn));
+        // Place, in the stage's frame: offset + scale R(turn) meant + scatter. Force: (1 + scatter) meant.
         let force = 1.0 + self.force_share;
-        Label {
-            x_mm: stage_x_mm + cos * meant.x_mm - sin * meant.y_mm + self.place_mm[0],
-            y_mm: stage_y_mm + sin * meant.x_mm + cos * meant.y_mm + self.place_mm[1],
-            fx_n: force * meant.fx_n,
-            fy_n: force * meant.fy_n,
-            fz_n: force * meant.fz_n,
-        }
+        let [x_mm, y_mm] = turned(turned([meant.x_mm, meant.y_mm], self.turned_deg), stage_rotation_deg)
+            .map(|mm| stage_scale * mm);
+        let on_stage = [stage_x_mm + x_mm + self.place_mm[0], stage_y_mm + y_mm + self.place_mm[1]];
+        let [x_mm, y_mm] = turned(on_stage, -self.turned_deg);
+        Label { x_mm, y_mm, fx_n: force * meant.fx_n, fy_n: force * meant.fy_n, fz_n: force * meant.fz_n }
     }
 
     /// The label of a contact: the place that was meant, the force as the reference reads it.
     pub(super) fn written(&mut self, meant: &Label, truth: &Label) -> Label {
-        // Reading: gain R F + zero + noise.
-        let [fx_n, fy_n, fz_n] = self.tilted([truth.fx_n, truth.fy_n, truth.fz_n]);
+        // Reading, in the stage's frame: gain R F + zero + noise.
+        let [fx_n, fy_n] = turned([truth.fx_n, truth.fy_n], self.turned_deg);
+        let [fx_n, fy_n, fz_n] = self.tilted([fx_n, fy_n, truth.fz_n]);
         let [x, y, z] = self.rig.reference_zero_n;
         let mut read = |force_n: f64, zero_n: f64| {
             let noise_n = self.rig.reference_noise_n * f64::from(self.reference.normal());
             self.rig.reference_gain * force_n + zero_n + noise_n
         };
-        Label {
-            x_mm: meant.x_mm,
-            y_mm: meant.y_mm,
-            fx_n: read(fx_n, x),
-            fy_n: read(fy_n, y),
-            fz_n: read(fz_n, z),
-        }
+        let [fx_n, fy_n, fz_n] = [read(fx_n, x), read(fy_n, y), read(fz_n, z)];
+        let [fx_n, fy_n] = turned([fx_n, fy_n], -self.turned_deg);
+        Label { x_mm: meant.x_mm, y_mm: meant.y_mm, fx_n, fy_n, fz_n }
     }
 
     /// The force turned about x, then about y; right-handed in the pad's frame, where Fz presses along −z.

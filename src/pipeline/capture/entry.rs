@@ -2,6 +2,7 @@
 
 use firmware_proto::crc::crc32;
 
+use crate::pad::weight::Weight;
 use crate::pipeline::mapping::check::OutputChoice;
 
 pub(super) const MAGIC: &[u8] = b"tactpad capture 1\n";
@@ -34,10 +35,12 @@ pub(super) enum Kind {
     Decoder = 9,
     /// The recording went on, but what follows is missing. Nothing stands behind it.
     Missing = 10,
+    /// The payload is the weight in grams, a number of eight bytes.
+    Weigh = 11,
 }
 
 /// All kinds, each at the place of its number.
-const KINDS: [Kind; 11] = [
+const KINDS: [Kind; 12] = [
     Kind::Bytes,
     Kind::Timeout,
     Kind::Unplugged,
@@ -49,6 +52,7 @@ const KINDS: [Kind; 11] = [
     Kind::KeyboardProfile,
     Kind::Decoder,
     Kind::Missing,
+    Kind::Weigh,
 ];
 
 impl Kind {
@@ -83,10 +87,16 @@ impl Kind {
     pub(super) fn takes(self, payload: &[u8]) -> bool {
         match self {
             Self::Bytes | Self::Decoder => true,
+            Self::Weigh => weight(payload).is_some(),
             Self::Profile | Self::KeyboardProfile => std::str::from_utf8(payload).is_ok(),
             _ => payload.is_empty(),
         }
     }
+}
+
+/// The weight that a payload tells, if it is one.
+pub(super) fn weight(payload: &[u8]) -> Option<Weight> {
+    Weight::of_g(f64::from_le_bytes(payload.try_into().ok()?)).ok()
 }
 
 /// The checksum of `bytes` behind the checksum of what came before them.
@@ -103,6 +113,6 @@ mod tests {
         for (number, kind) in KINDS.into_iter().enumerate() {
             assert_eq!((kind as usize, Kind::of(kind as u8)), (number, Some(kind)));
         }
-        assert_eq!(Kind::of(11), None);
+        assert_eq!(Kind::of(12), None);
     }
 }

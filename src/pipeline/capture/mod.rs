@@ -8,7 +8,7 @@
 //! | 8 | host time in nanoseconds |
 //! | 4 | length n of the payload, up to 16 MiB |
 //! | 4 | checksum of the previous entry's payload checksum (0 for the first entry) and of the fields above |
-//! | n | payload: the pad's bytes, a profile's text, or a decoder's file |
+//! | n | payload: the pad's bytes, a profile's text, a decoder's file, or a weight in grams (f64) |
 //! | 4 | checksum of the head's checksum and of the payload |
 //!
 //! A capture begins with its decoder, if it was another one than statics as it is inside the program, and its profile.

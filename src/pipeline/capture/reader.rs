@@ -3,7 +3,9 @@
 use std::fmt;
 use std::io::{self, Read};
 
-use super::entry::{CHECKSUM_BYTES, FIELDS_BYTES, HEAD_BYTES, Kind, MAGIC, PAYLOAD_BYTES_MAX, chained};
+use super::entry::{
+    CHECKSUM_BYTES, FIELDS_BYTES, HEAD_BYTES, Kind, MAGIC, PAYLOAD_BYTES_MAX, chained, weight,
+};
 use super::head::Head;
 use crate::pipeline::call::Call;
 use crate::pipeline::mapping::read::ReadProfile;
@@ -123,6 +125,10 @@ impl<R: Read> CaptureReader<R> {
             Kind::Resume => Call::Resume,
             Kind::ReleaseAll => Call::ReleaseAll,
             Kind::Retare => Call::Retare,
+            Kind::Weigh => {
+                let weight = weight(&self.entries.payload);
+                Call::Weigh(weight.ok_or(CaptureError::Damaged { offset: entry.offset })?)
+            }
             Kind::Profile | Kind::KeyboardProfile => {
                 let output = entry.kind.output();
                 self.profile = output.and_then(|output| ReadProfile::read(self.entries.text(), output).0);
@@ -265,6 +271,7 @@ fn read_up_to(from: &mut impl Read, bytes: &mut [u8]) -> io::Result<usize> {
 mod tests {
     use super::super::writer::CaptureWriter;
     use super::*;
+    use crate::pad::weight::Weight;
     use crate::pipeline::mapping::check::OutputChoice;
 
     const TEXT: &str = "schema = 1\nname = \"é\"\noutput = \"gamepad\"\n[dpad]\nmode = \"4way\"\n";
@@ -290,9 +297,10 @@ mod tests {
             Call::ReleaseAll,
             Call::Retare,
             Call::Profile(&keyboard),
+            Call::Weigh(Weight::of_g(200.5).unwrap()),
             Call::Bytes(&[]),
         ];
-        let nows = [1, 2, 3, 4, 5, 6, 7, 1 << 40, u64::MAX];
+        let nows = [1, 2, 3, 4, 5, 6, 7, 8, 1 << 40, u64::MAX];
         calls.into_iter().zip(nows).map(|(call, ns)| see(HostInstant::from_ns(ns), call)).collect()
     }
 
@@ -379,6 +387,7 @@ mod tests {
         let payloads = with_calls(|_, call| match call {
             Call::Bytes(bytes) => bytes.len(),
             Call::Profile(read) => read.text().len(),
+            Call::Weigh(_) => 8,
             _ => 0,
         });
         let mut at = MAGIC.len() as u64;
@@ -422,7 +431,7 @@ mod tests {
         let [before, entry, after] = [&bytes[..second], &bytes[second..third], &bytes[third..]];
         is_damaged_at(&[before, after].concat(), offsets[1], "missing");
         is_damaged_at(&[before, entry, entry, after].concat(), offsets[2], "doubled");
-        is_damaged_at(&[&bytes[..], &bytes[first..second]].concat(), offsets[11], "two captures in one");
+        is_damaged_at(&[&bytes[..], &bytes[first..second]].concat(), offsets[12], "two captures in one");
         is_damaged_at(&[MAGIC, &[99; 200]].concat(), offsets[0], "noise");
     }
 
@@ -486,8 +495,19 @@ mod tests {
     }
 
     #[test]
+    fn a_weight_that_no_pad_feels_or_bears_is_damage() {
+        for g in [0.0, -200.0, 1e9, f64::NAN] {
+            let (calls, error) = read(&file(&[(Kind::Timeout, b""), (Kind::Weigh, &g.to_le_bytes())]));
+            assert!(
+                calls.len() == 1 && matches!(error, Some(CaptureError::Damaged { .. })),
+                "{g}: {error:?}"
+            );
+        }
+    }
+
+    #[test]
     fn bytes_where_a_call_has_none_are_damage() {
-        for kind in 0..=10_u8 {
+        for kind in 0..=11_u8 {
             let fields = [&[kind; 1][..], &[0; 8], &[1, 0, 0, 0]].concat();
             let head = chained(0, &fields);
             let ends = [head, chained(head, b"x")].map(u32::to_le_bytes);

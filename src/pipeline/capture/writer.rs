@@ -1,5 +1,6 @@
 //! Writes captures.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 use super::entry::{Kind, MAGIC, PAYLOAD_BYTES_MAX, chained};
@@ -43,7 +44,7 @@ impl<W: Write> CaptureWriter<W> {
     /// The call cannot be written, or what it carries is longer than 16 MiB.
     pub fn write(&mut self, now: HostInstant, call: Call<'_>) -> io::Result<()> {
         let (kind, payload) = entry_of(call);
-        self.write_entry(kind, now, payload)
+        self.write_entry(kind, now, &payload)
     }
 
     /// Ends the capture with a mark that what followed is missing: its file did not take calls as fast as they were made.
@@ -84,15 +85,17 @@ impl<W: Write> CaptureWriter<W> {
 }
 
 /// The kind of a call's entry, and its payload.
-fn entry_of(call: Call<'_>) -> (Kind, &[u8]) {
+fn entry_of(call: Call<'_>) -> (Kind, Cow<'_, [u8]>) {
+    let plain = |kind: Kind| (kind, Cow::default());
     match call {
-        Call::Bytes(bytes) => (Kind::Bytes, bytes),
-        Call::Timeout => (Kind::Timeout, &[]),
-        Call::Unplugged => (Kind::Unplugged, &[]),
-        Call::Pause => (Kind::Pause, &[]),
-        Call::Resume => (Kind::Resume, &[]),
-        Call::ReleaseAll => (Kind::ReleaseAll, &[]),
-        Call::Retare => (Kind::Retare, &[]),
-        Call::Profile(read) => (Kind::of_profile(read.output()), read.text().as_bytes()),
+        Call::Bytes(bytes) => (Kind::Bytes, bytes.into()),
+        Call::Timeout => plain(Kind::Timeout),
+        Call::Unplugged => plain(Kind::Unplugged),
+        Call::Pause => plain(Kind::Pause),
+        Call::Resume => plain(Kind::Resume),
+        Call::ReleaseAll => plain(Kind::ReleaseAll),
+        Call::Retare => plain(Kind::Retare),
+        Call::Weigh(weight) => (Kind::Weigh, weight.g().to_le_bytes().to_vec().into()),
+        Call::Profile(read) => (Kind::of_profile(read.output()), read.text().as_bytes().into()),
     }
 }

@@ -67,6 +67,13 @@ impl Memory {
         }
     }
 
+    /// The strains that were followed are so many times what was thought: what is remembered of them follows.
+    pub fn rescale(&mut self, by: f64) {
+        let histories = [&mut self.likely].into_iter().chain(&mut self.ends);
+        let states = histories.flat_map(|history| history.state_uv.as_flattened_mut());
+        states.chain(&mut self.crept.state_uv).for_each(|uv| *uv *= by);
+    }
+
     /// What the untouched pad reads now beside its zero.
     pub fn rest(&self) -> Rest {
         if self.is_none {
@@ -146,6 +153,25 @@ mod tests {
         assert_eq!(known(-1200.0), (-25.0, 0.0), "which stays so");
         memory.doubt();
         assert_eq!(memory.rest(), Rest { uv: [-25.0; CHANNELS], doubt_uv: [50.0; CHANNELS] });
+    }
+
+    #[test]
+    fn strains_that_turn_out_to_be_larger_leave_as_much_in_the_readings() {
+        let creep = Creep { time_s: 8.0, share: 0.01 };
+        let memory = |uv: f32| {
+            let mut memory =
+                Memory::of(&Compensation { hysteresis: HYSTERESIS, creep, ..Compensation::NONE });
+            for ms in 0..3_000 {
+                let at = StreamInstant::from_us(1_000 * ms);
+                memory.follow(at, (ms < 2_000).then_some(&Strain { uv: [uv; CHANNELS] }));
+            }
+            memory
+        };
+        // Presses below the threshold: the states are in proportion to them.
+        let (mut lighter, harder) = (memory(600.0), memory(750.0));
+        lighter.rescale(1.25);
+        let [lighter, harder] = [lighter, harder].map(|memory| memory.crept.state_uv[4]);
+        assert!((lighter - harder).abs() < 1e-3 && harder > 100.0, "{lighter} {harder}");
     }
 
     #[test]

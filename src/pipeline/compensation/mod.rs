@@ -1,6 +1,7 @@
 //! What a strain owes to something else than the contact at hand: earlier loads and the temperature.
 
 pub mod creep;
+pub mod gain;
 pub mod hysteresis;
 pub mod memory;
 pub mod thermal;

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::field_error::{FieldError, MODES_MAX, Mode, NUMBERS};
 use super::inverse::Inverse;
 use super::neighbours::{Known, Neighbours};
 use super::regression::{Regression, Target};
@@ -17,7 +18,7 @@ use crate::pipeline::compensation::thermal::Thermal;
 use crate::quantity::{CHANNELS, Contact};
 
 /// First bytes of a file; the number grows with every change of the form.
-pub const MAGIC: &[u8] = b"tactpad decoder 4\n";
+pub const MAGIC: &[u8] = b"tactpad decoder 5\n";
 
 const INVERSE: &[u8] = b"inverse";
 const LINEAR: &[u8] = b"linear";
@@ -60,6 +61,8 @@ impl Decoder {
                 push_noise(&mut body, inverse.noise());
                 push_compensation(&mut body, &self.compensation);
                 inverse.field().write(&mut body);
+                let modes = inverse.field_error().modes().iter();
+                push_floats(&mut body, &modes.flat_map(Mode::numbers).collect::<Vec<f32>>());
             }
             _ if self.compensation != Compensation::NONE => return None,
             Method::Regression(regression) => {
@@ -108,7 +111,17 @@ fn read(from: &mut Reader<'_>) -> Option<(Decoder, String)> {
 
 fn read_inverse(from: &mut Reader<'_>) -> Option<Decoder> {
     let (noise, compensation) = (read_noise(from)?, read_compensation(from)?);
-    Some(Decoder::from(Inverse::new(InfluenceField::read(from)?, noise)).compensated_by(compensation))
+    let field = InfluenceField::read(from)?;
+    let inverse = Inverse::new(field, noise).with_field_error(read_field_error(from)?);
+    Some(Decoder::from(inverse).compensated_by(compensation))
+}
+
+fn read_field_error(from: &mut Reader<'_>) -> Option<FieldError> {
+    let numbers = from.floats()?;
+    let (modes, rest) = numbers.as_chunks::<NUMBERS>();
+    let is_sound = rest.is_empty() && modes.len() <= MODES_MAX;
+    is_sound.then_some(())?;
+    FieldError::of(modes.iter().map(Mode::of).collect::<Option<_>>()?)
 }
 
 fn push_numbers<'n>(to: &mut Vec<u8>, numbers: impl IntoIterator<Item = &'n f64>) {
@@ -261,6 +274,14 @@ mod tests {
         hysteresis: [Play { threshold_uv: [700.0; CHANNELS], share: [0.05; CHANNELS] }, Play::NONE],
     };
 
+    /// A field that may be off by so many modes.
+    fn uncertain(modes: usize) -> Inverse {
+        let mode = |at: usize| Mode::of(&std::array::from_fn(|k| (1 + at) as f32 / (1 + k) as f32)).unwrap();
+        let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
+        let error = FieldError::of((0..modes).map(mode).collect()).unwrap();
+        Inverse::new(PadField::nominal().signals, noise).with_field_error(error)
+    }
+
     fn decoders() -> Vec<Decoder> {
         let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
         let mut functions = [[1e-3; CHANNELS + 1]; 5];
@@ -271,6 +292,7 @@ mod tests {
         vec![
             Decoder::from(Inverse::new(PadField::nominal().signals, noise)),
             Decoder::from(Inverse::new(PadField::nominal().signals, noise)).compensated_by(COMPENSATION),
+            Decoder::from(uncertain(2)),
             regression(Target::Wrench),
             regression(Target::Contact),
             Decoder::from(Neighbours {
@@ -289,6 +311,8 @@ mod tests {
             assert_eq!(note, "a note");
             assert_eq!(again.decode(&strain), decoder.decode(&strain));
             assert_eq!(again.compensation, decoder.compensation);
+            let estimate = |it: &Decoder| it.inverse().map(|inverse| inverse.estimate(&strain).unwrap());
+            assert_eq!(estimate(&again), estimate(&decoder));
         }
         assert!(Decoder::from(Statics::nominal()).to_bytes("").is_none());
     }
@@ -298,6 +322,38 @@ mod tests {
         for decoder in decoders() {
             let is_inverse = decoder.inverse().is_some();
             assert_eq!(decoder.compensated_by(COMPENSATION).to_bytes("").is_some(), is_inverse);
+        }
+    }
+
+    #[test]
+    fn the_largest_field_error_adds_less_than_200_kilobytes() {
+        let length = |modes| Decoder::from(uncertain(modes)).to_bytes("").unwrap().len();
+        assert!(length(MODES_MAX) - length(0) < 200_000);
+    }
+
+    #[test]
+    fn a_field_error_that_makes_no_sense_is_refused() {
+        let file = Decoder::from(uncertain(0)).to_bytes("").unwrap();
+        let (body, count) = unsealed(MAGIC, &file).unwrap().split_last_chunk::<4>().unwrap();
+        assert_eq!(*count, [0; 4], "the modes come last");
+        let with = |count: usize, numbers: &[f32]| {
+            let numbers: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+            let body = [body, &(count as u32).to_le_bytes(), &numbers].concat();
+            Decoder::from_bytes(&sealed(MAGIC, &body))
+        };
+        let mode = [1.0; NUMBERS];
+        assert!(with(mode.len(), &mode).is_ok());
+        let too_many = mode.repeat(MODES_MAX + 1);
+        let mut infinite = mode;
+        infinite[77] = f32::INFINITY;
+        for (count, numbers) in [
+            (mode.len() - 1, &mode[1..]),
+            (mode.len() + 1, &mode),
+            (u32::MAX as usize, &mode),
+            (too_many.len(), &too_many),
+            (infinite.len(), &infinite),
+        ] {
+            assert_eq!(with(count, numbers).err(), Some(DecoderFileError::Damaged), "{count}");
         }
     }
 

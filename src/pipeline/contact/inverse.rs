@@ -7,7 +7,8 @@
 //!
 //! Source: G. H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, for least squares whose variables separate.
 
-use super::uncertainty::{Estimate, Linear, Noise, UNKNOWNS, Variances};
+use super::field_error::{Asked, FieldError};
+use super::uncertainty::{Covariance, Estimate, Linear, Noise, UNKNOWNS, Variances};
 use crate::numeric::linear::Factor;
 use crate::pad::influence::{Gains, InfluenceField};
 use crate::quantity::{CHANNELS, Contact, Strain};
@@ -30,6 +31,7 @@ const RING_PLACES: usize = 36;
 pub struct Inverse {
     field: InfluenceField,
     noise: Noise,
+    field_error: FieldError,
     /// Fz, x Fz and y Fz as linear functions of the channels.
     start: [[f64; CHANNELS]; 3],
 }
@@ -59,11 +61,27 @@ pub struct Explained {
     pub left_uv: [f64; CHANNELS],
 }
 
+/// What is to be expected of the estimate of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// How it follows the nine channels: x, y in mm and Fx, Fy, Fz in N, per microvolt.
+    pub response: [[f64; CHANNELS]; UNKNOWNS],
+    /// Its covariance.
+    pub covariance: Covariance,
+    /// The part of that which is of the field's errors.
+    pub by_field: Covariance,
+}
+
 impl Inverse {
     /// The decoder of a pad with this field, whose channels scatter so. Each channel must scatter.
     pub fn new(field: InfluenceField, noise: Noise) -> Self {
         let start = start_of(&field);
-        Self { field, noise, start }
+        Self { field, noise, field_error: FieldError::NONE, start }
+    }
+
+    /// The same of a field that may be off so.
+    pub fn with_field_error(self, field_error: FieldError) -> Self {
+        Self { field_error, ..self }
     }
 
     /// The pad's field.
@@ -74,6 +92,11 @@ impl Inverse {
     /// How the channels scatter.
     pub const fn noise(&self) -> &Noise {
         &self.noise
+    }
+
+    /// How far the field may be off.
+    pub const fn field_error(&self) -> &FieldError {
+        &self.field_error
     }
 
     /// The contact that explains `strain` best. Without force it is in the middle. Strain that is not finite, or beyond
@@ -98,19 +121,33 @@ impl Inverse {
     pub fn estimate(&self, strain: &Strain) -> Option<Estimate> {
         let (trial, variances) = self.searched(strain)?;
         let linear = self.linear(trial.place_mm, trial.force_n, &variances)?;
-        let covariance = linear.covariance(&self.noise, &variances, &trial.force_n);
+        let by_field = self.by_field(&linear, trial.place_mm, &trial.force_n);
+        let covariance = linear.covariance(&self.noise, &variances, &trial.force_n, &by_field);
         let contact = Some(trial.contact()).filter(is_finite)?;
         Some(Estimate { contact, covariance, misfit: trial.misfit })
     }
 
-    /// How the estimate of a contact follows the nine channels, per microvolt; `None` where it does not.
-    pub fn response(&self, contact: &Contact) -> Option<[[f64; CHANNELS]; UNKNOWNS]> {
+    /// How the estimate of a contact follows the channels, and what it states; `None` where it does not follow them.
+    pub fn expected(&self, contact: &Contact) -> Option<Expected> {
         let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = *contact;
+        let (place_mm, force_n) = ([x_mm, y_mm].map(f64::from), [fx_n, fy_n, fz_n].map(f64::from));
         let uv = self.field.strain_uv(contact).uv.map(f64::from);
-        let variances = self.noise.variances(&uv, f64::from(fz_n));
-        let linear =
-            self.linear([x_mm, y_mm].map(f64::from), [fx_n, fy_n, fz_n].map(f64::from), &variances)?;
-        Some(linear.response)
+        let variances = self.noise.variances(&uv, force_n[2]);
+        let linear = self.linear(place_mm, force_n, &variances)?;
+        let by_field = self.by_field(&linear, place_mm, &force_n);
+        let covariance = linear.covariance(&self.noise, &variances, &force_n, &by_field);
+        Some(Expected { response: linear.response, covariance, by_field })
+    }
+
+    /// Covariance of a contact by the field's errors.
+    fn by_field(&self, linear: &Linear, place_mm: [f64; 2], force_n: &[f64; 3]) -> Covariance {
+        let alike = self.noise.covariance_by_field(force_n);
+        let place = self.within(place_mm).map(|mm| mm / f64::from(self.field.radius_mm()));
+        let gains = self.field.gains(place_mm[0] as f32, place_mm[1] as f32);
+        let signals_uv = gains.value.map(|gain| dot(&gain, force_n));
+        let asked = Asked { place, force_n, signals_uv: &signals_uv };
+        let by_place = self.field_error.covariance(&asked, &linear.response);
+        std::array::from_fn(|i| std::array::from_fn(|j| alike[i][j] + by_place[i][j]))
     }
 
     /// The place of the least cost with its force, and the variances of the channels.

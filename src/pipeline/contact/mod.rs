@@ -1,5 +1,6 @@
 //! Where a contact is and how hard it presses, from strain.
 
+pub mod field_error;
 pub mod file;
 pub mod inverse;
 pub mod neighbours;

@@ -6,6 +6,7 @@ use super::Decoder;
 use super::touch::{Touch, TouchState};
 use super::uncertainty::Estimate;
 use super::watch::{Warning, Watch};
+use crate::pipeline::compensation::gain::CommonGain;
 use crate::pipeline::compensation::memory::Memory;
 use crate::pipeline::compensation::thermometer::Thermometer;
 use crate::pipeline::health::Health;
@@ -31,8 +32,8 @@ pub enum Reading {
 /// Signal, compensation, decoder, touch and watch:
 ///
 /// ```text
-/// sample ─signal→ strain ─thermometer→ strain at T₀ ─memory→ e ─decoder→ contact ─touch→ touched or not ─watch→ warning
-///        less z           ÷ gain                    less the past
+/// sample ─signal→ strain ─gain→ as calibrated ─thermometer→ at T₀ ─memory→ e ─decoder→ contact ─touch→ touched or not ─watch→ warning
+///        less z           ÷ S                  ÷ its gain         less the past
 /// ```
 ///
 /// From the sample before, signal and thermometer know whether the pad was touched, signal also what warmth has added and what
@@ -40,6 +41,7 @@ pub enum Reading {
 #[derive(Clone, Debug)]
 pub struct ContactStage {
     signal: Signal,
+    gain: CommonGain,
     thermometer: Thermometer,
     memory: Memory,
     decoder: Decoder,
@@ -56,6 +58,7 @@ impl ContactStage {
     pub fn new(decoder: Decoder, filter_samples: usize) -> Self {
         Self {
             signal: Signal::new(filter_samples),
+            gain: CommonGain::ONE,
             thermometer: Thermometer::of(decoder.compensation.thermal),
             memory: Memory::of(&decoder.compensation),
             touch: Touch::new(),
@@ -86,6 +89,22 @@ impl ContactStage {
         self.watch.warning()
     }
 
+    /// What decodes.
+    pub const fn decoder(&self) -> &Decoder {
+        &self.decoder
+    }
+
+    /// By how much the pad's readings have changed since the calibration, as far as is known.
+    pub const fn gain(&self) -> CommonGain {
+        self.gain
+    }
+
+    /// The pad reads so many times what was thought.
+    pub fn regain(&mut self, ratio: f64) {
+        self.gain = self.gain.times(ratio);
+        self.memory.rescale(1.0 / ratio);
+    }
+
     /// Changes the filter's window; it grows anew from one sample.
     pub fn set_filter_samples(&mut self, filter_samples: usize) {
         self.signal.set_filter_samples(filter_samples);
@@ -107,13 +126,14 @@ impl ContactStage {
     ) -> Reading {
         let touched = self.touch.is_touched();
         self.thermometer.follow(at, sample, touched);
-        let pad = PadState { touched, rest: self.memory.rest(), added_uv: self.thermometer.added_uv() };
+        let (gain, rest) = (self.gain, self.gain.read(&self.memory.rest()));
+        let pad = PadState { touched, rest, added_uv: self.thermometer.added_uv() };
         self.strain = None;
         self.raw_uv = self.signal.raw_uv(sample);
-        let load_n = |strain: &Strain| self.decoder.load_n(strain);
+        let load_n = |strain: &Strain| self.decoder.load_n(&gain.calibrated(strain));
         match self.signal.condition(at, sample, &pad, load_n, health) {
             Conditioned::Strain(strain) => {
-                let strain = self.memory.freed(&self.thermometer.at_reference(&strain));
+                let strain = self.memory.freed(&self.thermometer.at_reference(&gain.calibrated(&strain)));
                 self.strain = Some(strain);
                 Reading::Contact(self.contact(at, &strain, health, probe))
             }
@@ -158,8 +178,11 @@ impl ContactStage {
     /// Does to each part what [`Cause::effects`] says.
     pub fn interrupt(&mut self, cause: Cause) {
         let effects = cause.effects();
-        let Effects { memory, thermometer, touch, watch, .. } = effects;
+        let Effects { gain, memory, thermometer, touch, watch, .. } = effects;
         self.signal.interrupt(&effects);
+        if gain == Effect::Forget {
+            self.gain = CommonGain::ONE;
+        }
         self.memory.interrupt(memory);
         if thermometer == Effect::Forget {
             self.thermometer = Thermometer::of(self.decoder.compensation.thermal);

@@ -22,7 +22,8 @@ pub struct Noise {
     pub field_uv_per_n: [f64; CHANNELS],
     /// Standard deviation of a gain that all channels share.
     pub gain: f64,
-    /// Covariance of what the field's errors do to x, y (mm), and to Fx, Fy, Fz as shares of the whole force.
+    /// Covariance of what the field's errors do to x, y (mm), and to Fx, Fy, Fz as shares of the whole force, alike all over the
+    /// plate: all of them where the pad was never measured, and what the modes leave out where it was.
     pub by_field: Covariance,
 }
 
@@ -67,6 +68,15 @@ impl Noise {
             gain: 0.0,
             by_field: [[0.0; UNKNOWNS]; UNKNOWNS],
         }
+    }
+
+    /// Covariance of a contact with this force by those of the field's errors that are alike all over the plate.
+    pub(super) fn covariance_by_field(&self, force_n: &[f64; 3]) -> Covariance {
+        // S B S: the shares B of the force in newtons again.
+        let [fx_n, fy_n, fz_n] = *force_n;
+        let whole_n = libm::sqrt(fx_n * fx_n + fy_n * fy_n + fz_n * fz_n);
+        let scale = [1.0, 1.0, whole_n, whole_n, whole_n];
+        std::array::from_fn(|i| std::array::from_fn(|j| scale[i] * self.by_field[i][j] * scale[j]))
     }
 
     /// For these readings, under about this force.
@@ -130,20 +140,24 @@ impl Linear {
         Some(Self { response, prior })
     }
 
-    /// Covariance of an estimate with this force.
-    pub(super) fn covariance(&self, noise: &Noise, variances: &Variances, force_n: &[f64; 3]) -> Covariance {
-        // C = K N Kᵀ + H⁻¹ Λ H⁻¹ + S B S + g² f fᵀ, where N are the noise's variances, B what the field's errors do, by shares of
-        // the force (S puts it back), and g is the deviation of the gain that all channels share, which acts along the force f.
+    /// Covariance of an estimate with this force, where the field's errors have the covariance `by_field`.
+    pub(super) fn covariance(
+        &self,
+        noise: &Noise,
+        variances: &Variances,
+        force_n: &[f64; 3],
+        by_field: &Covariance,
+    ) -> Covariance {
+        // C = K N Kᵀ + H⁻¹ Λ H⁻¹ + g² f fᵀ + what the field's errors do, where N are the noise's variances, and g is the deviation
+        // of the gain that all channels share, which acts along the force f.
         let [fx_n, fy_n, fz_n] = *force_n;
-        let whole_n = libm::sqrt(fx_n * fx_n + fy_n * fy_n + fz_n * fz_n);
-        let scale = [1.0, 1.0, whole_n, whole_n, whole_n];
         let along = [0.0, 0.0, fx_n, fy_n, fz_n].map(|n| noise.gain * n);
         std::array::from_fn(|i| {
             std::array::from_fn(|j| {
                 let by_noise: f64 = (0..CHANNELS)
                     .map(|k| self.response[i][k] * variances.noise[k] * self.response[j][k])
                     .sum();
-                by_noise + self.prior[i][j] + scale[i] * noise.by_field[i][j] * scale[j] + along[i] * along[j]
+                by_noise + self.prior[i][j] + by_field[i][j] + along[i] * along[j]
             })
         })
     }

@@ -32,6 +32,8 @@ pub enum Column {
     Dwell,
     /// `approach`: `loading` or `unloading`.
     Approach,
+    /// `turned_deg`.
+    Turned,
     /// Those that a table carries without knowing what they are.
     Others,
 }
@@ -41,7 +43,7 @@ pub const LABEL: [&str; 5] = ["x_mm", "y_mm", "fx_n", "fy_n", "fz_n"];
 
 impl Column {
     /// All of them, in the order in which they are written; the label stands before the channels.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Trial,
         Self::Session,
         Self::Time,
@@ -50,6 +52,7 @@ impl Column {
         Self::Channels,
         Self::Dwell,
         Self::Approach,
+        Self::Turned,
         Self::Others,
     ];
 
@@ -63,6 +66,7 @@ impl Column {
             Self::Cycle => Some("cycle"),
             Self::Dwell => Some("dwell_s"),
             Self::Approach => Some("approach"),
+            Self::Turned => Some("turned_deg"),
             Self::Channels | Self::Others => None,
         }
     }

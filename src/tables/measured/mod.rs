@@ -105,6 +105,8 @@ pub struct Row {
     pub dwell_s: Option<f64>,
     /// From where a static load comes; only plans have it.
     pub approach: Option<Approach>,
+    /// By how much the pad was turned on the stage, counter-clockwise seen from above. Labels are in the pad's frame.
+    pub turned_deg: Option<f64>,
     /// What the reference wrote.
     pub label: Label,
     /// The channels, in the order of [`CHANNEL_NAMES`](crate::quantity::CHANNEL_NAMES); none in a plan.
@@ -123,6 +125,7 @@ impl Row {
             cycle: None,
             dwell_s: None,
             approach: None,
+            turned_deg: None,
             label,
             uv: None,
         }
@@ -169,6 +172,7 @@ impl Table {
             Column::Channels => any(|row| row.uv.is_some()),
             Column::Dwell => any(|row| row.dwell_s.is_some()),
             Column::Approach => any(|row| row.approach.is_some()),
+            Column::Turned => any(|row| row.turned_deg.is_some()),
             Column::Others => !self.others.names.is_empty(),
         };
         Column::ALL.into_iter().filter(is_there).collect()

@@ -21,6 +21,7 @@ const TIMES_S: RangeInclusive<f64> = 0.0..=1e10;
 const TEMPERATURES_C: RangeInclusive<f64> = -100.0..=200.0;
 const CYCLES: RangeInclusive<f64> = 0.0..=1e12;
 const DWELLS_S: RangeInclusive<f64> = 0.0..=1e6;
+const TURNS_DEG: RangeInclusive<f64> = -360.0..=360.0;
 const CHANNELS_UV: RangeInclusive<f64> = -1e8..=1e8;
 
 /// Reads all rows of a table; at least one, or it is an error.
@@ -94,6 +95,7 @@ impl Reader {
             cycle: self.optional(&cells, Column::Cycle, &CYCLES, "")?,
             dwell_s: self.optional(&cells, Column::Dwell, &DWELLS_S, "s")?,
             approach: self.approach(&cells)?,
+            turned_deg: self.optional(&cells, Column::Turned, &TURNS_DEG, "°")?,
             label: self.label(&cells)?,
             uv: self.channels(&cells)?,
         };

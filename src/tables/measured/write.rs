@@ -119,6 +119,7 @@ fn push_cell(text: &mut String, column: Column, row: &Row, of: &Table) {
         Column::Cycle => (None, row.cycle),
         Column::Dwell => (None, row.dwell_s),
         Column::Approach => (row.approach.map(|approach| approach.name().to_owned()), None),
+        Column::Turned => (None, row.turned_deg),
         Column::Channels => return push_channels(text, row.uv),
         Column::Others => return push_others(text, row.line, of),
     };

@@ -2,7 +2,8 @@
 
 use super::draw::{Draw, at, within};
 use crate::pad::marks::MARKS_MM;
-use crate::quantity::{Contact, WEIGHT_N_PER_G};
+use crate::pad::weight::weight_n;
+use crate::quantity::Contact;
 use crate::virtual_pad::script::{Keyframe, Script};
 
 /// How far from its mark it comes to rest: deviation along each axis, and at most.
@@ -56,7 +57,7 @@ impl Weights {
 
     /// What so many grams press with: m g.
     pub fn force_n(weight_g: f64) -> f64 {
-        WEIGHT_N_PER_G * weight_g
+        weight_n(weight_g)
     }
 }
 

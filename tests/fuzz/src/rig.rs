@@ -10,6 +10,7 @@ use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::InfluenceField;
+use tactpad::pad::weight::Weight;
 use tactpad::pipeline::call::Call;
 use tactpad::pipeline::control::{Code, OutputDevice, OutputEvent};
 use tactpad::pipeline::mapping::check::{self, OutputChoice};
@@ -102,6 +103,7 @@ impl Rig {
             Step::Resume => self.call(Call::Resume),
             Step::ReleaseAll => self.call(Call::ReleaseAll),
             Step::Retare => self.call(Call::Retare),
+            Step::Weigh(g) => self.call(Call::Weigh(Weight::of_g(30.0 + f64::from(*g)).unwrap())),
             Step::Profile { number, keyboard } => {
                 let output = if *keyboard { OutputChoice::Keyboard } else { OutputChoice::AsWritten };
                 let read = ReadProfile::read(profile_text(*number), output).0.unwrap();
@@ -145,8 +147,12 @@ impl Rig {
         let stated = self.pipeline.held().filter(|level| !matches!(level.code, Code::Relative(_)));
         let held = stated.map(|level| ((level.device, level.code), level.value)).collect();
         assert_eq!(self.held, held, "what the events say is not what the pipeline says");
-        if self.pipeline.phase() == Phase::Paused || self.pipeline.refusal().is_some() {
-            assert!(self.pipeline.held().next().is_none(), "held in a pause, or with a pad that is refused");
+        let is_still = matches!(self.pipeline.phase(), Phase::Paused | Phase::Weighing);
+        if is_still || self.pipeline.refusal().is_some() {
+            assert!(
+                self.pipeline.held().next().is_none(),
+                "held in a pause, under a weight, or with a pad that is refused"
+            );
         }
     }
 

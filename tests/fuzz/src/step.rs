@@ -38,6 +38,8 @@ pub enum Step {
     Resume,
     ReleaseAll,
     Retare,
+    /// A weight of so many grams and 30.
+    Weigh(u8),
     /// One of the shipped profiles, for the gamepad or the keyboard.
     Profile {
         number: u8,

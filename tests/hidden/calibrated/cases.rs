@@ -64,6 +64,7 @@ pub(super) static CASES: [Case; 13] = [
         name: "plate_1p15",
         table: &THICK_PLATE,
         field: Some(("plate_stiffness", "pad", &[("factor", 1.520_875)])),
+        numbers: &[("plate.thickness_mm", 0.15)],
         gate: CHANGED,
         ..NO_CASE
     },
@@ -149,10 +150,18 @@ impl Case {
         self.field.map(truth).into_iter().chain(memory).chain(self.rig()).collect()
     }
 
-    /// The true change of a number of the device file; none where there is no such thing.
-    pub(super) fn module_number(&self, name: &str) -> Option<f64> {
-        let known = self.numbers.iter().find(|(own, _)| *own == name);
-        Some(known.map_or(0.0, |known| known.1)).filter(|change| change.is_finite())
+    /// The true change of a number of the device file, or of the rig as `stage_offset.x_mm`; none where there is no such
+    /// thing.
+    pub(super) fn change(&self, name: &str) -> Option<f64> {
+        let known = self.numbers.iter().find(|(own, _)| *own == name).map(|known| known.1);
+        let of_rig = || {
+            let (effect, parameter) = name.split_once('.')?;
+            let (_, _, parameters) = self.rig.filter(|(of, ..)| *of == effect)?;
+            let (_, value) = parameters.iter().find(|(of, _)| *of == parameter)?;
+            // What is 1 of a rig without a fault differs from that.
+            Some(if matches!(parameter, "gain" | "scale") { value - 1.0 } else { *value })
+        };
+        Some(known.or_else(of_rig).unwrap_or(0.0)).filter(|change| change.is_finite())
     }
 
     /// Whether the table is another pad than the nominal one, or that itself, on a perfect rig and without memory.

@@ -57,7 +57,7 @@ pub(super) struct Stated {
 }
 
 /// Kinds of stated numbers.
-pub(super) const KINDS: [&str; 4] = ["gains", "poses", "crosstalk", "blur"];
+pub(super) const KINDS: [&str; 5] = ["gains", "device", "crosstalk", "blur", "rig"];
 
 /// What came of one pad.
 #[derive(Debug)]
@@ -70,14 +70,14 @@ pub(super) struct Judged {
     pub(super) wrong: Vec<String>,
 }
 
-/// Calibrates by one recording and tries the other, through the program. `numbers` are the true changes of modules by their
-/// names in the program's device file, where they are known.
+/// Calibrates by one recording and tries the other, through the program. `change` tells the true change of a number of
+/// the device or the rig by its name, where that is known.
 pub(super) fn judged(
     known: &Recorded,
     unseen: &Recorded,
     hidden: &[Truth],
     wiring: &Wiring,
-    module_number: &dyn Fn(&str) -> Option<f64>,
+    change: &dyn Fn(&str) -> Option<f64>,
 ) -> Judged {
     let folder = tempfile::tempdir().unwrap();
     let [known_csv, unseen_csv, truth_csv, decoder] =
@@ -91,7 +91,7 @@ pub(super) fn judged(
     agree(&evaluated(&decoder, &unseen_csv, &truth_csv), &decoded);
     let Score { found, wrong, .. } = Score::of(pad, hidden);
     let named = found.into_iter().filter(|found| *found == Found::Named).count();
-    Judged { decoded, stated: stated(pad, wiring, module_number), named, wrong }
+    Judged { decoded, stated: stated(pad, wiring, change), named, wrong }
 }
 
 fn written(truths: &[Contact]) -> String {
@@ -136,20 +136,24 @@ fn agree(evaluation: &Value, decoded: &[Decoded]) {
 }
 
 /// Numbers that the data tell, and whose truth is known.
-fn stated(pad: &Value, wiring: &Wiring, module_number: &dyn Fn(&str) -> Option<f64>) -> Vec<Stated> {
+fn stated(pad: &Value, wiring: &Wiring, change: &dyn Fn(&str) -> Option<f64>) -> Vec<Stated> {
     let numbers = pad["numbers"].as_array().unwrap().iter();
     let told = numbers.filter(|number| number["told_by"] == "data");
     let one = |number: &Value| {
         let at = |key: &str| number[key].as_str().and_then(channel);
         let name = number["name"].as_str()?;
+        let [value, deviation, expected] =
+            ["value", "deviation", "expected"].map(|key| number[key].as_f64().unwrap());
         let (kind, truth) = match name {
             "gain" => (0, wiring.gains[at("target")?]),
             "crosstalk" => (2, leaked(wiring, at("target")?, at("with")?)),
             "blur_mm2" => (3, 0.0),
-            name if name.starts_with("module.") => (1, module_number(name)?),
+            name if ["module.", "plate.", "material."].iter().any(|part| name.starts_with(part)) => {
+                (1, expected + change(name)?)
+            }
+            name if name.contains('.') => (4, expected + change(name)?),
             _ => return None,
         };
-        let [value, deviation] = ["value", "deviation"].map(|key| number[key].as_f64().unwrap());
         Some(Stated { kind, off: (value - truth) / deviation })
     };
     told.filter_map(one).collect()

@@ -45,7 +45,7 @@ fn run(case: &Case, seed: u64) -> Judged {
     });
     let mut hidden = wiring.truths();
     hidden.extend(case.hidden());
-    judged(&known, &unseen, &hidden, &wiring, &|name| case.module_number(name))
+    judged(&known, &unseen, &hidden, &wiring, &|name| case.change(name))
 }
 
 /// All cases with all seeds, two at a time: by case, then by seed.

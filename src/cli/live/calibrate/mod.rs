@@ -35,7 +35,7 @@ use tactpad::bridge::transport::address::PadAddress;
 use tactpad::lab::play::guide::{Guide, Step};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::sheet::Sheet;
-use tactpad::lab::play::weights::check_weight;
+use tactpad::pad::weight::check_weight;
 use tactpad::pipeline::capture::head::Head;
 use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::profile::Profile;
@@ -139,7 +139,7 @@ fn calibrate(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
     if arguments.weight_g.is_none() {
         say(words::WITHOUT_WEIGHT);
     }
-    let playing = PlayingDecoder { decoder, name: shipped::INVERSE.into(), file: head.decoder };
+    let playing = PlayingDecoder { decoder, name: shipped::INVERSE.into(), place: None, file: head.decoder };
     let guide = lead(arguments, (opened, hands), (guide, kept), (playing, profile))?;
     if *guide.step() != Step::Done {
         return Err(Failure::Failed(format!(

@@ -1,0 +1,63 @@
+//! What the rig leaves open, and the next measurement that tells it.
+
+use serde::Serialize;
+
+use tactpad::lab::calibration::open::{Blurred, OpenByRig};
+
+/// An error of the rig that the contacts do not tell from the pad's.
+#[derive(Serialize)]
+pub(super) struct Open {
+    effect: &'static str,
+    /// `place` or `force`.
+    of: &'static str,
+    /// mm of the place, or a share of the force.
+    deviation: f64,
+    /// Its part of the variance of that.
+    share: f64,
+    /// What tells it.
+    next: &'static str,
+}
+
+impl Open {
+    pub(super) fn of(open: &OpenByRig) -> Self {
+        let OpenByRig { effect, of, deviation, share } = *open;
+        let of = match of {
+            Blurred::Place => "place",
+            Blurred::Force => "force",
+        };
+        Self { effect, of, deviation, share, next: next(effect) }
+    }
+
+    pub(super) fn words(&self) -> String {
+        let Self { effect, of, deviation, share, next } = self;
+        let what = match *effect {
+            "stage_offset" => "stands beside the middle of the pad",
+            "stage_rotation" => "is turned against the pad",
+            "stage_scale" => "has a scale of its own",
+            "reference_tilt" => "is tilted",
+            _ => "has a gain of its own",
+        };
+        let part = if *of == "place" { "stage" } else { "reference" };
+        let size = if *of == "place" {
+            format!("{deviation:.2} mm of the place")
+        } else {
+            format!("{:.1} % of the force", 100.0 * deviation)
+        };
+        format!(
+            "Whether the {part} {what} is open: ± {size}, {:.0} % of the variance that the field leaves of it. {next}.",
+            100.0 * share
+        )
+    }
+}
+
+/// The measurement that tells an error of the rig from the pad's own.
+fn next(effect: &str) -> &'static str {
+    match effect {
+        "stage_offset" | "reference_tilt" => {
+            "A second session would tell: clamp the pad anew, turned by 120 degrees, repeat a third of the contacts and write 120 \
+             under turned_deg"
+        }
+        "reference_gain" => "A known weight tells: tactpad weigh",
+        _ => "Measure the stage itself, with a rule or a second pad",
+    }
+}

@@ -1,0 +1,154 @@
+//! What changed in a pad between two plays that nobody labelled.
+//!
+//! Nine channels against five unknowns of a contact leave four equations for each press. Both plays share one pad (its gains, poses,
+//! crosstalk, memory: [`Comparison`](crate::lab::calibration::change::Comparison)); what only the later one has is a change. The gain that
+//! all channels share is a force, and a shift or turn that all modules share is a place: no press tells them.
+
+mod candidates;
+mod selection;
+
+use std::fmt;
+
+use self::candidates::{Candidate, candidates};
+use self::selection::Selection;
+use crate::lab::calibration::change::{Compared, Comparison, Plays};
+use crate::lab::calibration::contacts::Fitted;
+use crate::lab::calibration::fit::{FitError, Report};
+use crate::lab::diagnosis::mechanics::{at_place, changes};
+use crate::lab::diagnosis::report::Finding;
+use crate::lab::play::windows::{Play, Window};
+use crate::pad::changes::FieldChange;
+use crate::pad::device::Device;
+use crate::pad::field::PadField;
+
+/// Fewer presses of a play tell too little, and more hardly more, as noise lasts.
+const PRESSES_MIN: usize = 200;
+const PRESSES_MAX: usize = 600;
+/// So often the equations are made anew about the changes that were found: a contact's place depends on them.
+const ROUNDS: usize = 2;
+/// Between the plays so long passes that no noise lasts.
+const APART_S: f64 = 86_400.0;
+
+/// What two plays say.
+#[derive(Clone, Debug)]
+pub struct Changed {
+    /// What changed, the clearest first.
+    pub findings: Vec<Finding>,
+    /// Presses of either play, as windows of a tenth of a second.
+    pub presses: [usize; 2],
+    /// By how much the plays contradict themselves: variances are taken to be so much larger.
+    pub inflation: f64,
+    /// The smallest change of any module's gain, as a share of it, that would have been found in 95 of 100 such plays.
+    pub least_module_gain: f64,
+}
+
+/// Which of the two plays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// The first.
+    Earlier,
+    /// The second.
+    Later,
+}
+
+/// Why nothing can be said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ChangeError {
+    /// The pad is never untouched for a moment.
+    NoRest(Which),
+    /// There are too few presses.
+    TooFew(Which, usize),
+    /// The fit has no answer.
+    Fit(FitError),
+}
+
+impl ChangeError {
+    /// Whose fault it is, if one play's.
+    pub const fn which(&self) -> Option<Which> {
+        match self {
+            Self::NoRest(which) | Self::TooFew(which, _) => Some(*which),
+            Self::Fit(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for ChangeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoRest(_) => {
+                f.write_str("the pad is never untouched for a moment; lift the finger between presses")
+            }
+            Self::TooFew(_, presses) => write!(
+                f,
+                "it has {presses} tenths of a second with a press of 0.3 N or more, and {PRESSES_MIN} are the least; play \
+                 for so long that there are {} more",
+                PRESSES_MIN - presses
+            ),
+            Self::Fit(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for ChangeError {}
+
+/// What changed from the earlier play to the later one. `field` is that of `device`, the nominal pad, and `flaws` what its modules
+/// may lack.
+///
+/// # Errors
+/// Too few presses, no rest, or readings beyond anything that a pad can read.
+pub fn changed(
+    [earlier, later]: [&[Window]; 2],
+    (device, field): (&Device, &PadField),
+    flaws: &[FieldChange],
+    report: Report<'_>,
+) -> Result<Changed, ChangeError> {
+    let first = play(earlier, Which::Earlier, device)?;
+    let begin_s = earlier.last().map_or(0.0, |it| it.end_s) + APART_S;
+    let moved = |it: &Window| Window { begin_s: it.begin_s + begin_s, end_s: it.end_s + begin_s, ..*it };
+    let later: Vec<Window> = later.iter().map(moved).collect();
+    let second = play(&later, Which::Later, device)?;
+    let rows = earlier.len();
+    let mut fitted = first.fitted;
+    fitted.extend(second.fitted.iter().map(|it| Fitted { row: rows + it.row, ..*it }));
+    let recording = first.recording.then(second.recording);
+    let plate_mm = device.plate.radius_mm();
+    let maps = |place_mm: [f64; 2]| at_place(field, flaws, place_mm.map(|mm| mm / plate_mm)).to_vec();
+    let plays = Plays { recording: &recording, fitted: &fitted, later: rows };
+    let comparison = Comparison::of(plays, (device, field), &maps, report).map_err(ChangeError::Fit)?;
+    let candidates = candidates(device, &changes(device, device, field, flaws));
+    let mut compared = comparison.about(&[]).map_err(ChangeError::Fit)?;
+    for _ in 0..ROUNDS {
+        let found = Selection::of(&candidates, &compared).solution();
+        if found.iter().all(|change| *change == 0.0) {
+            break;
+        }
+        compared = comparison.about(&found).map_err(ChangeError::Fit)?;
+    }
+    Ok(Changed::of(&candidates, &compared))
+}
+
+impl Changed {
+    fn of(candidates: &[Candidate], compared: &Compared) -> Self {
+        let selection = Selection::of(candidates, compared);
+        let modules = candidates.iter().filter(|it| it.effect == "module_gain");
+        Self {
+            findings: selection.findings(),
+            presses: compared.contacts,
+            inflation: compared.inflation,
+            least_module_gain: modules.map(|it| selection.least(it)).fold(0.0, f64::max),
+        }
+    }
+}
+
+/// A play's contacts, evenly over its time.
+fn play(windows: &[Window], which: Which, device: &Device) -> Result<Play, ChangeError> {
+    let mut play = Play::of(windows, &[], device.contact.full_scale_n).ok_or(ChangeError::NoRest(which))?;
+    let presses = play.fitted.len();
+    if presses < PRESSES_MIN {
+        return Err(ChangeError::TooFew(which, presses));
+    }
+    let stride = presses.div_ceil(PRESSES_MAX);
+    play.fitted = play.fitted.into_iter().step_by(stride).collect();
+    Ok(play)
+}

@@ -1,0 +1,63 @@
+//! What a weighing found, kept for good: the decoder of the pad as it is now.
+
+use crate::pipeline::compensation::Compensation;
+use crate::pipeline::compensation::hysteresis::Play;
+use crate::pipeline::contact::Decoder;
+use crate::pipeline::contact::inverse::Inverse;
+use crate::pipeline::contact::uncertainty::Noise;
+
+/// The decoder of a pad that reads `factor` times what it read at the calibration, where that is known but for `deviation`, a
+/// share. `None` for a decoder that does not know what its channels should read.
+///
+/// What belongs to a signal is multiplied: the field, what it does not know, the thresholds of the play operators. What belongs
+/// to the bridges stays: their noise, and zeros that follow the temperature. So do shares. Of the common gain nothing is open
+/// any more but what this weighing leaves open.
+pub fn kept(decoder: &Decoder, factor: f64, deviation: f64) -> Option<Decoder> {
+    let inverse = decoder.inverse()?;
+    let noise = *inverse.noise();
+    let noise = Noise {
+        force_uv_per_n: noise.force_uv_per_n.map(|uv_per_n| factor * uv_per_n),
+        field_uv_per_n: noise.field_uv_per_n.map(|uv_per_n| factor * uv_per_n),
+        gain: deviation,
+        ..noise
+    };
+    let hysteresis = decoder
+        .compensation
+        .hysteresis
+        .map(|play| Play { threshold_uv: play.threshold_uv.map(|uv| factor * uv), ..play });
+    let compensation = Compensation { hysteresis, ..decoder.compensation };
+    Some(Decoder::from(Inverse::new(inverse.field().scaled(factor), noise)).compensated_by(compensation))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::shipped;
+    use crate::quantity::{CHANNELS, Contact, Strain};
+
+    #[test]
+    fn a_pad_that_reads_less_is_read_as_before() {
+        let decoder = shipped::decoder();
+        let contact = Contact { x_mm: 8.0, y_mm: -5.0, fx_n: 0.3, fy_n: -0.2, fz_n: 2.0 };
+        let Strain { uv } = decoder.inverse().unwrap().field().strain_uv(&contact);
+        let found = kept(&decoder, 0.81, 0.006).unwrap();
+        let aged = found.decode(&Strain { uv: uv.map(|uv| 0.81 * uv) });
+        let before = decoder.decode(&Strain { uv });
+        assert!((aged.fz_n - before.fz_n).abs() < 1e-3 && (aged.x_mm - before.x_mm).abs() < 0.01, "{aged:?}");
+        assert_eq!(found.inverse().unwrap().noise().gain, 0.006);
+        assert!(kept(&shipped::statics(), 0.81, 0.006).is_none());
+    }
+
+    #[test]
+    fn thresholds_follow_the_gain_and_shares_stay() {
+        let play = Play { threshold_uv: [800.0; CHANNELS], share: [0.05; CHANNELS] };
+        let compensation = Compensation {
+            hysteresis: [play, Play::NONE],
+            zero_uv: Some([70.0; CHANNELS]),
+            ..Compensation::NONE
+        };
+        let found = kept(&shipped::decoder().compensated_by(compensation), 0.75, 0.006).unwrap().compensation;
+        let wanted = Play { threshold_uv: [600.0; CHANNELS], ..play };
+        assert_eq!(found, Compensation { hysteresis: [wanted, Play::NONE], ..compensation });
+    }
+}

@@ -1,6 +1,7 @@
 //! Small dense matrices and the products that least squares needs.
 
-use super::linear::{LargeFactor, Symmetric, dot};
+use super::linear::{AT_ONCE, LargeFactor, Symmetric, dot, products};
+use super::simd::widest;
 
 /// A matrix, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,13 +82,31 @@ impl Matrix {
 pub fn gram(columns: &[&[f64]]) -> Matrix {
     let mut gram = Matrix::zeros(columns.len(), columns.len());
     for (row, left) in columns.iter().enumerate() {
-        for (column, right) in columns.iter().enumerate().take(row + 1) {
-            let product = dot(left, right);
-            gram.row_mut(row)[column] = product;
-            gram.row_mut(column)[row] = product;
+        let line = &mut gram.row_mut(row)[..=row];
+        widest(
+            #[inline(always)]
+            || products_with(left, &columns[..=row], line),
+        );
+    }
+    for row in 0..columns.len() {
+        for column in 0..row {
+            gram.row_mut(column)[row] = gram.at(row, column);
         }
     }
     gram
+}
+
+/// Products of a vector with each of these.
+#[inline(always)]
+fn products_with(left: &[f64], columns: &[&[f64]], to: &mut [f64]) {
+    let (fours, rest) = columns.as_chunks::<AT_ONCE>();
+    let (four_products, single_products) = to.as_chunks_mut::<AT_ONCE>();
+    for (four, to) in fours.iter().zip(four_products) {
+        *to = products(left, *four);
+    }
+    for (one, to) in rest.iter().zip(single_products) {
+        [*to] = products(left, [one]);
+    }
 }
 
 #[cfg(test)]

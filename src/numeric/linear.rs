@@ -2,6 +2,10 @@
 //!
 //! Both by Cholesky's factorisation, A = L Lᵀ (G. H. Golub, C. F. Van Loan, Matrix Computations, section 4.2).
 
+use std::ops::Range;
+
+use super::simd::widest;
+
 /// The factor L of a small matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Factor<const N: usize> {
@@ -90,12 +94,26 @@ impl Symmetric {
 
     /// Adds weight · v vᵀ. Zeros of v cost nothing but a look.
     pub fn add_product(&mut self, weight: f64, vector: &[f64]) {
-        let entries: Vec<(usize, f64)> =
-            vector.iter().copied().enumerate().filter(|(_, value)| *value != 0.0).collect();
-        for (index, (row, left)) in entries.iter().enumerate() {
-            let line = &mut self.rows[row * self.size..][..self.size];
-            for (column, right) in &entries[..=index] {
-                line[*column] += weight * left * right;
+        let runs = runs(vector);
+        widest(
+            #[inline(always)]
+            || {
+                for run in &runs {
+                    for row in run.clone() {
+                        self.add_to_row(row, weight * vector[row], &runs, vector);
+                    }
+                }
+            },
+        );
+    }
+
+    /// Adds factor · v to a row, up to the diagonal.
+    #[inline(always)]
+    fn add_to_row(&mut self, row: usize, factor: f64, runs: &[Range<usize>], vector: &[f64]) {
+        let line = &mut self.rows[row * self.size..][..self.size];
+        for run in runs.iter().take_while(|run| run.start <= row) {
+            for column in run.start..run.end.min(row + 1) {
+                line[column] += factor * vector[column];
             }
         }
     }
@@ -103,6 +121,14 @@ impl Symmetric {
     /// Adds weight · v vᵀ for each of these weights and vectors, which have few zeros. Many at once cost less each: the matrix
     /// is gone through once.
     pub fn add_squares(&mut self, vectors: &[(f64, Vec<f64>)]) {
+        widest(
+            #[inline(always)]
+            || self.add_weighted(vectors),
+        );
+    }
+
+    #[inline(always)]
+    fn add_weighted(&mut self, vectors: &[(f64, Vec<f64>)]) {
         for row in 0..self.size {
             let line = &mut self.rows[row * self.size..][..=row];
             // Four at a time, so that an entry is loaded and stored once for all of them.
@@ -134,17 +160,40 @@ impl Symmetric {
 
     /// Rows of L, each up to the column `columns` or its diagonal.
     fn factorise(&mut self, columns: usize) -> Option<()> {
+        widest(
+            #[inline(always)]
+            || self.factorise_rows(columns),
+        )
+    }
+
+    #[inline(always)]
+    fn factorise_rows(&mut self, columns: usize) -> Option<()> {
         let size = self.size;
         for row in 0..size {
             // Row by row, as in [`Factor::of`]; the rows above are done.
             let (above, from_row) = self.rows.split_at_mut(row * size);
             let line = &mut from_row[..size];
-            for column in 0..row.min(columns) {
+            let known = row.min(columns);
+            let mut column = 0;
+            while column + AT_ONCE <= known {
+                // What the columns before these four take, and then these of one another.
+                let others: [&[f64]; AT_ONCE] =
+                    std::array::from_fn(|k| &above[(column + k) * size..][..column]);
+                let taken = products(&line[..column], others);
+                for (k, taken) in taken.into_iter().enumerate() {
+                    let other = &above[(column + k) * size..][..=column + k];
+                    let rest: f64 = (column..column + k).map(|at| line[at] * other[at]).sum();
+                    line[column + k] = (line[column + k] - (taken + rest)) / other[column + k];
+                }
+                column += AT_ONCE;
+            }
+            for column in column..known {
                 let other = &above[column * size..][..=column];
-                line[column] = (line[column] - dot(&line[..column], &other[..column])) / other[column];
+                line[column] =
+                    (line[column] - products(&line[..column], [&other[..column]])[0]) / other[column];
             }
             if row < columns {
-                line[row] = root(line[row] - dot(&line[..row], &line[..row]))?;
+                line[row] = root(line[row] - products(&line[..row], [&line[..row]])[0])?;
             }
         }
         Some(())
@@ -172,6 +221,18 @@ impl Symmetric {
             score: rest.clone().map(|row| right[row] - dot(line(row), &half)).collect(),
         })
     }
+}
+
+/// Where a vector is not zero, stretch by stretch; single zeros between two stretches belong to them.
+fn runs(vector: &[f64]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for at in (0..vector.len()).filter(|at| vector[*at] != 0.0) {
+        match runs.last_mut() {
+            Some(run) if run.end + 1 >= at => run.end = at + 1,
+            _ => runs.push(at..at + 1),
+        }
+    }
+    runs
 }
 
 /// What is left of equations when some of their unknowns are free: S and s of the others.
@@ -317,15 +378,50 @@ impl LargeFactor {
     }
 }
 
+/// Vectors of so many numbers gain by wider vectors of the processor.
+const LONG: usize = 64;
+/// So many products of one vector with others are summed at once: it is loaded once for all of them.
+pub(super) const AT_ONCE: usize = 4;
+
 /// Σ aᵢ bᵢ, in eight sums side by side, so that the loop becomes vectors that do not wait for one another; the order is fixed.
 pub fn dot(left: &[f64], right: &[f64]) -> f64 {
-    let (left, right) = (left.as_chunks::<8>(), right.as_chunks::<8>());
-    let mut sums = [0.0; 8];
-    for (left, right) in left.0.iter().zip(right.0) {
-        sums.iter_mut().zip(left.iter().zip(right)).for_each(|(sum, (left, right))| *sum += left * right);
+    if left.len() < LONG {
+        return products(left, [right])[0];
     }
-    let rest: f64 = left.1.iter().zip(right.1).map(|(left, right)| left * right).sum();
-    sums.iter().sum::<f64>() + rest
+    widest(
+        #[inline(always)]
+        || products(left, [right])[0],
+    )
+}
+
+/// [`dot`] of one vector with each of several ones.
+#[inline(always)]
+pub(super) fn products<const N: usize>(left: &[f64], right: [&[f64]; N]) -> [f64; N] {
+    let (left, rest) = left.as_chunks::<8>();
+    let right = right.map(|right| right.as_chunks::<8>());
+    let whole = right.iter().map(|(chunks, _)| chunks.len()).fold(left.len(), usize::min);
+    let mut sums = [[0.0; 8]; N];
+    // By indices: iterators would be calls of their own, outside the widest vectors.
+    for at in 0..whole {
+        for n in 0..N {
+            let (left, right) = (&left[at], &right[n].0[at]);
+            for k in 0..8 {
+                sums[n][k] += left[k] * right[k];
+            }
+        }
+    }
+    let mut of_all = [0.0; N];
+    for n in 0..N {
+        let mut sum = 0.0;
+        for k in 0..rest.len().min(right[n].1.len()) {
+            sum += rest[k] * right[n].1[k];
+        }
+        for part in sums[n] {
+            sum += part;
+        }
+        of_all[n] = sum;
+    }
+    of_all
 }
 
 #[cfg(test)]

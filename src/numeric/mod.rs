@@ -7,5 +7,6 @@ pub mod linear;
 pub mod memory;
 pub mod principal;
 pub mod random;
+mod simd;
 pub mod statistics;
 pub mod zernike;

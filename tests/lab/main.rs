@@ -16,6 +16,7 @@ mod models;
 mod network;
 mod onnxruntime;
 mod scdf;
+mod simulation_based;
 #[path = "../support/mod.rs"]
 mod support;
 mod tuning;

@@ -1,6 +1,7 @@
 //! `tactpad adapt`: fits a decoder to a pad by measured contacts.
 
 pub(super) mod at_home;
+mod checks;
 mod measured;
 mod method;
 mod named;
@@ -123,10 +124,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         decoder_file::write_network(&to, &network)?;
         Fit::Network(fit)
     } else {
-        let (decoder, found) = own::adapt(*method, &measured, earlier.as_ref(), (&device, &field))?;
+        // Neither waits for the other: what is named has no part in the fit.
+        let (adapted, named) = rayon::join(
+            || own::adapt(*method, &measured, earlier.as_ref(), (&device, &field)),
+            || Named::by(&measured.tables, &device, &field),
+        );
+        let (decoder, found) = adapted?;
         let note = format!("{} contacts of {}", measured.contacts.count(), measured.names);
         to.write(&decoder.to_bytes(&note).unwrap_or_default())?;
-        let pad = found.map(|found| FoundPad::of(found, Named::by(&measured.tables, &device, &field)));
+        let pad = found.map(|found| FoundPad::of(found, named));
         Fit::Own { pad: pad.map(Box::new) }
     };
     let (rows, tared) = (measured.contacts.count(), measured.contacts.is_tared());

@@ -5,6 +5,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::checks::Checked;
 use super::named::{FoundIn, Named};
 use super::open::Open;
 use super::thermal::FoundThermal;
@@ -53,6 +54,8 @@ struct Document<'d> {
     field_from_earlier: bool,
     /// What the rig leaves open.
     open_by_rig: Vec<Open>,
+    /// Whether contacts miss alike in all parts of the measurement.
+    checks: Vec<Checked>,
 }
 
 /// How well a number is known, and whether a diagnosis names its cause.
@@ -151,6 +154,7 @@ impl Pad {
             thermal: thermal.as_ref().map(FoundThermal::of),
             field_from_earlier: self.calibration.from_earlier,
             open_by_rig: self.calibration.open_by_rig.iter().map(Open::of).collect(),
+            checks: self.calibration.checks.iter().map(Checked::of).collect(),
         }
     }
 
@@ -269,6 +273,9 @@ impl fmt::Display for Pad {
         self.write_pairs(f)?;
         for open in &self.calibration.open_by_rig {
             writeln!(f, "{}", hanging("", &Open::of(open).words()))?;
+        }
+        for check in self.calibration.checks.iter().filter(|it| it.is_missed()) {
+            writeln!(f, "{}", hanging("", &Checked::of(check).words()))?;
         }
         write!(f, "smooth background: {:.1} % of each map", 100.0 * self.calibration.background)?;
         let is_earlier = self.calibration.from_earlier;

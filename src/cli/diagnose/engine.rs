@@ -2,7 +2,6 @@
 
 use crate::cli::failure::Failure;
 use crate::cli::field::{changes_of, field_of};
-use crate::cli::progress::Progress;
 use crate::cli::written::say;
 use tactpad::lab::diagnosis::report::Diagnosis;
 use tactpad::lab::diagnosis::{self, Unfit};
@@ -11,7 +10,7 @@ use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::tables::measured::Table;
 
-/// Holds a table against a device, whose field this is; a line says so meanwhile.
+/// Holds a table against a device, whose field this is.
 pub(crate) fn diagnosed(
     table: &Table,
     (device, field): (&Device, &PadField),
@@ -20,7 +19,6 @@ pub(crate) fn diagnosed(
     let flaws = flaws(device);
     let solve = |device: &Device| field_of(device).ok();
     let pad = diagnosis::Pad { device, field, flaws: &flaws, solve: &solve, without };
-    let _progress = Progress::begin("looking for causes");
     diagnosis::diagnose(table, &pad)
 }
 

@@ -20,6 +20,7 @@ use self::files::{file_name, write_report};
 use super::destination::Destination;
 use super::failure::Failure;
 use super::field::field_of;
+use super::progress::Progress;
 use super::tables;
 use super::written::{is_stdout, print_json, say, stdout};
 use tactpad::lab::diagnosis::extension::extended;
@@ -51,7 +52,9 @@ fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
     // It takes a while until the engine itself could say so.
     diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
     let field = field_of(&device)?;
+    let progress = Progress::begin("looking for causes");
     let diagnosis = diagnosed(&table, (&device, &field), without).map_err(|why| unfit(measured, &why))?;
+    drop(progress);
     if let Some(to) = saved {
         save(&to, &device, &diagnosis, &table)?;
     }

@@ -18,6 +18,8 @@
 //!
 //! Source: C. R. Rao, Proc. Camb. Phil. Soc. 44 (1948) 50 (score tests beside free parameters).
 
+use std::sync::Arc;
+
 use super::contacts::{Fitted, Maps, Measured, Place, response};
 use super::fit::{FitError, Report, settled_reported};
 use super::model::Layout;
@@ -25,7 +27,7 @@ use super::normal_equations::NormalEquations;
 use super::prepared::Prepared;
 use super::prior::Prior;
 use super::prior_deviations::Kind;
-use super::problem::{Fit, Problem};
+use super::problem::{Effort, Fit, Problem};
 use crate::numeric::linear::Reduced;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
@@ -109,7 +111,9 @@ impl<'p> Comparison<'p> {
         // Thresholds and times are asked of some contacts, and all other numbers then of all.
         let some: Vec<Fitted> = earlier.iter().step_by(SETTLING_STRIDE).copied().collect();
         let settled = settled_reported(&prepared.problem(&some, device, &prior), &prior, report);
-        let fit = settled.and_then(|it| prepared.problem(&earlier, device, &prior).fitted(it.settings, None));
+        let fit = settled.and_then(|it| {
+            prepared.problem(&earlier, device, &prior).fitted(it.settings, None, Effort::FULL)
+        });
         let fit = fit.ok_or(FitError::Senseless)?;
         Ok(Self { plays, device, maps, prepared, prior, fit })
     }
@@ -190,7 +194,7 @@ impl<'m> Columns<'m> {
     fn change_places(&self, problem: &mut Problem<'_>) {
         let Problem { prior, sensitivities, plate_mm, contacts, .. } = problem;
         for (_, contact) in contacts.iter_mut().filter(|(row, _)| *row >= self.later) {
-            contact.place = Place::of(&prior.field, sensitivities, *plate_mm, contact.place_mm);
+            contact.place = Arc::new(Place::of(&prior.field, sensitivities, *plate_mm, contact.place_mm));
             self.change_place(contact);
         }
     }
@@ -213,11 +217,12 @@ impl<'m> Columns<'m> {
             let entries = to.as_flattened_mut().iter_mut().zip(maps.as_flattened());
             entries.for_each(|(to, entry)| *to += factor * entry);
         };
-        add(&mut contact.place.gains, 1.0, &sum([x_mm, y_mm]));
+        let place = Arc::make_mut(&mut contact.place);
+        add(&mut place.gains, 1.0, &sum([x_mm, y_mm]));
         for (axis, [dx_mm, dy_mm]) in [[STEP_MM, 0.0], [0.0, STEP_MM]].into_iter().enumerate() {
             let per_mm = 0.5 / STEP_MM;
-            add(&mut contact.place.gradient[axis], per_mm, &sum([x_mm + dx_mm, y_mm + dy_mm]));
-            add(&mut contact.place.gradient[axis], -per_mm, &sum([x_mm - dx_mm, y_mm - dy_mm]));
+            add(&mut place.gradient[axis], per_mm, &sum([x_mm + dx_mm, y_mm + dy_mm]));
+            add(&mut place.gradient[axis], -per_mm, &sum([x_mm - dx_mm, y_mm - dy_mm]));
         }
     }
 

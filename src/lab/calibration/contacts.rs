@@ -1,6 +1,9 @@
 //! Measured contacts, with the simulator's field and its derivatives at their places: what stays fixed during a calibration.
 
+use std::sync::Arc;
+
 use super::rig::Written;
+use crate::numeric::linear::dot;
 use crate::numeric::zernike::{Jet, jets, norms};
 use crate::pad::field::{PadField, Sensitivity};
 use crate::pipeline::compensation::hysteresis::PLAYS;
@@ -71,7 +74,7 @@ pub(super) struct Measured {
     pub(super) at_s: f64,
     /// Where the contact is taken to be, and its force: the label's, or the most likely ones where the channels may correct it.
     pub(super) place_mm: [f64; 2],
-    pub(super) place: Place,
+    pub(super) place: Arc<Place>,
     pub(super) force_n: [f64; 3],
     /// Channels relative to the zero.
     pub(super) uv: [f64; CHANNELS],
@@ -98,13 +101,19 @@ impl Place {
         let degree =
             sensitivities.iter().map(|it| degree_of(it.maps[0][0].coefficients.len())).max().unwrap_or(0);
         let jets = jets(degree.max(BACKGROUND_DEGREE), share);
-        let (mut values, mut gradients) = (Vec::new(), Vec::new());
-        for sensitivity in sensitivities {
-            let jets = sensitivity.maps.each_ref().map(|axes| axes.each_ref().map(|map| map.jet(&jets)));
-            values.push(jets.map(|axes| axes.map(|jet| jet.value)));
-            let [dx, dy]: [fn(Jet) -> f64; 2] = [|jet| jet.dx, |jet| jet.dy];
-            gradients.push([dx, dy].map(|along| jets.map(|axes| axes.map(|jet| along(jet) / plate_mm))));
-        }
+        // Polynomials of value and slopes, each as a vector of its own: Σₜ cₜ Uₜ, Σₜ cₜ ∇Uₜ/R.
+        let [values, dx, dy] = [|it: &Jet| it.value, |it: &Jet| it.dx, |it: &Jet| it.dy]
+            .map(|of| jets.iter().map(of).collect::<Vec<f64>>());
+        let maps = |sensitivity: &Sensitivity, terms: &[f64], scale: f64| {
+            sensitivity.maps.each_ref().map(|axes| {
+                axes.each_ref().map(|map| {
+                    let terms = &terms[..map.coefficients.len().min(terms.len())];
+                    scale * dot(&map.coefficients[..terms.len()], terms)
+                })
+            })
+        };
+        let per_mm = 1.0 / plate_mm;
+        let gradient = |it: &&Sensitivity| [maps(it, &dx, per_mm), maps(it, &dy, per_mm)];
         let factors = term_factors();
         let term = |of: fn(&Jet) -> f64, scale: f64| {
             std::array::from_fn(|term| factors[term] * of(&jets[term]) * scale)
@@ -114,8 +123,8 @@ impl Place {
             gains: gains.value,
             gradient: [gains.dx, gains.dy],
             laplacian: field.signals.laplacian(place_mm),
-            sensitivities: values,
-            sensitivity_gradients: gradients,
+            sensitivities: sensitivities.iter().map(|it| maps(it, &values, 1.0)).collect(),
+            sensitivity_gradients: sensitivities.iter().map(gradient).collect(),
             terms: term(|jet| jet.value, 1.0),
             term_gradients: [term(|jet| jet.dx, 1.0 / plate_mm), term(|jet| jet.dy, 1.0 / plate_mm)],
         }
@@ -140,7 +149,7 @@ fn term_factors() -> [f64; TERMS] {
 
 impl Measured {
     /// A contact without readings, for predictions.
-    pub(super) const fn unmeasured(place_mm: [f64; 2], place: Place, force_n: [f64; 3]) -> Self {
+    pub(super) fn unmeasured(place_mm: [f64; 2], place: Place, force_n: [f64; 3]) -> Self {
         let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) = (place_mm, force_n);
         Self {
             knowledge: Knowledge::Written,
@@ -148,7 +157,7 @@ impl Measured {
             label: [x_mm, y_mm, fx_n, fy_n, fz_n],
             at_s: 0.0,
             place_mm,
-            place,
+            place: Arc::new(place),
             force_n,
             uv: [0.0; CHANNELS],
             above_c: 0.0,

@@ -292,6 +292,7 @@ mod tests {
     use crate::lab::calibration::hyperparameters::Settings;
     use crate::lab::calibration::prepared::Prepared;
     use crate::lab::calibration::prior::Prior;
+    use crate::lab::calibration::problem::Effort;
     use crate::numeric::random::SplitMix64;
     use crate::pad::device::Device;
     use crate::pad::field::PadField;
@@ -334,7 +335,7 @@ mod tests {
         let prior = Prior::simulated(&field);
         let prepared = Prepared::of(&recording, &fitted, &device, &field).unwrap();
         let problem = prepared.problem(&fitted, &device, &prior).with_background();
-        let fit = problem.clone().fitted(SETTINGS, None).unwrap();
+        let fit = problem.clone().fitted(SETTINGS, None, Effort::FULL).unwrap();
         ask(&problem, &fit, &decoder(&problem, &fit, fit.estimates.noise_model.noise));
     }
 

@@ -16,9 +16,10 @@ use super::model::Layout;
 use super::noise;
 use super::numbers::{Asked, Number, Pair};
 use super::open::{OpenByRig, by_rig};
+use super::predictive::{Check, checks};
 use super::prepared::Prepared;
 use super::prior::Prior;
-use super::problem::{Fit, Problem};
+use super::problem::{Effort, Fit, Problem};
 use super::thermal_fit::ThermalFit;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
@@ -64,8 +65,9 @@ impl<'r> Counted<'r> {
     /// As many as all hypotheses can ask for.
     fn of(hypotheses: &[Hypothesis], report: Report<'r>) -> Self {
         let refinements = 2 * HALVINGS as usize;
-        let search =
-            |known_uv: &f64| if *known_uv > 0.0 { refinements } else { THRESHOLDS as usize + refinements };
+        let search = |known_uv: &f64| {
+            if *known_uv > 0.0 { refinements } else { THRESHOLDS as usize + 1 + refinements }
+        };
         let of_one = |it: &Hypothesis| {
             NOISE_TIMES_S.len()
                 + it.prior.thresholds_uv.iter().map(search).sum::<usize>()
@@ -76,8 +78,13 @@ impl<'r> Counted<'r> {
         Self { done: AtomicUsize::new(0), most: hypotheses.iter().map(of_one).sum(), report }
     }
 
-    fn fitted(&self, problem: &Problem<'_>, settings: Settings, from: Option<&Fit>) -> Option<Fit> {
-        let fit = problem.clone().fitted(settings, from);
+    fn fitted(
+        &self,
+        problem: &Problem<'_>,
+        settings: Settings,
+        (from, effort): (Option<&Fit>, Effort),
+    ) -> Option<Fit> {
+        let fit = problem.clone().fitted(settings, from, effort);
         (self.report)(self.done.fetch_add(1, Ordering::Relaxed) + 1, self.most);
         fit
     }
@@ -112,6 +119,8 @@ pub struct Calibration {
     pub map: Vec<Known>,
     /// Errors of the rig that are a large part of what is open there.
     pub open_by_rig: Vec<OpenByRig>,
+    /// Parts of the contacts, held against all of them; none without labels.
+    pub checks: Vec<Check>,
 }
 
 /// Why there is no calibration.
@@ -195,6 +204,7 @@ impl Calibration {
             contacts: problem.contacts(),
             open_by_rig,
             map,
+            checks: checks(&problem.clone().explained(fit)),
         }
     }
 
@@ -316,7 +326,12 @@ fn calibrated<'b>(
 /// The same with a background, if the evidence asks for one.
 fn with_background<'b>(problem: Problem<'b>, plain: Fit, counted: &Counted<'_>) -> (Problem<'b>, Fit) {
     let smooth = problem.clone().with_background();
-    let tried = |background| counted.fitted(&smooth, Settings { background, ..plain.settings }, Some(&plain));
+    let effort = Effort { least: plain.log_evidence, ..Effort::FULL };
+    let tried = |background| {
+        let mut settings = plain.settings;
+        settings.background = background;
+        counted.fitted(&smooth, settings, (Some(&plain), effort))
+    };
     let [_, largest] = SMALL_BACKGROUNDS;
     let small = most_probable(SMALL_BACKGROUNDS.to_vec(), tried);
     let is_largest = small.as_ref().is_some_and(|it| it.settings.background == largest);
@@ -347,7 +362,7 @@ fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_
     let Prior { thresholds_uv, creep: Creep { time_s: creep_time_s, .. }, .. } = *prior;
     let tried = |noise_time_s: f64| {
         let settings = Settings { background: 0.0, thresholds_uv, creep_time_s, noise_time_s };
-        counted.fitted(problem, settings, None)
+        counted.fitted(problem, settings, (None, Effort::FULL))
     };
     if problem.layout.is_play { most_probable(NOISE_TIMES_S.to_vec(), tried) } else { tried(0.0) }
 }
@@ -355,17 +370,18 @@ fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_
 /// The same with as many play operators as the evidence asks for. Known thresholds are only refined.
 fn with_hysteresis(problem: &Problem<'_>, prior: &Prior, mut best: Fit, counted: &Counted<'_>) -> Fit {
     for (play, known_uv) in prior.thresholds_uv.into_iter().enumerate() {
-        let tried = |threshold_uv| {
-            let mut settings = best.settings;
+        let tried = |threshold_uv, from: &Fit, effort| {
+            let mut settings = from.settings;
             settings.thresholds_uv[play] = threshold_uv;
-            counted.fitted(problem, settings, Some(&best))
+            counted.fitted(problem, settings, (Some(from), effort))
         };
         if known_uv > 0.0 {
-            best = refined(play, best.clone(), &tried);
+            best = refined(play, best.clone(), Effort::FULL, &tried);
             continue;
         }
-        match searched(play, tried) {
-            Some(found) if found.log_evidence > best.log_evidence + LOG_EVIDENCE_GAIN => best = found,
+        let least = best.log_evidence + LOG_EVIDENCE_GAIN;
+        match searched(play, &best, least, tried) {
+            Some(found) if found.log_evidence > least => best = found,
             _ => break,
         }
     }
@@ -374,26 +390,44 @@ fn with_hysteresis(problem: &Problem<'_>, prior: &Prior, mut best: Fit, counted:
 
 /// The same with creep, if the evidence asks for it.
 fn with_creep(problem: &Problem<'_>, best: Fit, counted: &Counted<'_>) -> Fit {
+    let least = best.log_evidence + LOG_EVIDENCE_GAIN;
     let found = most_probable(CREEP_TIMES_S.to_vec(), |creep_time_s| {
-        counted.fitted(problem, Settings { creep_time_s, ..best.settings }, Some(&best))
+        let mut settings = best.settings;
+        settings.creep_time_s = creep_time_s;
+        counted.fitted(problem, settings, (Some(&best), Effort { least, ..Effort::FULL }))
     });
-    found.filter(|found| found.log_evidence > best.log_evidence + LOG_EVIDENCE_GAIN).unwrap_or(best)
+    found.filter(|found| found.log_evidence > least).unwrap_or(best)
 }
 
-/// The threshold of the largest evidence: on a coarse scale first, then by ever smaller steps around the best.
-fn searched(play: usize, tried: impl Fn(f64) -> Option<Fit> + Send + Sync) -> Option<Fit> {
+/// The threshold of the largest evidence: on a coarse scale first, then by ever smaller steps around the best. Of what does not come
+/// to the evidence `least` nobody asks how far it came.
+fn searched(
+    play: usize,
+    plain: &Fit,
+    least: f64,
+    tried: impl Fn(f64, &Fit, Effort) -> Option<Fit> + Send + Sync,
+) -> Option<Fit> {
     // 40 µV · 1.6ᵏ: up to 4.4 mV.
     let coarse = (0..THRESHOLDS).map(|step| THRESHOLD_MIN_UV * THRESHOLD_RATIO.powi(step));
-    let best = most_probable(coarse.collect(), &tried)?;
-    Some(refined(play, best, &tried))
+    let effort = Effort { least, ..Effort::COARSE };
+    let best = most_probable(coarse.collect(), |threshold_uv| tried(threshold_uv, plain, effort))?;
+    let effort = Effort { least, ..Effort::FULL };
+    let best = tried(best.settings.thresholds_uv[play], &best, effort)?;
+    Some(refined(play, best, effort, &tried))
 }
 
 /// The threshold of the largest evidence near the best one, by a factor ±½, ±¼, ±⅛ of a coarse step.
-fn refined(play: usize, mut best: Fit, tried: &(impl Fn(f64) -> Option<Fit> + Send + Sync)) -> Fit {
+fn refined(
+    play: usize,
+    mut best: Fit,
+    effort: Effort,
+    tried: &(impl Fn(f64, &Fit, Effort) -> Option<Fit> + Send + Sync),
+) -> Fit {
     for halving in 1..=HALVINGS {
         let factor = THRESHOLD_RATIO.powf(0.5_f64.powi(halving));
         let centre_uv = best.settings.thresholds_uv[play];
-        let around = most_probable(vec![centre_uv / factor, centre_uv * factor], tried);
+        let around =
+            most_probable(vec![centre_uv / factor, centre_uv * factor], |uv| tried(uv, &best, effort));
         best = around.filter(|around| around.log_evidence > best.log_evidence).unwrap_or(best);
     }
     best

@@ -36,6 +36,7 @@ pub mod open;
 pub mod physical;
 mod plate;
 mod posterior;
+pub mod predictive;
 mod prepared;
 mod prior;
 mod prior_deviations;

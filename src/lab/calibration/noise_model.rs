@@ -29,6 +29,8 @@ const FORCE_MIN_N: f64 = 5e-4;
 /// EM steps for each estimate; the states of lasting noise make each dear.
 const ROUNDS: usize = 12;
 const ROUNDS_LASTING: usize = 4;
+/// A step that changes every deviation by a smaller part is the last.
+const SETTLED: f64 = 1e-3;
 
 /// Standard deviations of channel noise and label errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +128,27 @@ impl NoiseModel {
     /// of the readings that are residual degrees of freedom: squares of residuals are divided by it.
     pub(super) fn reestimated(self, residuals: &[Residual], freedom_ratio: f64) -> Self {
         let rounds = if self.lasting_s > 0.0 { ROUNDS_LASTING } else { ROUNDS };
-        (0..rounds).fold(self, |noise_model, _| noise_model.em_step(residuals, freedom_ratio))
+        let mut noise_model = self;
+        for _ in 0..rounds {
+            let previous = noise_model;
+            noise_model = previous.em_step(residuals, freedom_ratio);
+            if noise_model.is_near(&previous) {
+                break;
+            }
+        }
+        noise_model
+    }
+
+    /// Whether no standard deviation differs by more than a thousandth.
+    fn is_near(&self, other: &Self) -> bool {
+        self.deviations()
+            .zip(other.deviations())
+            .all(|(one, other)| (one - other).abs() <= SETTLED * other.abs())
+    }
+
+    fn deviations(&self) -> impl Iterator<Item = f64> {
+        let Noise { additive_uv, share, force_uv_per_n, .. } = self.noise;
+        [additive_uv, share, force_uv_per_n].into_iter().flatten().chain([self.place_mm, self.force_n])
     }
 
     /// E: expected squares of each label's error d and each channel's noise n, given the residual r.

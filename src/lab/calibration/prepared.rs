@@ -5,7 +5,7 @@ use super::contacts::Fitted;
 use super::hyperparameters::Settings;
 use super::model::Layout;
 use super::prior::Prior;
-use super::problem::{Fit, Problem};
+use super::problem::{Effort, Fit, Problem};
 use super::thermal_fit::ThermalFit;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
@@ -47,7 +47,7 @@ impl Prepared {
         let prior = Prior::simulated(field);
         let plain =
             Settings { background: 0.0, thresholds_uv: [0.0; PLAYS], creep_time_s: 0.0, noise_time_s: 0.0 };
-        let fit = prepared.problem(fitted, device, &prior).fitted(plain, None);
+        let fit = prepared.problem(fitted, device, &prior).fitted(plain, None, Effort::FULL);
         let zero_uv = Layout::zeros(&fit?.values);
         Some(Self { recording: prepared.recording.less(&zero_uv), zero_uv: Some(zero_uv), ..prepared })
     }

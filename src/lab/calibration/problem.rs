@@ -9,6 +9,7 @@
 //! effective number of parameters).
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::contacts::{Fitted, Knowledge, Maps, Measured, Place, TERMS};
 use super::hyperparameters::{Estimates, Settings};
@@ -21,7 +22,7 @@ use super::normal_equations::{NormalEquations, Step};
 use super::physical::free;
 use super::plate::scale;
 use super::prior::Prior;
-use super::residual::Residual;
+use super::residual::{MarginalPrecision, Residual};
 use super::rig::RigPrior;
 use crate::lab::ageing;
 use crate::numeric::linear::{LargeFactor, dot};
@@ -35,8 +36,8 @@ use crate::tables::recording::Recording;
 
 /// Most Gauss-Newton steps of a fit; the channels are nearly linear in the parameters.
 const STEPS_MAX: usize = 12;
-/// A step that changes the log evidence by less is the last.
-const LOG_EVIDENCE_TOLERANCE: f64 = 0.3;
+/// All further steps together gain less than so many times the present one.
+const HOPE: f64 = 5.0;
 /// A contact is taken to be elsewhere only where that is farther off.
 const RELOCATED_MM: f64 = 0.1;
 /// Least part of the readings that counts as degrees of freedom, however many parameters are fitted.
@@ -71,8 +72,47 @@ pub(super) struct Fit {
     pub(super) factor: LargeFactor,
     /// ln p(y | settings) by the Laplace approximation, but for a constant that the settings share.
     pub(super) log_evidence: f64,
-    /// The contacts as they are taken to be: x, y, Fx, Fy, Fz.
-    located: Vec<[f64; UNKNOWNS]>,
+    /// The contacts as they are taken to be.
+    located: Vec<Located>,
+}
+
+/// Where a contact is taken to be.
+#[derive(Clone, Debug)]
+struct Located {
+    place_mm: [f64; 2],
+    /// The field there, which takes long to find.
+    place: Arc<Place>,
+    force_n: [f64; 3],
+}
+
+/// A contact as a fit explains it.
+#[derive(Clone, Debug)]
+pub(super) struct Explained {
+    pub(super) place_mm: [f64; 2],
+    pub(super) residual: Residual,
+    /// Inverse covariance of the residual by the noise model.
+    pub(super) precision: MarginalPrecision,
+}
+
+/// How far a fit is carried.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// A step that changes the log evidence by less is the last.
+    pub(super) tolerance: f64,
+    /// A fit that will not come to this log evidence breaks off: its maximum is asked by nobody.
+    pub(super) least: f64,
+}
+
+impl Effort {
+    /// To the maximum.
+    pub(super) const FULL: Self = Self { tolerance: 0.3, least: f64::NEG_INFINITY };
+    /// Near enough to choose among settings that differ by more.
+    pub(super) const COARSE: Self = Self { tolerance: 3.0, ..Self::FULL };
+
+    /// Whether a step that gained so much is the last.
+    fn is_enough(self, log_evidence: f64, gain: f64) -> bool {
+        gain < self.tolerance || log_evidence + HOPE * gain < self.least
+    }
 }
 
 impl Fit {
@@ -146,7 +186,7 @@ impl<'f> Problem<'f> {
 
     /// The maximum of the posterior. The search begins at `start`, or at the prior's mean. `None` where the curvature is not
     /// positive definite or a parameter not finite.
-    pub(super) fn fitted(mut self, settings: Settings, start: Option<&Fit>) -> Option<Fit> {
+    pub(super) fn fitted(mut self, settings: Settings, start: Option<&Fit>, effort: Effort) -> Option<Fit> {
         let mut estimates =
             Estimates::first(self.prior.noise, settings.noise_time_s, self.recording.is_tared());
         let mut values = self.layout.prior_mean(self.prior, &estimates.rig);
@@ -155,7 +195,7 @@ impl<'f> Problem<'f> {
             estimates = start.estimates;
             estimates.noise_model.lasting_s = settings.noise_time_s;
             self.relabel(&values);
-            self.locate(&start.located);
+            self.take_up(&start.located);
         }
         let mut found: Option<Fit> = None;
         for _ in 0..STEPS_MAX {
@@ -189,7 +229,7 @@ impl<'f> Problem<'f> {
                 drift_uv: self.jumps.drift_uv(&self.layout, &values),
                 rig: self.rig_prior(&estimates.rig, &values, &variances),
             };
-            if gain < LOG_EVIDENCE_TOLERANCE {
+            if effort.is_enough(log_evidence, gain) {
                 break;
             }
         }
@@ -367,18 +407,40 @@ impl<'f> Problem<'f> {
             // So near the field is linear, and nothing is gained by being there.
             let [dx_mm, dy_mm] = [0, 1].map(|axis| place_mm[axis] - contact.place_mm[axis]);
             if libm::hypot(dx_mm, dy_mm) > RELOCATED_MM {
-                contact.place = Place::of(field, &self.sensitivities, plate_mm, place_mm);
+                contact.place = Arc::new(Place::of(field, &self.sensitivities, plate_mm, place_mm));
                 contact.place_mm = place_mm;
             }
         }
     }
 
-    fn located(&self) -> Vec<[f64; UNKNOWNS]> {
-        let here = |(_, contact): &(usize, Measured)| {
-            let off = contact.off_label();
-            std::array::from_fn(|k| contact.label[k] + off[k])
+    fn located(&self) -> Vec<Located> {
+        let here = |(_, it): &(usize, Measured)| Located {
+            place_mm: it.place_mm,
+            place: Arc::clone(&it.place),
+            force_n: it.force_n,
         };
         self.contacts.iter().map(here).collect()
+    }
+
+    /// Takes the contacts to be where another fit of them took them to be.
+    fn take_up(&mut self, located: &[Located]) {
+        for ((_, contact), Located { place_mm, place, force_n }) in self.contacts.iter_mut().zip(located) {
+            (contact.place_mm, contact.force_n) = (*place_mm, *force_n);
+            contact.place = Arc::clone(place);
+        }
+    }
+
+    /// A fit's contacts, as it explains them.
+    pub(super) fn explained(mut self, fit: &Fit) -> Vec<Explained> {
+        self.relabel(&fit.values);
+        self.take_up(&fit.located);
+        self.follow_load_path(&fit.values, &fit.settings);
+        let contacts = self.contacts.iter().zip(self.residuals(&fit.values));
+        let explained = contacts.filter_map(|((_, contact), residual)| {
+            let precision = fit.estimates.noise_model.marginal_precision(&residual)?;
+            Some(Explained { place_mm: contact.place_mm, residual, precision })
+        });
+        explained.collect()
     }
 
     /// Residual degrees of freedom as a share of the readings, (N − γ)/N, with γ = Σᵢ (1 − Pᵢ (H⁻¹)ᵢᵢ) the effective number of

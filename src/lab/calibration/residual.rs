@@ -45,9 +45,14 @@ impl MarginalPrecision {
 
     /// rᵀ V⁻¹ r + ln det V, that is −2 ln of the normal density but for a constant.
     pub(super) fn cost(&self, residual_uv: &[f64; CHANNELS]) -> f64 {
+        self.square(residual_uv) + self.log_determinant
+    }
+
+    /// rᵀ V⁻¹ r.
+    pub(super) fn square(&self, residual_uv: &[f64; CHANNELS]) -> f64 {
         // Σₖ wₖ rₖ² − Σᵢ (tᵢᵀr)².
         let own: f64 = self.weights.iter().zip(residual_uv).map(|(weight, r)| weight * r * r).sum();
         let by_labels: f64 = self.downdates.iter().map(|downdate| dot(downdate, residual_uv).powi(2)).sum();
-        own - by_labels + self.log_determinant
+        own - by_labels
     }
 }

@@ -104,10 +104,14 @@ fn written(truths: &[Contact]) -> String {
 
 /// Decodes each contact. The verb says its covariance to nobody, so the library is asked.
 fn decoded(decoder: &Path, unseen: &Path, truths: &[Contact]) -> Vec<Decoded> {
-    let decoder: Decoder = read::decoder(&fs::read(decoder).unwrap()).unwrap();
-    let table = table(fs::read(unseen).unwrap().as_slice(), Kind::Measured, RIM_MM).unwrap();
+    decoded_by(&read::decoder(&fs::read(decoder).unwrap()).unwrap(), &fs::read(unseen).unwrap(), truths)
+}
+
+/// The same of a measured table by its bytes.
+pub(super) fn decoded_by(decoder: &Decoder, unseen: &[u8], truths: &[Contact]) -> Vec<Decoded> {
+    let table = table(unseen, Kind::Measured, RIM_MM).unwrap();
     let recording = Recording::of(table, FULL_SCALE_N).unwrap();
-    let rows = recording.taken(&decoder).rows;
+    let rows = recording.taken(decoder).rows;
     let one = |at: usize| {
         let Contact { place: [x, y], force } = truths[at];
         let truth = [x, y, force[0], force[1], force[2]];

@@ -5,6 +5,7 @@
 //! so their errors can be compared. The six fields are tried with one seed; with `TACTPAD_CALIBRATED=N` all cases, with the
 //! seeds 1 to N. All constants were written down before the first run, but for the gates: they are what the program reached.
 
+mod at_home;
 mod cases;
 mod judged;
 mod memory;

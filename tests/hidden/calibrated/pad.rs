@@ -24,6 +24,7 @@ const DWELLS_S: [f64; 2] = [2.0, 20.0];
 const BETWEEN_ZEROS: usize = 24;
 /// Deviation of the gains from 1.
 const GAIN: f64 = 0.1;
+const WIDE_GAIN: f64 = 0.25;
 /// Leaks from channel to channel: how many, and how large.
 const LEAKS: usize = 10;
 const LEAK: f64 = 0.015;
@@ -77,6 +78,15 @@ impl Wiring {
         Self { gains, leaks, offsets_uv }
     }
 
+    /// Gains off by up to a quarter, and a leak from each channel to each other one.
+    pub(super) fn drawn_wide(seed: u64) -> Self {
+        let random = &mut Random::new(seed, "calibrated wide wiring");
+        let gains = std::array::from_fn(|_| random.between(1.0 - WIDE_GAIN, 1.0 + WIDE_GAIN));
+        let pairs = (0..81).map(|index| (index / 9, index % 9)).filter(|(into, from)| into != from);
+        let leaks = pairs.map(|(into, from)| (into, from, LEAK * random.normal())).collect();
+        Self { gains, leaks, offsets_uv: std::array::from_fn(|_| OFFSET_UV * random.normal()) }
+    }
+
     /// Gains, then leaks of what the others read, then what the bridges are out of balance by.
     fn conduct(&self, strain: &[f64; 9]) -> [f64; 9] {
         let own: [f64; 9] = std::array::from_fn(|channel| self.gains[channel] * strain[channel]);
@@ -115,6 +125,18 @@ fn row(contact: Contact, dwell_s: f64, unloading: bool) -> Row {
         dwell_s,
         unloading,
     }
+}
+
+/// A weight of so many newtons on marks, off them along each axis by the given deviation, with the pad untouched between them.
+pub(super) fn weighed(normal_n: f64, marks_mm: &[[f64; 2]], off_mm: f64, seed: u64) -> Vec<Row> {
+    let random = &mut Random::new(seed, "calibrated weights");
+    let placed = |mark_mm: &[f64; 2]| {
+        let place = mark_mm.map(|mm| mm + off_mm * random.normal());
+        [row(Contact { place, force: [0.0, 0.0, normal_n] }, DWELLS_S[0], false), pressed(0.0, DWELLS_S[0])]
+    };
+    let mut rows: Vec<Row> = marks_mm.iter().map(placed).flatten().collect();
+    carry_out(&mut rows, Room::UpAndDown, &mut Random::new(seed, "calibrated weights' room"));
+    rows
 }
 
 /// So many contacts all over the plate, with readings of the untouched pad between them and at the end.

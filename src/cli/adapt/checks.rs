@@ -1,0 +1,50 @@
+//! Where contacts miss a fit by more than its noise says.
+
+use serde::Serialize;
+
+use tactpad::lab::calibration::predictive::{By, Check};
+
+/// A third of the contacts, held against all of them.
+#[derive(Serialize)]
+pub(super) struct Checked {
+    by: &'static str,
+    part: &'static str,
+    contacts: usize,
+    /// Their mean square over that of all.
+    ratio: f64,
+    p_value: f64,
+    /// Whether that is more than chance.
+    missed: bool,
+}
+
+impl Checked {
+    pub(super) fn of(check: &Check) -> Self {
+        let Check { by, third, contacts, ratio, p_value } = *check;
+        let (by, parts) = words(by);
+        Self { by, part: parts[third.min(2)], contacts, ratio, p_value, missed: check.is_missed() }
+    }
+
+    /// What to say of a check that is missed.
+    pub(super) fn words(&self) -> String {
+        format!(
+            "{} miss by {:.2} times what all do: the fit lacks something there, and regions that are stated there are too narrow by as \
+             much.",
+            self.part,
+            self.ratio.sqrt()
+        )
+    }
+}
+
+const fn words(by: By) -> (&'static str, [&'static str; 3]) {
+    match by {
+        By::Radius => {
+            ("radius", ["Contacts in the middle", "Contacts half way to the rim", "Contacts near the rim"])
+        }
+        By::Force => {
+            ("force", ["The lightest contacts", "Contacts of middling force", "The strongest contacts"])
+        }
+        By::Time => {
+            ("time", ["The first contacts", "Contacts midway through the table", "The last contacts"])
+        }
+    }
+}

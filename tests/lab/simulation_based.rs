@@ -215,9 +215,10 @@ fn seen(seed: u64) -> Seen {
     let drawn = Drawn::new(seed);
     let contact = &drawn.device.contact;
     let plan = plans::recommended::plan(contact, seed);
-    let loads = plan.rows.iter().filter(|row| row.label.resultant_n() > 0.0).count();
+    // The loss of the prior is that of the whole plan.
+    let cycles = carry_out(&plan, &drawn.device, &drawn.field, seed).cycles;
     let mut device = drawn.device.clone();
-    device.behaviour.ageing.cycles = loads as f64;
+    device.behaviour.ageing.cycles = cycles.last().copied().unwrap();
     let measured = carry_out(&plan, &device, &drawn.field, seed);
     let recording = Recording::of(measured.counted().table, contact.full_scale_n).unwrap();
     let mut rows = recording.contacts();

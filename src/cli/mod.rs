@@ -3,6 +3,7 @@
 mod ablation;
 mod adapt;
 mod completions;
+mod config_folder;
 mod decoder_file;
 mod destination;
 mod device;

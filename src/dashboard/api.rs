@@ -19,6 +19,8 @@ use super::office::Office;
 use super::refusal::Refusal;
 use super::rewind::{self, Uncompared};
 use crate::bridge::request::Request;
+use crate::lab::play::sheet::Sheet;
+use crate::pad::device::Device;
 use crate::pipeline::mapping::read::ReadProfile;
 use crate::pipeline::mapping::shipped;
 
@@ -235,10 +237,25 @@ pub(super) async fn guides(State(office): Shared) -> Answer {
     Ok(Json(json!({"guides": told})).into_response())
 }
 
+/// `GET /sheet/NAME`: the marks that a known weight is put on, in true size.
+pub(super) async fn sheet(Path(name): Path<String>) -> Answer {
+    let sheet = || Sheet::of(&Device::nominal());
+    let (kind, bytes) = match name.as_str() {
+        "marks.pdf" => ("application/pdf", sheet().pdf()),
+        "marks.svg" => ("image/svg+xml", sheet().svg().into_bytes()),
+        _ => return Err(Refusal::new(StatusCode::NOT_FOUND, "there are the sheets marks.pdf and marks.svg")),
+    };
+    let kept = format!("attachment; filename=\"{name}\"");
+    let head = [(header::CONTENT_TYPE, kind.to_owned()), (header::CONTENT_DISPOSITION, kept)];
+    Ok((head, bytes).into_response())
+}
+
 #[derive(Deserialize)]
 pub(super) struct Action {
     #[serde(rename = "do")]
     action: String,
+    /// The number that the action takes.
+    number: Option<f64>,
 }
 
 /// `POST /api/guides/ID`: begins a guide, stops it, or does what a step offers.
@@ -247,9 +264,9 @@ pub(super) async fn guide(
     Path(id): Path<String>,
     asked: Result<Json<Action>, JsonRejection>,
 ) -> Answer {
-    let Action { action } = body(asked)?;
+    let Action { action, number } = body(asked)?;
     wait(move || {
-        let done = office.with_guides(|guides, scene| guides.act(&id, &action, scene));
+        let done = office.with_guides(|guides, scene| guides.act(&id, (&action, number), scene));
         let done =
             done.ok_or_else(|| Refusal::new(StatusCode::NOT_FOUND, format!("there is no guide {id:?}")))?;
         let done = done.map_err(|error| Refusal::new(StatusCode::CONFLICT, error))?;

@@ -27,6 +27,7 @@ const FILES: &[(&str, &str)] = &files![
     "channels.js",
     "clock.js",
     "colours.js",
+    "command.js",
     "doctor.js",
     "dom.js",
     "draft.js",

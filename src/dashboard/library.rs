@@ -4,7 +4,12 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use crate::lab::play::guide::Guide;
+use crate::lab::play::weights::Placement;
+use crate::pipeline::call::Call;
+use crate::pipeline::capture::head::Head;
 use crate::pipeline::mapping::check::OutputChoice;
+use crate::time::HostInstant;
 use crate::toml_text::diag::Diagnostic;
 
 /// The program around the bridge. Its functions may read and write files; they are called on a thread that may wait.
@@ -35,6 +40,54 @@ pub trait Library: Send + Sync {
 
     /// The page of the report of this number.
     fn report(&self, id: &str) -> Option<PathBuf>;
+
+    /// Whether there is an earlier session to go on from, of the calibration that is kept under this name.
+    fn has_session(&self, name: &str) -> bool;
+
+    /// Opens what the calibration of this name keeps. What an earlier session heard is told to the guide, unless this one is `fresh`.
+    ///
+    /// # Errors
+    /// It cannot be read or written; the text is for people.
+    fn open_session(
+        &self,
+        name: &str,
+        fresh: bool,
+        guide: &mut Guide,
+        head: &Head,
+    ) -> Result<Box<dyn Session>, String>;
+
+    /// Keeps the decoder that the calibration of this name came to. It plays nowhere by that.
+    ///
+    /// # Errors
+    /// Nothing was written; the text is for people.
+    fn keep_decoder(&self, name: &str, bytes: &[u8]) -> Result<KeptDecoder, String>;
+}
+
+/// What a calibration has heard, kept so that it can be taken up again.
+pub trait Session: Send {
+    /// A moment of the session in the time of what is kept.
+    fn at(&self, at: HostInstant) -> HostInstant;
+
+    /// Keeps a call, at that time.
+    ///
+    /// # Errors
+    /// It cannot be written; the text is for people.
+    fn write(&mut self, at: HostInstant, call: Call<'_>) -> Result<(), String>;
+
+    /// Sees that everything is there whatever comes.
+    ///
+    /// # Errors
+    /// It cannot be written; the text is for people.
+    fn settle(&mut self, placements: &[Placement]) -> Result<(), String>;
+}
+
+/// A decoder that is kept.
+#[derive(Clone, Debug)]
+pub struct KeptDecoder {
+    /// Its file, by its whole path.
+    pub path: String,
+    /// The command that plays with it.
+    pub command: String,
 }
 
 /// A profile that has a name.

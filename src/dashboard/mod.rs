@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! calls ─observer→ shadow: the same pipeline once more ─feed→ websocket ─→ the page
-//!                  └ the last minute ─rewind→ what another profile would have done
+//!                  ├ the last minute ─rewind→ what another profile would have done
+//!                  └ ears ─→ a calibration, which hears each call from its begin on
 //! the page ─api→ requests on the bridge, profiles of the library
 //! ```
 //!
@@ -13,6 +14,7 @@
 mod api;
 mod assets;
 mod draft;
+mod ears;
 mod feed;
 mod frame;
 mod guard;

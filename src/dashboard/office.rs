@@ -25,7 +25,7 @@ const PAGES_MAX: usize = 8;
 
 /// What is known of the running bridge, and how to ask it.
 pub(super) struct Office {
-    pub(super) asker: Asker,
+    pub(super) asker: Arc<Asker>,
     pub(super) library: Arc<dyn Library>,
     pub(super) feed: Arc<Feed>,
     pub(super) known: Arc<Mutex<Known>>,
@@ -60,6 +60,7 @@ impl Office {
     ) -> Self {
         let (pages, previews) = (AtomicUsize::new(0), AtomicBool::new(false));
         let guides = Mutex::new(Guides::new());
+        let asker = Arc::new(asker);
         Self { asker, library, feed, known, snapshot, timing, end_to_end, guides, pages, previews }
     }
 
@@ -105,14 +106,19 @@ impl Office {
     pub(super) fn with_guides<T>(&self, work: impl FnOnce(&mut Guides, &Scene<'_>) -> T) -> T {
         let snapshot = self.snapshot.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let now = self.feed.newest().now.as_ref().map(|now| now.clock.now());
+        let pad = self.known.lock().unwrap_or_else(PoisonError::into_inner).pad;
         let scene = Scene {
             now: now.unwrap_or(snapshot.at),
             status: &snapshot.status,
+            pad,
             profile: &|| {
                 let name = self.library.playing();
                 self.library.read(&name).map(|stored| (name, stored.text))
             },
             past: &|| self.past(),
+            hear: &|| self.known.lock().unwrap_or_else(PoisonError::into_inner).ears.add(),
+            asker: &self.asker,
+            library: &self.library,
         };
         work(&mut self.guides.lock().unwrap_or_else(PoisonError::into_inner), &scene)
     }
@@ -146,8 +152,12 @@ impl Office {
 
 impl Drop for Page {
     fn drop(&mut self) {
+        if self.0.pages.fetch_sub(1, Ordering::AcqRel) > 1 {
+            return;
+        }
+        self.0.with_guides(Guides::leave);
         // Who tried a profile and went away has not kept it.
-        if self.0.pages.fetch_sub(1, Ordering::AcqRel) == 1 && self.0.previews.swap(false, Ordering::AcqRel) {
+        if self.0.previews.swap(false, Ordering::AcqRel) {
             let _ = self.0.asker.ask(Request::Profile(None));
         }
     }

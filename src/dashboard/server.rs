@@ -79,6 +79,7 @@ fn router(office: Arc<Office>, guard: Arc<Guard>) -> Router {
         .route("/", get(assets::index))
         .route("/page/{name}", get(assets::file))
         .route("/report/{id}", get(api::report))
+        .route("/sheet/{name}", get(api::sheet))
         .route("/api/live", get(live::live))
         .route("/api/status", get(api::status))
         .route("/api/schema", get(api::schema))

@@ -4,8 +4,10 @@ use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
+use firmware_proto::identity::Identity;
 use rustix::event::{Timespec, poll};
 
+use super::ears::Ears;
 use super::feed::{Feed, Moment, Seen};
 use super::past::Past;
 use crate::bridge::clock::Clock;
@@ -28,8 +30,19 @@ const POINT_US: u64 = 2_000;
 pub(super) struct Known {
     /// The last minute; nothing before the bridge has begun.
     pub(super) past: Option<Past>,
+    /// The pad that is heard, and who it said that it is.
+    pub(super) pad: Pad,
+    /// Who hears the calls themselves.
+    pub(super) ears: Ears,
     /// How long decoding and mapping take here.
     pub(super) stages: Stages<Durations>,
+}
+
+/// The pad at the other end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pad {
+    pub(super) is_heard: bool,
+    pub(super) identity: Option<Identity>,
 }
 
 /// The pipeline, as far as it was told.
@@ -79,7 +92,9 @@ fn look(from: &Receiver<Observed>, shadow: &mut Option<Shadow>, known: &Mutex<Kn
             Ok(Observed::Call { at, call }) => {
                 if let Some(shadow) = shadow {
                     shadow.make(at, &call, &mut known.stages, &mut seen);
+                    known.pad = shadow.pad();
                 }
+                known.ears.tell(at, &call);
                 if let Some(past) = &mut known.past {
                     past.push(at, call);
                 }
@@ -121,6 +136,10 @@ impl Shadow {
             self.last_point = (t, contact.is_some());
             seen.trace.push((t, contact));
         }
+    }
+
+    fn pad(&self) -> Pad {
+        Pad { is_heard: self.pipeline.is_heard(), identity: self.pipeline.identity().copied() }
     }
 
     fn now(&self, at: HostInstant) -> Moment {

@@ -6,7 +6,7 @@ use crate::quantity::WEIGHT_N_PER_G;
 pub const WEIGHT_SHARE: f64 = 0.005;
 
 /// Weights that a pad can feel and bears, in grams.
-const GRAMS: [f64; 2] = [30.0, 1000.0];
+pub const GRAMS: [f64; 2] = [30.0, 1000.0];
 
 /// A weight that a pad can feel and bears.
 #[derive(Clone, Copy, Debug, PartialEq)]

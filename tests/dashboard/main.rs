@@ -4,6 +4,7 @@
 
 mod access;
 mod browser;
+mod calibrate;
 mod disturbance;
 mod editor;
 mod finger;

@@ -118,6 +118,8 @@ fn it_goes_through_all_steps_and_its_decoder_knows_the_scale() {
 #[test]
 fn without_a_weight_there_are_presses_only() {
     let (mut scene, mut guide) = (Scene::new(8), guide(None));
+    // A paused game is no reason not to hear presses.
+    guide.apply(HostInstant::default(), Call::Pause);
     scene.lead(&mut guide, |step| *step == Step::Done);
     assert!(scene.steps.iter().all(|step| !matches!(step, Step::Put { .. } | Step::TakeAway { .. })));
     assert!(guide.placements().is_empty() && guide.pressed_s() >= 60.0);

@@ -3,6 +3,8 @@
 #[cfg(feature = "tray")]
 pub(super) mod alone;
 mod calibrate;
+#[cfg(feature = "dashboard")]
+mod calibrated;
 mod chosen;
 mod ctl;
 mod demo;
@@ -25,6 +27,7 @@ mod record;
 mod reported;
 mod run;
 mod screen;
+mod shell;
 mod shown;
 mod sound;
 mod wish;

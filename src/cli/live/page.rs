@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde_json::Value;
 
 use super::wish::Wish;
-use super::{doctor, reported};
+use super::{calibrated, doctor, reported};
 use crate::cli::failure::Failure;
 use crate::cli::profile;
 use crate::cli::written::reason;
@@ -14,8 +14,12 @@ use tactpad::bridge::observer::Observer;
 use tactpad::bridge::request::Asker;
 use tactpad::bridge::running::Bridge;
 use tactpad::bridge::timing::Timing;
-use tactpad::dashboard::library::{Entry, Library, Over, Report, Saved, Stored, Unsaved};
+use tactpad::dashboard::library::{
+    Entry, KeptDecoder, Library, Over, Report, Saved, Session, Stored, Unsaved,
+};
 use tactpad::dashboard::server::Dashboard;
+use tactpad::lab::play::guide::Guide;
+use tactpad::pipeline::capture::head::Head;
 use tactpad::pipeline::mapping::check::OutputChoice;
 
 /// A page that has its address, and waits for its bridge.
@@ -89,5 +93,23 @@ impl Library for Shelf {
 
     fn report(&self, id: &str) -> Option<PathBuf> {
         reported::page(id)
+    }
+
+    fn has_session(&self, name: &str) -> bool {
+        calibrated::has_session(name)
+    }
+
+    fn open_session(
+        &self,
+        name: &str,
+        fresh: bool,
+        guide: &mut Guide,
+        head: &Head,
+    ) -> Result<Box<dyn Session>, String> {
+        calibrated::open(name, fresh, guide, head).map_err(Failure::sentence)
+    }
+
+    fn keep_decoder(&self, name: &str, bytes: &[u8]) -> Result<KeptDecoder, String> {
+        calibrated::write(name, bytes).map_err(Failure::sentence)
     }
 }

@@ -1,11 +1,10 @@
 //! The user's own folder of profiles: `$XDG_CONFIG_HOME/tactpad/profiles`, else `~/.config/tactpad/profiles`.
 
-use std::env;
-use std::ffi::OsString;
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use crate::cli::config_folder;
 use crate::cli::destination::Destination;
 use crate::cli::failure::Failure;
 use crate::cli::written::{reason, say};
@@ -22,14 +21,7 @@ const SCHEMA_FILE: &str = "profile.schema.json";
 
 /// The folder, which need not be there; `None` where the user has no home.
 pub(super) fn folder() -> Option<PathBuf> {
-    folder_in(env::var_os("XDG_CONFIG_HOME"), env::var_os("HOME"))
-}
-
-fn folder_in(config: Option<OsString>, home: Option<OsString>) -> Option<PathBuf> {
-    // A relative path would be another folder for each bridge and each shell.
-    let whole = |path: Option<OsString>| path.map(PathBuf::from).filter(|path| path.is_absolute());
-    let config = whole(config).or_else(|| Some(whole(home)?.join(".config")))?;
-    Some(config.join("tactpad").join("profiles"))
+    config_folder::folder("profiles")
 }
 
 /// Whether it names a profile. What has a dot or a slash names a file instead, so that no name leaves the folder.
@@ -122,20 +114,6 @@ fn provide_schema(path: &Path) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_folder_is_where_the_desktop_keeps_settings() {
-        let folder = |config: &str, home: &str| {
-            let given = |text: &str| (!text.is_empty()).then(|| OsString::from(text));
-            folder_in(given(config), given(home)).map(|path| path.display().to_string())
-        };
-        assert_eq!(folder("/c", "/home/me").as_deref(), Some("/c/tactpad/profiles"));
-        for config in ["", "relative"] {
-            let wanted = "/home/me/.config/tactpad/profiles";
-            assert_eq!(folder(config, "/home/me").as_deref(), Some(wanted));
-            assert_eq!([folder(config, ""), folder(config, "here")], [None, None]);
-        }
-    }
 
     #[test]
     fn no_name_leaves_the_folder() {

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use super::guide::{Guide, Outcome, Progress, Proposal, Scene, Step, StepState, Told};
 use super::recording::{NO_NAME, Recording};
-use crate::bridge::request::Request;
 use crate::lab::tuning::fitting::{Fitted, Study};
 use crate::lab::tuning::labels::{HEADER, Labels};
 use crate::lab::tuning::trace::Trace;
@@ -118,7 +117,7 @@ impl Guide for Cues {
         Ok(())
     }
 
-    fn stop(&mut self) {
+    fn stop(&mut self, _scene: &Scene<'_>) {
         *self = Self::default();
     }
 
@@ -130,24 +129,18 @@ impl Guide for Cues {
         self.recording.go_on(scene, CUES as u64 * CUE_US, move |trace| fitted(&name, &text, &table, trace));
     }
 
-    fn act(&mut self, _action: &str) -> Option<Request> {
-        None
-    }
-
     fn told(&self) -> Told {
         let recorded_us = self.recording.for_us();
         let done = recorded_us.map(|us| us as f64 / (CUES as u64 * CUE_US) as f64);
         let state = self.recording.step(done);
         let cue = recorded_us.and_then(|us| Some((us / CUE_US + 1, self.cue(us)?)));
+        let text = "Every two seconds you are asked for something else. Do it at once, then lift the finger.";
         let cues = Step {
-            id: "cues",
-            title: "Do what is asked",
-            text: "Every two seconds you are asked for something else. Do it at once, then lift the finger.",
             state,
             detail: cue.map(|(number, _)| format!("{number} of {CUES}")),
             cue: cue.map(|(_, meant)| meant.cue.clone()),
             progress: done.filter(|_| state == StepState::Doing),
-            actions: Vec::new(),
+            ..Step::to_do("cues", "Do what is asked", text)
         };
         Told {
             id: self.id(),
@@ -173,10 +166,7 @@ fn fitted(name: &str, text: &str, table: &str, trace: &Trace) -> Result<Outcome,
     let after = study.score(&profile).correct();
     let told = format!("{before} of {CUES} came as they were asked for");
     if changes.is_empty() {
-        return Ok(Outcome {
-            text: format!("{told}. No other numbers give more: nothing changes."),
-            draft: None,
-        });
+        return Ok(Outcome::words(format!("{told}. No other numbers give more: nothing changes.")));
     }
     let changes: Vec<_> = changes.iter().map(|change| words::Told::of(change, &profile).words).collect();
     let text_told = format!(
@@ -184,5 +174,6 @@ fn fitted(name: &str, text: &str, table: &str, trace: &Trace) -> Result<Outcome,
          Proposed: {}.",
         changes.join("; ")
     );
-    Ok(Outcome { text: text_told, draft: Some(Proposal { profile: name.to_owned(), text }) })
+    let draft = Some(Proposal { profile: name.to_owned(), text });
+    Ok(Outcome { draft, ..Outcome::words(text_told) })
 }

@@ -1,13 +1,13 @@
 //! The first run: find the pad, may it be opened, measure its zero, press it.
 
-use super::guide::{Action, Guide, Progress, Scene, Step, StepState, Told};
+use super::guide::{Action, Guide, NO_ACTION, Progress, Scene, Step, StepState, Told};
 use crate::bridge::request::Request;
 use crate::bridge::state::State;
 
 /// So many touches are enough to believe that it works.
 const TOUCHES: u64 = 3;
 
-const TARE: Action = Action { name: "tare", label: "Measure the zero" };
+const TARE: Action = Action { name: "tare", label: "Measure the zero", number: None };
 
 /// The steps: a name, a title, what to do.
 const STEPS: [(&str, &str, &str); 4] = [
@@ -57,7 +57,7 @@ impl Guide for FirstRun {
         Ok(())
     }
 
-    fn stop(&mut self) {
+    fn stop(&mut self, _scene: &Scene<'_>) {
         *self = Self::default();
     }
 
@@ -81,8 +81,13 @@ impl Guide for FirstRun {
         }
     }
 
-    fn act(&mut self, action: &str) -> Option<Request> {
-        (action == TARE.name).then_some(Request::Retare)
+    fn act(
+        &mut self,
+        action: &str,
+        _number: Option<f64>,
+        _scene: &Scene<'_>,
+    ) -> Result<Option<Request>, String> {
+        if action == TARE.name { Ok(Some(Request::Retare)) } else { Err(NO_ACTION.into()) }
     }
 
     fn told(&self) -> Told {
@@ -97,18 +102,15 @@ impl Guide for FirstRun {
             let is_try = index == 3;
             let counted = || format!("{} of {TOUCHES} touches", self.touches);
             Step {
-                id,
-                title,
-                text,
                 state,
                 detail: if is_try {
                     is_doing.then(counted)
                 } else {
                     self.sentence.filter(|_| is_doing).map(Into::into)
                 },
-                cue: None,
                 progress: (is_try && is_doing).then_some(self.touches as f64 / TOUCHES as f64),
                 actions: if index == 2 && self.state == Progress::Running { vec![TARE] } else { Vec::new() },
+                ..Step::to_do(id, title, text)
             }
         };
         Told {

@@ -2,7 +2,6 @@
 
 use super::guide::{Guide, Outcome, Proposal, Scene, Step, StepState, Told};
 use super::recording::{NO_NAME, Recording};
-use crate::bridge::request::Request;
 use crate::lab::tuning::fitting::Fitted;
 use crate::lab::tuning::force_range::fit::{Unfit, fit};
 use crate::lab::tuning::force_range::peaks::Peaks;
@@ -37,7 +36,7 @@ impl Guide for ForceRange {
         Ok(())
     }
 
-    fn stop(&mut self) {
+    fn stop(&mut self, _scene: &Scene<'_>) {
         *self = Self::default();
     }
 
@@ -47,10 +46,6 @@ impl Guide for ForceRange {
             self.touches = scene.status.health.pipeline.contacts.saturating_sub(self.touches_before);
         }
         self.recording.go_on(scene, 2 * KIND_US, move |trace| fitted(&name, &text, trace));
-    }
-
-    fn act(&mut self, _action: &str) -> Option<Request> {
-        None
     }
 
     fn told(&self) -> Told {
@@ -68,14 +63,10 @@ impl Guide for ForceRange {
             let done = part.map(|part| part - f64::from(index));
             let state = self.recording.step(done);
             Step {
-                id,
-                title,
-                text,
                 state,
                 detail: (state == StepState::Doing).then(|| format!("{} presses so far", self.touches)),
-                cue: None,
                 progress: done.filter(|_| state == StepState::Doing),
-                actions: Vec::new(),
+                ..Step::to_do(id, title, text)
             }
         });
         Told {
@@ -108,16 +99,11 @@ fn fitted(name: &str, text: &str, trace: &Trace) -> Result<Outcome, String> {
         range.light_n, range.light_most_n, range.hard_n
     );
     if changes.is_empty() {
-        return Ok(Outcome {
-            text: format!("{hand} The profile fits this hand: nothing changes."),
-            draft: None,
-        });
+        return Ok(Outcome::words(format!("{hand} The profile fits this hand: nothing changes.")));
     }
     let changes: Vec<_> = changes.iter().map(|change| words::Told::of(change, &profile).words).collect();
-    Ok(Outcome {
-        text: format!("{hand} Proposed: {}.", changes.join("; ")),
-        draft: Some(Proposal { profile: name.to_owned(), text }),
-    })
+    let draft = Some(Proposal { profile: name.to_owned(), text });
+    Ok(Outcome { draft, ..Outcome::words(format!("{hand} Proposed: {}.", changes.join("; "))) })
 }
 
 fn unfit(name: &str, why: Unfit) -> String {

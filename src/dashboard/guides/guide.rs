@@ -1,13 +1,20 @@
 //! What a guide is, and how it tells where it is.
 
+use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
 use serde::Serialize;
 
-use crate::bridge::request::Request;
+use crate::bridge::request::{Asker, Request};
 use crate::bridge::snapshot::Status;
+use crate::dashboard::ears::Heard;
+use crate::dashboard::library::Library;
 use crate::dashboard::past::Past;
+use crate::dashboard::shadow::Pad;
 use crate::time::HostInstant;
+
+/// Why an action is refused that no step offers.
+pub(super) const NO_ACTION: &str = "this step has no such action";
 
 /// A guide.
 pub(super) trait Guide: Send {
@@ -21,13 +28,26 @@ pub(super) trait Guide: Send {
     fn start(&mut self, scene: &Scene<'_>) -> Result<(), String>;
 
     /// Ends before its end.
-    fn stop(&mut self);
+    fn stop(&mut self, scene: &Scene<'_>);
+
+    /// Nobody looks any more.
+    fn leave(&mut self, _scene: &Scene<'_>) {}
 
     /// Looks at what has happened; called some ten times a second.
     fn look(&mut self, scene: &Scene<'_>);
 
-    /// What is asked of the bridge where people choose an action of a step; `None` if it has no such action.
-    fn act(&mut self, action: &str) -> Option<Request>;
+    /// Does what people choose in a step, with the number that they gave; what is to be asked of the bridge for it.
+    ///
+    /// # Errors
+    /// There is no such action now, or it cannot be done; the text is for people.
+    fn act(
+        &mut self,
+        _action: &str,
+        _number: Option<f64>,
+        _scene: &Scene<'_>,
+    ) -> Result<Option<Request>, String> {
+        Err(NO_ACTION.into())
+    }
 
     /// How it stands.
     fn told(&self) -> Told;
@@ -38,10 +58,17 @@ pub(in crate::dashboard) struct Scene<'s> {
     /// Host time.
     pub(in crate::dashboard) now: HostInstant,
     pub(in crate::dashboard) status: &'s Status,
+    pub(in crate::dashboard) pad: Pad,
     /// The text of the profile that is played, if it has a name, and that name.
     pub(in crate::dashboard) profile: &'s dyn Fn() -> Option<(String, String)>,
     /// The last minute of play.
     pub(in crate::dashboard) past: &'s dyn Fn() -> Option<Past>,
+    /// Hears all calls from now on.
+    pub(in crate::dashboard) hear: &'s dyn Fn() -> Receiver<Heard>,
+    /// Asks the bridge, also later and from another thread.
+    pub(in crate::dashboard) asker: &'s Arc<Asker>,
+    /// The program around the bridge.
+    pub(in crate::dashboard) library: &'s Arc<dyn Library>,
 }
 
 /// How a guide stands, as the page reads it.
@@ -85,6 +112,25 @@ pub(super) struct Step {
     /// How much of it is done, from 0 to 1.
     pub(super) progress: Option<f64>,
     pub(super) actions: Vec<Action>,
+    pub(super) links: Vec<Link>,
+}
+
+impl Step {
+    /// One that comes later.
+    pub(super) fn to_do(id: &'static str, title: &'static str, text: &'static str) -> Self {
+        let (actions, links) = (Vec::new(), Vec::new());
+        Self {
+            id,
+            title,
+            text,
+            state: StepState::Todo,
+            detail: None,
+            cue: None,
+            progress: None,
+            actions,
+            links,
+        }
+    }
 }
 
 /// Where a step is.
@@ -107,14 +153,58 @@ pub(super) struct Action {
     #[serde(rename = "do")]
     pub(super) name: &'static str,
     pub(super) label: &'static str,
+    /// The number that it takes, if it takes one.
+    pub(super) number: Option<NumberField>,
+}
+
+/// A number that people give.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct NumberField {
+    pub(super) label: &'static str,
+    pub(super) least: f64,
+    pub(super) largest: f64,
+}
+
+/// A file of the program that people may want.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Link {
+    /// The path of its request.
+    pub(super) path: &'static str,
+    pub(super) label: &'static str,
 }
 
 /// What came of a guide.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(super) struct Outcome {
     pub(super) text: String,
     /// A profile to look at in the editor.
     pub(super) draft: Option<Proposal>,
+    /// Numbers that belong to it.
+    pub(super) table: Option<Table>,
+    /// What people may want to type into a terminal.
+    pub(super) commands: Vec<CommandLine>,
+}
+
+/// Numbers with their names.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Table {
+    pub(super) caption: &'static str,
+    pub(super) heads: Vec<&'static str>,
+    pub(super) rows: Vec<Vec<String>>,
+}
+
+/// A command, and what it does.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct CommandLine {
+    pub(super) label: &'static str,
+    pub(super) text: String,
+}
+
+impl Outcome {
+    /// Words alone.
+    pub(super) fn words(text: impl Into<String>) -> Self {
+        Self { text: text.into(), ..Self::default() }
+    }
 }
 
 /// A profile that a guide proposes; it is not kept.

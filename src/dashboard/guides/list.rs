@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::at_home::AtHome;
 use super::cues::Cues;
 use super::first_run::FirstRun;
 use super::force_range::ForceRange;
@@ -19,8 +20,12 @@ pub(in crate::dashboard) struct Guides {
 impl Guides {
     /// None has begun.
     pub(in crate::dashboard) fn new() -> Self {
-        let all: Vec<Box<dyn Guide>> =
-            vec![Box::<FirstRun>::default(), Box::<ForceRange>::default(), Box::<Cues>::default()];
+        let all: Vec<Box<dyn Guide>> = vec![
+            Box::<FirstRun>::default(),
+            Box::<ForceRange>::default(),
+            Box::<Cues>::default(),
+            Box::<AtHome>::default(),
+        ];
         let told = vec![Arc::from(""); all.len()];
         Self { all, told, changes: 0 }
     }
@@ -53,21 +58,26 @@ impl Guides {
         told.map(|told| format!(r#"{{"kind":"guide","guide":{told}}}"#)).collect()
     }
 
+    /// Nobody looks any more.
+    pub(in crate::dashboard) fn leave(&mut self, scene: &Scene<'_>) {
+        self.all.iter_mut().for_each(|guide| guide.leave(scene));
+    }
+
     /// Does what people ask of a guide: `start`, `stop`, or an action of a step. `None` if there is no such guide.
     pub(in crate::dashboard) fn act(
         &mut self,
         id: &str,
-        action: &str,
+        (action, number): (&str, Option<f64>),
         scene: &Scene<'_>,
     ) -> Option<Result<Done, String>> {
         let guide = self.all.iter_mut().find(|guide| guide.id() == id)?;
         let asked = match action {
             "start" => guide.start(scene).map(|()| None),
             "stop" => {
-                guide.stop();
+                guide.stop(scene);
                 Ok(None)
             }
-            action => guide.act(action).map(Some).ok_or_else(|| "this step has no such action".to_owned()),
+            action => guide.act(action, number, scene),
         };
         guide.look(scene);
         Some(asked.map(|request| Done { told: guide.told(), request }))

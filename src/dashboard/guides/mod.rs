@@ -1,5 +1,6 @@
 //! Guides: lists of steps with a state, that lead people through something. The page shows them and knows none by itself.
 
+mod at_home;
 mod cues;
 mod first_run;
 mod force_range;

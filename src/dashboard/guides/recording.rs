@@ -83,16 +83,8 @@ impl Recording {
             Self::Over(Ok(_)) => StepState::Done,
             Self::Over(Err(_)) => StepState::Failed,
         };
-        Step {
-            id: "fit",
-            title: "Fit the profile",
-            text: "This takes a few seconds; nothing is to be done.",
-            state,
-            detail: None,
-            cue: None,
-            progress: None,
-            actions: Vec::new(),
-        }
+        let text = "This takes a few seconds; nothing is to be done.";
+        Step { state, ..Step::to_do("fit", "Fit the profile", text) }
     }
 
     /// Where the guide is.
@@ -109,7 +101,7 @@ impl Recording {
     pub(super) fn outcome(&self) -> Option<Outcome> {
         match self {
             Self::Over(Ok(outcome)) => Some(outcome.clone()),
-            Self::Over(Err(text)) => Some(Outcome { text: text.clone(), draft: None }),
+            Self::Over(Err(text)) => Some(Outcome::words(text)),
             Self::Idle | Self::On { .. } | Self::Working(_) => None,
         }
     }

@@ -1,7 +1,7 @@
 // The view "Doctor": what the program found on this machine, and the command that mends each finding.
 
-import { announce } from "./announce.js";
 import { get } from "./api.js";
+import { commandLine } from "./command.js";
 import { button, el, say } from "./dom.js";
 
 const STATES = {
@@ -35,18 +35,4 @@ function entry({ name, finding, message, mend }) {
   return el("li", { class: "card" },
     el("h3", {}, el("span", { class: look, text: `${sign} ${word}` }), ` ${name}`),
     el("p", { text: message }), mend === null ? null : commandLine(name, mend));
-}
-
-function commandLine(name, command) {
-  const copy = button("Copy", () => copyText(command), { "aria-label": `Copy the command for ${name}` });
-  return el("p", { class: "command" }, el("code", { text: command }), copy);
-}
-
-async function copyText(text) {
-  try {
-    await navigator.clipboard.writeText(text);
-    announce("The command is copied.");
-  } catch {
-    announce("The browser does not allow copying: select the command instead.");
-  }
 }

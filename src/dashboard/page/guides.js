@@ -1,8 +1,9 @@
 // The view "Guides": step by step, as the program tells them. It knows no guide by itself.
 
 import { announce } from "./announce.js";
-import { get, post } from "./api.js";
-import { button, el, number, say } from "./dom.js";
+import { get, post, withToken } from "./api.js";
+import { commandLine } from "./command.js";
+import { button, el, number, row, say, scroller, table } from "./dom.js";
 
 const STEPS = {
   todo: { sign: "○", word: "to do" },
@@ -28,7 +29,7 @@ export class GuidesView {
   async show() {
     try {
       const { guides } = await get("/api/guides");
-      say(this.about, guides.length === 0 ? "There are no guides." : "Each guide leads you step by step; nothing is saved before you say so.");
+      say(this.about, guides.length === 0 ? "There are no guides." : "Each guide leads you step by step; no profile is saved before you say so.");
       for (const guide of guides) this.update(guide);
     } catch (error) {
       say(this.about, error.message);
@@ -44,9 +45,10 @@ export class GuidesView {
     this.#cards.get(guide.id).draw(guide);
   }
 
-  async act(id, action) {
+  /** Does what was chosen, with the number that goes with it, if any does. */
+  async act(id, action, value = null) {
     try {
-      this.update(await post(`/api/guides/${encodeURIComponent(id)}`, { do: action }));
+      this.update(await post(`/api/guides/${encodeURIComponent(id)}`, { do: action, number: value }));
       say(this.failed, "");
     } catch (error) {
       say(this.failed, `✕ ${error.message}`);
@@ -70,7 +72,7 @@ class GuideCard {
   }
 
   draw(guide) {
-    const shape = JSON.stringify([guide.state, guide.steps.map(({ id, state, actions }) => [id, state, actions]), guide.result]);
+    const shape = JSON.stringify([guide.state, guide.steps.map(({ id, state, actions, links }) => [id, state, actions, links]), guide.result]);
     if (shape !== this.#shape) this.#rebuild(guide, shape);
     guide.steps.forEach((step, index) => this.#feedback(step, this.parts[index]));
     this.#speak(guide);
@@ -90,7 +92,7 @@ class GuideCard {
     if (inside) this.actions.querySelector("button")?.focus();
   }
 
-  #step({ title, text, state, actions }) {
+  #step({ title, text, state, actions, links }) {
     const { sign, word } = STEPS[state] ?? STEPS.todo;
     const bar = el("progress", { max: 1, "aria-label": `Progress of ${title}` });
     const detail = el("span");
@@ -100,8 +102,18 @@ class GuideCard {
       el("p", {}, el("span", { class: "step-sign", text: `${sign} ${word}` }), " ", el("strong", { text: title })),
       doing || state === "failed" ? el("p", { text }) : null,
       cue, el("p", { class: "feedback" }, bar, " ", detail),
-      el("div", { class: "commands" }, ...(doing ? actions : []).map((action) => button(action.label, () => this.view.act(this.id, action.do)))));
+      el("div", { class: "commands" }, ...(doing ? links : []).map(fileLink)),
+      el("div", { class: "commands" }, ...(doing ? actions : []).map((action) => this.#action(action))));
     return { node, bar, detail, cue };
+  }
+
+  /** A button; where the action takes a number, the field stands before it. */
+  #action({ do: name, label, number: asked }) {
+    if (asked === null) return button(label, () => this.view.act(this.id, name));
+    const field = el("input", { type: "number", min: asked.least, max: asked.largest, step: "any", inputmode: "decimal" });
+    const choose = () => this.view.act(this.id, name, field.value === "" ? null : field.valueAsNumber);
+    field.addEventListener("keydown", ({ key }) => key === "Enter" && choose());
+    return el("div", { class: "commands" }, el("label", { class: "chooser" }, `${asked.label} (${asked.least} to ${asked.largest})`, field), button(label, choose));
   }
 
   #feedback({ progress, detail, cue, state }, part) {
@@ -117,6 +129,8 @@ class GuideCard {
     this.result.hidden = result === null;
     if (result === null) return;
     this.result.replaceChildren(el("h4", { text: "Result" }), el("p", { text: result.text }),
+      ...(result.table === null ? [] : [numbers(result.table)]),
+      ...result.commands.flatMap(({ label, text }) => [el("p", { text: `${label}:` }), commandLine(label, text)]),
       ...(result.draft === null ? [] : [button(`Open ${result.draft.profile} with it in the editor`, () => this.view.openDraft(result.draft), { class: "main primary" })]));
   }
 
@@ -128,4 +142,15 @@ class GuideCard {
     const changed = this.#spoken !== before && before !== "";
     if (changed && text !== "") announce(text);
   }
+}
+
+/** A file of the program to keep. */
+function fileLink({ path, label }) {
+  return el("a", { class: "action", href: withToken(path), download: path.split("/").at(-1), text: label });
+}
+
+function numbers({ caption, heads, rows }) {
+  const { node, body } = table(caption, heads, { class: "figures" });
+  body.append(...rows.map(row));
+  return scroller(caption, node);
 }

@@ -1,11 +1,14 @@
 //! A calibration at home, step by step: what to do next, and how far it is. It is fed with a pad's calls and reads no clock.
 
+use firmware_proto::identity::SerialNumber;
+
 use crate::lab::play::home::{Pressed, region_names};
 use crate::lab::play::reader::Reader;
 use crate::lab::play::weights::Placement;
 use crate::lab::play::windows::{WINDOW_S, Window};
 use crate::pad::marks::MARKS_MM;
 use crate::pad::weight::weight_n;
+use crate::pipeline::Phase;
 use crate::pipeline::call::Call;
 use crate::quantity::Contact;
 use crate::time::HostInstant;
@@ -180,6 +183,16 @@ impl Guide {
     /// For how long a finger pressed, without the weights.
     pub fn pressed_s(&self) -> f64 {
         self.pressed().seconds
+    }
+
+    /// What the pad is doing.
+    pub fn phase(&self) -> Phase {
+        self.reader.phase()
+    }
+
+    /// The pad, once it has told who it is.
+    pub fn serial_number(&self) -> Option<SerialNumber> {
+        self.reader.serial_number()
     }
 
     /// What a fit takes.

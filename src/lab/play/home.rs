@@ -110,6 +110,12 @@ pub fn calibrated(
 }
 
 impl AtHome {
+    /// The decoder's file.
+    pub fn file(&self) -> Vec<u8> {
+        let note = format!("{} presses of play, {} placements of a weight", self.presses, self.placements);
+        self.calibration.decoder().to_bytes(&note).unwrap_or_default()
+    }
+
     /// Whether something said how strong a newton is: presses alone never do.
     pub const fn knows_scale(&self) -> bool {
         self.placements > 0

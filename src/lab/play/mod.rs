@@ -8,6 +8,8 @@ pub mod guide;
 pub mod home;
 pub mod reader;
 pub mod sheet;
+pub mod summary;
 pub mod weighing;
 pub mod weights;
 pub mod windows;
+pub mod words;

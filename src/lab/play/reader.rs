@@ -27,10 +27,10 @@ impl Reader {
         Self { pipeline, begin: None, samples: 0, gatherer: Gatherer::default() }
     }
 
-    /// Makes one call. Changes of the profile are left out.
+    /// Makes one call. What the player chose for the game is left out: a paused pad is pressed all the same.
     pub fn apply(&mut self, now: HostInstant, call: Call<'_>) {
         match call {
-            Call::Profile(_) => {}
+            Call::Profile(_) | Call::Pause | Call::Resume | Call::Weigh(_) => {}
             // One by one, so that no sample is passed over.
             Call::Bytes(bytes) => bytes.chunks(1).for_each(|byte| self.make(now, Call::Bytes(byte))),
             other => self.make(now, other),
@@ -45,6 +45,11 @@ impl Reader {
     /// The windows so far that nothing is added to any more.
     pub fn windows(&self) -> &[Window] {
         self.gatherer.windows()
+    }
+
+    /// What stands in the way of windows, if anything does.
+    pub fn phase(&self) -> Phase {
+        self.pipeline.phase()
     }
 
     /// The pad that was played on, once it has told who it is.
@@ -69,8 +74,8 @@ impl Reader {
         self.samples = samples;
         self.begin.get_or_insert(self.pipeline.at());
         let seen = match (self.pipeline.phase(), self.pipeline.contact()) {
-            (Phase::Playing | Phase::Paused, Some(contact)) => Seen::Contact(*contact),
-            (Phase::Playing | Phase::Paused, None) => Seen::Nothing,
+            (Phase::Playing, Some(contact)) => Seen::Contact(*contact),
+            (Phase::Playing, None) => Seen::Nothing,
             _ => Seen::Doubt,
         };
         self.gatherer.push(self.now_s(), self.pipeline.raw_uv(), None, seen);

@@ -11,13 +11,10 @@ use crate::cli::adapt::play::read_weights;
 use crate::cli::destination::Destination;
 use crate::cli::failure::Failure;
 use crate::cli::live::files::{holds_play, keep_file};
-use crate::cli::progress::Progress;
 use crate::cli::recording::{Profiles, Recording};
-use crate::cli::written::say;
 use tactpad::lab::play::guide::Guide;
 use tactpad::lab::play::weights::{Placement, written};
 use tactpad::pad::device::Device;
-use tactpad::pad::marks::MARKS_MM;
 use tactpad::pipeline::call::Call;
 use tactpad::pipeline::capture::head::Head;
 use tactpad::pipeline::capture::writer::CaptureWriter;
@@ -26,16 +23,26 @@ use tactpad::time::HostInstant;
 /// Between what was heard earlier and what is heard now lie so many microseconds of the capture's time.
 const BREAK_US: u64 = 1_000_000;
 
+/// How a session begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Begin {
+    /// Whether what was heard earlier is to be forgotten.
+    pub(crate) fresh: bool,
+    /// What people do for that.
+    pub(crate) way_to_fresh: &'static str,
+}
+
 /// The files of a session.
-pub(super) struct Kept {
+pub(crate) struct Kept {
     capture: CaptureWriter<BufWriter<File>>,
     weights: PathBuf,
     /// When the session began, in the capture's time.
     begin: HostInstant,
+    goes_on: bool,
 }
 
 /// The capture of the session that writes this decoder.
-pub(super) fn capture_beside(out: &Path) -> PathBuf {
+pub(crate) fn capture_beside(out: &Path) -> PathBuf {
     beside(out, ".cap")
 }
 
@@ -47,9 +54,9 @@ fn beside(out: &Path, ending: &str) -> PathBuf {
 
 impl Kept {
     /// Opens the files. What an earlier session heard is told to the guide and stays in them, unless this one is to begin afresh.
-    pub(super) fn begin(out: &Path, fresh: bool, guide: &mut Guide, head: &Head) -> Result<Self, Failure> {
+    pub(crate) fn begin(out: &Path, how: Begin, guide: &mut Guide, head: &Head) -> Result<Self, Failure> {
         let (place, weights) = (capture_beside(out), beside(out, ".weights.csv"));
-        let goes_on = spared(&place, &weights, fresh)?;
+        let goes_on = spared(&place, &weights, how)?;
         let folder = place.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));
         // As the user's other files; what the user keeps from others is taken off by the system.
         let file = Builder::new().permissions(Permissions::from_mode(0o666)).tempfile_in(folder)?;
@@ -57,9 +64,8 @@ impl Kept {
         let mut capture = CaptureWriter::begin(to, HostInstant::default(), head)?;
         let mut begin = HostInstant::default();
         if goes_on {
-            begin = remember(&place, guide, &mut capture)?;
+            begin = remember(&place, how, guide, &mut capture)?;
             guide.go_on(placements(&weights)?);
-            tell(guide, &place);
         }
         capture.flush()?;
         // The old capture stays until all of it is in the new one.
@@ -67,21 +73,26 @@ impl Kept {
         if !goes_on {
             forget(&weights)?;
         }
-        Ok(Self { capture, weights, begin })
+        Ok(Self { capture, weights, begin, goes_on })
+    }
+
+    /// Whether it goes on from an earlier one.
+    pub(super) const fn goes_on(&self) -> bool {
+        self.goes_on
     }
 
     /// A moment of the session in the capture's time.
-    pub(super) const fn at(&self, at: HostInstant) -> HostInstant {
+    pub(crate) const fn at(&self, at: HostInstant) -> HostInstant {
         HostInstant::from_ns(self.begin.as_ns().saturating_add(at.as_ns()))
     }
 
     /// Writes a call down, at the capture's time.
-    pub(super) fn write(&mut self, at: HostInstant, call: Call<'_>) -> io::Result<()> {
+    pub(crate) fn write(&mut self, at: HostInstant, call: Call<'_>) -> io::Result<()> {
         self.capture.write(at, call)
     }
 
     /// Hands everything to the files, so that it is there whatever comes.
-    pub(super) fn settle(&mut self, placements: &[Placement]) -> Result<(), Failure> {
+    pub(crate) fn settle(&mut self, placements: &[Placement]) -> Result<(), Failure> {
         self.capture.flush()?;
         if placements.is_empty() {
             return Ok(());
@@ -91,16 +102,17 @@ impl Kept {
 }
 
 /// Whether there is a session to go on from. Refuses to write over what is none.
-fn spared(place: &Path, weights: &Path, fresh: bool) -> Result<bool, Failure> {
+fn spared(place: &Path, weights: &Path, how: Begin) -> Result<bool, Failure> {
     if holds_play(place) {
-        return Ok(!fresh);
+        return Ok(!how.fresh);
     }
     keep_file(place, " for the decoder, so that the session's capture has another name, too")?;
-    if weights.exists() && !fresh {
+    if weights.exists() && !how.fresh {
         return Err(Failure::Unusable(format!(
-            "{} is there, but not the capture {} that it belongs to: give --fresh to begin anew, or name another file",
+            "{} is there, but not the capture {} that it belongs to: {} to begin anew, or name another file",
             weights.display(),
-            place.display()
+            place.display(),
+            how.way_to_fresh
         )));
     }
     Ok(false)
@@ -109,10 +121,10 @@ fn spared(place: &Path, weights: &Path, fresh: bool) -> Result<bool, Failure> {
 /// Tells the guide what an earlier session heard, and writes it down once more. When the new session begins, in the capture's time.
 fn remember(
     place: &Path,
+    how: Begin,
     guide: &mut Guide,
     capture: &mut CaptureWriter<BufWriter<File>>,
 ) -> Result<HostInstant, Failure> {
-    let _progress = Progress::begin("reading what was heard earlier");
     let mut last = HostInstant::default();
     let read = Recording::open(place).and_then(|mut earlier| {
         earlier.each(Profiles::Skipped, |at, call| {
@@ -121,7 +133,7 @@ fn remember(
             Ok(capture.write(at, call)?)
         })
     });
-    read.map_err(|why| Failure::Unusable(format!("{}; give --fresh to begin anew", why.sentence())))?;
+    read.map_err(|why| Failure::Unusable(format!("{}; {} to begin anew", why.sentence(), how.way_to_fresh)))?;
     let begin = last.plus_us(BREAK_US);
     // Whatever happened to the pad meanwhile, its zero is looked for anew.
     guide.remember(begin, Call::Unplugged);
@@ -134,15 +146,6 @@ fn placements(weights: &Path) -> Result<Vec<Placement>, Failure> {
         return Ok(Vec::new());
     }
     read_weights(weights, Device::nominal().contact.max_centre_radius_mm)
-}
-
-fn tell(guide: &Guide, place: &Path) {
-    let (pressed_s, weights) = (guide.pressed_s(), guide.placements().len());
-    say(format_args!(
-        "it goes on from {}: {pressed_s:.0} s pressed, {weights} of {} marks; --fresh begins anew",
-        place.display(),
-        MARKS_MM.len()
-    ));
 }
 
 /// Removes the table of a session that is not gone on from.

@@ -1,7 +1,7 @@
 //! `tactpad calibrate`: a calibration at home. It says what to do, hears what is done, and fits a decoder to it.
 
 mod hands;
-mod kept;
+pub(super) mod kept;
 mod session;
 mod told;
 mod words;
@@ -14,7 +14,7 @@ use std::thread;
 use clap::Args;
 
 use self::hands::Hands;
-use self::kept::Kept;
+use self::kept::{Begin, Kept};
 use self::session::Session;
 use self::told::{Teller, Told};
 use super::playing::{Audience, Terminal, Waits, open_pad, patience, play, requests};
@@ -25,6 +25,7 @@ use crate::cli::device::Pad;
 use crate::cli::failure::Failure;
 use crate::cli::field::field_of;
 use crate::cli::profile;
+use crate::cli::progress::Progress;
 use crate::cli::written::{is_same, is_stdout, say, stdout, written_over};
 use tactpad::bridge::observer::observe;
 use tactpad::bridge::opening::OpenedPad;
@@ -35,6 +36,8 @@ use tactpad::bridge::transport::address::PadAddress;
 use tactpad::lab::play::guide::{Guide, Step};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::sheet::Sheet;
+use tactpad::lab::play::words::WITHOUT_WEIGHT;
+use tactpad::pad::marks::MARKS_MM;
 use tactpad::pad::weight::check_weight;
 use tactpad::pipeline::capture::head::Head;
 use tactpad::pipeline::mapping::check::OutputChoice;
@@ -135,9 +138,9 @@ fn calibrate(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
     let file = shipped::bytes(shipped::INVERSE).map(Into::into);
     let head = Head { decoder: file, profile: Some(profile.clone()) };
     let (opened, hands) = open(arguments, profile.profile())?;
-    let kept = Kept::begin(out, arguments.fresh, &mut guide, &head)?;
+    let kept = begin(out, arguments.fresh, &mut guide, &head)?;
     if arguments.weight_g.is_none() {
-        say(words::WITHOUT_WEIGHT);
+        say(format_args!("without --weight-g GRAMS no weight is asked for, and {WITHOUT_WEIGHT}"));
     }
     let playing = PlayingDecoder { decoder, name: shipped::INVERSE.into(), place: None, file: head.decoder };
     let guide = lead(arguments, (opened, hands), (guide, kept), (playing, profile))?;
@@ -153,6 +156,23 @@ fn calibrate(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
     let found = at_home::fitted(&windows, &placements, (&device, &field), None)
         .map_err(|error| Failure::Failed(format!("{}: {error}", kept::capture_beside(out).display())))?;
     at_home::write(found, &windows, (&to, out), arguments.json)
+}
+
+/// Opens what the session keeps, and says where it goes on.
+fn begin(out: &Path, fresh: bool, guide: &mut Guide, head: &Head) -> Result<Kept, Failure> {
+    let progress = Progress::begin("reading what was heard earlier");
+    let kept = Kept::begin(out, Begin { fresh, way_to_fresh: "give --fresh" }, guide, head)?;
+    drop(progress);
+    if kept.goes_on() {
+        say(format_args!(
+            "it goes on from {}: {:.0} s pressed, {} of {} marks; --fresh begins anew",
+            kept::capture_beside(out).display(),
+            guide.pressed_s(),
+            guide.placements().len(),
+            MARKS_MM.len()
+        ));
+    }
+    Ok(kept)
 }
 
 /// The pad, and hands for one that has none.

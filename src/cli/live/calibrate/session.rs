@@ -1,17 +1,16 @@
 //! The session: a thread that hears every call, asks the guide, keeps what was heard, and says what to do.
 
-use std::mem::discriminant;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
 use super::hands::Hands;
 use super::kept::Kept;
 use super::told::Told;
-use super::words;
 use crate::cli::failure::Failure;
 use tactpad::bridge::observer::Observed;
 use tactpad::bridge::request::{Asker, Request};
 use tactpad::lab::play::guide::{Guide, Step};
+use tactpad::lab::play::words::is_other;
 use tactpad::pipeline::call::Call;
 use tactpad::time::HostInstant;
 
@@ -84,9 +83,4 @@ impl Session {
         self.told.show(&self.guide);
         Ok(())
     }
-}
-
-/// Whether it is another step, not the same one farther on.
-fn is_other(one: &Step, other: &Step) -> bool {
-    discriminant(one) != discriminant(other) || words::mark_of(one) != words::mark_of(other)
 }

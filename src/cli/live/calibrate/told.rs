@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, Sender};
 
-use super::words::{instruction, progress, wrong};
+use super::words::{instruction, progress};
 use crate::cli::live::playing::Terminal;
 use crate::cli::live::screen::{Picture, Size};
 use crate::cli::terminal;
@@ -11,6 +11,7 @@ use crate::cli::written::say;
 use tactpad::bridge::host::Host;
 use tactpad::bridge::offer::Offer;
 use tactpad::lab::play::guide::Guide;
+use tactpad::lab::play::words::wrong;
 use tactpad::pipeline::mapping::read::ReadProfile;
 
 /// Hands on what the bridge tells of the pad, so that it stands among the session's lines.

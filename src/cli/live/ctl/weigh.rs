@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::asked::answered;
 use crate::cli::failure::Failure;
+use crate::cli::live::shell::quoted;
 use crate::cli::written::{print_json, say, stdout};
 use tactpad::bridge::weighing::gain_sentence;
 use tactpad::pad::weight::check_weight;
@@ -85,12 +86,6 @@ fn how_to_keep(status: &Value, factor: f64, deviation: f64) -> String {
 
 fn text<'v>(of: &'v Value, key: &str) -> &'v str {
     of.get(key).and_then(Value::as_str).unwrap_or_default()
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+".contains(c);
-    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
 
 #[cfg(test)]

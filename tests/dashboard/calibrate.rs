@@ -146,7 +146,7 @@ fn obey(finger: &Finger, shown: &Shown) {
     }
     for (number, [x_mm, y_mm]) in MARKS_MM.into_iter().enumerate() {
         let asks = |what: &str| {
-            comes_true(5_000, || doing(shown)["cue"].as_str().is_some_and(|cue| cue.contains(what)))
+            comes_true(30_000, || doing(shown)["cue"].as_str().is_some_and(|cue| cue.contains(what)))
         };
         assert!(asks(&format!("on mark {}", number + 1)), "{}", doing(shown));
         finger.press(x_mm, y_mm, 0.2 * 9.806_65);

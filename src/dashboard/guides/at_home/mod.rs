@@ -52,7 +52,8 @@ impl Guide for AtHome {
         Ok(())
     }
 
-    fn stop(&mut self, _scene: &Scene<'_>) {
+    fn stop(&mut self, scene: &Scene<'_>) {
+        self.look(scene);
         self.stage = match &self.stage {
             Stage::Begun(begun) if begun.progress() == Progress::Running => {
                 begun.stop.store(true, Ordering::Release);
@@ -65,6 +66,7 @@ impl Guide for AtHome {
     }
 
     fn leave(&mut self, scene: &Scene<'_>) {
+        self.look(scene);
         // A pad that nobody plays on would else stay paused. A fit needs nobody.
         if matches!(&self.stage, Stage::Begun(begun) if begun.standing.listens()) {
             self.stop(scene);

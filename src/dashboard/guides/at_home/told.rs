@@ -30,17 +30,16 @@ const STEPS: [(&str, &str, &str); 5] = [
         "Print the sheet at 100 %: its bar must be 50 mm long. Cut the plate's outline out and tape it onto the plate, its arrow to the pad's \
          right. Weigh something of 100 to 500 g, with a foot no wider than 20 mm, on a kitchen scale.",
     ),
-    ("rest", "Leave it alone", "Leave the pad alone for a second, so that its zero is found."),
+    ("rest", "Leave it alone", "So its zero is found."),
     (
         "press",
         "Press anywhere",
-        "Press anywhere, again and again, lightly and hard, and lift the finger between. Whoever leaves a part out goes on without it after half \
-         a minute more.",
+        "Until the finger was on the pad for a minute in all. Whoever leaves a part of the plate out goes on without it after half a minute more.",
     ),
     (
         "marks",
         "Weight on the marks",
-        "Put the weight on the mark that is asked for, and take your hands off. It notices by itself that the weight lies still for two seconds.",
+        "Hands off as soon as the weight stands. It notices by itself that it lies still for two seconds.",
     ),
     (
         "fit",

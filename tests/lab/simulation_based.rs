@@ -42,7 +42,11 @@ const ONSET_CYCLES: f64 = 500.0;
 /// χ² of five numbers below which 95 % of all cases lie, and the end of an interval at 95 %.
 const CHI_SQUARE_95: f64 = 11.0705;
 const HALF_WIDTH: f64 = 1.96;
+/// Deviations of the narrow part of a prior of the rig over those of the wide one.
 const NARROW: f64 = 0.1;
+/// What the common gain differs by from one recording to the next, and readings that the prior of a channel's noise counts as.
+const GAIN_BETWEEN: f64 = 0.005;
+const PSEUDO_READINGS: usize = 10;
 
 /// A pad and a rig, by the declared priors.
 struct Drawn {
@@ -50,6 +54,8 @@ struct Drawn {
     field: PadField,
     /// The truth of each number, by its name and target.
     truth: BTreeMap<String, f64>,
+    /// What the common gain comes to until the next recording.
+    wandered: f64,
 }
 
 fn key(name: &str, target: Target) -> String {
@@ -68,15 +74,17 @@ impl Drawn {
         let field = bent(&mut random, &mut truth);
         wire(&mut device, &mut random, &mut truth);
         mount(&mut device, &mut random, &mut truth);
-        (device.behaviour.noise.additive_uv, device.behaviour.noise.share) =
-            ([8.0; CHANNELS], [0.01; CHANNELS]);
-        Self { device, field, truth }
+        let noise = &mut device.behaviour.noise;
+        noise.additive_uv = [0; CHANNELS].map(|_| deviation(&mut random, 8.0));
+        noise.share = [0; CHANNELS].map(|_| deviation(&mut random, 0.02));
+        let wandered = 1.0 + normal(&mut random, GAIN_BETWEEN);
+        Self { device, field, truth, wandered }
     }
 
     /// The pad as it is after the calibration, on a perfect rig.
     fn afterwards(&self) -> Device {
         let mut device = self.device.clone();
-        let left = 1.0 - device.behaviour.ageing.share[0];
+        let left = self.wandered * (1.0 - device.behaviour.ageing.share[0]);
         device.modules.iter_mut().for_each(|module| module.gain = module.gain.map(|gain| left * gain));
         device.behaviour.ageing = Device::nominal().behaviour.ageing;
         device.behaviour.rig = Device::nominal().behaviour.rig;
@@ -86,6 +94,12 @@ impl Drawn {
 
 fn normal(random: &mut SplitMix64, deviation: f64) -> f64 {
     deviation * f64::from(random.normal())
+}
+
+/// A standard deviation whose prior counts as so many readings of this one: σ² = ν σ₀²/χ².
+fn deviation(random: &mut SplitMix64, expected: f64) -> f64 {
+    let square: f64 = (0..PSEUDO_READINGS).map(|_| normal(random, 1.0).powi(2)).sum();
+    expected * (PSEUDO_READINGS as f64 / square).sqrt()
 }
 
 /// The nominal field, bent by poses, stiffnesses and blur.

@@ -227,19 +227,22 @@ fn only_what_a_diagnosis_names_has_a_name() {
     );
     assert!((finding["parameters"]["gain"]["value"].as_f64().unwrap() - 1.12).abs() < 0.005, "{finding}");
     let numbers = all(&found["numbers"]);
-    // 9 gains, 24 poses and stiffnesses, 72 crosstalks, the blur.
-    assert!(numbers.len() >= 106, "{}", numbers.len());
+    // 9 gains, 30 poses and stiffnesses, 72 crosstalks, blur and ageing, 11 of the rig.
+    assert!(numbers.len() >= 124, "{}", numbers.len());
     for number in numbers {
         let [deviation, prior] =
             ["deviation", "prior_deviation"].map(|key| number[key].as_f64().unwrap_or_default());
-        assert!(deviation > 0.0 && deviation < 1.001 * prior, "{number}");
+        // The prior of the rig's errors is a mixture: where the wide part is as likely, less is known than before.
+        let is_of_rig = number["target"] == "rig" && number["name"] != "blur_mm2";
+        let most = if is_of_rig { 1.5 } else { 1.001 };
+        assert!(deviation > 0.0 && deviation < most * prior, "{number}");
         let told_by = if deviation <= 0.5 * prior { "data" } else { "prior" };
         assert_eq!(number["told_by"], told_by, "{number}");
         let is_the_gain = number["name"] == "gain" && number["target"] == "m1z";
         assert_eq!(number["named"], is_the_gain, "{number}");
     }
     let parameters = all(&found["parameters"]);
-    assert!(parameters.len() == 24 && parameters.iter().all(|it| it["named"] == false), "{found}");
+    assert!(parameters.len() == 30 && parameters.iter().all(|it| it["named"] == false), "{found}");
     // A frame that stretches a gauge less and a gauge of a smaller gain look alike.
     let apart = all(&found["not_told_apart"]);
     let correlation = |it: &serde_json::Value| it["correlation"].as_f64().unwrap().abs();
@@ -256,12 +259,14 @@ fn people_read_names_first_and_no_pose_or_stiffness_beside_a_size() {
     let (findings, coefficients) = text.split_once("The decoder's own coefficients.").unwrap();
     assert!(findings.contains("  channel_gain of m1z: gain 1.12"), "{text}");
     assert!(!text.contains("module.") && !findings.contains("module"), "{text}");
+    let (coefficients, of_rig) = coefficients.split_once("\nWhether the stage stands").unwrap();
+    assert!(of_rig.contains("A second session would"), "{text}");
     for line in coefficients.lines().filter(|line| line.contains('±') && !line.contains("± is")) {
         assert!(CHANNEL_NAMES.iter().any(|name| line.starts_with(name)), "{line}");
         assert!(!["stiffness", "tilt", "turn", "displacement"].iter().any(|it| line.contains(it)), "{line}");
     }
     assert_eq!(coefficients.lines().filter(|line| line.contains(" ± 0.0")).count(), CHANNELS, "{text}");
-    assert!(coefficients.contains("24 poses and stiffnesses (") && coefficients.contains("no findings"));
+    assert!(coefficients.contains("30 poses and stiffnesses (") && coefficients.contains("no findings"));
     assert!(coefficients.contains("The data cannot tell "), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
 }

@@ -275,9 +275,13 @@ impl Screening {
 }
 
 /// Mean square over the plate by which the maps of two pads differ before gains, (µV/N)², by the calibration's priors: of
-/// poses, stiffnesses and the plate's thickness, and of crosstalk.
+/// poses and stiffnesses of modules, and of crosstalk. A plate of another thickness, or glue of another modulus, changes all channels
+/// much alike, which is told from no gain.
 fn differing(device: &Device, field: &PadField) -> Maps {
     let (physical, sensitivities) = free(field, device);
+    let of_modules =
+        physical.into_iter().zip(sensitivities).filter(|(it, _)| it.parameter.module().is_some());
+    let (physical, sensitivities): (Vec<_>, Vec<_>) = of_modules.unzip();
     let prior = PriorDeviations::TARED;
     let mut squares: Maps = [[0.0; 3]; CHANNELS];
     let mut count = 0.0;

@@ -31,7 +31,7 @@ pub(super) struct Driver {
     /// Told what becomes of each press.
     pub(super) watchers: Watchers,
     /// Told of each call.
-    pub(super) observer: Option<Observer>,
+    pub(super) observers: Vec<Observer>,
 }
 
 impl Driver {
@@ -48,7 +48,7 @@ impl Driver {
             self.watchers.tell(self.pipeline.verdicts());
             self.pipeline.forget_verdicts();
         }
-        if let Some(observer) = &mut self.observer {
+        for observer in &mut self.observers {
             observer.tell(self.clock, now, call, &self.pipeline);
         }
         match &mut self.recorder {

@@ -6,6 +6,7 @@
 //! doing takes the `snapshot`.
 
 mod answer;
+pub mod changes;
 pub mod clock;
 pub mod control;
 pub mod destination;

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use crate::bridge::changes::ChangesSlot;
 use crate::bridge::host::Host;
 use crate::bridge::observer::Observer;
 use crate::bridge::opening::{OpenedPad, Patience};
@@ -41,8 +42,10 @@ pub struct Parts {
     pub host: Box<dyn Host>,
     /// Where calls are recorded.
     pub record: Option<Box<dyn Write + Send>>,
-    /// Who is told of each call.
-    pub observer: Option<Observer>,
+    /// Who are told of each call.
+    pub observers: Vec<Observer>,
+    /// Where it is handed in what play shows of changes in the pad.
+    pub changes: ChangesSlot,
     /// Ends the run after this time.
     pub duration_us: Option<u64>,
 }

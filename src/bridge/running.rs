@@ -87,19 +87,18 @@ impl Bridge {
             requests,
             host,
             record,
-            mut observer,
+            mut observers,
+            changes,
             duration_us,
         } = parts;
         let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
         let head = Head { decoder: decoder.file, profile: Some(profile) };
-        let decoder = Known { name: decoder.name, place: decoder.place };
+        let decoder = Known { name: decoder.name, place: decoder.place, changes };
         let recorder = record.map(|to| Recorder::begin(to, now, &head)).transpose()?;
         let (latency, watchers) = (Arc::default(), requests.watchers());
         let commands = Commands::new();
-        if let Some(observer) = &mut observer {
-            observer.begin(clock, now, &pipeline);
-        }
-        let driver = Driver { pipeline, sink, recorder, clock, latency, commands, watchers, observer };
+        observers.iter_mut().for_each(|observer| observer.begin(clock, now, &pipeline));
+        let driver = Driver { pipeline, sink, recorder, clock, latency, commands, watchers, observers };
         let keeper = Keeper::new(pad, patience, now);
         let standing = Standing::begun();
         let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, (&decoder, &standing))));
@@ -437,6 +436,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
+    use crate::bridge::changes::ChangesSlot;
     use crate::bridge::opening::{OpenedPad, Patience};
     use crate::bridge::parts::PlayingDecoder;
     use crate::bridge::sink::null::NullSink;
@@ -486,7 +486,8 @@ mod tests {
             requests: Requests::new().unwrap(),
             host: Box::new(ear.clone()),
             record: None,
-            observer: None,
+            observers: Vec::new(),
+            changes: ChangesSlot::default(),
             duration_us: None,
         });
         (bridge.unwrap(), ear, looked)

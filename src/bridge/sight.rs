@@ -1,5 +1,6 @@
 //! What there is to see of a bridge at one moment.
 
+use crate::bridge::changes::ChangesSlot;
 use crate::bridge::driver::Driver;
 use crate::bridge::keeper::Keeper;
 use crate::bridge::offer::Standing;
@@ -19,6 +20,8 @@ pub(super) struct Known {
     pub(super) name: String,
     /// Where it was read.
     pub(super) place: Option<String>,
+    /// What play shows of changes in the pad since it was made.
+    pub(super) changes: ChangesSlot,
 }
 
 /// All that there is to see at `now`.
@@ -29,9 +32,10 @@ pub(super) fn look(
     (decoder, standing): (&Known, &Standing),
 ) -> Snapshot {
     let Driver { pipeline, sink, .. } = driver;
+    let pad = pipeline.identity().map(|identity| identity.serial_number);
     let status = Status {
         state: state(driver, keeper),
-        pad: pipeline.identity().map(|identity| identity.serial_number),
+        pad,
         profile: pipeline.profile().name.clone(),
         layer: pipeline.layer().map(str::to_owned),
         profile_reason: standing.reason.clone(),
@@ -48,6 +52,7 @@ pub(super) fn look(
         decoder_file: decoder.place.clone(),
         gain: pipeline.gain(),
         weighing: pipeline.weighing().map(WeighingStatus::of),
+        changes: decoder.changes.of(pad),
     };
     let uncertainty = pipeline.estimate().as_ref().map(Uncertainty::of);
     Snapshot { at: now, status, channels_uv: pipeline.strain().map(|strain| strain.uv), uncertainty }

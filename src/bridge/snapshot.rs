@@ -3,6 +3,7 @@
 use firmware_proto::identity::SerialNumber;
 use serde::{Serialize, Serializer};
 
+use crate::bridge::changes::Changes;
 use crate::bridge::latency::Percentiles;
 use crate::bridge::state::State;
 use crate::bridge::weighing::WeighingStatus;
@@ -71,6 +72,8 @@ pub struct Status {
     pub gain: f64,
     /// The newest weighing.
     pub weighing: Option<WeighingStatus>,
+    /// What play shows of changes in the pad since its decoder was made; nothing before enough was played.
+    pub changes: Option<Changes>,
 }
 
 /// Everything that went wrong, on the way from the pad and on the way out.
@@ -158,6 +161,7 @@ mod tests {
             decoder_file: Some("/pads/my.decoder".into()),
             gain: 1.0,
             weighing: None,
+            changes: None,
         };
         let uncertainty = Uncertainty { x_mm: 0.25, y_mm: 0.25, fx_n: 0.5, fy_n: 0.5, fz_n: 1.0 };
         let at = HostInstant::from_ns(1_500_000_000);
@@ -177,7 +181,7 @@ mod tests {
         assert!(text.contains(r#","groups_dropped":3,"calls_unrecorded":0},"latency_us""#), "{text}");
         let end = concat!(
             r#""latency_us":{"p50":12.5,"p95":0.0,"p99":0.0,"max":0.0},"#,
-            r#""decoder_file":"/pads/my.decoder","gain":1.0,"weighing":null}"#
+            r#""decoder_file":"/pads/my.decoder","gain":1.0,"weighing":null,"changes":null}"#
         );
         assert!(text.ends_with(end), "{text}");
     }

@@ -18,6 +18,9 @@ use tactpad::pipeline::shipped;
 /// Far more than any decoder needs, and no more than a capture's entry holds.
 const BYTES_MAX: u64 = 16_000_000;
 
+/// What decoders of all versions begin with.
+const KIND: &[u8; 16] = b"tactpad decoder ";
+
 /// The decoder of a verb that plays.
 #[derive(Debug, Args)]
 pub(super) struct Choice {
@@ -48,6 +51,17 @@ impl Choice {
         say_doubts(path, &bytes, &decoder);
         Ok((decoder, bytes))
     }
+}
+
+/// Whether a name or a file means a decoder of the program's own, be it damaged or of another version.
+pub(super) fn is_meant(path: &Path) -> bool {
+    if path.to_str().is_some_and(shipped::is_known) {
+        return true;
+    }
+    // Asked before it is opened: opening a pipe would wait for its other end.
+    let file = std::fs::metadata(path).is_ok_and(|it| it.is_file()).then(|| File::open(path).ok());
+    let mut first = [0; KIND.len()];
+    file.flatten().is_some_and(|mut file| file.read_exact(&mut first).is_ok() && first == *KIND)
 }
 
 /// Reads any decoder.

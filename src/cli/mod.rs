@@ -16,6 +16,7 @@ mod layout;
 mod live;
 mod metrology;
 mod pictures;
+mod played;
 mod profile;
 mod progress;
 mod protocol;

@@ -412,10 +412,7 @@ pub(super) fn products<const N: usize>(left: &[f64], right: [&[f64]; N]) -> [f64
     }
     let mut of_all = [0.0; N];
     for n in 0..N {
-        let mut sum = 0.0;
-        for k in 0..rest.len().min(right[n].1.len()) {
-            sum += rest[k] * right[n].1[k];
-        }
+        let mut sum: f64 = rest.iter().zip(right[n].1).map(|(left, right)| left * right).sum();
         for part in sums[n] {
             sum += part;
         }

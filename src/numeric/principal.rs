@@ -40,6 +40,15 @@ pub fn principal_directions(rows: &Matrix, count: usize) -> Vec<Principal> {
     rotated(&square, &basis).into_iter().take(count).collect()
 }
 
+/// What a row has beside these directions, which are orthonormal.
+pub fn beside(mut row: Vec<f64>, directions: &[Principal]) -> Vec<f64> {
+    for Principal { direction, .. } in directions {
+        let along = dot(&row, direction);
+        row.iter_mut().zip(direction).for_each(|(entry, own)| *entry -= along * own);
+    }
+    row
+}
+
 /// An orthonormal basis of what the vectors span.
 fn orthonormal(vectors: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::with_capacity(vectors.len());
@@ -145,6 +154,17 @@ mod tests {
             assert!((found.square / (size * size) - 1.0).abs() < 1e-9, "{} {size}", found.square);
             assert!((dot(&found.direction, axis).abs() - 1.0).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn beside_directions_nothing_of_them_is_left() {
+        let (matrix, _) = rows(&[2.0, 1.0, 0.5]);
+        let found = principal_directions(&matrix, 2);
+        let row: Vec<f64> = (0..matrix.columns()).map(|at| 1.0 + at as f64).collect();
+        let left = beside(row.clone(), &found);
+        assert!(found.iter().all(|it| dot(&left, &it.direction).abs() < 1e-12));
+        let along: f64 = found.iter().map(|it| dot(&row, &it.direction).powi(2)).sum();
+        assert!((dot(&left, &left) + along - dot(&row, &row)).abs() < 1e-9);
     }
 
     #[test]

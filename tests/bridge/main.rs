@@ -13,6 +13,8 @@ mod control;
 mod decoders;
 #[cfg(feature = "live")]
 mod firmware;
+#[cfg(feature = "live")]
+mod kept_play;
 mod nostd;
 #[cfg(feature = "live")]
 mod presses;

@@ -43,6 +43,7 @@ impl Running {
             .current_dir(folder)
             .env("XDG_RUNTIME_DIR", folder)
             .env("XDG_CONFIG_HOME", folder)
+            .env("XDG_STATE_HOME", folder)
             .stdin(Stdio::null())
             .stdout(Stdio::null());
         program

@@ -1,15 +1,16 @@
-//! What changed between two plays: twins whose change is known, and twins that did not change but were played by another hand.
+//! What changed since an earlier play, or since a calibration: twins whose change is known, and twins that did not change but were
+//! played by another hand.
 //!
 //! Pads are those of `home`, with their friction, creep, restless finger and lasting noise. The later play goes on with the state
-//! that the earlier one left.
+//! that an earlier one left; after a calibration the pad begins anew.
 //!
 //! With `TACTPAD_CHANGES=N` N pads of each kind are played, from the seed `TACTPAD_CHANGES_FROM` on, for ten minutes each, and the
-//! table of docs/diagnosis.md is printed.
+//! tables of docs/diagnosis.md are printed; `TACTPAD_CHANGES_SINCE=play`, `home` or `rig` asks for one of them.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 
 use tactpad::lab::diagnosis::report::Finding;
 use tactpad::lab::diagnosis::target::Target;
-use tactpad::lab::play::change::{Changed, changed};
+use tactpad::lab::play::change::{Before, Changed, changed};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::windows::Window;
 use tactpad::numeric::zernike::jets;
@@ -109,6 +110,20 @@ fn profile(name: &str) -> ReadProfile {
     ReadProfile::read(profiles::text(name).unwrap(), OutputChoice::AsWritten).0.unwrap()
 }
 
+/// The pad as it was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Since {
+    Play,
+    /// Two minutes of play at home and a weight.
+    Home,
+    /// Sixty labels of a rig.
+    Rig,
+}
+
+impl Since {
+    const ALL: [(&str, Self); 3] = [("play", Self::Play), ("home", Self::Home), ("rig", Self::Rig)];
+}
+
 /// Windows of a play, as of a capture, and the pad's life after it.
 fn played(
     script: Script,
@@ -135,20 +150,28 @@ fn played(
     (reader.finish(), pad.into_life())
 }
 
-fn compared(kind: Kind, seconds: u64, seed: u64) -> Changed {
+fn compared(kind: Kind, since: Since, seconds: u64, seed: u64) -> Changed {
     let pad = Pad::drawn(seed);
     let end_us = 1_000_000 * seconds;
-    let life = Life::new(&pad.device, seed);
-    let first = (kind.script(false, end_us, seed), (&pad.device, &pad.field));
-    let (earlier, life) = played(first.0, first.1, life, (end_us, seed));
+    let mut life = Life::new(&pad.device, seed);
+    let (mut earlier, mut decoder) = (Vec::new(), None);
+    match since {
+        Since::Play => {
+            let first = (kind.script(false, end_us, seed), (&pad.device, &pad.field));
+            (earlier, life) = played(first.0, first.1, life, (end_us, seed));
+        }
+        Since::Home => decoder = Some(pad.by_play(120.0)),
+        Since::Rig => decoder = Some(pad.by_rig(60)),
+    }
     let (device, field) = kind.pad(&pad);
     let script = kind.script(true, end_us, seed);
     let (later, _) = played(script, (&device, &field), life, (end_us, seed + 1_000));
+    let before = decoder.as_ref().map_or(Before::Play(&earlier), Before::Decoder);
     let nominal = (&Device::nominal(), &PadField::nominal());
-    let found = changed([&earlier, &later], nominal, &FieldChanges::nominal().0, &|_, _| ()).unwrap();
+    let found = changed(before, &later, nominal, &FieldChanges::nominal().0, &|_, _| ()).unwrap();
     let told: Vec<String> = found.findings.iter().map(told).collect();
     println!(
-        "pad {seed:3}  {kind:?}: {:?} presses, inflation {:.2}, least gain {:.4}; {}",
+        "pad {seed:3}  {kind:?} since {since:?}: {:?} presses, inflation {:.2}, least gain {:.4}; {}",
         found.presses,
         found.inflation,
         found.least_module_gain,
@@ -178,10 +201,10 @@ struct Rates {
     wrong: usize,
 }
 
-fn rates(kind: Kind, seconds: u64, seeds: std::ops::Range<u64>) -> Rates {
+fn rates(kind: Kind, since: Since, seconds: u64, seeds: std::ops::Range<u64>) -> Rates {
     let mut rates = Rates::default();
     for seed in seeds {
-        let Changed { findings, .. } = compared(kind, seconds, seed);
+        let Changed { findings, .. } = compared(kind, since, seconds, seed);
         let is_right = |it: &Finding| Some((it.effect, it.target)) == kind.cause();
         let is_in =
             |it: &Finding| is_right(it) || it.confounded_with.iter().any(|it| Some(*it) == kind.cause());
@@ -191,7 +214,7 @@ fn rates(kind: Kind, seconds: u64, seeds: std::ops::Range<u64>) -> Rates {
         rates.missed += usize::from(!findings.iter().any(is_in));
         rates.wrong += usize::from(findings.iter().any(|it| !is_right(it) && is_named(it)));
     }
-    println!("{kind:?}: {rates:?}");
+    println!("{kind:?} since {since:?}: {rates:?}");
     rates
 }
 
@@ -200,14 +223,24 @@ fn what_changed_is_named_and_what_did_not_is_not() {
     let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     if let Some(pads) = asked("TACTPAD_CHANGES") {
         let from = asked("TACTPAD_CHANGES_FROM").unwrap_or(1);
-        for kind in Kind::ALL {
-            rates(kind, 600, from..from + pads);
+        let only = std::env::var("TACTPAD_CHANGES_SINCE").ok();
+        let wanted = Since::ALL.into_iter().filter(|(name, _)| only.as_ref().is_none_or(|only| only == name));
+        for (_, since) in wanted {
+            for kind in Kind::ALL {
+                rates(kind, since, 600, from..from + pads);
+            }
         }
         return;
     }
-    for kind in Kind::ALL {
-        let rates = rates(kind, 150, 1..2);
-        assert_eq!(rates.wrong, 0, "{kind:?}");
-        assert!(kind.cause().is_none() || rates.missed == 0, "{kind:?}");
+    for (since, kinds) in [
+        (Since::Play, &Kind::ALL[..]),
+        (Since::Home, &Kind::ALL),
+        (Since::Rig, &[Kind::ModuleGain, Kind::Nothing]),
+    ] {
+        for kind in kinds {
+            let rates = rates(*kind, since, 150, 1..2);
+            assert_eq!(rates.wrong, 0, "{kind:?}");
+            assert!(kind.cause().is_none() || rates.missed == 0, "{kind:?}");
+        }
     }
 }

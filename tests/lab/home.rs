@@ -83,14 +83,20 @@ impl Pad {
         [truth.errors.position_mae_mm, truth.errors.force_mae_n, truth.coverage95.unwrap()]
     }
 
-    /// By twenty contacts that a rig labelled.
-    fn by_rig(&self) -> Decoder {
+    /// By so many seconds of play at home, and a weight on five marks.
+    pub(super) fn by_play(&self, seconds: f64) -> Decoder {
+        let (windows, placements) = recorded(self, seconds, 26.0);
+        at_home(&windows, &placements).calibration.decoder()
+    }
+
+    /// By so many contacts that a rig labelled.
+    pub(super) fn by_rig(&self, labels: usize) -> Decoder {
         let measured =
             carry_out(&plans::paper::plan(&self.device.contact), &self.device, &self.field, self.seed);
         let recording = Recording::of(measured.table, self.device.contact.full_scale_n).unwrap();
         let mut rows = recording.contacts();
         SplitMix64::named(self.seed, "rows").shuffle(&mut rows);
-        rows.truncate(20);
+        rows.truncate(labels);
         fit(&recording, &rows, &Device::nominal(), &PadField::nominal(), None).unwrap().decoder()
     }
 }
@@ -224,8 +230,8 @@ fn compared(seed: u64) -> [[f64; 3]; 3] {
     let found = at_home(&windows, &placements);
     let without = at_home(&windows, &[]);
     assert!(found.knows_scale() && !without.knows_scale());
-    let all =
-        [pad.by_rig(), found.calibration.decoder(), without.calibration.decoder()].map(|it| pad.errors(&it));
+    let all = [pad.by_rig(20), found.calibration.decoder(), without.calibration.decoder()]
+        .map(|it| pad.errors(&it));
     for (name, [mm, n, inside]) in ["rig, 20 labels", "home", "home, no weight"].iter().zip(&all) {
         println!("pad {seed:2}  {name:<16} {mm:.3} mm  {n:.4} N  {inside:.3} inside");
     }

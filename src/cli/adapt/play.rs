@@ -5,28 +5,19 @@ use std::path::Path;
 use super::at_home;
 use super::method::Method;
 use super::own;
-use crate::cli::decoder_file;
 use crate::cli::destination::Destination;
 use crate::cli::failure::Failure;
 use crate::cli::field::field_of;
-use crate::cli::profile;
-use crate::cli::progress::Progress;
-use crate::cli::recording::{Profiles, Recording};
+use crate::cli::played;
 use crate::cli::text_file;
 use tactpad::lab::play::home::HomeError;
-use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::weights::{self, Placement};
-use tactpad::lab::play::windows::Window;
 use tactpad::pad::device::Device;
-use tactpad::pipeline::contact::Decoder;
-use tactpad::pipeline::mapping::check::OutputChoice;
-use tactpad::pipeline::mapping::profile::Profile;
-use tactpad::pipeline::shipped;
 
 /// What is asked for.
 pub(super) struct Wanted<'a> {
     pub(super) method: Option<Method>,
-    /// The capture.
+    /// The capture, or kept play.
     pub(super) play: &'a Path,
     /// The table of placements, if there is one.
     pub(super) weights: Option<&'a Path>,
@@ -47,7 +38,7 @@ pub(super) fn run(wanted: &Wanted<'_>, device: &Device) -> Result<(), Failure> {
     let to = Destination::of(out)?;
     let earlier = own::earlier(Method::Inverse, from)?;
     let field = field_of(device)?;
-    let windows = read(play, earlier.as_ref())?;
+    let windows = played::read(play, earlier.as_ref())?.windows;
     let found = at_home::fitted(&windows, &placements, (device, &field), earlier.as_ref());
     let found = found.map_err(|error| {
         let name = weights.unwrap_or(play);
@@ -63,31 +54,4 @@ pub(crate) fn read_weights(path: &Path, reach_mm: f64) -> Result<Vec<Placement>,
     let unusable = |why: String| Failure::Unusable(format!("{}: {why}", path.display()));
     let text = text_file::read(path).map_err(unusable)?;
     weights::read(&text, reach_mm).map_err(|why| unusable(why.to_string()))
-}
-
-/// The capture's windows. Touches are known by the earlier decoder, else by the nominal one.
-fn read(path: &Path, earlier: Option<&Decoder>) -> Result<Vec<Window>, Failure> {
-    Ok(heard(path, earlier)?.finish())
-}
-
-/// A capture that was read to its end.
-pub(crate) fn heard(path: &Path, earlier: Option<&Decoder>) -> Result<Reader, Failure> {
-    let _progress = Progress::begin("reading the capture");
-    let mut capture = Recording::open(path)?;
-    let decoder = match earlier {
-        Some(decoder) => decoder.clone(),
-        None => decoder_file::read(Path::new(shipped::INVERSE))?,
-    };
-    // Only its filter counts, so any will do.
-    let profile = capture.profile().or_else(|_| any_profile())?;
-    let mut reader = Reader::new(decoder, profile);
-    capture.each(Profiles::Skipped, |now, call| {
-        reader.apply(now, call);
-        Ok(())
-    })?;
-    Ok(reader)
-}
-
-fn any_profile() -> Result<Profile, Failure> {
-    profile::read("super-mario", OutputChoice::AsWritten).map(|read| read.profile().clone())
 }

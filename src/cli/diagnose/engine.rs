@@ -23,7 +23,7 @@ pub(crate) fn diagnosed(
 }
 
 /// What flaws of a module change; none where that cannot be had.
-pub(super) fn flaws(device: &Device) -> Vec<FieldChange> {
+pub(crate) fn flaws(device: &Device) -> Vec<FieldChange> {
     match changes_of(device) {
         Ok(changes) => changes.0,
         Err(Failure::Failed(why) | Failure::Unusable(why)) => {

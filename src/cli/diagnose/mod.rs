@@ -2,6 +2,7 @@
 
 mod against;
 mod arguments;
+pub(super) mod changes;
 pub(super) mod document;
 pub(super) mod engine;
 mod files;

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 
 use super::calibrate::kept::{Begin, Kept, capture_beside};
 use super::files::holds_play;
-use super::shell::quoted;
 use crate::cli::config_folder;
 use crate::cli::destination::Destination;
 use crate::cli::failure::Failure;
+use crate::cli::written::quoted;
 use tactpad::dashboard::library::{KeptDecoder, Session};
 use tactpad::lab::play::guide::Guide;
 use tactpad::lab::play::weights::Placement;

@@ -181,6 +181,9 @@ fn print_status(status: &Value) -> io::Result<()> {
     if let Some(sentence) = status.get("gain").and_then(Value::as_f64).and_then(gain_sentence) {
         writeln!(out, "gain     {sentence}")?;
     }
+    if let Some(changes) = status.get("changes").and_then(|it| it.get("text")).and_then(Value::as_str) {
+        writeln!(out, "changes  {}", printable(changes))?;
+    }
     let presses =
         |key: &str| status.get("presses").and_then(|it| it.get(key)).and_then(Value::as_u64).unwrap_or(0);
     writeln!(out, "presses  {} accepted, {} rejected", presses("accepted"), presses("rejected"))?;

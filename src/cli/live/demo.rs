@@ -20,6 +20,7 @@ use crate::cli::profile;
 use crate::cli::seconds;
 use crate::cli::terminal;
 use crate::cli::written::{print_json, say, stdout};
+use tactpad::bridge::changes::ChangesSlot;
 use tactpad::bridge::latency::Percentiles;
 use tactpad::bridge::opening::Patience;
 use tactpad::bridge::parts::Parts;
@@ -106,7 +107,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         requests,
         host: Box::new(host.with_page(prepared.url.clone())),
         record: None,
-        observer: prepared.observer.take(),
+        observers: prepared.observer.take().into_iter().collect(),
+        changes: ChangesSlot::default(),
         duration_us: duration.map(microseconds),
     })?;
     prepared.start(&bridge)?;

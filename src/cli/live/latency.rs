@@ -15,6 +15,7 @@ use crate::cli::failure::Failure;
 use crate::cli::profile;
 use crate::cli::seconds;
 use crate::cli::written::{print_json, say, stdout};
+use tactpad::bridge::changes::ChangesSlot;
 use tactpad::bridge::latency::Percentiles;
 use tactpad::bridge::opening::Patience;
 use tactpad::bridge::parts::Parts;
@@ -82,7 +83,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         requests: requests(None, audience)?,
         host: Box::new(host),
         record: Some(timing.record()),
-        observer: None,
+        observers: Vec::new(),
+        changes: ChangesSlot::default(),
         duration_us: Some(microseconds(arguments.seconds)),
     })?;
     play(&mut bridge, pad)?;

@@ -14,6 +14,8 @@ mod devices;
 mod doctor;
 mod files;
 mod follower;
+mod keeping;
+mod kept_play;
 #[cfg(feature = "tray")]
 mod last_profile;
 mod latency;
@@ -27,7 +29,6 @@ mod record;
 mod reported;
 mod run;
 mod screen;
-mod shell;
 mod shown;
 mod sound;
 mod wish;

@@ -20,6 +20,7 @@ use crate::cli::failure::Failure;
 use crate::cli::profile;
 use crate::cli::seconds;
 use crate::cli::written::{Named, say};
+use tactpad::bridge::changes::ChangesSlot;
 use tactpad::bridge::parts::Parts;
 use tactpad::bridge::running::Bridge;
 use tactpad::bridge::transport::address::PadAddress;
@@ -99,7 +100,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         requests: requests(Some(&ctl::socket_path()), audience)?,
         host: Box::new(host),
         record: Some(Box::new(capture)),
-        observer: None,
+        observers: Vec::new(),
+        changes: ChangesSlot::default(),
         duration_us: seconds.map(microseconds),
     })?;
     let cue = seconds.filter(|_| arguments.force_range).map(cue);

@@ -7,6 +7,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::files::Files;
 use super::follower;
+use super::keeping::{KeepPlay, Keeping};
 use super::newest::Newest;
 use super::output::Output;
 use super::playing::{Audience, Terminal, Waits, microseconds, open_pad, patience, play, requests};
@@ -54,6 +55,11 @@ pub(crate) struct Arguments {
     /// probability is per frame, and 0.001 where only a seed is given.
     #[arg(long, value_name = "FAULTS")]
     faults: Option<FaultPlan>,
+    /// Keep the newest ten minutes of play, on this machine alone, to say what changed in the pad: docs/home.md.
+    ///
+    /// It is kept for pads with a serial number whose decoder calibrate or adapt made.
+    #[arg(long, value_name = "WHETHER", default_value = "yes")]
+    keep_play: KeepPlay,
     /// End after this many seconds.
     #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
@@ -88,6 +94,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         say(format_args!("Dashboard: {url}"));
     }
     follower::start(wish, output.choice(), requests.asker()?)?;
+    let mut keeping = Keeping::begin(arguments.keep_play, pad, &decoder)?;
     let mut bridge = Bridge::new(Parts {
         pad: prepared.pad(opened),
         patience,
@@ -97,13 +104,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         requests,
         host: Box::new(host.with_page(prepared.url.clone())),
         record: None,
-        observer: prepared.observer.take(),
+        observers: prepared.observer.take().into_iter().chain(keeping.observer()).collect(),
+        changes: keeping.changes(),
         duration_us: arguments.seconds.map(microseconds),
     })?;
     prepared.start(&bridge)?;
     let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.lines()));
     let ending = play(&mut bridge, &arguments.pad);
     drop(screen);
+    // What keeps play ends with what it hears.
+    drop(bridge);
+    keeping.end();
     ended(ending, prints)
 }
 

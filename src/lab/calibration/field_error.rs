@@ -3,7 +3,8 @@
 //!
 //! With the curvature H = L Lᵀ a channel under a load, aₖ = ∂sₖ/∂θ, has the posterior covariance aₖᵀH⁻¹aₗ = (L⁻¹aₖ)ᵀ(L⁻¹aₗ). Unit
 //! vectors v of this space are independent: θ + L⁻ᵀ(a₁v₁ + a₂v₂ + …) with aᵣ ∼ N(0, 1) are draws from the posterior. The modes are
-//! the changes of the maps along those v that move decoded contacts most.
+//! the changes of the maps along those v that move decoded contacts most, and then along those that make channels contradict each
+//! other most.
 
 use super::contacts::{BACKGROUND_DEGREE, Measured, Place};
 use super::model::Layout;
@@ -12,7 +13,7 @@ use super::plate::{loads, places};
 use super::problem::{Fit, Problem};
 use crate::numeric::dense::{Matrix, gram};
 use crate::numeric::linear::{Factor, LargeFactor, dot};
-use crate::numeric::principal::{Principal, principal_directions};
+use crate::numeric::principal::{Principal, beside, principal_directions};
 use crate::numeric::zernike;
 use crate::pad::influence::{InfluenceField, MAPS};
 use crate::pipeline::contact::field_error::{DEGREE, FieldError, MODES_MAX, Mode, TERMS};
@@ -196,12 +197,21 @@ fn polynomials(place_mm: &[f64; 2], reach_mm: f64) -> [f64; TERMS] {
 }
 
 /// The directions that do what the field's errors do to decoded contacts, each counted in that contact's own deviations, but for a
-/// small share of the contacts' whole variance.
+/// small share of the contacts' whole variance; and then, beside these, those that do what no contact explains, counted in the
+/// channels' deviations: by that presses without labels show what changed.
 fn principal(certain: &Inverse, loads: &[Load]) -> Vec<Principal> {
-    let rows: Vec<Vec<f64>> = loads.iter().filter_map(|load| load.moved(certain)).flatten().collect();
+    let moved = loads.iter().filter_map(|load| load.moved(certain)).flatten().collect();
+    let mut found = enough(moved, MODES_MAX);
+    let left = loads.iter().filter_map(|load| load.unexplained(certain)).flatten();
+    let left: Vec<Vec<f64>> = left.map(|row| beside(row, &found)).collect();
+    found.extend(enough(left, MODES_MAX - found.len()));
+    found
+}
+
+/// The principal directions of rows that count in deviations, but for a small share of their variance.
+fn enough(rows: Vec<Vec<f64>>, most: usize) -> Vec<Principal> {
     let mut left: f64 = rows.iter().map(|row| dot(row, row)).sum();
-    let mut found = principal_directions(&Matrix::from_rows(&rows), MODES_MAX);
-    // Each row is an unknown of a contact, whose variance is 1.
+    let mut found = principal_directions(&Matrix::from_rows(&rows), most);
     let enough = found.iter().position(|it| {
         let is_enough = left <= LEFT_SHARE * rows.len() as f64;
         left -= it.square;
@@ -242,14 +252,36 @@ impl Load {
 
     /// The same of unit steps in the space of L⁻¹.
     fn moved(&self, certain: &Inverse) -> Option<Vec<Vec<f64>>> {
-        let moved = |weights: &[f64; CHANNELS]| {
-            let mut moved = vec![0.0; self.halves[0].len()];
+        self.weights(certain).map(|weights| self.combined(&weights))
+    }
+
+    /// What no contact explains of unit steps there, in the channels' deviations: (I − J K) s.
+    fn unexplained(&self, certain: &Inverse) -> Option<Vec<Vec<f64>>> {
+        let contact = noise::contact(&self.place_mm, &self.force_n);
+        let response = certain.expected(&contact)?.response;
+        let slopes = certain.slopes(self.place_mm, &self.force_n);
+        let uv = certain.field().strain_uv(&contact).uv.map(f64::from);
+        let variances = certain.noise().variances(&uv, self.force_n[2]);
+        let weights: [[f64; CHANNELS]; CHANNELS] = std::array::from_fn(|channel| {
+            let deviation = (variances.noise[channel] + variances.field[channel]).sqrt();
+            std::array::from_fn(|other| {
+                let explained: f64 = slopes[channel].iter().zip(&response).map(|(j, k)| j * k[other]).sum();
+                (f64::from(u8::from(channel == other)) - explained) / deviation
+            })
+        });
+        Some(self.combined(&weights))
+    }
+
+    /// These combinations of the channels' L⁻¹aₖ.
+    fn combined(&self, weights: &[[f64; CHANNELS]]) -> Vec<Vec<f64>> {
+        let combined = |weights: &[f64; CHANNELS]| {
+            let mut combined = vec![0.0; self.halves[0].len()];
             for (weight, half) in weights.iter().zip(&self.halves) {
-                moved.iter_mut().zip(half).for_each(|(sum, entry)| *sum += weight * entry);
+                combined.iter_mut().zip(half).for_each(|(sum, entry)| *sum += weight * entry);
             }
-            moved
+            combined
         };
-        self.weights(certain).map(|weights| weights.iter().map(moved).collect())
+        weights.iter().map(combined).collect()
     }
 
     /// What these modes leave of the channels' covariance.

@@ -45,7 +45,7 @@ const HALVINGS: i32 = 3;
 /// Relaxation times that are tried: between the length of a press and that of a pause.
 const CREEP_TIMES_S: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 /// Time constants of relative noise that are tried in play.
-const NOISE_TIMES_S: [f64; 4] = [0.7, 2.0, 6.0, 18.0];
+pub(super) const NOISE_TIMES_S: [f64; 4] = [0.7, 2.0, 6.0, 18.0];
 /// ln of the Bayes factor that a richer hypothesis (a play operator, creep, another pad's field) must exceed.
 const LOG_EVIDENCE_GAIN: f64 = 15.0;
 /// Plates that differ by less are of one kind.
@@ -262,10 +262,7 @@ pub fn fit_known(
     earlier: Option<Earlier<'_>>,
     report: Report<'_>,
 ) -> Result<Calibration, FitError> {
-    let radius_mm = field.signals.radius_mm();
-    if earlier.is_some_and(|it| (it.inverse.field().radius_mm() - radius_mm).abs() > PLATE_TOLERANCE_MM) {
-        return Err(FitError::OtherPlate);
-    }
+    earlier.map_or(Ok(()), |it| same_plate(&it, field))?;
     if fitted.is_empty() {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
@@ -283,6 +280,12 @@ pub fn fit_known(
     }
     let is_sound = |it: &Calibration| it.thermal.is_none_or(|fit| fit.coefficients.is_sound());
     best.map(|(_, calibration)| calibration).filter(is_sound).ok_or(FitError::Senseless)
+}
+
+/// Refuses a decoder of a pad with another plate.
+pub(super) fn same_plate(earlier: &Earlier<'_>, field: &PadField) -> Result<(), FitError> {
+    let [one_mm, other_mm] = [earlier.inverse.field(), &field.signals].map(InfluenceField::radius_mm);
+    if (one_mm - other_mm).abs() > PLATE_TOLERANCE_MM { Err(FitError::OtherPlate) } else { Ok(()) }
 }
 
 /// A prior that the pad may have been drawn from.

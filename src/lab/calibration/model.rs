@@ -40,6 +40,8 @@ const CREEP_DEVIATION: f64 = 0.01;
 const GAIN_SLOPE_DEVIATION: f64 = 1e-3;
 /// Of what ageing takes over a measurement.
 const AGEING_DEVIATION: f64 = 0.05;
+/// A precision that no measurement outweighs.
+pub(super) const CERTAIN: f64 = 1e18;
 /// Largest magnitude of a play operator's share. A negative one corrects another.
 const SHARE_MAX: f64 = 0.25;
 
@@ -135,8 +137,8 @@ impl Layout {
         for terms in deviations[self.background(0, 0)..].chunks_exact_mut(TERMS) {
             terms.iter_mut().zip(&shares).for_each(|(deviation, share)| *deviation = background * share);
         }
-        // What cannot differ gets a precision that no measurement outweighs.
-        deviations.iter().map(|deviation| 1.0 / deviation.max(1e-9).powi(2)).collect()
+        // What cannot differ is certain.
+        deviations.iter().map(|deviation| (1.0 / deviation.powi(2)).min(CERTAIN)).collect()
     }
 
     /// Places of the parameters whose kinds share a prior standard deviation.

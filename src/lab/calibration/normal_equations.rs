@@ -91,6 +91,14 @@ impl NormalEquations {
         Some(Step { delta: factor.solve(&self.gradient), factor })
     }
 
+    /// ½ (gᵀ H⁻¹ g − ln det H): what integrating over the unknowns adds to ln p at θ.
+    pub(super) fn log_evidence_gained(mut self) -> Option<f64> {
+        self.add_collected();
+        let factor = self.curvature.factorised()?;
+        let half = factor.solve_lower(&self.gradient);
+        Some(0.5 * (dot(&half, &half) - factor.log_determinant()))
+    }
+
     /// How many unknowns there are.
     pub(super) const fn size(&self) -> usize {
         self.gradient.len()

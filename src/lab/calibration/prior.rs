@@ -57,6 +57,12 @@ impl Prior {
         Self { field: PadField { signals, ..prior.field }, ..prior }
     }
 
+    /// The same, where no number of the device may differ from what its field has.
+    pub(super) fn without_sensitivities(mut self) -> Self {
+        self.field.sensitivities.clear();
+        self
+    }
+
     /// Thresholds before gains are means over the channels of threshold/|gₖ|.
     fn with_hysteresis(
         field: PadField,

@@ -372,6 +372,11 @@ impl<'f> Problem<'f> {
         self.contacts.iter().map(|(_, contact)| self.linearised(values, contact).0).collect()
     }
 
+    /// ln p(contacts | θ), but for a constant.
+    pub(super) fn log_likelihood(&self, values: &[f64], noise_model: &NoiseModel) -> Option<f64> {
+        log_likelihood_of_contacts(&self.residuals(values), noise_model)
+    }
+
     /// What the written labels stand for, by these errors of the rig.
     fn relabel(&mut self, values: &[f64]) {
         let rig = Layout::rig(values);

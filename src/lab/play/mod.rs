@@ -6,6 +6,7 @@
 pub mod change;
 pub mod guide;
 pub mod home;
+pub mod kept;
 pub mod reader;
 pub mod sheet;
 pub mod summary;

@@ -23,8 +23,13 @@ impl Reader {
     /// One that has heard nothing. By the decoder touches are known, and about where they are: any that fits the pad roughly
     /// will do. Of the profile only the filter matters.
     pub fn new(decoder: Decoder, profile: Profile) -> Self {
-        let pipeline = Pipeline::new(decoder, profile);
-        Self { pipeline, begin: None, samples: 0, gatherer: Gatherer::default() }
+        Self::going_on(Pipeline::new(decoder, profile))
+    }
+
+    /// One that goes on with a pipeline as it stands.
+    pub fn going_on(pipeline: Pipeline) -> Self {
+        let samples = pipeline.health().samples;
+        Self { pipeline, begin: None, samples, gatherer: Gatherer::default() }
     }
 
     /// Makes one call. What the player chose for the game is left out: a paused pad is pressed all the same.
@@ -50,6 +55,11 @@ impl Reader {
     /// What stands in the way of windows, if anything does.
     pub fn phase(&self) -> Phase {
         self.pipeline.phase()
+    }
+
+    /// Takes out the windows that nothing is added to any more.
+    pub fn take(&mut self) -> Vec<Window> {
+        self.gatherer.take()
     }
 
     /// The pad that was played on, once it has told who it is.

@@ -108,6 +108,11 @@ impl Gatherer {
         &self.windows
     }
 
+    /// Takes out the windows that are closed.
+    pub fn take(&mut self) -> Vec<Window> {
+        std::mem::take(&mut self.windows)
+    }
+
     /// All windows, in order of time.
     pub fn finish(mut self) -> Vec<Window> {
         self.close(false);

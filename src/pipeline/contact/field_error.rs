@@ -98,15 +98,22 @@ impl FieldError {
         &self.modes
     }
 
+    /// What each mode adds to the channels.
+    pub(super) fn channels_uv<'a>(
+        &'a self,
+        asked: &'a Asked<'_>,
+    ) -> impl Iterator<Item = [f64; CHANNELS]> + 'a {
+        let values = zernike::values(asked.place).map(|value| value as f32);
+        self.modes.iter().map(move |mode| mode.read(&values, asked))
+    }
+
     /// Covariance of a decoded contact by the field's error: Σᵣ (K Mᵣ F)(K Mᵣ F)ᵀ, where `response` is K.
     pub(super) fn covariance(&self, asked: &Asked<'_>, response: &[[f64; CHANNELS]; UNKNOWNS]) -> Covariance {
         let mut covariance = [[0.0; UNKNOWNS]; UNKNOWNS];
         if self.modes.is_empty() {
             return covariance;
         }
-        let values = zernike::values(asked.place).map(|value| value as f32);
-        for mode in &self.modes {
-            let channels_uv = mode.read(&values, asked);
+        for channels_uv in self.channels_uv(asked) {
             let moved = response.map(|row| row.iter().zip(channels_uv).map(|(k, uv)| k * uv).sum::<f64>());
             for (line, left) in covariance.iter_mut().zip(moved) {
                 line.iter_mut().zip(moved).for_each(|(entry, right)| *entry += left * right);

@@ -139,14 +139,29 @@ impl Inverse {
         Some(Expected { response: linear.response, covariance, by_field })
     }
 
-    /// Covariance of a contact by the field's errors.
-    fn by_field(&self, linear: &Linear, place_mm: [f64; 2], force_n: &[f64; 3]) -> Covariance {
-        let alike = self.noise.covariance_by_field(force_n);
+    /// How the channels follow a contact: x, y in µV/mm; Fx, Fy, Fz in µV/N.
+    pub fn slopes(&self, place_mm: [f64; 2], force_n: &[f64; 3]) -> [[f64; UNKNOWNS]; CHANNELS] {
+        let gains = self.field.gains(place_mm[0] as f32, place_mm[1] as f32);
+        std::array::from_fn(|channel| slopes(&gains, channel, force_n))
+    }
+
+    /// What each mode of the field's error adds to the channels under a load.
+    pub fn modes_uv(&self, place_mm: [f64; 2], force_n: &[f64; 3]) -> Vec<[f64; CHANNELS]> {
+        self.asked(place_mm, force_n, |it| self.field_error.channels_uv(it).collect())
+    }
+
+    /// Asks about the field's error under a load.
+    fn asked<T>(&self, place_mm: [f64; 2], force_n: &[f64; 3], ask: impl FnOnce(&Asked<'_>) -> T) -> T {
         let place = self.within(place_mm).map(|mm| mm / f64::from(self.field.radius_mm()));
         let gains = self.field.gains(place_mm[0] as f32, place_mm[1] as f32);
         let signals_uv = gains.value.map(|gain| dot(&gain, force_n));
-        let asked = Asked { place, force_n, signals_uv: &signals_uv };
-        let by_place = self.field_error.covariance(&asked, &linear.response);
+        ask(&Asked { place, force_n, signals_uv: &signals_uv })
+    }
+
+    /// Covariance of a contact by the field's errors.
+    fn by_field(&self, linear: &Linear, place_mm: [f64; 2], force_n: &[f64; 3]) -> Covariance {
+        let alike = self.noise.covariance_by_field(force_n);
+        let by_place = self.asked(place_mm, force_n, |it| self.field_error.covariance(it, &linear.response));
         std::array::from_fn(|i| std::array::from_fn(|j| alike[i][j] + by_place[i][j]))
     }
 
@@ -186,8 +201,7 @@ impl Inverse {
     }
 
     fn linear(&self, place_mm: [f64; 2], force_n: [f64; 3], variances: &Variances) -> Option<Linear> {
-        let gains = self.field.gains(place_mm[0] as f32, place_mm[1] as f32);
-        let rows = std::array::from_fn(|channel| slopes(&gains, channel, &force_n));
+        let rows = self.slopes(place_mm, &force_n);
         Linear::of(&rows, &variances.weights(), &prior_precision())
     }
 

@@ -27,6 +27,7 @@ use crate::cli::field::field_of;
 use crate::cli::profile;
 use crate::cli::progress::Progress;
 use crate::cli::written::{is_same, is_stdout, say, stdout, written_over};
+use tactpad::bridge::changes::ChangesSlot;
 use tactpad::bridge::observer::observe;
 use tactpad::bridge::opening::OpenedPad;
 use tactpad::bridge::parts::{Parts, PlayingDecoder};
@@ -205,7 +206,8 @@ fn lead(
         requests,
         host: Box::new(Teller::new(terminal, tell)),
         record: None,
-        observer: Some(observer),
+        observers: vec![observer],
+        changes: ChangesSlot::default(),
         duration_us: None,
     })?;
     let session = thread::Builder::new().name("session".into()).spawn(move || session.run(&heard))?;

@@ -8,8 +8,7 @@ use serde_json::Value;
 
 use super::asked::answered;
 use crate::cli::failure::Failure;
-use crate::cli::live::shell::quoted;
-use crate::cli::written::{print_json, say, stdout};
+use crate::cli::written::{print_json, quoted, say, stdout};
 use tactpad::bridge::weighing::gain_sentence;
 use tactpad::pad::weight::check_weight;
 

@@ -314,6 +314,7 @@ mod tests {
             decoder_file: None,
             gain: 1.0,
             weighing: None,
+            changes: None,
         }
     }
 

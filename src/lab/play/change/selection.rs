@@ -3,7 +3,7 @@
 //! χ² counts in units of what the plays contradict themselves by. The level of false alarms is one for all candidates together.
 
 use super::candidates::{Candidate, Explained, Number};
-use crate::lab::calibration::change::Compared;
+use crate::lab::calibration::change::plays::Compared;
 use crate::lab::diagnosis::report::{Estimate, Finding};
 use crate::lab::diagnosis::target::Target;
 use crate::numeric::chi_square::{exceeded, noncentrality, quantile};

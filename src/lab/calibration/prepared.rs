@@ -52,6 +52,11 @@ impl Prepared {
         Some(Self { recording: prepared.recording.less(&zero_uv), zero_uv: Some(zero_uv), ..prepared })
     }
 
+    /// The same where channels read so many times as much, from a row on.
+    pub(super) fn amplified(&self, first: usize, factors: &[f64; CHANNELS]) -> Self {
+        Self { recording: self.recording.clone().amplified(first, factors), ..self.clone() }
+    }
+
     /// The least-squares problem of these contacts under a prior.
     pub(super) fn problem<'p>(&'p self, fitted: &[Fitted], device: &Device, prior: &'p Prior) -> Problem<'p> {
         let reference_c = self.thermal.map(|fit| fit.coefficients.reference_c);

@@ -262,9 +262,13 @@ mod tests {
 
     #[test]
     fn an_hour_without_a_press_is_its_two_ends() {
-        let kept = kept(2, 36_000);
-        let rest = kept.windows().iter().filter(|it| it.contact.is_none() && it.stretch == 2).count();
-        assert_eq!(rest, 2 * REST_ENDS);
+        let mut kept = kept(2, 3);
+        kept.sit_down();
+        let presses = kept.pressed();
+        let rests: Vec<Window> = sitting(2, 36_000).into_iter().filter(|it| it.contact.is_none()).collect();
+        rests.chunks(1_000).for_each(|some| kept.add(some));
+        let long = kept.windows().iter().filter(|it| it.stretch >= 4).count();
+        assert_eq!((long, kept.pressed()), (2 * 2 * REST_ENDS, presses));
     }
 
     #[test]

@@ -76,6 +76,15 @@ impl Recording {
         self
     }
 
+    /// The same where channels read so many times as much, from a row on.
+    #[must_use]
+    pub fn amplified(mut self, first: usize, factors: &[f64; CHANNELS]) -> Self {
+        for uv in self.tared.rows.iter_mut().skip(first).filter_map(|row| row.uv.as_mut()) {
+            uv.iter_mut().zip(factors).for_each(|(uv, factor)| *uv *= factor);
+        }
+        self
+    }
+
     /// Less what the untouched pad reads, where that is known otherwise than from the tables.
     #[must_use]
     pub fn less(mut self, zero_uv: &[f64; CHANNELS]) -> Self {

@@ -70,14 +70,6 @@ impl<'m> Columns<'m> {
         self.changes.get(at).copied().unwrap_or_default()
     }
 
-    /// The problem whose later readings have lost their changes of gain: y/(1 + cₖ).
-    pub(super) fn changed<'f>(&self, mut problem: Problem<'f>) -> Problem<'f> {
-        for (_, contact) in problem.contacts.iter_mut().filter(|(row, _)| *row >= self.later) {
-            contact.uv.iter_mut().enumerate().for_each(|(channel, uv)| *uv /= 1.0 + self.change(channel));
-        }
-        problem
-    }
-
     /// The problem whose contacts are where the pad as it was says, with its changes, and whose load path is what it makes of them.
     pub(super) fn located<'f>(&self, mut problem: Problem<'f>) -> Problem<'f> {
         let Was { values, settings, estimates, .. } = self.was;

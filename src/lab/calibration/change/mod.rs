@@ -100,8 +100,9 @@ impl<'p> Comparison<'p> {
 
     /// How long relative noise lasts in the later play: a decoder does not say.
     fn lasting(&self) -> Option<Was<'p>> {
-        let columns = Columns::of(&self.problem(), &self.was, &self.plays, (self.maps, &[]));
-        let problem = columns.located(self.problem());
+        let problem = self.problem(&self.prepared);
+        let columns = Columns::of(&problem, &self.was, &self.plays, (self.maps, &[]));
+        let problem = columns.located(problem);
         let tried = NOISE_TIMES_S.into_iter().filter_map(|time_s| {
             let was = self.was.lasting(time_s);
             let columns = Columns::of(&problem, &was, &self.plays, (self.maps, &[]));
@@ -116,13 +117,16 @@ impl<'p> Comparison<'p> {
     /// # Errors
     /// Readings beyond anything that a pad can read.
     pub fn about(&self, changes: &[f64]) -> Result<Compared, FitError> {
-        let problem = self.problem();
+        // y/(1 + cₖ), in the contacts and along the load path between them.
+        let gains = std::array::from_fn(|k| 1.0 / (1.0 + changes.get(k).copied().unwrap_or_default()));
+        let prepared = self.prepared.amplified(self.plays.later, &gains);
+        let problem = self.problem(&prepared);
         let columns = Columns::of(&problem, &self.was, &self.plays, (self.maps, changes));
-        let problem = columns.located(columns.changed(problem));
+        let problem = columns.located(problem);
         columns.compared(&problem).ok_or(FitError::Senseless)
     }
 
-    fn problem(&self) -> Problem<'_> {
-        self.prepared.problem(self.plays.fitted, self.device, &self.prior)
+    fn problem<'a>(&'a self, prepared: &'a Prepared) -> Problem<'a> {
+        prepared.problem(self.plays.fitted, self.device, &self.prior)
     }
 }

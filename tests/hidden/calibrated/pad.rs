@@ -134,7 +134,7 @@ pub(super) fn weighed(normal_n: f64, marks_mm: &[[f64; 2]], off_mm: f64, seed: u
         let place = mark_mm.map(|mm| mm + off_mm * random.normal());
         [row(Contact { place, force: [0.0, 0.0, normal_n] }, DWELLS_S[0], false), pressed(0.0, DWELLS_S[0])]
     };
-    let mut rows: Vec<Row> = marks_mm.iter().map(placed).flatten().collect();
+    let mut rows: Vec<Row> = marks_mm.iter().flat_map(placed).collect();
     carry_out(&mut rows, Room::UpAndDown, &mut Random::new(seed, "calibrated weights' room"));
     rows
 }

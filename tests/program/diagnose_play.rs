@@ -30,7 +30,7 @@ fn a_module_that_lost_gain_is_found_in_play() {
     let names = [&first["effect"], &first["target"]];
     assert_eq!(
         (names, &found["verdict"]),
-        ([&"module_gain".into(), &"module1".into()], &"changed".into()),
+        ([&"module_gain".into(), &"module1".into()], &"explained".into()),
         "{found}"
     );
     let gain = &first["parameters"]["gain"];

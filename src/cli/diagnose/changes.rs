@@ -12,7 +12,7 @@ use crate::cli::written::quoted;
 use tactpad::lab::diagnosis::report;
 use tactpad::lab::diagnosis::target::Target;
 use tactpad::lab::play::change::Changed;
-use tactpad::quantity::CHANNEL_NAMES;
+use tactpad::quantity::{CHANNEL_NAMES, MODULES};
 
 /// Version of the document's form.
 const SCHEMA: u32 = 1;
@@ -29,9 +29,47 @@ pub(crate) struct Document<'c> {
     presses: Presses,
     inflation: f64,
     least_module_gain: f64,
-    unseen: [&'static str; 3],
+    not_detected: Vec<NotDetected>,
+    not_testable: [NotTestable; 3],
+    /// Play does not tell what is left beside its findings.
+    unnamed_share: Option<f64>,
     gatekeepers: [(); 0],
 }
+
+/// A module whose gain was not found to have changed, and from which change on it would have been.
+#[derive(Serialize)]
+struct NotDetected {
+    effect: &'static str,
+    target: String,
+    minimum_detectable: MinimumDetectable,
+}
+
+#[derive(Serialize)]
+struct MinimumDetectable {
+    gain: f64,
+}
+
+#[derive(Serialize)]
+struct NotTestable {
+    effect: &'static str,
+    target: &'static str,
+    needs: &'static str,
+}
+
+/// What no press tells.
+const NOT_TESTABLE: [NotTestable; 3] = [
+    NotTestable { effect: "excitation_gain", target: "pad", needs: "a known weight: tactpad weigh" },
+    NotTestable {
+        effect: "module_displaced",
+        target: "all",
+        needs: "a weight on marked places: tactpad calibrate",
+    },
+    NotTestable {
+        effect: "module_rotated",
+        target: "all",
+        needs: "a weight on marked places: tactpad calibrate",
+    },
+];
 
 /// Of a decoder there is no earlier number.
 #[derive(Serialize)]
@@ -61,15 +99,30 @@ impl<'c> Document<'c> {
         let (earlier, later) = found.presses;
         Self {
             schema: SCHEMA,
-            verdict: if found.findings.is_empty() { "no_change" } else { "changed" },
+            verdict: if found.findings.is_empty() { "no_discrepancy" } else { "explained" },
             findings: findings(found),
             presses: Presses { earlier, later },
             inflation: found.inflation,
             least_module_gain: found.least_module_gain,
-            unseen: ["gain of all channels", "shift of all modules", "turn of all modules"],
+            not_detected: not_detected(found),
+            not_testable: NOT_TESTABLE,
+            unnamed_share: None,
             gatekeepers: [],
         }
     }
+}
+
+/// The gains of modules that no finding is of.
+fn not_detected(found: &Changed) -> Vec<NotDetected> {
+    let is_found = |target: &Target| found.findings.iter().any(|it| it.target == *target);
+    let modules = (0..MODULES).map(Target::Module).filter(|target| !is_found(target));
+    let gain = found.least_module_gain;
+    let one = |target: Target| NotDetected {
+        effect: "module_gain",
+        target: target.name(&names()),
+        minimum_detectable: MinimumDetectable { gain },
+    };
+    modules.map(one).collect()
 }
 
 /// The findings as documents have them.

@@ -28,7 +28,6 @@ pub(crate) struct Document<'c> {
     findings: Vec<Finding<'c>>,
     presses: Presses,
     inflation: f64,
-    least_module_gain: f64,
     not_detected: Vec<NotDetected>,
     not_testable: [NotTestable; 3],
     /// Play does not tell what is left beside its findings.
@@ -103,7 +102,6 @@ impl<'c> Document<'c> {
             findings: findings(found),
             presses: Presses { earlier, later },
             inflation: found.inflation,
-            least_module_gain: found.least_module_gain,
             not_detected: not_detected(found),
             not_testable: NOT_TESTABLE,
             unnamed_share: None,

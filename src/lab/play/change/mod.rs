@@ -2,7 +2,7 @@
 //!
 //! Nine channels against five unknowns of a contact leave four equations for each press. The pad as it was (its gains, poses,
 //! crosstalk, memory) is what the earlier play, or the decoder, says; what only the later play has is a change
-//! ([`Comparison`](crate::lab::calibration::change::Comparison)). The gain that all channels share is a force, and a shift or turn that
+//! ([`Comparison`]). The gain that all channels share is a force, and a shift or turn that
 //! all modules share is a place: no press tells them.
 
 mod candidates;

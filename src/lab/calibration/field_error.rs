@@ -77,7 +77,10 @@ pub(super) fn decoder(problem: &Problem<'_>, fit: &Fit, noise: Noise) -> Inverse
     let rest: Vec<FieldCovariance> = loads.iter().map(left).collect();
     let noise = Noise { by_field: noise::mean_by_field(&certain, &rest), ..noise };
     let rounded = modes.iter().map(Found::rounded).collect();
-    Inverse::new(certain.field().clone(), noise).with_field_error(FieldError::of(rounded).unwrap_or_default())
+    let crosstalk = Layout::crosstalk(&fit.values).map(|line| line.map(|share| share as f32));
+    Inverse::new(certain.field().clone(), noise)
+        .with_field_error(FieldError::of(rounded).unwrap_or_default())
+        .with_crosstalk(crosstalk)
 }
 
 impl Problem<'_> {

@@ -28,7 +28,7 @@ use crate::pipeline::compensation::Compensation;
 use crate::pipeline::compensation::creep::Creep;
 use crate::pipeline::contact::Decoder;
 use crate::pipeline::contact::field_error::FieldError;
-use crate::pipeline::contact::inverse::Inverse;
+use crate::pipeline::contact::inverse::{Crosstalk, Inverse};
 use crate::pipeline::contact::uncertainty::Noise;
 use crate::quantity::CHANNELS;
 use crate::tables::recording::Recording;
@@ -97,6 +97,8 @@ pub struct Calibration {
     pub field: InfluenceField,
     /// How far it may be off.
     pub field_error: FieldError,
+    /// What its channels have of one another.
+    pub crosstalk: Crosstalk,
     /// The channels' noise around it.
     pub noise: Noise,
     /// Each channel's gain.
@@ -194,6 +196,7 @@ impl Calibration {
             },
             field: decoder.field().clone(),
             field_error: decoder.field_error().clone(),
+            crosstalk: *decoder.crosstalk(),
             gain: std::array::from_fn(|channel| Layout::gain(values, channel)),
             numbers,
             not_told_apart,
@@ -210,7 +213,9 @@ impl Calibration {
 
     /// The decoder of this pad.
     pub fn decoder(&self) -> Decoder {
-        let inverse = Inverse::new(self.field.clone(), self.noise).with_field_error(self.field_error.clone());
+        let inverse = Inverse::new(self.field.clone(), self.noise)
+            .with_field_error(self.field_error.clone())
+            .with_crosstalk(self.crosstalk);
         Decoder::from(inverse).compensated_by(self.compensation)
     }
 }

@@ -19,6 +19,7 @@ use super::prior_deviations::{Kind, PriorDeviations};
 use super::rig::{RIG_NUMBERS, RigPrior};
 use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
 use crate::pipeline::compensation::hysteresis::{Hysteresis, PLAYS, Play};
+use crate::pipeline::contact::inverse::CROSSTALK_MAX;
 use crate::pipeline::contact::uncertainty::UNKNOWNS;
 use crate::quantity::CHANNELS;
 
@@ -44,6 +45,8 @@ const AGEING_DEVIATION: f64 = 0.05;
 pub(super) const CERTAIN: f64 = 1e18;
 /// Largest magnitude of a play operator's share. A negative one corrects another.
 const SHARE_MAX: f64 = 0.25;
+/// A channel with a smaller gain is dead, and no other one has anything of it.
+const GAIN_MIN: f64 = 0.05;
 
 /// The parameter vector θ, by kind: zeros, gains, crosstalk (into, from), hysteresis (shares of all channels; each channel's
 /// difference), creep, blur, temperature coefficients of the gains, ln S, blur of a weight, ageing, the rig, physical
@@ -84,6 +87,7 @@ impl Layout {
     pub(super) fn prior_mean(&self, prior: &Prior, rig: &RigPrior) -> Vec<f64> {
         let mut values = vec![0.0; self.size()];
         values[GAINS..CROSSTALKS].copy_from_slice(&prior.gain);
+        values[CROSSTALKS..SHARES].copy_from_slice(prior.crosstalk.as_flattened());
         for (play, shares) in prior.shares.iter().enumerate() {
             // wᵢₖ = w̄ᵢ + (wᵢₖ − w̄ᵢ): the mean over the channels, and each channel's difference.
             values[SHARES + play] = shares.iter().sum::<f64>() / CHANNELS as f64;
@@ -252,6 +256,17 @@ impl Layout {
             let own = if from == channel { values[GAINS + channel] } else { 0.0 };
             scale * (own + values[CROSSTALKS + channel * CHANNELS + from])
         })
+    }
+
+    /// What channels have of one another's own signals: Lₖₗ = Xₖₗ/gₗ, of which no decoder has more than a bound.
+    pub(super) fn crosstalk(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
+        let most = f64::from(CROSSTALK_MAX);
+        let share = |into: usize, from: usize| {
+            let own = values[GAINS + from];
+            let share = values[CROSSTALKS + into * CHANNELS + from] / own;
+            if into == from || own.abs() < GAIN_MIN { 0.0 } else { share.clamp(-most, most) }
+        };
+        std::array::from_fn(|into| std::array::from_fn(|from| share(into, from)))
     }
 
     /// A channel's gain S gₖ as a sum of parameters, in linear order: ∂/∂gₖ = S, ∂/∂ln S = S gₖ.

@@ -52,9 +52,13 @@ impl Prepared {
         Some(Self { recording: prepared.recording.less(&zero_uv), zero_uv: Some(zero_uv), ..prepared })
     }
 
-    /// The same where channels read so many times as much, from a row on.
-    pub(super) fn amplified(&self, first: usize, factors: &[f64; CHANNELS]) -> Self {
-        Self { recording: self.recording.clone().amplified(first, factors), ..self.clone() }
+    /// The same with other readings, from a row on.
+    pub(super) fn changed(
+        &self,
+        first: usize,
+        other_uv: impl Fn(&[f64; CHANNELS]) -> [f64; CHANNELS],
+    ) -> Self {
+        Self { recording: self.recording.clone().changed(first, other_uv), ..self.clone() }
     }
 
     /// The least-squares problem of these contacts under a prior.

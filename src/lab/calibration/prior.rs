@@ -19,6 +19,8 @@ pub(super) struct Prior {
     /// µV/N before gains, and its sensitivities to the physical parameters.
     pub(super) field: PadField,
     pub(super) gain: [f64; CHANNELS],
+    /// What each channel has of each other's strain.
+    pub(super) crosstalk: [[f64; CHANNELS]; CHANNELS],
     /// Thresholds of the play operators, in strains before gains; an operator with zero does nothing.
     pub(super) thresholds_uv: [f64; PLAYS],
     /// Shares of each play operator in each channel.
@@ -47,20 +49,32 @@ impl Prior {
     pub(super) fn centred_on(field: &PadField, earlier: &Earlier<'_>) -> Self {
         let prior = Self::of_kind(field, earlier);
         // G′ = g E: the strains before gains are E = G′/g.
-        let (spacing_mm, reach_mm) = (field.signals.spacing_mm(), field.signals.radius_mm());
         let strain = |place_mm: [f64; 2]| {
             let gains = gains_at(earlier.inverse.field(), place_mm);
             std::array::from_fn::<f64, MAPS, _>(|map| gains[map / 3][map % 3] / prior.gain[map / 3])
         };
-        let (spacing_mm, reach_mm) = (f64::from(spacing_mm), f64::from(reach_mm));
-        let signals = InfluenceField::sampled(spacing_mm, reach_mm, reach_mm, strain);
+        let signals = resampled(field, strain);
         Self { field: PadField { signals, ..prior.field }, ..prior }
     }
 
-    /// The same, where no number of the device may differ from what its field has.
-    pub(super) fn without_sensitivities(mut self) -> Self {
-        self.field.sensitivities.clear();
-        self
+    /// At a decoder: all of its field, in which no number of the device may differ from what it has, taken apart into crosstalk, gains
+    /// and strains.
+    pub(super) fn at(field: &PadField, earlier: &Earlier<'_>) -> Self {
+        let mut prior = Self::of_kind(field, earlier);
+        // G′ = (1 + L) g E, and X = L g.
+        let inverse = earlier.inverse;
+        let gain = prior.gain;
+        let strain = |place_mm: [f64; 2]| {
+            let maps = gains_at(inverse.field(), place_mm);
+            let by_axis: [[f64; CHANNELS]; 3] =
+                std::array::from_fn(|axis| inverse.own_uv(&maps.map(|map| map[axis])));
+            std::array::from_fn::<f64, MAPS, _>(|map| by_axis[map % 3][map / 3] / gain[map / 3])
+        };
+        prior.field.signals = resampled(field, strain);
+        prior.field.sensitivities.clear();
+        prior.crosstalk =
+            inverse.crosstalk().map(|line| std::array::from_fn(|from| f64::from(line[from]) * gain[from]));
+        prior
     }
 
     /// Thresholds before gains are means over the channels of threshold/|gₖ|.
@@ -81,9 +95,16 @@ impl Prior {
             creep: NO_CREEP,
             field,
             gain,
+            crosstalk: [[0.0; CHANNELS]; CHANNELS],
             noise,
         }
     }
+}
+
+/// Maps on the grid of a field.
+fn resampled(field: &PadField, maps: impl Fn([f64; 2]) -> [f64; MAPS] + Sync) -> InfluenceField {
+    let [spacing_mm, reach_mm] = [field.signals.spacing_mm(), field.signals.radius_mm()].map(f64::from);
+    InfluenceField::sampled(spacing_mm, reach_mm, reach_mm, maps)
 }
 
 fn gains_at(field: &InfluenceField, [x_mm, y_mm]: [f64; 2]) -> Maps {

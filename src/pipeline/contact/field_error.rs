@@ -98,6 +98,15 @@ impl FieldError {
         &self.modes
     }
 
+    /// That of a field which is `factor` times as large.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        let mut scaled = self.clone();
+        // M = Q G + P, of which G is.
+        let smooth = scaled.modes.iter_mut().flat_map(|mode| mode.maps.as_flattened_mut());
+        smooth.for_each(|coefficient| *coefficient *= factor as f32);
+        scaled
+    }
+
     /// What each mode adds to the channels.
     pub(super) fn channels_uv<'a>(
         &'a self,

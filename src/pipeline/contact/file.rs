@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::field_error::{FieldError, MODES_MAX, Mode, NUMBERS};
-use super::inverse::Inverse;
+use super::inverse::{CROSSTALK_MAX, Crosstalk, Inverse};
 use super::neighbours::{Known, Neighbours};
 use super::regression::{Regression, Target};
 use super::uncertainty::Noise;
@@ -61,6 +61,7 @@ impl Decoder {
                 push_noise(&mut body, inverse.noise());
                 push_compensation(&mut body, &self.compensation);
                 inverse.field().write(&mut body);
+                push_floats(&mut body, inverse.crosstalk().as_flattened());
                 let modes = inverse.field_error().modes().iter();
                 push_floats(&mut body, &modes.flat_map(Mode::numbers).collect::<Vec<f32>>());
             }
@@ -112,8 +113,20 @@ fn read(from: &mut Reader<'_>) -> Option<(Decoder, String)> {
 fn read_inverse(from: &mut Reader<'_>) -> Option<Decoder> {
     let (noise, compensation) = (read_noise(from)?, read_compensation(from)?);
     let field = InfluenceField::read(from)?;
-    let inverse = Inverse::new(field, noise).with_field_error(read_field_error(from)?);
+    let crosstalk = read_crosstalk(from)?;
+    let inverse =
+        Inverse::new(field, noise).with_crosstalk(crosstalk).with_field_error(read_field_error(from)?);
     Some(Decoder::from(inverse).compensated_by(compensation))
+}
+
+fn read_crosstalk(from: &mut Reader<'_>) -> Option<Crosstalk> {
+    let numbers = from.floats()?;
+    let (lines, []) = numbers.as_chunks() else { return None };
+    let crosstalk: Crosstalk = lines.try_into().ok()?;
+    let is_sound = |(into, line): (usize, &[f32; CHANNELS])| {
+        line[into] == 0.0 && line.iter().all(|share| share.abs() <= CROSSTALK_MAX)
+    };
+    crosstalk.iter().enumerate().all(is_sound).then_some(crosstalk)
 }
 
 fn read_field_error(from: &mut Reader<'_>) -> Option<FieldError> {
@@ -260,6 +273,7 @@ mod tests {
     use super::*;
     use crate::pad::field::PadField;
     use crate::pipeline::compensation::hysteresis::Play;
+    use crate::pipeline::contact::inverse::NO_CROSSTALK;
     use crate::pipeline::contact::statics::Statics;
     use crate::quantity::Strain;
 
@@ -279,7 +293,9 @@ mod tests {
         let mode = |at: usize| Mode::of(&std::array::from_fn(|k| (1 + at) as f32 / (1 + k) as f32)).unwrap();
         let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
         let error = FieldError::of((0..modes).map(mode).collect()).unwrap();
-        Inverse::new(PadField::nominal().signals, noise).with_field_error(error)
+        let mut crosstalk = NO_CROSSTALK;
+        (crosstalk[0][5], crosstalk[7][2]) = (0.02, -0.01);
+        Inverse::new(PadField::nominal().signals, noise).with_field_error(error).with_crosstalk(crosstalk)
     }
 
     fn decoders() -> Vec<Decoder> {
@@ -313,6 +329,7 @@ mod tests {
             assert_eq!(again.compensation, decoder.compensation);
             let estimate = |it: &Decoder| it.inverse().map(|inverse| inverse.estimate(&strain).unwrap());
             assert_eq!(estimate(&again), estimate(&decoder));
+            assert_eq!(again.inverse().map(Inverse::crosstalk), decoder.inverse().map(Inverse::crosstalk));
         }
         assert!(Decoder::from(Statics::nominal()).to_bytes("").is_none());
     }
@@ -354,6 +371,16 @@ mod tests {
             (infinite.len(), &infinite),
         ] {
             assert_eq!(with(count, numbers).err(), Some(DecoderFileError::Damaged), "{count}");
+        }
+    }
+
+    #[test]
+    fn crosstalk_that_no_pad_has_is_refused() {
+        for (into, from, share) in [(3, 4, 0.5), (3, 3, 0.01), (0, 8, f32::NAN)] {
+            let mut crosstalk = NO_CROSSTALK;
+            crosstalk[into][from] = share;
+            let file = Decoder::from(uncertain(1).with_crosstalk(crosstalk)).to_bytes("").unwrap();
+            assert_eq!(Decoder::from_bytes(&file).err(), Some(DecoderFileError::Damaged), "{into} {from}");
         }
     }
 

@@ -26,12 +26,35 @@ const FORCE_N: f64 = 100.0;
 const RING_MM: f64 = 2.0;
 const RING_PLACES: usize = 36;
 
+/// Into each channel, from each: a share of the other's own signal. None has any of itself.
+pub type Crosstalk = [[f32; CHANNELS]; CHANNELS];
+
+/// No pad's channels have more of one another.
+pub const CROSSTALK_MAX: f32 = 0.1;
+/// Channels that have nothing of one another.
+pub const NO_CROSSTALK: Crosstalk = [[0.0; CHANNELS]; CHANNELS];
+
+/// Rounds in which crosstalk is taken off. Its lines add up to 8 CROSSTALK_MAX at most, which leaves a ten-millionth.
+const OWN_ROUNDS: usize = 64;
+
+/// The channels' own signals s among readings, y = (1 + L) s: s ← y − L s.
+pub fn own_uv(uv: &[f64; CHANNELS], crosstalk: &[[f64; CHANNELS]; CHANNELS]) -> [f64; CHANNELS] {
+    let mut own = *uv;
+    for _ in 0..OWN_ROUNDS {
+        own = std::array::from_fn(|into| {
+            uv[into] - crosstalk[into].iter().zip(own).map(|(l, s)| l * s).sum::<f64>()
+        });
+    }
+    own
+}
+
 /// The decoder.
 #[derive(Clone, Debug)]
 pub struct Inverse {
     field: InfluenceField,
     noise: Noise,
     field_error: FieldError,
+    crosstalk: Crosstalk,
     /// Fz, x Fz and y Fz as linear functions of the channels.
     start: [[f64; CHANNELS]; 3],
 }
@@ -76,12 +99,26 @@ impl Inverse {
     /// The decoder of a pad with this field, whose channels scatter so. Each channel must scatter.
     pub fn new(field: InfluenceField, noise: Noise) -> Self {
         let start = start_of(&field);
-        Self { field, noise, field_error: FieldError::NONE, start }
+        Self { field, noise, field_error: FieldError::NONE, crosstalk: NO_CROSSTALK, start }
     }
 
     /// The same of a field that may be off so.
     pub fn with_field_error(self, field_error: FieldError) -> Self {
         Self { field_error, ..self }
+    }
+
+    /// The same, and what its channels have of one another. The field has it, too: only who asks what came from where needs it.
+    #[must_use]
+    pub fn with_crosstalk(self, crosstalk: Crosstalk) -> Self {
+        Self { crosstalk, ..self }
+    }
+
+    /// The same of a pad whose channels read `factor` times as much, with this noise.
+    #[must_use]
+    pub fn scaled(&self, factor: f64, noise: Noise) -> Self {
+        Self::new(self.field.scaled(factor), noise)
+            .with_field_error(self.field_error.scaled(factor))
+            .with_crosstalk(self.crosstalk)
     }
 
     /// The pad's field.
@@ -92,6 +129,16 @@ impl Inverse {
     /// How the channels scatter.
     pub const fn noise(&self) -> &Noise {
         &self.noise
+    }
+
+    /// Of each channel, what it has of the others' own signals, as a share of these.
+    pub const fn crosstalk(&self) -> &Crosstalk {
+        &self.crosstalk
+    }
+
+    /// The channels' own signals s among readings: y = (1 + L) s with the crosstalk L.
+    pub fn own_uv(&self, uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+        own_uv(uv, &self.crosstalk.map(|line| line.map(f64::from)))
     }
 
     /// How far the field may be off.
@@ -357,6 +404,19 @@ mod tests {
     use crate::pad::field::PadField;
 
     const NOISE: Noise = Noise::of_channels([6.0; CHANNELS], [0.01; CHANNELS]);
+
+    #[test]
+    fn channels_own_signals_with_crosstalk_are_what_was_read() {
+        let most = f64::from(CROSSTALK_MAX);
+        let crosstalk: [[f64; CHANNELS]; CHANNELS] =
+            std::array::from_fn(|into| std::array::from_fn(|from| if into == from { 0.0 } else { most }));
+        let uv: [f64; CHANNELS] = std::array::from_fn(|k| 900.0 - 250.0 * k as f64);
+        let own = own_uv(&uv, &crosstalk);
+        for (into, line) in crosstalk.iter().enumerate() {
+            let read: f64 = own[into] + line.iter().zip(own).map(|(share, own)| share * own).sum::<f64>();
+            assert!((read - uv[into]).abs() < 1e-2, "{into}: {read} {}", uv[into]);
+        }
+    }
 
     fn decoder() -> &'static Inverse {
         static DECODER: OnceLock<Inverse> = OnceLock::new();

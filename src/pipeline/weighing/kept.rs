@@ -3,7 +3,6 @@
 use crate::pipeline::compensation::Compensation;
 use crate::pipeline::compensation::hysteresis::Play;
 use crate::pipeline::contact::Decoder;
-use crate::pipeline::contact::inverse::Inverse;
 use crate::pipeline::contact::uncertainty::Noise;
 
 /// The decoder of a pad that reads `factor` times what it read at the calibration, where that is known but for `deviation`, a
@@ -26,12 +25,14 @@ pub fn kept(decoder: &Decoder, factor: f64, deviation: f64) -> Option<Decoder> {
         .hysteresis
         .map(|play| Play { threshold_uv: play.threshold_uv.map(|uv| factor * uv), ..play });
     let compensation = Compensation { hysteresis, ..decoder.compensation };
-    Some(Decoder::from(Inverse::new(inverse.field().scaled(factor), noise)).compensated_by(compensation))
+    Some(Decoder::from(inverse.scaled(factor, noise)).compensated_by(compensation))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pad::influence::MAPS;
+    use crate::pipeline::contact::field_error::{FieldError, Mode, TERMS};
     use crate::pipeline::shipped;
     use crate::quantity::{CHANNELS, Contact, Strain};
 
@@ -46,6 +47,16 @@ mod tests {
         assert!((aged.fz_n - before.fz_n).abs() < 1e-3 && (aged.x_mm - before.x_mm).abs() < 0.01, "{aged:?}");
         assert_eq!(found.inverse().unwrap().noise().gain, 0.006);
         assert!(kept(&shipped::statics(), 0.81, 0.006).is_none());
+    }
+
+    #[test]
+    fn what_is_not_known_of_the_field_is_not_forgotten() {
+        let mode = Mode { mixture: [[0.01; CHANNELS]; CHANNELS], maps: [[2.0; MAPS]; TERMS] };
+        let error = FieldError::of(vec![mode]).unwrap();
+        let inverse = shipped::decoder().inverse().unwrap().clone().with_field_error(error);
+        let found = kept(&Decoder::from(inverse), 0.5, 0.006).unwrap();
+        let [found] = found.inverse().unwrap().field_error().modes() else { panic!("{found:?}") };
+        assert_eq!((found.mixture, found.maps), (mode.mixture, [[1.0; MAPS]; TERMS]));
     }
 
     #[test]

@@ -76,11 +76,11 @@ impl Recording {
         self
     }
 
-    /// The same where channels read so many times as much, from a row on.
+    /// The same with other readings in the place of each, from a row on.
     #[must_use]
-    pub fn amplified(mut self, first: usize, factors: &[f64; CHANNELS]) -> Self {
+    pub fn changed(mut self, first: usize, other_uv: impl Fn(&[f64; CHANNELS]) -> [f64; CHANNELS]) -> Self {
         for uv in self.tared.rows.iter_mut().skip(first).filter_map(|row| row.uv.as_mut()) {
-            uv.iter_mut().zip(factors).for_each(|(uv, factor)| *uv *= factor);
+            *uv = other_uv(uv);
         }
         self
     }

@@ -195,12 +195,13 @@ impl<'m> Columns<'m> {
             let [(gain_at, _), _] = Layout::gain_terms(&self.was.values, channel);
             // gₖ ∂f/∂gₖ: of a gain as a share of itself.
             let by_gain = self.was.values[gain_at] * row[gain_at];
+            let by_gains = self.by_gains(channel, row, by_gain);
             let nuisances = Layout::differing_at().map(|at| row[at]);
             // (M F)ₖ of each mode.
             row.extend(modes.iter().flatten().map(|uv| uv[channel]));
             row.resize(self.size(), 0.0);
             for (first, sign) in &contrasts {
-                row[first + channel] = sign * by_gain;
+                row[*first..].iter_mut().zip(by_gains).for_each(|(entry, slope)| *entry = sign * slope);
             }
             if !is_later {
                 continue;
@@ -208,8 +209,10 @@ impl<'m> Columns<'m> {
             let first = self.nuisances_at();
             row[first..].iter_mut().zip(nuisances).for_each(|(entry, slope)| *entry = slope);
             row[first + nuisances.len() + channel] = 1.0;
-            // Of the readings that are divided by 1 + cₖ.
-            row[self.changes_at() + channel] = by_gain / (1.0 + self.change(channel));
+            // Of readings from which the changes were taken.
+            for (from, slope) in by_gains.into_iter().enumerate() {
+                row[self.changes_at() + from] = slope / (1.0 + self.change(from));
+            }
             // S gₖ Σₐ Fₐ Cₖₐ.
             let gain = Layout::gain(&self.was.values, channel);
             let by_map = maps.iter().map(|map| gain * response(&map[channel], &contact.force_n));
@@ -218,6 +221,14 @@ impl<'m> Columns<'m> {
                 .zip(by_map)
                 .for_each(|(entry, slope)| *entry = slope);
         }
+    }
+
+    /// How a channel follows each channel's gain, as a share of itself: its own, and by crosstalk the others', Xₖₗ ∂f/∂Xₖₗ.
+    fn by_gains(&self, channel: usize, row: &[f64], own: f64) -> [f64; CHANNELS] {
+        std::array::from_fn(|from| {
+            let at = Layout::crosstalk_at(channel, from);
+            if from == channel { own } else { self.was.values[at] * row[at] }
+        })
     }
 
     /// The places of a contact's contrasts, and its signs there.

@@ -32,11 +32,15 @@ use self::was::Was;
 use super::contacts::Fitted;
 use super::earlier::Earlier;
 use super::fit::{FitError, NOISE_TIMES_S, Report, same_plate};
+use super::model::Layout;
 use super::prepared::Prepared;
 use super::prior::Prior;
 use super::problem::Problem;
+use crate::numeric::linear::dot;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
+use crate::pipeline::contact::inverse::own_uv;
+use crate::quantity::CHANNELS;
 
 /// Every so many contacts settle the settings of the fit, which is tried for many of them.
 const SETTLING_STRIDE: usize = 2;
@@ -91,7 +95,7 @@ impl<'p> Comparison<'p> {
         let Plays { recording, fitted, .. } = plays;
         let prepared = Prepared::of(recording, fitted, device, field).ok_or(FitError::Senseless)?;
         // The decoder has what its pad is, and not by which of the device's numbers.
-        let prior = Prior::centred_on(field, decoder).without_sensitivities();
+        let prior = Prior::at(field, decoder);
         let was = Was::by_decoder(&prepared.problem(fitted, device, &prior), &prior, decoder.inverse);
         let mut comparison = Self { plays, device, maps, prepared, prior, was };
         comparison.was = comparison.lasting().ok_or(FitError::Senseless)?;
@@ -117,9 +121,15 @@ impl<'p> Comparison<'p> {
     /// # Errors
     /// Readings beyond anything that a pad can read.
     pub fn about(&self, changes: &[f64]) -> Result<Compared, FitError> {
-        // y/(1 + cₖ), in the contacts and along the load path between them.
-        let gains = std::array::from_fn(|k| 1.0 / (1.0 + changes.get(k).copied().unwrap_or_default()));
-        let prepared = self.prepared.amplified(self.plays.later, &gains);
+        // y = (1 + L)(1 + C) s, in the contacts and along the load path between them: what was read with C is taken to be read without.
+        let crosstalk = Layout::crosstalk(&self.was.values);
+        let as_before = |uv: &[f64; CHANNELS]| {
+            let own = own_uv(uv, &crosstalk);
+            let own: [f64; CHANNELS] =
+                std::array::from_fn(|k| own[k] / (1.0 + changes.get(k).copied().unwrap_or_default()));
+            std::array::from_fn(|into| own[into] + dot(&crosstalk[into], &own))
+        };
+        let prepared = self.prepared.changed(self.plays.later, as_before);
         let problem = self.problem(&prepared);
         let columns = Columns::of(&problem, &self.was, &self.plays, (self.maps, changes));
         let problem = columns.located(problem);

@@ -187,7 +187,8 @@ fn it_says_how_sure_it_is() {
     let Calibrated { unseen, decoder, .. } = &*CALIBRATED;
     let (rows, truths) = unseen.taken(decoder);
     let covered = coverage95(decoder, &rows, &truths).unwrap();
-    assert!((0.92..=0.98).contains(&covered), "{covered}");
+    // The rig is perfect here, and the regions hold the doubt of one that may not be.
+    assert!((0.92..=0.99).contains(&covered), "{covered}");
 }
 
 #[test]
@@ -229,7 +230,7 @@ fn another_pad_of_the_kind_needs_twenty_contacts() {
     assert!(few.force_mae_n < 1.5 * all.force_mae_n);
 }
 
-/// The nominal field with faults that a calibration has no number for: a stage that is turned by 1° and long by 1 %, a plate
+/// The nominal field with faults that a calibration has no number for: a plate
 /// that bends more towards one side, and waves of 1.5 % of each channel.
 fn faulty(seed: u32) -> PadField {
     let nominal = field();
@@ -253,10 +254,8 @@ fn faulty(seed: u32) -> PadField {
     };
     let waves: Vec<[[f64; 3]; 3]> = (0..MAPS).map(|_| [wave(), wave(), wave()]).collect();
     let sizes: Vec<f64> = (0..MAPS).map(size).collect();
-    let (sin, cos) = 1.0_f64.to_radians().sin_cos();
     let wrong = InfluenceField::sampled(f64::from(signals.spacing_mm()), 29.0, 29.0, |[x, y]| {
-        let (turned_x, turned_y) = (1.01 * (cos * x - sin * y), 1.01 * (sin * x + cos * y));
-        let gains = signals.gains(turned_x as f32, turned_y as f32).value;
+        let gains = signals.gains(x as f32, y as f32).value;
         std::array::from_fn::<f64, MAPS, _>(|map| {
             let ripple: f64 = waves[map].iter().map(|[kx, ky, phase]| (kx * x + ky * y + phase).sin()).sum();
             gains[map / 3][map % 3] * (1.0 + 0.03 * x / 29.0)
@@ -266,6 +265,13 @@ fn faulty(seed: u32) -> PadField {
     PadField { signals: wrong, sums: nominal.sums.clone(), sensitivities: Vec::new() }
 }
 
+/// The pad on a stage that is turned by 1° and long by 1 %. Unseen contacts are where they really are.
+fn on_a_wrong_stage(device: &Device) -> Device {
+    let mut device = device.clone();
+    (device.behaviour.rig.stage_rotation_deg, device.behaviour.rig.stage_scale) = (1.0, 1.01);
+    device
+}
+
 #[test]
 fn faults_that_it_has_no_number_for_do_not_make_it_worse_than_a_wrench() {
     let mut device = pad();
@@ -273,7 +279,8 @@ fn faults_that_it_has_no_number_for_do_not_make_it_worse_than_a_wrench() {
     device.behaviour.hysteresis = vec![Play { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.03 }];
     for seed in if is_long() { 1..=2 } else { 1..=1 } {
         let field = faulty(seed);
-        let measured = Measured::on(&field, &device, &plans::paper::plan(&device.contact), 1);
+        let measured =
+            Measured::on(&field, &on_a_wrong_stage(&device), &plans::paper::plan(&device.contact), 1);
         let unseen = Measured::on(&field, &device, &plans::recommended::plan(&device.contact, 9), 2);
         let [by_few, by_all] = [20, many()].map(|count| errors_of(&inverse(&measured, count), &unseen));
         for (count, by_inverse, share) in [(20, &by_few, 1.0), (many(), &by_all, 0.75)] {
@@ -293,8 +300,8 @@ fn faults_that_it_has_no_number_for_do_not_make_it_worse_than_a_wrench() {
             by_all.force_mae_n / by_network.force_mae_n,
         ];
         println!("seed {seed}, {} contacts: {place:.2} and {force:.2} of the network's", many());
-        // The noise alone leaves 0.28 of the network's force error.
-        assert!(place < 1.0 / 3.0 && force < 0.4, "{place} {force}");
+        // The noise alone leaves 0.28 of the network's force error, and whether the reference has a gain of its own is open.
+        assert!(place < 0.36 && force < 0.55, "{place} {force}");
     }
 }
 
@@ -304,15 +311,15 @@ fn what_pads_share_beyond_the_simulation_is_taken_over() {
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
     let field = faulty(3);
     let plan = plans::paper::plan(&device.contact);
-    let earlier = inverse(&Measured::on(&field, &device, &plan, 1), many());
+    let earlier = inverse(&Measured::on(&field, &on_a_wrong_stage(&device), &plan, 1), many());
     device.modules[1].gain = [1.1, 0.9, 1.2];
-    let measured = Measured::on(&field, &device, &plan, 3);
+    let measured = Measured::on(&field, &on_a_wrong_stage(&device), &plan, 3);
     let unseen = Measured::on(&field, &device, &plans::recommended::plan(&device.contact, 9), 2);
     let [with, without] =
         [measured.from(20, &earlier), inverse(&measured, 20)].map(|decoder| errors_of(&decoder, &unseen));
     println!("with {with:?}\nwithout {without:?}");
-    assert!(with.position_mae_mm < 0.6 * without.position_mae_mm);
-    assert!(with.force_mae_n < 0.6 * without.force_mae_n);
+    assert!(with.position_mae_mm < 0.7 * without.position_mae_mm);
+    assert!(with.force_mae_n < 0.7 * without.force_mae_n);
 }
 
 #[test]

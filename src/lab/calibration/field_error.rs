@@ -324,10 +324,10 @@ impl Found {
 mod tests {
     use super::*;
     use crate::lab::calibration::contacts::{Fitted, Knowledge};
+    use crate::lab::calibration::effort::Effort;
     use crate::lab::calibration::hyperparameters::Settings;
     use crate::lab::calibration::prepared::Prepared;
     use crate::lab::calibration::prior::Prior;
-    use crate::lab::calibration::problem::Effort;
     use crate::numeric::random::SplitMix64;
     use crate::pad::device::Device;
     use crate::pad::field::PadField;

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::contacts::{Fitted, Knowledge};
 use super::earlier::Earlier;
+use super::effort::Effort;
 use super::field_error;
 use super::hyperparameters::Settings;
 use super::known::Known;
@@ -19,7 +20,7 @@ use super::open::{OpenByRig, by_rig};
 use super::predictive::{Check, checks};
 use super::prepared::Prepared;
 use super::prior::Prior;
-use super::problem::{Effort, Fit, Problem};
+use super::problem::{Fit, Problem};
 use super::thermal_fit::ThermalFit;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
@@ -334,11 +335,11 @@ fn calibrated<'b>(
 /// The same with a background, if the evidence asks for one.
 fn with_background<'b>(problem: Problem<'b>, plain: Fit, counted: &Counted<'_>) -> (Problem<'b>, Fit) {
     let smooth = problem.clone().with_background();
-    let effort = Effort { least: plain.log_evidence, ..Effort::FULL };
+    // Of so many parameters a step that gains little may stand before one that gains much: each is carried to its maximum.
     let tried = |background| {
         let mut settings = plain.settings;
         settings.background = background;
-        counted.fitted(&smooth, settings, (Some(&plain), effort))
+        counted.fitted(&smooth, settings, (Some(&plain), Effort::FULL))
     };
     let [_, largest] = SMALL_BACKGROUNDS;
     let small = most_probable(SMALL_BACKGROUNDS.to_vec(), tried);

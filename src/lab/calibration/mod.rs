@@ -20,6 +20,7 @@
 pub mod change;
 pub mod contacts;
 pub mod earlier;
+mod effort;
 mod field_error;
 pub mod fit;
 mod hyperparameters;

@@ -2,10 +2,11 @@
 //! estimated where none was read.
 
 use super::contacts::Fitted;
+use super::effort::Effort;
 use super::hyperparameters::Settings;
 use super::model::Layout;
 use super::prior::Prior;
-use super::problem::{Effort, Fit, Problem};
+use super::problem::{Fit, Problem};
 use super::thermal_fit::ThermalFit;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;

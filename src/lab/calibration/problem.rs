@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::contacts::{Fitted, Knowledge, Maps, Measured, Place, TERMS};
+use super::effort::Effort;
 use super::hyperparameters::{Estimates, Settings};
 use super::jumps::{Jump, Jumps};
 use super::lasting::Filter;
@@ -36,8 +37,6 @@ use crate::tables::recording::Recording;
 
 /// Most Gauss-Newton steps of a fit; the channels are nearly linear in the parameters.
 const STEPS_MAX: usize = 12;
-/// All further steps together gain less than so many times the present one.
-const HOPE: f64 = 5.0;
 /// A contact is taken to be elsewhere only where that is farther off.
 const RELOCATED_MM: f64 = 0.1;
 /// Least part of the readings that counts as degrees of freedom, however many parameters are fitted.
@@ -92,27 +91,6 @@ pub(super) struct Explained {
     pub(super) residual: Residual,
     /// Inverse covariance of the residual by the noise model.
     pub(super) precision: MarginalPrecision,
-}
-
-/// How far a fit is carried.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Effort {
-    /// A step that changes the log evidence by less is the last.
-    pub(super) tolerance: f64,
-    /// A fit that will not come to this log evidence breaks off: its maximum is asked by nobody.
-    pub(super) least: f64,
-}
-
-impl Effort {
-    /// To the maximum.
-    pub(super) const FULL: Self = Self { tolerance: 0.3, least: f64::NEG_INFINITY };
-    /// Near enough to choose among settings that differ by more.
-    pub(super) const COARSE: Self = Self { tolerance: 3.0, ..Self::FULL };
-
-    /// Whether a step that gained so much is the last.
-    fn is_enough(self, log_evidence: f64, gain: f64) -> bool {
-        gain < self.tolerance || log_evidence + HOPE * gain < self.least
-    }
 }
 
 impl Fit {

@@ -20,6 +20,9 @@ export class ProfileView {
   /** The version of the text that was read: what a save may be written over. */
   #version = null;
   #ready = null;
+  /** A draft of a guide that is to be opened when the view comes into sight. */
+  #opening = null;
+  #reading = false;
   #previewed = false;
 
   constructor(section) {
@@ -74,7 +77,8 @@ export class ProfileView {
       this.#ready ??= this.#prepare();
       await this.#ready;
       const playing = await this.#list();
-      if (this.#name === null) await this.#load(playing);
+      if (this.#opening !== null) await this.#openWaiting();
+      else if (this.#name === null && !this.#reading) await this.#load(playing);
     } catch (error) {
       this.#ready = null;
       this.#tell(error.message);
@@ -97,7 +101,8 @@ export class ProfileView {
   }
 
   async #load(name, text = undefined) {
-    const profile = await readProfile(name);
+    this.#reading = true;
+    const profile = await readProfile(name).finally(() => { this.#reading = false; });
     this.#name = name;
     this.#version = profile.version;
     this.choice.value = name;
@@ -106,12 +111,17 @@ export class ProfileView {
     this.draft.load(profile.text, text);
   }
 
-  /** Opens a draft that a guide has made. */
-  async openDraft({ profile, text }) {
+  /** Opens a draft that a guide has made; nothing else is shown before it. */
+  openDraft(draft) {
+    this.#opening = draft;
     location.hash = "#profile";
-    await this.show();
+  }
+
+  async #openWaiting() {
+    const { profile, text } = this.#opening;
+    this.#opening = null;
     if (this.draft.dirty && !(await askDrop(this.#name))) return;
-    await this.#load(profile, text).catch((error) => this.#tell(error.message));
+    await this.#load(profile, text);
   }
 
   #tell(sentence) {

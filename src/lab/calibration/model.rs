@@ -133,7 +133,7 @@ impl Layout {
             rig.for_each(|(deviation, precision)| *deviation = precision.sqrt().recip());
         }
         for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
-            *deviation = prior_deviations.of(parameter.kind());
+            *deviation = prior_deviations.of_one(parameter.kind(), parameter.parameter.module());
         }
         // One share for each of the n + 1 polynomials of degree n.
         let shares: Vec<f64> =
@@ -145,13 +145,15 @@ impl Layout {
         deviations.iter().map(|deviation| (1.0 / deviation.powi(2)).min(CERTAIN)).collect()
     }
 
-    /// Places of the parameters whose kinds share a prior standard deviation.
-    pub(super) fn kinds(&self) -> impl Iterator<Item = (Kind, usize)> {
+    /// Places of the parameters whose kinds share a prior standard deviation, and the module that each is of.
+    pub(super) fn kinds(&self) -> impl Iterator<Item = (Kind, Option<usize>, usize)> {
         let between = (0..CHANNELS * CHANNELS).filter(|index| index / CHANNELS != index % CHANNELS);
-        let physical = self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (it.kind(), at));
-        let own = (OWN_SHARES..CREEP).map(|at| (Kind::OwnHysteresis, at));
-        let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, at));
-        zeros.chain(between.map(|index| (Kind::Crosstalk, CROSSTALKS + index))).chain(own).chain(physical)
+        let physical =
+            self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (it.kind(), it.parameter.module(), at));
+        let own = (OWN_SHARES..CREEP).map(|at| (Kind::OwnHysteresis, None, at));
+        let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, None, at));
+        let crosstalk = between.map(|index| (Kind::Crosstalk, None, CROSSTALKS + index));
+        zeros.chain(crosstalk).chain(own).chain(physical)
     }
 
     /// The scale S of all that a load makes.

@@ -2,6 +2,11 @@
 //!
 //! They begin with what hands and parts are known to do. A pad that was built better shows it, as its parameters lie closer to
 //! the prior's mean: the deviations are found by the evidence (D. J. C. MacKay, Neural Computation 4 (1992) 415).
+//!
+//! Most modules are put down where they belong, and some are not. So the prior of a module's displacement is a mixture of two
+//! normal densities, as a scale mixture: a number λ scales the precision of both its coordinates, and is 1 or 1/WIDE².
+
+use crate::quantity::MODULES;
 
 /// Kinds of parameters that share a prior standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +31,7 @@ pub(super) enum Kind {
 
 const KINDS: usize = 8;
 /// Standard deviations that the search begins with. Modules are assembled by hand; stiffness is that of a modulus.
-const SHIFT_MM: f64 = 0.3;
+const SHIFT_MM: f64 = 0.15;
 const TURN_DEG: f64 = 2.0;
 const STIFFNESS: f64 = 0.3;
 /// Sheets are rolled to some percent, and another sheet may have been at hand; glues and laminates cure as they do.
@@ -37,13 +42,30 @@ const ZERO_UV: f64 = 20.0;
 /// Of unbalanced bridges: some tenths of a percent of a gauge.
 const RAW_ZERO_UV: f64 = 2000.0;
 const HYSTERESIS_OWN: f64 = 0.02;
+/// Deviations of the wide part of a module's displacement over those of the narrow one, and the probability of the wide one.
+const WIDE: f64 = 5.0;
+const WIDE_PROBABILITY: f64 = 0.1;
 /// Parameters of its kind that each initial deviation counts as.
 const PSEUDO_COUNT: f64 = 4.0;
+
+/// A parameter beside the mean m of its prior.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Deviating {
+    pub(super) kind: Kind,
+    /// The module that it is of.
+    pub(super) module: Option<usize>,
+    /// θ − m.
+    pub(super) difference: f64,
+    /// Its posterior variance.
+    pub(super) variance: f64,
+}
 
 /// Prior standard deviations, by kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PriorDeviations {
     deviations: [f64; KINDS],
+    /// E[λ] of each module's displacement.
+    displaced: [f64; MODULES],
     /// Those that the search began with.
     initial: [f64; KINDS],
 }
@@ -65,7 +87,7 @@ impl PriorDeviations {
             zero_uv,
             HYSTERESIS_OWN,
         ];
-        Self { deviations: initial, initial }
+        Self { deviations: initial, displaced: [1.0; MODULES], initial }
     }
 
     /// The standard deviation of a kind.
@@ -73,23 +95,89 @@ impl PriorDeviations {
         self.deviations[kind as usize]
     }
 
-    /// The deviations by the evidence. Of each parameter: its kind, its difference θ − m from the prior's mean, and its posterior
-    /// variance v. With κ pseudo-observations of the initial σ₀
+    /// The standard deviation of a parameter of a kind, of this module if it is one's: σ/√λ.
+    pub(super) fn of_one(&self, kind: Kind, module: Option<usize>) -> f64 {
+        self.of(kind) / self.precision_factor(kind, module).sqrt()
+    }
+
+    /// λ.
+    const fn precision_factor(&self, kind: Kind, module: Option<usize>) -> f64 {
+        match (kind, module) {
+            (Kind::Shift, Some(module)) => self.displaced[module],
+            _ => 1.0,
+        }
+    }
+
+    /// The deviations by the evidence. Of parameters with posterior variances v, and with κ pseudo-observations of the
+    /// initial σ₀
     ///
     /// ```text
-    /// σ² = (κ σ₀² + Σ (θ − m)²)/(κ + Σ γ),    γ = 1 − v/σ²
+    /// σ² = (κ σ₀² + Σ λ (θ − m)²)/(κ + Σ γ),    γ = 1 − λ v/σ²
     /// ```
     ///
     /// where γ is how far the contacts determine a parameter (MacKay 1992).
-    pub(super) fn reestimated(&self, numbers: impl Iterator<Item = (Kind, f64, f64)>) -> Self {
+    pub(super) fn reestimated(&self, numbers: impl Iterator<Item = Deviating>) -> Self {
         let mut squares = self.initial.map(|deviation| PSEUDO_COUNT * deviation * deviation);
         let mut counts = [PSEUDO_COUNT; KINDS];
-        for (kind, difference, variance) in numbers {
-            // (θ − m)², γ = 1 − v/σ².
-            squares[kind as usize] += difference * difference;
-            counts[kind as usize] += (1.0 - variance / self.of(kind).powi(2)).clamp(0.0, 1.0);
+        let mut displaced_mm2 = [0.0; MODULES];
+        for Deviating { kind, module, difference, variance } in numbers {
+            let factor = self.precision_factor(kind, module);
+            squares[kind as usize] += factor * difference * difference;
+            counts[kind as usize] += (1.0 - factor * variance / self.of(kind).powi(2)).clamp(0.0, 1.0);
+            if let (Kind::Shift, Some(module)) = (kind, module) {
+                displaced_mm2[module] += difference * difference + variance;
+            }
         }
+        let displaced = displaced_mm2.map(|mm2| expected_factor(mm2 / self.of(Kind::Shift).powi(2)));
         // σ² = Σ (θ − m)²/Σ γ, both with the pseudo-observations.
-        Self { deviations: std::array::from_fn(|kind| (squares[kind] / counts[kind]).sqrt()), ..*self }
+        Self {
+            deviations: std::array::from_fn(|kind| (squares[kind] / counts[kind]).sqrt()),
+            displaced,
+            ..*self
+        }
+    }
+}
+
+/// E[λ] of a module, where q = E[(θ − m)²]/σ² is summed over both coordinates of its displacement: with the probability p of
+/// the wide part and its deviation W
+///
+/// ```text
+/// odds = p/(1 − p) W⁻² exp(½ q (1 − W⁻²)),    E[λ] = (1 + odds W⁻²)/(1 + odds)
+/// ```
+fn expected_factor(square: f64) -> f64 {
+    let wide = 1.0 / (WIDE * WIDE);
+    let odds =
+        WIDE_PROBABILITY / (1.0 - WIDE_PROBABILITY) * wide * libm::exp(0.5 * square.min(1e3) * (1.0 - wide));
+    (1.0 + odds * wide) / (1.0 + odds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_module_that_is_far_off_is_of_the_wide_part_and_the_others_are_not() {
+        let both = |module: usize, mm: f64| {
+            [mm, -mm].map(|difference| Deviating {
+                kind: Kind::Shift,
+                module: Some(module),
+                difference,
+                variance: 1e-3,
+            })
+        };
+        let numbers = || [both(0, 1.1), both(1, 0.2), both(2, 0.1)].into_iter().flatten();
+        let found = (0..20).fold(PriorDeviations::TARED, |found, _| found.reestimated(numbers()));
+        let of = |module| found.of_one(Kind::Shift, Some(module));
+        assert!(of(0) > 3.0 * found.of(Kind::Shift), "{found:?}");
+        assert!([1, 2].iter().all(|module| of(*module) < 1.1 * found.of(Kind::Shift)), "{found:?}");
+        // One module that is far off does not say that the others are.
+        assert!(found.of(Kind::Shift) < 1.05 * SHIFT_MM, "{found:?}");
+        assert_eq!(found.of_one(Kind::Turn, Some(0)), TURN_DEG);
+    }
+
+    #[test]
+    fn what_the_parts_have_in_common_is_between_them() {
+        assert!((expected_factor(0.0) - 1.0).abs() < 0.01);
+        assert!((expected_factor(1e9) - 1.0 / (WIDE * WIDE)).abs() < 1e-12);
     }
 }

@@ -23,6 +23,7 @@ use super::normal_equations::{NormalEquations, Step};
 use super::physical::free;
 use super::plate::scale;
 use super::prior::Prior;
+use super::prior_deviations::Deviating;
 use super::residual::{MarginalPrecision, Residual};
 use super::rig::RigPrior;
 use crate::lab::ageing;
@@ -198,11 +199,13 @@ impl<'f> Problem<'f> {
             let located = self.located();
             found = Some(Fit { settings, values: values.clone(), estimates, factor, log_evidence, located });
             // Then the hyperparameters at the new parameters.
-            let differences =
-                self.layout.kinds().map(|(kind, at)| (kind, values[at] - mean[at], variances[at]));
+            let deviating = self.layout.kinds().map(|(kind, module, at)| {
+                let (difference, variance) = (values[at] - mean[at], variances[at]);
+                Deviating { kind, module, difference, variance }
+            });
             let freedom_ratio = self.degrees_of_freedom_ratio(&precisions, &variances);
             estimates = Estimates {
-                prior_deviations: estimates.prior_deviations.reestimated(differences),
+                prior_deviations: estimates.prior_deviations.reestimated(deviating),
                 noise_model: estimates.noise_model.reestimated(&residuals, freedom_ratio),
                 drift_uv: self.jumps.drift_uv(&self.layout, &values),
                 rig: self.rig_prior(&estimates.rig, &values, &variances),

@@ -3,7 +3,7 @@
 //!
 //! Each case is measured on a pad of its seed: gains, leaks, offsets, contacts and noise are the same in all cases of a seed,
 //! so their errors can be compared. The six fields are tried with one seed; with `TACTPAD_CALIBRATED=N` all cases, with the
-//! seeds 1 to N. All constants were written down before the first run, but for the gates: they are what the program reached.
+//! seeds 1 to N, or `TACTPAD_CALIBRATED_FROM` and on. All constants were written down before the first run, but for the gates: they are what the program reached.
 
 mod at_home;
 mod cases;
@@ -26,8 +26,10 @@ const UNSEEN: usize = 400;
 
 /// The cases and seeds that are asked for.
 fn extent() -> (&'static [Case], Vec<u64>) {
-    match env::var("TACTPAD_CALIBRATED").ok().and_then(|text| text.parse().ok()) {
-        Some(seeds) => (&CASES, (1..=seeds).collect()),
+    let first =
+        env::var("TACTPAD_CALIBRATED_FROM").ok().and_then(|text| text.parse::<u64>().ok()).unwrap_or(1);
+    match env::var("TACTPAD_CALIBRATED").ok().and_then(|text| text.parse::<u64>().ok()) {
+        Some(seeds) => (&CASES, (first..first + seeds).collect()),
         None => (&CASES[..FIELDS], vec![1]),
     }
 }

@@ -56,7 +56,7 @@ impl<'d> Was<'d> {
         let mean = problem.layout.prior_mean(prior, &estimates.rig);
         estimates.drift_uv = problem.jumps.drift_uv(&problem.layout, &mean);
         let mut precisions = vec![CERTAIN; mean.len()];
-        for (_, at) in problem.layout.kinds().filter(|(kind, _)| *kind == Kind::OwnHysteresis) {
+        for (.., at) in problem.layout.kinds().filter(|(kind, ..)| *kind == Kind::OwnHysteresis) {
             precisions[at] = estimates.prior_deviations.of(Kind::OwnHysteresis).powi(-2);
         }
         Self { settings, values: mean.clone(), estimates, mean, precisions, decoder: Some(decoder) }

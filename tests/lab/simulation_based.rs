@@ -24,7 +24,7 @@ use tactpad::pad::device::behaviour::Crosstalk;
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::{InfluenceField, MAPS};
 use tactpad::pipeline::contact::Decoder;
-use tactpad::quantity::CHANNELS;
+use tactpad::quantity::{CHANNELS, MODULES};
 use tactpad::tables::measured::Table;
 use tactpad::tables::plans;
 use tactpad::tables::recording::Recording;
@@ -43,6 +43,9 @@ const ONSET_CYCLES: f64 = 500.0;
 /// χ² of five numbers below which 95 % of all cases lie, and the end of an interval at 95 %.
 const CHI_SQUARE_95: f64 = 11.0705;
 const HALF_WIDTH: f64 = 1.96;
+/// Deviations of a module's displacement, with the probability of the wide one.
+const SHIFTS_MM: [f64; 2] = [0.15, 0.75];
+const FAR_OFF: f64 = 0.1;
 /// Deviations of the narrow part of a prior of the rig over those of the wide one.
 const NARROW: f64 = 0.1;
 /// What the common gain differs by from one recording to the next, and from one contact to the next within one.
@@ -122,6 +125,8 @@ fn deviation(random: &mut SplitMix64, expected: f64, readings: usize) -> f64 {
 fn bent(random: &mut SplitMix64, truth: &mut BTreeMap<String, f64>) -> PadField {
     let (nominal, device) = (PadField::nominal(), Device::nominal());
     let mut weights = Vec::new();
+    let shifts_mm: [f64; MODULES] =
+        [0; MODULES].map(|_| SHIFTS_MM[usize::from(f64::from(random.fraction()) < FAR_OFF)]);
     for it in &nominal.sensitivities {
         let (name, own) = (it.parameter.name(), it.parameter.get(&device));
         let (value, weight) = match name {
@@ -130,7 +135,9 @@ fn bent(random: &mut SplitMix64, truth: &mut BTreeMap<String, f64>) -> PadField 
             "plate.thickness_mm" => factor(normal(random, 0.08), own, 3.0),
             _ if name.ends_with("_e_factor") => factor(normal(random, 0.3), own, 1.0),
             _ if name.ends_with("e_mpa") => factor(normal(random, 0.2), own, 1.0),
-            _ if name.starts_with("module.") && name.ends_with("_mm") => additive(normal(random, 0.3)),
+            _ if name.starts_with("module.") && name.ends_with("_mm") => {
+                additive(normal(random, shifts_mm[it.parameter.module().unwrap()]))
+            }
             _ if name.starts_with("module.") && name.ends_with("_deg") => additive(normal(random, 2.0)),
             _ => continue,
         };

@@ -74,6 +74,18 @@ const AGEING: usize = WEIGHT_BLUR + 1;
 const RIG_AT: usize = AGEING + 1;
 const PHYSICAL: usize = RIG_AT + RIG_NUMBERS;
 
+/// The kind of the crosstalk at this place of the matrix; none on its diagonal.
+const fn crosstalk_kind(index: usize) -> Option<Kind> {
+    let (into, from) = (index / CHANNELS, index % CHANNELS);
+    if into == from {
+        None
+    } else if into / 3 == from / 3 {
+        Some(Kind::CrosstalkWithin)
+    } else {
+        Some(Kind::Crosstalk)
+    }
+}
+
 impl Layout {
     pub(super) const fn size(&self) -> usize {
         self.background(0, 0) + 3 * CHANNELS * self.terms
@@ -114,8 +126,7 @@ impl Layout {
         deviations[GAINS..CROSSTALKS].fill(GAIN_DEVIATION);
         // A channel has no crosstalk with itself.
         for (index, deviation) in deviations[CROSSTALKS..SHARES].iter_mut().enumerate() {
-            *deviation =
-                if index / CHANNELS == index % CHANNELS { 0.0 } else { prior_deviations.of(Kind::Crosstalk) };
+            *deviation = crosstalk_kind(index).map_or(0.0, |kind| prior_deviations.of(kind));
         }
         deviations[SHARES..OWN_SHARES].fill(SHARE_DEVIATION);
         deviations[OWN_SHARES..CREEP].fill(prior_deviations.of(Kind::OwnHysteresis));
@@ -147,12 +158,12 @@ impl Layout {
 
     /// Places of the parameters whose kinds share a prior standard deviation, and the module that each is of.
     pub(super) fn kinds(&self) -> impl Iterator<Item = (Kind, Option<usize>, usize)> {
-        let between = (0..CHANNELS * CHANNELS).filter(|index| index / CHANNELS != index % CHANNELS);
         let physical =
             self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (it.kind(), it.parameter.module(), at));
         let own = (OWN_SHARES..CREEP).map(|at| (Kind::OwnHysteresis, None, at));
         let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, None, at));
-        let crosstalk = between.map(|index| (Kind::Crosstalk, None, CROSSTALKS + index));
+        let crosstalk = (0..CHANNELS * CHANNELS)
+            .filter_map(|index| Some((crosstalk_kind(index)?, None, CROSSTALKS + index)));
         zeros.chain(crosstalk).chain(own).chain(physical)
     }
 

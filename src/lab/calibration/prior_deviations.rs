@@ -21,15 +21,17 @@ pub(super) enum Kind {
     PlateThickness,
     /// Of a material of all modules, a factor's logarithm.
     CommonModulus,
-    /// Of another channel's microvolts.
+    /// Of another module's microvolts.
     Crosstalk,
+    /// Of the microvolts of another channel of the same module.
+    CrosstalkWithin,
     /// Remainder of a zero that was taken off, µV.
     Zero,
     /// Difference of a channel's hysteresis share from the mean of all channels.
     OwnHysteresis,
 }
 
-const KINDS: usize = 8;
+const KINDS: usize = 9;
 /// Standard deviations that the search begins with. Modules are assembled by hand; stiffness is that of a modulus.
 const SHIFT_MM: f64 = 0.15;
 const TURN_DEG: f64 = 2.0;
@@ -83,6 +85,7 @@ impl PriorDeviations {
             STIFFNESS,
             PLATE_THICKNESS,
             COMMON_MODULUS,
+            CROSSTALK,
             CROSSTALK,
             zero_uv,
             HYSTERESIS_OWN,

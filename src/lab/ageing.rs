@@ -28,6 +28,13 @@ pub fn cycles(rows: &[Row]) -> Vec<f64> {
     rows.iter().map(count).collect()
 }
 
+/// For each row the part of the measurement's ageing that was still to come.
+pub fn to_come(rows: &[Row]) -> Vec<f64> {
+    let cycles = cycles(rows);
+    let last = cycles.iter().copied().fold(0.0, f64::max);
+    cycles.into_iter().map(|cycle| 1.0 - aged(cycle, last)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,7 +6,8 @@
 //! Most modules are put down where they belong, and some are not. So the prior of a module's displacement is a mixture of two
 //! normal densities, as a scale mixture: a number λ scales the precision of both its coordinates, and is 1 or 1/WIDE².
 
-use crate::quantity::MODULES;
+use super::contacts::BACKGROUND_DEGREE;
+use crate::quantity::{CHANNELS, MODULES};
 
 /// Kinds of parameters that share a prior standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +32,20 @@ pub(super) enum Kind {
     OwnHysteresis,
 }
 
+impl Kind {
+    /// Of the crosstalk at this place of the matrix, row by row; a channel has none with itself.
+    pub(super) const fn of_crosstalk(index: usize) -> Option<Self> {
+        let (into, from) = (index / CHANNELS, index % CHANNELS);
+        if into == from {
+            None
+        } else if into * MODULES / CHANNELS == from * MODULES / CHANNELS {
+            Some(Self::CrosstalkWithin)
+        } else {
+            Some(Self::Crosstalk)
+        }
+    }
+}
+
 const KINDS: usize = 9;
 /// Standard deviations that the search begins with. Modules are assembled by hand; stiffness is that of a modulus.
 const SHIFT_MM: f64 = 0.15;
@@ -47,6 +62,24 @@ const HYSTERESIS_OWN: f64 = 0.02;
 /// Deviations of the wide part of a module's displacement over those of the narrow one, and the probability of the wide one.
 const WIDE: f64 = 5.0;
 const WIDE_PROBABILITY: f64 = 0.1;
+/// Prior standard deviations. Of gains: the authors' earlier pad has 0.83 to 1.33.
+pub(super) const GAIN_DEVIATION: f64 = 0.3;
+/// Of ln S, the scale of all that a load makes, where no label tells newtons. Presses alone say nothing of it: with S twice as
+/// large all forces are half as large.
+pub(super) const LOG_SCALE_DEVIATION: f64 = 0.5;
+/// Half the mean square of the distance at which a contact's force acts from its place, along each axis: an indenter of
+/// another size, or a finger that is not still. A disc of radius a has a²/8: fingertips have some 5 mm, weights 10 mm.
+pub(super) const BLUR_DEVIATION_MM2: f64 = 0.5;
+pub(super) const FINGER_BLUR_DEVIATION_MM2: f64 = 3.0;
+pub(super) const WEIGHT_BLUR_DEVIATION_MM2: f64 = 8.0;
+/// Of a play operator in all channels.
+pub(super) const SHARE_DEVIATION: f64 = 0.05;
+/// Of creep's share of a load in the end: adhesive and polyimide.
+pub(super) const CREEP_DEVIATION: f64 = 0.01;
+/// Of a gain, per degree: adhesive and polyimide soften by a thousandth.
+pub(super) const GAIN_SLOPE_DEVIATION: f64 = 1e-3;
+/// Of what ageing takes over a measurement.
+pub(super) const AGEING_DEVIATION: f64 = 0.05;
 /// Parameters of its kind that each initial deviation counts as.
 const PSEUDO_COUNT: f64 = 4.0;
 
@@ -152,6 +185,15 @@ fn expected_factor(square: f64) -> f64 {
     let odds =
         WIDE_PROBABILITY / (1.0 - WIDE_PROBABILITY) * wide * libm::exp(0.5 * square.min(1e3) * (1.0 - wide));
     (1.0 + odds * wide) / (1.0 + odds)
+}
+
+/// Prior standard deviation of a background polynomial of degree n, as a share of the whole background's. Finer features are
+/// smaller.
+pub(super) fn background_share(n: usize) -> f64 {
+    // (1/(1 + n))/√(Σ (n + 1) (1/(1 + n))²): there are n + 1 polynomials of degree n, and all variances add up to 1.
+    let size = |n: usize| 1.0 / (1 + n) as f64;
+    let whole: f64 = (0..=BACKGROUND_DEGREE).map(|n| (n + 1) as f64 * size(n).powi(2)).sum();
+    size(n) / whole.sqrt()
 }
 
 #[cfg(test)]

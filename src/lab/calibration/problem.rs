@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use super::contacts::{Fitted, Knowledge, Maps, Measured, Place, TERMS};
 use super::effort::Effort;
+use super::evidence::{log_likelihood_of_contacts, log_prior};
 use super::hyperparameters::{Estimates, Settings};
 use super::jumps::{Jump, Jumps};
 use super::lasting::Filter;
@@ -33,7 +34,6 @@ use crate::pad::field::Sensitivity;
 use crate::pipeline::compensation::hysteresis::PLAYS;
 use crate::pipeline::contact::uncertainty::UNKNOWNS;
 use crate::quantity::CHANNELS;
-use crate::tables::measured::Row;
 use crate::tables::recording::Recording;
 
 /// Most Gauss-Newton steps of a fit; the channels are nearly linear in the parameters.
@@ -124,7 +124,7 @@ impl<'f> Problem<'f> {
         let (physical, sensitivities) = free(field, device);
         let plate_mm = device.plate.radius_mm();
         let rows = &recording.tared().rows;
-        let to_come = to_come(rows);
+        let to_come = ageing::to_come(rows);
         let measured = |Fitted { row, knowledge }: &Fitted| {
             let known = (rows.as_slice(), *row, *knowledge);
             let contact = Measured::of(field, &sensitivities, plate_mm, known, reference_c)?;
@@ -343,10 +343,9 @@ impl<'f> Problem<'f> {
             std::array::from_fn(|k| contact.uv[k] - fitted_uv[k] + dot(&label_jacobian[k], &off));
         let [fx_n, fy_n, fz_n] = contact.force_n;
         let force_n = libm::hypot(libm::hypot(fx_n, fy_n), fz_n);
-        // Noise in proportion to a reading that has it would draw the fit to the small readings.
-        let uv = if contact.knowledge == Knowledge::Written { contact.uv } else { fitted_uv };
+        // Noise is in proportion to the fitted signal: a reading that has the noise would draw the fit to the small readings.
         let Measured { knowledge, at_s, .. } = *contact;
-        (Residual { knowledge, at_s, uv, force_n, residual_uv, label_jacobian }, rows)
+        (Residual { knowledge, at_s, uv: fitted_uv, force_n, residual_uv, label_jacobian }, rows)
     }
 
     fn residuals(&self, values: &[f64]) -> Vec<Residual> {
@@ -443,39 +442,4 @@ impl<'f> Problem<'f> {
         let readings: usize = self.contacts.iter().map(readings).sum();
         (1.0 - effective / readings as f64).max(DEGREES_OF_FREEDOM_RATIO_MIN)
     }
-}
-
-/// For each row the part of the measurement's ageing that was still to come.
-fn to_come(rows: &[Row]) -> Vec<f64> {
-    let cycles = ageing::cycles(rows);
-    let last = cycles.iter().copied().fold(0.0, f64::max);
-    cycles.into_iter().map(|cycle| 1.0 - ageing::aged(cycle, last)).collect()
-}
-
-/// ln p(contacts | θ) = −½ Σ (rᵀ V⁻¹ r + ln det V), with lasting noise integrated over, but for a constant.
-fn log_likelihood_of_contacts(residuals: &[Residual], noise_model: &NoiseModel) -> Option<f64> {
-    let wander = noise_model.wander();
-    let mut filter = wander.as_ref().map(|wander| Filter::new(wander, 0));
-    let mut previous_s = None;
-    let mut cost = 0.0;
-    for residual in residuals {
-        let precision = noise_model.marginal_precision(residual)?;
-        cost += precision.cost(&residual.residual_uv);
-        if let Some(filter) = &mut filter {
-            if let Some(previous_s) = previous_s.replace(residual.at_s) {
-                filter.pass(residual.at_s - previous_s, None)?;
-            }
-            filter.see(&precision, residual, &[]);
-        }
-    }
-    cost += filter.map_or(Some(0.0), |filter| filter.end(None))?;
-    Some(-0.5 * cost)
-}
-
-/// ln p(θ) = ½ Σᵢ (ln Pᵢ − Pᵢ (mᵢ − θᵢ)²), but for a constant.
-fn log_prior(values: &[f64], mean: &[f64], precisions: &[f64]) -> f64 {
-    let term = |(precision, (mean, value)): (&f64, (&f64, &f64))| {
-        precision.ln() - precision * (mean - value).powi(2)
-    };
-    0.5 * precisions.iter().zip(mean.iter().zip(values)).map(term).sum::<f64>()
 }

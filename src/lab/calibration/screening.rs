@@ -18,11 +18,10 @@
 use std::fmt;
 
 use super::contacts::{Maps, Place, response};
-use super::model::GAIN_DEVIATION;
 use super::moments::Moments;
 use super::physical::free;
 use super::plate::{PLACES, places};
-use super::prior_deviations::{Kind, PriorDeviations};
+use super::prior_deviations::{GAIN_DEVIATION, Kind, PriorDeviations};
 use crate::numeric::statistics::median;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;

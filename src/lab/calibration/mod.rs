@@ -1,6 +1,6 @@
 //! From a pad's measured contacts to its own influence field: the simulator's field, corrected by the pad's own parameters.
 //!
-//! Channel k reads s = z + gₖ Σₐ Fₐ Eₖₐ(x, y) + Σₗ Lₖₗ gₗ Σₐ Fₐ Eₗₐ(x, y), where
+//! Channel k reads s = z + gₖ Σₐ Fₐ Eₖₐ(x, y) + Σₗ Xₖₗ Σₐ Fₐ Eₗₐ(x, y), where
 //!
 //! ```text
 //! E = G + Σⱼ pⱼ ∂G/∂pⱼ + background

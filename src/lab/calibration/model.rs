@@ -3,11 +3,11 @@
 //! Channel k reads at a contact
 //!
 //! ```text
-//! sₖ = zₖ + S ((1 + αₖ ΔT) gₖ eₖ + Σₗ Lₖₗ gₗ eₗ) + Σᵢ wᵢₖ lᵢₖ + c uₖ,    eₖ = (1 + A b) Σₐ Fₐ Eₖₐ(x, y)
+//! sₖ = zₖ + S ((1 + αₖ ΔT) gₖ eₖ + Σₗ Xₖₗ eₗ) + Σᵢ wᵢₖ lᵢₖ + c uₖ,    eₖ = (1 + A b) Σₐ Fₐ Eₖₐ(x, y)
 //! E = G + b ∇²G + Σⱼ wⱼ(qⱼ) ∂G/∂pⱼ + background
 //! ```
 //!
-//! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains, crosstalk L of other channels' own signals, shares w and lags l of the
+//! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains, crosstalk X, shares w and lags l of the
 //! play operators, creep's share c and state u, blur b, and weights w of physical parameters q ([`physical`](super::physical)). G is the simulator's field. A is what ageing takes
 //! over the measurement, and b the part of it that was still to come at the contact ([`ageing`](super::ageing)): a decoder is
 //! of the pad as it was at last. Place and force of a written label are corrected by the rig's errors ρ ([`rig`](super::rig)).
@@ -21,7 +21,6 @@ use super::prior_deviations::{
     WEIGHT_BLUR_DEVIATION_MM2, background_share,
 };
 use super::rig::{RIG_NUMBERS, RigPrior};
-use crate::numeric::linear::dot;
 use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
 use crate::pipeline::compensation::hysteresis::{Hysteresis, PLAYS, Play};
 use crate::pipeline::contact::inverse::CROSSTALK_MAX;
@@ -237,21 +236,22 @@ impl Layout {
         ZEROS + channel
     }
 
-    /// What a channel has of the nine strains: S gₖ of its own, S Lₖₗ gₗ of the others.
+    /// What a channel has of the nine strains: S gₖ of its own, S Xₖₗ of the others.
     fn mixture(values: &[f64], channel: usize) -> [f64; CHANNELS] {
         let scale = Self::scale_factor(values);
         std::array::from_fn(|from| {
-            let share = if from == channel { 1.0 } else { values[Self::crosstalk_at(channel, from)] };
-            scale * share * values[GAINS + from]
+            let own = if from == channel { values[GAINS + channel] } else { 0.0 };
+            scale * (own + values[CROSSTALKS + channel * CHANNELS + from])
         })
     }
 
-    /// What channels have of one another's own signals, Lₖₗ, of which no decoder has more than a bound.
+    /// What channels have of one another's own signals: Lₖₗ = Xₖₗ/gₗ, of which no decoder has more than a bound.
     pub(super) fn crosstalk(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
         let most = f64::from(CROSSTALK_MAX);
         let share = |into: usize, from: usize| {
-            let is_own = into == from || values[GAINS + from].abs() < GAIN_MIN;
-            if is_own { 0.0 } else { values[Self::crosstalk_at(into, from)].clamp(-most, most) }
+            let own = values[GAINS + from];
+            let share = values[CROSSTALKS + into * CHANNELS + from] / own;
+            if into == from || own.abs() < GAIN_MIN { 0.0 } else { share.clamp(-most, most) }
         };
         std::array::from_fn(|into| std::array::from_fn(|from| share(into, from)))
     }
@@ -317,7 +317,7 @@ impl Layout {
 
     /// The channels' maps at a place, µV/N.
     pub(super) fn maps(&self, values: &[f64], scale: &Maps, place: &Place, knowledge: Knowledge) -> Maps {
-        // S (gₖ Eₖₐ + Σₗ Lₖₗ gₗ Eₗₐ).
+        // S (gₖ Eₖₐ + Σₗ Xₖₗ Eₗₐ).
         let strain_maps = self.strain_maps(values, scale, place, knowledge);
         std::array::from_fn(|into| {
             std::array::from_fn(|axis| {
@@ -361,7 +361,7 @@ impl Layout {
     ) -> [[f64; UNKNOWNS]; CHANNELS] {
         let maps = self.maps(values, scale, &contact.place, contact.knowledge);
         let (gain, force_n) = (Self::younger_gain(values, contact), Self::force_now_n(values, contact));
-        // By the place S (gₖ Σₐ Fₐ ∇Eₖₐ + Σₗ Lₖₗ gₗ Σₐ Fₐ ∇Eₗₐ); by the force the maps.
+        // By the place S (gₖ Σₐ Fₐ ∇Eₖₐ + Σₗ Xₖₗ Σₐ Fₐ ∇Eₗₐ); by the force the maps.
         let of_strains = [0, 1].map(|axis| {
             let gradient = self.strain_gradient(values, scale, &contact.place, axis);
             gradient.map(|map| response(&map, &force_n))
@@ -389,48 +389,41 @@ impl Layout {
         let force_n = &Self::force_now_n(values, contact);
         let strain_maps = self.strain_maps(values, scale, place, *knowledge);
         let strains_uv = strain_maps.map(|map| response(&map, force_n));
-        // F·∇²G, and ∂w/∂q F·∂G/∂p of each physical parameter.
-        let blurred_uv = place.laplacian.map(|map| response(&map, force_n));
-        let by_physical =
-            |([_, slope], maps): ([f64; 2], &Maps)| maps.map(|map| slope * response(&map, force_n));
-        let physical_uv: Vec<[f64; CHANNELS]> =
-            self.weights(values).zip(&place.sensitivities).map(by_physical).collect();
-        // S eₗ and S gₗ eₗ.
-        let scaled_uv = strains_uv.map(|uv| Self::scale_factor(values) * uv);
-        let own_uv: [f64; CHANNELS] = std::array::from_fn(|from| values[GAINS + from] * scaled_uv[from]);
+        let weights: Vec<[f64; 2]> = self.weights(values).collect();
         let mut derivatives = vec![0.0; self.size()];
         for channel in 0..CHANNELS {
             derivatives.fill(0.0);
-            // hₖₖ = (1 + αₖ ΔT) S gₖ, hₖₗ = S Lₖₗ gₗ.
+            // h = (1 + αₖ ΔT) S gₖ.
             let thermal_gain = 1.0 + values[GAIN_SLOPES + channel] * above_c;
-            let mut mixture = Self::mixture(values, channel);
-            mixture[channel] *= thermal_gain;
-            let loaded_uv = dot(&mixture, &strains_uv);
-            // ∂/∂zₖ = 1, ∂/∂gₖ = (1 + αₖ ΔT) S eₖ, ∂/∂gₗ = Lₖₗ S eₗ, ∂/∂αₖ = ΔT S gₖ eₖ, ∂/∂Lₖₗ = S gₗ eₗ, ∂/∂ln S = Σₗ hₖₗ eₗ.
-            derivatives[ZEROS + channel] = 1.0;
+            let own_gain = Self::gain(values, channel);
+            let (gain, factor) = (thermal_gain * own_gain, Self::scale_factor(values));
             let shares = &values[CROSSTALKS + channel * CHANNELS..][..CHANNELS];
-            let by_gains = derivatives[GAINS..CROSSTALKS].iter_mut().zip(shares).zip(scaled_uv);
-            by_gains.for_each(|((slope, share), uv)| *slope = share * uv);
-            derivatives[GAINS + channel] = thermal_gain * scaled_uv[channel];
-            derivatives[GAIN_SLOPES + channel] = above_c * own_uv[channel];
-            derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&own_uv);
+            let crosstalk_uv: f64 =
+                factor * shares.iter().zip(strains_uv).map(|(share, uv)| share * uv).sum::<f64>();
+            let loaded_uv = gain * strains_uv[channel] + crosstalk_uv;
+            // ∂/∂zₖ = 1, ∂/∂gₖ = (1 + αₖ ΔT) S eₖ, ∂/∂αₖ = ΔT S gₖ eₖ, ∂/∂Xₖₗ = S eₗ, ∂/∂ln S = h eₖ + S Σₗ Xₖₗ eₗ.
+            derivatives[ZEROS + channel] = 1.0;
+            derivatives[GAINS + channel] = thermal_gain * factor * strains_uv[channel];
+            derivatives[GAIN_SLOPES + channel] = above_c * own_gain * strains_uv[channel];
+            derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS]
+                .copy_from_slice(&strains_uv.map(|uv| factor * uv));
             derivatives[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
             derivatives[LOG_SCALE] = loaded_uv;
-            // ∂/∂A = b Σₗ hₖₗ eₗ/(1 + A b).
+            // ∂/∂A = b (h eₖ + S Σₗ Xₖₗ eₗ)/(1 + A b).
             derivatives[AGEING] = to_come * loaded_uv / younger_gain;
-            // ∂/∂b = Σₗ hₖₗ F·∇²Gₗ, ∂/∂qⱼ = Σₗ hₖₗ ∂wⱼ/∂qⱼ F·∂Gₗ/∂pⱼ. Crosstalk counts in each, else a scale that gains and
-            // strains share would not be free, and small shares would pull it.
-            derivatives[blur_at(*knowledge)] = dot(&mixture, &blurred_uv);
-            let physical = derivatives[PHYSICAL..].iter_mut().zip(&physical_uv);
-            physical.for_each(|(slope, strains_uv)| *slope = dot(&mixture, strains_uv));
-            // ∂/∂βₖₐₜ = hₖₖ Fₐ scaleₖₐ Uₜ, but for crosstalk: of a small correction that is a small part.
+            // ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ, ∂/∂βₖₐₜ = h Fₐ scaleₖₐ Uₜ.
+            derivatives[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
+            let physical = weights.iter().zip(&place.sensitivities);
+            for (slope, ([_, by_parameter], maps)) in derivatives[PHYSICAL..].iter_mut().zip(physical) {
+                *slope = gain * by_parameter * response(&maps[channel], force_n);
+            }
             for axis in 0..3 {
-                let factor = mixture[channel] * scale[channel][axis] * force_n[axis];
+                let factor = gain * scale[channel][axis] * force_n[axis];
                 let terms = derivatives[self.background(channel, axis)..].iter_mut().zip(&place.terms);
                 terms.for_each(|(slope, term)| *slope = factor * term);
             }
             let memory_uv = Self::memory_uv(values, channel, lags, crept_uv, &mut derivatives);
-            // sₖ = zₖ + Σₗ hₖₗ eₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ.
+            // sₖ = zₖ + h eₖ + S Σₗ Xₖₗ eₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ.
             let uv = values[ZEROS + channel] + loaded_uv + memory_uv;
             each(channel, uv, &derivatives);
         }

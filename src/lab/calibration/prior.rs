@@ -19,7 +19,7 @@ pub(super) struct Prior {
     /// µV/N before gains, and its sensitivities to the physical parameters.
     pub(super) field: PadField,
     pub(super) gain: [f64; CHANNELS],
-    /// What each channel has of each other's own signal.
+    /// What each channel has of each other's strain.
     pub(super) crosstalk: [[f64; CHANNELS]; CHANNELS],
     /// Thresholds of the play operators, in strains before gains; an operator with zero does nothing.
     pub(super) thresholds_uv: [f64; PLAYS],
@@ -61,7 +61,7 @@ impl Prior {
     /// and strains.
     pub(super) fn at(field: &PadField, earlier: &Earlier<'_>) -> Self {
         let mut prior = Self::of_kind(field, earlier);
-        // G′ = (1 + L) g E.
+        // G′ = (1 + L) g E, and X = L g.
         let inverse = earlier.inverse;
         let gain = prior.gain;
         let strain = |place_mm: [f64; 2]| {
@@ -72,7 +72,8 @@ impl Prior {
         };
         prior.field.signals = resampled(field, strain);
         prior.field.sensitivities.clear();
-        prior.crosstalk = inverse.crosstalk().map(|line| line.map(f64::from));
+        prior.crosstalk =
+            inverse.crosstalk().map(|line| std::array::from_fn(|from| f64::from(line[from]) * gain[from]));
         prior
     }
 

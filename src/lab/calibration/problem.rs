@@ -343,9 +343,10 @@ impl<'f> Problem<'f> {
             std::array::from_fn(|k| contact.uv[k] - fitted_uv[k] + dot(&label_jacobian[k], &off));
         let [fx_n, fy_n, fz_n] = contact.force_n;
         let force_n = libm::hypot(libm::hypot(fx_n, fy_n), fz_n);
-        // Noise is in proportion to the fitted signal: a reading that has the noise would draw the fit to the small readings.
+        // Noise in proportion to a reading that has it would draw the fit to the small readings.
+        let uv = if contact.knowledge == Knowledge::Written { contact.uv } else { fitted_uv };
         let Measured { knowledge, at_s, .. } = *contact;
-        (Residual { knowledge, at_s, uv: fitted_uv, force_n, residual_uv, label_jacobian }, rows)
+        (Residual { knowledge, at_s, uv, force_n, residual_uv, label_jacobian }, rows)
     }
 
     fn residuals(&self, values: &[f64]) -> Vec<Residual> {

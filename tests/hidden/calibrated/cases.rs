@@ -105,7 +105,7 @@ pub(super) static CASES: [Case; 13] = [
     Case {
         name: "stage 0.5 mm off",
         rig: Some(("stage_offset", "rig", &[("x_mm", 0.4), ("y_mm", -0.3)])),
-        gate: open([2.21, 1.10]),
+        gate: open([1.42, 1.10]),
         ..NO_CASE
     },
     Case {

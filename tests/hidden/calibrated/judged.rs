@@ -163,10 +163,10 @@ fn stated(pad: &Value, wiring: &Wiring, change: &dyn Fn(&str) -> Option<f64>) ->
     told.filter_map(one).collect()
 }
 
-/// What a channel has of another's signal.
+/// What a channel has of another's strain: the program states it before the other's gain.
 fn leaked(wiring: &Wiring, into: usize, from: usize) -> f64 {
     let leak = wiring.leaks.iter().find(|leak| (leak.0, leak.1) == (into, from));
-    leak.map_or(0.0, |leak| leak.2)
+    leak.map_or(0.0, |leak| leak.2 * wiring.gains[from])
 }
 
 impl Summary {

@@ -223,7 +223,7 @@ impl<'m> Columns<'m> {
         }
     }
 
-    /// How a channel follows each channel's gain, as a share of itself: its own, and by crosstalk the others', Lₖₗ ∂f/∂Lₖₗ.
+    /// How a channel follows each channel's gain, as a share of itself: its own, and by crosstalk the others', Xₖₗ ∂f/∂Xₖₗ.
     fn by_gains(&self, channel: usize, row: &[f64], own: f64) -> [f64; CHANNELS] {
         std::array::from_fn(|from| {
             let at = Layout::crosstalk_at(channel, from);

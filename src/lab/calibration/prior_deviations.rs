@@ -165,7 +165,7 @@ impl PriorDeviations {
             }
         }
         let displaced = displaced_mm2.map(|mm2| expected_factor(mm2 / self.of(Kind::Shift).powi(2)));
-        // σ² = Σ (θ − m)²/Σ γ, both with the pseudo-observations.
+        // σ² = Σ λ (θ − m)²/Σ γ, both with the pseudo-observations.
         Self {
             deviations: std::array::from_fn(|kind| (squares[kind] / counts[kind]).sqrt()),
             displaced,

@@ -123,7 +123,7 @@ pub(super) static CASES: [Case; 13] = [
     Case {
         name: "reference 1.02",
         rig: Some(("reference_gain", "rig", &[("gain", 1.02)])),
-        gate: open([1.10, 2.27]),
+        gate: open([1.10, 2.08]),
         ..NO_CASE
     },
 ];

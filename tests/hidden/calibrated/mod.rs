@@ -3,7 +3,8 @@
 //!
 //! Each case is measured on a pad of its seed: gains, leaks, offsets, contacts and noise are the same in all cases of a seed,
 //! so their errors can be compared. The six fields are tried with one seed; with `TACTPAD_CALIBRATED=N` all cases, with the
-//! seeds 1 to N, or `TACTPAD_CALIBRATED_FROM` and on. All constants were written down before the first run, but for the gates: they are what the program reached.
+//! seeds 1 to N, or N from `TACTPAD_CALIBRATED_FROM` on. All constants were written down before the first run, but for the
+//! gates: they are what the program reached.
 
 mod at_home;
 mod cases;

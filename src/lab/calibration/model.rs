@@ -100,7 +100,7 @@ impl Layout {
         deviations[GAINS..CROSSTALKS].fill(GAIN_DEVIATION);
         // A channel has no crosstalk with itself.
         for (index, deviation) in deviations[CROSSTALKS..SHARES].iter_mut().enumerate() {
-            *deviation = Kind::of_crosstalk(index).map_or(0.0, |kind| prior_deviations.of(kind));
+            *deviation = self.crosstalk_kind(index).map_or(0.0, |kind| prior_deviations.of(kind));
         }
         deviations[SHARES..OWN_SHARES].fill(SHARE_DEVIATION);
         deviations[OWN_SHARES..CREEP].fill(prior_deviations.of(Kind::OwnHysteresis));
@@ -130,6 +130,13 @@ impl Layout {
         deviations.iter().map(|deviation| (1.0 / deviation.powi(2)).min(CERTAIN)).collect()
     }
 
+    /// The kind of the crosstalk at this place of the matrix. Presses without labels hardly tell what is within a module from its
+    /// pose: there all crosstalk has one deviation.
+    fn crosstalk_kind(&self, index: usize) -> Option<Kind> {
+        let kind = Kind::of_crosstalk(index)?;
+        Some(if self.is_play { Kind::Crosstalk } else { kind })
+    }
+
     /// Places of the parameters whose kinds share a prior standard deviation, and the module that each is of.
     pub(super) fn kinds(&self) -> impl Iterator<Item = (Kind, Option<usize>, usize)> {
         let physical =
@@ -137,7 +144,7 @@ impl Layout {
         let own = (OWN_SHARES..CREEP).map(|at| (Kind::OwnHysteresis, None, at));
         let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, None, at));
         let crosstalk = (0..CHANNELS * CHANNELS)
-            .filter_map(|index| Some((Kind::of_crosstalk(index)?, None, CROSSTALKS + index)));
+            .filter_map(|index| Some((self.crosstalk_kind(index)?, None, CROSSTALKS + index)));
         zeros.chain(crosstalk).chain(own).chain(physical)
     }
 

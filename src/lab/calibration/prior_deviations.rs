@@ -151,7 +151,9 @@ impl PriorDeviations {
     /// σ² = (κ σ₀² + Σ λ (θ − m)²)/(κ + Σ γ),    γ = 1 − λ v/σ²
     /// ```
     ///
-    /// where γ is how far the contacts determine a parameter (MacKay 1992).
+    /// where γ is how far the contacts determine a parameter (MacKay 1992). Channels of one pad do not differ in hysteresis by more
+    /// than pads do: without that bound two play operators of nearly the same small threshold, with opposite shares beyond any
+    /// pad's, explain what is no hysteresis.
     pub(super) fn reestimated(&self, numbers: impl Iterator<Item = Deviating>) -> Self {
         let mut squares = self.initial.map(|deviation| PSEUDO_COUNT * deviation * deviation);
         let mut counts = [PSEUDO_COUNT; KINDS];
@@ -166,11 +168,10 @@ impl PriorDeviations {
         }
         let displaced = displaced_mm2.map(|mm2| expected_factor(mm2 / self.of(Kind::Shift).powi(2)));
         // σ² = Σ λ (θ − m)²/Σ γ, both with the pseudo-observations.
-        Self {
-            deviations: std::array::from_fn(|kind| (squares[kind] / counts[kind]).sqrt()),
-            displaced,
-            ..*self
-        }
+        let mut deviations: [f64; KINDS] = std::array::from_fn(|kind| (squares[kind] / counts[kind]).sqrt());
+        let own_hysteresis = &mut deviations[Kind::OwnHysteresis as usize];
+        *own_hysteresis = own_hysteresis.min(SHARE_DEVIATION);
+        Self { deviations, displaced, ..*self }
     }
 }
 
@@ -218,6 +219,24 @@ mod tests {
         // One module that is far off does not say that the others are.
         assert!(found.of(Kind::Shift) < 1.2 * SHIFT_MM, "{found:?}");
         assert_eq!(found.of_one(Kind::Turn, Some(0)), TURN_DEG);
+    }
+
+    #[test]
+    fn channels_do_not_differ_in_hysteresis_by_more_than_pads_do() {
+        let shares = |share: f64| {
+            (0..18).map(move |at| Deviating {
+                kind: Kind::OwnHysteresis,
+                module: None,
+                difference: if at % 2 == 0 { share } else { -share },
+                variance: 1e-6,
+            })
+        };
+        let found = |share| {
+            let of = (0..20).fold(PriorDeviations::TARED, |found, _| found.reestimated(shares(share)));
+            of.of(Kind::OwnHysteresis)
+        };
+        assert!((found(0.03) - 0.03).abs() < 0.005, "{}", found(0.03));
+        assert_eq!(found(15.0), SHARE_DEVIATION);
     }
 
     #[test]

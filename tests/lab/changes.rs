@@ -8,13 +8,17 @@
 //! tables of docs/diagnosis.md are printed; `TACTPAD_CHANGES_SINCE=play`, `home` or `rig` asks for one of them.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 
+use std::sync::LazyLock;
+
 use tactpad::lab::diagnosis::report::Finding;
 use tactpad::lab::diagnosis::target::Target;
 use tactpad::lab::play::change::{Before, Changed, changed};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::windows::Window;
+use tactpad::mechanics::mesh::Fineness;
+use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
 use tactpad::numeric::zernike::jets;
-use tactpad::pad::changes::{FieldChanges, Flaw};
+use tactpad::pad::changes::{FieldChange, FieldChanges, Flaw};
 use tactpad::pad::device::{Device, Side};
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::{InfluenceField, MAPS};
@@ -34,14 +38,20 @@ use tactpad::virtual_pad::script::Script;
 
 use super::home::Pad;
 
-/// Degree of the changes' polynomials is no larger.
-const DEGREE: usize = 24;
 const GAIN: f64 = 0.92;
-/// One of the shares whose change is known without interpolating.
-const LOST_SHARE: f64 = 0.4;
+/// None of the shares that [`FieldChanges`] keep: what looks for it interpolates, and the pad does not.
+const LOST_SHARE: f64 = 0.3;
 /// Half the mean square of the distance at which a wider finger's force acts from its place, beyond that of the first one.
 const WIDER_MM2: f64 = 1.5;
 const WITHIN_MM: f32 = 26.0;
+
+/// What the pad's channels lose by the bond that has come off, solved anew.
+static LOST: LazyLock<FieldChange> = LazyLock::new(|| {
+    let mut simulator = Simulator::new(Fineness::STANDARD);
+    let device = Device::nominal();
+    let whole = simulator.pad(&device).unwrap().signals();
+    simulator.change(&device, &whole, Flaw::Debonded(Side::PlusX, LOST_SHARE)).unwrap()
+});
 
 /// What happens between the plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,20 +81,18 @@ impl Kind {
         if self == Self::ModuleGain {
             device.modules[1].gain = device.modules[1].gain.map(|gain| GAIN * gain);
         }
-        let changes = FieldChanges::nominal();
-        let lost = changes.0.iter().find(|it| it.flaw == Flaw::Debonded(Side::PlusX, LOST_SHARE)).unwrap();
         let signals = &field.signals;
         let (spacing_mm, reach_mm) = (f64::from(signals.spacing_mm()), f64::from(signals.radius_mm()));
         let plate_mm = device.plate.radius_mm();
         let maps = |place_mm: [f64; 2]| {
             let gains = signals.gains(place_mm[0] as f32, place_mm[1] as f32).value;
             let (laplacian, jets) =
-                (signals.laplacian(place_mm), jets(DEGREE, place_mm.map(|mm| mm / plate_mm)));
+                (signals.laplacian(place_mm), jets(PLATE_DEGREE, place_mm.map(|mm| mm / plate_mm)));
             std::array::from_fn::<f64, MAPS, _>(|map| {
                 let (channel, axis) = (map / 3, map % 3);
                 gains[channel][axis]
                     + match self {
-                        Self::Debonded => lost.maps[channel][axis].value(&jets),
+                        Self::Debonded => LOST.maps[channel][axis].value(&jets),
                         Self::OtherHand => WIDER_MM2 * laplacian[channel][axis],
                         Self::ModuleGain | Self::Nothing => 0.0,
                     }

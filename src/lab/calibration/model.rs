@@ -134,7 +134,7 @@ impl Layout {
     /// pose: there all crosstalk has one deviation.
     fn crosstalk_kind(&self, index: usize) -> Option<Kind> {
         let kind = Kind::of_crosstalk(index)?;
-        Some(if self.is_play { Kind::Crosstalk } else { kind })
+        Some(if self.is_play { Kind::CrosstalkUnlabelled } else { kind })
     }
 
     /// Places of the parameters whose kinds share a prior standard deviation, and the module that each is of.

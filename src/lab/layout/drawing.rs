@@ -1,5 +1,6 @@
 //! Figures of a layout study: the scan over radius and turn, and the effective regions under the plate.
 
+use super::module_count::{ModuleCounts, Wiring};
 use super::placement::{Candidate, Placement};
 use super::precision::Precision;
 use super::study::{Simulated, SpacingAnswers};
@@ -84,6 +85,27 @@ fn value(candidate: &Candidate, merit: fn(&Precision) -> f64) -> Option<Value> {
 
 fn side(label: &str) -> Side {
     Side { label: label.to_owned(), scale: Scale::Linear, also: vec![] }
+}
+
+/// Worst location errors over the number of modules: bridges, gauges, and what sharing the load alone would do.
+pub fn module_counts(counts: &ModuleCounts) -> Figure {
+    let [_, _, fz] = counts.press_n;
+    let curve = |name: &str, wiring: Wiring| {
+        let rows =
+            counts.rows.iter().filter(|row| row.wiring == wiring && row.precision.worst_mm.is_finite());
+        let values = rows.map(|row| Value::new(row.modules as f64, row.precision.worst_mm)).collect();
+        Series { name: name.to_owned(), values, look: SeriesLook::Points }
+    };
+    let chart = Chart {
+        title: format!("Location error at best, press of {fz} N, noise {} µV", counts.noise_uv),
+        width: WIDTH,
+        height: HEIGHT,
+        x: side("Modules at equal angles"),
+        y: Side { also: vec![0.0], ..side("Worst error over the plate, mm") },
+        series: vec![curve("half-bridges", Wiring::Bridges), curve("every gauge alone", Wiring::Gauges)],
+        guides: vec![],
+    };
+    chart.figure()
 }
 
 /// The plate with its modules, their isolines, and the circles of the same mean radius that the paper's rule needs.

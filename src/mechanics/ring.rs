@@ -152,6 +152,21 @@ mod tests {
     }
 
     #[test]
+    fn half_bridges_cancel_most_of_what_gauges_read_of_a_press() {
+        let device = Device::nominal();
+        let ring = Ring::of(&device, MODULES, DEGREE, &modules(&device)).unwrap();
+        let pressed = |maps: &[ForceMaps]| -> Vec<f64> {
+            ring.gains(maps, [device.sites.centre_radius_mm, 0.0]).value.iter().map(|row| row[2]).collect()
+        };
+        let (bridges, gauges) = (pressed(&ring.bridges()), pressed(&ring.gauges()));
+        let [_, y, z, ..] = bridges[..] else { panic!("{bridges:?}") };
+        let [_, _, r3, r4, ..] = gauges[..] else { panic!("{gauges:?}") };
+        // Across the narrow window the film bends most, and R3 and R4 stretch alike.
+        assert!(r3 * r4 > 0.0 && r3.abs().min(r4.abs()) > 1.5 * z.abs(), "{gauges:?} {bridges:?}");
+        assert!(y.abs() < 0.2 * r3.abs(), "{gauges:?} {bridges:?}");
+    }
+
+    #[test]
     fn slopes_are_those_of_the_readings() {
         let device = Device::nominal();
         let ring = Ring::of(&device, 2, DEGREE, &modules(&device)).unwrap();

@@ -69,13 +69,8 @@ fn simulated(_device: &Device, _counts: &Counts, _noise_uv: f64) -> Result<Modul
 fn write(out: &mut impl Write, found: &ModuleCounts) -> io::Result<()> {
     let ([fx, fy, fz], noise_uv) = (found.press_n, found.noise_uv);
     writeln!(out, "Modules at equal angles, {} mm from the axis", found.centre_radius_mm)?;
-    writeln!(
-        out,
-        "Location error at best (Cramér–Rao), press of {fx}, {fy}, {fz} N, noise {noise_uv} µV on each reading"
-    )?;
-    writeln!(
-        out,
-        "{:<8} {:<8} {:>8} {:>7} {:>17} {:>9} {:>9} {:>14} {:>10}",
+    writeln!(out, "Location error at best (Cramér–Rao), press of {fx}, {fy}, {fz} N, noise {noise_uv} µV")?;
+    let heads = [
         "modules",
         "read as",
         "readings",
@@ -83,18 +78,19 @@ fn write(out: &mut impl Write, found: &ModuleCounts) -> io::Result<()> {
         "condition",
         "worst mm",
         "rms mm",
-        "without one mm",
-        "signal µV"
-    )?;
+        "one lost",
+        "signal µV",
+    ];
+    write_line(out, heads)?;
     for row in &found.rows {
         write_row(out, row)?;
     }
     let radius_mm = found.plate_radius_mm;
     writeln!(
         out,
-        "rank, of {UNKNOWNS}, and condition number over the plate, places in shares of {radius_mm} mm, forces in \
-         shares of the press"
-    )
+        "rank (of {UNKNOWNS}) and condition number over the plate: places in shares of {radius_mm} mm,"
+    )?;
+    writeln!(out, "forces in shares of the press; one lost: worst mm if one module is not read")
 }
 
 fn write_row(out: &mut impl Write, row: &Ringed) -> io::Result<()> {
@@ -103,16 +99,19 @@ fn write_row(out: &mut impl Write, row: &Ringed) -> io::Result<()> {
         Wiring::Bridges => "bridges",
         Wiring::Gauges => "gauges",
     };
-    let [rank, condition] = [
-        range(conditioning.rank.map(|rank| rank.to_string())),
-        range(conditioning.condition.map(|condition| finite(condition, 0))),
-    ];
-    let [worst, rms, without] =
-        [precision.worst_mm, precision.rms_mm, worst_without_one_mm].map(|mm| finite(mm, 4));
+    let rank = range(conditioning.rank.map(|rank| rank.to_string()));
+    let condition = range(conditioning.condition.map(ratio));
+    let [worst, rms, lost] = [precision.worst_mm, precision.rms_mm, worst_without_one_mm].map(length);
+    let (modules, readings, uv) =
+        (modules.to_string(), readings.to_string(), format!("{:.0}", precision.largest_uv));
+    write_line(out, [&modules, wiring, &readings, &rank, &condition, &worst, &rms, &lost, &uv])
+}
+
+fn write_line(out: &mut impl Write, cells: [&str; 9]) -> io::Result<()> {
+    let [modules, wiring, readings, rank, condition, worst, rms, lost, uv] = cells;
     writeln!(
         out,
-        "{modules:<8} {wiring:<8} {readings:>8} {rank:>7} {condition:>17} {worst:>9} {rms:>9} {without:>14} {:>10.0}",
-        precision.largest_uv
+        "{modules:<7} {wiring:<7} {readings:>8} {rank:>6} {condition:>10} {worst:>8} {rms:>8} {lost:>8} {uv:>9}"
     )
 }
 
@@ -121,7 +120,49 @@ fn range([from, to]: [String; 2]) -> String {
     if from == to { from } else { format!("{from} to {to}") }
 }
 
-/// A number, or that there is none.
-fn finite(value: f64, digits: usize) -> String {
-    if value.is_finite() { format!("{value:.digits$}") } else { "none".to_owned() }
+/// A condition number; a great one by its size alone.
+fn ratio(value: f64) -> String {
+    match value {
+        _ if !value.is_finite() => "none".to_owned(),
+        _ if value < 1e4 => format!("{value:.0}"),
+        _ => format!("{value:.0e}"),
+    }
+}
+
+/// Millimetres; the more there are, the fewer digits mean something.
+fn length(value_mm: f64) -> String {
+    match value_mm {
+        _ if !value_mm.is_finite() => "none".to_owned(),
+        _ if value_mm < 10.0 => format!("{value_mm:.4}"),
+        _ => format!("{value_mm:.0}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tactpad::lab::layout::conditioning::Conditioning;
+    use tactpad::lab::layout::precision::Precision;
+
+    #[test]
+    fn ranges_and_what_cannot_be_located() {
+        let precision =
+            Precision { worst_mm: f64::INFINITY, worst_at_mm: [0.0; 2], rms_mm: 17.3, largest_uv: 6150.4 };
+        let row = Ringed {
+            modules: 2,
+            wiring: Wiring::Bridges,
+            readings: 6,
+            conditioning: Conditioning { rank: [4, 5], condition: [14.2, f64::INFINITY] },
+            precision,
+            worst_without_one_mm: 36_937.1,
+        };
+        let mut bytes = Vec::new();
+        write_row(&mut bytes, &row).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        let words: Vec<_> = text.split_whitespace().collect();
+        let wanted = "2 bridges 6 4 to 5 14 to none none 17 36937 6150";
+        assert_eq!(words.join(" "), wanted);
+        assert_eq!([ratio(7.4), ratio(1_066_317.0), length(0.196_84)], ["7", "1e6", "0.1968"]);
+        assert_eq!(range(["5".to_owned(), "5".to_owned()]), "5");
+    }
 }

@@ -73,10 +73,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),
         None => simulated(arguments, &device).map(|(spacing, pad)| (spacing, Some(pad)))?,
     };
+    let at_best = simulated.as_ref().and_then(|pad| pad.as_built.precision);
     let report = LayoutReport {
         seed: arguments.seed,
         spacing,
-        area_per_channel: area_rows(device.plate.diameter_mm),
+        area_per_channel: area_rows(device.plate.diameter_mm, at_best.map(|found| found.rms_mm)),
         parts: PARTS,
         parts_usd: PARTS.iter().map(Part::price_usd).sum(),
         simulated,

@@ -2,7 +2,6 @@
 
 use std::io::{self, Write};
 
-use super::Arguments;
 use crate::cli::destination::Folder;
 use crate::cli::failure::Failure;
 use crate::cli::pictures;
@@ -37,18 +36,19 @@ impl Counts {
     }
 }
 
-/// Compares the pads, prints them and draws them into the folder if there is one.
+/// Compares the pads, draws them into the folder if there is one, and prints them, for people or as JSON.
 pub(super) fn run(
-    arguments: &Arguments,
     device: &Device,
     counts: &Counts,
+    noise_uv: f64,
     folder: Option<&Folder>,
+    json: bool,
 ) -> Result<(), Failure> {
-    let found = simulated(device, counts, arguments.noise_uv)?;
+    let found = simulated(device, counts, noise_uv)?;
     if let Some(folder) = folder {
         pictures::write(folder, "layout-modules", &drawing::module_counts(&found))?;
     }
-    if arguments.json { print_json(&found) } else { Ok(write(&mut stdout(), &found)?) }
+    if json { print_json(&found) } else { Ok(write(&mut stdout(), &found)?) }
 }
 
 #[cfg(feature = "simulator")]

@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let device = arguments.pad.read()?;
     let folder = arguments.figures.as_deref().map(Folder::of).transpose()?;
     if let Some(counts) = &arguments.modules {
-        return counts::run(arguments, &device, counts, folder.as_ref());
+        return counts::run(&device, counts, arguments.noise_uv, folder.as_ref(), arguments.json);
     }
     let (spacing, simulated) = match &arguments.radii {
         Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),

@@ -92,15 +92,13 @@ fn side(label: &str) -> Side {
 /// and how three modules' error would grow if more of them only shared the load. An error as large as the plate is
 /// left out: there nothing is located.
 pub fn module_counts(counts: &ModuleCounts) -> Figure {
-    let errors = |wiring: Wiring, error: fn(&Ringed) -> f64| -> Vec<Value> {
+    let worst: fn(&Ringed) -> f64 = |row| row.precision.worst_mm;
+    let one_lost: fn(&Ringed) -> f64 = |row| row.worst_without_one_mm;
+    let curve = |name: &str, wiring: Wiring, error_mm: fn(&Ringed) -> f64| {
         let rows = counts.rows.iter().filter(|row| row.wiring == wiring);
-        let values = rows.map(|row| Value::new(row.modules as f64, error(row)));
-        values.filter(|value| value.y < counts.plate_radius_mm).collect()
-    };
-    let curve = |name: &str, values: Vec<Value>| Series {
-        name: name.to_owned(),
-        values,
-        look: SeriesLook::LineAndPoints,
+        let values = rows.map(|row| Value::new(row.modules as f64, error_mm(row)));
+        let values = values.filter(|value| value.y < counts.plate_radius_mm).collect();
+        Series { name: name.to_owned(), values, look: SeriesLook::LineAndPoints }
     };
     let [_, _, fz] = counts.press_n;
     let chart = Chart {
@@ -110,16 +108,10 @@ pub fn module_counts(counts: &ModuleCounts) -> Figure {
         x: side("Modules at equal angles"),
         y: Side { also: vec![0.0], ..side("Worst error over the plate, mm") },
         series: vec![
-            curve("half-bridges", errors(Wiring::Bridges, |row| row.precision.worst_mm)),
-            curve(
-                "half-bridges, one module not read",
-                errors(Wiring::Bridges, |row| row.worst_without_one_mm),
-            ),
-            curve("every gauge alone", errors(Wiring::Gauges, |row| row.precision.worst_mm)),
-            curve(
-                "every gauge alone, one module not read",
-                errors(Wiring::Gauges, |row| row.worst_without_one_mm),
-            ),
+            curve("half-bridges", Wiring::Bridges, worst),
+            curve("half-bridges, one module not read", Wiring::Bridges, one_lost),
+            curve("every gauge alone", Wiring::Gauges, worst),
+            curve("every gauge alone, one module not read", Wiring::Gauges, one_lost),
             sharing(counts),
         ],
         guides: vec![],
@@ -136,7 +128,7 @@ fn sharing(counts: &ModuleCounts) -> Series {
     };
     let values = three.map(|row| (MODULES..=most).map(|modules| shared(row, modules)).collect());
     Series {
-        name: "half-bridges of load cells: three’s error · √(n/3)".to_owned(),
+        name: "if n modules only shared the load: √(n/3)".to_owned(),
         values: values.unwrap_or_default(),
         look: SeriesLook::Dashes,
     }

@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn two_load_cells_locate_nothing_and_the_line_between_them_only() {
+    fn fewer_than_three_load_cells_locate_nothing() {
         let press = Press { force_n: [0.0, 0.0, 1.0], noise_uv: 6.0 };
         for count in [1, 2] {
             let gains = cells(count, 20.0, 1900.0, [3.0, 4.0]);

@@ -3,7 +3,8 @@
 use faer::Mat;
 
 use crate::numeric::zernike::{count, jets};
-use crate::pad::device::Device;
+use crate::pad::device::pose::Pose;
+use crate::pad::device::{Device, Module, Stack};
 
 use super::plate::FIELDS;
 use super::superelement::{FOOT_SHAPES, MODES, foot_shapes};
@@ -32,10 +33,14 @@ pub(super) struct Foot {
 
 impl Foot {
     /// The foot of a module of the device.
+    pub(super) fn of(device: &Device, module: usize) -> Self {
+        Self::at(&device.poses()[module], &device.modules[module], &device.stack)
+    }
+
+    /// The foot of a module that stands there.
     ///
     /// A tilted module's axes turn, its foot stays where it is: the bond fills the wedge.
-    pub(super) fn of(device: &Device, module: usize) -> Self {
-        let (pose, state, stack) = (device.poses()[module], &device.modules[module], &device.stack);
+    pub(super) fn at(pose: &Pose, state: &Module, stack: &Stack) -> Self {
         let edges = [pose.along_x, pose.along_y];
         let [x, y] = edges.map(|[x, y]| [x, y, 0.0]);
         let tilted =

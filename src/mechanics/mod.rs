@@ -1,5 +1,6 @@
 //! The pad's mechanics by finite elements: from a device to its influence field.
 
+mod assembly;
 pub mod brick;
 pub mod deformed;
 mod dissection;
@@ -11,6 +12,7 @@ pub mod pad;
 pub mod plate;
 pub mod pressed;
 mod readings;
+pub mod ring;
 pub mod sensitivity;
 pub mod simulator;
 pub mod superelement;

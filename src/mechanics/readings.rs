@@ -20,6 +20,8 @@ const SIGNS: [[f64; GAUGES]; 3] = [
 pub(super) struct Readings {
     /// Along the grid and across it, for R1, R2, … R7.
     uv_per_strain: [f64; STRAINS],
+    /// Each gauge's resistance, as a share of the bridges'.
+    resistance_ratios: [f64; GAUGES],
 }
 
 impl Readings {
@@ -32,6 +34,7 @@ impl Readings {
                 let direction = if i % 2 == 0 { 1.0 } else { law.transverse_ratio };
                 uv * direction * device.gauges[i / 2].resistance_ratio
             }),
+            resistance_ratios: device.gauges.each_ref().map(|gauge| gauge.resistance_ratio),
         }
     }
 
@@ -43,6 +46,14 @@ impl Readings {
     /// The bridge's sum of one axis for a unit of each mode, µV/mm.
     pub(super) fn sum(&self, module: &Superelement, axis: usize) -> [f64; MODES] {
         self.weighted(module, SIGNS[axis].map(f64::abs))
+    }
+
+    /// What a gauge read alone, in a bridge with a constant resistor of its own size, gives for a unit of each mode,
+    /// µV/mm: δ ΔR/R of its own resistance R.
+    pub(super) fn gauge(&self, module: &Superelement, gauge: usize) -> [f64; MODES] {
+        let mut alone = [0.0; GAUGES];
+        alone[gauge] = 1.0 / self.resistance_ratios[gauge];
+        self.weighted(module, alone)
     }
 
     fn weighted(&self, module: &Superelement, signs: [f64; GAUGES]) -> [f64; MODES] {

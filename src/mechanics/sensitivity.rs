@@ -18,11 +18,12 @@ use crate::pad::device::Device;
 use crate::pad::device::parameter::Parameter;
 use crate::pad::device::schema::Effect;
 use crate::pad::device::unit::Unit;
-use crate::pad::field::Sensitivity;
-use crate::quantity::MODULES;
+use crate::pad::field::{ForceMaps, Sensitivity};
+use crate::quantity::{CHANNELS, MODULES};
 
+use super::assembly::{add, lever, patch_mean, rigidity, springs, work, work_per_height};
 use super::mesh::Layer;
-use super::pad::{Pad, add, springs};
+use super::pad::Pad;
 use super::plate::Rigidity;
 use super::superelement::{LayerDerivatives, Superelement};
 
@@ -86,8 +87,8 @@ struct Base<'p> {
 impl<'p> Base<'p> {
     fn of(pad: &'p Pad) -> Self {
         let weights = pad.signal_weights(&pad.modules);
-        let fields = pad.respond(&weights);
-        let movements = &pad.couplings * &fields;
+        let fields = pad.assembly.respond(&weights);
+        let movements = &pad.assembly.couplings * &fields;
         Self { pad, weights, fields, movements }
     }
 
@@ -102,15 +103,19 @@ impl<'p> Base<'p> {
         let (stiffness, gauges) = (springs(&modules, 0.0), pad.signal_weights(&modules));
         let couplings = self.coupling_slope(&step);
         let moved = &couplings * fields;
-        let at_feet = gauges - &pad.springs * moved - stiffness * movements;
-        let loads = couplings.transpose() * (weights - &pad.springs * movements)
-            + pad.couplings.transpose() * at_feet
-            - pad.plate.forces(plate_slope(&pad.device, &step), fields);
-        let mut maps = pad.maps(&pad.solve(&loads), pad.lever());
+        let assembly = &pad.assembly;
+        let at_feet = gauges - &assembly.springs * moved - stiffness * movements;
+        let loads = couplings.transpose() * (weights - &assembly.springs * movements)
+            + assembly.couplings.transpose() * at_feet
+            - assembly.plate.forces(plate_slope(&pad.device, &step), fields);
+        let changes = assembly.solve(&loads);
+        let mut maps: [ForceMaps; CHANNELS] =
+            std::array::from_fn(|channel| work(&changes, channel, lever(&pad.device)));
         // A thicker plate also lifts its top: the same field, a longer lever.
         let lifted = step.slope(|device| device.plate.thickness_mm / device.plate.diameter_mm);
-        add(&mut maps, lifted, &pad.rotation_maps(fields));
-        Sensitivity { parameter, maps: maps.map(|maps| maps.map(|map| pad.patch_mean(&map))) }
+        let lifts: [ForceMaps; CHANNELS] = std::array::from_fn(|channel| work_per_height(fields, channel));
+        add(&mut maps, lifted, &lifts);
+        Sensitivity { parameter, maps: maps.map(|maps| maps.map(|map| patch_mean(&pad.device, &map))) }
     }
 
     fn coupling_slope(&self, step: &Step) -> Mat<f64> {
@@ -122,11 +127,9 @@ impl<'p> Base<'p> {
 }
 
 fn plate_slope(device: &Device, step: &Step) -> Rigidity {
-    let rigidity = super::pad::rigidity(device);
-    let (per_mpa, per_mm) = (
-        rigidity.per_modulus(device.material.plate.e_mpa),
-        rigidity.per_thickness(device.plate.thickness_mm),
-    );
+    let plate = rigidity(device);
+    let (per_mpa, per_mm) =
+        (plate.per_modulus(device.material.plate.e_mpa), plate.per_thickness(device.plate.thickness_mm));
     let modulus = step.slope(|device| device.material.plate.e_mpa);
     let thickness = step.slope(|device| device.plate.thickness_mm);
     let sum = |of: fn(&Rigidity) -> f64| modulus * of(&per_mpa) + thickness * of(&per_mm);
@@ -134,7 +137,7 @@ fn plate_slope(device: &Device, step: &Step) -> Rigidity {
         stretching: sum(|r| r.stretching),
         bending: sum(|r| r.bending),
         shear: sum(|r| r.shear),
-        nu: rigidity.nu,
+        nu: plate.nu,
     }
 }
 

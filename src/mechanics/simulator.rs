@@ -9,9 +9,10 @@ use crate::pad::field::{ForceMaps, PadField, Sensitivity};
 use crate::pad::influence::{InfluenceField, MAPS};
 use crate::quantity::{CHANNELS, MODULES};
 
+use super::assembly::add;
 use super::deformed::ModeShapes;
 use super::mesh::{Fineness, Layer};
-use super::pad::{Pad, add};
+use super::pad::Pad;
 use super::sensitivity::sensitivities;
 use super::superelement::{LayerDerivatives, Solution, Superelement};
 use super::system::SolveError;
@@ -75,12 +76,20 @@ impl Simulator {
     /// # Errors
     /// What the solver says about memory, or a stiffness that is not positive definite.
     pub fn pad(&mut self, device: &Device) -> Result<Pad, SolveError> {
+        let modules = self.superelements(device)?;
+        Pad::of(device, PLATE_DEGREE, modules)
+    }
+
+    /// The device's modules.
+    ///
+    /// # Errors
+    /// As for [`Self::pad`].
+    pub fn superelements(&mut self, device: &Device) -> Result<[Arc<Superelement>; MODULES], SolveError> {
         let mut modules = Vec::with_capacity(MODULES);
         for module in 0..MODULES {
             modules.push(self.superelement(device, module)?);
         }
-        let [a, b, c] = [0, 1, 2].map(|module| Arc::clone(&modules[module]));
-        Pad::of(device, PLATE_DEGREE, [a, b, c])
+        Ok([0, 1, 2].map(|module| Arc::clone(&modules[module])))
     }
 
     /// Solves a module with its derivatives, if it is not known yet: the long part of [`Self::sensitivities`] and

@@ -15,15 +15,15 @@ const STEP_MM: f64 = 0.5;
 pub const MAPS: usize = 3 * CHANNELS;
 
 /// Microvolts per newton at one place, for Fx, Fy (along +x, +y) and Fz (pressing) of each channel, and how they change
-/// per millimetre along +x and +y.
+/// per millimetre along +x and +y. A pad has nine channels; studies have other numbers of readings.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gains {
+pub struct Gains<Rows = [[f64; 3]; CHANNELS]> {
     /// µV/N.
-    pub value: [[f64; 3]; CHANNELS],
+    pub value: Rows,
     /// µV/N per mm along +x.
-    pub dx: [[f64; 3]; CHANNELS],
+    pub dx: Rows,
     /// µV/N per mm along +y.
-    pub dy: [[f64; 3]; CHANNELS],
+    pub dy: Rows,
 }
 
 /// One grid point's spline coefficients: Fx, Fy, Fz of the first channel, then of the next one.

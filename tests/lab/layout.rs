@@ -6,6 +6,8 @@ use std::f64::consts::PI;
 use std::process::{Command, Output};
 
 use serde_json::Value;
+use tactpad::lab::layout::precision::{Press, over_plate};
+use tactpad::pad::field::PadField;
 
 fn layout(arguments: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
@@ -77,6 +79,11 @@ fn bad_arguments_are_one_sentence_and_exit_2() {
         ("--radii 30,30,30 --threshold 1.5", "a share above 0 and below 1"),
         ("--radii 30,30,30 --noise-uv -6", "microvolts above 0"),
         ("--radii 30,30,30 --seed -1", "invalid digit"),
+        ("--modules 0", "numbers from 1 to 12"),
+        ("--modules 3,3", "3 is there twice"),
+        ("--modules 3,12", "12 modules at the device's radius would lie over each other: ask for 11 at most"),
+        ("--modules 3 --radii 30,30,30", "cannot be used with"),
+        ("--modules 3 --seed 2", "cannot be used with"),
         ("--radii 30,30,30 --figures here", "cannot be used with"),
         ("--device /no-such-file.toml", "cannot be read: No such file"),
     ] {
@@ -115,4 +122,40 @@ fn the_simulated_pad_is_near_statics() {
     for name in ["layout-scan.svg", "layout-scan.png", "layout-regions.svg", "layout-regions.png"] {
         assert!(std::fs::metadata(folder.path().join(name)).unwrap().len() > 5_000, "{name}");
     }
+}
+
+/// The row of so many modules that are read so.
+fn ringed<'a>(found: &'a Value, modules: u64, wiring: &str) -> &'a Value {
+    let rows = found["rows"].as_array().unwrap().iter();
+    rows.into_iter().find(|row| row["modules"] == modules && row["wiring"] == wiring).unwrap()
+}
+
+#[test]
+fn fewer_and_more_modules_than_three() {
+    let found = document("--modules 1,2,3,4");
+    let worst = |modules, wiring| ringed(&found, modules, wiring)["worst_mm"].as_f64();
+    let ranks = |modules, wiring| numbers(&ringed(&found, modules, wiring)["rank"]);
+    // Three readings for five unknowns; and at the centre of two modules nobody tells a shift across from a shear.
+    assert_eq!(ranks(1, "bridges"), [3.0, 3.0]);
+    assert_eq!(ranks(2, "bridges"), [4.0, 5.0]);
+    assert_eq!((worst(1, "bridges"), worst(2, "bridges")), (None, None));
+    for modules in [3, 4] {
+        assert_eq!(ranks(modules, "bridges"), [5.0, 5.0]);
+        let condition = numbers(&ringed(&found, modules, "bridges")["condition"]);
+        assert!(condition[0] >= 1.0 && condition[1] < 10.0, "{condition:?}");
+    }
+    // The three are the pad: its field is inside the program.
+    let field = PadField::nominal().signals;
+    let press = Press { force_n: [0.0, 0.0, 1.0], noise_uv: 6.0 };
+    let pad = over_plate(|x, y| field.gains(x as f32, y as f32), &press, 29.0);
+    let three = ringed(&found, 3, "bridges");
+    for (key, wanted) in [("worst_mm", pad.worst_mm), ("rms_mm", pad.rms_mm), ("largest_uv", pad.largest_uv)]
+    {
+        assert!((three[key].as_f64().unwrap() / wanted - 1.0).abs() < 2e-3, "{key}: {three} for {wanted}");
+    }
+    // A fourth shares the load: it locates worse, and better when one is lost.
+    let lost = |modules| ringed(&found, modules, "bridges")["worst_without_one_mm"].as_f64().unwrap();
+    assert!(worst(4, "bridges") > worst(3, "bridges") && lost(4) < lost(3), "{found}");
+    assert!(lost(4) > worst(4, "bridges").unwrap() && lost(3) > worst(3, "bridges").unwrap());
+    assert!(worst(3, "gauges") < worst(3, "bridges") && worst(4, "gauges") < worst(4, "bridges"));
 }

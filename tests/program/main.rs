@@ -16,6 +16,7 @@ mod hints;
 #[cfg(target_os = "linux")]
 mod large_tables;
 mod networks;
+mod paper;
 mod plot;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod profiles;

@@ -1,5 +1,6 @@
 //! `tactpad layout`: where the three modules should stand, by the paper's rule and by the pad's mechanics.
 
+mod counts;
 mod report;
 mod tables;
 
@@ -7,6 +8,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use self::counts::Counts;
 use self::report::LayoutReport;
 use super::destination::Folder;
 use super::device::Pad;
@@ -35,6 +37,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "R1,R2,R3", value_parser = parse_radii, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["threshold", "noise_uv", "figures", "imperfections"])]
     radii: Option<Radii>,
+    /// Instead of the search: how well the same plate locates on so many modules at equal angles, one number or several.
+    #[arg(long, value_name = "N,N", value_parser = Counts::parse, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["radii", "threshold", "seed"])]
+    modules: Option<Counts>,
     /// Share of a press that a module must carry to count as effective.
     #[arg(long, value_name = "SHARE", default_value_t = THRESHOLD, value_parser = parse_share)]
     #[arg(allow_hyphen_values = true)]
@@ -46,7 +52,7 @@ pub(super) struct Arguments {
     /// The swarm's seed; the same seed gives the same answer.
     #[arg(long, default_value_t = 1, allow_hyphen_values = true)]
     seed: u64,
-    /// Write the figures layout-scan and layout-regions into this folder, as SVG and PNG.
+    /// Write the figures layout-scan and layout-regions, or layout-modules, into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Print one JSON document.
@@ -60,14 +66,18 @@ const NOISE_MAX_UV: f64 = 1e6;
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let device = arguments.pad.read()?;
     let folder = arguments.figures.as_deref().map(Folder::of).transpose()?;
+    if let Some(counts) = &arguments.modules {
+        return counts::run(&device, counts, arguments.noise_uv, folder.as_ref(), arguments.json);
+    }
     let (spacing, simulated) = match &arguments.radii {
         Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),
         None => simulated(arguments, &device).map(|(spacing, pad)| (spacing, Some(pad)))?,
     };
+    let at_best = simulated.as_ref().and_then(|pad| pad.as_built.precision);
     let report = LayoutReport {
         seed: arguments.seed,
         spacing,
-        area_per_channel: area_rows(device.plate.diameter_mm),
+        area_per_channel: area_rows(device.plate.diameter_mm, at_best.map(|found| found.rms_mm)),
         parts: PARTS,
         parts_usd: PARTS.iter().map(Part::price_usd).sum(),
         simulated,
@@ -99,7 +109,7 @@ fn simulated(_arguments: &Arguments, _device: &Device) -> Result<(SpacingAnswers
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
         match error {
-            StudyError::NoRegion { .. } => Self::Unusable(error.to_string()),
+            StudyError::NoRegion { .. } | StudyError::Crowded { .. } => Self::Unusable(error.to_string()),
             _ => Self::Failed(error.to_string()),
         }
     }
@@ -139,6 +149,15 @@ mod tests {
         for text in ["30,0,30", "30,-1,30", "30,nan,30", "30,inf,30", "30,1e300,30"] {
             assert!(parse_radii(text).unwrap_err().starts_with("R2 is "), "{text}");
         }
+    }
+
+    #[test]
+    fn numbers_of_modules_are_small_and_once() {
+        assert!(Counts::parse("2, 3,12").is_ok());
+        for text in ["", "0", "13", "3,", "-3", "3.5", "three", "3;4", "99999999999999999999"] {
+            assert!(Counts::parse(text).unwrap_err().contains("as in 2,3,4,6"), "{text}");
+        }
+        assert!(Counts::parse("3,4,3").unwrap_err().starts_with("3 is there twice"));
     }
 
     #[test]

@@ -28,6 +28,8 @@ fn write(out: &mut impl Write, report: &LayoutReport) -> io::Result<()> {
     writeln!(out)?;
     write_areas(out, &report.area_per_channel)?;
     writeln!(out)?;
+    write_accuracies(out, &report.area_per_channel)?;
+    writeln!(out)?;
     write_parts(out, &report.parts, report.parts_usd)
 }
 
@@ -142,6 +144,25 @@ fn write_areas(out: &mut impl Write, rows: &[AreaRow]) -> io::Result<()> {
     Ok(())
 }
 
+fn write_accuracies(out: &mut impl Write, rows: &[AreaRow]) -> io::Result<()> {
+    writeln!(out, "Accuracy, as each work reports it: other areas, loads and statistics, so no ranking")?;
+    let mut line = |[name, place, is, force, of]: [&str; 5]| {
+        writeln!(out, "{name:<16} {place:>8} {is:<13} {force:>7}  {of}")
+    };
+    line(["work", "place mm", "which is", "force N", "of"])?;
+    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.2}"));
+    for AreaRow { work, .. } in rows {
+        let accuracy = &work.accuracy;
+        let of = format!("{}{}", accuracy.of, accuracy.read_in.map_or("", |_| " *"));
+        let (place, force) = (number(accuracy.location_mm), number(accuracy.force_n));
+        line([work.name, &place, accuracy.location_is, &force, &of])?;
+    }
+    for source in rows.iter().filter_map(|row| row.work.accuracy.read_in) {
+        writeln!(out, "* read in {source} itself; the others are as the paper's Table 7 cites them")?;
+    }
+    Ok(())
+}
+
 fn write_parts(out: &mut impl Write, parts: &[Part], sum_usd: f64) -> io::Result<()> {
     writeln!(out, "Parts, with the prices of the paper's Table 1")?;
     writeln!(out, "{:<16} {:>6} {:>6} {:>6}  here", "part", "number", "USD", "sum")?;
@@ -213,7 +234,7 @@ mod tests {
             closed_form: answer,
             optimal_ranges_mm,
         };
-        let area_per_channel = area_rows(60.0);
+        let area_per_channel = area_rows(60.0, None);
         LayoutReport { seed: 1, spacing, simulated, area_per_channel, parts: PARTS, parts_usd: 15.0 }
     }
 
@@ -244,6 +265,7 @@ mod tests {
         );
         assert!(text.contains("at an end of the radii that were tried, 8.0 to 16.0 mm"), "{text}");
         assert_eq!(words(&text, "this pad")[4..], ["9", "28.274", "3.1416"]);
+        assert!(text.contains("Mêda et al.          0.26 mean absolute    0.17"), "{text}");
         assert!(text.contains("the modules stand in a line"), "{text}");
     }
 

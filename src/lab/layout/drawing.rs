@@ -1,5 +1,6 @@
 //! Figures of a layout study: the scan over radius and turn, and the effective regions under the plate.
 
+use super::module_count::{ModuleCounts, Ringed, Wiring, load_sharing};
 use super::placement::{Candidate, Placement};
 use super::precision::Precision;
 use super::study::{Simulated, SpacingAnswers};
@@ -11,6 +12,7 @@ use crate::plot::figure::{Ends, Figure, Ink, Stroke, Text};
 use crate::plot::plan::Plan;
 use crate::plot::scale::Scale;
 use crate::plot::shape::{Look, Shape};
+use crate::quantity::MODULES;
 
 const WIDTH: f64 = 480.0;
 const HEIGHT: f64 = 360.0;
@@ -84,6 +86,52 @@ fn value(candidate: &Candidate, merit: fn(&Precision) -> f64) -> Option<Value> {
 
 fn side(label: &str) -> Side {
     Side { label: label.to_owned(), scale: Scale::Linear, also: vec![] }
+}
+
+/// Worst location errors over the number of modules: half-bridges and gauges, with all modules read and without one;
+/// and how three modules' error would grow if more of them only shared the load. An error as large as the plate is
+/// left out: there nothing is located.
+pub fn module_counts(counts: &ModuleCounts) -> Figure {
+    let worst: fn(&Ringed) -> f64 = |row| row.precision.worst_mm;
+    let one_lost: fn(&Ringed) -> f64 = |row| row.worst_without_one_mm;
+    let curve = |name: &str, wiring: Wiring, error_mm: fn(&Ringed) -> f64| {
+        let rows = counts.rows.iter().filter(|row| row.wiring == wiring);
+        let values = rows.map(|row| Value::new(row.modules as f64, error_mm(row)));
+        let values = values.filter(|value| value.y < counts.plate_radius_mm).collect();
+        Series { name: name.to_owned(), values, look: SeriesLook::LineAndPoints }
+    };
+    let [_, _, fz] = counts.press_n;
+    let chart = Chart {
+        title: format!("Location error at best, press of {fz} N, noise {} µV", counts.noise_uv),
+        width: WIDTH,
+        height: HEIGHT,
+        x: side("Modules at equal angles"),
+        y: Side { also: vec![0.0], ..side("Worst error over the plate, mm") },
+        series: vec![
+            curve("half-bridges", Wiring::Bridges, worst),
+            curve("half-bridges, one module not read", Wiring::Bridges, one_lost),
+            curve("every gauge alone", Wiring::Gauges, worst),
+            curve("every gauge alone, one module not read", Wiring::Gauges, one_lost),
+            sharing(counts),
+        ],
+        guides: vec![],
+    };
+    chart.figure()
+}
+
+/// The three modules' half-bridges, if more of them only shared the load.
+fn sharing(counts: &ModuleCounts) -> Series {
+    let three = counts.rows.iter().find(|row| row.modules == MODULES && row.wiring == Wiring::Bridges);
+    let most = counts.rows.iter().map(|row| row.modules).max().unwrap_or(MODULES);
+    let shared = |of_three: &Ringed, modules: usize| {
+        Value::new(modules as f64, of_three.precision.worst_mm * load_sharing(modules))
+    };
+    let values = three.map(|row| (MODULES..=most).map(|modules| shared(row, modules)).collect());
+    Series {
+        name: "if n modules only shared the load: √(n/3)".to_owned(),
+        values: values.unwrap_or_default(),
+        look: SeriesLook::Dashes,
+    }
 }
 
 /// The plate with its modules, their isolines, and the circles of the same mean radius that the paper's rule needs.

@@ -1,13 +1,13 @@
 //! How precisely a contact can be located at best: the Cramér–Rao bound.
 
+use std::borrow::Borrow;
 use std::f64::consts::TAU;
 
 use crate::pad::influence::Gains;
-use crate::quantity::CHANNELS;
 
 /// What is left of a vector after projection, relative to it, below which it counts as dependent on the others:
 /// well above rounding, far below any difference that noise would leave.
-const DEPENDENT: f64 = 1e-10;
+pub(super) const DEPENDENT: f64 = 1e-10;
 
 /// The contacts over which a bound is taken: rings this far apart, with this many places on each.
 const RING_STEP_MM: f64 = 0.5;
@@ -36,9 +36,6 @@ pub struct Precision {
     pub largest_uv: f64,
 }
 
-/// Per channel, one number.
-type Channels = [f64; CHANNELS];
-
 /// The smallest error with which an unbiased decoder can locate the press, if force and place are unknown.
 ///
 /// The channels read s = G(x, y) F plus noise σ. With J = [∂G/∂x F, ∂G/∂y F, G] the covariance of x, y, Fx, Fy, Fz
@@ -51,83 +48,110 @@ type Channels = [f64; CHANNELS];
 ///
 /// Source: C. R. Rao, "Information and the accuracy attainable in the estimation of statistical parameters", 1945;
 /// with white noise on a known response, the Fisher information is JᵀJ/σ².
-pub fn location_error_mm(gains: &Gains, press: &Press) -> f64 {
-    let mut basis: Vec<Channels> = Vec::with_capacity(4);
+pub fn location_error_mm<R: AsRef<[[f64; 3]]>>(gains: &Gains<R>, press: &Press) -> f64 {
+    let mut basis: Vec<Vec<f64>> = Vec::with_capacity(4);
     for axis in 0..3 {
-        let column: Channels = std::array::from_fn(|channel| gains.value[channel][axis]);
+        let column = gains.value.as_ref().iter().map(|row| row[axis]).collect();
         basis.extend(unit(independent_part(column, &basis)));
     }
     // What a small move changes that no force could. The block of the inverse is the inverse of these vectors' Gram
     // matrix [[a, b], [b, c]]; its trace is (a + c) / (ac − b²), and ac − b² = a · |part of y independent of x|².
-    let along_x = independent_part(under(&gains.dx, press.force_n), &basis);
-    let along_y = independent_part(under(&gains.dy, press.force_n), &basis);
+    let along_x = independent_part(under(gains.dx.as_ref(), press.force_n), &basis);
+    let along_y = independent_part(under(gains.dy.as_ref(), press.force_n), &basis);
+    let (a, c) = (squared(&along_x), squared(&along_y));
     let Some(direction) = unit(along_x) else { return f64::INFINITY };
     let across = independent_part(along_y, &[direction]);
-    let (a, c) = (squared(&along_x), squared(&along_y));
     let variance = (a + c) / (a * squared(&across));
     if variance.is_finite() { press.noise_uv * variance.sqrt() } else { f64::INFINITY }
 }
 
 /// Signals under a force; with slopes, per millimetre.
-fn under(gains: &[[f64; 3]; CHANNELS], force_n: [f64; 3]) -> Channels {
-    gains.map(|row| row.iter().zip(force_n).map(|(gain, force_n)| gain * force_n).sum())
+pub(super) fn under(gains: &[[f64; 3]], force_n: [f64; 3]) -> Vec<f64> {
+    gains.iter().map(|row| row.iter().zip(force_n).map(|(gain, force_n)| gain * force_n).sum()).collect()
 }
 
 /// The component of a vector that is orthogonal to an orthonormal basis (Gram and Schmidt); zero if that is only rounding.
 ///
 /// The projection is taken out twice, which leaves the rest orthogonal to rounding however small it is (W. Kahan's
 /// "twice is enough", in B. N. Parlett, "The Symmetric Eigenvalue Problem", section 6.9).
-fn independent_part(vector: Channels, basis: &[Channels]) -> Channels {
-    let mut rest = vector;
+fn independent_part(mut vector: Vec<f64>, basis: &[Vec<f64>]) -> Vec<f64> {
+    let whole = squared(&vector);
     for direction in basis.iter().chain(basis) {
-        let along: f64 = rest.iter().zip(direction).map(|(r, d)| r * d).sum();
-        rest = std::array::from_fn(|channel| rest[channel] - along * direction[channel]);
+        let along: f64 = vector.iter().zip(direction).map(|(r, d)| r * d).sum();
+        vector.iter_mut().zip(direction).for_each(|(r, d)| *r -= along * d);
     }
-    let depends = squared(&rest) <= DEPENDENT * DEPENDENT * squared(&vector);
-    if depends { [0.0; CHANNELS] } else { rest }
+    if squared(&vector) <= DEPENDENT * DEPENDENT * whole {
+        vector.fill(0.0);
+    }
+    vector
 }
 
 /// The vector's direction; none for the zero vector.
-fn unit(vector: Channels) -> Option<Channels> {
+fn unit(mut vector: Vec<f64>) -> Option<Vec<f64>> {
     let length = squared(&vector).sqrt();
-    (length > 0.0).then(|| vector.map(|component| component / length))
+    vector.iter_mut().for_each(|component| *component /= length);
+    (length > 0.0).then_some(vector)
 }
 
-fn squared(vector: &Channels) -> f64 {
+fn squared(vector: &[f64]) -> f64 {
     vector.iter().map(|component| component * component).sum()
 }
 
-/// The bound over contacts within `contact_radius_mm` of the pad's axis.
+/// A place of the plate that stands for an area around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Where it is.
+    pub at_mm: [f64; 2],
+    /// Its share of the area, relative to the others'.
+    pub weight: f64,
+}
+
+/// The contacts within `contact_radius_mm` of the pad's axis over which a bound is taken.
 ///
 /// The places stand on rings half a millimetre apart, 3° apart on each. On the nominal pad no place between them is
 /// worse by 1 %.
-pub fn over_plate(field: impl Fn(f64, f64) -> Gains, press: &Press, contact_radius_mm: f64) -> Precision {
+pub fn places(contact_radius_mm: f64) -> impl Iterator<Item = Place> {
     let rings = (contact_radius_mm / RING_STEP_MM).ceil().max(1.0) as usize;
-    let mut found = Precision { worst_mm: 0.0, worst_at_mm: [0.0; 2], rms_mm: 0.0, largest_uv: 0.0 };
-    let (mut weighted, mut weights) = (0.0, 0.0);
-    for ring in 0..=rings {
+    (0..=rings).flat_map(move |ring| {
         let radius = contact_radius_mm * ring as f64 / rings as f64;
         // The trapezoidal rule along the radius: a ring's area is as its radius, the last one has half of it.
         let weight = if ring == rings { 0.5 * radius } else { radius };
-        for place in 0..PLACES {
+        (0..PLACES).map(move |place| {
             let (sin, cos) = (place as f64 / PLACES as f64 * TAU).sin_cos();
-            let error_mm = found.take([radius * cos, radius * sin], &field, press);
+            Place { at_mm: [radius * cos, radius * sin], weight }
+        })
+    })
+}
+
+/// The bound over contacts within `contact_radius_mm` of the pad's axis.
+pub fn over_plate(field: impl Fn(f64, f64) -> Gains, press: &Press, contact_radius_mm: f64) -> Precision {
+    let read = |place: Place| (place, field(place.at_mm[0], place.at_mm[1]));
+    Precision::over(places(contact_radius_mm).map(read), press)
+}
+
+impl Precision {
+    /// The bound over [`places`] whose gains are known.
+    pub fn over<R: AsRef<[[f64; 3]]>>(
+        contacts: impl Iterator<Item = (Place, impl Borrow<Gains<R>>)>,
+        press: &Press,
+    ) -> Self {
+        let mut found = Self { worst_mm: 0.0, worst_at_mm: [0.0; 2], rms_mm: 0.0, largest_uv: 0.0 };
+        let (mut weighted, mut weights) = (0.0, 0.0);
+        for (Place { at_mm, weight }, gains) in contacts {
+            let error_mm = found.take(at_mm, gains.borrow(), press);
             weights += weight;
             // The centre has no area; an infinite error there must not make the sum undefined.
             weighted += if weight > 0.0 { weight * error_mm * error_mm } else { 0.0 };
         }
+        found.rms_mm = (weighted / weights).sqrt();
+        found
     }
-    found.rms_mm = (weighted / weights).sqrt();
-    found
-}
 
-impl Precision {
     /// Takes one place into account; returns the error there.
-    fn take(&mut self, at_mm: [f64; 2], field: impl Fn(f64, f64) -> Gains, press: &Press) -> f64 {
-        let gains = field(at_mm[0], at_mm[1]);
-        let signals = under(&gains.value, press.force_n);
+    fn take<R: AsRef<[[f64; 3]]>>(&mut self, at_mm: [f64; 2], gains: &Gains<R>, press: &Press) -> f64 {
+        let signals = under(gains.value.as_ref(), press.force_n);
         self.largest_uv = signals.iter().fold(self.largest_uv, |largest, signal| largest.max(signal.abs()));
-        let error_mm = location_error_mm(&gains, press);
+        let error_mm = location_error_mm(gains, press);
         if error_mm > self.worst_mm {
             (self.worst_mm, self.worst_at_mm) = (error_mm, at_mm);
         }
@@ -278,7 +302,7 @@ pub(super) mod tests {
     }
 
     /// Gauss and Newton's least squares from the truth on, ten steps.
-    fn fitted(signals: Channels, truth: [f64; 5]) -> [f64; 5] {
+    fn fitted(signals: &[f64], truth: [f64; 5]) -> [f64; 5] {
         let mut state = truth;
         for _ in 0..10 {
             let gains = bumps(state[0], state[1]);
@@ -308,8 +332,9 @@ pub(super) mod tests {
         };
         let mut sum = 0.0;
         for _ in 0..TRIALS {
-            let signals = clean.map(|s| s + 6.0 * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0));
-            let found = fitted(signals, truth);
+            let noise = |s: &f64| s + 6.0 * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0);
+            let signals: Vec<f64> = clean.iter().map(noise).collect();
+            let found = fitted(&signals, truth);
             sum += (found[0] - truth[0]).powi(2) + (found[1] - truth[1]).powi(2);
         }
         let (measured, bound) = ((sum / TRIALS as f64).sqrt(), location_error_mm(&gains, &press));

@@ -20,6 +20,24 @@ pub struct Work {
     /// Area per channel as the table prints it. For two rows it is not the quotient of the table's own columns: per
     /// measured line for Piacenza, the whole area for Lee. Nothing for a pad that the table does not have.
     pub printed_cm2: Option<f64>,
+    /// What it reports of its accuracy.
+    pub accuracy: Accuracy,
+}
+
+/// What a work says of how near its contacts come. Areas, loads and statistics differ from row to row: none of it
+/// ranks the works.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Accuracy {
+    /// Error of the place; nothing where no number is given.
+    pub location_mm: Option<f64>,
+    /// What that error is.
+    pub location_is: &'static str,
+    /// Mean absolute error of the force; nothing where none is given.
+    pub force_n: Option<f64>,
+    /// Of what, and what else it says.
+    pub of: &'static str,
+    /// The work itself, if the numbers were read there; else they are as the paper's Table 7 cites them.
+    pub read_in: Option<&'static str>,
 }
 
 impl Work {
@@ -35,22 +53,77 @@ impl Work {
     reason = "3.14 is printed so; that it is near π follows from 60 mm and nine channels"
 )]
 pub const WORKS: [Work; 5] = [
-    work("the paper", "sparse strain, learned decoder", 9, 28.3, 3.14),
-    work("Kong et al.", "sparse taxels, deep network", 23, 47.52, 2.066),
-    work("Piacenza et al.", "conductive elastomer, electrodes", 6, 1.6, 0.024),
-    work("Lee et al.", "strain gauges, microstructure", 8, 0.027, 0.027),
-    work("Mêda et al.", "magnetic elastomer array, network", 16, 6.5, 0.41),
+    Work {
+        name: "the paper",
+        principle: "sparse strain, learned decoder",
+        channels: 9,
+        area_cm2: 28.3,
+        printed_cm2: Some(3.14),
+        accuracy: Accuracy {
+            location_mm: Some(1.97),
+            location_is: "mean absolute",
+            force_n: Some(0.17),
+            of: "648 contacts of 1, 3 and 5 N",
+            read_in: None,
+        },
+    },
+    Work {
+        name: "Kong et al.",
+        principle: "sparse taxels, deep network",
+        channels: 23,
+        area_cm2: 47.52,
+        printed_cm2: Some(2.066),
+        accuracy: Accuracy {
+            location_mm: Some(0.73),
+            location_is: "mean",
+            force_n: None,
+            of: "a pressure map, no force vector",
+            read_in: None,
+        },
+    },
+    Work {
+        name: "Piacenza et al.",
+        principle: "conductive elastomer, electrodes",
+        channels: 6,
+        area_cm2: 1.6,
+        printed_cm2: Some(0.024),
+        accuracy: Accuracy {
+            location_mm: None,
+            location_is: "median",
+            force_n: None,
+            of: "indentation depth to 0.74 mm",
+            read_in: None,
+        },
+    },
+    Work {
+        name: "Lee et al.",
+        principle: "strain gauges, microstructure",
+        channels: 8,
+        area_cm2: 0.027,
+        printed_cm2: Some(0.027),
+        accuracy: Accuracy {
+            location_mm: None,
+            location_is: "",
+            force_n: None,
+            of: "three axes of one unit, no figure",
+            read_in: None,
+        },
+    },
+    Work {
+        name: "Mêda et al.",
+        principle: "magnetic elastomer array, network",
+        channels: 16,
+        area_cm2: 6.5,
+        printed_cm2: Some(0.41),
+        accuracy: Accuracy {
+            location_mm: Some(0.26),
+            location_is: "mean absolute",
+            force_n: Some(0.17),
+            of: "25.5 mm square; force 0.07 to 0.17 N",
+            read_in: Some("Sensors 25 (2025) 3724"),
+        },
+    },
 ];
-
-const fn work(
-    name: &'static str,
-    principle: &'static str,
-    channels: u32,
-    area_cm2: f64,
-    printed_cm2: f64,
-) -> Work {
-    Work { name, principle, channels, area_cm2, printed_cm2: Some(printed_cm2) }
-}
 
 /// Area of a round plate for each of the nine channels, in square centimetres.
 ///
@@ -109,14 +182,22 @@ pub struct AreaRow {
     pub area_per_channel_cm2: f64,
 }
 
-/// The paper's Table 7, with this pad before it.
-pub fn area_rows(plate_diameter_mm: f64) -> Vec<AreaRow> {
+/// The paper's Table 7, with this pad before it. `rms_mm` is the pad's root mean square location error at best, if it
+/// was simulated.
+pub fn area_rows(plate_diameter_mm: f64, rms_mm: Option<f64>) -> Vec<AreaRow> {
     let own = Work {
         name: "this pad",
         principle: "sparse strain",
         channels: CHANNELS as u32,
         area_cm2: plate_area_cm2(plate_diameter_mm),
         printed_cm2: None,
+        accuracy: Accuracy {
+            location_mm: rms_mm,
+            location_is: if rms_mm.is_some() { "rms, at best" } else { "" },
+            force_n: None,
+            of: "simulated; decoded: docs/ablation.md",
+            read_in: None,
+        },
     };
     let own = AreaRow { work: own, area_per_channel_cm2: area_per_channel_cm2(plate_diameter_mm) };
     let published = WORKS.map(|work| AreaRow { area_per_channel_cm2: work.area_per_channel_cm2(), work });
@@ -136,6 +217,21 @@ mod tests {
         assert_eq!(format!("{:.2}", area_per_channel_cm2(60.0)), "3.14");
         assert_eq!(paper.printed_cm2.map(|printed| printed.to_string()).as_deref(), Some("3.14"));
         assert_eq!(paper.channels as usize, CHANNELS);
+    }
+
+    #[test]
+    fn a_pad_that_was_not_simulated_has_no_accuracy() {
+        let own = |rms_mm| area_rows(60.0, rms_mm)[0].work.accuracy;
+        assert_eq!((own(None).location_mm, own(None).location_is), (None, ""));
+        assert_eq!((own(Some(0.16)).location_mm, own(Some(0.16)).location_is), (Some(0.16), "rms, at best"));
+    }
+
+    #[test]
+    fn a_number_says_what_it_is() {
+        for Work { name, accuracy, .. } in WORKS {
+            assert!(!accuracy.of.is_empty(), "{name}");
+            assert!(accuracy.location_mm.is_none() || !accuracy.location_is.is_empty(), "{name}");
+        }
     }
 
     #[test]

@@ -19,7 +19,7 @@ use crate::pad::device::Device;
 use crate::quantity::MODULES;
 
 /// A newton, straight down. Another force in this direction only scales the errors.
-const PRESS_N: [f64; 3] = [0.0, 0.0, 1.0];
+pub(super) const PRESS_N: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// Grid lines of the splines on the plate's radius. The bounds of the nominal pad differ by less than a hundredth of a
 /// percent from those that the polynomials themselves give, in a fifth of the time.

@@ -64,6 +64,13 @@ pub enum StudyError {
         /// The threshold.
         threshold: f64,
     },
+    /// So many modules would lie over each other.
+    Crowded {
+        /// The number.
+        modules: usize,
+        /// The most that have room.
+        room: usize,
+    },
     /// A region's radius is no length that the rule takes.
     Radius(RadiusError),
     /// The particle swarm failed: what it says.
@@ -79,6 +86,11 @@ impl fmt::Display for StudyError {
                 f,
                 "at a threshold of {threshold} an isoline is not on the plate: choose another --threshold"
             ),
+            Self::Crowded { modules, room } => write!(
+                f,
+                "{modules} modules at the device's radius would lie over each other: ask for {room} at most, or give a \
+                 device whose modules stand farther out"
+            ),
             Self::Radius(error) => error.fmt(f),
             Self::Swarm(error) => write!(f, "particle swarm: {error}"),
         }
@@ -86,6 +98,13 @@ impl fmt::Display for StudyError {
 }
 
 impl std::error::Error for StudyError {}
+
+#[cfg(feature = "simulator")]
+impl From<SolveError> for StudyError {
+    fn from(error: SolveError) -> Self {
+        Self::Unsolved(error)
+    }
+}
 
 impl SpacingAnswers {
     /// Solves the layout problem for these radii; `seed` draws the swarm.

@@ -2,7 +2,7 @@
 
 use std::array;
 
-use super::Device;
+use super::{Device, Module};
 use crate::quantity::MODULES;
 
 /// A module's place and axes in the pad frame, seen from above. The axes are left-handed: use these vectors,
@@ -19,27 +19,49 @@ pub struct Pose {
 
 impl Device {
     /// Where each module stands, displaced and turned.
-    ///
-    /// A module is displaced along the axes that it would have if it were not turned. Tilt changes neither
-    /// place nor axes.
     pub fn poses(&self) -> [Pose; MODULES] {
-        array::from_fn(|index| {
-            let Self { sites, modules, .. } = self;
-            let module = &modules[index];
-            let (sin, cos) = sites.angles_deg[index].to_radians().sin_cos();
-            let (out, along) = (sites.centre_radius_mm + module.radial_mm, module.tangential_mm);
-            let (turned_sin, turned_cos) =
-                (sites.angles_deg[index] + module.rotation_deg).to_radians().sin_cos();
-            Pose {
-                centre_mm: [out * cos - along * sin, out * sin + along * cos],
-                along_x: [-turned_sin, turned_cos],
-                along_y: [turned_cos, turned_sin],
-            }
-        })
+        let Self { sites, modules, .. } = self;
+        array::from_fn(|index| Pose::of(&modules[index], sites.angles_deg[index], sites.centre_radius_mm))
+    }
+
+    /// Where another number of modules stand at equal angles, from the first one's on and as far from the axis; they are
+    /// displaced and turned as the device's are in turn.
+    pub fn ring(&self, count: usize) -> Vec<Pose> {
+        let Self { sites, modules, .. } = self;
+        let of = |index: usize| {
+            let angle_deg = sites.angles_deg[0] + 360.0 * index as f64 / count as f64;
+            Pose::of(&modules[index % MODULES], angle_deg, sites.centre_radius_mm)
+        };
+        (0..count).map(of).collect()
+    }
+
+    /// Whether so many modules have room in such a ring: no film lies over another one.
+    pub fn has_room_for(&self, count: usize) -> bool {
+        let half_mm = [self.stack.film_length_x_mm, self.stack.film_width_y_mm].map(|side| 0.5 * side);
+        let poses = self.ring(count);
+        let is_free = |(later, pose): (usize, &Pose)| {
+            poses.iter().take(later).all(|earlier| !pose.overlaps(earlier, half_mm))
+        };
+        poses.iter().enumerate().all(is_free)
     }
 }
 
 impl Pose {
+    /// Where a module stands whose site is at this angle, counter-clockwise from +x, and this far from the pad's axis.
+    ///
+    /// A module is displaced along the axes that it would have if it were not turned. Tilt changes neither place nor
+    /// axes.
+    pub fn of(module: &Module, angle_deg: f64, centre_radius_mm: f64) -> Self {
+        let (sin, cos) = angle_deg.to_radians().sin_cos();
+        let (out, along) = (centre_radius_mm + module.radial_mm, module.tangential_mm);
+        let (turned_sin, turned_cos) = (angle_deg + module.rotation_deg).to_radians().sin_cos();
+        Self {
+            centre_mm: [out * cos - along * sin, out * sin + along * cos],
+            along_x: [-turned_sin, turned_cos],
+            along_y: [turned_cos, turned_sin],
+        }
+    }
+
     /// The corners of a rectangle around the module's centre, given its half size along the module's axes.
     pub fn corners_mm(&self, half_mm: [f64; 2]) -> [[f64; 2]; 4] {
         [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].map(|[x, y]| {

@@ -53,7 +53,7 @@ type Gradients = [[[[f64; NODES]; NODES]; 3]; 3];
 
 /// Lamé's constants λ and μ of a material.
 pub fn lame_mpa(material: Material) -> (f64, f64) {
-    let Material { e_mpa, nu } = material;
+    let Material { e_mpa, nu, .. } = material;
     (e_mpa * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e_mpa / (2.0 * (1.0 + nu)))
 }
 
@@ -179,7 +179,7 @@ pub fn forces(stiffness: &Stiffness, displacement: &[f64; DOFS]) -> [f64; DOFS] 
 mod tests {
     use super::*;
 
-    const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3 };
+    const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3, density_kg_m3: 7_850.0 };
     const SIZE: [f64; 3] = [2.0, 3.0, 0.5];
 
     fn place(node: usize) -> [f64; 3] {

@@ -53,7 +53,7 @@ pub struct Rigidity {
 impl Rigidity {
     /// Of a plate of the given material, thickness and radius.
     pub fn of(material: Material, thickness_mm: f64, radius_mm: f64) -> Self {
-        let Material { e_mpa, nu } = material;
+        let Material { e_mpa, nu, .. } = material;
         let stretching = e_mpa * thickness_mm / (1.0 - nu * nu);
         Self {
             stretching,
@@ -354,7 +354,7 @@ mod tests {
     use crate::numeric::zernike::{Polynomial, jets};
 
     const DEGREE: usize = 40;
-    const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3 };
+    const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3, density_kg_m3: 7_850.0 };
     const RADIUS_MM: f64 = 30.0;
     /// So thin that shear does not count.
     const THIN_MM: f64 = 0.2;

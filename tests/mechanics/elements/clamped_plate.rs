@@ -10,7 +10,7 @@ use tactpad::pad::device::Material;
 
 use super::body::{Body, Vector};
 
-const MATERIAL: Material = Material { e_mpa: 5000.0, nu: 0.3 };
+const MATERIAL: Material = Material { e_mpa: 5000.0, nu: 0.3, density_kg_m3: 1_420.0 };
 
 /// Shorter side and thickness: so thin that shear adds less than a tenth of a percent or two.
 const SIDE_MM: f64 = 10.0;
@@ -35,7 +35,7 @@ fn solve(length_mm: f64) -> Body {
 
 /// Deflection at the centre in units of q a⁴/D, and moments about both axes there in units of q a².
 fn at_centre(body: &Body) -> [f64; 3] {
-    let Material { e_mpa, nu } = MATERIAL;
+    let Material { e_mpa, nu, .. } = MATERIAL;
     let rigidity = e_mpa * THICKNESS_MM.powi(3) / (12.0 * (1.0 - nu * nu));
     let brick = body.mesh.bricks.iter().find(|brick| {
         let corner = body.mesh.place_mm(brick.nodes[0]);

@@ -15,3 +15,4 @@ pub mod sensitivity;
 pub mod simulator;
 pub mod superelement;
 pub mod system;
+pub mod vibration;

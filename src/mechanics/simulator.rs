@@ -13,8 +13,9 @@ use super::deformed::ModeShapes;
 use super::mesh::{Fineness, Layer};
 use super::pad::{Pad, add};
 use super::sensitivity::sensitivities;
-use super::superelement::{LayerDerivatives, Solution, Superelement};
+use super::superelement::{FootMass, LayerDerivatives, Solution, Superelement};
 use super::system::SolveError;
+use super::vibration::{NaturalMotion, natural_motions};
 
 /// Highest degree of the plate's polynomials: they resolve about twice the plate's thickness,
 /// and more of them change no channel by more than 0.4 %.
@@ -56,6 +57,7 @@ struct Solved {
     superelement: Arc<Superelement>,
     layers: Option<Arc<Vec<LayerDerivatives>>>,
     shapes: Option<Arc<ModeShapes>>,
+    mass: Option<Arc<FootMass>>,
 }
 
 /// Makes pads of devices, and remembers the modules it has solved.
@@ -148,6 +150,7 @@ impl Simulator {
             superelement: Arc::clone(&superelement),
             layers: None,
             shapes: None,
+            mass: None,
         });
         Ok(superelement)
     }
@@ -161,8 +164,10 @@ impl Simulator {
         let solution = Solution::of(device, &device.modules[module], self.fineness)?;
         let superelement = Arc::new(solution.superelement());
         let layers = Arc::new(solution.derivatives()?);
-        let shapes = self.known(&blueprint).and_then(|solved| solved.shapes.clone());
-        self.keep(Solved { blueprint, superelement, layers: Some(Arc::clone(&layers)), shapes });
+        let known = self.known(&blueprint);
+        let shapes = known.and_then(|solved| solved.shapes.clone());
+        let mass = known.and_then(|solved| solved.mass.clone());
+        self.keep(Solved { blueprint, superelement, layers: Some(Arc::clone(&layers)), shapes, mass });
         Ok(layers)
     }
 
@@ -175,9 +180,40 @@ impl Simulator {
         let solution = Solution::of(device, &device.modules[module], self.fineness)?;
         let superelement = Arc::new(solution.superelement());
         let shapes = Arc::new(ModeShapes::of(solution));
-        let layers = self.known(&blueprint).and_then(|solved| solved.layers.clone());
-        self.keep(Solved { blueprint, superelement, layers, shapes: Some(Arc::clone(&shapes)) });
+        let known = self.known(&blueprint);
+        let layers = known.and_then(|solved| solved.layers.clone());
+        let mass = known.and_then(|solved| solved.mass.clone());
+        self.keep(Solved { blueprint, superelement, layers, shapes: Some(Arc::clone(&shapes)), mass });
         Ok(shapes)
+    }
+
+    /// The slowest natural motions of the device's pad, from the slowest on.
+    ///
+    /// # Errors
+    /// As for [`Self::pad`], and frequencies that do not settle.
+    pub fn natural_motions(&mut self, device: &Device) -> Result<Vec<NaturalMotion>, SolveError> {
+        let mut masses = Vec::with_capacity(MODULES);
+        for module in 0..MODULES {
+            masses.push(self.mass(device, module)?);
+        }
+        let pad = self.pad(device)?;
+        natural_motions(&pad, [0, 1, 2].map(|module: usize| &*masses[module]))
+    }
+
+    /// A module's mass for the movements of its foot.
+    fn mass(&mut self, device: &Device, module: usize) -> Result<Arc<FootMass>, SolveError> {
+        let blueprint = Blueprint::of(device, module);
+        if let Some(mass) = self.known(&blueprint).and_then(|solved| solved.mass.as_ref()) {
+            return Ok(Arc::clone(mass));
+        }
+        let solution = Solution::of(device, &device.modules[module], self.fineness)?;
+        let superelement = Arc::new(solution.superelement());
+        let mass = Arc::new(solution.mass());
+        let known = self.known(&blueprint);
+        let layers = known.and_then(|solved| solved.layers.clone());
+        let shapes = known.and_then(|solved| solved.shapes.clone());
+        self.keep(Solved { blueprint, superelement, layers, shapes, mass: Some(Arc::clone(&mass)) });
+        Ok(mass)
     }
 
     /// Puts a module in the place of what was known of it.

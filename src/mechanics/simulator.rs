@@ -24,7 +24,7 @@ pub const PLATE_DEGREE: usize = 56;
 
 /// Grid lines of the signals' splines on the plate's radius. A millimetre on the nominal plate: they differ from the
 /// polynomials by less than the mesh does from the truth.
-const SIGNALS_PER_RADIUS: f64 = 30.0;
+pub const SIGNALS_PER_RADIUS: f64 = 30.0;
 
 /// The same for the bridges' sums, which count for a thousandth of a signal.
 const SUMS_PER_RADIUS: f64 = 12.0;
@@ -192,15 +192,18 @@ impl Simulator {
     /// # Errors
     /// As for [`Self::pad`], and frequencies that do not settle.
     pub fn natural_motions(&mut self, device: &Device) -> Result<Vec<NaturalMotion>, SolveError> {
-        let mut masses = Vec::with_capacity(MODULES);
-        for module in 0..MODULES {
-            masses.push(self.mass(device, module)?);
-        }
-        let pad = self.pad(device)?;
-        natural_motions(&pad, [0, 1, 2].map(|module: usize| &*masses[module]))
+        let masses = self.masses(device)?;
+        natural_motions(&self.pad(device)?, &masses)
     }
 
-    /// A module's mass for the movements of its foot.
+    /// The modules' masses for the movements of their feet.
+    ///
+    /// # Errors
+    /// As for [`Self::pad`].
+    pub fn masses(&mut self, device: &Device) -> Result<[Arc<FootMass>; MODULES], SolveError> {
+        Ok([self.mass(device, 0)?, self.mass(device, 1)?, self.mass(device, 2)?])
+    }
+
     fn mass(&mut self, device: &Device, module: usize) -> Result<Arc<FootMass>, SolveError> {
         let blueprint = Blueprint::of(device, module);
         if let Some(mass) = self.known(&blueprint).and_then(|solved| solved.mass.as_ref()) {

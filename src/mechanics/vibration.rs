@@ -11,6 +11,7 @@
 //! (1972) 1471; the theory in L. Rayleigh, The Theory of Sound (1877), and W. Ritz (1909).
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use faer::{Mat, Side};
 
@@ -18,7 +19,7 @@ use super::pad::Pad;
 use super::plate::{FIELDS, masses_t};
 use super::superelement::{FootMass, MODES};
 use super::system::SolveError;
-use crate::numeric::zernike::{Polynomial, count};
+use crate::numeric::zernike::{Polynomial, count, jets};
 use crate::quantity::{CHANNELS, MODULES};
 
 /// The space begins with all motions of the plate up to this degree: rigid ones, and its slowest ways to bend and stretch.
@@ -108,6 +109,34 @@ fn dense(stiffness: Mat<f64>, mass: Mat<f64>) -> Result<(Vec<f64>, Mat<f64>), So
     }
 }
 
+/// How the plate moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Along itself.
+    Slides,
+    /// Up and down.
+    Bounces,
+    /// About an axis in its plane.
+    Tilts,
+    /// About its own axis.
+    Twists,
+    /// None of these: it bends.
+    Bends,
+}
+
+impl Kind {
+    /// A word for it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Slides => "slides",
+            Self::Bounces => "bounces",
+            Self::Tilts => "tilts",
+            Self::Twists => "twists",
+            Self::Bends => "bends",
+        }
+    }
+}
+
 /// One natural motion of a pad.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NaturalMotion {
@@ -124,12 +153,24 @@ pub struct NaturalMotion {
 }
 
 impl NaturalMotion {
+    /// What it is, by the rigid motion that has more than half of its mass in it.
+    pub fn kind(&self) -> Kind {
+        let [x, y, z, about_x, about_y, about_z] = self.rigid_shares;
+        let kinds = [
+            (Kind::Slides, x + y),
+            (Kind::Bounces, z),
+            (Kind::Tilts, about_x + about_y),
+            (Kind::Twists, about_z),
+        ];
+        kinds.into_iter().find(|(_, share)| *share > 0.5).map_or(Kind::Bends, |(kind, _)| kind)
+    }
+
     /// Displacement of the plate's middle plane along z at a place in plate radii, mm.
     pub fn height_mm(&self, place: [f64; 2]) -> f64 {
         let size = self.shape[2].coefficients.len();
         // count(n) = (n + 1)(n + 2)/2 polynomials.
         let degree = (0..).find(|degree| count(*degree) >= size).unwrap_or(0);
-        self.shape[2].value(&crate::numeric::zernike::jets(degree, place))
+        self.shape[2].value(&jets(degree, place))
     }
 
     /// Its part in what the channels read at rest under 1 N that presses at a place (in plate radii), µV/N: s (aᵀf)/ω².
@@ -144,7 +185,10 @@ impl NaturalMotion {
 ///
 /// # Errors
 /// As for [`Natural::slowest`].
-pub fn natural_motions(pad: &Pad, masses: [&FootMass; MODULES]) -> Result<Vec<NaturalMotion>, SolveError> {
+pub fn natural_motions(
+    pad: &Pad,
+    masses: &[Arc<FootMass>; MODULES],
+) -> Result<Vec<NaturalMotion>, SolveError> {
     let mass = Mass::of(pad, masses);
     let start = start(pad.plate.unknowns());
     let natural =
@@ -179,7 +223,7 @@ struct Mass<'p> {
 }
 
 impl<'p> Mass<'p> {
-    fn of(pad: &'p Pad, masses: [&FootMass; MODULES]) -> Self {
+    fn of(pad: &'p Pad, masses: &[Arc<FootMass>; MODULES]) -> Self {
         let device = &pad.device;
         let plate_t = masses_t(
             pad.degree(),

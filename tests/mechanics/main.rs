@@ -18,6 +18,8 @@ mod reference;
 #[cfg(feature = "simulator")]
 mod standard;
 mod statics;
+#[cfg(feature = "simulator")]
+#[path = "../support/mod.rs"]
 mod support;
 #[cfg(all(test, feature = "simulator"))]
 mod vibration;

@@ -1,6 +1,7 @@
 //! `tactpad layout`: where the three modules should stand, by the paper's rule and by the pad's mechanics.
 
 mod report;
+mod sizes;
 mod tables;
 
 use std::path::PathBuf;
@@ -43,10 +44,17 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "UV", default_value_t = NOISE_RMS_UV, value_parser = parse_noise)]
     #[arg(allow_hyphen_values = true)]
     noise_uv: f64,
+    /// How large and how thick the plate should be, instead: pads of 30 to 150 mm and 0.5 to 3 mm with these modules.
+    #[arg(long, conflicts_with_all = ["radii", "threshold", "seed"])]
+    sizes: bool,
+    /// Write the device file of each of these pads into this folder, for simulate --device.
+    #[arg(long, value_name = "DIR", requires = "sizes")]
+    devices: Option<PathBuf>,
     /// The swarm's seed; the same seed gives the same answer.
     #[arg(long, default_value_t = 1, allow_hyphen_values = true)]
     seed: u64,
-    /// Write the figures layout-scan and layout-regions into this folder, as SVG and PNG.
+    /// Write the figures layout-scan and layout-regions into this folder, as SVG and PNG; with --sizes, size-sensitivity,
+    /// size-error and size-frequency.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Print one JSON document.
@@ -60,6 +68,9 @@ const NOISE_MAX_UV: f64 = 1e6;
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let device = arguments.pad.read()?;
     let folder = arguments.figures.as_deref().map(Folder::of).transpose()?;
+    if arguments.sizes {
+        return sizes::run(arguments, &device, folder.as_ref());
+    }
     let (spacing, simulated) = match &arguments.radii {
         Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),
         None => simulated(arguments, &device).map(|(spacing, pad)| (spacing, Some(pad)))?,

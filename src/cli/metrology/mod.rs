@@ -20,9 +20,17 @@ use super::tables::{read, write};
 use super::written::{is_stdout, print_json, say};
 use tactpad::lab::metrology::bench::Bench;
 use tactpad::lab::metrology::decoders::{Decoders, by};
+use tactpad::lab::metrology::dynamics::PadDynamics;
 use tactpad::lab::metrology::figures::{Evidence, Figures, Simulation};
 use tactpad::lab::metrology::report::entries;
 use tactpad::lab::metrology::{Decode, conflicts, drawing, procedures};
+#[cfg(feature = "simulator")]
+use tactpad::mechanics::mesh::Fineness;
+#[cfg(feature = "simulator")]
+use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
+#[cfg(feature = "simulator")]
+use tactpad::numeric::zernike::jets;
+use tactpad::pad::device::Device;
 use tactpad::tables::measured::columns::Kind;
 
 /// Arguments of `tactpad metrology`.
@@ -115,6 +123,7 @@ fn of_file(arguments: &Arguments, path: &Path) -> Result<MetrologyReport, Failur
         seeds: vec![],
         rows: entries(std::slice::from_ref(&figures), &[]),
         figures: vec![figures],
+        dynamics: dynamics(&device)?,
         plots,
     })
 }
@@ -130,6 +139,7 @@ fn of_twin(arguments: &Arguments) -> Result<MetrologyReport, Failure> {
         }
         given => given,
     };
+    let dynamics = dynamics(&device)?;
     let bench = Bench { device, field, nominal, decoders };
     let seeds: Vec<u64> = arguments.seeds.clone().collect();
     let progress = Progress::begin("measuring the twin's pads");
@@ -148,8 +158,27 @@ fn of_twin(arguments: &Arguments) -> Result<MetrologyReport, Failure> {
         seeds,
         rows: entries(&figures, &conflicts),
         figures,
+        dynamics,
         plots: plots.unwrap_or_default(),
     })
+}
+
+/// The device's natural motions, and what they do to its step response.
+#[cfg(feature = "simulator")]
+fn dynamics(device: &Device) -> Result<Option<PadDynamics>, Failure> {
+    let _progress = Progress::begin("looking for the pad's natural motions");
+    let mut simulator = Simulator::new(Fineness::STANDARD);
+    let unsolved = |error| Failure::Failed(format!("the simulator: {error}"));
+    let motions = simulator.natural_motions(device).map_err(unsolved)?;
+    let signals = simulator.pad(device).map_err(unsolved)?.signals();
+    let middle = jets(PLATE_DEGREE, [0.0; 2]);
+    let still_uv_per_n = [2, 5, 8].iter().map(|channel: &usize| signals[*channel][2].value(&middle)).sum();
+    Ok(PadDynamics::of(&motions, still_uv_per_n))
+}
+
+#[cfg(not(feature = "simulator"))]
+fn dynamics(_device: &Device) -> Result<Option<PadDynamics>, Failure> {
+    Ok(None)
 }
 
 impl Arguments {

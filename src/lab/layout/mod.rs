@@ -6,7 +6,7 @@
 //! looks for the radius and the turn of the modules that make the worst of it smallest. [`published`] holds the
 //! paper's tables for comparison.
 //!
-//! [`study`] does all of it for a device, and [`drawing`] shows it.
+//! [`study`] does all of it for a device, and [`drawing`] shows it. [`sizes`] asks how large and how thick the plate should be.
 //!
 //! Everything here is pure. Millimetres, newtons, microvolts, degrees, pad frame.
 //!
@@ -22,6 +22,10 @@ pub mod published;
 pub mod region;
 #[cfg(feature = "simulator")]
 mod scan;
+pub mod size_drawing;
+pub mod sizes;
+#[cfg(feature = "simulator")]
+mod sizing;
 pub mod spacing;
 pub mod study;
 pub mod swarm;

@@ -1,0 +1,130 @@
+//! `tactpad layout --sizes`: how large and how thick the plate should be.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::Arguments;
+use crate::cli::destination::Folder;
+use crate::cli::failure::Failure;
+use crate::cli::pictures;
+#[cfg(feature = "simulator")]
+use crate::cli::progress::Progress;
+use crate::cli::wrapped::hanging;
+use crate::cli::written::{print_json, stdout};
+use tactpad::lab::layout::size_drawing;
+use tactpad::lab::layout::sizes::{Answer, Law, SizedPad, Sizes};
+use tactpad::pad::device::Device;
+
+pub(super) fn run(arguments: &Arguments, device: &Device, figures: Option<&Folder>) -> Result<(), Failure> {
+    let devices = arguments.devices.as_deref().map(Folder::of).transpose()?;
+    let sizes = simulated(device, arguments.noise_uv)?;
+    if let Some(folder) = figures {
+        pictures::write(folder, "size-sensitivity", &size_drawing::sensitivity(&sizes))?;
+        pictures::write(folder, "size-error", &size_drawing::error(&sizes))?;
+        pictures::write(folder, "size-frequency", &size_drawing::frequency(&sizes))?;
+    }
+    if let Some(folder) = &devices {
+        for pad in &sizes.pads {
+            if let Some(sized) = pad.size.on(device) {
+                folder.write(&pad.size.file_name(), sized.to_toml().as_bytes())?;
+            }
+        }
+    }
+    if arguments.json {
+        print_json(&sizes)
+    } else {
+        Ok(write(&mut stdout(), &sizes, arguments.devices.as_deref())?)
+    }
+}
+
+#[cfg(feature = "simulator")]
+fn simulated(device: &Device, noise_uv: f64) -> Result<Sizes, Failure> {
+    let progress = Progress::begin("solving the modules");
+    Sizes::of(device, noise_uv, |done, of, what| progress.part(done, of, what))
+        .map_err(|error| Failure::Failed(format!("the simulator: {error}")))
+}
+
+#[cfg(not(feature = "simulator"))]
+fn simulated(_device: &Device, _noise_uv: f64) -> Result<Sizes, Failure> {
+    Err(Failure::Unusable(
+        "this program was built without the simulator: build it with the feature \"simulator\"".into(),
+    ))
+}
+
+fn write(out: &mut impl Write, sizes: &Sizes, devices: Option<&Path>) -> io::Result<()> {
+    writeln!(
+        out,
+        "Pads by size: press of 1 N, noise {} µV, converter at {} Hz",
+        sizes.noise_uv, sizes.converter_hz
+    )?;
+    writeln!(
+        out,
+        "{:>5} {:>5} {:>7} {:>9} {:>9} {:>7} {:<8} {:>8} {:>9} {:>8} stiff",
+        "Ø mm", "h mm", "µV/N", "worst mm", "rms mm", "1st Hz", "", "±3dB Hz", "of conv.", "ground N"
+    )?;
+    sizes.pads.iter().try_for_each(|pad| write_pad(out, pad))?;
+    writeln!(out)?;
+    sizes.laws.iter().try_for_each(|law| write_law(out, law))?;
+    writeln!(out)?;
+    sizes.answers.iter().try_for_each(|answer| write_answer(out, answer))?;
+    match devices {
+        Some(folder) => {
+            writeln!(out, "\n{} device files are written to {}", sizes.pads.len(), folder.display())
+        }
+        None => Ok(()),
+    }
+}
+
+fn write_pad(out: &mut impl Write, pad: &SizedPad) -> io::Result<()> {
+    writeln!(
+        out,
+        "{:>5} {:>5} {:>7.0} {:>9.4} {:>9.4} {:>7.0} {:<8} {:>8.0} {:>8.0}% {:>8.1} {}",
+        pad.size.diameter_mm,
+        pad.size.thickness_mm,
+        pad.sensitivity_uv_per_n,
+        pad.precision.worst_mm,
+        pad.precision.rms_mm,
+        pad.first_hz,
+        pad.first_kind,
+        pad.bandwidth_hz,
+        100.0 * pad.bandwidth_of_converters,
+        pad.grounding_n,
+        if pad.is_stiff() { "yes" } else { "no" }
+    )
+}
+
+fn write_law(out: &mut impl Write, law: &Law) -> io::Result<()> {
+    let by = |name: &str, power: f64| {
+        if power == 0.0 { String::new() } else { format!(" · {name}^{power}") }
+    };
+    let text = format!(
+        "{} = {:.4} {}{}{}; within {:.1} % on the {} pads with a stiff plate, up to {:.0} % off on the others",
+        law.quantity,
+        law.factor,
+        law.unit,
+        by("(Ø/60 mm)", law.diameter_power),
+        by("(h/1 mm)", law.thickness_power),
+        law.residual_percent,
+        law.pads,
+        law.outside_percent
+    );
+    writeln!(out, "{}", hanging("law: ", &text))
+}
+
+fn write_answer(out: &mut impl Write, Answer { user, pad, stiff, bears }: &Answer) -> io::Result<()> {
+    let text = format!(
+        "{} mm wide, {} mm thick{}: located within {:.2} mm at 1 N, first rings at {:.0} Hz; a firm press of {} N {}",
+        pad.size.diameter_mm,
+        pad.size.thickness_mm,
+        if *stiff { "" } else { ", and still not stiff" },
+        pad.precision.worst_mm,
+        pad.first_hz,
+        user.press_n,
+        if *bears {
+            format!("stays off the base, which is reached at {:.0} N", pad.grounding_n)
+        } else {
+            format!("is too much for such modules, which ground at {:.0} N", pad.grounding_n)
+        }
+    );
+    writeln!(out, "{}", hanging(&format!("{}: ", user.name), &text))
+}

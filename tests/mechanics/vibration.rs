@@ -1,14 +1,17 @@
 //! Natural frequencies beside closed forms, and laws that they keep.
+#![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
 
 use std::f64::consts::{PI, TAU};
 use std::io::{Write as _, stderr};
 
 use faer::Mat;
+use tactpad::lab::layout::sizes::Size;
 use tactpad::mechanics::mesh::Fineness;
+use tactpad::mechanics::pad::Pad;
 use tactpad::mechanics::plate::{FIELDS, Plate, Rigidity, masses_t};
-use tactpad::mechanics::simulator::Simulator;
-use tactpad::mechanics::vibration::{Natural, NaturalMotion};
-use tactpad::numeric::zernike::count;
+use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
+use tactpad::mechanics::vibration::{Natural, NaturalMotion, natural_motions};
+use tactpad::numeric::zernike::{count, jets};
 use tactpad::pad::device::{Device, Material};
 
 /// Leissa's Poisson ratio.
@@ -106,7 +109,7 @@ fn motions_come_in_pairs_and_add_up_to_the_statics() {
     // s = Σ s_m (a_mᵀf)/ω_m²: what is missing are the faster motions.
     let mut simulator = Simulator::new(Fineness::STANDARD.scaled(2.8));
     let signals = simulator.pad(&device).unwrap().signals();
-    let middle = tactpad::numeric::zernike::jets(tactpad::mechanics::simulator::PLATE_DEGREE, [0.0; 2]);
+    let middle = jets(PLATE_DEGREE, [0.0; 2]);
     let still: f64 = [2, 5, 8].iter().map(|channel| signals[*channel][2].value(&middle)).sum();
     let parts: f64 = found
         .iter()
@@ -135,4 +138,26 @@ fn heavier_pads_are_slower() {
     }
     let heavy = motions(&device)[0].frequency_hz;
     assert!((light / heavy - 2.0).abs() < 1e-6, "{light} and {heavy}");
+}
+
+#[test]
+fn more_polynomials_change_no_figure_of_the_largest_pads() {
+    // The largest plates of the study of size, where the polynomials resolve least beside a foot.
+    const FINER: usize = 80;
+    let nominal = Device::nominal();
+    let mut simulator = Simulator::new(Fineness::STANDARD.scaled(2.8));
+    let masses = simulator.masses(&nominal).unwrap();
+    for (thickness_mm, bound) in [(0.5, 0.02), (1.0, 0.01), (3.0, 0.01)] {
+        let device = Size { diameter_mm: 150.0, thickness_mm }.on(&nominal).unwrap();
+        let [usual, finer] = [PLATE_DEGREE, FINER].map(|degree| {
+            let pad = Pad::of(&device, degree, simulator.pad(&nominal).unwrap().modules).unwrap();
+            let here = jets(degree, [0.6, 0.3]);
+            let read_uv = pad.signals()[2][2].value(&here);
+            [natural_motions(&pad, &masses).unwrap()[0].frequency_hz, read_uv]
+        });
+        writeln!(stderr(), "150 x {thickness_mm} mm: Hz, µV/N {usual:.3?}, finer {finer:.3?}").unwrap();
+        for (usual, finer) in usual.iter().zip(finer) {
+            assert!((usual / finer - 1.0).abs() < bound, "{thickness_mm} mm: {usual} for {finer}");
+        }
+    }
 }

@@ -59,8 +59,18 @@ fn write(out: &mut impl Write, sizes: &Sizes, devices: Option<&Path>) -> io::Res
     )?;
     writeln!(
         out,
-        "{:>5} {:>5} {:>7} {:>9} {:>9} {:>7} {:<8} {:>8} {:>9} {:>8} stiff",
-        "Ø mm", "h mm", "µV/N", "worst mm", "rms mm", "1st Hz", "", "±3dB Hz", "of conv.", "ground N"
+        "{:>5} {:>5} {:>7} {:>7} {:>8} {:>8} {:>7} {:<7} {:>8} {:>8} {:>8} stiff",
+        "Ø mm",
+        "h mm",
+        "µV/N",
+        "per mm",
+        "worst mm",
+        "rms mm",
+        "1st Hz",
+        "",
+        "±3dB Hz",
+        "of conv",
+        "ground N"
     )?;
     sizes.pads.iter().try_for_each(|pad| write_pad(out, pad))?;
     writeln!(out)?;
@@ -78,10 +88,11 @@ fn write(out: &mut impl Write, sizes: &Sizes, devices: Option<&Path>) -> io::Res
 fn write_pad(out: &mut impl Write, pad: &SizedPad) -> io::Result<()> {
     writeln!(
         out,
-        "{:>5} {:>5} {:>7.0} {:>9.4} {:>9.4} {:>7.0} {:<8} {:>8.0} {:>8.0}% {:>8.1} {}",
+        "{:>5} {:>5} {:>7.0} {:>7.1} {:>8.4} {:>8.4} {:>7.0} {:<7} {:>8.0} {:>7.0}% {:>8.1} {}",
         pad.size.diameter_mm,
         pad.size.thickness_mm,
         pad.sensitivity_uv_per_n,
+        pad.change_uv_per_n_mm,
         pad.precision.worst_mm,
         pad.precision.rms_mm,
         pad.first_hz,
@@ -95,12 +106,12 @@ fn write_pad(out: &mut impl Write, pad: &SizedPad) -> io::Result<()> {
 
 fn write_law(out: &mut impl Write, law: &Law) -> io::Result<()> {
     let by = |name: &str, power: f64| {
-        if power == 0.0 { String::new() } else { format!(" · {name}^{power}") }
+        if power.abs() < 0.005 { String::new() } else { format!(" · {name}^{power:.2}") }
     };
     let text = format!(
-        "{} = {:.4} {}{}{}; within {:.1} % on the {} pads with a stiff plate, up to {:.0} % off on the others",
+        "{} = {} {}{}{}; within {:.2} % on the {} pads with a stiff plate, up to {:.1} % off on the others",
         law.quantity,
-        law.factor,
+        significant(law.factor),
         law.unit,
         by("(Ø/60 mm)", law.diameter_power),
         by("(h/1 mm)", law.thickness_power),
@@ -109,6 +120,12 @@ fn write_law(out: &mut impl Write, law: &Law) -> io::Result<()> {
         law.outside_percent
     );
     writeln!(out, "{}", hanging("law: ", &text))
+}
+
+/// Four digits.
+fn significant(value: f64) -> String {
+    let decimals = (3.0 - value.abs().log10().floor()).clamp(0.0, 9.0);
+    format!("{value:.*}", decimals as usize)
 }
 
 fn write_answer(out: &mut impl Write, Answer { user, pad, stiff, bears }: &Answer) -> io::Result<()> {
@@ -121,9 +138,12 @@ fn write_answer(out: &mut impl Write, Answer { user, pad, stiff, bears }: &Answe
         pad.first_hz,
         user.press_n,
         if *bears {
-            format!("stays off the base, which is reached at {:.0} N", pad.grounding_n)
+            format!("grounds no module, as {:.0} N at the worst place would", pad.grounding_n)
         } else {
-            format!("is too much for such modules, which ground at {:.0} N", pad.grounding_n)
+            format!(
+                "is too much for these modules, which ground at {:.0} N at the worst place",
+                pad.grounding_n
+            )
         }
     );
     writeln!(out, "{}", hanging(&format!("{}: ", user.name), &text))

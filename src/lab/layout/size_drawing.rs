@@ -1,6 +1,6 @@
 //! Figures of the study of size: what a pad can do over its diameter, a curve for each thickness.
 
-use super::sizes::{Law, Size, SizedPad, Sizes, THICKNESSES_MM};
+use super::sizes::{CHANGE, ERROR, FREQUENCY, Law, SizedPad, Sizes, THICKNESSES_MM};
 use crate::plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
 use crate::plot::figure::Figure;
 use crate::plot::scale::Scale;
@@ -8,24 +8,25 @@ use crate::plot::scale::Scale;
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 400.0;
 
-/// The sensitivity.
+/// The sensitivity to a place: that to the force is the same for all.
 pub fn sensitivity(sizes: &Sizes) -> Figure {
-    let y = Side { also: vec![0.0], ..side("Three z channels, press in the middle, µV/N", Scale::Linear) };
-    chart(sizes, "Sensitivity by size".to_owned(), y, "sensitivity", |pad| pad.sensitivity_uv_per_n).figure()
+    let y = side("Change of the channels, µV per N and mm", Scale::Log10);
+    let title = "Sensitivity to place by size, press in the middle".to_owned();
+    chart(sizes, title, y, CHANGE, |pad| pad.change_uv_per_n_mm).figure()
 }
 
 /// The worst location error at best.
 pub fn error(sizes: &Sizes) -> Figure {
     let title = format!("Location error at best by size, press of 1 N, noise {} µV", sizes.noise_uv);
     let y = side("Worst error over the plate, mm", Scale::Log10);
-    chart(sizes, title, y, "worst error at 1 N", |pad| pad.precision.worst_mm).figure()
+    chart(sizes, title, y, ERROR, |pad| pad.precision.worst_mm).figure()
 }
 
 /// The first natural frequency, beside the converter's.
 pub fn frequency(sizes: &Sizes) -> Figure {
     let y = side("First natural frequency, Hz", Scale::Log10);
     let title = "First natural frequency by size".to_owned();
-    let mut chart = chart(sizes, title, y, "first natural frequency", |pad| pad.first_hz);
+    let mut chart = chart(sizes, title, y, FREQUENCY, |pad| pad.first_hz);
     let half_hz = sizes.converter_hz / 2.0;
     chart.guides.push(Guide {
         at: GuidePlace::Y(half_hz),
@@ -34,7 +35,13 @@ pub fn frequency(sizes: &Sizes) -> Figure {
     chart.figure()
 }
 
-fn chart(sizes: &Sizes, title: String, y: Side, quantity: &str, value: fn(&SizedPad) -> f64) -> Chart {
+fn chart(
+    sizes: &Sizes,
+    title: String,
+    y: Side,
+    (quantity, _): (&str, &str),
+    value: fn(&SizedPad) -> f64,
+) -> Chart {
     let curve = |thickness_mm: f64| {
         let pads = sizes.pads.iter().filter(move |pad| pad.size.thickness_mm == thickness_mm);
         let values = pads.map(|pad| Value::new(pad.size.diameter_mm, value(pad))).collect();
@@ -46,17 +53,11 @@ fn chart(sizes: &Sizes, title: String, y: Side, quantity: &str, value: fn(&Sized
     Chart { title, width: WIDTH, height: HEIGHT, x, y, series, guides: vec![] }
 }
 
-/// The law for plates of 1 mm.
+/// The law for plates of 1 mm, where these are stiff.
 fn of_law(law: &Law, sizes: &Sizes) -> Series {
-    let mut diameters: Vec<f64> = sizes.pads.iter().map(|pad| pad.size.diameter_mm).collect();
-    diameters.dedup();
-    let at = |diameter_mm: f64| Value::new(diameter_mm, law.at(Size { diameter_mm, thickness_mm: 1.0 }));
-    let name = if law.thickness_power == 0.0 { "law of stiff plates" } else { "law of stiff plates, 1 mm" };
-    Series {
-        name: name.to_owned(),
-        values: diameters.into_iter().map(at).collect(),
-        look: SeriesLook::Dashes,
-    }
+    let stiff = sizes.pads.iter().filter(|pad| pad.size.thickness_mm == 1.0 && pad.is_stiff());
+    let values = stiff.map(|pad| Value::new(pad.size.diameter_mm, law.at(pad.size))).collect();
+    Series { name: "law of stiff plates, 1 mm".to_owned(), values, look: SeriesLook::Dashes }
 }
 
 fn side(label: &str, scale: Scale) -> Side {

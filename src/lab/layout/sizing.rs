@@ -15,13 +15,17 @@ use crate::mechanics::superelement::{FootMass, Superelement};
 use crate::mechanics::system::SolveError;
 use crate::mechanics::vibration::natural_motions;
 use crate::numeric::oscillator::Oscillator;
-use crate::numeric::zernike::jets;
+use crate::numeric::zernike::{Jet, jets};
 use crate::pad::device::Device;
+use crate::pad::field::ForceMaps;
 use crate::pad::influence::InfluenceField;
-use crate::quantity::MODULES;
+use crate::quantity::{CHANNELS, MODULES};
 
 /// A newton, straight down.
 const PRESS_N: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// Grid lines of the feet's splines on the plate's radius: feet sink smoothly.
+const FEET_PER_RADIUS: f64 = 12.0;
 
 /// How far apart the places are at which feet are watched; between them they sink by nearly the same.
 const RINGS: usize = 40;
@@ -74,11 +78,12 @@ impl Parts {
         let (first_hz, first_kind) =
             motions.first().map_or((f64::NAN, ""), |motion| (motion.frequency_hz, motion.kind().name()));
         let bandwidth_hz = Oscillator { frequency_hz: first_hz, damping_ratio: DAMPING_RATIO }.bandwidth_hz();
-        let sinking = splines(device, SIGNALS_PER_RADIUS, &pad.foot_movements());
+        let sinking = splines(device, FEET_PER_RADIUS, &pad.foot_movements());
         Ok(SizedPad {
             size,
             centre_radius_mm: device.sites.centre_radius_mm,
             sensitivity_uv_per_n: [2, 5, 8].iter().map(|channel| signals[*channel][2].value(&middle)).sum(),
+            change_uv_per_n_mm: change_uv_per_n_mm(&signals, &middle, device.plate.radius_mm()),
             precision: over_plate(|x, y| field.gains(x as f32, y as f32), &self.press, reach_mm),
             first_hz,
             first_kind,
@@ -88,6 +93,14 @@ impl Parts {
             grounding_n: device.stack.frame_thickness_mm / deepest_mm_per_n(&sinking, reach_mm),
         })
     }
+}
+
+/// √(Σ (∂s/∂x)²) of a press in the middle, whose polynomials have these jets in the place over the radius.
+fn change_uv_per_n_mm(signals: &[ForceMaps; CHANNELS], middle: &[Jet], radius_mm: f64) -> f64 {
+    let slope = |maps: &ForceMaps| -> f64 {
+        maps[2].coefficients.iter().zip(middle).map(|(factor, jet)| factor * jet.dx).sum()
+    };
+    signals.iter().map(|maps| slope(maps).powi(2)).sum::<f64>().sqrt() / radius_mm
 }
 
 /// How far a foot sinks at most under 1 N, wherever it presses.

@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     pad: Pad,
     /// Radii of the modules' effective regions in millimetres: only the paper's rule for them, and no simulation.
     #[arg(long, value_name = "R1,R2,R3", value_parser = parse_radii, allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["threshold", "noise_uv", "figures", "imperfections"])]
+    #[arg(conflicts_with_all = ["threshold", "noise_uv", "imperfections"])]
     radii: Option<Radii>,
     /// Share of a press that a module must carry to count as effective.
     #[arg(long, value_name = "SHARE", default_value_t = THRESHOLD, value_parser = parse_share)]
@@ -46,7 +46,8 @@ pub(super) struct Arguments {
     /// The swarm's seed; the same seed gives the same answer.
     #[arg(long, default_value_t = 1, allow_hyphen_values = true)]
     seed: u64,
-    /// Write the figures layout-scan and layout-regions into this folder, as SVG and PNG.
+    /// Write the figures layout-swarm, layout-scan and layout-regions into this folder, as SVG and PNG; with --radii
+    /// layout-swarm alone.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Print one JSON document.
@@ -72,11 +73,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         parts_usd: PARTS.iter().map(Part::price_usd).sum(),
         simulated,
     };
-    if let (Some(folder), Some(pad)) = (&folder, &report.simulated) {
-        pictures::write(folder, "layout-scan", &drawing::scan(pad))?;
-        pictures::write(folder, "layout-regions", &drawing::regions(pad, &report.spacing, &device))?;
+    if let Some(folder) = &folder {
+        draw(folder, &report, &device)?;
     }
     if arguments.json { print_json(&report) } else { Ok(tables::print(&report)?) }
+}
+
+fn draw(folder: &Folder, report: &LayoutReport, device: &Device) -> Result<(), Failure> {
+    let radii = Radii::new(report.spacing.radii_mm).map_err(StudyError::Radius)?;
+    pictures::write(folder, "layout-swarm", &drawing::swarms(&radii, report.seed)?)?;
+    if let Some(pad) = &report.simulated {
+        pictures::write(folder, "layout-scan", &drawing::scan(pad))?;
+        pictures::write(folder, "layout-regions", &drawing::regions(pad, &report.spacing, device))?;
+    }
+    Ok(())
 }
 
 /// The effective regions of the simulated pad, the paper's rule for them, and the search for better placements.

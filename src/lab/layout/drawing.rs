@@ -2,7 +2,9 @@
 
 use super::placement::{Candidate, Placement};
 use super::precision::Precision;
-use super::study::{Simulated, SpacingAnswers};
+use super::spacing::Radii;
+use super::study::{Simulated, SpacingAnswers, StudyError};
+use super::swarm;
 use crate::pad::device::Device;
 use crate::pad::device::pose::Pose;
 use crate::plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
@@ -41,6 +43,36 @@ pub fn scan(pad: &Simulated) -> Figure {
     both.place(errors, [0.0, 0.0]);
     both.place(signals, [WIDTH, 0.0]);
     both
+}
+
+/// Swarms whose courses are drawn.
+const SWARMS: u64 = 6;
+
+/// The paper's Figure 1b: the largest area that swarms have found after each iteration, the negative of their best
+/// cost. The seeds are `first_seed` and the next ones.
+///
+/// # Errors
+/// A swarm fails.
+pub fn swarms(radii: &Radii, first_seed: u64) -> Result<Figure, StudyError> {
+    let seeds = (0..SWARMS).map(|number| first_seed.saturating_add(number));
+    let course = |seed: u64| {
+        let areas_mm2 = swarm::course(radii, seed).map_err(|error| StudyError::Swarm(error.to_string()))?;
+        let values = (1_u32..).zip(areas_mm2).map(|(round, area)| Value::new(f64::from(round), area));
+        Ok(Series { name: format!("seed {seed}"), values: values.collect(), look: SeriesLook::ThinDashes })
+    };
+    let series = seeds.map(course).collect::<Result<_, StudyError>>()?;
+    let [r1, r2, r3] = radii.mm();
+    let optimum_mm2 = radii.widest().area_mm2;
+    let chart = Chart {
+        title: format!("Best cost of the particle swarm, radii {r1:.1}, {r2:.1}, {r3:.1} mm"),
+        width: PLAN_WIDTH,
+        height: HEIGHT,
+        x: Side { scale: Scale::Log10, ..side("Iteration") },
+        y: side("Area that the three regions cover, mm²"),
+        series,
+        guides: vec![Guide { at: GuidePlace::Y(optimum_mm2), label: "closed form".to_owned() }],
+    };
+    Ok(chart.figure())
 }
 
 /// One figure of merit over the modules' radius: a curve for the least and the greatest turn.

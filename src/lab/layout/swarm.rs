@@ -1,6 +1,9 @@
 //! The paper's layout problem, solved as the paper solves it: by a particle swarm.
 
-use argmin::core::{CostFunction, Error, Executor};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use argmin::core::observers::{Observe, ObserverMode};
+use argmin::core::{CostFunction, Error, Executor, KV, State};
 use argmin::solver::particleswarm::ParticleSwarm;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
@@ -23,14 +26,43 @@ const ROUNDS: u64 = 100;
 /// # Errors
 /// What the solver reports. Layouts always have an area, so nothing is known to make it fail.
 pub fn solve(radii: &Radii, seed: u64) -> Result<Spacing, Error> {
+    Ok(observed(radii, seed)?.0)
+}
+
+/// The largest area that the swarm has found after each of its rounds, in mm²: the negative of its best cost.
+///
+/// # Errors
+/// As for [`solve`].
+pub fn course(radii: &Radii, seed: u64) -> Result<Vec<f64>, Error> {
+    Ok(observed(radii, seed)?.1)
+}
+
+/// The layout that a swarm finds, and its way there.
+fn observed(radii: &Radii, seed: u64) -> Result<(Spacing, Vec<f64>), Error> {
     let layouts = Layouts::of(radii);
+    let course = Course::default();
     let cube = (vec![0.0; PAIRS], vec![1.0; PAIRS]);
     let swarm =
         ParticleSwarm::new(cube, PARTICLES).with_rng_generator(Xoshiro256PlusPlus::seed_from_u64(seed));
     let run = Executor::new(layouts.clone(), swarm).configure(|state| state.max_iters(ROUNDS));
-    let mut outcome = run.timer(false).run()?;
+    let mut outcome = run.add_observer(course.clone(), ObserverMode::Always).timer(false).run()?;
     let best = outcome.state.take_individual().map(|particle| particle.position);
-    Ok(layouts.at(&best.unwrap_or_default()))
+    let areas_mm2 = course.areas_mm2.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    Ok((layouts.at(&best.unwrap_or_default()), areas_mm2))
+}
+
+/// Writes down the best area of each round. The solver keeps its observers, so the list is shared.
+#[derive(Clone, Default)]
+struct Course {
+    areas_mm2: Arc<Mutex<Vec<f64>>>,
+}
+
+impl<S: State<Float = f64>> Observe<S> for Course {
+    fn observe_iter(&mut self, state: &S, _: &KV) -> Result<(), Error> {
+        let mut areas_mm2 = self.areas_mm2.lock().unwrap_or_else(PoisonError::into_inner);
+        areas_mm2.push(-state.get_best_cost());
+        Ok(())
+    }
 }
 
 /// The layouts that keep the rule, as points of the unit cube.
@@ -130,6 +162,18 @@ mod tests {
         let free = radii([1.0, 1.2, 3.0]);
         assert_eq!(solve(&free, 7).unwrap(), solve(&free, 7).unwrap());
         assert_ne!(solve(&free, 7).unwrap(), solve(&free, 8).unwrap(), "a free layout shows the seed");
+    }
+
+    #[test]
+    fn a_course_never_falls_and_ends_where_the_answer_is() {
+        let equal = radii([33.0; 3]);
+        for seed in 1..5 {
+            let course = course(&equal, seed).unwrap();
+            assert_eq!(course.len(), ROUNDS as usize);
+            assert!(course.windows(2).all(|pair| pair[0] <= pair[1]), "{course:?}");
+            assert!(course[0] < course[99], "seed {seed} begins away from the optimum");
+            assert_eq!(course.last(), Some(&solve(&equal, seed).unwrap().area_mm2));
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@ pub mod brick;
 pub mod deformed;
 mod dissection;
 mod foot;
+pub mod gauges;
 pub mod grid;
 pub mod mesh;
 pub mod meshes;

@@ -39,6 +39,13 @@ impl Readings {
         self.weighted(module, HALF_BRIDGES[axis].signs().map(f64::abs))
     }
 
+    /// δ r of each gauge for a unit of each mode, µV/mm: what the signals are sums of.
+    pub(super) fn gauges(&self, module: &Superelement) -> [[f64; MODES]; GAUGES] {
+        std::array::from_fn(|gauge| {
+            self.weighted(module, std::array::from_fn(|other| f64::from(u8::from(other == gauge))))
+        })
+    }
+
     fn weighted(&self, module: &Superelement, signs: [f64; GAUGES]) -> [f64; MODES] {
         std::array::from_fn(|mode| {
             let strains = module.strains.iter().zip(&self.uv_per_strain).enumerate();

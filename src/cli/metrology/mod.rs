@@ -52,7 +52,7 @@ pub(super) struct Arguments {
     /// Leave open what needs a network: nothing is trained.
     #[arg(long, conflicts_with_all = ["network", "decoder"])]
     no_network: bool,
-    /// Write the plots into this folder, as SVG and PNG: those of the first seed.
+    /// Write the plots into this folder, as SVG and PNG: those of the first seed, and the forces' errors of all.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Only write the plan of the paper's procedures, for `twin --plan` or for a rig.
@@ -105,7 +105,8 @@ fn of_file(arguments: &Arguments, path: &Path) -> Result<MetrologyReport, Failur
     let progress = Progress::begin("finding the figures of merit");
     let figures = Figures::of(&evidence);
     drop(progress);
-    let plots = plots(folder.as_ref(), &evidence, &figures)?;
+    let mut plots = plots(folder.as_ref(), &evidence, &figures)?;
+    plots.extend(errors_plot(folder.as_ref(), std::slice::from_ref(&figures))?);
     let statement = format!(
         "Figures of {}. Whose data these are, and whether hardware was measured, this program cannot know.",
         path.display()
@@ -142,13 +143,15 @@ fn of_twin(arguments: &Arguments) -> Result<MetrologyReport, Failure> {
         bench.all(&seeds, |evidence, figures| plots(folder.as_ref(), evidence, figures), report)?;
     // The line goes before anything is printed.
     drop(progress);
+    let mut plots = plots.unwrap_or_default();
+    plots.extend(errors_plot(folder.as_ref(), &figures)?);
     let conflicts = if arguments.pad.is_papers()? { conflicts::all() } else { Vec::new() };
     Ok(MetrologyReport {
         statement: "A numerical twin of the pad; no hardware was measured.".to_owned(),
         seeds,
         rows: entries(&figures, &conflicts),
         figures,
-        plots: plots.unwrap_or_default(),
+        plots,
     })
 }
 
@@ -181,6 +184,13 @@ fn plots(folder: Option<&Folder>, evidence: &Evidence, figures: &Figures) -> Res
         }
     }
     Ok(written)
+}
+
+/// Writes the plot of the forces' errors, which is of all pads.
+fn errors_plot(folder: Option<&Folder>, figures: &[Figures]) -> Result<Option<String>, Failure> {
+    let Some((folder, columns)) = folder.zip(drawing::by_axis(figures)) else { return Ok(None) };
+    let [svg, _] = pictures::write(folder, "metrology-rmse", &columns.figure())?;
+    Ok(Some(svg))
 }
 
 fn parse_seeds(text: &str) -> Result<RangeInclusive<u64>, String> {

@@ -11,6 +11,7 @@ use tactpad::tables::dataset::PAPER_HALF;
 use tactpad::tables::measured::Label;
 
 const SIDE: f64 = 440.0;
+const GAP: f64 = 16.0;
 const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);
 
 /// Contacts of each half that are shown as dots: more would be one blot.
@@ -24,13 +25,15 @@ const HALVES: [&str; 2] = ["three-axis", "normal"];
 /// The contacts of `dataset::paper`, the three-axis half first.
 pub(super) fn of(contacts: &[Label], device: &Device) -> Figure {
     let halves = [&contacts[..PAPER_HALF.min(contacts.len())], &contacts[PAPER_HALF.min(contacts.len())..]];
-    let mut page = Figure::new(2.0 * SIDE, 2.0 * SIDE, "How the paper’s contacts are drawn");
-    page.place(places(&halves, device), [0.0, 0.0]);
+    let places = places(&halves, device);
+    let below = places.size()[1].max(SIDE) + GAP;
+    let mut page = Figure::new(2.0 * SIDE, below + SIDE, "How the paper’s contacts are drawn");
+    page.place(places, [0.0, 0.0]);
     page.place(tangential(&halves).figure(), [SIDE, 0.0]);
     let magnitude = histogram("Magnitude of the force", "|F|, N", &halves, |label| Some(label.resultant_n()));
-    page.place(magnitude.figure(), [0.0, SIDE]);
-    let tilt = histogram("Direction of the force", "tilt from the normal, °", &halves, tilt_deg);
-    page.place(tilt.figure(), [SIDE, SIDE]);
+    page.place(magnitude.figure(), [0.0, below]);
+    let tilt = histogram("Direction of the force", "tilt from the normal, °", &halves[..1], tilt_deg);
+    page.place(tilt.figure(), [SIDE, below]);
     page
 }
 
@@ -77,9 +80,9 @@ fn tangential(halves: &[&[Label]; 2]) -> Chart {
     }
 }
 
-/// Share of each half's contacts by a quantity, as steps.
-fn histogram(title: &str, x: &str, halves: &[&[Label]; 2], of: impl Fn(&Label) -> Option<f64>) -> Chart {
-    let values = halves.map(|half| half.iter().filter_map(&of).collect::<Vec<f64>>());
+/// Share of the halves' contacts by a quantity, as steps.
+fn histogram(title: &str, x: &str, halves: &[&[Label]], of: impl Fn(&Label) -> Option<f64>) -> Chart {
+    let values: Vec<Vec<f64>> = halves.iter().map(|half| half.iter().filter_map(&of).collect()).collect();
     let largest = values.iter().flatten().copied().fold(0.0, f64::max);
     let width = if largest > 0.0 { largest / BINS as f64 } else { 1.0 };
     let steps = |(name, values): (&str, &Vec<f64>)| {
@@ -99,7 +102,7 @@ fn histogram(title: &str, x: &str, halves: &[&[Label]; 2], of: impl Fn(&Label) -
     Chart {
         title: title.to_owned(),
         series: HALVES.into_iter().zip(&values).map(steps).collect(),
-        y: Side { scale: Scale::Log10, ..chart.y },
+        y: Side { also: vec![0.0], ..chart.y },
         ..chart
     }
 }

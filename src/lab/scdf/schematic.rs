@@ -44,7 +44,7 @@ pub fn network(network: &Network) -> Figure {
         names(&mut figure, first, &CHANNEL_NAMES, -1.0);
         names(&mut figure, last, &NAMES, 1.0);
     }
-    scaler(&mut figure, left - 92.0, "z-score, µV");
+    scaler(&mut figure, left - 92.0, "z-score of µV");
     scaler(&mut figure, right + 92.0, "to mm, N");
     stages(&mut figure);
     figure
@@ -115,7 +115,7 @@ fn stages(figure: &mut Figure) {
         "Stage I: simulated contacts".to_owned(),
         format!("{} / {held} / {held} %: learnt from, validation, test", 100 - 2 * held),
         format!("Adam, rate {RATE}, batches of {BATCH}, {EPOCHS_MAX} epochs"),
-        "loss: ‖ŷ − y‖², standardised".to_owned(),
+        "loss: |found − true|² of the five standardised numbers".to_owned(),
     ];
     let [low, .., high] = BETAS;
     let second = [
@@ -126,7 +126,7 @@ fn stages(figure: &mut Figure) {
             super::adaptation::RATE,
             super::adaptation::PATIENCE
         ),
-        format!("loss: ‖ŷ − y‖² + β ‖θ − θ_{{0}}‖², β from {low} to {high}"),
+        format!("loss: the same + β |θ − θ_{{0}}|², β from {low} to {high}"),
     ];
     let (size, top) = ([400.0, 88.0], BOTTOM + 52.0);
     let corners = [[40.0, top], [WIDTH - 40.0 - size[0], top]];

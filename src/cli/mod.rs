@@ -34,6 +34,7 @@ mod train;
 mod tune;
 mod twin;
 mod weigh;
+mod wiring;
 mod wrapped;
 mod written;
 
@@ -85,6 +86,8 @@ enum Verb {
     Profile(profile::Arguments),
     /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
     Layout(layout::Arguments),
+    /// Say how the gauges are wired into half-bridges and where they lie on the film, and draw it.
+    Wiring(wiring::Arguments),
     /// Find the paper's figures of merit, of the twin or of a measured file.
     Metrology(metrology::Arguments),
     /// Say what a measured file shows that the model of the pad gets wrong, and why.
@@ -132,6 +135,7 @@ fn obey(verb: Verb) -> Result<(), Failure> {
         Verb::Tune(arguments) => tune::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments),
         Verb::Layout(arguments) => layout::run(&arguments),
+        Verb::Wiring(arguments) => wiring::run(&arguments),
         Verb::Metrology(arguments) => metrology::run(&arguments),
         Verb::Diagnose(arguments) => diagnose::run(&arguments),
         Verb::Completions(arguments) => completions::run(&arguments, &mut Arguments::command()),

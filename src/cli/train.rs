@@ -15,7 +15,7 @@ use super::written::{both_print, is_stdout, tell};
 use super::{decoder_file, pictures};
 use tactpad::lab::scdf::drawing::{self, NAMES};
 use tactpad::lab::scdf::simulation::{PAPER, Pretrained, examples, pretrain};
-use tactpad::lab::scdf::{EPOCHS_MAX, HIDDEN};
+use tactpad::lab::scdf::{EPOCHS_MAX, HIDDEN, schematic};
 use tactpad::network::Example;
 use tactpad::network::training::Epoch;
 use tactpad::network::training::score::{Score, Scores};
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     seed: u64,
     #[command(flatten)]
     pad: Pad,
-    /// Write the figures train-loss and train-scatter-x to -fz into this folder, as SVG and PNG.
+    /// Write the figures train-network, train-loss and train-scatter-x to -fz into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Print one JSON document: scores on the test's contacts, the paper's beside them, and the loss of each epoch.
@@ -69,7 +69,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pretrained = trained(examples, *seed);
     decoder_file::write_network(&to, &pretrained.trained.network)?;
     if let Some(folder) = &folder {
-        pictures::write(folder, "train-loss", &drawing::loss(&pretrained.trained.curve))?;
+        pictures::write(folder, "train-network", &schematic::network(&pretrained.trained.network))?;
+        let loss = drawing::training("Stage I", &pretrained.trained.curve, Some(PAPER));
+        pictures::write(folder, "train-loss", &loss)?;
         for (name, figure) in drawing::scatters(&pretrained) {
             pictures::write(folder, &format!("train-scatter-{name}"), &figure)?;
         }

@@ -4,6 +4,7 @@ pub mod ablation;
 pub mod ageing;
 pub mod calibration;
 pub mod contacts;
+pub mod damping;
 pub mod diagnosis;
 pub mod evaluation;
 pub mod field_cache;

@@ -51,9 +51,12 @@ pub type Stiffness = [[f64; DOFS]; DOFS];
 /// ∫ ∂ₐNᵢ ∂ᵦNⱼ over the reference cube by the reduced rule, as `[a][b][i][j]`.
 type Gradients = [[[[f64; NODES]; NODES]; 3]; 3];
 
+/// A kg/m³ in t/mm³: with N, mm and s, masses are in tonnes.
+pub const TONNES_PER_MM3: f64 = 1e-12;
+
 /// Lamé's constants λ and μ of a material.
 pub fn lame_mpa(material: Material) -> (f64, f64) {
-    let Material { e_mpa, nu } = material;
+    let Material { e_mpa, nu, .. } = material;
     (e_mpa * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e_mpa / (2.0 * (1.0 + nu)))
 }
 
@@ -91,6 +94,44 @@ fn slope(node: [i8; 3], place: [f64; 3], axis: usize) -> f64 {
     // Corner: ξᵢ (1+ηηᵢ)(1+ζζᵢ)(2ξξᵢ+ηηᵢ+ζζᵢ−1)/8.
     let sum: f64 = (0..3).map(|a| f64::from(node[a]) * place[a]).sum();
     along * across * (sum - 2.0 + edge_factor(node[axis], place[axis])) / 8.0
+}
+
+/// ∫ Nᵢ Nⱼ, node by node; the same along each axis.
+pub type Mass = [[f64; NODES]; NODES];
+
+/// Gauss's three places on [−1, 1] with their weights: exact up to the fifth power, where products of shape functions have
+/// the fourth.
+const GAUSS_OF_MASS: [(f64, f64); 3] =
+    [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
+
+/// ∫ Nᵢ Nⱼ over the reference cube.
+fn products() -> &'static Mass {
+    static PRODUCTS: OnceLock<Box<Mass>> = OnceLock::new();
+    PRODUCTS.get_or_init(|| {
+        let mut sums = Box::new([[0.0; NODES]; NODES]);
+        for (x, x_weight) in GAUSS_OF_MASS {
+            for (y, y_weight) in GAUSS_OF_MASS {
+                for (z, z_weight) in GAUSS_OF_MASS {
+                    let (shapes, weight) = (shapes([x, y, z]), x_weight * y_weight * z_weight);
+                    for (row, shape) in sums.iter_mut().zip(shapes) {
+                        row.iter_mut().zip(shapes).for_each(|(sum, other)| *sum += weight * shape * other);
+                    }
+                }
+            }
+        }
+        sums
+    })
+}
+
+/// Consistent mass of a box, in tonnes (N for mm/s²): m(ia, jb) = δₐᵦ ϱ ∫ Nᵢ Nⱼ, the integral exact.
+///
+/// Source: J. S. Archer, Consistent mass matrix for distributed mass systems, J. Struct. Div. ASCE 89 (1963) 161.
+pub fn box_mass_t(size_mm: [f64; 3], density_kg_m3: f64) -> Box<Mass> {
+    // dV = V/8 dξ dη dζ.
+    let scale = TONNES_PER_MM3 * density_kg_m3 * size_mm.iter().product::<f64>() / 8.0;
+    let mut mass = Box::new(*products());
+    mass.iter_mut().flatten().for_each(|entry| *entry *= scale);
+    mass
 }
 
 /// Gauss's two places on [−1, 1], ±1/√3, both of weight 1: exact up to the third power.
@@ -179,7 +220,7 @@ pub fn forces(stiffness: &Stiffness, displacement: &[f64; DOFS]) -> [f64; DOFS] 
 mod tests {
     use super::*;
 
-    const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3 };
+    const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3, density_kg_m3: 7_850.0 };
     const SIZE: [f64; 3] = [2.0, 3.0, 0.5];
 
     fn place(node: usize) -> [f64; 3] {
@@ -261,6 +302,21 @@ mod tests {
         let normal = lambda * trace * trace + 2.0 * mu * (1.0 + 0.09) * bend * bend;
         let shear = mu * (0.3 * bend) * (0.3 * bend);
         assert!((work / (normal * second_moment + shear * across) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_box_weighs_what_it_holds() {
+        let mass = box_mass_t(SIZE, STEEL.density_kg_m3);
+        let weight = |u: &dyn Fn([f64; 3]) -> f64| -> f64 {
+            let values: Vec<f64> = (0..NODES).map(|node| u(place(node))).collect();
+            let pairs = mass.iter().zip(&values);
+            pairs.map(|(row, a)| a * row.iter().zip(&values).map(|(m, b)| m * b).sum::<f64>()).sum()
+        };
+        let whole = 7.85e-9 * SIZE.iter().product::<f64>();
+        assert!((weight(&|_| 1.0) / whole - 1.0).abs() < 1e-12);
+        // ∫ x² over a box about its middle is its volume times a twelfth of its length squared.
+        let known = whole * SIZE[0] * SIZE[0] / 12.0;
+        assert!((weight(&|[x, ..]| x) / known - 1.0).abs() < 1e-12, "{}", weight(&|[x, ..]| x));
     }
 
     #[test]

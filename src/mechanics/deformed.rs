@@ -3,7 +3,7 @@
 use crate::pad::device::Material;
 
 use super::brick::{NODES, lame_mpa, slopes};
-use super::mesh::{Brick, Mesh};
+use super::mesh::{Brick, Layer, Mesh};
 use super::superelement::{MODES, Solution};
 
 /// Strain in the module's frame: εxx, εyy, εzz and the engineering shears γyz, γzx, γxy.
@@ -32,7 +32,7 @@ impl ModeShapes {
             std::array::from_fn(|axis| foot_mm.iter().zip(node).map(|(by, shape)| by * shape[axis]).sum())
         };
         let displacements_mm = self.movements.iter().map(sum).collect();
-        Deformed { mesh: &self.mesh, displacements_mm, underside: underside(&self.mesh) }
+        Deformed { mesh: &self.mesh, displacements_mm, bricks: bricks(&self.mesh) }
     }
 }
 
@@ -42,8 +42,8 @@ pub struct Deformed<'m> {
     pub mesh: &'m Mesh,
     /// Displacement of each node along the module's axes.
     pub displacements_mm: Vec<[f64; 3]>,
-    /// The bricks on the film's underside, row by row along x.
-    underside: Vec<Option<usize>>,
+    /// The bricks in the cells of the mesh's grid: along x, then along y, then upwards.
+    bricks: Vec<Option<usize>>,
 }
 
 impl Deformed<'_> {
@@ -66,11 +66,26 @@ impl Deformed<'_> {
     ///
     /// Between two elements it may jump a little; there it is that of the one with the greater x or y.
     pub fn underside_strain(&self, place_mm: [f64; 2]) -> Option<Strain> {
-        let [columns, _] = [0, 1].map(|axis| self.mesh.lines_mm[axis].len() - 1);
-        let [(column, x), (row, y)] =
-            [cell_at(&self.mesh.lines_mm[0], place_mm[0])?, cell_at(&self.mesh.lines_mm[1], place_mm[1])?];
-        let brick = self.mesh.bricks.get(self.underside[row * columns + column]?)?;
-        Some(self.strain(brick, [x, y, -1.0]))
+        let lines_mm = &self.mesh.lines_mm;
+        let [(i, x), (j, y)] = [cell_at(&lines_mm[0], place_mm[0])?, cell_at(&lines_mm[1], place_mm[1])?];
+        Some(self.strain(self.brick([i, j, self.mesh.underside / 2])?, [x, y, -1.0]))
+    }
+
+    /// The strain at a place of the module, with the layer that is there; `None` beside the module.
+    ///
+    /// Between two elements it may jump; there it is that of the one with the greater coordinate.
+    pub fn strain_at(&self, place_mm: [f64; 3]) -> Option<(Strain, Layer)> {
+        let lines_mm = &self.mesh.lines_mm;
+        let (i, x) = cell_at(&lines_mm[0], place_mm[0])?;
+        let (j, y) = cell_at(&lines_mm[1], place_mm[1])?;
+        let (k, z) = cell_at(&lines_mm[2], place_mm[2])?;
+        let brick = self.brick([i, j, k])?;
+        Some((self.strain(brick, [x, y, z]), brick.layer))
+    }
+
+    fn brick(&self, [i, j, k]: [usize; 3]) -> Option<&Brick> {
+        let [columns, rows] = [0, 1].map(|axis| self.mesh.lines_mm[axis].len() - 1);
+        self.mesh.bricks.get((*self.bricks.get((k * rows + j) * columns + i)?)?)
     }
 }
 
@@ -85,15 +100,13 @@ fn cell_at(lines_mm: &[f64], at_mm: f64) -> Option<(usize, f64)> {
     Some((cell, (2.0 * at_mm - low - high) / (high - low)))
 }
 
-/// The bricks whose lower face is the film's underside.
-fn underside(mesh: &Mesh) -> Vec<Option<usize>> {
-    let [columns, rows] = [0, 1].map(|axis| mesh.lines_mm[axis].len() - 1);
-    let mut at = vec![None; columns * rows];
+/// The brick in each cell of a mesh's grid.
+fn bricks(mesh: &Mesh) -> Vec<Option<usize>> {
+    let [columns, rows, layers] = mesh.lines_mm.each_ref().map(|lines| lines.len() - 1);
+    let mut at = vec![None; columns * rows * layers];
     for (index, brick) in mesh.bricks.iter().enumerate() {
-        let [x, y, z] = mesh.lattice[brick.nodes[0]];
-        if z == mesh.underside {
-            at[y / 2 * columns + x / 2] = Some(index);
-        }
+        let [i, j, k] = mesh.lattice[brick.nodes[0]].map(|twice| twice / 2);
+        at[(k * rows + j) * columns + i] = Some(index);
     }
     at
 }
@@ -168,6 +181,25 @@ mod tests {
         for place in [[x + 1e-6, 0.0], [0.0, -y - 1e-6], [f64::NAN, 0.0]] {
             assert_eq!(module.underside_strain(place), None);
         }
+    }
+
+    #[test]
+    fn a_place_has_the_strain_and_the_layer_of_its_brick() {
+        let device = Device::nominal();
+        let (shapes, _) = shapes(&device);
+        let module = shapes.moved(&std::array::from_fn(|mode| 1e-3 * (1.0 + (mode as f64).sin())));
+        // On the underside both ways are the same.
+        for place in [[0.3, 0.2], [-3.3, 0.1], [2.0, -1.4]] {
+            let (strain, layer) = module.strain_at([place[0], place[1], 0.0]).unwrap();
+            assert_eq!((Some(strain), layer), (module.underside_strain(place), Layer::Pi));
+        }
+        let stack = &device.stack;
+        let film_mm = stack.pi_thickness_mm + stack.adh_thickness_mm + stack.fpc_thickness_mm;
+        let layer = |place| module.strain_at(place).map(|(_, layer)| layer);
+        assert_eq!(layer([0.0, 0.0, film_mm + 0.5]), Some(Layer::Post));
+        assert_eq!(layer([4.5, 0.0, -0.1]), Some(Layer::Frame));
+        assert_eq!(layer([0.0, 0.0, -0.1]), None, "the window");
+        assert_eq!(layer([3.0, 0.0, film_mm + 0.5]), None, "beside the post");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::brick::NODES;
 use super::deformed::{Strain, von_mises_mpa};
-use super::pressed::PressedPad;
+use super::pressed::{PressedPad, plane_von_mises_mpa};
 use crate::plot::vtk::{Cell, CellKind, Field, UnstructuredGrid, Values};
 
 /// Cells along a side of the plate's grid.
@@ -14,7 +14,7 @@ const MIRRORED: [usize; NODES] = [0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 
 /// The middle of a brick on its reference cube.
 const MIDDLE: [f64; 3] = [0.0; 3];
 
-/// The plate's top surface: how it moves, and its rotations.
+/// The plate's top surface: how it moves, its rotations, and strain and equivalent stress on both sides of the plate.
 pub fn plate(pressed: &PressedPad) -> UnstructuredGrid {
     let radius_mm = pressed.pad.device.plate.radius_mm();
     let side = CELLS + 1;
@@ -25,6 +25,14 @@ pub fn plate(pressed: &PressedPad) -> UnstructuredGrid {
         let first = cell / CELLS * side + cell % CELLS;
         Cell { kind: CellKind::Quad, nodes: vec![first, first + 1, first + side + 1, first + side] }
     };
+    let device = &pressed.pad.device;
+    let half_mm = 0.5 * device.plate.thickness_mm;
+    let [top, bottom] = [half_mm, -half_mm].map(|height_mm| {
+        places.iter().map(|place| pressed.plate_strain(*place, height_mm)).collect::<Vec<_>>()
+    });
+    let stresses = [&top, &bottom]
+        .map(|side| side.iter().map(|s| plane_von_mises_mpa(*s, device.material.plate)).collect());
+    let [top_mpa, bottom_mpa] = stresses;
     let displacements = movements.iter().map(|movement| movement.top_mm).collect();
     let rotations = movements.iter().map(|movement| [movement.rotation[0], movement.rotation[1], 0.0]);
     UnstructuredGrid {
@@ -33,6 +41,10 @@ pub fn plate(pressed: &PressedPad) -> UnstructuredGrid {
         node_fields: vec![
             vectors("displacement_mm", displacements),
             vectors("rotation_rad", rotations.collect()),
+            vectors("top_strain_xx_yy_xy", top),
+            vectors("bottom_strain_xx_yy_xy", bottom),
+            scalars("top_von_mises_mpa", top_mpa),
+            scalars("bottom_von_mises_mpa", bottom_mpa),
         ],
         cell_fields: vec![],
     }

@@ -96,6 +96,25 @@ impl Pad {
         })
     }
 
+    /// Highest degree of the plate's polynomials.
+    pub(super) const fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// What the channels read while the plate has these shapes, one column for each; µV.
+    pub(super) fn signals_of(&self, shapes: &Mat<f64>) -> Mat<f64> {
+        self.signal_weights(&self.modules).transpose() * (&self.assembly.couplings * shapes)
+    }
+
+    /// How far the foot of each module moves along its axes x, y, z under a force on the plate (z is negative for a pressed
+    /// one), mm/N; in the order of the channels.
+    pub fn foot_movements(&self) -> [ForceMaps; CHANNELS] {
+        // Foot mode `axis` is the even movement along that axis.
+        let weights =
+            self.channel_weights(|_, axis| std::array::from_fn(|mode| f64::from(u8::from(mode == axis))));
+        self.contact_maps(&weights)
+    }
+
     fn contact_maps(&self, weights: &Mat<f64>) -> [ForceMaps; CHANNELS] {
         let fields = self.assembly.respond(weights);
         std::array::from_fn(|channel| contact_map(&self.device, &fields, channel))

@@ -29,9 +29,10 @@ use std::f64::consts::PI;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
-use crate::numeric::zernike::{Wave, count, index};
+use crate::numeric::zernike::{Wave, count, index, square_integrals};
 use crate::pad::device::Material;
 
+use super::brick::TONNES_PER_MM3;
 use super::system::SolveError;
 
 /// Fields of the plate: u, v, w, R α, R β.
@@ -53,7 +54,7 @@ pub struct Rigidity {
 impl Rigidity {
     /// Of a plate of the given material, thickness and radius.
     pub fn of(material: Material, thickness_mm: f64, radius_mm: f64) -> Self {
-        let Material { e_mpa, nu } = material;
+        let Material { e_mpa, nu, .. } = material;
         let stretching = e_mpa * thickness_mm / (1.0 - nu * nu);
         Self {
             stretching,
@@ -75,6 +76,28 @@ impl Rigidity {
         let Self { stretching, bending, shear, nu } = self;
         Self { stretching: stretching / e_mpa, bending: bending / e_mpa, shear: shear / e_mpa, nu }
     }
+}
+
+/// Consistent mass of each unknown of a plate with fields up to `degree`, in tonnes: the polynomials are orthogonal over the
+/// disc, so each meets only itself. Kinetic energy per area:
+///
+/// ```text
+/// ½ ϱ h (u̇² + v̇² + ẇ²) + ½ ϱ h³/12 (α̇² + β̇²)
+/// ```
+///
+/// With R α and R β for unknowns the second factor is divided by R²; the disc's area element is R² times that of the unit
+/// disc, over which a polynomial's square has [`square_integrals`].
+/// Source: R. D. Mindlin, J. Appl. Mech. 18 (1951) 31.
+pub fn masses_t(degree: usize, material: Material, thickness_mm: f64, radius_mm: f64) -> Vec<f64> {
+    let disc = TONNES_PER_MM3 * material.density_kg_m3 * thickness_mm * radius_mm * radius_mm;
+    let turning = disc * thickness_mm * thickness_mm / (12.0 * radius_mm * radius_mm);
+    let integrals: Vec<f64> = square_integrals(degree);
+    (0..FIELDS)
+        .flat_map(|field| {
+            let factor = if field < 3 { disc } else { turning };
+            integrals.iter().map(move |integral| factor * integral)
+        })
+        .collect()
 }
 
 /// Whether a block's unknowns are real or imaginary multiples of exp(ilθ).
@@ -354,7 +377,7 @@ mod tests {
     use crate::numeric::zernike::{Polynomial, jets};
 
     const DEGREE: usize = 40;
-    const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3 };
+    const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3, density_kg_m3: 7_850.0 };
     const RADIUS_MM: f64 = 30.0;
     /// So thin that shear does not count.
     const THIN_MM: f64 = 0.2;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::numeric::zernike::{Polynomial, jets};
-use crate::pad::device::Device;
+use crate::pad::device::{Device, Material};
 use crate::quantity::MODULES;
 
 use super::deformed::{Deformed, ModeShapes};
@@ -12,6 +12,19 @@ use super::pad::Pad;
 use super::plate::FIELDS;
 use super::simulator::{PLATE_DEGREE, Simulator};
 use super::system::SolveError;
+
+/// Strain in a plane: εxx, εyy and the engineering shear γxy.
+pub type PlaneStrain = [f64; 3];
+
+/// Von Mises's equivalent stress of a material that is strained in a plane and free across it, MPa.
+pub fn plane_von_mises_mpa([xx, yy, xy]: PlaneStrain, material: Material) -> f64 {
+    // σxx = E/(1 − ν²) (εxx + ν εyy), τ = E/(2(1 + ν)) γ.
+    let Material { e_mpa, nu, .. } = material;
+    let plane_mpa = e_mpa / (1.0 - nu * nu);
+    let [sx, sy] = [xx + nu * yy, yy + nu * xx].map(|strain| plane_mpa * strain);
+    let tau = e_mpa / (2.0 * (1.0 + nu)) * xy;
+    (sx * sx - sx * sy + sy * sy + 3.0 * tau * tau).sqrt()
+}
 
 /// A pad that is pressed with 1 N.
 pub struct PressedPad {
@@ -63,6 +76,19 @@ impl PressedPad {
         let rotation = [a / radius_mm, b / radius_mm];
         let height_mm = plate.thickness_mm / 2.0;
         PlateMovement { top_mm: [u + height_mm * rotation[0], v + height_mm * rotation[1], w], rotation }
+    }
+
+    /// Strain of the plate in its plane, εxx, εyy and the engineering shear γxy, at a place and a height above the
+    /// middle plane.
+    pub fn plate_strain(&self, place_mm: [f64; 2], height_mm: f64) -> PlaneStrain {
+        let radius_mm = self.pad.device.plate.radius_mm();
+        let jets = jets(PLATE_DEGREE, place_mm.map(|mm| mm / radius_mm));
+        let [u, v, _, a, b] = self.deflection.each_ref().map(|field| field.jet(&jets));
+        // u,x + ζ α,x and so on; the fields are u, v, R α, R β over the place divided by R.
+        let lever = height_mm / radius_mm;
+        let [xx, yy] = [u.dx + lever * a.dx, v.dy + lever * b.dy];
+        let xy = u.dy + v.dx + lever * (a.dy + b.dx);
+        [xx, yy, xy].map(|slope| slope / radius_mm)
     }
 
     /// A module as the plate moves its foot.
@@ -135,6 +161,39 @@ mod tests {
             // A foot's parabolas do not follow the plate to the last digit.
             assert!(off < 0.02 * largest, "module {index}: {off} of {largest} mm");
         }
+    }
+
+    #[test]
+    fn the_plates_strain_is_the_slope_of_its_movement() {
+        let (pad, step_mm) = (pressed([12.0, 5.0]), 1e-3);
+        for place in [[3.0, -4.0], [-14.0, 9.0], [21.0, 2.0]] {
+            let across = |axis: usize| {
+                let moved = |by_mm: f64| {
+                    let mut place = place;
+                    place[axis] += by_mm;
+                    pad.plate(place).top_mm
+                };
+                let (ahead, behind) = (moved(step_mm), moved(-step_mm));
+                [0, 1].map(|field| (ahead[field] - behind[field]) / (2.0 * step_mm))
+            };
+            let [[xx, yx], [xy, yy]] = [across(0), across(1)];
+            let found = pad.plate_strain(place, 0.5);
+            for (found, wanted) in found.into_iter().zip([xx, yy, xy + yx]) {
+                assert!(
+                    (found - wanted).abs() < 1e-5 * 1e-6_f64.max(wanted.abs()) + 1e-12,
+                    "{found} {wanted}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn an_equivalent_stress_in_the_plane_is_that_of_one_axis() {
+        let steel = Device::nominal().material.plate;
+        let pulled = [4.0 / steel.e_mpa, -steel.nu * 4.0 / steel.e_mpa, 0.0];
+        assert!((plane_von_mises_mpa(pulled, steel) - 4.0).abs() < 1e-12);
+        let sheared = [0.0, 0.0, 4.0 * 2.0 * (1.0 + steel.nu) / steel.e_mpa];
+        assert!((plane_von_mises_mpa(sheared, steel) - 4.0 * 3.0_f64.sqrt()).abs() < 1e-12);
     }
 
     #[test]

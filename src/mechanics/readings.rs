@@ -5,15 +5,9 @@
 //! voltages nonlinear, are δ (r1 + r2), δ (r3 + r4) and δ (r5 + r6 + r7). All in microvolts.
 
 use crate::pad::device::{Device, GAUGES};
+use crate::pad::wiring::HALF_BRIDGES;
 
 use super::superelement::{MODES, STRAINS, Superelement};
-
-/// Signs of R1 … R7 in the signals x, y, z.
-const SIGNS: [[f64; GAUGES]; 3] = [
-    [1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0],
-    [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0],
-];
 
 /// Microvolts per strain of a device's gauges.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,12 +34,19 @@ impl Readings {
 
     /// Signal of one axis (0: x, 1: y, 2: z) for a unit of each mode of a module's foot, µV/mm.
     pub(super) fn signal(&self, module: &Superelement, axis: usize) -> [f64; MODES] {
-        self.weighted(module, SIGNS[axis])
+        self.weighted(module, HALF_BRIDGES[axis].signs())
     }
 
     /// The bridge's sum of one axis for a unit of each mode, µV/mm.
     pub(super) fn sum(&self, module: &Superelement, axis: usize) -> [f64; MODES] {
-        self.weighted(module, SIGNS[axis].map(f64::abs))
+        self.weighted(module, HALF_BRIDGES[axis].signs().map(f64::abs))
+    }
+
+    /// δ r of each gauge for a unit of each mode, µV/mm: what the signals are sums of.
+    pub(super) fn gauges(&self, module: &Superelement) -> [[f64; MODES]; GAUGES] {
+        std::array::from_fn(|gauge| {
+            self.weighted(module, std::array::from_fn(|other| f64::from(u8::from(other == gauge))))
+        })
     }
 
     /// What a gauge read alone, in a bridge with a constant resistor of its own size, gives for a unit of each mode,

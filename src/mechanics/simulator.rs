@@ -14,8 +14,9 @@ use super::deformed::ModeShapes;
 use super::mesh::{Fineness, Layer};
 use super::pad::Pad;
 use super::sensitivity::sensitivities;
-use super::superelement::{LayerDerivatives, Solution, Superelement};
+use super::superelement::{FootMass, LayerDerivatives, Solution, Superelement};
 use super::system::SolveError;
+use super::vibration::{NaturalMotion, natural_motions};
 
 /// Highest degree of the plate's polynomials: they resolve about twice the plate's thickness,
 /// and more of them change no channel by more than 0.4 %.
@@ -24,7 +25,7 @@ pub const PLATE_DEGREE: usize = 56;
 
 /// Grid lines of the signals' splines on the plate's radius. A millimetre on the nominal plate: they differ from the
 /// polynomials by less than the mesh does from the truth.
-const SIGNALS_PER_RADIUS: f64 = 30.0;
+pub const SIGNALS_PER_RADIUS: f64 = 30.0;
 
 /// The same for the bridges' sums, which count for a thousandth of a signal.
 const SUMS_PER_RADIUS: f64 = 12.0;
@@ -57,6 +58,7 @@ struct Solved {
     superelement: Arc<Superelement>,
     layers: Option<Arc<Vec<LayerDerivatives>>>,
     shapes: Option<Arc<ModeShapes>>,
+    mass: Option<Arc<FootMass>>,
 }
 
 /// Makes pads of devices, and remembers the modules it has solved.
@@ -157,6 +159,7 @@ impl Simulator {
             superelement: Arc::clone(&superelement),
             layers: None,
             shapes: None,
+            mass: None,
         });
         Ok(superelement)
     }
@@ -170,8 +173,10 @@ impl Simulator {
         let solution = Solution::of(device, &device.modules[module], self.fineness)?;
         let superelement = Arc::new(solution.superelement());
         let layers = Arc::new(solution.derivatives()?);
-        let shapes = self.known(&blueprint).and_then(|solved| solved.shapes.clone());
-        self.keep(Solved { blueprint, superelement, layers: Some(Arc::clone(&layers)), shapes });
+        let known = self.known(&blueprint);
+        let shapes = known.and_then(|solved| solved.shapes.clone());
+        let mass = known.and_then(|solved| solved.mass.clone());
+        self.keep(Solved { blueprint, superelement, layers: Some(Arc::clone(&layers)), shapes, mass });
         Ok(layers)
     }
 
@@ -184,9 +189,43 @@ impl Simulator {
         let solution = Solution::of(device, &device.modules[module], self.fineness)?;
         let superelement = Arc::new(solution.superelement());
         let shapes = Arc::new(ModeShapes::of(solution));
-        let layers = self.known(&blueprint).and_then(|solved| solved.layers.clone());
-        self.keep(Solved { blueprint, superelement, layers, shapes: Some(Arc::clone(&shapes)) });
+        let known = self.known(&blueprint);
+        let layers = known.and_then(|solved| solved.layers.clone());
+        let mass = known.and_then(|solved| solved.mass.clone());
+        self.keep(Solved { blueprint, superelement, layers, shapes: Some(Arc::clone(&shapes)), mass });
         Ok(shapes)
+    }
+
+    /// The slowest natural motions of the device's pad, from the slowest on.
+    ///
+    /// # Errors
+    /// As for [`Self::pad`], and frequencies that do not settle.
+    pub fn natural_motions(&mut self, device: &Device) -> Result<Vec<NaturalMotion>, SolveError> {
+        let masses = self.masses(device)?;
+        natural_motions(&self.pad(device)?, &masses)
+    }
+
+    /// The modules' masses for the movements of their feet.
+    ///
+    /// # Errors
+    /// As for [`Self::pad`].
+    pub fn masses(&mut self, device: &Device) -> Result<[Arc<FootMass>; MODULES], SolveError> {
+        Ok([self.mass(device, 0)?, self.mass(device, 1)?, self.mass(device, 2)?])
+    }
+
+    fn mass(&mut self, device: &Device, module: usize) -> Result<Arc<FootMass>, SolveError> {
+        let blueprint = Blueprint::of(device, module);
+        if let Some(mass) = self.known(&blueprint).and_then(|solved| solved.mass.as_ref()) {
+            return Ok(Arc::clone(mass));
+        }
+        let solution = Solution::of(device, &device.modules[module], self.fineness)?;
+        let superelement = Arc::new(solution.superelement());
+        let mass = Arc::new(solution.mass());
+        let known = self.known(&blueprint);
+        let layers = known.and_then(|solved| solved.layers.clone());
+        let shapes = known.and_then(|solved| solved.shapes.clone());
+        self.keep(Solved { blueprint, superelement, layers, shapes, mass: Some(Arc::clone(&mass)) });
+        Ok(mass)
     }
 
     /// Puts a module in the place of what was known of it.

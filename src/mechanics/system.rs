@@ -21,6 +21,8 @@ pub enum SolveError {
     OutOfMemory,
     /// The stiffness is not positive definite: something is loose, or a number is far off.
     NotPositive,
+    /// The natural frequencies did not settle.
+    NotSettled,
 }
 
 impl std::fmt::Display for SolveError {
@@ -30,6 +32,7 @@ impl std::fmt::Display for SolveError {
             Self::NotPositive => {
                 "the stiffness is not positive definite: a part is loose or a number far off"
             }
+            Self::NotSettled => "the natural frequencies did not settle",
         })
     }
 }

@@ -1,10 +1,11 @@
-//! Numerical methods that know nothing of pads: linear systems, polynomials over the disc, random numbers,
+//! Numerical methods that know nothing of pads: linear systems, polynomials over the disc, oscillators, random numbers,
 //! statistics.
 
 pub mod chi_square;
 pub mod dense;
 pub mod linear;
 pub mod memory;
+pub mod oscillator;
 pub mod principal;
 pub mod random;
 mod simd;

@@ -115,6 +115,12 @@ pub enum Wave {
     Sin,
 }
 
+/// ∫ of each polynomial's square over the disc, up to a degree: π/(n+1), and half of that where it turns with θ.
+pub fn square_integrals(degree: usize) -> Vec<f64> {
+    let of = |n: usize, m: usize| PI / (n + 1) as f64 / if n == 2 * m { 1.0 } else { 2.0 };
+    (0..=degree).flat_map(|n| (0..=n).map(move |m| of(n, m))).collect()
+}
+
 /// Index of the polynomial of degree n and angular order l; `None` where there is none (l > n, other parity, or a
 /// sine of order 0).
 pub fn index(degree: usize, order: usize, wave: Wave) -> Option<usize> {

@@ -10,3 +10,4 @@ pub mod marks;
 pub mod readout;
 pub mod twin;
 pub mod weight;
+pub mod wiring;

@@ -17,7 +17,7 @@
 //! z   Vz = δ (1 + r7)/(2 + r7 + (r5 + r6)),   S = −4 (Vz − δ/2)
 //! ```
 //!
-//! Let the upper gauge be a and the lower one b, so that V = δ (1 + a)/(2 + a + b). Over the common denominator
+//! Let a be the change from tap to ground and b that from the supply to the tap (`wiring` says which gauges), so that V = δ (1 + a)/(2 + a + b). Over the common denominator
 //! V − δ/2 = δ (2 + 2a − 2 − a − b)/(2 (2 + a + b)) = δ (a − b)/(2 (2 + a + b)), hence
 //!
 //! ```text
@@ -220,8 +220,8 @@ mod tests {
     }
 
     /// The voltage in the middle of a divider, from its two resistances.
-    fn divider_v(upper: f64, lower: f64) -> f64 {
-        EXCITATION_V * upper / (upper + lower)
+    fn divider_v(to_ground: f64, to_supply: f64) -> f64 {
+        EXCITATION_V * to_ground / (to_ground + to_supply)
     }
 
     /// The device file's three signals, literally: bridge resistances in ohms, dividers, four times the unbalance.
@@ -277,8 +277,8 @@ mod tests {
     fn the_printed_x_and_y_bridges_are_other_signals() {
         // Only R1 and R2 stretch: a pure x signal.
         let [r1, r2, r3, r4, r5, r6, r7] = [1e-3, -0.6e-3, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let printed_uv = |upper: f64, lower: f64| {
-            4e6 * (EXCITATION_V * (1.0 + upper) / (2.0 + upper + lower) - EXCITATION_V / 2.0)
+        let printed_uv = |to_ground: f64, to_supply: f64| {
+            4e6 * (EXCITATION_V * (1.0 + to_ground) / (2.0 + to_ground + to_supply) - EXCITATION_V / 2.0)
         };
         let [x_uv, y_uv, z_uv] = from_voltages_uv([r1, r2, r3, r4, r5, r6, r7]);
         let linear_uv = bridges([r1, r2, r3, r4, r5, r6, r7]).signal_uv;

@@ -67,6 +67,10 @@ pub enum SeriesLook {
     Line,
     /// Connected by dashes.
     Dashes,
+    /// Connected by a wide pale line, on which others can be seen.
+    Broad,
+    /// Connected by thin dashes, those of the next series of another length: where curves lie on each other, each shows.
+    ThinDashes,
     /// Each one by a mark.
     Points,
     /// Connected, each one with a mark.
@@ -100,6 +104,11 @@ impl Value {
 
 const BOTTOM: f64 = 46.0;
 const CURVE: f64 = 1.6;
+const BROAD: f64 = 6.0;
+const PALE: f64 = 0.3;
+const THIN: f64 = 1.2;
+/// Their periods have no common one that is short.
+const THIN_DASHES: [[f64; 2]; 3] = [[9.0, 4.0], [5.0, 3.0], [2.0, 2.0]];
 const CAP: f64 = 3.0;
 const GUIDE_GAP: f64 = 4.0;
 
@@ -210,7 +219,7 @@ impl Guide {
 impl Series {
     /// How the legend shows it as the series with this number.
     fn entry(&self, index: usize) -> Entry<'_> {
-        let stroke = self.look.stroke(Ink::opaque(Rgb::of_series(index)));
+        let stroke = self.look.stroke(index);
         Entry { name: &self.name, stroke, mark: self.look.has_points().then_some(index) }
     }
 
@@ -234,7 +243,7 @@ impl Series {
         let bars = ranged.map(|value| value.y_range.map(|y| place(value.x, y)));
         figure
             .path(Path::strokes(bars.flat_map(error_bar).collect(), Stroke { ink, width: 1.0, dash: None }));
-        if let Some(stroke) = self.look.stroke(ink) {
+        if let Some(stroke) = self.look.stroke(index) {
             figure.path(Path::strokes(vec![line.clone()], stroke));
         }
         if self.look.has_points() {
@@ -245,11 +254,18 @@ impl Series {
 }
 
 impl SeriesLook {
-    fn stroke(self, ink: Ink) -> Option<Stroke> {
+    /// Its line as the series with this number.
+    fn stroke(self, index: usize) -> Option<Stroke> {
+        let ink = Ink::opaque(Rgb::of_series(index));
         let line = Stroke { ink, width: CURVE, dash: None };
         match self {
             Self::Line | Self::LineAndPoints => Some(line),
             Self::Dashes => Some(line.dashed(5.0, 3.0)),
+            Self::Broad => Some(Stroke { ink: Ink { opacity: PALE, ..ink }, width: BROAD, dash: None }),
+            Self::ThinDashes => {
+                let [dash, gap] = THIN_DASHES[index % THIN_DASHES.len()];
+                Some(Stroke { width: THIN, ..line }.dashed(dash, gap))
+            }
             Self::Points => None,
         }
     }

@@ -10,6 +10,7 @@
 //! | many of them side by side | [`multiples::Multiples`] |
 //! | modules, regions, gauges, contact points | [`shape::Shape`] in a [`plan::Plan`] |
 //! | curves, points, error bars | [`chart::Chart`] |
+//! | a few numbers beside each other | [`columns::Columns`] |
 //!
 //! `tests/program/plot.rs` makes one of each kind.
 //!
@@ -19,6 +20,7 @@
 pub mod bands;
 pub mod chart;
 pub mod colour;
+pub mod columns;
 pub mod figure;
 pub mod grid;
 pub mod isoline;

@@ -71,6 +71,20 @@ fn the_papers_tables_stand_beside() {
 }
 
 #[test]
+fn radii_alone_draw_the_swarms() {
+    let folder = tempfile::tempdir().unwrap();
+    document(&format!("--radii 33,33,33 --seed 5 --figures {}", folder.path().display()));
+    let mut names: Vec<String> = std::fs::read_dir(folder.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["layout-swarm.png", "layout-swarm.svg"]);
+    let drawn = std::fs::read_to_string(folder.path().join("layout-swarm.svg")).unwrap();
+    assert!(drawn.len() > 10_000, "{} bytes", drawn.len());
+}
+
+#[test]
 fn bad_arguments_are_one_sentence_and_exit_2() {
     for (arguments, words) in [
         ("--radii 30,30", "three radii in millimetres"),
@@ -84,7 +98,6 @@ fn bad_arguments_are_one_sentence_and_exit_2() {
         ("--modules 3,12", "12 modules at the device's radius would lie over each other: ask for 11 at most"),
         ("--modules 3 --radii 30,30,30", "cannot be used with"),
         ("--modules 3 --seed 2", "cannot be used with"),
-        ("--radii 30,30,30 --figures here", "cannot be used with"),
         ("--device /no-such-file.toml", "cannot be read: No such file"),
     ] {
         let output = layout(arguments);
@@ -119,7 +132,9 @@ fn the_simulated_pad_is_near_statics() {
     assert!((rule_mm * 3.0_f64.sqrt() - distance_mm).abs() < 1e-3, "{rule_mm} {distance_mm}");
     let best_mm = number(&found["search"]["best"], "worst_mm");
     assert!(best_mm < number(&found["as_built"], "worst_mm"));
-    for name in ["layout-scan.svg", "layout-scan.png", "layout-regions.svg", "layout-regions.png"] {
+    for name in
+        ["layout-swarm.svg", "layout-scan.svg", "layout-scan.png", "layout-regions.svg", "layout-regions.png"]
+    {
         assert!(std::fs::metadata(folder.path().join(name)).unwrap().len() > 5_000, "{name}");
     }
 }

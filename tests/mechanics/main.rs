@@ -21,3 +21,5 @@ mod statics;
 #[cfg(feature = "simulator")]
 #[path = "../support/mod.rs"]
 mod support;
+#[cfg(all(test, feature = "simulator"))]
+mod vibration;

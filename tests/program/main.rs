@@ -26,6 +26,8 @@ mod simulate;
 mod simulate_figures;
 #[cfg(feature = "simulator")]
 mod simulate_pad;
+#[cfg(feature = "simulator")]
+mod sizes;
 #[path = "../support/mod.rs"]
 mod support;
 #[cfg(all(feature = "live", target_os = "linux"))]

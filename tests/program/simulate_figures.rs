@@ -23,7 +23,7 @@ fn figures_and_meshes_of_one_press() {
     assert!(told.get("rows").is_none(), "no table was wanted: {told}");
     let files: Vec<&str> =
         told["files"].as_array().unwrap().iter().map(|file| file.as_str().unwrap()).collect();
-    assert_eq!(files.len(), 12, "{files:?}");
+    assert_eq!(files.len(), 20, "{files:?}");
     for file in &files {
         let bytes = fs::read(folder.path().join(file)).unwrap();
         let start: &[u8] = match Path::new(file).extension().unwrap().to_str().unwrap() {
@@ -36,10 +36,26 @@ fn figures_and_meshes_of_one_press() {
     let text = |name: &str| fs::read_to_string(folder.path().join("f").join(name)).unwrap();
     assert!(text("deflection.svg").contains("1 N at (−5, 3.5) mm"));
     assert!(text("strain-x.svg").contains("R7") && text("strain-y.svg").contains("R1"));
+    assert!(text("film-stress.svg").contains("R3") && text("plate-stress.svg").contains("underside"));
+    assert!(text("module-stress.svg").contains("cut at y = 0"));
+    // Nine charts: seven gauges alone and in the pad, and the channels, under each of three forces.
+    assert_eq!(text("module-gauges.svg").matches("R7 ").count(), 6);
     let maps = text("influence.svg");
     assert_eq!(maps.matches("<circle").count(), 27, "one rim for each map");
     assert!(maps.len() < 300_000, "{} bytes", maps.len());
     check_meshes(&folder.path().join("v/w"));
+}
+
+#[test]
+fn the_dataset_is_drawn_beside_its_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = simulate(folder.path(), "--dataset paper --seed 2 --out p.csv --figures f --json");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&told["rows"], told["files"].as_array().unwrap().len()), (&Value::from(14_400), 2), "{told}");
+    let drawn = fs::read_to_string(folder.path().join("f/dataset.svg")).unwrap();
+    let dots = drawn.matches("<circle").count();
+    assert!(dots > 900 && drawn.len() < 300_000, "{dots} dots, {} bytes", drawn.len());
 }
 
 /// The modules stand under the plate, move with it, hold on to the base, and VTK sees no brick inside out.

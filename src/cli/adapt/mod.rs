@@ -23,10 +23,11 @@ use self::method::Method;
 use self::named::Named;
 use self::numbers::Pad as FoundPad;
 use super::decoder_file;
-use super::destination::Destination;
+use super::destination::{Destination, Folder};
 use super::device::Pad;
 use super::failure::Failure;
 use super::field::field_of;
+use super::pictures;
 use super::written::{both_print, is_same, is_stdout, say, tell, written_over};
 
 /// Arguments of `tactpad adapt`.
@@ -70,6 +71,9 @@ pub(super) struct Arguments {
     out: PathBuf,
     #[command(flatten)]
     pad: Pad,
+    /// Write the figure adapt-loss, how scdf learns, into this folder, as SVG and PNG.
+    #[arg(long, value_name = "DIR", conflicts_with = "play")]
+    figures: Option<PathBuf>,
     /// Print one JSON document: what came of it.
     #[arg(long)]
     json: bool,
@@ -115,6 +119,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let method = &arguments.method.unwrap_or(Method::Inverse);
     let measured = Measured::read(&arguments.measured, &device, (arguments.rows, arguments.seed), *method)?;
     let to = Destination::of(out)?;
+    let folder = arguments.folder(*method)?;
     let from = arguments.from.as_deref();
     let earlier = own::earlier(*method, from)?;
     let field = field_of(&device)?;
@@ -122,6 +127,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let fit = if *method == Method::Scdf {
         let (network, fit) = scdf::adapt(&measured, from, arguments.seed)?;
         decoder_file::write_network(&to, &network)?;
+        if let Some(folder) = &folder {
+            pictures::write(folder, "adapt-loss", &fit.drawn())?;
+        }
         Fit::Network(fit)
     } else {
         // Neither waits for the other: what is named has no part in the fit.
@@ -148,6 +156,15 @@ fn parse_rows(text: &str) -> Result<usize, String> {
 }
 
 impl Arguments {
+    /// The folder of the figure; only the network's training has one.
+    fn folder(&self, method: Method) -> Result<Option<Folder>, Failure> {
+        if self.figures.is_some() && method != Method::Scdf {
+            let why = "--figures shows how a network learns: give it with --method scdf";
+            return Err(Failure::Unusable(why.into()));
+        }
+        self.figures.as_deref().map(Folder::of).transpose()
+    }
+
     /// Refuses to write over what is read. A decoder may be written over itself: it is read before.
     fn spare(&self) -> Result<(), Failure> {
         self.pad.spare(&self.out)?;

@@ -9,10 +9,11 @@ use super::measured::Measured;
 use crate::cli::decoder_file;
 use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
-use tactpad::lab::scdf::EPOCHS_MAX;
 use tactpad::lab::scdf::adaptation::{Adapted, BETAS};
+use tactpad::lab::scdf::{EPOCHS_MAX, drawing};
 use tactpad::network::Network;
 use tactpad::network::training::Epoch;
+use tactpad::plot::figure::Figure;
 
 /// How the network took to the pad.
 #[derive(Serialize)]
@@ -50,6 +51,11 @@ pub(super) fn adapt(measured: &Measured, from: Option<&Path>, seed: u64) -> Resu
 }
 
 impl Fit {
+    /// How errors fell with the β that was chosen.
+    pub(super) fn drawn(&self) -> Figure {
+        drawing::training(&format!("Stage II, β = {}", self.beta), &self.curve, None)
+    }
+
     fn of(adapted: Adapted) -> Self {
         let tried = |(beta, validation_mse)| Tried { beta, validation_mse };
         Self {

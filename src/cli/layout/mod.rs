@@ -2,6 +2,7 @@
 
 mod counts;
 mod report;
+mod sizes;
 mod tables;
 
 use std::path::PathBuf;
@@ -35,7 +36,7 @@ pub(super) struct Arguments {
     pad: Pad,
     /// Radii of the modules' effective regions in millimetres: only the paper's rule for them, and no simulation.
     #[arg(long, value_name = "R1,R2,R3", value_parser = parse_radii, allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["threshold", "noise_uv", "figures", "imperfections"])]
+    #[arg(conflicts_with_all = ["threshold", "noise_uv", "imperfections"])]
     radii: Option<Radii>,
     /// Instead of the search: how well the same plate locates on so many modules at equal angles, one number or several.
     #[arg(long, value_name = "N,N", value_parser = Counts::parse, allow_hyphen_values = true)]
@@ -49,10 +50,17 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "UV", default_value_t = NOISE_RMS_UV, value_parser = parse_noise)]
     #[arg(allow_hyphen_values = true)]
     noise_uv: f64,
+    /// How large and how thick the plate should be, instead: pads of 30 to 150 mm and 0.5 to 3 mm with these modules.
+    #[arg(long, conflicts_with_all = ["radii", "threshold", "seed"])]
+    sizes: bool,
+    /// Write the device file of each of these pads into this folder, for simulate --device.
+    #[arg(long, value_name = "DIR", requires = "sizes")]
+    devices: Option<PathBuf>,
     /// The swarm's seed; the same seed gives the same answer.
     #[arg(long, default_value_t = 1, allow_hyphen_values = true)]
     seed: u64,
-    /// Write the figures layout-scan and layout-regions, or layout-modules, into this folder, as SVG and PNG.
+    /// Write the figures layout-swarm, layout-scan and layout-regions into this folder, as SVG and PNG; with --radii layout-swarm
+    /// alone; with --modules, layout-modules; with --sizes, size-sensitivity, size-error and size-frequency.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Print one JSON document.
@@ -69,6 +77,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(counts) = &arguments.modules {
         return counts::run(&device, counts, arguments.noise_uv, folder.as_ref(), arguments.json);
     }
+    if arguments.sizes {
+        return sizes::run(arguments, &device, folder.as_ref());
+    }
     let (spacing, simulated) = match &arguments.radii {
         Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),
         None => simulated(arguments, &device).map(|(spacing, pad)| (spacing, Some(pad)))?,
@@ -82,11 +93,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         parts_usd: PARTS.iter().map(Part::price_usd).sum(),
         simulated,
     };
-    if let (Some(folder), Some(pad)) = (&folder, &report.simulated) {
-        pictures::write(folder, "layout-scan", &drawing::scan(pad))?;
-        pictures::write(folder, "layout-regions", &drawing::regions(pad, &report.spacing, &device))?;
+    if let Some(folder) = &folder {
+        draw(folder, &report, &device)?;
     }
     if arguments.json { print_json(&report) } else { Ok(tables::print(&report)?) }
+}
+
+fn draw(folder: &Folder, report: &LayoutReport, device: &Device) -> Result<(), Failure> {
+    let radii = Radii::new(report.spacing.radii_mm).map_err(StudyError::Radius)?;
+    pictures::write(folder, "layout-swarm", &drawing::swarms(&radii, report.seed)?)?;
+    if let Some(pad) = &report.simulated {
+        pictures::write(folder, "layout-scan", &drawing::scan(pad))?;
+        pictures::write(folder, "layout-regions", &drawing::regions(pad, &report.spacing, device))?;
+    }
+    Ok(())
 }
 
 /// The effective regions of the simulated pad, the paper's rule for them, and the search for better placements.

@@ -20,9 +20,17 @@ use super::tables::{read, write};
 use super::written::{is_stdout, print_json, say};
 use tactpad::lab::metrology::bench::Bench;
 use tactpad::lab::metrology::decoders::{Decoders, by};
+use tactpad::lab::metrology::dynamics::PadDynamics;
 use tactpad::lab::metrology::figures::{Evidence, Figures, Simulation};
 use tactpad::lab::metrology::report::entries;
 use tactpad::lab::metrology::{Decode, conflicts, drawing, procedures};
+#[cfg(feature = "simulator")]
+use tactpad::mechanics::mesh::Fineness;
+#[cfg(feature = "simulator")]
+use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
+#[cfg(feature = "simulator")]
+use tactpad::numeric::zernike::jets;
+use tactpad::pad::device::Device;
 use tactpad::tables::measured::columns::Kind;
 
 /// Arguments of `tactpad metrology`.
@@ -52,7 +60,7 @@ pub(super) struct Arguments {
     /// Leave open what needs a network: nothing is trained.
     #[arg(long, conflicts_with_all = ["network", "decoder"])]
     no_network: bool,
-    /// Write the plots into this folder, as SVG and PNG: those of the first seed.
+    /// Write the plots into this folder, as SVG and PNG: those of the first seed, and the forces' errors of all.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Only write the plan of the paper's procedures, for `twin --plan` or for a rig.
@@ -105,7 +113,8 @@ fn of_file(arguments: &Arguments, path: &Path) -> Result<MetrologyReport, Failur
     let progress = Progress::begin("finding the figures of merit");
     let figures = Figures::of(&evidence);
     drop(progress);
-    let plots = plots(folder.as_ref(), &evidence, &figures)?;
+    let mut plots = plots(folder.as_ref(), &evidence, &figures)?;
+    plots.extend(errors_plot(folder.as_ref(), std::slice::from_ref(&figures))?);
     let statement = format!(
         "Figures of {}. Whose data these are, and whether hardware was measured, this program cannot know.",
         path.display()
@@ -115,6 +124,7 @@ fn of_file(arguments: &Arguments, path: &Path) -> Result<MetrologyReport, Failur
         seeds: vec![],
         rows: entries(std::slice::from_ref(&figures), &[]),
         figures: vec![figures],
+        dynamics: dynamics(&device)?,
         plots,
     })
 }
@@ -130,6 +140,7 @@ fn of_twin(arguments: &Arguments) -> Result<MetrologyReport, Failure> {
         }
         given => given,
     };
+    let dynamics = dynamics(&device)?;
     let bench = Bench { device, field, nominal, decoders };
     let seeds: Vec<u64> = arguments.seeds.clone().collect();
     let progress = Progress::begin("measuring the twin's pads");
@@ -142,14 +153,35 @@ fn of_twin(arguments: &Arguments) -> Result<MetrologyReport, Failure> {
         bench.all(&seeds, |evidence, figures| plots(folder.as_ref(), evidence, figures), report)?;
     // The line goes before anything is printed.
     drop(progress);
+    let mut plots = plots.unwrap_or_default();
+    plots.extend(errors_plot(folder.as_ref(), &figures)?);
     let conflicts = if arguments.pad.is_papers()? { conflicts::all() } else { Vec::new() };
     Ok(MetrologyReport {
         statement: "A numerical twin of the pad; no hardware was measured.".to_owned(),
         seeds,
         rows: entries(&figures, &conflicts),
         figures,
-        plots: plots.unwrap_or_default(),
+        dynamics,
+        plots,
     })
+}
+
+/// The device's natural motions, and what they do to its step response.
+#[cfg(feature = "simulator")]
+fn dynamics(device: &Device) -> Result<Option<PadDynamics>, Failure> {
+    let _progress = Progress::begin("looking for the pad's natural motions");
+    let mut simulator = Simulator::new(Fineness::STANDARD);
+    let unsolved = |error| Failure::Failed(format!("the simulator: {error}"));
+    let motions = simulator.natural_motions(device).map_err(unsolved)?;
+    let signals = simulator.pad(device).map_err(unsolved)?.signals();
+    let middle = jets(PLATE_DEGREE, [0.0; 2]);
+    let still_uv_per_n = [2, 5, 8].iter().map(|channel: &usize| signals[*channel][2].value(&middle)).sum();
+    Ok(PadDynamics::of(&motions, still_uv_per_n))
+}
+
+#[cfg(not(feature = "simulator"))]
+fn dynamics(_device: &Device) -> Result<Option<PadDynamics>, Failure> {
+    Ok(None)
 }
 
 impl Arguments {
@@ -181,6 +213,13 @@ fn plots(folder: Option<&Folder>, evidence: &Evidence, figures: &Figures) -> Res
         }
     }
     Ok(written)
+}
+
+/// Writes the plot of the forces' errors, which is of all pads.
+fn errors_plot(folder: Option<&Folder>, figures: &[Figures]) -> Result<Option<String>, Failure> {
+    let Some((folder, columns)) = folder.zip(drawing::by_axis(figures)) else { return Ok(None) };
+    let [svg, _] = pictures::write(folder, "metrology-rmse", &columns.figure())?;
+    Ok(Some(svg))
 }
 
 fn parse_seeds(text: &str) -> Result<RangeInclusive<u64>, String> {

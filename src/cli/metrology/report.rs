@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use tactpad::lab::metrology::dynamics::PadDynamics;
 use tactpad::lab::metrology::figures::Figures;
 use tactpad::lab::metrology::report::Entry;
 
@@ -15,6 +16,8 @@ pub(super) struct MetrologyReport {
     pub(super) rows: Vec<Entry>,
     /// All that was found, by seed.
     pub(super) figures: Vec<Figures>,
+    /// The simulated pad's own dynamics, which no table has; nothing without the simulator.
+    pub(super) dynamics: Option<PadDynamics>,
     /// Files of the plots.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) plots: Vec<String>,

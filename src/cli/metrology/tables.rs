@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use super::report::MetrologyReport;
 use crate::cli::wrapped::{hanging, lines};
 use crate::cli::written::stdout;
+use tactpad::lab::metrology::dynamics::{InSeries, PadDynamics};
 use tactpad::lab::metrology::report::{Conflict, Entry, Status};
 
 pub(super) fn print(report: &MetrologyReport) -> io::Result<()> {
@@ -35,7 +36,49 @@ fn write(out: &mut impl Write, report: &MetrologyReport) -> io::Result<()> {
         writeln!(out)?;
         write_conflict(out, conflict)
     })?;
+    if let Some(dynamics) = &report.dynamics {
+        writeln!(out)?;
+        write_dynamics(out, dynamics)?;
+    }
     report.plots.iter().try_for_each(|file| writeln!(out, "{file} is written, and the same as PNG"))
+}
+
+/// The pad's own dynamics, and what they change behind the filter.
+fn write_dynamics(out: &mut impl Write, found: &PadDynamics) -> io::Result<()> {
+    let [low, high] = found.damping_range;
+    let text = format!(
+        "The pad's own dynamics, which the rows above have not: the simulated plate first {} at {:.0} Hz; a press in the middle \
+         rings with the motion at {:.0} Hz ({}), which is {:.1} % of the output. At a damping ratio of {} the plate itself \
+         overshoots by {:.0} %, settles to 2 % in {:.0} ms and follows within ±3 dB up to {:.0} Hz.",
+        found.motions.first().map_or("rings", |first| first.kind),
+        found.motions.first().map_or(f64::NAN, |first| first.frequency_hz),
+        found.dominating.frequency_hz,
+        found.dominating.kind,
+        100.0 * found.dominating.output_share,
+        found.damping_ratio,
+        100.0 * found.overshoot,
+        found.settling_ms,
+        found.plate_bandwidth_hz
+    );
+    writeln!(out, "{}", hanging("", &text))?;
+    writeln!(
+        out,
+        "{:<28} {:>9} {:>6} {:>8} {:>6} {:>13}",
+        "a step at any instant", "delay ms", "±", "rise ms", "±", "bandwidth Hz"
+    )?;
+    let [least, most] = found.with_pad_by_damping;
+    write_in_series(out, "the filter alone", &found.filter_alone)?;
+    write_in_series(out, &format!("with the pad, damping {}", found.damping_ratio), &found.with_pad)?;
+    write_in_series(out, &format!("with the pad, damping {low}"), &least)?;
+    write_in_series(out, &format!("with the pad, damping {high}"), &most)
+}
+
+fn write_in_series(out: &mut impl Write, name: &str, found: &InSeries) -> io::Result<()> {
+    writeln!(
+        out,
+        "{name:<28} {:>9.2} {:>6.2} {:>8.2} {:>6.2} {:>13.5}",
+        found.delay_ms, found.delay_deviation_ms, found.rise_ms, found.rise_deviation_ms, found.bandwidth_hz
+    )
 }
 
 /// What open figures need, each once, in their order.
@@ -133,8 +176,14 @@ mod tests {
 
     fn text(rows: Vec<Entry>) -> String {
         let statement = "A numerical twin of the pad; no hardware was measured.".to_owned();
-        let report =
-            MetrologyReport { statement, seeds: vec![1, 2, 3], rows, figures: vec![], plots: vec![] };
+        let report = MetrologyReport {
+            statement,
+            seeds: vec![1, 2, 3],
+            rows,
+            figures: vec![],
+            dynamics: None,
+            plots: vec![],
+        };
         let mut bytes = Vec::new();
         write(&mut bytes, &report).unwrap();
         String::from_utf8(bytes).unwrap()

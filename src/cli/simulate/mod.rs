@@ -1,6 +1,9 @@
 //! `tactpad simulate`: what the channels read for given contacts, or for the paper's dataset; and the pad under a press,
 //! in figures and in ParaView's files.
 
+mod dataset_picture;
+#[cfg(feature = "simulator")]
+mod module;
 #[cfg(feature = "simulator")]
 mod pictures;
 #[cfg(feature = "simulator")]
@@ -17,6 +20,7 @@ use super::destination::{Destination, Folder};
 use super::device::Pad;
 use super::failure::Failure;
 use super::field::field_of;
+use super::pictures::write as pictures_of;
 use super::progress::Progress;
 use super::summary::{ChannelReport, Summary};
 use super::tables;
@@ -83,8 +87,8 @@ enum Dataset {
 #[command(group = ArgGroup::new("shown").args(["figures", "vtk"]).multiple(true))]
 #[group(skip)]
 struct Folders {
-    /// A folder for figures, SVG and PNG: the plate's deflection under a press of 1 N, the strain under module 0's
-    /// film, and the 27 influence maps.
+    /// A folder for figures, SVG and PNG: the plate's deflection and stress under a press of 1 N, strain and stress of
+    /// module 0, its gauges one by one, and the 27 influence maps; with --dataset how its contacts are drawn, instead.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// A folder for ParaView's files of the pad under a press of 1 N: the plate and the three modules.
@@ -118,8 +122,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let contacts = out.as_ref().map(|out| contacts(arguments, out, &device)).transpose()?;
     let to = out.as_deref().map(Destination::of).transpose()?;
     let [figures, vtk] = folders.tried()?;
+    let mut files = Vec::new();
+    let shown = match (&contacts, &figures) {
+        (Some(contacts), Some(folder)) if arguments.source.dataset.is_some() => {
+            let labels: Vec<Label> = contacts.rows.iter().map(|row| row.label).collect();
+            files.extend(pictures_of(folder, "dataset", &dataset_picture::of(&labels, &device))?);
+            None
+        }
+        _ => figures.as_ref(),
+    };
     let table = contacts.zip(to).map(|(contacts, to)| table(&contacts, &to, &device)).transpose()?;
-    let outcome = Outcome { table, files: folders.fill(&device, figures.as_ref(), vtk.as_ref())? };
+    files.extend(folders.fill(&device, shown, vtk.as_ref())?);
+    let outcome = Outcome { table, files };
     match (json, prints_table) {
         (true, _) => print_json(&outcome),
         (false, true) => {

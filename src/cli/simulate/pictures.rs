@@ -1,7 +1,9 @@
-//! `--figures`: the plate's deflection, the strain under a film, the 27 influence maps.
+//! `--figures`: the plate's deflection and stress, strain and stress of a film and its module, the 27 influence maps.
 
+use tactpad::mechanics::deformed::von_mises_mpa;
+use tactpad::mechanics::mesh::Layer;
 use tactpad::mechanics::mesh::half_sizes_mm;
-use tactpad::mechanics::pressed::PressedPad;
+use tactpad::mechanics::pressed::{PressedPad, plane_von_mises_mpa};
 use tactpad::pad::device::{Device, GAUGES};
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::{InfluenceField, MAPS};
@@ -24,6 +26,12 @@ const SMALL_NODES: usize = 61;
 /// Strains near the window's edge are many times those at the gauges.
 const STRAIN_DECADES: usize = 2;
 
+/// Colours of the plate's stress.
+const STRESS_BANDS: usize = 12;
+
+/// Stresses below this share of the largest have one colour.
+const STRESS_SHARE_MIN: f64 = 0.01;
+
 /// Channels over a module are a hundred times those at its far side.
 const INFLUENCE_DECADES: usize = 2;
 
@@ -31,8 +39,11 @@ const INFLUENCE_DECADES: usize = 2;
 pub(super) fn of(pressed: &PressedPad, field: &PadField) -> Vec<(&'static str, Figure)> {
     vec![
         ("deflection", deflection(pressed).figure(560.0)),
+        ("plate-stress", plate_stress(pressed).figure()),
         ("strain-x", strain(pressed, 0).figure(720.0)),
         ("strain-y", strain(pressed, 1).figure(720.0)),
+        ("film-stress", film_stress(pressed).figure(720.0)),
+        ("module-stress", module_stress(pressed).figure(900.0)),
         ("influence", influence(&pressed.pad.device, &field.signals).figure()),
     ]
 }
@@ -54,26 +65,110 @@ fn deflection(pressed: &PressedPad) -> Plan {
     plate(title, device, field, shapes)
 }
 
+/// Von Mises's stress on both sides of the plate.
+fn plate_stress(pressed: &PressedPad) -> Multiples {
+    let device = &pressed.pad.device;
+    let (radius_mm, half_mm) = (device.plate.radius_mm(), 0.5 * device.plate.thickness_mm);
+    let grids = [half_mm, -half_mm].map(|height_mm| {
+        Grid::over_disc(radius_mm, NODES, |x, y| {
+            plane_von_mises_mpa(pressed.plate_strain([x, y], height_mm), device.material.plate)
+        })
+    });
+    let largest = grids.iter().map(Grid::largest).fold(0.0, f64::max);
+    let bands = Bands::sequential(Some([0.0, largest]), STRESS_BANDS);
+    let plans = grids.map(|grid| {
+        let field = Field { grid, bands: bands.clone(), isolines: Isolines::None, label: "MPa".to_owned() };
+        plate(String::new(), device, field, films(device))
+    });
+    Multiples {
+        title: format!("Von Mises stress of the plate under {}", load(pressed)),
+        note: "Both seen from above; outlines: the modules’ films.".to_owned(),
+        column_titles: ["top side", "underside"].map(str::to_owned).to_vec(),
+        row_titles: vec![String::new()],
+        plans: plans.to_vec(),
+        plan_width: 360.0,
+        bars: Bars::Shared,
+    }
+}
+
+/// Von Mises's stress of the first module's film on its underside.
+fn film_stress(pressed: &PressedPad) -> Plan {
+    let device = &pressed.pad.device;
+    let module = pressed.module(0);
+    let material = Layer::Pi.material(device, &device.modules[0]);
+    let grid = over_film(device, |place| {
+        module.underside_strain(place).map_or(f64::NAN, |strain| von_mises_mpa(&strain, material))
+    });
+    let title = format!("Von Mises stress of module 0’s film, underside, under {}", load(pressed));
+    film(title, device, stress_field(grid))
+}
+
+/// Von Mises's stress of the first module, cut along its middle.
+fn module_stress(pressed: &PressedPad) -> Plan {
+    let device = &pressed.pad.device;
+    let module = pressed.module(0);
+    let x = film_half_mm(device)[0];
+    let [low, high] = [0, usize::MAX].map(|at| {
+        let lines_mm = &module.mesh.lines_mm[2];
+        lines_mm.get(at.min(lines_mm.len().saturating_sub(1))).copied().unwrap_or_default()
+    });
+    // Twenty-five nodes per millimetre along the film, forty across the layers.
+    let nodes = [(50.0 * x) as usize + 1, (40.0 * (high - low)) as usize + 1];
+    let grid = Grid::over_rectangle([-x, x], [low, high], nodes, |x, z| {
+        module.strain_at([x, 0.0, z]).map_or(f64::NAN, |(strain, layer)| {
+            von_mises_mpa(&strain, layer.material(device, &device.modules[0]))
+        })
+    });
+    Plan {
+        title: format!("Von Mises stress of module 0, cut at y = 0, under {}", load(pressed)),
+        x: [-x, x],
+        y: [low, high],
+        x_label: "x (tangential), mm".to_owned(),
+        y_label: "z, mm".to_owned(),
+        field: Some(stress_field(grid)),
+        shapes: vec![],
+    }
+}
+
+/// Stresses at edges are many times those between.
+fn stress_field(grid: Grid) -> Field {
+    let largest = grid.largest();
+    let bands = Bands::sequential_decades(Some([largest * STRESS_SHARE_MIN, largest]));
+    Field { grid, bands, isolines: Isolines::None, label: "MPa".to_owned() }
+}
+
 /// Strain of the first module's film along an axis of the module.
 fn strain(pressed: &PressedPad, axis: usize) -> Plan {
     let device = &pressed.pad.device;
-    let half_mm = film_half_mm(device);
     let module = pressed.module(0);
-    let [x, y] = half_mm.map(|half| [-half, half]);
-    // Twenty nodes per millimetre: the mesh's finest elements.
-    let nodes = half_mm.map(|half| (40.0 * half) as usize + 1);
-    let grid = Grid::over_rectangle(x, y, nodes, |x, y| {
-        module.underside_strain([x, y]).map_or(f64::NAN, |strain| 1e6 * strain[axis])
+    let grid = over_film(device, |place| {
+        module.underside_strain(place).map_or(f64::NAN, |strain| 1e6 * strain[axis])
     });
     let bands = Bands::diverging_decades(grid.largest(), STRAIN_DECADES);
     let name = ["x", "y"][axis];
+    let title = format!("Strain ε_{{{name}{name}}} of module 0’s film, underside, under {}", load(pressed));
+    film(title, device, Field { grid, bands, isolines: Isolines::None, label: "µm/m".to_owned() })
+}
+
+/// Values over a module's film.
+fn over_film(device: &Device, value: impl Fn([f64; 2]) -> f64) -> Grid {
+    let half_mm = film_half_mm(device);
+    let [x, y] = half_mm.map(|half| [-half, half]);
+    // Twenty nodes per millimetre: the mesh's finest elements.
+    let nodes = half_mm.map(|half| (40.0 * half) as usize + 1);
+    Grid::over_rectangle(x, y, nodes, |x, y| value([x, y]))
+}
+
+/// A field over a module's film with its gauges.
+fn film(title: String, device: &Device, field: Field) -> Plan {
+    let [x, y] = film_half_mm(device).map(|half| [-half, half]);
     Plan {
-        title: format!("Strain ε_{{{name}{name}}} of module 0’s film, underside, under {}", load(pressed)),
+        title,
         x,
         y,
         x_label: "x (tangential), mm".to_owned(),
         y_label: "y (radial), mm".to_owned(),
-        field: Some(Field { grid, bands, isolines: Isolines::None, label: "µm/m".to_owned() }),
+        field: Some(field),
         shapes: gauges(device),
     }
 }

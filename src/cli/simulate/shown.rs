@@ -1,6 +1,6 @@
 //! `--figures` and `--vtk`: the files of a pressed pad.
 
-use super::pictures;
+use super::{module, pictures};
 use crate::cli::destination::Folder;
 use crate::cli::failure::Failure;
 use crate::cli::field::field_of;
@@ -25,7 +25,9 @@ pub(super) fn fill(
     let mut written = Vec::new();
     if let Some(folder) = figures {
         let field = field_of(&pressed.pad.device)?;
-        for (name, figure) in pictures::of(&pressed, &field) {
+        let gauges = module::gauges(&pressed).map_err(FieldError::Unsolved)?;
+        let figures = pictures::of(&pressed, &field).into_iter().chain([("module-gauges", gauges)]);
+        for (name, figure) in figures {
             written.extend(write(folder, name, &figure)?);
         }
     }

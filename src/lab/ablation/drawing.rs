@@ -167,17 +167,18 @@ fn strip(decoded: &[(String, Vec<Moment>)], number: usize, name: &str) -> Chart 
     let named = |name: &str| if number == 0 { name.to_owned() } else { String::new() };
     let truth = decoded.first().map(|(_, moments)| {
         let values = moments.iter().map(|moment| value(moment, moment.truth.numbers()));
-        series(&named("true"), SeriesLook::Dashes, values)
+        series(&named("true"), SeriesLook::Broad, values)
     });
     let found = decoded.iter().map(|(name, moments)| {
         let values = moments.iter().map(|moment| value(moment, numbers(&moment.found).map(f64::from)));
-        series(&named(name), SeriesLook::Line, values)
+        series(&named(name), SeriesLook::ThinDashes, values)
     });
     let starts = (1_u32..).take(REGIONS.len() - 1).map(|index| TOUCH_S * f64::from(index));
     let guides = starts.map(|t_s| Guide { at: GuidePlace::X(t_s), label: String::new() });
     Chart {
         width: STRIP_WIDTH,
-        series: found.chain(truth).collect(),
+        // The truth lies below, so that what covers it is seen.
+        series: truth.into_iter().chain(found).collect(),
         guides: guides.collect(),
         y: Side { label: name.to_owned(), scale: Scale::Linear, also: vec![] },
         ..chart(if number == 4 { "time in s" } else { "" }, "", Scale::Linear)

@@ -3,7 +3,9 @@
 use super::module_count::{ModuleCounts, Ringed, Wiring, load_sharing};
 use super::placement::{Candidate, Placement};
 use super::precision::Precision;
-use super::study::{Simulated, SpacingAnswers};
+use super::spacing::Radii;
+use super::study::{Simulated, SpacingAnswers, StudyError};
+use super::swarm;
 use crate::pad::device::Device;
 use crate::pad::device::pose::Pose;
 use crate::plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
@@ -43,6 +45,56 @@ pub fn scan(pad: &Simulated) -> Figure {
     both.place(errors, [0.0, 0.0]);
     both.place(signals, [WIDTH, 0.0]);
     both
+}
+
+/// Swarms whose courses are drawn.
+const SWARMS: u64 = 6;
+
+/// The paper's Figure 1b: the best cost of swarms after each iteration. On the left they
+/// look for the distances, with a penalty for what breaks the rule; on the right for layouts that keep it, as the study
+/// does. The seeds are `first_seed` and the next ones.
+///
+/// # Errors
+/// A swarm fails.
+pub fn swarms(radii: &Radii, first_seed: u64) -> Result<Figure, StudyError> {
+    let optimum_mm2 = radii.widest().area_mm2;
+    let [r1, r2, r3] = radii.mm();
+    let penalised = Chart {
+        title: format!("Swarms over the distances, radii {r1:.1}, {r2:.1}, {r3:.1} mm"),
+        ..costs(radii, first_seed, swarm::penalised_costs)?
+    };
+    let ruled = Chart {
+        title: "Swarms over layouts that keep the rule".to_owned(),
+        guides: vec![Guide { at: GuidePlace::Y(-optimum_mm2), label: "closed form".to_owned() }],
+        ..costs(radii, first_seed, swarm::costs)?
+    };
+    let mut both = Figure::new(2.0 * WIDTH, HEIGHT, "Best cost of the particle swarm by iteration");
+    both.place(Chart { guides: ruled.guides.clone(), ..penalised }.figure(), [0.0, 0.0]);
+    both.place(ruled.figure(), [WIDTH, 0.0]);
+    Ok(both)
+}
+
+/// The best costs of one kind of swarms by iteration, a curve for each seed.
+fn costs(
+    radii: &Radii,
+    first_seed: u64,
+    of: fn(&Radii, u64) -> Result<Vec<f64>, argmin::core::Error>,
+) -> Result<Chart, StudyError> {
+    let curve = |seed: u64| {
+        let costs_mm2 = of(radii, seed).map_err(|error| StudyError::Swarm(error.to_string()))?;
+        let values = (1_u32..).zip(costs_mm2).map(|(round, cost)| Value::new(f64::from(round), cost));
+        Ok(Series { name: format!("seed {seed}"), values: values.collect(), look: SeriesLook::Line })
+    };
+    let seeds = (0..SWARMS).map(|number| first_seed.saturating_add(number));
+    Ok(Chart {
+        title: String::new(),
+        width: WIDTH,
+        height: HEIGHT,
+        x: Side { scale: Scale::Log10, ..side("Iteration") },
+        y: side("Best cost: −area, mm²"),
+        series: seeds.map(curve).collect::<Result<_, StudyError>>()?,
+        guides: vec![],
+    })
 }
 
 /// One figure of merit over the modules' radius: a curve for the least and the greatest turn.

@@ -7,7 +7,7 @@
 //! for fewer modules and for more, with [`conditioning`]. [`published`] holds the
 //! paper's tables for comparison.
 //!
-//! [`study`] does all of it for a device, and [`drawing`] shows it.
+//! [`study`] does all of it for a device, and [`drawing`] shows it. [`sizes`] asks how large and how thick the plate should be.
 //!
 //! Everything here is pure. Millimetres, newtons, microvolts, degrees, pad frame.
 //!
@@ -27,6 +27,10 @@ pub mod region;
 mod ringed;
 #[cfg(feature = "simulator")]
 mod scan;
+pub mod size_drawing;
+pub mod sizes;
+#[cfg(feature = "simulator")]
+mod sizing;
 pub mod spacing;
 pub mod study;
 pub mod swarm;

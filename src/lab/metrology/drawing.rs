@@ -1,15 +1,18 @@
 //! The figures as plots, in the form of the paper's.
 
 use super::ageing::Ageing;
+use super::decoded::DecodedErrors;
 use super::fem::simulated_uv;
+use super::figures::Figures;
 use super::hysteresis::Hysteresis;
 use super::location::LocationSpread;
 use super::rows::{Reading, Zeros, by_place, is_ordinary, is_press, is_same_place, readings};
 use super::series;
 use super::thermal::ThermalDrift;
-use crate::numeric::statistics::{mean, mean_vector};
+use crate::numeric::statistics::{deviation, mean, mean_vector};
 use crate::pad::influence::InfluenceField;
 use crate::plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
+use crate::plot::columns::{Column, Columns};
 use crate::plot::scale::Scale;
 use crate::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
 use crate::tables::measured::{Label, Table};
@@ -124,6 +127,31 @@ pub fn by_place_decoded(spreads: &[LocationSpread]) -> Chart {
         y: Side { also, ..y },
         ..chart("", "")
     }
+}
+
+/// Root-mean-square errors of the forces, axis by axis, and of the resultant, after the paper's Figure 9: means over
+/// the tables with their standard deviations. `None` where no table has them.
+pub fn by_axis(figures: &[Figures]) -> Option<Columns> {
+    let errors: Vec<_> = figures.iter().filter_map(|figures| figures.decoded.as_ref().ok()).collect();
+    let first = errors.first()?;
+    let column = |name: &str, of: &dyn Fn(&DecodedErrors) -> f64| {
+        let values: Vec<f64> = errors.iter().map(|errors| of(errors)).collect();
+        let value = mean(&values);
+        let off = if values.len() > 1 { deviation(&values) } else { 0.0 };
+        let label = if off > 0.0 { format!("{value:.3} ± {off:.3}") } else { format!("{value:.3}") };
+        Column { name: name.to_owned(), value, range: [value - off, value + off], label }
+    };
+    let axes = ["F_{x}", "F_{y}", "F_{z}"].into_iter().enumerate();
+    let axes = axes.map(|(axis, name)| column(name, &|errors| errors.force_rmse_n[axis]));
+    let resultant = column("resultant", &|errors| errors.resultant_rmse_n);
+    let pads = if errors.len() > 1 { format!(", {} pads", errors.len()) } else { String::new() };
+    Some(Columns {
+        title: format!("Decoded force: RMSE over {} contacts{pads}", first.contacts),
+        width: WIDTH,
+        height: 0.75 * HEIGHT,
+        y_label: "root-mean-square error, N".to_owned(),
+        columns: axes.chain([resultant]).collect(),
+    })
 }
 
 /// The first loop of loading and unloading: what the output adds to the labelled force.

@@ -12,6 +12,7 @@ pub mod conflicts;
 pub mod decoded;
 pub mod decoders;
 pub mod drawing;
+pub mod dynamics;
 pub mod fem;
 pub mod figures;
 pub mod holding;

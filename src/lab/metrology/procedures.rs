@@ -11,7 +11,7 @@ use crate::tables::plans::paper::places_mm;
 use super::{FULL_SCALE_N, holding, location};
 
 /// Samples a second of a series: the authors' earlier pad gave 40 to 50.
-const RATE_HZ: f64 = 45.0;
+pub(super) const RATE_HZ: f64 = 45.0;
 
 /// Everything but the temperature sweep is done at this temperature.
 const ROOM_C: f64 = 25.0;

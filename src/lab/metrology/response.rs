@@ -115,7 +115,7 @@ fn step(trial: &[Sample], start: usize, held: usize, interval_s: f64) -> Option<
 }
 
 /// Where a response first passes a level, in samples from its start.
-fn crossing(response: &[f64], level: f64) -> Option<f64> {
+pub(super) fn crossing(response: &[f64], level: f64) -> Option<f64> {
     let pair = response.windows(2).position(|pair| pair[0] < level && pair[1] >= level)?;
     let [from, to] = [response[pair], response[pair + 1]];
     Some(pair as f64 + (level - from) / (to - from))

@@ -10,10 +10,10 @@ use crate::tables::measured::Row;
 pub const BETAS: [f32; 5] = [1e-5, 1e-4, 1e-3, 1e-2, 1e-1];
 
 /// "A smaller learning rate."
-const RATE: f32 = 3e-4;
+pub(super) const RATE: f32 = 3e-4;
 
 /// Epochs without a better one: a tenth of all.
-const PATIENCE: usize = EPOCHS_MAX / 10;
+pub(super) const PATIENCE: usize = EPOCHS_MAX / 10;
 
 /// Fewer rows leave none to judge by.
 pub const ROWS_MIN: usize = VALIDATION_PART;

@@ -1,5 +1,5 @@
 //! The paper's decoder, made as the paper makes it: learnt from simulated contacts ([`simulation`]), then adapted to a
-//! pad with a few measured ones ([`adaptation`]); [`drawing`] shows what was learnt.
+//! pad with a few measured ones ([`adaptation`]); [`drawing`] shows what was learnt, [`schematic`] the network itself.
 //!
 //! The paper does not say how large its network is, and its errors on simulated contacts do not tell: all that were tried
 //! do better. [`HIDDEN`] did best; `docs/network.md` has the trials.
@@ -9,6 +9,7 @@
 
 pub mod adaptation;
 pub mod drawing;
+pub mod schematic;
 pub mod simulation;
 
 /// Neurons between the channels and the contact.

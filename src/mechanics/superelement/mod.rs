@@ -18,6 +18,7 @@ use self::gauge::gauge_weights;
 
 mod derivative;
 mod gauge;
+mod mass;
 
 /// Strains of a module's gauges: along the grid and across it, for R1, R2, … R7.
 pub const STRAINS: usize = 2 * GAUGES;
@@ -57,6 +58,10 @@ pub struct LayerDerivatives {
     /// Per mm of its thickness.
     pub per_mm: Superelement,
 }
+
+/// Mass of a module for its foot's modes: force on mode j for a unit of acceleration of mode k, t (N for mm/s²). The film and
+/// post follow the foot as they do at rest.
+pub type FootMass = [[f64; MODES]; MODES];
 
 /// Values of the foot's polynomials at a place given in half sizes of the foot, −1 … 1.
 pub fn foot_shapes(place: [f64; 2]) -> [f64; FOOT_SHAPES.len()] {

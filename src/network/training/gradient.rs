@@ -91,6 +91,12 @@ impl Pass {
             .sum()
     }
 
+    /// The errors that [`Self::forward`] has left, example by example.
+    pub(super) fn errors(&self, batch: &Batch) -> impl Iterator<Item = &[f32]> {
+        let width = self.shape.layers.last().map_or(1, |place| place.outputs);
+        self.values.last().into_iter().flat_map(move |errors| errors.chunks(width)).take(batch.count)
+    }
+
     /// The gradient of the sum of the batch's squared errors, after [`Self::forward`].
     pub(super) fn backward(&mut self, parameters: &[f32], gradient: &mut [f32]) {
         // Δ = 2 (output − target).

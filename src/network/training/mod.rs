@@ -11,8 +11,10 @@ pub mod score;
 use self::adam::Adam;
 use self::gradient::{Batch, Pass};
 use self::parameters::Shape;
+use self::score::Score;
 use super::{Example, Network, OUTPUTS};
 use crate::numeric::random::SplitMix64;
+use crate::numeric::statistics;
 
 /// Hyperparameters of training.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +42,10 @@ pub struct Epoch {
     pub training_mse: f64,
     /// On those that are not, after it.
     pub validation_mse: f64,
+    /// Mean magnitude of the errors there.
+    pub validation_mae: f64,
+    /// R² there, the mean of the five numbers'. Without a number where one of them is the same in all examples.
+    pub validation_r2: f64,
 }
 
 /// A trained network.
@@ -67,14 +73,20 @@ pub fn train(
     let anchor = shape.pack(start);
     let mut trainer = Trainer::new(&shape, &anchor, schedule);
     let (training, validation) = (standardised(start, training), standardised(start, validation));
-    let mut best = (trainer.mse(&validation), anchor.clone(), 0);
+    let variances = std::array::from_fn(|k| {
+        let values: Vec<f64> = validation.iter().map(|example| f64::from(example.contact[k])).collect();
+        statistics::population_deviation(&values).powi(2)
+    });
+    let mut best = (trainer.score(&validation, &variances).mse, anchor.clone(), 0);
     let mut curve = Vec::new();
     for number in 1..=schedule.epochs_max {
         if training.is_empty() || validation.is_empty() || number > best.2 + schedule.patience {
             break;
         }
         let training_mse = trainer.epoch(&training, &anchor);
-        let epoch = Epoch { number, training_mse, validation_mse: trainer.mse(&validation) };
+        let Score { mse: validation_mse, mae: validation_mae, r2: validation_r2 } =
+            trainer.score(&validation, &variances);
+        let epoch = Epoch { number, training_mse, validation_mse, validation_mae, validation_r2 };
         if epoch.validation_mse < best.0 {
             best = (epoch.validation_mse, trainer.parameters.clone(), number);
         }
@@ -120,6 +132,14 @@ struct Lane {
     /// Of the sum of the part's squared errors.
     gradient: Vec<f32>,
     square: f64,
+    errors: Errors,
+}
+
+/// Sums of errors, number by number.
+#[derive(Clone, Copy, Debug, Default)]
+struct Errors {
+    squares: [f64; OUTPUTS],
+    magnitudes: [f64; OUTPUTS],
 }
 
 impl Trainer {
@@ -129,6 +149,7 @@ impl Trainer {
             pass: Pass::new(shape),
             gradient: vec![0.0; anchor.len()],
             square: 0.0,
+            errors: Errors::default(),
         };
         Self {
             schedule: Schedule { batch: schedule.batch.max(1), ..*schedule },
@@ -173,12 +194,22 @@ impl Trainer {
         self.adam.step(&mut self.parameters, &one.gradient);
     }
 
-    /// Mean squared error of examples; without any it is infinite.
-    fn mse(&mut self, examples: &[Example]) -> f64 {
+    /// Errors on examples whose numbers have these variances; without examples the mean square is infinite.
+    fn score(&mut self, examples: &[Example], variances: &[f64; OUTPUTS]) -> Score {
         let examples: Vec<&Example> = examples.iter().collect();
+        self.lanes.iter_mut().for_each(|lane| lane.errors = Errors::default());
         let parts = examples.chunks(self.schedule.batch);
-        let square: f64 = parts.map(|examples| self.spread(examples, Lane::compare)).sum();
-        if examples.is_empty() { f64::INFINITY } else { square / (examples.len() * OUTPUTS) as f64 }
+        let square: f64 = parts.map(|examples| self.spread(examples, Lane::judge)).sum();
+        let sums = |of: fn(&Errors) -> [f64; OUTPUTS]| -> [f64; OUTPUTS] {
+            let [one, other] = self.lanes.each_ref().map(|lane| of(&lane.errors));
+            std::array::from_fn(|k| one[k] + other[k])
+        };
+        let (count, values) = (examples.len() as f64, (examples.len() * OUTPUTS) as f64);
+        // R² = 1 − mean squared error/variance, of each number.
+        let explained = sums(|errors| errors.squares).into_iter().zip(variances);
+        let r2 = statistics::mean(explained.map(|(square, variance)| 1.0 - square / count / variance));
+        let mae = sums(|errors| errors.magnitudes).iter().sum::<f64>() / values;
+        Score { mse: if examples.is_empty() { f64::INFINITY } else { square / values }, mae, r2 }
     }
 }
 
@@ -186,6 +217,17 @@ impl Lane {
     fn compare(&mut self, parameters: &[f32], examples: &[&Example]) {
         self.batch.fill(examples);
         self.square = self.pass.forward(parameters, &self.batch);
+    }
+
+    /// Compares, and adds up the errors of each number.
+    fn judge(&mut self, parameters: &[f32], examples: &[&Example]) {
+        self.compare(parameters, examples);
+        for row in self.pass.errors(&self.batch) {
+            for (k, error) in row.iter().take(OUTPUTS).map(|error| f64::from(*error)).enumerate() {
+                self.errors.squares[k] += error * error;
+                self.errors.magnitudes[k] += error.abs();
+            }
+        }
     }
 
     fn learn(&mut self, parameters: &[f32], examples: &[&Example]) {
@@ -240,8 +282,10 @@ mod tests {
         assert_eq!(best.validation_mse, fitted.validation_mse);
         assert_eq!(fitted.curve.len(), best.number + 5);
         let [held, _] = split(examples(2_000, 1), 5, 2);
-        let again = Scores::of(&fitted.network, &held).all.mse;
-        assert!((again - fitted.validation_mse).abs() < 1e-6, "{again} {}", fitted.validation_mse);
+        let again = Scores::of(&fitted.network, &held).all;
+        assert!((again.mse - fitted.validation_mse).abs() < 1e-6, "{again:?} {}", fitted.validation_mse);
+        let off = [again.mae - best.validation_mae, again.r2 - best.validation_r2];
+        assert!(off.iter().all(|off| off.abs() < 1e-5), "{again:?} {best:?}");
     }
 
     #[test]

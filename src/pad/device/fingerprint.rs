@@ -69,7 +69,7 @@ mod tests {
             let mut device = nominal.clone();
             let value = parameter.get(&nominal);
             parameter.set(&mut device, value + (value.abs() + 1.0) * 1e-12);
-            let is_pads = parameter.effect() != Effect::Nothing
+            let is_pads = ![Effect::Nothing, Effect::Dynamics].contains(&parameter.effect())
                 && !["finger.", "rig."].iter().any(|table| parameter.name().starts_with(table));
             assert_eq!(device.pad_fingerprint() != nominal.pad_fingerprint(), is_pads, "{parameter}");
         }

@@ -38,7 +38,7 @@ pub struct Device {
     pub sites: Sites,
     /// The layers of every module.
     pub stack: Stack,
-    /// Their elastic constants.
+    /// Their elastic constants and densities.
     pub material: Materials,
     /// How a gauge turns strain into resistance.
     pub gauge_law: GaugeLaw,
@@ -109,13 +109,15 @@ pub struct Stack {
     pub bond_thickness_mm: f64,
 }
 
-/// An isotropic, linear elastic material.
+/// An isotropic, linear elastic material, and what it weighs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Young's modulus, N/mm².
     pub e_mpa: f64,
     /// Poisson's ratio.
     pub nu: f64,
+    /// Density, kg/m³.
+    pub density_kg_m3: f64,
 }
 
 /// The materials of the pad.

@@ -218,10 +218,10 @@ mod tests {
     fn each_parameter_is_a_number_of_its_own() {
         let nominal = Device::nominal();
         let count = Parameter::all().count();
-        // Of the pad: 2 + 4 + 11 + 2 + 1 + 3 and seven materials' 2; seven gauges' 5; three modules' 9 and two lists.
+        // Of the pad: 2 + 4 + 11 + 2 + 1 + 3 and seven materials' 3; seven gauges' 5; three modules' 9 and two lists.
         // Of its behaviour, by table: some numbers, and nine for each list of channels.
         let behaviour = (3 + 27) + (2 + 9) + (1 + 36) + (1 + 9) + (2 + 9) + 4 + 14;
-        assert_eq!(count, 23 + 14 + 35 + 45 + behaviour);
+        assert_eq!(count, 23 + 21 + 35 + 45 + behaviour);
         for changed in Parameter::all() {
             assert_eq!(changed.name().parse(), Ok(changed));
             let mut device = nominal.clone();
@@ -240,8 +240,16 @@ mod tests {
             |effect| idle.iter().filter(|it| it.effect() == effect).map(|it| it.name()).collect::<Vec<_>>();
         assert_eq!(
             with(Effect::Nothing),
-            ["contact.full_scale_n", "material.gauge.e_mpa", "material.gauge.nu"]
+            [
+                "contact.full_scale_n",
+                "material.gauge.e_mpa",
+                "material.gauge.nu",
+                "material.gauge.density_kg_m3"
+            ]
         );
+        let dynamics = with(Effect::Dynamics);
+        assert_eq!(dynamics.len(), 6);
+        assert!(dynamics.iter().all(|name| name.ends_with(".density_kg_m3")), "{dynamics:?}");
         let behaviour = with(Effect::Behaviour);
         assert_eq!(behaviour.len(), 117);
         assert!(behaviour.contains(&"sampling.skew_us.m0x") && behaviour.contains(&"finger.wander_mm"));

@@ -149,7 +149,11 @@ fn read_materials(root: &Section<'_>, device: &mut Device, reading: &mut Reading
     for table in &MATERIALS {
         let key = key_of(table);
         let keys: Vec<_> = table.keys.iter().map(|key| key.name).collect();
-        section.require(key, &format!("write {key} = {{ e_mpa = …, nu = … }}"), &mut reading.findings);
+        section.require(
+            key,
+            &format!("write {key} = {{ e_mpa = …, nu = …, density_kg_m3 = … }}"),
+            &mut reading.findings,
+        );
         let title = format!("\"{key}\" of [material]");
         if let Some(material) = section.table(key, title, &keys, &mut reading.findings) {
             reading.require(&material, table.keys);
@@ -231,7 +235,10 @@ const UNREAD_REPORTED: Reported = Reported {
     hysteresis_percent_fso: f64::NAN,
 };
 
-const UNREAD_MATERIAL: Material = Material { e_mpa: f64::NAN, nu: f64::NAN };
+/// A material of which a file may leave out the density: then it has this one, which is that of `models/sstid.toml`.
+const fn unread_material(density_kg_m3: f64) -> Material {
+    Material { e_mpa: f64::NAN, nu: f64::NAN, density_kg_m3 }
+}
 
 const UNREAD_GAUGE: Gauge = Gauge {
     x_mm: f64::NAN,
@@ -261,13 +268,13 @@ const UNREAD: Device = Device {
         bond_thickness_mm: f64::NAN,
     },
     material: Materials {
-        plate: UNREAD_MATERIAL,
-        pick: UNREAD_MATERIAL,
-        fpc: UNREAD_MATERIAL,
-        adh: UNREAD_MATERIAL,
-        pi: UNREAD_MATERIAL,
-        epoxy: UNREAD_MATERIAL,
-        gauge: UNREAD_MATERIAL,
+        plate: unread_material(7_930.0),
+        pick: unread_material(1_330.0),
+        fpc: unread_material(1_900.0),
+        adh: unread_material(1_200.0),
+        pi: unread_material(1_420.0),
+        epoxy: unread_material(1_200.0),
+        gauge: unread_material(8_900.0),
     },
     gauge_law: GaugeLaw { gauge_factor: f64::NAN, transverse_ratio: f64::NAN },
     gauges: [UNREAD_GAUGE; GAUGES],
@@ -290,7 +297,7 @@ mod tests {
         assert_eq!(device.name, "SSTID nominal");
         assert_eq!(device.sites, Sites { angles_deg: [0.0, 120.0, 240.0], centre_radius_mm: 20.0 });
         assert_eq!(device.stack.film_length_x_mm, 9.8);
-        assert_eq!(device.material.epoxy, Material { e_mpa: 250.0, nu: 0.35 });
+        assert_eq!(device.material.epoxy, Material { e_mpa: 250.0, nu: 0.35, density_kg_m3: 1_200.0 });
         assert_eq!(device.gauge_law.transverse_ratio, 5.4 / 9.8);
         let ratios = device.gauges.map(|gauge| gauge.resistance_ratio);
         assert_eq!(ratios, [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0]);
@@ -299,5 +306,23 @@ mod tests {
         assert!(!device.circuit.bridge_nonlinearity);
         assert_eq!(device.reported.unwrap().hysteresis_percent_fso, 3.1);
         assert_eq!(device.modules, [Module::NOMINAL; MODULES]);
+    }
+
+    #[test]
+    fn densities_may_be_left_out_and_are_checked_where_they_are_not() {
+        let older: String = NOMINAL
+            .lines()
+            .map(|line| match line.split_once(", density_kg_m3") {
+                Some((before, _)) => format!("{before} }}\n"),
+                None => format!("{line}\n"),
+            })
+            .collect();
+        assert!(!older.contains("density"));
+        assert_eq!(Device::from_toml(&older), (Some(Device::nominal()), vec![]));
+        let light = NOMINAL.replace("7930.0", "7.93");
+        let (device, found) = Device::from_toml(&light);
+        assert!(device.is_none() && found.len() == 1, "{found:?}");
+        let said = format!("{:?}", found[0]);
+        assert!(said.contains("7.93") && said.contains("grams per cubic centimetre"), "{said}");
     }
 }

@@ -57,9 +57,9 @@ impl<'t> Reading<'t> {
         }
     }
 
-    /// Reports each of `keys` that the table lacks.
+    /// Reports each of `keys` that the table lacks and must have.
     pub(super) fn require<T>(&mut self, section: &Section<'_>, keys: &'static [Key<T>]) {
-        for key in keys {
+        for key in keys.iter().filter(|key| !key.optional) {
             let unit = if key.unit.symbol().is_empty() { "" } else { ", in " };
             let help = format!("write {}{unit}{}", key.meaning, key.unit.symbol());
             section.require(key.name, &help, &mut self.findings);

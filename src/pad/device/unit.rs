@@ -33,6 +33,8 @@ pub enum Unit {
     MicrovoltPerKelvin2,
     /// Relative changes of gains by temperature.
     PerKelvin,
+    /// Densities.
+    KilogramPerCubicMetre,
     /// Drifts of zeros.
     MicrovoltPerHour,
     /// Ratios and factors.
@@ -60,6 +62,7 @@ impl Unit {
             Self::MicrovoltPerKelvin => "uV/K",
             Self::MicrovoltPerKelvin2 => "uV/K2",
             Self::PerKelvin => "1/K",
+            Self::KilogramPerCubicMetre => "kg/m3",
             Self::MicrovoltPerHour => "uV/h",
             Self::One => "",
             Self::BridgeR => "R",
@@ -81,6 +84,9 @@ impl Unit {
             Self::Cycle => &[("thousands", 1e3), ("millions", 1e6)],
             Self::MicrovoltPerKelvin => &[("microvolts per 10 K", 0.1), ("nanovolts per kelvin", 1e-3)],
             Self::PerKelvin => &[("percent per kelvin", 1e-2), ("parts per million and kelvin", 1e-6)],
+            Self::KilogramPerCubicMetre => {
+                &[("grams per cubic centimetre", 1e3), ("tonnes per cubic millimetre", 1e12)]
+            }
             Self::MicrovoltPerHour => &[("microvolts per day", 1.0 / 24.0), ("nanovolts per hour", 1e-3)],
             Self::One => &[("percent", 1e-2)],
             // Radians are small numbers, so no range tells them; `possible` does by where the modules stand.

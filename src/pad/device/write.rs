@@ -8,7 +8,7 @@ use crate::quantity::{CHANNEL_NAMES, MODULES};
 
 const HEAD: &str = "\
 # A pad: three strain modules between a rigid base and a round plate.
-# Lengths in mm, moduli in MPa, forces in N, signals in microvolts (uV); ratios have no unit.
+# Lengths in mm, moduli in MPa, densities in kg/m3, forces in N, signals in microvolts (uV); ratios have no unit.
 # Pad frame: origin at the centre of the plate's top surface, +x right, +y up seen from above, +z out of the plate.
 # Module frame: x tangential, counter-clockwise; y radial, outwards; z the pad's. It is left-handed.
 ";

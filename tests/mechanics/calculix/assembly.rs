@@ -57,6 +57,39 @@ fn assembly_in_three_dimensions() {
     }
 }
 
+/// Sizes for natural frequencies: they follow from the whole pad's stiffness, which coarse elements give within a percent.
+const COARSER_IN_MOTION: f64 = 2.8;
+const PLATE_IN_MOTION: Sizing = Sizing { finest_mm: 0.6, growth: 0.6, coarsest_mm: 4.0 };
+
+/// Natural frequencies that are compared, and the largest difference as a share of each.
+const FREQUENCIES: usize = 8;
+const FREQUENCY_DEVIATION_MAX: f64 = 0.03;
+
+#[test]
+fn natural_frequencies_of_the_assembly() {
+    if std::env::var("TACTPAD_ASSEMBLY").as_deref() != Ok("1") {
+        writeln!(stderr(), "left out: a long proof, which runs with `TACTPAD_ASSEMBLY=1`").unwrap();
+        return;
+    }
+    for (name, device) in [("as drawn", Device::nominal()), ("unequal modules", unequal())] {
+        let fineness = Fineness::STANDARD.scaled(COARSER_IN_MOTION);
+        let plate = PlateMesh::of(&device, PLATE_IN_MOTION);
+        let mut assembly = Assembly::of(&device, &plate, fineness);
+        let theirs_hz = assembly.deck.frequencies_hz(FREQUENCIES);
+        let ours = Simulator::new(fineness).natural_motions(&device).unwrap();
+        let ours_hz: Vec<f64> = ours.iter().map(|motion| motion.frequency_hz).take(FREQUENCIES).collect();
+        writeln!(
+            stderr(),
+            "{name}, {} nodes: CalculiX {theirs_hz:.1?} Hz, ours {ours_hz:.1?} Hz",
+            assembly.nodes
+        )
+        .unwrap();
+        for (ours, theirs) in ours_hz.iter().zip(&theirs_hz) {
+            assert!((ours / theirs - 1.0).abs() < FREQUENCY_DEVIATION_MAX, "{name}: {ours} for {theirs} Hz");
+        }
+    }
+}
+
 /// A pad whose modules differ in place, turn, modulus and frame.
 fn unequal() -> Device {
     let mut device = Device::nominal();

@@ -7,9 +7,10 @@ use std::fmt::{Display, Write as _};
 use std::fs;
 use std::process::Command;
 
+use tactpad::mechanics::brick::TONNES_PER_MM3;
 use tactpad::pad::device::Material;
 
-use super::results::Results;
+use super::results::{Results, frequencies_hz};
 
 /// An input file under construction.
 #[derive(Default)]
@@ -58,8 +59,10 @@ impl Deck {
             self.line(lines.join(",\n"));
         }
         self.line(format_args!(
-            "*MATERIAL, NAME={set}\n*ELASTIC\n{:.12e}, {:.12e}",
-            material.e_mpa, material.nu
+            "*MATERIAL, NAME={set}\n*ELASTIC\n{:.12e}, {:.12e}\n*DENSITY\n{:.12e}",
+            material.e_mpa,
+            material.nu,
+            TONNES_PER_MM3 * material.density_kg_m3
         ));
         self.line(format_args!("*SOLID SECTION, ELSET={set}, MATERIAL={set}"));
         first
@@ -126,11 +129,27 @@ impl Deck {
         self.line("*END STEP");
     }
 
+    /// Has CalculiX look for the lowest natural frequencies, Hz, from the lowest on.
+    ///
+    /// # Panics
+    /// It does not run to its end, or finds fewer.
+    pub(crate) fn frequencies_hz(&mut self, wanted: usize) -> Vec<f64> {
+        self.line(format_args!("*STEP\n*FREQUENCY\n{wanted}\n*END STEP"));
+        let found = frequencies_hz(&self.run());
+        assert_eq!(found.len(), wanted);
+        found
+    }
+
     /// Has CalculiX solve it.
     ///
     /// # Panics
     /// It does not run to its end.
     pub(crate) fn solve(&self) -> Results {
+        Results::read(&self.run(), self.nodes)
+    }
+
+    /// What CalculiX prints.
+    fn run(&self) -> String {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("job.inp"), &self.text).unwrap();
         let mut command = Command::new("ccx");
@@ -142,8 +161,7 @@ impl Deck {
         let said = String::from_utf8_lossy(&output.stdout);
         let end = &said[said.floor_char_boundary(said.len().saturating_sub(2_000))..];
         assert!(output.status.success() && said.contains("Job finished"), "ccx ended early: {end}");
-        let printed = fs::read_to_string(folder.path().join("job.dat")).unwrap();
-        Results::read(&printed, self.nodes)
+        fs::read_to_string(folder.path().join("job.dat")).unwrap()
     }
 }
 

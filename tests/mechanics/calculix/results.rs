@@ -65,3 +65,13 @@ fn numbers<'t, const N: usize>(words: impl Iterator<Item = &'t str>) -> [f64; N]
     let numbers: Vec<f64> = words.map(|word| word.parse().unwrap()).collect();
     numbers.try_into().unwrap()
 }
+
+/// The table of eigenvalues: mode, ω², ω, ω/2π, and what is imaginary.
+pub(crate) fn frequencies_hz(text: &str) -> Vec<f64> {
+    let (_, table) = text.split_once("E I G E N V A L U E   O U T P U T").unwrap();
+    let rows =
+        table.lines().map(|line| line.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>());
+    // Lines of words go before the rows, and after them.
+    let rows = rows.skip_while(|row| !matches!(row, Ok(row) if row.len() == 5));
+    rows.map_while(|row| row.ok().filter(|row| row.len() == 5)).map(|row| row[3]).collect()
+}

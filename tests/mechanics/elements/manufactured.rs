@@ -6,7 +6,7 @@ use tactpad::pad::device::Material;
 
 use super::body::{Body, Gradient, Vector, stress_mpa};
 
-const MATERIAL: Material = Material { e_mpa: 5000.0, nu: 0.34 };
+const MATERIAL: Material = Material { e_mpa: 5000.0, nu: 0.34, density_kg_m3: 1_420.0 };
 
 /// Component k is AMPLITUDE[k] sin(WAVE[k]·x + PHASE[k]), on the cube [0, 1]³.
 const AMPLITUDE: Vector = [1.0e-3, -0.7e-3, 1.3e-3];

@@ -7,7 +7,7 @@ use tactpad::pad::device::Material;
 use super::body::{Body, Vector, stress_mpa};
 
 /// The same constants in every layer.
-const MATERIAL: Material = Material { e_mpa: 4100.0, nu: 0.33 };
+const MATERIAL: Material = Material { e_mpa: 4100.0, nu: 0.33, density_kg_m3: 1_900.0 };
 
 /// Neighbours differ in size up to twentyfold.
 fn mesh() -> Mesh {

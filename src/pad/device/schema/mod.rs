@@ -20,6 +20,8 @@ pub enum Effect {
     Readout,
     /// What comes and goes in time, and what the measuring rig adds: see [`Behaviour`](super::behaviour::Behaviour).
     Behaviour,
+    /// The pad's mass, and with it its natural frequencies; nothing at rest.
+    Dynamics,
     /// Nothing that is computed.
     Nothing,
 }
@@ -34,6 +36,8 @@ pub(super) struct Key<T: 'static> {
     /// The least and the greatest value.
     pub(super) range: (f64, f64),
     pub(super) effect: Effect,
+    /// Whether a file may leave it out.
+    pub(super) optional: bool,
     pub(super) access: Access<T>,
     /// For people, so that "write …" goes before it.
     pub(super) meaning: &'static str,
@@ -79,9 +83,12 @@ const VOLT: Unit = Unit::Volt;
 const UV: Unit = Unit::Microvolt;
 const NEWTON: Unit = Unit::Newton;
 const RATIO: Unit = Unit::One;
+const DENSITY: Unit = Unit::KilogramPerCubicMetre;
 
 /// Poisson's ratios: 0.5 is no material that elements of finite stiffness can stand for.
 const NU: (f64, f64) = (-0.95, 0.49);
+/// From foam to the densest metal.
+const DENSITY_KG_M3: (f64, f64) = (100.0, 25_000.0);
 /// Layers of the film.
 const LAYER_MM: (f64, f64) = (0.002, 1.0);
 /// What is small in a module.
@@ -107,7 +114,7 @@ macro_rules! list {
 }
 
 macro_rules! material {
-    ($name:ident, $e_mpa:expr, $effect:ident, $meaning:literal) => {
+    ($name:ident, $e_mpa:expr, $effect:ident, $of_mass:ident, $meaning:literal) => {
         Table {
             path: concat!("material.", stringify!($name)),
             words: &[],
@@ -128,6 +135,15 @@ macro_rules! material {
                     concat!("Poisson's ratio of ", $meaning),
                 )
                 .with(Effect::$effect),
+                Key::<Device>::new(
+                    "density_kg_m3",
+                    DENSITY,
+                    DENSITY_KG_M3,
+                    one!(material.$name.density_kg_m3),
+                    concat!("the density of ", $meaning),
+                )
+                .with(Effect::$of_mass)
+                .optional(),
             ],
         }
     };
@@ -141,11 +157,16 @@ impl<T> Key<T> {
         access: Access<T>,
         meaning: &'static str,
     ) -> Self {
-        Self { name, elements: &SINGLE, unit, range, effect: Effect::Field, access, meaning }
+        Self { name, elements: &SINGLE, unit, range, effect: Effect::Field, optional: false, access, meaning }
     }
 
     const fn with(mut self, effect: Effect) -> Self {
         self.effect = effect;
+        self
+    }
+
+    const fn optional(mut self) -> Self {
+        self.optional = true;
         self
     }
 
@@ -306,13 +327,13 @@ static STACK: [Key<Device>; 11] = [
 
 /// The entries of `[material]`.
 pub(super) static MATERIALS: [Table<Device>; 7] = [
-    material!(plate, (1_200.0, 1e6), Field, "the plate"),
-    material!(pick, (500.0, 400_000.0), Field, "the posts"),
-    material!(fpc, (100.0, 50_000.0), Field, "the flexible circuit"),
-    material!(adh, (10.0, 9_000.0), Field, "the adhesive"),
-    material!(pi, (100.0, 50_000.0), Field, "the polyimide"),
-    material!(epoxy, (10.0, 9_000.0), Field, "frame and bond"),
-    material!(gauge, (1_200.0, 1e6), Nothing, "the gauges' foil"),
+    material!(plate, (1_200.0, 1e6), Field, Dynamics, "the plate"),
+    material!(pick, (500.0, 400_000.0), Field, Dynamics, "the posts"),
+    material!(fpc, (100.0, 50_000.0), Field, Dynamics, "the flexible circuit"),
+    material!(adh, (10.0, 9_000.0), Field, Dynamics, "the adhesive"),
+    material!(pi, (100.0, 50_000.0), Field, Dynamics, "the polyimide"),
+    material!(epoxy, (10.0, 9_000.0), Field, Dynamics, "frame and bond"),
+    material!(gauge, (1_200.0, 1e6), Nothing, Nothing, "the gauges' foil"),
 ];
 
 /// The names of the gauges, in the order of [`Device::gauges`].

@@ -236,7 +236,7 @@ fn grid(number: usize, gauge: &Gauge) -> [Shape; 2] {
         at[across] += share * half[across];
         at
     };
-    let ends = |line: u32| if line % 2 == 0 { [-1.0, 1.0] } else { [1.0, -1.0] };
+    let ends = |line: u32| if line.is_multiple_of(2) { [-1.0, 1.0] } else { [1.0, -1.0] };
     let corners = (0..GRID_LINES).flat_map(|line| ends(line).map(|end| corner(line, end))).collect();
     [outline, Shape::Line { corners, ends: Ends::Open, look: Look::line(Stroke::solid(colour, 1.6)) }]
 }
@@ -332,8 +332,8 @@ mod tests {
     use super::*;
 
     fn texts(figure: &Figure) -> Vec<&Text> {
-        let text = |mark| if let Mark::Text(text) = mark { Some(text) } else { None };
-        figure.marks().iter().filter_map(text).collect()
+        let marks = figure.marks().iter();
+        marks.filter_map(|mark| if let Mark::Text(text) = mark { Some(text) } else { None }).collect()
     }
 
     #[test]

@@ -35,6 +35,11 @@ pub const HALF_BRIDGES: [HalfBridge; 3] = [
     HalfBridge { axis: "z", to_supply: &[4, 5], to_ground: &[6], polarity: -1.0 },
 ];
 
+/// A gauge's name, R1 to R7.
+pub fn gauge_name(gauge: usize) -> String {
+    format!("R{}", gauge + 1)
+}
+
 impl HalfBridge {
     /// The factor of each gauge's r in the signal over δ, to first order.
     pub fn signs(&self) -> [f64; GAUGES] {
@@ -70,7 +75,12 @@ mod tests {
     fn every_gauge_is_in_one_half_bridge_and_the_nominal_ones_are_in_balance() {
         let gauges = Device::nominal().gauges;
         for gauge in 0..GAUGES {
-            assert_eq!(HALF_BRIDGES.iter().filter(|bridge| bridge.has(gauge)).count(), 1, "R{}", gauge + 1);
+            assert_eq!(
+                HALF_BRIDGES.iter().filter(|bridge| bridge.has(gauge)).count(),
+                1,
+                "{}",
+                gauge_name(gauge)
+            );
         }
         for bridge in HALF_BRIDGES {
             let whole = |side: &[usize]| -> f64 { side.iter().map(|g| gauges[*g].resistance_ratio).sum() };

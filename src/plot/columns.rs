@@ -83,6 +83,9 @@ impl Columns {
 
 impl Column {
     fn draw(&self, figure: &mut Figure, y: &Axis, middle: f64, width: f64, index: usize) {
+        if !self.value.is_finite() {
+            return;
+        }
         let [zero, end] = [0.0, self.value].map(|value| y.at(value));
         let fill = Some(Ink::opaque(Rgb::of_series(index)));
         let corner = [middle - 0.5 * width, zero.min(end)];

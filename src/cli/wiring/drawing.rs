@@ -2,14 +2,12 @@
 
 use tactpad::pad::device::pose::Pose;
 use tactpad::pad::device::{Device, Direction, Gauge};
-use tactpad::pad::wiring::{HALF_BRIDGES, HalfBridge};
+use tactpad::pad::wiring::{HALF_BRIDGES, HalfBridge, gauge_name};
 use tactpad::plot::colour::Rgb;
 use tactpad::plot::figure::{Anchor, Circle, Ends, Figure, Ink, Mark, Path, Point, Stroke, Text};
 use tactpad::plot::plan::Plan;
 use tactpad::plot::shape::{Look, Shape};
 use tactpad::quantity::{CHANNEL_NAMES, MODULES};
-
-use super::name;
 
 const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);
 const PALE: Rgb = Rgb::new(0x9a, 0xa2, 0xab);
@@ -138,7 +136,8 @@ fn resistor(figure: &mut Figure, number: usize, gauge: &Gauge, [x, y]: Point) {
     let corner = [x - 0.5 * RESISTOR[0], y - 0.5 * RESISTOR[1]];
     figure.path(Path { stroke: Some(WIRE), ..Path::rectangle(corner, RESISTOR) });
     let baseline = y + 0.36 * TEXT_SIZE;
-    let name = Text::new(name(number), [corner[0] - 5.0, baseline], TEXT_SIZE, INK).anchored(Anchor::End);
+    let name =
+        Text::new(gauge_name(number), [corner[0] - 5.0, baseline], TEXT_SIZE, INK).anchored(Anchor::End);
     figure.text(name);
     let at = [corner[0] + RESISTOR[0] + 5.0, baseline];
     figure.text(Text::new(resistance(gauge.resistance_ratio), at, TEXT_SIZE, Ink::opaque(QUIET)));
@@ -188,7 +187,7 @@ fn film(device: &Device) -> Figure {
         let half = half_of(gauge);
         shapes.extend(grid(number, gauge));
         let place = [gauge.x_mm, gauge.y_mm - half[1] - LABEL_GAP_MM];
-        shapes.push(Shape::Label { place, text: name(number) });
+        shapes.push(Shape::Label { place, text: gauge_name(number) });
     }
     let [x, y] = half_mm.map(|half| [-half, half]);
     let plan = Plan {
@@ -201,7 +200,8 @@ fn film(device: &Device) -> Figure {
         shapes,
     };
     let colours = HALF_BRIDGES.map(|bridge| {
-        let gauges: Vec<String> = (0..device.gauges.len()).filter(|g| bridge.has(*g)).map(name).collect();
+        let gauges: Vec<String> =
+            (0..device.gauges.len()).filter(|g| bridge.has(*g)).map(gauge_name).collect();
         format!("{}: {}", bridge.axis, gauges.join(", "))
     });
     let colours: Vec<(String, Ink)> = colours
@@ -236,7 +236,7 @@ fn grid(number: usize, gauge: &Gauge) -> [Shape; 2] {
         at[across] += share * half[across];
         at
     };
-    let ends = |line: u32| if line % 2 == 0 { [-1.0, 1.0] } else { [1.0, -1.0] };
+    let ends = |line: u32| if line.is_multiple_of(2) { [-1.0, 1.0] } else { [1.0, -1.0] };
     let corners = (0..GRID_LINES).flat_map(|line| ends(line).map(|end| corner(line, end))).collect();
     [outline, Shape::Line { corners, ends: Ends::Open, look: Look::line(Stroke::solid(colour, 1.6)) }]
 }
@@ -289,7 +289,7 @@ fn module(device: &Device, index: usize, pose: &Pose) -> Vec<Shape> {
     for (end, side) in [(gauges().min_by(by_x), -1.0), (gauges().max_by(by_x), 1.0)] {
         if let Some((number, gauge)) = end {
             let at = place([side * (half_mm[0] + 1.5), gauge.y_mm]);
-            shapes.push(Shape::Label { place: at, text: name(number) });
+            shapes.push(Shape::Label { place: at, text: gauge_name(number) });
         }
     }
     let text = format!("module {index}");
@@ -332,16 +332,8 @@ mod tests {
     use super::*;
 
     fn texts(figure: &Figure) -> Vec<&Text> {
-        let text = |mark: &'_ Mark| if let Mark::Text(_) = mark { true } else { false };
-        figure
-            .marks()
-            .iter()
-            .filter(|mark| text(mark))
-            .filter_map(|mark| match mark {
-                Mark::Text(text) => Some(text),
-                _ => None,
-            })
-            .collect()
+        let marks = figure.marks().iter();
+        marks.filter_map(|mark| if let Mark::Text(text) = mark { Some(text) } else { None }).collect()
     }
 
     #[test]
@@ -350,7 +342,7 @@ mod tests {
         let texts = texts(&figure);
         let count = |wanted: &str| texts.iter().filter(|text| text.text == wanted).count();
         assert!(CHANNEL_NAMES.iter().all(|channel| count(channel) == 1));
-        assert!((0..7).all(|gauge| count(&name(gauge)) == MODULES));
+        assert!((0..7).all(|gauge| count(&gauge_name(gauge)) == MODULES));
         assert_eq!((count("R"), count("R/2")), (5 * MODULES, 2 * MODULES));
         let notes = texts.iter().find(|text| text.text.contains("first order")).unwrap();
         assert!(notes.text.contains("z = δ (r_{5} + r_{6} − r_{7})"), "{}", notes.text);

@@ -3,6 +3,7 @@
 mod drawing;
 
 use std::fmt;
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -13,9 +14,8 @@ use super::device::Pad;
 use super::failure::Failure;
 use super::pictures;
 use super::written::{print_json, stdout};
-use std::io::Write;
 use tactpad::pad::device::{Device, Direction, GAUGES, Gauge};
-use tactpad::pad::wiring::{HALF_BRIDGES, HalfBridge};
+use tactpad::pad::wiring::{HALF_BRIDGES, HalfBridge, gauge_name};
 use tactpad::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
 
 /// Arguments of `tactpad wiring`.
@@ -87,11 +87,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.json { print_json(&wiring) } else { Ok(writeln!(stdout(), "{wiring}")?) }
 }
 
-/// A gauge's name by its number from 0.
-fn name(gauge: usize) -> String {
-    format!("R{}", gauge + 1)
-}
-
 impl Wiring {
     fn of(device: &Device) -> Self {
         let poses = device.poses();
@@ -100,7 +95,7 @@ impl Wiring {
             channels: std::array::from_fn(|channel| {
                 let HalfBridge { to_supply, to_ground, polarity, .. } = HALF_BRIDGES[channel % 3];
                 let [to_supply, to_ground] =
-                    [to_supply, to_ground].map(|side| side.iter().map(|gauge| name(*gauge)).collect());
+                    [to_supply, to_ground].map(|side| side.iter().map(|gauge| gauge_name(*gauge)).collect());
                 Channel { name: CHANNEL_NAMES[channel], to_supply, to_ground, polarity }
             }),
             gauges: std::array::from_fn(|gauge| Placed::of(gauge, &device.gauges[gauge])),
@@ -118,7 +113,7 @@ impl Placed {
         let Gauge { x_mm, y_mm, length_mm, width_mm, direction, resistance_ratio } = *gauge;
         let bridge = HALF_BRIDGES.iter().find(|bridge| bridge.has(number));
         Self {
-            name: name(number),
+            name: gauge_name(number),
             x_mm,
             y_mm,
             length_mm,

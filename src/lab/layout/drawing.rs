@@ -74,12 +74,11 @@ pub fn swarms(radii: &Radii, first_seed: u64) -> Result<Figure, StudyError> {
     Ok(both)
 }
 
+/// The best cost of each of a swarm's rounds, for a seed.
+type Course = fn(&Radii, u64) -> Result<Vec<f64>, argmin::core::Error>;
+
 /// The best costs of one kind of swarms by iteration, a curve for each seed.
-fn costs(
-    radii: &Radii,
-    first_seed: u64,
-    of: fn(&Radii, u64) -> Result<Vec<f64>, argmin::core::Error>,
-) -> Result<Chart, StudyError> {
+fn costs(radii: &Radii, first_seed: u64, of: Course) -> Result<Chart, StudyError> {
     let curve = |seed: u64| {
         let costs_mm2 = of(radii, seed).map_err(|error| StudyError::Swarm(error.to_string()))?;
         let values = (1_u32..).zip(costs_mm2).map(|(round, cost)| Value::new(f64::from(round), cost));

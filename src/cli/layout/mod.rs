@@ -69,7 +69,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let device = arguments.pad.read()?;
     let folder = arguments.figures.as_deref().map(Folder::of).transpose()?;
     if arguments.sizes {
-        return sizes::run(arguments, &device, folder.as_ref());
+        let (figures, devices) = (folder.as_ref(), arguments.devices.as_deref());
+        let wanted = sizes::Wanted { figures, devices, json: arguments.json };
+        return sizes::run(&device, arguments.noise_uv, &wanted);
     }
     let (spacing, simulated) = match &arguments.radii {
         Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),

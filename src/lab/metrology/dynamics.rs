@@ -76,7 +76,7 @@ pub struct PadDynamics {
 
 impl PadDynamics {
     /// Of a pad with these motions; nothing if there is none.
-    fn of_motions(motions: Vec<Ringing>) -> Option<Self> {
+    pub fn of_motions(motions: Vec<Ringing>) -> Option<Self> {
         let dominating = *motions.iter().max_by(|a, b| a.output_share.total_cmp(&b.output_share))?;
         let with = |damping_ratio| Oscillator { frequency_hz: dominating.frequency_hz, damping_ratio };
         let plate = with(DAMPING_RATIO);

@@ -191,8 +191,12 @@ pub fn natural_motions(
 ) -> Result<Vec<NaturalMotion>, SolveError> {
     let mass = Mass::of(pad, masses);
     let start = start(pad.assembly.plate.unknowns());
-    let natural =
-        Natural::slowest(LOOKED_FOR, start, |loads| Ok(pad.assembly.solve(loads)), |moved| mass.times(moved))?;
+    let natural = Natural::slowest(
+        LOOKED_FOR,
+        start,
+        |loads| Ok(pad.assembly.solve(loads)),
+        |moved| mass.times(moved),
+    )?;
     let size = pad.assembly.plate.unknowns() / FIELDS;
     let rigid = rigid_motions(pad.assembly.plate.unknowns());
     let loads = mass.times(&rigid);

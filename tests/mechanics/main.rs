@@ -21,5 +21,5 @@ mod statics;
 #[cfg(feature = "simulator")]
 #[path = "../support/mod.rs"]
 mod support;
-#[cfg(all(test, feature = "simulator"))]
+#[cfg(all(test, feature = "simulator", feature = "lab"))]
 mod vibration;

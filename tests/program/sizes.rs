@@ -62,9 +62,9 @@ fn location_error_mm(columns: &[[f64; 9]; 5]) -> f64 {
 fn figures(folder: &Path, device: &str, [x, y]: [f64; 2]) -> [f64; 2] {
     // Two directions at right angles, both inwards: the place may be the farthest that a contact can have.
     let radius = x.hypot(y);
+    let [u, v] = if radius > 0.0 { [-x / radius, -y / radius] } else { [1.0, 0.0] };
     let inwards = |turn_deg: f64| {
         let (sin, cos) = turn_deg.to_radians().sin_cos();
-        let [u, v] = [-x / radius, -y / radius];
         [u * cos - v * sin, u * sin + v * cos]
     };
     let mut contacts =

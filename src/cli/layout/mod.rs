@@ -78,7 +78,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return counts::run(&device, counts, arguments.noise_uv, folder.as_ref(), arguments.json);
     }
     if arguments.sizes {
-        return sizes::run(arguments, &device, folder.as_ref());
+        let (figures, devices) = (folder.as_ref(), arguments.devices.as_deref());
+        let wanted = sizes::Wanted { figures, devices, json: arguments.json };
+        return sizes::run(&device, arguments.noise_uv, &wanted);
     }
     let (spacing, simulated) = match &arguments.radii {
         Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),

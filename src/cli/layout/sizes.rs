@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::Arguments;
 use crate::cli::destination::Folder;
 use crate::cli::failure::Failure;
 use crate::cli::pictures;
@@ -15,10 +14,20 @@ use tactpad::lab::layout::size_drawing;
 use tactpad::lab::layout::sizes::{Answer, Law, SizedPad, Sizes};
 use tactpad::pad::device::Device;
 
-pub(super) fn run(arguments: &Arguments, device: &Device, figures: Option<&Folder>) -> Result<(), Failure> {
-    let devices = arguments.devices.as_deref().map(Folder::of).transpose()?;
-    let sizes = simulated(device, arguments.noise_uv)?;
-    if let Some(folder) = figures {
+/// Where the study goes besides the screen.
+pub(super) struct Wanted<'a> {
+    /// Folder of the figures.
+    pub(super) figures: Option<&'a Folder>,
+    /// Folder of the device files.
+    pub(super) devices: Option<&'a Path>,
+    /// Whether one JSON document is printed.
+    pub(super) json: bool,
+}
+
+pub(super) fn run(device: &Device, noise_uv: f64, wanted: &Wanted<'_>) -> Result<(), Failure> {
+    let devices = wanted.devices.map(Folder::of).transpose()?;
+    let sizes = simulated(device, noise_uv)?;
+    if let Some(folder) = wanted.figures {
         pictures::write(folder, "size-sensitivity", &size_drawing::sensitivity(&sizes))?;
         pictures::write(folder, "size-error", &size_drawing::error(&sizes))?;
         pictures::write(folder, "size-frequency", &size_drawing::frequency(&sizes))?;
@@ -30,11 +39,7 @@ pub(super) fn run(arguments: &Arguments, device: &Device, figures: Option<&Folde
             }
         }
     }
-    if arguments.json {
-        print_json(&sizes)
-    } else {
-        Ok(write(&mut stdout(), &sizes, arguments.devices.as_deref())?)
-    }
+    if wanted.json { print_json(&sizes) } else { Ok(write(&mut stdout(), &sizes, wanted.devices)?) }
 }
 
 #[cfg(feature = "simulator")]

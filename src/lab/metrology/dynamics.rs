@@ -76,7 +76,7 @@ pub struct PadDynamics {
 
 impl PadDynamics {
     /// Of a pad with these motions; nothing if there is none.
-    fn of_motions(motions: Vec<Ringing>) -> Option<Self> {
+    pub fn of_motions(motions: Vec<Ringing>) -> Option<Self> {
         let dominating = *motions.iter().max_by(|a, b| a.output_share.total_cmp(&b.output_share))?;
         let with = |damping_ratio| Oscillator { frequency_hz: dominating.frequency_hz, damping_ratio };
         let plate = with(DAMPING_RATIO);
@@ -188,7 +188,8 @@ mod tests {
         // A mass on a spring follows late by 2ζ/ω for slow changes; here by 11 ms.
         let slow = pad(20.0, 0.7);
         assert!(slow.delay_ms - alone.delay_ms > 7.0 && slow.delay_ms - alone.delay_ms < 15.0, "{slow:?}");
-        assert!(slow.rise_ms > alone.rise_ms);
+        let slower = pad(3.0, 0.7);
+        assert!(slower.rise_ms > alone.rise_ms && slower.bandwidth_hz < alone.bandwidth_hz, "{slower:?}");
         // Below its resonance the pad gives a little more: by (f/f₀)².
         let rings = pad(735.0, 0.02);
         assert!(rings.bandwidth_hz > alone.bandwidth_hz);

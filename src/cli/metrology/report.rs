@@ -16,7 +16,7 @@ pub(super) struct MetrologyReport {
     pub(super) rows: Vec<Entry>,
     /// All that was found, by seed.
     pub(super) figures: Vec<Figures>,
-    /// The simulated pad's own dynamics, which no table has; nothing without the simulator.
+    /// The simulated pad's own dynamics; nothing for a measured table or without the simulator.
     pub(super) dynamics: Option<PadDynamics>,
     /// Files of the plots.
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -1,7 +1,7 @@
 //! What each gauge of a module does under a force on that module: alone, and under the plate.
 //!
 //! A gauge's reading is δ r in microvolts, with the excitation δ and r = ΔR/R; the channels are sums of these
-//! ([`HALF_BRIDGES`](crate::pad::wiring::HALF_BRIDGES)). Forces are 1 N along the module's x, along its y, and pressing.
+//! ([`HALF_BRIDGES`]). Forces are 1 N along the module's x, along its y, and pressing.
 
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};

@@ -1,7 +1,7 @@
 //! The assembled pad: the plate on its three modules, and what it answers to a force anywhere on the plate.
 //!
 //! **Reciprocity.** A channel is a weighted sum of foot movements, s = bᵀV x, and x = K⁻¹f for a load f (see
-//! [`Assembly`]). So the displacement v = K⁻¹Vᵀb of the plate under the *loads* b is the channel's influence field:
+//! `assembly.rs`). So the displacement v = K⁻¹Vᵀb of the plate under the *loads* b is the channel's influence field:
 //! s = vᵀf for every f.
 //! Source: J. C. Maxwell, Phil. Mag. 27 (1864) 294; E. Betti, Il Nuovo Cimento 7 (1872) 69.
 

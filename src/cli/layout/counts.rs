@@ -58,7 +58,7 @@ fn simulated(device: &Device, Counts(counts): &Counts, noise_uv: f64) -> Result<
 }
 
 #[cfg(not(feature = "simulator"))]
-fn simulated(_device: &Device, _counts: &Counts, _noise_uv: f64) -> Result<ModuleCounts, Failure> {
+fn simulated(_device: &Device, Counts(_counts): &Counts, _noise_uv: f64) -> Result<ModuleCounts, Failure> {
     Err(Failure::Unusable(
         "this program was built without the simulator, which --modules needs: build it with the feature \
          \"simulator\""

@@ -120,7 +120,8 @@ fn write_law(out: &mut impl Write, law: &Law) -> io::Result<()> {
         law.unit,
         by("(Ø/60 mm)", law.diameter_power),
         by("(h/1 mm)", law.thickness_power),
-        law.residual_percent,
+        // Nothing is within nothing.
+        law.residual_percent.max(0.01),
         law.pads,
         law.outside_percent
     );

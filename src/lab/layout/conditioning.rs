@@ -1,8 +1,11 @@
 //! How well readings tell place and force of a press apart: rank and condition number of the Jacobian.
 
+#[cfg(feature = "simulator")]
 use faer::Mat;
 
+#[cfg(feature = "simulator")]
 use super::precision::{DEPENDENT, Press, under};
+#[cfg(feature = "simulator")]
 use crate::pad::influence::Gains;
 
 /// Unknowns of a press: x, y, Fx, Fy, Fz.
@@ -26,6 +29,7 @@ pub struct Conditioning {
 ///
 /// Without force, or if a number is not finite, the rank is 0. Source: G. H. Golub, C. F. Van Loan, Matrix
 /// Computations, sections 2.4 and 5.4.
+#[cfg(feature = "simulator")]
 pub fn rank_and_condition<R: AsRef<[[f64; 3]]>>(
     gains: &Gains<R>,
     press: &Press,
@@ -47,6 +51,7 @@ pub fn rank_and_condition<R: AsRef<[[f64; 3]]>>(
     }
 }
 
+#[cfg(feature = "simulator")]
 impl Conditioning {
     /// Over places whose gains are known; `radius_mm` as in [`rank_and_condition`]. Of no places, both ranks are 0.
     pub fn over<'g, R: AsRef<[[f64; 3]]> + 'g>(
@@ -69,7 +74,7 @@ impl Conditioning {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "simulator"))]
 mod tests {
     use super::super::precision::tests::load_cells;
     use super::*;

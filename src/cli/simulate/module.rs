@@ -40,7 +40,7 @@ pub(super) fn gauges(pressed: &PressedPad) -> Result<Figure, SolveError> {
             (format!("Channels of module 0 under {force}"), "channel, mV", channels),
         ];
         for (row, (title, label, slopes)) in rows.into_iter().enumerate() {
-            let chart = chart(title, format!("{force} on the module, N"), label, &slopes, full_scale_n);
+            let chart = chart(title, format!("{force}, N"), label, &slopes, full_scale_n);
             page.place(chart.figure(), [column as f64 * WIDTH, row as f64 * HEIGHT]);
         }
     }

@@ -118,33 +118,21 @@ impl Symmetric {
         }
     }
 
-    /// Adds weight · v vᵀ for each of these weights and vectors, which have few zeros. Many at once cost less each: the matrix
-    /// is gone through once.
-    pub fn add_squares(&mut self, vectors: &[(f64, Vec<f64>)]) {
+    /// Adds Σ l rᵀ of these pairs (l, r), a sum that is symmetric. A zero of l costs nothing but a look. Many pairs at once cost
+    /// less each: the matrix is gone through once.
+    pub fn add_products(&mut self, pairs: &[(Vec<f64>, Vec<f64>)]) {
         widest(
             #[inline(always)]
-            || self.add_weighted(vectors),
-        );
-    }
-
-    #[inline(always)]
-    fn add_weighted(&mut self, vectors: &[(f64, Vec<f64>)]) {
-        for row in 0..self.size {
-            let line = &mut self.rows[row * self.size..][..=row];
-            // Four at a time, so that an entry is loaded and stored once for all of them.
-            let (fours, rest) = vectors.as_chunks::<4>();
-            for four in fours {
-                let factors = four.each_ref().map(|(weight, vector)| weight * vector[row]);
-                let [a, b, c, d] = four.each_ref().map(|(_, vector)| &vector[..=row]);
-                for (entry, (((a, b), c), d)) in line.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
-                    *entry = *entry + factors[0] * a + factors[1] * b + factors[2] * c + factors[3] * d;
+            || {
+                let mut terms = Vec::with_capacity(pairs.len());
+                for row in 0..self.size {
+                    let used = pairs.iter().filter(|(left, _)| left[row] != 0.0);
+                    terms.clear();
+                    terms.extend(used.map(|(left, right)| (left[row], &right[..=row])));
+                    add_combination(&mut self.rows[row * self.size..][..=row], &terms);
                 }
-            }
-            for (weight, vector) in rest {
-                let left = weight * vector[row];
-                line.iter_mut().zip(vector).for_each(|(entry, right)| *entry += left * right);
-            }
-        }
+            },
+        );
     }
 
     /// Adds another matrix.
@@ -338,19 +326,13 @@ impl LargeFactor {
     /// The square blocks of this width along the diagonal of the inverse of A.
     pub fn inverse_blocks(&self, width: usize) -> Vec<Vec<Vec<f64>>> {
         // A⁻¹ = L⁻ᵀ L⁻¹: products of columns of L⁻¹, whose entries above the diagonal are zero.
-        let column = |at: usize| {
-            let mut column = vec![0.0; self.size];
-            column[at] = 1.0 / self.lower[at * self.size + at];
-            for row in at + 1..self.size {
-                let line = &self.lower[row * self.size..][..=row];
-                column[row] = -dot(&line[at..row], &column[at..row]) / line[row];
-            }
-            column
-        };
         let block = |first: usize| {
-            let columns: Vec<Vec<f64>> = (first..(first + width).min(self.size)).map(column).collect();
-            let product =
-                |one: &Vec<f64>| columns.iter().map(|other| dot(&one[first..], &other[first..])).collect();
+            let end = (first + width).min(self.size);
+            let columns: Vec<Vec<f64>> = (first..end)
+                .step_by(AT_ONCE)
+                .flat_map(|at| self.inverse_columns(at, first).into_iter().take(end - at))
+                .collect();
+            let product = |one: &Vec<f64>| columns.iter().map(|other| dot(one, other)).collect();
             columns.iter().map(product).collect()
         };
         (0..self.size).step_by(width.max(1)).map(block).collect()
@@ -358,18 +340,33 @@ impl LargeFactor {
 
     /// The diagonal of the inverse of A.
     pub fn inverse_diagonal(&self) -> Vec<f64> {
-        // A⁻¹ = L⁻ᵀ L⁻¹, so (A⁻¹)ᵢᵢ is the square of column i of L⁻¹, whose entries above i are zero.
-        let mut column = vec![0.0; self.size];
-        let mut square = |at: usize| {
-            column[at..].fill(0.0);
-            column[at] = 1.0 / self.lower[at * self.size + at];
-            for row in at + 1..self.size {
-                let line = &self.lower[row * self.size..][..=row];
-                column[row] = -dot(&line[at..row], &column[at..row]) / line[row];
-            }
-            column[at..].iter().map(|entry| entry * entry).sum()
-        };
-        (0..self.size).map(&mut square).collect()
+        // A⁻¹ = L⁻ᵀ L⁻¹, so (A⁻¹)ᵢᵢ is the square of column i of L⁻¹.
+        let four = |at: usize| self.inverse_columns(at, at).map(|column| dot(&column, &column));
+        (0..self.size).step_by(AT_ONCE).flat_map(four).take(self.size).collect()
+    }
+
+    /// Columns of L⁻¹ from `at` on, without their first `above` entries, which are zero. Beyond the last column they are zero. A row
+    /// of L is loaded once for all of them.
+    fn inverse_columns(&self, at: usize, above: usize) -> [Vec<f64>; AT_ONCE] {
+        let mut columns = [const { Vec::new() }; AT_ONCE];
+        columns.iter_mut().for_each(|column| column.resize(self.size - above, 0.0));
+        widest(
+            #[inline(always)]
+            || {
+                for row in at..self.size {
+                    // xᵢ = (eᵢ − Σₖ Lᵢₖ xₖ)/Lᵢᵢ over k < i, forwards.
+                    let line = &self.lower[row * self.size..][..=row];
+                    let known = at - above..row - above;
+                    let sums =
+                        products(&line[at..row], columns.each_ref().map(|column| &column[known.clone()]));
+                    for (k, (column, sum)) in columns.iter_mut().zip(sums).enumerate() {
+                        let unit = if row == at + k { 1.0 } else { 0.0 };
+                        column[row - above] = (unit - sum) / line[row];
+                    }
+                }
+            },
+        );
+        columns
     }
 
     /// ln det A = 2 Σ ln Lᵢᵢ.
@@ -421,6 +418,38 @@ pub(super) fn products<const N: usize>(left: &[f64], right: [&[f64]; N]) -> [f64
     of_all
 }
 
+/// The product of a matrix with the matrix of these rows, which are equally long.
+pub fn combined<const N: usize>(matrix: &[[f64; N]; N], rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let combination = |factors: &[f64; N]| {
+        let mut sum = vec![0.0; rows.first().map_or(0, Vec::len)];
+        let terms: Vec<(f64, &[f64])> =
+            factors.iter().zip(rows).map(|(factor, row)| (*factor, row.as_slice())).collect();
+        widest(
+            #[inline(always)]
+            || add_combination(&mut sum, &terms),
+        );
+        sum
+    };
+    matrix.iter().map(combination).collect()
+}
+
+/// Adds Σ factor · v to a line, which is as long as each v.
+#[inline(always)]
+fn add_combination(line: &mut [f64], terms: &[(f64, &[f64])]) {
+    // Four at a time, so that an entry is loaded and stored once for all of them.
+    let (fours, rest) = terms.as_chunks::<4>();
+    for [(a, one), (b, two), (c, three), (d, four)] in fours {
+        for (entry, (((one, two), three), four)) in
+            line.iter_mut().zip(one.iter().zip(*two).zip(*three).zip(*four))
+        {
+            *entry = *entry + a * one + b * two + c * three + d * four;
+        }
+    }
+    for (factor, vector) in rest {
+        line.iter_mut().zip(*vector).for_each(|(entry, value)| *entry += factor * value);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -462,7 +491,7 @@ mod tests {
         }
         let half = large.clone();
         large.add(&half);
-        large.add_squares(&[(-1.0, b.to_vec())]);
+        large.add_products(&[(b.map(|entry| -entry).to_vec(), b.to_vec())]);
         large.add_product(1.0, &b);
         let factor = large.factorised().unwrap();
         assert!(factor.solve(&b).iter().zip(small.solve(&b)).all(|(one, other)| (one - other).abs() < 1e-8));

@@ -8,6 +8,6 @@ pub mod memory;
 pub mod oscillator;
 pub mod principal;
 pub mod random;
-mod simd;
+pub(crate) mod simd;
 pub mod statistics;
 pub mod zernike;

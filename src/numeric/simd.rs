@@ -6,13 +6,13 @@
 /// Runs the work so. What is to gain by it has to be inlined into it.
 #[cfg(feature = "lab")]
 #[inline]
-pub(super) fn widest<R>(work: impl FnOnce() -> R) -> R {
+pub(crate) fn widest<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
 }
 
 /// Runs the work as it is: the live core works on vectors that are too short to gain.
 #[cfg(not(feature = "lab"))]
 #[inline]
-pub(super) fn widest<R>(work: impl FnOnce() -> R) -> R {
+pub(crate) fn widest<R>(work: impl FnOnce() -> R) -> R {
     work()
 }

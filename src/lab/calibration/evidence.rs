@@ -17,7 +17,7 @@ pub(super) fn log_likelihood_of_contacts(residuals: &[Residual], noise_model: &N
             if let Some(previous_s) = previous_s.replace(residual.at_s) {
                 filter.pass(residual.at_s - previous_s, None)?;
             }
-            filter.see(&precision, residual, &[]);
+            filter.see(&precision.matrix(), residual, &[]);
         }
     }
     cost += filter.map_or(Some(0.0), |filter| filter.end(None))?;

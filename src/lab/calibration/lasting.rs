@@ -15,7 +15,7 @@
 
 use super::normal_equations::NormalEquations;
 use super::residual::{MarginalPrecision, Residual};
-use crate::numeric::linear::{Factor, dot};
+use crate::numeric::linear::{Factor, combined, dot};
 use crate::quantity::CHANNELS;
 
 type Matrix = [[f64; CHANNELS]; CHANNELS];
@@ -95,23 +95,23 @@ impl<'w> Filter<'w> {
                 own - kept * kept * inverse[i][j] / (fresh[i] * fresh[j])
             })
         });
-        let carried = std::array::from_fn(|i| inverse[i].map(|entry| kept * entry / fresh[i]));
-        self.vector = carried.map(|row: [f64; CHANNELS]| dot(&row, &self.vector));
+        let carried: Matrix = std::array::from_fn(|i| inverse[i].map(|entry| kept * entry / fresh[i]));
+        self.vector = carried.map(|row| dot(&row, &self.vector));
         self.slopes = combined(&carried, &self.slopes);
         self.cost += fresh.iter().map(|variance| variance.ln()).sum::<f64>();
         Some(())
     }
 
-    /// A contact is seen: Y ← Y + D V⁻¹ D, z ← z + D V⁻¹ r, Z ← Z + D V⁻¹ A. `rows` are those of A.
-    pub(super) fn see(&mut self, precision: &MarginalPrecision, residual: &Residual, rows: &[Vec<f64>]) {
-        for (i, line) in precision.matrix().iter().enumerate() {
+    /// A contact is seen: Y ← Y + D V⁻¹ D, z ← z + D V⁻¹ r, Z ← Z + D V⁻¹ A. `precision` is V⁻¹, and `weighted` has the rows of V⁻¹ A.
+    pub(super) fn see(&mut self, precision: &Matrix, residual: &Residual, weighted: &[Vec<f64>]) {
+        for (i, line) in precision.iter().enumerate() {
+            let uv = residual.uv[i];
             for (j, entry) in line.iter().enumerate() {
-                let weight = residual.uv[i] * entry;
-                self.information[i][j] += weight * residual.uv[j];
-                self.vector[i] += weight * residual.residual_uv[j];
-                if let (Some(sums), Some(row)) = (self.slopes.get_mut(i), rows.get(j)) {
-                    sums.iter_mut().zip(row).for_each(|(sum, slope)| *sum += weight * slope);
-                }
+                self.information[i][j] += uv * entry * residual.uv[j];
+            }
+            self.vector[i] += uv * dot(line, &residual.residual_uv);
+            if let (Some(sums), Some(row)) = (self.slopes.get_mut(i), weighted.get(i)) {
+                sums.iter_mut().zip(row).for_each(|(sum, slope)| *sum += uv * slope);
             }
         }
     }
@@ -131,7 +131,7 @@ impl<'w> Filter<'w> {
         // L⁻¹, column by column.
         let unit = |at: usize| std::array::from_fn(|k| f64::from(u8::from(k == at)));
         let columns: Matrix = std::array::from_fn(|at| factor.solve_lower(&unit(at)));
-        let lower = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
+        let lower: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
         combined(&lower, &self.slopes)
             .into_iter()
             .zip(half)
@@ -163,7 +163,7 @@ impl Wander {
                 filter.pass(after_s, None)?;
             }
             let (_, predicted) = filter.state()?;
-            filter.see(precision, residual, &[]);
+            filter.see(&precision.matrix(), residual, &[]);
             let (mean, covariance) = filter.state()?;
             filtered.push(Filtered {
                 mean,
@@ -223,18 +223,6 @@ fn variance(wander: &Wander, channel: usize) -> f64 {
 
 fn diagonal(of: impl Fn(usize) -> f64) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { of(i) } else { 0.0 }))
-}
-
-/// The product of a matrix with the matrix of these rows.
-fn combined(matrix: &Matrix, rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let row = |factors: &[f64; CHANNELS]| {
-        let mut sum = vec![0.0; rows.first().map_or(0, Vec::len)];
-        for (factor, row) in factors.iter().zip(rows).filter(|(factor, _)| **factor != 0.0) {
-            sum.iter_mut().zip(row).for_each(|(sum, entry)| *sum += factor * entry);
-        }
-        sum
-    };
-    matrix.iter().map(row).collect()
 }
 
 #[cfg(test)]
@@ -322,7 +310,7 @@ mod tests {
             if let Some(previous_s) = previous_s.replace(residual.at_s) {
                 filter.pass(residual.at_s - previous_s, None).unwrap();
             }
-            filter.see(precision, residual, &[]);
+            filter.see(&precision.matrix(), residual, &[]);
         }
         let found = filter.end(None).unwrap();
         assert!((found / wanted - 1.0).abs() < 1e-8, "{found} {wanted}");

@@ -243,12 +243,14 @@ impl Layout {
         ZEROS + channel
     }
 
-    /// What a channel has of the nine strains: S gₖ of its own, S Xₖₗ of the others.
-    fn mixture(values: &[f64], channel: usize) -> [f64; CHANNELS] {
+    /// What each channel has of the nine strains: S gₖ of its own, S Xₖₗ of the others.
+    fn mixture(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
         let scale = Self::scale_factor(values);
-        std::array::from_fn(|from| {
-            let own = if from == channel { values[GAINS + channel] } else { 0.0 };
-            scale * (own + values[CROSSTALKS + channel * CHANNELS + from])
+        std::array::from_fn(|into| {
+            std::array::from_fn(|from| {
+                let own = if from == into { values[GAINS + into] } else { 0.0 };
+                scale * (own + values[CROSSTALKS + into * CHANNELS + from])
+            })
         })
     }
 
@@ -326,9 +328,8 @@ impl Layout {
     pub(super) fn maps(&self, values: &[f64], scale: &Maps, place: &Place, knowledge: Knowledge) -> Maps {
         // S (gₖ Eₖₐ + Σₗ Xₖₗ Eₗₐ).
         let strain_maps = self.strain_maps(values, scale, place, knowledge);
-        std::array::from_fn(|into| {
+        Self::mixture(values).map(|factors| {
             std::array::from_fn(|axis| {
-                let factors = Self::mixture(values, into);
                 factors.iter().zip(&strain_maps).map(|(factor, from)| factor * from[axis]).sum()
             })
         })
@@ -373,8 +374,9 @@ impl Layout {
             let gradient = self.strain_gradient(values, scale, &contact.place, axis);
             gradient.map(|map| response(&map, &force_n))
         });
+        let mixture = Self::mixture(values);
         let by_place = |channel: usize, axis: usize| {
-            let factors = Self::mixture(values, channel);
+            let factors = &mixture[channel];
             factors.iter().zip(&of_strains[axis]).map(|(factor, slope)| factor * slope).sum::<f64>()
         };
         std::array::from_fn(|channel| {
@@ -397,13 +399,14 @@ impl Layout {
         let strain_maps = self.strain_maps(values, scale, place, *knowledge);
         let strains_uv = strain_maps.map(|map| response(&map, force_n));
         let weights: Vec<[f64; 2]> = self.weights(values).collect();
+        let factor = Self::scale_factor(values);
         let mut derivatives = vec![0.0; self.size()];
         for channel in 0..CHANNELS {
             derivatives.fill(0.0);
             // h = (1 + αₖ ΔT) S gₖ.
             let thermal_gain = 1.0 + values[GAIN_SLOPES + channel] * above_c;
-            let own_gain = Self::gain(values, channel);
-            let (gain, factor) = (thermal_gain * own_gain, Self::scale_factor(values));
+            let own_gain = factor * values[GAINS + channel];
+            let gain = thermal_gain * own_gain;
             let shares = &values[CROSSTALKS + channel * CHANNELS..][..CHANNELS];
             let crosstalk_uv: f64 =
                 factor * shares.iter().zip(strains_uv).map(|(share, uv)| share * uv).sum::<f64>();

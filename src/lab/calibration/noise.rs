@@ -4,6 +4,7 @@
 //! `force_uv_per_n`.
 
 use crate::numeric::linear::Factor;
+use crate::numeric::simd::widest;
 use crate::pad::influence::InfluenceField;
 use crate::pipeline::compensation::hysteresis::Hysteresis;
 use crate::pipeline::contact::inverse::{Expected, Inverse};
@@ -30,6 +31,7 @@ const PARTS: usize = 3;
 /// Least standard deviations: no pad is quieter.
 const ADDITIVE_MIN_UV: f64 = 0.5;
 pub(super) const SHARE_MIN: f64 = 5e-4;
+const LEAST_UV2: f64 = ADDITIVE_MIN_UV * ADDITIVE_MIN_UV;
 /// Rounds of reweighting.
 const ROUNDS: usize = 40;
 
@@ -253,13 +255,52 @@ fn parts(residuals: &[SquaredResidual], prior: &[f64; PARTS], pseudo_readings: f
     let typical =
         |of: fn(&SquaredResidual) -> f64| residuals.iter().map(|it| of(it).powi(2)).sum::<f64>() / count;
     let (uv2, n2) = (typical(|it| it.uv), typical(|it| it.force_n));
-    let measured =
-        residuals.iter().map(|it| ([1.0, it.uv * it.uv, it.force_n * it.force_n], it.square_uv2, 1.0));
+    let measured = residuals.iter().map(|it| Squared {
+        terms: [1.0, it.uv * it.uv, it.force_n * it.force_n],
+        square: it.square_uv2,
+        count: 1.0,
+    });
     // The prior as pseudo-observations: half of them at rest, half at a typical reading.
-    let known = [[1.0, 0.0, 0.0], [1.0, uv2, n2]];
-    let known = known.map(|terms| (terms, sum(&terms, prior), pseudo_readings / 2.0));
-    let all: Vec<([f64; PARTS], f64, f64)> = measured.chain(known).collect();
-    (0..ROUNDS).fold(*prior, |parts, _| reweighted(&parts, &all))
+    let known = [[1.0, 0.0, 0.0], [1.0, uv2, n2]].map(|terms| Squared {
+        terms,
+        square: sum(&terms, prior),
+        count: pseudo_readings / 2.0,
+    });
+    let all: Vec<Squared> = measured.chain(known).collect();
+    let groups: Vec<Group> = all.chunks(LANES).map(Group::of).collect();
+    widest(
+        #[inline(always)]
+        || (0..ROUNDS).fold(*prior, |parts, _| reweighted(&parts, &groups)),
+    )
+}
+
+/// A squared residual y with its terms x = (1, s², F²), and how many times it counts.
+struct Squared {
+    terms: [f64; PARTS],
+    square: f64,
+    count: f64,
+}
+
+/// So many squared residuals side by side, for vectors of the processor.
+const LANES: usize = 8;
+
+/// The same for each of them, number by number. What a group lacks counts nothing.
+#[derive(Clone, Copy)]
+struct Group {
+    terms: [[f64; LANES]; PARTS],
+    square: [f64; LANES],
+    count: [f64; LANES],
+}
+
+impl Group {
+    fn of(squared: &[Squared]) -> Self {
+        let each = |of: &dyn Fn(&Squared) -> f64| std::array::from_fn(|lane| squared.get(lane).map_or(0.0, of));
+        Self {
+            terms: std::array::from_fn(|part| each(&|it| it.terms[part])),
+            square: each(&|it| it.square),
+            count: each(&|it| it.count),
+        }
+    }
 }
 
 /// A round of D. D. Lee's and H. S. Seung's multiplicative rule (Nature 401 (1999) 788), under which no component ever becomes
@@ -268,18 +309,25 @@ fn parts(residuals: &[SquaredResidual], prior: &[f64; PARTS], pseudo_readings: f
 /// ```text
 /// pₖ ← pₖ Σ w xₖ y / Σ w xₖ ŷ,    ŷ = Σₖ xₖ pₖ,    w = count/ŷ²
 /// ```
-///
-/// Each of `all` has its terms x = (1, s², F²), the squared residual y and its count.
-fn reweighted(parts: &[f64; PARTS], all: &[([f64; PARTS], f64, f64)]) -> [f64; PARTS] {
-    let [mut wanted, mut found] = [[0.0; PARTS]; 2];
-    for (terms, square, count) in all {
-        let expected = sum(terms, parts).max(ADDITIVE_MIN_UV * ADDITIVE_MIN_UV);
-        let weight = count / (expected * expected);
-        for (k, term) in terms.iter().enumerate() {
-            wanted[k] += weight * term * square;
-            found[k] += weight * term * expected;
+#[inline(always)]
+fn reweighted(parts: &[f64; PARTS], groups: &[Group]) -> [f64; PARTS] {
+    let [mut wanted, mut found] = [[[0.0; LANES]; PARTS]; 2];
+    for Group { terms, square, count } in groups {
+        // By indices: iterators would be calls of their own, outside the widest vectors.
+        for lane in 0..LANES {
+            let mut expected = 0.0;
+            for k in 0..PARTS {
+                expected += terms[k][lane] * parts[k];
+            }
+            let expected = if expected > LEAST_UV2 { expected } else { LEAST_UV2 };
+            let weight = count[lane] / (expected * expected);
+            for k in 0..PARTS {
+                wanted[k][lane] += weight * terms[k][lane] * square[lane];
+                found[k][lane] += weight * terms[k][lane] * expected;
+            }
         }
     }
+    let [wanted, found] = [wanted, found].map(|sums| sums.map(|lanes| lanes.iter().sum::<f64>()));
     std::array::from_fn(|k| if found[k] > 0.0 { parts[k] * wanted[k] / found[k] } else { parts[k] })
 }
 

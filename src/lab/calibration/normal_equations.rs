@@ -7,19 +7,18 @@
 //! P are the precisions of the prior and m its mean. The first sums are over contacts, with the residuals r of nine channels,
 //! their covariance V and A = ∂f/∂θ; the second ones over single numbers with a variance σ² and derivatives a.
 
-use super::residual::MarginalPrecision;
 use crate::numeric::linear::{LargeFactor, Reduced, Symmetric, dot};
 use crate::quantity::CHANNELS;
 
-/// So many vectors are collected before their squares go into H: it is larger than a processor's cache.
-const COLLECTED: usize = 48;
+/// So many products are collected before they go into H, which is larger than a processor's cache.
+const COLLECTED: usize = 72;
 
 /// The sums H and g.
 pub(super) struct NormalEquations {
     curvature: Symmetric,
     gradient: Vec<f64>,
-    /// Vectors v whose ± v vᵀ is still to be added to H.
-    collected: Vec<(f64, Vec<f64>)>,
+    /// Vectors l and r whose l rᵀ is still to be added to H.
+    collected: Vec<(Vec<f64>, Vec<f64>)>,
 }
 
 /// A Gauss-Newton step δ, and the factor of the curvature H.
@@ -38,42 +37,42 @@ impl NormalEquations {
         Self { curvature, gradient, collected: Vec::with_capacity(COLLECTED) }
     }
 
-    /// Adds a contact. `rows` are the channels' derivatives, the rows aₖ of A.
-    ///
-    /// The label's errors are marginalised: V⁻¹ = W − Σ tᵢ tᵢᵀ, with the weights W and the downdates tᵢ, hence
+    /// Adds a contact by the channels' derivatives, the rows aₖ of A, and those of V⁻¹ A: with these, vₖ,
     ///
     /// ```text
-    /// Aᵀ V⁻¹ A = Σₖ wₖ aₖ aₖᵀ − Σᵢ (Aᵀtᵢ)(Aᵀtᵢ)ᵀ        Aᵀ V⁻¹ r = Σₖ wₖ rₖ aₖ − Σᵢ (Aᵀtᵢ)(tᵢᵀr)
+    /// Aᵀ V⁻¹ A = Σₖ aₖ vₖᵀ        Aᵀ V⁻¹ r = Σₖ rₖ vₖ
     /// ```
+    ///
+    /// Most parameters are of one channel alone, so aₖ has few entries.
     pub(super) fn add_contact(
         &mut self,
-        MarginalPrecision { weights, downdates, .. }: &MarginalPrecision,
+        rows: Vec<Vec<f64>>,
+        weighted: Vec<Vec<f64>>,
         residual_uv: &[f64; CHANNELS],
-        rows: &[Vec<f64>],
     ) {
-        for ((row, weight), residual_uv) in rows.iter().zip(weights).zip(residual_uv) {
-            self.add(*residual_uv, 1.0 / weight, row);
+        for ((row, weighted), residual_uv) in rows.into_iter().zip(weighted).zip(residual_uv) {
+            let sums = self.gradient.iter_mut().zip(&weighted);
+            sums.for_each(|(sum, slope)| *sum += slope * residual_uv);
+            self.collected.push((row, weighted));
         }
-        for downdate in downdates {
-            let mut projected = vec![0.0; self.gradient.len()];
-            for (row, share) in rows.iter().zip(downdate) {
-                projected.iter_mut().zip(row).for_each(|(sum, slope)| *sum += share * slope);
-            }
-            self.subtract(projected, dot(downdate, residual_uv));
-        }
+        self.add_collected_if_many();
     }
 
     /// H ← H − v vᵀ, g ← g − v s.
     pub(super) fn subtract(&mut self, vector: Vec<f64>, residual: f64) {
         self.gradient.iter_mut().zip(&vector).for_each(|(sum, entry)| *sum -= entry * residual);
-        self.collected.push((-1.0, vector));
+        self.collected.push((vector.iter().map(|entry| -entry).collect(), vector));
+        self.add_collected_if_many();
+    }
+
+    fn add_collected_if_many(&mut self) {
         if self.collected.len() >= COLLECTED {
             self.add_collected();
         }
     }
 
     fn add_collected(&mut self) {
-        self.curvature.add_squares(&self.collected);
+        self.curvature.add_products(&self.collected);
         self.collected.clear();
     }
 

@@ -28,7 +28,7 @@ use super::prior_deviations::Deviating;
 use super::residual::{MarginalPrecision, Residual};
 use super::rig::RigPrior;
 use crate::lab::ageing;
-use crate::numeric::linear::{LargeFactor, dot};
+use crate::numeric::linear::{LargeFactor, combined, dot};
 use crate::pad::device::Device;
 use crate::pad::field::Sensitivity;
 use crate::pipeline::compensation::hysteresis::PLAYS;
@@ -290,14 +290,15 @@ impl<'f> Problem<'f> {
             let (_, contact) = known;
             let (residual, mut rows) = self.linearised(values, contact);
             widen(at, known, &mut rows);
-            let precision = estimates.noise_model.marginal_precision(&residual)?;
+            let precision = estimates.noise_model.marginal_precision(&residual)?.matrix();
+            let weighted = combined(&precision, &rows);
             if let Some(filter) = &mut filter {
                 if let Some(previous_s) = previous_s.replace(contact.at_s) {
                     filter.pass(contact.at_s - previous_s, Some(&mut equations))?;
                 }
-                filter.see(&precision, &residual, &rows);
+                filter.see(&precision, &residual, &weighted);
             }
-            equations.add_contact(&precision, &residual.residual_uv, &rows);
+            equations.add_contact(rows, weighted, &residual.residual_uv);
         }
         if let Some(filter) = filter {
             filter.end(Some(&mut equations))?;

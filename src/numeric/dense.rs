@@ -65,6 +65,12 @@ impl Matrix {
         sums
     }
 
+    /// A + factor · B of a matrix B of the same size.
+    pub fn plus(&self, factor: f64, other: &Self) -> Self {
+        let sums = self.values.iter().zip(&other.values).map(|(own, other)| own + factor * other);
+        Self { columns: self.columns, values: sums.collect() }
+    }
+
     /// Rows and columns of a square matrix at these places.
     pub fn picked(&self, rows: &[usize], columns: &[usize]) -> Self {
         let picked: Vec<Vec<f64>> =
@@ -126,6 +132,7 @@ mod tests {
         let solved = factor.solve(&[79.0, 100.0]);
         assert!((solved[0] - 1.0).abs() < 1e-9 && (solved[1] - 1.0).abs() < 1e-9);
         assert_eq!(gram.picked(&[1], &[0, 1]).row(0), [44.0, 56.0]);
+        assert_eq!(gram.plus(-2.0, &gram).row(1), [-44.0, -56.0]);
         assert!(Matrix::zeros(2, 2).factorised().is_none());
     }
 }

@@ -85,7 +85,7 @@ pub(super) fn decoder(problem: &Problem<'_>, fit: &Fit, noise: Noise) -> Inverse
 
 impl Problem<'_> {
     fn load(&self, fit: &Fit, place_mm: [f64; 2], force_n: [f64; 3]) -> Load {
-        let place = Place::of(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
+        let place = Place::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
         let mut halves = Vec::with_capacity(CHANNELS);
         let contact = Measured::unmeasured(place_mm, place, force_n);
         self.layout.readings(&fit.values, &self.scale, &contact, |_, _, derivatives| {
@@ -124,7 +124,7 @@ impl Problem<'_> {
 
     /// How the maps at a place change with each of these changes of the parameters, µV/N.
     fn changed_maps(&self, fit: &Fit, changes: &[Vec<f64>], place_mm: [f64; 2]) -> Vec<[f64; MAPS]> {
-        let place = Place::of(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
+        let place = Place::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
         let mut contact = Measured::unmeasured(place_mm, place, [0.0; 3]);
         let mut maps = vec![[0.0; MAPS]; changes.len()];
         for axis in 0..3 {

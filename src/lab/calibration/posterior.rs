@@ -41,7 +41,7 @@ impl Problem<'_> {
     pub(super) fn corrected(&self, values: &[f64]) -> InfluenceField {
         let signals = &self.prior.field.signals;
         InfluenceField::sampled(f64::from(signals.spacing_mm()), self.reach_mm, self.reach_mm, |place_mm| {
-            let place = Place::of(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
+            let place = Place::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
             let maps = self.layout.maps(values, &self.scale, &place, Knowledge::Written);
             std::array::from_fn::<f64, MAPS, _>(|map| maps[map / 3][map % 3])
         })

@@ -80,6 +80,23 @@ impl NormalEquations {
         }
     }
 
+    /// Those of these rows and of `times` as many of other ones, for the same columns.
+    pub(super) fn plus(&self, times: f64, other: &Self) -> Self {
+        let sums = |own: &[f64], others: &[f64]| -> Vec<f64> {
+            own.iter().zip(others).map(|(own, other)| own + times * other).collect()
+        };
+        Self {
+            columns: self.columns.clone(),
+            background_gram: self.background_gram.plus(times, &other.background_gram),
+            mixed: self.mixed.plus(times, &other.mixed),
+            signature_gram: self.signature_gram.plus(times, &other.signature_gram),
+            background_residual: sums(&self.background_residual, &other.background_residual),
+            signature_residual: sums(&self.signature_residual, &other.signature_residual),
+            square: self.square + times * other.square,
+            log_determinant: self.log_determinant + times * other.log_determinant,
+        }
+    }
+
     /// With a background of T = diag(τ²) ⊗ the process' own, τ being its share for each load; `None` if H is not positive definite.
     pub(super) fn reduced(&self, prior: &Prior, shares: &[f64]) -> Option<Reduced> {
         let mut inner = self.background_gram.clone();

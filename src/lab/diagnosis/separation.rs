@@ -14,10 +14,12 @@
 //! Source: A. C. Atkinson, V. V. Fedorov, Biometrika 62 (1975) 57 (T-optimality).
 
 use std::cell::OnceCell;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::attribution::{Attribution, Search};
+use super::equations::NormalEquations;
 use super::experiments::{Experiment, catalogue};
 use super::model::{CommonError, Linearised, Signature};
 use super::naming::POWER;
@@ -47,6 +49,26 @@ struct Both<'s, 'm> {
     experiment: &'s Experiment,
     further: &'s Linearised,
     pairs: Vec<Pair>,
+}
+
+/// A fitted cause and its rivals, in numbers of columns.
+struct Contest {
+    channels: Vec<Told>,
+    /// Of what was known of each column before.
+    precisions: Vec<f64>,
+    cause: Vec<usize>,
+    /// The cause's fitted coordinates.
+    psi: Vec<f64>,
+    /// What is free beside each rival.
+    held: Vec<usize>,
+    rivals: Vec<Range<usize>>,
+}
+
+/// What a channel's present rows tell of the columns that it knows, and what those of one further measurement do: it adds up.
+struct Told {
+    channel: usize,
+    present: NormalEquations,
+    further: NormalEquations,
 }
 
 /// The measurements that could be made, each with what the model says of it once that is asked for.
@@ -162,7 +184,8 @@ impl<'s, 'm> Both<'s, 'm> {
     /// How often it takes the experiment to tell the cause from each rival; none if it does not.
     fn repeats(&self, at: usize, rivals: &[usize]) -> Option<usize> {
         let most = if self.experiment.by_hand.is_some() { 1 } else { REPEATS_MAX };
-        let is_enough = |repeats: usize| self.separates(at, rivals, repeats).unwrap_or(false);
+        let contest = self.contest(at, rivals)?;
+        let is_enough = |repeats: usize| self.separates(&contest, repeats).unwrap_or(false);
         if is_enough(1) {
             return Some(1);
         }
@@ -177,8 +200,8 @@ impl<'s, 'm> Both<'s, 'm> {
         Some(high)
     }
 
-    /// Whether something significant of the cause is left beside each rival in nine of ten such measurements.
-    fn separates(&self, at: usize, rivals: &[usize], repeats: usize) -> Option<bool> {
+    /// The columns of a fitted cause, of the others beside it and of its rivals, with what the rows tell of them.
+    fn contest(&self, at: usize, rivals: &[usize]) -> Option<Contest> {
         let fit = &self.found.fit;
         let mut columns: Vec<Pair> = Vec::new();
         let mut groups = Vec::new();
@@ -190,85 +213,109 @@ impl<'s, 'm> Both<'s, 'm> {
             columns.extend(own);
         }
         let all: Vec<&Pair> = self.pairs.iter().chain(&columns).collect();
-        let fisher = self.fisher(&all, repeats)?;
-        let shifted = |group: &std::ops::Range<usize>| group.clone().map(|k| k + self.pairs.len());
+        let shifted = |group: &Range<usize>| group.start + self.pairs.len()..group.end + self.pairs.len();
+        let groups: Vec<Range<usize>> = groups.iter().map(shifted).collect();
         let (held, rest) = groups.split_at(groups.len() - rivals.len() - 1);
-        let cause: Vec<usize> = shifted(&rest[0]).collect();
-        let freedom = cause.len();
+        let (cause, rivals) = (rest[0].clone(), rest[1..].to_vec());
+        Some(Contest {
+            channels: self.channels(&all)?,
+            precisions: all.iter().map(|pair| pair.precision).collect(),
+            psi: psi[..cause.len()].to_vec(),
+            held: (0..self.pairs.len()).chain(held.iter().cloned().flatten()).collect(),
+            cause: cause.collect(),
+            rivals,
+        })
+    }
+
+    /// Whether something significant of the cause is left beside each rival in nine of ten such measurements.
+    fn separates(&self, contest: &Contest, repeats: usize) -> Option<bool> {
+        let fisher = self.fisher(contest, repeats)?;
+        let freedom = contest.cause.len();
         let threshold = chi_square::quantile(self.found.critical, freedom);
         let wanted = chi_square::noncentrality(threshold, freedom, POWER);
-        for rival in &rest[1..] {
-            let free = (0..self.pairs.len()).chain(held.iter().chain([rival]).flat_map(shifted)).collect();
-            if left(&fisher, &cause, &psi[..freedom], free)? < wanted {
+        for rival in &contest.rivals {
+            let free = contest.held.iter().copied().chain(rival.clone()).collect();
+            if left(&fisher, &contest.cause, &contest.psi, free)? < wanted {
                 return Some(false);
             }
         }
         Some(true)
     }
 
-    /// What both measurements tell of the columns, and what was known of them before.
-    fn fisher(&self, columns: &[&Pair], repeats: usize) -> Option<Matrix> {
-        let mut fisher = Matrix::zeros(columns.len(), columns.len());
-        let alive = (0..self.further.readings.len()).into_par_iter();
-        let alive = alive.filter(|channel| self.search.observations.is_alive(*channel));
-        let channels: Option<Vec<_>> =
-            alive.map(|channel| self.of_channel(channel, columns, repeats)).collect();
-        for (numbers, own) in channels? {
+    /// What the present rows and so many measurements tell of the columns, and what was known of them before.
+    fn fisher(&self, contest: &Contest, repeats: usize) -> Option<Matrix> {
+        let background = &self.found.fit.background;
+        let count = contest.precisions.len();
+        let mut fisher = Matrix::zeros(count, count);
+        let own = |Told { channel, present, further }: &Told| {
+            let both = present.plus(repeats as f64, further);
+            Some(both.reduced(&background.prior, &background.shares[*channel])?.fisher)
+        };
+        let channels: Option<Vec<Matrix>> = contest.channels.par_iter().map(own).collect();
+        for (told, own) in contest.channels.iter().zip(channels?) {
+            let numbers = &told.present.columns;
             for (row, number) in numbers.iter().enumerate() {
                 for (column, other) in numbers.iter().enumerate() {
                     fisher.row_mut(*number)[*other] += own.at(row, column);
                 }
             }
         }
-        for (at, column) in columns.iter().enumerate() {
+        for (at, precision) in contest.precisions.iter().enumerate() {
             // Zeros of the channels that tell nothing are in no row.
             let least = if fisher.at(at, at) > 0.0 { RIDGE * fisher.at(at, at) } else { 1.0 };
-            fisher.row_mut(at)[at] += column.precision + least;
+            fisher.row_mut(at)[at] += precision + least;
         }
         Some(fisher)
     }
 
-    /// The numbers of the columns that a channel knows, and what it tells of them.
-    fn of_channel(&self, channel: usize, columns: &[&Pair], repeats: usize) -> Option<(Vec<usize>, Matrix)> {
+    /// What each channel that is alive tells of these columns.
+    fn channels(&self, columns: &[&Pair]) -> Option<Vec<Told>> {
+        let alive = (0..self.further.readings.len()).into_par_iter();
+        let alive = alive.filter(|channel| self.search.observations.is_alive(*channel));
+        alive.map(|channel| self.of_channel(channel, columns)).collect()
+    }
+
+    /// What the present rows of a channel tell of the columns that it knows, and what those of one measurement do.
+    fn of_channel(&self, channel: usize, columns: &[&Pair]) -> Option<Told> {
         let (fit, rows) = (&self.found.fit, &self.experiment.rows);
         let (system, noise) = (&fit.systems.channels[channel], &fit.systems.noise[channel]);
         let weight = |(row, f): (usize, &f64)| {
             let in_series = rows.samples.get(row).is_some_and(Sample::is_in_series);
-            (repeats as f64 / noise.variance(*f, in_series)).sqrt()
+            1.0 / noise.variance(*f, in_series).sqrt()
         };
         let weights: Vec<f64> = self.further.readings[channel].iter().enumerate().map(weight).collect();
-        let stacked = |present: Option<Vec<f64>>, further: Option<&Vec<f64>>| -> Vec<f64> {
-            let mut column = present.unwrap_or_else(|| vec![0.0; system.residual.len()]);
-            match further {
-                Some(values) => {
-                    column.extend(values.iter().zip(&weights).map(|(value, weight)| value * weight));
-                }
-                None => column.resize(column.len() + weights.len(), 0.0),
-            }
-            column
+        // No values: nothing of the column is in these rows.
+        let weighted = |values: Option<&Vec<f64>>| -> Vec<f64> {
+            let none = || vec![0.0; weights.len()];
+            values.map_or_else(none, |it| it.iter().zip(&weights).map(|(v, weight)| v * weight).collect())
         };
-        let known = columns.iter().enumerate().filter_map(|(number, pair)| {
-            let (present, further) = (pair.present[channel].as_ref(), pair.further[channel].as_ref());
-            let whitened = present.map(|column| system.whitening.whitened(column));
-            (present.is_some() || further.is_some()).then(|| (number, stacked(whitened, further)))
-        });
-        let known: Vec<(usize, Vec<f64>)> = known.collect();
-        let functions = fit.systems.background_at(channel, self.search.model.sizes()[channel], rows);
+        let whitened = |values: Option<&Vec<f64>>| -> Vec<f64> {
+            let none = || vec![0.0; system.residual.len()];
+            values.map_or_else(none, |it| system.whitening.whitened(it))
+        };
+        let known = |(_, pair): &(usize, &&Pair)| pair.present[channel].is_some() || pair.further[channel].is_some();
+        let known: Vec<(usize, &&Pair)> = columns.iter().enumerate().filter(known).collect();
+        let of = |column: &dyn Fn(&Pair) -> Vec<f64>| -> Vec<(usize, Vec<f64>)> {
+            known.iter().map(|(number, pair)| (*number, column(pair))).collect()
+        };
         // What is measured by hand has no rows, and so no functions there.
-        let background: Vec<Vec<f64>> = system
-            .background
-            .iter()
-            .enumerate()
-            .map(|(at, present)| stacked(Some(present.clone()), functions.get(at)))
-            .collect();
-        let count = system.residual.len() + weights.len();
-        let white = Whitening::none(count);
-        let signatures: Vec<(usize, &[f64])> =
-            known.iter().map(|(at, column)| (*at, column.as_slice())).collect();
-        let joint = ChannelSystem::of(&signatures, &background, &[], &vec![0.0; count], white)?;
-        let reduced = joint.equations.reduced(&fit.background.prior, &fit.background.shares[channel])?;
-        Some((joint.equations.columns, reduced.fisher))
+        let functions = fit.systems.background_at(channel, self.search.model.sizes()[channel], rows);
+        let functions: Vec<Vec<f64>> =
+            (0..system.background.len()).map(|at| weighted(functions.get(at))).collect();
+        Some(Told {
+            channel,
+            present: equations(&of(&|pair| whitened(pair.present[channel].as_ref())), &system.background)?,
+            further: equations(&of(&|pair| weighted(pair.further[channel].as_ref())), &functions)?,
+        })
     }
+}
+
+/// The normal equations of whitened columns, with their numbers, and a whitened background.
+fn equations(columns: &[(usize, Vec<f64>)], background: &[Vec<f64>]) -> Option<NormalEquations> {
+    let count = background.first().map_or(0, Vec::len);
+    let columns: Vec<(usize, &[f64])> = columns.iter().map(|(at, column)| (*at, column.as_slice())).collect();
+    let white = Whitening::none(count);
+    Some(ChannelSystem::of(&columns, background, &[], &vec![0.0; count], white)?.equations)
 }
 
 /// ψᵀ (I_cc − I_cf I_ff⁻¹ I_fc) ψ: what is left of a cause when columns are free.

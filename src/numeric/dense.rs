@@ -1,6 +1,7 @@
 //! Small dense matrices and the products that least squares needs.
 
-use super::linear::{AT_ONCE, LargeFactor, Symmetric, dot, products};
+use super::linear::{LargeFactor, Symmetric};
+use super::products::{AT_ONCE, dot, products};
 use super::simd::widest;
 
 /// A matrix, row by row.

@@ -4,6 +4,7 @@
 
 use std::ops::Range;
 
+use super::products::{AT_ONCE, add_combination, dot, products};
 use super::simd::widest;
 
 /// The factor L of a small matrix.
@@ -372,81 +373,6 @@ impl LargeFactor {
     /// ln det A = 2 Σ ln Lᵢᵢ.
     pub fn log_determinant(&self) -> f64 {
         (0..self.size).map(|row| 2.0 * self.lower[row * self.size + row].ln()).sum()
-    }
-}
-
-/// Vectors of so many numbers gain by wider vectors of the processor.
-const LONG: usize = 64;
-/// So many products of one vector with others are summed at once: it is loaded once for all of them.
-pub(super) const AT_ONCE: usize = 4;
-
-/// Σ aᵢ bᵢ, in eight sums side by side, so that the loop becomes vectors that do not wait for one another; the order is fixed.
-pub fn dot(left: &[f64], right: &[f64]) -> f64 {
-    if left.len() < LONG {
-        return products(left, [right])[0];
-    }
-    widest(
-        #[inline(always)]
-        || products(left, [right])[0],
-    )
-}
-
-/// [`dot`] of one vector with each of several ones.
-#[inline(always)]
-pub(super) fn products<const N: usize>(left: &[f64], right: [&[f64]; N]) -> [f64; N] {
-    let (left, rest) = left.as_chunks::<8>();
-    let right = right.map(|right| right.as_chunks::<8>());
-    let whole = right.iter().map(|(chunks, _)| chunks.len()).fold(left.len(), usize::min);
-    let mut sums = [[0.0; 8]; N];
-    // By indices: iterators would be calls of their own, outside the widest vectors.
-    for at in 0..whole {
-        for n in 0..N {
-            let (left, right) = (&left[at], &right[n].0[at]);
-            for k in 0..8 {
-                sums[n][k] += left[k] * right[k];
-            }
-        }
-    }
-    let mut of_all = [0.0; N];
-    for n in 0..N {
-        let mut sum: f64 = rest.iter().zip(right[n].1).map(|(left, right)| left * right).sum();
-        for part in sums[n] {
-            sum += part;
-        }
-        of_all[n] = sum;
-    }
-    of_all
-}
-
-/// The product of a matrix with the matrix of these rows, which are equally long.
-pub fn combined<const N: usize>(matrix: &[[f64; N]; N], rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let combination = |factors: &[f64; N]| {
-        let mut sum = vec![0.0; rows.first().map_or(0, Vec::len)];
-        let terms: Vec<(f64, &[f64])> =
-            factors.iter().zip(rows).map(|(factor, row)| (*factor, row.as_slice())).collect();
-        widest(
-            #[inline(always)]
-            || add_combination(&mut sum, &terms),
-        );
-        sum
-    };
-    matrix.iter().map(combination).collect()
-}
-
-/// Adds Σ factor · v to a line, which is as long as each v.
-#[inline(always)]
-fn add_combination(line: &mut [f64], terms: &[(f64, &[f64])]) {
-    // Four at a time, so that an entry is loaded and stored once for all of them.
-    let (fours, rest) = terms.as_chunks::<4>();
-    for [(a, one), (b, two), (c, three), (d, four)] in fours {
-        for (entry, (((one, two), three), four)) in
-            line.iter_mut().zip(one.iter().zip(*two).zip(*three).zip(*four))
-        {
-            *entry = *entry + a * one + b * two + c * three + d * four;
-        }
-    }
-    for (factor, vector) in rest {
-        line.iter_mut().zip(*vector).for_each(|(entry, value)| *entry += factor * value);
     }
 }
 

@@ -7,6 +7,7 @@ pub mod linear;
 pub mod memory;
 pub mod oscillator;
 pub mod principal;
+pub mod products;
 pub mod random;
 pub(crate) mod simd;
 pub mod statistics;

@@ -4,7 +4,7 @@
 //! start).
 
 use super::dense::{Matrix, gram};
-use super::linear::dot;
+use super::products::dot;
 use super::random::SplitMix64;
 
 /// Directions that are iterated beside those that are asked for: they make these converge faster.

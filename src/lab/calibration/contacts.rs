@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::rig::Written;
-use crate::numeric::linear::dot;
+use crate::numeric::products::dot;
 use crate::numeric::zernike::{Jet, jets, norms};
 use crate::pad::field::{PadField, Sensitivity};
 use crate::pipeline::compensation::hysteresis::PLAYS;

@@ -15,7 +15,8 @@
 
 use super::normal_equations::NormalEquations;
 use super::residual::{MarginalPrecision, Residual};
-use crate::numeric::linear::{Factor, combined, dot};
+use crate::numeric::linear::Factor;
+use crate::numeric::products::{combined, dot};
 use crate::quantity::CHANNELS;
 
 type Matrix = [[f64; CHANNELS]; CHANNELS];

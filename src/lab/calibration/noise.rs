@@ -294,7 +294,8 @@ struct Group {
 
 impl Group {
     fn of(squared: &[Squared]) -> Self {
-        let each = |of: &dyn Fn(&Squared) -> f64| std::array::from_fn(|lane| squared.get(lane).map_or(0.0, of));
+        let each =
+            |of: &dyn Fn(&Squared) -> f64| std::array::from_fn(|lane| squared.get(lane).map_or(0.0, of));
         Self {
             terms: std::array::from_fn(|part| each(&|it| it.terms[part])),
             square: each(&|it| it.square),

@@ -15,7 +15,8 @@ use super::contacts::Knowledge;
 use super::lasting::{Smoothed, Wander};
 use super::noise::{self, NoisePrior, SquaredResidual};
 use super::residual::{MarginalPrecision, Residual};
-use crate::numeric::linear::{Factor, dot};
+use crate::numeric::linear::Factor;
+use crate::numeric::products::dot;
 use crate::pipeline::contact::uncertainty::{Noise, UNKNOWNS};
 use crate::quantity::CHANNELS;
 

@@ -7,7 +7,8 @@
 //! P are the precisions of the prior and m its mean. The first sums are over contacts, with the residuals r of nine channels,
 //! their covariance V and A = ∂f/∂θ; the second ones over single numbers with a variance σ² and derivatives a.
 
-use crate::numeric::linear::{LargeFactor, Reduced, Symmetric, dot};
+use crate::numeric::linear::{LargeFactor, Reduced, Symmetric};
+use crate::numeric::products::dot;
 use crate::quantity::CHANNELS;
 
 /// So many products are collected before they go into H, which is larger than a processor's cache.

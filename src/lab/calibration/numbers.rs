@@ -7,7 +7,7 @@ use super::physical::Physical;
 use super::problem::Fit;
 use super::rig::{RIG, RigNumber, RigPrior};
 use crate::lab::diagnosis::target::Target;
-use crate::numeric::linear::dot;
+use crate::numeric::products::dot;
 use crate::pipeline::compensation::hysteresis::PLAYS;
 use crate::quantity::CHANNELS;
 

@@ -1,7 +1,7 @@
 //! A contact's residual, and the inverse covariance of it: what the fit sums over.
 
 use super::contacts::Knowledge;
-use crate::numeric::linear::dot;
+use crate::numeric::products::dot;
 use crate::pipeline::contact::uncertainty::UNKNOWNS;
 use crate::quantity::CHANNELS;
 

@@ -9,7 +9,7 @@ use super::model::{CommonError, Coordinate, Hypothesis, Linearised, Model, Param
 use super::observations::Observations;
 use super::report::NotTestable;
 use super::simulated::Simulated;
-use crate::numeric::linear::dot;
+use crate::numeric::products::dot;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 

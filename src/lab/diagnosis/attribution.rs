@@ -11,7 +11,7 @@ use super::inference::{Projected, Test};
 use super::model::{Linearised, Model, Parameter, SIGNATURE_ERROR};
 use super::observations::Observations;
 use crate::numeric::dense::Matrix;
-use crate::numeric::linear::dot;
+use crate::numeric::products::dot;
 
 /// How often anything may be found where nothing is wrong: the family-wise level.
 pub(super) const LEVEL: f64 = 0.03;

@@ -13,7 +13,8 @@ use std::sync::OnceLock;
 
 use super::observations::Observations;
 use crate::numeric::dense::{Matrix, gram};
-use crate::numeric::linear::{LargeFactor, dot};
+use crate::numeric::linear::LargeFactor;
+use crate::numeric::products::dot;
 
 /// The rectangle reaches so far beyond the places, relative to them: the waves vanish at its border.
 const REACH: f64 = 1.4;

@@ -10,7 +10,7 @@
 use super::columns::Columns;
 use super::covariance::{Background, Marginal, Systems};
 use crate::numeric::dense::Matrix;
-use crate::numeric::linear::dot;
+use crate::numeric::products::dot;
 use crate::numeric::random::SplitMix64;
 
 /// A cause acts on some of the functions and loads by which a channel's background is known: half, say.

@@ -12,7 +12,8 @@ use super::noise::Noise;
 use super::observations::Observations;
 use super::system::ChannelSystem;
 use crate::numeric::dense::{Matrix, gram};
-use crate::numeric::linear::{LargeFactor, dot};
+use crate::numeric::linear::LargeFactor;
+use crate::numeric::products::dot;
 use crate::numeric::statistics::rms;
 
 /// Root mean square of what the simulator itself gets wrong, smooth as well and the same way: 0.44 % against an independent solution.

@@ -10,7 +10,8 @@
 
 use super::basis::Prior;
 use crate::numeric::dense::Matrix;
-use crate::numeric::linear::{LargeFactor, dot};
+use crate::numeric::linear::LargeFactor;
+use crate::numeric::products::dot;
 
 /// Products of a channel's columns.
 pub(super) struct NormalEquations {

@@ -293,7 +293,8 @@ impl<'s, 'm> Both<'s, 'm> {
             let none = || vec![0.0; system.residual.len()];
             values.map_or_else(none, |it| system.whitening.whitened(it))
         };
-        let known = |(_, pair): &(usize, &&Pair)| pair.present[channel].is_some() || pair.further[channel].is_some();
+        let known =
+            |(_, pair): &(usize, &&Pair)| pair.present[channel].is_some() || pair.further[channel].is_some();
         let known: Vec<(usize, &&Pair)> = columns.iter().enumerate().filter(known).collect();
         let of = |column: &dyn Fn(&Pair) -> Vec<f64>| -> Vec<(usize, Vec<f64>)> {
             known.iter().map(|(number, pair)| (*number, column(pair))).collect()

@@ -8,7 +8,8 @@
 use super::equations::NormalEquations;
 use super::whitening::Whitening;
 use crate::numeric::dense::{Matrix, gram};
-use crate::numeric::linear::{LargeFactor, dot};
+use crate::numeric::linear::LargeFactor;
+use crate::numeric::products::dot;
 
 /// One channel.
 pub(super) struct ChannelSystem {

@@ -36,7 +36,7 @@ use super::model::Layout;
 use super::prepared::Prepared;
 use super::prior::Prior;
 use super::problem::Problem;
-use crate::numeric::linear::dot;
+use crate::numeric::products::dot;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 use crate::pipeline::contact::inverse::own_uv;

@@ -117,7 +117,7 @@ impl Earlier {
                 } else {
                     0.0
                 };
-                crate::numeric::linear::dot(&it.spread, &with) + warm
+                crate::numeric::products::dot(&it.spread, &with) + warm
             })
         };
         self.channels.iter().map(signal).collect()
@@ -320,7 +320,7 @@ fn centred(recording: &Recording, channel: usize) -> Vec<f64> {
 
 /// Fewer columns with the same products between rows, but for less than `least` in any row: pivoted factorisation.
 fn leading(rows: &[Vec<f64>], least: f64) -> Vec<Vec<f64>> {
-    use crate::numeric::linear::dot;
+    use crate::numeric::products::dot;
     let mut left: Vec<f64> = rows.iter().map(|row| dot(row, row)).collect();
     let mut columns: Vec<Vec<f64>> = Vec::new();
     while columns.len() < ERRORS_MAX {

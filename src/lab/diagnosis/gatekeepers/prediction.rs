@@ -2,7 +2,7 @@
 
 use super::gate::squares;
 use crate::numeric::dense::{Matrix, gram};
-use crate::numeric::linear::dot;
+use crate::numeric::products::dot;
 use crate::numeric::statistics::mean;
 
 /// Of a regressor that is nearly a sum of others, this part of its square is added, so that the system has a solution.

@@ -3,7 +3,7 @@
 use super::kernel::{Group, Kernel, Labels, pivots};
 use super::system::System;
 use crate::numeric::dense::Matrix;
-use crate::numeric::linear::dot;
+use crate::numeric::products::dot;
 use crate::numeric::statistics::population_deviation;
 
 /// Rows by which the kernel is chosen, and its pivots then.

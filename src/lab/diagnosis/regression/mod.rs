@@ -25,7 +25,8 @@ use self::system::{Solution, System};
 use super::noise::NoiseLevel;
 use super::whitening::Whitening;
 
-use crate::numeric::linear::{LargeFactor, dot};
+use crate::numeric::linear::LargeFactor;
+use crate::numeric::products::dot;
 use crate::numeric::statistics::{population_deviation, rms};
 
 /// Pivots at most.

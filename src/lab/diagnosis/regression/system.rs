@@ -1,7 +1,8 @@
 //! Least squares with priors, at one ratio of noise to signal.
 
 use crate::numeric::dense::{Matrix, gram};
-use crate::numeric::linear::{LargeFactor, dot};
+use crate::numeric::linear::LargeFactor;
+use crate::numeric::products::dot;
 
 /// What makes numbers without a prior unique, as a precision.
 const FREE: f64 = 1e-6;

@@ -91,11 +91,13 @@ mod tests {
             assert!((dot(&one, &other) - wanted).abs() < 1e-6);
             assert_eq!(products(&one, [&other, &one]), [dot(&one, &other), dot(&one, &one)]);
             let rows: Vec<Vec<f64>> = (0..5).map(|row| vector(f64::from(row))).collect();
-            let matrix = [[1.0, 0.0, 2.0, -1.0, 0.5], [0.0; 5]];
-            let combined = combined(&matrix[..1].try_into().unwrap(), &rows);
+            let mut matrix = [[0.0; 5]; 5];
+            matrix[3] = [1.0, 0.0, 2.0, -1.0, 0.5];
+            let combined = combined(&matrix, &rows);
             let sum =
-                |at: usize| matrix[0].iter().zip(&rows).map(|(factor, row)| factor * row[at]).sum::<f64>();
-            assert!((0..rows[0].len()).all(|at| (combined[0][at] - sum(at)).abs() < 1e-9));
+                |at: usize| matrix[3].iter().zip(&rows).map(|(factor, row)| factor * row[at]).sum::<f64>();
+            assert_eq!(combined[0], vec![0.0; rows[0].len()]);
+            assert!((0..rows[0].len()).all(|at| (combined[3][at] - sum(at)).abs() < 1e-9));
         }
     }
 }

@@ -96,7 +96,15 @@ impl Place {
         plate_mm: f64,
         place_mm: [f64; 2],
     ) -> Self {
-        Self::at((field, sensitivities), plate_mm, place_mm, true)
+        let jets = polynomials(sensitivities, plate_mm, place_mm);
+        let [dx, dy] =
+            [|it: &Jet| it.dx, |it: &Jet| it.dy].map(|of| jets.iter().map(of).collect::<Vec<f64>>());
+        // Σₜ cₜ ∇Uₜ/R.
+        let gradient = |it: &&Sensitivity| [&dx, &dy].map(|terms| maps(it, terms, 1.0 / plate_mm));
+        Self {
+            sensitivity_gradients: sensitivities.iter().map(gradient).collect(),
+            ..Self::level(field, sensitivities, plate_mm, place_mm)
+        }
     }
 
     /// The same without the slopes of the sensitivities, which take twice as long as all else: these are empty.
@@ -106,33 +114,8 @@ impl Place {
         plate_mm: f64,
         place_mm: [f64; 2],
     ) -> Self {
-        Self::at((field, sensitivities), plate_mm, place_mm, false)
-    }
-
-    fn at(
-        (field, sensitivities): (&PadField, &[&Sensitivity]),
-        plate_mm: f64,
-        place_mm: [f64; 2],
-        has_slopes: bool,
-    ) -> Self {
-        // Polynomials are over the unit disc, splines in millimetres.
-        let share = place_mm.map(|mm| mm / plate_mm);
-        let degree =
-            sensitivities.iter().map(|it| degree_of(it.maps[0][0].coefficients.len())).max().unwrap_or(0);
-        let jets = jets(degree.max(BACKGROUND_DEGREE), share);
-        // Polynomials of value and slopes, each as a vector of its own: Σₜ cₜ Uₜ, Σₜ cₜ ∇Uₜ/R.
-        let [values, dx, dy] = [|it: &Jet| it.value, |it: &Jet| it.dx, |it: &Jet| it.dy]
-            .map(|of| jets.iter().map(of).collect::<Vec<f64>>());
-        let maps = |sensitivity: &Sensitivity, terms: &[f64], scale: f64| {
-            sensitivity.maps.each_ref().map(|axes| {
-                axes.each_ref().map(|map| {
-                    let terms = &terms[..map.coefficients.len().min(terms.len())];
-                    scale * dot(&map.coefficients[..terms.len()], terms)
-                })
-            })
-        };
-        let per_mm = 1.0 / plate_mm;
-        let gradient = |it: &&Sensitivity| [maps(it, &dx, per_mm), maps(it, &dy, per_mm)];
+        let jets = polynomials(sensitivities, plate_mm, place_mm);
+        let values: Vec<f64> = jets.iter().map(|it| it.value).collect();
         let factors = term_factors();
         let term = |of: fn(&Jet) -> f64, scale: f64| {
             std::array::from_fn(|term| factors[term] * of(&jets[term]) * scale)
@@ -142,12 +125,29 @@ impl Place {
             gains: gains.value,
             gradient: [gains.dx, gains.dy],
             laplacian: field.signals.laplacian(place_mm),
+            // Σₜ cₜ Uₜ.
             sensitivities: sensitivities.iter().map(|it| maps(it, &values, 1.0)).collect(),
-            sensitivity_gradients: sensitivities.iter().filter(|_| has_slopes).map(gradient).collect(),
+            sensitivity_gradients: Vec::new(),
             terms: term(|jet| jet.value, 1.0),
             term_gradients: [term(|jet| jet.dx, 1.0 / plate_mm), term(|jet| jet.dy, 1.0 / plate_mm)],
         }
     }
+}
+
+/// The polynomials of the sensitivities and of the background at a place. They are over the unit disc, splines in millimetres.
+fn polynomials(sensitivities: &[&Sensitivity], plate_mm: f64, place_mm: [f64; 2]) -> Vec<Jet> {
+    let degrees = sensitivities.iter().map(|it| degree_of(it.maps[0][0].coefficients.len()));
+    jets(degrees.max().unwrap_or(0).max(BACKGROUND_DEGREE), place_mm.map(|mm| mm / plate_mm))
+}
+
+/// A sensitivity's maps by these values of its polynomials, or slopes of them.
+fn maps(sensitivity: &Sensitivity, terms: &[f64], scale: f64) -> Maps {
+    sensitivity.maps.each_ref().map(|axes| {
+        axes.each_ref().map(|map| {
+            let terms = &terms[..map.coefficients.len().min(terms.len())];
+            scale * dot(&map.coefficients[..terms.len()], terms)
+        })
+    })
 }
 
 /// Σₐ Fₐ Eₐ.

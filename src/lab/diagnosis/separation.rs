@@ -52,8 +52,8 @@ struct Both<'s, 'm> {
 }
 
 /// A fitted cause and its rivals, in numbers of columns.
-struct Contest {
-    channels: Vec<Told>,
+struct Discrimination {
+    channels: Vec<ChannelEquations>,
     /// Of what was known of each column before.
     precisions: Vec<f64>,
     cause: Vec<usize>,
@@ -65,7 +65,7 @@ struct Contest {
 }
 
 /// What a channel's present rows tell of the columns that it knows, and what those of one further measurement do: it adds up.
-struct Told {
+struct ChannelEquations {
     channel: usize,
     present: NormalEquations,
     further: NormalEquations,
@@ -184,8 +184,8 @@ impl<'s, 'm> Both<'s, 'm> {
     /// How often it takes the experiment to tell the cause from each rival; none if it does not.
     fn repeats(&self, at: usize, rivals: &[usize]) -> Option<usize> {
         let most = if self.experiment.by_hand.is_some() { 1 } else { REPEATS_MAX };
-        let contest = self.contest(at, rivals)?;
-        let is_enough = |repeats: usize| self.separates(&contest, repeats).unwrap_or(false);
+        let discrimination = self.discrimination(at, rivals)?;
+        let is_enough = |repeats: usize| self.separates(&discrimination, repeats).unwrap_or(false);
         if is_enough(1) {
             return Some(1);
         }
@@ -201,7 +201,7 @@ impl<'s, 'm> Both<'s, 'm> {
     }
 
     /// The columns of a fitted cause, of the others beside it and of its rivals, with what the rows tell of them.
-    fn contest(&self, at: usize, rivals: &[usize]) -> Option<Contest> {
+    fn discrimination(&self, at: usize, rivals: &[usize]) -> Option<Discrimination> {
         let fit = &self.found.fit;
         let mut columns: Vec<Pair> = Vec::new();
         let mut groups = Vec::new();
@@ -217,7 +217,7 @@ impl<'s, 'm> Both<'s, 'm> {
         let groups: Vec<Range<usize>> = groups.iter().map(shifted).collect();
         let (held, rest) = groups.split_at(groups.len() - rivals.len() - 1);
         let (cause, rivals) = (rest[0].clone(), rest[1..].to_vec());
-        Some(Contest {
+        Some(Discrimination {
             channels: self.channels(&all)?,
             precisions: all.iter().map(|pair| pair.precision).collect(),
             psi: psi[..cause.len()].to_vec(),
@@ -228,14 +228,14 @@ impl<'s, 'm> Both<'s, 'm> {
     }
 
     /// Whether something significant of the cause is left beside each rival in nine of ten such measurements.
-    fn separates(&self, contest: &Contest, repeats: usize) -> Option<bool> {
-        let fisher = self.fisher(contest, repeats)?;
-        let freedom = contest.cause.len();
+    fn separates(&self, discrimination: &Discrimination, repeats: usize) -> Option<bool> {
+        let fisher = self.fisher(discrimination, repeats)?;
+        let freedom = discrimination.cause.len();
         let threshold = chi_square::quantile(self.found.critical, freedom);
         let wanted = chi_square::noncentrality(threshold, freedom, POWER);
-        for rival in &contest.rivals {
-            let free = contest.held.iter().copied().chain(rival.clone()).collect();
-            if left(&fisher, &contest.cause, &contest.psi, free)? < wanted {
+        for rival in &discrimination.rivals {
+            let free = discrimination.held.iter().copied().chain(rival.clone()).collect();
+            if left(&fisher, &discrimination.cause, &discrimination.psi, free)? < wanted {
                 return Some(false);
             }
         }
@@ -243,16 +243,16 @@ impl<'s, 'm> Both<'s, 'm> {
     }
 
     /// What the present rows and so many measurements tell of the columns, and what was known of them before.
-    fn fisher(&self, contest: &Contest, repeats: usize) -> Option<Matrix> {
+    fn fisher(&self, discrimination: &Discrimination, repeats: usize) -> Option<Matrix> {
         let background = &self.found.fit.background;
-        let count = contest.precisions.len();
+        let count = discrimination.precisions.len();
         let mut fisher = Matrix::zeros(count, count);
-        let own = |Told { channel, present, further }: &Told| {
+        let own = |ChannelEquations { channel, present, further }: &ChannelEquations| {
             let both = present.plus(repeats as f64, further);
             Some(both.reduced(&background.prior, &background.shares[*channel])?.fisher)
         };
-        let channels: Option<Vec<Matrix>> = contest.channels.par_iter().map(own).collect();
-        for (told, own) in contest.channels.iter().zip(channels?) {
+        let channels: Option<Vec<Matrix>> = discrimination.channels.par_iter().map(own).collect();
+        for (told, own) in discrimination.channels.iter().zip(channels?) {
             let numbers = &told.present.columns;
             for (row, number) in numbers.iter().enumerate() {
                 for (column, other) in numbers.iter().enumerate() {
@@ -260,7 +260,7 @@ impl<'s, 'm> Both<'s, 'm> {
                 }
             }
         }
-        for (at, precision) in contest.precisions.iter().enumerate() {
+        for (at, precision) in discrimination.precisions.iter().enumerate() {
             // Zeros of the channels that tell nothing are in no row.
             let least = if fisher.at(at, at) > 0.0 { RIDGE * fisher.at(at, at) } else { 1.0 };
             fisher.row_mut(at)[at] += precision + least;
@@ -269,14 +269,14 @@ impl<'s, 'm> Both<'s, 'm> {
     }
 
     /// What each channel that is alive tells of these columns.
-    fn channels(&self, columns: &[&Pair]) -> Option<Vec<Told>> {
+    fn channels(&self, columns: &[&Pair]) -> Option<Vec<ChannelEquations>> {
         let alive = (0..self.further.readings.len()).into_par_iter();
         let alive = alive.filter(|channel| self.search.observations.is_alive(*channel));
         alive.map(|channel| self.of_channel(channel, columns)).collect()
     }
 
     /// What the present rows of a channel tell of the columns that it knows, and what those of one measurement do.
-    fn of_channel(&self, channel: usize, columns: &[&Pair]) -> Option<Told> {
+    fn of_channel(&self, channel: usize, columns: &[&Pair]) -> Option<ChannelEquations> {
         let (fit, rows) = (&self.found.fit, &self.experiment.rows);
         let (system, noise) = (&fit.systems.channels[channel], &fit.systems.noise[channel]);
         let weight = |(row, f): (usize, &f64)| {
@@ -303,7 +303,7 @@ impl<'s, 'm> Both<'s, 'm> {
         let functions = fit.systems.background_at(channel, self.search.model.sizes()[channel], rows);
         let functions: Vec<Vec<f64>> =
             (0..system.background.len()).map(|at| weighted(functions.get(at))).collect();
-        Some(Told {
+        Some(ChannelEquations {
             channel,
             present: equations(&of(&|pair| whitened(pair.present[channel].as_ref())), &system.background)?,
             further: equations(&of(&|pair| weighted(pair.further[channel].as_ref())), &functions)?,

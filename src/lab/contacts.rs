@@ -7,6 +7,7 @@ use crate::lab::calibration::fit::{Calibration, FitError, Report, fit_reported};
 use crate::lab::calibration::regression::{neighbours, regression};
 use crate::lab::calibration::screening::{Fault, Unexplained, screened};
 use crate::lab::scdf::adaptation::{Adapted, TooFew, adapt, examples};
+use crate::lab::tangent::Simulated;
 use crate::network::training::Epoch;
 use crate::network::{Network, Zero};
 use crate::numeric::random::SplitMix64;
@@ -105,19 +106,18 @@ impl Contacts {
         screened(&self.rows, device, field)
     }
 
-    /// The pad's own field, calibrated. `field` is the device's; `earlier` what another pad's decoder tells of it; `report`
+    /// The pad's own field, calibrated. `earlier` what another pad's decoder tells of it; `report`
     /// hears how far it is.
     ///
     /// # Errors
     /// The contacts give no calibration.
     pub fn calibration(
         &self,
-        device: &Device,
-        field: &PadField,
+        pad: &Simulated<'_>,
         earlier: Option<Earlier<'_>>,
         report: Report<'_>,
     ) -> Result<Calibration, FitError> {
-        fit_reported(&self.recording, &self.places, device, field, earlier, report)
+        fit_reported(&self.recording, &self.places, pad, earlier, report)
     }
 
     /// The mean of the nearest contacts.

@@ -13,4 +13,5 @@ pub mod metrology;
 pub mod play;
 pub mod rig;
 pub mod scdf;
+pub mod tangent;
 pub mod tuning;

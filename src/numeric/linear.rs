@@ -324,6 +324,12 @@ impl LargeFactor {
         x
     }
 
+    /// The diagonal of A = L Lᵀ: Aᵢᵢ = Σₖ Lᵢₖ².
+    pub fn diagonal(&self) -> Vec<f64> {
+        let line = |row: usize| &self.lower[row * self.size..][..=row];
+        (0..self.size).map(|row| dot(line(row), line(row))).collect()
+    }
+
     /// The square blocks of this width along the diagonal of the inverse of A.
     pub fn inverse_blocks(&self, width: usize) -> Vec<Vec<Vec<f64>>> {
         // A⁻¹ = L⁻ᵀ L⁻¹: products of columns of L⁻¹, whose entries above the diagonal are zero.

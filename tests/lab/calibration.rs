@@ -5,15 +5,19 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{LazyLock, OnceLock};
 
 use tactpad::lab::calibration::earlier::Earlier;
-use tactpad::lab::calibration::fit::{Calibration, fit};
+use tactpad::lab::calibration::fit::{Calibration, fit, fit_reported};
+use tactpad::lab::calibration::numbers::{Number, Quantity};
 use tactpad::lab::calibration::regression::{neighbours, regression};
 use tactpad::lab::evaluation::{Errors, coverage95, decoded, errors};
+use tactpad::lab::field_cache::solve;
 use tactpad::lab::rig::bound::{Bound, Reading};
 use tactpad::lab::rig::measurement::{Measurement, carry_out};
 use tactpad::lab::scdf::adaptation::{adapt, examples};
+use tactpad::lab::tangent::{Simulated, Solve};
 use tactpad::network::Zero;
 use tactpad::pad::device::Device;
 use tactpad::pad::device::behaviour::{Crosstalk, Play, Prony};
@@ -148,9 +152,9 @@ fn errors_of(decoder: &Decoder, measured: &Measured) -> Errors {
 }
 
 /// Errors of place and force beside the least that the pad's noise allows.
-fn beyond_bound(device: &Device, errors: &Errors, measured: &Measured) -> [f64; 2] {
+fn beyond_bound(device: &Device, field: &PadField, errors: &Errors, measured: &Measured) -> [f64; 2] {
     let contacts: Vec<Label> = measured.recording.contacts().iter().map(|at| measured.truths[*at]).collect();
-    let [x_mm, y_mm, fx_n, fy_n, fz_n] = Bound::new(device, field(), 1).expected(&contacts, Reading::Mean);
+    let [x_mm, y_mm, fx_n, fy_n, fz_n] = Bound::new(device, field, 1).expected(&contacts, Reading::Mean);
     [2.0 * errors.position_mae_mm / (x_mm + y_mm), 3.0 * errors.force_mae_n / (fx_n + fy_n + fz_n)]
 }
 
@@ -170,7 +174,7 @@ fn the_inverse_is_several_times_better_than_what_needs_no_physics() {
         let share = if count == 20 { 0.6 } else { 1.0 };
         assert!(by_inverse.position_mae_mm < share * by_wrench.position_mae_mm);
         assert!(by_inverse.force_mae_n < 0.6 * by_wrench.force_mae_n);
-        let [place, force] = beyond_bound(&device, &by_inverse, unseen);
+        let [place, force] = beyond_bound(&device, field(), &by_inverse, unseen);
         println!("inverse, {count}: {place:.2} and {force:.2} of the least that the noise allows");
         if count > 73 {
             assert!(place < 1.3 && force < 1.3);
@@ -228,6 +232,46 @@ fn another_pad_of_the_kind_needs_twenty_contacts() {
     println!("20: {few:?}\n{}: {all:?}", many());
     assert!(few.position_mae_mm < 1.5 * all.position_mae_mm);
     assert!(few.force_mae_n < 1.5 * all.force_mae_n);
+}
+
+/// Root mean square of errors over stated deviations: of poses and of frames.
+fn stated(calibration: &Calibration, device: &Device) -> f64 {
+    let off = |it: &Number| {
+        let Quantity::Physical(number) = it.quantity else { return None };
+        let is_asked = number.parameter.name().ends_with("frame_e_factor") || it.expected == 0.0;
+        is_asked.then(|| (it.value - number.parameter.get(device)) / it.deviation)
+    };
+    let off: Vec<f64> = calibration.numbers.iter().filter_map(off).collect();
+    assert_eq!(off.len(), 18);
+    (off.iter().map(|off| off * off).sum::<f64>() / 18.0).sqrt()
+}
+
+#[test]
+fn a_pad_that_the_tangent_does_not_reach_is_calibrated_about_its_own_field() {
+    let mut device = pad();
+    device.behaviour.noise.additive_uv = [10.0; CHANNELS];
+    (device.modules[0].tangential_mm, device.modules[0].rotation_deg) = (2.0, -8.0);
+    device.modules[2].frame_e_factor = 0.5;
+    let own = solve(&device).unwrap();
+    let measured = Measured::on(&own, &device, &plans::paper::plan(&device.contact), 1);
+    let unseen = Measured::on(&own, &device, &plans::recommended::plan(&device.contact, 9), 2);
+    let (nominal, solved) = (Device::nominal(), AtomicUsize::new(0));
+    let counted = |device: &Device| {
+        solved.fetch_add(1, Ordering::Relaxed);
+        solve(device)
+    };
+    let tried = |solve: Solve<'_>| {
+        let pad = Simulated { device: &nominal, field: field(), solve };
+        let found = fit_reported(&measured.recording, &measured.some(216), &pad, None, &|_, _| ()).unwrap();
+        (stated(&found, &device), errors_of(&found.decoder(), &unseen))
+    };
+    let (on_tangent, about_own) = (tried(&|_| None), tried(&counted));
+    println!("on the tangent {on_tangent:?}\nabout its own field {about_own:?}");
+    assert!((1..=2).contains(&solved.into_inner()));
+    assert!(about_own.0 < 1.0 && on_tangent.0 > 1.5 * about_own.0);
+    assert!(about_own.1.position_mae_mm < on_tangent.1.position_mae_mm);
+    let [place, force] = beyond_bound(&device, &own, &about_own.1, &unseen);
+    assert!(place < 1.3 && force < 1.3, "{place} {force}");
 }
 
 /// The nominal field with faults that a calibration has no number for: a plate

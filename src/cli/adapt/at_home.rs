@@ -10,6 +10,7 @@ use super::named::Named;
 use super::numbers::Pad as FoundPad;
 use crate::cli::destination::Destination;
 use crate::cli::failure::Failure;
+use crate::cli::field::field_of;
 use crate::cli::progress::Progress;
 use crate::cli::wrapped::hanging;
 use crate::cli::written::tell;
@@ -18,6 +19,7 @@ use tactpad::lab::play::home::{AtHome, HomeError, calibrated};
 use tactpad::lab::play::summary::{HEADING, Part, Summary};
 use tactpad::lab::play::weights::Placement;
 use tactpad::lab::play::windows::Window;
+use tactpad::lab::tangent::Simulated;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::contact::Decoder;
@@ -38,12 +40,13 @@ struct Outcome {
 pub(crate) fn fitted(
     windows: &[Window],
     placements: &[Placement],
-    pad: (&Device, &PadField),
+    (device, field): (&Device, &PadField),
     earlier: Option<&Decoder>,
 ) -> Result<AtHome, HomeError> {
     let progress = Progress::begin("fitting the pad's field");
     let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
-    calibrated(windows, placements, pad, earlier.and_then(Earlier::of), &report)
+    let pad = Simulated { device, field, solve: &|device| field_of(device).ok() };
+    calibrated(windows, placements, &pad, earlier.and_then(Earlier::of), &report)
 }
 
 /// Writes the decoder, and says what came of it: on standard output, unless that gets the decoder.

@@ -6,9 +6,11 @@ use super::measured::Measured;
 use super::method::Method;
 use crate::cli::decoder_file;
 use crate::cli::failure::Failure;
+use crate::cli::field::field_of;
 use crate::cli::progress::Progress;
 use tactpad::lab::calibration::earlier::Earlier;
 use tactpad::lab::calibration::fit::Calibration;
+use tactpad::lab::tangent::Simulated;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::contact::Decoder;
@@ -51,7 +53,8 @@ fn calibrated(
     let progress = Progress::begin("fitting the pad's field");
     let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
     let earlier = earlier.and_then(Earlier::of);
-    let calibration = measured.contacts.calibration(device, field, earlier, &report);
+    let pad = Simulated { device, field, solve: &|device| field_of(device).ok() };
+    let calibration = measured.contacts.calibration(&pad, earlier, &report);
     drop(progress);
     let calibration = calibration.map_err(|error| measured.refused(error))?;
     Ok((calibration.decoder(), Some(calibration)))

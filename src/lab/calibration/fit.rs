@@ -13,6 +13,7 @@ use super::effort::Effort;
 use super::field_error;
 use super::hyperparameters::Settings;
 use super::known::Known;
+use super::linearised::{self, SOLVED_MAX};
 use super::model::Layout;
 use super::noise;
 use super::numbers::{Asked, Number, Pair};
@@ -22,6 +23,7 @@ use super::prepared::Prepared;
 use super::prior::Prior;
 use super::problem::{Fit, Problem};
 use super::thermal_fit::ThermalFit;
+use crate::lab::tangent::Simulated;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 use crate::pad::influence::InfluenceField;
@@ -58,25 +60,33 @@ pub type Report<'r> = &'r (dyn Fn(usize, usize) + Sync);
 /// Fits, counted.
 struct Counted<'r> {
     done: AtomicUsize,
-    most: usize,
+    most: AtomicUsize,
     report: Report<'r>,
 }
 
 impl<'r> Counted<'r> {
     /// As many as all hypotheses can ask for.
     fn of(hypotheses: &[Hypothesis], report: Report<'r>) -> Self {
+        let most = hypotheses.iter().map(Self::most).sum();
+        Self { done: AtomicUsize::new(0), most: AtomicUsize::new(most), report }
+    }
+
+    /// As many as one of them can ask for, about one pad.
+    fn most(Hypothesis { prior, .. }: &Hypothesis) -> usize {
         let refinements = 2 * HALVINGS as usize;
         let search = |known_uv: &f64| {
             if *known_uv > 0.0 { refinements } else { THRESHOLDS as usize + 1 + refinements }
         };
-        let of_one = |it: &Hypothesis| {
-            NOISE_TIMES_S.len()
-                + it.prior.thresholds_uv.iter().map(search).sum::<usize>()
-                + CREEP_TIMES_S.len()
-                + SMALL_BACKGROUNDS.len()
-                + LARGE_BACKGROUNDS.len()
-        };
-        Self { done: AtomicUsize::new(0), most: hypotheses.iter().map(of_one).sum(), report }
+        NOISE_TIMES_S.len()
+            + prior.thresholds_uv.iter().map(search).sum::<usize>()
+            + CREEP_TIMES_S.len()
+            + SMALL_BACKGROUNDS.len()
+            + LARGE_BACKGROUNDS.len()
+    }
+
+    /// Hears that a hypothesis is fitted again.
+    fn expect(&self, hypothesis: &Hypothesis) {
+        self.most.fetch_add(Self::most(hypothesis), Ordering::Relaxed);
     }
 
     fn fitted(
@@ -86,7 +96,7 @@ impl<'r> Counted<'r> {
         (from, effort): (Option<&Fit>, Effort),
     ) -> Option<Fit> {
         let fit = problem.clone().fitted(settings, from, effort);
-        (self.report)(self.done.fetch_add(1, Ordering::Relaxed) + 1, self.most);
+        (self.report)(self.done.fetch_add(1, Ordering::Relaxed) + 1, self.most.load(Ordering::Relaxed));
         fit
     }
 }
@@ -236,24 +246,24 @@ pub fn fit(
     field: &PadField,
     earlier: Option<Earlier<'_>>,
 ) -> Result<Calibration, FitError> {
-    fit_reported(recording, rows, device, field, earlier, &|_, _| ())
+    fit_reported(recording, rows, &Simulated::known(device, field), earlier, &|_, _| ())
 }
 
-/// [`fit`], and `report` hears how far it is.
+/// [`fit`], and `report` hears how far it is. Where a pad is found that the tangent of `pad`'s field does not reach, that pad's field is
+/// solved for, and the fit is made about it.
 ///
 /// # Errors
 /// The same.
 pub fn fit_reported(
     recording: &Recording,
     rows: &[usize],
-    device: &Device,
-    field: &PadField,
+    pad: &Simulated<'_>,
     earlier: Option<Earlier<'_>>,
     report: Report<'_>,
 ) -> Result<Calibration, FitError> {
     let written: Vec<Fitted> =
         rows.iter().map(|row| Fitted { row: *row, knowledge: Knowledge::Written }).collect();
-    fit_known(recording, &written, device, field, earlier, report)
+    fit_known(recording, &written, pad, earlier, report)
 }
 
 /// [`fit_reported`], where contacts may be known otherwise than by a written label.
@@ -263,25 +273,37 @@ pub fn fit_reported(
 pub fn fit_known(
     recording: &Recording,
     fitted: &[Fitted],
-    device: &Device,
-    field: &PadField,
+    pad: &Simulated<'_>,
     earlier: Option<Earlier<'_>>,
     report: Report<'_>,
 ) -> Result<Calibration, FitError> {
+    let field = pad.field;
     earlier.map_or(Ok(()), |it| same_plate(&it, field))?;
     if fitted.is_empty() {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
-    let prepared = Prepared::of(recording, fitted, device, field).ok_or(FitError::Senseless)?;
+    let prepared = Prepared::of(recording, fitted, pad.device, field).ok_or(FitError::Senseless)?;
     let mut best: Option<(f64, Calibration)> = None;
     let hypotheses = hypotheses(field, earlier);
     let counted = Counted::of(&hypotheses, report);
-    for Hypothesis { prior, log_prior_odds, from_earlier } in hypotheses {
-        let (problem, found) = calibrated(&prepared, fitted, device, &prior, &counted)?;
-        // ln p(H | y) = ln p(y | H) + ln p(H), but for a constant that all hypotheses share.
-        let log_probability = found.log_evidence + log_prior_odds;
-        if best.as_ref().is_none_or(|(largest, _)| log_probability > *largest) {
-            best = Some((log_probability, Calibration::of(&prepared, &problem, &found, from_earlier)));
+    for mut hypothesis in hypotheses {
+        for solved in 0..=SOLVED_MAX {
+            let (problem, found) = calibrated(&prepared, fitted, pad.device, &hypothesis.prior, &counted)?;
+            // The numbers of another pad's field are not known.
+            let is_last = solved == SOLVED_MAX || hypothesis.from_earlier;
+            let nearer = if is_last { None } else { linearised::solved(&problem, &found, pad) };
+            if let Some((device, field)) = nearer {
+                hypothesis.prior = hypothesis.prior.about(device, field);
+                counted.expect(&hypothesis);
+                continue;
+            }
+            // ln p(H | y) = ln p(y | H) + ln p(H), but for a constant that all hypotheses share.
+            let log_probability = found.log_evidence + hypothesis.log_prior_odds;
+            if best.as_ref().is_none_or(|(largest, _)| log_probability > *largest) {
+                let calibration = Calibration::of(&prepared, &problem, &found, hypothesis.from_earlier);
+                best = Some((log_probability, calibration));
+            }
+            break;
         }
     }
     let is_sound = |it: &Calibration| it.thermal.is_none_or(|fit| fit.coefficients.is_sound());

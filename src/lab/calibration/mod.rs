@@ -28,6 +28,7 @@ mod hyperparameters;
 mod jumps;
 pub mod known;
 mod lasting;
+mod linearised;
 mod model;
 mod moments;
 mod noise;

@@ -376,7 +376,7 @@ mod tests {
     #[test]
     fn each_number_has_a_name_and_only_what_a_diagnosis_knows_has_an_effect() {
         let (device, field) = (Device::nominal(), PadField::nominal());
-        let (physical, _) = free(&field, &device);
+        let (physical, _) = free((&field, &device), &device);
         let parameter =
             |name: &str| Quantity::Physical(*physical.iter().find(|it| it.parameter.name() == name).unwrap());
         let effect = |name: &str| parameter(name).effect();

@@ -6,8 +6,11 @@
 //! ```text
 //! G + E (1 − e^−q) ∂G/∂E        G + ⅓ t (1 − e^−3q) ∂G/∂t
 //! ```
+//!
+//! Where G is the field of a pad that has q₀ already, E and t are that pad's, and q − q₀ stands for p and q.
 
 use super::prior_deviations::Kind;
+use crate::lab::tangent::{STIFFNESS_REACH, TURN_REACH_DEG, shift_reach_mm};
 use crate::pad::device::Device;
 use crate::pad::device::parameter::Parameter;
 use crate::pad::device::unit::Unit;
@@ -19,18 +22,24 @@ pub struct Physical {
     /// Which.
     pub parameter: Parameter,
     kind: Kind,
-    /// Its value in the pad that the field is of.
-    own: f64,
+    /// Its value in a pad that does not differ.
+    expected: f64,
+    /// q₀: by how much the pad that the field is of differs.
+    about: f64,
 }
 
-/// Those that a field knows, with its derivatives by them.
-pub(super) fn free<'f>(field: &'f PadField, device: &Device) -> (Vec<Physical>, Vec<&'f Sensitivity>) {
-    field.sensitivities.iter().filter_map(|it| Some((Physical::of(it.parameter, device)?, it))).unzip()
+/// Those that the field of a pad knows, with its derivatives by them. They are 0 in `expected`.
+pub(super) fn free<'f>(
+    (field, own): (&'f PadField, &Device),
+    expected: &Device,
+) -> (Vec<Physical>, Vec<&'f Sensitivity>) {
+    let of = |it: &'f Sensitivity| Some((Physical::of(it.parameter, own, expected)?, it));
+    field.sensitivities.iter().filter_map(of).unzip()
 }
 
 impl Physical {
     /// `None` for a number in which pads of a kind do not differ, or one that the prior's other parameters stand for.
-    pub(super) fn of(parameter: Parameter, device: &Device) -> Option<Self> {
+    fn of(parameter: Parameter, own: &Device, expected: &Device) -> Option<Self> {
         let kind = match (parameter.module(), parameter.unit()) {
             (Some(_), Unit::Millimetre) => Kind::Shift,
             (Some(_), Unit::Degree) => Kind::Turn,
@@ -40,7 +49,10 @@ impl Physical {
             (None, Unit::Megapascal) if parameter.name() != "material.plate.e_mpa" => Kind::CommonModulus,
             (None, _) => return None,
         };
-        Some(Self { parameter, kind, own: parameter.get(device) })
+        let mut it = Self { parameter, kind, expected: parameter.get(expected), about: 0.0 };
+        let own = parameter.get(own);
+        it.about = if it.is_factor() { libm::log(own / it.expected) } else { own - it.expected };
+        Some(it)
     }
 
     /// The kind, which has a prior.
@@ -60,22 +72,44 @@ impl Physical {
 
     /// The weight w of ∂G/∂p in the field, and ∂w/∂q.
     pub(super) fn weight(&self, q: f64) -> [f64; 2] {
+        let beyond = self.beyond(q);
         if !self.is_factor() {
-            return [q, 1.0];
+            return [beyond, 1.0];
         }
-        // w = p/n (1 − e^−nq), ∂w/∂q = p e^−nq.
-        let left = libm::exp(-self.power() * q);
-        [self.own / self.power() * (1.0 - left), self.own * left]
+        // With p = p₀ e^q₀: w = p/n (1 − e^−n(q − q₀)), ∂w/∂q = p e^−n(q − q₀).
+        let (own, left) = (self.value(self.about), libm::exp(-self.power() * beyond));
+        [own / self.power() * (1.0 - left), own * left]
     }
 
     /// The number itself; of a pose its change.
     pub(super) fn value(&self, q: f64) -> f64 {
-        if self.is_factor() { self.own * libm::exp(q) } else { q }
+        if self.is_factor() { self.expected * libm::exp(q) } else { q }
     }
 
-    /// What a deviation of the parameter is in the number's unit, about the field's own pad.
+    /// Gives a device the number.
+    pub(super) fn put(&self, device: &mut Device, q: f64) {
+        let value = if self.is_factor() { self.value(q) } else { self.expected + q };
+        self.parameter.set(device, value);
+    }
+
+    /// q − q₀: how far it is from the pad that the field is of.
+    pub(super) fn beyond(&self, q: f64) -> f64 {
+        q - self.about
+    }
+
+    /// How far that may be until the field's tangent is off by as much as it says.
+    pub(super) fn reach(&self, device: &Device) -> f64 {
+        match self.kind {
+            Kind::Shift => shift_reach_mm(device),
+            Kind::Turn => TURN_REACH_DEG,
+            // A plate's stiffness goes with the cube of its thickness.
+            _ => STIFFNESS_REACH / self.power(),
+        }
+    }
+
+    /// What a deviation of the parameter is in the number's unit, about a pad that does not differ.
     pub(super) const fn unit(&self) -> f64 {
-        if self.is_factor() { self.own } else { 1.0 }
+        if self.is_factor() { self.expected } else { 1.0 }
     }
 }
 
@@ -84,7 +118,7 @@ mod tests {
     use super::*;
 
     fn physical(name: &str) -> Option<Physical> {
-        Physical::of(name.parse().unwrap(), &Device::nominal())
+        Physical::of(name.parse().unwrap(), &Device::nominal(), &Device::nominal())
     }
 
     #[test]
@@ -95,6 +129,24 @@ mod tests {
         assert_eq!(is_factor("plate.thickness_mm"), Some(true));
         assert_eq!(is_factor("material.epoxy.e_mpa"), Some(true));
         assert_eq!((is_factor("plate.diameter_mm"), is_factor("material.plate.e_mpa")), (None, None));
+    }
+
+    #[test]
+    fn about_another_pad_the_field_is_the_same() {
+        // G = −1/pⁿ is linear in 1/pⁿ, and ∂G/∂p = n/pⁿ⁺¹.
+        let (mut own, expected) = (Device::nominal(), Device::nominal());
+        for name in ["module.0.radial_mm", "plate.thickness_mm", "material.adh.e_mpa"] {
+            let parameter: Parameter = name.parse().unwrap();
+            physical(name).unwrap().put(&mut own, 0.3);
+            let it = Physical::of(parameter, &own, &expected).unwrap();
+            assert!(it.beyond(0.3).abs() < 1e-12 && it.weight(0.3)[0].abs() < 1e-12, "{name}");
+            let field = |p: f64| if it.is_factor() { -p.powf(-it.power()) } else { p };
+            let slope = |p: f64| if it.is_factor() { it.power() * p.powf(-it.power() - 1.0) } else { 1.0 };
+            for q in [-0.2, 0.3, 0.5] {
+                let linearised = field(it.value(0.3)) + it.weight(q)[0] * slope(it.value(0.3));
+                assert!((linearised / field(it.value(q)) - 1.0).abs() < 1e-12, "{name} {q}");
+            }
+        }
     }
 
     #[test]

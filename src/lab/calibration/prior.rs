@@ -4,6 +4,7 @@ use super::contacts::Maps;
 use super::earlier::Earlier;
 use super::noise::NoisePrior;
 use super::plate::{PLACES, places};
+use crate::pad::device::Device;
 use crate::pad::field::PadField;
 use crate::pad::influence::{InfluenceField, MAPS};
 use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
@@ -18,6 +19,8 @@ const GAIN_MIN: f64 = 0.05;
 pub(super) struct Prior {
     /// µV/N before gains, and its sensitivities to the physical parameters.
     pub(super) field: PadField,
+    /// The pad that this field was solved for, where it is not the one that measured pads are held against.
+    pub(super) solved: Option<Device>,
     pub(super) gain: [f64; CHANNELS],
     /// What each channel has of each other's strain.
     pub(super) crosstalk: [[f64; CHANNELS]; CHANNELS],
@@ -57,6 +60,11 @@ impl Prior {
         Self { field: PadField { signals, ..prior.field }, ..prior }
     }
 
+    /// The same prior, with the field about another pad.
+    pub(super) fn about(self, device: Device, field: PadField) -> Self {
+        Self { field, solved: Some(device), ..self }
+    }
+
     /// At a decoder: all of its field, in which no number of the device may differ from what it has, taken apart into crosstalk, gains
     /// and strains.
     pub(super) fn at(field: &PadField, earlier: &Earlier<'_>) -> Self {
@@ -94,6 +102,7 @@ impl Prior {
             shares: hysteresis.map(|play| play.share),
             creep: NO_CREEP,
             field,
+            solved: None,
             gain,
             crosstalk: [[0.0; CHANNELS]; CHANNELS],
             noise,

@@ -122,7 +122,7 @@ impl<'f> Problem<'f> {
         prior: &'f Prior,
     ) -> Self {
         let field = &prior.field;
-        let (physical, sensitivities) = free(field, device);
+        let (physical, sensitivities) = free((field, prior.solved.as_ref().unwrap_or(device)), device);
         let plate_mm = device.plate.radius_mm();
         let rows = &recording.tared().rows;
         let to_come = ageing::to_come(rows);

@@ -9,6 +9,7 @@ use super::model::{CommonError, Coordinate, Hypothesis, Linearised, Model, Param
 use super::observations::Observations;
 use super::report::NotTestable;
 use super::simulated::Simulated;
+use crate::lab::tangent::{STIFFNESS_REACH, TURN_REACH_DEG, on_grid, shift_reach_mm};
 use crate::numeric::products::dot;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
@@ -17,12 +18,6 @@ use crate::pad::field::PadField;
 const SOLVED_MAX: usize = 3;
 /// A field is solved where the tangent's error would move a number by so many of its own standard deviations.
 const FAR: f64 = 1.0;
-/// The tangent's error is as large as the change itself where ln k is off by so much: most of what gives way beside a module's
-/// frame is not the frame. The simulator has 4.2 for a frame, and 1/k in place of ln k.
-const STIFFNESS_REACH: f64 = 4.0;
-
-/// Fields are solved at whole multiples of this part of a reach: near enough, and soon known for most pads that come.
-const GRID: f64 = 1.0 / 400.0;
 
 /// A changed pad.
 struct Solved {
@@ -72,7 +67,7 @@ impl<'f> Atlas<'f> {
         (sequence, observations): (&'f Observations, &'f Observations),
     ) -> Self {
         let first = Simulated::new(pad, (pad.device, pad.field), all, (sequence, observations));
-        let module_mm = pad.device.sites.centre_radius_mm;
+        let module_mm = shift_reach_mm(pad.device);
         let reaches = first.hypotheses().iter().enumerate().map(|(at, hypothesis)| {
             let reaches = hypothesis.parameters.iter().map(|it| reach(it, module_mm)).collect();
             first.changes_field(at).then_some(reaches)
@@ -123,7 +118,8 @@ impl<'f> Atlas<'f> {
         let (mut device, mut at) = (self.pad.device.clone(), Applied::new());
         for (hypothesis, coordinates) in applied {
             let Some(reaches) = &self.reaches[*hypothesis] else { continue };
-            let coordinates: Vec<f64> = coordinates.iter().zip(reaches).map(rounded).collect();
+            let coordinates: Vec<f64> =
+                coordinates.iter().zip(reaches).map(|(psi, reach)| on_grid(*psi, *reach)).collect();
             let Hypothesis { effect, target, ref parameters, .. } = self.first.hypotheses()[*hypothesis];
             let values = parameters.iter().zip(&coordinates);
             let numbers: Vec<_> = values.map(|(it, psi)| (it.name, it.value(*psi))).collect();
@@ -230,18 +226,12 @@ fn difference(count: usize, from: Option<&Vec<f64>>, to: Option<&Vec<f64>>) -> V
     (0..count).map(|k| of(from, k) - of(to, k)).collect()
 }
 
-fn rounded((psi, reach): (&f64, &f64)) -> f64 {
-    let step = reach * GRID;
-    if step.is_finite() { libm::round(psi / step) * step } else { *psi }
-}
-
-/// How far a coordinate may go until the tangent is off by as much as it says: a module's distance from the axis, a radian. The
-/// simulator has 26 to 56 mm and 50 to 150° on the nominal pad. What a module lacks is no tangent.
+/// How far a coordinate may go until the tangent is off by as much as it says. What a module lacks is no tangent.
 fn reach(parameter: &Parameter, module_mm: f64) -> f64 {
     match parameter.coordinate {
         Coordinate::Logarithm => STIFFNESS_REACH,
         _ if parameter.name.ends_with("_mm") => module_mm,
-        _ if parameter.name.ends_with("deg") => 1_f64.to_degrees(),
+        _ if parameter.name.ends_with("deg") => TURN_REACH_DEG,
         _ => f64::INFINITY,
     }
 }

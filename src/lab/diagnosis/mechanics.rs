@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::setting::Change;
+use crate::lab::tangent::Solve;
 use crate::numeric::zernike::{Jet, Polynomial, count, jets};
 use crate::pad::changes::{FieldChange, Flaw};
 use crate::pad::device::unit::Unit;
@@ -21,7 +22,7 @@ pub struct Pad<'p> {
     /// What flaws of its module 0 change; none, and nobody asks for them.
     pub flaws: &'p [FieldChange],
     /// The field of another pad, which may take seconds; none where it cannot be had.
-    pub solve: &'p (dyn Fn(&Device) -> Option<PadField> + Sync),
+    pub solve: Solve<'p>,
     /// Effects that are not asked for.
     pub without: &'p [String],
 }

@@ -9,8 +9,7 @@ use crate::lab::calibration::fit::{Calibration, FitError, Report, fit_known};
 use crate::lab::calibration::known::Known;
 use crate::lab::play::weights::{Placement, Unusable};
 use crate::lab::play::windows::{Play, Window};
-use crate::pad::device::Device;
-use crate::pad::field::PadField;
+use crate::lab::tangent::Simulated;
 
 /// Fewer presses are no play; so many placements of a weight do without.
 const PRESSES_MIN: usize = 20;
@@ -82,7 +81,7 @@ impl fmt::Display for HomeError {
 
 impl std::error::Error for HomeError {}
 
-/// Calibrates the pad that was played on. `field` is that of `device`, the nominal pad; `earlier` what another pad's decoder, or
+/// Calibrates the pad that was played on. `pad` is what it is held against; `earlier` what another pad's decoder, or
 /// an earlier one of this pad, tells.
 ///
 /// # Errors
@@ -90,7 +89,7 @@ impl std::error::Error for HomeError {}
 pub fn calibrated(
     windows: &[Window],
     placements: &[Placement],
-    (device, field): (&Device, &PadField),
+    pad: &Simulated<'_>,
     earlier: Option<Earlier<'_>>,
     report: Report<'_>,
 ) -> Result<AtHome, HomeError> {
@@ -99,12 +98,12 @@ pub fn calibrated(
         .map(|placement| placement.found(windows))
         .collect::<Result<_, _>>()
         .map_err(HomeError::Placement)?;
-    let play = Play::of(windows, &placed, device.contact.full_scale_n).ok_or(HomeError::NoRest)?;
+    let play = Play::of(windows, &placed, pad.device.contact.full_scale_n).ok_or(HomeError::NoRest)?;
     let presses = play.fitted.iter().filter(|it| it.knowledge == Knowledge::Unlabelled).count();
     if presses < PRESSES_MIN && placed.len() < PLACEMENTS_MIN {
         return Err(HomeError::TooFew { presses });
     }
-    let calibration = fit_known(&play.recording, &play.fitted, device, field, earlier, report);
+    let calibration = fit_known(&play.recording, &play.fitted, pad, earlier, report);
     let calibration = calibration.map_err(HomeError::Fit)?;
     Ok(AtHome { calibration, presses, placements: placed.len() })
 }

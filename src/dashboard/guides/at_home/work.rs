@@ -14,9 +14,11 @@ use super::standing::{Shared, Standing};
 use crate::dashboard::ears::Heard;
 use crate::dashboard::guides::guide::{CommandLine, Outcome, Table};
 use crate::dashboard::library::Library;
+use crate::lab::field_cache;
 use crate::lab::play::guide::Guide;
 use crate::lab::play::home::calibrated;
 use crate::lab::play::summary::{HEADING, Part, Summary};
+use crate::lab::tangent::Simulated;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 use crate::pipeline::call::{Call, OwnedCall};
@@ -132,7 +134,8 @@ pub(super) fn fitted(guide: Guide, report: &(dyn Fn(f64) + Sync)) -> Result<(Vec
     let (device, field) = (Device::nominal(), PadField::nominal());
     report(0.0);
     let share = |done: usize, of: usize| report(done as f64 / of.max(1) as f64);
-    let found = calibrated(&windows, &placements, (&device, &field), None, &share);
+    let pad = Simulated { device: &device, field: &field, solve: &field_cache::solve };
+    let found = calibrated(&windows, &placements, &pad, None, &share);
     let found = found.map_err(|error| format!("there is no decoder yet: {error}"))?;
     Ok((found.file(), Summary::of(&found, &windows)))
 }

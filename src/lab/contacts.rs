@@ -3,9 +3,10 @@
 use std::fmt;
 
 use crate::lab::calibration::earlier::Earlier;
-use crate::lab::calibration::fit::{Calibration, FitError, Report, fit_reported};
+use crate::lab::calibration::fit::{Calibration, FitError, fit_reported};
 use crate::lab::calibration::regression::{neighbours, regression};
 use crate::lab::calibration::screening::{Fault, Unexplained, screened};
+use crate::lab::calibration::search::Report;
 use crate::lab::scdf::adaptation::{Adapted, TooFew, adapt, examples};
 use crate::lab::tangent::Simulated;
 use crate::network::training::Epoch;

@@ -1,5 +1,6 @@
-//! A simulated pad that measured ones are held against: its field, the field's tangent, and how far that reaches.
+//! A simulated pad that measured ones are held against: its field, the field's tangent, how far that reaches, and what lies beyond.
 
+use crate::pad::changes::FieldChange;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 
@@ -13,14 +14,16 @@ pub struct Simulated<'p> {
     pub device: &'p Device,
     /// Its field.
     pub field: &'p PadField,
+    /// What flaws of its module 0 change; none, and nobody asks for them.
+    pub flaws: &'p [FieldChange],
     /// Fields of pads that are not like it.
     pub solve: Solve<'p>,
 }
 
 impl<'p> Simulated<'p> {
-    /// Without a simulator: all other pads are on the field's tangent.
+    /// Without a simulator: all other pads are on the field's tangent, and none has a flaw.
     pub fn known(device: &'p Device, field: &'p PadField) -> Self {
-        Self { device, field, solve: &|_| None }
+        Self { device, field, flaws: &[], solve: &|_| None }
     }
 }
 

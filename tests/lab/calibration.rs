@@ -19,8 +19,9 @@ use tactpad::lab::rig::measurement::{Measurement, carry_out};
 use tactpad::lab::scdf::adaptation::{adapt, examples};
 use tactpad::lab::tangent::{Simulated, Solve};
 use tactpad::network::Zero;
-use tactpad::pad::device::Device;
+use tactpad::pad::changes::{FieldChanges, Flaw};
 use tactpad::pad::device::behaviour::{Crosstalk, Play, Prony};
+use tactpad::pad::device::{Device, Side};
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::{InfluenceField, MAPS};
 use tactpad::pipeline::compensation::creep::NO_CREEP;
@@ -256,22 +257,46 @@ fn a_pad_that_the_tangent_does_not_reach_is_calibrated_about_its_own_field() {
     let measured = Measured::on(&own, &device, &plans::paper::plan(&device.contact), 1);
     let unseen = Measured::on(&own, &device, &plans::recommended::plan(&device.contact, 9), 2);
     let (nominal, solved) = (Device::nominal(), AtomicUsize::new(0));
+    let changes = FieldChanges::nominal();
     let counted = |device: &Device| {
         solved.fetch_add(1, Ordering::Relaxed);
         solve(device)
     };
     let tried = |solve: Solve<'_>| {
-        let pad = Simulated { device: &nominal, field: field(), solve };
+        let pad = Simulated { solve, flaws: &changes.0, ..Simulated::known(&nominal, field()) };
         let found = fit_reported(&measured.recording, &measured.some(216), &pad, None, &|_, _| ()).unwrap();
-        (stated(&found, &device), errors_of(&found.decoder(), &unseen))
+        (stated(&found, &device), errors_of(&found.decoder(), &unseen), found.flaw)
     };
     let (on_tangent, about_own) = (tried(&|_| None), tried(&counted));
     println!("on the tangent {on_tangent:?}\nabout its own field {about_own:?}");
-    assert!((1..=2).contains(&solved.into_inner()));
+    assert!((1..=2).contains(&solved.into_inner()) && about_own.2.is_none());
     assert!(about_own.0 < 1.0 && on_tangent.0 > 1.5 * about_own.0);
     assert!(about_own.1.position_mae_mm < on_tangent.1.position_mae_mm);
     let [place, force] = beyond_bound(&device, &own, &about_own.1, &unseen);
     assert!(place < 1.3 && force < 1.3, "{place} {force}");
+}
+
+#[test]
+fn a_module_whose_frame_is_open_is_told_from_one_whose_channels_leak() {
+    let (mut device, nominal) = (pad(), Device::nominal());
+    device.behaviour.noise.additive_uv = [10.0; CHANNELS];
+    let mut open = device.clone();
+    open.modules[1].frame_open = Some(Side::MinusX);
+    // What an open frame on that side looks like: its x channel has a quarter of its z channel.
+    let mut leaking = device.clone();
+    leaking.behaviour.crosstalk.push(Crosstalk { channel: 3, with: 5, share: 0.25 });
+    let changes = FieldChanges::nominal();
+    let plan = plans::paper::plan(&device.contact);
+    let own = solve(&open).unwrap();
+    let flaw = |field: &PadField, device: &Device, flaws| {
+        let measured = Measured::on(field, device, &plan, 1);
+        let pad = Simulated { flaws, ..Simulated::known(&nominal, self::field()) };
+        let found = fit_reported(&measured.recording, &measured.some(216), &pad, None, &|_, _| ());
+        found.unwrap().flaw
+    };
+    assert_eq!(flaw(&own, &open, &changes.0), Some((1, Flaw::FrameOpen(Side::MinusX))));
+    assert_eq!(flaw(field(), &leaking, &changes.0), None);
+    assert_eq!(flaw(&own, &open, &[]), None);
 }
 
 /// The nominal field with faults that a calibration has no number for: a plate

@@ -45,7 +45,7 @@ pub(crate) fn fitted(
 ) -> Result<AtHome, HomeError> {
     let progress = Progress::begin("fitting the pad's field");
     let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
-    let pad = Simulated { device, field, solve: &|device| field_of(device).ok() };
+    let pad = Simulated { solve: &|device| field_of(device).ok(), ..Simulated::known(device, field) };
     calibrated(windows, placements, &pad, earlier.and_then(Earlier::of), &report)
 }
 
@@ -66,7 +66,10 @@ impl Outcome {
         Self {
             method: Method::Inverse,
             summary: Summary::of(&found, windows),
-            pad: FoundPad::of(found.calibration, Named::by(&[], &Device::nominal(), &PadField::nominal())),
+            pad: FoundPad::of(
+                found.calibration,
+                Named::by(&[], (&Device::nominal(), &PadField::nominal(), &[])),
+            ),
         }
     }
 }

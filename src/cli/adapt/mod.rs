@@ -25,6 +25,7 @@ use self::numbers::Pad as FoundPad;
 use super::decoder_file;
 use super::destination::{Destination, Folder};
 use super::device::Pad;
+use super::diagnose::engine::flaws;
 use super::failure::Failure;
 use super::field::field_of;
 use super::pictures;
@@ -132,10 +133,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Fit::Network(fit)
     } else {
+        let flaws = flaws(&device);
         // Neither waits for the other: what is named has no part in the fit.
         let (adapted, named) = rayon::join(
-            || own::adapt(*method, &measured, earlier.as_ref(), (&device, &field)),
-            || Named::by(&measured.tables, &device, &field),
+            || own::adapt(*method, &measured, earlier.as_ref(), (&device, &field, &flaws)),
+            || Named::by(&measured.tables, (&device, &field, &flaws)),
         );
         let (decoder, found) = adapted?;
         let note = format!("{} contacts of {}", measured.contacts.count(), measured.names);

@@ -12,6 +12,7 @@ use tactpad::lab::calibration::numbers::Number;
 use tactpad::lab::diagnosis;
 use tactpad::lab::diagnosis::agreement::agreed;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Verdict};
+use tactpad::pad::changes::FieldChange;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::tables::measured::Table;
@@ -40,10 +41,10 @@ pub(super) struct FoundIn<'d> {
 
 impl Named {
     /// Diagnoses the tables.
-    pub(super) fn by(tables: &[(String, Table)], device: &Device, field: &PadField) -> Self {
+    pub(super) fn by(tables: &[(String, Table)], pad: (&Device, &PadField, &[FieldChange])) -> Self {
         let mut named = Self { diagnoses: Vec::new(), unfit: Vec::new() };
         for (name, table) in tables {
-            match of_table(table, device, field) {
+            match of_table(table, pad) {
                 Ok(diagnosis) => named.diagnoses.push((name.clone(), diagnosis)),
                 Err(why) => named.unfit.push(format!("{name}: {why}")),
             }
@@ -82,13 +83,13 @@ fn found_in<'d>(((measured, diagnosis), finding): (&'d (String, Diagnosis), &'d 
     FoundIn { measured, finding: document::Finding::of(finding, &diagnosis.channels) }
 }
 
-fn of_table(table: &Table, device: &Device, field: &PadField) -> Result<Diagnosis, String> {
+fn of_table(table: &Table, pad: (&Device, &PadField, &[FieldChange])) -> Result<Diagnosis, String> {
     diagnosis::check(table).map_err(|why| why.to_string())?;
     let rows = table.rows.len();
     if rows > ROWS_MAX {
         return Err(format!("causes are looked for in {ROWS_MAX} rows at most, and here are {rows}"));
     }
-    diagnosed(table, (device, field), &[]).map_err(|why| why.to_string())
+    diagnosed(table, pad, &[]).map_err(|why| why.to_string())
 }
 
 /// Why a table's diagnosis names nothing.

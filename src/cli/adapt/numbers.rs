@@ -52,6 +52,9 @@ struct Document<'d> {
     thermal: Option<FoundThermal>,
     /// Whether the field of `--from` was nearer than the simulated one.
     field_from_earlier: bool,
+    /// The module's flaw that the field is fitted with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    flaw: Option<String>,
     /// What the rig leaves open.
     open_by_rig: Vec<Open>,
     /// Whether contacts miss alike in all parts of the measurement.
@@ -153,6 +156,7 @@ impl Pad {
             zero_uv: compensation.zero_uv,
             thermal: thermal.as_ref().map(FoundThermal::of),
             field_from_earlier: self.calibration.from_earlier,
+            flaw: self.calibration.flaw.map(|(module, flaw)| format!("module{module} {flaw}")),
             open_by_rig: self.calibration.open_by_rig.iter().map(Open::of).collect(),
             checks: self.calibration.checks.iter().map(Checked::of).collect(),
         }
@@ -271,6 +275,13 @@ impl fmt::Display for Pad {
         self.write_named(f)?;
         writeln!(f, "{}", hanging("", &self.nameless()))?;
         self.write_pairs(f)?;
+        if let Some((module, flaw)) = self.calibration.flaw {
+            let fitted = format!(
+                "The field is that of a pad whose module {module} has the flaw \"{flaw}\": with any crosstalk of a whole module in \
+                 its place the contacts are less likely. It serves the decoder and is no finding."
+            );
+            writeln!(f, "{}", hanging("", &fitted))?;
+        }
         for open in &self.calibration.open_by_rig {
             writeln!(f, "{}", hanging("", &Open::of(open).words()))?;
         }

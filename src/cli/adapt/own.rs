@@ -11,6 +11,7 @@ use crate::cli::progress::Progress;
 use tactpad::lab::calibration::earlier::Earlier;
 use tactpad::lab::calibration::fit::Calibration;
 use tactpad::lab::tangent::Simulated;
+use tactpad::pad::changes::FieldChange;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::contact::Decoder;
@@ -33,11 +34,11 @@ pub(super) fn adapt(
     method: Method,
     measured: &Measured,
     earlier: Option<&Decoder>,
-    (device, field): (&Device, &PadField),
+    (device, field, flaws): (&Device, &PadField, &[FieldChange]),
 ) -> Result<(Decoder, Option<Calibration>), Failure> {
     let (contacts, reach_mm) = (&measured.contacts, device.contact.max_centre_radius_mm);
     let fitted = match method {
-        Method::Inverse => return calibrated(measured, earlier, (device, field)),
+        Method::Inverse => return calibrated(measured, earlier, (device, field, flaws)),
         Method::Knn => contacts.neighbours(),
         Method::Wrench => contacts.regression(Target::Wrench, reach_mm),
         Method::Linear | Method::Scdf => contacts.regression(Target::Contact, reach_mm),
@@ -48,12 +49,12 @@ pub(super) fn adapt(
 fn calibrated(
     measured: &Measured,
     earlier: Option<&Decoder>,
-    (device, field): (&Device, &PadField),
+    (device, field, flaws): (&Device, &PadField, &[FieldChange]),
 ) -> Result<(Decoder, Option<Calibration>), Failure> {
     let progress = Progress::begin("fitting the pad's field");
     let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
     let earlier = earlier.and_then(Earlier::of);
-    let pad = Simulated { device, field, solve: &|device| field_of(device).ok() };
+    let pad = Simulated { device, field, flaws, solve: &|device| field_of(device).ok() };
     let calibration = measured.contacts.calibration(&pad, earlier, &report);
     drop(progress);
     let calibration = calibration.map_err(|error| measured.refused(error))?;

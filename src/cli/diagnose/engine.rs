@@ -10,15 +10,14 @@ use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::tables::measured::Table;
 
-/// Holds a table against a device, whose field this is.
+/// Holds a table against a device, whose field this is, and whose modules may have these flaws.
 pub(crate) fn diagnosed(
     table: &Table,
-    (device, field): (&Device, &PadField),
+    (device, field, flaws): (&Device, &PadField, &[FieldChange]),
     without: &[String],
 ) -> Result<Diagnosis, Unfit> {
-    let flaws = flaws(device);
     let solve = |device: &Device| field_of(device).ok();
-    let pad = diagnosis::Pad { device, field, flaws: &flaws, solve: &solve, without };
+    let pad = diagnosis::Pad { device, field, flaws, solve: &solve, without };
     diagnosis::diagnose(table, &pad)
 }
 

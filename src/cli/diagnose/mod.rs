@@ -16,7 +16,7 @@ use std::path::Path;
 pub(super) use self::arguments::Arguments;
 use self::arguments::{destination, folder};
 use self::document::Document;
-use self::engine::diagnosed;
+use self::engine::{diagnosed, flaws};
 use self::files::{file_name, write_report};
 use super::destination::Destination;
 use super::failure::Failure;
@@ -54,7 +54,8 @@ fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
     diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
     let field = field_of(&device)?;
     let progress = Progress::begin("looking for causes");
-    let diagnosis = diagnosed(&table, (&device, &field), without).map_err(|why| unfit(measured, &why))?;
+    let diagnosis = diagnosed(&table, (&device, &field, &flaws(&device)), without)
+        .map_err(|why| unfit(measured, &why))?;
     drop(progress);
     if let Some(to) = saved {
         save(&to, &device, &diagnosis, &table)?;

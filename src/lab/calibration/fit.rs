@@ -1,17 +1,12 @@
-//! The fit: Gauss and Newton's method on all parameters, for several values of the hyperparameters; the evidence selects.
-//!
-//! Source: C. M. Bishop, Pattern Recognition and Machine Learning, section 3.4 (model comparison by the evidence).
+//! A calibration: the fit under each prior that the pad may have been drawn from, about the pad that is nearest to it.
 
 use std::fmt;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use rayon::prelude::*;
 
 use super::contacts::{Fitted, Knowledge};
 use super::earlier::Earlier;
 use super::effort::Effort;
 use super::field_error;
-use super::hyperparameters::Settings;
+use super::flaws;
 use super::known::Known;
 use super::linearised::{self, SOLVED_MAX};
 use super::model::Layout;
@@ -22,13 +17,14 @@ use super::predictive::{Check, checks};
 use super::prepared::Prepared;
 use super::prior::Prior;
 use super::problem::{Fit, Problem};
+use super::search::{self, Counted, LOG_EVIDENCE_GAIN, Report};
 use super::thermal_fit::ThermalFit;
 use crate::lab::tangent::Simulated;
+use crate::pad::changes::Flaw;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 use crate::pad::influence::InfluenceField;
 use crate::pipeline::compensation::Compensation;
-use crate::pipeline::compensation::creep::Creep;
 use crate::pipeline::contact::Decoder;
 use crate::pipeline::contact::field_error::FieldError;
 use crate::pipeline::contact::inverse::{Crosstalk, Inverse};
@@ -36,70 +32,8 @@ use crate::pipeline::contact::uncertainty::Noise;
 use crate::quantity::CHANNELS;
 use crate::tables::recording::Recording;
 
-/// Prior standard deviations of the background that are tried beside none, as a share of each map: the larger ones where the
-/// larger of the small ones is best.
-const SMALL_BACKGROUNDS: [f64; 2] = [0.004, 0.01];
-const LARGE_BACKGROUNDS: [f64; 2] = [0.025, 0.06];
-/// Thresholds of play operators that are tried: a geometric sequence, then halved steps of its exponent around the best.
-const THRESHOLD_MIN_UV: f64 = 40.0;
-const THRESHOLD_RATIO: f64 = 1.6;
-const THRESHOLDS: i32 = 11;
-const HALVINGS: i32 = 3;
-/// Relaxation times that are tried: between the length of a press and that of a pause.
-const CREEP_TIMES_S: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
-/// Time constants of relative noise that are tried in play.
-pub(super) const NOISE_TIMES_S: [f64; 4] = [0.7, 2.0, 6.0, 18.0];
-/// ln of the Bayes factor that a richer hypothesis (a play operator, creep, another pad's field) must exceed.
-const LOG_EVIDENCE_GAIN: f64 = 15.0;
 /// Plates that differ by less are of one kind.
 const PLATE_TOLERANCE_MM: f32 = 0.1;
-
-/// Hears how many fits of at most how many are done.
-pub type Report<'r> = &'r (dyn Fn(usize, usize) + Sync);
-
-/// Fits, counted.
-struct Counted<'r> {
-    done: AtomicUsize,
-    most: AtomicUsize,
-    report: Report<'r>,
-}
-
-impl<'r> Counted<'r> {
-    /// As many as all hypotheses can ask for.
-    fn of(hypotheses: &[Hypothesis], report: Report<'r>) -> Self {
-        let most = hypotheses.iter().map(Self::most).sum();
-        Self { done: AtomicUsize::new(0), most: AtomicUsize::new(most), report }
-    }
-
-    /// As many as one of them can ask for, about one pad.
-    fn most(Hypothesis { prior, .. }: &Hypothesis) -> usize {
-        let refinements = 2 * HALVINGS as usize;
-        let search = |known_uv: &f64| {
-            if *known_uv > 0.0 { refinements } else { THRESHOLDS as usize + 1 + refinements }
-        };
-        NOISE_TIMES_S.len()
-            + prior.thresholds_uv.iter().map(search).sum::<usize>()
-            + CREEP_TIMES_S.len()
-            + SMALL_BACKGROUNDS.len()
-            + LARGE_BACKGROUNDS.len()
-    }
-
-    /// Hears that a hypothesis is fitted again.
-    fn expect(&self, hypothesis: &Hypothesis) {
-        self.most.fetch_add(Self::most(hypothesis), Ordering::Relaxed);
-    }
-
-    fn fitted(
-        &self,
-        problem: &Problem<'_>,
-        settings: Settings,
-        (from, effort): (Option<&Fit>, Effort),
-    ) -> Option<Fit> {
-        let fit = problem.clone().fitted(settings, from, effort);
-        (self.report)(self.done.fetch_add(1, Ordering::Relaxed) + 1, self.most.load(Ordering::Relaxed));
-        fit
-    }
-}
 
 /// A calibrated pad.
 #[derive(Clone, Debug)]
@@ -122,6 +56,8 @@ pub struct Calibration {
     pub background: f64,
     /// Whether the prior is centred on another pad's field, not on the simulated one.
     pub from_earlier: bool,
+    /// The flaw of a module with which the evidence is larger than with any crosstalk. It is no finding.
+    pub flaw: Option<(usize, Flaw)>,
     /// What is to be taken off the channels. It has a zero if the recording does not read the untouched pad itself.
     pub compensation: Compensation,
     /// Temperature coefficients; none if the pad was measured at one temperature.
@@ -213,6 +149,7 @@ impl Calibration {
             not_told_apart,
             background: settings.background,
             from_earlier,
+            flaw: problem.prior.solved.as_ref().and_then(flaws::of),
             compensation: Compensation { zero_uv, thermal, creep, hysteresis },
             thermal: thermal_fit,
             contacts: problem.contacts(),
@@ -283,31 +220,80 @@ pub fn fit_known(
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
     let prepared = Prepared::of(recording, fitted, pad.device, field).ok_or(FitError::Senseless)?;
-    let mut best: Option<(f64, Calibration)> = None;
     let hypotheses = hypotheses(field, earlier);
-    let counted = Counted::of(&hypotheses, report);
-    for mut hypothesis in hypotheses {
-        for solved in 0..=SOLVED_MAX {
-            let (problem, found) = calibrated(&prepared, fitted, pad.device, &hypothesis.prior, &counted)?;
-            // The numbers of another pad's field are not known.
-            let is_last = solved == SOLVED_MAX || hypothesis.from_earlier;
-            let nearer = if is_last { None } else { linearised::solved(&problem, &found, pad) };
-            if let Some((device, field)) = nearer {
-                hypothesis.prior = hypothesis.prior.about(device, field);
-                counted.expect(&hypothesis);
-                continue;
-            }
-            // ln p(H | y) = ln p(y | H) + ln p(H), but for a constant that all hypotheses share.
-            let log_probability = found.log_evidence + hypothesis.log_prior_odds;
-            if best.as_ref().is_none_or(|(largest, _)| log_probability > *largest) {
-                let calibration = Calibration::of(&prepared, &problem, &found, hypothesis.from_earlier);
-                best = Some((log_probability, calibration));
-            }
-            break;
-        }
+    let counted = Counted::of(hypotheses.iter().map(|it| &it.prior), report);
+    let contacts = Contacts { prepared: &prepared, fitted, pad, counted: &counted };
+    let mut best: Option<(f64, Calibration)> = None;
+    for hypothesis in hypotheses {
+        let least = best.as_ref().map_or(f64::NEG_INFINITY, |(log_probability, _)| *log_probability);
+        best = contacts.calibrated(hypothesis, least)?.or(best);
     }
     let is_sound = |it: &Calibration| it.thermal.is_none_or(|fit| fit.coefficients.is_sound());
     best.map(|(_, calibration)| calibration).filter(is_sound).ok_or(FitError::Senseless)
+}
+
+/// What was measured, and the simulated pad that it is held against.
+struct Contacts<'c> {
+    prepared: &'c Prepared,
+    fitted: &'c [Fitted],
+    pad: &'c Simulated<'c>,
+    counted: &'c Counted<'c>,
+}
+
+impl Contacts<'_> {
+    fn problem<'p>(&'p self, prior: &'p Prior) -> Problem<'p> {
+        self.prepared.problem(self.fitted, self.pad.device, prior)
+    }
+
+    /// The calibration by a hypothesis with its log probability, if that is above `least`: about the pad of the prior, then, as long as
+    /// there is one, about a pad that is nearer to what was found.
+    fn calibrated(
+        &self,
+        mut hypothesis: Hypothesis,
+        least: f64,
+    ) -> Result<Option<(f64, Calibration)>, FitError> {
+        let mut solved = 0;
+        loop {
+            let problem = self.problem(&hypothesis.prior);
+            if problem.contacts() == 0 {
+                return Err(FitError::TooFew { contacts: 0, least: 1 });
+            }
+            let found = search::fitted(problem, &hypothesis.prior, self.counted);
+            let (problem, found) = found.ok_or(FitError::Senseless)?;
+            // The numbers of another pad's field are not known.
+            let is_last = solved == SOLVED_MAX || hypothesis.from_earlier;
+            let Some((device, field)) = (!is_last).then(|| self.nearer(&problem, &found)).flatten() else {
+                // ln p(H | y) = ln p(y | H) + ln p(H), but for a constant that all hypotheses share.
+                let log_probability = found.log_evidence + hypothesis.log_prior_odds;
+                let calibration =
+                    || Calibration::of(self.prepared, &problem, &found, hypothesis.from_earlier);
+                return Ok((log_probability > least).then(|| (log_probability, calibration())));
+            };
+            hypothesis.prior = hypothesis.prior.about(device, field);
+            self.counted.expect_all(&hypothesis.prior);
+            solved += 1;
+        }
+    }
+
+    /// A pad with its field that is nearer to the one that was found than the one about which it was: one that the tangent does not
+    /// reach, or one that lacks something. A module that is far off is not to be taken for one that does.
+    fn nearer(&self, problem: &Problem<'_>, fit: &Fit) -> Option<(Device, PadField)> {
+        let solved = linearised::solved(problem, fit, self.pad);
+        if !flaws::are_asked((problem, fit), self.pad) {
+            return solved;
+        }
+        let fitted = |prior: &Prior| {
+            self.counted.expect(1);
+            let about = self.problem(prior);
+            let about = if problem.layout.terms > 0 { about.with_background() } else { about };
+            self.counted.fitted(&about, fit.settings, (None, Effort::FULL))
+        };
+        let about = |(device, field): &(Device, PadField)| {
+            fitted(&problem.prior.clone().about(device.clone(), field.clone()))
+        };
+        let whole = solved.as_ref().and_then(about);
+        flaws::found((problem, whole.as_ref().unwrap_or(fit)), self.pad, fitted).or(solved)
+    }
 }
 
 /// Refuses a decoder of a pad with another plate.
@@ -335,137 +321,4 @@ fn hypotheses(field: &PadField, earlier: Option<Earlier<'_>>) -> Vec<Hypothesis>
         // Its noise prior is weaker, so its noise can follow the contacts more closely: that must not count as evidence.
         hypothesis(Prior::simulated(field), -LOG_EVIDENCE_GAIN, false),
     ]
-}
-
-/// The problem of these contacts under this prior, and its fit with the background of the largest evidence.
-fn calibrated<'b>(
-    prepared: &'b Prepared,
-    fitted: &[Fitted],
-    device: &Device,
-    prior: &'b Prior,
-    counted: &Counted<'_>,
-) -> Result<(Problem<'b>, Fit), FitError> {
-    let problem = prepared.problem(fitted, device, prior);
-    if problem.contacts() == 0 {
-        return Err(FitError::TooFew { contacts: 0, least: 1 });
-    }
-    // The memory first, as a background would explain part of it; then the background's size with the memory's settings.
-    let plain = settled(&problem, prior, counted).ok_or(FitError::Senseless)?;
-    Ok(with_background(problem, plain, counted))
-}
-
-/// The same with a background, if the evidence asks for one.
-fn with_background<'b>(problem: Problem<'b>, plain: Fit, counted: &Counted<'_>) -> (Problem<'b>, Fit) {
-    let smooth = problem.clone().with_background();
-    // Of so many parameters a step that gains little may stand before one that gains much: each is carried to its maximum.
-    let tried = |background| {
-        let mut settings = plain.settings;
-        settings.background = background;
-        counted.fitted(&smooth, settings, (Some(&plain), Effort::FULL))
-    };
-    let [_, largest] = SMALL_BACKGROUNDS;
-    let small = most_probable(SMALL_BACKGROUNDS.to_vec(), tried);
-    let is_largest = small.as_ref().is_some_and(|it| it.settings.background == largest);
-    let large = if is_largest { most_probable(LARGE_BACKGROUNDS.to_vec(), tried) } else { None };
-    let evidence = |fit: &Fit| fit.log_evidence;
-    let found = small.into_iter().chain(large).max_by(|one, other| evidence(one).total_cmp(&evidence(other)));
-    match found.filter(|found| evidence(found) > evidence(&plain)) {
-        Some(found) => (smooth, found),
-        None => (problem, plain),
-    }
-}
-
-/// The fit without a background, whose memory and lasting noise are what the evidence asks for; `report` hears how far it is.
-pub(super) fn settled_reported(problem: &Problem<'_>, prior: &Prior, report: Report<'_>) -> Option<Fit> {
-    let hypothesis = Hypothesis { prior: prior.clone(), log_prior_odds: 0.0, from_earlier: false };
-    settled(problem, prior, &Counted::of(&[hypothesis], report))
-}
-
-fn settled(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) -> Option<Fit> {
-    let plain = with_lasting_noise(problem, prior, counted)?;
-    let plain = with_hysteresis(problem, prior, plain, counted);
-    Some(with_creep(problem, plain, counted))
-}
-
-/// The fit with nothing but what is known of pads of this kind. In play noise lasts from one contact to the next: as long as
-/// the evidence says.
-fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) -> Option<Fit> {
-    let Prior { thresholds_uv, creep: Creep { time_s: creep_time_s, .. }, .. } = *prior;
-    let tried = |noise_time_s: f64| {
-        let settings = Settings { background: 0.0, thresholds_uv, creep_time_s, noise_time_s };
-        counted.fitted(problem, settings, (None, Effort::FULL))
-    };
-    if problem.layout.is_play { most_probable(NOISE_TIMES_S.to_vec(), tried) } else { tried(0.0) }
-}
-
-/// The same with as many play operators as the evidence asks for. Known thresholds are only refined.
-fn with_hysteresis(problem: &Problem<'_>, prior: &Prior, mut best: Fit, counted: &Counted<'_>) -> Fit {
-    for (play, known_uv) in prior.thresholds_uv.into_iter().enumerate() {
-        let tried = |threshold_uv, from: &Fit, effort| {
-            let mut settings = from.settings;
-            settings.thresholds_uv[play] = threshold_uv;
-            counted.fitted(problem, settings, (Some(from), effort))
-        };
-        if known_uv > 0.0 {
-            best = refined(play, best.clone(), Effort::FULL, &tried);
-            continue;
-        }
-        let least = best.log_evidence + LOG_EVIDENCE_GAIN;
-        match searched(play, &best, least, tried) {
-            Some(found) if found.log_evidence > least => best = found,
-            _ => break,
-        }
-    }
-    best
-}
-
-/// The same with creep, if the evidence asks for it.
-fn with_creep(problem: &Problem<'_>, best: Fit, counted: &Counted<'_>) -> Fit {
-    let least = best.log_evidence + LOG_EVIDENCE_GAIN;
-    let found = most_probable(CREEP_TIMES_S.to_vec(), |creep_time_s| {
-        let mut settings = best.settings;
-        settings.creep_time_s = creep_time_s;
-        counted.fitted(problem, settings, (Some(&best), Effort { least, ..Effort::FULL }))
-    });
-    found.filter(|found| found.log_evidence > least).unwrap_or(best)
-}
-
-/// The threshold of the largest evidence: on a coarse scale first, then by ever smaller steps around the best. Of what does not come
-/// to the evidence `least` nobody asks how far it came.
-fn searched(
-    play: usize,
-    plain: &Fit,
-    least: f64,
-    tried: impl Fn(f64, &Fit, Effort) -> Option<Fit> + Send + Sync,
-) -> Option<Fit> {
-    // 40 µV · 1.6ᵏ: up to 4.4 mV.
-    let coarse = (0..THRESHOLDS).map(|step| THRESHOLD_MIN_UV * THRESHOLD_RATIO.powi(step));
-    let effort = Effort { least, ..Effort::COARSE };
-    let best = most_probable(coarse.collect(), |threshold_uv| tried(threshold_uv, plain, effort))?;
-    let effort = Effort { least, ..Effort::FULL };
-    let best = tried(best.settings.thresholds_uv[play], &best, effort)?;
-    Some(refined(play, best, effort, &tried))
-}
-
-/// The threshold of the largest evidence near the best one, by a factor ±½, ±¼, ±⅛ of a coarse step.
-fn refined(
-    play: usize,
-    mut best: Fit,
-    effort: Effort,
-    tried: &(impl Fn(f64, &Fit, Effort) -> Option<Fit> + Send + Sync),
-) -> Fit {
-    for halving in 1..=HALVINGS {
-        let factor = THRESHOLD_RATIO.powf(0.5_f64.powi(halving));
-        let centre_uv = best.settings.thresholds_uv[play];
-        let around =
-            most_probable(vec![centre_uv / factor, centre_uv * factor], |uv| tried(uv, &best, effort));
-        best = around.filter(|around| around.log_evidence > best.log_evidence).unwrap_or(best);
-    }
-    best
-}
-
-/// The fit of the largest evidence, tried in parallel; of equal ones the last.
-fn most_probable(settings: Vec<f64>, tried: impl Fn(f64) -> Option<Fit> + Send + Sync) -> Option<Fit> {
-    let fits: Vec<Fit> = settings.into_par_iter().filter_map(tried).collect();
-    fits.into_iter().max_by(|one, other| one.log_evidence.total_cmp(&other.log_evidence))
 }

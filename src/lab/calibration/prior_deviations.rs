@@ -57,6 +57,8 @@ const STIFFNESS: f64 = 0.3;
 const PLATE_THICKNESS: f64 = 0.08;
 const COMMON_MODULUS: f64 = 0.2;
 const CROSSTALK: f64 = 0.02;
+/// Channels of one module that share more than this times that have more in common than a leak.
+const SHARED_WITHIN: f64 = 1.5;
 const ZERO_UV: f64 = 20.0;
 /// Of unbalanced bridges: some tenths of a percent of a gauge.
 const RAW_ZERO_UV: f64 = 2000.0;
@@ -134,9 +136,26 @@ impl PriorDeviations {
         self.deviations[kind as usize]
     }
 
+    /// Whether channels of one module share more than leaks do.
+    pub(super) fn is_shared_within(&self) -> bool {
+        self.of(Kind::CrosstalkWithin) > SHARED_WITHIN * CROSSTALK
+    }
+
     /// The standard deviation of a parameter of a kind, of this module if it is one's: σ/√λ.
     pub(super) fn of_one(&self, kind: Kind, module: Option<usize>) -> f64 {
         self.of(kind) / self.precision_factor(kind, module).sqrt()
+    }
+
+    /// ln of the density of the variances σ², but for a constant: scaled inverse χ² with κ degrees of freedom about σ₀²,
+    ///
+    /// ```text
+    /// ln p(σ²) = −(κ/2 + 1) ln σ² − ½ κ σ₀²/σ²
+    /// ```
+    pub(super) fn log_density(&self) -> f64 {
+        let of = |(deviation, initial): (&f64, &f64)| {
+            -(PSEUDO_COUNT + 2.0) * libm::log(*deviation) - 0.5 * PSEUDO_COUNT * (initial / deviation).powi(2)
+        };
+        self.deviations.iter().zip(&self.initial).map(of).sum()
     }
 
     /// λ.

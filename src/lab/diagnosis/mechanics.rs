@@ -135,6 +135,24 @@ pub(super) fn changed(
     Some(InfluenceField::sampled(spacing_mm, radius_mm, plate_mm, at))
 }
 
+/// The signals of a pad of which this module has the flaw.
+pub(in crate::lab) fn flawed(
+    field: &PadField,
+    change: &FieldChange,
+    module: usize,
+    plate_mm: f64,
+) -> InfluenceField {
+    let (turn, degree) = (Turn::back(module), degree([&change.maps].into_iter()));
+    let at = |place_mm: [f64; 2]| {
+        let own = field.signals.gains(place_mm[0] as f32, place_mm[1] as f32).value;
+        let jets = jets(degree, turn.vector(place_mm.map(|mm| mm / plate_mm)));
+        let change = turn.maps(&values(&change.maps, &jets));
+        std::array::from_fn(|map| own[map / 3][map % 3] + change[map / 3][map % 3])
+    };
+    let [spacing_mm, radius_mm] = [field.signals.spacing_mm(), field.signals.radius_mm()].map(f64::from);
+    InfluenceField::sampled(spacing_mm, radius_mm, radius_mm, at)
+}
+
 /// Σⱼ wⱼ of maps, coefficient by coefficient; empty where no weight acts.
 fn mixed<'m>(terms: impl Iterator<Item = (&'m [ForceMaps; CHANNELS], &'m f64)>) -> [ForceMaps; CHANNELS] {
     let mut sum: [ForceMaps; CHANNELS] =

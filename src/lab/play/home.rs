@@ -5,8 +5,9 @@ use std::fmt;
 
 use crate::lab::calibration::contacts::Knowledge;
 use crate::lab::calibration::earlier::Earlier;
-use crate::lab::calibration::fit::{Calibration, FitError, Report, fit_known};
+use crate::lab::calibration::fit::{Calibration, FitError, fit_known};
 use crate::lab::calibration::known::Known;
+use crate::lab::calibration::search::Report;
 use crate::lab::play::weights::{Placement, Unusable};
 use crate::lab::play::windows::{Play, Window};
 use crate::lab::tangent::Simulated;

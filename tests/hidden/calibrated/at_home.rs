@@ -87,7 +87,8 @@ fn tried(seed: u64) -> Summary {
     let wiring = Wiring::drawn_wide(seed);
     let (windows, placements) = played(&wiring, seed);
     let nominal = PadField::nominal();
-    let pad = Simulated { device: &Device::nominal(), field: &nominal, solve: &field_cache::solve };
+    let device = Device::nominal();
+    let pad = Simulated { solve: &field_cache::solve, ..Simulated::known(&device, &nominal) };
     let found: AtHome = calibrated(&windows, &placements, &pad, None, &|_, _| ()).unwrap();
     let unseen = plan(UNSEEN, seed, "calibrated unseen");
     let full_scale = full_scale(&unseen);

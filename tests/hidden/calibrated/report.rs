@@ -13,6 +13,10 @@ const COVERED_EXPECTED: [f64; 2] = [0.92, 0.98];
 /// have in common, came to 0.993, and 0.973 before the rig was fitted.
 const COVERED: [f64; 2] = [0.92, 0.997];
 
+/// Of the stated numbers of all cases: the share beyond two deviations at most, and the rms of errors over deviations.
+const FAR_MOST: f64 = 0.07;
+const RMS: [f64; 2] = [0.7, 1.2];
+
 fn decoded(judged: &[Judged]) -> impl Iterator<Item = &Decoded> {
     judged.iter().flat_map(|judged| &judged.decoded)
 }
@@ -40,6 +44,10 @@ pub(super) fn failed(cases: &[Case], judged: &[Vec<Judged>]) -> Vec<String> {
         hold(&format!("{}, force over nominal", case.name), force, [0.0, case.gate.most[1]]);
     }
     hold("regions of all fields", covered(cases, judged), COVERED);
+    let stated = judged.iter().flatten().flat_map(|judged| judged.stated.iter().copied());
+    let [_, far, rms] = calibration_of(stated).unwrap_or([0.0, 1.0, 0.0]);
+    hold("stated numbers beyond two deviations", far, [0.0, FAR_MOST]);
+    hold("rms of their errors over deviations", rms, RMS);
     let wrong = judged.iter().flatten().map(|judged| judged.wrong.len()).sum::<usize>();
     hold("names of what is not there", wrong as f64, [0.0; 2]);
     failed
@@ -139,6 +147,10 @@ fn numbers(cases: &[Case], judged: &[Vec<Judged>]) -> String {
             .unwrap();
         }
         text += "\n";
+    }
+    let all = judged.iter().flatten().flat_map(|judged| judged.stated.iter().copied());
+    if let Some([count, far, rms]) = calibration_of(all) {
+        writeln!(text, "all cases: {count} numbers, {far:.3} of them beyond 2σ, rms {rms:.2}").unwrap();
     }
     text
 }

@@ -134,7 +134,7 @@ pub(super) fn fitted(guide: Guide, report: &(dyn Fn(f64) + Sync)) -> Result<(Vec
     let (device, field) = (Device::nominal(), PadField::nominal());
     report(0.0);
     let share = |done: usize, of: usize| report(done as f64 / of.max(1) as f64);
-    let pad = Simulated { device: &device, field: &field, solve: &field_cache::solve };
+    let pad = Simulated { solve: &field_cache::solve, ..Simulated::known(&device, &field) };
     let found = calibrated(&windows, &placements, &pad, None, &share);
     let found = found.map_err(|error| format!("there is no decoder yet: {error}"))?;
     Ok((found.file(), Summary::of(&found, &windows)))

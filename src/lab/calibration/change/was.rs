@@ -1,12 +1,12 @@
 //! The pad as it was: what its readings follow from, and how well that is known.
 
 use crate::lab::calibration::effort::Effort;
-use crate::lab::calibration::fit::{Report, settled_reported};
 use crate::lab::calibration::hyperparameters::{Estimates, Settings};
 use crate::lab::calibration::model::CERTAIN;
 use crate::lab::calibration::prior::Prior;
 use crate::lab::calibration::prior_deviations::Kind;
 use crate::lab::calibration::problem::Problem;
+use crate::lab::calibration::search::{Report, settled_reported};
 use crate::pipeline::contact::inverse::Inverse;
 
 /// The pad as it was.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::bootstrap::Bootstrap;
+use super::bootstrap::{Bootstrap, Draw};
 use super::columns::{Columns, ZERO};
 use super::covariance::{Background, Marginal, Smooth, Systems};
 use super::inference::{Projected, Test};
@@ -42,6 +42,12 @@ pub(super) struct Fit {
     pub(super) linearised: Linearised,
     /// Coordinates of all columns beside the point: the nuisances, and what a last step would change.
     pub(super) coordinates: Vec<f64>,
+}
+
+/// A Gauss-Newton step in all columns, and how much of it is taken.
+struct Step {
+    coordinates: Vec<f64>,
+    fraction: f64,
 }
 
 /// What was found.
@@ -128,6 +134,7 @@ impl<'m> Search<'m> {
     pub(super) fn fitted(&self, applied: &Applied, start: Option<&Fit>) -> Option<Fit> {
         let mut applied = applied.clone();
         let mut before: Option<(Systems, Background)> = None;
+        let mut last: Option<Step> = None;
         for step in 0..=REFITS {
             let linearised = self.model.linearised(&applied);
             let systems = Systems::of(
@@ -155,8 +162,9 @@ impl<'m> Search<'m> {
                     coordinates: solved.coordinates,
                 });
             }
-            self.step(&mut applied, &solved.coordinates);
-            before = Some((systems, found));
+            let next = self.next_step(&applied, solved.coordinates, &marginal, last.as_ref());
+            self.step(&mut applied, &next);
+            (before, last) = (Some((systems, found)), Some(next));
         }
         None
     }
@@ -169,14 +177,40 @@ impl<'m> Search<'m> {
             .fold(0.0, f64::max)
     }
 
-    fn step(&self, applied: &mut Applied, step: &[f64]) {
+    /// How much is taken of a Gauss-Newton step s: the steps vanish at the fit, and where they turn back on the last one s₀, of which t₀
+    /// was taken, the fit is between the two points. By the secant, with the Fisher information F
+    ///
+    /// ```text
+    /// t = min(1, t₀/(1 − ρ)),    ρ = sᵀ F s₀/(s₀ᵀ F s₀)
+    /// ```
+    ///
+    /// The shapes of a course need it: there whole steps may jump to and fro for ever.
+    fn next_step(
+        &self,
+        applied: &Applied,
+        coordinates: Vec<f64>,
+        marginal: &Marginal,
+        last: Option<&Step>,
+    ) -> Step {
+        let columns: Vec<usize> = applied.iter().flat_map(|(at, _)| self.columns.all_of(*at)).collect();
+        let of = |step: &[f64]| columns.iter().map(|column| step[*column]).collect::<Vec<f64>>();
+        let by_secant = |last: &Step| {
+            let before = of(&last.coordinates);
+            let weighted = marginal.fisher.picked(&columns, &columns).times(&before);
+            let ratio = dot(&weighted, &of(&coordinates)) / dot(&weighted, &before);
+            (ratio < 1.0).then(|| (last.fraction / (1.0 - ratio)).min(1.0))
+        };
+        Step { fraction: last.and_then(by_secant).unwrap_or(1.0), coordinates }
+    }
+
+    fn step(&self, applied: &mut Applied, Step { coordinates: step, fraction }: &Step) {
         for (at, coordinates) in applied {
             let hypothesis = &self.model.hypotheses()[*at];
             let columns = self.columns.all_of(*at);
             for ((coordinate, column), parameter) in
                 coordinates.iter_mut().zip(columns).zip(&hypothesis.parameters)
             {
-                *coordinate = parameter.coordinate(parameter.value(*coordinate + step[column]));
+                *coordinate = parameter.coordinate(parameter.value(*coordinate + fraction * step[column]));
             }
         }
     }
@@ -195,9 +229,10 @@ impl<'m> Search<'m> {
         let asked: Vec<usize> =
             (0..self.columns.of_hypothesis.len()).filter(|at| !self.is_zero(*at)).collect();
         let parts: Vec<Vec<f64>> = asked.iter().map(|at| self.parts(fit, *at)).collect();
-        let mut least: Vec<f64> = (0..DRAWS)
-            .map(|_| {
-                let draw = bootstrap.draw();
+        let draws: Vec<Draw> = (0..DRAWS).map(|_| bootstrap.draw()).collect();
+        let mut least: Vec<f64> = draws
+            .par_iter()
+            .map(|draw| {
                 let score = projected.projected(&draw.score);
                 let p_value = |(at, parts): (&usize, &Vec<f64>)| {
                     let test = self.test(&projected, *at, &score);

@@ -75,7 +75,7 @@ impl Forward for Bench<'_, '_> {
     fn reading(&self, row: usize, site: &Maps, load: [f64; 3]) -> Vec<f64> {
         let force_n = self.chain.rig.force_n(load);
         let strain: [f64; CHANNELS] = std::array::from_fn(|channel| response(&site[channel], &force_n));
-        self.simulated.reading(row, &strain, &self.chain)
+        self.simulated.reading(row, &strain, &self.chain).to_vec()
     }
 }
 

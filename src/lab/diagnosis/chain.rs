@@ -140,28 +140,28 @@ impl MechanicsChain {
 }
 
 impl ChannelChain {
-    /// The readings of all channels by their strains, in these circumstances.
-    pub(super) fn read(&self, strain: &[f64], sample: &Sample, reference: &Reference) -> Vec<f64> {
+    /// Turns the strains of all channels into what they read, in these circumstances.
+    pub(super) fn read(&self, values: &mut [f64], sample: &Sample, reference: &Reference) {
         let above_c = sample.temp_c.map_or(0.0, |temp_c| temp_c - reference.temp_c);
         let hours = sample.t_s.map_or(0.0, |t_s| (t_s - reference.t_s) / 3600.0);
         let aged = sample.cycle.map_or(0.0, |cycle| aged(cycle, reference.cycle));
-        let mut strained = strain.to_vec();
         for (into, from, share) in &self.module_shares {
-            strained[*into] += share * strain[*from];
+            values[*into] += share * values[*from];
         }
-        for (channel, value) in strained.iter_mut().enumerate() {
+        for (channel, value) in values.iter_mut().enumerate() {
             let left = 1.0 - self.loss[channel] * aged;
             *value *= left * (1.0 + self.gain_per_c[channel] * above_c) * self.gain[channel];
             *value += self.second_order[channel] * *value * *value / reference.full_scale[channel];
         }
-        let mut read = strained.clone();
-        for (into, from, share) in &self.shares {
-            read[*into] += share * strained[*from];
+        if !self.shares.is_empty() {
+            let strained = values.to_vec();
+            for (into, from, share) in &self.shares {
+                values[*into] += share * strained[*from];
+            }
         }
-        for (channel, value) in read.iter_mut().enumerate() {
+        for (channel, value) in values.iter_mut().enumerate() {
             *value +=
                 self.offset[channel] + self.zero_per_c[channel] * above_c + self.drift_per_h[channel] * hours;
         }
-        read
     }
 }

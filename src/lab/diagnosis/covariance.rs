@@ -200,7 +200,8 @@ impl Systems {
             });
             system.beside(columns, &own.collect::<Vec<_>>())
         };
-        let all: Option<Vec<NormalEquations>> = self.channels.iter().enumerate().map(of_channel).collect();
+        let all: Option<Vec<NormalEquations>> =
+            self.channels.par_iter().enumerate().map(of_channel).collect();
         self.marginal_of(&all?.iter().collect::<Vec<_>>(), self.columns + further.len(), background)
     }
 

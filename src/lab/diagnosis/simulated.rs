@@ -50,8 +50,20 @@ pub(super) struct Simulated<'f> {
     changes: Vec<Arc<[Maps]>>,
 }
 
+/// The pad where hypotheses hold: what derivatives are taken about.
+struct Point<'p> {
+    applied: &'p [(usize, Vec<f64>)],
+    chain: Chain,
+    rows: Vec<Row>,
+    /// Their strains with what the channels remember of them.
+    remembered: Vec<[f64; CHANNELS]>,
+    /// Each channel's readings at the rows that are asked for.
+    readings: Vec<Vec<f64>>,
+}
+
 /// A row under a chain.
 struct Row {
+    place_mm: [f64; 2],
     force_n: [f64; 3],
     gains: Gains,
     laplacian: Maps,
@@ -127,17 +139,23 @@ impl<'f> Simulated<'f> {
         chain
     }
 
-    fn row(&self, at: usize, chain: &Chain) -> Row {
+    /// With a row `near` it, of another chain, whose maps are its own if it is at the same place.
+    fn row(&self, at: usize, chain: &Chain, near: Option<&Row>) -> Row {
         let samples = &self.sequence.samples;
         let then = self.course.moment(at, chain.rig.lag_s);
         let place_mm = std::array::from_fn(|axis| then.of(|row| samples[row].place_mm[axis]));
         let force_n = std::array::from_fn(|axis| then.of(|row| samples[row].load[axis]));
         let rig = chain.rig.under(samples[at].turned_deg);
         let (place_mm, force_n) = (rig.place_mm(place_mm), rig.force_n(force_n));
+        let (gains, laplacian) = match near.filter(|it| it.place_mm == place_mm) {
+            Some(near) => (near.gains, near.laplacian),
+            None => (continued(&self.signals, place_mm), self.signals.laplacian(place_mm)),
+        };
         Row {
+            place_mm,
             force_n,
-            gains: continued(&self.signals, place_mm),
-            laplacian: self.signals.laplacian(place_mm),
+            gains,
+            laplacian,
             changes: self.changes[at].iter().map(|maps| maps.map(|map| response(&map, &force_n))).collect(),
         }
     }
@@ -149,13 +167,13 @@ impl<'f> Simulated<'f> {
         let laplacian = self.signals.laplacian(place_mm);
         let axes: [[f64; CHANNELS]; 3] = std::array::from_fn(|axis| {
             let force_n = std::array::from_fn(|other| f64::from(u8::from(other == axis)));
-            Row { force_n, gains, laplacian, changes: Vec::new() }.strain(chain)
+            Row { place_mm, force_n, gains, laplacian, changes: Vec::new() }.strain(chain)
         });
         std::array::from_fn(|channel| axes.map(|strain| strain[channel]))
     }
 
     fn rows(&self, chain: &Chain) -> Vec<Row> {
-        (0..self.sequence.rows()).map(|at| self.row(at, chain)).collect()
+        (0..self.sequence.rows()).into_par_iter().map(|at| self.row(at, chain, None)).collect()
     }
 
     /// Each channel's values at the rows that are asked for.
@@ -176,7 +194,7 @@ impl<'f> Simulated<'f> {
 
     /// Half of what friction adds to strains that are too large by the largest background, less what to ones that are too small; and
     /// the same of creep under loads that came early, and late, between two rows.
-    fn doubts(&self, rows: &[Row], chain: &Chain) -> Vec<Vec<f64>> {
+    fn doubts(&self, Point { rows, chain, .. }: &Point<'_>) -> Vec<Vec<f64>> {
         let magnitude = |row: &Row| libm::sqrt(row.force_n.iter().map(|n| n * n).sum());
         let magnitudes: Vec<f64> = rows.iter().map(magnitude).collect();
         let load_rms = rms(magnitudes.iter().copied());
@@ -206,14 +224,16 @@ impl<'f> Simulated<'f> {
                 .map(|row| libm::hypot(halves(&pairs[0], *row), halves(&pairs[1], *row)))
                 .collect()
         };
-        (0..CHANNELS).map(doubt).collect()
+        (0..CHANNELS).into_par_iter().map(doubt).collect()
     }
 
     /// What the channels read at strains with their memory, at the rows that are asked for.
     fn read(&self, strains: &[[f64; CHANNELS]], chain: &Chain) -> Vec<Vec<f64>> {
-        let rows = strains.iter().zip(&self.sequence.samples);
-        let mut channels =
-            transposed(rows.map(|(strain, sample)| chain.channels.read(strain, sample, &self.reference)));
+        let mut channels = vec![Vec::new(); CHANNELS];
+        for (at, strain) in strains.iter().enumerate() {
+            let row = self.reading(at, strain, chain);
+            channels.iter_mut().zip(row).for_each(|(channel, value)| channel.push(value));
+        }
         let late = channels.iter_mut().zip(&chain.channels.skew_s).filter(|(_, skew_s)| **skew_s != 0.0);
         for (channel, skew_s) in late {
             let then = |row: usize| self.course.moment(row, -skew_s).of(|row| channel[row]);
@@ -223,8 +243,10 @@ impl<'f> Simulated<'f> {
     }
 
     /// What a row's channels read when they are strained so and remember nothing.
-    pub(super) fn reading(&self, at: usize, strain: &[f64; CHANNELS], chain: &Chain) -> Vec<f64> {
-        chain.channels.read(strain, &self.sequence.samples[at], &self.reference)
+    pub(super) fn reading(&self, at: usize, strain: &[f64; CHANNELS], chain: &Chain) -> [f64; CHANNELS] {
+        let mut values = *strain;
+        chain.channels.read(&mut values, &self.sequence.samples[at], &self.reference);
+        values
     }
 
     /// What each channel reads at the rows that are asked for because of the rows about them, by what was written.
@@ -237,16 +259,26 @@ impl<'f> Simulated<'f> {
         channels.map(|(all, alone)| all.iter().zip(alone).map(|(a, b)| a - b).collect()).collect()
     }
 
+    fn point<'p>(&self, applied: &'p [(usize, Vec<f64>)]) -> Point<'p> {
+        let chain = self.chain(applied);
+        let rows = self.rows(&chain);
+        let remembered = self.strained(&rows, &chain);
+        let readings = self.read(&remembered, &chain);
+        Point { applied, chain, rows, remembered, readings }
+    }
+
     /// The readings with one more hypothesis, of which only what it can change is computed anew.
     fn perturbed(
         &self,
-        rows: &[Row],
-        remembered: &[[f64; CHANNELS]],
+        Point { rows, remembered, .. }: &Point<'_>,
         stage: Stage,
         chain: &Chain,
     ) -> Vec<Vec<f64>> {
         let strains = match stage {
-            Stage::Contact => self.rows(chain).iter().map(|row| row.strain(chain)).collect(),
+            Stage::Contact => {
+                let row = |(at, near)| self.row(at, chain, Some(near)).strain(chain);
+                rows.iter().enumerate().map(row).collect()
+            }
             Stage::Mechanics => rows.iter().map(|row| row.strain(chain)).collect(),
             Stage::Channels => return self.read(remembered, chain),
         };
@@ -259,20 +291,14 @@ impl<'f> Simulated<'f> {
     }
 
     /// ∂readings/∂ψ by one coordinate: a central difference.
-    fn signature(
-        &self,
-        rows: &[Row],
-        remembered: &[[f64; CHANNELS]],
-        applied: &[(usize, Vec<f64>)],
-        [at, parameter]: [usize; 2],
-    ) -> Signature {
+    fn signature(&self, point: &Point<'_>, [at, parameter]: [usize; 2]) -> Signature {
         let hypothesis = &self.hypotheses[at];
         let Parameter { step, shape, .. } = hypothesis.parameters[parameter];
-        if shape.is_some() && applied.iter().all(|(held, _)| *held != at) {
+        if shape.is_some() && point.applied.iter().all(|(held, _)| *held != at) {
             return vec![None; CHANNELS];
         }
         let moved = |by: f64| {
-            let mut applied = applied.to_vec();
+            let mut applied = point.applied.to_vec();
             let own = match applied.iter().position(|(index, _)| *index == at) {
                 Some(own) => own,
                 None => {
@@ -281,16 +307,17 @@ impl<'f> Simulated<'f> {
                 }
             };
             applied[own].1[parameter] += by;
-            self.perturbed(rows, remembered, self.causes[at].stage(), &self.chain(&applied))
+            self.perturbed(point, self.causes[at].stage(), &self.chain(&applied))
         };
         // A number that cannot be below none is changed upwards only.
         let is_one_sided = hypothesis.parameters[parameter].is_one_sided();
-        let [below, above] = [moved(if is_one_sided { 0.0 } else { -step }), moved(step)];
+        let above = moved(step);
+        let below = if is_one_sided { &point.readings } else { &moved(-step) };
         let width = if is_one_sided { step } else { 2.0 * step };
         let channels = above.into_iter().zip(below).zip(&self.reference.full_scale);
         channels
             .map(|((above, below), full_scale)| {
-                let slopes: Vec<f64> = above.iter().zip(&below).map(|(a, b)| (a - b) / width).collect();
+                let slopes: Vec<f64> = above.iter().zip(below).map(|(a, b)| (a - b) / width).collect();
                 let is_changed = slopes.iter().any(|slope| (slope * step).abs() > NOTHING * full_scale);
                 is_changed.then_some(slopes)
             })
@@ -304,8 +331,7 @@ impl Model for Simulated<'_> {
     }
 
     fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>> {
-        let chain = self.chain(applied);
-        self.read(&self.strained(&self.rows(&chain), &chain), &chain)
+        self.point(applied).readings
     }
 
     fn sizes(&self) -> Vec<f64> {
@@ -317,31 +343,26 @@ impl Model for Simulated<'_> {
     }
 
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
-        let chain = self.chain(applied);
-        let rows = self.rows(&chain);
-        let remembered = self.strained(&rows, &chain);
-        let readings = self.read(&remembered, &chain);
+        let point = self.point(applied);
         let signatures = self.hypotheses.par_iter().enumerate().map(|(at, hypothesis)| {
-            (0..hypothesis.parameters.len())
-                .map(|parameter| self.signature(&rows, &remembered, applied, [at, parameter]))
-                .collect()
+            let of = |parameter| self.signature(&point, [at, parameter]);
+            (0..hypothesis.parameters.len()).map(of).collect()
         });
         Linearised {
             signatures: signatures.collect(),
-            readings,
-            loads: self.picked.iter().map(|row| rows[*row].force_n).collect(),
-            doubts: self.doubts(&rows, &chain),
+            loads: self.picked.iter().map(|row| point.rows[*row].force_n).collect(),
+            doubts: self.doubts(&point),
+            readings: point.readings,
         }
     }
 
     fn common_errors(&self) -> Vec<CommonError> {
-        let chain = self.chain(&[]);
-        let rows = self.rows(&chain);
+        let point = self.point(&[]);
         let mut errors = Vec::new();
         for (axis, is_normal) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
             let signature = (0..CHANNELS).map(|channel| {
                 let of = |row: &usize| {
-                    let row = &rows[*row];
+                    let row = &point.rows[*row];
                     let [fx_n, fy_n, fz_n] = row.force_n;
                     let force_n = if is_normal { [0.0, 0.0, fz_n] } else { [fx_n, fy_n, 0.0] };
                     response(&row.gains.value[channel], &force_n)
@@ -350,13 +371,10 @@ impl Model for Simulated<'_> {
             });
             errors.push(CommonError { deviation: COMMON_ERROR, signature: signature.collect() });
         }
-        let remembered = self.strained(&rows, &chain);
         for (effect, deviation) in ERRORS_LIKE {
             let like = self.hypotheses.iter().position(|it| it.effect == effect);
-            errors.extend(like.map(|at| CommonError {
-                deviation,
-                signature: self.signature(&rows, &remembered, &[], [at, 0]),
-            }));
+            errors
+                .extend(like.map(|at| CommonError { deviation, signature: self.signature(&point, [at, 0]) }));
         }
         errors
     }
@@ -364,7 +382,7 @@ impl Model for Simulated<'_> {
 
 impl Row {
     fn strain(&self, chain: &Chain) -> [f64; CHANNELS] {
-        let Self { force_n, gains, laplacian, changes } = self;
+        let Self { force_n, gains, laplacian, changes, .. } = self;
         let mechanics = &chain.mechanics;
         // Half the mean square of the patch's radius along each axis, over its nominal one: (R² − R₀²)/8.
         let spread_mm2 = mechanics.patch_mm2 / 8.0;
@@ -437,13 +455,4 @@ fn continued(field: &InfluenceField, place_mm: [f64; 2]) -> Gains {
 /// Σₐ Fₐ Gₐ.
 pub(super) fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
     map.iter().zip(force_n).map(|(map, n)| map * n).sum()
-}
-
-/// From rows of channels to channels of rows.
-fn transposed(rows: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
-    let mut channels = vec![Vec::new(); CHANNELS];
-    for row in rows {
-        channels.iter_mut().zip(row).for_each(|(channel, value)| channel.push(value));
-    }
-    channels
 }

@@ -45,7 +45,10 @@ struct Scene {
 
 impl Scene {
     fn new(seed: u64) -> Self {
-        let mut pad = VirtualPad::new(Calibrator::rest(), seed);
+        Self::on(VirtualPad::new(Calibrator::rest(), seed), seed)
+    }
+
+    fn on(mut pad: VirtualPad, seed: u64) -> Self {
         pad.introduce();
         Self {
             pad,
@@ -115,6 +118,16 @@ fn it_goes_through_all_steps_and_its_decoder_knows_the_scale() {
         calibrated(&windows, &placements, &Simulated::known(&device, &field), None, &|_, _| {}).unwrap();
     assert!(found.knows_scale() && found.placements == 5 && found.presses > 350);
     assert!(found.regions(&windows).iter().all(|region| region.presses > 0));
+}
+
+#[test]
+fn a_weight_is_found_to_lie_still_on_a_pad_that_hums() {
+    let imperfections = include_str!("../../models/imperfections/paper.toml");
+    let device = Device::nominal().with_imperfections(imperfections).0.unwrap();
+    let pad = VirtualPad::of(Calibrator::rest(), &device, &PadField::nominal(), 12);
+    let (mut scene, mut guide) = (Scene::on(pad, 12), guide(Some(WEIGHT_G)));
+    scene.lead(&mut guide, |step| *step == Step::Done);
+    assert_eq!(guide.placements().len(), 5);
 }
 
 #[test]

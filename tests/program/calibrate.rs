@@ -35,7 +35,7 @@ fn what_cannot_be_done_is_refused_with_a_way_out() {
     fs::write(path("mine.decoder.cap"), "my notes").unwrap();
     fs::write(path("lone.decoder.weights.csv"), "t_s,x_mm,y_mm,weight_g\n").unwrap();
     for (line, wanted) in [
-        ("", "--sheet"),
+        ("", "name the decoder to write, as in --out my.decoder"),
         ("--sheet marks.png", "let its name end in .svg or .pdf"),
         ("--sheet marks.svg --weight-g 200", "--out"),
         ("--pad virtual --out d --weight-g 2", "2 g is no weight for this pad: take one of 30 to 1000 g"),

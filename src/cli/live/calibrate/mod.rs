@@ -53,7 +53,7 @@ use tactpad::pipeline::shipped;
 )]
 pub(crate) struct Arguments {
     /// Write a sheet with the five marks in true size, for A4 paper; alone, nothing else is done.
-    #[arg(long, value_name = "OUT.svg|OUT.pdf", required_unless_present = "out")]
+    #[arg(long, value_name = "OUT.svg|OUT.pdf")]
     sheet: Option<PathBuf>,
     /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], or virtual, which does what is asked.
     #[arg(long, value_name = "PAD", default_value = "auto")]
@@ -87,6 +87,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 impl Arguments {
     fn check(&self) -> Result<(), Failure> {
         let unusable = |why: &str| Err(Failure::Unusable(why.into()));
+        if self.sheet.is_none() && self.out.is_none() {
+            return unusable(
+                "nothing is asked for: name the decoder to write, as in --out my.decoder, or the sheet, as in --sheet marks.pdf",
+            );
+        }
         if let Some(weight_g) = self.weight_g {
             check_weight(weight_g).map_err(|why| Failure::Unusable(format!("--weight-g: {why}")))?;
         }

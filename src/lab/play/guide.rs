@@ -26,7 +26,8 @@ pub const STILL_S: f64 = 2.0;
 /// A pad that nobody calibrated yet reads its force and place so wrong, at most.
 const FORCE_SHARE: f64 = 0.4;
 const BESIDE_MM: f64 = 6.0;
-/// What moves farther within a window does not lie still.
+/// What moves farther from one window's mean to the next one's does not lie still. Single samples are no measure: the hum of mains moves
+/// them by millimetres.
 const TRAVEL_MM: f32 = 1.0;
 /// Something is called wrong only after so many windows of its touch: it is just being put down.
 const SETTLING: usize = 5;
@@ -101,6 +102,8 @@ struct Run {
     windows: usize,
     /// How many of the last ones the weight lay still in.
     still: usize,
+    /// The mean place in the last one.
+    last_mm: Option<[f32; 2]>,
 }
 
 /// Leads through a calibration.
@@ -252,7 +255,11 @@ impl Guide {
             return Step::Put { mark, lying: if is_told { before } else { Lying::Nothing } };
         };
         let wrong = self.weight_g.and_then(|weight_g| wrong(&contact, MARKS_MM[mark], weight_g));
-        let is_still = wrong.is_none() && window.is_full && window.travel_mm <= TRAVEL_MM;
+        let place_mm = [contact.x_mm, contact.y_mm];
+        let stays =
+            |[x_mm, y_mm]: [f32; 2]| libm::hypotf(place_mm[0] - x_mm, place_mm[1] - y_mm) <= TRAVEL_MM;
+        let is_still = wrong.is_none() && window.is_full && self.run.last_mm.is_some_and(stays);
+        self.run.last_mm = Some(place_mm);
         self.run.still = if is_still { self.run.still + 1 } else { 0 };
         let still_s = WINDOW_S * self.run.still as f64;
         if still_s + 0.5 * WINDOW_S >= STILL_S {

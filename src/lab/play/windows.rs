@@ -13,8 +13,6 @@ const SETTLE_S: f64 = 0.05;
 const FORCE_MIN_N: f32 = 0.3;
 /// Within a window the finger moves less: the mean of a field is else not the field of the mean.
 const TRAVEL_MAX_MM: f32 = 3.0;
-/// A window's parts, by whose means its travel is told: noise and the hum of mains move samples by millimetres. Each is a period of 50 Hz.
-const PARTS: usize = 5;
 /// More contacts than these tell hardly more, as noise lasts: of more, every second one or fewer is taken.
 const CONTACTS_MAX: usize = 1200;
 
@@ -42,7 +40,7 @@ pub struct Window {
     pub temp_c: Option<f64>,
     /// The mean contact, as it was decoded; none where nothing touched the pad.
     pub contact: Option<Contact>,
-    /// How far the contact went: the span of the means of the window's fifths.
+    /// How far the contact went.
     pub travel_mm: f32,
     /// Whether it is as long as a window can be.
     pub is_full: bool,
@@ -70,8 +68,8 @@ struct Open {
     temperatures: f64,
     is_touched: bool,
     sum: [f64; 5],
-    /// For each part, its samples and the sums of x and y.
-    parts: [(f64, [f64; 2]); PARTS],
+    /// Least and largest x and y.
+    span_mm: [[f32; 2]; 2],
 }
 
 impl Gatherer {
@@ -133,7 +131,7 @@ impl Open {
             temperatures: 0.0,
             is_touched,
             sum: [0.0; 5],
-            parts: [(0.0, [0.0; 2]); PARTS],
+            span_mm: [[f32::INFINITY, f32::NEG_INFINITY]; 2],
         }
     }
 
@@ -148,36 +146,22 @@ impl Open {
         if let Some(Contact { x_mm, y_mm, fx_n, fy_n, fz_n }) = contact {
             let numbers = [x_mm, y_mm, fx_n, fy_n, fz_n];
             self.sum.iter_mut().zip(numbers).for_each(|(sum, number)| *sum += f64::from(number));
-            let part = (at_s - self.begin_s) / WINDOW_S * PARTS as f64;
-            let (samples, sum_mm) = &mut self.parts[(part as usize).min(PARTS - 1)];
-            *samples += 1.0;
-            sum_mm.iter_mut().zip([x_mm, y_mm]).for_each(|(sum, mm)| *sum += f64::from(mm));
+            for (span, mm) in self.span_mm.iter_mut().zip([x_mm, y_mm]) {
+                *span = [span[0].min(mm), span[1].max(mm)];
+            }
         }
-    }
-
-    /// Nothing moves where nothing touches the pad.
-    fn travel_mm(&self) -> f32 {
-        let is_read = |(samples, _): &&(f64, [f64; 2])| *samples > 0.0;
-        let span_mm = |axis: usize| {
-            let means_mm = self.parts.iter().filter(is_read).map(|(samples, sum_mm)| sum_mm[axis] / samples);
-            let (least, largest) = means_mm
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), mm| {
-                    (least.min(mm), largest.max(mm))
-                });
-            (largest - least).max(0.0)
-        };
-        libm::hypot(span_mm(0), span_mm(1)) as f32
     }
 
     fn closed(&self, is_full: bool, stretch: usize) -> Window {
         let [x_mm, y_mm, fx_n, fy_n, fz_n] = self.sum.map(|sum| (sum / self.samples) as f32);
+        let [x, y] = self.span_mm.map(|[least, largest]| largest - least);
         Window {
             begin_s: self.begin_s,
             end_s: self.end_s,
             uv: self.sum_uv.map(|sum| sum / self.samples),
             temp_c: (self.temperatures > 0.0).then(|| self.sum_c / self.temperatures),
             contact: self.is_touched.then_some(Contact { x_mm, y_mm, fx_n, fy_n, fz_n }),
-            travel_mm: self.travel_mm(),
+            travel_mm: if self.is_touched { libm::hypotf(x, y) } else { 0.0 },
             is_full,
             stretch,
         }
@@ -298,26 +282,6 @@ mod tests {
         assert!(windows.iter().all(|it| it.uv[0] == if it.contact.is_some() { 1000.0 } else { 10.0 }));
         assert_eq!(windows.iter().map(|it| it.stretch).collect::<Vec<_>>(), [0, 0, 0, 1, 1, 2]);
         assert!((windows[3].end_s - windows[3].begin_s - 0.099).abs() < 1e-9, "a hundred samples");
-    }
-
-    #[test]
-    fn travel_is_how_far_a_contact_goes_and_not_how_far_mains_shake_it() {
-        let travel_mm = |x_mm: &dyn Fn(f64) -> f64| {
-            let mut gatherer = Gatherer::default();
-            for ms in 0..100 {
-                let at_s = 1e-3 * f64::from(ms);
-                let contact = Contact { x_mm: x_mm(at_s) as f32, fz_n: 1.0, ..Contact::default() };
-                gatherer.push(at_s, &[0.0; CHANNELS], None, Seen::Contact(contact));
-            }
-            let windows = gatherer.finish();
-            assert!(windows.len() == 1 && windows[0].is_full, "{windows:?}");
-            f64::from(windows[0].travel_mm)
-        };
-        let sine = |hertz: f64, at_s: f64| libm::sin(std::f64::consts::TAU * hertz * at_s);
-        assert!((travel_mm(&|at_s| 50.0 * at_s) - 4.0).abs() < 0.1, "{}", travel_mm(&|at_s| 50.0 * at_s));
-        assert!(travel_mm(&|at_s| 2.0 * sine(50.0, at_s)) < 0.1);
-        assert!(travel_mm(&|at_s| 2.0 * sine(60.0, at_s)) < 0.7);
-        assert!((3.0..4.0).contains(&travel_mm(&|at_s| 2.0 * sine(10.0, at_s))));
     }
 
     #[test]

@@ -6,7 +6,8 @@
 //! E = G + Σⱼ pⱼ ∂G/∂pⱼ + background
 //! ```
 //!
-//! G is the simulator's field, g the channels' gains, p the modules' poses and stiffnesses, X the crosstalk, z the zeros.
+//! G is the simulator's field of the nominal pad, or of one nearer to what is found where the tangent does not reach (`linearised`,
+//! `flaws`), g the channels' gains, p the modules' poses and stiffnesses, X the crosstalk, z the zeros.
 //! The background is a smooth polynomial for each channel and force: the discrepancy that no physical parameter explains. Every
 //! parameter has a Gaussian prior, centred on the nominal pad (or on another pad's calibration), so that 20 contacts say what
 //! they can and leave the others where they were. The posterior's maximum is found by Gauss and Newton's method, its covariance

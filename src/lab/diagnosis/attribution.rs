@@ -177,14 +177,8 @@ impl<'m> Search<'m> {
             .fold(0.0, f64::max)
     }
 
-    /// How much is taken of a Gauss-Newton step s: the steps vanish at the fit, and where they turn back on the last one s₀, of which t₀
-    /// was taken, the fit is between the two points. By the secant, with the Fisher information F
-    ///
-    /// ```text
-    /// t = min(1, t₀/(1 − ρ)),    ρ = sᵀ F s₀/(s₀ᵀ F s₀)
-    /// ```
-    ///
-    /// The shapes of a course need it: there whole steps may jump to and fro for ever.
+    /// A Gauss-Newton step s after a last one s₀, and how much of it is taken: by how far it turns back, ρ = sᵀ F s₀/(s₀ᵀ F s₀), with
+    /// the Fisher information F. The shapes of a course need it: there whole steps may jump to and fro for ever.
     fn next_step(
         &self,
         applied: &Applied,
@@ -197,10 +191,9 @@ impl<'m> Search<'m> {
         let by_secant = |last: &Step| {
             let before = of(&last.coordinates);
             let weighted = marginal.fisher.picked(&columns, &columns).times(&before);
-            let ratio = dot(&weighted, &of(&coordinates)) / dot(&weighted, &before);
-            (ratio < 1.0).then(|| (last.fraction / (1.0 - ratio)).min(1.0))
+            fraction(last.fraction, dot(&weighted, &of(&coordinates)) / dot(&weighted, &before))
         };
-        Step { fraction: last.and_then(by_secant).unwrap_or(1.0), coordinates }
+        Step { fraction: last.map_or(1.0, by_secant), coordinates }
     }
 
     fn step(&self, applied: &mut Applied, Step { coordinates: step, fraction }: &Step) {
@@ -381,6 +374,17 @@ impl<'m> Search<'m> {
     }
 }
 
+/// How much of a step is taken after one of which t₀ was taken, and of which it is ρ times: the steps vanish at the fit, and by the secant
+///
+/// ```text
+/// t = min(1, t₀/(1 − ρ))
+/// ```
+///
+/// All of it where they grow, or nothing is known of the last one.
+fn fraction(last: f64, ratio: f64) -> f64 {
+    if ratio < 1.0 { (last / (1.0 - ratio)).min(1.0) } else { 1.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -391,6 +395,29 @@ mod tests {
     use crate::pad::device::Device;
     use crate::pad::field::PadField;
     use crate::quantity::CHANNELS;
+
+    /// Where steps lead from 0, each a share of what it should be.
+    fn led(step: impl Fn(f64) -> f64, taken: impl Fn(f64, f64) -> f64) -> f64 {
+        let (mut at, mut last) = (0.0, None);
+        for _ in 0..REFITS {
+            let next: f64 = step(at);
+            let part = last.map_or(1.0, |(before, part)| taken(part, next / before));
+            at += part * next;
+            last = Some((next, part));
+        }
+        at
+    }
+
+    #[test]
+    fn steps_that_turn_back_as_far_as_they_went_lead_to_the_fit() {
+        // Twice as long as they should be a unit from the fit, which is at 1, and longer nearby: whole ones go from side to side for ever.
+        let too_long = |at: f64| 2.2 * (1.0 - at) / (1.0 + 0.1 * (1.0 - at).powi(2));
+        assert!((led(too_long, |_, _| 1.0) - 1.0).abs() > 0.3, "{}", led(too_long, |_, _| 1.0));
+        assert!((led(too_long, fraction) - 1.0).abs() < 1e-9, "{}", led(too_long, fraction));
+        // Too short: whole ones are right.
+        assert_eq!([fraction(1.0, 0.5), fraction(0.5, 1.5), fraction(1.0, f64::NAN)], [1.0; 3]);
+        assert_eq!(fraction(1.0, -1.0), 0.5);
+    }
 
     /// Five loads at each of 72 places.
     fn contacts(random: &mut SplitMix64) -> Observations {

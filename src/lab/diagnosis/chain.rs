@@ -145,23 +145,55 @@ impl ChannelChain {
         let above_c = sample.temp_c.map_or(0.0, |temp_c| temp_c - reference.temp_c);
         let hours = sample.t_s.map_or(0.0, |t_s| (t_s - reference.t_s) / 3600.0);
         let aged = sample.cycle.map_or(0.0, |cycle| aged(cycle, reference.cycle));
-        for (into, from, share) in &self.module_shares {
-            values[*into] += share * values[*from];
-        }
+        add_shares(values, &self.module_shares);
         for (channel, value) in values.iter_mut().enumerate() {
             let left = 1.0 - self.loss[channel] * aged;
             *value *= left * (1.0 + self.gain_per_c[channel] * above_c) * self.gain[channel];
             *value += self.second_order[channel] * *value * *value / reference.full_scale[channel];
         }
-        if !self.shares.is_empty() {
-            let strained = values.to_vec();
-            for (into, from, share) in &self.shares {
-                values[*into] += share * strained[*from];
-            }
-        }
+        add_shares(values, &self.shares);
         for (channel, value) in values.iter_mut().enumerate() {
             *value +=
                 self.offset[channel] + self.zero_per_c[channel] * above_c + self.drift_per_h[channel] * hours;
         }
+    }
+}
+
+/// Adds to values what they take of each other as they were: (1 + M) v, with M as (into, from, share).
+fn add_shares(values: &mut [f64], shares: &[(usize, usize, f64)]) {
+    if shares.is_empty() {
+        return;
+    }
+    let before = values.to_vec();
+    for (into, from, share) in shares {
+        values[*into] += share * before[*from];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn channels_take_of_each_other_as_they_were() {
+        let reference = Reference {
+            temp_c: 25.0,
+            t_s: 0.0,
+            cycle: 0.0,
+            full_scale: vec![1000.0; 3],
+            sizes: vec![1000.0; 3],
+        };
+        let both_ways = vec![(0, 1, 0.1), (1, 0, 0.5), (2, 1, 1.0)];
+        let read = |channels: &ChannelChain| {
+            let mut values = [100.0, 200.0, 0.0];
+            channels.read(&mut values, &Sample::default(), &reference);
+            values
+        };
+        let nominal = Chain::nominal(3, 0).channels;
+        assert_eq!(read(&nominal), [100.0, 200.0, 0.0]);
+        // 100 + 0.1 · 200, 200 + 0.5 · 100, 0 + 200: none of what the others have taken.
+        let expected = [120.0, 250.0, 200.0];
+        assert_eq!(read(&ChannelChain { module_shares: both_ways.clone(), ..nominal.clone() }), expected);
+        assert_eq!(read(&ChannelChain { shares: both_ways, ..nominal }), expected);
     }
 }

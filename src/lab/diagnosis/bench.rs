@@ -6,7 +6,8 @@ use super::chain::Chain;
 use super::inverse::{Forward, Inverse, UNKNOWNS, Weighted, Written};
 use super::mechanics::Maps;
 use super::model::Told;
-use super::simulated::{Simulated, response};
+use super::row::response;
+use super::simulated::Simulated;
 use crate::pad::influence::InfluenceField;
 use crate::quantity::CHANNELS;
 

@@ -45,6 +45,7 @@ pub mod observations;
 mod own;
 mod regression;
 pub mod report;
+mod row;
 mod separation;
 pub(in crate::lab) mod setting;
 mod simulated;

@@ -15,11 +15,12 @@ use super::model::{
 use super::observations::{Observations, Sample};
 use super::own::own_chain;
 use super::report::NotTestable;
+use super::row::{Row, continued, response};
 use super::setting::{Change, Setting};
 use crate::numeric::statistics::rms;
 use crate::pad::device::{Device, Side};
 use crate::pad::field::PadField;
-use crate::pad::influence::{Gains, InfluenceField};
+use crate::pad::influence::InfluenceField;
 use crate::quantity::{CHANNELS, MODULES};
 
 /// Standard deviation of a factor that all modules' x, y or z channels share, of their answer to shear or to normal loads: the
@@ -59,16 +60,6 @@ struct Point<'p> {
     remembered: Vec<[f64; CHANNELS]>,
     /// Each channel's readings at the rows that are asked for.
     readings: Vec<Vec<f64>>,
-}
-
-/// A row under a chain.
-struct Row {
-    place_mm: [f64; 2],
-    force_n: [f64; 3],
-    gains: Gains,
-    laplacian: Maps,
-    /// What each change of the field adds to the strains.
-    changes: Vec<[f64; CHANNELS]>,
 }
 
 impl<'f> Simulated<'f> {
@@ -380,26 +371,6 @@ impl Model for Simulated<'_> {
     }
 }
 
-impl Row {
-    fn strain(&self, chain: &Chain) -> [f64; CHANNELS] {
-        let Self { force_n, gains, laplacian, changes, .. } = self;
-        let mechanics = &chain.mechanics;
-        // Half the mean square of the patch's radius along each axis, over its nominal one: (R² − R₀²)/8.
-        let spread_mm2 = mechanics.patch_mm2 / 8.0;
-        let [fx_n, fy_n, _] = *force_n;
-        let mut strain: [f64; CHANNELS] = std::array::from_fn(|channel| {
-            let couple = fx_n * gains.dx[channel][2] + fy_n * gains.dy[channel][2];
-            response(&gains.value[channel], force_n)
-                + spread_mm2 * response(&laplacian[channel], force_n)
-                + mechanics.height_mm * couple
-        });
-        for (weight, change) in mechanics.weights.iter().zip(changes).filter(|(weight, _)| **weight != 0.0) {
-            strain.iter_mut().zip(change).for_each(|(strain, change)| *strain += weight * change);
-        }
-        strain
-    }
-}
-
 fn setting(device: &Device, changes: Vec<Change>, observations: &Observations, course: &Course) -> Setting {
     let differs = |of: fn(&Sample) -> Option<f64>| {
         let mut values = observations.samples.iter().filter_map(of);
@@ -435,24 +406,4 @@ fn reference(device: &Device, field: &PadField, observations: &Observations) -> 
         full_scale: (0..CHANNELS).map(|k| of(k).map(f64::abs).fold(f64::MIN_POSITIVE, f64::max)).collect(),
         sizes: (0..CHANNELS).map(|k| rms(of(k))).collect(),
     }
-}
-
-/// The field at a place; beyond its radius it goes on straight, as a plate does that does not end there.
-fn continued(field: &InfluenceField, place_mm: [f64; 2]) -> Gains {
-    let beyond = libm::hypot(place_mm[0], place_mm[1]) / f64::from(field.radius_mm());
-    let [x_mm, y_mm] = place_mm.map(|mm| mm / beyond.max(1.0));
-    let mut gains = field.gains(x_mm as f32, y_mm as f32);
-    let by_mm = [place_mm[0] - x_mm, place_mm[1] - y_mm];
-    for channel in 0..CHANNELS {
-        for axis in 0..3 {
-            let slope = [gains.dx[channel][axis], gains.dy[channel][axis]];
-            gains.value[channel][axis] += slope[0] * by_mm[0] + slope[1] * by_mm[1];
-        }
-    }
-    gains
-}
-
-/// Σₐ Fₐ Gₐ.
-pub(super) fn response(map: &[f64; 3], force_n: &[f64; 3]) -> f64 {
-    map.iter().zip(force_n).map(|(map, n)| map * n).sum()
 }

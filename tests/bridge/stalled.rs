@@ -25,11 +25,15 @@ fn make_pipe(folder: &Path) -> PathBuf {
     path
 }
 
+/// A pipe holds little where nobody is to read it, and seconds where somebody does, who may be kept from it.
+const SMALL_BYTES: usize = 4_096;
+const LARGE_BYTES: usize = 1 << 20;
+
 /// A reader that takes nothing until it is told to, on a pipe that holds little.
 fn open_reader(path: &Path) -> File {
     let flags = OFlags::NONBLOCK.bits().cast_signed();
     let reader = OpenOptions::new().read(true).custom_flags(flags).open(path).unwrap();
-    fcntl_setpipe_size(&reader, 4_096).unwrap();
+    fcntl_setpipe_size(&reader, SMALL_BYTES).unwrap();
     reader
 }
 
@@ -83,6 +87,7 @@ fn a_log_that_is_not_read_loses_whole_groups_and_nothing_else() {
     assert!(comes_true(1_000, || told(&bridge) == 1), "{}", bridge.told());
 
     let mut log = Log::default();
+    fcntl_setpipe_size(&reader, LARGE_BYTES).unwrap();
     assert!(comes_true(5_000, || {
         log.read(&mut reader);
         log.lines > 1_000
@@ -95,7 +100,11 @@ fn a_log_that_is_not_read_loses_whole_groups_and_nothing_else() {
     }));
     assert_eq!(dropped(&bridge), counted, "who reads again loses nothing");
 
-    // In a second the pipe is full again.
+    // In a second the pipe is full again. It cannot be made to hold less than is in it.
+    assert!(comes_true(5_000, || {
+        log.read(&mut reader);
+        fcntl_setpipe_size(&reader, SMALL_BYTES).is_ok()
+    }));
     let samples = |bridge: &Running| bridge.status()["health"]["samples"].as_u64().unwrap();
     let later = samples(&bridge) + 1_000;
     assert!(comes_true(5_000, || samples(&bridge) > later));

@@ -36,7 +36,7 @@ pub(super) fn found(
             ..problem.prior.field.clone()
         };
         let prior = problem.prior.clone().about(with(pad.device, module, change.flaw), field);
-        Some((log_probability(&fitted(&prior)?), prior))
+        Some((fitted(&prior)?.log_probability(), prior))
     };
     let best: Vec<(f64, Prior)> = pad.flaws.par_iter().filter_map(tried).collect();
     let best = best.into_iter().max_by(|one, other| one.0.total_cmp(&other.0));
@@ -46,17 +46,12 @@ pub(super) fn found(
     let (field, flawed) = match (pad.solve)(&device) {
         Some(field) => {
             let fit = fitted(&problem.prior.clone().about(device.clone(), field.clone()))?;
-            (field, log_probability(&fit))
+            (field, fit.log_probability())
         }
         None => (prior.field, by_change),
     };
-    // That channels share so much is as likely by a flaw, any of them, as by a leak.
-    (flawed > log_probability(whole) + libm::log(pad.flaws.len() as f64)).then_some((device, field))
-}
-
-/// ln p(y, σ) but for a constant, as the priors' deviations σ are found from the contacts, too: shares that no pad has are not for nothing.
-fn log_probability(fit: &Fit) -> f64 {
-    fit.log_evidence + fit.estimates.prior_deviations.log_density()
+    // Shares that no pad has are not for nothing. That channels share so much is as likely by a flaw, any of them, as by a leak.
+    (flawed > whole.log_probability() + libm::log(pad.flaws.len() as f64)).then_some((device, field))
 }
 
 /// The first module of a device that lacks something, and what; none where all are whole.

@@ -19,6 +19,8 @@ pub(super) struct Settings {
     pub(super) creep_time_s: f64,
     /// Time constant of relative noise; zero: it is drawn anew for each contact.
     pub(super) noise_time_s: f64,
+    /// Prior standard deviations of stiffnesses, moduli and the plate's thickness, as a share of those that pads of all kinds have.
+    pub(super) elastic_scale: f64,
 }
 
 /// Hyperparameters that are estimated anew at each step.

@@ -1,13 +1,36 @@
-//! What a fit comes to: the pad's own field, and the contacts without what the past adds to them.
+//! What a fit comes to: how probable it is and how sure, the pad's own field, and the contacts without what the past adds to them.
 
 use super::contacts::{Knowledge, Measured, Place};
 use super::model::Layout;
-use super::problem::Problem;
+use super::problem::{Fit, Problem};
+use crate::numeric::products::dot;
 use crate::pad::influence::{InfluenceField, MAPS};
 use crate::pipeline::compensation::creep::Creep;
 use crate::pipeline::compensation::hysteresis::Hysteresis;
 use crate::pipeline::compensation::thermal::Thermal;
 use crate::quantity::{CHANNELS, Strain};
+
+impl Fit {
+    /// Posterior standard deviation of a parameter.
+    pub(super) fn deviation(&self, at: usize) -> f64 {
+        // √(H⁻¹)ᵢᵢ = √(eᵢᵀ H⁻¹ eᵢ).
+        let half = self.halved(&[(at, 1.0)]);
+        dot(&half, &half).sqrt()
+    }
+
+    /// ln p(y, σ | settings) but for a constant that all settings share, as the priors' deviations σ are found from the contacts, too.
+    pub(super) fn log_probability(&self) -> f64 {
+        self.log_evidence + self.estimates.prior_deviations.log_density()
+    }
+
+    /// L⁻¹c of a linear combination cᵀθ of few parameters, where H = L Lᵀ: the posterior covariance of two combinations is
+    /// cᵀ H⁻¹ d = (L⁻¹c)ᵀ (L⁻¹d).
+    pub(super) fn halved(&self, combination: &[(usize, f64)]) -> Vec<f64> {
+        let mut whole = vec![0.0; self.values.len()];
+        combination.iter().for_each(|(at, factor)| whole[*at] = *factor);
+        self.factor.solve_lower(&whole)
+    }
+}
 
 impl Problem<'_> {
     /// The channels of contacts with written labels, at the reference temperature, without zeros, creep and hysteresis, and the

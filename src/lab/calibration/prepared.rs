@@ -46,8 +46,13 @@ impl Prepared {
         }
         // Hysteresis and noise go with what is beyond the zeros, so these have to be known about before anything else.
         let prior = Prior::simulated(field);
-        let plain =
-            Settings { background: 0.0, thresholds_uv: [0.0; PLAYS], creep_time_s: 0.0, noise_time_s: 0.0 };
+        let plain = Settings {
+            background: 0.0,
+            thresholds_uv: [0.0; PLAYS],
+            creep_time_s: 0.0,
+            noise_time_s: 0.0,
+            elastic_scale: 1.0,
+        };
         let fit = prepared.problem(fitted, device, &prior).fitted(plain, None, Effort::FULL);
         let zero_uv = Layout::zeros(&fit?.values);
         Some(Self { recording: prepared.recording.less(&zero_uv), zero_uv: Some(zero_uv), ..prepared })

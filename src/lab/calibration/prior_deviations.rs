@@ -131,6 +131,16 @@ impl PriorDeviations {
         Self { deviations: initial, displaced: [1.0; MODULES], initial }
     }
 
+    /// The same where those of stiffnesses, moduli and the plate's thickness begin with this share of what pads of all kinds have.
+    pub(super) fn scaled(mut self, elastic_scale: f64) -> Self {
+        for kind in [Kind::Stiffness, Kind::PlateThickness, Kind::CommonModulus].map(|kind| kind as usize) {
+            let initial = elastic_scale * Self::TARED.initial[kind];
+            self.deviations[kind] *= initial / self.initial[kind];
+            self.initial[kind] = initial;
+        }
+        self
+    }
+
     /// The standard deviation of a kind.
     pub(super) const fn of(&self, kind: Kind) -> f64 {
         self.deviations[kind as usize]
@@ -146,14 +156,17 @@ impl PriorDeviations {
         self.of(kind) / self.precision_factor(kind, module).sqrt()
     }
 
-    /// ln of the density of the variances σ², but for a constant: scaled inverse χ² with κ degrees of freedom about σ₀²,
+    /// ln of the density of ln σ², but for a constant: σ² are scaled inverse χ² with κ degrees of freedom about σ₀², so
     ///
     /// ```text
-    /// ln p(σ²) = −(κ/2 + 1) ln σ² − ½ κ σ₀²/σ²
+    /// ln p(ln σ²) = κ ln (σ₀/σ) − ½ κ (σ₀/σ)²
     /// ```
+    ///
+    /// which is the same whatever σ₀ is, if σ is as many times that.
     pub(super) fn log_density(&self) -> f64 {
         let of = |(deviation, initial): (&f64, &f64)| {
-            -(PSEUDO_COUNT + 2.0) * libm::log(*deviation) - 0.5 * PSEUDO_COUNT * (initial / deviation).powi(2)
+            let ratio = initial / deviation;
+            PSEUDO_COUNT * (libm::log(ratio) - 0.5 * ratio * ratio)
         };
         self.deviations.iter().zip(&self.initial).map(of).sum()
     }
@@ -276,6 +289,25 @@ mod tests {
         assert_eq!(found(Kind::CrosstalkUnlabelled, 0.005), CROSSTALK);
         assert!(found(Kind::Crosstalk, 0.005) < 0.5 * CROSSTALK);
         assert!((found(Kind::CrosstalkUnlabelled, 0.05) - 0.05).abs() < 0.002);
+    }
+
+    #[test]
+    fn a_scale_of_the_deviations_is_neither_for_nor_against_a_pad() {
+        let wide = PriorDeviations::TARED;
+        let alike = wide.scaled(0.25);
+        assert_eq!([Kind::Stiffness, Kind::Turn].map(|kind| alike.of(kind)), [0.25 * STIFFNESS, TURN_DEG]);
+        assert!((alike.scaled(1.0).of(Kind::Stiffness) - STIFFNESS).abs() < 1e-12);
+        assert!((alike.log_density() - wide.log_density()).abs() < 1e-9);
+        // What was found is in proportion.
+        let stiff = (0..9).map(|_| Deviating {
+            kind: Kind::Stiffness,
+            module: None,
+            difference: 0.6,
+            variance: 1e-3,
+        });
+        let found = wide.reestimated(stiff);
+        assert!((found.scaled(0.25).of(Kind::Stiffness) / found.of(Kind::Stiffness) - 0.25).abs() < 1e-12);
+        assert!(found.log_density() < wide.log_density() - 0.5, "{found:?}");
     }
 
     #[test]

@@ -95,23 +95,6 @@ pub(super) struct Explained {
     pub(super) precision: MarginalPrecision,
 }
 
-impl Fit {
-    /// Posterior standard deviation of a parameter.
-    pub(super) fn deviation(&self, at: usize) -> f64 {
-        // √(H⁻¹)ᵢᵢ = √(eᵢᵀ H⁻¹ eᵢ).
-        let half = self.halved(&[(at, 1.0)]);
-        dot(&half, &half).sqrt()
-    }
-
-    /// L⁻¹c of a linear combination cᵀθ of few parameters, where H = L Lᵀ: the posterior covariance of two combinations is
-    /// cᵀ H⁻¹ d = (L⁻¹c)ᵀ (L⁻¹d).
-    pub(super) fn halved(&self, combination: &[(usize, f64)]) -> Vec<f64> {
-        let mut whole = vec![0.0; self.values.len()];
-        combination.iter().for_each(|(at, factor)| whole[*at] = *factor);
-        self.factor.solve_lower(&whole)
-    }
-}
-
 impl<'f> Problem<'f> {
     /// `fitted` are the contacts to fit to; all other rows only tell the load path. Without polynomials for a background.
     pub(super) fn of(
@@ -177,6 +160,7 @@ impl<'f> Problem<'f> {
             self.relabel(&values);
             self.take_up(&start.located);
         }
+        estimates.prior_deviations = estimates.prior_deviations.scaled(settings.elastic_scale);
         let mut found: Option<Fit> = None;
         for _ in 0..STEPS_MAX {
             // One Gauss-Newton step with the present hyperparameters.

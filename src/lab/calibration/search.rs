@@ -1,5 +1,5 @@
-//! The fit: Gauss and Newton's method on all parameters, for several settings of lasting noise, hysteresis, creep and the background; the
-//! evidence selects.
+//! The fit: Gauss and Newton's method on all parameters, for several settings of lasting noise, the prior, hysteresis, creep and the
+//! background; the evidence selects.
 //!
 //! Source: C. M. Bishop, Pattern Recognition and Machine Learning, section 3.4 (model comparison by the evidence).
 
@@ -26,6 +26,8 @@ const HALVINGS: i32 = 3;
 const CREEP_TIMES_S: [f64; 7] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 /// Time constants of relative noise that are tried in play.
 pub(super) const NOISE_TIMES_S: [f64; 4] = [0.7, 2.0, 6.0, 18.0];
+/// The share of their deviations that stiffnesses, moduli and the plate's thickness may have in play: pads that are built alike.
+const ALIKE: f64 = 0.25;
 /// ln of the Bayes factor that a richer hypothesis (a play operator, creep, another pad's field) must exceed.
 pub(super) const LOG_EVIDENCE_GAIN: f64 = 15.0;
 
@@ -53,6 +55,7 @@ impl<'r> Counted<'r> {
             if *known_uv > 0.0 { refinements } else { THRESHOLDS as usize + 1 + refinements }
         };
         NOISE_TIMES_S.len()
+            + 1
             + prior.thresholds_uv.iter().map(search).sum::<usize>()
             + CREEP_TIMES_S.len()
             + SMALL_BACKGROUNDS.len()
@@ -88,8 +91,10 @@ pub(super) fn fitted<'b>(
     prior: &Prior,
     counted: &Counted<'_>,
 ) -> Option<(Problem<'b>, Fit)> {
+    let plain = with_lasting_noise(&problem, prior, counted)?;
+    let plain = if problem.layout.is_play { built_alike(&problem, plain, counted) } else { plain };
     // The memory first, as a background would explain part of it; then the background's size with the memory's settings.
-    let plain = settled(&problem, prior, counted)?;
+    let plain = with_memory(&problem, prior, plain, counted);
     Some(with_background(problem, plain, counted))
 }
 
@@ -116,13 +121,14 @@ fn with_background<'b>(problem: Problem<'b>, plain: Fit, counted: &Counted<'_>) 
 
 /// The fit without a background, whose memory and lasting noise are what the evidence asks for; `report` hears how far it is.
 pub(super) fn settled_reported(problem: &Problem<'_>, prior: &Prior, report: Report<'_>) -> Option<Fit> {
-    settled(problem, prior, &Counted::of([prior], report))
+    let counted = Counted::of([prior], report);
+    let plain = with_lasting_noise(problem, prior, &counted)?;
+    Some(with_memory(problem, prior, plain, &counted))
 }
 
-fn settled(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) -> Option<Fit> {
-    let plain = with_lasting_noise(problem, prior, counted)?;
+fn with_memory(problem: &Problem<'_>, prior: &Prior, plain: Fit, counted: &Counted<'_>) -> Fit {
     let plain = with_hysteresis(problem, prior, plain, counted);
-    Some(with_creep(problem, plain, counted))
+    with_creep(problem, plain, counted)
 }
 
 /// The fit with nothing but what is known of pads of this kind. In play noise lasts from one contact to the next: as long as
@@ -130,10 +136,19 @@ fn settled(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) -> Optio
 fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) -> Option<Fit> {
     let Prior { thresholds_uv, creep: Creep { time_s: creep_time_s, .. }, .. } = *prior;
     let tried = |noise_time_s: f64| {
-        let settings = Settings { background: 0.0, thresholds_uv, creep_time_s, noise_time_s };
+        let settings =
+            Settings { background: 0.0, thresholds_uv, creep_time_s, noise_time_s, elastic_scale: 1.0 };
         counted.fitted(problem, settings, (None, Effort::FULL))
     };
     if problem.layout.is_play { most_probable(NOISE_TIMES_S.to_vec(), tried) } else { tried(0.0) }
+}
+
+/// The same where stiffnesses, moduli and thickness are near what they should be, if that is more probable. Presses without labels
+/// hardly tell them from gains and crosstalk.
+fn built_alike(problem: &Problem<'_>, plain: Fit, counted: &Counted<'_>) -> Fit {
+    let settings = Settings { elastic_scale: ALIKE, ..plain.settings };
+    let alike = counted.fitted(problem, settings, (None, Effort::FULL));
+    alike.filter(|alike| alike.log_probability() > plain.log_probability()).unwrap_or(plain)
 }
 
 /// The same with as many play operators as the evidence asks for. Known thresholds are only refined.

@@ -51,6 +51,7 @@ impl<'d> Was<'d> {
             thresholds_uv: prior.thresholds_uv,
             creep_time_s: prior.creep.time_s,
             noise_time_s: 0.0,
+            elastic_scale: 1.0,
         };
         let mut estimates = Estimates::first(prior.noise, 0.0, problem.recording.is_tared());
         let mean = problem.layout.prior_mean(prior, &estimates.rig);

@@ -45,7 +45,7 @@ fn beyond<'l>(problem: &'l Problem<'_>, fit: &Fit, device: &Device) -> Vec<Beyon
         let value = fit.values[at];
         let by = number.beyond(value);
         // The tangent is off by a change d of (d/r)² of what it says at the reach r. The contacts see a change d as J d², where
-        // J = H − P is their information of it when all other numbers are known: no fit is moved by more.
+        // J = H − P is their information of it when all other numbers are known: more than the fit has.
         let seen = by * by * (curvature[at] - precisions[at]).max(0.0);
         let error = (by / number.reach(device)).abs() * seen.sqrt();
         (by.abs() > SIGNIFICANT * fit.deviation(at)).then_some(Beyond { number, value, error })

@@ -26,7 +26,7 @@ const SHORTLIST: usize = 6;
 const CAUSES_MAX: usize = 12;
 /// Gauss-Newton steps of a refit.
 const REFITS: usize = 12;
-/// A refit that moves no coordinate by more than this many standard deviations stands.
+/// A refit that moves no number that is asked for by more than this many standard deviations stands.
 const STANDS: f64 = 0.1;
 
 /// Hypotheses that hold, each with its coordinates.
@@ -169,7 +169,7 @@ impl<'m> Search<'m> {
         None
     }
 
-    /// By how many standard deviations a step moves the coordinates at most.
+    /// By how many standard deviations a step moves the numbers that are asked for at most; a course has none.
     fn moves(&self, applied: &Applied, step: &[f64], marginal: &Marginal) -> f64 {
         let columns = applied.iter().flat_map(|(at, _)| &self.columns.of_hypothesis[*at]);
         columns
@@ -416,7 +416,7 @@ mod tests {
         assert!((led(too_long, fraction) - 1.0).abs() < 1e-9, "{}", led(too_long, fraction));
         // Too short: whole ones are right.
         assert_eq!([fraction(1.0, 0.5), fraction(0.5, 1.5), fraction(1.0, f64::NAN)], [1.0; 3]);
-        assert_eq!(fraction(1.0, -1.0), 0.5);
+        assert_eq!([fraction(1.0, -1.0), fraction(0.5, -1.0)], [0.5, 0.25]);
     }
 
     /// Five loads at each of 72 places.

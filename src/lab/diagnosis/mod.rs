@@ -9,7 +9,7 @@
 //! (`separation`); rows that had no part in it say what they are worth (`gain`), in readings and in contacts that are decoded by the
 //! model backwards (`inverse`, of the pad `bench`).
 //!
-//! The engine knows nothing of nine channels, but for `simulated`.
+//! Search, tests and naming know nothing of nine channels: those are in `simulated` and what it is made of.
 //!
 //! Sources: M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (a discrepancy beside the parameters); J.
 //! Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014) 114007 (without it parameters are wrong and too sure).

@@ -31,43 +31,44 @@
 //!
 //! # What there is
 //!
-//! | room | what it does | feature |
+//! Each part is a crate of its own; here stand all of them under one name.
+//!
+//! | module | what it does | feature |
 //! |---|---|---|
 //! | [`pipeline`] | the live core, captures and replay | |
 //! | [`pad`], [`tables`], [`virtual_pad`] | device files, influence fields, the twin; measured tables; a pad made of software | |
 //! | [`network`], [`numeric`], [`toml_text`] | perceptrons; numerical methods; texts that people write | |
-//! | `plot` | figures | `plot` |
-//! | `lab` | calibration, evaluation, metrology and other studies | `lab` |
-//! | `mechanics` | the finite-element simulator | `simulator` |
+//! | `lab` | calibration, diagnosis, evaluation, tuning | `lab` |
+//! | `mechanics`, `plot` | the finite-element simulator; figures | `simulator` |
+//! | `lab::{layout, metrology, ablation, scdf}` | the paper's studies | `simulator` |
 //! | `bridge` | ports, virtual devices and the loop between them (Linux) | `live` |
 //! | `dashboard` | the page that shows a running bridge (Linux) | `dashboard` |
 //! | `tray` | the icon on the desktop (Linux) | `tray` |
 //!
 //! The program `tactpad` itself is the feature `cli`. Without features five small dependencies are left.
-//! `examples/` has whole programs. `ARCHITECTURE.md` says which rules hold between the rooms.
+//! `examples/` has whole programs. `ARCHITECTURE.md` says which rules hold between the crates.
 
-mod bytes;
-#[cfg(feature = "lab")]
-pub mod lab;
+pub use tactpad_core::{
+    firmware_proto, network, numeric, pad, pipeline, quantity, tables, time, toml_text, virtual_pad,
+};
 #[cfg(feature = "simulator")]
-pub mod mechanics;
-pub mod network;
-pub mod numeric;
-pub mod pad;
-pub mod pipeline;
-#[cfg(feature = "plot")]
-pub mod plot;
-pub mod quantity;
-pub mod tables;
-pub mod time;
-pub mod toml_text;
-pub mod virtual_pad;
+pub use tactpad_mechanics as mechanics;
+#[cfg(feature = "simulator")]
+pub use tactpad_plot as plot;
 
 #[cfg(all(feature = "live", target_os = "linux"))]
-pub mod bridge;
+pub use tactpad_bridge as bridge;
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
-pub mod dashboard;
+pub use tactpad_desktop::dashboard;
 #[cfg(all(feature = "tray", target_os = "linux"))]
-pub mod tray;
+pub use tactpad_desktop::tray;
 
-pub use firmware_proto;
+/// Studies: of what a pad has measured, and of the paper's pad.
+#[cfg(feature = "lab")]
+pub mod lab {
+    pub use tactpad_lab::*;
+    #[cfg(feature = "simulator")]
+    pub use tactpad_mechanics::field_cache;
+    #[cfg(feature = "simulator")]
+    pub use tactpad_paper::*;
+}

@@ -13,7 +13,7 @@ pub(super) enum Failure {
     Unread,
 }
 
-#[cfg(all(feature = "live", target_os = "linux"))]
+#[cfg(target_os = "linux")]
 impl Failure {
     /// As people read it, where it ends nothing.
     pub(super) fn sentence(self) -> String {

@@ -12,7 +12,7 @@ mod evaluate;
 mod failure;
 mod field;
 mod layout;
-#[cfg(all(feature = "live", target_os = "linux"))]
+#[cfg(target_os = "linux")]
 mod live;
 mod metrology;
 mod pictures;
@@ -59,7 +59,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    #[cfg(all(feature = "live", target_os = "linux"))]
+    #[cfg(target_os = "linux")]
     #[command(flatten)]
     Live(live::Verb),
     /// Print the events that a capture, or a list of contacts, comes to.
@@ -121,7 +121,7 @@ pub(super) fn run() -> ExitCode {
 
 fn obey(verb: Verb) -> Result<(), Failure> {
     match verb {
-        #[cfg(all(feature = "live", target_os = "linux"))]
+        #[cfg(target_os = "linux")]
         Verb::Live(verb) => live::run(&verb),
         Verb::Replay(arguments) => replay::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments),

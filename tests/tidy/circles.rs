@@ -8,13 +8,12 @@ pub(crate) type Module = Vec<String>;
 /// For each file, those that it names.
 pub(crate) type Imports = BTreeMap<Module, BTreeSet<Module>>;
 
-/// What each of a crate's files imports. `sources` are the files with their texts, without tests; inside them
-/// `crate_name` means the crate, as `crate` does.
-pub(crate) fn imports(crate_name: &str, sources: &[(Module, String)]) -> Imports {
+/// What each of a crate's files imports. `sources` are the files with their texts, without tests.
+pub(crate) fn imports(sources: &[(Module, String)]) -> Imports {
     let files: BTreeSet<Module> = sources.iter().map(|(module, _)| module.clone()).collect();
     let of_file = |(module, code): &(Module, String)| {
         let tokens = tokens(code);
-        let named = paths(&tokens).into_iter().filter_map(|path| file(crate_name, module, &path, &files));
+        let named = paths(&tokens).into_iter().filter_map(|path| file(module, &path, &files));
         (module.clone(), named.filter(|named| named != module).collect())
     };
     sources.iter().map(of_file).collect()
@@ -44,17 +43,16 @@ fn reached<'i>(imports: &'i Imports, from: &Module) -> BTreeSet<&'i Module> {
 }
 
 /// The file that a path inside `module` leads into: the longest part of the path that is a file.
-fn file(crate_name: &str, module: &Module, path: &[&str], files: &BTreeSet<Module>) -> Option<Module> {
+fn file(module: &Module, path: &[&str], files: &BTreeSet<Module>) -> Option<Module> {
     let (first, rest) = path.split_first()?;
     let mut whole = match *first {
         "crate" => Vec::new(),
-        name if name == crate_name => Vec::new(),
         "self" => module.clone(),
         "super" => parent(module),
         // A child, declared here and used bare.
         child => [module.as_slice(), &[child.to_owned()]].concat(),
     };
-    if !["crate", "self", "super", crate_name].contains(first) && !files.contains(&whole) {
+    if !["crate", "self", "super"].contains(first) && !files.contains(&whole) {
         return None;
     }
     for name in rest {
@@ -151,12 +149,12 @@ fn circles_are_found_by_any_spelling() {
         source("a::c::d", "use super::super::b::*;"),
         source("e", "use crate::a::b; use std::fmt;"),
         source("f", "pub mod g;\nfn f() { g::h() }"),
-        source("f::g", "use tactpad::{e, f::Thing};"),
+        source("f::g", "use crate::{e, f::Thing};"),
         source("h", "mod i;\nmod j;\nuse h::i;"),
         source("h::i", "use super::{j, j::Named as _};"),
         source("h::j", "fn of(h: super::super::e::Thing) -> [u8; 3]"),
     ];
-    let found = circles(&imports("tactpad", &sources));
+    let found = circles(&imports(&sources));
     let wanted = [vec!["a", "a::b", "a::c", "a::c::d"], vec!["f", "f::g"]];
     assert_eq!(found, wanted.map(|circle| circle.into_iter().map(str::to_owned).collect()).into());
 }

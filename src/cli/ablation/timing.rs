@@ -4,7 +4,7 @@ use tactpad::lab::ablation::unseen::Unseen;
 use tactpad::pipeline::contact::Decoder;
 
 /// Median time of one decode over all unseen contacts, in microseconds.
-#[cfg(all(feature = "live", target_os = "linux"))]
+#[cfg(target_os = "linux")]
 pub(super) fn median_us(decoder: &Decoder, unseen: &[Unseen]) -> Option<f64> {
     use tactpad::bridge::clock::Clock;
     use tactpad::bridge::latency::Durations;
@@ -19,7 +19,7 @@ pub(super) fn median_us(decoder: &Decoder, unseen: &[Unseen]) -> Option<f64> {
     (!durations.is_empty()).then(|| durations.percentiles().p50)
 }
 
-#[cfg(not(all(feature = "live", target_os = "linux")))]
+#[cfg(not(target_os = "linux"))]
 pub(super) fn median_us(_decoder: &Decoder, _unseen: &[Unseen]) -> Option<f64> {
     None
 }

@@ -9,7 +9,7 @@ use super::measured::Measured;
 use crate::cli::decoder_file;
 use crate::cli::failure::Failure;
 use crate::cli::progress::Progress;
-use tactpad::lab::scdf::adaptation::{Adapted, BETAS};
+use tactpad::lab::scdf::adaptation::{self, Adapted, BETAS};
 use tactpad::lab::scdf::{EPOCHS_MAX, drawing};
 use tactpad::network::Network;
 use tactpad::network::training::Epoch;
@@ -41,10 +41,15 @@ pub(super) fn adapt(measured: &Measured, from: Option<&Path>, seed: u64) -> Resu
     })?;
     let start = decoder_file::read_network(from)?;
     let progress = Progress::begin("adapting the network");
-    let adapted = measured.contacts.adapted(start, seed, |beta, Epoch { number, .. }| {
-        let before = BETAS.iter().position(|tried| *tried == beta).unwrap_or_default() * EPOCHS_MAX;
-        progress.part(before + number, BETAS.len() * EPOCHS_MAX, format_args!("β = {beta}: epoch {number}"));
-    });
+    let adapted =
+        adaptation::adapt_to_contacts(start, &measured.contacts, seed, |beta, Epoch { number, .. }| {
+            let before = BETAS.iter().position(|tried| *tried == beta).unwrap_or_default() * EPOCHS_MAX;
+            progress.part(
+                before + number,
+                BETAS.len() * EPOCHS_MAX,
+                format_args!("β = {beta}: epoch {number}"),
+            );
+        });
     drop(progress);
     let adapted = adapted.map_err(|error| measured.refused(error))?;
     Ok((adapted.trained.network.clone(), Fit::of(adapted)))

@@ -5,7 +5,6 @@ use std::io::{self, Write};
 use crate::cli::destination::Folder;
 use crate::cli::failure::Failure;
 use crate::cli::pictures;
-#[cfg(feature = "simulator")]
 use crate::cli::progress::Progress;
 use crate::cli::written::{print_json, stdout};
 use tactpad::lab::layout::conditioning::UNKNOWNS;
@@ -51,19 +50,9 @@ pub(super) fn run(
     if json { print_json(&found) } else { Ok(write(&mut stdout(), &found)?) }
 }
 
-#[cfg(feature = "simulator")]
 fn simulated(device: &Device, Counts(counts): &Counts, noise_uv: f64) -> Result<ModuleCounts, Failure> {
     let progress = Progress::begin("solving the modules");
     Ok(ModuleCounts::of(device, counts, noise_uv, |what| progress.step(what))?)
-}
-
-#[cfg(not(feature = "simulator"))]
-fn simulated(_device: &Device, Counts(_counts): &Counts, _noise_uv: f64) -> Result<ModuleCounts, Failure> {
-    Err(Failure::Unusable(
-        "this program was built without the simulator, which --modules needs: build it with the feature \
-         \"simulator\""
-            .into(),
-    ))
 }
 
 fn write(out: &mut impl Write, found: &ModuleCounts) -> io::Result<()> {

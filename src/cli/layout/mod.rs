@@ -15,7 +15,6 @@ use super::destination::Folder;
 use super::device::Pad;
 use super::failure::Failure;
 use super::pictures;
-#[cfg(feature = "simulator")]
 use super::progress::Progress;
 use super::written::print_json;
 use tactpad::lab::layout::drawing;
@@ -112,20 +111,10 @@ fn draw(folder: &Folder, report: &LayoutReport, device: &Device) -> Result<(), F
 }
 
 /// The effective regions of the simulated pad, the paper's rule for them, and the search for better placements.
-#[cfg(feature = "simulator")]
 fn simulated(arguments: &Arguments, device: &Device) -> Result<(SpacingAnswers, Simulated), Failure> {
     let Arguments { threshold, noise_uv, seed, .. } = *arguments;
     let progress = Progress::begin("solving the modules");
     Ok(Simulated::of(device, threshold, noise_uv, seed, |what| progress.step(what))?)
-}
-
-#[cfg(not(feature = "simulator"))]
-fn simulated(_arguments: &Arguments, _device: &Device) -> Result<(SpacingAnswers, Simulated), Failure> {
-    Err(Failure::Unusable(
-        "this program was built without the simulator: give the radii of the effective regions, as in \
-         --radii 33,33,33, or build it with the feature \"simulator\""
-            .into(),
-    ))
 }
 
 impl From<StudyError> for Failure {

@@ -6,7 +6,6 @@ use std::path::Path;
 use crate::cli::destination::Folder;
 use crate::cli::failure::Failure;
 use crate::cli::pictures;
-#[cfg(feature = "simulator")]
 use crate::cli::progress::Progress;
 use crate::cli::wrapped::hanging;
 use crate::cli::written::{print_json, stdout};
@@ -42,18 +41,10 @@ pub(super) fn run(device: &Device, noise_uv: f64, wanted: &Wanted<'_>) -> Result
     if wanted.json { print_json(&sizes) } else { Ok(write(&mut stdout(), &sizes, wanted.devices)?) }
 }
 
-#[cfg(feature = "simulator")]
 fn simulated(device: &Device, noise_uv: f64) -> Result<Sizes, Failure> {
     let progress = Progress::begin("solving the modules");
     Sizes::of(device, noise_uv, |done, of, what| progress.part(done, of, what))
         .map_err(|error| Failure::Failed(format!("the simulator: {error}")))
-}
-
-#[cfg(not(feature = "simulator"))]
-fn simulated(_device: &Device, _noise_uv: f64) -> Result<Sizes, Failure> {
-    Err(Failure::Unusable(
-        "this program was built without the simulator: build it with the feature \"simulator\"".into(),
-    ))
 }
 
 fn write(out: &mut impl Write, sizes: &Sizes, devices: Option<&Path>) -> io::Result<()> {

@@ -24,11 +24,8 @@ use tactpad::lab::metrology::dynamics::PadDynamics;
 use tactpad::lab::metrology::figures::{Evidence, Figures, Simulation};
 use tactpad::lab::metrology::report::entries;
 use tactpad::lab::metrology::{Decode, conflicts, drawing, procedures};
-#[cfg(feature = "simulator")]
 use tactpad::mechanics::mesh::Fineness;
-#[cfg(feature = "simulator")]
 use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
-#[cfg(feature = "simulator")]
 use tactpad::numeric::zernike::jets;
 use tactpad::pad::device::Device;
 use tactpad::tables::measured::columns::Kind;
@@ -168,7 +165,6 @@ fn of_twin(arguments: &Arguments) -> Result<MetrologyReport, Failure> {
 }
 
 /// The device's natural motions, and what they do to its step response.
-#[cfg(feature = "simulator")]
 fn dynamics(device: &Device) -> Result<Option<PadDynamics>, Failure> {
     let _progress = Progress::begin("looking for the pad's natural motions");
     let mut simulator = Simulator::new(Fineness::STANDARD);
@@ -178,11 +174,6 @@ fn dynamics(device: &Device) -> Result<Option<PadDynamics>, Failure> {
     let middle = jets(PLATE_DEGREE, [0.0; 2]);
     let still_uv_per_n = [2, 5, 8].iter().map(|channel: &usize| signals[*channel][2].value(&middle)).sum();
     Ok(PadDynamics::of(&motions, still_uv_per_n))
-}
-
-#[cfg(not(feature = "simulator"))]
-fn dynamics(_device: &Device) -> Result<Option<PadDynamics>, Failure> {
-    Ok(None)
 }
 
 impl Arguments {

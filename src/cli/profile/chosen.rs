@@ -22,7 +22,7 @@ pub(crate) fn file(name: &str) -> Option<PathBuf> {
 }
 
 /// Whether it is the name of the user's own profile, or of one inside the program.
-#[cfg(all(feature = "live", target_os = "linux"))]
+#[cfg(target_os = "linux")]
 pub(crate) fn is_known(name: &str) -> bool {
     own::file(name).is_some() || shipped::text(name).is_some()
 }
@@ -63,7 +63,7 @@ pub(super) fn find(name: &str) -> Result<Chosen, Failure> {
 }
 
 /// The profile after `name`, in the order of `profile list`, that can be used and from which a press leads on, with its name.
-#[cfg(all(feature = "live", target_os = "linux"))]
+#[cfg(target_os = "linux")]
 pub(crate) fn next(name: &str, output: OutputChoice) -> Option<(String, ReadProfile)> {
     let known = known();
     let at = known.iter().position(|it| it == name).map_or(0, |at| at + 1);

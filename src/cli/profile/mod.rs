@@ -18,7 +18,7 @@ mod stored;
 mod verdict;
 
 pub(super) use chosen::{file, read};
-#[cfg(all(feature = "live", target_os = "linux"))]
+#[cfg(target_os = "linux")]
 pub(super) use chosen::{is_known, known, next, read_aside};
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
 pub(super) use kept::{entries, save, stored};

@@ -2,11 +2,8 @@
 //! in figures and in ParaView's files.
 
 mod dataset_picture;
-#[cfg(feature = "simulator")]
 mod module;
-#[cfg(feature = "simulator")]
 mod pictures;
-#[cfg(feature = "simulator")]
 mod shown;
 
 use std::fmt;
@@ -161,14 +158,7 @@ impl Folders {
         if figures.is_none() && vtk.is_none() {
             return Ok(Vec::new());
         }
-        #[cfg(feature = "simulator")]
-        return shown::fill(device, self.at, figures, vtk);
-        #[cfg(not(feature = "simulator"))]
-        Err(Failure::Failed(format!(
-            "--figures and --vtk solve the pad {}, and this program was built without the simulator; build it with the \
-             feature \"simulator\"",
-            device.name
-        )))
+        shown::fill(device, self.at, figures, vtk)
     }
 }
 

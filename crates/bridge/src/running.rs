@@ -1,0 +1,557 @@
+//! The loop of a running bridge.
+
+use std::io;
+use std::ops::ControlFlow;
+use std::sync::{Arc, Mutex};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use crate::answer::{done, page, refused, weighing};
+use crate::clock::Clock;
+use crate::driver::{Driver, prepare};
+use crate::error::BridgeError;
+use crate::herald::Herald;
+use crate::host::Host;
+use crate::keeper::Keeper;
+use crate::latency::Durations;
+use crate::offer::{Offer, Standing, kept};
+use crate::parts::Parts;
+use crate::recorder::Recorder;
+use crate::request::{Asked, Request};
+use crate::requests::Requests;
+use crate::sight::{Known, look, state};
+use crate::signals;
+use crate::snapshot::{Drops, Snapshot};
+use tactpad_core::pipeline::call::Call;
+use tactpad_core::pipeline::capture::head::Head;
+use tactpad_core::pipeline::health::Health;
+use tactpad_core::pipeline::mapping::profile::Command;
+use tactpad_core::pipeline::mapping::read::ReadProfile;
+use tactpad_core::pipeline::mapping::stated::Commands;
+use tactpad_core::pipeline::{Phase, Pipeline};
+use tactpad_core::time::HostInstant;
+
+/// The snapshot for screens is renewed this often while a pad is there; without one whenever the bridge wakes.
+const SNAPSHOT_US: u64 = 40_000;
+
+/// Why a run ended well.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// Somebody asked for it.
+    Asked,
+    /// Its time was over.
+    TimeOver,
+    /// The pad was a capture, and it ended.
+    CaptureEnded,
+}
+
+/// The running bridge.
+pub struct Bridge {
+    driver: Driver,
+    decoder: Known,
+    standing: Standing,
+    keeper: Keeper,
+    requests: Requests,
+    host: Box<dyn Host>,
+    end_at: Option<HostInstant>,
+    herald: Herald,
+    snapshot: Arc<Mutex<Snapshot>>,
+    snapshot_at: HostInstant,
+    held_when_over: usize,
+    drops: Drops,
+    /// What the pad sent last.
+    bytes: [u8; 4096],
+}
+
+/// What woke the loop.
+#[derive(Clone, Copy, Debug)]
+struct Woken {
+    pad: bool,
+    request: bool,
+}
+
+impl Bridge {
+    /// A bridge that is ready to run. Its clock, and its capture if it records one, begin now.
+    ///
+    /// # Errors
+    /// The beginning of the capture cannot be written.
+    pub fn new(parts: Parts) -> io::Result<Self> {
+        let clock = Clock::start();
+        let now = clock.now();
+        let Parts {
+            pad,
+            patience,
+            decoder,
+            profile,
+            sink,
+            requests,
+            host,
+            record,
+            mut observers,
+            changes,
+            duration_us,
+        } = parts;
+        let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
+        let head = Head { decoder: decoder.file, profile: Some(profile) };
+        let decoder = Known { name: decoder.name, place: decoder.place, changes };
+        let recorder = record.map(|to| Recorder::begin(to, now, &head)).transpose()?;
+        let (latency, watchers) = (Arc::default(), requests.watchers());
+        let commands = Commands::new();
+        observers.iter_mut().for_each(|observer| observer.begin(clock, now, &pipeline));
+        let driver = Driver { pipeline, sink, recorder, clock, latency, commands, watchers, observers };
+        let keeper = Keeper::new(pad, patience, now);
+        let standing = Standing::begun();
+        let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, (&decoder, &standing))));
+        Ok(Self {
+            driver,
+            decoder,
+            standing,
+            keeper,
+            requests,
+            host,
+            end_at: duration_us.map(|duration_us| now.plus_us(duration_us)),
+            herald: Herald::new(now),
+            snapshot,
+            snapshot_at: now,
+            held_when_over: 0,
+            drops: Drops::default(),
+            bytes: [0; 4096],
+        })
+    }
+
+    /// The snapshot that screens read; it is renewed as long as somebody has it.
+    pub fn snapshot(&self) -> Arc<Mutex<Snapshot>> {
+        Arc::clone(&self.snapshot)
+    }
+
+    /// Durations from bytes readable to events written, one per group.
+    pub fn latency(&self) -> Durations {
+        self.driver.latency().clone()
+    }
+
+    /// The same, as they grow.
+    pub fn shared_latency(&self) -> Arc<Mutex<Durations>> {
+        Arc::clone(&self.driver.latency)
+    }
+
+    /// What went wrong so far.
+    pub const fn health(&self) -> &Health {
+        self.driver.pipeline.health()
+    }
+
+    /// How many controls were held when the run ended, before they were released.
+    pub const fn held_when_over(&self) -> usize {
+        self.held_when_over
+    }
+
+    /// What nobody had taken when the run ended.
+    pub const fn drops(&self) -> Drops {
+        self.drops
+    }
+
+    /// Plays until it is asked to end. Whatever the ending, everything held is released first. Logs and captures that take
+    /// nothing are waited for only a little.
+    ///
+    /// # Errors
+    /// See [`BridgeError`].
+    pub fn run(&mut self) -> Result<Ending, BridgeError> {
+        let ending = self.play();
+        self.held_when_over = self.driver.pipeline.held().count();
+        let released = self.driver.call(self.driver.clock.now(), Call::ReleaseAll);
+        // Before anything that takes time: a pad that nobody reads any more has to count what is not taken.
+        self.keeper.close();
+        let settled = self.driver.settle();
+        self.drops = self.driver.drops_at_end();
+        released.and(settled).and(ending)
+    }
+
+    fn play(&mut self) -> Result<Ending, BridgeError> {
+        prepare(self.driver.sink.as_mut(), self.driver.pipeline.profile())?;
+        let mut now = self.driver.clock.now();
+        loop {
+            // The deadline counts from the last wake-up: one clock read less, late by what the work took.
+            let woken = self.wait(now).map_err(BridgeError::Io)?;
+            now = self.driver.clock.now();
+            if let Some(ending) = self.turn(now, woken)? {
+                return Ok(ending);
+            }
+        }
+    }
+
+    /// Does what there is to do at `now`. The ending, if this was the last turn.
+    fn turn(&mut self, now: HostInstant, woken: Woken) -> Result<Option<Ending>, BridgeError> {
+        if woken.request
+            && let ControlFlow::Break(ending) = self.answer_requests(now)?
+        {
+            return Ok(ending);
+        }
+        if woken.pad {
+            if self.read_pad(now)? {
+                return Ok(Some(Ending::CaptureEnded));
+            }
+            self.obey(now)?;
+        } else {
+            self.driver.call_if_due(now)?;
+        }
+        if self.end_at.is_some_and(|end_at| end_at <= now) {
+            return Ok(Some(Ending::TimeOver));
+        }
+        self.keeper.attend(now, &self.driver.pipeline)?;
+        self.publish(now);
+        Ok(None)
+    }
+
+    /// Sleeps until the pad, a request or a deadline.
+    fn wait(&self, now: HostInstant) -> io::Result<Woken> {
+        let timeout = self.next_deadline().map(|deadline| until(now, deadline));
+        let request = PollFd::from_borrowed_fd(self.requests.fd(), PollFlags::IN);
+        let Some(pad) = self.keeper.pad() else {
+            let mut fds = [request];
+            poll_once(&mut fds, timeout.as_ref())?;
+            return Ok(Woken { pad: false, request: is_woken(&fds[0]) });
+        };
+        let mut fds = [PollFd::from_borrowed_fd(pad.fd(), PollFlags::IN), request];
+        poll_once(&mut fds, timeout.as_ref())?;
+        Ok(Woken { pad: is_woken(&fds[0]), request: is_woken(&fds[1]) })
+    }
+
+    /// When there is something to do though nobody asks and no pad speaks.
+    fn next_deadline(&self) -> Option<HostInstant> {
+        let pipeline = &self.driver.pipeline;
+        // Without a pad the picture stands still but for what the keeper finds, and that wakes the loop anyway.
+        let publish = self.keeper.pad().map(|_| self.snapshot_at.plus_us(SNAPSHOT_US));
+        let deadlines = [self.end_at, pipeline.poll_timeout(), self.keeper.next_deadline(pipeline), publish];
+        deadlines.into_iter().flatten().min()
+    }
+
+    /// Reads once. True if the pad was a capture that ended.
+    fn read_pad(&mut self, now: HostInstant) -> Result<bool, BridgeError> {
+        match self.keeper.read(&mut self.bytes) {
+            Ok(Some(read)) => {
+                self.driver.call(now, Call::Bytes(self.bytes.get(..read).unwrap_or_default()))?;
+            }
+            Ok(None) => self.driver.call_if_due(now)?,
+            Err(_) => {
+                // Release first: closing a port can take time.
+                self.driver.call(now, Call::Unplugged)?;
+                self.keeper.lose(now);
+                return Ok(!self.keeper.can_return());
+            }
+        }
+        Ok(false)
+    }
+
+    /// Breaks off the turn if somebody asks to end, or if the process was stopped: then `now` is long past.
+    fn answer_requests(&mut self, now: HostInstant) -> Result<ControlFlow<Option<Ending>>, BridgeError> {
+        while let Some(asked) = self.requests.take() {
+            match asked.request {
+                Request::End => {
+                    asked.answer(done());
+                    return Ok(ControlFlow::Break(Some(Ending::Asked)));
+                }
+                Request::Stop => {
+                    self.stop(now)?;
+                    return Ok(ControlFlow::Break(None));
+                }
+                _ => self.answer(now, &asked)?,
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Releases everything and stops the process. Once that is continued, takes up the line again where it then is: what
+    /// the pad said meanwhile is old.
+    fn stop(&mut self, now: HostInstant) -> Result<(), BridgeError> {
+        self.driver.call(now, Call::ReleaseAll)?;
+        // Threads that write stop with the process.
+        self.driver.sink.settle().map_err(BridgeError::Sink)?;
+        signals::stop_process().map_err(BridgeError::Io)?;
+        let now = self.driver.clock.now();
+        self.driver.call_if_due(now)?;
+        self.keeper.skip(now, &mut self.bytes);
+        Ok(())
+    }
+
+    fn answer(&mut self, now: HostInstant, asked: &Asked) -> Result<(), BridgeError> {
+        let answer = match &asked.request {
+            Request::Status => self.status(now),
+            Request::Page => page(self.host.page()),
+            Request::Preview(read) => self.preview(now, read)?,
+            Request::Profile(name) => {
+                let read = self.host.read_profile(name.as_deref());
+                self.change_profile(now, read, name.is_some())?
+            }
+            Request::NextProfile => {
+                let read = self.host.next_profile();
+                self.change_profile(now, read, true)?
+            }
+            Request::Offer(offer) => self.consider(now, offer)?,
+            Request::Weigh(weight) => {
+                self.driver.call(now, Call::Weigh(*weight))?;
+                weighing(self.driver.pipeline.weighing().map_or(0, |it| it.number))
+            }
+            request => {
+                let call = match request {
+                    Request::ReleaseAll => Call::ReleaseAll,
+                    Request::Retare => Call::Retare,
+                    Request::Resume => Call::Resume,
+                    Request::TogglePause if self.driver.pipeline.phase() == Phase::Paused => Call::Resume,
+                    _ => Call::Pause,
+                };
+                self.driver.call(now, call)?;
+                done()
+            }
+        };
+        asked.answer(answer);
+        Ok(())
+    }
+
+    /// Does what presses asked for.
+    fn obey(&mut self, now: HostInstant) -> Result<(), BridgeError> {
+        for command in std::mem::take(&mut self.driver.commands) {
+            let request = match command {
+                Command::NextProfile => Request::NextProfile,
+                Command::Profile(name) => Request::Profile(Some(name.to_string())),
+                Command::TogglePause => Request::TogglePause,
+                Command::Panic => Request::ReleaseAll,
+                Command::Tare => Request::Retare,
+            };
+            self.answer(now, &Asked::unanswered(request))?;
+        }
+        Ok(())
+    }
+
+    /// Goes over to another profile; one that cannot be used changes nothing.
+    fn change_profile(
+        &mut self,
+        now: HostInstant,
+        read: Result<ReadProfile, String>,
+        is_named: bool,
+    ) -> Result<String, BridgeError> {
+        match read.and_then(|read| self.prepared(read)) {
+            Ok(read) => {
+                self.host.tell(&format!("profile {}", read.profile().name));
+                self.standing.asked(is_named);
+                self.driver.call(now, Call::Profile(&read))?;
+                Ok(done())
+            }
+            Err(error) => {
+                self.host.tell(&kept(&error));
+                Ok(refused(&error))
+            }
+        }
+    }
+
+    /// Plays a profile that is not kept yet. One that cannot be used changes nothing.
+    fn preview(&mut self, now: HostInstant, read: &ReadProfile) -> Result<String, BridgeError> {
+        match prepare(self.driver.sink.as_mut(), read.profile()) {
+            Ok(()) => {
+                self.standing.previewed();
+                self.driver.call(now, Call::Profile(read))?;
+                Ok(done())
+            }
+            Err(error) => Ok(refused(&error.to_string())),
+        }
+    }
+
+    /// Goes over to a profile that is offered, if people have not asked for another one meanwhile. What does not differ from the one
+    /// that is played changes nothing, nor does one that cannot be used.
+    fn consider(&mut self, now: HostInstant, offer: &Offer) -> Result<String, BridgeError> {
+        if !self.host.wants(offer) {
+            return Ok(done());
+        }
+        let read = offer.read.clone().and_then(|read| self.prepared(read));
+        let is_same = read.as_ref().is_ok_and(|read| read.profile() == self.driver.pipeline.profile());
+        if let Some(line) = self.standing.offered(offer, read.as_ref().map(|read| (read.profile(), is_same)))
+        {
+            self.host.tell(&line);
+        }
+        match &read {
+            Ok(read) if !is_same => self.driver.call(now, Call::Profile(read))?,
+            _ => {}
+        }
+        Ok(done())
+    }
+
+    /// A profile whose devices are there; the error is for people.
+    fn prepared(&mut self, read: ReadProfile) -> Result<ReadProfile, String> {
+        match prepare(self.driver.sink.as_mut(), read.profile()) {
+            Ok(()) => Ok(read),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    fn look(&self, now: HostInstant) -> Snapshot {
+        look(now, &self.driver, &self.keeper, (&self.decoder, &self.standing))
+    }
+
+    fn status(&self, now: HostInstant) -> String {
+        serde_json::to_string(&self.look(now).status).unwrap_or_else(|error| error.to_string())
+    }
+
+    /// Renews the snapshot, and tells a state that lasts.
+    fn publish(&mut self, now: HostInstant) {
+        if now.us_since(self.snapshot_at) < SNAPSHOT_US {
+            return;
+        }
+        self.snapshot_at = now;
+        if let Some(state) = self.herald.hear(now, state(&self.driver, &self.keeper)) {
+            self.host.tell(state.sentence());
+        }
+        if let Some(warning) = self.herald.warn(self.driver.pipeline.warning()) {
+            self.host.tell(&warning.to_string());
+        }
+        if let Some(line) = self.herald.weighed(self.driver.pipeline.weighing()) {
+            self.host.tell(&line);
+        }
+        for line in self.herald.drops(self.driver.drops()).into_iter().flatten() {
+            self.host.tell(line);
+        }
+        let is_shown = Arc::strong_count(&self.snapshot) > 1;
+        if is_shown && let Ok(mut snapshot) = self.snapshot.try_lock() {
+            *snapshot = self.look(now);
+        }
+    }
+}
+
+fn is_woken(fd: &PollFd<'_>) -> bool {
+    !fd.revents().is_empty()
+}
+
+fn until(now: HostInstant, deadline: HostInstant) -> Timespec {
+    let wait_ns = deadline.as_ns().saturating_sub(now.as_ns()).min(i64::MAX as u64);
+    Timespec { tv_sec: (wait_ns / 1_000_000_000) as i64, tv_nsec: (wait_ns % 1_000_000_000) as i64 }
+}
+
+/// Polls; a signal that interrupts it is seen through the requests' descriptor.
+fn poll_once(fds: &mut [PollFd<'_>], timeout: Option<&Timespec>) -> io::Result<()> {
+    match poll(fds, timeout) {
+        Ok(_) | Err(rustix::io::Errno::INTR) => Ok(()),
+        Err(error) => Err(error.into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+    use crate::changes::ChangesSlot;
+    use crate::opening::{OpenedPad, Patience};
+    use crate::parts::PlayingDecoder;
+    use crate::sink::null::NullSink;
+    use crate::transport::pads::PadError;
+    use tactpad_core::pipeline::mapping::check::OutputChoice;
+    use tactpad_core::pipeline::mapping::shipped as profiles;
+    use tactpad_core::pipeline::shipped;
+
+    /// Remembers what it was told.
+    #[derive(Clone, Default)]
+    struct Ear(Arc<Mutex<Vec<String>>>);
+
+    impl Host for Ear {
+        fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
+            let text = name.and_then(profiles::text).ok_or("there is none")?;
+            ReadProfile::read(text, OutputChoice::AsWritten).0.ok_or("it has errors".into())
+        }
+
+        fn next_profile(&mut self) -> Result<ReadProfile, String> {
+            Err("there is no next one".into())
+        }
+
+        fn tell(&mut self, line: &str) {
+            self.0.lock().unwrap().push(line.into());
+        }
+    }
+
+    /// A bridge whose pad never comes, what it tells, and how often it looked for the pad.
+    fn without_pad() -> (Bridge, Ear, Arc<AtomicUsize>) {
+        let (ear, looked) = (Ear::default(), Arc::new(AtomicUsize::new(0)));
+        let looking = Arc::clone(&looked);
+        let pad = OpenedPad::absent(Box::new(move || {
+            looking.fetch_add(1, Ordering::Relaxed);
+            Err(PadError::NotThere("no".into()))
+        }));
+        let bridge = Bridge::new(Parts {
+            pad,
+            patience: Patience::Endless,
+            decoder: PlayingDecoder {
+                decoder: shipped::decoder(),
+                name: "inverse".into(),
+                place: None,
+                file: None,
+            },
+            profile: ear.clone().read_profile(Some("contra")).unwrap(),
+            sink: Box::new(NullSink),
+            requests: Requests::new().unwrap(),
+            host: Box::new(ear.clone()),
+            record: None,
+            observers: Vec::new(),
+            changes: ChangesSlot::default(),
+            duration_us: None,
+        });
+        (bridge.unwrap(), ear, looked)
+    }
+
+    const ASLEEP: Woken = Woken { pad: false, request: false };
+
+    /// Lets the bridge wake when it wants to until `end`; how often it did.
+    fn wake_ups(bridge: &mut Bridge, end: HostInstant) -> usize {
+        let mut count = 0;
+        while let Some(now) = bridge.next_deadline().filter(|now| *now < end) {
+            assert_eq!(bridge.turn(now, ASLEEP).unwrap(), None);
+            count += 1;
+        }
+        count
+    }
+
+    #[test]
+    fn without_a_pad_it_wakes_at_most_five_times_a_second_and_still_looks_and_tells() {
+        let (mut bridge, ear, looked) = without_pad();
+        let snapshot = bridge.snapshot();
+        let begin = bridge.snapshot_at;
+        let count = wake_ups(&mut bridge, begin.plus_us(10_000_000));
+        assert!(count <= 50, "{count} times in ten seconds");
+        let looked = looked.load(Ordering::Relaxed);
+        assert!(looked >= 35, "it looked {looked} times");
+        assert_eq!(*ear.0.lock().unwrap(), ["waiting for the pad: plug it in"]);
+        assert!(snapshot.lock().unwrap().at >= begin.plus_us(9_000_000), "the picture is old");
+    }
+
+    #[test]
+    fn another_profile_is_taken_and_one_that_cannot_be_read_is_told() {
+        let (mut bridge, ear, _) = without_pad();
+        let now = bridge.snapshot_at;
+        let read = bridge.host.read_profile(Some("tetris"));
+        assert_eq!(bridge.change_profile(now, read, true).unwrap(), done());
+        assert_eq!(bridge.look(now).status.profile, "Tetris");
+        let read = bridge.host.read_profile(None);
+        let answer = bridge.change_profile(now, read, false).unwrap();
+        assert_eq!(answer, r#"{"error":"there is none","ok":false}"#);
+        assert_eq!(*ear.0.lock().unwrap(), ["profile Tetris", "there is none\nthe profile in use stays"]);
+    }
+
+    #[test]
+    fn what_a_press_asks_for_is_done() {
+        let (mut bridge, ear, _) = without_pad();
+        let now = bridge.snapshot_at;
+        let mut ask = |command| {
+            bridge.driver.commands.push(command);
+            bridge.obey(now).unwrap();
+            (bridge.driver.pipeline.phase(), bridge.look(now).status.profile)
+        };
+        assert_eq!(ask(Command::TogglePause).0, Phase::Paused);
+        assert_eq!(ask(Command::TogglePause).0, Phase::Waiting);
+        assert_eq!(ask(Command::Profile("tetris".try_into().unwrap())).1, "Tetris");
+        assert_eq!(ask(Command::NextProfile).1, "Tetris");
+        let told = ear.0.lock().unwrap();
+        assert_eq!(*told, ["profile Tetris", "there is no next one\nthe profile in use stays"]);
+    }
+
+    #[test]
+    fn a_program_ends_its_own_bridge_without_signals() {
+        let (mut bridge, ..) = without_pad();
+        bridge.requests.asker().unwrap().ask(Request::End).unwrap();
+        assert_eq!(bridge.run().unwrap(), Ending::Asked);
+    }
+}

@@ -1,0 +1,294 @@
+//! Key presses and the pointer through the X server, for machines where no virtual device may be made.
+//!
+//! They reach X11 programs only, and nothing releases them when the program is killed; dropping the sink
+//! does. Keys go out by number, not by symbol: the X server numbers a key 8 higher than the kernel, so a
+//! profile means the same key here as with the virtual keyboard.
+//!
+//! The pointer goes through enigo. Keys do not: for each, enigo asks the server for all its devices before it
+//! sends the key, which takes more than twice as long; and a symbol that the layout has only with Shift it
+//! moves to a spare key, after which each press comes 12 ms late (enigo-rs/enigo#489).
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use enigo::{Axis, Button, Coordinate, Direction, Enigo, InputResult, Mouse, NewConError, Settings};
+use x11rb::connection::Connection;
+use x11rb::errors::{ConnectError, ReplyError};
+use x11rb::protocol::xproto::{ConnectionExt as _, KEY_PRESS_EVENT, KEY_RELEASE_EVENT};
+use x11rb::protocol::xtest::ConnectionExt as _;
+use x11rb::rust_connection::RustConnection;
+
+use super::{Sink, SinkError};
+use tactpad_core::pipeline::control::names::{POINTER_PLACE_MAX, POINTER_WHEEL};
+use tactpad_core::pipeline::control::{Code, OutputDevice, OutputEvent};
+use tactpad_core::pipeline::mapping::profile::Binding;
+
+/// What the X server adds to the kernel's number of a key.
+const OFFSET: u16 = 8;
+
+/// A key that every layout has in the same place: up, with its symbol `XK_Up`.
+const UP: (u8, u32) = (111, 0xff52);
+
+/// Key presses and the pointer on one X display. Dropping it releases what it holds.
+pub struct X11Sink {
+    connection: RustConnection,
+    /// Moves the pointer; made when the pointer is first prepared.
+    enigo: Option<Enigo>,
+    display: String,
+    /// Whether the layout gives the key of this number a symbol.
+    has_symbol: Vec<bool>,
+    held: Vec<Act>,
+}
+
+/// One thing for the X server to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Act {
+    /// The key of this number, on its way down or up.
+    Key(u8, Direction),
+    /// A button of the pointer, on its way down or up.
+    Button(Button, Direction),
+    /// The pointer by so many counts to the right and down.
+    Move(i32, i32),
+    /// The pointer to this share of the screen's width.
+    Across(i32),
+    /// The pointer to this share of the screen's height.
+    Down(i32),
+    /// The wheel by so many notches towards the hand.
+    Scroll(i32),
+}
+
+impl X11Sink {
+    /// Connects to `display`, for example `:0`, or to the one of the environment.
+    ///
+    /// # Errors
+    /// No X server answers, or it takes no key presses from programs, or it numbers its keys in another way.
+    pub fn open(display: Option<&str>) -> Result<Self, SinkError> {
+        let environment = || std::env::var("DISPLAY").unwrap_or_default();
+        let place = display.map_or_else(environment, str::to_owned);
+        let (connection, _) = x11rb::connect(display).map_err(|error| no_server(&place, &error))?;
+        let has_symbol = read_layout(&connection, &place)?;
+        Ok(Self { connection, enigo: None, display: place, has_symbol, held: Vec::new() })
+    }
+
+    fn act(&self, event: &OutputEvent) -> Result<Act, SinkError> {
+        let direction = if event.value == 0 { Direction::Release } else { Direction::Press };
+        match (event.device, event.code) {
+            (OutputDevice::Gamepad, _) => Err(no_gamepad()),
+            (OutputDevice::Keyboard, code) => self.key(code).map(|key| Act::Key(key, direction)),
+            (OutputDevice::Pointer, Code::Relative(0x00)) => Ok(Act::Move(event.value, 0)),
+            (OutputDevice::Pointer, Code::Relative(0x01)) => Ok(Act::Move(0, event.value)),
+            (OutputDevice::Pointer, POINTER_WHEEL) => Ok(Act::Scroll(-event.value)),
+            (OutputDevice::Pointer, Code::Key(0x110)) => Ok(Act::Button(Button::Left, direction)),
+            (OutputDevice::Pointer, Code::Key(0x111)) => Ok(Act::Button(Button::Right, direction)),
+            (OutputDevice::Pointer, Code::Key(0x112)) => Ok(Act::Button(Button::Middle, direction)),
+            (OutputDevice::Tablet, Code::Axis(0x00)) => Ok(Act::Across(event.value)),
+            (OutputDevice::Tablet, Code::Axis(0x01)) => Ok(Act::Down(event.value)),
+            (OutputDevice::Pointer | OutputDevice::Tablet, code) => Err(no_such_movement(code)),
+        }
+    }
+
+    fn key(&self, code: Code) -> Result<u8, SinkError> {
+        let number = if let Code::Key(number) = code { number.saturating_add(OFFSET) } else { 0 };
+        let key = u8::try_from(number).ok();
+        let has_symbol = |key: &u8| self.has_symbol.get(usize::from(*key)) == Some(&true);
+        key.filter(has_symbol).ok_or_else(|| self.no_key(code))
+    }
+
+    /// Has it done, and waits until it is.
+    fn perform(&mut self, act: Act) -> Result<(), SinkError> {
+        match act {
+            Act::Key(key, direction) => self.send_key(key, direction)?,
+            Act::Button(button, direction) => {
+                let done = self.enigo()?.button(button, direction);
+                done.map_err(|error| lost(&self.display, &error))?;
+            }
+            Act::Across(share) | Act::Down(share) => {
+                let is_across = matches!(act, Act::Across(_));
+                let done = go_to(self.enigo()?, share, is_across);
+                done.map_err(|error| lost(&self.display, &error))?;
+            }
+            Act::Move(right, down) => {
+                let done = self.enigo()?.move_mouse(right, down, Coordinate::Rel);
+                done.map_err(|error| lost(&self.display, &error))?;
+            }
+            Act::Scroll(notches) => {
+                let done = self.enigo()?.scroll(notches, Axis::Vertical);
+                done.map_err(|error| lost(&self.display, &error))?;
+            }
+        }
+        self.remember(act);
+        Ok(())
+    }
+
+    fn send_key(&self, key: u8, direction: Direction) -> Result<(), SinkError> {
+        let kind = if direction == Direction::Press { KEY_PRESS_EVENT } else { KEY_RELEASE_EVENT };
+        let sent = self.connection.xtest_fake_input(kind, key, x11rb::CURRENT_TIME, x11rb::NONE, 0, 0, 0);
+        let done = sent.map_err(ReplyError::from).and_then(|sent| sent.check());
+        done.map_err(|error| lost(&self.display, &error))
+    }
+
+    /// Keeps the acts that release what is down.
+    fn remember(&mut self, act: Act) {
+        let release = match act {
+            Act::Key(key, _) => Act::Key(key, Direction::Release),
+            Act::Button(button, _) => Act::Button(button, Direction::Release),
+            Act::Move(..) | Act::Across(_) | Act::Down(_) | Act::Scroll(_) => return,
+        };
+        self.held.retain(|held| *held != release);
+        if act != release {
+            self.held.push(release);
+        }
+    }
+
+    fn enigo(&mut self) -> Result<&mut Enigo, SinkError> {
+        match &mut self.enigo {
+            Some(enigo) => Ok(enigo),
+            place => {
+                // Its delay is for buttons: each would come that much later.
+                let display = Some(self.display.clone()).filter(|display| !display.is_empty());
+                let settings = Settings { linux_delay: 0, x11_display: display, ..Settings::default() };
+                let made = Enigo::new(&settings).map_err(|error| no_injection(&self.display, &error))?;
+                Ok(place.insert(made))
+            }
+        }
+    }
+
+    fn no_key(&self, code: Code) -> SinkError {
+        self.no_keys(&code.to_string())
+    }
+
+    fn no_keys(&self, names: &str) -> SinkError {
+        let message = format!(
+            "the keyboard layout of X display {} has no {names}: bind other keys or use `--output uinput`",
+            self.display
+        );
+        SinkError { message }
+    }
+}
+
+/// Puts the pointer to a share of the screen, across it or down; along the other side it stays where it is.
+fn go_to(enigo: &mut Enigo, share: i32, is_across: bool) -> InputResult<()> {
+    let ((width, height), (x, y)) = (enigo.main_display()?, enigo.location()?);
+    // Share 1 is the first pixel, the last share is the last one.
+    let pixel = |size: i32| {
+        let way = i64::from(share - 1) * i64::from(size - 1) / i64::from(POINTER_PLACE_MAX - 1);
+        i32::try_from(way).unwrap_or(0)
+    };
+    let (x, y) = if is_across { (pixel(width), y) } else { (x, pixel(height)) };
+    enigo.move_mouse(x, y, Coordinate::Abs)
+}
+
+/// For each key number of the server, whether it has a symbol; checks on the way that key presses can be
+/// sent.
+fn read_layout(connection: &impl Connection, place: &str) -> Result<Vec<bool>, SinkError> {
+    let failed = |error: ReplyError| no_answer(place, &error);
+    let present = |name: &[u8]| connection.query_extension(name)?.reply().map(|reply| reply.present);
+    if !present(b"XTEST").map_err(failed)? || !present(b"XInputExtension").map_err(failed)? {
+        return Err(no_extension(place));
+    }
+    let (first, last) = (connection.setup().min_keycode, connection.setup().max_keycode);
+    let count = last.saturating_sub(first).saturating_add(1);
+    let mapping = connection.get_keyboard_mapping(first, count).map_err(ReplyError::from);
+    let mapping = mapping.and_then(|cookie| cookie.reply()).map_err(failed)?;
+    let width = usize::from(mapping.keysyms_per_keycode).max(1);
+    let symbols = |key: u8| mapping.keysyms.chunks(width).nth(usize::from(key.checked_sub(first)?));
+    if !symbols(UP.0).is_some_and(|of_key| of_key.contains(&UP.1)) {
+        return Err(other_numbers(place));
+    }
+    let has_symbol = |key| symbols(key).is_some_and(|of_key| of_key.iter().any(|symbol| *symbol != 0));
+    Ok((0..=u8::MAX).map(has_symbol).collect())
+}
+
+impl Sink for X11Sink {
+    fn prepare(&mut self, device: OutputDevice) -> Result<(), SinkError> {
+        match device {
+            OutputDevice::Keyboard => Ok(()),
+            OutputDevice::Gamepad => Err(no_gamepad()),
+            OutputDevice::Pointer | OutputDevice::Tablet => self.enigo().map(|_| ()),
+        }
+    }
+
+    fn accepts(&self, bindings: &[Binding]) -> Result<(), SinkError> {
+        let keys = bindings.iter().filter(|binding| binding.device == OutputDevice::Keyboard);
+        let lacking: BTreeSet<Code> =
+            keys.map(|binding| binding.code).filter(|code| self.key(*code).is_err()).collect();
+        let lacking: Vec<String> = lacking.iter().map(Code::to_string).collect();
+        if lacking.is_empty() { Ok(()) } else { Err(self.no_keys(&lacking.join(", "))) }
+    }
+
+    /// Sends one event after the other: the X server knows no groups.
+    fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {
+        for event in group {
+            self.act(event)?;
+        }
+        for event in group {
+            let act = self.act(event)?;
+            self.perform(act)?;
+        }
+        Ok(())
+    }
+
+    fn describe(&self) -> String {
+        format!("keys and pointer of X display {} (X11 programs only)", self.display)
+    }
+}
+
+impl Drop for X11Sink {
+    fn drop(&mut self) {
+        for release in std::mem::take(&mut self.held) {
+            // Where this fails the server is gone, and with it what it held.
+            let _ = self.perform(release);
+        }
+    }
+}
+
+fn no_gamepad() -> SinkError {
+    let message =
+        "the X server has no gamepads: set `output = \"keyboard\"` in the profile or use `--output uinput`";
+    SinkError { message: message.into() }
+}
+
+fn no_such_movement(code: Code) -> SinkError {
+    SinkError { message: format!("the pointer of the X server has no {code}: use `--output uinput`") }
+}
+
+fn no_server(place: &str, error: &ConnectError) -> SinkError {
+    let message = if place.is_empty() {
+        "no X server: DISPLAY is not set, so run this in a desktop session or use `--output uinput`".into()
+    } else {
+        format!("no X server answers on display `{place}` ({error}): set DISPLAY or use `--output uinput`")
+    };
+    SinkError { message }
+}
+
+fn no_answer(place: &str, error: &ReplyError) -> SinkError {
+    SinkError {
+        message: format!("X display {place} does not say which keys it has ({error}): use `--output uinput`"),
+    }
+}
+
+fn no_extension(place: &str) -> SinkError {
+    let message = format!(
+        "X display {place} takes no key presses from programs: start its server with the extension XTEST or \
+         use `--output uinput`"
+    );
+    SinkError { message }
+}
+
+fn no_injection(place: &str, error: &NewConError) -> SinkError {
+    SinkError {
+        message: format!("the pointer of X display {place} cannot be moved ({error}): use `--output uinput`"),
+    }
+}
+
+fn other_numbers(place: &str) -> SinkError {
+    let message = format!(
+        "X display {place} does not number its keys as Linux does, so wrong ones would be pressed: use \
+         `--output uinput`"
+    );
+    SinkError { message }
+}
+
+fn lost(place: &str, error: &impl fmt::Display) -> SinkError {
+    SinkError { message: format!("X display {place} takes no events any more ({error}): start again") }
+}

@@ -1,0 +1,99 @@
+//! What the bridge is doing, in words: for the screen, for `ctl status`, and for the terminal.
+
+use serde::Serialize;
+
+use crate::keeper::Absence;
+use tactpad_core::pipeline::{Phase, Pipeline};
+
+/// What the bridge is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum State {
+    /// No pad is there.
+    Waiting,
+    /// The pad is there but may not be opened.
+    Denied,
+    /// Several pads are there, or something that cannot be used.
+    Unclear,
+    /// The pad is open and sends nothing sound.
+    Silent,
+    /// The zero is being measured.
+    Taring,
+    /// The zero cannot be measured: something lies on the pad.
+    Loaded,
+    /// Contacts become events.
+    Playing,
+    /// A known weight is weighed, or lies there still.
+    Weighing,
+    /// Frames are lost, repeated or damaged, so that no contact is believed.
+    Doubtful,
+    /// A channel cannot be trusted.
+    Faulty,
+    /// The player paused.
+    Paused,
+    /// The pad cannot be played with.
+    Refused,
+}
+
+impl State {
+    pub(super) fn of(pipeline: &Pipeline, absence: Option<Absence>) -> Self {
+        match (pipeline.phase(), absence) {
+            (Phase::Paused, _) => Self::Paused,
+            (_, Some(Absence::Denied)) => Self::Denied,
+            (_, Some(Absence::Unclear)) => Self::Unclear,
+            (_, Some(Absence::Gone)) => Self::Waiting,
+            (Phase::Refused, None) => Self::Refused,
+            (Phase::Waiting, None) => Self::Silent,
+            (Phase::Taring, None) => Self::Taring,
+            (Phase::Loaded, None) => Self::Loaded,
+            (Phase::Playing, None) => Self::Playing,
+            (Phase::Weighing, None) => Self::Weighing,
+            (Phase::Doubtful, None) => Self::Doubtful,
+            (Phase::Faulty, None) => Self::Faulty,
+        }
+    }
+
+    /// One word.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Denied => "denied",
+            Self::Unclear => "unclear",
+            Self::Silent => "silent",
+            Self::Taring => "taring",
+            Self::Loaded => "loaded",
+            Self::Playing => "playing",
+            Self::Weighing => "weighing",
+            Self::Doubtful => "doubtful",
+            Self::Faulty => "faulty",
+            Self::Paused => "paused",
+            Self::Refused => "refused",
+        }
+    }
+
+    /// A sentence with the way out.
+    pub const fn sentence(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting for the pad: plug it in",
+            Self::Denied => {
+                "the pad is there but may not be opened, or is in use: `tactpad doctor` says how to mend it"
+            }
+            Self::Unclear => {
+                "several pads are attached, or what cannot be used: `tactpad devices` lists them"
+            }
+            Self::Silent => "the pad sends nothing that can be read: check its power and its line",
+            Self::Taring => "measuring the zero: leave the pad untouched for a moment",
+            Self::Loaded => "lift the finger: the zero is measured when nothing lies on the pad",
+            Self::Playing => "playing",
+            Self::Weighing => {
+                "weighing: nothing is pressed before the weight was put down and taken away again"
+            }
+            Self::Doubtful => "frames are lost, repeated or damaged, nothing is pressed: check the line",
+            Self::Faulty => {
+                "a channel is saturated, stuck or without supply, nothing is pressed: check the pad"
+            }
+            Self::Paused => "paused",
+            Self::Refused => "this pad cannot be played with: update tactpad, or check the pad's firmware",
+        }
+    }
+}

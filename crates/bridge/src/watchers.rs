@@ -1,0 +1,226 @@
+//! Those who watch what becomes of presses: a line of JSON for each, behind a queue, so that nobody holds up the bridge.
+
+use std::io;
+use std::net::Shutdown;
+use std::os::unix::net::UnixStream;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use serde::Serialize;
+
+use crate::queue::{Group, Queue};
+use tactpad_core::pipeline::mapping::verdict::{Reason, Told, Verdict};
+
+/// So many may watch at a time.
+const WATCHERS_MAX: usize = 8;
+
+/// So much may wait for one that does not read: some hundred presses.
+const QUEUE_BYTES_MAX: usize = 16 << 10;
+
+/// All who watch; clones are the same ones.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Watchers {
+    all: Arc<Mutex<Vec<Watcher>>>,
+    /// How many there are, for a look that costs nothing.
+    count: Arc<AtomicUsize>,
+}
+
+struct Watcher {
+    stream: UnixStream,
+    lines: Queue,
+    /// Presses that found no room since the last line.
+    lost: u64,
+}
+
+/// A press as watchers read it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Line {
+    t_us: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    button: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    direction: Option<&'static str>,
+    press: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<Reason>,
+    /// How many presses before this one are not told, because they were not read in time.
+    #[serde(skip_serializing_if = "is_none")]
+    lost: u64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+const fn is_none(lost: &u64) -> bool {
+    *lost == 0
+}
+
+impl Line {
+    /// That of a verdict, before which so many were lost.
+    pub fn of(verdict: &Verdict, lost: u64) -> Self {
+        let (button, direction, rejected) = match verdict.told {
+            Told::Button { number, rejected } => (Some(number), None, rejected),
+            Told::Direction { direction, rejected } => (None, Some(direction.name()), rejected),
+            Told::Rest => (None, None, None),
+        };
+        let press = match verdict.told {
+            Told::Rest => "rest",
+            _ if rejected.is_some() => "rejected",
+            _ => "accepted",
+        };
+        Self { t_us: verdict.t.as_us(), button, direction, press, reason: rejected, lost }
+    }
+}
+
+impl Watchers {
+    /// Lets one more watch. False if there are too many.
+    ///
+    /// # Errors
+    /// The system has no thread or descriptor to give.
+    pub(super) fn add(&self, stream: &UnixStream) -> io::Result<bool> {
+        let mut all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
+        all.retain(|watcher| !watcher.has_left());
+        if all.len() == WATCHERS_MAX {
+            return Ok(false);
+        }
+        stream.set_nonblocking(false)?;
+        let lines = Queue::start("watch", stream.try_clone()?, QUEUE_BYTES_MAX)?;
+        lines.push(Group { bytes: b"{\"ok\":true}\n".to_vec(), ..Group::default() })?;
+        all.push(Watcher { stream: stream.try_clone()?, lines, lost: 0 });
+        self.count.store(all.len(), Ordering::Release);
+        Ok(true)
+    }
+
+    /// Tells everybody. Who went away is forgotten.
+    pub(super) fn tell(&self, verdicts: &[Verdict]) {
+        if verdicts.is_empty() || self.count.load(Ordering::Acquire) == 0 {
+            return;
+        }
+        // Somebody is being let in: these presses come before it watches, or are lost.
+        let Ok(mut all) = self.all.try_lock() else { return };
+        all.retain_mut(|watcher| verdicts.iter().all(|verdict| watcher.tell(verdict).is_ok()));
+        self.count.store(all.len(), Ordering::Release);
+    }
+}
+
+impl Watcher {
+    /// Whether its other end is gone.
+    fn has_left(&self) -> bool {
+        let mut asked = [PollFd::new(&self.stream, PollFlags::empty())];
+        let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
+        poll(&mut asked, Some(&at_once)).is_ok()
+            && asked[0].revents().intersects(PollFlags::HUP | PollFlags::ERR)
+    }
+
+    /// Hands a line on, or counts it as lost.
+    fn tell(&mut self, verdict: &Verdict) -> io::Result<()> {
+        let line = Line::of(verdict, self.lost);
+        let bytes = (serde_json::to_string(&line).map_err(io::Error::other)? + "\n").into_bytes();
+        let is_taken = self.lines.push(Group { bytes, count: 1, written: None })?;
+        self.lost = if is_taken { 0 } else { self.lost + 1 };
+        Ok(())
+    }
+}
+
+impl Drop for Watcher {
+    fn drop(&mut self) {
+        if self.lines.waiting() > 0 {
+            // Who does not read is not waited for.
+            let _ = self.stream.shutdown(Shutdown::Both);
+        }
+    }
+}
+
+impl std::fmt::Debug for Watcher {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Watcher").field("lost", &self.lost).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{BufRead, BufReader};
+
+    use super::*;
+    use tactpad_core::pipeline::mapping::profile::Direction;
+    use tactpad_core::time::StreamInstant;
+
+    fn verdict(us: u64, rejected: Option<Reason>) -> Verdict {
+        Verdict { t: StreamInstant::from_us(us), told: Told::Button { number: 2, rejected } }
+    }
+
+    #[test]
+    fn directions_and_hands_that_rest_have_lines_of_their_own() {
+        let line = |told| {
+            let verdict = Verdict { t: StreamInstant::from_us(7), told };
+            serde_json::to_string(&Line::of(&verdict, 0)).unwrap()
+        };
+        let left = |rejected| Told::Direction { direction: Direction::Left, rejected };
+        assert_eq!(line(left(None)), r#"{"t_us":7,"direction":"left","press":"accepted"}"#);
+        assert_eq!(
+            line(left(Some(Reason::Slow))),
+            r#"{"t_us":7,"direction":"left","press":"rejected","reason":"slow"}"#
+        );
+        assert_eq!(line(Told::Rest), r#"{"t_us":7,"press":"rest"}"#);
+    }
+
+    #[test]
+    fn a_watcher_reads_a_line_for_each_press() {
+        let (client, served) = UnixStream::pair().unwrap();
+        let watchers = Watchers::default();
+        watchers.tell(&[verdict(1, None)]);
+        assert!(watchers.add(&served).unwrap());
+        watchers.tell(&[verdict(5, None), verdict(9, Some(Reason::Bounce))]);
+        let lines: Vec<_> = BufReader::new(&client).lines().take(3).map(Result::unwrap).collect();
+        let expected = [
+            r#"{"ok":true}"#,
+            r#"{"t_us":5,"button":2,"press":"accepted"}"#,
+            r#"{"t_us":9,"button":2,"press":"rejected","reason":"bounce"}"#,
+        ];
+        assert_eq!(lines, expected);
+    }
+
+    #[test]
+    fn who_does_not_read_loses_presses_that_are_counted_and_holds_up_nobody() {
+        let (client, served) = UnixStream::pair().unwrap();
+        let watchers = Watchers::default();
+        assert!(watchers.add(&served).unwrap());
+        // More than a socket and the queue keep.
+        (0..40_000).for_each(|us| watchers.tell(&[verdict(us, None)]));
+        assert!(watchers.all.lock().unwrap()[0].lost > 0);
+        let reading = std::thread::spawn(move || {
+            let (mut told, mut lost) = (0, 0);
+            for line in BufReader::new(client).lines().skip(1) {
+                let line: serde_json::Value = serde_json::from_str(&line.unwrap()).unwrap();
+                lost += line["lost"].as_u64().unwrap_or(0);
+                if line["reason"] == "slow" {
+                    return (told, lost);
+                }
+                told += 1;
+            }
+            panic!("the last press was not told")
+        });
+        // Each of these is told, or counted with those that were lost.
+        while !reading.is_finished() {
+            watchers.tell(&[verdict(50_000, Some(Reason::Slow))]);
+        }
+        let (told, lost) = reading.join().unwrap();
+        assert!(told + lost >= 40_000, "{told} told, {lost} lost");
+    }
+
+    #[test]
+    fn who_went_away_is_forgotten_and_there_is_an_end_of_who_may_watch() {
+        let watchers = Watchers::default();
+        let pairs: Vec<_> = (0..WATCHERS_MAX).map(|_| UnixStream::pair().unwrap()).collect();
+        assert!(pairs.iter().all(|(_, served)| watchers.add(served).unwrap()));
+        assert!(!watchers.add(&pairs[0].1).unwrap());
+        drop(pairs);
+        let late = UnixStream::pair().unwrap();
+        assert!(watchers.add(&late.1).unwrap(), "the others are gone");
+        assert_eq!(watchers.all.lock().unwrap().len(), 1);
+        drop(late);
+        while watchers.count.load(Ordering::Acquire) > 0 {
+            watchers.tell(&[verdict(1, None)]);
+        }
+        assert!(watchers.all.lock().unwrap().is_empty());
+    }
+}

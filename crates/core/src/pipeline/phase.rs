@@ -1,0 +1,24 @@
+//! What a pipeline is doing, in a word.
+
+/// What the pipeline is doing, for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// No pad is heard.
+    Waiting,
+    /// The zero is being measured; the pad must lie untouched.
+    Taring,
+    /// The zero cannot be measured: something lies on the pad.
+    Loaded,
+    /// Contacts become events.
+    Playing,
+    /// A known weight is weighed, or lies there still: contacts do nothing.
+    Weighing,
+    /// The line was at fault just now; contacts are not believed yet.
+    Doubtful,
+    /// A channel cannot be trusted.
+    Faulty,
+    /// The player paused.
+    Paused,
+    /// The pad cannot be played with.
+    Refused,
+}

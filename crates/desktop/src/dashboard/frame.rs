@@ -1,0 +1,179 @@
+//! What the page reads from the websocket: JSON, a document a message.
+
+use serde::ser::SerializeSeq;
+use serde::{Serialize, Serializer};
+
+use super::feed::{Feed, Moment, Point};
+use tactpad_bridge::latency::{Durations, Percentiles};
+use tactpad_bridge::snapshot::{Status, Uncertainty};
+use tactpad_bridge::timing::{Policy, Stages};
+use tactpad_bridge::watchers::Line;
+use tactpad_core::pipeline::control::OutputEvent;
+use tactpad_core::pipeline::mapping::sketch::{Sketch, control};
+use tactpad_core::quantity::{CHANNELS, Contact};
+
+/// Where a reader of the feed goes on.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cursor {
+    trace: u64,
+    events: u64,
+    presses: u64,
+    profiles: u64,
+}
+
+/// The newest moment, and what happened since the last frame.
+#[derive(Serialize)]
+struct Frame {
+    kind: &'static str,
+    host_us: u64,
+    t_us: u64,
+    contact: Option<Contact>,
+    uncertainty: Option<Uncertainty>,
+    channels_uv: Option<[f32; CHANNELS]>,
+    held: Vec<String>,
+    is_playing: bool,
+    trace: Vec<TracePoint>,
+    events: Vec<Event>,
+    presses: Vec<Line>,
+    /// How many points, events and presses came and went unseen.
+    missed: u64,
+}
+
+/// A point as `[t_us, x_mm, y_mm, fx_n, fy_n, fz_n]`; a lift as `[t_us]`.
+struct TracePoint(Point);
+
+impl Serialize for TracePoint {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let (t, contact) = &self.0;
+        let mut list = to.serialize_seq(None)?;
+        list.serialize_element(&t.as_us())?;
+        if let Some(Contact { x_mm, y_mm, fx_n, fy_n, fz_n }) = contact {
+            for number in [x_mm, y_mm, fx_n, fy_n, fz_n] {
+                // A thousandth is less than anybody sees.
+                list.serialize_element(&((f64::from(*number) * 1e3).round() / 1e3))?;
+            }
+        }
+        list.end()
+    }
+}
+
+/// An event as the event log has it.
+#[derive(Serialize)]
+struct Event {
+    t_us: u64,
+    device: &'static str,
+    code: String,
+    value: i32,
+}
+
+impl From<&OutputEvent> for Event {
+    fn from(event: &OutputEvent) -> Self {
+        let OutputEvent { at, device, code, value } = event;
+        Self { t_us: at.as_us(), device: device.name(), code: code.to_string(), value: *value }
+    }
+}
+
+/// The profile that is played, as it is drawn.
+#[derive(Serialize)]
+struct Drawn<'s> {
+    kind: &'static str,
+    profile: &'s str,
+    sketch: Sketch,
+}
+
+/// What changes slowly.
+#[derive(Serialize)]
+struct Slow<'s> {
+    kind: &'static str,
+    status: Told<'s>,
+    stages_us: Latency<Percentiles>,
+    histogram_us: Latency<Vec<(f64, u64)>>,
+    policy_ms: Option<Policy>,
+}
+
+/// The status, and what people read of it.
+#[derive(Serialize)]
+pub(super) struct Told<'s> {
+    #[serde(flatten)]
+    pub(super) status: &'s Status,
+    pub(super) sentence: &'static str,
+    pub(super) warning_sentence: Option<String>,
+    /// The name or file by which the profile was asked for.
+    pub(super) profile_id: String,
+}
+
+/// A value for each stage, and for the whole way.
+#[derive(Serialize)]
+struct Latency<T> {
+    #[serde(flatten)]
+    stages: Stages<T>,
+    end_to_end: T,
+}
+
+impl Cursor {
+    /// Where a reader begins that wants what comes now.
+    pub(super) fn now(feed: &Feed) -> Self {
+        let newest = feed.newest();
+        let (trace, events, presses) = (newest.trace.end(), newest.events.end(), newest.presses.end());
+        Self { trace, events, presses, profiles: 0 }
+    }
+
+    /// The messages there are by now: the newest moment, and the profile if it is another one.
+    pub(super) fn messages(&mut self, feed: &Feed) -> Vec<String> {
+        let newest = feed.newest();
+        let Some(now) = &newest.now else { return Vec::new() };
+        let ((trace, no_points), (events, no_events)) =
+            (newest.trace.since(self.trace), newest.events.since(self.events));
+        let (presses, no_presses) = newest.presses.since(self.presses);
+        let Moment { at, t, contact, uncertainty, channels_uv, held, is_playing, .. } = now.clone();
+        let frame = Frame {
+            kind: "frame",
+            host_us: at.as_ns() / 1_000,
+            t_us: t.as_us(),
+            contact,
+            uncertainty,
+            channels_uv,
+            held: held.iter().map(|level| control(level.code, level.value)).collect(),
+            is_playing,
+            trace: trace.copied().map(TracePoint).collect(),
+            events: events.map(Event::from).collect(),
+            presses: presses.map(|verdict| Line::of(verdict, 0)).collect(),
+            missed: no_points + no_events + no_presses,
+        };
+        (self.trace, self.events, self.presses) =
+            (newest.trace.end(), newest.events.end(), newest.presses.end());
+        let drawn = newest.profile.as_ref().filter(|_| newest.profiles != self.profiles);
+        let drawn = drawn.map(|profile| Drawn {
+            kind: "sketch",
+            profile: &profile.name,
+            sketch: Sketch::of(profile),
+        });
+        let messages = drawn.iter().map(json).chain([json(&frame)]).collect();
+        self.profiles = newest.profiles;
+        messages
+    }
+}
+
+/// The message of what changes slowly.
+pub(super) fn slow(
+    told: Told<'_>,
+    stages: &Stages<Durations>,
+    end_to_end: &Durations,
+    policy_ms: Option<Policy>,
+) -> String {
+    json(&Slow {
+        kind: "status",
+        status: told,
+        stages_us: Latency {
+            stages: stages.map(Durations::percentiles),
+            end_to_end: end_to_end.percentiles(),
+        },
+        histogram_us: Latency { stages: stages.map(Durations::bins_us), end_to_end: end_to_end.bins_us() },
+        policy_ms,
+    })
+}
+
+/// As text; what cannot be written is an empty document.
+pub(super) fn json(document: &impl Serialize) -> String {
+    serde_json::to_string(document).unwrap_or_else(|_| "{}".into())
+}

@@ -1,0 +1,394 @@
+//! A calibration at home: presses anywhere, a known weight on five marks, and a decoder that is fitted to them.
+//!
+//! It hears each call on a thread of its own, which fits, too. The game is paused as long as it listens.
+
+mod pause;
+mod session;
+mod stage;
+mod standing;
+mod told;
+mod work;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, Weak};
+
+use self::pause::Pause;
+use self::stage::{Begun, Choice, Stage};
+use self::standing::Shared;
+use self::told::{ANEW, NO_WEIGHT, WEIGHT, steps};
+use self::work::Work;
+use super::guide::{Guide, NO_ACTION, Outcome, Progress, Scene, Told};
+use crate::dashboard::shadow::Pad;
+use tactpad_bridge::request::Request;
+use tactpad_bridge::state::State;
+use tactpad_core::pad::weight::check_weight;
+
+/// The name of what is kept of a pad that has no serial number.
+const NAMELESS: &str = "pad";
+
+/// The guide.
+#[derive(Default)]
+pub(super) struct AtHome {
+    stage: Stage,
+    /// Held by the session that writes; one that was stopped may still be at it.
+    files: Arc<Mutex<()>>,
+    /// The pause of the newest session, as long as it lasts.
+    pause: Weak<Pause>,
+}
+
+impl Guide for AtHome {
+    fn id(&self) -> &'static str {
+        "at-home"
+    }
+
+    fn start(&mut self, scene: &Scene<'_>) -> Result<(), String> {
+        if !scene.pad.is_heard {
+            return Err(format!("there is no pad to calibrate: {}", absence(scene.status.state)));
+        }
+        self.stop(scene);
+        let name = name_of(&scene.pad);
+        let was_begun = scene.library.has_session(&name);
+        self.stage = Stage::Choosing(Choice { name, was_begun, is_fresh: false });
+        Ok(())
+    }
+
+    fn stop(&mut self, scene: &Scene<'_>) {
+        self.look(scene);
+        self.stage = match &self.stage {
+            Stage::Begun(begun) if begun.progress() == Progress::Running => {
+                begun.stop.store(true, Ordering::Release);
+                Stage::Idle(Some(Outcome::words(
+                    "Stopped. What was heard is kept: start again, and it goes on from there.",
+                )))
+            }
+            _ => Stage::Idle(None),
+        };
+    }
+
+    fn leave(&mut self, scene: &Scene<'_>) {
+        self.look(scene);
+        // A pad that nobody plays on would else stay paused. A fit needs nobody.
+        if matches!(&self.stage, Stage::Begun(begun) if begun.standing.listens()) {
+            self.stop(scene);
+        }
+    }
+
+    fn look(&mut self, _scene: &Scene<'_>) {
+        if let Stage::Begun(begun) = &mut self.stage {
+            begun.standing = begun.shared.now();
+        }
+    }
+
+    fn act(
+        &mut self,
+        action: &str,
+        number: Option<f64>,
+        scene: &Scene<'_>,
+    ) -> Result<Option<Request>, String> {
+        let Stage::Choosing(choice) = &mut self.stage else { return Err(NO_ACTION.into()) };
+        match action {
+            ANEW => choice.is_fresh = true,
+            WEIGHT => {
+                let weight_g = number.ok_or("write how many grams the weight has")?;
+                check_weight(weight_g)?;
+                self.begin(Some(weight_g), scene)?;
+            }
+            NO_WEIGHT => self.begin(None, scene)?,
+            _ => return Err(NO_ACTION.into()),
+        }
+        Ok(None)
+    }
+
+    fn told(&self) -> Told {
+        let (state, result) = match &self.stage {
+            Stage::Idle(result) => (Progress::Idle, result.clone()),
+            Stage::Choosing(_) => (Progress::Running, None),
+            Stage::Begun(begun) => (begun.progress(), begun.standing.outcome()),
+        };
+        Told {
+            id: self.id(),
+            title: "Calibrate at home",
+            about: "Two to three minutes of presses and a known weight on five marks. A decoder is fitted to your pad and written to a file; \
+                    what plays now stays. The game is paused as long as the guide listens, and closing the page stops it.",
+            state,
+            steps: steps(&self.stage),
+            result,
+        }
+    }
+}
+
+impl AtHome {
+    fn begin(&mut self, weight_g: Option<f64>, scene: &Scene<'_>) -> Result<(), String> {
+        let Stage::Choosing(choice) = &self.stage else { return Err(NO_ACTION.into()) };
+        let pause = match self.pause.upgrade() {
+            Some(pause) => pause,
+            None => Arc::new(Pause::begin(scene.asker, scene.status.state == State::Paused)?),
+        };
+        self.pause = Arc::downgrade(&pause);
+        let (shared, stop) = (Arc::<Shared>::default(), Arc::<AtomicBool>::default());
+        let work = Work {
+            name: choice.name.clone(),
+            is_fresh: choice.is_fresh,
+            weight_g,
+            library: Arc::clone(scene.library),
+            files: Arc::clone(&self.files),
+            identity: scene.pad.identity,
+            shared: Arc::clone(&shared),
+            stop: Arc::clone(&stop),
+        };
+        work.start(pause, (scene.hear)())?;
+        self.stage = Stage::Begun(Begun { weight_g, standing: shared.now(), shared, stop });
+        Ok(())
+    }
+}
+
+/// What keeps the pad from being heard.
+const fn absence(state: State) -> &'static str {
+    match state {
+        // Behind a pause the bridge tells of nothing else.
+        State::Paused | State::Playing => State::Waiting.sentence(),
+        state => state.sentence(),
+    }
+}
+
+/// The name of what is kept of a pad. What a file's name should not have becomes `_`.
+fn name_of(pad: &Pad) -> String {
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-';
+    let plain = |letter: char| if is_plain(letter) { letter } else { '_' };
+    let serial = pad.identity.map(|identity| identity.serial_number.as_str().chars().map(plain).collect());
+    serial.filter(|serial: &String| !serial.is_empty()).unwrap_or_else(|| NAMELESS.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+    use std::sync::PoisonError;
+
+    use firmware_proto::identity::{Identity, SerialNumber};
+    use rustix::event::{PollFd, PollFlags, poll};
+    use serde_json::Value;
+
+    use super::*;
+    use crate::dashboard::ears::Ears;
+    use crate::dashboard::library::{
+        Entry, KeptDecoder, Library, Over, Report, Saved, Session, Stored, Unsaved,
+    };
+    use tactpad_bridge::latency::Percentiles;
+    use tactpad_bridge::request::Asker;
+    use tactpad_bridge::requests::Requests;
+    use tactpad_bridge::snapshot::{BridgeHealth, Status};
+    use tactpad_core::pipeline::call::Call;
+    use tactpad_core::pipeline::capture::head::Head;
+    use tactpad_core::pipeline::mapping::accept::Presses;
+    use tactpad_core::pipeline::mapping::check::OutputChoice;
+    use tactpad_core::time::HostInstant;
+    use tactpad_lab::play::guide::Guide as Led;
+    use tactpad_lab::play::weights::Placement;
+
+    /// Keeps nothing, and knows of an earlier session.
+    struct Shelf;
+
+    impl Session for Shelf {
+        fn at(&self, at: HostInstant) -> HostInstant {
+            at
+        }
+
+        fn write(&mut self, _at: HostInstant, _call: Call<'_>) -> Result<(), String> {
+            Ok(())
+        }
+
+        fn settle(&mut self, _placements: &[Placement]) -> Result<(), String> {
+            Ok(())
+        }
+    }
+
+    impl Library for Shelf {
+        fn entries(&self) -> Vec<Entry> {
+            Vec::new()
+        }
+
+        fn playing(&self) -> String {
+            String::new()
+        }
+
+        fn output(&self) -> OutputChoice {
+            OutputChoice::AsWritten
+        }
+
+        fn read(&self, _name: &str) -> Option<Stored> {
+            None
+        }
+
+        fn save(&self, _name: &str, _text: &str, _over: &Over) -> Result<Saved, Unsaved> {
+            Err(Unsaved::Failed("nothing is kept".into()))
+        }
+
+        fn doctor(&self) -> Value {
+            Value::Null
+        }
+
+        fn reports(&self) -> Vec<Report> {
+            Vec::new()
+        }
+
+        fn report(&self, _id: &str) -> Option<PathBuf> {
+            None
+        }
+
+        fn has_session(&self, _name: &str) -> bool {
+            true
+        }
+
+        fn open_session(
+            &self,
+            _name: &str,
+            _fresh: bool,
+            _guide: &mut Led,
+            _head: &Head,
+        ) -> Result<Box<dyn Session>, String> {
+            Ok(Box::new(Self))
+        }
+
+        fn keep_decoder(&self, _name: &str, _bytes: &[u8]) -> Result<KeptDecoder, String> {
+            Err("nothing is kept".into())
+        }
+    }
+
+    /// A bridge that only writes down what it is asked.
+    struct Bridge {
+        requests: Requests,
+        asker: Arc<Asker>,
+        ears: Mutex<Ears>,
+        library: Arc<dyn Library>,
+        status: Status,
+        pad: Pad,
+    }
+
+    impl Bridge {
+        fn new(state: State) -> Self {
+            let requests = Requests::new().unwrap();
+            let asker = Arc::new(requests.asker().unwrap());
+            let status = Status { state, ..status() };
+            let pad = Pad { is_heard: state != State::Waiting, identity: None };
+            Self { requests, asker, ears: Mutex::default(), library: Arc::new(Shelf), status, pad }
+        }
+
+        fn with<T>(&self, work: impl FnOnce(&Scene<'_>) -> T) -> T {
+            work(&Scene {
+                now: HostInstant::default(),
+                status: &self.status,
+                pad: self.pad,
+                profile: &|| None,
+                past: &|| None,
+                hear: &|| self.ears.lock().unwrap_or_else(PoisonError::into_inner).add(),
+                asker: &self.asker,
+                library: &self.library,
+            })
+        }
+
+        /// Waits for the next request.
+        fn asked(&mut self) -> Request {
+            let mut fds = [PollFd::from_borrowed_fd(self.requests.fd(), PollFlags::IN)];
+            poll(&mut fds, None).unwrap();
+            self.requests.take().unwrap().request
+        }
+    }
+
+    fn status() -> Status {
+        Status {
+            state: State::Playing,
+            pad: None,
+            profile: String::new(),
+            layer: None,
+            profile_reason: String::new(),
+            profile_error: None,
+            preview: false,
+            decoder: String::new(),
+            output: String::new(),
+            contact: None,
+            held: Vec::new(),
+            warning: None,
+            presses: Presses::default(),
+            health: BridgeHealth::default(),
+            latency_us: Percentiles::default(),
+            decoder_file: None,
+            gain: 1.0,
+            weighing: None,
+            changes: None,
+        }
+    }
+
+    fn begin(guide: &mut AtHome, bridge: &Bridge) {
+        bridge.with(|scene| guide.start(scene)).unwrap();
+        bridge.with(|scene| guide.act(WEIGHT, Some(200.0), scene)).unwrap();
+    }
+
+    #[test]
+    fn without_a_pad_it_says_why_it_does_not_begin() {
+        let (bridge, mut guide) = (Bridge::new(State::Waiting), AtHome::default());
+        let refused = bridge.with(|scene| guide.start(scene)).unwrap_err();
+        assert!(refused.contains("no pad") && refused.contains("plug it in"), "{refused}");
+        assert_eq!(guide.told().state, Progress::Idle);
+    }
+
+    #[test]
+    fn a_weight_that_no_pad_bears_begins_nothing() {
+        let (mut bridge, mut guide) = (Bridge::new(State::Playing), AtHome::default());
+        bridge.with(|scene| guide.start(scene)).unwrap();
+        for (number, why) in [(None, "how many grams"), (Some(2.0), "30 to 1000 g"), (Some(f64::NAN), "g")] {
+            let refused = bridge.with(|scene| guide.act(WEIGHT, number, scene)).unwrap_err();
+            assert!(refused.contains(why), "{refused}");
+        }
+        assert_eq!(bridge.with(|scene| guide.act("dance", None, scene)).unwrap_err(), NO_ACTION);
+        assert!(bridge.requests.take().is_none(), "nothing was paused");
+    }
+
+    #[test]
+    fn the_game_is_paused_until_it_is_stopped_or_nobody_looks() {
+        let (mut bridge, mut guide) = (Bridge::new(State::Playing), AtHome::default());
+        begin(&mut guide, &bridge);
+        assert_eq!(bridge.asked(), Request::Pause);
+        // Somebody lets the bridge go on meanwhile.
+        bridge.ears.lock().unwrap().tell(HostInstant::default(), &Call::Resume.into());
+        assert_eq!(bridge.asked(), Request::Pause);
+        bridge.with(|scene| guide.stop(scene));
+        assert_eq!(bridge.asked(), Request::Resume);
+        let told = guide.told();
+        assert!(told.state == Progress::Idle && told.result.is_some_and(|it| it.text.contains("goes on")));
+        begin(&mut guide, &bridge);
+        assert_eq!(bridge.asked(), Request::Pause);
+        bridge.with(|scene| guide.leave(scene));
+        assert_eq!(bridge.asked(), Request::Resume);
+    }
+
+    #[test]
+    fn who_had_paused_before_goes_on_by_himself() {
+        let (mut bridge, mut guide) = (Bridge::new(State::Paused), AtHome::default());
+        begin(&mut guide, &bridge);
+        assert_eq!(bridge.asked(), Request::Pause);
+        let pause = guide.pause.clone();
+        bridge.with(|scene| guide.stop(scene));
+        while pause.strong_count() > 0 {
+            std::thread::yield_now();
+        }
+        assert!(bridge.requests.take().is_none());
+    }
+
+    #[test]
+    fn what_is_kept_of_a_pad_is_named_by_its_serial_number() {
+        let pad = |serial: &str| {
+            let serial_number = SerialNumber::from_ascii(serial).unwrap();
+            let identity = Identity {
+                serial_number,
+                channels: 9,
+                count_bits: 24,
+                rate_hz: 1000,
+                picovolts_per_count: 1,
+            };
+            Pad { is_heard: true, identity: Some(identity) }
+        };
+        assert_eq!(name_of(&pad("TP-0042")), "TP-0042");
+        assert_eq!(name_of(&pad("../a:b")), "___a_b");
+        assert_eq!((name_of(&pad("")), name_of(&Pad::default())), (NAMELESS.into(), NAMELESS.into()));
+    }
+}

@@ -1,0 +1,164 @@
+//! The thread of a session: it listens, then fits, and writes the decoder.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use firmware_proto::identity::Identity;
+
+use super::pause::Pause;
+use super::session::{Session, guide};
+use super::standing::{Shared, Standing};
+use crate::dashboard::ears::Heard;
+use crate::dashboard::guides::guide::{CommandLine, Outcome, Table};
+use crate::dashboard::library::Library;
+use tactpad_core::pad::device::Device;
+use tactpad_core::pad::field::PadField;
+use tactpad_core::pipeline::call::{Call, OwnedCall};
+use tactpad_core::time::HostInstant;
+use tactpad_lab::play::guide::Guide;
+use tactpad_lab::play::home::calibrated;
+use tactpad_lab::play::summary::{HEADING, Part, Summary};
+use tactpad_lab::tangent::Simulated;
+use tactpad_mechanics::field_cache;
+
+/// Whether it was stopped is looked at this often, although no call comes.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// How a weight is put on the marks.
+const WEIGHING: &str = "Start again with a weight: the guide says when and where.";
+
+/// What a session works with.
+pub(super) struct Work {
+    /// The name of what is kept.
+    pub(super) name: String,
+    pub(super) is_fresh: bool,
+    pub(super) weight_g: Option<f64>,
+    pub(super) library: Arc<dyn Library>,
+    /// Held as long as files are read and written.
+    pub(super) files: Arc<Mutex<()>>,
+    /// Who the pad said that it is.
+    pub(super) identity: Option<Identity>,
+    pub(super) shared: Arc<Shared>,
+    pub(super) stop: Arc<AtomicBool>,
+}
+
+impl Work {
+    /// Works on a thread of its own; the pause ends as soon as nobody has to press any more.
+    ///
+    /// # Errors
+    /// The system has no thread to give.
+    pub(super) fn start(self, pause: Arc<Pause>, calls: Receiver<Heard>) -> Result<(), String> {
+        let spawned = thread::Builder::new().name("calibration".into()).spawn(move || {
+            match self.work(pause, calls) {
+                Ok(Some(outcome)) => self.shared.set(Standing::Over(Ok(outcome))),
+                // Who stopped it hears no more of it.
+                Ok(None) => {}
+                Err(why) => self.shared.fail(why),
+            }
+        });
+        spawned.map(drop).map_err(|error| error.to_string())
+    }
+
+    /// `None` where it was stopped.
+    fn work(&self, pause: Arc<Pause>, calls: Receiver<Heard>) -> Result<Option<Outcome>, String> {
+        let heard = self.listen(&pause, &calls);
+        drop((pause, calls));
+        let Some(guide) = heard? else { return Ok(None) };
+        let (file, summary) = {
+            let shared = &self.shared;
+            fitted(guide, &|share| shared.set(Standing::Fitting(share)))?
+        };
+        if self.is_stopped() {
+            return Ok(None);
+        }
+        let _files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        let kept = self.library.keep_decoder(&self.name, &file)?;
+        Ok(Some(outcome(&summary, &kept.path, kept.command)))
+    }
+
+    /// Listens until nothing is left to do. `None` where it was stopped before.
+    fn listen(&self, pause: &Pause, calls: &Receiver<Heard>) -> Result<Option<Guide>, String> {
+        let _files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        let (mut guide, head) = guide(self.weight_g)?;
+        let kept = self.library.open_session(&self.name, self.is_fresh, &mut guide, &head)?;
+        let mut session = Session::begin(guide, kept, self.identity.as_ref())?;
+        self.shared.set(Standing::Guided(session.position()));
+        let went = self.hear(&mut session, pause, calls);
+        let settled = session.settle();
+        let is_whole = went?;
+        settled?;
+        Ok(is_whole.then(|| session.finish()))
+    }
+
+    /// Hears calls until nothing is left to do; whether it came to that.
+    fn hear(&self, session: &mut Session, pause: &Pause, calls: &Receiver<Heard>) -> Result<bool, String> {
+        while !session.is_done() {
+            if self.is_stopped() {
+                return Ok(false);
+            }
+            match calls.recv_timeout(LOOK) {
+                Ok((at, call)) => self.take(session, pause, (at, &call))?,
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Ok(false),
+            }
+        }
+        Ok(true)
+    }
+
+    fn take(
+        &self,
+        session: &mut Session,
+        pause: &Pause,
+        (at, call): (HostInstant, &OwnedCall),
+    ) -> Result<(), String> {
+        if *call == OwnedCall::Plain(Call::Resume) {
+            pause.again();
+        }
+        if session.take(at, call.as_call())? {
+            self.shared.set(Standing::Guided(session.position()));
+        }
+        Ok(())
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Acquire)
+    }
+}
+
+/// The decoder's file, and what it knows. `report` hears how much of the fit is done.
+pub(super) fn fitted(guide: Guide, report: &(dyn Fn(f64) + Sync)) -> Result<(Vec<u8>, Summary), String> {
+    let (windows, placements) = guide.finish();
+    let (device, field) = (Device::nominal(), PadField::nominal());
+    report(0.0);
+    let share = |done: usize, of: usize| report(done as f64 / of.max(1) as f64);
+    let pad = Simulated { solve: &field_cache::solve, ..Simulated::known(&device, &field) };
+    let found = calibrated(&windows, &placements, &pad, None, &share);
+    let found = found.map_err(|error| format!("there is no decoder yet: {error}"))?;
+    Ok((found.file(), Summary::of(&found, &windows)))
+}
+
+/// What people read in the end.
+fn outcome(summary: &Summary, path: &str, command: String) -> Outcome {
+    let row = |part: &Part| {
+        let Part { name, deviation_mm, force_share, presses, open } = part;
+        let is_open = if *open { "open" } else { "" };
+        let [deviation, share] = [format!("{deviation_mm:.2} mm"), format!("{:.1} %", 100.0 * force_share)];
+        vec![(*name).to_owned(), deviation, share, presses.to_string(), is_open.to_owned()]
+    };
+    Outcome {
+        table: Some(Table {
+            caption: HEADING,
+            heads: vec!["Part", "Place", "Force", "Presses", "Open"],
+            rows: summary.map.iter().map(row).collect(),
+        }),
+        commands: vec![CommandLine { label: "Play with it", text: command }],
+        ..Outcome::words(format!(
+            "The decoder is written: {path}. It plays from the next start that names it. It comes from {}. {}",
+            summary.source(),
+            summary.next(WEIGHING)
+        ))
+    }
+}

@@ -1,0 +1,218 @@
+//! What a guide is, and how it tells where it is.
+
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use serde::Serialize;
+
+use crate::dashboard::ears::Heard;
+use crate::dashboard::library::Library;
+use crate::dashboard::past::Past;
+use crate::dashboard::shadow::Pad;
+use tactpad_bridge::request::{Asker, Request};
+use tactpad_bridge::snapshot::Status;
+use tactpad_core::time::HostInstant;
+
+/// Why an action is refused that no step offers.
+pub(super) const NO_ACTION: &str = "this step has no such action";
+
+/// A guide.
+pub(super) trait Guide: Send {
+    /// Its name in requests.
+    fn id(&self) -> &'static str;
+
+    /// Begins anew.
+    ///
+    /// # Errors
+    /// It cannot begin; the text is for people.
+    fn start(&mut self, scene: &Scene<'_>) -> Result<(), String>;
+
+    /// Ends before its end.
+    fn stop(&mut self, scene: &Scene<'_>);
+
+    /// Nobody looks any more.
+    fn leave(&mut self, _scene: &Scene<'_>) {}
+
+    /// Looks at what has happened; called some ten times a second.
+    fn look(&mut self, scene: &Scene<'_>);
+
+    /// Does what people choose in a step, with the number that they gave; what is to be asked of the bridge for it.
+    ///
+    /// # Errors
+    /// There is no such action now, or it cannot be done; the text is for people.
+    fn act(
+        &mut self,
+        _action: &str,
+        _number: Option<f64>,
+        _scene: &Scene<'_>,
+    ) -> Result<Option<Request>, String> {
+        Err(NO_ACTION.into())
+    }
+
+    /// How it stands.
+    fn told(&self) -> Told;
+}
+
+/// What a guide sees.
+pub(in crate::dashboard) struct Scene<'s> {
+    /// Host time.
+    pub(in crate::dashboard) now: HostInstant,
+    pub(in crate::dashboard) status: &'s Status,
+    pub(in crate::dashboard) pad: Pad,
+    /// The text of the profile that is played, if it has a name, and that name.
+    pub(in crate::dashboard) profile: &'s dyn Fn() -> Option<(String, String)>,
+    /// The last minute of play.
+    pub(in crate::dashboard) past: &'s dyn Fn() -> Option<Past>,
+    /// Hears all calls from now on.
+    pub(in crate::dashboard) hear: &'s dyn Fn() -> Receiver<Heard>,
+    /// Asks the bridge, also later and from another thread.
+    pub(in crate::dashboard) asker: &'s Arc<Asker>,
+    /// The program around the bridge.
+    pub(in crate::dashboard) library: &'s Arc<dyn Library>,
+}
+
+/// How a guide stands, as the page reads it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(in crate::dashboard) struct Told {
+    pub(super) id: &'static str,
+    pub(super) title: &'static str,
+    pub(super) about: &'static str,
+    pub(super) state: Progress,
+    pub(super) steps: Vec<Step>,
+    pub(super) result: Option<Outcome>,
+}
+
+/// Where a guide is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Progress {
+    /// Not begun.
+    #[default]
+    Idle,
+    /// On its way.
+    Running,
+    /// At its end.
+    Done,
+    /// It came to nothing.
+    Failed,
+}
+
+/// One step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Step {
+    pub(super) id: &'static str,
+    pub(super) title: &'static str,
+    /// What to do.
+    pub(super) text: &'static str,
+    pub(super) state: StepState,
+    /// What there is to say of it now.
+    pub(super) detail: Option<String>,
+    /// What to do at this very moment; it is read out as soon as it changes.
+    pub(super) cue: Option<String>,
+    /// How much of it is done, from 0 to 1.
+    pub(super) progress: Option<f64>,
+    pub(super) actions: Vec<Action>,
+    pub(super) links: Vec<Link>,
+}
+
+impl Step {
+    /// One that comes later.
+    pub(super) fn to_do(id: &'static str, title: &'static str, text: &'static str) -> Self {
+        let (actions, links) = (Vec::new(), Vec::new());
+        Self {
+            id,
+            title,
+            text,
+            state: StepState::Todo,
+            detail: None,
+            cue: None,
+            progress: None,
+            actions,
+            links,
+        }
+    }
+}
+
+/// Where a step is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum StepState {
+    /// It comes later.
+    Todo,
+    /// It is the one to do.
+    Doing,
+    /// It is done.
+    Done,
+    /// It came to nothing.
+    Failed,
+}
+
+/// What people can choose in a step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Action {
+    #[serde(rename = "do")]
+    pub(super) name: &'static str,
+    pub(super) label: &'static str,
+    /// The number that it takes, if it takes one.
+    pub(super) number: Option<NumberField>,
+}
+
+/// A number that people give.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct NumberField {
+    pub(super) label: &'static str,
+    pub(super) least: f64,
+    pub(super) largest: f64,
+}
+
+/// A file of the program that people may want.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Link {
+    /// The path of its request.
+    pub(super) path: &'static str,
+    pub(super) label: &'static str,
+}
+
+/// What came of a guide.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(super) struct Outcome {
+    pub(super) text: String,
+    /// A profile to look at in the editor.
+    pub(super) draft: Option<Proposal>,
+    /// Numbers that belong to it.
+    pub(super) table: Option<Table>,
+    /// What people may want to type into a terminal.
+    pub(super) commands: Vec<CommandLine>,
+}
+
+/// Numbers with their names.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Table {
+    pub(super) caption: &'static str,
+    pub(super) heads: Vec<&'static str>,
+    pub(super) rows: Vec<Vec<String>>,
+}
+
+/// A command, and what it does.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct CommandLine {
+    pub(super) label: &'static str,
+    pub(super) text: String,
+}
+
+impl Outcome {
+    /// Words alone.
+    pub(super) fn words(text: impl Into<String>) -> Self {
+        Self { text: text.into(), ..Self::default() }
+    }
+}
+
+/// A profile that a guide proposes; it is not kept.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Proposal {
+    pub(super) profile: String,
+    pub(super) text: String,
+}
+
+/// What a guide works out beside the server's thread: a result, or why there is none.
+pub(super) type Worked = Receiver<Result<Outcome, String>>;

@@ -1,0 +1,164 @@
+//! What the page needs of the program around the bridge: profiles, the doctor, reports.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use tactpad_core::pipeline::call::Call;
+use tactpad_core::pipeline::capture::head::Head;
+use tactpad_core::pipeline::mapping::check::OutputChoice;
+use tactpad_core::time::HostInstant;
+use tactpad_core::toml_text::diag::Diagnostic;
+use tactpad_lab::play::guide::Guide;
+use tactpad_lab::play::weights::Placement;
+
+/// The program around the bridge. Its functions may read and write files; they are called on a thread that may wait.
+pub trait Library: Send + Sync {
+    /// All profiles that have names.
+    fn entries(&self) -> Vec<Entry>;
+
+    /// The profile that is played: its name, or its file.
+    fn playing(&self) -> String;
+
+    /// Which bindings of a profile are played here.
+    fn output(&self) -> OutputChoice;
+
+    /// A profile by its name. `None` if there is none, or if it is no name: no file outside the folder of profiles is read.
+    fn read(&self, name: &str) -> Option<Stored>;
+
+    /// Keeps a profile in the user's own folder.
+    ///
+    /// # Errors
+    /// Nothing was written.
+    fn save(&self, name: &str, text: &str, over: &Over) -> Result<Saved, Unsaved>;
+
+    /// What stands in the way on this machine, as `tactpad doctor --json` prints it.
+    fn doctor(&self) -> serde_json::Value;
+
+    /// Reports of diagnoses, the newest first.
+    fn reports(&self) -> Vec<Report>;
+
+    /// The page of the report of this number.
+    fn report(&self, id: &str) -> Option<PathBuf>;
+
+    /// Whether there is an earlier session to go on from, of the calibration that is kept under this name.
+    fn has_session(&self, name: &str) -> bool;
+
+    /// Opens what the calibration of this name keeps. What an earlier session heard is told to the guide, unless this one is `fresh`.
+    ///
+    /// # Errors
+    /// It cannot be read or written; the text is for people.
+    fn open_session(
+        &self,
+        name: &str,
+        fresh: bool,
+        guide: &mut Guide,
+        head: &Head,
+    ) -> Result<Box<dyn Session>, String>;
+
+    /// Keeps the decoder that the calibration of this name came to. It plays nowhere by that.
+    ///
+    /// # Errors
+    /// Nothing was written; the text is for people.
+    fn keep_decoder(&self, name: &str, bytes: &[u8]) -> Result<KeptDecoder, String>;
+}
+
+/// What a calibration has heard, kept so that it can be taken up again.
+pub trait Session: Send {
+    /// A moment of the session in the time of what is kept.
+    fn at(&self, at: HostInstant) -> HostInstant;
+
+    /// Keeps a call, at that time.
+    ///
+    /// # Errors
+    /// It cannot be written; the text is for people.
+    fn write(&mut self, at: HostInstant, call: Call<'_>) -> Result<(), String>;
+
+    /// Sees that everything is there whatever comes.
+    ///
+    /// # Errors
+    /// It cannot be written; the text is for people.
+    fn settle(&mut self, placements: &[Placement]) -> Result<(), String>;
+}
+
+/// A decoder that is kept.
+#[derive(Clone, Debug)]
+pub struct KeptDecoder {
+    /// Its file, by its whole path.
+    pub path: String,
+    /// The command that plays with it.
+    pub command: String,
+}
+
+/// A profile that has a name.
+#[derive(Clone, Debug, Serialize)]
+pub struct Entry {
+    /// The name.
+    pub name: String,
+    /// Whether it is the user's own.
+    pub own: bool,
+    /// Whether there is one of this name inside the program.
+    pub shipped: bool,
+}
+
+/// A profile as it is kept.
+#[derive(Clone, Debug, Serialize)]
+pub struct Stored {
+    /// Its name, and whose it is.
+    #[serde(flatten)]
+    pub entry: Entry,
+    /// Its text.
+    pub text: String,
+    /// Tells this text from others.
+    pub version: String,
+}
+
+/// What a profile may be written over.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// Whatever is there.
+    Anything,
+    /// Only this version.
+    Version(String),
+    /// Nothing: it must be new.
+    Nothing,
+}
+
+/// A profile was kept.
+#[derive(Clone, Debug, Serialize)]
+pub struct Saved {
+    /// Tells the text from others.
+    pub version: String,
+    /// The file.
+    pub path: String,
+}
+
+/// Why a profile was not kept; the texts are for people.
+#[derive(Clone, Debug)]
+pub enum Unsaved {
+    /// It cannot have this name.
+    Name(String),
+    /// It has errors.
+    Errors(Vec<Diagnostic>),
+    /// Another one is there than was to be written over.
+    Changed(String),
+    /// It cannot be written.
+    Failed(String),
+}
+
+/// A report of a diagnosis.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// By which [`Library::report`] finds it.
+    pub id: String,
+    /// The folder's name.
+    pub name: String,
+    /// Its whole path.
+    pub folder: String,
+    /// Seconds since 1970 when it was written.
+    pub modified_s: u64,
+    /// Its verdict.
+    pub verdict: String,
+    /// What was found, in one line.
+    pub summary: String,
+}

@@ -1,0 +1,122 @@
+//! What another profile would have done: the last minute of play once more, with both.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::past::{Past, make};
+use tactpad_core::pipeline::call::OwnedCall;
+use tactpad_core::pipeline::control::OutputEvent;
+use tactpad_core::pipeline::mapping::check::{self, OutputChoice};
+use tactpad_core::pipeline::mapping::profile::Profile;
+use tactpad_lab::tuning::difference::{Difference, Only, Press, Side, presses};
+
+/// Two profiles to compare.
+#[derive(Debug, Deserialize)]
+pub(super) struct Asked {
+    /// The changed one,
+    text: String,
+    /// and the one that it is held against; without it the one that is played.
+    saved: Option<String>,
+}
+
+/// What they come to.
+#[derive(Debug, Serialize)]
+pub(super) struct Answer {
+    ok: bool,
+    /// So long was the play.
+    seconds: f64,
+    now: Tally,
+    draft: Tally,
+    /// How many presses both give.
+    both: usize,
+    /// By how much the later one of them is later at most.
+    shift_max_ms: f64,
+    only_now: Vec<Once>,
+    only_draft: Vec<Once>,
+}
+
+/// How many presses there are of each control.
+#[derive(Debug, Serialize)]
+struct Tally {
+    downs: usize,
+    presses: BTreeMap<String, usize>,
+}
+
+/// A press that only one of both gives.
+#[derive(Debug, Serialize)]
+struct Once {
+    #[serde(flatten)]
+    press: Press,
+    /// Since the beginning of the play.
+    at_s: f64,
+}
+
+/// Why nothing can be compared.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Uncompared {
+    /// A profile has errors.
+    Errors,
+    /// Nothing was played yet.
+    NoPlay,
+}
+
+impl Asked {
+    /// Plays the past once more with each profile. It takes about a third of a second for a minute at 1 kHz.
+    pub(super) fn answer(&self, past: Option<Past>, output: OutputChoice) -> Result<Answer, Uncompared> {
+        let past = past.filter(|past| past.duration_us() > 0).ok_or(Uncompared::NoPlay)?;
+        let read = |text: &str| check::read(text, output).0.ok_or(Uncompared::Errors);
+        let draft = read(&self.text)?;
+        let now = self.saved.as_deref().map_or_else(|| Ok(past.begin.profile().clone()), read)?;
+        let [now, draft] = [now, draft].map(|profile| replayed(&past, profile));
+        let begin_us = past.begin.at().as_us();
+        Ok(Answer::of(past.duration_us(), begin_us, &now, &draft))
+    }
+}
+
+/// The events of the past with another profile; changes of it are left out.
+fn replayed(past: &Past, profile: Profile) -> Vec<OutputEvent> {
+    let mut pipeline = past.begin.clone();
+    let Some((begin, _)) = past.calls.front() else { return Vec::new() };
+    pipeline.set_profile(*begin, profile);
+    let mut events = Vec::new();
+    for (at, call) in past.calls.iter().filter(|(_, call)| !matches!(call, OwnedCall::Profile(_))) {
+        make(&mut pipeline, *at, call, |pipeline| {
+            events.extend_from_slice(pipeline.events());
+            pipeline.forget_verdicts();
+        });
+    }
+    events
+}
+
+impl Answer {
+    fn of(duration_us: u64, begin_us: u64, now: &[OutputEvent], draft: &[OutputEvent]) -> Self {
+        let Difference { both, shift_max_us, only, .. } = Difference::between(now, draft);
+        let once = |only: &Only| Once {
+            press: only.press,
+            at_s: only.press.t_us.saturating_sub(begin_us) as f64 * 1e-6,
+        };
+        let of = |side: Side| only.iter().filter(|it| it.with == side).map(once).collect();
+        Self {
+            ok: true,
+            seconds: duration_us as f64 * 1e-6,
+            now: Tally::of(now),
+            draft: Tally::of(draft),
+            both,
+            shift_max_ms: shift_max_us as f64 * 1e-3,
+            only_now: of(Side::Old),
+            only_draft: of(Side::New),
+        }
+    }
+}
+
+impl Tally {
+    fn of(events: &[OutputEvent]) -> Self {
+        let all = presses(events);
+        let mut tally = Self { downs: all.len(), presses: BTreeMap::new() };
+        for press in all {
+            *tally.presses.entry(press.code.to_string()).or_default() += 1;
+        }
+        tally
+    }
+}

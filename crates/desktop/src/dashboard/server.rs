@@ -1,0 +1,100 @@
+//! The server: opens a port of the loopback interface and answers on a thread of its own.
+
+use std::io;
+use std::net::{Ipv4Addr, TcpListener};
+use std::sync::mpsc::Receiver;
+use std::sync::{Arc, Mutex};
+use std::thread;
+
+use axum::extract::DefaultBodyLimit;
+use axum::routing::{get, post};
+use axum::{Router, middleware};
+
+use super::feed::Feed;
+use super::guard::{BODY_BYTES_MAX, Guard, watch};
+use super::library::Library;
+use super::office::{Office, Sight};
+use super::shadow::{self, Known};
+use super::{api, assets, live};
+use tactpad_bridge::observer::{Observed, Observer, observe};
+use tactpad_bridge::request::Asker;
+use tactpad_bridge::running::Bridge;
+use tactpad_bridge::timing::Timing;
+
+/// A server that has its port, but shows no bridge yet.
+pub struct Dashboard {
+    listener: TcpListener,
+    guard: Guard,
+    observed: Receiver<Observed>,
+}
+
+impl Dashboard {
+    /// Opens `port` of the loopback interface, or any with 0. The observer belongs to the bridge that is to be shown.
+    ///
+    /// # Errors
+    /// The port is taken, or the system has no random numbers for the token.
+    pub fn open(port: u16) -> io::Result<(Self, Observer)> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+        listener.set_nonblocking(true)?;
+        let guard = Guard::new(listener.local_addr()?.port())?;
+        let (observer, observed) = observe();
+        Ok((Self { listener, guard, observed }, observer))
+    }
+
+    /// The address that shows the page; whoever has it can use the bridge.
+    pub fn url(&self) -> String {
+        self.guard.url()
+    }
+
+    /// Shows `bridge` from now on, until the process ends. `timing` tells of its reads and writes.
+    ///
+    /// # Errors
+    /// The system has no threads to give.
+    pub fn start(
+        self,
+        bridge: &Bridge,
+        asker: Asker,
+        timing: Timing,
+        library: Arc<dyn Library>,
+    ) -> io::Result<()> {
+        let (feed, known) = (Arc::new(Feed::new()), Arc::new(Mutex::new(Known::default())));
+        shadow::start(self.observed, Arc::clone(&feed), Arc::clone(&known))?;
+        let sight = Sight { snapshot: bridge.snapshot(), timing, end_to_end: bridge.shared_latency() };
+        let office = Arc::new(Office::new(asker, library, feed, known, sight));
+        let router = router(office, Arc::new(self.guard));
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        let listener = self.listener;
+        thread::Builder::new().name("dashboard".into()).spawn(move || {
+            // It serves until the process ends; a port that fails has no one to tell.
+            let _ = runtime.block_on(async move {
+                axum::serve(tokio::net::TcpListener::from_std(listener)?, router).await
+            });
+        })?;
+        Ok(())
+    }
+}
+
+fn router(office: Arc<Office>, guard: Arc<Guard>) -> Router {
+    Router::new()
+        .route("/", get(assets::index))
+        .route("/page/{name}", get(assets::file))
+        .route("/report/{id}", get(api::report))
+        .route("/sheet/{name}", get(api::sheet))
+        .route("/api/live", get(live::live))
+        .route("/api/status", get(api::status))
+        .route("/api/schema", get(api::schema))
+        .route("/api/profiles", get(api::profiles))
+        .route("/api/profile/{name}", get(api::profile).put(api::save))
+        .route("/api/play", post(api::play))
+        .route("/api/draft", post(api::draft))
+        .route("/api/preview", post(api::preview).delete(api::end_preview))
+        .route("/api/rewind", post(api::rewind))
+        .route("/api/doctor", get(api::doctor))
+        .route("/api/reports", get(api::reports))
+        .route("/api/guides", get(api::guides))
+        .route("/api/guides/{id}", post(api::guide))
+        .route("/api/{action}", post(api::act))
+        .with_state(office)
+        .layer(DefaultBodyLimit::max(BODY_BYTES_MAX))
+        .layer(middleware::from_fn_with_state(guard, watch))
+}

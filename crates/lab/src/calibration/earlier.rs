@@ -1,0 +1,24 @@
+//! A pad of the same kind that was calibrated before.
+
+use tactpad_core::pipeline::compensation::Compensation;
+use tactpad_core::pipeline::contact::Decoder;
+use tactpad_core::pipeline::contact::inverse::Inverse;
+
+/// What its decoder tells of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Earlier<'d> {
+    /// Its field, and how its channels scatter.
+    pub inverse: &'d Inverse,
+    /// What it remembers of loads, and how it creeps. Zeros and temperature are each pad's own.
+    pub compensation: &'d Compensation,
+}
+
+impl<'d> Earlier<'d> {
+    /// `None` for a decoder that knows no field.
+    pub const fn of(decoder: &'d Decoder) -> Option<Self> {
+        match decoder.inverse() {
+            Some(inverse) => Some(Self { inverse, compensation: &decoder.compensation }),
+            None => None,
+        }
+    }
+}

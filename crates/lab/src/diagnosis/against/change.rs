@@ -1,0 +1,174 @@
+//! What may have changed in a sensor, or in what measured it, since an earlier recording.
+//!
+//! ```text
+//! place = d + R(φ) written(t + lag),   load = written(t + lag)
+//! yₖ = gₖ/γ fₖ(place, load) + δₖ t + βₖ ΔT + zₖ
+//! ```
+//!
+//! f is the earlier recording's regression beside its zeros, γ what is written, or meant where nothing is, over the true load: by a
+//! sensor that is linear in its load it is not told from a gain of all channels, and by any other one not surely. The zeros z are
+//! always fitted.
+
+use super::columns::Columns;
+use crate::diagnosis::model::{Hypothesis, Parameter};
+use crate::diagnosis::report::NotTestable;
+use crate::diagnosis::target::Target;
+
+/// What a hypothesis changes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Act {
+    /// The gain of a channel, or of all.
+    Gain(Option<usize>),
+    /// What is written of a load.
+    Load,
+    /// The drift of a zero.
+    Drift(Option<usize>),
+    /// How a zero goes with the temperature.
+    Thermal(Option<usize>),
+    /// The stage's zero, along these of x, y, z.
+    Offset(Vec<usize>),
+    /// The stage's turn.
+    Rotation,
+    /// The labels' clock.
+    Lag,
+}
+
+/// What is there to tell changes by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Circumstances {
+    pub(super) has_time: bool,
+    pub(super) has_temperature: bool,
+    pub(super) has_series: bool,
+}
+
+/// Everything that may have changed, as numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Changes {
+    pub(super) gains: Vec<f64>,
+    pub(super) drifts_per_h: Vec<f64>,
+    pub(super) zeros_per_c: Vec<f64>,
+    pub(super) load: f64,
+    pub(super) offset_mm: [f64; 3],
+    pub(super) rotation_deg: f64,
+    pub(super) lag_ms: f64,
+}
+
+/// Names of what can be found, those of the checks aside.
+pub(super) const EFFECTS: [&str; 8] = [
+    "channel_gain",
+    "excitation_gain",
+    "reference_gain",
+    "zero_drift",
+    "thermal_zero",
+    "stage_offset",
+    "stage_rotation",
+    "time_lag",
+];
+const AXES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
+
+impl Changes {
+    pub(super) fn none(channels: usize) -> Self {
+        Self {
+            gains: vec![1.0; channels],
+            drifts_per_h: vec![0.0; channels],
+            zeros_per_c: vec![0.0; channels],
+            load: 1.0,
+            offset_mm: [0.0; 3],
+            rotation_deg: 0.0,
+            lag_ms: 0.0,
+        }
+    }
+
+    pub(super) fn apply(&mut self, act: &Act, values: &[f64]) {
+        let each = |of: Option<usize>, numbers: &mut Vec<f64>, change: &dyn Fn(&mut f64)| match of {
+            Some(channel) => change(&mut numbers[channel]),
+            None => numbers.iter_mut().for_each(change),
+        };
+        match act {
+            Act::Gain(of) => each(*of, &mut self.gains, &|it| *it *= values[0]),
+            Act::Drift(of) => each(*of, &mut self.drifts_per_h, &|it| *it += values[0]),
+            Act::Thermal(of) => each(*of, &mut self.zeros_per_c, &|it| *it += values[0]),
+            Act::Load => self.load *= values[0],
+            Act::Offset(axes) => axes.iter().zip(values).for_each(|(axis, mm)| self.offset_mm[*axis] += mm),
+            Act::Rotation => self.rotation_deg += values[0],
+            Act::Lag => self.lag_ms += values[0],
+        }
+    }
+
+    /// Whether labels are other than they are written.
+    pub(super) fn moves_labels(&self) -> bool {
+        self.offset_mm != [0.0; 3] || self.rotation_deg != 0.0 || self.lag_ms != 0.0
+    }
+}
+
+impl Act {
+    /// Whether only what is read from the labels changes, not the labels.
+    pub(super) const fn is_of_channels(&self) -> bool {
+        matches!(self, Self::Gain(_) | Self::Load | Self::Drift(_) | Self::Thermal(_))
+    }
+}
+
+/// All hypotheses with what they change; `extents` are the labels' least and greatest values.
+pub(super) fn hypotheses(
+    columns: &Columns,
+    extents: &[[f64; 2]],
+    there: Circumstances,
+    asks_for: impl Fn(&str) -> bool,
+) -> Vec<(Hypothesis, Act)> {
+    let channels = columns.channels.len();
+    let gain = || vec![Parameter::factor("gain", [0.05, 20.0])];
+    let drift = || vec![Parameter::additive("uv_per_h", [-1e7, 1e7], 1.0)];
+    let thermal = || vec![Parameter::additive("uv_per_c", [-1e6, 1e6], 1.0)];
+    let axes: Vec<usize> = (0..3).filter(|axis| columns.input(AXES[*axis]).is_some()).collect();
+    let mm = |axis: &usize| {
+        let [low, high] = columns.input(AXES[*axis]).map_or([0.0; 2], |at| extents[at]);
+        let half = 0.5 * (high - low);
+        Parameter::additive(AXES[*axis], [-half, half], 1e-3 * half)
+    };
+    let mut all: Vec<(&'static str, Target, Vec<Parameter>, Act)> = Vec::new();
+    all.push(("excitation_gain", Target::All, gain(), Act::Gain(None)));
+    all.push(("reference_gain", Target::All, gain(), Act::Load));
+    all.extend((0..channels).map(|k| ("channel_gain", Target::Channel(k), gain(), Act::Gain(Some(k)))));
+    if there.has_time {
+        all.push(("zero_drift", Target::All, drift(), Act::Drift(None)));
+        all.extend((0..channels).map(|k| ("zero_drift", Target::Channel(k), drift(), Act::Drift(Some(k)))));
+    }
+    if there.has_temperature {
+        all.push(("thermal_zero", Target::All, thermal(), Act::Thermal(None)));
+        all.extend(
+            (0..channels).map(|k| ("thermal_zero", Target::Channel(k), thermal(), Act::Thermal(Some(k)))),
+        );
+    }
+    if !axes.is_empty() {
+        all.push(("stage_offset", Target::All, axes.iter().map(mm).collect(), Act::Offset(axes.clone())));
+    }
+    if axes.starts_with(&[0, 1]) {
+        let deg = vec![Parameter::additive("deg", [-180.0, 180.0], 1e-2)];
+        all.push(("stage_rotation", Target::All, deg, Act::Rotation));
+    }
+    if there.has_series {
+        all.push(("time_lag", Target::All, vec![Parameter::additive("ms", [-1e4, 1e4], 1.0)], Act::Lag));
+    }
+    let all = all.into_iter().filter(|(effect, ..)| asks_for(effect));
+    all.map(|(effect, target, parameters, act)| {
+        (Hypothesis { effect, target, parameters, signature_error: 0.0 }, act)
+    })
+    .collect()
+}
+
+/// What cannot be asked for, and what is missing.
+pub(super) fn missing(columns: &Columns, there: Circumstances) -> Vec<NotTestable> {
+    let has_place = AXES.iter().any(|name| columns.input(name).is_some());
+    let turns = ["x_mm", "y_mm"].iter().all(|name| columns.input(name).is_some());
+    [
+        ("zero_drift", "t_s", there.has_time),
+        ("thermal_zero", "temp_c", there.has_temperature),
+        ("time_lag", "trial", there.has_series),
+        ("stage_offset", "x_mm", has_place),
+        ("stage_rotation", "y_mm", turns),
+    ]
+    .into_iter()
+    .filter(|(.., is_there)| !is_there)
+    .map(|(effect, needs, _)| NotTestable { effect, needs })
+    .collect()
+}

@@ -1,0 +1,218 @@
+//! What changed in a sensor since an earlier recording of it: neither a simulator nor forces are needed.
+//!
+//! The way of the data: two tables have columns in common (`columns`), rows become observations (`recording`); a regression of the
+//! earlier ones says what the later ones should read, and how far that may be off (`earlier`); changes of the sensor and of what
+//! measured it (`change`) are hypotheses about that (`later`). Everything else is the engine's.
+
+mod change;
+mod columns;
+mod earlier;
+mod later;
+mod recording;
+mod standing;
+mod unfit;
+
+use self::change::{Circumstances, EFFECTS, missing};
+pub use self::columns::Asked;
+use self::columns::{Columns, extent};
+use self::earlier::Earlier;
+use self::later::{Later, Setting, sizes};
+use self::recording::Recording;
+use self::standing::standing;
+pub use self::unfit::Unfit;
+use self::unfit::{BLOCKS_MIN, ROWS_MIN};
+use crate::diagnosis::attribution::Search;
+use crate::diagnosis::columns::ZERO;
+use crate::diagnosis::gain::Rows;
+use crate::diagnosis::gatekeepers::excess::{EFFECT, excess};
+use crate::diagnosis::gatekeepers::{self, Gate, guarded};
+use crate::diagnosis::model::Model;
+use crate::diagnosis::report::{Diagnosis, Finding, Notice};
+use crate::diagnosis::target::Target;
+use crate::diagnosis::{summary, with_gatekeepers};
+use tactpad_core::numeric::statistics::mean;
+use tactpad_core::tables::measured::sheet::Sheet;
+
+/// Fewest rows of a time series in which the labels' clock shows.
+const SERIES_MIN: usize = 50;
+
+/// Names of all effects that can be found against an earlier recording.
+pub fn effects() -> impl Iterator<Item = &'static str> {
+    EFFECTS.into_iter().chain([ZERO]).chain(gatekeepers::EFFECTS)
+}
+
+/// Holds a table against an earlier one of the same sensor.
+///
+/// # Errors
+/// The tables have too little in common, or too little in them.
+pub fn compare(earlier: &Sheet, later: &Sheet, asked: &Asked<'_>) -> Result<Diagnosis, Unfit> {
+    let columns = Columns::of(earlier, later, asked)?;
+    let [before, after] = [earlier, later].map(|sheet| Recording::of(sheet, &columns));
+    for (recording, which) in [(&before, "the earlier recording"), (&after, "the measured table")] {
+        if recording.inputs.len() < ROWS_MIN {
+            return Err(Unfit::Rows { rows: recording.inputs.len(), which });
+        }
+    }
+    let has_temperature = [&before, &after].into_iter().all(varies_in_temperature);
+    let sound = guarded(&before.observations, None, |_| true);
+    let before = before.mended(&sound.observations);
+    let known = Earlier::of(&before, &columns, has_temperature)?;
+    let reached: Vec<usize> =
+        (0..after.inputs.len()).filter(|row| known.reaches(&after.inputs[*row])).collect();
+    if reached.len() < ROWS_MIN {
+        return Err(Unfit::Apart(reached.len()));
+    }
+    let lost = Lost { unlabelled: after.unlabelled, beyond: after.inputs.len() - reached.len() };
+    let mut after = after.picked(&reached);
+    after.placed(&columns, &known.extents);
+    let (after, gate) = checked(&after, &known, asked)?;
+    let mut diagnosis = told(&columns, &known, [&before, &after], asked, gate)?;
+    diagnosis.gatekeepers.splice(..0, lost.notices());
+    Ok(diagnosis)
+}
+
+/// The later recording after the checks: beside its channels' earlier zeros, and in clusters.
+fn checked(after: &Recording, known: &Earlier, asked: &Asked<'_>) -> Result<(Recording, Gate), Unfit> {
+    let rows = after.inputs.iter().zip(&after.observations.samples);
+    let signals: Vec<Vec<f64>> = rows.map(|(row, sample)| known.signals(row, sample.temp_c)).collect();
+    let zeros: Vec<f64> = known.channels.iter().map(|it| it.as_ref().map_or(0.0, |it| it.zero())).collect();
+    let expected: Vec<Vec<f64>> = zeros
+        .iter()
+        .enumerate()
+        .map(|(channel, zero)| signals.iter().map(|row| row[channel] + zero).collect())
+        .collect();
+    let gate = guarded(&after.observations, Some(&expected), |effect| asked.asks_for(effect));
+    let mut after = after.mended(&gate.observations);
+    for (channel, zero) in zeros.iter().enumerate() {
+        after.observations.readings[channel].iter_mut().for_each(|y| *y -= zero);
+        if known.channels[channel].is_none() {
+            after.observations.is_told[channel].iter_mut().for_each(|it| *it = false);
+        }
+    }
+    let blocks = after.blocks.clone();
+    after
+        .observations
+        .samples
+        .iter_mut()
+        .zip(&blocks)
+        .for_each(|(sample, block)| sample.block = Some(*block));
+    let mut distinct = blocks;
+    distinct.sort_unstable();
+    distinct.dedup();
+    if distinct.len() < BLOCKS_MIN {
+        return Err(Unfit::Blocks(distinct.len()));
+    }
+    let is_alive = (0..zeros.len()).any(|channel| after.observations.is_alive(channel));
+    if is_alive { Ok((after, gate)) } else { Err(Unfit::Silent) }
+}
+
+/// What the engine finds.
+fn told(
+    columns: &Columns,
+    known: &Earlier,
+    [before, after]: [&Recording; 2],
+    asked: &Asked<'_>,
+    gate: Gate,
+) -> Result<Diagnosis, Unfit> {
+    let all = &after.observations;
+    let there = circumstances(after, known);
+    let times_s = extent(all.samples.iter().filter_map(|sample| sample.t_s));
+    let temp_c = mean(all.samples.iter().filter_map(|sample| sample.temp_c).collect::<Vec<_>>());
+    let sizes = sizes(known, after);
+    let setting = Setting { earlier: known, columns, asked, there, times_s, sizes: &sizes, temp_c, own: &[] };
+    let own = Later::without_errors(setting, before).contradictions();
+    let setting = Setting { own: &own, ..setting };
+    let [open, locked] = all.split().map(|rows| {
+        let mut part = after.picked(&rows);
+        part.observations = all.picked(&rows);
+        part
+    });
+    let (model, at_locked) = (Later::new(setting, &open), Later::new(setting, &locked));
+    let search = Search::new(&model, all, &open.observations);
+    let found = search.run(&Vec::new()).ok_or(Unfit::Singular)?;
+    let rows = [(&model, &open), (&at_locked, &locked)].map(|(model, part)| Rows {
+        model: model as &dyn Model,
+        observations: &part.observations,
+        unrepaired: None,
+    });
+    let mut diagnosis = summary(&search, &found, &rows, &missing(columns, there)).ok_or(Unfit::Singular)?;
+    standing(&mut diagnosis, &search, &rows, &found);
+    let signals = &found.fit.linearised.readings;
+    let excess =
+        asked.asks_for(EFFECT).then(|| excess(&open.observations, &found.fit.systems.noise, signals));
+    let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
+    let own = diagnosis.findings.clone();
+    // Readings at a limit that was not seen look like noise.
+    let is_clipped = |target: Target| own.iter().any(|it| it.effect == "adc_clipping" && it.target == target);
+    diagnosis.findings.retain(|it| it.effect != EFFECT || !is_clipped(it.target));
+    diagnosis
+        .findings
+        .retain(|it| asked.asks_for(it.effect) && (it.effect != ZERO || is_known_zero(it, &own, columns)));
+    diagnosis.not_detected.retain(|it| asked.asks_for(it.effect));
+    unplaced(&mut diagnosis, columns);
+    Ok(diagnosis)
+}
+
+/// Where no load is written nobody knows what a channel reads without any: what a gain changes then moves its zero, too, by as much as
+/// nobody knows. A zero is told only beside a gain that stays.
+fn is_known_zero(zero: &Finding, findings: &[Finding], columns: &Columns) -> bool {
+    let acts_on = |it: &Finding| match (it.effect, it.target) {
+        ("excitation_gain" | "reference_gain", _) => true,
+        ("channel_gain" | "channel_polarity", target) => target == zero.target,
+        ("channels_swapped", Target::Channels { into, from }) => {
+            [into, from].iter().any(|channel| Target::Channel(*channel) == zero.target)
+        }
+        _ => false,
+    };
+    columns.has_loads() || !findings.iter().any(acts_on)
+}
+
+/// What stood for places and loads in the engine is none to be shown.
+fn unplaced(diagnosis: &mut Diagnosis, columns: &Columns) {
+    let has_place = ["x_mm", "y_mm"].iter().any(|name| columns.input(name).is_some());
+    for sample in &mut diagnosis.residuals.samples {
+        sample.block = None;
+        if !has_place {
+            sample.place_mm = [0.0; 2];
+        }
+    }
+}
+
+fn circumstances(after: &Recording, known: &Earlier) -> Circumstances {
+    let samples = &after.observations.samples;
+    let [first, last] = extent(samples.iter().filter_map(|sample| sample.t_s));
+    let in_series = samples.iter().filter(|sample| sample.trial.is_some() && sample.t_s.is_some());
+    Circumstances {
+        has_time: last > first && samples.iter().all(|sample| sample.t_s.is_some()),
+        has_temperature: known.has_temperature(),
+        has_series: in_series.count() >= SERIES_MIN,
+    }
+}
+
+fn varies_in_temperature(recording: &Recording) -> bool {
+    let samples = &recording.observations.samples;
+    let [low, high] = extent(samples.iter().filter_map(|sample| sample.temp_c));
+    high > low && samples.iter().all(|sample| sample.temp_c.is_some())
+}
+
+/// Rows that have no part in anything.
+struct Lost {
+    unlabelled: usize,
+    beyond: usize,
+}
+
+impl Lost {
+    fn notices(&self) -> Vec<Notice> {
+        let notice = |detail: String| Notice { check: "missing", channel: None, detail };
+        let unlabelled = format!(
+            "{} rows have a label that is no number, or a code for none; they are left out; write down all labels of every row",
+            self.unlabelled
+        );
+        let beyond = format!(
+            "{} rows have labels that the earlier recording has not; they are left out; what the channels should read there is not known",
+            self.beyond
+        );
+        let told = [(self.unlabelled, unlabelled), (self.beyond, beyond)];
+        told.into_iter().filter(|(rows, _)| *rows > 0).map(|(_, detail)| notice(detail)).collect()
+    }
+}

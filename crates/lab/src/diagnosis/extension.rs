@@ -1,0 +1,399 @@
+//! The device that a diagnosis makes of another: with the named causes in it.
+
+use super::causes::{creep, hysteresis};
+use super::mechanics::side_share;
+use super::report::Diagnosis;
+use super::target::Target;
+use tactpad_core::pad::device::behaviour::{Crosstalk, ModuleCrosstalk, Play, Prony};
+use tactpad_core::pad::device::parameter::Parameter;
+use tactpad_core::pad::device::{Device, Module, Side};
+use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS};
+
+/// A device file opens the side of a frame or does not: from this part of the side on, open is nearer.
+const NEARER_OPEN: f64 = 0.5;
+
+/// What a finding's value does to a number of the device.
+#[derive(Clone, Copy, Debug)]
+enum Change {
+    Add,
+    Multiply,
+    Replace,
+}
+
+use Change::{Add, Multiply, Replace};
+
+/// Effect, the finding's number, the device's number (by [`Parameter`]'s names), and what becomes of it.
+const NUMBERS: [(&str, &str, &str, Change); 27] = [
+    ("channel_gain", "gain", "module.{module}.gain.{axis}", Multiply),
+    ("excitation_gain", "gain", "module.{module}.gain.{axis}", Multiply),
+    ("channel_offset", "offset_uv", "module.{module}.offset_uv.{axis}", Add),
+    ("module_displaced", "radial_mm", "module.{module}.radial_mm", Add),
+    ("module_displaced", "tangential_mm", "module.{module}.tangential_mm", Add),
+    ("module_rotated", "deg", "module.{module}.rotation_deg", Add),
+    ("module_tilted", "tangential_deg", "module.{module}.tilt_tangential_deg", Add),
+    ("module_tilted", "radial_deg", "module.{module}.tilt_radial_deg", Add),
+    ("module_stiffness", "factor", "module.{module}.frame_e_factor", Multiply),
+    ("plate_stiffness", "factor", "material.plate.e_mpa", Multiply),
+    ("thermal_zero", "uv_per_c", "thermal.zero_uv_per_c.{channel}", Add),
+    ("thermal_gain", "per_c", "thermal.gain_per_c.{channel}", Add),
+    ("zero_drift", "uv_per_h", "noise.drift_uv_per_h.{channel}", Add),
+    ("ageing", "share_at_end", "ageing.share.{channel}", Add),
+    ("reference_tilt", "x_deg", "rig.reference_tilt_x_deg", Add),
+    ("reference_tilt", "y_deg", "rig.reference_tilt_y_deg", Add),
+    ("reference_gain", "gain", "rig.reference_gain", Multiply),
+    ("reference_zero", "fx_n", "rig.reference_zero_n.x", Add),
+    ("reference_zero", "fy_n", "rig.reference_zero_n.y", Add),
+    ("reference_zero", "fz_n", "rig.reference_zero_n.z", Add),
+    ("stage_offset", "x_mm", "rig.stage_x_mm", Add),
+    ("stage_offset", "y_mm", "rig.stage_y_mm", Add),
+    ("stage_rotation", "deg", "rig.stage_rotation_deg", Add),
+    ("stage_scale", "scale", "rig.stage_scale", Multiply),
+    ("channel_skew", "skew_us", "sampling.skew_us.{channel}", Add),
+    ("time_lag", "ms", "rig.label_lag_ms", Add),
+    ("contact_size", "radius_mm", "contact.patch_radius_mm", Replace),
+];
+
+/// `device` with the named findings, and the effects among them that a device file cannot hold. Confounded ones are left out.
+///
+/// `last_cycle` is the measurement's last: what `ageing` says of the end is said of that.
+pub fn extended(
+    device: &Device,
+    diagnosis: &Diagnosis,
+    last_cycle: Option<f64>,
+) -> (Device, Vec<&'static str>) {
+    let (mut device, mut left_out) = (device.clone(), Vec::new());
+    let circumstances = Circumstances { last_cycle, full_scale: &diagnosis.full_scale };
+    for finding in diagnosis.findings.iter().filter(|finding| finding.confounded_with.is_empty()) {
+        let asked = finding.parameters.iter().map(|it| (it.name, it.value));
+        let numbers: Vec<_> = asked.chain(finding.shapes.iter().copied()).collect();
+        match with(&device, (finding.effect, finding.target), &numbers, &circumstances) {
+            Some(changed) => device = changed,
+            None => left_out.push(finding.effect),
+        }
+    }
+    left_out.sort_unstable();
+    left_out.dedup();
+    (device, left_out)
+}
+
+/// What numbers are said of.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Circumstances<'m> {
+    /// The measurement's last cycle of load.
+    last_cycle: Option<f64>,
+    /// Each channel's full scale.
+    full_scale: &'m [f64],
+}
+
+/// Whether its file would be taken: all numbers within their ranges, all parts in their places.
+fn reads_back(device: &Device) -> bool {
+    Device::from_toml(&device.to_toml()).0.as_ref() == Some(device)
+}
+
+/// The device with one cause more, of these numbers; none where it has no number for it, or none within its range.
+pub(super) fn with(
+    device: &Device,
+    (effect, target): (&'static str, Target),
+    numbers: &[(&str, f64)],
+    circumstances: &Circumstances<'_>,
+) -> Option<Device> {
+    let mut device = device.clone();
+    let (_, first) = *numbers.first()?;
+    match (effect, target) {
+        ("channel_crosstalk", Target::Channels { into, from }) => {
+            leak(&mut device.behaviour.crosstalk, Crosstalk { channel: into, with: from, share: first });
+        }
+        ("module_crosstalk", Target::Modules { into, from }) => {
+            leak(
+                &mut device.behaviour.module_crosstalk,
+                ModuleCrosstalk { module: into, with: from, share: first },
+            );
+        }
+        ("module_frame_open", Target::ModuleSide(module, side)) => open(&mut device, module, side, first)?,
+        ("module_debonded", Target::ModuleSide(module, side)) => debond(&mut device, module, side, first)?,
+        ("hysteresis" | "creep", _) => remember(&mut device, (effect, target), numbers, circumstances)?,
+        _ => set_numbers(&mut device, (effect, target), numbers, circumstances.last_cycle)?,
+    }
+    if effect == "contact_size" {
+        // A wider finger leaves the plate earlier.
+        let contact = &mut device.contact;
+        let centre_mm = device.plate.radius_mm() - contact.patch_radius_mm;
+        contact.max_centre_radius_mm = contact.max_centre_radius_mm.min(centre_mm);
+    }
+    Some(device).filter(reads_back)
+}
+
+/// A share of a source that appears in a receiver.
+trait Leak {
+    fn ends(&self) -> [usize; 2];
+    fn share_mut(&mut self) -> &mut f64;
+}
+
+impl Leak for Crosstalk {
+    fn ends(&self) -> [usize; 2] {
+        [self.channel, self.with]
+    }
+
+    fn share_mut(&mut self) -> &mut f64 {
+        &mut self.share
+    }
+}
+
+impl Leak for ModuleCrosstalk {
+    fn ends(&self) -> [usize; 2] {
+        [self.module, self.with]
+    }
+
+    fn share_mut(&mut self) -> &mut f64 {
+        &mut self.share
+    }
+}
+
+/// Adds to what is there between the same two.
+fn leak<T: Leak>(leaks: &mut Vec<T>, mut more: T) {
+    match leaks.iter_mut().find(|leak| leak.ends() == more.ends()) {
+        Some(leak) => *leak.share_mut() += *more.share_mut(),
+        None => leaks.push(more),
+    }
+}
+
+/// A module's frame is missing on one side at most, and there as a whole.
+fn open(device: &mut Device, module: usize, side: Side, share: f64) -> Option<()> {
+    let part = share / side_share(device, side);
+    let frame_open = &mut device.modules.get_mut(module)?.frame_open;
+    let is_held = part >= NEARER_OPEN && frame_open.is_none_or(|open| open == side);
+    is_held.then(|| *frame_open = Some(side))
+}
+
+/// A module's bond has come off from one side at most.
+fn debond(device: &mut Device, module: usize, side: Side, share: f64) -> Option<()> {
+    let module = device.modules.get_mut(module)?;
+    let (from, before) = module.debonded().unwrap_or((side, 0.0));
+    (from == side)
+        .then(|| *module = Module { debonded_side: Some(side), debonded_share: before + share, ..*module })
+}
+
+/// Adds play operators, or terms of creep, in each channel of the target.
+fn remember(
+    device: &mut Device,
+    (effect, target): (&str, Target),
+    numbers: &[(&str, f64)],
+    circumstances: &Circumstances<'_>,
+) -> Option<()> {
+    let values: Vec<f64> = numbers.iter().map(|(_, value)| *value).collect();
+    let channels = match target {
+        Target::Channel(channel) => channel..channel + 1,
+        _ => 0..CHANNELS,
+    };
+    for channel in channels {
+        let own = std::array::from_fn(|other| other == channel);
+        if effect == "creep" {
+            let term = |[time_s, share]: [f64; 2]| Prony { channels: own, time_s, share };
+            device.behaviour.creep.extend(creep::terms(&values).map(term));
+        } else {
+            let full_scale_uv = circumstances.full_scale.get(channel)?;
+            let play = |[threshold, share]: [f64; 2]| Play {
+                channels: own,
+                threshold_uv: threshold * full_scale_uv,
+                share,
+            };
+            device.behaviour.hysteresis.extend(hysteresis::plays(&values).map(play));
+        }
+    }
+    Some(())
+}
+
+fn set_numbers(
+    device: &mut Device,
+    (effect, target): (&'static str, Target),
+    numbers: &[(&str, f64)],
+    last_cycle: Option<f64>,
+) -> Option<()> {
+    for (name, value) in numbers {
+        let known = |(of, number, ..): &&(&str, &str, &str, Change)| *of == effect && number == name;
+        let (_, _, number, change) = NUMBERS.iter().find(known)?;
+        let mut value = *value;
+        if effect == "ageing" {
+            // The device file says what is lost after its own number of cycles.
+            value /= Some(device.behaviour.ageing.part(last_cycle?)).filter(|part| *part > 0.0)?;
+        }
+        for name in names(number, target) {
+            let parameter: Parameter = name.parse().ok()?;
+            let own = parameter.get(device);
+            let changed = match change {
+                Add => own + value,
+                Multiply => own * value,
+                Replace => value,
+            };
+            parameter.set(device, changed);
+        }
+    }
+    Some(())
+}
+
+/// The device's numbers of this name; where a channel's is wanted and the target is the whole pad, those of all channels.
+fn names(number: &str, target: Target) -> Vec<String> {
+    let of_channel = |channel: usize| {
+        let name = CHANNEL_NAMES.get(channel).copied().unwrap_or_default();
+        let module = number.replace("{module}", &(channel / 3).to_string());
+        module.replace("{axis}", name.get(2..).unwrap_or_default()).replace("{channel}", name)
+    };
+    match target {
+        Target::Channel(channel) => vec![of_channel(channel)],
+        Target::Module(module) => vec![number.replace("{module}", &module.to_string())],
+        _ if number.contains('{') => (0..CHANNELS).map(of_channel).collect(),
+        _ => vec![number.to_owned()],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::report::{Estimate, Finding};
+    use super::*;
+    use tactpad_core::pad::device::behaviour::Behaviour;
+
+    fn finding(effect: &'static str, target: Target, parameters: &[(&'static str, f64)]) -> Finding {
+        let estimate = |(name, value): &(&'static str, f64)| Estimate {
+            name,
+            value: *value,
+            interval95: [value - 0.1, value + 0.1],
+        };
+        Finding {
+            effect,
+            target,
+            parameters: parameters.iter().map(estimate).collect(),
+            shapes: Vec::new(),
+            p_value: 1e-9,
+            share: 0.1,
+            confounded_with: Vec::new(),
+            separate_by: None,
+        }
+    }
+
+    fn diagnosis(findings: Vec<Finding>) -> Diagnosis {
+        Diagnosis::of(CHANNEL_NAMES.map(str::to_owned).to_vec(), vec![5000.0; CHANNELS], findings)
+    }
+
+    fn near(value: f64, wanted: f64) {
+        assert!((value - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{value} instead of {wanted}");
+    }
+
+    fn mechanical() -> Vec<Finding> {
+        vec![
+            finding("module_displaced", Target::Module(0), &[("radial_mm", -0.7), ("tangential_mm", 0.9)]),
+            finding("module_rotated", Target::Module(1), &[("deg", -5.0)]),
+            finding("module_tilted", Target::Module(1), &[("tangential_deg", 0.2), ("radial_deg", -0.3)]),
+            finding("module_stiffness", Target::Module(2), &[("factor", 0.6)]),
+            finding("module_frame_open", Target::ModuleSide(0, Side::MinusX), &[("area_share", 0.18)]),
+            finding("module_debonded", Target::ModuleSide(2, Side::PlusY), &[("area_share", 0.3)]),
+            finding("plate_stiffness", Target::Pad, &[("factor", 1.5)]),
+            finding("contact_size", Target::Rig, &[("radius_mm", 2.5)]),
+        ]
+    }
+
+    #[test]
+    fn mechanics_read_back() {
+        let nominal = Device::nominal();
+        let (device, left_out) = extended(&nominal, &diagnosis(mechanical()), None);
+        assert_eq!(left_out, [""; 0]);
+        assert_eq!(Device::from_toml(&device.to_toml()), (Some(device.clone()), vec![]));
+        let wanted = [
+            Module { radial_mm: -0.7, tangential_mm: 0.9, frame_open: Some(Side::MinusX), ..Module::NOMINAL },
+            Module { rotation_deg: -5.0, tilt_tangential_deg: 0.2, tilt_radial_deg: -0.3, ..Module::NOMINAL },
+            Module {
+                frame_e_factor: 0.6,
+                debonded_side: Some(Side::PlusY),
+                debonded_share: 0.3,
+                ..Module::NOMINAL
+            },
+        ];
+        assert_eq!(device.modules, wanted);
+        near(device.material.plate.e_mpa, 1.5 * nominal.material.plate.e_mpa);
+        assert_eq!([device.contact.patch_radius_mm, device.contact.max_centre_radius_mm], [2.5, 27.5]);
+    }
+
+    #[test]
+    fn channels_and_rig_are_laid_over_what_the_device_has() {
+        let mut device = Device::nominal();
+        device.modules[1].gain = [1.0, 1.0, 1.1];
+        device.behaviour.crosstalk.push(Crosstalk { channel: 0, with: 4, share: 0.02 });
+        let findings = vec![
+            finding("channel_gain", Target::Channel(5), &[("gain", 1.2)]),
+            finding("excitation_gain", Target::Pad, &[("gain", 0.9)]),
+            finding("channel_offset", Target::Channel(0), &[("offset_uv", 120.0)]),
+            finding("channel_crosstalk", Target::Channels { into: 0, from: 4 }, &[("share", 0.05)]),
+            finding("module_crosstalk", Target::Modules { into: 2, from: 1 }, &[("share", 0.04)]),
+            finding("thermal_zero", Target::Pad, &[("uv_per_c", 3.0)]),
+            finding("zero_drift", Target::Channel(8), &[("uv_per_h", 40.0)]),
+            finding("ageing", Target::Channel(3), &[("share_at_end", 0.02)]),
+            finding("reference_zero", Target::Rig, &[("fx_n", 0.1), ("fy_n", 0.2), ("fz_n", -0.1)]),
+            finding("stage_scale", Target::Rig, &[("scale", 1.02)]),
+            finding("channel_skew", Target::Channel(1), &[("skew_us", 900.0)]),
+            finding("time_lag", Target::Rig, &[("ms", -40.0)]),
+        ];
+        let (extended, left_out) = extended(&device, &diagnosis(findings), Some(500.0));
+        assert_eq!(left_out, [""; 0]);
+        assert_eq!(Device::from_toml(&extended.to_toml()).0.as_ref(), Some(&extended));
+        near(extended.modules[1].gain[2], 1.1 * 1.2 * 0.9);
+        near(extended.modules[2].gain[0], 0.9);
+        assert_eq!(extended.modules[0].offset_uv, [120.0, 0.0, 0.0]);
+        let behaviour = &extended.behaviour;
+        near(behaviour.crosstalk[0].share, 0.07);
+        assert_eq!(behaviour.module_crosstalk, [ModuleCrosstalk { module: 2, with: 1, share: 0.04 }]);
+        assert_eq!(behaviour.thermal.zero_uv_per_c, [3.0; CHANNELS]);
+        assert_eq!(behaviour.noise.drift_uv_per_h[8], 40.0);
+        // After 500 cycles ln 2 of what is ln 101 after 50,000.
+        near(behaviour.ageing.share[3], 0.02 * 101_f64.ln() / 2_f64.ln());
+        assert_eq!(behaviour.rig.reference_zero_n, [0.1, 0.2, -0.1]);
+        near(behaviour.rig.stage_scale, 1.02);
+        near(behaviour.sampling.skew_us[1], 900.0);
+        near(behaviour.rig.label_lag_ms, -40.0);
+    }
+
+    #[test]
+    fn what_a_pad_remembers_is_as_high_and_as_slow_as_found() {
+        let parts = ["part_0", "part_1", "part_2", "part_3", "part_4"].map(|name| (name, 1.0));
+        let mut hysteresis = finding("hysteresis", Target::Pad, &[("share_of_full_scale", 0.04)]);
+        hysteresis.shapes = parts.into_iter().chain([("above", 1.0), ("full_scale", 1.0)]).collect();
+        let mut creep = finding("creep", Target::Channel(2), &[("share_at_20s", 0.03)]);
+        creep.shapes = parts.to_vec();
+        let (device, left_out) = extended(&Device::nominal(), &diagnosis(vec![hysteresis, creep]), None);
+        assert_eq!(left_out, [""; 0]);
+        let Behaviour { hysteresis, creep, .. } = device.behaviour;
+        // Σ 2 w r, and Σ c (1 − exp(−20 s/τ)).
+        let height = |channel: usize| -> f64 {
+            let own = hysteresis.iter().filter(|it| it.channels[channel]);
+            own.map(|it| 2.0 * it.share * it.threshold_uv).sum()
+        };
+        (0..CHANNELS).for_each(|channel| near(height(channel), 0.04 * 5000.0));
+        near(creep.iter().map(|it| it.share * (1.0 - (-20.0 / it.time_s).exp())).sum(), 0.03);
+        assert!(creep.iter().all(|it| it.channels[2] && !it.channels[0]));
+    }
+
+    #[test]
+    fn what_no_file_holds_is_left_out_and_told() {
+        let nominal = Device::nominal();
+        let mut confounded = finding("channel_gain", Target::Channel(0), &[("gain", 1.2)]);
+        confounded.confounded_with.push(("reference_gain", Target::Rig));
+        let findings = vec![
+            finding("gauge_nonlinearity", Target::Channel(0), &[("second_order_percent_fs", 2.0)]),
+            finding("contact_height", Target::Rig, &[("mm", 1.0)]),
+            finding("module_frame_open", Target::ModuleSide(0, Side::PlusX), &[("area_share", 0.05)]),
+            finding("module_displaced", Target::Module(0), &[("radial_mm", 1e3), ("tangential_mm", 0.0)]),
+            finding("ageing", Target::Pad, &[("share_at_end", 0.02)]),
+            finding("channel_gain", Target::Channel(1), &[("gain", f64::NAN)]),
+            confounded,
+        ];
+        let (device, left_out) = extended(&nominal, &diagnosis(findings), None);
+        assert_eq!(device, nominal);
+        let wanted = [
+            "ageing",
+            "channel_gain",
+            "contact_height",
+            "gauge_nonlinearity",
+            "module_displaced",
+            "module_frame_open",
+        ];
+        assert_eq!(left_out, wanted);
+    }
+}

@@ -1,0 +1,287 @@
+//! Diagnosis: what measured data show that a model gets wrong, and which causes explain it.
+//!
+//! The way of the data: rows become [`observations`], which pass checks of the recording (`gatekeepers/`); a model (`model`)
+//! says what they should read and how that changes with each hypothesis of the catalogue (`causes/`), about the pad's own field
+//! or those of changed pads (`atlas`); the residual's covariance is noise, a smooth background that every simulator leaves, and
+//! what the simulator is known to get wrong (`covariance`); group score tests with a cluster bootstrap choose causes
+//! (`attribution`); the encompassing rule says which of them may be named (`naming`), as long as they hold in all parts of the
+//! measurement (`specification`) and do not look like parts of something else (`withdrawal`), and models of further measurements (`experiments`) which would tell the others apart
+//! (`separation`); rows that had no part in it say what they are worth (`gain`), in readings and in contacts that are decoded by the
+//! model backwards (`inverse`, of the pad `bench`).
+//!
+//! Search, tests and naming know nothing of nine channels: those are in `simulated` and what it is made of.
+//!
+//! Sources: M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (a discrepancy beside the parameters); J.
+//! Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014) 114007 (without it parameters are wrong and too sure).
+
+pub mod against;
+pub mod agreement;
+mod atlas;
+mod attribution;
+mod basis;
+mod bench;
+mod bootstrap;
+mod cause;
+mod causes;
+mod ceiling;
+mod chain;
+mod channel_rows;
+mod columns;
+mod covariance;
+mod equations;
+mod experiments;
+pub mod extension;
+mod gain;
+mod gatekeepers;
+mod inference;
+mod inverse;
+mod mean_square;
+pub(crate) mod mechanics;
+mod memory;
+mod model;
+mod naming;
+mod noise;
+pub mod observations;
+mod own;
+mod regression;
+pub mod report;
+mod row;
+mod separation;
+pub(crate) mod setting;
+mod simulated;
+mod specification;
+mod system;
+pub mod target;
+mod whitening;
+mod withdrawal;
+
+use std::fmt;
+
+use self::atlas::{Atlas, attributed};
+use self::attribution::{Applied, Attribution, Fit, Search};
+use self::cause::Cause;
+use self::causes::CATALOGUE;
+use self::ceiling::ceiling_share;
+use self::covariance::{REMAINDER_MAX, Remainder};
+use self::gain::{Rows, rmse};
+use self::gatekeepers::excess::{EFFECT, Excess, excess};
+use self::gatekeepers::{Gate, guarded};
+pub use self::mechanics::Pad;
+use self::model::Model;
+use self::observations::Observations;
+use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
+use self::separation::Separation;
+use self::simulated::Simulated;
+use self::withdrawal::{Candidate, Named, doubted, in_common, named};
+use tactpad_core::numeric::chi_square;
+use tactpad_core::numeric::statistics::{mean, rms};
+use tactpad_core::tables::measured::Table;
+
+/// Fewest rows, and fewest locations among them, by which causes can be told.
+const ROWS_MIN: usize = 60;
+const LOCATIONS_MIN: usize = 12;
+
+/// Why a table cannot be diagnosed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Unfit {
+    /// Too few rows.
+    Rows(usize),
+    /// Too few locations.
+    Locations(usize),
+    /// No forces.
+    Unloaded,
+    /// No channel goes with the contacts.
+    Silent,
+    /// The numbers have no unique solution.
+    Singular,
+}
+
+impl fmt::Display for Unfit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rows(rows) => write!(
+                f,
+                "{rows} rows with channels: to tell causes apart it takes {ROWS_MIN} at least; tactpad protocol paper makes a plan"
+            ),
+            Self::Locations(locations) => write!(
+                f,
+                "contacts at {locations} places: to tell causes apart it takes {LOCATIONS_MIN} at least, spread over the plate"
+            ),
+            Self::Unloaded => f.write_str("all forces are zero: without written loads the channels cannot be held against the pad"),
+            Self::Silent => f.write_str(
+                "no channel follows the contacts; measure again, and see that each row has the channels of its own contact",
+            ),
+            Self::Singular => f.write_str("these readings have no noise at all, or numbers too large to be readings: nothing can be told by them"),
+        }
+    }
+}
+
+impl std::error::Error for Unfit {}
+
+/// Holds a measured table against a pad: what differs, and why.
+///
+/// # Errors
+/// The table has too little in it to tell causes apart.
+pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
+    check(table)?;
+    let gate = checked(&Observations::of(table), pad)?;
+    let all = &gate.observations;
+    let [open, locked] = all.split().map(|rows| all.picked(&rows));
+    let mut model = Atlas::new(pad, all, &open);
+    let found = attributed(&mut model).ok_or(Unfit::Singular)?;
+    let at_locked = model.at(&locked);
+    let search = Search::new(&model, all, &open);
+    let measured = gate.unrepaired.as_ref();
+    let parts = measured.map(|whole| [&open, &locked].map(|part| (whole, whole.picked(&part.numbers))));
+    let models = parts
+        .as_ref()
+        .map(|parts| parts.each_ref().map(|(whole, part)| (Atlas::new(pad, whole, part), part)));
+    let unrepaired = models.as_ref().map(|models| {
+        models.each_ref().map(|(model, observations)| Rows { model, observations, unrepaired: None })
+    });
+    let as_measured = |at: usize| unrepaired.as_ref().map(|rows| &rows[at]);
+    let rows = [
+        Rows { model: &model, observations: &open, unrepaired: as_measured(0) },
+        Rows { model: &at_locked, observations: &locked, unrepaired: as_measured(1) },
+    ];
+    let diagnosis = summary(&search, &found, &rows, &model.missing()).ok_or(Unfit::Singular)?;
+    let excess =
+        pad.asks_for(EFFECT).then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
+    let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
+    diagnosis.not_detected.retain(|it| pad.asks_for(it.effect));
+    diagnosis.findings = in_common(diagnosis.findings);
+    Ok(diagnosis)
+}
+
+/// The observations after the checks of the recording.
+fn checked(observations: &Observations, pad: &Pad<'_>) -> Result<Gate, Unfit> {
+    let expected = Simulated::new(pad, (pad.device, pad.field), observations, (observations, observations))
+        .readings(&[]);
+    let gate = guarded(observations, Some(&expected), |effect| pad.asks_for(effect));
+    let is_alive = |channel| gate.observations.is_alive(channel);
+    if (0..gate.observations.channels.len()).any(is_alive) { Ok(gate) } else { Err(Unfit::Silent) }
+}
+
+/// What the checks of the recording found goes first.
+fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Diagnosis {
+    // Shares are of the residual before the repairs.
+    diagnosis.findings.iter_mut().for_each(|finding| finding.share *= gate.left);
+    let excess = excess.of_channels(|channel| diagnosis.unnamed_by_channel[channel] <= 0.0);
+    let own = gate.findings.into_iter().chain(excess.findings);
+    diagnosis.findings.splice(..0, own);
+    diagnosis.verdict = verdict(&diagnosis.findings, diagnosis.unnamed_share);
+    diagnosis.not_detected.extend(gate.not_detected.into_iter().chain(excess.not_detected));
+    diagnosis.not_testable.extend(gate.not_testable);
+    diagnosis.gatekeepers = gate.notices.into_iter().chain(excess.notices).collect();
+    diagnosis
+}
+
+/// The names of all effects that can be found.
+pub fn effects() -> impl Iterator<Item = &'static str> {
+    CATALOGUE.into_iter().map(Cause::effect).chain(gatekeepers::EFFECTS)
+}
+
+/// Whether there is enough in a table; quick, where [`diagnose`] takes seconds.
+///
+/// # Errors
+/// What is missing.
+pub fn check(table: &Table) -> Result<(), Unfit> {
+    let all = Observations::of(table);
+    let locations = all.clusters().into_iter().max().map_or(0, |last| last + 1);
+    match all {
+        _ if all.rows() < ROWS_MIN => Err(Unfit::Rows(all.rows())),
+        _ if locations < LOCATIONS_MIN => Err(Unfit::Locations(locations)),
+        _ if all.load_rms() <= 0.0 => Err(Unfit::Unloaded),
+        _ => Ok(()),
+    }
+}
+
+/// Everything that is said about what was found.
+fn summary(
+    search: &Search<'_>,
+    found: &Attribution,
+    [open, locked]: &[Rows<'_>; 2],
+    missing: &[NotTestable],
+) -> Option<Diagnosis> {
+    let fit = &found.fit;
+    let remainders = unnamed_squares(found);
+    let whole = search.removed(fit)? + remainders.iter().sum::<f64>();
+    let Named { candidates, unnamed_by_channel, doubted_by_channel } =
+        named(search, found, (whole, remainders))?;
+    let unnamed: f64 = unnamed_by_channel.iter().sum();
+    let separation = Separation::new(search, found);
+    let applied: Applied = candidates.iter().map(|it| fit.applied[it.place].clone()).collect();
+    let told = |Candidate { place, finding, is_doubted }| {
+        let separate_by = separation.told(place, &finding.confounded_with);
+        let finding = Finding { separate_by, ..finding };
+        if is_doubted { doubted(finding) } else { finding }
+    };
+    let mut findings: Vec<Finding> = candidates.into_iter().map(told).collect();
+    findings.extend(search.offsets(found, whole + search.offsets_square(found)?, &doubted_by_channel)?);
+    let unnamed_share = if unnamed > 0.0 { unnamed / whole } else { 0.0 };
+    let nothing = Vec::new();
+    Some(Diagnosis {
+        residuals: residuals(open, found, &applied),
+        channels: open.observations.channels.clone(),
+        full_scale: search.model.full_scale(),
+        verdict: verdict(&findings, unnamed_share),
+        noise_floor: noise_floor(open, fit),
+        rmse_nominal: rmse(open.measured(), &nothing, &open.measured().zeros(&nothing)),
+        rmse_extended: rmse(open, &applied, &open.zeros(&applied)),
+        background_mm: fit.background.prior.length_mm,
+        background_share: rms(fit.background.shares.iter().flatten().copied()),
+        ceiling_share: ceiling_share([open, locked], &applied, &fit.systems.noise),
+        gain: search.gain(fit, [open, locked], &applied),
+        not_detected: search.not_detected(found)?,
+        not_testable: missing.to_vec(),
+        unnamed_share,
+        unnamed_by_channel,
+        findings,
+        gatekeepers: Vec::new(),
+    })
+}
+
+/// Root mean square of the channels' noise.
+fn noise_floor(open: &Rows<'_>, fit: &Fit) -> f64 {
+    let noise = fit.systems.noise.iter().zip(&fit.linearised.readings).enumerate();
+    let alive = noise.filter(|(channel, _)| open.observations.is_alive(*channel));
+    let in_series = open.observations.in_series();
+    mean(alive.map(|(_, (noise, signal))| noise.mean_square(signal, &in_series))).sqrt()
+}
+
+/// What the model misses at the open rows, as it is and with what was found.
+fn residuals(open: &Rows<'_>, found: &Attribution, applied: &Applied) -> Residuals {
+    let noise = found.fit.systems.noise.iter().zip(&found.fit.linearised.readings);
+    let in_series = open.observations.in_series();
+    Residuals {
+        samples: open.observations.samples.clone(),
+        noise: noise.map(|(noise, signal)| noise.mean_square(signal, &in_series).sqrt()).collect(),
+        nominal: open.centred(&Vec::new()),
+        extended: open.centred(applied),
+    }
+}
+
+/// What each channel's smooth remainder has beyond a background, where it is larger than a background may be and that is no
+/// chance; else nothing.
+fn unnamed_squares(found: &Attribution) -> Vec<f64> {
+    let fit = &found.fit;
+    let remainders = fit.systems.remainders(&fit.background, &fit.marginal, &fit.coordinates);
+    let is_no_chance = |it: &Remainder| {
+        let beyond = (it.mean_square - REMAINDER_MAX * REMAINDER_MAX) / it.deviation;
+        beyond > 0.0 && chi_square::exceeded(beyond * beyond, 1) < found.critical
+    };
+    let square = |it: &Remainder| if is_no_chance(it) { (it.energy - it.freedom).max(0.0) } else { 0.0 };
+    remainders.iter().map(square).collect()
+}
+
+/// A finding that may be a part of something else explains nothing.
+fn verdict(findings: &[Finding], unnamed_share: f64) -> Verdict {
+    let explains = findings.iter().any(|it| !it.is_doubted());
+    match (explains, unnamed_share > 0.0) {
+        (false, false) => Verdict::NoDiscrepancy,
+        (true, false) => Verdict::Explained,
+        (true, true) => Verdict::PartlyExplained,
+        (false, true) => Verdict::Unexplained,
+    }
+}

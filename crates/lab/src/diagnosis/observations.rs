@@ -1,0 +1,159 @@
+//! What was measured, for any number of channels: readings, and what was written down beside them.
+
+use tactpad_core::numeric::random::SplitMix64;
+use tactpad_core::numeric::statistics::rms;
+use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS};
+use tactpad_core::tables::measured::{Approach, Row, Table};
+
+/// Places nearer to each other than this are one location.
+const LOCATION_MM: f64 = 0.25;
+/// One location in so many is locked: it is looked at once, for the gain.
+const LOCKED_ONE_IN: u64 = 5;
+
+/// The written circumstances of a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Where the contact was, by the stage.
+    pub place_mm: [f64; 2],
+    /// Fx, Fy, Fz by the reference, or whatever loads there are.
+    pub load: [f64; 3],
+    /// Index of its session.
+    pub session: usize,
+    /// Index of its time series; none for a static sample.
+    pub trial: Option<usize>,
+    /// On the clock of the channels.
+    pub t_s: Option<f64>,
+    /// On the clock of what was written down, if that has its own.
+    pub label_t_s: Option<f64>,
+    /// How long a static load was held before it was read.
+    pub dwell_s: Option<f64>,
+    /// Whether a static load came from a higher one.
+    pub is_unloading: bool,
+    /// Of the pad.
+    pub temp_c: Option<f64>,
+    /// Cycles of load that the pad has behind it.
+    pub cycle: Option<f64>,
+    /// By how much the pad was turned on the stage.
+    pub turned_deg: f64,
+    /// Its cluster, where that is not its location and session.
+    pub block: Option<usize>,
+}
+
+impl Sample {
+    /// Whether it is of a time series, and not static.
+    pub const fn is_in_series(&self) -> bool {
+        self.trial.is_some()
+    }
+}
+
+/// Rows of a measurement.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Observations {
+    /// Names of the channels.
+    pub channels: Vec<String>,
+    /// Each channel's readings, row by row.
+    pub readings: Vec<Vec<f64>>,
+    /// The same way, whether a reading tells anything: one that is missing or clipped does not.
+    pub is_told: Vec<Vec<bool>>,
+    /// What was written beside them.
+    pub samples: Vec<Sample>,
+    /// The rows' numbers in the whole measurement.
+    pub numbers: Vec<usize>,
+}
+
+impl Observations {
+    /// The rows of a table that have channels, in its order.
+    pub fn of(table: &Table) -> Self {
+        let rows: Vec<(&Row, [f64; CHANNELS])> =
+            table.rows.iter().filter_map(|row| Some((row, row.uv?))).collect();
+        let sample = |row: &Row| Sample {
+            place_mm: [row.label.x_mm, row.label.y_mm],
+            load: [row.label.fx_n, row.label.fy_n, row.label.fz_n],
+            session: row.session.unwrap_or(0),
+            trial: row.trial,
+            t_s: row.t_s,
+            label_t_s: None,
+            dwell_s: row.dwell_s,
+            is_unloading: row.approach == Some(Approach::Unloading),
+            temp_c: row.temp_c,
+            cycle: row.cycle,
+            turned_deg: row.turned_deg.unwrap_or(0.0),
+            block: None,
+        };
+        Self {
+            channels: CHANNEL_NAMES.map(str::to_owned).to_vec(),
+            readings: (0..CHANNELS).map(|channel| rows.iter().map(|(_, uv)| uv[channel]).collect()).collect(),
+            is_told: vec![vec![true; rows.len()]; CHANNELS],
+            samples: rows.iter().map(|(row, _)| sample(row)).collect(),
+            numbers: (0..rows.len()).collect(),
+        }
+    }
+
+    /// How many rows there are.
+    pub const fn rows(&self) -> usize {
+        self.samples.len()
+    }
+
+    /// The rows at these places.
+    pub fn picked(&self, rows: &[usize]) -> Self {
+        fn of<T: Copy>(all: &[Vec<T>], rows: &[usize]) -> Vec<Vec<T>> {
+            all.iter().map(|of| rows.iter().map(|row| of[*row]).collect()).collect()
+        }
+        Self {
+            channels: self.channels.clone(),
+            readings: of(&self.readings, rows),
+            is_told: of(&self.is_told, rows),
+            samples: rows.iter().map(|row| self.samples[*row]).collect(),
+            numbers: rows.iter().map(|row| self.numbers[*row]).collect(),
+        }
+    }
+
+    /// These rows as a whole measurement.
+    pub fn as_whole(&self, rows: &[usize]) -> Self {
+        Self { numbers: (0..rows.len()).collect(), ..self.picked(rows) }
+    }
+
+    /// For each row, whether it is of a time series, and not static.
+    pub fn in_series(&self) -> Vec<bool> {
+        self.samples.iter().map(Sample::is_in_series).collect()
+    }
+
+    /// For each row, whether it goes on with the time series of the row before it.
+    pub fn follows(&self) -> Vec<bool> {
+        let goes_on = |pair: &[Sample]| pair[0].trial.is_some() && pair[0].trial == pair[1].trial;
+        std::iter::once(false).chain(self.samples.windows(2).map(goes_on)).take(self.rows()).collect()
+    }
+
+    /// Whether a channel tells anything at all.
+    pub fn is_alive(&self, channel: usize) -> bool {
+        self.is_told[channel].contains(&true)
+    }
+
+    /// For each row the number of its cluster: rows of one location and session share their errors.
+    pub fn clusters(&self) -> Vec<usize> {
+        let steps = |mm: f64| libm::round(mm / LOCATION_MM) as i64;
+        let key = |sample: &Sample| match sample.block {
+            Some(block) => (block, [0; 2]),
+            None => (sample.session, sample.place_mm.map(steps)),
+        };
+        let mut keys: Vec<_> = self.samples.iter().map(key).collect();
+        let rows = keys.clone();
+        keys.sort_unstable();
+        keys.dedup();
+        rows.iter().map(|row| keys.partition_point(|key| key < row)).collect()
+    }
+
+    /// The rows to find causes by, and the locked ones: whole clusters, drawn once and for all by their number.
+    pub fn split(&self) -> [Vec<usize>; 2] {
+        let clusters = self.clusters();
+        let is_locked =
+            |row: &usize| SplitMix64::new(clusters[*row] as u64).next_bits().is_multiple_of(LOCKED_ONE_IN);
+        let (locked, open) = (0..self.rows()).partition(is_locked);
+        [open, locked]
+    }
+
+    /// Root mean square of the loads' magnitudes.
+    pub fn load_rms(&self) -> f64 {
+        rms(self.samples.iter().map(|it| libm::sqrt(it.load.iter().map(|n| n * n).sum())))
+    }
+}

@@ -1,0 +1,78 @@
+//! Where a cause acts.
+
+use std::fmt;
+
+use tactpad_core::pad::device::Side;
+
+/// Where a cause acts. Channels and modules are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// All of the pad.
+    Pad,
+    /// What measured it.
+    Rig,
+    /// All channels, or all labels, of a sensor that nothing more is known of.
+    All,
+    /// A channel.
+    Channel(usize),
+    /// A channel, by another one.
+    Channels {
+        /// The receiving one.
+        into: usize,
+        /// The source.
+        from: usize,
+    },
+    /// A module.
+    Module(usize),
+    /// A module, by another one.
+    Modules {
+        /// The receiving one.
+        into: usize,
+        /// The source.
+        from: usize,
+    },
+    /// A module, on one of its sides.
+    ModuleSide(usize, Side),
+}
+
+impl Target {
+    /// Its name in reports, where channels have these names.
+    pub fn name(&self, channels: &[String]) -> String {
+        match *self {
+            Self::Pad => "pad".to_owned(),
+            Self::Rig => "rig".to_owned(),
+            Self::All => "all".to_owned(),
+            Self::Channel(channel) | Self::Channels { into: channel, .. } => channel_name(channels, channel),
+            Self::Module(module) | Self::Modules { into: module, .. } | Self::ModuleSide(module, _) => {
+                format!("module{module}")
+            }
+        }
+    }
+
+    /// Which other part it names, if any.
+    pub fn with(&self, channels: &[String]) -> Option<String> {
+        match *self {
+            Self::Channels { from, .. } => Some(channel_name(channels, from)),
+            Self::Modules { from, .. } => Some(format!("module{from}")),
+            _ => None,
+        }
+    }
+
+    /// The side that it names, if any.
+    pub const fn side(&self) -> Option<Side> {
+        match *self {
+            Self::ModuleSide(_, side) => Some(side),
+            _ => None,
+        }
+    }
+}
+
+fn channel_name(channels: &[String], channel: usize) -> String {
+    channels.get(channel).cloned().unwrap_or_else(|| format!("channel {channel}"))
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name(&[]))
+    }
+}

@@ -1,0 +1,219 @@
+//! What was meant when: a table `begin_s,end_s,meant` that people write.
+
+use std::fmt;
+
+use super::vocabulary::{NONE, Vocabulary};
+use tactpad_core::pipeline::mapping::profile::{Binding, Profile};
+use tactpad_core::toml_text::diag::quoted;
+
+/// The table's first line.
+pub const HEADER: &str = "begin_s,end_s,meant";
+
+/// A label more than this long after the recording's begin is a mistake: a day.
+const S_MAX: f64 = 86_400.0;
+
+/// A time in which something was meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// It begins, counted from the recording's first sample by the pad's clock,
+    pub begin_us: u64,
+    /// and ends.
+    pub end_us: u64,
+    /// What was meant: the number of a class.
+    pub class: usize,
+}
+
+/// What can be meant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Class {
+    /// Its name for people.
+    pub name: String,
+    /// What should come down; nothing for `none`.
+    pub controls: Vec<Binding>,
+}
+
+/// Labels in order of time, and what they can mean. The last class is `none`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Labels {
+    labels: Vec<Label>,
+    classes: Vec<Class>,
+}
+
+/// Why a table of labels cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unusable {
+    /// The line that is wrong, from 1.
+    pub line: usize,
+    /// What is wrong with it, and what to write.
+    pub what: String,
+}
+
+impl fmt::Display for Unusable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.line, self.what)
+    }
+}
+
+impl Labels {
+    /// Reads a table for a profile.
+    ///
+    /// # Errors
+    /// Says what is wrong with the first line that cannot be used.
+    pub fn read(text: &str, profile: &Profile) -> Result<Self, Unusable> {
+        let vocabulary = Vocabulary::of(profile);
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut lines = (1..).zip(text.lines());
+        let header = lines.next().map_or(String::new(), |(_, line)| cells(line).join(","));
+        if header != HEADER {
+            return Err(Unusable {
+                line: 1,
+                what: format!("the first line must be {HEADER}, not {}", quoted(&header)),
+            });
+        }
+        let mut meant: Vec<(usize, [u64; 2], Vec<Binding>)> = Vec::new();
+        for (line, text) in lines.filter(|(_, text)| !text.trim().is_empty()) {
+            let (times_us, controls) =
+                read_line(text, &vocabulary).map_err(|what| Unusable { line, what })?;
+            meant.push((line, times_us, controls));
+        }
+        if meant.is_empty() {
+            return Err(Unusable {
+                line: 2,
+                what: "the table has no labels: write a line for each press".into(),
+            });
+        }
+        meant.sort_by_key(|(_, times_us, _)| *times_us);
+        for pair in meant.windows(2) {
+            if let [(before, [_, end_us], _), (line, [begin_us, _], _)] = pair
+                && begin_us < end_us
+            {
+                let what = format!("it begins before that of line {before} ends: no two may overlap");
+                return Err(Unusable { line: *line, what });
+            }
+        }
+        Ok(Self::new(
+            &vocabulary,
+            meant.into_iter().map(|(_, times_us, controls)| (times_us, controls)).collect(),
+        ))
+    }
+
+    fn new(vocabulary: &Vocabulary, meant: Vec<([u64; 2], Vec<Binding>)>) -> Self {
+        let mut classes: Vec<Vec<Binding>> = Vec::new();
+        for (_, controls) in meant.iter().filter(|(_, controls)| !controls.is_empty()) {
+            if !classes.contains(controls) {
+                classes.push(controls.clone());
+            }
+        }
+        classes.sort_by_key(|controls| {
+            (controls.len(), controls.iter().map(|it| (it.device, it.code, it.value)).collect::<Vec<_>>())
+        });
+        classes.push(Vec::new());
+        let class =
+            |controls: &Vec<Binding>| classes.iter().position(|it| it == controls).unwrap_or_default();
+        let labels = meant.iter().map(|([begin_us, end_us], controls)| Label {
+            begin_us: *begin_us,
+            end_us: *end_us,
+            class: class(controls),
+        });
+        Self {
+            labels: labels.collect(),
+            classes: classes
+                .into_iter()
+                .map(|controls| Class { name: vocabulary.name(&controls), controls })
+                .collect(),
+        }
+    }
+
+    /// In order of time; no two overlap.
+    pub fn labels(&self) -> &[Label] {
+        &self.labels
+    }
+
+    /// What can be meant; the last is `none`.
+    pub fn classes(&self) -> &[Class] {
+        &self.classes
+    }
+
+    /// Those that begin from one time on and before another.
+    #[must_use]
+    pub fn between(&self, from_us: u64, to_us: u64) -> Self {
+        let is_in = |label: &&Label| (from_us..to_us).contains(&label.begin_us);
+        Self { labels: self.labels.iter().filter(is_in).copied().collect(), classes: self.classes.clone() }
+    }
+}
+
+/// A line's cells, without blanks and quotation marks.
+fn cells(line: &str) -> Vec<&str> {
+    line.split(',').map(|cell| cell.trim().trim_matches('"').trim()).collect()
+}
+
+fn read_line(text: &str, vocabulary: &Vocabulary) -> Result<([u64; 2], Vec<Binding>), String> {
+    let cells = cells(text);
+    let [begin, end, meant] = cells[..] else {
+        return Err(format!("it has {} cells; write {HEADER}, as 12.5,13.2,left", cells.len()));
+    };
+    let (begin_us, end_us) = (microseconds("begin_s", begin)?, microseconds("end_s", end)?);
+    if begin_us >= end_us {
+        return Err(format!("it ends at {end} s, which is not after its begin at {begin} s"));
+    }
+    if meant.is_empty() {
+        return Err(format!("it does not say what was meant: write a control's name, or {NONE}"));
+    }
+    Ok(([begin_us, end_us], vocabulary.meant(meant)?))
+}
+
+fn microseconds(name: &str, cell: &str) -> Result<u64, String> {
+    let seconds = cell.parse::<f64>().ok().filter(|seconds| (0.0..=S_MAX).contains(seconds));
+    let seconds = seconds.ok_or_else(|| {
+        format!("{name} is {}; write seconds since the recording's first sample, as 12.5", quoted(cell))
+    })?;
+    Ok((seconds * 1e6).round() as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tactpad_core::pipeline::mapping::check::{OutputChoice, read};
+    use tactpad_core::pipeline::mapping::shipped;
+
+    fn labels(lines: &str) -> Result<Labels, String> {
+        let profile = read(shipped::text("super-mario").unwrap(), OutputChoice::AsWritten).0.unwrap();
+        Labels::read(lines, &profile).map_err(|why| why.to_string())
+    }
+
+    #[test]
+    fn people_write_names_as_they_like() {
+        let table = "\u{feff}begin_s, end_s, meant\r\n\n3,4.5,Right\n1,2,\"btn_a\"\n5,6,right + button 1 tap\n\
+                     6,7,ABS_HAT0X++BTN_SOUTH\n7,8,None\n8,9,ABS_HAT0X+\n9,10,button  1  hold\n10,11,east\n";
+        let read = labels(table).unwrap();
+        let names: Vec<_> =
+            read.labels().iter().map(|label| read.classes()[label.class].name.as_str()).collect();
+        let both = "BTN_SOUTH+right";
+        assert_eq!(names, ["BTN_SOUTH", "right", both, both, "none", "right", "BTN_EAST", "BTN_EAST"]);
+        assert_eq!((read.labels()[0].begin_us, read.labels()[1].end_us), (1_000_000, 4_500_000));
+        assert_eq!(read.classes().last().unwrap().controls, []);
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_said_with_its_line() {
+        for (lines, told) in [
+            ("", "1: the first line must be begin_s,end_s,meant"),
+            ("begin,end,meant\n", "1: the first line must be begin_s,end_s,meant"),
+            ("begin_s,end_s,meant\n", "2: the table has no labels"),
+            ("begin_s,end_s,meant\n1,2\n", "2: it has 2 cells; write begin_s,end_s,meant"),
+            ("begin_s,end_s,meant\n1,2,up\n2,1,up\n", "3: it ends at 1 s, which is not after"),
+            ("begin_s,end_s,meant\nx,2,up\n", "2: begin_s is \"x\"; write seconds"),
+            ("begin_s,end_s,meant\n1,inf,up\n", "2: end_s is \"inf\"; write seconds"),
+            ("begin_s,end_s,meant\n1,2,\n", "2: it does not say what was meant"),
+            (
+                "begin_s,end_s,meant\n1,2,rigth\n",
+                "2: the profile has nothing that is called \"rigth\": did you mean \"right\"?",
+            ),
+            ("begin_s,end_s,meant\n1,2,button 2\n", "2: the profile has nothing that is called \"button 2\""),
+            ("begin_s,end_s,meant\n1,2,up\n5,6,up\n1.5,3,up\n", "4: it begins before that of line 2 ends"),
+        ] {
+            let why = labels(lines).unwrap_err();
+            assert!(why.starts_with(told), "{why}");
+        }
+    }
+}

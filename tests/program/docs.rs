@@ -6,12 +6,15 @@
 //! ```
 //!
 //! `docs/make` writes them anew and `docs/make --check` says which are stale. As some take a minute, a plain test run holds only
-//! that every figure has its command.
+//! that every figure has its command. Besides, README.md is short, docs/README.md is an index of all pages, and docs/verbs.md has
+//! each verb in one group.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 
 mod stale;
 
 use std::collections::BTreeMap;
+#[cfg(all(feature = "live", target_os = "linux"))]
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -30,6 +33,9 @@ const FOLDER: &str = "@";
 
 /// What that folder is called where a command prints its name.
 const SHOWN_FOLDER: &str = "figures";
+
+/// README.md is read in one go.
+const README_LINES_MAX: usize = 130;
 
 /// What stands under a command in a page.
 #[derive(Debug, PartialEq, Eq)]
@@ -185,4 +191,47 @@ fn marks_are_found_with_what_is_under_them() {
     let image = Made { command: "y @".into(), shown: Shown::Image("c.svg".into()) };
     assert_eq!(made(&lines), Ok(vec![text, image]));
     assert_eq!(made(&["<!-- tactpad x -->", "nothing"]), Err(1));
+}
+
+fn page(name: &str) -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap()
+}
+
+#[test]
+fn the_readme_is_short() {
+    let lines = page("README.md").lines().count();
+    assert!(lines <= README_LINES_MAX, "{lines} lines");
+}
+
+#[test]
+fn the_index_has_every_page() {
+    let index = page("docs/README.md");
+    for path in pages() {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let link = if name == "README.md" { "(../README.md)".to_owned() } else { format!("({name}") };
+        assert!(index.contains(&link), "docs/README.md lacks {name}");
+    }
+}
+
+#[cfg(all(feature = "live", target_os = "linux"))]
+#[test]
+fn each_verb_is_in_one_group_of_its_page() {
+    let text = page("docs/verbs.md");
+    let mut groups: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for section in text.split("\n## ").skip(1) {
+        let group = section.lines().next().unwrap_or_default();
+        let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
+        for verb in rows.filter_map(|row| row.split([' ', '`']).next()) {
+            groups.entry(verb).or_default().insert(group);
+        }
+    }
+    let output = Command::new(env!("CARGO_BIN_EXE_tactpad")).args(["completions", "fish"]).output().unwrap();
+    let completions = String::from_utf8(output.stdout).unwrap();
+    let named = completions.lines().filter(|line| line.contains("\"__fish_tactpad_needs_command\""));
+    let named = named.filter_map(|line| line.split("-f -a \"").nth(1)?.split('"').next());
+    let verbs: BTreeSet<&str> = named.filter(|verb| *verb != "help").collect();
+    assert!(verbs.len() > 20, "{verbs:?}");
+    assert_eq!(groups.keys().copied().collect::<BTreeSet<_>>(), verbs);
+    let twice: Vec<_> = groups.iter().filter(|(_, groups)| groups.len() != 1).collect();
+    assert!(twice.is_empty(), "{twice:?}");
 }

@@ -1,51 +1,20 @@
 //! The program's verbs, one file each. Errors are printed and exit codes chosen here and nowhere else.
 
-mod ablation;
-mod adapt;
-mod completions;
-mod config_folder;
-mod decoder_file;
-mod destination;
-mod device;
-mod diagnose;
-mod evaluate;
 mod failure;
-mod field;
-mod layout;
-#[cfg(target_os = "linux")]
-mod live;
-mod metrology;
-mod pictures;
-mod played;
-mod profile;
-mod progress;
-mod protocol;
-mod recording;
-mod replay;
-mod reports;
-mod seconds;
-mod simulate;
-mod state_file;
-mod summary;
-mod tables;
-mod terminal;
-mod text_file;
-mod train;
-mod tune;
-mod twin;
-mod weigh;
-mod wiring;
-mod wrapped;
-mod written;
+mod files;
+mod laboratory;
+mod paper;
+mod playing;
+mod printing;
 
 use std::env;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use self::failure::Failure;
-use self::written::say;
+use self::printing::{wrapped, written::say};
 
 /// Turns a tactile disc with nine strain channels into a game controller.
 #[derive(Debug, Parser)]
@@ -59,56 +28,53 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Verb {
-    #[cfg(target_os = "linux")]
     #[command(flatten)]
-    Live(live::Verb),
-    /// Print the events that a capture, or a list of contacts, comes to.
-    Replay(replay::Arguments),
-    /// Say what the channels read for given contacts, or for the paper's dataset.
-    Simulate(simulate::Arguments),
-    /// Write a measuring plan: the paper's, or the recommended one.
-    Protocol(protocol::Arguments),
-    /// Make measured-like data with the imperfect virtual pad.
-    Twin(twin::Arguments),
-    /// Train the paper's network on simulated contacts.
-    Train(train::Arguments),
-    /// Fit a decoder to a pad by measured contacts.
-    Adapt(adapt::Arguments),
-    /// Find by one known weight what gain a pad has lost, and keep it in its decoder.
-    Weigh(weigh::Arguments),
-    /// Say how far a decoder's contacts are from measured ones, or from the truth.
-    Evaluate(evaluate::Arguments),
-    /// Compare all decoders on the twin: the paper's Table 3, and what the noise allows.
-    Ablation(ablation::Arguments),
-    /// Fit a profile to a hand, by a recording and a table of what was meant when.
-    Tune(tune::Arguments),
-    /// List, show and check profiles.
-    Profile(profile::Arguments),
-    /// Say where the three modules should stand, by the paper's rule and by the pad's mechanics.
-    Layout(layout::Arguments),
-    /// Say how the gauges are wired into half-bridges and where they lie on the film, and draw it.
-    Wiring(wiring::Arguments),
-    /// Find the paper's figures of merit, of the twin or of a measured file.
-    Metrology(metrology::Arguments),
-    /// Say what a measured file shows that the model of the pad gets wrong, and why.
-    Diagnose(diagnose::Arguments),
-    /// Print a shell's completions of verbs and options.
-    Completions(completions::Arguments),
+    Playing(playing::Verb),
+    #[command(flatten)]
+    Laboratory(laboratory::Verb),
+    #[command(flatten)]
+    Paper(paper::Verb),
+}
+
+/// The whole command line; its help has the verbs in their groups.
+fn command() -> Command {
+    let command = Arguments::command();
+    let groups = [
+        ("Playing", playing::Verb::augment_subcommands(Command::new("playing"))),
+        ("Laboratory", laboratory::Verb::augment_subcommands(Command::new("laboratory"))),
+        ("The paper", paper::Verb::augment_subcommands(Command::new("paper"))),
+    ];
+    let header = command.get_styles().get_header();
+    let texts = groups.map(|(name, group)| format!("{header}{name}:{header:#}\n{}", verbs(&group)));
+    let template = format!(
+        "{{about}}\n\n{{usage-heading}} {{usage}}\n\n{}\n{header}Options:{header:#}\n{{options}}{{after-help}}",
+        texts.join("\n")
+    );
+    command.help_template(template)
+}
+
+/// A line for each verb of a group, or as many as its sentence takes.
+fn verbs(group: &Command) -> String {
+    let verb = |verb: &Command| {
+        let about = verb.get_about().map(ToString::to_string).unwrap_or_default();
+        wrapped::hanging(&format!("  {:11}  ", verb.get_name()), &about) + "\n"
+    };
+    group.get_subcommands().map(verb).collect()
 }
 
 /// What stands on the command line, or what is meant where nothing does; `None` if that is done already.
 fn words() -> Result<Option<Vec<OsString>>, Failure> {
     #[cfg(all(feature = "tray", target_os = "linux"))]
-    if env::args_os().len() < 2 && live::alone::is_on_desktop() {
-        return Ok(live::alone::command_line()?.map(|words| words.into_iter().map(OsString::from).collect()));
+    if env::args_os().len() < 2 && playing::live::alone::is_on_desktop() {
+        return Ok(playing::live::alone::command_line()?
+            .map(|words| words.into_iter().map(OsString::from).collect()));
     }
     Ok(Some(env::args_os().collect()))
 }
 
 /// Runs the program with the process's arguments.
 pub(super) fn run() -> ExitCode {
-    let outcome =
-        words().and_then(|words| words.map_or(Ok(()), |words| obey(Arguments::parse_from(words).verb)));
+    let outcome = words().and_then(|words| words.map_or(Ok(()), |words| obey(&parsed(words).verb)));
     let (code, message) = match outcome {
         Ok(()) | Err(Failure::Unread) => return ExitCode::SUCCESS,
         Err(Failure::Failed(message)) => (1, message),
@@ -119,26 +85,17 @@ pub(super) fn run() -> ExitCode {
     ExitCode::from(code)
 }
 
-fn obey(verb: Verb) -> Result<(), Failure> {
+/// Parses the words, or ends the process with the help or the error that they ask for.
+fn parsed(words: Vec<OsString>) -> Arguments {
+    let matches = command().get_matches_from(words);
+    Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+}
+
+fn obey(verb: &Verb) -> Result<(), Failure> {
     match verb {
-        #[cfg(target_os = "linux")]
-        Verb::Live(verb) => live::run(&verb),
-        Verb::Replay(arguments) => replay::run(&arguments),
-        Verb::Simulate(arguments) => simulate::run(&arguments),
-        Verb::Protocol(arguments) => protocol::run(&arguments),
-        Verb::Twin(arguments) => twin::run(&arguments),
-        Verb::Train(arguments) => train::run(&arguments),
-        Verb::Adapt(arguments) => adapt::run(&arguments),
-        Verb::Weigh(arguments) => weigh::run(&arguments),
-        Verb::Evaluate(arguments) => evaluate::run(&arguments),
-        Verb::Ablation(arguments) => ablation::run(&arguments),
-        Verb::Tune(arguments) => tune::run(&arguments),
-        Verb::Profile(arguments) => profile::run(&arguments),
-        Verb::Layout(arguments) => layout::run(&arguments),
-        Verb::Wiring(arguments) => wiring::run(&arguments),
-        Verb::Metrology(arguments) => metrology::run(&arguments),
-        Verb::Diagnose(arguments) => diagnose::run(&arguments),
-        Verb::Completions(arguments) => completions::run(&arguments, &mut Arguments::command()),
+        Verb::Playing(verb) => playing::run(verb, command),
+        Verb::Laboratory(verb) => laboratory::run(verb),
+        Verb::Paper(verb) => paper::run(verb),
     }
 }
 
@@ -159,7 +116,7 @@ mod tests {
 
     #[test]
     fn each_help_has_an_example_and_no_line_that_is_too_long() {
-        let mut whole = Arguments::command();
+        let mut whole = command();
         whole.build();
         let mut commands = Vec::new();
         all(&whole, "", &mut commands);
@@ -177,6 +134,6 @@ mod tests {
 
     #[test]
     fn arguments_are_sound() {
-        Arguments::command().debug_assert();
+        command().debug_assert();
     }
 }

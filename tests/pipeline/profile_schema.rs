@@ -330,7 +330,7 @@ fn profiles_that_are_in_order_fit_the_schema() {
     let reference = include_str!("../../mappings/README.md");
     let examples = reference.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
     let whole = examples.filter(|example| example.contains("schema = 1"));
-    let template = include_str!("../../src/cli/profile/template.toml");
+    let template = include_str!("../../src/cli/playing/profile/template.toml");
     let shipped: Vec<_> = shipped::names().filter_map(shipped::text).collect();
     assert!(shipped.len() >= 5 && shipped.iter().all(|text| text.starts_with(SCHEMA_LINE)));
     let texts: Vec<_> = shipped.into_iter().chain([template]).chain(whole).collect();

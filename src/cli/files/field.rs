@@ -1,0 +1,44 @@
+//! The field of a verb's pad, with a line that says how far its computation is.
+
+use std::fmt;
+
+use crate::cli::failure::Failure;
+use crate::cli::printing::progress::Progress;
+use crate::cli::printing::written::{reason, say};
+use tactpad::lab::field_cache::{self, FieldError, Obtained};
+use tactpad::pad::changes::FieldChanges;
+use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
+
+/// The field of `device`, known or computed.
+pub(crate) fn field_of(device: &Device) -> Result<PadField, Failure> {
+    told(|step| field_cache::field_of(device, step))
+}
+
+/// What flaws change in the field of `device`, known or computed.
+pub(crate) fn changes_of(device: &Device) -> Result<FieldChanges, Failure> {
+    told(|step| field_cache::changes_of(device, step))
+}
+
+fn told<T>(
+    obtain: impl FnOnce(&mut dyn FnMut(fmt::Arguments<'_>)) -> Result<Obtained<T>, FieldError>,
+) -> Result<T, Failure> {
+    let mut progress = None;
+    let mut step = |what: fmt::Arguments<'_>| {
+        progress.get_or_insert_with(|| Progress::begin(what)).step(what);
+    };
+    let obtained = obtain(&mut step)?;
+    // The line goes before anything else is said.
+    drop(progress);
+    if let Some((path, error)) = &obtained.not_kept {
+        let (path, why) = (path.display(), reason(error));
+        say(format_args!("the pad's field is not kept for the next run: {path}: {why}"));
+    }
+    Ok(obtained.known)
+}
+
+impl From<FieldError> for Failure {
+    fn from(error: FieldError) -> Self {
+        Self::Failed(error.to_string())
+    }
+}

@@ -1,0 +1,87 @@
+//! Tables of contacts, plans and measured tables, as files.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use super::destination::Destination;
+use crate::cli::failure::Failure;
+use crate::cli::printing::written::reason;
+use tactpad::pad::device::{Device, Patch};
+use tactpad::tables::measured::Table;
+use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::error::{Fault, ReadError};
+use tactpad::tables::measured::{read, write};
+
+/// Places are often written to two decimals; so rounded, one on the rim may lie this far beyond it.
+const RIM_TOLERANCE_MM: f64 = 0.01;
+
+/// Reads a table of contacts, all of which must be on the plate.
+pub(crate) fn on_the_plate(path: &Path, kind: Kind, device: &Device) -> Result<Table, Failure> {
+    let contacts = read(path, kind, device.plate.radius_mm())?;
+    for row in &contacts.rows {
+        within_the_rim([row.label.x_mm, row.label.y_mm], &device.contact)
+            .map_err(|why| Failure::Unusable(format!("{}:{}: {why}", path.display(), row.line)))?;
+    }
+    Ok(contacts)
+}
+
+/// Refuses a contact whose patch would reach over the plate's rim.
+///
+/// The field ends there. Taking such a contact at the rim would write a row whose place and channels do not belong
+/// together, and a decoder would learn it.
+pub(crate) fn within_the_rim([x_mm, y_mm]: [f64; 2], patch: &Patch) -> Result<(), String> {
+    let radius_mm = x_mm.hypot(y_mm);
+    let Patch { patch_radius_mm, max_centre_radius_mm, .. } = patch;
+    if radius_mm <= max_centre_radius_mm + RIM_TOLERANCE_MM {
+        return Ok(());
+    }
+    Err(format!(
+        "the contact is {radius_mm:.2} mm from the centre, and a finger of {patch_radius_mm} mm radius stays on the \
+         plate up to {max_centre_radius_mm} mm; move it or leave it out"
+    ))
+}
+
+/// Reads a table whose places lie within ±`place_max_mm`.
+pub(crate) fn read(path: &Path, kind: Kind, place_max_mm: f64) -> Result<Table, Failure> {
+    let refused = |error| refusal(path, kind, error);
+    let file = File::open(path).map_err(|error| refused(ReadError { line: 1, fault: Fault::Io(error) }))?;
+    read::table(BufReader::new(file), kind, place_max_mm).map_err(refused)
+}
+
+/// Writes a table.
+pub(crate) fn write(to: &Destination, table: &Table) -> Result<(), Failure> {
+    let mut writing = to.begin()?;
+    write::table(&mut writing, table)?;
+    writing.finish()
+}
+
+fn refusal(path: &Path, kind: Kind, error: ReadError) -> Failure {
+    let path = path.display();
+    let what = match kind {
+        Kind::Contacts => "of contacts",
+        Kind::Plan => "that holds a plan",
+        Kind::Measured => "of measured contacts",
+    };
+    Failure::Unusable(match error.fault {
+        Fault::Io(error) => format!("{path} cannot be read: {}; name a CSV file {what}", reason(&error)),
+        fault => format!("{path}:{}: {fault}", error.line),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contacts_end_where_the_patch_would_leave_the_plate() {
+        let patch = Device::nominal().contact;
+        for place in [[0.0, 0.0], [29.0, 0.0], [0.0, -29.009], [20.51, 20.51]] {
+            assert_eq!(within_the_rim(place, &patch), Ok(()));
+        }
+        for place in [[29.011, 0.0], [-20.52, 20.52], [30.0, 30.0]] {
+            let why = within_the_rim(place, &patch).unwrap_err();
+            assert!(why.starts_with("the contact is ") && why.contains("up to 29 mm"), "{why}");
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! A decoder from presses without labels and a weight on marks: how it is fitted, and what is told of it.
+
+use std::fmt;
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::method::Method;
+use super::named::Named;
+use super::numbers::Pad as FoundPad;
+use crate::cli::failure::Failure;
+use crate::cli::files::destination::Destination;
+use crate::cli::files::field::field_of;
+use crate::cli::printing::progress::Progress;
+use crate::cli::printing::wrapped::hanging;
+use crate::cli::printing::written::tell;
+use tactpad::lab::calibration::earlier::Earlier;
+use tactpad::lab::play::home::{AtHome, HomeError, calibrated};
+use tactpad::lab::play::summary::{HEADING, Part, Summary};
+use tactpad::lab::play::weights::Placement;
+use tactpad::lab::play::windows::Window;
+use tactpad::lab::tangent::Simulated;
+use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
+use tactpad::pipeline::contact::Decoder;
+
+/// How a weight is put on the marks.
+const WEIGHING: &str = "tactpad calibrate --weight-g says when and where; the moments of a recording of your own go to adapt --weights.";
+
+/// What came of it.
+#[derive(Serialize)]
+struct Outcome {
+    method: Method,
+    #[serde(flatten)]
+    summary: Summary,
+    pad: FoundPad,
+}
+
+/// Fits; a bar shows how far it is.
+pub(crate) fn fitted(
+    windows: &[Window],
+    placements: &[Placement],
+    (device, field): (&Device, &PadField),
+    earlier: Option<&Decoder>,
+) -> Result<AtHome, HomeError> {
+    let progress = Progress::begin("fitting the pad's field");
+    let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
+    let pad = Simulated { solve: &|device| field_of(device).ok(), ..Simulated::known(device, field) };
+    calibrated(windows, placements, &pad, earlier.and_then(Earlier::of), &report)
+}
+
+/// Writes the decoder, and says what came of it: on standard output, unless that gets the decoder.
+pub(crate) fn write(
+    found: AtHome,
+    windows: &[Window],
+    (to, out): (&Destination, &Path),
+    json: bool,
+) -> Result<(), Failure> {
+    to.write(&found.file())?;
+    let outcome = Outcome::of(found, windows);
+    tell(&outcome, out, json)
+}
+
+impl Outcome {
+    fn of(found: AtHome, windows: &[Window]) -> Self {
+        Self {
+            method: Method::Inverse,
+            summary: Summary::of(&found, windows),
+            pad: FoundPad::of(
+                found.calibration,
+                Named::by(&[], (&Device::nominal(), &PadField::nominal(), &[])),
+            ),
+        }
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.summary.source())?;
+        writeln!(f, "{}", self.pad)?;
+        writeln!(f, "\n{HEADING}")?;
+        for Part { name, deviation_mm, force_share, presses, open } in &self.summary.map {
+            let mark = if *open { "  open" } else { "" };
+            writeln!(
+                f,
+                "{name:<29} {deviation_mm:>5.2} mm {:>5.1} % of the force, {presses} presses{mark}",
+                100.0 * force_share
+            )?;
+        }
+        f.write_str(&hanging("", &self.summary.next(WEIGHING)))
+    }
+}

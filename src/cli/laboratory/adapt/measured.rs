@@ -1,0 +1,72 @@
+//! The measured tables that a decoder is fitted to.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use super::method::Method;
+use crate::cli::failure::Failure;
+use crate::cli::files::tables;
+use tactpad::lab::calibration::screening::Fault;
+use tactpad::lab::contacts::Contacts;
+use tactpad::pad::device::Device;
+use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::{Table, zero};
+use tactpad::tables::recording::Recording;
+
+/// The contacts of the tables, and what people call these.
+pub(super) struct Measured {
+    pub(super) contacts: Contacts,
+    pub(super) names: String,
+    /// The rows by which causes may be looked for, by the tables' names; none where nobody asks for causes.
+    pub(super) tables: Vec<(String, Table)>,
+}
+
+impl Measured {
+    /// Reads the tables of this pad; see [`Contacts::of`] for the others.
+    pub(super) fn read(
+        paths: &[PathBuf],
+        device: &Device,
+        (rows, seed): (Option<usize>, u64),
+        method: Method,
+    ) -> Result<Self, Failure> {
+        let each: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+        let names = each.join(", ");
+        let read = |path: &PathBuf| tables::read(path, Kind::Measured, device.plate.radius_mm());
+        let tables = paths.iter().map(read).collect::<Result<Vec<_>, Failure>>()?;
+        let kept = if method == Method::Inverse { tables.clone() } else { Vec::new() };
+        let full_scale_n = device.contact.full_scale_n;
+        let recordings = tables.into_iter().map(|table| Recording::tared_or_raw(table, full_scale_n));
+        let contacts = Contacts::of(recordings.collect(), rows, seed);
+        let contacts = contacts.map_err(|error| Failure::Unusable(format!("{names}: {error}")))?;
+        let kept = if rows.is_some() { drawn(kept, &contacts) } else { kept };
+        Ok(Self { contacts, names, tables: each.into_iter().zip(kept).collect() })
+    }
+
+    /// A decoder can be fitted to them, but a part of the pad is at fault.
+    pub(super) fn warning(&self, fault: Fault) -> String {
+        format!("{}: {fault}; mend it and measure again", self.names)
+    }
+
+    /// Nothing can be fitted to them.
+    pub(super) fn refused(&self, why: impl std::fmt::Display) -> Failure {
+        Failure::Unusable(format!("{}: {why}", self.names))
+    }
+}
+
+/// The tables with the contacts that were drawn, and the readings of the untouched pad. Time series go: with rows left out they
+/// are none.
+fn drawn(tables: Vec<Table>, contacts: &Contacts) -> Vec<Table> {
+    let drawn: BTreeSet<usize> = contacts.places().iter().copied().collect();
+    let mut first = 0;
+    let of_table = |mut table: Table| {
+        let pressed: BTreeSet<usize> = zero::contacts(&table).into_iter().collect();
+        let rows = std::mem::take(&mut table.rows).into_iter().enumerate();
+        let before = first;
+        first += rows.len();
+        let is_kept = |at: usize| drawn.contains(&(before + at)) || !pressed.contains(&at);
+        table.rows =
+            rows.filter(|(at, row)| row.trial.is_none() && is_kept(*at)).map(|(_, row)| row).collect();
+        table
+    };
+    tables.into_iter().map(of_table).collect()
+}

@@ -1,0 +1,103 @@
+//! What `tactpad diagnose` is asked, and where its files go.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+
+use crate::cli::failure::Failure;
+use crate::cli::files::destination::{Destination, Folder};
+use crate::cli::files::device::Pad;
+use crate::cli::printing::reports;
+use crate::cli::printing::written::{both_print, is_same, is_stdout, written_over};
+use tactpad::lab::diagnosis;
+
+/// Arguments of `tactpad diagnose`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: tactpad diagnose --measured measured.csv --save-device found.toml\n         \
+                  tactpad diagnose --measured today.csv --against january.csv\n         \
+                  tactpad diagnose --play today.cap --against january.cap\n\n\
+                  Without --device and --imperfections the model is the nominal pad. What the words mean stands in \
+                  docs/diagnosis.md."
+)]
+pub(crate) struct Arguments {
+    /// The measured file: raw channels, and what the reference wrote down.
+    #[arg(long, value_name = "M.csv", required_unless_present = "play")]
+    pub(super) measured: Option<PathBuf>,
+    /// A capture of play instead: what changed in the pad since an earlier one? Nobody needs to know what was pressed.
+    #[arg(
+        long,
+        value_name = "CAPTURE",
+        requires = "against",
+        conflicts_with_all = ["measured", "labels", "channels", "save_device", "report", "without"]
+    )]
+    pub(super) play: Option<PathBuf>,
+    /// An earlier recording of the same sensor, whatever sensor that is: what changed since? Neither a model nor forces are needed.
+    ///
+    /// With --play an earlier capture of the same pad.
+    #[arg(long, value_name = "EARLIER")]
+    pub(super) against: Option<PathBuf>,
+    /// With --against: the columns that are labels; else those of docs/diagnosis.md that both files have.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "against")]
+    pub(super) labels: Vec<String>,
+    /// With --against: the columns that are channels; else all other columns of numbers that both files have.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "against")]
+    pub(super) channels: Vec<String>,
+    #[command(flatten)]
+    pub(super) pad: Pad,
+    /// A device file to write: the model with the named causes in it; - is standard output.
+    #[arg(long, value_name = "E.toml")]
+    pub(super) save_device: Option<PathBuf>,
+    /// A folder for report.html, one page with pictures of what was found, and report.json.
+    #[arg(long, value_name = "DIR")]
+    pub(super) report: Option<PathBuf>,
+    /// Leave an effect out of what is asked for; may stand more than once.
+    #[arg(long, value_name = "EFFECT", hide_possible_values = true, value_parser = PossibleValuesParser::new(effects()))]
+    pub(super) without: Vec<String>,
+    /// Print one JSON document.
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+impl Arguments {
+    fn is_measured(&self, path: &Path) -> bool {
+        self.measured.as_deref().is_some_and(|measured| is_same(measured, path))
+    }
+}
+
+/// Where the device goes: nowhere that is read, and not between the lines of a document.
+pub(super) fn destination(path: &Path, arguments: &Arguments) -> Result<Destination, Failure> {
+    if arguments.json && is_stdout(path) {
+        return Err(both_print("--save-device -"));
+    }
+    arguments.pad.spare(path)?;
+    if arguments.is_measured(path) {
+        return Err(written_over(path, "is the measured table"));
+    }
+    Destination::of(path)
+}
+
+/// The folder of the report: none whose files of these names are read or written by another option.
+pub(super) fn folder(path: &Path, arguments: &Arguments) -> Result<Folder, Failure> {
+    for file in [reports::PAGE, reports::DOCUMENT].map(|name| path.join(name)) {
+        arguments.pad.spare(&file)?;
+        if arguments.is_measured(&file) {
+            return Err(written_over(&file, "is the measured table"));
+        }
+        if arguments.against.as_deref().is_some_and(|earlier| is_same(earlier, &file)) {
+            return Err(written_over(&file, "is the earlier recording"));
+        }
+        if arguments.save_device.as_deref().is_some_and(|saved| is_same(saved, &file)) {
+            return Err(written_over(&file, "is the device to save"));
+        }
+    }
+    Folder::of(path)
+}
+
+/// All effects that can be left out.
+fn effects() -> Vec<&'static str> {
+    let mut effects: Vec<&str> = diagnosis::effects().collect();
+    effects.extend(diagnosis::against::effects().filter(|it| diagnosis::effects().all(|other| other != *it)));
+    effects
+}

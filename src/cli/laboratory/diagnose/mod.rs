@@ -1,0 +1,103 @@
+//! `tactpad diagnose`: what measured contacts show that the model of the pad gets wrong, and why.
+
+mod against;
+mod arguments;
+pub(crate) mod changes;
+pub(crate) mod document;
+pub(crate) mod engine;
+mod files;
+mod numbers;
+mod play;
+mod report;
+pub(crate) mod text;
+
+use std::path::Path;
+
+pub(crate) use self::arguments::Arguments;
+use self::arguments::{destination, folder};
+use self::document::Document;
+use self::engine::{diagnosed, flaws};
+use self::files::{file_name, write_report};
+use crate::cli::failure::Failure;
+use crate::cli::files::destination::Destination;
+use crate::cli::files::field::field_of;
+use crate::cli::files::tables;
+use crate::cli::printing::progress::Progress;
+use crate::cli::printing::written::{is_stdout, print_json, say, stdout};
+use tactpad::lab::diagnosis::extension::extended;
+use tactpad::lab::diagnosis::report::Diagnosis;
+use tactpad::lab::diagnosis::{self, Unfit};
+use tactpad::pad::device::Device;
+use tactpad::tables::measured::Table;
+use tactpad::tables::measured::columns::Kind;
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match (&arguments.play, &arguments.measured, &arguments.against) {
+        (Some(later), _, Some(earlier)) => play::run(arguments, [earlier, later]),
+        (_, Some(measured), Some(earlier)) => against::run(arguments, measured, earlier),
+        (_, Some(measured), None) => of_table(arguments, measured),
+        // The arguments' own rules leave nothing else.
+        _ => Err(Failure::Unusable(
+            "name a table with --measured, or captures with --play and --against".into(),
+        )),
+    }
+}
+
+/// What a table shows.
+fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
+    let Arguments { pad, save_device, report, without, json, .. } = arguments;
+    let saved = save_device.as_deref().map(|path| destination(path, arguments)).transpose()?;
+    let device = pad.read()?;
+    let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;
+    let table = tables::read(measured, Kind::Measured, device.plate.radius_mm())?;
+    // It takes a while until the engine itself could say so.
+    diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
+    let field = field_of(&device)?;
+    let progress = Progress::begin("looking for causes");
+    let diagnosis = diagnosed(&table, (&device, &field, &flaws(&device)), without)
+        .map_err(|why| unfit(measured, &why))?;
+    drop(progress);
+    if let Some(to) = saved {
+        save(&to, &device, &diagnosis, &table)?;
+    }
+    if let Some(folder) = folder {
+        let subject = report::Subject {
+            diagnosis: &diagnosis,
+            measured: file_name(measured),
+            model: format!("the model of {}", device.name),
+            unit: "µV",
+            load_unit: Some("N"),
+            plate: Some(report::Plate::of(&device)),
+        };
+        write_report(&folder, &report::page(&subject), &diagnosis)?;
+    }
+    if *json {
+        return print_json(&Document::of(&diagnosis));
+    }
+    if save_device.as_deref().is_some_and(is_stdout) {
+        say(text::Report(&diagnosis));
+        return Ok(());
+    }
+    use std::io::Write as _;
+    Ok(write!(stdout(), "{}", text::Report(&diagnosis))?)
+}
+
+fn unfit(measured: &Path, why: &Unfit) -> Failure {
+    Failure::Unusable(format!("{}: {why}", measured.display()))
+}
+
+fn save(to: &Destination, device: &Device, diagnosis: &Diagnosis, table: &Table) -> Result<(), Failure> {
+    let last_cycle = table.rows.iter().filter_map(|row| row.cycle).reduce(f64::max);
+    let (device, left_out) = extended(device, diagnosis, last_cycle);
+    to.write(device.to_toml().as_bytes())?;
+    if !left_out.is_empty() {
+        say(format_args!(
+            "named, but not in the saved device, which cannot hold it: {}",
+            left_out.join(", ")
+        ));
+    }
+    if diagnosis.findings.iter().any(|finding| !finding.confounded_with.is_empty()) {
+        say("confounded causes are not in the saved device");
+    }
+    Ok(())
+}

@@ -1,0 +1,175 @@
+//! What people read.
+
+use std::fmt;
+
+use super::numbers::{decoded, estimate, range};
+use crate::cli::printing::wrapped::hanging;
+use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, UNLISTED, Verdict};
+use tactpad::lab::diagnosis::target::Target;
+
+/// A diagnosis in lines of a terminal.
+pub(super) struct Report<'d>(pub(super) &'d Diagnosis);
+
+impl fmt::Display for Report<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(diagnosis) = self;
+        writeln!(f, "{}", hanging("", &verdict(diagnosis)))?;
+        writeln!(f, "{}", hanging("", &sizes(diagnosis)))?;
+        for (at, notice) in diagnosis.gatekeepers.iter().enumerate() {
+            let first = if at == 0 { "\nBefore the diagnosis, of the recording itself:\n" } else { "" };
+            writeln!(f, "{first}{}", hanging("  - ", &format!("{}.", notice.detail)))?;
+        }
+        for (number, finding) in (1..).zip(&diagnosis.findings) {
+            writeln!(f, "\n{}", hanging(&format!("{number:>3}  "), &found(finding, &diagnosis.channels)))?;
+        }
+        if let Some(gain) = &diagnosis.gain {
+            writeln!(f, "\n{}", hanging("", &gained(gain, diagnosis)))?;
+        }
+        untested(f, diagnosis)?;
+        undetected(f, &diagnosis.not_detected)
+    }
+}
+
+fn verdict(diagnosis: &Diagnosis) -> String {
+    let percent = 100.0 * diagnosis.unnamed_share;
+    match diagnosis.verdict {
+        Verdict::NoDiscrepancy => "No discrepancy: the model accounts for these rows.".into(),
+        Verdict::Explained => "Explained: what the model gets wrong here is what is listed below.".into(),
+        Verdict::PartlyExplained => format!(
+            "Partly explained: the causes below hold, but {percent:.0} % of what the model gets wrong here has no \
+             known cause."
+        ),
+        Verdict::Unexplained if diagnosis.findings.is_empty() => {
+            "Unexplained: the model is wrong here, and no known cause accounts for it.".into()
+        }
+        Verdict::Unexplained => {
+            "Unexplained: the model is wrong here. What is listed below describes how, but so much is left \
+            beside it that each may be a part of something that is not in the catalogue."
+                .into()
+        }
+    }
+}
+
+fn sizes(diagnosis: &Diagnosis) -> String {
+    let Diagnosis { noise_floor, rmse_nominal, rmse_extended, .. } = diagnosis;
+    let mut text = format!(
+        "The channels' noise is {noise_floor:.1} µV rms; the model misses them by {rmse_nominal:.1} µV"
+    );
+    if !diagnosis.findings.is_empty() {
+        text += &format!(", and with the causes below by {rmse_extended:.1} µV");
+    }
+    if let Some(ceiling) = diagnosis.ceiling_share.filter(|share| share.is_finite()) {
+        text += &format!(". The causes remove {:.0} % of what any smooth model could", 100.0 * ceiling);
+    }
+    text + "."
+}
+
+/// A cause and where it is.
+pub(super) fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
+    if effect == UNLISTED {
+        return "a part of something that is not in the catalogue".to_owned();
+    }
+    let joint = if effect == "channels_swapped" { "with" } else { "from" };
+    let with = target.with(channels).map(|with| format!(" {joint} {with}")).unwrap_or_default();
+    let side = target.side().map(|it| format!(" on its {} side", it.name())).unwrap_or_default();
+    format!("{effect} of {}{with}{side}", target.name(channels))
+}
+
+/// A cause with its numbers and their intervals.
+pub(crate) fn sized(finding: &Finding, channels: &[String]) -> String {
+    let numbers: Vec<String> = finding.parameters.iter().map(estimate).collect();
+    let first = cause(finding.effect, &finding.target, channels);
+    let colon = if numbers.is_empty() { "" } else { ": " };
+    format!("{first}{colon}{}", numbers.join(", "))
+}
+
+fn found(finding: &Finding, channels: &[String]) -> String {
+    let share = 100.0 * finding.share;
+    let first = sized(finding, channels);
+    let mut text = format!("{first}; p {:.0e}, {share:.0} % of the residual", finding.p_value);
+    if !finding.confounded_with.is_empty() {
+        let others = finding.confounded_with.iter().map(|(effect, target)| cause(effect, target, channels));
+        let others: Vec<String> = others.collect();
+        text += &format!(". These rows do not tell it from {}", others.join(", or from "));
+    }
+    let is_alone = finding.confounded_with.iter().all(|(effect, _)| *effect == UNLISTED);
+    if let Some(measurement) = finding.separate_by.as_ref().filter(|_| !is_alone) {
+        text += &format!(". To tell: {}", measurement.trim_end_matches('.'));
+    }
+    text + "."
+}
+
+fn gained(gain: &Gain, diagnosis: &Diagnosis) -> String {
+    let Gain { rows_locked, rmse_ratio, rmse_ratio_interval95: [low, high], .. } = gain;
+    let mut text = format!(
+        "On {rows_locked} rows that had no part in this, the causes bring the model's error down to {rmse_ratio:.2} \
+         of what it was ({low:.2} to {high:.2})"
+    );
+    let without = gain.per_cause.iter().map(|it| {
+        format!("{:.2} without {}", it.rmse_ratio, cause(it.effect, &it.target, &diagnosis.channels))
+    });
+    let without: Vec<String> = without.collect();
+    if !without.is_empty() {
+        text += &format!("; {}", without.join(", "));
+    }
+    text += ".";
+    for (of, decoded) in decoded(gain) {
+        text += &format!(
+            " The {of} decoded from them are off by {}, in place of {} (a change of {} to {}).",
+            decoded.extended, decoded.nominal, decoded.change[0], decoded.change[1]
+        );
+    }
+    text
+}
+
+/// What could not be asked for, by the column that it needs.
+fn untested(f: &mut fmt::Formatter<'_>, diagnosis: &Diagnosis) -> fmt::Result {
+    let mut needs: Vec<&str> = diagnosis.not_testable.iter().map(|it| it.needs).collect();
+    needs.sort_unstable();
+    needs.dedup();
+    for (index, column) in needs.iter().enumerate() {
+        let effects = diagnosis.not_testable.iter().filter(|it| it.needs == *column);
+        let effects: Vec<&str> = effects.map(|it| it.effect).collect();
+        let text = format!("Not testable without {column} that varies: {}.", effects.join(", "));
+        writeln!(f, "{}{}", if index == 0 { "\n" } else { "" }, hanging("", &text))?;
+    }
+    Ok(())
+}
+
+/// What would have been found, a line for each effect.
+fn undetected(f: &mut fmt::Formatter<'_>, all: &[NotDetected]) -> fmt::Result {
+    let mut effects: Vec<&str> = Vec::new();
+    for it in all.iter().filter(|it| !it.minimum_detectable.is_empty()) {
+        if !effects.contains(&it.effect) {
+            effects.push(it.effect);
+        }
+    }
+    if effects.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "\nNot found; these sizes would be, in nine of ten such measurements:")?;
+    for effect in effects {
+        let sizes = least_sizes(all.iter().filter(|it| it.effect == effect));
+        writeln!(f, "{}", hanging(&format!("  {effect:<20}"), &sizes))?;
+    }
+    Ok(())
+}
+
+/// For each number of one effect the sizes over its targets.
+fn least_sizes<'d>(targets: impl Iterator<Item = &'d NotDetected>) -> String {
+    let mut sizes: Vec<(&str, [f64; 2])> = Vec::new();
+    for (name, size) in targets.flat_map(|it| &it.minimum_detectable) {
+        let at = sizes.iter().position(|(known, _)| known == name).unwrap_or(sizes.len());
+        if at == sizes.len() {
+            sizes.push((name, [f64::INFINITY, f64::NEG_INFINITY]));
+        }
+        if size.is_finite() {
+            let [least, greatest] = &mut sizes[at].1;
+            (*least, *greatest) = (least.min(*size), greatest.max(*size));
+        }
+    }
+    let told = sizes.iter().map(|(name, [least, greatest])| {
+        if least.is_finite() { range(name, *least, *greatest) } else { format!("{name} at no size") }
+    });
+    told.collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,208 @@
+//! `tactpad ctl`: talks to the running bridge.
+
+pub(super) mod asked;
+mod weigh;
+
+use std::env;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use serde_json::Value;
+
+use self::asked::{answered, no_answer};
+use super::sound::{Sounds, Which};
+use crate::cli::failure::Failure;
+use crate::cli::playing::profile;
+use crate::cli::printing::written::{printable, stdout};
+use tactpad::bridge::control::watch;
+use tactpad::bridge::weighing::gain_sentence;
+
+/// Arguments of `tactpad ctl`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad ctl profile tetris")]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    action: Action,
+    /// Print the bridge's answer, one JSON document.
+    #[arg(long, global = true)]
+    json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// What the bridge is doing.
+    #[command(after_help = "Example: tactpad ctl status --json")]
+    Status,
+    /// Print one line of JSON for each press that is accepted or rejected, until the bridge ends.
+    #[command(after_help = "Example: tactpad ctl watch --sound")]
+    Watch {
+        /// Play a sound for each rejected press, or with "all" for accepted ones, too.
+        #[arg(long, value_name = "WHICH", num_args = 0..=1, default_missing_value = "rejected")]
+        sound: Option<Which>,
+    },
+    /// Release everything and ignore the pad.
+    #[command(after_help = "Example: tactpad ctl pause")]
+    Pause,
+    /// Go on after a pause.
+    #[command(after_help = "Example: tactpad ctl resume")]
+    Resume,
+    /// Release everything at once, and go on.
+    #[command(after_help = "Example: tactpad ctl panic")]
+    Panic,
+    /// Measure the zero again; leave the pad untouched.
+    #[command(after_help = "Example: tactpad ctl tare")]
+    Tare,
+    /// Put a known weight on the plate: it tells what gain the pad has lost, and forces are corrected by it.
+    ///
+    /// Begin with nothing on the plate. Anywhere will do, for three seconds; nothing is pressed meanwhile. It counts until the pad is
+    /// unplugged, and at the end it says how to keep it for good.
+    #[command(after_help = "Example: tactpad ctl weigh 200")]
+    Weigh {
+        /// The weight, in grams.
+        #[arg(value_name = "GRAMS", allow_hyphen_values = true)]
+        grams: f64,
+    },
+    /// Go over to another profile.
+    #[command(after_help = "Example: tactpad ctl profile tetris")]
+    Profile {
+        /// A profile's name or file.
+        name: String,
+    },
+    /// Go over to the next profile of `profile list` that a press can leave again.
+    #[command(after_help = "Example: tactpad ctl next-profile")]
+    NextProfile,
+    /// Read the profile in use again, after it was changed.
+    #[command(after_help = "Example: tactpad ctl reload")]
+    Reload,
+    /// Print the address of the page that shows the bridge; whoever has it can use the bridge.
+    #[command(after_help = "Example: xdg-open $(tactpad ctl dashboard)")]
+    Dashboard,
+    /// End the bridge.
+    #[command(after_help = "Example: tactpad ctl quit")]
+    Quit,
+}
+
+/// Where a bridge listens: in the user's runtime folder, else in the folder for temporary files.
+pub(super) fn socket_path() -> PathBuf {
+    match env::var_os("XDG_RUNTIME_DIR").filter(|folder| Path::new(folder).is_dir()) {
+        Some(folder) => PathBuf::from(folder).join("tactpad.sock"),
+        None => env::temp_dir().join(format!("tactpad-{}.sock", rustix::process::getuid().as_raw())),
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let path = socket_path();
+    let request = match &arguments.action {
+        Action::Watch { sound } => return watch_presses(&path, *sound),
+        Action::Weigh { grams } => return weigh::run(&path, *grams, arguments.json),
+        Action::Status => "status".to_owned(),
+        Action::Pause => "pause".to_owned(),
+        Action::Resume => "resume".to_owned(),
+        Action::Panic => "panic".to_owned(),
+        Action::Tare => "tare".to_owned(),
+        Action::NextProfile => "next-profile".to_owned(),
+        Action::Reload => "reload".to_owned(),
+        Action::Dashboard => "dashboard".to_owned(),
+        Action::Quit => "quit".to_owned(),
+        Action::Profile { name } => format!("profile {}", absolute(name)?),
+    };
+    let (answer, document) = answered(&path, &request)?;
+    match arguments.action {
+        _ if arguments.json => Ok(writeln!(stdout(), "{answer}")?),
+        Action::Status => Ok(print_status(&document)?),
+        Action::Dashboard => {
+            let url = document.get("url").and_then(Value::as_str).map_or_else(String::new, printable);
+            Ok(writeln!(stdout(), "{url}")?)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints what becomes of each press, and plays a sound for it if that is asked for.
+fn watch_presses(path: &Path, sound: Option<Which>) -> Result<(), Failure> {
+    let sounds = sound.map(Sounds::start).transpose()?;
+    let mut is_answered = false;
+    let mut out = stdout();
+    let mut printed: Result<(), Failure> = Ok(());
+    let watched = watch(path, |line| {
+        if !std::mem::replace(&mut is_answered, true) {
+            let refused =
+                serde_json::from_str(line).ok().and_then(|it: Value| Some(it.get("error")?.to_string()));
+            printed = refused.map_or(Ok(()), |error| Err(Failure::Failed(error)));
+        } else {
+            printed = writeln!(out, "{line}").and_then(|()| out.flush()).map_err(Failure::from);
+            sounds.iter().for_each(|sounds| sounds.play(line));
+        }
+        // What is wrong here is told by whoever reads `printed`.
+        if printed.is_ok() { Ok(()) } else { Err(io::ErrorKind::Other.into()) }
+    });
+    printed?;
+    watched.map_err(|error| Failure::Failed(no_answer(path, &error)))
+}
+
+/// The bridge has a working folder of its own: a file is named by its whole path. A profile's name is the bridge's to
+/// find, whatever lies here under that name.
+fn absolute(name: &str) -> Result<String, Failure> {
+    if name.contains('\n') {
+        return Err(Failure::Unusable("a profile's name has one line".into()));
+    }
+    if profile::is_known(name) || !Path::new(name).is_file() {
+        return Ok(name.to_owned());
+    }
+    let path = std::path::absolute(name)?;
+    path.into_os_string()
+        .into_string()
+        .map_err(|name| Failure::Unusable(format!("{} is no text", name.display())))
+}
+
+fn print_status(status: &Value) -> io::Result<()> {
+    let mut out = stdout();
+    let text = |key: &str| status.get(key).and_then(Value::as_str).map_or("unknown".into(), printable);
+    writeln!(out, "state    {}", text("state"))?;
+    writeln!(out, "pad      {}", text("pad"))?;
+    writeln!(out, "profile  {}: {}", text("profile"), text("profile_reason"))?;
+    if status.get("preview").and_then(Value::as_bool) == Some(true) {
+        writeln!(out, "         changed for a try in the dashboard; it is not kept")?;
+    }
+    if let Some(layer) = status.get("layer").and_then(Value::as_str) {
+        writeln!(out, "layer    {}", printable(layer))?;
+    }
+    for line in status.get("profile_error").and_then(Value::as_str).into_iter().flat_map(str::lines) {
+        writeln!(out, "         {}", printable(line))?;
+    }
+    writeln!(out, "decoder  {}", text("decoder"))?;
+    writeln!(out, "output   {}", text("output"))?;
+    let held = status.get("held").and_then(Value::as_array).into_iter().flatten();
+    writeln!(out, "held     {}", held.filter_map(Value::as_str).collect::<Vec<_>>().join(" "))?;
+    if let Some(warning) = warning(status) {
+        writeln!(out, "warning  {warning}")?;
+    }
+    if let Some(sentence) = status.get("gain").and_then(Value::as_f64).and_then(gain_sentence) {
+        writeln!(out, "gain     {sentence}")?;
+    }
+    if let Some(changes) = status.get("changes").and_then(|it| it.get("text")).and_then(Value::as_str) {
+        writeln!(out, "changes  {}", printable(changes))?;
+    }
+    let presses =
+        |key: &str| status.get("presses").and_then(|it| it.get(key)).and_then(Value::as_u64).unwrap_or(0);
+    writeln!(out, "presses  {} accepted, {} rejected", presses("accepted"), presses("rejected"))?;
+    for (name, count) in status.get("health").and_then(Value::as_object).into_iter().flatten() {
+        if count.as_u64() != Some(0) {
+            writeln!(out, "{name:<18} {count}")?;
+        }
+    }
+    Ok(())
+}
+
+/// What a status warns of, in a few words.
+pub(super) fn warning(status: &Value) -> Option<String> {
+    let warning = status.get("warning")?;
+    let text = |key: &str| warning.get(key).and_then(Value::as_str);
+    Some(match (text("kind")?, text("channel")) {
+        ("silent_channel", Some(channel)) => format!("channel {channel} does not answer to the load"),
+        ("other_pad", _) => "most touches do not fit the decoder: it may be another pad's".into(),
+        ("second_finger", _) => "the last touch was not one finger".into(),
+        (kind, _) => kind.to_owned(),
+    })
+}

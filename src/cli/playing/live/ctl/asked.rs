@@ -1,0 +1,35 @@
+//! A question to the running bridge, and its answer.
+
+use std::io;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::cli::failure::Failure;
+use crate::cli::printing::written::reason;
+use tactpad::bridge::control::ask;
+
+/// What the bridge answers, as its line and as a document. An error in it is one here.
+pub(super) fn answered(path: &Path, request: &str) -> Result<(String, Value), Failure> {
+    let answer = ask(path, request).map_err(|error| Failure::Failed(no_answer(path, &error)))?;
+    let document: Value =
+        serde_json::from_str(&answer).map_err(|error| Failure::Failed(error.to_string()))?;
+    match document.get("error").and_then(Value::as_str) {
+        Some(error) => Err(Failure::Unusable(error.to_owned())),
+        None => Ok((answer, document)),
+    }
+}
+
+/// Why no bridge answers, and what to do about it.
+pub(crate) fn no_answer(path: &Path, error: &io::Error) -> String {
+    use io::ErrorKind::{ConnectionRefused, NotFound, TimedOut};
+    let path = path.display();
+    match error.kind() {
+        NotFound | ConnectionRefused => format!("no bridge answers at {path}: start one with `tactpad run`"),
+        TimedOut => format!(
+            "the bridge at {path} does not answer: if it was stopped (Ctrl-Z), continue it with `fg`; else end it and \
+             start one with `tactpad run`"
+        ),
+        _ => format!("the bridge at {path} cannot be asked: {}", reason(error)),
+    }
+}

@@ -1,0 +1,306 @@
+//! `tactpad demo`: the main job with nothing attached, and the proof that it went right.
+
+use std::io::{self, Write};
+use std::sync::{Arc, Mutex};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::chosen;
+use super::files::Files;
+use super::newest::line;
+use super::output::{Output, log_to};
+use super::playing::{Audience, Terminal, microseconds, open_virtual, play, requests};
+use super::screen::Screen;
+use super::shown::Shown;
+use crate::cli::failure::{Failure, if_read};
+use crate::cli::files::decoder_file::Choice;
+use crate::cli::files::device::Pad;
+use crate::cli::playing::profile;
+use crate::cli::printing::seconds;
+use crate::cli::printing::terminal;
+use crate::cli::printing::written::{print_json, say, stdout};
+use tactpad::bridge::changes::ChangesSlot;
+use tactpad::bridge::latency::Percentiles;
+use tactpad::bridge::opening::Patience;
+use tactpad::bridge::parts::Parts;
+use tactpad::bridge::running::{Bridge, Ending};
+use tactpad::bridge::sink::Sink;
+use tactpad::bridge::sink::null::NullSink;
+use tactpad::bridge::sink::witness::{Account, Expected, Witness};
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::pipeline::control::OutputDevice;
+use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::virtual_pad::script::Script;
+
+/// Arguments of `tactpad demo`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad demo --seconds 10 --profile contra")]
+pub(crate) struct Arguments {
+    /// How long to play: 20 without it, and with --dashboard until it is stopped.
+    #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+    /// A profile's name or file.
+    #[arg(long, default_value = "super-mario")]
+    profile: String,
+    #[command(flatten)]
+    decoder: Choice,
+    #[command(flatten)]
+    device: Pad,
+    /// Where events go: auto (a virtual gamepad, else the screen), uinput, x11, log:FILE (- is stdout), none.
+    #[arg(long, default_value = "auto")]
+    output: Output,
+    #[command(flatten)]
+    shown: Shown,
+    /// Print one JSON document on stdout.
+    #[arg(long)]
+    json: bool,
+}
+
+/// It plays so long unless people say how long.
+const SECONDS: f64 = 20.0;
+
+/// No gesture of the player takes longer.
+const SECONDS_OF_A_GESTURE_MAX: u32 = 60;
+
+/// What the demo comes to.
+#[derive(Serialize)]
+struct Summary {
+    frames: u64,
+    frames_lost: u64,
+    contacts: u64,
+    downs: usize,
+    ups: usize,
+    pointer_moves: usize,
+    held_at_end: usize,
+    latency_us: Percentiles,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { profile, output, decoder, json, .. } = arguments;
+    output.leaves_stdout(*json)?;
+    Files { pad: &PadAddress::Virtual, profile, output, decoder: chosen::file(decoder), capture: None }
+        .check()?;
+    let decoder = chosen::read(decoder)?;
+    let profile = profile::read(profile, output.choice())?;
+    let duration = arguments.duration();
+    let script = script(profile.profile(), duration)?;
+    let verdict = Verdict::of(&script, profile.profile());
+    let name = profile.profile().name.clone();
+    let (sink, title) = open_sink(arguments, profile.profile())?;
+    if_read(tell(arguments, &title))?;
+    let witness = if duration.is_some() { Witness::new(sink) } else { Witness::counting(sink) };
+    let seen = witness.seen();
+    let audience = Audience::Nobody;
+    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
+    let requests = requests(None, audience)?;
+    let mut prepared = arguments.shown.prepare(&requests, &host.wish(), output.choice())?;
+    if let Some(url) = &prepared.url {
+        if_read(tell(arguments, &format!("Dashboard: {url}")))?;
+    }
+    let mut bridge = Bridge::new(Parts {
+        pad: prepared.pad(open_virtual(&arguments.device, script)?),
+        patience: Patience::Limited,
+        decoder,
+        profile,
+        sink: prepared.sink(Box::new(witness)),
+        requests,
+        host: Box::new(host.with_page(prepared.url.clone())),
+        record: None,
+        observers: prepared.observer.take().into_iter().collect(),
+        changes: ChangesSlot::default(),
+        duration_us: duration.map(microseconds),
+    })?;
+    prepared.start(&bridge)?;
+    let screen =
+        is_shown(arguments).then(|| start_screen(format!("{name} on a virtual pad"), &bridge, &seen));
+    let played = play(&mut bridge, &PadAddress::Virtual);
+    drop(screen);
+    let ending = played?;
+    let seen = seen.lock().map(|seen| seen.clone()).unwrap_or_default();
+    if_read(report(arguments, &bridge, &seen))?;
+    if arguments.shown.has_page() {
+        // Whoever sees the page may have changed what is played.
+        return Ok(());
+    }
+    verdict.check(ending, &seen, &bridge)?;
+    if_read(tell(arguments, &verdict.words()))
+}
+
+impl Arguments {
+    /// How long it plays, in seconds; `None` where it plays until it is stopped.
+    fn duration(&self) -> Option<f64> {
+        self.seconds.or((!self.shown.has_page()).then_some(SECONDS))
+    }
+}
+
+/// What the player plays. A time in which nothing can be played is refused, unless nothing ever can.
+fn script(profile: &Profile, seconds: Option<f64>) -> Result<Script, Failure> {
+    let Some(seconds) = seconds else { return Ok(Script::endless(profile)) };
+    let script = Script::for_profile(profile, microseconds(seconds));
+    let plays =
+        |seconds: &u32| Script::for_profile(profile, microseconds(f64::from(*seconds))).contacts() > 0;
+    match (1..=SECONDS_OF_A_GESTURE_MAX).find(plays) {
+        Some(least) if script.contacts() == 0 => Err(Failure::Unusable(format!(
+            "--seconds {seconds} is too short for anything to be played: give it {least} or more"
+        ))),
+        _ => Ok(script),
+    }
+}
+
+/// Why events may differ from the script without any fault of the bridge's.
+const SILENT: &str = "the demo was stopped for a while (Ctrl-Z, or a machine that stood still), so the script was not \
+                      played whole";
+
+/// What the script wants.
+struct Verdict {
+    expected: Vec<Expected>,
+    contacts: u64,
+    steered: bool,
+}
+
+impl Verdict {
+    fn of(script: &Script, profile: &Profile) -> Self {
+        let contacts = script.contacts() as u64;
+        Self {
+            expected: script.expected().to_vec(),
+            contacts,
+            steered: profile.pointer.is_some() && contacts > 0,
+        }
+    }
+
+    /// What is told where everything is as the player meant it.
+    fn words(&self) -> String {
+        let (events, contacts) = (self.expected.len(), self.contacts);
+        format!("all {events} events and {contacts} contacts are those that the player meant")
+    }
+
+    fn check(&self, ending: Ending, seen: &Account, bridge: &Bridge) -> Result<(), Failure> {
+        if ending != Ending::TimeOver {
+            return Err(Failure::Failed("interrupted: the events were not compared with the script".into()));
+        }
+        self.compare(seen, bridge).map_err(|difference| {
+            let silent = bridge.health().links_lost > 0;
+            Failure::Failed(if silent { format!("{SILENT}: {difference}") } else { difference })
+        })
+    }
+
+    fn compare(&self, seen: &Account, bridge: &Bridge) -> Result<(), String> {
+        seen.compare(&self.expected)?;
+        if self.steered && seen.pointer_moves == 0 {
+            return Err("the pointer did not move".into());
+        }
+        check_end(bridge, self.contacts)
+    }
+}
+
+/// The sink, and the demo's first line: where events go, and what would bring a better place.
+fn open_sink(arguments: &Arguments, profile: &Profile) -> Result<(Box<dyn Sink>, String), Failure> {
+    if arguments.output != Output::Auto {
+        let sink = arguments.output.open()?;
+        let title = format!("Output: {} (asked for).", sink.describe());
+        return Ok((sink, title));
+    }
+    if profile.uses(OutputDevice::Keyboard) {
+        let title = "Output: an event log, here. The profile types keys: for those ask with --output uinput.";
+        return Ok((here(arguments)?, title.into()));
+    }
+    if profile.uses(OutputDevice::Pointer) {
+        let title = "Output: an event log, here. The profile moves the pointer and clicks: for that ask with \
+                     --output uinput.";
+        return Ok((here(arguments)?, title.into()));
+    }
+    let (sink, missing) = arguments.output.open_or(|| here(arguments))?;
+    let best = || "Output: a virtual gamepad. Nothing better is to be had.".into();
+    Ok((sink, missing.unwrap_or_else(best)))
+}
+
+/// Whether there is a live picture.
+fn is_shown(arguments: &Arguments) -> bool {
+    !arguments.json && arguments.output != Output::Stdout && terminal::moves_cursor(&io::stdout())
+}
+
+/// The event log on the screen: the live picture shows it, and without one it is lines on stdout.
+fn here(arguments: &Arguments) -> Result<Box<dyn Sink>, Failure> {
+    if arguments.json || is_shown(arguments) {
+        return Ok(Box::new(NullSink));
+    }
+    log_to(WhileRead(io::stdout()))
+}
+
+/// Writes as long as somebody reads. The demo goes on without a reader: its verdict is the exit code.
+struct WhileRead<W>(W);
+
+impl<W: Write> Write for WhileRead<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self.0.write(bytes) {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(bytes.len()),
+            written => written,
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self.0.flush() {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            flushed => flushed,
+        }
+    }
+}
+
+/// What people read goes to stdout, or to stderr where stdout is for a program.
+fn tell(arguments: &Arguments, line: &str) -> Result<(), Failure> {
+    if arguments.json || arguments.output == Output::Stdout {
+        say(line);
+        return Ok(());
+    }
+    Ok(writeln!(stdout(), "{line}")?)
+}
+
+fn start_screen(title: String, bridge: &Bridge, seen: &Arc<Mutex<Account>>) -> Screen {
+    let seen = Arc::clone(seen);
+    Screen::start(title, bridge.snapshot(), move || {
+        let newest = seen.lock().map(|seen| seen.newest.clone());
+        newest.unwrap_or_default().iter().map(line).collect()
+    })
+}
+
+fn report(arguments: &Arguments, bridge: &Bridge, seen: &Account) -> Result<(), Failure> {
+    let health = bridge.health();
+    let tally = seen.tally();
+    let summary = Summary {
+        frames: health.samples,
+        frames_lost: health.frames_lost + health.frames_damaged,
+        contacts: health.contacts,
+        downs: tally.downs,
+        ups: tally.ups,
+        pointer_moves: seen.pointer_moves,
+        held_at_end: tally.held,
+        latency_us: bridge.latency().percentiles(),
+    };
+    if arguments.json {
+        return print_json(&summary);
+    }
+    let Summary { frames, frames_lost, contacts, downs, ups, pointer_moves, held_at_end, latency_us } =
+        summary;
+    let Percentiles { p50, p95, p99, max } = latency_us;
+    tell(arguments, &format!("{frames} frames, {frames_lost} lost; {contacts} contacts"))?;
+    tell(arguments, &format!("{downs} downs, {ups} ups, {held_at_end} held at the end"))?;
+    if pointer_moves > 0 {
+        tell(arguments, &format!("{pointer_moves} moves of the pointer"))?;
+    }
+    let times = format!(
+        "bytes readable to event written: p50 {p50:.0} µs, p95 {p95:.0} µs, p99 {p99:.0} µs, max {max:.0} µs"
+    );
+    tell(arguments, &times)
+}
+
+fn check_end(bridge: &Bridge, expected: u64) -> Result<(), String> {
+    let (contacts, held) = (bridge.health().contacts, bridge.held_when_over());
+    if held > 0 {
+        return Err(format!("{held} controls were still held when the time was over"));
+    }
+    if contacts == expected {
+        return Ok(());
+    }
+    Err(format!("{contacts} contacts where the script has {expected}"))
+}

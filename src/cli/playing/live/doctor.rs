@@ -1,0 +1,355 @@
+//! `tactpad doctor`: what stands in the way on this machine, and the exact command that mends it.
+
+use std::env;
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+use clap::Args;
+use rustix::fs::{Access, access};
+use serde::Serialize;
+use serde_json::Value;
+
+use super::ctl;
+use crate::cli::failure::{Failure, if_read};
+use crate::cli::printing::written::{print_json, stdout};
+use tactpad::bridge::control::ask;
+use tactpad::bridge::sink::uinput;
+use tactpad::bridge::transport::pads::{self, FoundPad};
+
+/// The rules that give the player access; a test holds their number below that of the seat's.
+const RULES: &str = include_str!("../../../../docs/linux/70-tactpad.rules");
+
+/// Where the rules belong.
+const RULES_FILE: &str = "/etc/udev/rules.d/70-tactpad.rules";
+
+/// Seats are given out by a file of this number; what a later file tags has no effect.
+const SEAT_NUMBER: u32 = 73;
+
+/// Arguments of `tactpad doctor`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad doctor")]
+pub(crate) struct Arguments {
+    /// Print one JSON document.
+    #[arg(long)]
+    json: bool,
+    /// Print the udev rules instead, to be put in place.
+    #[arg(long, conflicts_with = "json")]
+    udev_rules: bool,
+}
+
+/// How a check came out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Finding {
+    /// In order.
+    Good,
+    /// Worth knowing; nothing needs to be done.
+    Note,
+    /// Stands in the way.
+    Bad,
+}
+
+/// One check.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+struct Check {
+    name: &'static str,
+    finding: Finding,
+    message: String,
+    /// The command that mends it.
+    mend: Option<String>,
+}
+
+impl Check {
+    fn good(name: &'static str, message: impl Into<String>) -> Self {
+        Self { name, finding: Finding::Good, message: message.into(), mend: None }
+    }
+
+    fn note(name: &'static str, message: impl Into<String>) -> Self {
+        Self { name, finding: Finding::Note, message: message.into(), mend: None }
+    }
+
+    fn bad(name: &'static str, message: impl Into<String>, mend: impl Into<String>) -> Self {
+        Self { name, finding: Finding::Bad, message: message.into(), mend: Some(mend.into()) }
+    }
+}
+
+/// What stands in the way, and what does not.
+#[derive(Serialize)]
+pub(super) struct DoctorReport {
+    ok: bool,
+    checks: Vec<Check>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.udev_rules {
+        return Ok(stdout().write_all(RULES.as_bytes())?);
+    }
+    let report = examine();
+    let printed = if arguments.json { print_json(&report) } else { print(&report).map_err(Failure::from) };
+    if_read(printed)?;
+    if report.ok { Ok(()) } else { Err(Failure::Failed("something stands in the way".into())) }
+}
+
+/// Looks at this machine.
+pub(super) fn examine() -> DoctorReport {
+    let root = Path::new("/");
+    let mut checks = vec![check_uinput(), check_rules(root)];
+    checks.extend(check_pads(&pads::attached()));
+    let bridge = ask(&ctl::socket_path(), "status");
+    let own = bridge.as_deref().map(own_nodes).unwrap_or_default();
+    checks.extend(check_other_gamepads(&read(root, "proc/bus/input/devices"), &own));
+    checks.push(check_joydev(root));
+    checks.extend(check_sdl(|name| env::var(name).ok()));
+    checks.extend(check_session(|name| env::var(name).ok()));
+    checks.push(check_bridge(&bridge));
+    DoctorReport { ok: checks.iter().all(|check| check.finding != Finding::Bad), checks }
+}
+
+fn print(report: &DoctorReport) -> io::Result<()> {
+    let mut out = stdout();
+    for Check { name, finding, message, mend } in &report.checks {
+        let mark = match finding {
+            Finding::Good => "good",
+            Finding::Note => "note",
+            Finding::Bad => "BAD ",
+        };
+        writeln!(out, "{mark}  {name}: {message}")?;
+        if let Some(mend) = mend {
+            writeln!(out, "      {mend}")?;
+        }
+    }
+    Ok(())
+}
+
+fn read(root: &Path, path: &str) -> String {
+    fs::read_to_string(root.join(path)).unwrap_or_default()
+}
+
+fn install_rules() -> String {
+    format!(
+        "tactpad doctor --udev-rules | sudo tee {RULES_FILE} && sudo udevadm control --reload && sudo udevadm trigger"
+    )
+}
+
+fn check_uinput() -> Check {
+    let name = "virtual devices";
+    match uinput::available() {
+        Ok(()) => Check::good(name, "/dev/uinput can be written"),
+        Err(_) if !Path::new("/dev/uinput").exists() => Check::bad(
+            name,
+            "/dev/uinput is not there: the kernel's module is not loaded",
+            "sudo modprobe uinput && echo uinput | sudo tee /etc/modules-load.d/tactpad.conf",
+        ),
+        Err(_) => Check::bad(name, "/dev/uinput cannot be written by you", install_rules()),
+    }
+}
+
+/// Rules that come after the seat's are the classic mistake: they look right and do nothing.
+fn check_rules(root: &Path) -> Check {
+    let name = "udev rules";
+    let folders = ["etc/udev/rules.d", "usr/lib/udev/rules.d", "lib/udev/rules.d"];
+    let files =
+        folders.iter().flat_map(|folder| fs::read_dir(root.join(folder)).into_iter().flatten().flatten());
+    let mut ours: Vec<_> = files
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .filter(|file| file.contains("tactpad"))
+        .collect();
+    ours.sort();
+    match ours.first() {
+        None => Check::note(name, format!("none are installed; to play without root: {}", install_rules())),
+        Some(file) if number(file).is_none_or(|number| number >= SEAT_NUMBER) => Check::bad(
+            name,
+            format!("{file} comes after {SEAT_NUMBER}-seat-late.rules, so its uaccess tags have no effect"),
+            format!("sudo rm /etc/udev/rules.d/{file} && {}", install_rules()),
+        ),
+        Some(file) => Check::good(name, format!("{file} is installed")),
+    }
+}
+
+fn number(file: &str) -> Option<u32> {
+    file.split('-').next()?.parse().ok()
+}
+
+fn check_pads(pads: &[FoundPad]) -> Vec<Check> {
+    if pads.is_empty() {
+        return vec![Check::note("pad", "none is attached; play without one: tactpad demo")];
+    }
+    let check = |pad: &FoundPad| {
+        let path = pad.path.display();
+        // Not opened: that would reset some boards, and disturb a bridge that plays on it.
+        match access(&pad.path, Access::READ_OK | Access::WRITE_OK) {
+            Ok(()) => Check::good("pad", format!("{path} may be opened")),
+            Err(_) => Check::bad("pad", format!("{path} may not be opened by you"), install_rules()),
+        }
+    };
+    pads.iter().map(check).collect()
+}
+
+/// Xbox 360 pads that are there already, but for those of a running bridge, which has these nodes. One of version 1 is a trap: SDL's database turns its D-pad upside
+/// down.
+fn check_other_gamepads(devices: &str, own_nodes: &[String]) -> Vec<Check> {
+    let name = "other gamepads";
+    let is_own = |device: &str| {
+        let handlers = device.lines().find_map(|line| line.strip_prefix("H: Handlers="));
+        handlers.is_some_and(|it| it.split_whitespace().any(|node| own_nodes.iter().any(|own| own == node)))
+    };
+    let others = devices.split("\n\n").filter(|device| !is_own(device));
+    let lines = others.flat_map(str::lines).filter(|line| line.starts_with("I:"));
+    let pads: Vec<_> = lines.filter(|line| line.contains("Vendor=045e Product=028e")).collect();
+    let mut checks = Vec::new();
+    if pads.iter().any(|line| line.contains("Version=0001")) {
+        checks.push(Check::note(
+            name,
+            "an Xbox 360 pad of version 0001 is there: SDL turns its D-pad upside down. Ours has version 0114",
+        ));
+    }
+    if !pads.is_empty() {
+        checks.push(Check::note(
+            name,
+            "an Xbox 360 pad is there already: games may give it the first place, and browsers may merge two virtual \
+             ones",
+        ));
+    }
+    checks
+}
+
+fn check_joydev(root: &Path) -> Check {
+    let name = "browsers";
+    if root.join("sys/module/joydev").exists() || root.join("dev/input/js0").exists() {
+        Check::good(name, "joydev is there, through which Chromium reads gamepads")
+    } else {
+        Check::note(name, "joydev is not loaded; Chromium reads gamepads through it: sudo modprobe joydev")
+    }
+}
+
+/// What the environment tells SDL about gamepads can hide or bend ours.
+fn check_sdl(variable: impl Fn(&str) -> Option<String>) -> Vec<Check> {
+    let mut checks = Vec::new();
+    let mapping = variable("SDL_GAMECONTROLLERCONFIG").unwrap_or_default();
+    if mapping.contains("5e0400008e020000") {
+        checks.push(Check::bad(
+            "SDL",
+            "SDL_GAMECONTROLLERCONFIG maps Xbox 360 pads anew; ours needs no mapping",
+            "unset SDL_GAMECONTROLLERCONFIG",
+        ));
+    }
+    for name in ["SDL_GAMECONTROLLER_IGNORE_DEVICES", "SDL_JOYSTICK_BLACKLIST_DEVICES"] {
+        if variable(name).is_some_and(|list| list.to_lowercase().contains("0x045e/0x028e")) {
+            checks.push(Check::bad(
+                "SDL",
+                format!("{name} hides Xbox 360 pads, and so ours"),
+                format!("unset {name}"),
+            ));
+        }
+    }
+    checks
+}
+
+fn check_session(variable: impl Fn(&str) -> Option<String>) -> Vec<Check> {
+    let name = "keys without uinput";
+    match (variable("WAYLAND_DISPLAY"), variable("DISPLAY")) {
+        (Some(_), _) => vec![Check::note(
+            name,
+            "this is a Wayland session: --output x11 reaches only programs that run on XWayland",
+        )],
+        (None, Some(display)) => vec![Check::note(name, format!("--output x11 types on display {display}"))],
+        (None, None) => Vec::new(),
+    }
+}
+
+/// The nodes of a bridge's devices, as `event7`, by its status.
+fn own_nodes(status: &str) -> Vec<String> {
+    let status: Value = serde_json::from_str(status).unwrap_or_default();
+    let output = status.get("output").and_then(Value::as_str).unwrap_or_default();
+    let words = output.split([' ', ',']);
+    words.filter_map(|word| word.strip_prefix("/dev/input/")).map(str::to_owned).collect()
+}
+
+fn check_bridge(answer: &io::Result<String>) -> Check {
+    match answer {
+        Ok(status) => Check::note("bridge", bridge_message(status)),
+        Err(error) if error.kind() == io::ErrorKind::TimedOut => Check::note(
+            "bridge",
+            "one is there and does not answer: if it was stopped, continue it with `fg`",
+        ),
+        Err(_) => Check::note("bridge", "none is running"),
+    }
+}
+
+/// The status of a bridge in a sentence.
+fn bridge_message(status: &str) -> String {
+    let status: Value = serde_json::from_str(status).unwrap_or_default();
+    let text = |key: &str| status.get(key).and_then(Value::as_str).unwrap_or("unknown");
+    let warning = ctl::warning(&status).map(|warning| format!(" ({warning})")).unwrap_or_default();
+    let (profile, decoder) = (text("profile"), text("decoder"));
+    format!("one is running, profile {profile}, decoder {decoder}{warning}: tactpad ctl status")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shipped_rules_come_before_the_seats() {
+        let file = Path::new(RULES_FILE).file_name().unwrap().to_str().unwrap();
+        assert!(number(file).unwrap() < SEAT_NUMBER);
+        assert_eq!(RULES.matches("TAG+=\"uaccess\"").count(), 3);
+    }
+
+    #[test]
+    fn what_a_bridge_warns_of_is_told() {
+        let message = bridge_message(r#"{"warning": {"kind": "silent_channel", "channel": "m1z"}}"#);
+        assert!(message.contains("channel m1z does not answer"), "{message}");
+        assert!(!bridge_message(r#"{"warning": null}"#).contains('('));
+    }
+
+    #[test]
+    fn rules_that_come_too_late_are_found() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = root.path().join("etc/udev/rules.d");
+        fs::create_dir_all(&folder).unwrap();
+        assert_eq!(check_rules(root.path()).finding, Finding::Note);
+        for (file, finding) in [("99-tactpad.rules", Finding::Bad), ("70-tactpad.rules", Finding::Good)] {
+            fs::write(folder.join(file), "").unwrap();
+            assert_eq!(check_rules(root.path()).finding, finding, "{file}");
+            fs::remove_file(folder.join(file)).unwrap();
+        }
+    }
+
+    #[test]
+    fn a_pad_with_the_trap_version_is_told_from_one_without() {
+        let device =
+            |version| format!("I: Bus=0003 Vendor=045e Product=028e Version={version}\nN: Name=\"X\"\n");
+        assert_eq!(check_other_gamepads("", &[]).len(), 0);
+        assert_eq!(check_other_gamepads(&device("0114"), &[]).len(), 1);
+        assert_eq!(check_other_gamepads(&device("0001"), &[]).len(), 2);
+    }
+
+    #[test]
+    fn our_own_pad_is_no_other_one() {
+        let device = |node| {
+            format!(
+                "I: Bus=0003 Vendor=045e Product=028e Version=0114\nN: Name=\"Microsoft X-Box 360 pad\"\n\
+                 S: Sysfs=/devices/virtual/input/input9\nH: Handlers={node} js0 \n\n"
+            )
+        };
+        let own = own_nodes(
+            r#"{"output":"virtual gamepad at /dev/input/event7, virtual pointer at /dev/input/event8"}"#,
+        );
+        assert_eq!(own, ["event7", "event8"]);
+        assert_eq!(check_other_gamepads(&device("event7"), &own).len(), 0);
+        assert_eq!(check_other_gamepads(&device("event70"), &own).len(), 1);
+        assert_eq!(check_other_gamepads(&(device("event7") + &device("event3")), &own).len(), 1);
+    }
+
+    #[test]
+    fn an_environment_that_hides_our_pad_is_found() {
+        let with = |set: &'static str, value: &'static str| {
+            check_sdl(move |name| (name == set).then(|| value.to_owned())).len()
+        };
+        assert_eq!(with("SDL_GAMECONTROLLERCONFIG", "030000005e0400008e02000014010000,X,a:b1"), 1);
+        assert_eq!(with("SDL_GAMECONTROLLERCONFIG", "030000004c050000cc09000000000000,Y,a:b1"), 0);
+        assert_eq!(with("SDL_GAMECONTROLLER_IGNORE_DEVICES", "0x045E/0x028E"), 1);
+    }
+}

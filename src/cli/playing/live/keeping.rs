@@ -1,0 +1,249 @@
+//! Keeps ordinary play beside a running bridge, and says now and then what it shows of changes in the pad. The bridge waits for neither:
+//! one thread makes its calls again and writes, another one compares.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, TryRecvError};
+use std::thread::{self, JoinHandle};
+
+use clap::ValueEnum;
+use rustix::event::{Timespec, poll};
+use rustix::process::nice;
+
+use super::kept_play;
+use crate::cli::laboratory::diagnose::changes::{findings, line};
+use crate::cli::laboratory::diagnose::engine::flaws;
+use crate::cli::printing::written::{quoted, say};
+use firmware_proto::identity::SerialNumber;
+use tactpad::bridge::changes::{Changes, ChangesSlot};
+use tactpad::bridge::observer::{Observed, Observer, observe};
+use tactpad::bridge::parts::PlayingDecoder;
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::lab::play::change::{Before, changed};
+use tactpad::lab::play::kept::{Kept, mark};
+use tactpad::lab::play::reader::Reader;
+use tactpad::lab::play::windows::Window;
+use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
+use tactpad::pipeline::contact::Decoder;
+
+/// It looks this often for calls; the bridge never wakes it.
+const LOOK: Timespec = Timespec { tv_sec: 0, tv_nsec: 100_000_000 };
+/// Looks between two writes, if there is something new: half a minute.
+const WRITE_LOOKS: u32 = 300;
+/// Pressed windows of a tenth of a second before the first comparison, a minute of them, and then between two: three minutes.
+const FIRST_PRESSED: usize = 600;
+const NEXT_PRESSED: usize = 1_800;
+/// How much the comparison gives way to all else on the machine.
+const NICENESS: i32 = 10;
+
+/// Whether play is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum KeepPlay {
+    /// It is.
+    Yes,
+    /// It is not.
+    No,
+}
+
+/// What keeps the play of a bridge that is about to be made; it may be nothing.
+#[derive(Default)]
+pub(super) struct Keeping {
+    observer: Option<Observer>,
+    changes: ChangesSlot,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// A decoder that changes are held against.
+#[derive(Clone)]
+struct Calibrated {
+    decoder: Decoder,
+    file: String,
+    mark: u64,
+}
+
+/// The thread that hears.
+struct Keeper {
+    calibrated: Calibrated,
+    changes: ChangesSlot,
+    reader: Option<Reader>,
+    /// Of the pad that is played on, and where it is kept.
+    kept: Option<(Kept, PathBuf)>,
+    is_new: bool,
+    /// Pressed windows since the last comparison.
+    pressed: usize,
+    has_compared: bool,
+    comparing: Option<JoinHandle<()>>,
+    is_refused: bool,
+}
+
+impl Keeping {
+    /// Play that was recorded is no new play, and without a decoder of this pad there is nothing to hold it against.
+    pub(super) fn begin(keep: KeepPlay, pad: &PadAddress, decoder: &PlayingDecoder) -> io::Result<Self> {
+        let calibrated = Calibrated::of(decoder).filter(|_| keep == KeepPlay::Yes);
+        let is_recorded = matches!(pad, PadAddress::Capture { .. });
+        let Some(calibrated) = calibrated.filter(|_| !is_recorded) else { return Ok(Self::default()) };
+        let (observer, heard) = observe();
+        let changes = ChangesSlot::default();
+        let keeper = Keeper::new(calibrated, changes.clone());
+        let thread = thread::Builder::new().name("kept play".into()).spawn(move || keeper.run(&heard))?;
+        Ok(Self { observer: Some(observer), changes, thread: Some(thread) })
+    }
+
+    /// What the bridge needs for it to hear.
+    pub(super) const fn observer(&mut self) -> Option<Observer> {
+        self.observer.take()
+    }
+
+    /// Where it says what it found.
+    pub(super) fn changes(&self) -> ChangesSlot {
+        self.changes.clone()
+    }
+
+    /// Waits until all is written, once the bridge is gone.
+    pub(super) fn end(self) {
+        // Whoever never heard of a bridge must not wait for it.
+        drop(self.observer);
+        let _ = self.thread.map(JoinHandle::join);
+    }
+}
+
+impl Calibrated {
+    fn of(playing: &PlayingDecoder) -> Option<Self> {
+        let PlayingDecoder { decoder, place, file, .. } = playing;
+        let has_errors = decoder.inverse().is_some_and(|it| !it.field_error().modes().is_empty());
+        let (file, mark) = (place.clone()?, mark(file.as_ref()?));
+        has_errors.then(|| Self { decoder: decoder.clone(), file, mark })
+    }
+}
+
+impl Keeper {
+    const fn new(calibrated: Calibrated, changes: ChangesSlot) -> Self {
+        Self {
+            calibrated,
+            changes,
+            reader: None,
+            kept: None,
+            is_new: false,
+            pressed: 0,
+            has_compared: false,
+            comparing: None,
+            is_refused: false,
+        }
+    }
+
+    /// Until the bridge ends.
+    fn run(mut self, heard: &Receiver<Observed>) {
+        let mut looks = 0;
+        while self.hear(heard) {
+            looks += 1;
+            if looks % (WRITE_LOOKS / 10) == 0 {
+                self.take();
+                self.compare();
+            }
+            if looks % WRITE_LOOKS == 0 {
+                self.write();
+            }
+            // Nothing wakes it: it lets time pass.
+            let _ = poll(&mut [], Some(&LOOK));
+        }
+        self.take();
+        self.write();
+    }
+
+    /// Makes all calls that wait; false once the bridge has ended.
+    fn hear(&mut self, heard: &Receiver<Observed>) -> bool {
+        loop {
+            match heard.try_recv() {
+                Ok(Observed::Call { at, call }) => {
+                    if let Some(reader) = &mut self.reader {
+                        reader.apply(at, call.as_call());
+                    }
+                }
+                Ok(Observed::Whole { pipeline, .. }) => {
+                    self.take();
+                    self.reader = Some(Reader::going_on(*pipeline));
+                    if let Some((kept, _)) = &mut self.kept {
+                        kept.sit_down();
+                    }
+                }
+                Err(TryRecvError::Empty) => return true,
+                Err(TryRecvError::Disconnected) => return false,
+            }
+        }
+    }
+
+    /// Takes what was played since, once the pad has told who it is.
+    fn take(&mut self) {
+        let Some(reader) = &mut self.reader else { return };
+        let (windows, pad) = (reader.take(), reader.serial_number());
+        let Some(pad) = pad.filter(|pad| !pad.as_str().is_empty()) else { return };
+        self.attend(pad);
+        let Some((kept, _)) = self.kept.as_mut().filter(|_| !windows.is_empty()) else { return };
+        self.pressed += windows.iter().filter(|it| it.contact.is_some()).count();
+        kept.add(&windows);
+        self.is_new = true;
+    }
+
+    /// Goes over to what is kept of this pad.
+    fn attend(&mut self, pad: SerialNumber) {
+        if self.kept.as_ref().is_some_and(|(kept, _)| kept.pad == pad) {
+            return;
+        }
+        self.write();
+        let mark = self.calibrated.mark;
+        self.kept = kept_play::place(pad, mark).map(|path| (kept_play::read(&path, pad, mark), path));
+        self.has_compared = false;
+    }
+
+    fn write(&mut self) {
+        let Some((kept, path)) = self.kept.as_ref().filter(|_| self.is_new) else { return };
+        self.is_new = false;
+        if let Err(error) = kept_play::write(path, kept)
+            && !std::mem::replace(&mut self.is_refused, true)
+        {
+            say(format_args!("play is not kept: {} cannot be written: {error}", path.display()));
+        }
+    }
+
+    /// Begins to compare, if there is enough that is new and nothing is being compared.
+    fn compare(&mut self) {
+        let Some((kept, path)) = &self.kept else { return };
+        let is_due =
+            if self.has_compared { self.pressed >= NEXT_PRESSED } else { kept.pressed() >= FIRST_PRESSED };
+        if !is_due || self.comparing.as_ref().is_some_and(|it| !it.is_finished()) {
+            return;
+        }
+        (self.pressed, self.has_compared) = (0, true);
+        let (windows, pad, path) = (kept.windows().to_vec(), kept.pad, path.clone());
+        // What its command names has to be there.
+        self.is_new = true;
+        self.write();
+        let (calibrated, changes) = (self.calibrated.clone(), self.changes.clone());
+        let compare = move || {
+            // It counts for this thread alone. Where it is refused, it compares all the same.
+            let _ = nice(NICENESS);
+            if let Some(found) = calibrated.changes(&windows, pad, &path) {
+                changes.set(found);
+            }
+        };
+        self.comparing = thread::Builder::new().name("changes".into()).spawn(compare).ok();
+    }
+}
+
+impl Calibrated {
+    /// What these windows show; nothing where they are too few.
+    fn changes(&self, windows: &[Window], pad: SerialNumber, path: &Path) -> Option<Changes> {
+        let device = Device::nominal();
+        let nominal = (&device, &PadField::nominal());
+        let before = Before::Decoder(&self.decoder);
+        let found = changed(before, windows, nominal, &flaws(&device), &|_, _| ()).ok()?;
+        let mut text = line(&found);
+        if !found.findings.is_empty() {
+            let [play, decoder] = [&path.display().to_string(), &self.file].map(|it| quoted(it));
+            text += &format!(": tactpad diagnose --play {play} --against {decoder}");
+        }
+        let findings = serde_json::to_value(findings(&found)).ok()?;
+        Some(Changes { pad, since: self.file.clone(), findings, text })
+    }
+}

@@ -1,0 +1,34 @@
+//! The live verbs: those that need ports, virtual devices and a clock.
+
+#[cfg(feature = "tray")]
+pub(crate) mod alone;
+pub(super) mod calibrate;
+#[cfg(feature = "dashboard")]
+mod calibrated;
+mod chosen;
+pub(super) mod ctl;
+pub(super) mod demo;
+#[cfg(feature = "tray")]
+mod desk;
+pub(super) mod devices;
+pub(super) mod doctor;
+mod files;
+mod follower;
+mod keeping;
+mod kept_play;
+#[cfg(feature = "tray")]
+mod last_profile;
+pub(super) mod latency;
+mod newest;
+mod output;
+#[cfg(feature = "dashboard")]
+mod page;
+mod playing;
+pub(super) mod record;
+#[cfg(feature = "dashboard")]
+mod reported;
+pub(super) mod run;
+mod screen;
+mod shown;
+mod sound;
+mod wish;

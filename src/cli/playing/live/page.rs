@@ -1,0 +1,115 @@
+//! `--dashboard`: the page of a running bridge, and what it needs of this program.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use serde_json::Value;
+
+use super::wish::Wish;
+use super::{calibrated, doctor, reported};
+use crate::cli::failure::Failure;
+use crate::cli::playing::profile;
+use crate::cli::printing::written::reason;
+use tactpad::bridge::observer::Observer;
+use tactpad::bridge::request::Asker;
+use tactpad::bridge::running::Bridge;
+use tactpad::bridge::timing::Timing;
+use tactpad::dashboard::library::{
+    Entry, KeptDecoder, Library, Over, Report, Saved, Session, Stored, Unsaved,
+};
+use tactpad::dashboard::server::Dashboard;
+use tactpad::lab::play::guide::Guide;
+use tactpad::pipeline::capture::head::Head;
+use tactpad::pipeline::mapping::check::OutputChoice;
+
+/// A page that has its address, and waits for its bridge.
+pub(super) struct Page {
+    dashboard: Dashboard,
+    asker: Asker,
+    shelf: Arc<Shelf>,
+}
+
+impl Page {
+    /// Opens a port for the page of a bridge that `asker` reaches, and gives the observer that the bridge needs.
+    pub(super) fn open(
+        asker: Asker,
+        wish: Arc<Mutex<Wish>>,
+        output: OutputChoice,
+    ) -> Result<(Self, Observer), Failure> {
+        let (dashboard, observer) = Dashboard::open(0).map_err(|error| {
+            Failure::Failed(format!(
+                "the dashboard has no port: {}; start without --dashboard",
+                reason(&error)
+            ))
+        })?;
+        Ok((Self { dashboard, asker, shelf: Arc::new(Shelf { wish, output }) }, observer))
+    }
+
+    /// Where it is.
+    pub(super) fn url(&self) -> String {
+        self.dashboard.url()
+    }
+
+    /// Shows `bridge` until the process ends.
+    pub(super) fn start(self, bridge: &Bridge, timing: Timing) -> Result<(), Failure> {
+        Ok(self.dashboard.start(bridge, self.asker, timing, self.shelf)?)
+    }
+}
+
+/// Profiles, the doctor and reports.
+struct Shelf {
+    wish: Arc<Mutex<Wish>>,
+    output: OutputChoice,
+}
+
+impl Library for Shelf {
+    fn entries(&self) -> Vec<Entry> {
+        profile::entries()
+    }
+
+    fn playing(&self) -> String {
+        self.wish.lock().unwrap_or_else(PoisonError::into_inner).name.clone()
+    }
+
+    fn output(&self) -> OutputChoice {
+        self.output
+    }
+
+    fn read(&self, name: &str) -> Option<Stored> {
+        profile::stored(name)
+    }
+
+    fn save(&self, name: &str, text: &str, over: &Over) -> Result<Saved, Unsaved> {
+        profile::save(name, text, over)
+    }
+
+    fn doctor(&self) -> Value {
+        serde_json::to_value(doctor::examine()).unwrap_or_default()
+    }
+
+    fn reports(&self) -> Vec<Report> {
+        reported::all()
+    }
+
+    fn report(&self, id: &str) -> Option<PathBuf> {
+        reported::page(id)
+    }
+
+    fn has_session(&self, name: &str) -> bool {
+        calibrated::has_session(name)
+    }
+
+    fn open_session(
+        &self,
+        name: &str,
+        fresh: bool,
+        guide: &mut Guide,
+        head: &Head,
+    ) -> Result<Box<dyn Session>, String> {
+        calibrated::open(name, fresh, guide, head).map_err(Failure::sentence)
+    }
+
+    fn keep_decoder(&self, name: &str, bytes: &[u8]) -> Result<KeptDecoder, String> {
+        calibrated::write(name, bytes).map_err(Failure::sentence)
+    }
+}

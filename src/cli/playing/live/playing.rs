@@ -1,0 +1,242 @@
+//! What the live verbs share: which pad they play with, who is told, and how a run ends.
+
+use std::io::{self, Write};
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::wish::Wish;
+use crate::cli::failure::Failure;
+use crate::cli::files::device::Pad;
+use crate::cli::files::field::field_of;
+use crate::cli::playing::profile;
+use crate::cli::printing::written::{is_stdout, reason, say};
+use tactpad::bridge::destination::Destination;
+use tactpad::bridge::error::BridgeError;
+use tactpad::bridge::host::Host;
+use tactpad::bridge::offer::Offer;
+use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
+use tactpad::bridge::queue::{Group, Queue};
+use tactpad::bridge::requests::Requests;
+use tactpad::bridge::running::{Bridge, Ending};
+use tactpad::bridge::snapshot::Drops;
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::pipeline::mapping::check::OutputChoice;
+use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::read::ReadProfile;
+use tactpad::virtual_pad::firmware::VirtualPad;
+use tactpad::virtual_pad::script::Script;
+
+/// The virtual pad of `run` and `record` plays this long, then rests.
+const VIRTUAL_SCRIPT_US: u64 = 3_600_000_000;
+
+/// The virtual pad's noise is the same each time.
+const VIRTUAL_SEED: u64 = 1;
+
+/// Opens the pad at `address`. The virtual pad is `pad` and plays a script made for `profile`.
+pub(super) fn open_pad(
+    address: &PadAddress,
+    pad: &Pad,
+    profile: &Profile,
+    patience: Patience,
+) -> Result<OpenedPad, Failure> {
+    let opened = match address {
+        PadAddress::Virtual => return open_virtual(pad, Script::for_profile(profile, VIRTUAL_SCRIPT_US)),
+        _ if pad.is_given() => {
+            return Err(Failure::Unusable(
+                "--device and --imperfections say what the virtual pad is: add --pad virtual, or leave them out"
+                    .into(),
+            ));
+        }
+        PadAddress::Capture { file } => OpenedPad::capture(file),
+        PadAddress::Auto { .. } | PadAddress::Hid { .. } | PadAddress::Serial { .. } => {
+            OpenedPad::device(address.clone(), patience)
+        }
+    };
+    opened.map_err(not_opened)
+}
+
+/// Starts a virtual pad that plays `script`.
+pub(super) fn open_virtual(pad: &Pad, script: Script) -> Result<OpenedPad, Failure> {
+    OpenedPad::simulated(virtual_pad(pad, script)?).map_err(not_opened)
+}
+
+/// The virtual pad, on which `script` is played.
+pub(super) fn virtual_pad(pad: &Pad, script: Script) -> Result<VirtualPad, Failure> {
+    if !pad.is_given() {
+        return Ok(VirtualPad::new(script, VIRTUAL_SEED));
+    }
+    let device = pad.read()?;
+    Ok(VirtualPad::of(script, &device, &field_of(&device)?, VIRTUAL_SEED))
+}
+
+pub(super) fn not_opened(error: OpenError) -> Failure {
+    match error {
+        OpenError::Io(error) => error.into(),
+        error => Failure::Unusable(error.to_string()),
+    }
+}
+
+/// How long to wait for a pad: `auto` always waits, a named one only if that is asked for.
+pub(super) fn patience(pad: &PadAddress, waits: Waits) -> Patience {
+    match (pad, waits) {
+        (PadAddress::Auto { .. }, _) | (_, Waits::Asked) => Patience::Endless,
+        (_, Waits::NotAsked) => Patience::Limited,
+    }
+}
+
+/// Whether `--wait` was given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Waits {
+    /// It was.
+    Asked,
+    /// It was not.
+    NotAsked,
+}
+
+/// The file of a capture, which is written where it stands: what was recorded before a crash is there. Or the pipe.
+pub(super) fn create_capture(path: &Path) -> Result<Box<dyn Write + Send>, Failure> {
+    if is_stdout(path) {
+        return Ok(Box::new(io::stdout()));
+    }
+    match Destination::create(path) {
+        Ok(to) => {
+            tell_of_waiting(path, to.waits_for_reader());
+            Ok(Box::new(to))
+        }
+        Err(error) => {
+            let (path, why) = (path.display(), reason(&error));
+            Err(Failure::Unusable(format!("{path} cannot be written: {why}; name another file")))
+        }
+    }
+}
+
+/// Says that nobody reads a pipe yet.
+pub(super) fn tell_of_waiting(path: &Path, waits: bool) {
+    if waits {
+        say(format_args!("nobody reads the pipe {} yet: start its reader", path.display()));
+    }
+}
+
+/// What people are told may wait so long to be read.
+const TOLD_BYTES_MAX: usize = 16 << 10;
+
+/// The program around a bridge that was started from a command line.
+pub(super) struct Terminal {
+    /// The profile that is read again when nobody names another one.
+    wish: Arc<Mutex<Wish>>,
+    output: OutputChoice,
+    /// Where the page of the bridge is.
+    page: Option<String>,
+    /// Stderr, if somebody reads it. A terminal that is held with Ctrl-S must not keep the bridge waiting.
+    told: Option<Queue>,
+}
+
+impl Terminal {
+    /// A bridge that plays `profile` for an output of this kind.
+    pub(super) fn new(profile: &str, output: OutputChoice, audience: Audience) -> io::Result<Self> {
+        let told = match audience {
+            Audience::Stderr => Some(Queue::start("told", io::stderr(), TOLD_BYTES_MAX)?),
+            Audience::Nobody => None,
+        };
+        Ok(Self { wish: Arc::new(Mutex::new(Wish::of(profile))), output, page: None, told })
+    }
+
+    /// The same, of a bridge that is shown at this address.
+    pub(super) fn with_page(self, page: Option<String>) -> Self {
+        Self { page, ..self }
+    }
+
+    /// What people wish to be played, for whoever follows it.
+    pub(super) fn wish(&self) -> Arc<Mutex<Wish>> {
+        Arc::clone(&self.wish)
+    }
+}
+
+impl Host for Terminal {
+    fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
+        let mut wish = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
+        let asked = wish.asked(name);
+        let read = profile::read(&asked.name, self.output).map_err(Failure::sentence)?;
+        // A profile that was chosen and can be used is the one to be read again.
+        *wish = asked;
+        Ok(read)
+    }
+
+    fn next_profile(&mut self) -> Result<ReadProfile, String> {
+        let mut wish = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
+        let (chosen, read) = profile::next(&wish.name, self.output).ok_or(
+            "there is no other profile from which a press leads on: add one with bridge = \"next-profile\"",
+        )?;
+        *wish = wish.asked(Some(&chosen));
+        Ok(read)
+    }
+
+    fn page(&self) -> Option<String> {
+        self.page.clone()
+    }
+
+    fn wants(&self, offer: &Offer) -> bool {
+        offer.asked == self.wish.lock().unwrap_or_else(PoisonError::into_inner).asked
+    }
+
+    fn tell(&mut self, line: &str) {
+        if let Some(told) = &self.told {
+            // Where nobody reads, the bridge plays on.
+            let _ = told.push(Group { bytes: format!("{line}\n").into(), ..Group::default() });
+        }
+    }
+}
+
+/// Who is told what the bridge is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Audience {
+    /// Somebody who reads stderr.
+    Stderr,
+    /// Nobody, or somebody who watches the screen.
+    Nobody,
+}
+
+impl Audience {
+    pub(super) fn tell(self, line: &str) {
+        if self == Self::Stderr {
+            // Where nobody reads, the bridge plays on.
+            say(line);
+        }
+    }
+}
+
+/// Requests by signals and, where `socket` is given, through it. A second bridge plays without one.
+pub(super) fn requests(socket: Option<&Path>, audience: Audience) -> Result<Requests, Failure> {
+    let mut requests = Requests::new()?;
+    requests.catch_signals()?;
+    if let Some(path) = socket
+        && let Err(error) = requests.listen(path)
+    {
+        audience.tell(&format!(
+            "`tactpad ctl` does not reach this bridge: {} ({})",
+            path.display(),
+            reason(&error)
+        ));
+    }
+    Ok(requests)
+}
+
+/// A duration as the bridge has it.
+pub(super) fn microseconds(seconds: f64) -> u64 {
+    (seconds * 1e6) as u64
+}
+
+/// Runs the bridge, turns its errors into the program's, and says what is missing in logs and captures.
+pub(super) fn play(bridge: &mut Bridge, address: &PadAddress) -> Result<Ending, Failure> {
+    let ending = bridge.run();
+    let Drops { groups_dropped, .. } = bridge.drops();
+    if groups_dropped > 0 {
+        say(format_args!(
+            "{groups_dropped} groups of events are missing in the event log: it was not read in time"
+        ));
+    }
+    ending.map_err(|error| match error {
+        BridgeError::NotAPad(_) | BridgeError::Refused(_) => Failure::Unusable(format!("{address} {error}")),
+        error => Failure::Failed(error.to_string()),
+    })
+}

@@ -1,0 +1,134 @@
+//! `tactpad record`: plays like `run` and writes down every call, so that `replay` gives the same events.
+
+use std::path::PathBuf;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::Duration;
+
+use clap::Args;
+
+use super::files::{self, Files};
+use super::newest::Newest;
+use super::output::Output;
+use super::playing::{
+    Audience, Terminal, Waits, create_capture, microseconds, open_pad, patience, play, requests,
+};
+use super::{chosen, ctl};
+use crate::cli::failure::Failure;
+use crate::cli::files::decoder_file::Choice;
+use crate::cli::files::device::Pad;
+use crate::cli::playing::profile;
+use crate::cli::printing::seconds;
+use crate::cli::printing::written::{Named, say};
+use tactpad::bridge::changes::ChangesSlot;
+use tactpad::bridge::parts::Parts;
+use tactpad::bridge::running::Bridge;
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::bridge::transport::fault::FaultPlan;
+
+/// Arguments of `tactpad record`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: tactpad record game.cap --pad serial:/dev/ttyACM0, then tactpad replay game.cap"
+)]
+pub(crate) struct Arguments {
+    /// The file to write; a file that is there already is kept, and - is standard output.
+    capture: PathBuf,
+    /// Write over a file that is there already.
+    #[arg(long)]
+    force: bool,
+    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], capture:FILE.
+    #[arg(long, value_name = "PAD", default_value = "virtual")]
+    pad: PadAddress,
+    #[command(flatten)]
+    device: Pad,
+    /// A profile's name or file; it is kept in the capture, and so is the decoder.
+    #[arg(long, default_value = "super-mario")]
+    profile: String,
+    #[command(flatten)]
+    decoder: Choice,
+    /// Where events go meanwhile: auto (virtual devices, else an event log here), uinput, x11, log:FILE (- is stdout),
+    /// none.
+    #[arg(long, default_value = "none")]
+    output: Output,
+    /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
+    /// probability is per frame, and 0.001 where only a seed is given.
+    #[arg(long, value_name = "FAULTS")]
+    faults: Option<FaultPlan>,
+    /// End after this many seconds; without it Ctrl-C ends.
+    #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+    /// Say when to press lightly and when hard, for tune --force-range; it ends after 30 s, or after --seconds.
+    #[arg(long)]
+    force_range: bool,
+}
+
+/// How long presses for the force range are recorded, and what is said at the begin and in the middle.
+const FORCE_RANGE_S: f64 = 30.0;
+const FORCE_RANGE_CUES: [&str; 2] = [
+    "press again and again as lightly as feels sure, and lift the finger after each press",
+    "and now again and again as hard as is comfortable",
+];
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { capture, pad, profile, output, decoder, .. } = arguments;
+    Files { pad, profile, output, decoder: chosen::file(decoder), capture: Some(capture) }.check()?;
+    if !arguments.force {
+        files::keep_file(capture, ", or give --force to write over it")?;
+    }
+    let decoder = chosen::read(decoder)?;
+    let profile = profile::read(profile, output.choice())?;
+    let (sink, missing) = output.open_or(|| Newest::default().sink(false))?;
+    let patience = patience(&arguments.pad, Waits::NotAsked);
+    let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
+    let opened = opened.with_faults(arguments.faults)?;
+    let place = capture.display().to_string();
+    let capture = Named::new(create_capture(capture)?, place.clone());
+    if let Some(missing) = missing {
+        say(missing);
+    }
+    say(format_args!("recording {} in {place}", arguments.pad));
+    let audience = Audience::Stderr;
+    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
+    let seconds = arguments.seconds.or(arguments.force_range.then_some(FORCE_RANGE_S));
+    let mut bridge = Bridge::new(Parts {
+        pad: opened,
+        patience,
+        decoder,
+        profile,
+        sink,
+        requests: requests(Some(&ctl::socket_path()), audience)?,
+        host: Box::new(host),
+        record: Some(Box::new(capture)),
+        observers: Vec::new(),
+        changes: ChangesSlot::default(),
+        duration_us: seconds.map(microseconds),
+    })?;
+    let cue = seconds.filter(|_| arguments.force_range).map(cue);
+    play(&mut bridge, &arguments.pad)?;
+    drop(cue);
+    match bridge.drops().calls_unrecorded {
+        0 => {
+            say(format_args!("{} samples recorded", bridge.health().samples));
+            Ok(())
+        }
+        missing => Err(Failure::Failed(format!(
+            "{place} did not take what was recorded: its last {missing} calls are missing; record to a faster disk, or \
+             see that the pipe is read"
+        ))),
+    }
+}
+
+/// Says what to press: now, and in the middle of so many seconds, unless what it gives back is gone by then.
+fn cue(seconds: f64) -> Sender<()> {
+    let [light, hard] = FORCE_RANGE_CUES;
+    say(light);
+    let (held, gone) = channel();
+    let half = Duration::from_secs_f64(seconds / 2.0);
+    thread::spawn(move || {
+        if gone.recv_timeout(half) == Err(RecvTimeoutError::Timeout) {
+            say(hard);
+        }
+    });
+    held
+}

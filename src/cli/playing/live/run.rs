@@ -1,0 +1,145 @@
+//! `tactpad run`: the live bridge.
+
+use std::io;
+
+use clap::Args;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use super::files::Files;
+use super::follower;
+use super::keeping::{KeepPlay, Keeping};
+use super::newest::Newest;
+use super::output::Output;
+use super::playing::{Audience, Terminal, Waits, microseconds, open_pad, patience, play, requests};
+use super::screen::Screen;
+use super::shown::Shown;
+use super::wish;
+use super::{chosen, ctl};
+use crate::cli::failure::Failure;
+use crate::cli::files::decoder_file::Choice;
+use crate::cli::files::device::Pad;
+use crate::cli::playing::profile;
+use crate::cli::printing::seconds;
+use crate::cli::printing::terminal;
+use crate::cli::printing::written::{printable, say};
+use tactpad::bridge::parts::Parts;
+use tactpad::bridge::running::{Bridge, Ending};
+use tactpad::bridge::transport::address::PadAddress;
+use tactpad::bridge::transport::fault::FaultPlan;
+
+/// Arguments of `tactpad run`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tactpad run --pad serial:/dev/ttyACM0 --profile tetris\n\n\
+    `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on. It ends with its \
+    terminal, unless it was started with nohup; where it has none, SIGHUP reads the profile again.")]
+pub(crate) struct Arguments {
+    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], virtual, capture:FILE.
+    #[arg(long, value_name = "PAD", default_value = "auto")]
+    pad: PadAddress,
+    /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.
+    #[arg(long)]
+    wait: bool,
+    #[command(flatten)]
+    device: Pad,
+    /// A profile's name or file; it is read again when it is changed. Or auto[:NAME]: the one whose [[program]] is in front, else NAME.
+    #[arg(long, default_value = "super-mario")]
+    profile: String,
+    #[command(flatten)]
+    decoder: Choice,
+    /// Where events go: auto (virtual devices, else an event log here), uinput, x11, log:FILE (- is stdout), none.
+    #[arg(long, default_value = "auto")]
+    output: Output,
+    #[command(flatten)]
+    shown: Shown,
+    /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
+    /// probability is per frame, and 0.001 where only a seed is given.
+    #[arg(long, value_name = "FAULTS")]
+    faults: Option<FaultPlan>,
+    /// Keep the newest ten minutes of play, on this machine alone, to say what changed in the pad: docs/home.md.
+    ///
+    /// It is kept for pads with a serial number whose decoder calibrate or adapt made.
+    #[arg(long, value_name = "WHETHER", default_value = "yes")]
+    keep_play: KeepPlay,
+    /// End after this many seconds.
+    #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
+    seconds: Option<f64>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { pad, profile, output, decoder, .. } = arguments;
+    let profile = wish::first(profile);
+    Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
+    let decoder = chosen::read(decoder)?;
+    let audience = audience(output);
+    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
+    let wish = host.wish();
+    let profile = profile::read(profile, output.choice())?;
+    let patience = patience(&arguments.pad, if arguments.wait { Waits::Asked } else { Waits::NotAsked });
+    let is_shown = audience == Audience::Nobody;
+    let newest = Newest::default();
+    let (sink, missing) = output.open_or(|| newest.sink(is_shown))?;
+    let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
+    let opened = opened.with_faults(arguments.faults)?;
+    let name = &profile.profile().name;
+    let title = format!("{} → {} → {name} → {}", arguments.pad, decoder.name, sink.describe());
+    let title = printable(&title);
+    let prints = *output == Output::Stdout || (missing.is_some() && !is_shown);
+    if let Some(missing) = missing {
+        say(missing);
+    }
+    audience.tell(&title);
+    let requests = requests(Some(&ctl::socket_path()), audience)?;
+    let mut prepared = arguments.shown.prepare(&requests, &wish, output.choice())?;
+    if let Some(url) = &prepared.url {
+        say(format_args!("Dashboard: {url}"));
+    }
+    follower::start(wish, output.choice(), requests.asker()?)?;
+    let mut keeping = Keeping::begin(arguments.keep_play, pad, &decoder)?;
+    let mut bridge = Bridge::new(Parts {
+        pad: prepared.pad(opened),
+        patience,
+        decoder,
+        profile,
+        sink: prepared.sink(sink),
+        requests,
+        host: Box::new(host.with_page(prepared.url.clone())),
+        record: None,
+        observers: prepared.observer.take().into_iter().chain(keeping.observer()).collect(),
+        changes: keeping.changes(),
+        duration_us: arguments.seconds.map(microseconds),
+    })?;
+    prepared.start(&bridge)?;
+    let screen = is_shown.then(|| Screen::start(title, bridge.snapshot(), move || newest.lines()));
+    let ending = play(&mut bridge, &arguments.pad);
+    drop(screen);
+    // What keeps play ends with what it hears.
+    drop(bridge);
+    keeping.end();
+    ended(ending, prints)
+}
+
+/// How the run ended, told where nobody sees it.
+fn ended(ending: Result<Ending, Failure>, prints: bool) -> Result<(), Failure> {
+    match ending {
+        Err(_) if prints && is_unread() => return Err(Failure::Unread),
+        Ok(Ending::CaptureEnded) => say("the capture has ended"),
+        Ok(_) => {}
+        Err(failure) => return Err(failure),
+    }
+    Ok(())
+}
+
+/// The live picture has the title and the state; without one they are told in words.
+fn audience(output: &Output) -> Audience {
+    let is_shown = *output != Output::Stdout && terminal::moves_cursor(&io::stdout());
+    if is_shown { Audience::Nobody } else { Audience::Stderr }
+}
+
+/// Whether the reader of standard output went away.
+fn is_unread() -> bool {
+    let stdout = io::stdout();
+    let mut asked = [PollFd::new(&stdout, PollFlags::empty())];
+    let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
+    poll(&mut asked, Some(&at_once)).is_ok()
+        && asked.iter().any(|stdout| stdout.revents().contains(PollFlags::ERR))
+}

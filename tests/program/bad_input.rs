@@ -20,6 +20,8 @@ use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use tempfile::TempDir;
 
+use crate::recorded;
+
 mod decoders;
 
 /// The program, with backtraces on, so that a panic shows.
@@ -211,9 +213,7 @@ fn a_capture_that_is_none_is_refused() {
 fn a_capture_cut_off_or_followed_by_other_data_says_so_and_gives_what_it_holds() {
     let (_folder, path) = with_file("game.cap", b"");
     let name = path.to_str().unwrap();
-    let line = ["record", name, "--seconds", "2", "--decoder", "statics"];
-    let recorded = tactpad().args(line).output().unwrap();
-    assert_eq!(recorded.status.code(), Some(0), "{}", said(&recorded));
+    recorded::write(&path, "statics", 2);
     let whole = tactpad().args(["replay", name]).output().unwrap();
     let bytes = fs::read(&path).unwrap();
     // Records have more bytes than one, so of two neighbouring cuts one at least goes through a record.
@@ -247,9 +247,7 @@ fn a_capture_cut_off_or_followed_by_other_data_says_so_and_gives_what_it_holds()
 fn a_damaged_capture_gives_what_is_before_the_damage_and_says_where() {
     let (_folder, path) = with_file("game.cap", b"");
     let name = path.to_str().unwrap();
-    let line = ["record", name, "--seconds", "2", "--decoder", "statics"];
-    let recorded = tactpad().args(line).output().unwrap();
-    assert_eq!(recorded.status.code(), Some(0), "{}", said(&recorded));
+    recorded::write(&path, "statics", 2);
     let whole = tactpad().args(["replay", name]).output().unwrap().stdout;
     let mut bytes = fs::read(&path).unwrap();
     let place = bytes.len() * 3 / 4;
@@ -347,8 +345,7 @@ fn a_time_that_is_none_is_refused_before_a_file_is_touched() {
 fn a_file_that_is_read_is_not_written_over() {
     let (folder, path) = with_file("game.cap", b"");
     let game = path.to_str().unwrap();
-    let recorded = tactpad().args(["record", game, "--seconds", "0.3"]).output().unwrap();
-    assert_eq!(recorded.status.code(), Some(0), "{}", said(&recorded));
+    recorded::write(&path, "inverse", 1);
     let (soft, hard) = (folder.path().join("soft"), folder.path().join("hard"));
     std::os::unix::fs::symlink(&path, &soft).unwrap();
     fs::hard_link(&path, &hard).unwrap();

@@ -21,6 +21,8 @@ mod plot;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod profiles;
 mod ran;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod recorded;
 mod simulate;
 #[cfg(feature = "simulator")]
 mod simulate_figures;

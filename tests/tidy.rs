@@ -249,7 +249,8 @@ fn what_is_ignored_is_a_proof_with_its_time_and_reason() {
         let is_below_tests = path.components().any(|part| part.as_os_str() == "tests");
         let next = text.lines().skip(1).chain(Some(""));
         for (number, (line, next)) in text.lines().zip(next).enumerate() {
-            let is_ignored = line.contains("#[ignore") || line.contains("cfg_attr") && line.contains("ignore");
+            let is_ignored =
+                line.contains("#[ignore") || line.contains("cfg_attr") && line.contains("ignore");
             let is_read = is_below_tests && next.trim_start().starts_with("fn ");
             if is_ignored && (is_in_form(line) != Some(true) || !is_read) {
                 wrong.push(format!("{}:{}: {line}", path.display(), number + 1));

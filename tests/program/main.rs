@@ -38,6 +38,8 @@ mod terminal;
 mod tune;
 mod twin_capture;
 mod twin_verb;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod undisturbed;
 mod vtk;
 mod weigh;
 mod written;

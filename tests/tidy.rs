@@ -3,8 +3,10 @@
 #[path = "tidy/circles.rs"]
 mod circles;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Rooms by row: the folders and files right below `src/`. A room imports only rows above its own, never a sibling.
 const ROWS: &[&[&str]] = &[
@@ -258,6 +260,36 @@ fn what_is_ignored_is_a_proof_with_its_time_and_reason() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// What is compiled, with its features, by cargo's own word.
+fn compiled(edges: &str) -> BTreeSet<String> {
+    let mut tree = Command::new(env!("CARGO"));
+    tree.args([
+        "tree",
+        "--workspace",
+        "--locked",
+        "--offline",
+        "--prefix",
+        "none",
+        "-f",
+        "{p} {f}",
+        "-e",
+        edges,
+    ]);
+    let output = tree.current_dir(root()).output().unwrap_or_else(|error| panic!("cargo tree: {error}"));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text.lines().map(|line| line.trim_end_matches(" (*)").to_owned()).collect()
+}
+
+/// What tests depend on may ask for more features of what the program depends on, too. Then that is built once for each, and
+/// so is all above it, up to the program.
+#[test]
+fn nothing_is_built_anew_for_the_tests() {
+    let (program, tests) = (compiled("normal,build"), compiled("normal,build,dev"));
+    let anew: Vec<_> = program.difference(&tests).collect();
+    assert!(program.len() > 100 && anew.is_empty(), "{anew:#?}");
 }
 
 #[test]

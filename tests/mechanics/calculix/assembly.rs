@@ -1,4 +1,4 @@
-//! The whole pad in 3-D, solved by CalculiX, beside ours: a long proof.
+//! The whole pad in 3-D, solved by CalculiX, beside ours: proofs.
 //!
 //! The modules are meshed as ours, so that their discretisation error cancels. What is left is what we make of the
 //! plate: Mindlin's equations instead of 3-D elasticity, polynomials instead of elements, and feet that move in 18

@@ -102,7 +102,7 @@ fn tables_of_sound_pads_pass_without_a_word() {
     passes_without_a_word(folder.path(), 1, &["", "--rows 10"]);
     let table = Table::of_twin(folder.path(), "paper", 4);
     for method in METHODS {
-        let (output, is_written) = adapted(folder.path(), &table, &format!("--method {method} --rows 60"));
+        let (output, is_written) = adapted(folder.path(), &table, &format!("--method {method} --rows 30"));
         assert!(
             output.status.success() && is_written && !said(&output).contains("warning"),
             "{}",

@@ -59,25 +59,32 @@ fn pad_with_memory(folder: &Path) -> &'static str {
     "memory.decoder"
 }
 
+/// What the verb says of a table of a million rows, within 300 MB.
+fn judged(folder: &Path, line: &str) -> serde_json::Value {
+    let output = within(300_000, folder, line);
+    assert!(output.status.success(), "{}", said(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
 #[test]
+fn a_million_rows_are_judged_within_300_mb() {
+    let folder = tempfile::tempdir().unwrap();
+    write(&folder.path().join("m.csv"), 1_000_000);
+    let told = judged(folder.path(), "evaluate --measured m.csv --json");
+    assert_eq!(told["rows"], 900_000);
+    assert!(told["position_mae_mm"].as_f64().unwrap() < 0.1, "{told}");
+}
+
+#[test]
+#[ignore = "proof: 20 s: figures of merit, a decoder with memory and neighbours, too"]
 fn a_million_rows_are_judged_within_300_mb_and_are_too_many_neighbours() {
     let folder = tempfile::tempdir().unwrap();
     write(&folder.path().join("m.csv"), 1_000_000);
-    let output = within(300_000, folder.path(), "evaluate --measured m.csv --json");
-    assert!(output.status.success(), "{}", said(&output));
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(told["rows"], 900_000);
-    assert!(told["position_mae_mm"].as_f64().unwrap() < 0.1, "{told}");
-    let output = within(300_000, folder.path(), "metrology --measured m.csv --no-network --json");
-    assert!(output.status.success(), "{}", said(&output));
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let told = judged(folder.path(), "metrology --measured m.csv --no-network --json");
     assert!(told["figures"][0]["sensitivity"]["places"].as_u64().unwrap() > 1_000, "{told}");
     let with_memory = pad_with_memory(folder.path());
-    let output =
-        within(300_000, folder.path(), &format!("evaluate --decoder {with_memory} --measured m.csv --json"));
-    assert!(output.status.success(), "{}", said(&output));
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(told["rows"], 900_000);
+    let line = format!("evaluate --decoder {with_memory} --measured m.csv --json");
+    assert_eq!(judged(folder.path(), &line)["rows"], 900_000);
     let line = "adapt --method knn --measured m.csv --out pad.decoder";
     let output = within(2_000_000, folder.path(), line);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));

@@ -3,8 +3,10 @@
 #[path = "tidy/circles.rs"]
 mod circles;
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Folders of sources: the program's, those of the crates, the wire's.
 const SOURCES: &[&str] = &[
@@ -40,7 +42,7 @@ const BANNED_IN_PURE: &[&str] = &[
     "HashSet",
 ];
 
-const BANNED_WORDS: &[&str] = &["TODO", "FIXME", "XXX", "todo!(", "unimplemented!(", "#[ignore"];
+const BANNED_WORDS: &[&str] = &["TODO", "FIXME", "XXX", "todo!(", "unimplemented!("];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()
@@ -186,6 +188,51 @@ fn nothing_is_left_for_later() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// A test is left out of `cargo test` for one reason only: it is a proof, and `tests/proofs` reads its time and reason.
+#[test]
+fn what_is_ignored_is_a_proof_with_its_time_and_reason() {
+    let is_in_form = |line: &str| {
+        let words = line.trim_start().strip_prefix("#[ignore = \"proof: ")?.strip_suffix("\"]")?;
+        let (seconds, reason) = words.split_once(" s: ")?;
+        Some(seconds.parse::<u32>().is_ok() && reason.len() > 10 && !reason.contains('"'))
+    };
+    let mut wrong = Vec::new();
+    for path in files(&root(), "rs").into_iter().filter(|path| !path.ends_with("tests/tidy.rs")) {
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        let is_below_tests = path.components().any(|part| part.as_os_str() == "tests");
+        let next = text.lines().skip(1).chain(Some(""));
+        for (number, (line, next)) in text.lines().zip(next).enumerate() {
+            let is_ignored =
+                line.contains("#[ignore") || line.contains("cfg_attr") && line.contains("ignore");
+            let is_read = is_below_tests && next.trim_start().starts_with("fn ");
+            if is_ignored && (is_in_form(line) != Some(true) || !is_read) {
+                wrong.push(format!("{}:{}: {line}", path.display(), number + 1));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Packages that are compiled, with their features, by cargo's own word; `arguments` say of which packages and edges.
+fn compiled(arguments: &[&str]) -> BTreeSet<String> {
+    let mut tree = Command::new(env!("CARGO"));
+    tree.args(["tree", "--locked", "--offline", "--prefix", "none", "-f", "{p} {f}"]).args(arguments);
+    let output = tree.current_dir(root()).output().unwrap_or_else(|error| panic!("cargo tree: {error}"));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text.lines().map(|line| line.trim_end_matches(" (*)").to_owned()).collect()
+}
+
+/// Tests, and what they depend on, may ask for more features of a package than the program does. Then it is built once for
+/// each, and so is all above it, up to the program.
+#[test]
+fn nothing_is_built_anew_for_the_tests() {
+    let program = compiled(&["-p", "tactpad", "-e", "normal,build"]);
+    let tests = compiled(&["--workspace", "-e", "normal,build,dev"]);
+    let anew: Vec<_> = program.difference(&tests).collect();
+    assert!(program.len() > 100 && anew.is_empty(), "{anew:#?}");
 }
 
 #[test]

@@ -2,8 +2,6 @@
 //!
 //! Seeds are 1, 2, 3 …, whatever comes of them: gates are on the whole set.
 
-use std::env;
-
 use serde_json::Value;
 
 use crate::case::{Case, Outside};
@@ -12,29 +10,6 @@ use crate::random::Random;
 use crate::score::{Found, Score};
 use crate::sizes::{CAUSES, best_plan, drawn};
 use crate::truth::Truth;
-
-/// How much of the set is run: `TACTPAD_HIDDEN=all` is what continuous integration runs, `TACTPAD_HIDDEN=double` the set
-/// twice with 40 nulls. Without it a part that takes less than three minutes; `TACTPAD_HIDDEN=none` runs no diagnosis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Extent {
-    None,
-    Part,
-    All,
-    Double,
-}
-
-/// What runs where nothing is said.
-const USUAL: Extent = Extent::Part;
-
-fn extent() -> Extent {
-    match env::var("TACTPAD_HIDDEN").as_deref() {
-        Ok("none") => Extent::None,
-        Ok("part") => Extent::Part,
-        Ok("all") => Extent::All,
-        Ok("double") => Extent::Double,
-        _ => USUAL,
-    }
-}
 
 fn run(case: &Case) -> (Value, Score) {
     let diagnosis = case.diagnosed(&[]).unwrap_or_else(|said| panic!("{}: {said}", case.key));
@@ -47,17 +22,11 @@ fn truth(effect: &str, seed: u64) -> Truth {
     drawn(effect, 1.0, &mut Random::new(seed, effect))
 }
 
-/// Every cause that a half of the set has: even ones or odd ones.
-fn hidden(half: usize) {
-    let rounds = match extent() {
-        Extent::None => return,
-        Extent::Part if half == 1 => return,
-        Extent::Part | Extent::All => 1,
-        Extent::Double => 2,
-    };
+/// Each cause, once for each of so many seeds. Of a dozen cases one may go astray: 95 % and 2 % are the campaign's gates.
+fn are_found<'c>(causes: impl Iterator<Item = &'c &'c str> + Clone, rounds: u64, may: usize) {
     let (mut missed, mut wrong) = (Vec::new(), Vec::new());
     for seed in 1..=rounds {
-        for effect in CAUSES.iter().skip(half).step_by(2) {
+        for effect in causes.clone() {
             let truths = vec![truth(effect, seed)];
             let case = Case::new(&format!("one-{effect}-{seed}"), seed, best_plan(effect), truths);
             let (_, score) = run(&case);
@@ -67,43 +36,64 @@ fn hidden(half: usize) {
             wrong.extend(score.wrong.iter().map(|wrong| format!("{}: {wrong}", case.key)));
         }
     }
-    // 95 % and 2 % are the campaign's gates; of a dozen cases one may go astray.
-    let may = rounds as usize;
     assert!(missed.len() <= may, "missed: {missed:#?}");
     assert!(wrong.len() <= may, "wrong names: {wrong:#?}");
 }
 
+/// In a channel, in a module, in the rig, and one that needs time.
 #[test]
+fn a_hidden_effect_of_each_kind_is_found() {
+    are_found(["channel_gain", "module_rotated", "stage_offset", "thermal_zero"].iter(), 1, 0);
+}
+
+#[test]
+#[ignore = "proof: 150 s: every other cause of the catalogue"]
 fn hidden_effects_are_found() {
-    hidden(0);
+    are_found(CAUSES.iter().step_by(2), 1, 1);
 }
 
 #[test]
+#[ignore = "proof: 150 s: every other cause of the catalogue"]
 fn more_hidden_effects_are_found() {
-    hidden(1);
+    are_found(CAUSES.iter().skip(1).step_by(2), 1, 1);
 }
 
 #[test]
-fn pads_without_a_fault_seldom_alarm() {
-    let (count, may) = match extent() {
-        Extent::None => return,
-        Extent::Double => (40, 5),
-        _ => (10, 2),
-    };
+#[ignore = "proof: 600 s: every cause with two seeds"]
+fn hidden_effects_are_found_twice() {
+    are_found(CAUSES.iter(), 2, 4);
+}
+
+/// How many of so many sound pads alarm; two plans take turns.
+fn alarms(count: u64) -> Vec<String> {
     let null = |seed: u64| {
         let plan = Plan::BOTH[seed as usize % 2];
         Case::new(&format!("null-{seed}"), seed, plan, Vec::new())
     };
-    let alarms: Vec<String> =
-        (1..=count).map(null).filter(|case| run(case).1.alarm).map(|case| case.key).collect();
-    assert!(alarms.len() <= may, "{alarms:?}");
+    (1..=count).map(null).filter(|case| run(case).1.alarm).map(|case| case.key).collect()
+}
+
+#[test]
+fn a_pad_without_a_fault_does_not_alarm() {
+    assert_eq!(alarms(1), Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "proof: 80 s: ten sound pads instead of one"]
+fn pads_without_a_fault_seldom_alarm() {
+    let alarms = alarms(10);
+    assert!(alarms.len() <= 2, "{alarms:?}");
+}
+
+#[test]
+#[ignore = "proof: 320 s: forty sound pads instead of one"]
+fn many_pads_without_a_fault_seldom_alarm() {
+    let alarms = alarms(40);
+    assert!(alarms.len() <= 5, "{alarms:?}");
 }
 
 #[test]
 fn two_effects_at_once_are_both_found() {
-    if extent() < Extent::Part {
-        return;
-    }
     for (seed, pair) in
         [["channel_gain", "stage_offset"], ["module_rotated", "channel_crosstalk"]].iter().enumerate()
     {
@@ -133,9 +123,6 @@ fn two_effects_at_once_are_both_found() {
 /// No pad creeps by a third. Where all loads are held equally long a common gain looks like creep, but not one that large.
 #[test]
 fn gains_beyond_what_creep_can_be_are_found() {
-    if extent() < Extent::Part {
-        return;
-    }
     let gain = |effect: &str, target: &str, value: f64| Truth::new(effect, target, &[("gain", value)]);
     let truths = vec![
         gain("excitation_gain", "pad", 1.35),
@@ -150,9 +137,6 @@ fn gains_beyond_what_creep_can_be_are_found() {
 
 #[test]
 fn what_no_catalogue_has_stays_unnamed() {
-    if extent() < Extent::Part {
-        return;
-    }
     for (seed, outside) in [(1, Outside::Dent), (2, Outside::Product)] {
         let case = Case { outside, ..Case::new(&format!("outside-{seed}"), seed, Plan::Paper, Vec::new()) };
         let (_, score) = run(&case);
@@ -184,9 +168,6 @@ fn resolved(case: &Case) {
 /// In a room that only gets warmer, drift in time and a zero that follows the temperature are the same.
 #[test]
 fn drift_and_warmth_are_told_apart_by_a_room_that_cools_again() {
-    if extent() < Extent::Part {
-        return;
-    }
     let mut case = Case::new("warming", 1, Plan::Recommended, vec![truth("thermal_zero", 1)]);
     case.room = Room::Warming;
     confounded(&case);
@@ -197,9 +178,6 @@ fn drift_and_warmth_are_told_apart_by_a_room_that_cools_again() {
 /// Where every contact is held equally long, creep is a gain.
 #[test]
 fn creep_and_gain_are_told_apart_by_two_dwells() {
-    if extent() < Extent::Part {
-        return;
-    }
     // Three times the plain size: less does not show beside what the simulator and the reference may be off.
     let truth = drawn("creep", 3.0, &mut Random::new(2, "creep"));
     let mut case = Case::new("held", 2, Plan::Paper, vec![truth]);

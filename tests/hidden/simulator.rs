@@ -5,8 +5,7 @@
 //! open frames 1.00 and 0.3 %, plates 0.99 to 1.01 and 1 % (1.5 times as stiff) to 12 % (0.85 times), contacts of 0.5 to
 //! 2 mm 1.02 to 1.05 and 10 to 22 %. The nominal fields: 0.995, 0.992, 1.006 for x, y, z, and 0.1, 0.5, 0.01 %.
 //!
-//! `TACTPAD_HIDDEN_SIMULATOR=1 cargo test --release --test hidden simulator:: -- --nocapture` compares all; the simulator
-//! needs seven seconds for each changed pad, two minutes in all.
+//! The simulator needs seven seconds for each changed pad, two minutes in all.
 
 use crate::effects::mechanical::OPEN_SHARE;
 use crate::measured::{Quality, strain};
@@ -76,11 +75,8 @@ fn the_nominal_field_is_that_of_the_simulator() {
 }
 
 #[test]
+#[ignore = "proof: 120 s: twenty changed pads of the generator beside the simulator's"]
 fn changed_pads_are_those_of_the_simulator() {
-    if std::env::var_os("TACTPAD_HIDDEN_SIMULATOR").is_none() {
-        println!("TACTPAD_HIDDEN_SIMULATOR=1 compares all changes with the simulator, two minutes");
-        return;
-    }
     let mut wrong = Vec::new();
     for (name, truth, option, [factor, rest]) in modules().into_iter().chain(whole()) {
         let found = compared(&name, truth, &option);

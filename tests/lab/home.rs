@@ -4,8 +4,8 @@
 //! friction, creep, restless finger and lasting noise. Its field is the nominal one and its sensitivities: what the simulator's second
 //! order is worth is no question here. Beside it stands the same pad, calibrated by twenty contacts that a rig labelled.
 //!
-//! With `TACTPAD_HOME=20` twenty pads are calibrated, also by ten minutes of play, by presses near the middle alone and by the
-//! weight alone, and what the errors are of the rig's is printed, median and worst. Seeds are counted from 1.
+//! The proof calibrates twenty pads, also by ten minutes of play, by presses near the middle alone and by the weight alone, and
+//! prints what the errors are of the rig's, median and worst. Seeds are counted from 1.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 
 use std::f64::consts::TAU;
@@ -294,24 +294,33 @@ fn errors((name, by): (&str, By), pads: &[Pad]) -> Vec<[f64; 3]> {
     pads.iter().map(errors).collect()
 }
 
-#[test]
-fn two_minutes_of_play_and_a_weight_are_worth_twenty_labels() {
-    let asked = std::env::var("TACTPAD_HOME").ok().and_then(|text| text.parse::<u64>().ok());
-    let pads: Vec<Pad> = (1..=asked.unwrap_or(1)).map(Pad::drawn).collect();
-    let rig = errors(RIG, &pads);
-    let of = |by| Compared::of(by, &pads, &rig);
-    let (home, unweighed) = (of(HOME), of(UNWEIGHED));
-    let others = asked.map(|_| [LONGER, NEAR, WEIGHT_ALONE].map(of));
-    // The goal for the median is 1.3 and for the worst 2.2; one pad alone may be any of them.
+/// The goal for the median is 1.3 and for the worst 2.2; one pad alone may be any of them.
+fn is_worth_twenty_labels(home: &Compared, unweighed: &Compared) {
     assert!(home.place[1] <= 2.2 && home.force[1] <= 2.2, "{home:?}");
     assert!(unweighed.place[1] <= 2.0, "{unweighed:?}");
-    if let Some([longer, near, weight_alone]) = others {
-        assert!(home.place[0] <= 1.3 && home.force[0] <= 1.3, "{home:?}");
-        assert!(longer.place[0] <= 1.15 && longer.force[0] <= 1.15, "{longer:?}");
-        assert!(near.place[1] <= 2.2 && near.force[1] <= 2.2, "{near:?}");
-        assert!(home.place[0] <= 0.85 * weight_alone.place[0], "{home:?} {weight_alone:?}");
-    }
     assert!(home.inside > 0.88, "{home:?}");
+}
+
+#[test]
+fn two_minutes_of_play_and_a_weight_are_worth_twenty_labels() {
+    let pads = [Pad::drawn(1)];
+    let rig = errors(RIG, &pads);
+    let [home, unweighed] = [HOME, UNWEIGHED].map(|by| Compared::of(by, &pads, &rig));
+    is_worth_twenty_labels(&home, &unweighed);
+}
+
+#[test]
+#[ignore = "proof: 1020 s: twenty pads in six ways instead of one in three"]
+fn two_minutes_of_play_and_a_weight_are_worth_twenty_labels_on_twenty_pads() {
+    let pads: Vec<Pad> = (1..=20).map(Pad::drawn).collect();
+    let rig = errors(RIG, &pads);
+    let all = [HOME, UNWEIGHED, LONGER, NEAR, WEIGHT_ALONE].map(|by| Compared::of(by, &pads, &rig));
+    let [home, unweighed, longer, near, weight_alone] = all;
+    assert!(home.place[0] <= 1.3 && home.force[0] <= 1.3, "{home:?}");
+    assert!(longer.place[0] <= 1.15 && longer.force[0] <= 1.15, "{longer:?}");
+    assert!(home.place[0] <= 0.85 * weight_alone.place[0], "{home:?} {weight_alone:?}");
+    assert!(near.place[1] <= 2.2 && near.force[1] <= 2.2, "{near:?}");
+    is_worth_twenty_labels(&home, &unweighed);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use std::fs;
 use std::process::Command;
 
-use crate::support::{leave_out, require};
+use crate::support::require;
 use serde_json::Value;
 
 const CARD: &str = include_str!("../../models/scdf.md");
@@ -28,11 +28,8 @@ fn the_card_has_the_networks_hash_and_size() {
 }
 
 #[test]
+#[ignore = "proof: 40 s: the shipped network is trained anew"]
 fn the_cards_command_makes_the_network_again_bit_by_bit_with_the_cards_figures() {
-    if std::env::var("TACTPAD_TRAIN").as_deref() != Ok("1") {
-        leave_out("half a minute of training", "TACTPAD_TRAIN=1");
-        return;
-    }
     let folder = tempfile::tempdir().unwrap();
     let command = card("command").strip_prefix("tactpad ").unwrap();
     let mut train = Command::new(env!("CARGO_BIN_EXE_tactpad"));

@@ -3,8 +3,8 @@
 //! number is even in 0..1, and stated 95 % regions of contacts hold 95 % at every radius, force and axis.
 //!
 //! Fields are bent by the simulator's derivatives, as the prior says, so this asks about the inference and not about the
-//! mechanics; `tests/hidden/calibrated` asks about these, with another program's fields. With `TACTPAD_SIMULATED=200` there are 200 pads,
-//! and the tables of docs/decoding.md are printed. Seeds are counted from 1.
+//! mechanics; `tests/hidden/calibrated` asks about these, with another program's fields. The proof has 200 pads, and prints the tables of
+//! docs/decoding.md. Seeds are counted from 1.
 //!
 //! Source: S. Talts, M. Betancourt, D. Simpson, A. Vehtari, A. Gelman, arXiv:1804.06788 (2018).
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
@@ -343,10 +343,31 @@ fn coverage(all: &[Seen]) -> [Vec<f64>; 3] {
     [(0..6).map(|of| share(&contacts, of)).collect(), by_radius, by_force]
 }
 
+/// How many pads, the rms of the misses in deviations, and the share of the contacts inside.
+struct Goals {
+    pads: u64,
+    rms: [f64; 2],
+    inside: [f64; 2],
+    /// Of three pads a single number of each is not known to any bound.
+    open: &'static [&'static str],
+}
+
+const FEW: Goals = Goals { pads: 3, rms: [0.5, 1.5], inside: [0.86, 1.0], open: &["ageing", "blur"] };
+const MANY: Goals = Goals { pads: 200, rms: [0.85, 1.15], inside: [0.92, 0.98], open: &[] };
+
 #[test]
 fn the_truth_lies_in_the_posterior_as_a_draw_from_it_would() {
-    let asked = std::env::var("TACTPAD_SIMULATED").ok().and_then(|text| text.parse::<u64>().ok());
-    let all: Vec<Seen> = (1..=asked.unwrap_or(3)).map(seen).collect();
+    are_held(&FEW);
+}
+
+#[test]
+#[ignore = "proof: 400 s: misses a goal, as docs/decoding.md says: two hundred pads and rigs instead of three"]
+fn the_truth_lies_in_the_posterior_as_a_draw_from_it_would_on_many_pads() {
+    are_held(&MANY);
+}
+
+fn are_held(goals: &Goals) {
+    let all: Vec<Seen> = (1..=goals.pads).map(seen).collect();
     let ranks = ranks(&all);
     for (kind, (count, rms, bins)) in &ranks {
         let mean = *count as f64 / BINS as f64;
@@ -357,15 +378,9 @@ fn the_truth_lies_in_the_posterior_as_a_draw_from_it_would() {
     println!(
         "inside: all, x, y, Fx, Fy, Fz {by_axis:.3?}; by radius {by_radius:.3?}; by force {by_force:.3?}"
     );
-    let is_long = asked.is_some_and(|pads| pads >= 40);
-    let [least, most] = if is_long { [0.85, 1.15] } else { [0.5, 1.5] };
+    let ([least, most], [least_inside, most_inside]) = (goals.rms, goals.inside);
     for (kind, (_, rms, _)) in &ranks {
-        // Of three pads a single number of each is not known to any bound.
-        assert!(
-            !is_long && matches!(*kind, "ageing" | "blur") || (least..most).contains(rms),
-            "{kind}: {rms}"
-        );
+        assert!(goals.open.contains(kind) || (least..most).contains(rms), "{kind}: {rms}");
     }
-    let [least, most] = if is_long { [0.92, 0.98] } else { [0.86, 1.0] };
-    assert!((least..=most).contains(&by_axis[0]), "{by_axis:?}");
+    assert!((least_inside..=most_inside).contains(&by_axis[0]), "{by_axis:?}");
 }

@@ -1,8 +1,6 @@
 //! The one-weight check on pads whose truth is known: pads like the paper's, each with a gain that it has lost, a calibration of
-//! its own, and a weight somewhere on its plate. Five of them; with `TACTPAD_CALIBRATION=1` twenty.
+//! its own, and a weight somewhere on its plate.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
-
-use std::env;
 
 use tactpad::lab::calibration::fit::fit;
 use tactpad::lab::evaluation::Evaluation;
@@ -21,7 +19,7 @@ use tactpad::tables::recording::Recording;
 
 const PAPER: &str = include_str!("../../models/imperfections/paper.toml");
 /// Pads, and χ² of as many numbers that a thousandth falls short of, and that a thousandth exceeds.
-const FEW: (u64, [f64; 2]) = (5, [0.21, 20.52]);
+const FEW: (u64, [f64; 2]) = (3, [0.024, 16.27]);
 const MANY: (u64, [f64; 2]) = (20, [5.92, 45.31]);
 /// So many of them are judged by unseen contacts, too.
 const JUDGED: u64 = 3;
@@ -55,9 +53,7 @@ fn placed(place_mm: [f64; 2], weight: Weight) -> Table {
     Table { rows: rows.to_vec(), ..Table::default() }
 }
 
-#[test]
-fn a_weight_anywhere_tells_the_gain_within_what_it_states() {
-    let (pads, [least, most]) = if env::var_os("TACTPAD_CALIBRATION").is_some() { MANY } else { FEW };
+fn the_gain_is_told_within_what_is_stated((pads, [least, most]): (u64, [f64; 2])) {
     let field = PadField::nominal();
     let (mut square, mut before_n, mut after_n, mut covered) = (0.0, 0.0, 0.0, 0.0);
     for seed in 1..=pads {
@@ -97,4 +93,15 @@ fn a_weight_anywhere_tells_the_gain_within_what_it_states() {
     println!("χ² {square:.1} of {pads}; force {before_n:.4} → {after_n:.4} N, {covered:.3} covered");
     assert!((least..most).contains(&square), "{square}");
     assert!(after_n < 0.4 * before_n && covered > 0.9, "{before_n} {after_n} {covered}");
+}
+
+#[test]
+fn a_weight_anywhere_tells_the_gain_within_what_it_states() {
+    the_gain_is_told_within_what_is_stated(FEW);
+}
+
+#[test]
+#[ignore = "proof: 60 s: twenty pads instead of three"]
+fn a_weight_anywhere_tells_the_gain_within_what_it_states_on_many_pads() {
+    the_gain_is_told_within_what_is_stated(MANY);
 }

@@ -1,7 +1,6 @@
 //! The pad's mechanics beside those of CalculiX, a finite-element program that others wrote.
 //!
-//! Module by module on the same mesh, with the other tests: what differs is rounding. The whole pad in 3-D is a long
-//! proof: `TACTPAD_ASSEMBLY=1 cargo test --release --test mechanics calculix::assembly -- --nocapture`.
+//! Module by module on the same mesh, with the other tests: what differs is rounding. The whole pad in 3-D is a proof.
 
 #[cfg(test)]
 mod assembly;

@@ -4,3 +4,6 @@ mod device;
 mod measured;
 mod protocol;
 mod twin;
+#[cfg(target_os = "linux")]
+#[path = "../support/worked.rs"]
+mod worked;

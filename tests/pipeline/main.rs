@@ -20,3 +20,6 @@ mod validation;
 mod warmth;
 mod warnings;
 mod weighing;
+#[cfg(target_os = "linux")]
+#[path = "../support/worked.rs"]
+mod worked;

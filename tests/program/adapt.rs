@@ -72,29 +72,37 @@ fn adapted(folder: &Path, table: &Table, options: &str) -> (Output, bool) {
 
 const METHODS: [&str; 5] = ["inverse", "wrench", "linear", "knn", "scdf --from scdf"];
 
-#[test]
-fn tables_of_sound_pads_pass_without_a_word() {
-    let folder = tempfile::tempdir().unwrap();
+/// On a pad of this seed and with these choices of rows.
+fn passes_without_a_word(folder: &Path, seed: u64, choices: &[&str]) {
     for plan in ["paper", "recommended"] {
-        for seed in 1..=3 {
-            let table = Table::of_twin(folder.path(), plan, seed);
-            for (table, zeros) in [(&table, "tared"), (&table.raw(), "raw")] {
-                for rows in ["", "--rows 20", "--rows 10", "--rows 60 --seed 7"] {
-                    let (output, is_written) =
-                        adapted(folder.path(), table, &format!("--method wrench {rows}"));
-                    assert!(output.status.success() && is_written, "{}", said(&output));
-                    assert!(
-                        !said(&output).contains("warning"),
-                        "{plan} {seed} {zeros} {rows}: {}",
-                        said(&output)
-                    );
-                }
+        let table = Table::of_twin(folder, plan, seed);
+        for (table, zeros) in [(&table, "tared"), (&table.raw(), "raw")] {
+            for rows in choices {
+                let (output, is_written) = adapted(folder, table, &format!("--method wrench {rows}"));
+                assert!(output.status.success() && is_written, "{}", said(&output));
+                let said = said(&output);
+                assert!(!said.contains("warning"), "{plan} {seed} {zeros} {rows}: {said}");
             }
         }
     }
+}
+
+#[test]
+#[ignore = "proof: 40 s: three pads with four choices of rows instead of one with two"]
+fn tables_of_many_sound_pads_pass_without_a_word() {
+    let folder = tempfile::tempdir().unwrap();
+    for seed in 1..=3 {
+        passes_without_a_word(folder.path(), seed, &["", "--rows 20", "--rows 10", "--rows 60 --seed 7"]);
+    }
+}
+
+#[test]
+fn tables_of_sound_pads_pass_without_a_word() {
+    let folder = tempfile::tempdir().unwrap();
+    passes_without_a_word(folder.path(), 1, &["", "--rows 10"]);
     let table = Table::of_twin(folder.path(), "paper", 4);
     for method in METHODS {
-        let (output, is_written) = adapted(folder.path(), &table, &format!("--method {method} --rows 60"));
+        let (output, is_written) = adapted(folder.path(), &table, &format!("--method {method} --rows 30"));
         assert!(
             output.status.success() && is_written && !said(&output).contains("warning"),
             "{}",
@@ -103,79 +111,112 @@ fn tables_of_sound_pads_pass_without_a_word() {
     }
 }
 
+/// Tables whose channels follow no contact: constant, each its noise, all the same noise, readings of other contacts.
+fn rubbish(table: &Table, seed: u64) -> [Table; 4] {
+    let mut random = SplitMix64::new(seed);
+    let constant = table.with(|uv| *uv = [120.0; CHANNELS]);
+    let noise = table.with(|uv| *uv = [0; CHANNELS].map(|_| 1000.0 * f64::from(random.normal())));
+    let together = table.with(|uv| *uv = [1000.0 * f64::from(random.normal()); CHANNELS]);
+    let mut channels: Vec<_> = table.rows.iter().map(|(_, uv, _)| *uv).collect();
+    random.shuffle(&mut channels);
+    let mut channels = channels.into_iter();
+    let shuffled = table.with(|uv| *uv = channels.next().unwrap());
+    [constant, noise, together, shuffled]
+}
+
+fn is_refused_by_every_method(folder: &Path, rubbish: &Table, rows: &str) {
+    for method in METHODS {
+        let (output, is_written) = adapted(folder, rubbish, &format!("--method {method} {rows}"));
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{method} {rows}: {said}");
+        assert!(said.contains("m.csv: ") && said.contains("measure again"), "{said}");
+        assert!(!is_written && output.stdout.is_empty());
+    }
+}
+
 #[test]
 fn channels_that_follow_no_contact_are_refused_by_every_method() {
     let folder = tempfile::tempdir().unwrap();
+    let table = Table::of_twin(folder.path(), "paper", 1);
+    for rubbish in rubbish(&table, 1) {
+        is_refused_by_every_method(folder.path(), &rubbish, "");
+    }
+}
+
+#[test]
+#[ignore = "proof: 60 s: both plans, with zeros and without, all rows and few, instead of one of each"]
+fn channels_that_follow_no_contact_are_refused_in_any_table() {
+    let folder = tempfile::tempdir().unwrap();
     for (plan, seed) in [("paper", 1), ("recommended", 2)] {
         let table = Table::of_twin(folder.path(), plan, seed);
-        let mut random = SplitMix64::new(seed);
-        let constant = table.with(|uv| *uv = [120.0; CHANNELS]);
-        let noise = table.with(|uv| *uv = [0; CHANNELS].map(|_| 1000.0 * f64::from(random.normal())));
-        let together = table.with(|uv| *uv = [1000.0 * f64::from(random.normal()); CHANNELS]);
-        let mut channels: Vec<_> = table.rows.iter().map(|(_, uv, _)| *uv).collect();
-        random.shuffle(&mut channels);
-        let mut channels = channels.into_iter();
-        let shuffled = table.with(|uv| *uv = channels.next().unwrap());
-        for rubbish in [constant, noise, together, shuffled] {
-            for rubbish in [rubbish.raw(), rubbish] {
-                for method in METHODS {
-                    for rows in ["", "--rows 20"] {
-                        let (output, is_written) =
-                            adapted(folder.path(), &rubbish, &format!("--method {method} {rows}"));
-                        let said = said(&output);
-                        assert_eq!(output.status.code(), Some(2), "{plan} {method} {rows}: {said}");
-                        assert!(said.contains("m.csv: ") && said.contains("measure again"), "{said}");
-                        assert!(!is_written && output.stdout.is_empty());
-                    }
-                }
+        for rubbish in rubbish(&table, seed) {
+            for rows in ["", "--rows 20"] {
+                is_refused_by_every_method(folder.path(), &rubbish, rows);
+                is_refused_by_every_method(folder.path(), &rubbish.raw(), rows);
             }
         }
+    }
+}
+
+/// Faults of a channel, and what is said of them.
+fn faults(table: &Table, channel: usize, seed: u64) -> [(Table, String); 4] {
+    let (name, other) = (CHANNEL_NAMES[channel], (channel + 4) % CHANNELS);
+    let mut pair = [channel, other];
+    pair.sort_unstable();
+    let [low, high] = pair.map(|channel| CHANNEL_NAMES[channel]);
+    let mut random = SplitMix64::new(seed);
+    [
+        (table.with(|uv| uv[channel] = 12.5), format!("channel {name} does not answer: ")),
+        (
+            table.with(|uv| uv[channel] = 20.0 * f64::from(random.normal())),
+            format!("channel {name} does not answer: "),
+        ),
+        (table.with(|uv| uv[channel] = -uv[channel]), format!("channel {name} has the reverse sign: ")),
+        (table.with(|uv| uv.swap(channel, other)), format!("channels {low} and {high} are swapped: ")),
+    ]
+}
+
+fn is_told_by_name(folder: &Path, (faulty, wanted): &(Table, String), method: &str) {
+    let (output, is_written) = adapted(folder, faulty, &format!("--method {method} --rows 100 --json"));
+    assert!(output.status.success() && is_written, "{}", said(&output));
+    assert!(said(&output).contains(&format!("warning: m.csv: {wanted}")), "{}", said(&output));
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(told["warnings"].as_array().map(Vec::len), Some(1), "{told}");
+}
+
+/// The same by the methods that take longer.
+fn a_reversed_channel_is_told_by_name(folder: &Path, table: &Table) {
+    let reversed = table.with(|uv| uv[7] = -uv[7]);
+    for method in ["inverse", "scdf --from scdf"] {
+        let (output, is_written) = adapted(folder, &reversed, &format!("--method {method} --rows 30"));
+        assert!(output.status.success() && is_written, "{}", said(&output));
+        assert!(said(&output).contains("m2y has the reverse sign"), "{}", said(&output));
     }
 }
 
 #[test]
 fn one_fault_is_told_by_name_and_the_decoder_is_written() {
     let folder = tempfile::tempdir().unwrap();
+    let table = Table::of_twin(folder.path(), "paper", 3);
+    for channel in 0..CHANNELS {
+        let faults = faults(&table, channel, 3);
+        is_told_by_name(folder.path(), &faults[channel % faults.len()], METHODS[1 + channel % 3]);
+    }
+    a_reversed_channel_is_told_by_name(folder.path(), &table);
+}
+
+#[test]
+#[ignore = "proof: 60 s: each fault of each channel in both plans instead of one of each channel in one"]
+fn any_one_fault_is_told_by_name_and_the_decoder_is_written() {
+    let folder = tempfile::tempdir().unwrap();
     for (plan, seed) in [("paper", 3), ("recommended", 4)] {
         let table = Table::of_twin(folder.path(), plan, seed);
         for channel in 0..CHANNELS {
-            let (name, other) = (CHANNEL_NAMES[channel], (channel + 4) % CHANNELS);
-            let mut pair = [channel, other];
-            pair.sort_unstable();
-            let [low, high] = pair.map(|channel| CHANNEL_NAMES[channel]);
-            let mut random = SplitMix64::new(seed);
-            let faults = [
-                (table.with(|uv| uv[channel] = 12.5), format!("channel {name} does not answer: ")),
-                (
-                    table.with(|uv| uv[channel] = 20.0 * f64::from(random.normal())),
-                    format!("channel {name} does not answer: "),
-                ),
-                (
-                    table.with(|uv| uv[channel] = -uv[channel]),
-                    format!("channel {name} has the reverse sign: "),
-                ),
-                (
-                    table.with(|uv| uv.swap(channel, other)),
-                    format!("channels {low} and {high} are swapped: "),
-                ),
-            ];
-            for (index, (faulty, wanted)) in faults.iter().enumerate() {
-                let method = METHODS[1 + (channel + index) % 3];
-                let (output, is_written) =
-                    adapted(folder.path(), faulty, &format!("--method {method} --rows 100 --json"));
-                assert!(output.status.success() && is_written, "{}", said(&output));
-                assert!(said(&output).contains(&format!("warning: m.csv: {wanted}")), "{}", said(&output));
-                let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-                assert_eq!(told["warnings"].as_array().map(Vec::len), Some(1), "{told}");
+            for (index, fault) in faults(&table, channel, seed).iter().enumerate() {
+                is_told_by_name(folder.path(), fault, METHODS[1 + (channel + index) % 3]);
             }
         }
-        let reversed = table.with(|uv| uv[7] = -uv[7]);
-        for method in ["inverse", "scdf --from scdf"] {
-            let (output, is_written) =
-                adapted(folder.path(), &reversed, &format!("--method {method} --rows 30"));
-            assert!(output.status.success() && is_written, "{}", said(&output));
-            assert!(said(&output).contains("m2y has the reverse sign"), "{}", said(&output));
-        }
+        a_reversed_channel_is_told_by_name(folder.path(), &table);
     }
 }
 

@@ -21,7 +21,7 @@ fn a_module_that_lost_gain_is_found_in_play() {
     let folder = folder.path();
     fs::write(folder.join("new.toml"), pad(1.0)).unwrap();
     fs::write(folder.join("worn.toml"), pad(0.9)).unwrap();
-    let twin = "twin --plan play --seconds 90";
+    let twin = "twin --plan play --seconds 60";
     printed(folder, &format!("{twin} --imperfections new.toml --out january.cap"));
     printed(folder, &format!("{twin} --imperfections worn.toml --seed 2 --out today.cap"));
     let found = printed(folder, "diagnose --play today.cap --against january.cap --json");
@@ -47,6 +47,21 @@ fn names_nothing(document: &Value) -> bool {
 }
 
 #[test]
+fn a_loss_since_a_calibration_by_a_rig_is_found_and_a_new_decoder_offered() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    fs::write(folder.join("new.toml"), pad(1.0)).unwrap();
+    fs::write(folder.join("worn.toml"), pad(0.9)).unwrap();
+    printed(folder, "twin --plan paper --seed 1 --imperfections new.toml --out m.csv");
+    printed(folder, "adapt --method inverse --rows 60 --measured m.csv --out my.decoder");
+    printed(folder, "twin --plan play --seconds 90 --imperfections worn.toml --seed 3 --out today.cap");
+    let words = printed(folder, "diagnose --play today.cap --against my.decoder");
+    assert!(words.contains("since it was calibrated") && words.contains("module 1 has lost "), "{words}");
+    assert!(words.lines().any(|line| line.trim().starts_with("tactpad adapt --play today.cap")), "{words}");
+}
+
+#[test]
+#[ignore = "proof: 40 s: calibrated at home, with what did not change beside it, and the decoder made that is offered"]
 fn a_loss_since_the_calibration_is_found_and_a_new_decoder_offered() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

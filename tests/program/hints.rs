@@ -5,6 +5,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use crate::undisturbed::undisturbed;
+
 fn tactpad(folder: &Path, line: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
     command.args(line.split(' ')).current_dir(folder).stdin(Stdio::null());
@@ -28,7 +30,7 @@ fn a_dash_is_standard_output() {
     assert!(run.status.success() && log.contains("\"code\":\"ABS_HAT0X\""), "{log}{}", said(&run));
     let is_event = |line: &str| serde_json::from_str::<serde_json::Value>(line).is_ok();
     assert!(log.lines().all(is_event), "{log}");
-    let demo = tactpad(folder.path(), "demo --seconds 2 --output log:-");
+    let demo = undisturbed(|| tactpad(folder.path(), "demo --seconds 2 --output log:-"));
     assert!(demo.status.success() && String::from_utf8(demo.stdout).unwrap().lines().all(is_event));
     let record = tactpad(folder.path(), "record - --seconds 1");
     assert!(record.status.success() && record.stdout.starts_with(b"tactpad capture 1\n"));
@@ -76,7 +78,7 @@ fn a_capture_is_not_written_over_unless_that_is_asked_for() {
     assert!(tactpad(folder.path(), "record empty.cap --seconds 1").status.success());
     // An older log is no capture.
     fs::write(folder.path().join("log"), "{}\n").unwrap();
-    assert!(tactpad(folder.path(), "demo --seconds 2 --output log:log").status.success());
+    assert!(tactpad(folder.path(), "run --pad virtual --seconds 1 --output log:log").status.success());
 }
 
 #[test]

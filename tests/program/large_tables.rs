@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use std::time::Instant;
 
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::compensation::creep::Creep;
@@ -60,25 +59,32 @@ fn pad_with_memory(folder: &Path) -> &'static str {
     "memory.decoder"
 }
 
+/// What the verb says of a table of a million rows, within 300 MB.
+fn judged(folder: &Path, line: &str) -> serde_json::Value {
+    let output = within(300_000, folder, line);
+    assert!(output.status.success(), "{}", said(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
 #[test]
+fn a_million_rows_are_judged_within_300_mb() {
+    let folder = tempfile::tempdir().unwrap();
+    write(&folder.path().join("m.csv"), 1_000_000);
+    let told = judged(folder.path(), "evaluate --measured m.csv --json");
+    assert_eq!(told["rows"], 900_000);
+    assert!(told["position_mae_mm"].as_f64().unwrap() < 0.1, "{told}");
+}
+
+#[test]
+#[ignore = "proof: 20 s: figures of merit, a decoder with memory and neighbours, too"]
 fn a_million_rows_are_judged_within_300_mb_and_are_too_many_neighbours() {
     let folder = tempfile::tempdir().unwrap();
     write(&folder.path().join("m.csv"), 1_000_000);
-    let output = within(300_000, folder.path(), "evaluate --measured m.csv --json");
-    assert!(output.status.success(), "{}", said(&output));
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(told["rows"], 900_000);
-    assert!(told["position_mae_mm"].as_f64().unwrap() < 0.1, "{told}");
-    let output = within(300_000, folder.path(), "metrology --measured m.csv --no-network --json");
-    assert!(output.status.success(), "{}", said(&output));
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let told = judged(folder.path(), "metrology --measured m.csv --no-network --json");
     assert!(told["figures"][0]["sensitivity"]["places"].as_u64().unwrap() > 1_000, "{told}");
     let with_memory = pad_with_memory(folder.path());
-    let output =
-        within(300_000, folder.path(), &format!("evaluate --decoder {with_memory} --measured m.csv --json"));
-    assert!(output.status.success(), "{}", said(&output));
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(told["rows"], 900_000);
+    let line = format!("evaluate --decoder {with_memory} --measured m.csv --json");
+    assert_eq!(judged(folder.path(), &line)["rows"], 900_000);
     let line = "adapt --method knn --measured m.csv --out pad.decoder";
     let output = within(2_000_000, folder.path(), line);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
@@ -90,20 +96,28 @@ fn a_million_rows_are_judged_within_300_mb_and_are_too_many_neighbours() {
     assert!(output.status.success(), "what adapt writes is read: {}", said(&output));
 }
 
-#[expect(clippy::disallowed_methods, reason = "what is tested is the time that it takes")]
+/// Seconds that the children of a shell have worked, by its `times`: what others do on the machine does not count.
+fn worked_s(folder: &Path, line: &str) -> f64 {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("{} {line} >out.json && times", env!("CARGO_BIN_EXE_tactpad"))]);
+    let output = shell.current_dir(folder).stdin(Stdio::null()).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    // Of the shell, then of its children, each for user and system: `0m0.120s`.
+    let text = String::from_utf8(output.stdout).unwrap();
+    let children = text.lines().nth(1).unwrap().split(' ');
+    let seconds = |time: &str| {
+        let (minutes, seconds) = time.trim_end_matches('s').split_once('m').unwrap();
+        60.0 * minutes.parse::<f64>().unwrap() + seconds.parse::<f64>().unwrap()
+    };
+    children.map(seconds).sum()
+}
+
 #[test]
 fn figures_of_merit_take_time_in_proportion_to_the_rows() {
     let folder = tempfile::tempdir().unwrap();
     let seconds = |rows: u32| {
         write(&folder.path().join("m.csv"), rows);
-        // The least of three: the machine does other things.
-        let runs = (0..3).map(|_| {
-            let begun = Instant::now();
-            let output = within(2_000_000, folder.path(), "metrology --measured m.csv --no-network --json");
-            assert!(output.status.success(), "{}", said(&output));
-            begun.elapsed().as_secs_f64()
-        });
-        runs.fold(f64::INFINITY, f64::min)
+        worked_s(folder.path(), "metrology --measured m.csv --no-network --json")
     };
     let (short, long) = (seconds(10_000), seconds(80_000));
     // Eight times the rows: eight times the time, or sixty-four.

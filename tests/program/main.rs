@@ -21,6 +21,8 @@ mod plot;
 #[cfg(all(feature = "live", target_os = "linux"))]
 mod profiles;
 mod ran;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod recorded;
 mod simulate;
 #[cfg(feature = "simulator")]
 mod simulate_figures;
@@ -36,6 +38,8 @@ mod terminal;
 mod tune;
 mod twin_capture;
 mod twin_verb;
+#[cfg(all(feature = "live", target_os = "linux"))]
+mod undisturbed;
 mod vtk;
 mod weigh;
 mod written;

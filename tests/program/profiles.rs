@@ -9,6 +9,8 @@ use rustix::fs::{Mode, OFlags, open};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use serde_json::{Value, json};
 
+use crate::undisturbed::undisturbed;
+
 fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
     command.args(arguments).current_dir(folder).stdin(Stdio::null()).env("RUST_BACKTRACE", "1");
@@ -141,7 +143,7 @@ fn ones_own_profile_stands_before_the_shipped_one() {
     let contra = json!({ "name": "contra", "own": true, "shipped": true, "file": path.to_str().unwrap() });
     let tetris = json!({ "name": "tetris", "own": false, "shipped": true, "file": null });
     assert_eq!((&list["profiles"][3], &list["profiles"][1]), (&contra, &tetris));
-    let demo = tactpad(folder, "demo --seconds 2 --output none --profile contra");
+    let demo = undisturbed(|| tactpad(folder, "demo --seconds 2 --output none --profile contra"));
     assert!(demo.status.success(), "{}", said(&demo));
     // What is written must not be the profile that is read.
     let log = format!("demo --seconds 2 --profile contra --output log:{}", path.display());

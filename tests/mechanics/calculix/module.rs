@@ -14,11 +14,8 @@ use super::gauges::Gauges;
 use super::results::{Results, Step};
 use crate::support::require;
 
-/// How much coarser than the program's mesh. The comparison is about equations, not about fineness; the long proof
-/// sets `TACTPAD_CALCULIX_COARSER=1` all the same.
-fn coarser() -> f64 {
-    std::env::var("TACTPAD_CALCULIX_COARSER").ok().and_then(|text| text.parse().ok()).unwrap_or(4.0)
-}
+/// How much coarser than the program's mesh. The comparison is about equations, not about fineness.
+const COARSER: f64 = 4.0;
 
 /// The largest deviations of displacements and stiffness as a share of the mode's largest value: CalculiX prints
 /// seven digits.
@@ -33,7 +30,13 @@ const FAINT: f64 = 1e-3;
 
 #[test]
 fn module_as_drawn() {
-    compare("as drawn", Module::NOMINAL);
+    compare("as drawn", Module::NOMINAL, COARSER);
+}
+
+#[test]
+#[ignore = "proof: 600 s: the same on the program's own mesh, which is four times as fine; 6 GB"]
+fn module_as_drawn_on_the_programs_own_mesh() {
+    compare("as drawn", Module::NOMINAL, 1.0);
 }
 
 #[test]
@@ -45,21 +48,21 @@ fn module_with_an_open_frame_and_other_moduli() {
         film_e_factor: 0.9,
         ..Module::NOMINAL
     };
-    compare("open at +x, other moduli", module);
+    compare("open at +x, other moduli", module, COARSER);
 }
 
 #[test]
 fn module_that_has_come_off_the_plate_on_a_side() {
     let module = Module { debonded_side: Some(Side::MinusY), debonded_share: 0.35, ..Module::NOMINAL };
-    compare("debonded from -y", module);
+    compare("debonded from -y", module, COARSER);
 }
 
-fn compare(name: &str, module: Module) {
+fn compare(name: &str, module: Module, coarser: f64) {
     if !require("ccx", "apt-get install calculix-ccx") {
         return;
     }
     let device = Device::nominal();
-    let ours = Solution::of(&device, &module, Fineness::STANDARD.scaled(coarser())).unwrap();
+    let ours = Solution::of(&device, &module, Fineness::STANDARD.scaled(coarser)).unwrap();
     let gauges = Gauges::of(&ours.mesh, &device.gauges);
     let theirs = solve(&device, &module, &ours.mesh, &gauges);
     let found = Deviations::of(&device, &ours, &gauges, &theirs);

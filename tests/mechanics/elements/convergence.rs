@@ -1,8 +1,7 @@
 //! How far the program's mesh is from the truth: the signals of a module for unit forces and moments on its foot, and
 //! the foot's flexibilities, on a ladder of meshes.
 //!
-//! The whole ladder, as in `docs/mechanics.md`, takes five minutes and 10 GB:
-//! `TACTPAD_CONVERGENCE=1 cargo test --release --test mechanics elements::convergence -- --nocapture`.
+//! The whole ladder, as in `docs/mechanics.md`, takes five minutes and 10 GB.
 
 use std::io::{Write as _, stderr};
 
@@ -82,16 +81,9 @@ fn largest(deviations: &[f64]) -> f64 {
     deviations.iter().fold(0.0, |max, deviation| deviation.abs().max(max))
 }
 
-/// Whether this is the long proof.
-pub(super) fn is_long() -> bool {
-    std::env::var_os("TACTPAD_CONVERGENCE").is_some()
-}
-
 /// Half a percent of a mesh whose sizes are 0.75 of the program's. Errors go with the square of the sizes, so of the
 /// error e of the program's mesh the difference shows (1 - 0.75²) e; a mesh of 0.85 shows less and is held to less.
-#[test]
-fn the_programs_mesh_is_within_half_a_percent_of_a_finer_one() {
-    let factor: f64 = if is_long() { 0.75 } else { 0.85 };
+fn is_near_a_finer_one(factor: f64) {
     let allowed = 5e-3 * (1.0 - factor.powi(2)) / (1.0 - 0.75_f64.powi(2));
     let [standard, finer] = [1.0, factor].map(|factor| Rung::of(Fineness::STANDARD.scaled(factor)));
     assert!(finer.unknowns > 4 * standard.unknowns / 3, "{} {}", finer.unknowns, standard.unknowns);
@@ -101,10 +93,19 @@ fn the_programs_mesh_is_within_half_a_percent_of_a_finer_one() {
 }
 
 #[test]
+fn the_programs_mesh_is_within_half_a_percent_of_a_finer_one() {
+    is_near_a_finer_one(0.85);
+}
+
+#[test]
+#[ignore = "proof: 60 s: the finer mesh has twice the unknowns, not half as many more"]
+fn the_programs_mesh_is_within_half_a_percent_of_a_much_finer_one() {
+    is_near_a_finer_one(0.75);
+}
+
+#[test]
+#[ignore = "proof: 300 s: six meshes, the finest of 560,000 unknowns; 10 GB"]
 fn ladder() {
-    if !is_long() {
-        return;
-    }
     let rungs =
         [2.8, 2.0, 1.4, 1.0, 0.7, 0.5].map(|factor| (factor, Rung::of(Fineness::STANDARD.scaled(factor))));
     let [.., (_, finest)] = &rungs;

@@ -6,7 +6,6 @@ use tactpad::mechanics::mesh::{Fineness, Mesh};
 use tactpad::mechanics::superelement::{MODES, Solution};
 use tactpad::pad::device::{Device, Module, Side};
 
-use super::convergence::is_long;
 use super::module::{assert_mirrored, fineness, superelement};
 
 type Stiffness = [[f64; MODES]; MODES];
@@ -67,27 +66,37 @@ fn eigenvalues(more: &Stiffness, less: &Stiffness) -> Vec<f64> {
     difference.self_adjoint_eigenvalues(Triangle::Lower).unwrap()
 }
 
+/// On a side, from the first of these shares to the last.
+fn is_softer_from_share_to_share(side: Side, shares: &[f64]) {
+    let device = Device::nominal();
+    // On the same grid lines, so that nothing else changes; on so many that each share takes some bricks away.
+    let mut even = fineness();
+    even.debonded = Sizing { finest_mm: 0.1, growth: 0.0, coarsest_mm: 0.1 };
+    let lines_mm = Mesh::of(&device, &debonded(side, 0.5), even).lines_mm;
+    let mut before: Option<Stiffness> = None;
+    for share in shares.iter().copied() {
+        let module = debonded(side, share);
+        let mesh = Mesh::on(lines_mm.clone(), &device.stack, &module);
+        let stiffness = Solution::on(mesh, &device, &module).unwrap().superelement().stiffness;
+        if let Some(before) = before {
+            let lost = eigenvalues(&before, &stiffness);
+            assert!(lost[0] > -1e-8 * lost[MODES - 1], "{side:?} {share}: {lost:?}");
+            assert!(lost[MODES - 1] > 0.05 * before[2][2], "{side:?} {share}: {lost:?}");
+        }
+        before = Some(stiffness);
+    }
+}
+
 #[test]
 fn the_more_comes_off_the_softer_in_every_direction() {
-    let device = Device::nominal();
+    is_softer_from_share_to_share(Side::PlusX, &[0.0, 0.3, 0.9]);
+}
+
+#[test]
+#[ignore = "proof: 30 s: another side, and four steps instead of two"]
+fn the_more_comes_off_the_softer_in_every_direction_step_by_step() {
     for side in [Side::PlusX, Side::MinusY] {
-        // On the same grid lines, so that nothing else changes; on so many that each share takes some bricks away.
-        let mut even = fineness();
-        even.debonded = Sizing { finest_mm: 0.1, growth: 0.0, coarsest_mm: 0.1 };
-        let lines_mm = Mesh::of(&device, &debonded(side, 0.5), even).lines_mm;
-        let mut before: Option<Stiffness> = None;
-        let shares: &[f64] = if is_long() { &[0.0, 0.1, 0.3, 0.5, 0.9] } else { &[0.0, 0.3, 0.9] };
-        for share in shares.iter().copied() {
-            let module = debonded(side, share);
-            let mesh = Mesh::on(lines_mm.clone(), &device.stack, &module);
-            let stiffness = Solution::on(mesh, &device, &module).unwrap().superelement().stiffness;
-            if let Some(before) = before {
-                let lost = eigenvalues(&before, &stiffness);
-                assert!(lost[0] > -1e-8 * lost[MODES - 1], "{side:?} {share}: {lost:?}");
-                assert!(lost[MODES - 1] > 0.05 * before[2][2], "{side:?} {share}: {lost:?}");
-            }
-            before = Some(stiffness);
-        }
+        is_softer_from_share_to_share(side, &[0.0, 0.1, 0.3, 0.5, 0.9]);
     }
 }
 

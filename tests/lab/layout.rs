@@ -3,10 +3,18 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
 
 use std::f64::consts::PI;
+use std::io::{Write as _, stderr};
 use std::process::{Command, Output};
 
 use serde_json::Value;
 use tactpad::lab::layout::precision::{Press, over_plate};
+use tactpad::lab::layout::sizes::Size;
+use tactpad::mechanics::mesh::Fineness;
+use tactpad::mechanics::pad::Pad;
+use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
+use tactpad::mechanics::vibration::natural_motions;
+use tactpad::numeric::zernike::jets;
+use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 
 fn layout(arguments: &str) -> Output {
@@ -173,4 +181,26 @@ fn fewer_and_more_modules_than_three() {
     assert!(worst(4, "bridges") > worst(3, "bridges") && lost(4) < lost(3), "{found}");
     assert!(lost(4) > worst(4, "bridges").unwrap() && lost(3) > worst(3, "bridges").unwrap());
     assert!(worst(3, "gauges") < worst(3, "bridges") && worst(4, "gauges") < worst(4, "bridges"));
+}
+
+#[test]
+fn more_polynomials_change_no_figure_of_the_largest_pads() {
+    // The largest plates of the study of size, where the polynomials resolve least beside a foot.
+    const FINER: usize = 80;
+    let nominal = Device::nominal();
+    let mut simulator = Simulator::new(Fineness::STANDARD.scaled(2.8));
+    let masses = simulator.masses(&nominal).unwrap();
+    for (thickness_mm, bound) in [(0.5, 0.02), (1.0, 0.01), (3.0, 0.01)] {
+        let device = Size { diameter_mm: 150.0, thickness_mm }.on(&nominal).unwrap();
+        let [usual, finer] = [PLATE_DEGREE, FINER].map(|degree| {
+            let pad = Pad::of(&device, degree, simulator.pad(&nominal).unwrap().modules).unwrap();
+            let here = jets(degree, [0.6, 0.3]);
+            let read_uv = pad.signals()[2][2].value(&here);
+            [natural_motions(&pad, &masses).unwrap()[0].frequency_hz, read_uv]
+        });
+        writeln!(stderr(), "150 x {thickness_mm} mm: Hz, µV/N {usual:.3?}, finer {finer:.3?}").unwrap();
+        for (usual, finer) in usual.iter().zip(finer) {
+            assert!((usual / finer - 1.0).abs() < bound, "{thickness_mm} mm: {usual} for {finer}");
+        }
+    }
 }

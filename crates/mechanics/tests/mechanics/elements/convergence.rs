@@ -7,9 +7,9 @@ use std::io::{Write as _, stderr};
 
 use faer::Mat;
 use faer::prelude::Solve as _;
-use tactpad::mechanics::mesh::Fineness;
-use tactpad::mechanics::superelement::{MODES, STRAINS, Solution, Superelement};
-use tactpad::pad::device::{Device, GAUGES, Module};
+use tactpad_core::pad::device::{Device, GAUGES, Module};
+use tactpad_mechanics::mesh::Fineness;
+use tactpad_mechanics::superelement::{MODES, STRAINS, Solution, Superelement};
 
 /// Forces along x, y, z and moments about x and y, at the middle of the foot.
 const LOADS: usize = 5;

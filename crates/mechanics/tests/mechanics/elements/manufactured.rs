@@ -1,8 +1,8 @@
 //! A manufactured solution: a smooth displacement with the body force that makes it, on finer and finer meshes.
 
-use tactpad::mechanics::brick::lame_mpa;
-use tactpad::mechanics::mesh::{Layer, Mesh};
-use tactpad::pad::device::Material;
+use tactpad_core::pad::device::Material;
+use tactpad_mechanics::brick::lame_mpa;
+use tactpad_mechanics::mesh::{Layer, Mesh};
 
 use super::body::{Body, Gradient, Vector, stress_mpa};
 

@@ -1,10 +1,10 @@
 //! Any body of bricks under body forces, by the simulator's own elements, assembly and solver.
 
 use faer::Mat;
-use tactpad::mechanics::brick::{DOFS, NODES, box_stiffness, lame_mpa, shapes, slopes};
-use tactpad::mechanics::mesh::{Brick, Layer, Mesh};
-use tactpad::mechanics::system::{Factor, Freedoms, add_holding_forces, gathered};
-use tactpad::pad::device::Material;
+use tactpad_core::pad::device::Material;
+use tactpad_mechanics::brick::{DOFS, NODES, box_stiffness, lame_mpa, shapes, slopes};
+use tactpad_mechanics::mesh::{Brick, Layer, Mesh};
+use tactpad_mechanics::system::{Factor, Freedoms, add_holding_forces, gathered};
 
 /// Four points of Gauss's rule on [−1, 1] with their weights: more than the elements use themselves.
 const GAUSS: [(f64, f64); 4] = [

@@ -7,13 +7,13 @@
 use std::f64::consts::TAU;
 
 use faer::Mat;
-use tactpad::mechanics::brick::box_mass_t;
-use tactpad::mechanics::brick::box_stiffness;
-use tactpad::mechanics::grid::{Sizing, graded};
-use tactpad::mechanics::mesh::{Layer, Mesh};
-use tactpad::mechanics::system::{Factor, Freedoms};
-use tactpad::mechanics::vibration::Natural;
-use tactpad::pad::device::Material;
+use tactpad_core::pad::device::Material;
+use tactpad_mechanics::brick::box_mass_t;
+use tactpad_mechanics::brick::box_stiffness;
+use tactpad_mechanics::grid::{Sizing, graded};
+use tactpad_mechanics::mesh::{Layer, Mesh};
+use tactpad_mechanics::system::{Factor, Freedoms};
+use tactpad_mechanics::vibration::Natural;
 
 use super::body::{Body, Vector};
 

@@ -2,8 +2,8 @@
 
 use std::sync::{LazyLock, Mutex};
 
-use tactpad::mechanics::mesh::Fineness;
-use tactpad::mechanics::simulator::Simulator;
+use tactpad_mechanics::mesh::Fineness;
+use tactpad_mechanics::simulator::Simulator;
 
 /// Solved modules stay with it.
 pub(crate) static SIMULATOR: LazyLock<Mutex<Simulator>> =

@@ -8,14 +8,14 @@ use std::f64::consts::TAU;
 use std::io::{Write as _, stderr};
 
 use serde_json::{Value, json};
-use tactpad::mechanics::grid::Sizing;
-use tactpad::mechanics::mesh::{Fineness, Layer, Mesh};
-use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
-use tactpad::mechanics::superelement::STRAINS;
-use tactpad::numeric::zernike::jets;
-use tactpad::pad::device::pose::Pose;
-use tactpad::pad::device::{Device, GAUGES, Side};
-use tactpad::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
+use tactpad_core::numeric::zernike::jets;
+use tactpad_core::pad::device::pose::Pose;
+use tactpad_core::pad::device::{Device, GAUGES, Side};
+use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
+use tactpad_mechanics::grid::Sizing;
+use tactpad_mechanics::mesh::{Fineness, Layer, Mesh};
+use tactpad_mechanics::simulator::{PLATE_DEGREE, Simulator};
+use tactpad_mechanics::superelement::STRAINS;
 
 use super::deck::{Deck, Print};
 use super::gauges::Gauges;

@@ -1,8 +1,8 @@
 //! Patch tests: what the elements can represent, they find exactly, however irregular the mesh.
 
-use tactpad::mechanics::brick::lame_mpa;
-use tactpad::mechanics::mesh::{Layer, Mesh};
-use tactpad::pad::device::Material;
+use tactpad_core::pad::device::Material;
+use tactpad_mechanics::brick::lame_mpa;
+use tactpad_mechanics::mesh::{Layer, Mesh};
 
 use super::body::{Body, Vector, stress_mpa};
 

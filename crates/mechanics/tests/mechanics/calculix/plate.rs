@@ -5,8 +5,8 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use tactpad::mechanics::grid::{Sizing, graded};
-use tactpad::pad::device::Device;
+use tactpad_core::pad::device::Device;
+use tactpad_mechanics::grid::{Sizing, graded};
 
 use super::face::{NODES, shapes};
 

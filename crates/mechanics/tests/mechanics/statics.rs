@@ -2,10 +2,10 @@
 //! finite-element solution of the whole pad.
 #![expect(clippy::unwrap_used, reason = "a test may stop at what it did not expect")]
 
-use tactpad::pad::device::Device;
-use tactpad::pad::field::PadField;
-use tactpad::pipeline::contact::statics::{Statics, StaticsModel};
-use tactpad::quantity::{CHANNELS, Contact, MODULES, Strain};
+use tactpad_core::pad::device::Device;
+use tactpad_core::pad::field::PadField;
+use tactpad_core::pipeline::contact::statics::{Statics, StaticsModel};
+use tactpad_core::quantity::{CHANNELS, Contact, MODULES, Strain};
 
 const TABLE: &str = include_str!("reference/nominal.csv");
 const MODULE_RADIUS_MM: f64 = 20.0;

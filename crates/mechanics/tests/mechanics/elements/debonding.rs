@@ -1,10 +1,10 @@
 //! A bond that has come off in part: closed form, which way it goes, mirror symmetry, cost.
 
 use faer::{Mat, Side as Triangle};
-use tactpad::mechanics::grid::Sizing;
-use tactpad::mechanics::mesh::{Fineness, Mesh};
-use tactpad::mechanics::superelement::{MODES, Solution};
-use tactpad::pad::device::{Device, Module, Side};
+use tactpad_core::pad::device::{Device, Module, Side};
+use tactpad_mechanics::grid::Sizing;
+use tactpad_mechanics::mesh::{Fineness, Mesh};
+use tactpad_mechanics::superelement::{MODES, Solution};
 
 use super::module::{assert_mirrored, fineness, superelement};
 

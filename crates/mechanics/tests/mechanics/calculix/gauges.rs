@@ -1,9 +1,9 @@
 //! Mean strains of a module's gauges, from what CalculiX prints.
 
-use tactpad::mechanics::brick::slopes;
-use tactpad::mechanics::mesh::{Brick, Mesh, half_sizes_mm};
-use tactpad::mechanics::superelement::STRAINS;
-use tactpad::pad::device::{Direction, GAUGES, Gauge};
+use tactpad_core::pad::device::{Direction, GAUGES, Gauge};
+use tactpad_mechanics::brick::slopes;
+use tactpad_mechanics::mesh::{Brick, Mesh, half_sizes_mm};
+use tactpad_mechanics::superelement::STRAINS;
 
 use super::face::{GAUSS, shapes};
 use super::results::Step;

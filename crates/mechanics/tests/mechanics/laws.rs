@@ -5,14 +5,14 @@
 use std::f64::consts::TAU;
 use std::sync::{LazyLock, Mutex};
 
-use tactpad::mechanics::mesh::Fineness;
-use tactpad::mechanics::pad::Pad;
-use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
-use tactpad::numeric::zernike::{Polynomial, jets};
-use tactpad::pad::device::Device;
-use tactpad::pad::device::parameter::Parameter;
-use tactpad::pad::field::{ForceMaps, PadField};
-use tactpad::quantity::{CHANNELS, MODULES};
+use tactpad_core::numeric::zernike::{Polynomial, jets};
+use tactpad_core::pad::device::Device;
+use tactpad_core::pad::device::parameter::Parameter;
+use tactpad_core::pad::field::{ForceMaps, PadField};
+use tactpad_core::quantity::{CHANNELS, MODULES};
+use tactpad_mechanics::mesh::Fineness;
+use tactpad_mechanics::pad::Pad;
+use tactpad_mechanics::simulator::{PLATE_DEGREE, Simulator};
 
 /// The laws hold on any mesh, so a coarse one will do. Solved modules are shared.
 static SIMULATOR: LazyLock<Mutex<Simulator>> =

@@ -7,8 +7,8 @@ use std::fmt::{Display, Write as _};
 use std::fs;
 use std::process::Command;
 
-use tactpad::mechanics::brick::TONNES_PER_MM3;
-use tactpad::pad::device::Material;
+use tactpad_core::pad::device::Material;
+use tactpad_mechanics::brick::TONNES_PER_MM3;
 
 use super::results::{Results, frequencies_hz};
 

@@ -1,10 +1,10 @@
 //! Laws of one module: balance, reciprocity, mirror symmetry, scaling, and which way a change goes.
 
-use tactpad::mechanics::brick::{box_stiffness, forces};
-use tactpad::mechanics::mesh::{Fineness, Mesh};
-use tactpad::mechanics::superelement::{FOOT_SHAPES, MODES, STRAINS, Solution, Superelement};
-use tactpad::mechanics::system::gathered;
-use tactpad::pad::device::{Device, Module, Side};
+use tactpad_core::pad::device::{Device, Module, Side};
+use tactpad_mechanics::brick::{box_stiffness, forces};
+use tactpad_mechanics::mesh::{Fineness, Mesh};
+use tactpad_mechanics::superelement::{FOOT_SHAPES, MODES, STRAINS, Solution, Superelement};
+use tactpad_mechanics::system::gathered;
 
 use super::body::Vector;
 

@@ -4,8 +4,8 @@
 
 use std::path::Path;
 
-use tactpad::pad::changes::{FieldChange, FieldChanges, Flaw};
-use tactpad::pad::device::Device;
+use tactpad_core::pad::changes::{FieldChange, FieldChanges, Flaw};
+use tactpad_core::pad::device::Device;
 
 use crate::standard::SIMULATOR;
 
@@ -17,7 +17,7 @@ fn the_shipped_changes_are_the_simulators() {
     let made: Vec<FieldChange> =
         Flaw::all().map(|flaw| simulator.change(&device, &whole, flaw).unwrap()).collect();
     drop(simulator);
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/sstid.changes");
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/sstid.changes");
     if std::env::var_os("TACTPAD_WRITE_FIELD").is_some() {
         std::fs::write(&shipped, FieldChanges(made.clone()).to_bytes(&device)).unwrap();
     }

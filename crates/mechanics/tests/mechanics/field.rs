@@ -4,17 +4,17 @@
 
 use std::path::Path;
 
-use tactpad::mechanics::simulator::PLATE_DEGREE;
-use tactpad::numeric::zernike::jets;
-use tactpad::pad::device::Device;
-use tactpad::pad::field::{ForceMaps, PadField};
-use tactpad::pad::influence::InfluenceField;
-use tactpad::quantity::CHANNELS;
+use tactpad_core::numeric::zernike::jets;
+use tactpad_core::pad::device::Device;
+use tactpad_core::pad::field::{ForceMaps, PadField};
+use tactpad_core::pad::influence::InfluenceField;
+use tactpad_core::quantity::CHANNELS;
+use tactpad_mechanics::simulator::PLATE_DEGREE;
 
 use crate::standard::SIMULATOR;
 
 fn shipped() -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("models/sstid.field")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/sstid.field")
 }
 
 #[test]

@@ -1,16 +1,16 @@
-//! The simulator against solutions of an independent program: `tests/mechanics/reference/README.md`.
+//! The simulator against solutions of an independent program: `crates/mechanics/tests/mechanics/reference/README.md`.
 
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 
 use std::fs;
 use std::path::Path;
 
-use tactpad::mechanics::simulator::PLATE_DEGREE;
-use tactpad::numeric::zernike::jets;
-use tactpad::pad::device::{Device, Side};
-use tactpad::pad::field::{ForceMaps, PadField};
-use tactpad::pad::influence::MAPS;
-use tactpad::quantity::CHANNELS;
+use tactpad_core::numeric::zernike::jets;
+use tactpad_core::pad::device::{Device, Side};
+use tactpad_core::pad::field::{ForceMaps, PadField};
+use tactpad_core::pad::influence::MAPS;
+use tactpad_core::quantity::CHANNELS;
+use tactpad_mechanics::simulator::PLATE_DEGREE;
 
 use crate::standard::SIMULATOR;
 

@@ -1,8 +1,8 @@
 //! Derivatives by the layers against solving again with changed layers.
 
-use tactpad::mechanics::mesh::{Fineness, Layer, Mesh};
-use tactpad::mechanics::superelement::{Solution, Superelement};
-use tactpad::pad::device::{Device, Module, Side};
+use tactpad_core::pad::device::{Device, Module, Side};
+use tactpad_mechanics::mesh::{Fineness, Layer, Mesh};
+use tactpad_mechanics::superelement::{Solution, Superelement};
 
 /// A module in which nothing vanishes by symmetry.
 const MODULE: Module = Module { frame_open: Some(Side::MinusY), frame_e_factor: 0.7, ..Module::NOMINAL };

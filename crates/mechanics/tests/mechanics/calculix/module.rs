@@ -5,9 +5,9 @@
 
 use std::io::{Write as _, stderr};
 
-use tactpad::mechanics::mesh::{Fineness, Layer, Mesh};
-use tactpad::mechanics::superelement::{MODES, Solution, Superelement, foot_shapes};
-use tactpad::pad::device::{Device, Module, Side};
+use tactpad_core::pad::device::{Device, Module, Side};
+use tactpad_mechanics::mesh::{Fineness, Layer, Mesh};
+use tactpad_mechanics::superelement::{MODES, Solution, Superelement, foot_shapes};
 
 use super::deck::{Deck, Print};
 use super::gauges::Gauges;

@@ -1,5 +1,5 @@
 //! The page of a running bridge: asked by plain requests, and used in a headless browser as people use it.
-#![cfg(all(target_os = "linux", feature = "dashboard"))]
+#![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 mod access;

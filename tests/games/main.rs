@@ -1,6 +1,6 @@
 //! Real games, played by a finger of software on the twin of the paper's pad, through the bridge and an X server's keys, and
 //! judged by their own screens.
-#![cfg(all(feature = "live", feature = "lab", target_os = "linux"))]
+#![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the figures are what one looks for in a long test")]
 

@@ -17,8 +17,9 @@ const STENCIL: usize = 6;
 #[derive(Debug)]
 pub(crate) struct Table(Vec<Influence>);
 
-pub(crate) static NOMINAL: LazyLock<Table> =
-    LazyLock::new(|| Table::read(include_str!("../../crates/mechanics/tests/mechanics/reference/nominal.csv")));
+pub(crate) static NOMINAL: LazyLock<Table> = LazyLock::new(|| {
+    Table::read(include_str!("../../crates/mechanics/tests/mechanics/reference/nominal.csv"))
+});
 /// The plate 1.15 mm thick instead of 1 mm.
 pub(crate) static THICK_PLATE: LazyLock<Table> =
     LazyLock::new(|| Table::read(include_str!("fields/plate_1p15.csv")));

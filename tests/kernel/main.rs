@@ -3,7 +3,7 @@
 //! Every test boots a kernel of its own, runs its body inside as root, and leaves nothing behind; the host needs
 //! neither uinput nor rights. `tests/kernel/build-kernel.sh` makes the kernel. The latency test prints its numbers:
 //! `cargo test --release --test kernel latency -- --nocapture`.
-#![cfg(all(feature = "live", target_os = "linux"))]
+#![cfg(target_os = "linux")]
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,

@@ -116,7 +116,6 @@ fn bad_arguments_are_one_sentence_and_exit_2() {
 }
 
 /// The nominal pad beside what is known without finite elements: lever arms, and three ideal load cells.
-#[cfg(feature = "simulator")]
 #[test]
 fn the_simulated_pad_is_near_statics() {
     let folder = tempfile::tempdir().unwrap();

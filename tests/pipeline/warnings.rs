@@ -61,7 +61,6 @@ fn pad() -> &'static Pad {
     })
 }
 
-#[cfg(feature = "simulator")]
 fn computed(device: &Device) -> PadField {
     use tactpad::mechanics::mesh::Fineness;
     use tactpad::mechanics::simulator::Simulator;
@@ -69,11 +68,6 @@ fn computed(device: &Device) -> PadField {
     let mut simulator = Simulator::new(Fineness::STANDARD);
     (0..3).for_each(|module| simulator.solve(device, module).unwrap());
     simulator.field(device).unwrap()
-}
-
-#[cfg(not(feature = "simulator"))]
-fn computed(_device: &Device) -> PadField {
-    panic!("the study needs the feature simulator")
 }
 
 /// A pad that was just tared.

@@ -4,7 +4,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-#[cfg(feature = "simulator")]
 use std::sync::LazyLock;
 
 use tactpad::mechanics::simulator::PLATE_DEGREE;
@@ -115,10 +114,8 @@ fn a_field_that_is_kept_is_used() {
 }
 
 /// The field of the thicker pad, as the program keeps it. A solution takes seconds.
-#[cfg(feature = "simulator")]
 static COMPUTED: LazyLock<Vec<u8>> = LazyLock::new(computed_instead_of_a_damaged_file);
 
-#[cfg(feature = "simulator")]
 fn computed_instead_of_a_damaged_file() -> Vec<u8> {
     let folder = scene();
     let (device, path) = thicker(folder.path());
@@ -146,7 +143,6 @@ fn computed_instead_of_a_damaged_file() -> Vec<u8> {
     fs::read(&path).unwrap()
 }
 
-#[cfg(feature = "simulator")]
 #[test]
 fn a_damaged_file_is_computed_anew_and_replaced() {
     let (device, _) = thicker(scene().path());
@@ -155,7 +151,6 @@ fn a_damaged_file_is_computed_anew_and_replaced() {
 }
 
 /// Sensitivities are rounded in the file, so a run that computes a field must not go on with finer ones.
-#[cfg(feature = "simulator")]
 #[test]
 fn a_field_that_was_just_computed_calibrates_as_the_one_that_is_kept() {
     let folder = scene();

@@ -4,8 +4,8 @@
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
-use tactpad::tables::measured::columns::Kind;
-use tactpad::tables::measured::{Approach, Label, Row, Table, read, write};
+use tactpad_core::tables::measured::columns::Kind;
+use tactpad_core::tables::measured::{Approach, Label, Row, Table, read, write};
 
 fn written(table: &Table) -> Vec<u8> {
     let mut text = Vec::new();

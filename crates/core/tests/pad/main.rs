@@ -2,8 +2,7 @@
 
 mod device;
 mod measured;
-mod protocol;
 mod twin;
 #[cfg(target_os = "linux")]
-#[path = "../support/worked.rs"]
+#[path = "../../../../tests/support/worked.rs"]
 mod worked;

@@ -1,7 +1,7 @@
 //! Device files: what is refused, where and why; what is read, laid over and written.
 //!
-//! A file in `tests/pad/device` holds comment lines `# error: LINE:COLUMN message`, each optionally followed by
-//! `# help: text`, for everything that it is expected to raise, in order. Those in `tests/pad/device/imperfections` are
+//! A file in `crates/core/tests/pad/device` holds comment lines `# error: LINE:COLUMN message`, each optionally followed by
+//! `# help: text`, for everything that it is expected to raise, in order. Those in `crates/core/tests/pad/device/imperfections` are
 //! laid over the nominal device.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
@@ -11,19 +11,19 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use proptest::prelude::{Just, Strategy, any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
-use tactpad::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, Play, Prony};
-use tactpad::pad::device::parameter::Parameter;
-use tactpad::pad::device::schema::Effect;
-use tactpad::pad::device::unit::Unit;
-use tactpad::pad::device::{Device, Module, Side};
-use tactpad::quantity::CHANNELS;
-use tactpad::toml_text::TEXT_BYTES_MAX;
-use tactpad::toml_text::diag::Diagnostic;
+use tactpad_core::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, Play, Prony};
+use tactpad_core::pad::device::parameter::Parameter;
+use tactpad_core::pad::device::schema::Effect;
+use tactpad_core::pad::device::unit::Unit;
+use tactpad_core::pad::device::{Device, Module, Side};
+use tactpad_core::quantity::CHANNELS;
+use tactpad_core::toml_text::TEXT_BYTES_MAX;
+use tactpad_core::toml_text::diag::Diagnostic;
 
 #[cfg(target_os = "linux")]
 use crate::worked::worked;
 
-const NOMINAL: &str = include_str!("../../models/sstid.toml");
+const NOMINAL: &str = include_str!("../../../../models/sstid.toml");
 
 type Reading = (Option<Device>, Vec<Diagnostic>);
 
@@ -315,7 +315,7 @@ fn a_text_is_read_up_to_its_limit() {
 
 #[test]
 fn the_example_of_the_reference_can_be_laid_over_the_nominal_device() {
-    let (_, rest) = include_str!("../../models/README.md").split_once("```toml\n").unwrap();
+    let (_, rest) = include_str!("../../../../models/README.md").split_once("```toml\n").unwrap();
     let (example, rest) = rest.split_once("```").unwrap();
     assert!(!rest.contains("```"), "another example is not tested");
     let (device, found) = Device::nominal().with_imperfections(example);
@@ -326,7 +326,7 @@ fn the_example_of_the_reference_can_be_laid_over_the_nominal_device() {
 #[test]
 fn the_shipped_imperfections_can_be_laid_over_the_nominal_device() {
     let nominal = Device::nominal();
-    let paths = tomls("models/imperfections");
+    let paths = tomls("../../models/imperfections");
     assert!(paths.len() >= 4);
     for path in paths {
         let (device, found) = nominal.with_imperfections(&fs::read_to_string(&path).unwrap());
@@ -337,7 +337,7 @@ fn the_shipped_imperfections_can_be_laid_over_the_nominal_device() {
 
 #[test]
 fn the_siblings_gains_are_its_published_sensitivities_over_simulated_ones() {
-    let text = include_str!("../../models/imperfections/gains.toml");
+    let text = include_str!("../../../../models/imperfections/gains.toml");
     let device = Device::nominal().with_imperfections(text).0.unwrap();
     let measured = [[794.0, 864.0, 276.0], [808.0, 819.0, 329.0], [799.0, 863.0, 278.0]];
     for (module, measured) in device.modules.iter().zip(measured) {
@@ -373,7 +373,7 @@ fn checking_is_bounded_whatever_the_text() {
 
 /// Rows `| `key` | unit | low to high | …` of the reference, as (key, unit, low, high).
 fn documented() -> Vec<(String, String, f64, f64)> {
-    let rows = include_str!("../../models/README.md").lines().filter_map(|line| {
+    let rows = include_str!("../../../../models/README.md").lines().filter_map(|line| {
         let cells: Vec<_> = line.split('|').map(str::trim).collect();
         let [_, key, unit, range, ..] = cells.as_slice() else { return None };
         let (low, high) = range.split_once(" to ")?;
@@ -414,7 +414,7 @@ fn the_reference_states_every_number_with_its_unit_and_range() {
 fn the_reference_states_what_is_there_where_nothing_is_written() {
     let nominal = Device::nominal();
     let mut stated = 0;
-    for line in include_str!("../../models/README.md").lines() {
+    for line in include_str!("../../../../models/README.md").lines() {
         let cells: Vec<_> = line.split('|').map(str::trim).collect();
         let [_, key, _, _, default, _, _] = cells.as_slice() else { continue };
         let Ok(default) = default.parse::<f64>() else { continue };

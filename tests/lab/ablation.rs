@@ -28,6 +28,12 @@ fn field() -> &'static PadField {
     FIELD.get_or_init(PadField::nominal)
 }
 
+/// Gains, offsets, friction and noise, and no field that must be solved for.
+const PAD: &str = "[[module]]\nindex = 0\ngain = [1.26, 1.33, 0.83]\noffset_uv = [300, -200, 500]\n\
+    [[module]]\nindex = 1\ngain = [1.29, 1.26, 0.99]\noffset_uv = [-150, 80, 900]\n\
+    [[hysteresis]]\nthreshold_uv = 800.0\nshare = 0.03\n\
+    [noise]\nadditive_uv = 30.0\nshare = 0.01\nshare_time_s = 3.0\n[finger]\nwander_mm = 0.1\n";
+
 /// A pad that has the nominal one's field.
 fn subject<'p>(designed: &'p Device, actual: &'p Device) -> Subject<'p> {
     let pad = |device| Pad { device, field: field() };
@@ -159,12 +165,16 @@ fn rows_are_what_twin_adapt_and_evaluate_give() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     fs::write(folder.join("stage1.onnx"), onnx::write(network())).unwrap();
-    let report = document(folder, "ablation --seed 4 --network stage1.onnx --out figures --json");
-    assert!(tactpad(folder, "twin --plan paper --seed 4 --out m.csv --state new.state").status.success());
+    let pad = "--imperfections pad.toml";
+    fs::write(folder.join("pad.toml"), PAD).unwrap();
+    let report =
+        document(folder, &format!("ablation --seed 4 --network stage1.onnx {pad} --out figures --json"));
+    let twin = format!("twin --plan paper --seed 4 {pad} --out m.csv --state new.state");
+    assert!(tactpad(folder, &twin).status.success());
     for (plan, seed) in [("paper", 6), ("recommended", 5)] {
         // Both begin where the calibration ended.
         fs::copy(folder.join("new.state"), folder.join("pad.state")).unwrap();
-        let twin = format!("twin --plan {plan} --seed {seed} --state pad.state");
+        let twin = format!("twin --plan {plan} --seed {seed} {pad} --state pad.state");
         let line = format!("{twin} --out {plan}.csv --truth {plan}-truth.csv");
         assert!(tactpad(folder, &line).status.success());
     }

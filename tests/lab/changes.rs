@@ -240,15 +240,23 @@ fn what_changed_is_named_and_what_did_not_is_not() {
         }
         return;
     }
-    for (since, kinds) in [
-        (Since::Play, &Kind::ALL[..]),
-        (Since::Home, &Kind::ALL),
-        (Since::Rig, &[Kind::ModuleGain, Kind::Nothing]),
-    ] {
-        for kind in kinds {
-            let rates = rates(*kind, since, 150, 1..2);
-            assert_eq!(rates.wrong, 0, "{kind:?}");
-            assert!(kind.cause().is_none() || rates.missed == 0, "{kind:?}");
-        }
+    is_named(Since::Play, &[Kind::ModuleGain, Kind::OtherHand]);
+    is_named(Since::Rig, &[Kind::ModuleGain]);
+}
+
+/// What changed, and nothing else.
+fn is_named(since: Since, kinds: &[Kind]) {
+    for kind in kinds {
+        let rates = rates(*kind, since, 150, 1..2);
+        assert_eq!(rates.wrong, 0, "{kind:?}");
+        assert!(kind.cause().is_none() || rates.missed == 0, "{kind:?}");
     }
+}
+
+#[test]
+#[ignore = "proof: 100 s: all kinds of changes since a play, a calibration at home and one by a rig, instead of three of ten"]
+fn whatever_changed_is_named_and_what_did_not_is_not() {
+    is_named(Since::Play, &Kind::ALL);
+    is_named(Since::Home, &Kind::ALL);
+    is_named(Since::Rig, &[Kind::ModuleGain, Kind::Nothing]);
 }

@@ -295,9 +295,8 @@ fn errors((name, by): (&str, By), pads: &[Pad]) -> Vec<[f64; 3]> {
 }
 
 /// The goal for the median is 1.3 and for the worst 2.2; one pad alone may be any of them.
-fn is_worth_twenty_labels(home: &Compared, unweighed: &Compared) {
+fn is_worth_twenty_labels(home: &Compared) {
     assert!(home.place[1] <= 2.2 && home.force[1] <= 2.2, "{home:?}");
-    assert!(unweighed.place[1] <= 2.0, "{unweighed:?}");
     assert!(home.inside > 0.88, "{home:?}");
 }
 
@@ -305,12 +304,11 @@ fn is_worth_twenty_labels(home: &Compared, unweighed: &Compared) {
 fn two_minutes_of_play_and_a_weight_are_worth_twenty_labels() {
     let pads = [Pad::drawn(1)];
     let rig = errors(RIG, &pads);
-    let [home, unweighed] = [HOME, UNWEIGHED].map(|by| Compared::of(by, &pads, &rig));
-    is_worth_twenty_labels(&home, &unweighed);
+    is_worth_twenty_labels(&Compared::of(HOME, &pads, &rig));
 }
 
 #[test]
-#[ignore = "proof: 1020 s: twenty pads in six ways instead of one in three"]
+#[ignore = "proof: 1020 s: twenty pads in six ways instead of one in two"]
 fn two_minutes_of_play_and_a_weight_are_worth_twenty_labels_on_twenty_pads() {
     let pads: Vec<Pad> = (1..=20).map(Pad::drawn).collect();
     let rig = errors(RIG, &pads);
@@ -320,7 +318,8 @@ fn two_minutes_of_play_and_a_weight_are_worth_twenty_labels_on_twenty_pads() {
     assert!(longer.place[0] <= 1.15 && longer.force[0] <= 1.15, "{longer:?}");
     assert!(home.place[0] <= 0.85 * weight_alone.place[0], "{home:?} {weight_alone:?}");
     assert!(near.place[1] <= 2.2 && near.force[1] <= 2.2, "{near:?}");
-    is_worth_twenty_labels(&home, &unweighed);
+    assert!(unweighed.place[1] <= 2.0, "{unweighed:?}");
+    is_worth_twenty_labels(&home);
 }
 
 #[test]

@@ -8,6 +8,8 @@ use std::sync::LazyLock;
 
 use tactpad::mechanics::simulator::PLATE_DEGREE;
 use tactpad::numeric::zernike::jets;
+#[cfg(feature = "simulator")]
+use tactpad::pad::changes::FieldChanges;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tempfile::TempDir;
@@ -150,17 +152,20 @@ fn a_damaged_file_is_computed_anew_and_replaced() {
     assert_eq!(field.sensitivities.len(), PadField::nominal().sensitivities.len());
 }
 
-/// Sensitivities are rounded in the file, so a run that computes a field must not go on with finer ones.
-#[test]
-fn a_field_that_was_just_computed_calibrates_as_the_one_that_is_kept() {
+/// Sensitivities are rounded in the file, so a run that computes a field must not go on with finer ones. What flaws change in it takes a
+/// minute more; it is kept already, or computed as well.
+fn calibrates_as_the_field_that_is_kept(are_changes_kept: bool) {
     let folder = scene();
-    let (_, path) = thicker(folder.path());
+    let (device, path) = thicker(folder.path());
     let done = |line: &str| {
         let output = tactpad(folder.path(), line);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     };
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     fs::write(&path, &*COMPUTED).unwrap();
+    if are_changes_kept {
+        fs::write(path.with_extension("changes"), FieldChanges::nominal().to_bytes(&device)).unwrap();
+    }
     done("twin --plan paper --seed 1 --device d.toml --out m.csv");
     fs::remove_file(&path).unwrap();
     for out in ["computed", "kept"] {
@@ -169,6 +174,19 @@ fn a_field_that_was_just_computed_calibrates_as_the_one_that_is_kept() {
     }
     let [computed, kept] = ["computed", "kept"].map(|out| fs::read(folder.path().join(out)).unwrap());
     assert!(computed == kept, "the first run wrote another decoder than the second");
+}
+
+#[cfg(feature = "simulator")]
+#[test]
+fn a_field_that_was_just_computed_calibrates_as_the_one_that_is_kept() {
+    calibrates_as_the_field_that_is_kept(true);
+}
+
+#[cfg(feature = "simulator")]
+#[test]
+#[ignore = "proof: 60 s: what flaws change in the field is computed, too"]
+fn a_field_and_changes_that_were_just_computed_calibrate_as_those_that_are_kept() {
+    calibrates_as_the_field_that_is_kept(false);
 }
 
 #[test]

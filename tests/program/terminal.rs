@@ -200,7 +200,7 @@ fn long_work_shows_a_bar_that_moves() {
     let adapted = adapt(folder.path());
     for (line, what) in [
         (adapted.as_str(), "fitting the pad's field"),
-        ("metrology --no-network --seeds 1-2", "of the twin's 2 pads are measured"),
+        ("metrology --no-network --seeds 1-3 --imperfections none.toml", "of the twin's 3 pads are measured"),
     ] {
         let mut terminal = Terminal::start(folder.path(), line, "xterm", [100, 24]);
         let is_under_way = |screen: &vt100::Screen| {
@@ -223,7 +223,7 @@ fn long_work_shows_a_bar_that_moves() {
 fn pipes_get_no_bar() {
     let folder = tempfile::tempdir().unwrap();
     let adapted = adapt(folder.path());
-    for line in [adapted.as_str(), "metrology --no-network --seeds 1"] {
+    for line in [adapted.as_str(), "metrology --no-network --seeds 1 --imperfections none.toml"] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
         let output =
             command.args(line.split(' ')).current_dir(folder.path()).env("TERM", "xterm").output().unwrap();

@@ -1,7 +1,7 @@
 //! The reference firmware, compiled for this machine, talks to the bridge over a pseudo-terminal.
 //!
-//! A slice of 5 s runs with the other tests. The whole proof is a minute:
-//! `TACTPAD_FIRMWARE_SECONDS=60 cargo test --release --test bridge firmware::minute -- --nocapture`.
+//! A slice of 5 s runs with the other tests, in a guest in virtual time. The whole proof is a minute of real time:
+//! `cargo test --release --test bridge firmware::minute -- --ignored --nocapture`.
 
 #[cfg(test)]
 mod conversation;

@@ -1,15 +1,20 @@
-//! The bridge on real ports, in real time: every part starts the program and plays on it from outside.
+//! The bridge on real ports: every part starts the program and plays on it from outside.
 //!
-//! What computes for long is in other programs, so that it takes no time from these.
+//! What depends on the pace of a pad runs in a guest kernel, in virtual time: on a machine that does other work a pad made of
+//! software falls silent, and a bridge rightly lets go. The others wait for states.
 #![cfg(target_os = "linux")]
 
 #[cfg(test)]
 #[path = "../support/c_compiler.rs"]
 mod c_compiler;
+#[path = "../support/clock.rs"]
+mod clock;
 mod control;
 #[path = "../support/decoders.rs"]
 mod decoders;
 mod firmware;
+#[path = "../kernel/guest.rs"]
+mod guest;
 mod kept_play;
 mod nostd;
 mod presses;

@@ -7,6 +7,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::control::await_status;
+use crate::guest::in_guest;
 use crate::presses;
 use crate::running::Running;
 
@@ -38,6 +39,13 @@ fn events(bridge: &Running) -> Vec<String> {
 
 #[test]
 fn a_changed_profile_is_taken_a_broken_one_is_told_once_and_what_both_hold_stays() {
+    in_guest(
+        "reload::a_changed_profile_is_taken_a_broken_one_is_told_once_and_what_both_hold_stays",
+        the_file_is_changed,
+    );
+}
+
+fn the_file_is_changed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.toml");
     fs::write(&path, profile("BTN_EAST")).unwrap();

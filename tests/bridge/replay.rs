@@ -8,6 +8,8 @@ use std::thread;
 
 use tactpad::pipeline::capture::reader::CaptureReader;
 
+use crate::guest::in_guest;
+
 fn tactpad(arguments: &[&str], folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_tactpad")).args(arguments).current_dir(folder).output().unwrap()
 }
@@ -18,6 +20,10 @@ fn lines(text: &[u8]) -> usize {
 
 #[test]
 fn a_recording_replays_byte_for_byte_and_plays_as_a_pad() {
+    in_guest("replay::a_recording_replays_byte_for_byte_and_plays_as_a_pad", replays_and_plays);
+}
+
+fn replays_and_plays() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["record", "game.cap", "--seconds", "4", "--profile", "contra", "--output", "log:live"];
     assert!(tactpad(&arguments, folder.path()).status.success());
@@ -62,6 +68,10 @@ fn plays_and_replays(folder: &Path, name: &str, file: Option<&[u8]>) {
 
 #[test]
 fn a_recording_with_any_decoder_holds_it_and_replays_byte_for_byte() {
+    in_guest("replay::a_recording_with_any_decoder_holds_it_and_replays_byte_for_byte", any_decoder_replays);
+}
+
+fn any_decoder_replays() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     thread::scope(|scope| {
@@ -84,6 +94,10 @@ fn a_recording_with_any_decoder_holds_it_and_replays_byte_for_byte() {
 
 #[test]
 fn another_profile_gives_other_events() {
+    in_guest("replay::another_profile_gives_other_events", another_profile);
+}
+
+fn another_profile() {
     let folder = tempfile::tempdir().unwrap();
     assert!(tactpad(&["record", "game.cap", "--seconds", "4"], folder.path()).status.success());
     let own = tactpad(&["replay", "game.cap"], folder.path()).stdout;
@@ -94,6 +108,10 @@ fn another_profile_gives_other_events() {
 
 #[test]
 fn a_cut_off_recording_replays_as_far_as_it_reaches() {
+    in_guest("replay::a_cut_off_recording_replays_as_far_as_it_reaches", cut_off);
+}
+
+fn cut_off() {
     let folder = tempfile::tempdir().unwrap();
     assert!(tactpad(&["record", "game.cap", "--seconds", "4"], folder.path()).status.success());
     let whole = tactpad(&["replay", "game.cap"], folder.path()).stdout;
@@ -106,6 +124,10 @@ fn a_cut_off_recording_replays_as_far_as_it_reaches() {
 
 #[test]
 fn a_recording_for_the_force_range_says_when_to_press_how() {
+    in_guest("replay::a_recording_for_the_force_range_says_when_to_press_how", cues_for_the_force_range);
+}
+
+fn cues_for_the_force_range() {
     let folder = tempfile::tempdir().unwrap();
     let output = tactpad(&["record", "range.cap", "--force-range", "--seconds", "2"], folder.path());
     let said = String::from_utf8(output.stderr).unwrap();

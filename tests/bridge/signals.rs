@@ -38,8 +38,8 @@ impl Keys {
 
     /// Waits for the next press, of which there are 2 seconds left then.
     fn await_press(&self) {
-        assert!(comes_true(10_000, || !self.are_held()), "held for too long");
-        assert!(comes_true(10_000, || self.are_held()), "nothing is pressed");
+        assert!(comes_true(|| !self.are_held()), "held for too long");
+        assert!(comes_true(|| self.are_held()), "nothing is pressed");
     }
 
     /// The program plays long presses on the X server.
@@ -62,14 +62,14 @@ fn ctrl_z_releases_then_stops_and_the_shell_brings_it_back() {
     for _ in 0..2 {
         keys.await_press();
         bridge.signal(Signal::TSTP);
-        assert!(comes_true(2_000, || bridge.state() == 'T'), "it is not stopped");
+        assert!(comes_true(|| bridge.state() == 'T'), "it is not stopped");
         assert!(!keys.are_held(), "keys stay down while it is stopped");
         bridge.signal(Signal::CONT);
-        assert!(comes_true(2_000, || bridge.status()["state"] == "playing"), "{}", bridge.status());
+        assert!(comes_true(|| bridge.status()["state"] == "playing"), "{}", bridge.status());
         keys.await_press();
     }
     bridge.signal(Signal::TERM);
-    assert_eq!(bridge.ends_within(2_000).and_then(|status| status.code()), Some(0));
+    assert_eq!(bridge.ends().and_then(|status| status.code()), Some(0));
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn ctrl_backslash_releases_and_ends() {
     let mut bridge = keys.play();
     keys.await_press();
     bridge.signal(Signal::QUIT);
-    assert_eq!(bridge.ends_within(2_000).and_then(|status| status.code()), Some(0));
+    assert_eq!(bridge.ends().and_then(|status| status.code()), Some(0));
     assert!(!keys.are_held(), "keys stay down");
 }
 
@@ -119,7 +119,7 @@ fn a_closed_terminal_releases_and_ends_whatever_plays() {
         keys.await_press();
         assert!(!bridge.has_ended(), "{verb}: {}", bridge.told());
         drop(terminal);
-        assert!(bridge.ends_within(3_000).is_some(), "{verb} plays on");
+        assert!(bridge.ends().is_some(), "{verb} plays on");
         assert!(!keys.are_held(), "{verb}: keys stay down");
     }
 }
@@ -133,10 +133,10 @@ fn a_bridge_in_the_background_ends_with_its_terminal_too() {
     let line = format!("set -m; {TACTPAD} run --pad virtual --output log:events & wait");
     let (terminal, program) = on_a_terminal(folder.path(), &["sh", "-c", &line]);
     let bridge = Running::start(folder, program);
-    assert!(comes_true(10_000, || bridge.status()["state"] == "playing"), "{}", bridge.told());
+    assert!(comes_true(|| bridge.status()["state"] == "playing"), "{}", bridge.told());
     // The shell dies of it, and passes nothing on to a process group in the background.
     drop(terminal);
-    let has_ended = comes_true(5_000, || bridge.ctl("status").status.code() == Some(1));
+    let has_ended = comes_true(|| bridge.ctl("status").status.code() == Some(1));
     bridge.ctl("quit");
     assert!(has_ended, "it plays on");
 }
@@ -153,18 +153,18 @@ fn a_bridge_under_nohup_outlives_its_terminal() {
     let mut bridge = Running::start(folder, program);
     let log = bridge.folder.path().join("events");
     let length = || fs::metadata(&log).map_or(0, |log| log.len());
-    assert!(comes_true(10_000, || length() > 0), "it does not play");
+    assert!(comes_true(|| length() > 0), "it does not play");
     drop(terminal);
     bridge.signal(Signal::HUP);
     let before = length();
-    assert!(comes_true(10_000, || length() > before), "it plays no more");
+    assert!(comes_true(|| length() > before), "it plays no more");
     assert!(
         !bridge.told().contains("profile "),
         "it was not asked to read its profile again: {}",
         bridge.told()
     );
     bridge.signal(Signal::TERM);
-    assert_eq!(bridge.ends_within(2_000).and_then(|status| status.code()), Some(0));
+    assert_eq!(bridge.ends().and_then(|status| status.code()), Some(0));
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn without_a_terminal_a_hang_up_reloads_and_so_does_ctl() {
     let mut program = Running::program("setsid", folder.path());
     program.args([TACTPAD, "run", "--pad", "virtual", "--output", "none", "--profile", "mine.toml"]);
     let bridge = Running::start(folder, program);
-    let plays = |name: &str| comes_true(5_000, || bridge.status()["profile"] == name);
+    let plays = |name: &str| comes_true(|| bridge.status()["profile"] == name);
     assert!(plays("First"), "{}", bridge.status());
     name("Second");
     bridge.signal(Signal::HUP);

@@ -98,12 +98,12 @@ impl Desktop {
         let mut panel = Self::command("xfce4-panel", self.folder.path(), &self.server.display);
         panel.arg("--disable-wm-check").env("DBUS_SESSION_BUS_ADDRESS", &self.address);
         self.panel = Some(Process(panel.spawn().unwrap()));
-        assert!(comes_true(20_000, || self.takes_icons()), "the panel does not start");
+        assert!(comes_true(|| self.takes_icons()), "the panel does not start");
     }
 
     fn end_panel(&mut self) {
         self.panel = None;
-        assert!(comes_true(10_000, || !self.takes_icons()), "the panel does not end");
+        assert!(comes_true(|| !self.takes_icons()), "the panel does not end");
     }
 
     fn takes_icons(&self) -> bool {
@@ -146,7 +146,7 @@ impl Desktop {
     /// The icon, once the panel knows it.
     fn icon(&self) -> Icon<'_> {
         let mut names: Vec<String> = Vec::new();
-        let is_there = comes_true(20_000, || {
+        let is_there = comes_true(|| {
             let items = self.property(WATCHER, WATCHER.0, "RegisteredStatusNotifierItems");
             names = items.and_then(|items| Vec::try_from(items).ok()).unwrap_or_default();
             !names.is_empty()
@@ -211,7 +211,7 @@ impl Icon<'_> {
     fn menu(&self) -> Entry {
         let mut menu = self.told();
         let is_named = |menu: &Entry| menu.below.iter().any(|entry| !entry.label.is_empty());
-        assert!(comes_true(5_000, || {
+        assert!(comes_true(|| {
             menu = self.told();
             is_named(&menu)
         }));
@@ -262,7 +262,7 @@ impl Icon<'_> {
     /// Its picture once it says something that begins like this.
     fn picture(&self, words: &str) -> Vec<u8> {
         let mut looks = (String::new(), Vec::new());
-        let found = comes_true(20_000, || {
+        let found = comes_true(|| {
             looks = self.looks();
             looks.0.starts_with(words)
         });
@@ -294,23 +294,23 @@ fn the_menu_changes_the_profile_pauses_and_ends_the_bridge() {
     let icon = desktop.icon();
     // The icon is there before the bridge has anything to say.
     let says = || icon.menu().below[0].label.starts_with("Super Mario: ");
-    assert!(comes_true(5_000, says), "{:#?}", icon.menu());
+    assert!(comes_true(says), "{:#?}", icon.menu());
     assert!(!icon.menu().below[0].is_enabled);
-    assert!(comes_true(5_000, || icon.marked() == ["super-mario"]), "{:?}", icon.marked());
+    assert!(comes_true(|| icon.marked() == ["super-mario"]), "{:?}", icon.marked());
 
     icon.click("contra");
     await_status(&bridge, "plays what was chosen", |status| status["profile"] == "Contra");
-    assert!(comes_true(5_000, || icon.marked() == ["contra"]), "{:?}", icon.marked());
+    assert!(comes_true(|| icon.marked() == ["contra"]), "{:?}", icon.marked());
     // By other means.
     assert!(bridge.ctl("profile tetris").status.success());
-    assert!(comes_true(5_000, || icon.marked() == ["tetris"]), "{:?}", icon.marked());
+    assert!(comes_true(|| icon.marked() == ["tetris"]), "{:?}", icon.marked());
     let kept = bridge.folder.path().join("tactpad/last-profile");
-    let is_kept = comes_true(5_000, || fs::read_to_string(&kept).is_ok_and(|it| it == "tetris\n"));
+    let is_kept = comes_true(|| fs::read_to_string(&kept).is_ok_and(|it| it == "tetris\n"));
     assert!(is_kept, "{:?}", fs::read_to_string(&kept));
 
     icon.click("Pause");
     await_status(&bridge, "pauses", |status| status["state"] == "paused");
-    assert!(comes_true(5_000, || icon.menu().find("Go on").is_some()));
+    assert!(comes_true(|| icon.menu().find("Go on").is_some()));
     assert!(icon.menu().below[0].label.ends_with(": paused"));
     icon.click("Go on");
     await_status(&bridge, "goes on", |status| status["state"] == "playing");
@@ -319,7 +319,7 @@ fn the_menu_changes_the_profile_pauses_and_ends_the_bridge() {
         status["state"] == "taring" || status["state"] == "loaded"
     });
     icon.click("Quit");
-    assert!(bridge.ends_within(5_000).is_some_and(|status| status.success()));
+    assert!(bridge.ends().is_some_and(|status| status.success()));
 }
 
 #[test]
@@ -335,16 +335,16 @@ fn profiles_that_come_and_cannot_be_used_are_seen_in_the_menu() {
     fs::write(own.join("mine.toml"), "schema = 1\nname = \"My & own\"\noutput = \"gamepad\"\n[dpad]\n")
         .unwrap();
     fs::write(own.join("broken.toml"), "schema = 1\nname = 5\n").unwrap();
-    assert!(comes_true(5_000, || icon.menu().find("mine").is_some() && icon.menu().find("broken").is_some()));
+    assert!(comes_true(|| icon.menu().find("mine").is_some() && icon.menu().find("broken").is_some()));
     icon.click("broken");
-    assert!(comes_true(5_000, || icon.menu().below[0].label.contains("broken.toml cannot be used")));
+    assert!(comes_true(|| icon.menu().below[0].label.contains("broken.toml cannot be used")));
     assert_eq!(
         (icon.marked(), &bridge.status()["profile"]),
         (vec!["super-mario".into()], &"Super Mario".into())
     );
     icon.click("mine");
-    assert!(comes_true(5_000, || icon.marked() == ["mine"]), "{:?}", icon.marked());
-    assert!(comes_true(5_000, || icon.menu().below[0].label.starts_with("My & own: ")), "{:#?}", icon.menu());
+    assert!(comes_true(|| icon.marked() == ["mine"]), "{:?}", icon.marked());
+    assert!(comes_true(|| icon.menu().below[0].label.starts_with("My & own: ")), "{:#?}", icon.menu());
 }
 
 #[test]
@@ -409,7 +409,7 @@ fn without_a_verb_it_plays_with_the_profile_played_last() {
     assert_eq!(icon.marked(), ["contra"]);
     assert_eq!(bridge.status()["profile"], "Contra");
     icon.click("Quit");
-    assert!(bridge.ends_within(5_000).is_some_and(|status| status.success()));
+    assert!(bridge.ends().is_some_and(|status| status.success()));
 }
 
 #[test]

@@ -10,6 +10,7 @@ use tactpad::pipeline::shipped;
 use tactpad::quantity::Contact;
 
 use crate::control::await_status;
+use crate::guest::in_guest;
 use crate::running::Running;
 
 const TACTPAD: &str = env!("CARGO_BIN_EXE_tactpad");
@@ -29,6 +30,10 @@ fn text(bytes: Vec<u8>) -> String {
 
 #[test]
 fn an_old_pad_is_weighed_on_kept_and_replayed() {
+    in_guest("weighing::an_old_pad_is_weighed_on_kept_and_replayed", weighed_kept_and_replayed);
+}
+
+fn weighed_kept_and_replayed() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path().to_owned();
     fs::write(at.join("old.toml"), OLD).unwrap();
@@ -60,7 +65,7 @@ fn an_old_pad_is_weighed_on_kept_and_replayed() {
     assert!(text(bridge.ctl("status").stdout).contains("\ngain     the pad reads 9."));
 
     assert!(bridge.ctl("quit").status.success());
-    assert!(bridge.ends_within(5_000).is_some_and(|status| status.success()));
+    assert!(bridge.ends().is_some_and(|status| status.success()));
     assert_eq!(text(tactpad(&at, "replay again.cap").stdout), fs::read_to_string(at.join("events")).unwrap());
 
     let command = said.lines().find_map(|line| line.strip_prefix("To keep it: tactpad ")).unwrap();

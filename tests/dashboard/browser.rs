@@ -101,9 +101,9 @@ impl Browser {
         self.post("execute/sync", &json!({"script": script, "args": []}))
     }
 
-    /// Waits until an expression is true in the page, ten seconds at most.
+    /// Waits until an expression is true in the page.
     pub(crate) fn wait(&self, expression: &str) {
-        let holds = comes_true(10_000, || self.run(&format!("return Boolean({expression})")) == true);
+        let holds = comes_true(|| self.run(&format!("return Boolean({expression})")) == true);
         assert!(
             holds,
             "{expression} does not come true; the page shows {}",

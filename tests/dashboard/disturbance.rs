@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::io::{BufRead, BufReader};
 use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Mutex};
-use std::{env, fs, thread};
+use std::{fs, thread};
 
 use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
@@ -31,8 +31,8 @@ const PROFILE: &str = "schema = 1\nname = \"way\"\noutput = \"gamepad\"\nfilter_
 
 /// Blocks of each kind, interleaved.
 const BLOCKS: usize = 5;
-/// Frames of a block, where `TACTPAD_PAGE_FRAMES` names no other number.
-const FRAMES: usize = 2_000;
+/// Frames of a block.
+const FRAMES: usize = 20_000;
 /// The pad's rate.
 const PERIOD_US: u64 = 250;
 /// Each so manieth frame presses, or lifts to half of the threshold.
@@ -144,9 +144,9 @@ fn p99(took_us: &[f64]) -> f64 {
 }
 
 #[test]
+#[ignore = "proof: two minutes that measure what a page costs, which only a quiet machine tells"]
 fn an_open_page_makes_the_live_path_hardly_slower() {
-    let frames = env::var("TACTPAD_PAGE_FRAMES").ok().and_then(|frames| frames.parse().ok());
-    let events = frames.unwrap_or(FRAMES) / FRAMES_PER_EDGE as usize;
+    let events = FRAMES / FRAMES_PER_EDGE as usize;
     let (measured, other) = (Way::start(), Way::start());
     let Some(browser) = Browser::open_alone(&other.shown.url) else { return };
     let show = |way: &Way| {
@@ -158,7 +158,7 @@ fn an_open_page_makes_the_live_path_hardly_slower() {
     };
     for way in [&measured, &other] {
         assert!(
-            comes_true(10_000, || way.shown.status()["held"].to_string().contains("BTN_SOUTH")),
+            comes_true(|| way.shown.status()["held"].to_string().contains("BTN_SOUTH")),
             "{}",
             way.shown.status()
         );
@@ -181,5 +181,5 @@ fn an_open_page_makes_the_live_path_hardly_slower() {
     );
     let lost = measured.shown.status()["health"]["frames_lost"].clone();
     assert_eq!(lost, 0);
-    assert!(frames.is_none() || on <= RATIO_MAX * off, "{on} µs with the page, {off} µs without");
+    assert!(on <= RATIO_MAX * off, "{on} µs with the page, {off} µs without");
 }

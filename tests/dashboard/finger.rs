@@ -1,5 +1,6 @@
 //! A pad on a terminal whose finger a test moves.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use firmware_proto::ENCODED_MAX;
@@ -12,8 +13,15 @@ use tactpad::pad::field::PadField;
 use tactpad::pad::twin::pad::{Circumstances, TwinPad};
 use tactpad::quantity::Contact;
 
+use crate::running::comes_true;
+
 /// Microvolts per count of a pad that does not identify itself.
 const UV_PER_COUNT: f64 = 0.01;
+
+/// Half of the time from one press of [`Finger::pulse`] to the next.
+const HALF_PULSE_MS: u64 = 20;
+/// From one press of [`Finger::pulse`] to the next.
+pub(crate) const PULSE_MS: u64 = 2 * HALF_PULSE_MS;
 
 /// The pad's noise is the same each time.
 const SEED: u64 = 1;
@@ -22,6 +30,8 @@ const SEED: u64 = 1;
 pub(crate) struct Finger {
     pad: VirtualPad,
     does: Arc<Mutex<Does>>,
+    /// The pad's own time.
+    time_us: Arc<AtomicU64>,
 }
 
 /// What the finger does.
@@ -41,7 +51,7 @@ impl Does {
         match self {
             Self::Nothing => None,
             Self::Press(contact) => Some(contact),
-            Self::Pulse(contact) if (time_us / 20_000).is_multiple_of(2) => Some(contact),
+            Self::Pulse(contact) if (time_us / (1_000 * HALF_PULSE_MS)).is_multiple_of(2) => Some(contact),
             Self::Pulse(contact) => Some(Contact { fz_n: 0.4, ..contact }),
         }
     }
@@ -51,6 +61,7 @@ struct Firmware {
     pad: TwinPad,
     temperature_c: f64,
     does: Arc<Mutex<Does>>,
+    time_us: Arc<AtomicU64>,
     period_us: u64,
     sequence: u32,
 }
@@ -58,15 +69,16 @@ struct Firmware {
 impl Finger {
     /// A pad at 1 kHz that nothing touches.
     pub(crate) fn start() -> Self {
-        let does = Arc::default();
+        let (does, time_us) = (Arc::default(), Arc::default());
         let firmware = Firmware {
             pad: TwinPad::new(&Device::nominal(), &PadField::nominal(), SEED),
             temperature_c: Device::nominal().behaviour.thermal.reference_c,
             does: Arc::clone(&does),
+            time_us: Arc::clone(&time_us),
             period_us: 1_000,
             sequence: 0,
         };
-        Self { pad: VirtualPad::start(firmware).unwrap(), does }
+        Self { pad: VirtualPad::start(firmware).unwrap(), does, time_us }
     }
 
     /// The pad as `--pad` names it.
@@ -82,6 +94,12 @@ impl Finger {
     /// Presses again and again so hard from now on: a force that is on when a profile changes counts only once it was off.
     pub(crate) fn pulse(&self, x_mm: f32, y_mm: f32, fz_n: f32) {
         *self.does.lock().unwrap() = Does::Pulse(Contact { x_mm, y_mm, fz_n, ..Contact::default() });
+    }
+
+    /// Goes on like this for so long by the pad's own time: a machine that is late does not shorten it.
+    pub(crate) fn stays(&self, for_ms: u64) {
+        let until_us = self.time_us.load(Ordering::SeqCst) + 1_000 * for_ms;
+        assert!(comes_true(|| self.time_us.load(Ordering::SeqCst) >= until_us), "the pad stands still");
     }
 
     /// Lifts the finger.
@@ -100,6 +118,7 @@ impl PadFirmware for Firmware {
     fn emit(&mut self, now_us: u64, bytes: &mut Vec<u8>) {
         while self.due_us() <= now_us {
             let time_us = self.due_us();
+            self.time_us.store(time_us, Ordering::SeqCst);
             self.sequence += 1;
             let held: Vec<Contact> = self.does.lock().unwrap().contact(time_us).into_iter().collect();
             let around = Circumstances { temperature_c: self.temperature_c, cycles: 0.0 };

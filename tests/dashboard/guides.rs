@@ -33,15 +33,11 @@ fn the_first_run_goes_from_the_pad_to_the_third_press() {
     browser.wait("document.getElementById('guides').innerText.includes('0 of 3 touches')");
     for touches in 1..=3 {
         finger.press(0.0, 0.0, 1.0);
-        assert!(comes_true(1_000, || shown.status()["contact"] != Value::Null));
+        assert!(comes_true(|| shown.status()["contact"] != Value::Null));
         finger.lift();
-        assert!(comes_true(1_000, || shown.status()["contact"] == Value::Null), "touch {touches}");
+        assert!(comes_true(|| shown.status()["contact"] == Value::Null), "touch {touches}");
     }
-    assert!(
-        comes_true(2_000, || guide(&shown, "first-run")["state"] == "done"),
-        "{}",
-        guide(&shown, "first-run")
-    );
+    assert!(comes_true(|| guide(&shown, "first-run")["state"] == "done"), "{}", guide(&shown, "first-run"));
     assert_eq!(states(&guide(&shown, "first-run")), ["done"; 4]);
     assert_eq!(act(&shown, "first-run", "dance").0, 409);
     assert_eq!(act(&shown, "no-guide", "start").0, 404);
@@ -54,14 +50,15 @@ fn press_for(finger: &Finger, shown: &Shown, seconds: u32, fz_n: f32, until: imp
             return;
         }
         finger.press(0.0, 0.0, fz_n);
-        assert!(comes_true(1_000, || shown.status()["contact"] != Value::Null));
-        comes_true(200, || false);
+        assert!(comes_true(|| shown.status()["contact"] != Value::Null));
+        finger.stays(200);
         finger.lift();
-        comes_true(200, || false);
+        finger.stays(200);
     }
 }
 
 #[test]
+#[ignore = "proof: the guide listens for a minute of real time"]
 fn half_a_minute_of_presses_gives_a_draft_with_the_forces_of_the_hand() {
     let finger = Finger::start();
     let shown = Shown::start(&finger.address(), "contra");
@@ -74,7 +71,7 @@ fn half_a_minute_of_presses_gives_a_draft_with_the_forces_of_the_hand() {
     assert_eq!(states(&guide(&shown, "force-range")), ["done", "doing", "todo"]);
     press_for(&finger, &shown, 30, 4.0, || guide(&shown, "force-range")["steps"][1]["state"] != "doing");
     assert!(
-        comes_true(20_000, || guide(&shown, "force-range")["state"] == "done"),
+        comes_true(|| guide(&shown, "force-range")["state"] == "done"),
         "{}",
         guide(&shown, "force-range")
     );
@@ -97,10 +94,10 @@ fn cues_ask_for_what_the_profile_can_and_are_stopped_at_any_time() {
     shown.wait_until_playing();
     let (status, begun) = act(&shown, "tune", "start");
     assert_eq!((status, begun["state"].as_str()), (200, Some("running")));
-    assert!(comes_true(3_000, || guide(&shown, "tune")["steps"][0]["cue"]
+    assert!(comes_true(|| guide(&shown, "tune")["steps"][0]["cue"]
         .as_str()
         .is_some_and(|cue| cue.contains("right"))));
-    assert!(comes_true(3_000, || guide(&shown, "tune")["steps"][0]["cue"]
+    assert!(comes_true(|| guide(&shown, "tune")["steps"][0]["cue"]
         .as_str()
         .is_some_and(|cue| cue.contains("up"))));
     assert_eq!(act(&shown, "tune", "stop").1["state"], "idle");

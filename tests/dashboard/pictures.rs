@@ -17,14 +17,14 @@ fn each_view_is_taken_where_a_folder_is_named() {
     let shown = Shown::start("virtual", "contra");
     let Some(browser) = Browser::open(&shown.url) else { return };
     shown.wait_until_playing();
-    assert!(comes_true(20_000, || shown.log().contains("BTN_EAST")), "{}", shown.log());
+    assert!(comes_true(|| shown.log().contains("BTN_EAST")), "{}", shown.log());
     for (view, [width, height], file) in PICTURES {
         browser.resize(width, height);
         browser.view(view);
         if view == "profile" {
             browser.wait("document.querySelector('[data-handle]')");
         }
-        assert!(comes_true(2_000, || shown.status()["contact"]["fz_n"].as_f64() > Some(1.0)), "{view}");
+        assert!(comes_true(|| shown.status()["contact"]["fz_n"].as_f64() > Some(1.0)), "{view}");
         browser.run("document.activeElement.blur()");
         fs::write(folder.join(file), browser.picture()).unwrap();
     }

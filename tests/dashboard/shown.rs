@@ -30,7 +30,7 @@ impl Shown {
         program.env("XDG_STATE_HOME", folder.path());
         let running = Running::start(folder, program);
         let mut url = String::new();
-        let told = comes_true(10_000, || {
+        let told = comes_true(|| {
             let told = running.told();
             url =
                 told.lines().find_map(|line| line.strip_prefix("Dashboard: ")).unwrap_or_default().to_owned();
@@ -54,7 +54,7 @@ impl Shown {
 
     /// Waits until the bridge plays.
     pub(crate) fn wait_until_playing(&self) {
-        assert!(comes_true(10_000, || self.status()["state"] == "playing"), "{}", self.status());
+        assert!(comes_true(|| self.status()["state"] == "playing"), "{}", self.status());
     }
 
     /// The file of the user's own profile of this name.

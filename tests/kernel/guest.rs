@@ -1,56 +1,91 @@
 //! Boots a Linux kernel as an ordinary process (User-Mode Linux) and runs this same test executable inside it.
 //!
 //! The guest has uinput and evdev whatever the host has, and runs as root there without being root here. Its root is
-//! the host's, read-only under a throw-away layer. One guest runs at a time, pinned to one processor, because
-//! a kernel that its host moves about or starves tells nothing about time.
+//! the host's, read-only under a throw-away layer.
+//!
+//! Its time is virtual: work takes none, and where nobody has work it jumps to the next deadline. So nothing inside is ever
+//! late, whatever else the host does, and bounds on times hold exactly. What only real time can tell, how much work
+//! something is, has a guest in real time. A guest is pinned to one processor: its processes take turns anyway.
+
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    dead_code,
+    reason = "a test may stop at what it did not expect, and shows what it saw; each program uses a part"
+)]
 
 use std::env;
 use std::fs::{self, File};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::thread;
 
 use rustix::fs::{StatVfsMountFlags, statvfs};
 
 use crate::clock::{MS, monotonic_ns, wait_until};
-use crate::support::require;
+use crate::support::{leave_out, require};
 
 /// Said by the guest after the body, so that a guest that ran no test cannot pass.
 const BODY_DONE: &str = "guest: body done";
 
-/// A whole guest run that takes longer is killed.
-const TIME_LIMIT_S: &str = "300";
+/// A whole guest run that takes longer is killed: it hangs.
+const TIME_LIMIT_S: &str = "1200";
 
-/// Memory of the guest.
-const MEMORY_MIB: u64 = 384;
+/// Memory of the guest. What it does not use costs the host nothing.
+const MEMORY_MIB: u64 = 768;
 
 /// Directories of the guest's first root: mount points of `init.sh`.
 const MOUNT_POINTS: [&str; 6] = ["proc", "sys", "dev", "lower", "upper", "root"];
 
-/// Runs `body` inside a guest kernel. `name` is the name of the calling test, by which the guest finds it again.
+/// How time passes in a guest.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Time {
+    /// Only where nobody has work.
+    Virtual,
+    /// As on the host.
+    Real,
+}
+
+impl Time {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Virtual => "virtual",
+            Self::Real => "real",
+        }
+    }
+}
+
+/// Runs `body` inside a guest kernel, in virtual time. `name` is the name of the calling test, by which the guest finds it
+/// again.
 ///
 /// On the host: boots the guest, shows what it printed, and panics unless the body ran to its end there.
 pub(crate) fn in_guest(name: &str, body: impl FnOnce()) {
+    run(Time::Virtual, name, body);
+}
+
+/// The same in real time.
+pub(crate) fn in_guest_in_real_time(name: &str, body: impl FnOnce()) {
+    run(Time::Real, name, body);
+}
+
+fn run(time: Time, name: &str, body: impl FnOnce()) {
     if inside() {
         let _watch = StallWatch::start();
         body();
         println!("{BODY_DONE}");
         return;
     }
-    let kernel = kernel();
-    if !require(&kernel.to_string_lossy(), "tests/kernel/build-kernel.sh")
-        || !require("busybox", "apt-get install busybox-static")
-        || !require("taskset", "apt-get install util-linux")
-    {
-        return;
-    }
-    let lock = File::create(scratch().join("guest.lock")).expect("a lock file");
+    let Some(kernel) = kernel_for(time) else { return };
+    let processor = next_processor();
+    let lock = File::create(scratch().join(format!("guest-{processor}.lock"))).expect("a lock file");
     lock.lock().expect("the guest's turn");
-    for again in (0..REPEATS_MAX).rev() {
-        let root = first_root(name);
-        let output = boot(&kernel, root.path());
+    let repeats_max = if time == Time::Real { REPEATS_MAX } else { 1 };
+    for again in (0..repeats_max).rev() {
+        let root = first_root(name, time);
+        let output = boot(&kernel, root.path(), time, processor);
         let said = String::from_utf8_lossy(&output.stdout).replace('\r', "");
         println!("{}", said.trim_end().trim_end_matches("reboot: Power down"));
         let exit_code = fs::read_to_string(root.path().join("exit-code")).unwrap_or_default();
@@ -71,7 +106,35 @@ pub(crate) fn in_guest(name: &str, body: impl FnOnce()) {
     }
 }
 
-/// A run is made anew at most this often, and only if the machine stood still meanwhile.
+/// The kernel, if this machine has all that a guest needs.
+fn kernel_for(time: Time) -> Option<PathBuf> {
+    let kernel = kernel();
+    let is_there = require(&kernel.to_string_lossy(), BUILD)
+        && require("busybox", "apt-get install busybox-static")
+        && require("taskset", "apt-get install util-linux");
+    if !is_there {
+        return None;
+    }
+    if time == Time::Virtual && !has_virtual_time(&kernel) {
+        leave_out(&format!("virtual time in {}", kernel.display()), BUILD);
+        return None;
+    }
+    Some(kernel)
+}
+
+/// What makes the kernel.
+const BUILD: &str = "tests/kernel/build-kernel.sh";
+
+/// Whether the kernel was built with virtual time. It tells its settings without booting.
+fn has_virtual_time(kernel: &Path) -> bool {
+    static ANSWER: OnceLock<bool> = OnceLock::new();
+    *ANSWER.get_or_init(|| {
+        let told = Command::new(kernel).arg("--showconfig").output().expect("the kernel's settings");
+        String::from_utf8_lossy(&told.stdout).lines().any(|line| line == "CONFIG_UML_TIME_TRAVEL_SUPPORT=y")
+    })
+}
+
+/// A run in real time is made anew at most this often, and only if the machine stood still meanwhile.
 const REPEATS_MAX: u32 = 4;
 
 /// Standing still for this long may look like silence to the bridge: half of what it waits.
@@ -91,9 +154,12 @@ fn longest_stall_ms(said: &str) -> u64 {
 /// For how long this guest stood still so far, at most.
 static STOOD_STILL_MS: AtomicU64 = AtomicU64::new(0);
 
-/// By how much anything in the guest may have been late so far: the longest stall in full. The watch sees only what of
-/// it lies past its own deadline, to the millisecond; up to a whole wait may lie before.
+/// By how much anything in the guest may have been late so far: in virtual time not at all, in real time the longest stall
+/// in full. The watch sees only what of it lies past its own deadline, to the millisecond; up to a whole wait may lie before.
 pub(crate) fn lateness_ms() -> u64 {
+    if env::var("TACTPAD_IN_GUEST").as_deref() == Ok(Time::Virtual.name()) {
+        return 0;
+    }
     STOOD_STILL_MS.load(Ordering::Relaxed) + WATCH_MS + 1
 }
 
@@ -138,7 +204,7 @@ fn kernel() -> PathBuf {
 }
 
 /// The guest's first root: its first process, a shell to run that, and the command.
-fn first_root(name: &str) -> tempfile::TempDir {
+fn first_root(name: &str, time: Time) -> tempfile::TempDir {
     let root = tempfile::Builder::new().prefix("guest-").tempdir_in(scratch()).expect("a scratch directory");
     for folder in MOUNT_POINTS {
         fs::create_dir(root.path().join(folder)).expect("a mount point");
@@ -150,9 +216,10 @@ fn first_root(name: &str) -> tempfile::TempDir {
     fs::copy(shell, root.path().join("busybox")).expect("a copy of busybox");
     write_script(&root.path().join("init"), include_str!("init.sh"));
     let command = format!(
-        "#!/bin/sh\ncd {} && TACTPAD_IN_GUEST=1 {} exec {} --exact {name} --nocapture\n",
+        "#!/bin/sh\ncd {} && {} TACTPAD_IN_GUEST={} exec {} --exact {name} --nocapture\n",
         quoted(&env::current_dir().expect("a working directory").to_string_lossy()),
         settings(),
+        time.name(),
         quoted(&env::current_exe().expect("this executable's path").to_string_lossy())
     );
     write_script(&root.path().join("command"), &command);
@@ -175,14 +242,19 @@ fn write_script(path: &Path, text: &str) {
     fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("an executable script");
 }
 
-fn boot(kernel: &Path, root: &Path) -> Output {
-    Command::new("timeout")
-        .args(["-k", "2", TIME_LIMIT_S, "taskset", "-c", &last_processor()])
+fn boot(kernel: &Path, root: &Path, time: Time, processor: usize) -> Output {
+    let mut command = Command::new("timeout");
+    command
+        .args(["-k", "2", TIME_LIMIT_S, "taskset", "-c", &processor.to_string()])
         .arg(kernel)
         .arg(format!("mem={MEMORY_MIB}M"))
         .args(["rootfstype=hostfs", "rw", "init=/init", "con=null", "con0=null,fd:1", "quiet", "loglevel=1"])
         .arg(format!("rootflags={}", root.display()))
-        .arg(format!("uml_dir={}", root.display()))
+        .arg(format!("uml_dir={}", root.display()));
+    if time == Time::Virtual {
+        command.arg("time-travel=inf-cpu");
+    }
+    command
         .env("TMPDIR", memory_folder())
         .stdin(std::process::Stdio::null())
         .output()
@@ -198,10 +270,22 @@ fn memory_folder() -> PathBuf {
     if fits { shared.to_path_buf() } else { env::temp_dir() }
 }
 
-/// The highest-numbered processor that this process may use, as `taskset` wants it.
-fn last_processor() -> String {
+/// A processor that this process may use: one after the other, so that as many guests run as there are.
+fn next_processor() -> usize {
+    static NEXT: AtomicUsize = AtomicUsize::new(0);
+    let processors = processors();
+    processors[NEXT.fetch_add(1, Ordering::Relaxed) % processors.len()]
+}
+
+/// The processors that this process may use.
+fn processors() -> Vec<usize> {
     let status = fs::read_to_string("/proc/self/status").expect("/proc");
     let list =
         status.lines().find_map(|line| line.strip_prefix("Cpus_allowed_list:")).expect("a processor list");
-    list.trim().rsplit([',', '-']).next().expect("rsplit yields at least one part").to_owned()
+    let number = |text: &str| text.trim().parse::<usize>().expect("a processor's number");
+    let range = |range: &str| {
+        let (first, last) = range.split_once('-').unwrap_or((range, range));
+        number(first)..=number(last)
+    };
+    list.split(',').flat_map(range).collect()
 }

@@ -1,8 +1,9 @@
 //! A HID pad made with uhid: the kernel takes it for a USB device.
 
-use std::fs::{File, OpenOptions};
+use std::fs::{self, File, OpenOptions, read_dir};
 use std::io::{Read, Write};
 use std::os::fd::AsFd;
+use std::path::Path;
 
 use evdev::KeyCode;
 use firmware_proto::command::Command;
@@ -30,6 +31,9 @@ const DATA_LEN: usize = 4_096;
 /// Bytes of the longest event: its kind and the request to create a device.
 const EVENT_LEN: usize = 4 + 128 + 64 + 64 + 2 + 2 + 4 * 4 + DATA_LEN;
 const BUS_USB: u16 = 3;
+
+/// How long the kernel may take to make a device.
+const DEVICE_LIMIT_MS: u64 = 5_000;
 
 /// A pad without noise, 0.01 µV per count, that answers the question who it is.
 pub(crate) struct HidPad {
@@ -59,7 +63,28 @@ impl HidPad {
         event.extend(hid::REPORT_DESCRIPTOR);
         event.resize(EVENT_LEN, 0);
         pad.uhid.write_all(&event).expect("a HID device");
+        pad.wait_until_known();
         pad
+    }
+
+    /// Waits until the system has its device: the kernel makes that on a thread of its own.
+    fn wait_until_known(&self) {
+        let limit_ns = monotonic_ns() + DEVICE_LIMIT_MS * MS;
+        while !self.is_known() {
+            assert!(monotonic_ns() < limit_ns, "the kernel makes no device of {}", self.serial_number);
+            wait_until(monotonic_ns() + MS);
+        }
+    }
+
+    fn is_known(&self) -> bool {
+        let serial_number = format!("HID_UNIQ={}", self.serial_number);
+        read_dir("/sys/class/hidraw").is_ok_and(|nodes| {
+            nodes.flatten().any(|node| {
+                let told = fs::read_to_string(node.path().join("device/uevent")).unwrap_or_default();
+                told.lines().any(|line| line == serial_number)
+                    && Path::new("/dev").join(node.file_name()).exists()
+            })
+        })
     }
 
     /// Pulls the plug; returns the stamp of that moment.

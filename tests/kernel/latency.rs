@@ -45,6 +45,10 @@ const RECOVERY_FRAMES: usize = 500;
 /// An edge that takes longer is lost.
 const EDGE_LIMIT_MS: u64 = 200;
 
+/// In virtual time work takes none: only reading a clock does, a quarter of a microsecond. An edge that takes longer than
+/// this was waiting for something.
+const WAITED_NS: u64 = 100_000;
+
 /// A pad, what reads it, and the device that comes of it.
 struct Way {
     pad: Pad,
@@ -54,6 +58,20 @@ struct Way {
     /// How many events the settling frames make.
     settling_events: usize,
     took_ns: Vec<u64>,
+}
+
+/// Between the pad's write and the game's read of an edge the bridge waits for nothing.
+pub(crate) fn waits_for_nothing() {
+    let mut way = bridge();
+    for number in 0..EDGES {
+        for _ in 0..SETTLING_FRAMES {
+            way.pad.stream_one(way.touch(), monotonic_ns() + MS);
+        }
+        assert!(way.edge().is_ok(), "edge {number} comes a millisecond after a frame");
+    }
+    let longest_ns = way.took_ns.iter().max().expect("edges");
+    println!("{EDGES} edges; the longest took {longest_ns} ns of virtual time");
+    assert!(*longest_ns <= WAITED_NS, "an edge took {longest_ns} ns, in which nobody worked");
 }
 
 /// The bridge's median is at most twice the echo's, and 20 µs.

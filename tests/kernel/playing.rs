@@ -41,6 +41,12 @@ fn slack_ms() -> u64 {
     SLACK_MS + FILTER_SAMPLES * (period_ns() / MS - 1)
 }
 
+/// Presses one after the other; a bridge that loses one in fifty loses some of them.
+const PRESSES: u64 = 150;
+
+/// From where the finger comes or goes until the game hears of it, at most: the filter's window, and nothing else.
+const EDGE_LIMIT_MS: u64 = FILTER_SAMPLES + 1;
+
 /// The virtual gamepad is the wired Xbox 360 pad bit by bit, and plays.
 pub(crate) fn gamepad() {
     // The machine may have a keyboard of its own.
@@ -91,6 +97,24 @@ pub(crate) fn keyboard() {
     assert_eq!(bridge.reader.edges(), expected);
     check_durations(&bridge, hold_start_ns, "KEY_Z", "KEY_X");
     assert_eq!(find(KeyCode::BTN_SOUTH), None, "a keyboard profile makes no gamepad");
+}
+
+/// Not one press is lost, none is late, and none is let go late, however long they and the pauses between them are.
+pub(crate) fn every_press() {
+    let mut bridge = Bridge::start("contra", KeyCode::BTN_SOUTH);
+    for number in 0..PRESSES {
+        bridge.reader.seen.clear();
+        let pressed_ns = stamp_ns();
+        bridge.pad.hold(PRESS, 50 + 10 * (number % 7));
+        let lifted_ns = stamp_ns();
+        bridge.pad.hold(NONE, 60 + 10 * (number % 5));
+        bridge.reader.read_available();
+        assert_eq!(bridge.reader.edges(), [("BTN_SOUTH", 1), ("BTN_SOUTH", 0)], "press {number}");
+        for (edge, from_ns) in bridge.reader.seen.iter().zip([pressed_ns, lifted_ns]) {
+            let late_us = (edge.at_ns - from_ns) / 1_000;
+            assert!(late_us <= 1_000 * EDGE_LIMIT_MS, "press {number}: {edge:?} after {late_us} us");
+        }
+    }
 }
 
 /// The pointer is a mouse of its own: the profile makes nothing else, and touches move it and click.

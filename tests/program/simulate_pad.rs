@@ -8,7 +8,6 @@ use std::sync::LazyLock;
 
 use tactpad::mechanics::simulator::PLATE_DEGREE;
 use tactpad::numeric::zernike::jets;
-#[cfg(feature = "simulator")]
 use tactpad::pad::changes::FieldChanges;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
@@ -176,13 +175,11 @@ fn calibrates_as_the_field_that_is_kept(are_changes_kept: bool) {
     assert!(computed == kept, "the first run wrote another decoder than the second");
 }
 
-#[cfg(feature = "simulator")]
 #[test]
 fn a_field_that_was_just_computed_calibrates_as_the_one_that_is_kept() {
     calibrates_as_the_field_that_is_kept(true);
 }
 
-#[cfg(feature = "simulator")]
 #[test]
 #[ignore = "proof: 60 s: what flaws change in the field is computed, too"]
 fn a_field_and_changes_that_were_just_computed_calibrate_as_those_that_are_kept() {

@@ -433,17 +433,28 @@ fn poll_once(fds: &mut [PollFd<'_>], timeout: Option<&Timespec>) -> io::Result<(
 
 #[cfg(test)]
 mod tests {
+    use std::os::fd::{AsFd, BorrowedFd};
     use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use firmware_proto::ENCODED_MAX;
+    use firmware_proto::frame::Message;
+    use firmware_proto::link::encode_message;
+    use firmware_proto::sample::{Sample, Status};
 
     use super::*;
     use crate::changes::ChangesSlot;
     use crate::opening::{OpenedPad, Patience};
     use crate::parts::PlayingDecoder;
     use crate::sink::null::NullSink;
+    use crate::sink::{Sink, SinkError};
+    use crate::transport::Transport;
     use crate::transport::pads::PadError;
+    use tactpad_core::pad::field::PadField;
+    use tactpad_core::pipeline::control::{OutputDevice, OutputEvent};
     use tactpad_core::pipeline::mapping::check::OutputChoice;
     use tactpad_core::pipeline::mapping::shipped as profiles;
     use tactpad_core::pipeline::shipped;
+    use tactpad_core::quantity::Contact;
 
     /// Remembers what it was told.
     #[derive(Clone, Default)]
@@ -472,6 +483,11 @@ mod tests {
             looking.fetch_add(1, Ordering::Relaxed);
             Err(PadError::NotThere("no".into()))
         }));
+        (bridge(pad, Box::new(NullSink), &ear), ear, looked)
+    }
+
+    /// A bridge that plays Contra on this pad.
+    fn bridge(pad: OpenedPad, sink: Box<dyn Sink>, ear: &Ear) -> Bridge {
         let bridge = Bridge::new(Parts {
             pad,
             patience: Patience::Endless,
@@ -482,7 +498,7 @@ mod tests {
                 file: None,
             },
             profile: ear.clone().read_profile(Some("contra")).unwrap(),
-            sink: Box::new(NullSink),
+            sink,
             requests: Requests::new().unwrap(),
             host: Box::new(ear.clone()),
             record: None,
@@ -490,7 +506,7 @@ mod tests {
             changes: ChangesSlot::default(),
             duration_us: None,
         });
-        (bridge.unwrap(), ear, looked)
+        bridge.unwrap()
     }
 
     const ASLEEP: Woken = Woken { pad: false, request: false };
@@ -546,6 +562,182 @@ mod tests {
         assert_eq!(ask(Command::NextProfile).1, "Tetris");
         let told = ear.0.lock().unwrap();
         assert_eq!(*told, ["profile Tetris", "there is no next one\nthe profile in use stays"]);
+    }
+
+    /// What a pad has sent and nobody has read; nothing when it is pulled out.
+    type Line = Arc<Mutex<Option<Vec<u8>>>>;
+
+    /// A pad that speaks when a test says so.
+    struct Told {
+        line: Line,
+        nothing: std::fs::File,
+    }
+
+    impl Transport for Told {
+        fn fd(&self) -> BorrowedFd<'_> {
+            self.nothing.as_fd()
+        }
+
+        fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+            let mut line = self.line.lock().unwrap();
+            let unread = line.as_mut().ok_or(io::ErrorKind::BrokenPipe)?;
+            let count = unread.len().min(bytes.len());
+            bytes[..count].copy_from_slice(&unread[..count]);
+            unread.drain(..count);
+            if count == 0 { Err(io::ErrorKind::WouldBlock.into()) } else { Ok(count) }
+        }
+
+        fn send(&mut self, _command: &firmware_proto::command::Command) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    /// Writes down the groups that go out.
+    #[derive(Clone, Default)]
+    struct Written(Arc<Mutex<Vec<OutputEvent>>>);
+
+    impl Sink for Written {
+        fn prepare(&mut self, _device: OutputDevice) -> Result<(), SinkError> {
+            Ok(())
+        }
+
+        fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {
+            self.0.lock().unwrap().extend_from_slice(group);
+            Ok(())
+        }
+
+        fn describe(&self) -> String {
+            "a test".into()
+        }
+    }
+
+    /// A bridge and its pad in virtual time: whatever is to happen happens at the moment when it is due.
+    struct Play {
+        bridge: Bridge,
+        line: Line,
+        written: Written,
+        now: HostInstant,
+        sequence: u32,
+        uv_per_n: [f32; 9],
+    }
+
+    /// What goes out, with its value, and how long after the last change of the finger, in microseconds.
+    type Edge = (String, i32, u64);
+
+    impl Play {
+        /// A pad at 1 kHz whose zero is known.
+        fn start() -> Self {
+            let (line, written) = (Line::new(Mutex::new(Some(Vec::new()))), Written::default());
+            let nothing = std::fs::File::open("/dev/null").unwrap();
+            let mut first: Option<Box<dyn Transport>> =
+                Some(Box::new(Told { line: Arc::clone(&line), nothing }));
+            let pad =
+                OpenedPad::absent(Box::new(move || first.take().ok_or(PadError::NotThere("no".into()))));
+            let bridge = bridge(pad, Box::new(written.clone()), &Ear::default());
+            let now = bridge.snapshot_at;
+            let press = Contact { fz_n: 1.0, ..Contact::default() };
+            let uv_per_n = PadField::nominal().signals.strain_uv(&press).uv;
+            let mut play = Self { bridge, line, written, now, sequence: 0, uv_per_n };
+            play.wait(1_000);
+            assert_eq!(play.press(0.0, 1_000), []);
+            play
+        }
+
+        /// Lets time pass in which the pad says nothing; what goes out.
+        fn wait(&mut self, ms: u64) -> Vec<Edge> {
+            let (begin, end) = (self.now, self.now.plus_us(1_000 * ms));
+            let mut edges = Vec::new();
+            while let Some(due) = self.bridge.next_deadline().filter(|due| *due < end) {
+                self.now = due.max(self.now);
+                assert_eq!(self.bridge.turn(self.now, ASLEEP).unwrap(), None);
+                edges.extend(self.take(begin));
+            }
+            self.now = end;
+            edges
+        }
+
+        /// The finger presses with this force for so long; what goes out.
+        fn press(&mut self, fz_n: f32, ms: u64) -> Vec<Edge> {
+            let begin = self.now;
+            let mut edges = Vec::new();
+            for _ in 0..ms {
+                self.send(fz_n);
+                edges.extend(self.heard(begin));
+                let waited_us = self.now.us_since(begin);
+                let late = self.wait(1).into_iter();
+                edges.extend(late.map(|(code, value, after_us)| (code, value, waited_us + after_us)));
+            }
+            edges
+        }
+
+        /// The pad sends a frame.
+        fn send(&mut self, fz_n: f32) {
+            self.sequence += 1;
+            // A channel that stands still for long is a fault: the last digit moves.
+            let jitter = (self.sequence % 2) as i32;
+            let sample = Sample {
+                sequence: self.sequence,
+                time_us: 1_000 * u64::from(self.sequence),
+                counts: self.uv_per_n.map(|uv| (100.0 * uv * fz_n) as i32 + jitter),
+                temperature_centi_c: 2_500,
+                status: Status::OK,
+            };
+            let mut frame = [0; ENCODED_MAX];
+            let length = encode_message(&Message::Sample(sample), &mut frame);
+            self.line.lock().unwrap().as_mut().unwrap().extend_from_slice(&frame[..length]);
+        }
+
+        /// The bridge hears its pad now.
+        fn heard(&mut self, begin: HostInstant) -> Vec<Edge> {
+            let woken = Woken { pad: true, request: false };
+            assert_eq!(self.bridge.turn(self.now, woken).unwrap(), None);
+            self.take(begin)
+        }
+
+        fn take(&self, begin: HostInstant) -> Vec<Edge> {
+            let after_us = self.now.us_since(begin);
+            let written = std::mem::take(&mut *self.written.0.lock().unwrap());
+            written.iter().map(|event| (event.code.to_string(), event.value, after_us)).collect()
+        }
+    }
+
+    /// From where the finger comes or goes: the filter's six samples.
+    const EDGE_MAX_US: u64 = 6_000;
+
+    /// What a press must come to, and when at the latest.
+    fn is_edge(edges: &[Edge], value: i32, after_max_us: u64) -> bool {
+        matches!(edges, [(code, is, after_us)] if code == "BTN_SOUTH" && *is == value && *after_us <= after_max_us)
+    }
+
+    #[test]
+    fn every_press_goes_out_and_comes_back_in_time() {
+        let mut play = Play::start();
+        for number in 0..200 {
+            let down = play.press(3.0, 50 + number % 7);
+            let up = play.press(0.0, 60 + number % 11);
+            assert!(
+                is_edge(&down, 1, EDGE_MAX_US) && is_edge(&up, 0, EDGE_MAX_US),
+                "{number}: {down:?} {up:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn silence_releases_after_80_ms_and_not_before() {
+        let mut play = Play::start();
+        assert!(is_edge(&play.press(3.0, 100), 1, EDGE_MAX_US));
+        // The last frame is a millisecond old.
+        assert_eq!(play.wait(79), []);
+        assert!(is_edge(&play.wait(100), 0, 0), "as soon as 80 ms are over");
+    }
+
+    #[test]
+    fn a_pad_that_is_pulled_out_holds_nothing_any_more() {
+        let mut play = Play::start();
+        assert!(is_edge(&play.press(3.0, 100), 1, EDGE_MAX_US));
+        *play.line.lock().unwrap() = None;
+        let begin = play.now;
+        assert!(is_edge(&play.heard(begin), 0, 0), "at once");
     }
 
     #[test]

@@ -10,7 +10,7 @@ use firmware_proto::sample::Sample;
 use tactpad::pipeline::call::Call;
 use tactpad::pipeline::capture::reader::CaptureReader;
 
-use super::host_pad::{Counts, HostPad};
+use super::host_pad::{Counts, HostPad, in_guest_with_firmware};
 
 /// The firmware presses twice a second.
 const PRESSES_HZ: u64 = 2;
@@ -67,22 +67,13 @@ fn lateness_us(samples: &[Sample], rate_hz: u64) -> Vec<u64> {
     samples.chunks(rate_hz as usize).map(|second| second.iter().map(late_us).min().unwrap()).collect()
 }
 
-/// A line that was full is tried again so often: another program may have had the processor for long. A bridge that is too
-/// slow is so each time.
-const TRIES: u32 = 3;
-
 /// Plays at this rate; at least `share` of the samples that the time has room for are decoded.
-fn nothing_is_lost(rate_hz: u64, share: f64) {
-    let seconds = std::env::var("TACTPAD_FIRMWARE_SECONDS").map_or(5, |text| text.parse().unwrap());
-    for again in (0..TRIES).rev() {
-        let Some(pad) = HostPad::start(rate_hz) else { return };
-        let taken = play(&pad.path, seconds);
-        let counts = pad.end();
-        println!("{} samples in {seconds} s, {} events, {counts:?}", taken.samples.len(), taken.events);
-        if again == 0 || counts.bytes_not_taken == 0 {
-            return check(&taken, &counts, rate_hz, seconds, share);
-        }
-    }
+fn nothing_is_lost(rate_hz: u64, seconds: u64, share: f64) {
+    let Some(pad) = HostPad::start(rate_hz) else { return };
+    let taken = play(&pad.path, seconds);
+    let counts = pad.end();
+    println!("{} samples in {seconds} s, {} events, {counts:?}", taken.samples.len(), taken.events);
+    check(&taken, &counts, rate_hz, seconds, share);
 }
 
 fn check(taken: &Taken, counts: &Counts, rate_hz: u64, seconds: u64, share: f64) {
@@ -102,14 +93,28 @@ fn check(taken: &Taken, counts: &Counts, rate_hz: u64, seconds: u64, share: f64)
     assert!(*events as u64 >= 2 * (PRESSES_HZ * (seconds - 1) - 1), "{events} events");
 }
 
+/// So long plays the slice that runs with the other tests. The port opens and closes at its ends.
+const SLICE_S: u64 = 5;
+const SLICE_SHARE: f64 = 0.99;
+
 #[test]
-fn a_minute_without_a_lost_frame() {
-    // 59,800 in a minute: the port opens and closes at the ends.
-    nothing_is_lost(1_000, 0.9966);
+fn at_a_thousand_samples_a_second_no_frame_is_lost() {
+    in_guest_with_firmware("firmware::minute::at_a_thousand_samples_a_second_no_frame_is_lost", || {
+        nothing_is_lost(1_000, SLICE_S, SLICE_SHARE);
+    });
 }
 
 #[test]
-fn eight_thousand_samples_a_second_without_a_lost_frame() {
-    // 479,500 in a minute; of a shorter time the ends take a larger part.
-    nothing_is_lost(8_000, if std::env::var("TACTPAD_FIRMWARE_SECONDS").is_ok() { 0.99896 } else { 0.99 });
+fn at_eight_thousand_samples_a_second_no_frame_is_lost() {
+    in_guest_with_firmware("firmware::minute::at_eight_thousand_samples_a_second_no_frame_is_lost", || {
+        nothing_is_lost(8_000, SLICE_S, SLICE_SHARE);
+    });
+}
+
+#[test]
+#[ignore = "proof: a minute of real time at each rate, for which the bridge needs a quiet machine"]
+fn a_minute_without_a_lost_frame() {
+    // 59,800 and 479,500.
+    nothing_is_lost(1_000, 60, 0.9966);
+    nothing_is_lost(8_000, 60, 0.99896);
 }

@@ -460,7 +460,7 @@ mod tests {
         let (mut all, mut first_us, mut bytes) = (Vec::new(), None, [0; 64]);
         loop {
             let mut fds = [PollFd::from_borrowed_fd(line.fd(), PollFlags::IN)];
-            assert_eq!(poll(&mut fds, Some(&limit(5_000_000))), Ok(1), "the poll sleeps for ever");
+            assert_eq!(poll(&mut fds, Some(&limit(60_000_000))), Ok(1), "the poll sleeps for ever");
             match line.read(&mut bytes) {
                 Ok(count) => {
                     all.extend_from_slice(&bytes[..count]);
@@ -505,7 +505,7 @@ mod tests {
             let ready = poll(&mut fds, Some(&limit(within_us))).unwrap() > 0;
             (ready, line.read(&mut [0; 64]).map_err(|error| error.kind()))
         };
-        assert_eq!(readable(5_000_000), (true, Err(io::ErrorKind::WouldBlock)));
+        assert_eq!(readable(60_000_000), (true, Err(io::ErrorKind::WouldBlock)));
         assert_eq!(readable(0), (false, Err(io::ErrorKind::WouldBlock)));
     }
 }

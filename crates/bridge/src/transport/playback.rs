@@ -102,7 +102,7 @@ mod tests {
         loop {
             let fd = playback.fd();
             assert_eq!(
-                poll(&mut [PollFd::new(&fd, PollFlags::IN)], Some(&limit(5_000_000))),
+                poll(&mut [PollFd::new(&fd, PollFlags::IN)], Some(&limit(60_000_000))),
                 Ok(1),
                 "silent"
             );

@@ -256,7 +256,7 @@ mod tests {
     }
 
     fn polls(fd: BorrowedFd<'_>) -> bool {
-        poll(&mut [PollFd::from_borrowed_fd(fd, PollFlags::IN)], Some(&limit(2_000_000))) == Ok(1)
+        poll(&mut [PollFd::from_borrowed_fd(fd, PollFlags::IN)], Some(&limit(60_000_000))) == Ok(1)
     }
 
     fn read_exactly(port: &mut Serial, count: usize) -> Vec<u8> {

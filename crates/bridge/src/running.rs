@@ -25,9 +25,9 @@ use crate::snapshot::{Drops, Snapshot};
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::head::Head;
 use tactpad_core::pipeline::health::Health;
+use tactpad_core::pipeline::mapping::live::stated::Commands;
 use tactpad_core::pipeline::mapping::profile::Command;
 use tactpad_core::pipeline::mapping::read::ReadProfile;
-use tactpad_core::pipeline::mapping::stated::Commands;
 use tactpad_core::pipeline::{Phase, Pipeline};
 use tactpad_core::time::HostInstant;
 
@@ -441,8 +441,8 @@ mod tests {
     use crate::parts::PlayingDecoder;
     use crate::sink::null::NullSink;
     use crate::transport::pads::PadError;
-    use tactpad_core::pipeline::mapping::check::OutputChoice;
-    use tactpad_core::pipeline::mapping::shipped as profiles;
+    use tactpad_core::pipeline::mapping::read::check::OutputChoice;
+    use tactpad_core::pipeline::mapping::read::shipped as profiles;
     use tactpad_core::pipeline::shipped;
 
     /// Remembers what it was told.

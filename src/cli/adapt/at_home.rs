@@ -14,7 +14,7 @@ use crate::cli::field::field_of;
 use crate::cli::progress::Progress;
 use crate::cli::wrapped::hanging;
 use crate::cli::written::tell;
-use tactpad::lab::calibration::earlier::Earlier;
+use tactpad::lab::calibration::data::earlier::Earlier;
 use tactpad::lab::play::home::{AtHome, HomeError, calibrated};
 use tactpad::lab::play::summary::{HEADING, Part, Summary};
 use tactpad::lab::play::weights::Placement;

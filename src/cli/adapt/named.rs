@@ -8,7 +8,7 @@ use crate::cli::diagnose::document;
 use crate::cli::diagnose::engine::diagnosed;
 use crate::cli::diagnose::text::sized;
 use crate::cli::wrapped::hanging;
-use tactpad::lab::calibration::numbers::Number;
+use tactpad::lab::calibration::result::numbers::Number;
 use tactpad::lab::diagnosis;
 use tactpad::lab::diagnosis::agreement::agreed;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Verdict};

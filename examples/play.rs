@@ -11,9 +11,9 @@ use std::error::Error;
 use std::io;
 
 use tactpad::pipeline::call::Call;
-use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::read::ReadProfile;
-use tactpad::pipeline::mapping::shipped as profiles;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
+use tactpad::pipeline::mapping::read::shipped as profiles;
 use tactpad::pipeline::output::event_log;
 use tactpad::pipeline::{NoProbe, Pipeline, shipped};
 use tactpad::time::HostInstant;

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use tactpad::pipeline::call::Call;
-//! use tactpad::pipeline::mapping::{check::OutputChoice, read::ReadProfile, shipped as profiles};
+//! use tactpad::pipeline::mapping::read::{ReadProfile, check::OutputChoice, shipped as profiles};
 //! use tactpad::pipeline::{NoProbe, Pipeline, shipped};
 //! use tactpad::time::HostInstant;
 //! use tactpad::virtual_pad::{firmware::VirtualPad, script::Script};

@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use tactpad::pipeline::mapping::check::{self, OutputChoice};
-use tactpad::pipeline::mapping::engine::Engine;
+use tactpad::pipeline::mapping::live::engine::Engine;
 use tactpad::pipeline::mapping::profile::Profile;
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::{self, OutputChoice};
+use tactpad::pipeline::mapping::read::shipped;
 use tactpad::quantity::Contact;
 use tactpad::time::StreamInstant;
 use tactpad::virtual_pad::script::Script;

@@ -158,7 +158,7 @@ fn obey(finger: &Finger, shown: &Shown) {
 }
 
 #[test]
-#[ignore = "proof: two to three minutes of real time, and pictures of the page where a folder is named"]
+#[ignore = "proof: 180 s: two to three minutes of real time, and pictures of the page where a folder is named"]
 fn a_whole_calibration_ends_in_a_decoder() {
     let folder = env::var_os("TACTPAD_CALIBRATE").map(PathBuf::from);
     let finger = Finger::start();

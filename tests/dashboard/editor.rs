@@ -3,8 +3,8 @@
 use std::fs;
 
 use serde_json::Value;
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::read::shipped;
 
 use crate::browser::{Browser, CONTROL};
 use crate::finger::{Finger, PULSE_MS};

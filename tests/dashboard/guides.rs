@@ -58,7 +58,7 @@ fn press_for(finger: &Finger, shown: &Shown, seconds: u32, fz_n: f32, until: imp
 }
 
 #[test]
-#[ignore = "proof: the guide listens for a minute of real time"]
+#[ignore = "proof: 65 s: the guide listens for a minute of real time"]
 fn half_a_minute_of_presses_gives_a_draft_with_the_forces_of_the_hand() {
     let finger = Finger::start();
     let shown = Shown::start(&finger.address(), "contra");

@@ -3,7 +3,7 @@
 use std::fs;
 use std::net::TcpStream;
 
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::shipped;
 
 use crate::http::ask;
 use crate::shown::Shown;

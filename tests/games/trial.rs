@@ -7,8 +7,8 @@ use std::process::{Command, Stdio};
 
 use tactpad::bridge::sink::Sink;
 use tactpad::bridge::sink::x11::X11Sink;
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
 use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
 
 use crate::clock::{MS, monotonic_ns, wait_until};
 use crate::desk::{Desk, Process, await_some};
@@ -142,7 +142,7 @@ pub(crate) fn watch(
 
 /// The profile for X11; a shipped name or a file.
 pub(crate) fn profile_of(name: &str) -> Profile {
-    let shipped = tactpad::pipeline::mapping::shipped::text(name).map(str::to_owned);
+    let shipped = tactpad::pipeline::mapping::read::shipped::text(name).map(str::to_owned);
     let text = shipped.unwrap_or_else(|| fs::read_to_string(name).unwrap());
     read(&text, OutputChoice::Keyboard).0.unwrap()
 }

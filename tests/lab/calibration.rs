@@ -8,10 +8,10 @@ use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{LazyLock, Mutex, OnceLock};
 
-use tactpad::lab::calibration::earlier::Earlier;
+use tactpad::lab::calibration::data::earlier::Earlier;
 use tactpad::lab::calibration::fit::{Calibration, fit, fit_reported};
-use tactpad::lab::calibration::numbers::{Number, Quantity};
 use tactpad::lab::calibration::regression::{neighbours, regression};
+use tactpad::lab::calibration::result::numbers::{Number, Quantity};
 use tactpad::lab::evaluation::{Errors, coverage95, decoded, errors};
 use tactpad::lab::field_cache::solve;
 use tactpad::lab::rig::bound::{Bound, Reading};

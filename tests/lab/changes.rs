@@ -10,8 +10,8 @@
 
 use std::sync::LazyLock;
 
+use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::Finding;
-use tactpad::lab::diagnosis::target::Target;
 use tactpad::lab::play::change::{Before, Changed, changed};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::windows::Window;
@@ -26,9 +26,9 @@ use tactpad::pad::twin::life::Life;
 use tactpad::pipeline::capture::head::Head;
 use tactpad::pipeline::capture::reader::CaptureReader;
 use tactpad::pipeline::capture::writer::CaptureWriter;
-use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::read::ReadProfile;
-use tactpad::pipeline::mapping::shipped as profiles;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
+use tactpad::pipeline::mapping::read::shipped as profiles;
 use tactpad::pipeline::shipped;
 use tactpad::time::HostInstant;
 use tactpad::virtual_pad::firmware::VirtualPad;

@@ -14,9 +14,9 @@ use tactpad::lab::tuning::force_range::peaks::Peaks;
 use tactpad::lab::tuning::force_range::range::Range;
 use tactpad::lab::tuning::labels::{HEADER, Labels};
 use tactpad::numeric::random::SplitMix64;
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
 use tactpad::pipeline::mapping::profile::Profile;
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::read::shipped;
 use tactpad::quantity::Contact;
 
 use crate::tuning::Recording;

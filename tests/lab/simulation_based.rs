@@ -12,8 +12,8 @@
 use std::collections::BTreeMap;
 
 use tactpad::lab::calibration::fit::{Calibration, fit};
-use tactpad::lab::calibration::numbers::{Number, Quantity};
-use tactpad::lab::diagnosis::target::Target;
+use tactpad::lab::calibration::result::numbers::{Number, Quantity};
+use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::evaluation::strain;
 use tactpad::lab::rig::measurement::carry_out;
 use tactpad::numeric::chi_square::exceeded;

@@ -22,7 +22,7 @@ use tactpad::numeric::random::SplitMix64;
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::InfluenceField;
 use tactpad::pipeline::call::Call;
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
 use tactpad::pipeline::shipped;
 use tactpad::quantity::Contact;
 use tactpad::time::HostInstant;

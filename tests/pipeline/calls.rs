@@ -7,8 +7,8 @@ use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::Status;
 use tactpad::pipeline::Phase;
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
 use tactpad::pipeline::mapping::profile::Command;
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
 use tactpad::pipeline::refusal::Refusal;
 use tactpad::quantity::Contact;
 

@@ -8,8 +8,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::read::shipped;
 use tactpad::toml_text::TEXT_BYTES_MAX;
 use tactpad::toml_text::diag::{Diagnostic, Severity};
 

@@ -1,10 +1,10 @@
 //! A hand that trembles on a boundary, or about a threshold, changes nothing more than once.
 
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
-use tactpad::pipeline::mapping::engine::Engine;
-use tactpad::pipeline::mapping::intent::Intents;
+use tactpad::pipeline::mapping::live::engine::Engine;
+use tactpad::pipeline::mapping::live::intent::Intents;
 use tactpad::pipeline::mapping::profile::{Force, Profile};
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::read::shipped;
 use tactpad::quantity::Contact;
 use tactpad::time::StreamInstant;
 

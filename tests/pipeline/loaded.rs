@@ -6,8 +6,8 @@ use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::contact::Decoder;
 use tactpad::pipeline::control::Code;
-use tactpad::pipeline::mapping::check::{self, OutputChoice};
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::{self, OutputChoice};
+use tactpad::pipeline::mapping::read::shipped;
 use tactpad::pipeline::{Phase, Pipeline};
 use tactpad::quantity::{CHANNELS, Contact};
 

@@ -2,11 +2,11 @@
 
 use proptest::prelude::{Just, Strategy, any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
 use tactpad::pipeline::control::Code;
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
-use tactpad::pipeline::mapping::engine::Engine;
-use tactpad::pipeline::mapping::intent::Intents;
+use tactpad::pipeline::mapping::live::engine::Engine;
+use tactpad::pipeline::mapping::live::intent::Intents;
 use tactpad::pipeline::mapping::profile::{Action, Effect, Mode, POINTER_SPEED_MAX, Profile};
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::read::shipped;
 use tactpad::quantity::Contact;
 use tactpad::time::StreamInstant;
 

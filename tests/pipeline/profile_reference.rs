@@ -1,6 +1,6 @@
 //! `mappings/README.md` is the reference of the profiles' language: what it shows and states must hold.
 
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
 use tactpad::toml_text::diag::Diagnostic;
 
 /// The lines that a profile must have.

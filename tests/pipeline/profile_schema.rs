@@ -8,9 +8,9 @@ use std::collections::BTreeSet;
 
 use serde_json::{Map, Value, json};
 use tactpad::pipeline::control::names::{GAMEPAD_BUTTONS, HAT_AXES, POINTER_BUTTONS};
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
 use tactpad::pipeline::mapping::profile::Profile;
-use tactpad::pipeline::mapping::shipped::{self, SCHEMA_LINE};
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::read::shipped::{self, SCHEMA_LINE};
 
 use crate::validation::{faults, merged};
 

@@ -27,12 +27,12 @@
 use std::fs;
 use std::path::Path;
 
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
-use tactpad::pipeline::mapping::engine::Engine;
-use tactpad::pipeline::mapping::intent::Intents;
+use tactpad::pipeline::mapping::live::engine::Engine;
+use tactpad::pipeline::mapping::live::intent::Intents;
+use tactpad::pipeline::mapping::live::verdict::{Reason, Told};
 use tactpad::pipeline::mapping::profile::{Command, Profile};
-use tactpad::pipeline::mapping::shipped;
-use tactpad::pipeline::mapping::verdict::{Reason, Told};
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::read::shipped;
 use tactpad::quantity::Contact;
 use tactpad::time::StreamInstant;
 

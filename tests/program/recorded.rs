@@ -5,8 +5,8 @@ use std::path::Path;
 
 use tactpad::pipeline::capture::head::Head;
 use tactpad::pipeline::capture::writer::CaptureWriter;
-use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::read::ReadProfile;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::pipeline::{mapping, shipped};
 use tactpad::time::HostInstant;
 use tactpad::virtual_pad::firmware::VirtualPad;
@@ -18,7 +18,7 @@ const SEED: u64 = 1;
 
 /// Writes a capture of so many seconds, in which `super-mario` is played until shortly before the end, with a shipped decoder.
 pub(crate) fn write(path: &Path, decoder: &str, seconds: u64) {
-    let text = mapping::shipped::text("super-mario").unwrap();
+    let text = mapping::read::shipped::text("super-mario").unwrap();
     let profile = ReadProfile::read(text, OutputChoice::AsWritten).0.unwrap();
     let end_us = 1_000_000 * seconds;
     let script = Script::for_profile(profile.profile(), end_us);

@@ -13,8 +13,8 @@ use crate::snapshot::Drops;
 use crate::watchers::Watchers;
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::control::OutputDevice;
+use tactpad_core::pipeline::mapping::live::stated::Commands;
 use tactpad_core::pipeline::mapping::profile::Profile;
-use tactpad_core::pipeline::mapping::stated::Commands;
 use tactpad_core::pipeline::{NoProbe, Pipeline};
 use tactpad_core::time::HostInstant;
 

@@ -85,8 +85,8 @@ impl Observer {
 mod tests {
     use super::*;
     use tactpad_core::pipeline::NoProbe;
-    use tactpad_core::pipeline::mapping::check::{OutputChoice, read};
-    use tactpad_core::pipeline::mapping::shipped as profiles;
+    use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
+    use tactpad_core::pipeline::mapping::read::shipped as profiles;
     use tactpad_core::pipeline::shipped;
 
     fn pipeline() -> Pipeline {

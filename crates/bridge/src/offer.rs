@@ -76,8 +76,8 @@ pub(super) fn kept(error: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::pipeline::mapping::check::OutputChoice;
-    use tactpad_core::pipeline::mapping::shipped;
+    use tactpad_core::pipeline::mapping::read::check::OutputChoice;
+    use tactpad_core::pipeline::mapping::read::shipped;
 
     fn contra() -> ReadProfile {
         ReadProfile::read(shipped::text("contra").unwrap(), OutputChoice::AsWritten).0.unwrap()

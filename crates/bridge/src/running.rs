@@ -25,9 +25,9 @@ use crate::snapshot::{Drops, Snapshot};
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::head::Head;
 use tactpad_core::pipeline::health::Health;
+use tactpad_core::pipeline::mapping::live::stated::Commands;
 use tactpad_core::pipeline::mapping::profile::Command;
 use tactpad_core::pipeline::mapping::read::ReadProfile;
-use tactpad_core::pipeline::mapping::stated::Commands;
 use tactpad_core::pipeline::{Phase, Pipeline};
 use tactpad_core::time::HostInstant;
 
@@ -451,8 +451,8 @@ mod tests {
     use crate::transport::pads::PadError;
     use tactpad_core::pad::field::PadField;
     use tactpad_core::pipeline::control::{OutputDevice, OutputEvent};
-    use tactpad_core::pipeline::mapping::check::OutputChoice;
-    use tactpad_core::pipeline::mapping::shipped as profiles;
+    use tactpad_core::pipeline::mapping::read::check::OutputChoice;
+    use tactpad_core::pipeline::mapping::read::shipped as profiles;
     use tactpad_core::pipeline::shipped;
     use tactpad_core::quantity::Contact;
 

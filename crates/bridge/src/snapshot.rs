@@ -10,8 +10,8 @@ use crate::weighing::WeighingStatus;
 use tactpad_core::pipeline::contact::uncertainty::Estimate;
 use tactpad_core::pipeline::contact::watch::Warning;
 use tactpad_core::pipeline::health::Health;
-use tactpad_core::pipeline::mapping::accept::Presses;
-use tactpad_core::pipeline::mapping::intent::Level;
+use tactpad_core::pipeline::mapping::live::Presses;
+use tactpad_core::pipeline::mapping::live::intent::Level;
 use tactpad_core::quantity::{CHANNELS, Contact};
 use tactpad_core::time::HostInstant;
 

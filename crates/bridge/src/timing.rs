@@ -285,7 +285,7 @@ impl Write for Calls {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::pipeline::mapping::check::{OutputChoice, read};
+    use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
 
     #[test]
     fn a_profile_says_how_much_later_it_wants_everything() {

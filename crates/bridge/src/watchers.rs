@@ -10,7 +10,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use serde::Serialize;
 
 use crate::queue::{Group, Queue};
-use tactpad_core::pipeline::mapping::verdict::{Reason, Told, Verdict};
+use tactpad_core::pipeline::mapping::live::verdict::{Reason, Told, Verdict};
 
 /// So many may watch at a time.
 const WATCHERS_MAX: usize = 8;

@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use crate::calibration::earlier::Earlier;
+use crate::calibration::data::earlier::Earlier;
+use crate::calibration::fit::search::Report;
 use crate::calibration::fit::{Calibration, FitError, fit_reported};
 use crate::calibration::regression::{neighbours, regression};
 use crate::calibration::screening::{Fault, Unexplained, screened};
-use crate::calibration::search::Report;
 use crate::tangent::Simulated;
 use tactpad_core::network::Zero;
 use tactpad_core::numeric::random::SplitMix64;

@@ -15,8 +15,8 @@ use tactpad::lab::play::kept::{BYTES_MAX, KIND, Kept};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::windows::Window;
 use tactpad::pipeline::contact::Decoder;
-use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::pipeline::shipped;
 
 /// What was played.

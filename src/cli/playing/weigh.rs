@@ -18,7 +18,7 @@ use crate::cli::printing::written::{both_print, is_same, is_stdout, tell, writte
 use tactpad::lab::play::weighing::{FileError, InFile, Rest, RestReader, found, in_table};
 use tactpad::pad::weight::Weight;
 use tactpad::pipeline::contact::Decoder;
-use tactpad::pipeline::mapping::check::OutputChoice;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::pipeline::weighing::factor::is_possible;
 use tactpad::pipeline::weighing::kept::kept;
 use tactpad::tables::measured::columns::Kind;

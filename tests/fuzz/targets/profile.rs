@@ -1,7 +1,7 @@
 //! Any text as a profile: no panic, a reason wherever there is no profile, and every profile that there is plays.
 #![no_main]
 
-use tactpad::pipeline::mapping::check::{self, OutputChoice};
+use tactpad::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad::toml_text::diag::Severity;
 use tactpad_fuzz::rig::Rig;
 

@@ -9,9 +9,9 @@ use tactpad::pipeline::call::Call;
 use tactpad::pipeline::capture::head::Head;
 use tactpad::pipeline::capture::writer::CaptureWriter;
 use tactpad::pipeline::contact::file as decoder_file;
-use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::read::ReadProfile;
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
+use tactpad::pipeline::mapping::read::shipped;
 use tactpad::quantity::Contact;
 use tactpad::time::HostInstant;
 

@@ -6,13 +6,13 @@ use super::Pipeline;
 use super::contact::uncertainty::Estimate;
 use super::contact::watch::Warning;
 use super::health::Health;
-use super::mapping::accept::Presses;
-use super::mapping::intent::Level;
 use super::mapping::profile::Profile;
-use super::mapping::verdict::Verdict;
 use super::phase::Phase;
 use super::refusal::Refusal;
 use super::weighing::Account;
+use crate::pipeline::mapping::live::Presses;
+use crate::pipeline::mapping::live::intent::Level;
+use crate::pipeline::mapping::live::verdict::Verdict;
 use crate::quantity::{CHANNELS, Contact, Strain};
 use crate::time::StreamInstant;
 

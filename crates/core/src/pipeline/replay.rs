@@ -1,7 +1,7 @@
 //! Replays contacts that are decoded already: the pipeline's mapping and output, without what comes before them.
 
 use crate::pipeline::control::OutputEvent;
-use crate::pipeline::mapping::engine::Engine;
+use crate::pipeline::mapping::live::engine::Engine;
 use crate::pipeline::mapping::profile::Profile;
 use crate::pipeline::output::ledger::{Edges, Ledger};
 use crate::quantity::Contact;

@@ -4,9 +4,9 @@ use firmware_proto::frame::Message;
 use firmware_proto::link::MessageReceiver;
 
 use crate::pipeline::control::Code;
-use crate::pipeline::mapping::check::{self, OutputChoice};
 use crate::pipeline::mapping::profile::Profile;
-use crate::pipeline::mapping::shipped;
+use crate::pipeline::mapping::read::check::{self, OutputChoice};
+use crate::pipeline::mapping::read::shipped;
 
 pub(super) const HAT_X: Code = Code::Axis(0x10);
 pub(super) const HAT_Y: Code = Code::Axis(0x11);

@@ -21,7 +21,7 @@ use super::rewind::{self, Uncompared};
 use tactpad_bridge::request::Request;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pipeline::mapping::read::ReadProfile;
-use tactpad_core::pipeline::mapping::shipped;
+use tactpad_core::pipeline::mapping::read::shipped;
 use tactpad_lab::play::sheet::Sheet;
 
 type Shared = State<Arc<Office>>;

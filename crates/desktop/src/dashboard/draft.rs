@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Number, Value};
 
-use tactpad_core::pipeline::mapping::check::{self, OutputChoice};
-use tactpad_core::pipeline::mapping::sketch::Sketch;
+use tactpad_core::pipeline::mapping::profile::sketch::Sketch;
+use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_core::toml_text::diag::Diagnostic;
 use tactpad_core::toml_text::edit::{self, Change, Step};
 
@@ -114,7 +114,7 @@ fn json(value: toml::Value) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::pipeline::mapping::shipped;
+    use tactpad_core::pipeline::mapping::read::shipped;
 
     fn answer(changes: Value) -> Answer {
         let asked = serde_json::json!({"text": shipped::text("contra").unwrap(), "changes": changes});

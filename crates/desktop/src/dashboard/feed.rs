@@ -8,9 +8,9 @@ use super::ring::Ring;
 use tactpad_bridge::clock::Clock;
 use tactpad_bridge::snapshot::Uncertainty;
 use tactpad_core::pipeline::control::OutputEvent;
-use tactpad_core::pipeline::mapping::intent::Level;
+use tactpad_core::pipeline::mapping::live::intent::Level;
+use tactpad_core::pipeline::mapping::live::verdict::Verdict;
 use tactpad_core::pipeline::mapping::profile::Profile;
-use tactpad_core::pipeline::mapping::verdict::Verdict;
 use tactpad_core::quantity::{CHANNELS, Contact};
 use tactpad_core::time::{HostInstant, StreamInstant};
 

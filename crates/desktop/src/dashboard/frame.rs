@@ -9,7 +9,7 @@ use tactpad_bridge::snapshot::{Status, Uncertainty};
 use tactpad_bridge::timing::{Policy, Stages};
 use tactpad_bridge::watchers::Line;
 use tactpad_core::pipeline::control::OutputEvent;
-use tactpad_core::pipeline::mapping::sketch::{Sketch, control};
+use tactpad_core::pipeline::mapping::profile::sketch::{Sketch, control};
 use tactpad_core::quantity::{CHANNELS, Contact};
 
 /// Where a reader of the feed goes on.

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::head::Head;
-use tactpad_core::pipeline::mapping::check::OutputChoice;
+use tactpad_core::pipeline::mapping::read::check::OutputChoice;
 use tactpad_core::time::HostInstant;
 use tactpad_core::toml_text::diag::Diagnostic;
 use tactpad_lab::play::guide::Guide;

@@ -78,8 +78,8 @@ fn length(call: &OwnedCall) -> usize {
 mod tests {
     use super::*;
     use tactpad_core::pipeline::call::Call;
-    use tactpad_core::pipeline::mapping::check::{OutputChoice, read};
-    use tactpad_core::pipeline::mapping::shipped as profiles;
+    use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
+    use tactpad_core::pipeline::mapping::read::shipped as profiles;
     use tactpad_core::pipeline::{Phase, shipped};
 
     #[test]

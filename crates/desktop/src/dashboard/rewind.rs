@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::past::{Past, make};
 use tactpad_core::pipeline::call::OwnedCall;
 use tactpad_core::pipeline::control::OutputEvent;
-use tactpad_core::pipeline::mapping::check::{self, OutputChoice};
 use tactpad_core::pipeline::mapping::profile::Profile;
+use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_lab::tuning::difference::{Difference, Only, Press, Side, presses};
 
 /// Two profiles to compare.

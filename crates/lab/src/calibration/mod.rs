@@ -6,8 +6,7 @@
 //! E = G + Σⱼ pⱼ ∂G/∂pⱼ + background
 //! ```
 //!
-//! G is the simulator's field of the nominal pad, or of one nearer to what is found where the tangent does not reach (`linearised`,
-//! `flaws`), g the channels' gains, p the modules' poses and stiffnesses, X the crosstalk, z the zeros.
+//! G is the simulator's field of the nominal pad, or of one nearer to what is found where the tangent does not reach (`fit`), g the channels' gains, p the modules' poses and stiffnesses, X the crosstalk, z the zeros.
 //! The background is a smooth polynomial for each channel and force: the discrepancy that no physical parameter explains. Every
 //! parameter has a Gaussian prior, centred on the nominal pad (or on another pad's calibration), so that 20 contacts say what
 //! they can and leave the others where they were. The posterior's maximum is found by Gauss and Newton's method, its covariance
@@ -15,40 +14,19 @@
 //! relaxation times by the evidence, the noise from the residuals. The whole model, with hysteresis, creep and temperature,
 //! stands at `model`.
 //!
+//! `model` has the parameters and their prior, `noise` the covariance of the residuals, `problem` the residuals and normal equations of all,
+//! [`fit`] the search for the maximum, [`result`] the numbers and checks of it. [`data`] are the contacts, [`screening`] a look at them before
+//! the fit. [`change`] holds recordings of one pad without labels against each other.
+//!
 //! Source: C. M. Bishop, Pattern Recognition and Machine Learning, section 3.5 (evidence); the model of a discrepancy
 //! beside physical parameters is M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425.
 
 pub mod change;
-pub mod contacts;
-pub mod earlier;
-mod effort;
-mod evidence;
-mod field_error;
+pub mod data;
 pub mod fit;
-mod flaws;
-mod hyperparameters;
-mod jumps;
-pub mod known;
-mod lasting;
-mod linearised;
 mod model;
-mod moments;
 mod noise;
-mod noise_model;
-mod normal_equations;
-pub mod numbers;
-pub mod open;
-pub mod physical;
-mod plate;
-mod posterior;
-pub mod predictive;
-mod prepared;
-mod prior;
-mod prior_deviations;
 mod problem;
 pub mod regression;
-mod residual;
-pub mod rig;
+pub mod result;
 pub mod screening;
-pub mod search;
-pub mod thermal_fit;

@@ -39,8 +39,8 @@ fn overlap(all: &[&Finding]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::report::Estimate;
-    use super::super::target::Target;
     use super::*;
+    use crate::diagnosis::data::target::Target;
 
     fn finding(channel: usize, gain: f64) -> Finding {
         Finding {

@@ -1,9 +1,9 @@
 //! The device that a diagnosis makes of another: with the named causes in it.
 
-use super::causes::{creep, hysteresis};
-use super::mechanics::side_share;
+use super::causes::material::{creep, hysteresis};
 use super::report::Diagnosis;
-use super::target::Target;
+use crate::diagnosis::data::target::Target;
+use crate::diagnosis::model::mechanics::side_share;
 use tactpad_core::pad::device::behaviour::{Crosstalk, ModuleCrosstalk, Play, Prony};
 use tactpad_core::pad::device::parameter::Parameter;
 use tactpad_core::pad::device::{Device, Module, Side};

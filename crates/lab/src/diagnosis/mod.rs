@@ -1,78 +1,59 @@
 //! Diagnosis: what measured data show that a model gets wrong, and which causes explain it.
 //!
-//! The way of the data: rows become [`observations`], which pass checks of the recording (`gatekeepers/`); a model (`model`)
-//! says what they should read and how that changes with each hypothesis of the catalogue (`causes/`), about the pad's own field
-//! or those of changed pads (`atlas`); the residual's covariance is noise, a smooth background that every simulator leaves, and
-//! what the simulator is known to get wrong (`covariance`); group score tests with a cluster bootstrap choose causes
-//! (`attribution`); the encompassing rule says which of them may be named (`naming`), as long as they hold in all parts of the
-//! measurement (`specification`) and do not look like parts of something else (`withdrawal`), and models of further measurements (`experiments`) which would tell the others apart
-//! (`separation`); rows that had no part in it say what they are worth (`gain`), in readings and in contacts that are decoded by the
-//! model backwards (`inverse`, of the pad `bench`).
+//! The way of the data, folder by folder:
 //!
-//! Search, tests and naming know nothing of nine channels: those are in `simulated` and what it is made of.
+//! | folder | stage |
+//! |---|---|
+//! | [`data`] | rows of a table become observations, with the noise of each channel |
+//! | `gatekeepers` | the recording is checked before any physics |
+//! | `model` | the interface of a model of the channels: predicted readings, and their change with each hypothesis; the chain from contact to reading |
+//! | `causes` | the catalogue of hypotheses |
+//! | `simulation` | the simulated pad, as such a model of nine channels |
+//! | `statistics` | the residual's covariance: noise, a smooth background that every simulator leaves, and known errors of the simulator |
+//! | `attribution` | group score tests with a cluster bootstrap choose causes, about the pad's own field or those of changed pads (`atlas`) |
+//! | `naming` | the encompassing rule says which of them may be named, if they hold in all parts of the measurement (`specification`) and do not look like parts of something else (`withdrawal`); models of further measurements (`experiments`) say which would tell the others apart (`separation`) |
+//! | `validation` | the worth of the findings on rows that had no part in it, in readings and in contacts that the model decodes backwards |
+//!
+//! [`against`] holds two recordings of one sensor against each other, without a simulator; [`report`], [`extension`] and [`agreement`] are what
+//! comes of a diagnosis.
+//!
+//! Attribution and naming know nothing of nine channels: those are in `simulation` and what it is made of.
 //!
 //! Sources: M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (a discrepancy beside the parameters); J.
 //! Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014) 114007 (without it parameters are wrong and too sure).
 
 pub mod against;
 pub mod agreement;
-mod atlas;
 mod attribution;
-mod basis;
-mod bench;
-mod bootstrap;
-mod cause;
 mod causes;
-mod ceiling;
-mod chain;
-mod channel_rows;
-mod columns;
-mod covariance;
-mod equations;
-mod experiments;
+pub mod data;
 pub mod extension;
-mod gain;
 mod gatekeepers;
-mod inference;
-mod inverse;
-mod mean_square;
-pub(crate) mod mechanics;
-mod memory;
-mod model;
+pub(crate) mod model;
 mod naming;
-mod noise;
-pub mod observations;
-mod own;
-mod regression;
 pub mod report;
-mod row;
-mod separation;
-pub(crate) mod setting;
-mod simulated;
-mod specification;
-mod system;
-pub mod target;
-mod whitening;
-mod withdrawal;
+mod simulation;
+mod statistics;
+mod validation;
 
 use std::fmt;
 
-use self::atlas::{Atlas, attributed};
+use self::attribution::atlas::{Atlas, attributed};
 use self::attribution::{Applied, Attribution, Fit, Search};
-use self::cause::Cause;
 use self::causes::CATALOGUE;
-use self::ceiling::ceiling_share;
-use self::covariance::{REMAINDER_MAX, Remainder};
-use self::gain::{Rows, rmse};
-use self::gatekeepers::excess::{EFFECT, Excess, excess};
+use self::causes::cause::Cause;
+use self::data::observations::Observations;
+use self::gatekeepers::checks::excess::{EFFECT, Excess, excess};
 use self::gatekeepers::{Gate, guarded};
-pub use self::mechanics::Pad;
 use self::model::Model;
-use self::observations::Observations;
+pub use self::model::mechanics::Pad;
+use self::naming::separation::Separation;
+use self::naming::withdrawal::{Candidate, Named, doubted, in_common, named};
 use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
-use self::separation::Separation;
-use self::simulated::Simulated;
-use self::withdrawal::{Candidate, Named, doubted, in_common, named};
+use self::simulation::simulated::Simulated;
+use self::statistics::covariance::{REMAINDER_MAX, Remainder};
+use self::validation::ceiling::ceiling_share;
+use self::validation::gain::{Rows, rmse};
 use tactpad_core::numeric::chi_square;
 use tactpad_core::numeric::statistics::{mean, rms};
 use tactpad_core::tables::measured::Table;

@@ -1,7 +1,7 @@
 //! What a diagnosis says.
 
-use super::observations::Sample;
-use super::target::Target;
+use crate::diagnosis::data::observations::Sample;
+use crate::diagnosis::data::target::Target;
 
 /// As what it stands among the rivals that a finding may be a part of something that is not in the catalogue: of what is left
 /// unexplained, or of one reason that several findings have in common.

@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use crate::calibration::contacts::Knowledge;
-use crate::calibration::earlier::Earlier;
+use crate::calibration::data::contacts::Knowledge;
+use crate::calibration::data::earlier::Earlier;
+use crate::calibration::fit::search::Report;
 use crate::calibration::fit::{Calibration, FitError, fit_known};
-use crate::calibration::known::Known;
-use crate::calibration::search::Report;
+use crate::calibration::result::known::Known;
 use crate::play::weights::{Placement, Unusable};
 use crate::play::windows::{Play, Window};
 use crate::tangent::Simulated;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::calibration::contacts::Knowledge;
+use crate::calibration::data::contacts::Knowledge;
 use crate::play::windows::Window;
 use tactpad_core::pad::weight::{WEIGHT_SHARE, check_weight, weight_n};
 use tactpad_core::tables::measured::Label;

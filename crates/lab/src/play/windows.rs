@@ -1,6 +1,6 @@
 //! Samples as means over windows, and which of them a calibration is fitted to.
 
-use crate::calibration::contacts::{Fitted, Knowledge};
+use crate::calibration::data::contacts::{Fitted, Knowledge};
 use tactpad_core::quantity::{CHANNELS, Contact};
 use tactpad_core::tables::measured::{Label, Row, Table};
 use tactpad_core::tables::recording::Recording;

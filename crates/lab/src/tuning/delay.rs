@@ -43,7 +43,7 @@ fn wait_us(button: &Button, slow_us: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::pipeline::mapping::check::{OutputChoice, read};
+    use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
 
     #[test]
     fn each_wait_counts() {

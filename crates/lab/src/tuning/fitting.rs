@@ -8,8 +8,8 @@ use super::labels::Labels;
 use super::places::{self, Hand};
 use super::scoring::{AFTER_US, Score};
 use super::trace::Trace;
-use tactpad_core::pipeline::mapping::check::{self, OutputChoice};
 use tactpad_core::pipeline::mapping::profile::Profile;
+use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_core::toml_text::edit::{self, Table, Value};
 
 /// While values are compared, samples are so far apart at least.

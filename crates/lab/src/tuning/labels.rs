@@ -173,8 +173,8 @@ fn microseconds(name: &str, cell: &str) -> Result<u64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::pipeline::mapping::check::{OutputChoice, read};
-    use tactpad_core::pipeline::mapping::shipped;
+    use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
+    use tactpad_core::pipeline::mapping::read::shipped;
 
     fn labels(lines: &str) -> Result<Labels, String> {
         let profile = read(shipped::text("super-mario").unwrap(), OutputChoice::AsWritten).0.unwrap();

@@ -137,8 +137,8 @@ fn median(mut values: Vec<f64>) -> f64 {
 mod tests {
     use super::*;
     use crate::tuning::trace::Moment;
-    use tactpad_core::pipeline::mapping::check::{OutputChoice, read};
-    use tactpad_core::pipeline::mapping::shipped;
+    use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
+    use tactpad_core::pipeline::mapping::read::shipped;
     use tactpad_core::time::StreamInstant;
 
     /// A hand that touches `names` in turn, three times each.

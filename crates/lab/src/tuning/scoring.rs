@@ -105,8 +105,8 @@ mod tests {
     use super::*;
     use crate::tuning::confusion::Confusion;
     use crate::tuning::trace::{Heard, Moment};
-    use tactpad_core::pipeline::mapping::check::{OutputChoice, read};
-    use tactpad_core::pipeline::mapping::shipped;
+    use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
+    use tactpad_core::pipeline::mapping::read::shipped;
     use tactpad_core::quantity::Contact;
     use tactpad_core::time::StreamInstant;
 

@@ -3,7 +3,7 @@
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::contact::Decoder;
 use tactpad_core::pipeline::control::OutputEvent;
-use tactpad_core::pipeline::mapping::engine::Engine;
+use tactpad_core::pipeline::mapping::live::engine::Engine;
 use tactpad_core::pipeline::mapping::profile::Profile;
 use tactpad_core::pipeline::output::ledger::{Edges, Ledger};
 use tactpad_core::pipeline::{NoProbe, Phase, Pipeline};

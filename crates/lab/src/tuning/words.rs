@@ -98,7 +98,7 @@ mod tests {
     use super::*;
     use crate::tuning::force_range::levels;
     use crate::tuning::knobs;
-    use tactpad_core::pipeline::mapping::check::{OutputChoice, read};
+    use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
 
     /// A profile with everything that is fitted.
     const TEXT: &str = "schema = 1\nname = \"All\"\noutput = \"gamepad\"\naccess = { tremor_hz = 2 }\n\

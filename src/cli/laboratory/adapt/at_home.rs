@@ -14,7 +14,7 @@ use crate::cli::files::field::field_of;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::tell;
-use tactpad::lab::calibration::earlier::Earlier;
+use tactpad::lab::calibration::data::earlier::Earlier;
 use tactpad::lab::play::home::{AtHome, HomeError, calibrated};
 use tactpad::lab::play::summary::{HEADING, Part, Summary};
 use tactpad::lab::play::weights::Placement;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use tactpad::lab::calibration::predictive::{By, Check};
+use tactpad::lab::calibration::result::predictive::{By, Check};
 
 /// A third of the contacts, held against all of them.
 #[derive(Serialize)]

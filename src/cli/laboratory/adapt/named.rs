@@ -8,7 +8,7 @@ use crate::cli::laboratory::diagnose::document;
 use crate::cli::laboratory::diagnose::engine::diagnosed;
 use crate::cli::laboratory::diagnose::text::sized;
 use crate::cli::printing::wrapped::hanging;
-use tactpad::lab::calibration::numbers::Number;
+use tactpad::lab::calibration::result::numbers::Number;
 use tactpad::lab::diagnosis;
 use tactpad::lab::diagnosis::agreement::agreed;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Verdict};

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use tactpad::lab::calibration::open::{Blurred, OpenByRig};
+use tactpad::lab::calibration::result::open::{Blurred, OpenByRig};
 
 /// An error of the rig that the contacts do not tell from the pad's.
 #[derive(Serialize)]

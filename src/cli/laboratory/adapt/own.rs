@@ -8,7 +8,7 @@ use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::field::field_of;
 use crate::cli::printing::progress::Progress;
-use tactpad::lab::calibration::earlier::Earlier;
+use tactpad::lab::calibration::data::earlier::Earlier;
 use tactpad::lab::calibration::fit::Calibration;
 use tactpad::lab::tangent::Simulated;
 use tactpad::pad::changes::FieldChange;

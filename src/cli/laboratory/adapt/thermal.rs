@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use tactpad::lab::calibration::thermal_fit::ThermalFit;
+use tactpad::lab::calibration::data::thermal_fit::ThermalFit;
 use tactpad::quantity::{CHANNEL_NAMES, CHANNELS};
 
 /// Coefficients per degree; null where nothing tells them.

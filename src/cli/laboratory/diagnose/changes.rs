@@ -9,8 +9,8 @@ use super::document::Finding;
 use super::text::{cause, sized};
 use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::quoted;
+use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report;
-use tactpad::lab::diagnosis::target::Target;
 use tactpad::lab::play::change::Changed;
 use tactpad::quantity::{CHANNEL_NAMES, MODULES};
 

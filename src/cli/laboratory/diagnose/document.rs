@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::numbers::word;
+use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::{self, Diagnosis};
-use tactpad::lab::diagnosis::target::Target;
 use tactpad::pad::device::Side;
 
 /// Version of the document's form.

@@ -4,8 +4,8 @@ use std::fmt;
 
 use super::numbers::{decoded, estimate, range};
 use crate::cli::printing::wrapped::hanging;
+use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, UNLISTED, Verdict};
-use tactpad::lab::diagnosis::target::Target;
 
 /// A diagnosis in lines of a terminal.
 pub(super) struct Report<'d>(pub(super) &'d Diagnosis);

@@ -10,7 +10,7 @@ use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::say;
 use tactpad::bridge::control::ask;
-use tactpad::pipeline::mapping::check::OutputChoice;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::tray::browser;
 
 /// Whether there is a desktop to play on.

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::last_profile;
 use super::wish::{Stamp, Wish};
 use crate::cli::playing::profile;
-use tactpad::pipeline::mapping::check::OutputChoice;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::tray::desk::Desk;
 
 /// What a profile calls itself, as it was read.

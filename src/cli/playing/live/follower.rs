@@ -14,9 +14,9 @@ use crate::cli::playing::profile;
 use tactpad::bridge::front::{Desktop, Front};
 use tactpad::bridge::offer::Offer;
 use tactpad::bridge::request::{Asker, Request};
-use tactpad::pipeline::mapping::check::OutputChoice;
-use tactpad::pipeline::mapping::program::Program;
+use tactpad::pipeline::mapping::profile::Program;
 use tactpad::pipeline::mapping::read::ReadProfile;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 
 /// It looks this often. A file is read once it was the same at two looks: who is writing it has ended.
 const LOOK: Timespec = Timespec { tv_sec: 0, tv_nsec: 250_000_000 };

@@ -10,7 +10,7 @@ use crate::cli::failure::Failure;
 use crate::cli::printing::written::both_print;
 use tactpad::bridge::sink::uinput::{self, UinputSink};
 use tactpad::bridge::sink::{Sink, SinkError, log::LogSink, null::NullSink, x11::X11Sink};
-use tactpad::pipeline::mapping::check::OutputChoice;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 
 /// Where events are to go.
 #[derive(Clone, Debug, PartialEq, Eq)]

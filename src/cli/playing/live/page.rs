@@ -20,7 +20,7 @@ use tactpad::dashboard::library::{
 use tactpad::dashboard::server::Dashboard;
 use tactpad::lab::play::guide::Guide;
 use tactpad::pipeline::capture::head::Head;
-use tactpad::pipeline::mapping::check::OutputChoice;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 
 /// A page that has its address, and waits for its bridge.
 pub(super) struct Page {

@@ -20,9 +20,9 @@ use tactpad::bridge::requests::Requests;
 use tactpad::bridge::running::{Bridge, Ending};
 use tactpad::bridge::snapshot::Drops;
 use tactpad::bridge::transport::address::PadAddress;
-use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::pipeline::mapping::read::ReadProfile;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::virtual_pad::firmware::VirtualPad;
 use tactpad::virtual_pad::script::Script;
 

@@ -12,7 +12,7 @@ use rustix::termios::tcgetwinsize;
 
 use tactpad::bridge::snapshot::{BridgeHealth, Snapshot, Status};
 use tactpad::pipeline::control::Code;
-use tactpad::pipeline::mapping::intent::Level;
+use tactpad::pipeline::mapping::live::intent::Level;
 use tactpad::quantity::Contact;
 
 /// The picture of the plate: a character is about twice as high as wide.

@@ -20,7 +20,7 @@ use tactpad::bridge::requests::Requests;
 use tactpad::bridge::running::Bridge;
 use tactpad::bridge::sink::Sink;
 use tactpad::bridge::timing::Timing;
-use tactpad::pipeline::mapping::check::OutputChoice;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 #[cfg(feature = "tray")]
 use tactpad::tray;
 

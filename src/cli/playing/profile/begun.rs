@@ -8,7 +8,7 @@ use std::process::Command;
 use super::{chosen, own, verdict};
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{reason, say, stdout};
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::shipped;
 
 /// A profile that says all defaults; its lines `#key = …` are what is not written.
 const TEMPLATE: &str = include_str!("template.toml");
@@ -81,8 +81,8 @@ fn opened(path: &Path) -> Result<bool, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use tactpad::pipeline::mapping::check::{OutputChoice, read};
-    use tactpad::pipeline::mapping::shipped::SCHEMA_LINE;
+    use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
+    use tactpad::pipeline::mapping::read::shipped::SCHEMA_LINE;
 
     use super::*;
 

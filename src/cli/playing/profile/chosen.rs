@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use super::own;
 use crate::cli::failure::Failure;
 use crate::cli::files::text_file;
-use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::read::ReadProfile;
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
+use tactpad::pipeline::mapping::read::shipped;
 
 /// A profile's text and what findings call the place where it stands.
 pub(super) struct Chosen {

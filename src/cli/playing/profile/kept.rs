@@ -8,9 +8,9 @@ use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
 use crate::cli::files::text_file;
 use tactpad::dashboard::library::{Entry, Over, Saved, Stored, Unsaved};
-use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::read::ReadProfile;
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
+use tactpad::pipeline::mapping::read::shipped;
 
 /// All profiles that have names.
 pub(crate) fn entries() -> Vec<Entry> {

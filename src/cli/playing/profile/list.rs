@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::{chosen, own};
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{print_json, stdout};
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::shipped;
 
 /// The profiles that have names.
 #[derive(Serialize)]

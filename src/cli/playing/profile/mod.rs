@@ -6,7 +6,7 @@ use clap::{Args, Subcommand};
 
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::stdout;
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::shipped;
 
 mod begun;
 mod chosen;

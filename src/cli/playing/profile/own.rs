@@ -8,7 +8,7 @@ use crate::cli::failure::Failure;
 use crate::cli::files::config_folder;
 use crate::cli::files::destination::Destination;
 use crate::cli::printing::written::{reason, say};
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::shipped;
 
 /// The longest name of a new profile, which is its name for people, too.
 const NAME_CHARS_MAX: usize = 64;

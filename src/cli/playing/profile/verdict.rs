@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::chosen::{self, Chosen};
 use crate::cli::failure::{Failure, if_read};
 use crate::cli::printing::written::{print_json, stdout};
-use tactpad::pipeline::mapping::check::{self, OutputChoice};
 use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad::toml_text::diag::Diagnostic;
 
 #[derive(Serialize)]

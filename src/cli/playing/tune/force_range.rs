@@ -17,9 +17,9 @@ use tactpad::lab::tuning::force_range::levels::{self, ends_n, is_one_force};
 use tactpad::lab::tuning::force_range::peaks::Peaks;
 use tactpad::lab::tuning::force_range::range::{PRESSES_MIN, Range};
 use tactpad::lab::tuning::words::{Told, path};
-use tactpad::pipeline::mapping::check::{OutputChoice, read};
 use tactpad::pipeline::mapping::profile::Profile;
-use tactpad::pipeline::mapping::shipped;
+use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
+use tactpad::pipeline::mapping::read::shipped;
 
 /// With fewer presses of a kind none are left to try a fit on that has not seen them.
 const HELD_OUT_MIN: usize = 2 * PRESSES_MIN;

@@ -16,8 +16,8 @@ use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{print_json, stdout};
 use tactpad::lab::tuning::fitting::{Fitted, Study};
 use tactpad::lab::tuning::labels::Labels;
-use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::profile::Profile;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 
 /// With fewer labels none are left to try a fit on that has not seen them.
 const HELD_OUT_MIN: usize = 40;

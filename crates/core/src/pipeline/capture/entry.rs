@@ -3,7 +3,7 @@
 use firmware_proto::crc::crc32;
 
 use crate::pad::weight::Weight;
-use crate::pipeline::mapping::check::OutputChoice;
+use crate::pipeline::mapping::read::check::OutputChoice;
 
 pub(super) const MAGIC: &[u8] = b"tactpad capture 1\n";
 

@@ -272,7 +272,7 @@ mod tests {
     use super::super::writer::CaptureWriter;
     use super::*;
     use crate::pad::weight::Weight;
-    use crate::pipeline::mapping::check::OutputChoice;
+    use crate::pipeline::mapping::read::check::OutputChoice;
 
     const TEXT: &str = "schema = 1\nname = \"é\"\noutput = \"gamepad\"\n[dpad]\nmode = \"4way\"\n";
 

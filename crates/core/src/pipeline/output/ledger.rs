@@ -8,7 +8,7 @@ use arrayvec::ArrayVec;
 
 use crate::pipeline::control::names::{STICKS, TRIGGERS};
 use crate::pipeline::control::{Code, OutputDevice, OutputEvent};
-use crate::pipeline::mapping::intent::{Intents, Level};
+use crate::pipeline::mapping::live::intent::{Intents, Level};
 use crate::pipeline::mapping::profile::{CONTROLS_MAX, Profile};
 use crate::pipeline::output::motion::{Motion, STEPS_MAX};
 use crate::time::StreamInstant;
@@ -167,8 +167,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::pipeline::mapping::check::{self, OutputChoice};
-    use crate::pipeline::mapping::shipped;
+    use crate::pipeline::mapping::read::check::{self, OutputChoice};
+    use crate::pipeline::mapping::read::shipped;
 
     const RIGHT: (u16, i32) = (0x10, 1);
     const LEFT: (u16, i32) = (0x10, -1);

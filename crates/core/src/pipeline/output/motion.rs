@@ -6,7 +6,7 @@
 
 use crate::pipeline::control::names::{POINTER_MOTION, POINTER_PLACE};
 use crate::pipeline::control::{Code, OutputDevice};
-use crate::pipeline::mapping::intent::Intents;
+use crate::pipeline::mapping::live::intent::Intents;
 use crate::pipeline::mapping::profile::POINTER_SPEED_MAX;
 use crate::time::StreamInstant;
 
@@ -145,7 +145,7 @@ mod tests {
 
     use super::*;
     use crate::pipeline::control::OutputDevice;
-    use crate::pipeline::mapping::intent::Level;
+    use crate::pipeline::mapping::live::intent::Level;
 
     fn rates(right: i32, down: i32) -> Intents {
         let level = |(code, value)| Level { device: OutputDevice::Pointer, code, value };

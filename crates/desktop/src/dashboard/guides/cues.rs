@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use super::guide::{Guide, Outcome, Progress, Proposal, Scene, Step, StepState, Told};
 use super::recording::{NO_NAME, Recording};
-use tactpad_core::pipeline::mapping::check::{self, OutputChoice};
 use tactpad_core::pipeline::mapping::profile::Profile;
-use tactpad_core::pipeline::mapping::sketch::Sketch;
+use tactpad_core::pipeline::mapping::profile::sketch::Sketch;
+use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_lab::tuning::fitting::{Fitted, Study};
 use tactpad_lab::tuning::labels::{HEADER, Labels};
 use tactpad_lab::tuning::trace::Trace;

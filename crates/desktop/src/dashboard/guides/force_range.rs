@@ -2,7 +2,7 @@
 
 use super::guide::{Guide, Outcome, Proposal, Scene, Step, StepState, Told};
 use super::recording::{NO_NAME, Recording};
-use tactpad_core::pipeline::mapping::check::{self, OutputChoice};
+use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_lab::tuning::fitting::Fitted;
 use tactpad_lab::tuning::force_range::fit::{Unfit, fit};
 use tactpad_lab::tuning::force_range::peaks::Peaks;

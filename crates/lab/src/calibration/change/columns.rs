@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use super::plays::{Changes, Compared, Plays};
 use super::was::Was;
-use crate::calibration::contacts::{Maps, Measured, Place, response};
+use crate::calibration::data::contacts::{Maps, Measured, Place, response};
+use crate::calibration::model::prior_deviations::Kind;
 use crate::calibration::model::{CERTAIN, Layout};
-use crate::calibration::normal_equations::NormalEquations;
-use crate::calibration::prior_deviations::Kind;
+use crate::calibration::noise::normal_equations::NormalEquations;
 use crate::calibration::problem::Problem;
 use tactpad_core::numeric::linear::Reduced;
 use tactpad_core::pipeline::compensation::hysteresis::PLAYS;

@@ -1,6 +1,6 @@
 //! Plays that are compared, the changes that are asked for, and what comes of it.
 
-use crate::calibration::contacts::{Fitted, Maps};
+use crate::calibration::data::contacts::{Fitted, Maps};
 use tactpad_core::numeric::linear::Reduced;
 use tactpad_core::tables::recording::Recording;
 

@@ -1,12 +1,12 @@
 //! The pad as it was: what its readings follow from, and how well that is known.
 
-use crate::calibration::effort::Effort;
-use crate::calibration::hyperparameters::{Estimates, Settings};
+use crate::calibration::fit::search::{Report, settled_reported};
 use crate::calibration::model::CERTAIN;
-use crate::calibration::prior::Prior;
-use crate::calibration::prior_deviations::Kind;
+use crate::calibration::model::prior::Prior;
+use crate::calibration::model::prior_deviations::Kind;
 use crate::calibration::problem::Problem;
-use crate::calibration::search::{Report, settled_reported};
+use crate::calibration::problem::effort::Effort;
+use crate::calibration::problem::hyperparameters::{Estimates, Settings};
 use tactpad_core::pipeline::contact::inverse::Inverse;
 
 /// The pad as it was.

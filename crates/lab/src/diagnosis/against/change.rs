@@ -10,9 +10,9 @@
 //! always fitted.
 
 use super::columns::Columns;
+use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::{Hypothesis, Parameter};
 use crate::diagnosis::report::NotTestable;
-use crate::diagnosis::target::Target;
 
 /// What a hypothesis changes.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Which columns of two tables are labels and which are channels.
 
 use super::unfit::Unfit;
-use crate::diagnosis::regression::Group;
+use crate::diagnosis::statistics::regression::Group;
 use tactpad_core::tables::measured::sheet::Sheet;
 
 /// Labels by which channels are predicted: those of a group share one length.

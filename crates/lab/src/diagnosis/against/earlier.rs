@@ -6,9 +6,9 @@
 use super::columns::{Columns, extent};
 use super::recording::Recording;
 use super::unfit::{ROWS_MIN, Unfit};
+use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::model::Signature;
-use crate::diagnosis::observations::Sample;
-use crate::diagnosis::regression::{Fit, Labels, Regression};
+use crate::diagnosis::statistics::regression::{Fit, Labels, Regression};
 use tactpad_core::numeric::statistics::{mean, population_deviation, rms};
 
 /// Parts that a recording is held against itself in.

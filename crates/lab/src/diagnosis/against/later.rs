@@ -4,8 +4,8 @@ use super::change::{Act, Changes, Circumstances, hypotheses};
 use super::columns::{Asked, Columns};
 use super::earlier::{Earlier, PARTS, counted};
 use super::recording::Recording;
+use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::model::{CommonError, Hypothesis, Linearised, Model, Signature};
-use crate::diagnosis::observations::Sample;
 use tactpad_core::numeric::statistics::rms;
 
 /// Readings that change by less than this part of the largest reading do not change.

@@ -1,7 +1,7 @@
 //! A recording of any sensor as observations, and the labels that its channels are predicted by.
 
 use super::columns::Columns;
-use crate::diagnosis::observations::{Observations, Sample};
+use crate::diagnosis::data::observations::{Observations, Sample};
 use tactpad_core::numeric::statistics::median;
 use tactpad_core::tables::measured::sheet::Sheet;
 

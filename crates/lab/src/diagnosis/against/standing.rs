@@ -4,10 +4,10 @@
 //! smaller, each channel's in units of its noise, and by more than these gains scatter from cluster to cluster. What does not is no
 //! chance, as the tests have it, but no name either: it is unnamed.
 
+use crate::diagnosis::attribution::columns::ZERO;
 use crate::diagnosis::attribution::{Applied, Attribution, Search};
-use crate::diagnosis::columns::ZERO;
-use crate::diagnosis::gain::{Rows, rmse};
 use crate::diagnosis::report::{Diagnosis, Finding};
+use crate::diagnosis::validation::gain::{Rows, rmse};
 use crate::diagnosis::verdict;
 
 /// So many standard errors of its mean a gain must be.

@@ -1,8 +1,8 @@
 //! Observations on their way through the checks, and what checks do with them.
 
-use crate::diagnosis::observations::Observations;
+use crate::diagnosis::data::observations::Observations;
+use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Finding, NotDetected, NotTestable, Notice};
-use crate::diagnosis::target::Target;
 use tactpad_core::numeric::statistics::mean;
 
 /// Probability by which a check may find anything in a sound recording.

@@ -7,22 +7,13 @@
 //!
 //! A check is a file, and a name in [`OF_TABLE`] or [`OF_CHANNELS`].
 
-mod clipping;
-mod clock;
-mod dead;
-pub(super) mod excess;
-mod gate;
-mod line;
-mod mains;
-mod missing;
-mod prediction;
-mod rates;
-mod steps;
-mod stuck;
-mod wiring;
+pub(crate) mod checks;
+pub(crate) mod gate;
+pub(crate) mod prediction;
 
+use self::checks::{clipping, clock, dead, excess, mains, missing, rates, steps, stuck, wiring};
 pub(super) use self::gate::Gate;
-use super::observations::Observations;
+use crate::diagnosis::data::observations::Observations;
 
 type Check = fn(&mut Gate);
 /// Checks of the table, in their order: times before series, codes before anything that calculates.

@@ -1,8 +1,8 @@
 //! Recordings with faults of their own: three channels of a made-up sensor, none of them a pad's.
 
 use super::*;
-use crate::diagnosis::observations::Sample;
-use crate::diagnosis::target::Target;
+use crate::diagnosis::data::observations::Sample;
+use crate::diagnosis::data::target::Target;
 use tactpad_core::numeric::random::SplitMix64;
 
 /// Three channels under loads of three axes, static, and what they should read.

@@ -1,8 +1,8 @@
 //! In which ways a pad may have changed, each as columns of the equations.
 
-use crate::diagnosis::mechanics::side_share;
-use crate::diagnosis::setting::Change;
-use crate::diagnosis::target::Target;
+use crate::diagnosis::data::target::Target;
+use crate::diagnosis::model::mechanics::side_share;
+use crate::diagnosis::model::setting::Change;
 use tactpad_core::numeric::linear::Reduced;
 use tactpad_core::pad::device::{Device, Side};
 use tactpad_core::quantity::{CHANNELS, MODULES};
@@ -239,7 +239,7 @@ impl Mechanics<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::mechanics::changes;
+    use crate::diagnosis::model::mechanics::changes;
     use tactpad_core::pad::changes::FieldChanges;
     use tactpad_core::pad::field::PadField;
 

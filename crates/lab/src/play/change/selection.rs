@@ -4,8 +4,8 @@
 
 use super::candidates::{Candidate, Explained, Number};
 use crate::calibration::change::plays::Compared;
+use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Estimate, Finding};
-use crate::diagnosis::target::Target;
 use tactpad_core::numeric::chi_square::{exceeded, noncentrality, quantile};
 use tactpad_core::numeric::linear::Reduced;
 
@@ -152,7 +152,7 @@ fn columns(explained: &[Explained]) -> Vec<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::target::Target::Channel;
+    use crate::diagnosis::data::target::Target::Channel;
     use crate::play::change::candidates::candidates;
     use tactpad_core::pad::device::Device;
     use tactpad_core::quantity::CHANNELS;

@@ -5,8 +5,8 @@ use super::peaks::Peaks;
 use super::range::Range;
 use crate::tuning::fitting::{Change, Fitted};
 use crate::tuning::knobs::{self, Key, Settings, rounded};
-use tactpad_core::pipeline::mapping::check::{self, OutputChoice};
 use tactpad_core::pipeline::mapping::profile::Profile;
+use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_core::toml_text::edit::{self, Table};
 
 /// The step to which forces are rounded: what must be less stays less by so much.
@@ -104,7 +104,7 @@ impl Reached {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::pipeline::mapping::shipped;
+    use tactpad_core::pipeline::mapping::read::shipped;
 
     const HAND: Range = Range { light_n: 0.4, light_most_n: 0.8, hard_n: 1.25 };
     const FLAT: Range = Range { light_n: 0.4, light_most_n: 0.8, hard_n: 0.9 };

@@ -112,8 +112,8 @@ impl Found<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::pipeline::mapping::check::{OutputChoice, read};
-    use tactpad_core::pipeline::mapping::shipped;
+    use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
+    use tactpad_core::pipeline::mapping::read::shipped;
 
     fn found(text: &str) -> Vec<(&'static str, f64, Vec<&'static str>)> {
         let (profile, findings) = read(text, OutputChoice::AsWritten);

@@ -2,8 +2,8 @@
 
 use super::subject::Subject;
 use super::words::{capital, cause, listed, place, sentence, title};
+use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Verdict};
-use tactpad::lab::diagnosis::target::Target;
 
 /// So many findings are told with their sizes; of more, what they are.
 const TOLD_MAX: usize = 2;

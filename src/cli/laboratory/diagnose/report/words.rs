@@ -1,8 +1,8 @@
 //! Causes in plain English.
 
 use super::super::numbers::{carried, decimals, estimate, parts, rounded, with_unit};
+use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::{Estimate, Finding, UNLISTED};
-use tactpad::lab::diagnosis::target::Target;
 
 /// Each effect's name for people, and the sentence that a finding makes of it.
 ///

@@ -41,9 +41,9 @@ use tactpad::lab::play::words::WITHOUT_WEIGHT;
 use tactpad::pad::marks::MARKS_MM;
 use tactpad::pad::weight::check_weight;
 use tactpad::pipeline::capture::head::Head;
-use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::pipeline::mapping::read::ReadProfile;
+use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::pipeline::shipped;
 
 /// Arguments of `tactpad calibrate`.

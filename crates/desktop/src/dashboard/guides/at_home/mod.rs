@@ -179,8 +179,8 @@ mod tests {
     use tactpad_bridge::snapshot::{BridgeHealth, Status};
     use tactpad_core::pipeline::call::Call;
     use tactpad_core::pipeline::capture::head::Head;
-    use tactpad_core::pipeline::mapping::accept::Presses;
-    use tactpad_core::pipeline::mapping::check::OutputChoice;
+    use tactpad_core::pipeline::mapping::live::Presses;
+    use tactpad_core::pipeline::mapping::read::check::OutputChoice;
     use tactpad_core::time::HostInstant;
     use tactpad_lab::play::guide::Guide as Led;
     use tactpad_lab::play::weights::Placement;

@@ -1,0 +1,308 @@
+//! The live mapping: contacts in, levels out.
+
+use arrayvec::ArrayVec;
+
+use super::button::{Touched, force_of};
+use super::directions::{Directed, Directions};
+use super::intent::Intents;
+use super::macros::Running;
+use super::stated::{Commands, Stated};
+use super::verdict::{Told, Verdict, Verdicts};
+use crate::pipeline::mapping::live::Presses;
+use crate::pipeline::mapping::live::contact::heading;
+use crate::pipeline::mapping::live::contact::pointer::{self, Steered};
+use crate::pipeline::mapping::live::contact::rest::{Load, Resting};
+use crate::pipeline::mapping::live::contact::tremor::Calm;
+use crate::pipeline::mapping::live::contact::zone;
+use crate::pipeline::mapping::profile::sector::Sector;
+use crate::pipeline::mapping::profile::{BUTTONS_MAX, Button, Direction, Place, Profile, SIDES};
+use crate::quantity::Contact;
+use crate::time::StreamInstant;
+
+/// Plays one profile. `mappings/README.md` states its rules.
+///
+/// All decisions are taken at samples, from their stream times: a long press starts to hold with the first
+/// sample at or after its moment. There is no timer.
+#[derive(Clone, Debug)]
+pub struct Engine {
+    profile: Profile,
+    held: Option<Sector>,
+    zone: Option<usize>,
+    moving: Option<Steered>,
+    buttons: ArrayVec<Touched, BUTTONS_MAX>,
+    last: Option<Contact>,
+    calm: Option<Calm>,
+    resting: Option<Resting>,
+    directed: Directed,
+    directions: Directions,
+    /// The layer that is on.
+    layer: Option<usize>,
+    running: Running,
+    /// Whether each stick is moved.
+    sticks: [bool; SIDES],
+    /// What presses of the last step ask of the bridge.
+    commands: Commands,
+    is_acting: bool,
+    presses: Presses,
+    verdicts: Verdicts,
+}
+
+impl Engine {
+    /// An engine that has seen no contact yet.
+    pub fn new(profile: Profile) -> Self {
+        let buttons = profile.buttons.iter().map(|_| Touched::fresh()).collect();
+        Self {
+            profile,
+            held: None,
+            zone: None,
+            moving: None,
+            buttons,
+            last: None,
+            calm: None,
+            resting: None,
+            directed: Directed::fresh(),
+            directions: Directions::default(),
+            layer: None,
+            running: Running::default(),
+            sticks: [false; SIDES],
+            commands: Commands::new(),
+            is_acting: false,
+            presses: Presses::default(),
+            verdicts: Verdicts::default(),
+        }
+    }
+
+    /// The profile that is played.
+    pub const fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// What should be held at stream time `t`, given the contact then; `None` for the contact means that it
+    /// was lifted (or that there still is none).
+    ///
+    /// A lift ends presses in the ordinary way, so a short one taps in this very step. A contact with a
+    /// number that is not finite is no contact, but no lift either: it works as [`cancel`](Self::cancel)
+    /// does. Time that runs backwards counts as time that stands still.
+    pub fn step(&mut self, t: StreamInstant, contact: Option<&Contact>) -> Intents {
+        if contact.is_some_and(|contact| !is_finite(contact)) {
+            self.cancel();
+            return Intents::new();
+        }
+        self.last = contact.copied();
+        let meant = self.meant(t, contact);
+        let contact = meant.as_ref();
+        let mut stated = Stated::default();
+        self.direct(t, contact, &mut stated);
+        self.zone = contact.and_then(|contact| zone::follow(&self.profile.zones, self.zone, contact));
+        self.press(t, contact, &mut stated);
+        self.unlatch();
+        self.moving = self
+            .profile
+            .pointer
+            .as_ref()
+            .zip(contact)
+            .and_then(|(pointer, contact)| pointer::follow(pointer, self.moving, contact));
+        stated.state_motion(self.moving);
+        self.steer(contact, &mut stated);
+        self.running.step(&self.profile.macros, t, &mut stated);
+        self.layer = stated.layer;
+        self.commands = stated.commands;
+        stated.levels
+    }
+
+    /// States the directions.
+    fn direct(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut Stated) {
+        let Some(dpad) = &self.profile.dpad else {
+            // The profile before may have had directions.
+            (self.held, self.directed, self.directions) = (None, Directed::fresh(), Directions::default());
+            return;
+        };
+        self.held = contact.and_then(|contact| heading::follow(dpad, self.held, contact));
+        let asked = (self.held, contact);
+        let heard = (&mut self.presses, &mut self.verdicts);
+        self.directions = self.directed.step(self.profile.access, t, asked, heard);
+        let layer = self.layer.and_then(|number| self.profile.layers.get(number));
+        for direction in self.directions.iter() {
+            let (own, in_layer) = match direction {
+                Direction::Left => (dpad.left, layer.and_then(|layer| layer.left)),
+                Direction::Right => (dpad.right, layer.and_then(|layer| layer.right)),
+                Direction::Up => (dpad.up, layer.and_then(|layer| layer.up)),
+                Direction::Down => (dpad.down, layer.and_then(|layer| layer.down)),
+            };
+            in_layer.unwrap_or(own).iter().for_each(|binding| stated.state(binding));
+        }
+    }
+
+    /// States where sticks and triggers are.
+    fn steer(&mut self, contact: Option<&Contact>, stated: &mut Stated) {
+        for (stick, is_held) in self.profile.sticks.iter().zip(&mut self.sticks) {
+            let position = contact.and_then(|contact| stick.follow(*is_held, contact));
+            *is_held = position.is_some();
+            stick
+                .axes()
+                .into_iter()
+                .zip(position.unwrap_or_default())
+                .for_each(|axis| stated.state_axis(axis));
+        }
+        let at = (self.zone, self.directions);
+        for trigger in self.profile.triggers.iter().filter(|trigger| is_in(at, trigger.place)) {
+            let position = contact.map_or(0, |contact| trigger.position(contact.fz_n));
+            stated.state_axis((trigger.axis(), position));
+        }
+    }
+
+    /// States what the buttons do. A layer that one of them switches counts from the next sample on.
+    fn press(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut Stated) {
+        let at = (self.zone, self.directions);
+        let access = self.profile.access;
+        for (number, (button, touched)) in (1..).zip(self.profile.buttons.iter().zip(&mut self.buttons)) {
+            if !button.when.is_met(self.layer) {
+                touched.sleep(button, t, contact).for_each(|playing| stated.take(playing));
+                continue;
+            }
+            // A lifted contact was where it was.
+            let is_in_place = contact.is_none() || is_in(at, button.place);
+            let before = self.presses;
+            let help = (access, &mut self.presses);
+            touched.step(button, t, (contact, is_in_place), help).for_each(|playing| stated.take(playing));
+            if let Some(is_rejected) = self.presses.since(before) {
+                let rejected = is_rejected.then(|| touched.why_rejected(button, access));
+                self.verdicts.keep(Verdict { t, told: Told::Button { number, rejected } });
+            }
+        }
+    }
+
+    /// The place that the hand means: calmed, counted from its centre, and stretched where it does not reach.
+    fn meant(&mut self, t: StreamInstant, contact: Option<&Contact>) -> Option<Contact> {
+        let Some(contact) = contact else {
+            (self.calm, self.resting) = (None, None);
+            return None;
+        };
+        let access = self.profile.access;
+        let load = access.rest.map_or(Load::Touch, |rest| Resting::step(&mut self.resting, rest, t, contact));
+        if let Load::Rest { is_news } = load {
+            if is_news {
+                self.verdicts.keep(Verdict { t, told: Told::Rest });
+            }
+            self.calm = None;
+            return None;
+        }
+        let calmed = match &access.tremor {
+            Some(tremor) => Calm::step(&mut self.calm, tremor, t, contact),
+            None => *contact,
+        };
+        let [x_mm, y_mm] = self.profile.centre_mm;
+        let from_centre = Contact { x_mm: calmed.x_mm - x_mm, y_mm: calmed.y_mm - y_mm, ..calmed };
+        Some(self.profile.gain.applied(&from_centre))
+    }
+
+    /// Lets latched keys go where an action has ended.
+    fn unlatch(&mut self) {
+        let buttons = || self.profile.buttons.iter().zip(&self.buttons);
+        let is_acting =
+            !self.directions.is_empty() || buttons().any(|(button, touched)| touched.is_acting(button));
+        if self.is_acting && !is_acting {
+            self.buttons.iter_mut().for_each(Touched::unlatch);
+        }
+        self.is_acting = is_acting;
+    }
+
+    /// What presses of the last step ask of the bridge.
+    pub const fn commands(&self) -> &Commands {
+        &self.commands
+    }
+
+    /// The name of the layer that is on.
+    pub fn layer(&self) -> Option<&str> {
+        self.layer.and_then(|number| self.profile.layers.get(number)).map(|layer| layer.name.as_str())
+    }
+
+    /// How many presses counted since the engine began, and how many did not.
+    pub const fn presses(&self) -> Presses {
+        self.presses
+    }
+
+    /// What became of presses, and when a hand began to rest, since [`Self::forget_verdicts`], as far as there was room: the oldest first.
+    pub fn verdicts(&self) -> &[Verdict] {
+        self.verdicts.all()
+    }
+
+    /// Forgets what became of presses.
+    pub fn forget_verdicts(&mut self) {
+        self.verdicts.clear();
+    }
+
+    /// After a fault (lost link, dead channel, pause): forgets directions, the pointer's way, presses and what they toggled;
+    /// nothing is tapped for them.
+    ///
+    /// A press that was under way stays forgotten until its force was released once, even if the contact goes
+    /// on.
+    pub fn cancel(&mut self) {
+        (self.held, self.zone, self.moving, self.calm, self.resting) = (None, None, None, None, None);
+        (self.layer, self.running, self.is_acting) = (None, Running::default(), false);
+        (self.directed, self.directions) = (Directed::fresh(), Directions::default());
+        self.sticks = [false; SIDES];
+        self.commands.clear();
+        self.buttons.iter_mut().for_each(Touched::forget);
+    }
+
+    /// Goes on with another profile, also in the middle of a contact.
+    ///
+    /// If it is the same profile, but for what was changed in it, then a button that stands unchanged goes on as if nothing had been.
+    ///
+    /// The next step states the levels of the new profile, so whatever both profiles hold stays held. The
+    /// direction and the pointer's way continue (the thresholds that end them apply, not those that start them); what was toggled
+    /// does not. A press that was under way, or that the new profile would see as under way, does nothing in the new profile until its
+    /// force was released once.
+    pub fn replace_profile(&mut self, profile: Profile) {
+        let is_changed_only = self.profile.name == profile.name;
+        let taken_over = |button: &Button| match self.unchanged(button) {
+            Some(touched) if is_changed_only => touched,
+            _ => self.taken_over(button),
+        };
+        self.buttons = profile.buttons.iter().map(taken_over).collect();
+        if self.profile.zones != profile.zones {
+            self.zone = None;
+        }
+        if self.profile.access != profile.access {
+            self.calm = None;
+        }
+        if self.profile.layers != profile.layers {
+            self.layer = None;
+        }
+        if self.profile.macros != profile.macros {
+            self.running = Running::default();
+        }
+        (self.sticks, self.is_acting) = ([false; SIDES], false);
+        self.profile = profile;
+    }
+
+    /// Where the same button stands.
+    fn unchanged(&self, button: &Button) -> Option<Touched> {
+        let mut all = self.profile.buttons.iter().zip(&self.buttons);
+        all.find(|(old, _)| *old == button).map(|(_, touched)| *touched)
+    }
+
+    /// Where a button of another profile stands that takes over now.
+    fn taken_over(&self, button: &Button) -> Touched {
+        let force_n = self.last.map_or(0.0, |contact| force_of(button.force, &contact));
+        let mut same_force =
+            self.profile.buttons.iter().zip(&self.buttons).filter(|(old, _)| old.force == button.force);
+        let is_under_way = same_force.any(|(_, touched)| touched.is_under_way());
+        if is_under_way || force_n >= button.press_n { Touched::spent(force_n) } else { Touched::fresh() }
+    }
+}
+
+/// Whether the contact is there, being in this zone and having these directions.
+fn is_in((zone, directions): (Option<usize>, Directions), place: Option<Place>) -> bool {
+    match place {
+        None => true,
+        Some(Place::Zone(number)) => zone == Some(number),
+        Some(Place::Direction(direction)) => directions.has(direction),
+    }
+}
+
+fn is_finite(contact: &Contact) -> bool {
+    let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = *contact;
+    [x_mm, y_mm, fx_n, fy_n, fz_n].into_iter().all(f32::is_finite)
+}

@@ -1,0 +1,374 @@
+//! A profile as it is drawn: all numbers resolved, mirrored for the left hand as it is played, names as a profile writes them.
+
+use serde::Serialize;
+
+use super::place::{Direction, Dpad, Pointer, Zone};
+use super::sector;
+use super::words::{COMMANDS, DPAD_MODES, FORCES, POINTER_MODES, SIDES, SOURCES};
+use super::{Action, Button, Command, Effect, Mode, Output, Place, Profile, Role, Stick, Trigger, When};
+use crate::pipeline::control::Code;
+
+/// A profile as it is drawn. Angles in degrees counter-clockwise from right; `centre_mm` is where the hand has its centre.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sketch {
+    /// The profile's name for people.
+    pub name: String,
+    /// The device of its output.
+    pub output: &'static str,
+    /// Directions, zones and rings are around this place.
+    pub centre_mm: [f32; 2],
+    /// Window of the mean filter.
+    pub filter_samples: usize,
+    /// Its directions.
+    pub dpad: Option<Directions>,
+    /// Its zones, in the file's order.
+    pub zones: Vec<Region>,
+    /// The rings that move the pointer.
+    pub pointer: Option<PointerRings>,
+    /// Its sticks.
+    pub sticks: Vec<StickReach>,
+    /// Its triggers.
+    pub triggers: Vec<TriggerForces>,
+    /// Its buttons, in the file's order.
+    pub buttons: Vec<ButtonForces>,
+}
+
+/// Directions as they are drawn.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Directions {
+    /// `4way`, `4way-sticky` or `8way`.
+    pub mode: &'static str,
+    /// A direction starts at this distance from the centre,
+    pub centre_radius_mm: f32,
+    /// and ends closer than this.
+    pub release_radius_mm: f32,
+    /// See [`Dpad::rotation_deg`].
+    pub rotation_deg: f32,
+    /// See [`Dpad::diagonal_deg`].
+    pub diagonal_deg: f32,
+    /// See [`Dpad::hysteresis_deg`].
+    pub hysteresis_deg: f32,
+    /// See [`Dpad::hysteresis_mm`].
+    pub hysteresis_mm: f32,
+    /// See [`Dpad::min_force_n`].
+    pub min_force_n: f32,
+    /// See [`Dpad::release_force_n`].
+    pub release_force_n: f32,
+    /// The parts of the plate, counter-clockwise from right.
+    pub sectors: Vec<Part>,
+}
+
+/// A sector of the plate and what is held there; nothing where the last direction stays.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Part {
+    /// It begins
+    pub from_deg: f32,
+    /// and ends.
+    pub to_deg: f32,
+    /// The names of the directions.
+    pub directions: Vec<&'static str>,
+}
+
+/// A zone as it is drawn.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Region {
+    /// Its name.
+    pub name: String,
+    /// It begins; nothing for a ring.
+    pub from_deg: Option<f32>,
+    /// It ends.
+    pub to_deg: Option<f32>,
+    /// It begins at this distance from the centre.
+    pub inner_radius_mm: f32,
+    /// It ends at this one.
+    pub outer_radius_mm: f32,
+}
+
+/// The pointer's rings.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PointerRings {
+    /// `relative` or `absolute`.
+    pub mode: &'static str,
+    /// See [`Pointer::centre_radius_mm`].
+    pub centre_radius_mm: f32,
+    /// See [`Pointer::full_radius_mm`].
+    pub full_radius_mm: f32,
+    /// See [`Pointer::min_force_n`].
+    pub min_force_n: f32,
+    /// See [`Pointer::release_force_n`].
+    pub release_force_n: f32,
+}
+
+/// From where to where a stick moves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StickReach {
+    /// `left` or `right`.
+    pub stick: &'static str,
+    /// `place`: what follows is in millimetres; `shear`: in newtons.
+    pub from: &'static str,
+    /// Up to here it rests.
+    pub centre: f32,
+    /// From here on it is at its end.
+    pub full: f32,
+}
+
+/// From where to where a trigger moves.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TriggerForces {
+    /// `left` or `right`.
+    pub trigger: &'static str,
+    /// Up to here it rests.
+    pub from_n: f32,
+    /// From here on it is at its end.
+    pub full_n: f32,
+}
+
+/// A button's thresholds and times.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ButtonForces {
+    /// Its number in the file, from 1.
+    pub number: usize,
+    /// `fz`, `fx`, `-fx`, `fy` or `-fy`.
+    pub force: &'static str,
+    /// See [`Button::press_n`].
+    pub press_n: f32,
+    /// See [`Button::release_n`].
+    pub release_n: f32,
+    /// From here on a press is hard, if there are hard ones,
+    pub hard_press_n: Option<f32>,
+    /// and below this no longer.
+    pub hard_release_n: Option<f32>,
+    /// From here on a press is long, if there are long ones.
+    pub long_press_ms: Option<u64>,
+    /// A second press this soon makes a double one, if there are double ones.
+    pub double_press_ms: Option<u64>,
+    /// A press counts after this rest, if it needs one.
+    pub dwell_ms: Option<u64>,
+    /// The zone or direction where it counts; everywhere without.
+    pub zone: Option<String>,
+    /// The layer in which it counts; always without.
+    pub layer: Option<String>,
+    /// What its kinds of press do.
+    pub does: Vec<Does>,
+}
+
+/// What a kind of press does.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Does {
+    /// The kind of press, as its key in the profile.
+    pub role: &'static str,
+    /// Names of controls with `+` between them, or what it acts on in words.
+    pub keys: String,
+}
+
+impl Sketch {
+    /// Of a profile.
+    pub fn of(profile: &Profile) -> Self {
+        Self {
+            name: profile.name.clone(),
+            output: profile.output.name(),
+            centre_mm: profile.centre_mm,
+            filter_samples: profile.filter_samples,
+            dpad: profile.dpad.as_ref().map(Directions::of),
+            zones: profile.zones.iter().map(Region::of).collect(),
+            pointer: profile.pointer.as_ref().map(PointerRings::of),
+            sticks: profile.sticks.iter().map(StickReach::of).collect(),
+            triggers: profile.triggers.iter().map(TriggerForces::of).collect(),
+            buttons: (1..)
+                .zip(&profile.buttons)
+                .map(|(number, it)| ButtonForces::of(number, it, profile))
+                .collect(),
+        }
+    }
+}
+
+/// The word of a value.
+fn word<T: PartialEq>(words: &[(&'static str, T)], of: &T) -> &'static str {
+    words.iter().find(|(_, value)| value == of).map_or("", |(word, _)| word)
+}
+
+impl Directions {
+    fn of(dpad: &Dpad) -> Self {
+        Self {
+            mode: word(&DPAD_MODES, &dpad.mode),
+            centre_radius_mm: dpad.centre_radius_mm,
+            release_radius_mm: dpad.centre_radius_mm - dpad.radius_hysteresis_mm,
+            rotation_deg: dpad.rotation_deg,
+            diagonal_deg: dpad.diagonal_deg,
+            hysteresis_deg: dpad.hysteresis_deg,
+            hysteresis_mm: dpad.hysteresis_mm,
+            min_force_n: dpad.min_force_n,
+            release_force_n: dpad.release_force_n,
+            sectors: sector::parts(dpad)
+                .map(|(from_deg, to_deg, held)| Part::of([from_deg, to_deg], held))
+                .collect(),
+        }
+    }
+}
+
+impl Part {
+    fn of([from_deg, to_deg]: [f32; 2], held: impl Fn(Direction) -> bool) -> Self {
+        let held = Direction::ALL.into_iter().filter(|direction| held(*direction));
+        Self { from_deg, to_deg, directions: held.map(Direction::name).collect() }
+    }
+}
+
+impl Region {
+    fn of(zone: &Zone) -> Self {
+        let edges = (zone.half_width_deg < 180.0)
+            .then_some((zone.middle_deg - zone.half_width_deg, zone.middle_deg + zone.half_width_deg));
+        Self {
+            name: zone.name.clone(),
+            from_deg: edges.map(|(from_deg, _)| from_deg),
+            to_deg: edges.map(|(_, to_deg)| to_deg),
+            inner_radius_mm: zone.inner_radius_mm,
+            outer_radius_mm: zone.outer_radius_mm,
+        }
+    }
+}
+
+impl PointerRings {
+    fn of(pointer: &Pointer) -> Self {
+        Self {
+            mode: word(&POINTER_MODES, &pointer.mode),
+            centre_radius_mm: pointer.centre_radius_mm,
+            full_radius_mm: pointer.full_radius_mm,
+            min_force_n: pointer.min_force_n,
+            release_force_n: pointer.release_force_n,
+        }
+    }
+}
+
+impl StickReach {
+    fn of(stick: &Stick) -> Self {
+        let from = word(&SOURCES, &stick.source);
+        Self { stick: word(&SIDES, &stick.side), from, centre: stick.rest, full: stick.full }
+    }
+}
+
+impl TriggerForces {
+    fn of(trigger: &Trigger) -> Self {
+        Self { trigger: word(&SIDES, &trigger.side), from_n: trigger.from_n, full_n: trigger.full_n }
+    }
+}
+
+impl ButtonForces {
+    fn of(number: usize, button: &Button, profile: &Profile) -> Self {
+        let ms = |us: u64| us / 1_000;
+        let (hard_press_n, hard_release_n) = match button.action {
+            Action::ByForce { hard_press_n, hard_release_n, .. } => {
+                (Some(hard_press_n), Some(hard_release_n))
+            }
+            Action::Hold(_) | Action::ByTime { .. } => (None, None),
+        };
+        let (double, hold) = match button.action {
+            Action::ByTime { double, hold, .. } => (double, hold),
+            Action::Hold(_) | Action::ByForce { .. } => (None, None),
+        };
+        let effects = Role::ALL.into_iter().zip(button.effects());
+        Self {
+            number,
+            force: word(&FORCES, &button.force),
+            press_n: button.press_n,
+            release_n: button.release_n,
+            hard_press_n,
+            hard_release_n,
+            long_press_ms: hold.map(|it| ms(it.us)),
+            double_press_ms: double.map(|it| ms(it.us)),
+            dwell_ms: button.dwell.map(|it| ms(it.us)),
+            zone: button.place.and_then(|place| place_name(place, profile)),
+            layer: layer_name(button.when, profile),
+            does: effects.filter_map(|(role, effect)| Some(Does::of(role, &effect?, profile))).collect(),
+        }
+    }
+}
+
+fn place_name(place: Place, profile: &Profile) -> Option<String> {
+    match place {
+        Place::Zone(number) => profile.zones.get(number).map(|zone| zone.name.clone()),
+        Place::Direction(direction) => Some(direction.name().into()),
+    }
+}
+
+fn layer_name(when: When, profile: &Profile) -> Option<String> {
+    match when {
+        When::Always => None,
+        When::Base => Some("base".into()),
+        When::Layer(number) => profile.layers.get(number).map(|layer| layer.name.clone()),
+    }
+}
+
+impl Does {
+    fn of(role: Role, effect: &Effect, profile: &Profile) -> Self {
+        let acts_on = match &effect.output {
+            Output::Keys(_) => {
+                effect.output.bindings().map(|it| control(it.code, it.value)).collect::<Vec<_>>().join("+")
+            }
+            Output::Layer(number) => {
+                profile.layers.get(*number).map_or_else(String::new, |it| format!("layer {}", it.name))
+            }
+            Output::Macro(number) => {
+                profile.macros.get(*number).map_or_else(String::new, |it| format!("macro {}", it.name))
+            }
+            Output::Bridge(Command::Profile(name)) => format!("profile {name}"),
+            Output::Bridge(command) => word(&COMMANDS, command).into(),
+        };
+        let follows = match effect.mode {
+            Mode::Plain => String::new(),
+            Mode::Toggle => ", toggle".into(),
+            Mode::Sticky => ", sticky".into(),
+            Mode::Turbo { period_us } => format!(", turbo {} ms", period_us / 1_000),
+        };
+        Self { role: role.name(), keys: acts_on + &follows }
+    }
+}
+
+/// A control with its side, as bindings have it.
+pub fn control(code: Code, value: i32) -> String {
+    match code {
+        Code::Key(_) => code.to_string(),
+        Code::Axis(_) | Code::Relative(_) => format!("{code}{}", if value < 0 { '-' } else { '+' }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::mapping::read::check::{OutputChoice, read};
+    use crate::pipeline::mapping::read::shipped;
+
+    fn sketch(name: &str) -> Sketch {
+        Sketch::of(&read(shipped::text(name).unwrap(), OutputChoice::AsWritten).0.unwrap())
+    }
+
+    #[test]
+    fn eight_ways_cover_the_circle_without_a_gap() {
+        let dpad = sketch("contra").dpad.unwrap();
+        assert_eq!((dpad.mode, dpad.release_radius_mm, dpad.sectors.len()), ("8way", 6.5, 8));
+        for (part, next) in dpad.sectors.iter().zip(dpad.sectors.iter().cycle().skip(1)) {
+            let step_deg = (next.from_deg - part.to_deg).rem_euclid(360.0);
+            assert!(step_deg.min(360.0 - step_deg) < 1e-3, "{part:?} {next:?}");
+        }
+        assert_eq!((dpad.sectors[0].from_deg, &*dpad.sectors[0].directions), (-22.5, &["right"][..]));
+        assert_eq!(dpad.sectors[1].directions, ["up", "right"]);
+    }
+
+    #[test]
+    fn four_ways_have_no_diagonals_and_sticky_ones_hold_nothing() {
+        assert_eq!(sketch("super-mario").dpad.map(|it| it.sectors.len()), Some(4));
+        let sticky = sketch("tetris").dpad.unwrap();
+        assert_eq!(
+            (sticky.mode, sticky.sectors.len(), sticky.sectors[1].directions.len()),
+            ("4way-sticky", 8, 0)
+        );
+    }
+
+    #[test]
+    fn buttons_say_what_their_presses_do() {
+        let sketch = sketch("super-mario");
+        let [first, ..] = &sketch.buttons[..] else { panic!("no button") };
+        let does: Vec<_> = first.does.iter().map(|it| (it.role, it.keys.as_str())).collect();
+        assert_eq!((first.force, does), ("fz", vec![("tap", "BTN_SOUTH"), ("hold", "BTN_EAST")]));
+        assert!(first.long_press_ms.is_some() && first.double_press_ms.is_none());
+    }
+}

@@ -1,0 +1,294 @@
+//! The rig among the parameters of a fit: what is systematically wrong with the labels.
+//!
+//! A written label L stands for the contact T(L; ρ) of [`RigErrors`]. What the channels read of it changes with an error ρⱼ by
+//! J ∂T/∂ρⱼ, where J are their derivatives by x, y, Fx, Fy, Fz.
+//!
+//! Most rigs are right in most of this, and some are wrong in some of it. So the prior of an error is a mixture of two normal
+//! densities, a narrow one and a wide one, and the fit has the normal density that leaves the same posterior moments.
+//!
+//! Source: T. P. Minka, Expectation propagation for approximate Bayesian inference, UAI 2001; for such mixtures D.
+//! Hernández-Lobato and others, Mach. Learn. 99 (2015) 437.
+
+use crate::rig::errors::RigErrors;
+use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
+use tactpad_core::tables::measured::Row;
+
+/// A number of the rig. The diagnosis has the same causes, with the same parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigNumber {
+    /// The cause in a diagnosis.
+    pub effect: &'static str,
+    /// The cause and its parameter there.
+    pub name: &'static str,
+    /// In words.
+    pub words: &'static str,
+    /// Standard deviation of the prior's wide part, in the parameter's unit; of a factor, that of its logarithm.
+    pub(crate) deviation: f64,
+    /// Probability of that part.
+    wide: f64,
+    /// Whether it is a factor: the fit has its logarithm.
+    pub(crate) is_factor: bool,
+}
+
+impl RigNumber {
+    const fn of(effect: &'static str, name: &'static str, words: &'static str, deviation: f64) -> Self {
+        Self { effect, name, words, deviation, wide: WIDE, is_factor: false }
+    }
+
+    /// Of a stage.
+    const fn of_stage(self) -> Self {
+        Self { wide: WIDE_OF_STAGE, ..self }
+    }
+
+    const fn factor(effect: &'static str, name: &'static str, words: &'static str, deviation: f64) -> Self {
+        Self { is_factor: true, ..Self::of(effect, name, words, deviation) }
+    }
+}
+
+impl RigNumber {
+    /// Standard deviation of the whole prior.
+    pub(crate) fn deviation_of_prior(&self) -> f64 {
+        // √(π σ² + (1 − π) (σ/10)²).
+        self.deviation * (self.wide + (1.0 - self.wide) * NARROW * NARROW).sqrt()
+    }
+}
+
+/// How many they are.
+pub(crate) const RIG_NUMBERS: usize = 11;
+/// In the order of the parameters. Wide deviations are those of a laboratory that was not careful here: a pad is put against
+/// stops by eye, and a six-axis sensor is calibrated to one or two percent and screwed on by hand.
+pub(crate) static RIG: [RigNumber; RIG_NUMBERS] = [
+    RigNumber::of("stage_offset", "stage_offset.x_mm", "offset of the stage along x", 0.4).of_stage(),
+    RigNumber::of("stage_offset", "stage_offset.y_mm", "offset of the stage along y", 0.4).of_stage(),
+    RigNumber::of("stage_rotation", "stage_rotation.deg", "turn of the stage", 1.0).of_stage(),
+    RigNumber::factor("stage_scale", "stage_scale.scale", "scale of the stage", 4e-3).of_stage(),
+    RigNumber::of("reference_tilt", "reference_tilt.x_deg", "tilt of the reference about x", 1.5),
+    RigNumber::of("reference_tilt", "reference_tilt.y_deg", "tilt of the reference about y", 1.5),
+    RigNumber::factor("reference_gain", "reference_gain.gain", "gain of the reference", 0.015),
+    RigNumber::of("reference_zero", "reference_zero.fx_n", "zero of the reference along x", 0.02),
+    RigNumber::of("reference_zero", "reference_zero.fy_n", "zero of the reference along y", 0.02),
+    RigNumber::of("reference_zero", "reference_zero.fz_n", "zero of the reference along z", 0.02),
+    RigNumber::of("time_lag", "time_lag.ms", "lag of the labels", 10.0),
+];
+/// The narrow part's deviation over the wide one's, for a laboratory that was careful.
+const NARROW: f64 = 0.1;
+/// How likely the wide part is. Of a stage it is less so: an offset is seen by eye, and what the model lacks of the plate's rim
+/// looks like a small one.
+const WIDE: f64 = 0.5;
+const WIDE_OF_STAGE: f64 = 0.05;
+/// Contacts say something of an error from so much of the wide part's precision on.
+const LEAST_TOLD: f64 = 1e-3;
+/// Steps of the central differences by which T is differentiated: the errors are small, and T is smooth.
+const STEP: f64 = 1e-4;
+
+/// The normal priors that stand for the mixtures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct RigPrior {
+    pub(crate) mean: [f64; RIG_NUMBERS],
+    pub(crate) precision: [f64; RIG_NUMBERS],
+}
+
+impl RigPrior {
+    /// Before any measurement: the mixtures' own moments.
+    pub(crate) fn new() -> Self {
+        Self {
+            mean: [0.0; RIG_NUMBERS],
+            precision: std::array::from_fn(|at| 1.0 / RIG[at].deviation_of_prior().powi(2)),
+        }
+    }
+
+    /// Those that leave the posterior moments of the mixtures, by the present posterior's means and variances.
+    pub(crate) fn matched(&self, values: &[f64; RIG_NUMBERS], variances: &[f64]) -> Self {
+        let of = |at: usize| {
+            // What the contacts say: the posterior less the present prior, 1/s² = 1/v − P, m = s² (θ/v − P μ).
+            let told = 1.0 / variances[at] - self.precision[at];
+            let (mean, precision) = (self.mean[at], self.precision[at]);
+            let wide = RIG[at].deviation;
+            if told < LEAST_TOLD / (wide * wide) {
+                return (0.0, 1.0 / RIG[at].deviation_of_prior().powi(2));
+            }
+            let by_contacts = (values[at] / variances[at] - precision * mean) / told;
+            matched(told.recip(), by_contacts, wide, RIG[at].wide)
+        };
+        let all: [(f64, f64); RIG_NUMBERS] = std::array::from_fn(of);
+        Self { mean: all.map(|(mean, _)| mean), precision: all.map(|(_, precision)| precision) }
+    }
+}
+
+/// Mean and precision of the normal prior that leaves the posterior moments of the mixture, where the contacts alone say m
+/// with the variance s².
+///
+/// ```text
+/// part i: weight ∝ πᵢ N(m; 0, s² + σᵢ²), mean mᵢ = m σᵢ²/(s² + σᵢ²), variance vᵢ = s² σᵢ²/(s² + σᵢ²)
+/// ```
+fn matched(variance: f64, told: f64, wide: f64, probability: f64) -> (f64, f64) {
+    let parts = [NARROW * wide, wide].map(|deviation| {
+        let whole = variance + deviation * deviation;
+        let share = deviation * deviation / whole;
+        (-0.5 * (told * told / whole + libm::log(whole)), told * share, variance * share)
+    });
+    // Σᵢ wᵢ mᵢ, and Σᵢ wᵢ (vᵢ + mᵢ²) less its square.
+    let odds = (1.0 - probability) / probability;
+    let of_wide = 1.0 / (1.0 + odds * libm::exp(parts[0].0 - parts[1].0));
+    let weights = [1.0 - of_wide, of_wide];
+    let both = || weights.into_iter().zip(parts);
+    let mean: f64 = both().map(|(weight, (_, mean, _))| weight * mean).sum();
+    let square: f64 = both().map(|(weight, (_, mean, own))| weight * (own + mean * mean)).sum();
+    let left = square - mean * mean;
+    // The posterior's precision less that of the contacts; a prior that would widen it is the wide part.
+    let precision = 1.0 / left - 1.0 / variance;
+    if precision <= 1.0 / (wide * wide) {
+        return (0.0, 1.0 / (wide * wide));
+    }
+    ((mean / left - told / variance) / precision, precision)
+}
+
+/// The rig's errors by these values of its parameters.
+pub(crate) fn errors(values: &[f64; RIG_NUMBERS]) -> RigErrors {
+    let [x_mm, y_mm, rotation_deg, log_scale, tilt_x, tilt_y, log_gain, fx_n, fy_n, fz_n, lag_ms] = *values;
+    RigErrors {
+        offset_mm: [x_mm, y_mm],
+        rotation_deg,
+        scale: libm::exp(log_scale),
+        tilt_deg: [tilt_x, tilt_y],
+        gain: libm::exp(log_gain),
+        zero_n: [fx_n, fy_n, fz_n],
+        lag_s: 1e-3 * lag_ms,
+        turned_deg: 0.0,
+    }
+}
+
+/// What was written down about a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Written {
+    /// x, y, Fx, Fy, Fz.
+    numbers: [f64; UNKNOWNS],
+    /// How fast these change, per second; zero for a static sample.
+    per_s: [f64; UNKNOWNS],
+    /// By how much the pad was turned on the stage.
+    turned_deg: f64,
+}
+
+impl Written {
+    /// That of a row. In a time series it changes as from the row before to the row behind.
+    pub(crate) fn of(rows: &[Row], at: usize) -> Option<Self> {
+        let row = rows.get(at)?;
+        let goes_on = |other: &&Row| row.trial.is_some() && other.trial == row.trial;
+        let before = at.checked_sub(1).and_then(|at| rows.get(at)).filter(goes_on).unwrap_or(row);
+        let behind = rows.get(at + 1).filter(goes_on).unwrap_or(row);
+        let passed_s = behind.t_s.zip(before.t_s).map_or(0.0, |(behind_s, before_s)| behind_s - before_s);
+        let (from, to) = (before.label.numbers(), behind.label.numbers());
+        let rate = |k: usize| if passed_s > 0.0 { (to[k] - from[k]) / passed_s } else { 0.0 };
+        Some(Self {
+            numbers: row.label.numbers(),
+            per_s: std::array::from_fn(rate),
+            turned_deg: row.turned_deg.unwrap_or(0.0),
+        })
+    }
+
+    /// A label that stands still.
+    pub(crate) const fn still(numbers: [f64; UNKNOWNS]) -> Self {
+        Self { numbers, per_s: [0.0; UNKNOWNS], turned_deg: 0.0 }
+    }
+
+    /// T(L; ρ): the contact that it stands for.
+    pub(crate) fn contact(&self, values: &[f64; RIG_NUMBERS]) -> [f64; UNKNOWNS] {
+        let errors = errors(values).under(self.turned_deg);
+        // A label that is late by τ was true τ ago: what is true now will be written then, L + τ dL/dt.
+        let [x_mm, y_mm, fx_n, fy_n, fz_n] =
+            std::array::from_fn(|k| self.numbers[k] + errors.lag_s * self.per_s[k]);
+        let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) =
+            (errors.place_mm([x_mm, y_mm]), errors.force_n([fx_n, fy_n, fz_n]));
+        [x_mm, y_mm, fx_n, fy_n, fz_n]
+    }
+
+    /// ∂T/∂ρ, one line for each parameter.
+    pub(crate) fn slopes(&self, values: &[f64; RIG_NUMBERS]) -> [[f64; UNKNOWNS]; RIG_NUMBERS] {
+        std::array::from_fn(|at| {
+            // (T(ρ + h) − T(ρ − h))/2h.
+            let [behind, ahead] = [-STEP, STEP].map(|step| {
+                let mut values = *values;
+                values[at] += step;
+                self.contact(&values)
+            });
+            std::array::from_fn(|k| (ahead[k] - behind[k]) / (2.0 * STEP))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tactpad_core::tables::measured::Label;
+
+    #[test]
+    fn each_number_is_one_of_a_cause_of_the_diagnosis() {
+        let known: Vec<&str> = crate::diagnosis::effects().collect();
+        assert!(RIG.iter().all(|it| known.contains(&it.effect)));
+        assert!(RIG.iter().all(|it| it.name.split_once('.').is_some_and(|(effect, _)| effect == it.effect)));
+    }
+
+    #[test]
+    fn a_prior_that_is_matched_leaves_the_moments_of_the_mixture() {
+        // By summation over the mixture's density times the likelihood.
+        for (told, variance) in [(0.02, 0.01_f64), (0.15, 0.01), (0.5, 0.01), (0.1, 0.2), (-0.3, 0.0025)] {
+            let wide = 0.4;
+            let density = |x: f64, deviation: f64| libm::exp(-0.5 * (x / deviation).powi(2)) / deviation;
+            let posterior = |x: f64| {
+                (0.7 * density(x, NARROW * wide) + 0.3 * density(x, wide))
+                    * density(x - told, variance.sqrt())
+            };
+            let sums = (-40_000..40_000).map(|step| 1e-4 * f64::from(step)).fold([0.0; 3], |sums, x| {
+                [sums[0] + posterior(x), sums[1] + x * posterior(x), sums[2] + x * x * posterior(x)]
+            });
+            let mean = sums[1] / sums[0];
+            let left = sums[2] / sums[0] - mean * mean;
+            let (of_prior, precision) = matched(variance, told, wide, 0.3);
+            let whole = precision + 1.0 / variance;
+            if precision > 1.01 / (wide * wide) {
+                assert!((whole * left - 1.0).abs() < 1e-3, "{told}: {whole} {left}");
+                let found = (precision * of_prior + told / variance) / whole;
+                assert!((found - mean).abs() < 1e-3, "{told}: {found} {mean}");
+            } else {
+                assert!(left >= 0.9 / whole, "{told}: the wide part is no narrower than what is left");
+            }
+        }
+    }
+
+    #[test]
+    fn a_lag_moves_only_what_moves() {
+        let label = Label { x_mm: 3.0, fz_n: 2.0, ..Label::default() };
+        let row = |trial, t_s, fz_n| Row { trial, t_s: Some(t_s), ..Row::of(Label { fz_n, ..label }) };
+        let rows =
+            [row(None, 0.0, 2.0), row(Some(0), 1.0, 2.0), row(Some(0), 1.5, 2.5), row(Some(0), 2.0, 4.0)];
+        let mut late = [0.0; RIG_NUMBERS];
+        late[RIG_NUMBERS - 1] = 100.0;
+        let fz_n = |at| Written::of(&rows, at).unwrap().contact(&late)[4];
+        // Rates of 1, 2 and 3 N/s; a static sample stands still.
+        for (at, wanted_n) in [2.0, 2.1, 2.7, 4.3].into_iter().enumerate() {
+            assert!((fz_n(at) - wanted_n).abs() < 1e-12, "{at}: {}", fz_n(at));
+        }
+    }
+
+    #[test]
+    fn slopes_are_those_of_small_errors() {
+        let written = Written::still([10.0, -5.0, 0.4, -0.2, 3.0]);
+        let slopes = written.slopes(&[0.0; RIG_NUMBERS]);
+        let degree = 1.0_f64.to_radians();
+        let wanted = [
+            [1.0, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0, 0.0],
+            [5.0 * degree, 10.0 * degree, 0.0, 0.0, 0.0],
+            [10.0, -5.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, -3.0 * degree, -0.2 * degree],
+            [0.0, 0.0, 3.0 * degree, 0.0, -0.4 * degree],
+            [0.0, 0.0, -0.4, 0.2, -3.0],
+            [0.0, 0.0, -1.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, -1.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, -1.0],
+            [0.0; UNKNOWNS],
+        ];
+        let pairs = slopes.as_flattened().iter().zip(wanted.as_flattened());
+        pairs.for_each(|(found, wanted)| assert!((found - wanted).abs() < 1e-6, "{slopes:?}"));
+    }
+}

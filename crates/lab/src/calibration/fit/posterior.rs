@@ -1,0 +1,72 @@
+//! What a fit comes to: how probable it is and how sure, the pad's own field, and the contacts without what the past adds to them.
+
+use crate::calibration::data::contacts::{Knowledge, Measured, Place};
+use crate::calibration::model::Layout;
+use crate::calibration::problem::{Fit, Problem};
+use tactpad_core::numeric::products::dot;
+use tactpad_core::pad::influence::{InfluenceField, MAPS};
+use tactpad_core::pipeline::compensation::creep::Creep;
+use tactpad_core::pipeline::compensation::hysteresis::Hysteresis;
+use tactpad_core::pipeline::compensation::thermal::Thermal;
+use tactpad_core::quantity::{CHANNELS, Strain};
+
+impl Fit {
+    /// Posterior standard deviation of a parameter.
+    pub(crate) fn deviation(&self, at: usize) -> f64 {
+        // √(H⁻¹)ᵢᵢ = √(eᵢᵀ H⁻¹ eᵢ).
+        let half = self.halved(&[(at, 1.0)]);
+        dot(&half, &half).sqrt()
+    }
+
+    /// ln p(y, σ | settings) but for a constant that all settings share, as the priors' deviations σ are found from the contacts, too.
+    pub(crate) fn log_probability(&self) -> f64 {
+        self.log_evidence + self.estimates.prior_deviations.log_density()
+    }
+
+    /// L⁻¹c of a linear combination cᵀθ of few parameters, where H = L Lᵀ: the posterior covariance of two combinations is
+    /// cᵀ H⁻¹ d = (L⁻¹c)ᵀ (L⁻¹d).
+    pub(crate) fn halved(&self, combination: &[(usize, f64)]) -> Vec<f64> {
+        let mut whole = vec![0.0; self.values.len()];
+        combination.iter().for_each(|(at, factor)| whole[*at] = *factor);
+        self.factor.solve_lower(&whole)
+    }
+}
+
+impl Problem<'_> {
+    /// The channels of contacts with written labels, at the reference temperature, without zeros, creep and hysteresis, and the
+    /// written forces.
+    pub(crate) fn compensated(
+        &self,
+        values: &[f64],
+        hysteresis: &Hysteresis,
+        creep: &Creep,
+    ) -> Vec<(Strain, [f64; 3])> {
+        let mut recording = self.recording.clone().less(&Layout::zeros(values));
+        if let Some(reference_c) = self.reference_c {
+            let gain_per_c = std::array::from_fn(|channel| values[Layout::first_gain_slope() + channel]);
+            let zero_uv_per_c = [0.0; CHANNELS];
+            recording = recording.at_reference(&Thermal { reference_c, zero_uv_per_c, gain_per_c });
+        }
+        let compensated = recording.without_creep(creep).without_hysteresis(hysteresis);
+        let contact = |(at, it): &(usize, Measured)| {
+            if it.knowledge != Knowledge::Written {
+                return None;
+            }
+            // As the pad would read it now.
+            let gain = Layout::younger_gain(values, it);
+            let uv = compensated.rows.get(*at)?.uv?;
+            Some((Strain { uv: uv.map(|uv| (uv / gain) as f32) }, it.force_n))
+        };
+        self.contacts.iter().filter_map(contact).collect()
+    }
+
+    /// The pad's own field.
+    pub(crate) fn corrected(&self, values: &[f64]) -> InfluenceField {
+        let signals = &self.prior.field.signals;
+        InfluenceField::sampled(f64::from(signals.spacing_mm()), self.reach_mm, self.reach_mm, |place_mm| {
+            let place = Place::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
+            let maps = self.layout.maps(values, &self.scale, &place, Knowledge::Written);
+            std::array::from_fn::<f64, MAPS, _>(|map| maps[map / 3][map % 3])
+        })
+    }
+}

@@ -1,0 +1,455 @@
+//! The parameters in which a pad may differ from the nominal one, the model of the channels, and its prior.
+//!
+//! Channel k reads at a contact
+//!
+//! ```text
+//! sₖ = zₖ + S ((1 + αₖ ΔT) gₖ eₖ + Σₗ Xₖₗ eₗ) + Σᵢ wᵢₖ lᵢₖ + c uₖ,    eₖ = (1 + A b) Σₐ Fₐ Eₖₐ(x, y)
+//! E = G + b ∇²G + Σⱼ wⱼ(qⱼ) ∂G/∂pⱼ + background
+//! ```
+//!
+//! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains, crosstalk X, shares w and lags l of the
+//! play operators, creep's share c and state u, blur b, and weights w of physical parameters q ([`physical`](self::physical)). G is the simulator's field. A is what ageing takes
+//! over the measurement, and b the part of it that was still to come at the contact ([`ageing`](super::ageing)): a decoder is
+//! of the pad as it was at last. Place and force of a written label are corrected by the rig's errors ρ ([`rig`](crate::calibration::data::rig)).
+
+pub(crate) mod physical;
+pub(crate) mod prior;
+pub(crate) mod prior_deviations;
+
+use self::physical::Physical;
+use self::prior::Prior;
+use self::prior_deviations::{
+    AGEING_DEVIATION, BLUR_DEVIATION_MM2, CREEP_DEVIATION, FINGER_BLUR_DEVIATION_MM2, GAIN_DEVIATION,
+    GAIN_SLOPE_DEVIATION, Kind, LOG_SCALE_DEVIATION, PriorDeviations, SHARE_DEVIATION,
+    WEIGHT_BLUR_DEVIATION_MM2, background_share,
+};
+use crate::calibration::data::contacts::{
+    BACKGROUND_DEGREE, Knowledge, Lags, Maps, Measured, Place, TERMS, response,
+};
+use crate::calibration::data::rig::{RIG_NUMBERS, RigPrior};
+use tactpad_core::pipeline::compensation::creep::{Creep, NO_CREEP};
+use tactpad_core::pipeline::compensation::hysteresis::{Hysteresis, PLAYS, Play};
+use tactpad_core::pipeline::contact::inverse::CROSSTALK_MAX;
+use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
+use tactpad_core::quantity::CHANNELS;
+
+/// A precision that no measurement outweighs.
+pub(crate) const CERTAIN: f64 = 1e18;
+/// Largest magnitude of a play operator's share. A negative one corrects another.
+const SHARE_MAX: f64 = 0.25;
+/// A channel with a smaller gain is dead, and no other one has anything of it.
+const GAIN_MIN: f64 = 0.05;
+
+/// The parameter vector θ, by kind: zeros, gains, crosstalk (into, from), hysteresis (shares of all channels; each channel's
+/// difference), creep, blur, temperature coefficients of the gains, ln S, blur of a weight, ageing, the rig, physical
+/// parameters, background (channel, force, polynomial).
+#[derive(Clone, Debug)]
+pub(crate) struct Layout {
+    pub(crate) physical: Vec<Physical>,
+    /// Polynomials of the background for each channel and force: 0 or [`TERMS`].
+    pub(crate) terms: usize,
+    /// Whether no contact was written down by a reference.
+    pub(crate) is_play: bool,
+}
+
+const ZEROS: usize = 0;
+const GAINS: usize = ZEROS + CHANNELS;
+const CROSSTALKS: usize = GAINS + CHANNELS;
+const SHARES: usize = CROSSTALKS + CHANNELS * CHANNELS;
+const OWN_SHARES: usize = SHARES + PLAYS;
+const CREEP: usize = OWN_SHARES + PLAYS * CHANNELS;
+const BLUR: usize = CREEP + 1;
+const GAIN_SLOPES: usize = BLUR + 1;
+const LOG_SCALE: usize = GAIN_SLOPES + CHANNELS;
+const WEIGHT_BLUR: usize = LOG_SCALE + 1;
+const AGEING: usize = WEIGHT_BLUR + 1;
+const RIG_AT: usize = AGEING + 1;
+const PHYSICAL: usize = RIG_AT + RIG_NUMBERS;
+
+impl Layout {
+    pub(crate) const fn size(&self) -> usize {
+        self.background(0, 0) + 3 * CHANNELS * self.terms
+    }
+
+    const fn background(&self, channel: usize, axis: usize) -> usize {
+        PHYSICAL + self.physical.len() + (3 * channel + axis) * self.terms
+    }
+
+    /// The prior's mean m.
+    pub(crate) fn prior_mean(&self, prior: &Prior, rig: &RigPrior) -> Vec<f64> {
+        let mut values = vec![0.0; self.size()];
+        values[GAINS..CROSSTALKS].copy_from_slice(&prior.gain);
+        values[CROSSTALKS..SHARES].copy_from_slice(prior.crosstalk.as_flattened());
+        for (play, shares) in prior.shares.iter().enumerate() {
+            // wᵢₖ = w̄ᵢ + (wᵢₖ − w̄ᵢ): the mean over the channels, and each channel's difference.
+            values[SHARES + play] = shares.iter().sum::<f64>() / CHANNELS as f64;
+            for (channel, share) in shares.iter().enumerate() {
+                values[OWN_SHARES + play * CHANNELS + channel] = share - values[SHARES + play];
+            }
+        }
+        values[CREEP] = prior.creep.share;
+        values[RIG_AT..PHYSICAL].copy_from_slice(&rig.mean);
+        values
+    }
+
+    /// The diagonal P of the prior's precisions. `background` is the standard deviation of the field's smooth error, as a share of
+    /// each map's root mean square `scale`; zero: no background.
+    pub(crate) fn precisions(
+        &self,
+        background: f64,
+        prior_deviations: &PriorDeviations,
+        rig: &RigPrior,
+    ) -> Vec<f64> {
+        let mut deviations = vec![0.0; self.size()];
+        // P = 1/σ² with these σ, kind by kind.
+        deviations[ZEROS..GAINS].fill(prior_deviations.of(Kind::Zero));
+        deviations[GAINS..CROSSTALKS].fill(GAIN_DEVIATION);
+        // A channel has no crosstalk with itself.
+        for (index, deviation) in deviations[CROSSTALKS..SHARES].iter_mut().enumerate() {
+            *deviation = self.crosstalk_kind(index).map_or(0.0, |kind| prior_deviations.of(kind));
+        }
+        deviations[SHARES..OWN_SHARES].fill(SHARE_DEVIATION);
+        deviations[OWN_SHARES..CREEP].fill(prior_deviations.of(Kind::OwnHysteresis));
+        deviations[CREEP] = CREEP_DEVIATION;
+        deviations[BLUR] = BLUR_DEVIATION_MM2;
+        deviations[GAIN_SLOPES..LOG_SCALE].fill(GAIN_SLOPE_DEVIATION);
+        if self.is_play {
+            deviations[BLUR] = FINGER_BLUR_DEVIATION_MM2;
+            (deviations[LOG_SCALE], deviations[WEIGHT_BLUR]) =
+                (LOG_SCALE_DEVIATION, WEIGHT_BLUR_DEVIATION_MM2);
+        } else {
+            // Only a reference tells what ageing takes, and only a rig has a rig's errors.
+            deviations[AGEING] = AGEING_DEVIATION;
+            let rig = deviations[RIG_AT..PHYSICAL].iter_mut().zip(rig.precision);
+            rig.for_each(|(deviation, precision)| *deviation = precision.sqrt().recip());
+        }
+        for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
+            *deviation = prior_deviations.of_one(parameter.kind(), parameter.parameter.module());
+        }
+        // One share for each of the n + 1 polynomials of degree n.
+        let shares: Vec<f64> =
+            (0..=BACKGROUND_DEGREE).flat_map(|n| std::iter::repeat_n(background_share(n), n + 1)).collect();
+        for terms in deviations[self.background(0, 0)..].chunks_exact_mut(TERMS) {
+            terms.iter_mut().zip(&shares).for_each(|(deviation, share)| *deviation = background * share);
+        }
+        // What cannot differ is certain.
+        deviations.iter().map(|deviation| (1.0 / deviation.powi(2)).min(CERTAIN)).collect()
+    }
+
+    /// The kind of the crosstalk at this place of the matrix. Presses without labels hardly tell what is within a module from its
+    /// pose: there all crosstalk has one deviation.
+    fn crosstalk_kind(&self, index: usize) -> Option<Kind> {
+        let kind = Kind::of_crosstalk(index)?;
+        Some(if self.is_play { Kind::CrosstalkUnlabelled } else { kind })
+    }
+
+    /// Places of the parameters whose kinds share a prior standard deviation, and the module that each is of.
+    pub(crate) fn kinds(&self) -> impl Iterator<Item = (Kind, Option<usize>, usize)> {
+        let physical =
+            self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (it.kind(), it.parameter.module(), at));
+        let own = (OWN_SHARES..CREEP).map(|at| (Kind::OwnHysteresis, None, at));
+        let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, None, at));
+        let crosstalk = (0..CHANNELS * CHANNELS)
+            .filter_map(|index| Some((self.crosstalk_kind(index)?, None, CROSSTALKS + index)));
+        zeros.chain(crosstalk).chain(own).chain(physical)
+    }
+
+    /// The scale S of all that a load makes.
+    fn scale_factor(values: &[f64]) -> f64 {
+        libm::exp(values[LOG_SCALE])
+    }
+
+    /// A channel's gain S gₖ.
+    pub(crate) fn gain(values: &[f64], channel: usize) -> f64 {
+        Self::scale_factor(values) * values[GAINS + channel]
+    }
+
+    /// The hysteresis by these parameters. Thresholds are in strains before gains: rᵢₖ = thresholdᵢ |gₖ|.
+    pub(crate) fn hysteresis(values: &[f64], thresholds_uv: &[f64; PLAYS]) -> Hysteresis {
+        std::array::from_fn(|play| Play {
+            threshold_uv: std::array::from_fn(|k| thresholds_uv[play] * Self::gain(values, k).abs()),
+            share: std::array::from_fn(|k| Self::share(values, play, k).clamp(-SHARE_MAX, SHARE_MAX)),
+        })
+    }
+
+    /// The creep by these parameters.
+    pub(crate) fn creep(values: &[f64], time_s: f64) -> Creep {
+        if time_s == 0.0 {
+            return NO_CREEP;
+        }
+        Creep { time_s, share: values[CREEP].clamp(-SHARE_MAX, SHARE_MAX) }
+    }
+
+    fn share(values: &[f64], play: usize, channel: usize) -> f64 {
+        values[SHARES + play] + values[OWN_SHARES + play * CHANNELS + channel]
+    }
+
+    /// What earlier loads add to a channel, by lags l and creep states u. Its derivatives by the shares w and c are set in
+    /// `derivatives`.
+    pub(crate) fn memory_uv(
+        values: &[f64],
+        channel: usize,
+        lags: &Lags,
+        crept_uv: &[f64; CHANNELS],
+        derivatives: &mut [f64],
+    ) -> f64 {
+        // Σᵢ wᵢₖ lᵢₖ + c uₖ, with ∂/∂wᵢₖ = lᵢₖ and ∂/∂c = uₖ.
+        derivatives[CREEP] = crept_uv[channel];
+        let mut uv = values[CREEP] * crept_uv[channel];
+        for (play, lags) in lags.iter().enumerate() {
+            derivatives[SHARES + play] = lags[channel];
+            derivatives[OWN_SHARES + play * CHANNELS + channel] = lags[channel];
+            uv += Self::share(values, play, channel) * lags[channel];
+        }
+        uv
+    }
+
+    /// The zeros z.
+    pub(crate) fn zeros(values: &[f64]) -> [f64; CHANNELS] {
+        std::array::from_fn(|channel| values[ZEROS + channel])
+    }
+
+    /// The rig's parameters ρ.
+    pub(crate) fn rig(values: &[f64]) -> [f64; RIG_NUMBERS] {
+        std::array::from_fn(|at| values[RIG_AT + at])
+    }
+
+    /// Place of the first parameter of the rig.
+    pub(crate) const fn first_of_rig() -> usize {
+        RIG_AT
+    }
+
+    /// Place of what ageing takes over the measurement.
+    pub(crate) const fn ageing_at() -> usize {
+        AGEING
+    }
+
+    /// How much more a contact's load gave than it gives now: 1 + A b.
+    pub(crate) fn younger_gain(values: &[f64], contact: &Measured) -> f64 {
+        1.0 + values[AGEING] * contact.to_come
+    }
+
+    /// The force that would give now what a contact's gave then.
+    fn force_now_n(values: &[f64], contact: &Measured) -> [f64; 3] {
+        contact.force_n.map(|n| Self::younger_gain(values, contact) * n)
+    }
+
+    /// Place of the first channel's temperature coefficient of gain, 1/°C.
+    pub(crate) const fn first_gain_slope() -> usize {
+        GAIN_SLOPES
+    }
+
+    /// Place of the first physical parameter.
+    pub(crate) const fn first_physical() -> usize {
+        PHYSICAL
+    }
+
+    /// Place of a channel's zero.
+    pub(crate) const fn zero_at(channel: usize) -> usize {
+        ZEROS + channel
+    }
+
+    /// What each channel has of the nine strains: S gₖ of its own, S Xₖₗ of the others.
+    fn mixture(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
+        let scale = Self::scale_factor(values);
+        std::array::from_fn(|into| {
+            std::array::from_fn(|from| {
+                let own = if from == into { values[GAINS + into] } else { 0.0 };
+                scale * (own + values[CROSSTALKS + into * CHANNELS + from])
+            })
+        })
+    }
+
+    /// What channels have of one another's own signals: Lₖₗ = Xₖₗ/gₗ, of which no decoder has more than a bound.
+    pub(crate) fn crosstalk(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
+        let most = f64::from(CROSSTALK_MAX);
+        let share = |into: usize, from: usize| {
+            let own = values[GAINS + from];
+            let share = values[CROSSTALKS + into * CHANNELS + from] / own;
+            if into == from || own.abs() < GAIN_MIN { 0.0 } else { share.clamp(-most, most) }
+        };
+        std::array::from_fn(|into| std::array::from_fn(|from| share(into, from)))
+    }
+
+    /// A channel's gain S gₖ as a sum of parameters, in linear order: ∂/∂gₖ = S, ∂/∂ln S = S gₖ.
+    pub(crate) fn gain_terms(values: &[f64], channel: usize) -> [(usize, f64); 2] {
+        [(GAINS + channel, Self::scale_factor(values)), (LOG_SCALE, Self::gain(values, channel))]
+    }
+
+    /// Place of the crosstalk into a channel from another one.
+    pub(crate) const fn crosstalk_at(into: usize, from: usize) -> usize {
+        CROSSTALKS + into * CHANNELS + from
+    }
+
+    /// Places of a channel's share of a play operator: that of all channels, and its own difference from it.
+    pub(crate) const fn share_at(play: usize, channel: usize) -> [usize; 2] {
+        [SHARES + play, OWN_SHARES + play * CHANNELS + channel]
+    }
+
+    /// Places of creep's share, and of the blur.
+    pub(crate) const fn creep_and_blur_at() -> [usize; 2] {
+        [CREEP, BLUR]
+    }
+
+    /// Places of what differs from play to play while the pad stays the same: the blur, the shares of all channels, creep.
+    pub(crate) fn differing_at() -> [usize; 2 + PLAYS] {
+        std::array::from_fn(|at| [BLUR, CREEP].get(at).copied().unwrap_or(SHARES + at.saturating_sub(2)))
+    }
+
+    /// Prior standard deviations of these.
+    pub(crate) fn differing_deviations() -> [f64; 2 + PLAYS] {
+        let first = [FINGER_BLUR_DEVIATION_MM2, CREEP_DEVIATION];
+        std::array::from_fn(|at| first.get(at).copied().unwrap_or(SHARE_DEVIATION))
+    }
+
+    /// The weights w of the field's derivatives by the physical parameters, and ∂w/∂q.
+    fn weights(&self, values: &[f64]) -> impl Iterator<Item = [f64; 2]> {
+        self.physical.iter().zip(&values[PHYSICAL..]).map(|(it, q)| it.weight(*q))
+    }
+
+    /// The strain maps E at a place, µV/N before gains.
+    fn strain_maps(&self, values: &[f64], scale: &Maps, place: &Place, knowledge: Knowledge) -> Maps {
+        // E = G + b ∇²G …
+        let mut maps = place.gains;
+        for (map, laplacian) in maps.as_flattened_mut().iter_mut().zip(place.laplacian.as_flattened()) {
+            *map += values[blur_at(knowledge)] * laplacian;
+        }
+        // … + Σⱼ wⱼ ∂G/∂pⱼ …
+        for ([weight, _], slope) in self.weights(values).zip(&place.sensitivities) {
+            for (map, slope) in maps.as_flattened_mut().iter_mut().zip(slope.as_flattened()) {
+                *map += weight * slope;
+            }
+        }
+        // … + scale Σₜ βₜ Uₜ(x, y), the background by its polynomials' coefficients β.
+        let background = values[self.background(0, 0)..].chunks_exact(TERMS);
+        for ((map, scale), terms) in
+            maps.as_flattened_mut().iter_mut().zip(scale.as_flattened()).zip(background)
+        {
+            *map += scale * terms.iter().zip(&place.terms).map(|(value, term)| value * term).sum::<f64>();
+        }
+        maps
+    }
+
+    /// The channels' maps at a place, µV/N.
+    pub(crate) fn maps(&self, values: &[f64], scale: &Maps, place: &Place, knowledge: Knowledge) -> Maps {
+        // S (gₖ Eₖₐ + Σₗ Xₖₗ Eₗₐ).
+        let strain_maps = self.strain_maps(values, scale, place, knowledge);
+        Self::mixture(values).map(|factors| {
+            std::array::from_fn(|axis| {
+                factors.iter().zip(&strain_maps).map(|(factor, from)| factor * from[axis]).sum()
+            })
+        })
+    }
+
+    /// The channels' signals under a contact's load alone: without zeros, hysteresis and creep.
+    pub(crate) fn load_uv(&self, values: &[f64], scale: &Maps, contact: &Measured) -> [f64; CHANNELS] {
+        self.maps(values, scale, &contact.place, contact.knowledge)
+            .map(|map| response(&map, &Self::force_now_n(values, contact)))
+    }
+
+    /// ∇E along x or y at a place, µV/N per mm. The blur is left out.
+    fn strain_gradient(&self, values: &[f64], scale: &Maps, place: &Place, axis: usize) -> Maps {
+        // ∇G + Σⱼ wⱼ ∇∂G/∂pⱼ + scale Σₜ βₜ ∇Uₜ(x, y).
+        let mut maps = place.gradient[axis];
+        for ([weight, _], slope) in self.weights(values).zip(&place.sensitivity_gradients) {
+            for (map, slope) in maps.as_flattened_mut().iter_mut().zip(slope[axis].as_flattened()) {
+                *map += weight * slope;
+            }
+        }
+        let background = values[self.background(0, 0)..].chunks_exact(TERMS);
+        for ((map, scale), terms) in
+            maps.as_flattened_mut().iter_mut().zip(scale.as_flattened()).zip(background)
+        {
+            let slopes = terms.iter().zip(&place.term_gradients[axis]);
+            *map += scale * slopes.map(|(value, term)| value * term).sum::<f64>();
+        }
+        maps
+    }
+
+    /// The channels' derivatives by x, y (µV/mm), Fx, Fy, Fz (µV/N).
+    pub(crate) fn label_jacobian(
+        &self,
+        values: &[f64],
+        scale: &Maps,
+        contact: &Measured,
+    ) -> [[f64; UNKNOWNS]; CHANNELS] {
+        let maps = self.maps(values, scale, &contact.place, contact.knowledge);
+        let (gain, force_n) = (Self::younger_gain(values, contact), Self::force_now_n(values, contact));
+        // By the place S (gₖ Σₐ Fₐ ∇Eₖₐ + Σₗ Xₖₗ Σₐ Fₐ ∇Eₗₐ); by the force the maps.
+        let of_strains = [0, 1].map(|axis| {
+            let gradient = self.strain_gradient(values, scale, &contact.place, axis);
+            gradient.map(|map| response(&map, &force_n))
+        });
+        let mixture = Self::mixture(values);
+        let by_place = |channel: usize, axis: usize| {
+            let factors = &mixture[channel];
+            factors.iter().zip(&of_strains[axis]).map(|(factor, slope)| factor * slope).sum::<f64>()
+        };
+        std::array::from_fn(|channel| {
+            let [fx, fy, fz] = maps[channel].map(|uv_per_n| gain * uv_per_n);
+            [by_place(channel, 0), by_place(channel, 1), fx, fy, fz]
+        })
+    }
+
+    /// The model f(θ) of each channel at a contact and its derivatives ∂f/∂θ: calls `each` with channel, µV, derivatives.
+    pub(crate) fn readings(
+        &self,
+        values: &[f64],
+        scale: &Maps,
+        contact: &Measured,
+        mut each: impl FnMut(usize, f64, &[f64]),
+    ) {
+        let Measured { knowledge, place, lags, crept_uv, above_c, to_come, .. } = contact;
+        let younger_gain = Self::younger_gain(values, contact);
+        let force_n = &Self::force_now_n(values, contact);
+        let strain_maps = self.strain_maps(values, scale, place, *knowledge);
+        let strains_uv = strain_maps.map(|map| response(&map, force_n));
+        let weights: Vec<[f64; 2]> = self.weights(values).collect();
+        let factor = Self::scale_factor(values);
+        let mut derivatives = vec![0.0; self.size()];
+        for channel in 0..CHANNELS {
+            derivatives.fill(0.0);
+            // h = (1 + αₖ ΔT) S gₖ.
+            let thermal_gain = 1.0 + values[GAIN_SLOPES + channel] * above_c;
+            let own_gain = factor * values[GAINS + channel];
+            let gain = thermal_gain * own_gain;
+            let shares = &values[CROSSTALKS + channel * CHANNELS..][..CHANNELS];
+            let crosstalk_uv: f64 =
+                factor * shares.iter().zip(strains_uv).map(|(share, uv)| share * uv).sum::<f64>();
+            let loaded_uv = gain * strains_uv[channel] + crosstalk_uv;
+            // ∂/∂zₖ = 1, ∂/∂gₖ = (1 + αₖ ΔT) S eₖ, ∂/∂αₖ = ΔT S gₖ eₖ, ∂/∂Xₖₗ = S eₗ, ∂/∂ln S = h eₖ + S Σₗ Xₖₗ eₗ.
+            derivatives[ZEROS + channel] = 1.0;
+            derivatives[GAINS + channel] = thermal_gain * factor * strains_uv[channel];
+            derivatives[GAIN_SLOPES + channel] = above_c * own_gain * strains_uv[channel];
+            derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS]
+                .copy_from_slice(&strains_uv.map(|uv| factor * uv));
+            derivatives[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
+            derivatives[LOG_SCALE] = loaded_uv;
+            // ∂/∂A = b (h eₖ + S Σₗ Xₖₗ eₗ)/(1 + A b).
+            derivatives[AGEING] = to_come * loaded_uv / younger_gain;
+            // ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ, ∂/∂βₖₐₜ = h Fₐ scaleₖₐ Uₜ.
+            derivatives[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
+            let physical = weights.iter().zip(&place.sensitivities);
+            for (slope, ([_, by_parameter], maps)) in derivatives[PHYSICAL..].iter_mut().zip(physical) {
+                *slope = gain * by_parameter * response(&maps[channel], force_n);
+            }
+            for axis in 0..3 {
+                let factor = gain * scale[channel][axis] * force_n[axis];
+                let terms = derivatives[self.background(channel, axis)..].iter_mut().zip(&place.terms);
+                terms.for_each(|(slope, term)| *slope = factor * term);
+            }
+            let memory_uv = Self::memory_uv(values, channel, lags, crept_uv, &mut derivatives);
+            // sₖ = zₖ + h eₖ + S Σₗ Xₖₗ eₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ.
+            let uv = values[ZEROS + channel] + loaded_uv + memory_uv;
+            each(channel, uv, &derivatives);
+        }
+    }
+}
+
+/// Place of the blur of what presses: a weight has its own.
+const fn blur_at(knowledge: Knowledge) -> usize {
+    match knowledge {
+        Knowledge::Placed(_) => WEIGHT_BLUR,
+        Knowledge::Written | Knowledge::Unlabelled => BLUR,
+    }
+}

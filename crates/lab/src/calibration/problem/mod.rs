@@ -1,0 +1,437 @@
+//! The least-squares problem of a calibration: residuals, normal equations and log evidence of all parameters.
+//!
+//! The parameters θ have a Gaussian prior with mean m and precisions P. What was measured is y = f(θ) + r, where each
+//! contact's residual has the covariance V of [`NoiseModel`] and each jump of a zero the variance of its drift. The posterior's
+//! maximum is found by Gauss and Newton's method with V, P and the drifts estimated anew at each step (iteratively
+//! reweighted least squares). Its logarithm's curvature H then gives the posterior covariance H⁻¹ and the evidence.
+//!
+//! Source: D. J. C. MacKay, Bayesian interpolation, Neural Computation 4 (1992) 415 (evidence by the Laplace approximation,
+//! effective number of parameters).
+
+pub(crate) mod effort;
+pub(crate) mod evidence;
+pub(crate) mod hyperparameters;
+pub(crate) mod jumps;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use self::effort::Effort;
+use self::evidence::{log_likelihood_of_contacts, log_prior};
+use self::hyperparameters::{Estimates, Settings};
+use self::jumps::{Jump, Jumps};
+use super::model::Layout;
+use super::noise::NoisePrior;
+use crate::ageing;
+use crate::calibration::data::contacts::{Fitted, Knowledge, Maps, Measured, Place, TERMS};
+use crate::calibration::data::plate::scale;
+use crate::calibration::data::rig::RigPrior;
+use crate::calibration::model::physical::free;
+use crate::calibration::model::prior::Prior;
+use crate::calibration::model::prior_deviations::Deviating;
+use crate::calibration::noise::lasting::Filter;
+use crate::calibration::noise::model::NoiseModel;
+use crate::calibration::noise::normal_equations::{NormalEquations, Step};
+use crate::calibration::noise::residual::{MarginalPrecision, Residual};
+use tactpad_core::numeric::linear::LargeFactor;
+use tactpad_core::numeric::products::{combined, dot};
+use tactpad_core::pad::device::Device;
+use tactpad_core::pad::field::Sensitivity;
+use tactpad_core::pipeline::compensation::hysteresis::PLAYS;
+use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
+use tactpad_core::quantity::CHANNELS;
+use tactpad_core::tables::recording::Recording;
+
+/// Most Gauss-Newton steps of a fit; the channels are nearly linear in the parameters.
+const STEPS_MAX: usize = 12;
+/// A contact is taken to be elsewhere only where that is farther off.
+const RELOCATED_MM: f64 = 0.1;
+/// Least part of the readings that counts as degrees of freedom, however many parameters are fitted.
+const DEGREES_OF_FREEDOM_RATIO_MIN: f64 = 0.05;
+
+/// What is fitted, and to what.
+#[derive(Clone)]
+pub(crate) struct Problem<'f> {
+    pub(crate) prior: &'f Prior,
+    pub(crate) recording: &'f Recording,
+    pub(crate) reference_c: Option<f64>,
+    pub(crate) sensitivities: Vec<&'f Sensitivity>,
+    pub(crate) layout: Layout,
+    /// Rows of the recording, and what was measured in them.
+    pub(crate) contacts: Vec<(usize, Measured)>,
+    /// From one reading of the untouched pad to the next.
+    pub(crate) jumps: Jumps,
+    /// Root mean square of each map over the plate.
+    pub(crate) scale: Maps,
+    pub(crate) plate_mm: f64,
+    pub(crate) reach_mm: f64,
+}
+
+/// The posterior for some settings.
+#[derive(Clone, Debug)]
+pub(crate) struct Fit {
+    pub(crate) settings: Settings,
+    /// Its maximum, in the order of [`Layout`].
+    pub(crate) values: Vec<f64>,
+    pub(crate) estimates: Estimates,
+    /// Of the curvature H.
+    pub(crate) factor: LargeFactor,
+    /// ln p(y | settings) by the Laplace approximation, but for a constant that the settings share.
+    pub(crate) log_evidence: f64,
+    /// The contacts as they are taken to be.
+    located: Vec<Located>,
+}
+
+/// Where a contact is taken to be.
+#[derive(Clone, Debug)]
+struct Located {
+    place_mm: [f64; 2],
+    /// The field there, which takes long to find.
+    place: Arc<Place>,
+    force_n: [f64; 3],
+}
+
+/// A contact as a fit explains it.
+#[derive(Clone, Debug)]
+pub(crate) struct Explained {
+    pub(crate) place_mm: [f64; 2],
+    pub(crate) residual: Residual,
+    /// Inverse covariance of the residual by the noise model.
+    pub(crate) precision: MarginalPrecision,
+}
+
+impl<'f> Problem<'f> {
+    /// `fitted` are the contacts to fit to; all other rows only tell the load path. Without polynomials for a background.
+    pub(crate) fn of(
+        recording: &'f Recording,
+        reference_c: Option<f64>,
+        fitted: &[Fitted],
+        device: &Device,
+        prior: &'f Prior,
+    ) -> Self {
+        let field = &prior.field;
+        let (physical, sensitivities) = free((field, prior.solved.as_ref().unwrap_or(device)), device);
+        let plate_mm = device.plate.radius_mm();
+        let rows = &recording.tared().rows;
+        let to_come = ageing::to_come(rows);
+        let measured = |Fitted { row, knowledge }: &Fitted| {
+            let known = (rows.as_slice(), *row, *knowledge);
+            let contact = Measured::of(field, &sensitivities, plate_mm, known, reference_c)?;
+            Some((*row, Measured { to_come: to_come[*row], ..contact }))
+        };
+        let contacts = fitted.iter().filter_map(measured).collect();
+        let is_play = fitted.iter().all(|it| it.knowledge != Knowledge::Written);
+        let layout = Layout { physical, terms: 0, is_play };
+        Self {
+            jumps: Jumps::of(recording),
+            prior,
+            recording,
+            reference_c,
+            sensitivities,
+            layout,
+            contacts,
+            scale: scale(&field.signals),
+            plate_mm,
+            reach_mm: f64::from(field.signals.radius_mm()),
+        }
+    }
+
+    /// How many contacts there are.
+    pub(crate) const fn contacts(&self) -> usize {
+        self.contacts.len()
+    }
+
+    /// The prior of the channels' noise.
+    pub(crate) const fn noise_prior(&self) -> &NoisePrior {
+        &self.prior.noise
+    }
+
+    /// The same with polynomials for a background.
+    pub(crate) fn with_background(mut self) -> Self {
+        self.layout.terms = TERMS;
+        self
+    }
+
+    /// The maximum of the posterior. The search begins at `start`, or at the prior's mean. `None` where the curvature is not
+    /// positive definite or a parameter not finite.
+    pub(crate) fn fitted(mut self, settings: Settings, start: Option<&Fit>, effort: Effort) -> Option<Fit> {
+        let mut estimates =
+            Estimates::first(self.prior.noise, settings.noise_time_s, self.recording.is_tared());
+        let mut values = self.layout.prior_mean(self.prior, &estimates.rig);
+        if let Some(start) = start {
+            values.iter_mut().zip(&start.values).for_each(|(value, start)| *value = *start);
+            estimates = start.estimates;
+            estimates.noise_model.lasting_s = settings.noise_time_s;
+            self.relabel(&values);
+            self.take_up(&start.located);
+        }
+        estimates.prior_deviations = estimates.prior_deviations.scaled(settings.elastic_scale);
+        let mut found: Option<Fit> = None;
+        for _ in 0..STEPS_MAX {
+            // One Gauss-Newton step with the present hyperparameters.
+            let mean = self.layout.prior_mean(self.prior, &estimates.rig);
+            let precisions =
+                self.layout.precisions(settings.background, &estimates.prior_deviations, &estimates.rig);
+            self.follow_load_path(&values, &settings);
+            let Step { delta, factor } = self.step(&values, &estimates, &mean, &precisions)?;
+            values.iter_mut().zip(&delta).for_each(|(value, delta)| *value += delta);
+            self.relabel(&values);
+            self.relocate(&values, &estimates.noise_model);
+            let residuals = self.residuals(&values);
+            let variances = factor.inverse_diagonal();
+            // ln p(y | settings) ≈ ln p(y | θ) + ln p(θ) − ½ ln det H at the maximum.
+            let mut log_evidence = log_likelihood_of_contacts(&residuals, &estimates.noise_model)?;
+            log_evidence += self.jumps.log_likelihood(&self.layout, &values, &estimates.drift_uv)
+                - 0.5 * factor.log_determinant();
+            log_evidence += log_prior(&values, &mean, &precisions);
+            let gain =
+                found.as_ref().map_or(f64::INFINITY, |previous| (log_evidence - previous.log_evidence).abs());
+            let located = self.located();
+            found = Some(Fit { settings, values: values.clone(), estimates, factor, log_evidence, located });
+            // Then the hyperparameters at the new parameters.
+            let deviating = self.layout.kinds().map(|(kind, module, at)| {
+                let (difference, variance) = (values[at] - mean[at], variances[at]);
+                Deviating { kind, module, difference, variance }
+            });
+            let freedom_ratio = self.degrees_of_freedom_ratio(&precisions, &variances);
+            estimates = Estimates {
+                prior_deviations: estimates.prior_deviations.reestimated(deviating),
+                noise_model: estimates.noise_model.reestimated(&residuals, freedom_ratio),
+                drift_uv: self.jumps.drift_uv(&self.layout, &values),
+                rig: self.rig_prior(&estimates.rig, &values, &variances),
+            };
+            if effort.is_enough(log_evidence, gain) {
+                break;
+            }
+        }
+        found.filter(|fit| fit.values.iter().all(|value| value.is_finite()))
+    }
+
+    /// The prior of the rig's errors, by the present posterior; play has no rig.
+    fn rig_prior(&self, present: &RigPrior, values: &[f64], variances: &[f64]) -> RigPrior {
+        if self.layout.is_play {
+            *present
+        } else {
+            present.matched(&Layout::rig(values), &variances[Layout::first_of_rig()..])
+        }
+    }
+
+    /// States of the play operators and of creep along the load path, by these parameters.
+    pub(crate) fn follow_load_path(&mut self, values: &[f64], settings: &Settings) {
+        if settings.thresholds_uv == [0.0; PLAYS] && settings.creep_time_s == 0.0 {
+            return;
+        }
+        let strain = |(at, it): &(usize, Measured)| (*at, self.layout.load_uv(values, &self.scale, it));
+        let strains: BTreeMap<usize, [f64; CHANNELS]> = self.contacts.iter().map(strain).collect();
+        self.follow_creep(settings.creep_time_s, &strains);
+        // Lags l = p − e of the play operators, relative to those of the untouched pad's readings.
+        let hysteresis = Layout::hysteresis(values, &settings.thresholds_uv);
+        for channel in 0..CHANNELS {
+            let known = |at: usize| strains.get(&at).map(|uv| uv[channel]);
+            let states = self.recording.states(channel, &hysteresis, known);
+            for Jump { rows: [first, second], lags, .. } in &mut self.jumps.all {
+                let changes = states[*second].iter().zip(states[*first]).map(|(to, from)| to - from);
+                lags.iter_mut().zip(changes).for_each(|(lags, change_uv)| lags[channel] = change_uv);
+            }
+            let states = self.recording.relative(states);
+            for (at, contact) in &mut self.contacts {
+                contact.lags.iter_mut().zip(states[*at]).for_each(|(lags, lag_uv)| lags[channel] = lag_uv);
+            }
+        }
+    }
+
+    /// States of creep along the load path.
+    fn follow_creep(&mut self, time_s: f64, strains: &BTreeMap<usize, [f64; CHANNELS]>) {
+        if time_s == 0.0 {
+            return;
+        }
+        for channel in 0..CHANNELS {
+            let known = |at: usize| strains.get(&at).map(|uv| uv[channel]);
+            let states = self.recording.crept(channel, time_s, known);
+            for Jump { rows: [first, second], crept_uv, .. } in &mut self.jumps.all {
+                crept_uv[channel] = states[*second][0] - states[*first][0];
+            }
+            let states = self.recording.relative(states);
+            for (at, contact) in &mut self.contacts {
+                [contact.crept_uv[channel]] = states[*at];
+            }
+        }
+    }
+
+    /// The Gauss-Newton step from θ (`values`).
+    fn step(&self, values: &[f64], estimates: &Estimates, mean: &[f64], precisions: &[f64]) -> Option<Step> {
+        let prior = NormalEquations::of_prior(precisions, mean, values);
+        self.equations(prior, values, estimates, |_, _, _| ())?.solved()
+    }
+
+    /// What all contacts and jumps add to the equations of a prior about θ. Where these have more unknowns than θ, `widen` adds the
+    /// derivatives by them to those of each contact, which it is told by its place.
+    pub(crate) fn equations(
+        &self,
+        mut equations: NormalEquations,
+        values: &[f64],
+        estimates: &Estimates,
+        widen: impl Fn(usize, &(usize, Measured), &mut [Vec<f64>]),
+    ) -> Option<NormalEquations> {
+        let wander = estimates.noise_model.wander();
+        let mut filter = wander.as_ref().map(|wander| Filter::new(wander, equations.size()));
+        let mut previous_s = None;
+        for (at, known) in self.contacts.iter().enumerate() {
+            let (_, contact) = known;
+            let (residual, mut rows) = self.linearised(values, contact);
+            widen(at, known, &mut rows);
+            let precision = estimates.noise_model.marginal_precision(&residual)?.matrix();
+            let weighted = combined(&precision, &rows);
+            if let Some(filter) = &mut filter {
+                if let Some(previous_s) = previous_s.replace(contact.at_s) {
+                    filter.pass(contact.at_s - previous_s, Some(&mut equations))?;
+                }
+                filter.see(&precision, &residual, &weighted);
+            }
+            equations.add_contact(rows, weighted, &residual.residual_uv);
+        }
+        if let Some(filter) = filter {
+            filter.end(Some(&mut equations))?;
+        }
+        self.jumps.each(
+            &self.layout,
+            values,
+            &estimates.drift_uv,
+            |_, residual_uv, variance, derivatives| {
+                equations.add(residual_uv, variance, derivatives);
+            },
+        );
+        Some(equations)
+    }
+
+    /// Mean and precisions of the prior at a fit's hyperparameters.
+    pub(crate) fn prior_of(&self, fit: &Fit) -> (Vec<f64>, Vec<f64>) {
+        let Estimates { prior_deviations, rig, .. } = &fit.estimates;
+        let precisions = self.layout.precisions(fit.settings.background, prior_deviations, rig);
+        (self.layout.prior_mean(self.prior, rig), precisions)
+    }
+
+    /// A contact's residual, and the channels' derivatives by the parameters.
+    fn linearised(&self, values: &[f64], contact: &Measured) -> (Residual, Vec<Vec<f64>>) {
+        let mut fitted_uv = [0.0; CHANNELS];
+        let mut rows = Vec::with_capacity(CHANNELS);
+        self.layout.readings(values, &self.scale, contact, |channel, uv, slopes| {
+            fitted_uv[channel] = uv;
+            rows.push(slopes.to_vec());
+        });
+        let label_jacobian = self.layout.label_jacobian(values, &self.scale, contact);
+        if contact.knowledge == Knowledge::Written {
+            // ∂f/∂ρⱼ = J ∂T/∂ρⱼ.
+            let slopes = contact.written.slopes(&Layout::rig(values));
+            for (row, jacobian) in rows.iter_mut().zip(&label_jacobian) {
+                let of_rig = row[Layout::first_of_rig()..].iter_mut().zip(&slopes);
+                of_rig.for_each(|(entry, slope)| *entry = dot(jacobian, slope));
+            }
+        }
+        // r = y − f(θ) − J d, where the contact is taken to be off its label by d.
+        let off = contact.off_label();
+        let residual_uv =
+            std::array::from_fn(|k| contact.uv[k] - fitted_uv[k] + dot(&label_jacobian[k], &off));
+        let [fx_n, fy_n, fz_n] = contact.force_n;
+        let force_n = libm::hypot(libm::hypot(fx_n, fy_n), fz_n);
+        // Noise in proportion to a reading that has it would draw the fit to the small readings.
+        let uv = if contact.knowledge == Knowledge::Written { contact.uv } else { fitted_uv };
+        let Measured { knowledge, at_s, .. } = *contact;
+        (Residual { knowledge, at_s, uv, force_n, residual_uv, label_jacobian }, rows)
+    }
+
+    fn residuals(&self, values: &[f64]) -> Vec<Residual> {
+        self.contacts.iter().map(|(_, contact)| self.linearised(values, contact).0).collect()
+    }
+
+    /// ln p(contacts | θ), but for a constant.
+    pub(crate) fn log_likelihood(&self, values: &[f64], noise_model: &NoiseModel) -> Option<f64> {
+        log_likelihood_of_contacts(&self.residuals(values), noise_model)
+    }
+
+    /// What the written labels stand for, by these errors of the rig.
+    fn relabel(&mut self, values: &[f64]) {
+        let rig = Layout::rig(values);
+        let written = self.contacts.iter_mut().filter(|(_, contact)| contact.knowledge == Knowledge::Written);
+        written.for_each(|(_, contact)| contact.label = contact.written.contact(&rig));
+    }
+
+    /// Takes each contact whose label the channels may correct to be where they say, by these parameters; the others are where
+    /// their labels are.
+    pub(crate) fn relocate(&mut self, values: &[f64], noise_model: &NoiseModel) {
+        let here = |(_, contact): &(usize, Measured)| {
+            let label = contact.label;
+            if contact.knowledge == Knowledge::Written {
+                return label;
+            }
+            let (residual, _) = self.linearised(values, contact);
+            let error = noise_model.label_error(&residual).unwrap_or_default();
+            std::array::from_fn(|k| label[k] + error[k])
+        };
+        let contacts: Vec<[f64; UNKNOWNS]> = self.contacts.iter().map(here).collect();
+        self.locate(&contacts);
+    }
+
+    /// Takes the contacts to be these.
+    fn locate(&mut self, contacts: &[[f64; UNKNOWNS]]) {
+        let (field, plate_mm) = (&self.prior.field, self.plate_mm);
+        for ((_, contact), here) in self.contacts.iter_mut().zip(contacts) {
+            let [x_mm, y_mm, fx_n, fy_n, fz_n] = *here;
+            // No contact is beyond the plate that the field covers.
+            let inward = (self.reach_mm / libm::hypot(x_mm, y_mm)).min(1.0);
+            let place_mm = [inward * x_mm, inward * y_mm];
+            contact.force_n = [fx_n, fy_n, fz_n];
+            // So near the field is linear, and nothing is gained by being there.
+            let [dx_mm, dy_mm] = [0, 1].map(|axis| place_mm[axis] - contact.place_mm[axis]);
+            if libm::hypot(dx_mm, dy_mm) > RELOCATED_MM {
+                contact.place = Arc::new(Place::of(field, &self.sensitivities, plate_mm, place_mm));
+                contact.place_mm = place_mm;
+            }
+        }
+    }
+
+    fn located(&self) -> Vec<Located> {
+        let here = |(_, it): &(usize, Measured)| Located {
+            place_mm: it.place_mm,
+            place: Arc::clone(&it.place),
+            force_n: it.force_n,
+        };
+        self.contacts.iter().map(here).collect()
+    }
+
+    /// Takes the contacts to be where another fit of them took them to be.
+    fn take_up(&mut self, located: &[Located]) {
+        for ((_, contact), Located { place_mm, place, force_n }) in self.contacts.iter_mut().zip(located) {
+            (contact.place_mm, contact.force_n) = (*place_mm, *force_n);
+            contact.place = Arc::clone(place);
+        }
+    }
+
+    /// A fit's contacts, as it explains them.
+    pub(crate) fn explained(mut self, fit: &Fit) -> Vec<Explained> {
+        self.relabel(&fit.values);
+        self.take_up(&fit.located);
+        self.follow_load_path(&fit.values, &fit.settings);
+        let contacts = self.contacts.iter().zip(self.residuals(&fit.values));
+        let explained = contacts.filter_map(|((_, contact), residual)| {
+            let precision = fit.estimates.noise_model.marginal_precision(&residual)?;
+            Some(Explained { place_mm: contact.place_mm, residual, precision })
+        });
+        explained.collect()
+    }
+
+    /// Residual degrees of freedom as a share of the readings, (N − γ)/N, with γ = Σᵢ (1 − Pᵢ (H⁻¹)ᵢᵢ) the effective number of
+    /// parameters: those that the contacts tell, not the prior (MacKay 1992).
+    ///
+    /// `precisions` are P, `variances` the diagonal of H⁻¹.
+    fn degrees_of_freedom_ratio(&self, precisions: &[f64], variances: &[f64]) -> f64 {
+        let effective: f64 =
+            precisions.iter().zip(variances).map(|(precision, variance)| 1.0 - precision * variance).sum();
+        // A contact without a label takes five of its nine readings.
+        let readings = |(_, contact): &(usize, Measured)| {
+            if contact.knowledge == Knowledge::Unlabelled { CHANNELS - UNKNOWNS } else { CHANNELS }
+        };
+        let readings: usize = self.contacts.iter().map(readings).sum();
+        (1.0 - effective / readings as f64).max(DEGREES_OF_FREEDOM_RATIO_MIN)
+    }
+}

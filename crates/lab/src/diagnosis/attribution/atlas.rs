@@ -1,0 +1,237 @@
+//! The simulated pad about more than one field: its own, and those of changed pads that lie too far off for its tangent.
+
+use super::{Applied, Attribution, Fit, Search};
+use crate::diagnosis::data::observations::Observations;
+use crate::diagnosis::extension::{Circumstances, with};
+use crate::diagnosis::model::inverse::Written;
+use crate::diagnosis::model::mechanics::{Pad, changed};
+use crate::diagnosis::model::{CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter, Told};
+use crate::diagnosis::report::NotTestable;
+use crate::diagnosis::simulation::bench::contacts;
+use crate::diagnosis::simulation::simulated::Simulated;
+use crate::tangent::{STIFFNESS_REACH, TURN_REACH_DEG, on_grid, shift_reach_mm};
+use tactpad_core::numeric::products::dot;
+use tactpad_core::pad::device::Device;
+use tactpad_core::pad::field::PadField;
+
+/// No more fields than this are solved for one diagnosis.
+const SOLVED_MAX: usize = 3;
+/// A field is solved where the tangent's error would move a number by so many of its own standard deviations.
+const FAR: f64 = 1.0;
+
+/// A changed pad.
+struct Solved {
+    /// The hypotheses that change its field.
+    at: Applied,
+    device: Device,
+    field: PadField,
+}
+
+/// Nine channels, by the field that is nearest to what is asked for.
+pub(crate) struct Atlas<'f> {
+    pad: Pad<'f>,
+    all: &'f Observations,
+    /// The rows in whose order `observations` are remembered: all, or those of another measurement.
+    sequence: &'f Observations,
+    /// About the pad that is held to be right.
+    first: Simulated<'f>,
+    /// About the others, in the order of `solved`.
+    others: Vec<Simulated<'f>>,
+    solved: Vec<Solved>,
+    /// For each hypothesis and each of its coordinates, how far the tangent reaches; none where the field does not change.
+    reaches: Vec<Option<Vec<f64>>>,
+    observations: &'f Observations,
+}
+
+/// What the search finds. Where that is too far from any field that is known, it is searched again about the field of the pad that was
+/// found: what only made up for the tangent's error goes, and what that hid is seen.
+pub(crate) fn attributed(atlas: &mut Atlas<'_>) -> Option<Attribution> {
+    let mut found = atlas.search().run(&Vec::new())?;
+    while atlas.solved.len() < SOLVED_MAX && atlas.is_far(&found.fit)? {
+        let Some(solved) = atlas.solve(&found.fit.applied) else { break };
+        atlas.add(solved);
+        found = atlas.search().run(&found.fit.applied)?;
+    }
+    Some(found)
+}
+
+impl<'f> Atlas<'f> {
+    /// The pad at some `observations` of `all`.
+    pub(crate) fn new(pad: &Pad<'f>, all: &'f Observations, observations: &'f Observations) -> Self {
+        Self::in_order(pad, all, (all, observations))
+    }
+
+    fn in_order(
+        pad: &Pad<'f>,
+        all: &'f Observations,
+        (sequence, observations): (&'f Observations, &'f Observations),
+    ) -> Self {
+        let first = Simulated::new(pad, (pad.device, pad.field), all, (sequence, observations));
+        let module_mm = shift_reach_mm(pad.device);
+        let reaches = first.hypotheses().iter().enumerate().map(|(at, hypothesis)| {
+            let reaches = hypothesis.parameters.iter().map(|it| reach(it, module_mm)).collect();
+            first.changes_field(at).then_some(reaches)
+        });
+        let reaches = reaches.collect();
+        Self {
+            pad: *pad,
+            all,
+            sequence,
+            first,
+            others: Vec::new(),
+            solved: Vec::new(),
+            reaches,
+            observations,
+        }
+    }
+
+    /// The same pads at other observations of all.
+    pub(crate) fn at<'o>(&'o self, observations: &'o Observations) -> Atlas<'o> {
+        self.with(Atlas::new(&self.pad, self.all, observations))
+    }
+
+    /// Another atlas with the same pads.
+    fn with<'o>(&'o self, mut other: Atlas<'o>) -> Atlas<'o> {
+        for Solved { at, device, field } in &self.solved {
+            other.add(Solved { at: at.clone(), device: device.clone(), field: field.clone() });
+        }
+        other
+    }
+
+    fn search(&self) -> Search<'_> {
+        Search::new(self, self.all, self.observations)
+    }
+
+    /// The causes that cannot be asked for, and what is missing.
+    pub(crate) fn missing(&self) -> Vec<NotTestable> {
+        self.first.missing()
+    }
+
+    fn add(&mut self, solved: Solved) {
+        let own = (&solved.device, &solved.field);
+        self.others.push(Simulated::new(&self.pad, own, self.all, (self.sequence, self.observations)));
+        self.solved.push(solved);
+    }
+
+    /// The pad with those of the hypotheses that change its field; none if it cannot be had.
+    fn solve(&self, applied: &Applied) -> Option<Solved> {
+        let (mut device, mut at) = (self.pad.device.clone(), Applied::new());
+        for (hypothesis, coordinates) in applied {
+            let Some(reaches) = &self.reaches[*hypothesis] else { continue };
+            let coordinates: Vec<f64> =
+                coordinates.iter().zip(reaches).map(|(psi, reach)| on_grid(*psi, *reach)).collect();
+            let Hypothesis { effect, target, ref parameters, .. } = self.first.hypotheses()[*hypothesis];
+            let values = parameters.iter().zip(&coordinates);
+            let numbers: Vec<_> = values.map(|(it, psi)| (it.name, it.value(*psi))).collect();
+            if let Some(changed) = with(&device, (effect, target), &numbers, &Circumstances::default()) {
+                device = changed;
+                at.push((*hypothesis, coordinates));
+            }
+        }
+        let field = (self.pad.solve)(&device)?;
+        Some(Solved { at, device, field })
+    }
+
+    /// The place in `solved` of the field that is nearest; none for the pad's own.
+    fn nearest(&self, applied: &[(usize, Vec<f64>)]) -> Option<usize> {
+        let own = (self.distance(applied, &[]), None);
+        let others = self.solved.iter().enumerate().map(|(k, it)| (self.distance(applied, &it.at), Some(k)));
+        others.fold(own, |nearest, other| if other.0 <= nearest.0 { other } else { nearest }).1
+    }
+
+    fn about(&self, applied: &[(usize, Vec<f64>)]) -> &Simulated<'f> {
+        self.nearest(applied).and_then(|k| self.others.get(k)).unwrap_or(&self.first)
+    }
+
+    /// The square of a distance, in reaches.
+    fn distance(&self, from: &[(usize, Vec<f64>)], to: &[(usize, Vec<f64>)]) -> f64 {
+        let square = |(at, reaches): (usize, &Option<Vec<f64>>)| {
+            let reaches = reaches.as_ref()?;
+            let by = difference(reaches.len(), coordinates(from, at), coordinates(to, at));
+            Some(by.iter().zip(reaches).map(|(by, reach)| (by / reach).powi(2)).sum::<f64>())
+        };
+        self.reaches.iter().enumerate().filter_map(square).sum()
+    }
+
+    /// Whether the tangent's error moves a number of a fitted cause by more than that is known.
+    fn is_far(&self, fit: &Fit) -> Option<bool> {
+        let at = self.nearest(&fit.applied).map_or(&[][..], |k| &self.solved[k].at);
+        let search = self.search();
+        for (place, (hypothesis, psi)) in fit.applied.iter().enumerate() {
+            let Some(reaches) = &self.reaches[*hypothesis] else { continue };
+            let by = difference(reaches.len(), Some(psi), coordinates(at, *hypothesis));
+            let error = by.iter().zip(reaches).map(|(by, reach)| (by / reach).powi(2)).sum::<f64>().sqrt();
+            let (projected, _) = search.without(fit, place)?;
+            let own = &search.columns.of_hypothesis[*hypothesis];
+            let square = dot(&projected.fisher.picked(own, own).times(&by), &by);
+            if error * square.max(0.0).sqrt() > FAR {
+                return Some(true);
+            }
+        }
+        Some(false)
+    }
+}
+
+impl Model for Atlas<'_> {
+    fn hypotheses(&self) -> &[Hypothesis] {
+        self.first.hypotheses()
+    }
+
+    fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>> {
+        self.about(applied).readings(applied)
+    }
+
+    fn sizes(&self) -> Vec<f64> {
+        self.first.sizes()
+    }
+
+    fn full_scale(&self) -> Vec<f64> {
+        self.first.full_scale()
+    }
+
+    fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
+        self.about(applied).linearised(applied)
+    }
+
+    fn common_errors(&self) -> Vec<CommonError> {
+        self.first.common_errors()
+    }
+
+    fn contacts(&self, applied: &[(usize, Vec<f64>)], told: &Told<'_>) -> Option<Vec<Option<Written>>> {
+        let nearest = self.nearest(applied);
+        let field = nearest.and_then(|k| self.solved.get(k)).map_or(self.pad.field, |solved| &solved.field);
+        let (about, plate_mm) = (self.about(applied), self.pad.device.plate.radius_mm());
+        let chain = about.chain(applied);
+        let changed = changed(field, self.pad.flaws, plate_mm, &chain.mechanics.weights);
+        Some(contacts(about, chain, changed, plate_mm, told))
+    }
+
+    fn elsewhere(
+        &self,
+        rows: &Observations,
+        applied: &[(usize, Vec<f64>)],
+    ) -> Option<(Linearised, Vec<CommonError>)> {
+        let there = self.with(Atlas::in_order(&self.pad, self.all, (rows, rows)));
+        Some((there.linearised(applied), there.common_errors()))
+    }
+}
+
+fn coordinates(applied: &[(usize, Vec<f64>)], hypothesis: usize) -> Option<&Vec<f64>> {
+    applied.iter().find(|(at, _)| *at == hypothesis).map(|(_, psi)| psi)
+}
+
+/// Coordinates less others; those of a cause that does not hold are zero.
+fn difference(count: usize, from: Option<&Vec<f64>>, to: Option<&Vec<f64>>) -> Vec<f64> {
+    let of = |psi: Option<&Vec<f64>>, k: usize| psi.and_then(|psi| psi.get(k)).copied().unwrap_or(0.0);
+    (0..count).map(|k| of(from, k) - of(to, k)).collect()
+}
+
+/// How far a coordinate may go until the tangent is off by as much as it says. What a module lacks is no tangent.
+fn reach(parameter: &Parameter, module_mm: f64) -> f64 {
+    match parameter.coordinate {
+        Coordinate::Logarithm => STIFFNESS_REACH,
+        _ if parameter.name.ends_with("_mm") => module_mm,
+        _ if parameter.name.ends_with("deg") => TURN_REACH_DEG,
+        _ => f64::INFINITY,
+    }
+}

@@ -1,0 +1,86 @@
+//! All columns of the linear systems: each channel's zero, the model's own errors, and the hypotheses' signatures.
+
+use crate::diagnosis::data::observations::Observations;
+use crate::diagnosis::data::target::Target;
+use crate::diagnosis::model::{Column, CommonError, Hypothesis, Linearised, Parameter, Signature};
+use crate::diagnosis::statistics::covariance::{Fitted, Marginal};
+
+/// The cause whose column is the channel's zero itself, which is always fitted.
+pub(crate) const ZERO: &str = "channel_offset";
+
+/// Which column means what.
+pub(crate) struct Columns {
+    /// The zeros, and the model's own errors.
+    nuisance: Vec<Signature>,
+    /// For each hypothesis, the numbers of the columns that are asked for.
+    pub(crate) of_hypothesis: Vec<Vec<usize>>,
+    /// For each hypothesis, the columns of its course: free wherever it holds.
+    pub(crate) shapes: Vec<Vec<usize>>,
+    /// For each column, the precision of its prior; 0: none.
+    pub(crate) precisions: Vec<f64>,
+    channels: usize,
+}
+
+impl Columns {
+    pub(crate) fn of(hypotheses: &[Hypothesis], errors: &[CommonError], observations: &Observations) -> Self {
+        let (channels, rows) = (observations.channels.len(), observations.rows());
+        let zero = |channel: usize| -> Signature {
+            (0..channels).map(|k| (k == channel).then(|| vec![1.0; rows])).collect()
+        };
+        let mut nuisance: Vec<Signature> = (0..channels).map(zero).collect();
+        nuisance.extend(errors.iter().map(|error| error.signature.clone()));
+        // A channel that tells nothing has no zero.
+        let dead = |channel: usize| f64::from(u8::from(!observations.is_alive(channel)));
+        let mut precisions: Vec<f64> = (0..channels).map(dead).collect();
+        precisions.extend(errors.iter().map(|error| 1.0 / (error.deviation * error.deviation)));
+        let mut next = nuisance.len();
+        let (mut of_hypothesis, mut shapes) = (Vec::new(), Vec::new());
+        for hypothesis in hypotheses {
+            if let (Target::Channel(channel), ZERO) = (hypothesis.target, hypothesis.effect) {
+                of_hypothesis.push(vec![channel]);
+                shapes.push(Vec::new());
+                continue;
+            }
+            let asked = next + hypothesis.asked().len();
+            of_hypothesis.push((next..asked).collect());
+            next += hypothesis.parameters.len();
+            shapes.push((asked..next).collect());
+            let precision = |it: &Parameter| it.shape.map_or(0.0, |deviation| 1.0 / (deviation * deviation));
+            precisions.extend(hypothesis.parameters.iter().map(precision));
+        }
+        Self { nuisance, of_hypothesis, shapes, precisions, channels }
+    }
+
+    /// The columns themselves, about the present point.
+    pub(crate) fn signatures<'c>(&'c self, linearised: &'c Linearised) -> Vec<Column<'c>> {
+        let own = linearised.signatures.iter().zip(&self.of_hypothesis);
+        let of_hypotheses = own.filter(|(_, columns)| columns[0] >= self.channels).flat_map(|(all, _)| all);
+        self.nuisance.iter().chain(of_hypotheses).map(Vec::as_slice).collect()
+    }
+
+    /// Adds the pull of the priors where courses are other than expected: −P ψ.
+    pub(crate) fn pull(&self, marginal: &mut Marginal, applied: &[(usize, Vec<f64>)]) {
+        for (at, coordinates) in applied {
+            let shapes = &self.shapes[*at];
+            let own = &coordinates[coordinates.len() - shapes.len()..];
+            for (column, psi) in shapes.iter().zip(own) {
+                marginal.score[*column] -= self.precisions[*column] * psi;
+            }
+        }
+    }
+
+    /// All columns of a hypothesis, in the order of its numbers.
+    pub(crate) fn all_of(&self, hypothesis: usize) -> impl Iterator<Item = usize> {
+        self.of_hypothesis[hypothesis].iter().chain(&self.shapes[hypothesis]).copied()
+    }
+
+    /// The nuisances and these hypotheses, free.
+    pub(crate) fn fitted(&self, hypotheses: impl IntoIterator<Item = usize>) -> Fitted<'_> {
+        let mut columns: Vec<usize> = (0..self.nuisance.len()).collect();
+        for hypothesis in hypotheses {
+            let own = self.of_hypothesis[hypothesis].iter().filter(|column| **column >= self.nuisance.len());
+            columns.extend(own.chain(&self.shapes[hypothesis]));
+        }
+        Fitted { columns, precisions: &self.precisions }
+    }
+}

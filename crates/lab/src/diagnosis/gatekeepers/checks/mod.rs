@@ -1,0 +1,13 @@
+//! The checks, one file for each kind of fault.
+
+pub(crate) mod clipping;
+pub(crate) mod clock;
+pub(crate) mod dead;
+pub(crate) mod excess;
+mod line;
+pub(crate) mod mains;
+pub(crate) mod missing;
+pub(crate) mod rates;
+pub(crate) mod steps;
+pub(crate) mod stuck;
+pub(crate) mod wiring;

@@ -1,0 +1,184 @@
+//! Which findings lose their names: those that look like parts of something that the catalogue does not have.
+//!
+//! An effect that is not in the catalogue is explained by what is nearest to it, in part. Three things give that away: a cause that does
+//! not hold in all parts of the measurement (`specification`), which is no finding; a remainder that no cause explains, beside which a
+//! name means little; and many findings at once, above all of one effect, for which one reason is likelier than as many. The latter two
+//! stay in the report as a set with `unlisted_cause`.
+
+use crate::diagnosis::attribution::{Attribution, Search};
+use crate::diagnosis::causes::CATALOGUE;
+use crate::diagnosis::causes::cause::Cause;
+use crate::diagnosis::data::target::Target;
+use crate::diagnosis::report::{Finding, INSEPARABLE, UNLISTED};
+
+/// A cause is named where it explains so many times what is left unexplained in the channels that tell of it,
+pub(crate) const OVER_NEAR: f64 = 10.0;
+/// and so many times what is left unexplained in all of them.
+const OVER_ALL: f64 = 4.0;
+/// So many findings of one effect need no reason in common,
+const ALIKE_MAX: usize = 1;
+/// and so many of any effects.
+const CAUSES_MAX: usize = 2;
+/// The least part of what is known of a cause by which a channel tells of it.
+const PART_MIN: f64 = 0.01;
+
+/// A finding of the search.
+pub(crate) struct Candidate {
+    /// Its place in the fit.
+    pub(crate) place: usize,
+    pub(crate) finding: Finding,
+    /// Too much is left beside it: it may be a part of that.
+    pub(crate) is_doubted: bool,
+}
+
+/// What was found, and what was not.
+pub(crate) struct Named {
+    pub(crate) candidates: Vec<Candidate>,
+    /// For each channel, the weighted squares that are left without an explanation.
+    pub(crate) unnamed_by_channel: Vec<f64>,
+    /// The same with those of the doubted findings.
+    pub(crate) doubted_by_channel: Vec<f64>,
+}
+
+/// The findings of `whole` weighted squares, and which of them may be named. Without an explanation are the remainders, and what causes
+/// explain that hold in some parts of the measurement only. What explains little beside these is doubted, and then so is what explains
+/// little beside that.
+pub(crate) fn named(
+    search: &Search<'_>,
+    found: &Attribution,
+    (whole, remainders): (f64, Vec<f64>),
+) -> Option<Named> {
+    let fit = &found.fit;
+    let squares = |place: usize, finding: &Finding| -> Vec<f64> {
+        let parts = search.parts(fit, fit.applied[place].0);
+        parts.into_iter().map(|part| part * finding.share * whole).collect()
+    };
+    let (mut candidates, mut unnamed_by_channel) = (Vec::new(), remainders);
+    for (place, finding) in search.findings(found, whole)? {
+        if finding.confounded_with.is_empty() && !search.holds_throughout(fit, place)? {
+            add(&mut unnamed_by_channel, &squares(place, &finding));
+        } else {
+            candidates.push(Candidate { place, finding, is_doubted: false });
+        }
+    }
+    let mut doubted_by_channel = unnamed_by_channel.clone();
+    let is_little =
+        |it: &Candidate, left: &[f64]| !it.is_doubted && !is_told(&squares(it.place, &it.finding), left);
+    while let Some(at) = candidates.iter().rposition(|it| is_little(it, &doubted_by_channel)) {
+        candidates[at].is_doubted = true;
+        add(&mut doubted_by_channel, &squares(candidates[at].place, &candidates[at].finding));
+    }
+    Some(Named { candidates, unnamed_by_channel, doubted_by_channel })
+}
+
+fn add(to: &mut [f64], squares: &[f64]) {
+    to.iter_mut().zip(squares).for_each(|(sum, own)| *sum += own);
+}
+
+/// Whether a finding explains far more, by its `squares` in each channel, than what is `left` in them.
+fn is_told(squares: &[f64], left: &[f64]) -> bool {
+    let square: f64 = squares.iter().sum();
+    let channels = squares.iter().zip(left);
+    let near: f64 = channels.filter(|(own, _)| **own > PART_MIN * square).map(|(_, left)| left).sum();
+    square > OVER_NEAR * near && is_over(square, left)
+}
+
+fn of_catalogue(effect: &str) -> Option<&'static dyn Cause> {
+    CATALOGUE.into_iter().find(|it| it.effect() == effect)
+}
+
+/// Whether the weighted squares that a cause explains are far more than those that are left in all channels.
+pub(crate) fn is_over(square: f64, unnamed_by_channel: &[f64]) -> bool {
+    square > OVER_ALL * unnamed_by_channel.iter().sum::<f64>()
+}
+
+/// Sets beside findings that one reason may have in common that it may be none of the catalogue: beside those of one effect at several
+/// targets, beside three or more of any effects, and then also beside what each target has of its own, as that may be a part of it.
+/// What the checks of the recording found does not count: it is seen in the readings themselves.
+pub(crate) fn in_common(findings: Vec<Finding>) -> Vec<Finding> {
+    let asks = |effect: &str| of_catalogue(effect).is_some_and(|it| !it.is_individual());
+    let effects: Vec<&str> = findings.iter().map(|it| it.effect).filter(|effect| asks(effect)).collect();
+    let alike = |effect: &str| effects.iter().filter(|it| **it == effect).count();
+    let is_doubted = |effect: &str| alike(effect) > ALIKE_MAX || effects.len() > CAUSES_MAX;
+    let is_any = effects.iter().any(|effect| is_doubted(effect));
+    let is_common = |it: &Finding| is_doubted(it.effect) || is_any && !asks(it.effect);
+    let set =
+        |it: Finding| if of_catalogue(it.effect).is_some() && is_common(&it) { doubted(it) } else { it };
+    findings.into_iter().map(set).collect()
+}
+
+/// The finding as one that may be a part of what is not in the catalogue.
+pub(crate) fn doubted(mut finding: Finding) -> Finding {
+    if !finding.is_doubted() {
+        finding.confounded_with.push((UNLISTED, Target::Pad));
+        finding.separate_by.get_or_insert_with(|| INSEPARABLE.to_owned());
+    }
+    finding
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn finding((effect, target): (&'static str, Target)) -> Finding {
+        Finding {
+            effect,
+            target,
+            parameters: Vec::new(),
+            shapes: Vec::new(),
+            p_value: 1e-9,
+            share: 0.3,
+            confounded_with: Vec::new(),
+            separate_by: None,
+        }
+    }
+
+    fn doubted(causes: &[(&'static str, Target)]) -> Vec<usize> {
+        let findings = in_common(causes.iter().copied().map(finding).collect());
+        (0..findings.len()).filter(|at| findings[*at].confounded_with == [(UNLISTED, Target::Pad)]).collect()
+    }
+
+    #[test]
+    fn a_finding_is_told_by_far_more_than_what_is_left() {
+        // Ten times what is left in its own channels, four times what is left in all.
+        assert!(is_told(&[100.0, 0.0], &[9.9, 0.0]) && !is_told(&[100.0, 0.0], &[10.1, 0.0]));
+        assert!(is_told(&[100.0, 0.0], &[0.0, 24.9]) && !is_told(&[100.0, 0.0], &[0.0, 25.1]));
+        // Channels that have next to nothing of it are not its own.
+        assert!(is_told(&[100.0, 0.9], &[0.0, 20.0]) && !is_told(&[100.0, 1.1], &[0.0, 20.0]));
+        assert_eq!(super::doubted(super::doubted(finding(("creep", Target::Pad)))).confounded_with.len(), 1);
+    }
+
+    #[test]
+    fn several_of_one_kind_and_many_of_any_may_have_one_reason() {
+        let [displaced, rotated] = ["module_displaced", "module_rotated"];
+        let module = Target::Module;
+        assert_eq!(doubted(&[(displaced, module(0)), (rotated, module(1))]), [0; 0]);
+        assert_eq!(
+            doubted(&[(displaced, module(0)), (displaced, module(1)), (rotated, module(1))]),
+            [0, 1, 2]
+        );
+        assert_eq!(
+            doubted(&[(displaced, module(0)), (rotated, module(1)), (displaced, module(2))]),
+            [0, 1, 2]
+        );
+        assert_eq!(
+            doubted(&[(displaced, module(0)), (rotated, module(0)), ("stage_offset", Target::Rig)]),
+            [0, 1, 2]
+        );
+        assert_eq!(doubted(&[(displaced, module(0)), (displaced, module(2))]), [0, 1]);
+    }
+
+    #[test]
+    fn what_each_target_has_of_its_own_and_what_checks_found_needs_no_reason() {
+        let of_channels =
+            |effect: &'static str| (0..4).map(move |channel| (effect, Target::Channel(channel)));
+        let gains: Vec<_> =
+            of_channels("channel_gain").chain([("module_rotated", Target::Module(1))]).collect();
+        assert_eq!(doubted(&gains), [0; 0]);
+        assert_eq!(doubted(&of_channels("channel_dead").collect::<Vec<_>>()), [0; 0]);
+        let leaks = [0, 1].map(|from| ("channel_crosstalk", Target::Channels { into: 4, from }));
+        let beside =
+            [("channel_gain", Target::Channel(4)), leaks[0], leaks[1], ("channel_dead", Target::Channel(8))];
+        assert_eq!(doubted(&beside), [0, 1, 2]);
+    }
+}

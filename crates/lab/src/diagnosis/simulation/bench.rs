@@ -1,0 +1,194 @@
+//! The simulated pad as it would read contacts that nobody wrote, in the circumstances of rows that somebody did.
+
+use rayon::prelude::*;
+
+use super::row::response;
+use super::simulated::Simulated;
+use crate::diagnosis::model::Told;
+use crate::diagnosis::model::chain::Chain;
+use crate::diagnosis::model::inverse::{Forward, Inverse, UNKNOWNS, Weighted, Written};
+use crate::diagnosis::model::mechanics::Maps;
+use tactpad_core::pad::influence::InfluenceField;
+use tactpad_core::quantity::CHANNELS;
+
+/// A pad under a chain.
+struct Bench<'s, 'f> {
+    simulated: &'s Simulated<'f>,
+    chain: Chain,
+    /// What the weights of the chain change in the field, by written places; none where they change nothing.
+    changed: Option<InfluenceField>,
+}
+
+/// The contacts that make the pad read what was read, row by row; none for a row that tells less than a contact's numbers.
+pub(crate) fn contacts(
+    simulated: &Simulated<'_>,
+    chain: Chain,
+    changed: Option<InfluenceField>,
+    radius_mm: f64,
+    told: &Told<'_>,
+) -> Vec<Option<Written>> {
+    let of_order = simulated.of_order(&chain);
+    let observations = simulated.sequence;
+    let turned_deg = |row: usize| observations.samples[row].turned_deg;
+    let mut turns_deg: Vec<f64> = simulated.picked.iter().map(|row| turned_deg(*row)).collect();
+    turns_deg.sort_by(f64::total_cmp);
+    turns_deg.dedup();
+    // What is written stands for another place where the pad is turned on the stage.
+    let clamped = |turned_deg: &f64| {
+        let chain = Chain { rig: chain.rig.under(*turned_deg), ..chain.clone() };
+        Inverse::new(Bench { simulated, chain, changed: changed.clone() }, radius_mm)
+    };
+    let inverses: Vec<Inverse<Bench<'_, '_>>> = turns_deg.iter().map(clamped).collect();
+    let contact = |(at, row): (usize, &usize)| {
+        let row = *row;
+        let clamping = turns_deg.partition_point(|turn_deg| *turn_deg < turned_deg(row));
+        let channels = observations.readings.iter().zip(&of_order).zip(told.zeros);
+        let readings: Vec<f64> =
+            channels.map(|((channel, of_order), zero)| channel[row] - of_order[at] - zero).collect();
+        let in_series = observations.samples[row].is_in_series();
+        let channels = readings.iter().zip(told.noise).zip(&observations.is_told);
+        let weights: Vec<f64> = channels
+            .map(
+                |((reading, noise), is_told)| {
+                    if is_told[row] { 1.0 / noise.variance(*reading, in_series) } else { 0.0 }
+                },
+            )
+            .collect();
+        let tells = weights.iter().filter(|weight| **weight > 0.0).count() >= UNKNOWNS;
+        inverses[clamping].contact(row, &Weighted { readings, weights }).filter(|_| tells)
+    };
+    simulated.picked.par_iter().enumerate().map(contact).collect()
+}
+
+impl Forward for Bench<'_, '_> {
+    /// What a unit of true force along each axis strains.
+    type Site = Maps;
+
+    fn site(&self, place_mm: [f64; 2]) -> Maps {
+        let mut maps = self.simulated.maps(place_mm, &self.chain);
+        if let Some(changed) = &self.changed {
+            let changes = changed.gains(place_mm[0] as f32, place_mm[1] as f32).value;
+            maps.iter_mut().flatten().zip(changes.iter().flatten()).for_each(|(map, change)| *map += change);
+        }
+        maps
+    }
+
+    fn reading(&self, row: usize, site: &Maps, load: [f64; 3]) -> Vec<f64> {
+        let force_n = self.chain.rig.force_n(load);
+        let strain: [f64; CHANNELS] = std::array::from_fn(|channel| response(&site[channel], &force_n));
+        self.simulated.reading(row, &strain, &self.chain).to_vec()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::diagnosis::attribution::atlas::Atlas;
+    use crate::diagnosis::data::noise::Noise;
+    use crate::diagnosis::data::observations::{Observations, Sample};
+    use crate::diagnosis::model::{Model, Told};
+    use crate::diagnosis::{Applied, Pad};
+    use tactpad_core::numeric::random::SplitMix64;
+    use tactpad_core::numeric::statistics::mean;
+    use tactpad_core::pad::changes::FieldChanges;
+    use tactpad_core::pad::device::Device;
+    use tactpad_core::pad::field::PadField;
+    use tactpad_core::quantity::CHANNELS;
+
+    /// Contacts all over the plate.
+    fn contacts(count: usize) -> Observations {
+        let mut random = SplitMix64::new(11);
+        let mut sample = |row: usize| {
+            let [x, y] = [0; 2].map(|_| 19.0 * f64::from(random.uniform()));
+            let fz = 1.0 + 4.0 * f64::from(random.fraction());
+            let shear = [0; 2].map(|_| 0.4 * fz * f64::from(random.uniform()));
+            let (t_s, temp_c) = (Some(4.0 * row as f64), Some(20.0 + 8.0 * f64::from(random.fraction())));
+            Sample { place_mm: [x, y], load: [shear[0], shear[1], fz], t_s, temp_c, ..Sample::default() }
+        };
+        Observations {
+            channels: vec![String::new(); CHANNELS],
+            readings: vec![vec![0.0; count]; CHANNELS],
+            is_told: vec![vec![true; count]; CHANNELS],
+            samples: (0..count).map(&mut sample).collect(),
+            numbers: (0..count).collect(),
+        }
+    }
+
+    /// Mean magnitudes of the errors of places and loads, as contacts are decoded where the first causes hold and the others are
+    /// known; noise is so many parts of what the decoder believes.
+    fn errors(holds: &[(&str, &[f64])], known: &[(&str, &[f64])], noise: f64) -> [f64; 2] {
+        let (device, field, flaws) = (Device::nominal(), PadField::nominal(), FieldChanges::nominal());
+        let pad = Pad { device: &device, field: &field, flaws: &flaws.0, solve: &|_| None, without: &[] };
+        let written = contacts(60);
+        let applied = |model: &Atlas<'_>, causes: &[(&str, &[f64])]| -> Applied {
+            let of = |(effect, values): &(&str, &[f64])| {
+                let at = model.hypotheses().iter().position(|it| it.effect == *effect).unwrap();
+                let parameters = &model.hypotheses()[at].parameters;
+                (at, parameters.iter().zip(*values).map(|(it, value)| it.coordinate(*value)).collect())
+            };
+            causes.iter().map(of).collect()
+        };
+        let model = Atlas::new(&pad, &written, &written);
+        let read = model.readings(&applied(&model, holds));
+        let levels: Vec<Noise> = read.iter().map(|channel| Noise::first(channel)).collect();
+        let mut random = SplitMix64::new(12);
+        let mut measured = written.clone();
+        for ((to, from), level) in measured.readings.iter_mut().zip(&read).zip(&levels) {
+            to.clone_from(from);
+            let mut off = |uv: f64| noise * level.variance(uv, false).sqrt() * f64::from(random.normal());
+            to.iter_mut().for_each(|uv| *uv += off(*uv));
+        }
+        // One reading is no reading, and another row tells too little.
+        measured.readings[2][7] = 1e9;
+        measured.is_told[2][7] = false;
+        (0..5).for_each(|channel| measured.is_told[channel][8] = false);
+        let model = Atlas::new(&pad, &measured, &measured);
+        let told = Told { zeros: &[0.0; CHANNELS], noise: &levels };
+        let found = model.contacts(&applied(&model, known), &told).unwrap();
+        assert!(found[8].is_none());
+        let off = |axes: std::ops::Range<usize>| {
+            let rows =
+                found.iter().zip(&written.samples).filter_map(|(it, sample)| Some((it.as_ref()?, sample)));
+            mean(rows.flat_map(|(it, sample)| {
+                let [fx, fy, fz] = sample.load;
+                let wanted = [sample.place_mm[0], sample.place_mm[1], fx, fy, fz];
+                axes.clone().map(move |k| (it[k] - wanted[k]).abs())
+            }))
+        };
+        [off(0..2), off(2..5)]
+    }
+
+    #[test]
+    fn what_the_model_reads_is_decoded_again() {
+        let [place_mm, force_n] = errors(&[], &[], 0.0);
+        assert!(place_mm < 2e-3 && force_n < 1e-4, "{place_mm} {force_n}");
+        // A hundredth of each reading and of its channel: so far off as the noise makes it.
+        let [place_mm, force_n] = errors(&[], &[], 1.0);
+        assert!((0.1..0.4).contains(&place_mm) && (0.005..0.05).contains(&force_n), "{place_mm} {force_n}");
+    }
+
+    #[test]
+    fn causes_of_every_kind_are_taken_back() {
+        let all: [(&str, &[f64]); 8] = [
+            ("module_displaced", &[0.8, -0.5]),
+            ("module_frame_open", &[0.01]),
+            ("stage_rotation", &[1.5]),
+            ("reference_tilt", &[1.0, -1.0]),
+            ("channel_crosstalk", &[0.06]),
+            ("gauge_nonlinearity", &[3.0]),
+            ("thermal_gain", &[-0.003]),
+            ("contact_height", &[0.5]),
+        ];
+        let known = errors(&all, &all, 0.0);
+        let unknown = errors(&all, &[], 0.0);
+        assert!(known[0] < 0.01 && known[1] < 1e-3, "{known:?}");
+        assert!(unknown[0] > 0.2 && unknown[1] > 0.02, "{unknown:?}");
+        for cause in all {
+            let (known, unknown) = (errors(&[cause], &[cause], 0.0), errors(&[cause], &[], 0.0));
+            assert!(known[0] < 0.01 && known[1] < 1e-3, "{cause:?} {known:?}");
+            assert!(
+                unknown[0] > 3.0 * known[0] || unknown[1] > 3.0 * known[1],
+                "{cause:?} {known:?} {unknown:?}"
+            );
+        }
+    }
+}

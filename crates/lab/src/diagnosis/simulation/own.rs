@@ -1,0 +1,91 @@
+//! The chain of a device: what its file says beside the field.
+
+use crate::diagnosis::model::chain::{Chain, ChannelChain, MechanicsChain, Reference};
+use crate::diagnosis::model::memory::{MemoryChain, Play, Prony};
+use crate::rig::errors::RigErrors;
+use tactpad_core::pad::device::Device;
+use tactpad_core::pad::device::behaviour::{self, Behaviour, ModuleCrosstalk};
+use tactpad_core::quantity::CHANNELS;
+
+/// What a device's file says of its channels and of the rig that measures it.
+pub(crate) fn own_chain(device: &Device, weights: Vec<f64>, reference: &Reference) -> Chain {
+    let Behaviour {
+        thermal,
+        crosstalk,
+        module_crosstalk,
+        hysteresis,
+        creep,
+        ageing,
+        noise,
+        sampling,
+        rig,
+        ..
+    } = &device.behaviour;
+    let modules = || device.modules.iter();
+    let nominal = Chain::nominal(CHANNELS, weights.len());
+    Chain {
+        rig: RigErrors::of(rig),
+        memory: MemoryChain {
+            plays: hysteresis.iter().flat_map(|it| plays(it, reference)).collect(),
+            prony: creep.iter().flat_map(prony).collect(),
+        },
+        channels: ChannelChain {
+            module_shares: module_crosstalk.iter().flat_map(by_axis).collect(),
+            gain: modules().flat_map(|module| module.gain).collect(),
+            // What is lost by the recording's last cycle.
+            loss: ageing.share.iter().map(|share| share * ageing.part(reference.cycle)).collect(),
+            gain_per_c: thermal.gain_per_c.to_vec(),
+            shares: crosstalk.iter().map(|it| (it.channel, it.with, it.share)).collect(),
+            offset: modules().flat_map(|module| module.offset_uv).collect(),
+            zero_per_c: thermal.zero_uv_per_c.to_vec(),
+            drift_per_h: noise.drift_uv_per_h.to_vec(),
+            skew_s: sampling.skew_us.map(|us| 1e-6 * us).to_vec(),
+            ..nominal.channels
+        },
+        mechanics: MechanicsChain { weights, ..nominal.mechanics },
+    }
+}
+
+/// A play operator, channel by channel.
+fn plays<'r>(it: &'r behaviour::Play, reference: &'r Reference) -> impl Iterator<Item = Play> + 'r {
+    let of = |channel: usize| {
+        let threshold = it.threshold_uv / reference.full_scale[channel];
+        Play { channel, threshold, share: it.share, above: 1.0 }
+    };
+    (0..CHANNELS).filter(|channel| it.channels[*channel]).map(of)
+}
+
+/// A term of creep, channel by channel.
+fn prony(it: &behaviour::Prony) -> impl Iterator<Item = Prony> + use<'_> {
+    let of = |channel: usize| Prony { channel, time_s: it.time_s, share: it.share };
+    (0..CHANNELS).filter(|channel| it.channels[*channel]).map(of)
+}
+
+/// A module's share, channel by channel.
+fn by_axis(it: &ModuleCrosstalk) -> impl Iterator<Item = (usize, usize, f64)> + use<> {
+    let ModuleCrosstalk { module, with, share } = *it;
+    (0..3).map(move |axis| (3 * module + axis, 3 * with + axis, share))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_channel_has_lost_its_share_at_its_number_of_cycles() {
+        let mut device = Device::nominal();
+        device.behaviour.ageing.share[4] = 0.2;
+        let reference = |cycle: f64| Reference {
+            temp_c: 25.0,
+            t_s: 0.0,
+            cycle,
+            full_scale: vec![1.0; CHANNELS],
+            sizes: vec![1.0; CHANNELS],
+        };
+        let loss = |cycle: f64| own_chain(&device, Vec::new(), &reference(cycle)).channels.loss;
+        let whole = device.behaviour.ageing.cycles;
+        assert!((loss(whole)[4] - 0.2).abs() < 1e-12 && loss(whole)[3] == 0.0);
+        assert!((0.05..0.2).contains(&loss(0.1 * whole)[4]), "{}", loss(0.1 * whole)[4]);
+        assert_eq!(loss(0.0)[4], 0.0);
+    }
+}

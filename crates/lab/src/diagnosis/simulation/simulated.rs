@@ -1,0 +1,409 @@
+//! The simulated pad as a model of nine channels.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::own::own_chain;
+use super::row::{Row, continued, response};
+use crate::diagnosis::causes::CATALOGUE;
+use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::data::observations::{Observations, Sample};
+use crate::diagnosis::model::chain::{Chain, Reference};
+use crate::diagnosis::model::mechanics::{Maps, Pad, at_places, changes, side_share};
+use crate::diagnosis::model::memory::{Course, MemoryChain};
+use crate::diagnosis::model::setting::{Change, Setting};
+use crate::diagnosis::model::{
+    BACKGROUND_MAX, CommonError, Hypothesis, Linearised, Model, Parameter, SIGNATURE_ERROR, Signature,
+};
+use crate::diagnosis::report::NotTestable;
+use tactpad_core::numeric::statistics::rms;
+use tactpad_core::pad::device::{Device, Side};
+use tactpad_core::pad::field::PadField;
+use tactpad_core::pad::influence::InfluenceField;
+use tactpad_core::quantity::{CHANNELS, MODULES};
+
+/// Standard deviation of a factor that all modules' x, y or z channels share, of their answer to shear or to normal loads: the
+/// simulator's discretisation. Held against an independent solution: −0.5, −1.2 and +0.7 % of shear, +0.3, −0.1, +0.6 % of normal
+/// loads.
+const COMMON_ERROR: f64 = 0.008;
+/// Standard deviations of the simulator's error that look like a cause, as coordinates of that cause: the plate's polynomials are
+/// stiffer than the plate, and its splines round the field off. Held against the same solution: 1.1 % and 0.64 mm².
+const ERRORS_LIKE: [(&str, f64); 2] = [("plate_stiffness", 0.015), ("contact_size", 0.65)];
+/// Readings that change by less than this part of the largest reading do not change.
+const NOTHING: f64 = 1e-9;
+
+/// Nine channels by a pad's field.
+pub(crate) struct Simulated<'f> {
+    signals: InfluenceField,
+    /// The rows in their order: what is remembered is so in that.
+    pub(crate) sequence: &'f Observations,
+    course: Course,
+    /// The rows of it that are asked for.
+    pub(crate) picked: Vec<usize>,
+    setting: Setting,
+    reference: Reference,
+    hypotheses: Vec<Hypothesis>,
+    causes: Vec<&'static dyn Cause>,
+    /// The device's own imperfections.
+    own: Chain,
+    /// For each row, the changes of the maps, in the order of the setting's.
+    changes: Vec<Arc<[Maps]>>,
+}
+
+/// The pad where hypotheses hold: what derivatives are taken about.
+struct Point<'p> {
+    applied: &'p [(usize, Vec<f64>)],
+    chain: Chain,
+    rows: Vec<Row>,
+    /// Their strains with what the channels remember of them.
+    remembered: Vec<[f64; CHANNELS]>,
+    /// Each channel's readings at the rows that are asked for.
+    readings: Vec<Vec<f64>>,
+}
+
+impl<'f> Simulated<'f> {
+    /// The pad at some `observations` of a `sequence`, about the `field` of its `own` device: hypotheses and references are those of
+    /// `all` rows and of the pad that is held to be right, so that any part, about any field, has the same.
+    pub(crate) fn new(
+        pad: &Pad<'_>,
+        (own, field): (&Device, &PadField),
+        all: &Observations,
+        (sequence, observations): (&'f Observations, &Observations),
+    ) -> Self {
+        let course =
+            |of: &Observations| Course::of(&of.samples, &of.follows(), pad.device.contact.full_scale_n);
+        let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all, &course(all));
+        let mut hypotheses = Vec::new();
+        let mut causes: Vec<&'static dyn Cause> = Vec::new();
+        let is_asked = |cause: &&dyn Cause| pad.asks_for(cause.effect()) && cause.missing(&setting).is_none();
+        for cause in CATALOGUE.into_iter().filter(is_asked) {
+            for target in cause.targets(&setting) {
+                hypotheses.push(Hypothesis {
+                    effect: cause.effect(),
+                    target,
+                    parameters: cause.parameters(&setting),
+                    signature_error: if cause.stage() == Stage::Channels { 0.0 } else { SIGNATURE_ERROR },
+                });
+                causes.push(cause);
+            }
+        }
+        let places_mm: Vec<[f64; 2]> = sequence.samples.iter().map(|sample| sample.place_mm).collect();
+        let reference = reference(pad.device, pad.field, all);
+        let weights = setting.own_weights(pad.device, own);
+        Self {
+            own: own_chain(pad.device, weights, &reference),
+            signals: field.signals.clone(),
+            reference,
+            changes: at_places(field, pad.flaws, pad.device.plate.radius_mm(), &places_mm),
+            sequence,
+            course: course(sequence),
+            picked: observations.numbers.clone(),
+            setting,
+            hypotheses,
+            causes,
+        }
+    }
+
+    /// Whether a hypothesis changes the field.
+    pub(crate) fn changes_field(&self, hypothesis: usize) -> bool {
+        let steps = self.hypotheses[hypothesis].parameters.iter().map(|it| it.step).collect();
+        self.chain(&[(hypothesis, steps)]).mechanics.weights != self.own.mechanics.weights
+    }
+
+    /// The causes that cannot be asked for, and what is missing.
+    pub(crate) fn missing(&self) -> Vec<NotTestable> {
+        let missing =
+            CATALOGUE.iter().filter_map(|cause| Some((cause.effect(), cause.missing(&self.setting)?)));
+        missing.map(|(effect, needs)| NotTestable { effect, needs }).collect()
+    }
+
+    /// The chain of these hypotheses.
+    pub(crate) fn chain(&self, applied: &[(usize, Vec<f64>)]) -> Chain {
+        let mut chain = self.own.clone();
+        for (at, coordinates) in applied {
+            let hypothesis = &self.hypotheses[*at];
+            let values: Vec<f64> =
+                hypothesis.parameters.iter().zip(coordinates).map(|(it, psi)| it.value(*psi)).collect();
+            self.causes[*at].apply(&hypothesis.target, &values, &self.setting, &mut chain);
+        }
+        chain
+    }
+
+    /// With a row `near` it, of another chain, whose maps are its own if it is at the same place.
+    fn row(&self, at: usize, chain: &Chain, near: Option<&Row>) -> Row {
+        let samples = &self.sequence.samples;
+        let then = self.course.moment(at, chain.rig.lag_s);
+        let place_mm = std::array::from_fn(|axis| then.of(|row| samples[row].place_mm[axis]));
+        let force_n = std::array::from_fn(|axis| then.of(|row| samples[row].load[axis]));
+        let rig = chain.rig.under(samples[at].turned_deg);
+        let (place_mm, force_n) = (rig.place_mm(place_mm), rig.force_n(force_n));
+        let (gains, laplacian) = match near.filter(|it| it.place_mm == place_mm) {
+            Some(near) => (near.gains, near.laplacian),
+            None => (continued(&self.signals, place_mm), self.signals.laplacian(place_mm)),
+        };
+        Row {
+            place_mm,
+            force_n,
+            gains,
+            laplacian,
+            changes: self.changes[at].iter().map(|maps| maps.map(|map| response(&map, &force_n))).collect(),
+        }
+    }
+
+    /// What a unit of true force along each axis strains at a place that is written so, without the field's changes.
+    pub(crate) fn maps(&self, written_mm: [f64; 2], chain: &Chain) -> Maps {
+        let place_mm = chain.rig.place_mm(written_mm);
+        let gains = continued(&self.signals, place_mm);
+        let laplacian = self.signals.laplacian(place_mm);
+        let axes: [[f64; CHANNELS]; 3] = std::array::from_fn(|axis| {
+            let force_n = std::array::from_fn(|other| f64::from(u8::from(other == axis)));
+            Row { place_mm, force_n, gains, laplacian, changes: Vec::new() }.strain(chain)
+        });
+        std::array::from_fn(|channel| axes.map(|strain| strain[channel]))
+    }
+
+    fn rows(&self, chain: &Chain) -> Vec<Row> {
+        (0..self.sequence.rows()).into_par_iter().map(|at| self.row(at, chain, None)).collect()
+    }
+
+    /// Each channel's values at the rows that are asked for.
+    fn picked(&self, channels: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+        channels.into_iter().map(|of| self.picked.iter().map(|row| of[*row]).collect()).collect()
+    }
+
+    /// The strains of all rows, with what the channels remember of them.
+    fn remembered(&self, mut strains: Vec<[f64; CHANNELS]>, chain: &Chain) -> Vec<[f64; CHANNELS]> {
+        for (channel, full_scale) in self.reference.full_scale.iter().enumerate() {
+            let own: Vec<f64> = strains.iter().map(|strain| strain[channel]).collect();
+            let added =
+                chain.memory.added(&self.course, channel, *full_scale, (&own, 0.0)).unwrap_or_default();
+            strains.iter_mut().zip(added).for_each(|(strain, added)| strain[channel] += added);
+        }
+        strains
+    }
+
+    /// Half of what friction adds to strains that are too large by the largest background, less what to ones that are too small; and
+    /// the same of creep under loads that came early, and late, between two rows.
+    fn doubts(&self, Point { rows, chain, .. }: &Point<'_>) -> Vec<Vec<f64>> {
+        let magnitude = |row: &Row| libm::sqrt(row.force_n.iter().map(|n| n * n).sum());
+        let magnitudes: Vec<f64> = rows.iter().map(magnitude).collect();
+        let load_rms = rms(magnitudes.iter().copied());
+        let strains: Vec<[f64; CHANNELS]> = rows.iter().map(|row| row.strain(chain)).collect();
+        let friction = MemoryChain { prony: Vec::new(), ..chain.memory.clone() };
+        let creep = MemoryChain { plays: Vec::new(), ..chain.memory.clone() };
+        let doubt = |channel: usize| {
+            let (full_scale, size) = (self.reference.full_scale[channel], self.reference.sizes[channel]);
+            let added = |memory: &MemoryChain, off: f64, early: f64| {
+                let off = |magnitude: f64| off * BACKGROUND_MAX * size * magnitude / load_rms;
+                let own = strains.iter().zip(&magnitudes).map(|(strain, it)| strain[channel] + off(*it));
+                memory.added(&self.course, channel, full_scale, (&own.collect::<Vec<_>>(), early))
+            };
+            let pairs = [
+                [1.0, -1.0].map(|off| added(&friction, off, 0.0)),
+                [1.0, -1.0].map(|early| added(&creep, 0.0, early)),
+            ];
+            let halves = |pair: &[Option<Vec<f64>>; 2], row: usize| match pair {
+                [Some(above), Some(below)] => 0.5 * (above[row] - below[row]),
+                _ => 0.0,
+            };
+            if pairs.iter().flatten().all(Option::is_none) {
+                return Vec::new();
+            }
+            self.picked
+                .iter()
+                .map(|row| libm::hypot(halves(&pairs[0], *row), halves(&pairs[1], *row)))
+                .collect()
+        };
+        (0..CHANNELS).into_par_iter().map(doubt).collect()
+    }
+
+    /// What the channels read at strains with their memory, at the rows that are asked for.
+    fn read(&self, strains: &[[f64; CHANNELS]], chain: &Chain) -> Vec<Vec<f64>> {
+        let mut channels = vec![Vec::new(); CHANNELS];
+        for (at, strain) in strains.iter().enumerate() {
+            let row = self.reading(at, strain, chain);
+            channels.iter_mut().zip(row).for_each(|(channel, value)| channel.push(value));
+        }
+        let late = channels.iter_mut().zip(&chain.channels.skew_s).filter(|(_, skew_s)| **skew_s != 0.0);
+        for (channel, skew_s) in late {
+            let then = |row: usize| self.course.moment(row, -skew_s).of(|row| channel[row]);
+            *channel = (0..channel.len()).map(then).collect();
+        }
+        self.picked(channels)
+    }
+
+    /// What a row's channels read when they are strained so and remember nothing.
+    pub(crate) fn reading(&self, at: usize, strain: &[f64; CHANNELS], chain: &Chain) -> [f64; CHANNELS] {
+        let mut values = *strain;
+        chain.channels.read(&mut values, &self.sequence.samples[at], &self.reference);
+        values
+    }
+
+    /// What each channel reads at the rows that are asked for because of the rows about them, by what was written.
+    pub(crate) fn of_order(&self, chain: &Chain) -> Vec<Vec<f64>> {
+        let mut alone = Chain { memory: MemoryChain::default(), ..chain.clone() };
+        alone.rig.lag_s = 0.0;
+        alone.channels.skew_s.fill(0.0);
+        let read = |chain: &Chain| self.read(&self.strained(&self.rows(chain), chain), chain);
+        let channels = read(chain).into_iter().zip(read(&alone));
+        channels.map(|(all, alone)| all.iter().zip(alone).map(|(a, b)| a - b).collect()).collect()
+    }
+
+    fn point<'p>(&self, applied: &'p [(usize, Vec<f64>)]) -> Point<'p> {
+        let chain = self.chain(applied);
+        let rows = self.rows(&chain);
+        let remembered = self.strained(&rows, &chain);
+        let readings = self.read(&remembered, &chain);
+        Point { applied, chain, rows, remembered, readings }
+    }
+
+    /// The readings with one more hypothesis, of which only what it can change is computed anew.
+    fn perturbed(
+        &self,
+        Point { rows, remembered, .. }: &Point<'_>,
+        stage: Stage,
+        chain: &Chain,
+    ) -> Vec<Vec<f64>> {
+        let strains = match stage {
+            Stage::Contact => {
+                let row = |(at, near)| self.row(at, chain, Some(near)).strain(chain);
+                rows.iter().enumerate().map(row).collect()
+            }
+            Stage::Mechanics => rows.iter().map(|row| row.strain(chain)).collect(),
+            Stage::Channels => return self.read(remembered, chain),
+        };
+        self.read(&self.remembered(strains, chain), chain)
+    }
+
+    /// The strains of all rows, and with their memory.
+    fn strained(&self, rows: &[Row], chain: &Chain) -> Vec<[f64; CHANNELS]> {
+        self.remembered(rows.iter().map(|row| row.strain(chain)).collect(), chain)
+    }
+
+    /// ∂readings/∂ψ by one coordinate: a central difference.
+    fn signature(&self, point: &Point<'_>, [at, parameter]: [usize; 2]) -> Signature {
+        let hypothesis = &self.hypotheses[at];
+        let Parameter { step, shape, .. } = hypothesis.parameters[parameter];
+        if shape.is_some() && point.applied.iter().all(|(held, _)| *held != at) {
+            return vec![None; CHANNELS];
+        }
+        let moved = |by: f64| {
+            let mut applied = point.applied.to_vec();
+            let own = match applied.iter().position(|(index, _)| *index == at) {
+                Some(own) => own,
+                None => {
+                    applied.push((at, vec![0.0; hypothesis.parameters.len()]));
+                    applied.len() - 1
+                }
+            };
+            applied[own].1[parameter] += by;
+            self.perturbed(point, self.causes[at].stage(), &self.chain(&applied))
+        };
+        // A number that cannot be below none is changed upwards only.
+        let is_one_sided = hypothesis.parameters[parameter].is_one_sided();
+        let above = moved(step);
+        let below = if is_one_sided { &point.readings } else { &moved(-step) };
+        let width = if is_one_sided { step } else { 2.0 * step };
+        let channels = above.into_iter().zip(below).zip(&self.reference.full_scale);
+        channels
+            .map(|((above, below), full_scale)| {
+                let slopes: Vec<f64> = above.iter().zip(below).map(|(a, b)| (a - b) / width).collect();
+                let is_changed = slopes.iter().any(|slope| (slope * step).abs() > NOTHING * full_scale);
+                is_changed.then_some(slopes)
+            })
+            .collect()
+    }
+}
+
+impl Model for Simulated<'_> {
+    fn hypotheses(&self) -> &[Hypothesis] {
+        &self.hypotheses
+    }
+
+    fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>> {
+        self.point(applied).readings
+    }
+
+    fn sizes(&self) -> Vec<f64> {
+        self.reference.sizes.clone()
+    }
+
+    fn full_scale(&self) -> Vec<f64> {
+        self.reference.full_scale.clone()
+    }
+
+    fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
+        let point = self.point(applied);
+        let signatures = self.hypotheses.par_iter().enumerate().map(|(at, hypothesis)| {
+            let of = |parameter| self.signature(&point, [at, parameter]);
+            (0..hypothesis.parameters.len()).map(of).collect()
+        });
+        Linearised {
+            signatures: signatures.collect(),
+            loads: self.picked.iter().map(|row| point.rows[*row].force_n).collect(),
+            doubts: self.doubts(&point),
+            readings: point.readings,
+        }
+    }
+
+    fn common_errors(&self) -> Vec<CommonError> {
+        let point = self.point(&[]);
+        let mut errors = Vec::new();
+        for (axis, is_normal) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
+            let signature = (0..CHANNELS).map(|channel| {
+                let of = |row: &usize| {
+                    let row = &point.rows[*row];
+                    let [fx_n, fy_n, fz_n] = row.force_n;
+                    let force_n = if is_normal { [0.0, 0.0, fz_n] } else { [fx_n, fy_n, 0.0] };
+                    response(&row.gains.value[channel], &force_n)
+                };
+                (channel % 3 == axis).then(|| self.picked.iter().map(of).collect())
+            });
+            errors.push(CommonError { deviation: COMMON_ERROR, signature: signature.collect() });
+        }
+        for (effect, deviation) in ERRORS_LIKE {
+            let like = self.hypotheses.iter().position(|it| it.effect == effect);
+            errors
+                .extend(like.map(|at| CommonError { deviation, signature: self.signature(&point, [at, 0]) }));
+        }
+        errors
+    }
+}
+
+fn setting(device: &Device, changes: Vec<Change>, observations: &Observations, course: &Course) -> Setting {
+    let differs = |of: fn(&Sample) -> Option<f64>| {
+        let mut values = observations.samples.iter().filter_map(of);
+        values.next().is_some_and(|first| values.any(|value| value != first))
+    };
+    Setting {
+        channels: CHANNELS,
+        modules: MODULES,
+        changes,
+        has_field: true,
+        side_shares: Side::ALL.map(|side| (side, side_share(device, side))),
+        patch_radius_mm: device.contact.patch_radius_mm,
+        has_time: differs(|sample| sample.t_s),
+        has_temperature: differs(|sample| sample.temp_c),
+        has_cycles: differs(|sample| sample.cycle),
+        has_series: course.has_series(),
+        has_both_ways: course.has_both_ways() || course.has_series(),
+        dwells: course.dwells(),
+    }
+}
+
+fn reference(device: &Device, field: &PadField, observations: &Observations) -> Reference {
+    let samples = &observations.samples;
+    let nominal = |sample: &Sample| {
+        continued(&field.signals, sample.place_mm).value.map(|gains| response(&gains, &sample.load))
+    };
+    let nominal: Vec<[f64; CHANNELS]> = samples.iter().map(nominal).collect();
+    let of = |channel: usize| nominal.iter().map(move |row| row[channel]);
+    Reference {
+        temp_c: device.behaviour.thermal.reference_c,
+        t_s: samples.iter().filter_map(|sample| sample.t_s).fold(f64::INFINITY, f64::min),
+        cycle: samples.iter().filter_map(|sample| sample.cycle).fold(0.0, f64::max),
+        full_scale: (0..CHANNELS).map(|k| of(k).map(f64::abs).fold(f64::MIN_POSITIVE, f64::max)).collect(),
+        sizes: (0..CHANNELS).map(|k| rms(of(k))).collect(),
+    }
+}

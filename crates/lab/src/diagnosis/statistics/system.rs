@@ -1,0 +1,172 @@
+//! The linear system of each channel: its rows in standard deviations of their noise, and their products.
+//!
+//! A channel's residual is r = A ψ + B z + n with the signatures A of all hypotheses, the background's functions B with
+//! z ~ N(0, T), and noise n ~ N(0, D). Errors E e of the model with e ~ N(0, 1), if it states any, are taken into D: u D⁻¹ v stands
+//! for uᵀ D⁻¹ v − u_Eᵀ v_E with u_E = L⁻¹ Eᵀ D⁻¹ u and L Lᵀ = 1 + Eᵀ D⁻¹ E (M. A. Woodbury, Princeton Statistical Research Group 42
+//! (1950)).
+
+use super::equations::NormalEquations;
+use super::whitening::Whitening;
+use tactpad_core::numeric::dense::{Matrix, gram};
+use tactpad_core::numeric::linear::LargeFactor;
+use tactpad_core::numeric::products::dot;
+
+/// One channel.
+pub(crate) struct ChannelSystem {
+    /// What its rows come to.
+    pub(crate) equations: NormalEquations,
+    /// Of each row.
+    pub(crate) whitening: Whitening,
+    /// D⁻½ A, column by column.
+    pub(crate) signatures: Vec<Vec<f64>>,
+    /// D⁻½ B, column by column.
+    pub(crate) background: Vec<Vec<f64>>,
+    /// D⁻½ r.
+    pub(crate) residual: Vec<f64>,
+    /// What the model states of its own errors.
+    pub(crate) stated: Stated,
+}
+
+/// The model's stated errors E, and the other columns' products with them.
+pub(crate) struct Stated {
+    /// D⁻½ E, column by column.
+    pub(crate) columns: Vec<Vec<f64>>,
+    /// L; none without errors.
+    factor: Option<LargeFactor>,
+    /// A_E, B_E and r_E.
+    signatures: Vec<Vec<f64>>,
+    background: Vec<Vec<f64>>,
+    residual: Vec<f64>,
+}
+
+impl Stated {
+    fn of(
+        columns: Vec<Vec<f64>>,
+        signatures: &[Vec<f64>],
+        background: &[Vec<f64>],
+        residual: &[f64],
+    ) -> Option<Self> {
+        let mut inner = products(&columns);
+        (0..columns.len()).for_each(|at| inner.row_mut(at)[at] += 1.0);
+        let factor = if columns.is_empty() { None } else { Some(inner.factorised()?) };
+        let against = |of: &[f64]| -> Vec<f64> {
+            let right: Vec<f64> = columns.iter().map(|column| dot(column, of)).collect();
+            factor.as_ref().map_or_else(Vec::new, |factor| factor.solve_lower(&right))
+        };
+        Some(Self {
+            signatures: signatures.iter().map(|column| against(column)).collect(),
+            background: background.iter().map(|column| against(column)).collect(),
+            residual: against(residual),
+            factor,
+            columns,
+        })
+    }
+
+    /// ê = (1 + Eᵀ D⁻¹ E)⁻¹ Eᵀ D⁻¹ (v − B z), where `own` is v_E.
+    fn estimate(&self, mut own: Vec<f64>, background: &[f64]) -> Vec<f64> {
+        let Some(factor) = &self.factor else { return Vec::new() };
+        for (z, column) in background.iter().zip(&self.background) {
+            own.iter_mut().zip(column).for_each(|(own, value)| *own -= z * value);
+        }
+        factor.solve_upper(&own)
+    }
+
+    /// The degrees of freedom that the rows tell of the errors: K − tr (1 + Eᵀ D⁻¹ E)⁻¹.
+    pub(crate) fn freedom(&self) -> f64 {
+        let untold: f64 = self.factor.iter().flat_map(LargeFactor::inverse_diagonal).sum();
+        self.columns.len() as f64 - untold
+    }
+}
+
+impl ChannelSystem {
+    /// `signatures` are columns with their numbers, `errors` are those that the model states; `None` if they are not finite.
+    pub(crate) fn of(
+        signatures: &[(usize, &[f64])],
+        background: &[Vec<f64>],
+        errors: &[Vec<f64>],
+        residual: &[f64],
+        whitening: Whitening,
+    ) -> Option<Self> {
+        let columns: Vec<usize> = signatures.iter().map(|(number, _)| *number).collect();
+        let whitened = |of: &[Vec<f64>]| of.iter().map(|column| whitening.whitened(column)).collect();
+        let signatures: Vec<Vec<f64>> =
+            signatures.iter().map(|(_, column)| whitening.whitened(column)).collect();
+        let background: Vec<Vec<f64>> = whitened(background);
+        let residual = whitening.whitened(residual);
+        let stated = Stated::of(whitened(errors), &signatures, &background, &residual)?;
+        let against = |of: &[Vec<f64>], own: &[Vec<f64>]| {
+            let of = of.iter().zip(own);
+            of.map(|(column, own)| dot(column, &residual) - dot(own, &stated.residual)).collect()
+        };
+        let mixed = |(column, own): (&Vec<f64>, &Vec<f64>)| {
+            let others = background.iter().zip(&stated.background);
+            others.map(|(other, theirs)| dot(column, other) - dot(own, theirs)).collect()
+        };
+        let rows: Vec<Vec<f64>> = signatures.iter().zip(&stated.signatures).map(mixed).collect();
+        let equations = NormalEquations {
+            background_gram: less(products(&background), &products(&stated.background)),
+            mixed: Matrix::from_rows(&rows),
+            signature_gram: less(products(&signatures), &products(&stated.signatures)),
+            background_residual: against(&background, &stated.background),
+            signature_residual: against(&signatures, &stated.signatures),
+            square: dot(&residual, &residual) - dot(&stated.residual, &stated.residual),
+            log_determinant: whitening.log_determinant()
+                + stated.factor.as_ref().map_or(0.0, LargeFactor::log_determinant),
+            columns,
+        };
+        Some(Self { equations, whitening, signatures, background, residual, stated })
+    }
+
+    /// The normal equations of some of its columns, and of `further` ones with their numbers.
+    pub(crate) fn beside(&self, columns: &[usize], further: &[(usize, &[f64])]) -> Option<NormalEquations> {
+        let further: Vec<(usize, Vec<f64>)> =
+            further.iter().map(|(number, values)| (*number, self.whitening.whitened(values))).collect();
+        let own = self.equations.columns.iter().zip(&self.signatures);
+        let own = own.filter(|(number, _)| columns.contains(number));
+        let further = further.iter().map(|(number, values)| (*number, values.as_slice()));
+        let all: Vec<(usize, &[f64])> =
+            own.map(|(number, values)| (*number, values.as_slice())).chain(further).collect();
+        let white = Whitening::none(self.residual.len());
+        Some(Self::of(&all, &self.background, &self.stated.columns, &self.residual, white)?.equations)
+    }
+
+    /// D⁻½ (r − A ψ − B z − E ê).
+    pub(crate) fn left_over(&self, coordinates: &[f64], background: &[f64]) -> Vec<f64> {
+        let mut left = self.residual.clone();
+        let mut own = self.stated.residual.clone();
+        for (psi, column) in coordinates.iter().zip(&self.stated.signatures) {
+            own.iter_mut().zip(column).for_each(|(own, value)| *own -= psi * value);
+        }
+        take(&mut left, coordinates, &self.signatures);
+        take(&mut left, background, &self.background);
+        take(&mut left, &self.stated.estimate(own, background), &self.stated.columns);
+        left
+    }
+
+    /// D½ V⁻¹ A of a signature, where `smooth` is what the background takes of it.
+    pub(crate) fn weighted(&self, signature: usize, smooth: &[f64]) -> Vec<f64> {
+        let mut left = self.signatures[signature].clone();
+        take(&mut left, smooth, &self.background);
+        let stated = self.stated.estimate(self.stated.signatures[signature].clone(), smooth);
+        take(&mut left, &stated, &self.stated.columns);
+        left
+    }
+}
+
+/// Takes so much of each column off.
+fn take(left: &mut [f64], factors: &[f64], columns: &[Vec<f64>]) {
+    for (factor, column) in factors.iter().zip(columns).filter(|(factor, _)| **factor != 0.0) {
+        left.iter_mut().zip(column).for_each(|(left, value)| *left -= factor * value);
+    }
+}
+
+fn products(columns: &[Vec<f64>]) -> Matrix {
+    gram(&columns.iter().map(Vec::as_slice).collect::<Vec<_>>())
+}
+
+fn less(mut from: Matrix, other: &Matrix) -> Matrix {
+    for row in 0..other.rows().min(from.rows()) {
+        from.row_mut(row).iter_mut().zip(other.row(row)).for_each(|(value, other)| *value -= other);
+    }
+    from
+}

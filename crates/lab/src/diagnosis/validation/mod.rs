@@ -1,0 +1,5 @@
+//! The worth of findings on rows that had no part in finding them.
+
+pub(crate) mod ceiling;
+pub(crate) mod gain;
+pub(crate) mod mean_square;

@@ -20,7 +20,8 @@ import time
 import tty
 import zlib
 
-INFLUENCE = pathlib.Path(__file__).parents[2] / "mechanics" / "reference" / "nominal.csv"
+REPOSITORY = pathlib.Path(__file__).parents[3]
+INFLUENCE = REPOSITORY / "crates/mechanics/tests/mechanics/reference/nominal.csv"
 CHANNELS = ("m0x", "m0y", "m0z", "m1x", "m1y", "m1z", "m2x", "m2y", "m2z")
 MICROVOLTS_PER_COUNT = 0.01
 PERIOD_US = 1000

@@ -434,6 +434,7 @@ fn is_no_worse_than_a_wrench(seed: u32, many: usize) {
 }
 
 #[test]
+#[ignore = "proof: 10 s: the same faults are in what pads share, which stays a test"]
 fn faults_that_it_has_no_number_for_do_not_make_it_worse_than_a_wrench() {
     is_no_worse_than_a_wrench(1, MANY);
 }

@@ -48,19 +48,19 @@ fn a_hidden_effect_of_each_kind_is_found() {
 }
 
 #[test]
-#[ignore = "proof: 150 s: every other cause of the catalogue"]
+#[ignore = "proof: 50 s: every other cause of the catalogue"]
 fn hidden_effects_are_found() {
     are_found(CAUSES.iter().step_by(2), 1, 1);
 }
 
 #[test]
-#[ignore = "proof: 150 s: every other cause of the catalogue"]
+#[ignore = "proof: 50 s: every other cause of the catalogue"]
 fn more_hidden_effects_are_found() {
     are_found(CAUSES.iter().skip(1).step_by(2), 1, 1);
 }
 
 #[test]
-#[ignore = "proof: 600 s: every cause with two seeds"]
+#[ignore = "proof: 200 s: every cause with two seeds"]
 fn hidden_effects_are_found_twice() {
     are_found(CAUSES.iter(), 2, 4);
 }
@@ -80,14 +80,14 @@ fn a_pad_without_a_fault_does_not_alarm() {
 }
 
 #[test]
-#[ignore = "proof: 80 s: ten sound pads instead of one"]
+#[ignore = "proof: 25 s: ten sound pads instead of one"]
 fn pads_without_a_fault_seldom_alarm() {
     let alarms = alarms(10);
     assert!(alarms.len() <= 2, "{alarms:?}");
 }
 
 #[test]
-#[ignore = "proof: 320 s: forty sound pads instead of one"]
+#[ignore = "proof: 100 s: forty sound pads instead of one"]
 fn many_pads_without_a_fault_seldom_alarm() {
     let alarms = alarms(40);
     assert!(alarms.len() <= 5, "{alarms:?}");

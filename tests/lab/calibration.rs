@@ -231,7 +231,7 @@ fn hysteresis_is_found_and_taken_off() {
 }
 
 #[test]
-#[ignore = "proof: 60 s: all contacts of the plan instead of a third"]
+#[ignore = "proof: 6 s: all contacts of the plan instead of a third"]
 fn hysteresis_is_found_and_taken_off_with_all_contacts() {
     hysteresis_is_found([(20, 12.0), (ALL, 4.0)]);
 }
@@ -258,7 +258,7 @@ fn another_pad_of_the_kind_needs_twenty_contacts() {
 }
 
 #[test]
-#[ignore = "proof: 60 s: beside all contacts of the plan instead of a third"]
+#[ignore = "proof: 8 s: beside all contacts of the plan instead of a third"]
 fn another_pad_of_the_kind_needs_twenty_contacts_and_not_all() {
     needs_twenty_contacts(ALL);
 }
@@ -434,12 +434,13 @@ fn is_no_worse_than_a_wrench(seed: u32, many: usize) {
 }
 
 #[test]
+#[ignore = "proof: 10 s: the same faults are in what pads share, which stays a test"]
 fn faults_that_it_has_no_number_for_do_not_make_it_worse_than_a_wrench() {
     is_no_worse_than_a_wrench(1, MANY);
 }
 
 #[test]
-#[ignore = "proof: 100 s: two pads instead of one, with all contacts of the plan"]
+#[ignore = "proof: 25 s: two pads instead of one, with all contacts of the plan"]
 fn faults_that_it_has_no_number_for_do_not_make_it_worse_than_a_wrench_with_all_contacts() {
     is_no_worse_than_a_wrench(1, ALL);
     is_no_worse_than_a_wrench(2, ALL);
@@ -468,7 +469,7 @@ fn what_pads_share_beyond_the_simulation_is_taken_over() {
 }
 
 #[test]
-#[ignore = "proof: 60 s: the earlier pad has all contacts of the plan instead of a third"]
+#[ignore = "proof: 10 s: the earlier pad has all contacts of the plan instead of a third"]
 fn what_pads_share_beyond_the_simulation_is_taken_over_with_all_contacts() {
     what_pads_share_is_taken_over(ALL);
 }
@@ -504,7 +505,7 @@ fn a_pad_whose_zeros_nobody_read_is_calibrated_all_the_same() {
 }
 
 #[test]
-#[ignore = "proof: 60 s: all contacts of the plan instead of a third"]
+#[ignore = "proof: 8 s: all contacts of the plan instead of a third"]
 fn a_pad_whose_zeros_nobody_read_is_calibrated_all_the_same_with_all_contacts() {
     zeros_that_nobody_read_are_found([(20, 25.0), (ALL, 8.0)]);
 }

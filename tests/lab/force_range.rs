@@ -131,6 +131,7 @@ fn a_weak_hand() {
 }
 
 #[test]
+#[ignore = "proof: 4 s: another hand than the weak one"]
 fn a_heavy_hand() {
     let [before, after] = fitted("heavy", HEAVY);
     assert!(before[0] <= 0.6 && after.iter().all(|share| *share >= 0.95), "{before:?} {after:?}");

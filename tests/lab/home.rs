@@ -301,6 +301,7 @@ fn is_worth_twenty_labels(home: &Compared) {
 }
 
 #[test]
+#[ignore = "proof: 20 s: what a calibration at home knows is tried below, and with the verb"]
 fn two_minutes_of_play_and_a_weight_are_worth_twenty_labels() {
     let pads = [Pad::drawn(1)];
     let rig = errors(RIG, &pads);

@@ -117,6 +117,7 @@ fn bad_arguments_are_one_sentence_and_exit_2() {
 
 /// The nominal pad beside what is known without finite elements: lever arms, and three ideal load cells.
 #[test]
+#[ignore = "proof: 30 s: the best place of the modules is searched for, by dozens of solutions"]
 fn the_simulated_pad_is_near_statics() {
     let folder = tempfile::tempdir().unwrap();
     let found = document(&format!("--figures {}", folder.path().display()));
@@ -152,7 +153,24 @@ fn ringed<'a>(found: &'a Value, modules: u64, wiring: &str) -> &'a Value {
     rows.into_iter().find(|row| row["modules"] == modules && row["wiring"] == wiring).unwrap()
 }
 
+/// The three are the pad: its field is inside the program.
+fn are_the_pad(three: &Value) {
+    let field = PadField::nominal().signals;
+    let press = Press { force_n: [0.0, 0.0, 1.0], noise_uv: 6.0 };
+    let pad = over_plate(|x, y| field.gains(x as f32, y as f32), &press, 29.0);
+    for (key, wanted) in [("worst_mm", pad.worst_mm), ("rms_mm", pad.rms_mm), ("largest_uv", pad.largest_uv)]
+    {
+        assert!((three[key].as_f64().unwrap() / wanted - 1.0).abs() < 2e-3, "{key}: {three} for {wanted}");
+    }
+}
+
 #[test]
+fn three_modules_are_the_pad() {
+    are_the_pad(ringed(&document("--modules 3"), 3, "bridges"));
+}
+
+#[test]
+#[ignore = "proof: 15 s: one, two and four modules beside three"]
 fn fewer_and_more_modules_than_three() {
     let found = document("--modules 1,2,3,4");
     let worst = |modules, wiring| ringed(&found, modules, wiring)["worst_mm"].as_f64();
@@ -166,15 +184,7 @@ fn fewer_and_more_modules_than_three() {
         let condition = numbers(&ringed(&found, modules, "bridges")["condition"]);
         assert!(condition[0] >= 1.0 && condition[1] < 10.0, "{condition:?}");
     }
-    // The three are the pad: its field is inside the program.
-    let field = PadField::nominal().signals;
-    let press = Press { force_n: [0.0, 0.0, 1.0], noise_uv: 6.0 };
-    let pad = over_plate(|x, y| field.gains(x as f32, y as f32), &press, 29.0);
-    let three = ringed(&found, 3, "bridges");
-    for (key, wanted) in [("worst_mm", pad.worst_mm), ("rms_mm", pad.rms_mm), ("largest_uv", pad.largest_uv)]
-    {
-        assert!((three[key].as_f64().unwrap() / wanted - 1.0).abs() < 2e-3, "{key}: {three} for {wanted}");
-    }
+    are_the_pad(ringed(&found, 3, "bridges"));
     // A fourth shares the load: it locates worse, and better when one is lost.
     let lost = |modules| ringed(&found, modules, "bridges")["worst_without_one_mm"].as_f64().unwrap();
     assert!(worst(4, "bridges") > worst(3, "bridges") && lost(4) < lost(3), "{found}");

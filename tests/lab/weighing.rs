@@ -101,7 +101,7 @@ fn a_weight_anywhere_tells_the_gain_within_what_it_states() {
 }
 
 #[test]
-#[ignore = "proof: 60 s: twenty pads instead of three"]
+#[ignore = "proof: 30 s: twenty pads instead of three"]
 fn a_weight_anywhere_tells_the_gain_within_what_it_states_on_many_pads() {
     the_gain_is_told_within_what_is_stated(MANY);
 }

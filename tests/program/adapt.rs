@@ -88,7 +88,7 @@ fn passes_without_a_word(folder: &Path, seed: u64, choices: &[&str]) {
 }
 
 #[test]
-#[ignore = "proof: 40 s: three pads with four choices of rows instead of one with two"]
+#[ignore = "proof: 10 s: three pads with four choices of rows instead of one with two"]
 fn tables_of_many_sound_pads_pass_without_a_word() {
     let folder = tempfile::tempdir().unwrap();
     for seed in 1..=3 {
@@ -144,7 +144,7 @@ fn channels_that_follow_no_contact_are_refused_by_every_method() {
 }
 
 #[test]
-#[ignore = "proof: 60 s: both plans, with zeros and without, all rows and few, instead of one of each"]
+#[ignore = "proof: 10 s: both plans, with zeros and without, all rows and few, instead of one of each"]
 fn channels_that_follow_no_contact_are_refused_in_any_table() {
     let folder = tempfile::tempdir().unwrap();
     for (plan, seed) in [("paper", 1), ("recommended", 2)] {
@@ -206,7 +206,7 @@ fn one_fault_is_told_by_name_and_the_decoder_is_written() {
 }
 
 #[test]
-#[ignore = "proof: 60 s: each fault of each channel in both plans instead of one of each channel in one"]
+#[ignore = "proof: 10 s: each fault of each channel in both plans instead of one of each channel in one"]
 fn any_one_fault_is_told_by_name_and_the_decoder_is_written() {
     let folder = tempfile::tempdir().unwrap();
     for (plan, seed) in [("paper", 3), ("recommended", 4)] {

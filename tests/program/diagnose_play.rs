@@ -61,7 +61,7 @@ fn a_loss_since_a_calibration_by_a_rig_is_found_and_a_new_decoder_offered() {
 }
 
 #[test]
-#[ignore = "proof: 40 s: calibrated at home, with what did not change beside it, and the decoder made that is offered"]
+#[ignore = "proof: 30 s: calibrated at home, with what did not change beside it, and the decoder made that is offered"]
 fn a_loss_since_the_calibration_is_found_and_a_new_decoder_offered() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -112,7 +112,7 @@ fn the_page_has_all_that_was_found_and_needs_nothing_else() {
 }
 
 #[test]
-#[ignore = "proof: 40 s: a module is turned, too, so that fields are solved for"]
+#[ignore = "proof: 25 s: a module is turned, too, so that fields are solved for"]
 fn the_page_has_all_that_was_found_of_a_turned_module() {
     the_page_has_all_that_was_found("rotation_deg = 8.0\ngain = [1.0, 1.0, 1.2]\n");
 }

@@ -119,14 +119,14 @@ fn are_enough(pads: u64, most: f64) {
 }
 
 #[test]
-#[ignore = "proof: 60 s: tests/lab has the same on the simulator's field"]
+#[ignore = "proof: 30 s: tests/lab has the same on the simulator's field"]
 fn a_thousand_presses_without_labels_and_a_weight() {
     // A single pad may be a quarter worse than the median of ten.
     are_enough(1, 1.25);
 }
 
 #[test]
-#[ignore = "proof: 600 s: misses its goals, as docs/decoding.md says: ten pads instead of one"]
+#[ignore = "proof: 300 s: misses its goals, as docs/decoding.md says: ten pads instead of one"]
 fn a_thousand_presses_without_labels_and_a_weight_on_ten_pads() {
     are_enough(10, 1.0);
 }

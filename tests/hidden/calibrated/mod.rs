@@ -73,20 +73,20 @@ fn a_pad_of_another_programs_field_is_calibrated() {
 }
 
 #[test]
-#[ignore = "proof: 60 s: six fields of another program instead of one"]
+#[ignore = "proof: 45 s: six fields of another program instead of one"]
 fn pads_of_another_programs_fields_are_calibrated() {
     are_calibrated(&CASES[..FIELDS], 1..=1);
 }
 
 #[test]
-#[ignore = "proof: 180 s: memories that are none of the program's, and rigs with a fault"]
+#[ignore = "proof: 90 s: memories that are none of the program's, and rigs with a fault"]
 fn pads_with_other_memories_and_on_wrong_rigs_are_calibrated() {
     are_calibrated(&CASES, 1..=1);
 }
 
 /// The figures of docs/decoding.md, on seeds by which nothing was chosen.
 #[test]
-#[ignore = "proof: 700 s: five pads of each field, memory and rig instead of one"]
+#[ignore = "proof: 450 s: five pads of each field, memory and rig instead of one"]
 fn many_pads_of_another_programs_fields_are_calibrated() {
     are_calibrated(&CASES, 11..=15);
 }

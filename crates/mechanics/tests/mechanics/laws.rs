@@ -173,32 +173,31 @@ fn work_is_the_same_both_ways() {
     }
 }
 
-/// Every kind of number that has a derivative.
+/// Every kind of number that has a derivative: the first ones of the pad, of a material, of a module's place, turn, tilt and parts.
 const NAMES: [&str; 17] = [
-    "modules.centre_radius_mm",
     "plate.thickness_mm",
+    "material.pick.e_mpa",
+    "module.0.radial_mm",
+    "module.1.rotation_deg",
+    "module.1.tilt_radial_deg",
+    "module.2.frame_e_factor",
+    "modules.centre_radius_mm",
     "stack.frame_thickness_mm",
     "stack.adh_thickness_mm",
     "stack.bond_thickness_mm",
     "material.plate.e_mpa",
-    "material.pick.e_mpa",
     "material.pi.e_mpa",
     "material.epoxy.e_mpa",
-    "module.0.radial_mm",
     "module.0.tangential_mm",
-    "module.1.rotation_deg",
     "module.1.tilt_tangential_deg",
-    "module.1.tilt_radial_deg",
-    "module.2.frame_e_factor",
     "module.2.bond_e_factor",
     "module.0.film_e_factor",
 ];
 
-#[test]
-fn derivatives_are_the_differences_of_solutions() {
+fn are_the_differences_of_solutions(names: &[&str]) {
     let device = crooked();
     let sensitivities = SIMULATOR.lock().unwrap().sensitivities(&device).unwrap();
-    for name in NAMES {
+    for name in names {
         let parameter: Parameter = name.parse().unwrap();
         let known = sensitivities.iter().find(|known| known.parameter == parameter).unwrap();
         let value = parameter.get(&device);
@@ -226,6 +225,17 @@ fn derivatives_are_the_differences_of_solutions() {
         println!("{name}: {share:.1e}");
         assert!(share < 2e-4, "{name}: {share}");
     }
+}
+
+#[test]
+fn derivatives_are_the_differences_of_solutions() {
+    are_the_differences_of_solutions(&NAMES[..6]);
+}
+
+#[test]
+#[ignore = "proof: 15 s: all seventeen kinds of numbers instead of six"]
+fn all_derivatives_are_the_differences_of_solutions() {
+    are_the_differences_of_solutions(&NAMES);
 }
 
 #[test]

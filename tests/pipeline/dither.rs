@@ -37,12 +37,12 @@ fn changes(profile: &Profile, contact: impl Fn(f32) -> Contact) -> usize {
     changes
 }
 
-#[test]
-fn one_millimetre_on_a_boundary_changes_a_direction_once_at_most() {
+/// At these places between the centre and the rim: 0 is just outside the centre's circle.
+fn a_direction_changes_once_at_most(radii_mm: &[f32]) {
     let mut boundaries = 0;
     for (name, profile) in profiles() {
         let Some(dpad) = &profile.dpad else { continue };
-        for radius_mm in [dpad.centre_radius_mm + 1.0, 15.0, 25.0] {
+        for radius_mm in radii_mm.iter().map(|radius_mm| radius_mm.max(dpad.centre_radius_mm + 1.0)) {
             // Boundaries of all modes lie at multiples of 7.5° or beside them.
             for angle_deg in (0..48).map(|step| 7.5 * step as f32) {
                 let at = |tremor: f32| {
@@ -56,6 +56,17 @@ fn one_millimetre_on_a_boundary_changes_a_direction_once_at_most() {
         }
     }
     assert!(boundaries > 100, "{boundaries}");
+}
+
+#[test]
+fn one_millimetre_on_a_boundary_changes_a_direction_once_at_most() {
+    a_direction_changes_once_at_most(&[0.0]);
+}
+
+#[test]
+#[ignore = "proof: 15 s: farther out, too"]
+fn one_millimetre_on_a_boundary_changes_a_direction_once_at_most_anywhere() {
+    a_direction_changes_once_at_most(&[0.0, 15.0, 25.0]);
 }
 
 fn pushed(force: Force, n: f32) -> Contact {

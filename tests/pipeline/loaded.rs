@@ -20,9 +20,9 @@ const LIFT_MS: u64 = 300;
 const SETTLED_MS: u64 = 1_000;
 /// Presses of a play.
 const PRESSES: usize = 12;
-const PLAYS: u64 = 200;
-/// Of the decoders beside the shipped one.
-const PLAYS_OF_OTHERS: u64 = 40;
+/// Plays of a test and of a proof; a fifth with each of the decoders beside the shipped one.
+const FEW: u64 = 50;
+const MANY: u64 = 200;
 
 /// What a thumb does: it lies on the pad, then lifts and presses in turn.
 struct Play {
@@ -185,12 +185,11 @@ fn papers() -> Device {
     Device::nominal().with_imperfections(text).0.unwrap_or_else(|| panic!("the file is in order"))
 }
 
-#[test]
-fn a_thumb_at_the_start_costs_a_second_on_the_nominal_pad() {
+fn a_thumb_costs_a_second_with_each_decoder(plays: u64) {
     let mut played_with = Vec::new();
     for (name, decoder) in decoders::each() {
         if decoder.cannot_play().is_none() {
-            let plays = if name == "statics" { PLAYS } else { PLAYS_OF_OTHERS };
+            let plays = if name == "statics" { plays } else { plays / 5 };
             no_press_is_lost_for_long(&Pad { device: nominal(), field: PadField::nominal(), decoder }, plays);
             played_with.push(name);
         }
@@ -198,8 +197,24 @@ fn a_thumb_at_the_start_costs_a_second_on_the_nominal_pad() {
     assert_eq!(played_with, ["statics", "wrench", "network", "inverse"]);
 }
 
+fn a_thumb_costs_a_second_on_the_papers_pad(plays: u64) {
+    let decoder = tactpad::pipeline::shipped::decoder();
+    no_press_is_lost_for_long(&Pad { device: papers(), field: PadField::nominal(), decoder }, plays);
+}
+
+#[test]
+fn a_thumb_at_the_start_costs_a_second_on_the_nominal_pad() {
+    a_thumb_costs_a_second_with_each_decoder(FEW);
+}
+
 #[test]
 fn a_thumb_at_the_start_costs_a_second_on_the_papers_pad() {
-    let decoder = tactpad::pipeline::shipped::decoder();
-    no_press_is_lost_for_long(&Pad { device: papers(), field: PadField::nominal(), decoder }, PLAYS);
+    a_thumb_costs_a_second_on_the_papers_pad(FEW);
+}
+
+#[test]
+#[ignore = "proof: 20 s: two hundred plays instead of fifty"]
+fn a_thumb_at_the_start_costs_a_second_in_many_plays() {
+    a_thumb_costs_a_second_with_each_decoder(MANY);
+    a_thumb_costs_a_second_on_the_papers_pad(MANY);
 }

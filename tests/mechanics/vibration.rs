@@ -10,7 +10,7 @@ use tactpad::mechanics::mesh::Fineness;
 use tactpad::mechanics::pad::Pad;
 use tactpad::mechanics::plate::{FIELDS, Plate, Rigidity, masses_t};
 use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
-use tactpad::mechanics::vibration::{Natural, NaturalMotion, natural_motions};
+use tactpad::mechanics::vibration::{NaturalModes, NaturalMotion, natural_motions};
 use tactpad::numeric::zernike::{count, jets};
 use tactpad::pad::device::{Device, Material};
 
@@ -34,7 +34,8 @@ fn free_plate(thickness_mm: f64) -> Vec<f64> {
         Mat::from_fn(FIELDS * size, FIELDS * few, |i, j| f64::from(u8::from(i == j / few * size + j % few)));
     let mass =
         |moved: &Mat<f64>| Mat::from_fn(moved.nrows(), moved.ncols(), |i, j| masses[i] * moved[(i, j)]);
-    let found = Natural::slowest(6 + FREE_PLATE.len(), start, |loads| Ok(plate.solve(loads)), mass).unwrap();
+    let found =
+        NaturalModes::slowest(6 + FREE_PLATE.len(), start, |loads| Ok(plate.solve(loads)), mass).unwrap();
     let frequencies: Vec<f64> = found.frequencies_hz().collect();
     assert!(frequencies[5] < 0.01 * frequencies[6], "six rigid motions: {frequencies:?}");
     frequencies[6..].to_vec()

@@ -14,14 +14,15 @@ use std::io::{self, BufReader, Write};
 use tactpad::pad::device::Device;
 use tactpad::pipeline::shipped;
 use tactpad::quantity::{Contact, Strain};
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::read;
 use tactpad::tables::recording::Recording;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("name a measured file")?;
     let (device, decoder) = (Device::nominal(), shipped::decoder());
-    let table = read::table(BufReader::new(File::open(&path)?), Kind::Measured, device.plate.radius_mm())?;
+    let table =
+        read::table(BufReader::new(File::open(&path)?), TableKind::Measured, device.plate.radius_mm())?;
 
     // Raw channels carry offsets: the rows in which nothing touched the pad say which.
     let recording = Recording::of(table, device.contact.full_scale_n)

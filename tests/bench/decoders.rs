@@ -14,7 +14,7 @@ use tactpad::pad::field::PadField;
 use tactpad::pad::influence::InfluenceField;
 use tactpad::pipeline::compensation::Compensation;
 use tactpad::pipeline::compensation::creep::Creep;
-use tactpad::pipeline::compensation::hysteresis::{PLAYS, Play};
+use tactpad::pipeline::compensation::hysteresis::{PLAYS, PlayOperators};
 use tactpad::pipeline::compensation::memory::Memory;
 use tactpad::pipeline::compensation::thermal::Thermal;
 use tactpad::pipeline::compensation::thermometer::Thermometer;
@@ -57,7 +57,7 @@ fn plain(layers: &[Layer], channels: &[f32; CHANNELS]) -> [f32; 5] {
 
 /// What the pipeline does with the inverse decoder's channels, all of it, while a finger presses.
 fn live(bencher: &mut Bencher<'_>, field: &InfluenceField, strain: &Strain) {
-    let play = Play { threshold_uv: [800.0; CHANNELS], share: [0.03; CHANNELS] };
+    let play = PlayOperators { threshold_uv: [800.0; CHANNELS], share: [0.03; CHANNELS] };
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let inverse = Inverse::new(field.clone(), noise);
     let creep = Creep { time_s: 8.0, share: 0.01 };

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a bench that cannot set its scene fails")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::{Label, Row, Table, read, write};
 
 const ROWS: usize = 600_000;
@@ -34,7 +34,8 @@ fn both_ways(criterion: &mut Criterion) {
         bencher.iter(|| write::table(Vec::with_capacity(text.len()), &table).unwrap());
     });
     group.bench_function("read", |bencher| {
-        bencher.iter(|| assert_eq!(read::table(&text[..], Kind::Measured, 30.0).unwrap().rows.len(), ROWS));
+        bencher
+            .iter(|| assert_eq!(read::table(&text[..], TableKind::Measured, 30.0).unwrap().rows.len(), ROWS));
     });
     group.finish();
 }

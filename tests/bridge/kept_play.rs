@@ -6,12 +6,12 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use tactpad::lab::play::kept::Kept;
+use tactpad::lab::play::kept::KeptPlay;
 use tactpad::lab::play::reader::Reader;
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::capture::reader::CaptureReader;
 use tactpad::pipeline::contact::Decoder;
-use tactpad::pipeline::contact::field_error::{FieldError, Mode, TERMS};
+use tactpad::pipeline::contact::field_error::{ErrorMode, FieldError, TERMS};
 use tactpad::pipeline::contact::inverse::Inverse;
 use tactpad::pipeline::contact::uncertainty::Noise;
 use tactpad::quantity::CHANNELS;
@@ -25,7 +25,7 @@ const WORN: &str = "[noise]\nadditive_uv = 5.0\n[[module]]\nindex = 1\ngain = [0
 
 /// The nominal pad as if it had been calibrated: its z channels may be off by a thousandth.
 fn decoder() -> Decoder {
-    let mut mode = Mode { mixture: [[0.0; CHANNELS]; CHANNELS], maps: [[0.0; 27]; TERMS] };
+    let mut mode = ErrorMode { mixture: [[0.0; CHANNELS]; CHANNELS], maps: [[0.0; 27]; TERMS] };
     [2, 5, 8].into_iter().for_each(|channel| mode.mixture[channel][channel] = 1e-3);
     let noise = Noise::of_channels([6.0; CHANNELS], [0.01; CHANNELS]);
     let error = FieldError::of(vec![mode]).unwrap();
@@ -79,8 +79,8 @@ fn wear(folder: &Path, file: &Path) {
         let (now, call) = call.unwrap();
         reader.apply(now, call);
     }
-    let was = Kept::from_bytes(&fs::read(file).unwrap()).unwrap();
-    let mut kept = Kept::new(was.pad, was.decoder);
+    let was = KeptPlay::from_bytes(&fs::read(file).unwrap()).unwrap();
+    let mut kept = KeptPlay::new(was.pad, was.decoder);
     kept.add(&reader.finish());
     fs::write(file, kept.to_bytes()).unwrap();
 }
@@ -91,7 +91,7 @@ fn play_is_kept_in_private_and_what_changed_is_told() {
     let file = kept_file(folder.path()).unwrap();
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
     assert_eq!((mode(&file), mode(file.parent().unwrap())), (0o600, 0o700));
-    let kept = Kept::from_bytes(&fs::read(&file).unwrap()).unwrap();
+    let kept = KeptPlay::from_bytes(&fs::read(&file).unwrap()).unwrap();
     assert_eq!((kept.pad.as_str(), kept.windows().is_empty()), ("VIRTUAL-0001", false));
 
     wear(folder.path(), &file);

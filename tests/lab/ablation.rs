@@ -7,8 +7,8 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use serde_json::Value;
-use tactpad::lab::ablation::entries::{Entry, Method, Samples};
-use tactpad::lab::ablation::fitting::{Reason, Unfitted, decoders};
+use tactpad::lab::ablation::entries::{AblationEntry, Method, Samples};
+use tactpad::lab::ablation::fitting::{DecoderFitError, Reason, decoders};
 use tactpad::lab::ablation::regions::{REGIONS, Touches};
 use tactpad::lab::ablation::unseen::unseen;
 use tactpad::lab::ablation::{Pad, Subject};
@@ -50,8 +50,8 @@ fn network() -> &'static Network {
     })
 }
 
-const fn entry(method: Method, samples: Samples) -> Entry {
-    Entry { method, samples, paper: None, conflict: None }
+const fn entry(method: Method, samples: Samples) -> AblationEntry {
+    AblationEntry { method, samples, paper: None, conflict: None }
 }
 
 /// The decoder that knows the pad and its noise.
@@ -115,7 +115,7 @@ fn too_few_samples_are_told_with_their_row() {
     assert_eq!(wrench.why, Reason::Calibration(FitError::TooFew { contacts: 4, least: 10 }));
     assert!(wrench.to_string().starts_with("wrench, 4: it takes 10 contacts"), "{wrench}");
     let network = refused(Method::Network, Samples::First(9));
-    let Unfitted { why, .. } = &network;
+    let DecoderFitError { why, .. } = &network;
     assert_eq!(*why, Reason::Network(TooFew(9)));
     assert!(network.to_string().starts_with("network, 9 Fz: the network is adapted with 10"), "{network}");
 }

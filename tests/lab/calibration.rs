@@ -8,13 +8,13 @@ use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{LazyLock, Mutex, OnceLock};
 
-use tactpad::lab::calibration::data::earlier::Earlier;
+use tactpad::lab::calibration::data::earlier::EarlierCalibration;
 use tactpad::lab::calibration::fit::{Calibration, fit, fit_reported};
 use tactpad::lab::calibration::regression::{neighbours, regression};
 use tactpad::lab::calibration::result::numbers::{Number, Quantity};
 use tactpad::lab::evaluation::{Errors, coverage95, decoded, errors};
 use tactpad::lab::field_cache::solve;
-use tactpad::lab::rig::bound::{Bound, Reading};
+use tactpad::lab::rig::bound::{Bound, ContactReading};
 use tactpad::lab::rig::measurement::{Measurement, carry_out};
 use tactpad::lab::scdf::adaptation::{adapt, examples};
 use tactpad::lab::tangent::{Simulated, Solve};
@@ -22,7 +22,7 @@ use tactpad::mechanics::mesh::Fineness;
 use tactpad::mechanics::simulator::Simulator;
 use tactpad::network::Zero;
 use tactpad::pad::changes::{FieldChange, FieldChanges, Flaw};
-use tactpad::pad::device::behaviour::{Crosstalk, Play, Prony};
+use tactpad::pad::device::behaviour::{Crosstalk, PlayOperator, Prony};
 use tactpad::pad::device::{Device, Side};
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::{InfluenceField, MAPS};
@@ -96,7 +96,7 @@ impl Measured {
 
     /// The same, begun with another pad's decoder.
     fn from(&self, count: usize, earlier: &Decoder) -> Decoder {
-        let earlier = Earlier::of(earlier);
+        let earlier = EarlierCalibration::of(earlier);
         assert!(earlier.is_some(), "only an inverse decoder tells of its pad");
         let found = fit(&self.recording, &self.some(count), &Device::nominal(), field(), earlier);
         found.unwrap().decoder()
@@ -152,7 +152,8 @@ fn errors_of(decoder: &Decoder, measured: &Measured) -> Errors {
 /// Errors of place and force beside the least that the pad's noise allows.
 fn beyond_bound(device: &Device, field: &PadField, errors: &Errors, measured: &Measured) -> [f64; 2] {
     let contacts: Vec<Label> = measured.recording.contacts().iter().map(|at| measured.truths[*at]).collect();
-    let [x_mm, y_mm, fx_n, fy_n, fz_n] = Bound::new(device, field, 1).expected(&contacts, Reading::Mean);
+    let [x_mm, y_mm, fx_n, fy_n, fz_n] =
+        Bound::new(device, field, 1).expected(&contacts, ContactReading::Mean);
     [2.0 * errors.position_mae_mm / (x_mm + y_mm), 3.0 * errors.force_mae_n / (fx_n + fy_n + fz_n)]
 }
 
@@ -207,7 +208,7 @@ fn hysteresis_is_found(counts: [(usize, f64); 2]) {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
     device.behaviour.hysteresis =
-        vec![Play { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.0625 }];
+        vec![PlayOperator { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.0625 }];
     let (measured, unseen) = (Measured::calibration(&device), Measured::unseen(&device));
     for (count, allowed_uv) in counts {
         let calibration = measured.inverse(count);
@@ -428,7 +429,8 @@ fn on_a_wrong_stage(device: &Device) -> Device {
 fn is_no_worse_than_a_wrench(seed: u32, many: usize) {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
-    device.behaviour.hysteresis = vec![Play { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.03 }];
+    device.behaviour.hysteresis =
+        vec![PlayOperator { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.03 }];
     let field = faulty(seed);
     let measured = Measured::on(&field, &on_a_wrong_stage(&device), &plans::paper::plan(&device.contact), 1);
     let unseen = Measured::on(&field, &device, &plans::recommended::plan(&device.contact, 9), 2);
@@ -494,7 +496,8 @@ fn what_pads_share_beyond_the_simulation_is_taken_over_with_all_contacts() {
 fn zeros_that_nobody_read_are_found(counts: [(usize, f64); 2]) {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
-    device.behaviour.hysteresis = vec![Play { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.05 }];
+    device.behaviour.hysteresis =
+        vec![PlayOperator { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.05 }];
     let mut plan = plans::paper::plan(&device.contact);
     plan.rows.retain(|row| row.label.fz_n > 0.0);
     let Measurement { table, .. } = carry_out(&plan, &device, field(), 1);

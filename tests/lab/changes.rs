@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::Finding;
-use tactpad::lab::play::change::{Before, Changed, changed};
+use tactpad::lab::play::change::{Before, DetectedChanges, changed};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::windows::Window;
 use tactpad::mechanics::mesh::Fineness;
@@ -158,7 +158,7 @@ fn played(
     (reader.finish(), pad.into_life())
 }
 
-fn compared(kind: Kind, since: Since, seconds: u64, seed: u64) -> Changed {
+fn compared(kind: Kind, since: Since, seconds: u64, seed: u64) -> DetectedChanges {
     let pad = Pad::drawn(seed);
     let end_us = 1_000_000 * seconds;
     let mut life = Life::new(&pad.device, seed);
@@ -212,7 +212,7 @@ struct Rates {
 fn rates(kind: Kind, since: Since, seconds: u64, seeds: std::ops::Range<u64>) -> Rates {
     let mut rates = Rates::default();
     for seed in seeds {
-        let Changed { findings, .. } = compared(kind, since, seconds, seed);
+        let DetectedChanges { findings, .. } = compared(kind, since, seconds, seed);
         let is_right = |it: &Finding| Some((it.effect, it.target)) == kind.cause();
         let is_in =
             |it: &Finding| is_right(it) || it.confounded_with.iter().any(|it| Some(*it) == kind.cause());

@@ -9,7 +9,7 @@ use std::env;
 use std::fmt::Write;
 
 use tactpad::lab::tuning::fitting::{Fitted, Study};
-use tactpad::lab::tuning::force_range::fit::{Unfit, fit};
+use tactpad::lab::tuning::force_range::fit::{ForceRangeError, fit};
 use tactpad::lab::tuning::force_range::peaks::Peaks;
 use tactpad::lab::tuning::force_range::range::Range;
 use tactpad::lab::tuning::labels::{HEADER, Labels};
@@ -141,7 +141,7 @@ fn a_heavy_hand() {
 fn a_hand_without_range_gets_one_force() {
     let range = recorded(FLAT);
     let (given, text) = profile("super-mario");
-    assert_eq!(fit(text, &given, &range).unwrap_err(), Unfit::NotApart(range));
+    assert_eq!(fit(text, &given, &range).unwrap_err(), ForceRangeError::NotApart(range));
     let (given, text) = profile("one-button");
     let one = fit(text, &given, &range).unwrap().profile;
     let mut player = Player::new(seed() + 1_000, "one");

@@ -3,7 +3,7 @@
 
 use std::mem::discriminant;
 
-use tactpad::lab::play::guide::{Guide, Lying, Step};
+use tactpad::lab::play::guide::{Guide, GuideStep, LoadOnPad};
 use tactpad::lab::play::home::calibrated;
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::weights::Placement;
@@ -40,7 +40,7 @@ struct Scene {
     off_mm: f64,
     /// What was done, as calls.
     calls: Vec<(HostInstant, Vec<u8>)>,
-    steps: Vec<Step>,
+    steps: Vec<GuideStep>,
 }
 
 impl Scene {
@@ -60,20 +60,20 @@ impl Scene {
         }
     }
 
-    fn obey(&mut self, step: &Step) {
+    fn obey(&mut self, step: &GuideStep) {
         match step {
-            Step::Rest { .. } | Step::Done => self.pad.play(Calibrator::rest()),
-            Step::Press { .. } => self.pad.play(self.hands.press()),
-            Step::Put { mark, .. } => {
+            GuideStep::Rest { .. } | GuideStep::Done => self.pad.play(Calibrator::rest()),
+            GuideStep::Press { .. } => self.pad.play(self.hands.press()),
+            GuideStep::Put { mark, .. } => {
                 let [x_mm, y_mm] = MARKS_MM[*mark];
                 self.pad.lay(self.hands.lay([x_mm + self.off_mm, y_mm], self.weight_g))
             }
-            Step::TakeAway { .. } => self.pad.lay(self.hands.take_away()),
+            GuideStep::TakeAway { .. } => self.pad.lay(self.hands.take_away()),
         };
     }
 
     /// Goes on until the guide says so.
-    fn lead(&mut self, guide: &mut Guide, until: impl Fn(&Step) -> bool) {
+    fn lead(&mut self, guide: &mut Guide, until: impl Fn(&GuideStep) -> bool) {
         let mut bytes = Vec::new();
         while !until(guide.step()) {
             let now_us = self.pad.due_us();
@@ -96,16 +96,16 @@ impl Scene {
 #[test]
 fn it_goes_through_all_steps_and_its_decoder_knows_the_scale() {
     let (mut scene, mut guide) = (Scene::new(7), guide(Some(WEIGHT_G)));
-    scene.lead(&mut guide, |step| *step == Step::Done);
+    scene.lead(&mut guide, |step| *step == GuideStep::Done);
     let kinds: Vec<char> = scene
         .steps
         .iter()
         .map(|step| match step {
-            Step::Rest { .. } => 'r',
-            Step::Press { .. } => 'p',
-            Step::Put { .. } => 'w',
-            Step::TakeAway { .. } => 't',
-            Step::Done => '.',
+            GuideStep::Rest { .. } => 'r',
+            GuideStep::Press { .. } => 'p',
+            GuideStep::Put { .. } => 'w',
+            GuideStep::TakeAway { .. } => 't',
+            GuideStep::Done => '.',
         })
         .collect();
     assert_eq!(kinds.iter().collect::<String>(), "rpwtwtwtwtwt.");
@@ -126,7 +126,7 @@ fn a_weight_is_found_to_lie_still_on_a_pad_that_hums() {
     let device = Device::nominal().with_imperfections(imperfections).0.unwrap();
     let pad = VirtualPad::of(Calibrator::rest(), &device, &PadField::nominal(), 12);
     let (mut scene, mut guide) = (Scene::on(pad, 12), guide(Some(WEIGHT_G)));
-    scene.lead(&mut guide, |step| *step == Step::Done);
+    scene.lead(&mut guide, |step| *step == GuideStep::Done);
     assert_eq!(guide.placements().len(), 5);
 }
 
@@ -135,8 +135,10 @@ fn without_a_weight_there_are_presses_only() {
     let (mut scene, mut guide) = (Scene::new(8), guide(None));
     // A paused game is no reason not to hear presses.
     guide.apply(HostInstant::default(), Call::Pause);
-    scene.lead(&mut guide, |step| *step == Step::Done);
-    assert!(scene.steps.iter().all(|step| !matches!(step, Step::Put { .. } | Step::TakeAway { .. })));
+    scene.lead(&mut guide, |step| *step == GuideStep::Done);
+    assert!(
+        scene.steps.iter().all(|step| !matches!(step, GuideStep::Put { .. } | GuideStep::TakeAway { .. }))
+    );
     assert!(guide.placements().is_empty() && guide.pressed_s() >= 60.0);
 }
 
@@ -144,8 +146,8 @@ fn without_a_weight_there_are_presses_only() {
 fn another_weight_and_another_place_are_noticed_and_waited_out() {
     let (mut scene, mut guide) = (Scene::new(9), guide(Some(WEIGHT_G)));
     scene.weight_g = 100.0;
-    scene.lead(&mut guide, |step| matches!(step, Step::Put { lying: Lying::OtherForce { .. }, .. }));
-    let Step::Put { mark: 0, lying: Lying::OtherForce { force_n } } = guide.step().clone() else {
+    scene.lead(&mut guide, |step| matches!(step, GuideStep::Put { lying: LoadOnPad::OtherForce { .. }, .. }));
+    let GuideStep::Put { mark: 0, lying: LoadOnPad::OtherForce { force_n } } = guide.step().clone() else {
         panic!("{:?}", guide.step())
     };
     assert!((force_n - 0.98).abs() < 0.15, "{force_n}");
@@ -157,26 +159,27 @@ fn another_weight_and_another_place_are_noticed_and_waited_out() {
         let now_us = scene.pad.due_us();
         scene.pad.emit(now_us, &mut bytes);
         guide.apply(HostInstant::default().plus_us(now_us), Call::Bytes(&bytes));
-        assert!(matches!(guide.step(), Step::Put { mark: 0, lying: Lying::OtherForce { .. } }));
+        assert!(matches!(guide.step(), GuideStep::Put { mark: 0, lying: LoadOnPad::OtherForce { .. } }));
     }
     // The right weight at the wrong place.
     (scene.weight_g, scene.off_mm) = (WEIGHT_G, 10.0);
     scene.obey(&guide.step().clone());
-    scene.lead(&mut guide, |step| matches!(step, Step::Put { lying: Lying::Beside { .. }, .. }));
-    let Step::Put { lying: Lying::Beside { place_mm: [x_mm, y_mm] }, .. } = guide.step().clone() else {
+    scene.lead(&mut guide, |step| matches!(step, GuideStep::Put { lying: LoadOnPad::Beside { .. }, .. }));
+    let GuideStep::Put { lying: LoadOnPad::Beside { place_mm: [x_mm, y_mm] }, .. } = guide.step().clone()
+    else {
         panic!("{:?}", guide.step())
     };
     assert!((x_mm - 10.0).abs() < 2.0 && y_mm.abs() < 2.0, "({x_mm}, {y_mm})");
     scene.off_mm = 0.0;
     scene.obey(&guide.step().clone());
-    scene.lead(&mut guide, |step| *step == Step::Done);
+    scene.lead(&mut guide, |step| *step == GuideStep::Done);
     assert_eq!(guide.placements().len(), 5);
 }
 
 #[test]
 fn a_session_is_taken_up_again_where_it_was_left() {
     let (mut first, mut heard) = (Scene::new(10), guide(Some(WEIGHT_G)));
-    first.lead(&mut heard, |step| matches!(step, Step::Put { mark: 2, .. }));
+    first.lead(&mut heard, |step| matches!(step, GuideStep::Put { mark: 2, .. }));
     let (pressed_s, placements) = (heard.pressed_s(), heard.placements().to_vec());
     assert_eq!(placements.len(), 2);
 
@@ -190,12 +193,12 @@ fn a_session_is_taken_up_again_where_it_was_left() {
     again.go_on([placements.clone(), vec![nowhere]].concat());
     assert_eq!(again.placements(), placements);
     assert!((again.pressed_s() - pressed_s).abs() < 0.05, "{} {pressed_s}", again.pressed_s());
-    assert_eq!(*again.step(), Step::Rest { rested_s: 0.0 });
+    assert_eq!(*again.step(), GuideStep::Rest { rested_s: 0.0 });
 
     // Another day: the pad's clock begins anew.
     let mut second = Scene::new(11);
     let mut bytes = Vec::new();
-    while *again.step() != Step::Done {
+    while *again.step() != GuideStep::Done {
         let now_us = second.pad.due_us();
         assert!(now_us < 40_000_000, "{:?}", again.step());
         bytes.clear();
@@ -208,7 +211,10 @@ fn a_session_is_taken_up_again_where_it_was_left() {
         }
     }
     assert!(
-        second.steps.iter().all(|step| !matches!(step, Step::Press { .. } | Step::Put { mark: 0 | 1, .. }))
+        second
+            .steps
+            .iter()
+            .all(|step| !matches!(step, GuideStep::Press { .. } | GuideStep::Put { mark: 0 | 1, .. }))
     );
     assert_eq!(again.placements()[..2], placements);
     let (windows, placements) = again.finish();

@@ -14,7 +14,7 @@ use tactpad::lab::calibration::fit::fit;
 use tactpad::lab::evaluation::Evaluation;
 use tactpad::lab::play::home::{AtHome, calibrated};
 use tactpad::lab::play::weights::Placement;
-use tactpad::lab::play::windows::{Gatherer, Seen, Window};
+use tactpad::lab::play::windows::{SampleContext, Window, WindowCollector};
 use tactpad::lab::rig::measurement::carry_out;
 use tactpad::lab::tangent::Simulated;
 use tactpad::numeric::random::SplitMix64;
@@ -125,7 +125,7 @@ struct Player {
     pad: TwinPad,
     hand: Hand,
     random: SplitMix64,
-    gatherer: Gatherer,
+    gatherer: WindowCollector,
     around: Circumstances,
     at_s: f64,
 }
@@ -137,7 +137,7 @@ impl Player {
             pad: TwinPad::new(&pad.device, &pad.field, pad.seed),
             hand: Hand::new(pad.device.behaviour.finger, pad.seed),
             random: SplitMix64::named(pad.seed, "player"),
-            gatherer: Gatherer::default(),
+            gatherer: WindowCollector::default(),
             around: Circumstances { temperature_c, cycles: 0.0 },
             at_s: 0.0,
         }
@@ -159,7 +159,7 @@ impl Player {
             fy_n: 1.25 * fy_n,
             fz_n: 1.25 * fz_n,
         };
-        let seen = if fz_n > 0.12 { Seen::Contact(said) } else { Seen::Nothing };
+        let seen = if fz_n > 0.12 { SampleContext::Contact(said) } else { SampleContext::Nothing };
         self.gatherer.push(self.at_s, &uv, None, seen);
     }
 

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use tactpad::lab::rig::measurement::{Measurement, carry_on, carry_out};
 use tactpad::pad::device::Device;
-use tactpad::pad::device::behaviour::{Behaviour, Play, Prony};
+use tactpad::pad::device::behaviour::{Behaviour, PlayOperator, Prony};
 use tactpad::pad::field::PadField;
 use tactpad::pad::twin::life::Life;
 use tactpad::quantity::{CHANNELS, Contact};
@@ -72,7 +72,7 @@ fn dwell_and_approach_show_creep_and_hysteresis() {
         ..Row::of(PRESS)
     };
     let hysteresis = |it: &mut Behaviour| {
-        it.hysteresis = vec![Play { channels: ALL, threshold_uv: 100.0, share: 0.2 }];
+        it.hysteresis = vec![PlayOperator { channels: ALL, threshold_uv: 100.0, share: 0.2 }];
     };
     let rows = vec![row(1.0, Approach::Loading), row(1.0, Approach::Unloading)];
     let Measurement { table, .. } = measured(rows, 1, hysteresis);
@@ -171,7 +171,7 @@ fn truth_stays_on_the_plate_and_seeds_decide() {
 fn remembering() -> Device {
     let mut device = Device::nominal();
     let it = &mut device.behaviour;
-    it.hysteresis = vec![Play { channels: ALL, threshold_uv: 100.0, share: 0.2 }];
+    it.hysteresis = vec![PlayOperator { channels: ALL, threshold_uv: 100.0, share: 0.2 }];
     it.creep = vec![Prony { channels: ALL, time_s: 30.0, share: 0.1 }];
     it.noise.additive_uv = [10.0; CHANNELS];
     it.noise.walk_uv = [300.0; CHANNELS];

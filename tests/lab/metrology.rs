@@ -10,7 +10,7 @@ use serde_json::Value;
 use tactpad::lab::metrology::procedures;
 use tactpad::network::{Example, Network, Zero, onnx};
 use tactpad::pad::device::Device;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::read;
 use tempfile::TempDir;
 
@@ -217,7 +217,7 @@ fn the_plan_reads_as_it_was_made() {
     let written = fs::read(folder.path().join("plan.csv")).unwrap();
     let mut made = procedures::plan(&Device::nominal().contact);
     made.rows.iter_mut().enumerate().for_each(|(index, row)| row.line = index + 2);
-    assert!(read::table(written.as_slice(), Kind::Plan, 30.0).unwrap() == made);
+    assert!(read::table(written.as_slice(), TableKind::Plan, 30.0).unwrap() == made);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use tactpad::network::training::score::Scores;
 use tactpad::network::{Example, Network, Zero, onnx};
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::{read, zero};
 
 /// Contacts that the small network of these tests learns from.
@@ -97,7 +97,7 @@ fn adapt_writes_a_network_that_fits_the_measured_pad_better() {
     assert!(tactpad(folder, line).status.success() && bytes == fs::read(folder.join("mine.onnx")).unwrap());
     let mine = onnx::read(&bytes).unwrap();
     let table = fs::read(folder.join("m.csv")).unwrap();
-    let table = zero::tared(&read::table(&table[..], Kind::Measured, 30.0).unwrap()).unwrap();
+    let table = zero::tared(&read::table(&table[..], TableKind::Measured, 30.0).unwrap()).unwrap();
     let rows = table.rows_at(&zero::contacts(&table));
     let pad = adaptation::examples(&rows);
     let [before, after] = [small(), &mine].map(|network| Scores::of(network, &pad).all.mse);

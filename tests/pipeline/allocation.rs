@@ -4,7 +4,7 @@ use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::compensation::Compensation;
 use tactpad::pipeline::compensation::creep::Creep;
-use tactpad::pipeline::compensation::hysteresis::{PLAYS, Play};
+use tactpad::pipeline::compensation::hysteresis::{PLAYS, PlayOperators};
 use tactpad::pipeline::compensation::thermal::Thermal;
 use tactpad::pipeline::contact::Decoder;
 use tactpad::pipeline::contact::inverse::Inverse;
@@ -27,7 +27,7 @@ fn ten_seconds_of_play_allocate_nothing() {
 
 #[test]
 fn hysteresis_warmth_and_warnings_allocate_nothing() {
-    let play = Play { threshold_uv: [300.0; CHANNELS], share: [0.03; CHANNELS] };
+    let play = PlayOperators { threshold_uv: [300.0; CHANNELS], share: [0.03; CHANNELS] };
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let thermal =
         Thermal { reference_c: 20.0, zero_uv_per_c: [50.0; CHANNELS], gain_per_c: [-5e-4; CHANNELS] };

@@ -5,7 +5,7 @@ use crate::played::Played;
 use tactpad::pad::device::{Device, behaviour};
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::compensation::Compensation;
-use tactpad::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS, Play};
+use tactpad::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS, PlayOperators};
 use tactpad::pipeline::contact::Decoder;
 use tactpad::pipeline::contact::inverse::Inverse;
 use tactpad::pipeline::contact::uncertainty::Noise;
@@ -17,14 +17,17 @@ const SHARE: f64 = 0.0625;
 
 fn pad() -> Device {
     let mut device = Device::nominal();
-    device.behaviour.hysteresis =
-        vec![behaviour::Play { channels: [true; CHANNELS], threshold_uv: THRESHOLD_UV, share: SHARE }];
+    device.behaviour.hysteresis = vec![behaviour::PlayOperator {
+        channels: [true; CHANNELS],
+        threshold_uv: THRESHOLD_UV,
+        share: SHARE,
+    }];
     device.behaviour.noise.additive_uv = [3.0; CHANNELS];
     device
 }
 
 const KNOWN: Hysteresis =
-    [Play { threshold_uv: [THRESHOLD_UV; CHANNELS], share: [SHARE; CHANNELS] }, Play::NONE];
+    [PlayOperators { threshold_uv: [THRESHOLD_UV; CHANNELS], share: [SHARE; CHANNELS] }, PlayOperators::NONE];
 
 fn played(hysteresis: Hysteresis) -> Played {
     let field = PadField::nominal();

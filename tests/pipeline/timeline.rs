@@ -29,7 +29,7 @@ use std::path::Path;
 
 use tactpad::pipeline::mapping::live::engine::Engine;
 use tactpad::pipeline::mapping::live::intent::Intents;
-use tactpad::pipeline::mapping::live::verdict::{Reason, Told};
+use tactpad::pipeline::mapping::live::verdict::{Reason, VerdictEvent};
 use tactpad::pipeline::mapping::profile::{Command, Profile};
 use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
 use tactpad::pipeline::mapping::read::shipped;
@@ -138,11 +138,11 @@ fn shown(command: &Command) -> String {
 }
 
 /// What became of a press.
-fn judged(told: &Told) -> String {
+fn judged(told: &VerdictEvent) -> String {
     let (whose, rejected) = match told {
-        Told::Button { number, rejected } => (format!("button {number}"), rejected),
-        Told::Direction { direction, rejected } => (direction.name().to_owned(), rejected),
-        Told::Rest => return "rest".into(),
+        VerdictEvent::Button { number, rejected } => (format!("button {number}"), rejected),
+        VerdictEvent::Direction { direction, rejected } => (direction.name().to_owned(), rejected),
+        VerdictEvent::Rest => return "rest".into(),
     };
     match rejected {
         None => format!("accepted {whose}"),

@@ -14,7 +14,7 @@ use tactpad::pipeline::capture::reader::CaptureReader;
 use tactpad::pipeline::capture::writer::CaptureWriter;
 use tactpad::pipeline::compensation::Compensation;
 use tactpad::pipeline::compensation::creep::Creep;
-use tactpad::pipeline::compensation::hysteresis::Play;
+use tactpad::pipeline::compensation::hysteresis::PlayOperators;
 use tactpad::pipeline::control::OutputEvent;
 use tactpad::pipeline::weighing::Progress;
 use tactpad::pipeline::weighing::factor::Weighed;
@@ -139,9 +139,9 @@ fn every_decoder_that_plays_is_mended_and_a_second_weight_finds_nothing_more() {
 
 #[test]
 fn friction_and_creep_follow_the_gain() {
-    let play = Play { threshold_uv: [600.0; CHANNELS], share: [0.05; CHANNELS] };
+    let play = PlayOperators { threshold_uv: [600.0; CHANNELS], share: [0.05; CHANNELS] };
     let compensation = Compensation {
-        hysteresis: [play, Play::NONE],
+        hysteresis: [play, PlayOperators::NONE],
         creep: Creep { time_s: 8.0, share: 0.01 },
         ..Compensation::NONE
     };

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::InfluenceField;
 use tactpad::plot::bands::Bands;
-use tactpad::plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
+use tactpad::plot::chart::{Chart, GuideLine, GuidePlace, Series, SeriesLook, Side, Value};
 use tactpad::plot::colour::Rgb;
 use tactpad::plot::figure::{Ends, Figure, Ink, Stroke};
 use tactpad::plot::grid::Grid;
@@ -18,7 +18,7 @@ use tactpad::plot::isoline::Isolines;
 use tactpad::plot::multiples::{Bars, Multiples};
 use tactpad::plot::plan::{Field, Plan};
 use tactpad::plot::scale::Scale;
-use tactpad::plot::shape::{Look, Shape};
+use tactpad::plot::shape::{PaintStyle, Shape};
 use tactpad::plot::{png, svg};
 use tactpad::quantity::{CHANNEL_NAMES, Contact};
 
@@ -57,7 +57,7 @@ fn footprint(angle_deg: f64) -> Shape {
         centre: [20.0 * cos, 20.0 * sin],
         size: [5.4, 9.8],
         turn_deg: angle_deg,
-        look: Look::line(Stroke::solid(DARK, 0.8)),
+        look: PaintStyle::line(Stroke::solid(DARK, 0.8)),
     }
 }
 
@@ -143,7 +143,7 @@ fn a_map_over_a_film_with_gauges() {
         centre,
         size,
         turn_deg: 0.0,
-        look: Look::line(Stroke::solid(DARK, 1.0)),
+        look: PaintStyle::line(Stroke::solid(DARK, 1.0)),
     };
     let bands = Bands::diverging(grid.largest(), 6);
     let plan = Plan {
@@ -173,8 +173,10 @@ fn a_layout() {
     });
     let region = |(index, centre): (usize, [f64; 2])| {
         let colour = Rgb::of_series(index);
-        let look =
-            Look { fill: Some(Ink { colour, opacity: 0.12 }), stroke: Some(Stroke::solid(colour, 1.2)) };
+        let look = PaintStyle {
+            fill: Some(Ink { colour, opacity: 0.12 }),
+            stroke: Some(Stroke::solid(colour, 1.2)),
+        };
         Shape::Circle { centre, radius: side, look }
     };
     let length = |k: usize| Shape::Dimension {
@@ -183,9 +185,17 @@ fn a_layout() {
         text: format!("d_{{{}}} = r", k + 1),
     };
     let mut shapes: Vec<Shape> = places.into_iter().enumerate().map(region).collect();
-    shapes.push(Shape::Circle { centre: [0.0; 2], radius: 30.0, look: Look::line(dark.dashed(4.0, 3.0)) });
+    shapes.push(Shape::Circle {
+        centre: [0.0; 2],
+        radius: 30.0,
+        look: PaintStyle::line(dark.dashed(4.0, 3.0)),
+    });
     shapes.extend((0..3).map(length));
-    shapes.push(Shape::Dots { places: places.to_vec(), radius_px: 3.5, look: Look::fill(Ink::opaque(DARK)) });
+    shapes.push(Shape::Dots {
+        places: places.to_vec(),
+        radius_px: 3.5,
+        look: PaintStyle::fill(Ink::opaque(DARK)),
+    });
     shapes.push(Shape::Label { place: [0.0, 42.0], text: "A_{1}".to_owned() });
     let plan = plate("Effective regions of the three modules", None, shapes);
     assert_as_stored("layout", &Plan { x: [-50.0, 50.0], y: [-45.0, 50.0], ..plan }.figure(440.0));
@@ -215,7 +225,7 @@ fn a_convergence_study() {
         x: side("Element size, mm", Scale::Log10),
         y: side("Error of the strains, %", Scale::Log10),
         series: vec![error("S_{x}", 2.1, 3.0), error("S_{y}", 1.9, 1.6), error("S_{z}", 2.0, 0.7), second],
-        guides: vec![Guide { at: GuidePlace::Y(0.5), label: "limit 0.5 %".to_owned() }],
+        guides: vec![GuideLine { at: GuidePlace::Y(0.5), label: "limit 0.5 %".to_owned() }],
     };
     assert_as_stored("convergence", &chart.figure());
 }
@@ -241,7 +251,7 @@ fn a_scan_with_measured_points() {
             series("1 N", curve(1.0).collect(), SeriesLook::Line),
             series("measured", measured.collect(), SeriesLook::Points),
         ],
-        guides: vec![Guide { at: GuidePlace::X(18.0), label: "paper".to_owned() }],
+        guides: vec![GuideLine { at: GuidePlace::X(18.0), label: "paper".to_owned() }],
     };
     chart.y.also.push(0.0);
     let text = shown("scan", &chart.figure());
@@ -284,7 +294,7 @@ proptest! {
             x: side("x", scales[0]),
             y: side("y", scales[1]),
             series: vec![series(SeriesLook::LineAndPoints), series(SeriesLook::Dashes)],
-            guides: [GuidePlace::X(at), GuidePlace::Y(at)].map(|at| Guide { at, label: "g".to_owned() }).to_vec(),
+            guides: [GuidePlace::X(at), GuidePlace::Y(at)].map(|at| GuideLine { at, label: "g".to_owned() }).to_vec(),
         };
         assert_drawn(&chart.figure());
     }
@@ -298,7 +308,7 @@ proptest! {
     ) {
         let mut next = values.iter().cycle();
         let grid = Grid::over_disc(29.0, 5, |_, _| if constant { values[0] } else { *next.next().unwrap() });
-        let look = Look::line(Stroke::solid(DARK, 1.0));
+        let look = PaintStyle::line(Stroke::solid(DARK, 1.0));
         let shapes = vec![
             Shape::Circle { centre: place, radius: size, look },
             Shape::Rectangle { centre: place, size: [size, 1.0], turn_deg: size, look },

@@ -7,7 +7,7 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 use tactpad::tables::measured::Table;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::read;
 
 fn protocol(folder: &Path, line: &str) -> Output {
@@ -27,7 +27,7 @@ fn written(folder: &Path, line: &str) -> Vec<u8> {
 }
 
 fn plan(text: &[u8]) -> Table {
-    read::table(text, Kind::Plan, 30.0).unwrap()
+    read::table(text, TableKind::Plan, 30.0).unwrap()
 }
 
 #[test]

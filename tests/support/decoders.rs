@@ -4,7 +4,7 @@ use tactpad::lab::calibration::regression::{neighbours, regression};
 use tactpad::network::Zero;
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::{InfluenceField, MAPS};
-use tactpad::pipeline::contact::field_error::{FieldError, MODES_MAX, Mode};
+use tactpad::pipeline::contact::field_error::{ErrorMode, FieldError, MODES_MAX};
 use tactpad::pipeline::contact::inverse::Inverse;
 use tactpad::pipeline::contact::regression::Target;
 use tactpad::pipeline::contact::uncertainty::Noise;
@@ -38,9 +38,9 @@ pub(crate) fn each() -> Vec<(&'static str, Decoder)> {
 }
 
 /// Each channel may be off by a thousandth of all, and by up to 2 µV/N.
-fn mode() -> Mode {
+fn mode() -> ErrorMode {
     let maps = std::array::from_fn(|term| [2.0 / (1 + term) as f32; MAPS]);
-    Mode { mixture: [[1e-3; CHANNELS]; CHANNELS], maps }
+    ErrorMode { mixture: [[1e-3; CHANNELS]; CHANNELS], maps }
 }
 
 /// A press on a spiral over the plate.

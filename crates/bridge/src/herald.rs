@@ -4,7 +4,7 @@ use crate::snapshot::Drops;
 use crate::state::State;
 use crate::weighing::gain_sentence;
 use tactpad_core::pipeline::contact::watch::Warning;
-use tactpad_core::pipeline::weighing::{Account, Progress};
+use tactpad_core::pipeline::weighing::{Progress, WeighingReport};
 use tactpad_core::time::HostInstant;
 
 /// Says a state when it has lasted, so that a flicker is not told; but at once what the player must do.
@@ -58,8 +58,8 @@ impl Herald {
     }
 
     /// What came of a weighing, once it has ended.
-    pub(super) fn weighed(&mut self, account: Option<&Account>) -> Option<String> {
-        let Account { number, progress: Progress::Ended(outcome), .. } = account? else { return None };
+    pub(super) fn weighed(&mut self, account: Option<&WeighingReport>) -> Option<String> {
+        let WeighingReport { number, progress: Progress::Ended(outcome), .. } = account? else { return None };
         (std::mem::replace(&mut self.weighed, *number) != *number).then(|| match outcome {
             Ok(weighed) => gain_sentence(weighed.factor).unwrap_or_else(|| UNCHANGED.into()),
             Err(error) => format!("the weighing failed: {error}"),

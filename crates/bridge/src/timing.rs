@@ -20,7 +20,7 @@ use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::reader::{CaptureError, CaptureReader};
 use tactpad_core::pipeline::control::{OutputDevice, OutputEvent};
 use tactpad_core::pipeline::mapping::profile::{Action, Profile, Skip};
-use tactpad_core::pipeline::{Pipeline, Probe, Stage};
+use tactpad_core::pipeline::{Pipeline, PipelineStage, Probe};
 use tactpad_core::time::HostInstant;
 
 /// One value for each stage: read and write are the system calls; decode ends with the contact, map with the events.
@@ -164,14 +164,14 @@ impl<'a> Stopwatch<'a> {
 }
 
 impl Probe for Stopwatch<'_> {
-    fn mark(&mut self, stage: Stage) {
+    fn mark(&mut self, stage: PipelineStage) {
         let now = self.clock.now();
         let elapsed_ns = now.as_ns().saturating_sub(self.last.as_ns());
         match stage {
             // Unpacking is part of decoding: the time runs on.
-            Stage::Sample => return,
-            Stage::Contact => self.stages.decode.record_ns(elapsed_ns),
-            Stage::Events => self.stages.map.record_ns(elapsed_ns),
+            PipelineStage::Sample => return,
+            PipelineStage::Contact => self.stages.decode.record_ns(elapsed_ns),
+            PipelineStage::Events => self.stages.map.record_ns(elapsed_ns),
         }
         self.last = now;
     }

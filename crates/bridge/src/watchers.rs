@@ -10,7 +10,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use serde::Serialize;
 
 use crate::queue::{Group, Queue};
-use tactpad_core::pipeline::mapping::live::verdict::{Reason, Told, Verdict};
+use tactpad_core::pipeline::mapping::live::verdict::{Reason, Verdict, VerdictEvent};
 
 /// So many may watch at a time.
 const WATCHERS_MAX: usize = 8;
@@ -58,12 +58,12 @@ impl Line {
     /// That of a verdict, before which so many were lost.
     pub fn of(verdict: &Verdict, lost: u64) -> Self {
         let (button, direction, rejected) = match verdict.told {
-            Told::Button { number, rejected } => (Some(number), None, rejected),
-            Told::Direction { direction, rejected } => (None, Some(direction.name()), rejected),
-            Told::Rest => (None, None, None),
+            VerdictEvent::Button { number, rejected } => (Some(number), None, rejected),
+            VerdictEvent::Direction { direction, rejected } => (None, Some(direction.name()), rejected),
+            VerdictEvent::Rest => (None, None, None),
         };
         let press = match verdict.told {
-            Told::Rest => "rest",
+            VerdictEvent::Rest => "rest",
             _ if rejected.is_some() => "rejected",
             _ => "accepted",
         };
@@ -145,7 +145,7 @@ mod tests {
     use tactpad_core::time::StreamInstant;
 
     fn verdict(us: u64, rejected: Option<Reason>) -> Verdict {
-        Verdict { t: StreamInstant::from_us(us), told: Told::Button { number: 2, rejected } }
+        Verdict { t: StreamInstant::from_us(us), told: VerdictEvent::Button { number: 2, rejected } }
     }
 
     #[test]
@@ -154,13 +154,13 @@ mod tests {
             let verdict = Verdict { t: StreamInstant::from_us(7), told };
             serde_json::to_string(&Line::of(&verdict, 0)).unwrap()
         };
-        let left = |rejected| Told::Direction { direction: Direction::Left, rejected };
+        let left = |rejected| VerdictEvent::Direction { direction: Direction::Left, rejected };
         assert_eq!(line(left(None)), r#"{"t_us":7,"direction":"left","press":"accepted"}"#);
         assert_eq!(
             line(left(Some(Reason::Slow))),
             r#"{"t_us":7,"direction":"left","press":"rejected","reason":"slow"}"#
         );
-        assert_eq!(line(Told::Rest), r#"{"t_us":7,"press":"rest"}"#);
+        assert_eq!(line(VerdictEvent::Rest), r#"{"t_us":7,"press":"rest"}"#);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use tactpad_core::pipeline::weighing::{Account, Progress};
+use tactpad_core::pipeline::weighing::{Progress, WeighingReport};
 
 /// A gain that differs by less is told as none.
 const TOLD: f64 = 5e-4;
@@ -26,8 +26,8 @@ pub struct WeighingStatus {
 
 impl WeighingStatus {
     /// Of this weighing.
-    pub fn of(account: &Account) -> Self {
-        let Account { number, weight, progress } = account;
+    pub fn of(account: &WeighingReport) -> Self {
+        let WeighingReport { number, weight, progress } = account;
         let (state, factor, deviation, error) = match progress {
             Progress::Waiting => ("waiting", None, None, None),
             Progress::Resting => ("resting", None, None, None),

@@ -100,7 +100,7 @@ pub fn sealed(magic: &[u8], body: &[u8]) -> Vec<u8> {
 
 /// Why bytes are no such file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Broken {
+pub enum FormatError {
     /// They begin as something else.
     Magic,
     /// They end early, or their sum is another one.
@@ -108,10 +108,10 @@ pub enum Broken {
 }
 
 /// The body of a sealed file.
-pub fn unsealed<'b>(magic: &[u8], bytes: &'b [u8]) -> Result<&'b [u8], Broken> {
-    let body = bytes.strip_prefix(magic).ok_or(Broken::Magic)?;
-    let (body, sum) = body.split_last_chunk::<8>().ok_or(Broken::Damaged)?;
-    if u64::from_le_bytes(*sum) == fnv1a(body) { Ok(body) } else { Err(Broken::Damaged) }
+pub fn unsealed<'b>(magic: &[u8], bytes: &'b [u8]) -> Result<&'b [u8], FormatError> {
+    let body = bytes.strip_prefix(magic).ok_or(FormatError::Magic)?;
+    let (body, sum) = body.split_last_chunk::<8>().ok_or(FormatError::Damaged)?;
+    if u64::from_le_bytes(*sum) == fnv1a(body) { Ok(body) } else { Err(FormatError::Damaged) }
 }
 
 /// Source: G. Fowler, L. C. Noll, K.-P. Vo, D. Eastlake, "The FNV Non-Cryptographic Hash Algorithm", section 2.
@@ -161,10 +161,10 @@ mod tests {
         for at in 6..file.len() {
             let mut damaged = file.clone();
             damaged[at] ^= 4;
-            assert_eq!(unsealed(b"magic\n", &damaged), Err(Broken::Damaged));
+            assert_eq!(unsealed(b"magic\n", &damaged), Err(FormatError::Damaged));
         }
-        assert_eq!(unsealed(b"other\n", &file), Err(Broken::Magic));
-        assert_eq!(unsealed(b"magic\n", &file[..9]), Err(Broken::Damaged));
+        assert_eq!(unsealed(b"other\n", &file), Err(FormatError::Magic));
+        assert_eq!(unsealed(b"magic\n", &file[..9]), Err(FormatError::Damaged));
         assert_eq!(
             Reader::new(&[255, 255, 255, 255]).floats(),
             None,

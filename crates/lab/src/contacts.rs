@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use crate::calibration::data::earlier::Earlier;
+use crate::calibration::data::earlier::EarlierCalibration;
 use crate::calibration::fit::search::Report;
 use crate::calibration::fit::{Calibration, FitError, fit_reported};
 use crate::calibration::regression::{neighbours, regression};
-use crate::calibration::screening::{Fault, Unexplained, screened};
+use crate::calibration::screening::{Fault, TableMismatch, screened};
 use crate::tangent::Simulated;
 use tactpad_core::network::Zero;
 use tactpad_core::numeric::random::SplitMix64;
@@ -106,7 +106,7 @@ impl Contacts {
     ///
     /// # Errors
     /// No pad of this kind explains the channels, not even one with one fault.
-    pub fn screened(&self, device: &Device, field: &PadField) -> Result<Option<Fault>, Unexplained> {
+    pub fn screened(&self, device: &Device, field: &PadField) -> Result<Option<Fault>, TableMismatch> {
         screened(&self.rows, device, field)
     }
 
@@ -118,7 +118,7 @@ impl Contacts {
     pub fn calibration(
         &self,
         pad: &Simulated<'_>,
-        earlier: Option<Earlier<'_>>,
+        earlier: Option<EarlierCalibration<'_>>,
         report: Report<'_>,
     ) -> Result<Calibration, FitError> {
         fit_reported(&self.recording, &self.places, pad, earlier, report)

@@ -41,13 +41,13 @@ pub fn known() -> impl Iterator<Item = Parameter> {
 }
 
 /// The device a little below and above its value of a number.
-struct Step {
+struct DeviceStep {
     devices: [Device; 2],
     /// The difference of the two values.
     width: f64,
 }
 
-impl Step {
+impl DeviceStep {
     fn of(device: &Device, parameter: Parameter) -> Self {
         let value = parameter.get(device);
         // The moduli act linearly; a micrometre or a thousandth of a degree is small for a polynomial on the plate.
@@ -98,7 +98,7 @@ impl<'p> Base<'p> {
         layers: &[Arc<Vec<LayerDerivatives>>; MODULES],
     ) -> Sensitivity {
         let Self { pad, weights, fields, movements } = self;
-        let step = Step::of(&pad.device, parameter);
+        let step = DeviceStep::of(&pad.device, parameter);
         let modules: [Superelement; MODULES] = std::array::from_fn(|m| module_slope(&step, m, &layers[m]));
         let (stiffness, gauges) = (springs(&modules, 0.0), pad.signal_weights(&modules));
         let couplings = self.coupling_slope(&step);
@@ -118,7 +118,7 @@ impl<'p> Base<'p> {
         Sensitivity { parameter, maps: maps.map(|maps| maps.map(|map| patch_mean(&pad.device, &map))) }
     }
 
-    fn coupling_slope(&self, step: &Step) -> Mat<f64> {
+    fn coupling_slope(&self, step: &DeviceStep) -> Mat<f64> {
         let [below, above] = step.devices.each_ref().map(|device| self.pad.couplings_of(device));
         let mut slope = above - below;
         slope *= faer::Scale(1.0 / step.width);
@@ -126,7 +126,7 @@ impl<'p> Base<'p> {
     }
 }
 
-fn plate_slope(device: &Device, step: &Step) -> Rigidity {
+fn plate_slope(device: &Device, step: &DeviceStep) -> Rigidity {
     let plate = rigidity(device);
     let (per_mpa, per_mm) =
         (plate.per_modulus(device.material.plate.e_mpa), plate.per_thickness(device.plate.thickness_mm));
@@ -142,7 +142,7 @@ fn plate_slope(device: &Device, step: &Step) -> Rigidity {
 }
 
 /// How a module's superelement changes with the step's number, through its layers' moduli and thicknesses.
-fn module_slope(step: &Step, module: usize, layers: &[LayerDerivatives]) -> Superelement {
+fn module_slope(step: &DeviceStep, module: usize, layers: &[LayerDerivatives]) -> Superelement {
     let mut slope = Superelement::ZERO;
     for (layer, derivatives) in Layer::ALL.into_iter().zip(layers) {
         let modulus = step.slope(|device| layer.material(device, &device.modules[module]).e_mpa);

@@ -40,13 +40,13 @@ impl std::fmt::Display for SolveError {
 impl std::error::Error for SolveError {}
 
 /// The nodes of a mesh whose displacement is unknown, in elimination order.
-pub struct Freedoms {
+pub struct DegreesOfFreedom {
     /// Position of each node in the order; `None` where the displacement is given.
     position: Vec<Option<usize>>,
     count: usize,
 }
 
-impl Freedoms {
+impl DegreesOfFreedom {
     /// All nodes but those whose displacement is given.
     pub fn new(mesh: &Mesh, is_given: impl Fn(usize) -> bool) -> Self {
         let free = (0..mesh.lattice.len()).filter(|node| !is_given(*node)).collect();
@@ -81,7 +81,7 @@ pub fn gathered(brick: &Brick, displacement: impl Fn(usize) -> [f64; 3]) -> [f64
 /// one.
 pub fn add_holding_forces<'m>(
     bricks: impl Iterator<Item = &'m Brick>,
-    freedoms: &Freedoms,
+    freedoms: &DegreesOfFreedom,
     stiffness_of: impl Fn(&Brick) -> Box<Stiffness>,
     given: impl Fn(usize, usize) -> [f64; 3],
     right: &mut Mat<f64>,
@@ -113,7 +113,7 @@ impl Factor {
     /// Not enough memory, or a stiffness that is not positive definite.
     pub fn of(
         mesh: &Mesh,
-        freedoms: &Freedoms,
+        freedoms: &DegreesOfFreedom,
         stiffness_of: impl Fn(&Brick) -> Box<Stiffness>,
     ) -> Result<Self, SolveError> {
         let lower = assemble(mesh, freedoms, stiffness_of);
@@ -177,7 +177,11 @@ struct Lower {
 }
 
 /// The lower triangle of the free nodes' stiffness.
-fn assemble(mesh: &Mesh, freedoms: &Freedoms, stiffness_of: impl Fn(&Brick) -> Box<Stiffness>) -> Lower {
+fn assemble(
+    mesh: &Mesh,
+    freedoms: &DegreesOfFreedom,
+    stiffness_of: impl Fn(&Brick) -> Box<Stiffness>,
+) -> Lower {
     let below = neighbours_below(mesh, freedoms);
     let pattern = lower_pattern(&below);
     let mut values = vec![0.0; pattern.row_idx().len()];
@@ -214,7 +218,7 @@ fn add_block(
 }
 
 /// For each free node, in elimination order: itself and the free nodes after it that share a brick with it, ascending.
-fn neighbours_below(mesh: &Mesh, freedoms: &Freedoms) -> Vec<Vec<usize>> {
+fn neighbours_below(mesh: &Mesh, freedoms: &DegreesOfFreedom) -> Vec<Vec<usize>> {
     let mut below: Vec<Vec<usize>> = vec![Vec::new(); freedoms.count];
     for brick in &mesh.bricks {
         let places: Vec<usize> = brick.nodes.iter().filter_map(|node| freedoms.position[*node]).collect();

@@ -38,14 +38,14 @@ pub const LOOKED_FOR: usize = 12;
 pub const RIGID: usize = 6;
 
 /// The slowest natural motions of a body.
-pub struct Natural {
+pub struct NaturalModes {
     /// ω of each, rad/s, ascending.
     pub angular_per_s: Vec<f64>,
     /// Their shapes a, one column for each, with aᵀMa = 1 (t mm²).
     pub shapes: Mat<f64>,
 }
 
-impl Natural {
+impl NaturalModes {
     /// The slowest `wanted` motions of a body, from a space of `start` (linearly independent columns, more than are
     /// wanted). `solve` is K⁻¹ times loads, `mass` M times displacements.
     ///
@@ -111,7 +111,7 @@ fn dense(stiffness: Mat<f64>, mass: Mat<f64>) -> Result<(Vec<f64>, Mat<f64>), So
 
 /// How the plate moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum PlateMotion {
     /// Along itself.
     Slides,
     /// Up and down.
@@ -124,7 +124,7 @@ pub enum Kind {
     Bends,
 }
 
-impl Kind {
+impl PlateMotion {
     /// A word for it.
     pub const fn name(self) -> &'static str {
         match self {
@@ -154,15 +154,15 @@ pub struct NaturalMotion {
 
 impl NaturalMotion {
     /// What it is, by the rigid motion that has more than half of its mass in it.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> PlateMotion {
         let [x, y, z, about_x, about_y, about_z] = self.rigid_shares;
         let kinds = [
-            (Kind::Slides, x + y),
-            (Kind::Bounces, z),
-            (Kind::Tilts, about_x + about_y),
-            (Kind::Twists, about_z),
+            (PlateMotion::Slides, x + y),
+            (PlateMotion::Bounces, z),
+            (PlateMotion::Tilts, about_x + about_y),
+            (PlateMotion::Twists, about_z),
         ];
-        kinds.into_iter().find(|(_, share)| *share > 0.5).map_or(Kind::Bends, |(kind, _)| kind)
+        kinds.into_iter().find(|(_, share)| *share > 0.5).map_or(PlateMotion::Bends, |(kind, _)| kind)
     }
 
     /// Displacement of the plate's middle plane along z at a place in plate radii, mm.
@@ -184,14 +184,14 @@ impl NaturalMotion {
 /// The slowest natural motions of a pad whose modules have these masses, from the slowest on.
 ///
 /// # Errors
-/// As for [`Natural::slowest`].
+/// As for [`NaturalModes::slowest`].
 pub fn natural_motions(
     pad: &Pad,
     masses: &[Arc<FootMass>; MODULES],
 ) -> Result<Vec<NaturalMotion>, SolveError> {
     let mass = Mass::of(pad, masses);
     let start = start(pad.assembly.plate.unknowns());
-    let natural = Natural::slowest(
+    let natural = NaturalModes::slowest(
         LOOKED_FOR,
         start,
         |loads| Ok(pad.assembly.solve(loads)),

@@ -2,7 +2,7 @@
 
 use super::colour::Rgb;
 use super::figure::{Anchor, Figure, Ink, Path, Point, Stroke, Text};
-use super::legend::{self, Entry};
+use super::legend::{self, LegendEntry};
 use super::scale::{Axis, Scale};
 use super::style::{
     AXIS, GRID, HALF_DIGIT, LABEL_SIZE, MARGIN, NUMBER_SIZE, QUIET, SMALL_SIZE, TEXT, TICK, TITLE_SIZE, mark,
@@ -24,7 +24,7 @@ pub struct Chart {
     /// The curves, the later ones above.
     pub series: Vec<Series>,
     /// Limits and marks of interest.
-    pub guides: Vec<Guide>,
+    pub guides: Vec<GuideLine>,
 }
 
 /// An axis as the caller describes it.
@@ -79,7 +79,7 @@ pub enum SeriesLook {
 
 /// A line across the chart.
 #[derive(Clone, Debug)]
-pub struct Guide {
+pub struct GuideLine {
     /// Where it is.
     pub at: GuidePlace,
     /// What is written at it.
@@ -137,7 +137,7 @@ impl Chart {
     }
 
     /// The named series, with the numbers that give them their colours and marks.
-    fn legend(&self) -> Vec<Entry<'_>> {
+    fn legend(&self) -> Vec<LegendEntry<'_>> {
         let named = self.series.iter().enumerate().filter(|(_, series)| !series.name.is_empty());
         named.map(|(index, series)| series.entry(index)).collect()
     }
@@ -190,7 +190,7 @@ fn number(label: &str, at: Point) -> Text {
     Text::new(label, at, NUMBER_SIZE, QUIET)
 }
 
-impl Guide {
+impl GuideLine {
     /// Its label stands at the end that is farther from all curves.
     fn draw(&self, figure: &mut Figure, field: &Field, curves: &[Point]) {
         let [[left, right], [bottom, top]] = [field.x.page, field.y.page];
@@ -218,9 +218,9 @@ impl Guide {
 
 impl Series {
     /// How the legend shows it as the series with this number.
-    fn entry(&self, index: usize) -> Entry<'_> {
+    fn entry(&self, index: usize) -> LegendEntry<'_> {
         let stroke = self.look.stroke(index);
-        Entry { name: &self.name, stroke, mark: self.look.has_points().then_some(index) }
+        LegendEntry { name: &self.name, stroke, mark: self.look.has_points().then_some(index) }
     }
 
     /// Places along the curve and at the ends of the error bars.

@@ -31,7 +31,7 @@ pub(super) struct Glyph {
 
 /// A glyph in its place on a line that starts at 0, in multiples of the size.
 #[derive(Debug)]
-pub(super) struct Placed {
+pub(super) struct PositionedGlyph {
     pub(super) glyph: &'static Glyph,
     pub(super) x: f64,
     /// Of the baseline, upwards.
@@ -46,13 +46,13 @@ pub(super) fn plain(text: &str) -> String {
 }
 
 /// Places the glyphs of `text`, in which `_{…}` is an index and `^{…}` an exponent; also tells the width.
-pub(super) fn lay_out(text: &str, weight: Weight) -> (Vec<Placed>, f64) {
+pub(super) fn lay_out(text: &str, weight: Weight) -> (Vec<PositionedGlyph>, f64) {
     let mut x = 0.0;
     let mut placed = Vec::new();
     for (code, rise) in characters(text) {
         let Some(glyph) = glyph(weight, code) else { continue };
         let scale = if rise == 0.0 { 1.0 } else { SHRUNK };
-        placed.push(Placed { glyph, x, rise, scale });
+        placed.push(PositionedGlyph { glyph, x, rise, scale });
         x += glyph.advance / UNITS * scale;
     }
     (placed, x)

@@ -38,7 +38,7 @@ const HALF_HEIGHT: f64 = 5.0;
 const DARK: f64 = 0.2;
 
 /// A label that has found its place.
-struct Placed {
+struct PositionedLabel {
     middle: Point,
     length: f64,
 }
@@ -105,12 +105,13 @@ impl Level<'_> {
         figure: &mut Figure,
         line: &[Point],
         others: &[&[Point]],
-        placed: &mut Vec<Placed>,
+        placed: &mut Vec<PositionedLabel>,
     ) -> Vec<Vec<Point>> {
         let mut text = Text::new(self.label, [0.0; 2], SMALL_SIZE, self.ink).anchored(Anchor::Middle);
         let needed = text.width() + 2.0 * CLEAR;
         let is_free = |[a, b]: [Point; 2]| {
-            let apart = |label: &Placed| far(middle(a, b), label.middle, APART * label.length.max(needed));
+            let apart =
+                |label: &PositionedLabel| far(middle(a, b), label.middle, APART * label.length.max(needed));
             placed.iter().all(apart) && [a, middle(a, b), b].into_iter().all(|at| is_clear(at, others))
         };
         let place = straightest(line, needed, is_free).filter(|_| !self.label.is_empty());
@@ -121,7 +122,7 @@ impl Level<'_> {
         let (below, [x, y]) = (HALF_DIGIT * SMALL_SIZE, middle(a, b));
         text.at = [x - sin * below, y + cos * below];
         figure.text(text);
-        placed.push(Placed { middle: [x, y], length: needed });
+        placed.push(PositionedLabel { middle: [x, y], length: needed });
         vec![part(line, 0.0, from), part(line, from + needed, length(line))]
     }
 }

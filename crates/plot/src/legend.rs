@@ -9,7 +9,7 @@ const ROW: f64 = 1.5 * NUMBER_SIZE;
 
 /// A series as the legend shows it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry<'s> {
+pub(super) struct LegendEntry<'s> {
     pub(super) name: &'s str,
     /// Its line, if it has one.
     pub(super) stroke: Option<Stroke>,
@@ -18,7 +18,7 @@ pub(super) struct Entry<'s> {
 }
 
 /// Draws the legend from its upper left corner and gives the height where it ends.
-pub(super) fn draw(figure: &mut Figure, entries: &[Entry<'_>], [left, top]: Point) -> f64 {
+pub(super) fn draw(figure: &mut Figure, entries: &[LegendEntry<'_>], [left, top]: Point) -> f64 {
     let [mut x, mut y] = [left, top];
     let mut rows = 0.0;
     for entry in entries {
@@ -34,7 +34,7 @@ pub(super) fn draw(figure: &mut Figure, entries: &[Entry<'_>], [left, top]: Poin
     top + rows
 }
 
-impl Entry<'_> {
+impl LegendEntry<'_> {
     fn draw(&self, figure: &mut Figure, [x, middle]: Point) {
         if let Some(stroke) = self.stroke {
             figure.path(Path::strokes(vec![vec![[x, middle], [x + SAMPLE, middle]]], stroke));

@@ -16,7 +16,7 @@ pub enum Shape {
         /// Its radius.
         radius: f64,
         /// Its paint.
-        look: Look,
+        look: PaintStyle,
     },
     /// A turned rectangle.
     Rectangle {
@@ -27,7 +27,7 @@ pub enum Shape {
         /// Turn about its centre, counter-clockwise.
         turn_deg: f64,
         /// Its paint.
-        look: Look,
+        look: PaintStyle,
     },
     /// Straight lines.
     Line {
@@ -36,7 +36,7 @@ pub enum Shape {
         /// What happens after the last one.
         ends: Ends,
         /// Their paint.
-        look: Look,
+        look: PaintStyle,
     },
     /// Dots.
     Dots {
@@ -45,7 +45,7 @@ pub enum Shape {
         /// Their radius in pixels.
         radius_px: f64,
         /// Their paint.
-        look: Look,
+        look: PaintStyle,
     },
     /// Text around a place.
     Label {
@@ -67,7 +67,7 @@ pub enum Shape {
 
 /// Paint inside and around.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub struct PaintStyle {
     /// Paint inside.
     pub fill: Option<Ink>,
     /// The line.
@@ -99,7 +99,7 @@ const RIM: Ink = Ink { colour: Rgb::WHITE, opacity: 0.6 };
 const RIM_WIDTH: f64 = 1.6;
 const ARROW: [f64; 2] = [7.0, 2.2];
 
-impl Look {
+impl PaintStyle {
     /// A line without paint inside.
     pub const fn line(stroke: Stroke) -> Self {
         Self { fill: None, stroke: Some(stroke) }
@@ -121,19 +121,19 @@ impl Window {
     }
 
     /// What is drawn first for a line of this look.
-    fn rim(&self, look: Look) -> Option<Look> {
+    fn rim(&self, look: PaintStyle) -> Option<PaintStyle> {
         let stroke = look.stroke.filter(|_| self.ground == Ground::Field)?;
-        Some(Look::line(Stroke { ink: RIM, width: stroke.width + RIM_WIDTH, dash: None }))
+        Some(PaintStyle::line(Stroke { ink: RIM, width: stroke.width + RIM_WIDTH, dash: None }))
     }
 
-    fn circle(&self, figure: &mut Figure, centre: Point, radius: f64, look: Look) {
-        for Look { fill, stroke } in self.rim(look).into_iter().chain([look]) {
+    fn circle(&self, figure: &mut Figure, centre: Point, radius: f64, look: PaintStyle) {
+        for PaintStyle { fill, stroke } in self.rim(look).into_iter().chain([look]) {
             figure.add(Mark::Circle(Circle { centre, radius, fill, stroke }));
         }
     }
 
-    fn path(&self, figure: &mut Figure, corners: &[[f64; 2]], ends: Ends, look: Look) {
-        for Look { fill, stroke } in self.rim(look).into_iter().chain([look]) {
+    fn path(&self, figure: &mut Figure, corners: &[[f64; 2]], ends: Ends, look: PaintStyle) {
+        for PaintStyle { fill, stroke } in self.rim(look).into_iter().chain([look]) {
             figure.path(Path { lines: vec![self.line(corners)], ends, fill, stroke });
         }
     }

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::figure::{Circle, Ends, Figure, Ink, Mark, Path, Point, Stroke, Text, Weight};
-use super::font::{self, Placed};
+use super::font::{self, PositionedGlyph};
 
 /// Coordinates are written in hundredths of a pixel.
 const STEPS_PER_PX: f64 = 100.0;
@@ -165,7 +165,7 @@ fn write_text(svg: &mut String, text: &Text) {
     svg.push_str("</g>\n");
 }
 
-fn write_glyph(svg: &mut String, placed: &Placed, start: f64) {
+fn write_glyph(svg: &mut String, placed: &PositionedGlyph, start: f64) {
     if placed.glyph.outline.is_empty() {
         return;
     }

@@ -10,7 +10,7 @@ use super::destination::Destination;
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{reason, say};
 use tactpad::network::{Network, onnx};
-use tactpad::pipeline::contact::nominal::Misses;
+use tactpad::pipeline::contact::nominal::PressErrors;
 use tactpad::pipeline::contact::read::Unreadable;
 use tactpad::pipeline::contact::{Decoder, read};
 use tactpad::pipeline::shipped;
@@ -74,7 +74,7 @@ pub(crate) fn read(path: &Path) -> Result<Decoder, Failure> {
 
 /// Warns of a network that may be of another pad.
 fn say_doubts(path: &Path, bytes: &[u8], decoder: &Decoder) {
-    if let Some(Misses { place_mm, force_n, .. }) = read::doubts(bytes, decoder) {
+    if let Some(PressErrors { place_mm, force_n, .. }) = read::doubts(bytes, decoder) {
         say(format_args!(
             "warning: decoder {}: it has no checksum of tactpad's, and misses presses of the nominal pad by {place_mm:.1} mm and \
              {force_n:.2} N: it may be of another pad",

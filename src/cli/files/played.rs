@@ -11,7 +11,7 @@ use crate::cli::playing::profile;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::reason;
 use firmware_proto::identity::SerialNumber;
-use tactpad::lab::play::kept::{BYTES_MAX, KIND, Kept};
+use tactpad::lab::play::kept::{BYTES_MAX, KIND, KeptPlay};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::windows::Window;
 use tactpad::pipeline::contact::Decoder;
@@ -30,7 +30,7 @@ pub(crate) struct Played {
 /// Reads a capture or kept play. Touches of a capture are known by the earlier decoder, else by the nominal one.
 pub(crate) fn read(path: &Path, earlier: Option<&Decoder>) -> Result<Played, Failure> {
     if let Some(bytes) = kept_bytes(path) {
-        let kept = bytes.and_then(|bytes| Kept::from_bytes(&bytes).map_err(|why| why.to_string()));
+        let kept = bytes.and_then(|bytes| KeptPlay::from_bytes(&bytes).map_err(|why| why.to_string()));
         let kept = kept.map_err(|why| Failure::Unusable(format!("{} {why}", path.display())))?;
         return Ok(Played { windows: kept.windows().to_vec(), pad: Some(kept.pad) });
     }

@@ -9,7 +9,7 @@ use crate::cli::failure::Failure;
 use crate::cli::printing::written::reason;
 use tactpad::pad::device::{Device, Patch};
 use tactpad::tables::measured::Table;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::error::{Fault, ReadError};
 use tactpad::tables::measured::{read, write};
 
@@ -17,7 +17,7 @@ use tactpad::tables::measured::{read, write};
 const RIM_TOLERANCE_MM: f64 = 0.01;
 
 /// Reads a table of contacts, all of which must be on the plate.
-pub(crate) fn on_the_plate(path: &Path, kind: Kind, device: &Device) -> Result<Table, Failure> {
+pub(crate) fn on_the_plate(path: &Path, kind: TableKind, device: &Device) -> Result<Table, Failure> {
     let contacts = read(path, kind, device.plate.radius_mm())?;
     for row in &contacts.rows {
         within_the_rim([row.label.x_mm, row.label.y_mm], &device.contact)
@@ -43,7 +43,7 @@ pub(crate) fn within_the_rim([x_mm, y_mm]: [f64; 2], patch: &Patch) -> Result<()
 }
 
 /// Reads a table whose places lie within ±`place_max_mm`.
-pub(crate) fn read(path: &Path, kind: Kind, place_max_mm: f64) -> Result<Table, Failure> {
+pub(crate) fn read(path: &Path, kind: TableKind, place_max_mm: f64) -> Result<Table, Failure> {
     let refused = |error| refusal(path, kind, error);
     let file = File::open(path).map_err(|error| refused(ReadError { line: 1, fault: Fault::Io(error) }))?;
     read::table(BufReader::new(file), kind, place_max_mm).map_err(refused)
@@ -56,12 +56,12 @@ pub(crate) fn write(to: &Destination, table: &Table) -> Result<(), Failure> {
     writing.finish()
 }
 
-fn refusal(path: &Path, kind: Kind, error: ReadError) -> Failure {
+fn refusal(path: &Path, kind: TableKind, error: ReadError) -> Failure {
     let path = path.display();
     let what = match kind {
-        Kind::Contacts => "of contacts",
-        Kind::Plan => "that holds a plan",
-        Kind::Measured => "of measured contacts",
+        TableKind::Contacts => "of contacts",
+        TableKind::Plan => "that holds a plan",
+        TableKind::Measured => "of measured contacts",
     };
     Failure::Unusable(match error.fault {
         Fault::Io(error) => format!("{path} cannot be read: {}; name a CSV file {what}", reason(&error)),

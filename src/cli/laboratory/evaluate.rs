@@ -14,7 +14,7 @@ use crate::cli::printing::written::{print_json, stdout};
 use tactpad::lab::evaluation::{Errors, Evaluation, EvaluationError};
 use tactpad::pipeline::shipped;
 use tactpad::tables::measured::Label;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 
 /// Arguments of `tactpad evaluate`.
 #[derive(Debug, Args)]
@@ -44,9 +44,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let decoder = decoder.as_deref().map_or_else(|| Ok(shipped::decoder()), decoder_file::read)?;
     let rim_mm = device.plate.radius_mm();
     // One table at a time: of the truth the labels are enough.
-    let truth = truth.as_ref().map(|path| tables::read(path, Kind::Plan, rim_mm)).transpose()?;
+    let truth = truth.as_ref().map(|path| tables::read(path, TableKind::Plan, rim_mm)).transpose()?;
     let truth: Option<Vec<Label>> = truth.map(|truth| truth.rows.iter().map(|row| row.label).collect());
-    let table = tables::read(measured, Kind::Measured, rim_mm)?;
+    let table = tables::read(measured, TableKind::Measured, rim_mm)?;
     let progress = Progress::begin("decoding the contacts");
     let evaluation = Evaluation::of(&decoder, table, truth.as_deref(), device.contact.full_scale_n)
         .map_err(|error| unusable(measured, &error))?;

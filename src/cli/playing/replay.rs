@@ -12,7 +12,7 @@ use crate::cli::files::decoder_file::Choice;
 use crate::cli::files::recording::{Profiles, Recording};
 use crate::cli::files::tables;
 use crate::cli::printing::written::{print_json, stdout};
-use tactpad::lab::tuning::difference::{Difference, Only, Side};
+use tactpad::lab::tuning::difference::{Difference, Side, UnmatchedPress};
 use tactpad::pipeline::control::{Code, OutputEvent};
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
@@ -20,7 +20,7 @@ use tactpad::pipeline::output::event_log;
 use tactpad::pipeline::replay::ContactReplay;
 use tactpad::pipeline::{NoProbe, Pipeline};
 use tactpad::quantity::Contact;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 use tactpad::time::StreamInstant;
 
 /// The plate of the pads that profiles are made for.
@@ -97,7 +97,7 @@ struct Told<'d>(&'d Difference);
 impl fmt::Display for Told<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Difference { both, shift_max_us, only, pointer_counts: [old, new] } = self.0;
-        for Only { with, press } in only {
+        for UnmatchedPress { with, press } in only {
             let sign = match with {
                 Side::Old => '-',
                 Side::New => '+',
@@ -168,7 +168,7 @@ fn replay_capture(
 
 /// Maps contacts as they stand: each row is a sample, a row without normal force is a lift.
 fn replay_contacts(path: &Path, profile: Profile, see: &mut See<'_>) -> Result<(), Failure> {
-    let rows = tables::read(path, Kind::Contacts, PLATE_RADIUS_MM)?.rows;
+    let rows = tables::read(path, TableKind::Contacts, PLATE_RADIUS_MM)?.rows;
     let mut replay = ContactReplay::new(profile);
     let mut deliver = |events: &[OutputEvent]| see(events);
     let mut end = StreamInstant::default();

@@ -15,13 +15,13 @@ use crate::cli::files::recording::{Profiles, Recording};
 use crate::cli::files::tables;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, tell, written_over};
-use tactpad::lab::play::weighing::{FileError, InFile, Rest, RestReader, found, in_table};
+use tactpad::lab::play::weighing::{FileError, InFile, RestReader, RestedLoad, found, in_table};
 use tactpad::pad::weight::Weight;
 use tactpad::pipeline::contact::Decoder;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::pipeline::weighing::factor::is_possible;
 use tactpad::pipeline::weighing::kept::kept;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 
 /// Arguments of `tactpad weigh`.
 #[derive(Debug, Args)]
@@ -148,7 +148,7 @@ impl Arguments {
 
     fn in_table(&self, decoder: &Decoder, path: &Path, weight: Weight) -> Result<InFile, Failure> {
         let device = self.pad.read()?;
-        let table = tables::read(path, Kind::Measured, device.plate.radius_mm())?;
+        let table = tables::read(path, TableKind::Measured, device.plate.radius_mm())?;
         in_table(decoder, &table, weight, device.contact.full_scale_n)
             .map_err(|error| self.refused(path, error))
     }
@@ -171,7 +171,7 @@ fn in_capture(decoder: &Decoder, path: &Path, weight: Weight) -> Result<InFile, 
 }
 
 /// The loads that rest in a capture.
-fn rests(decoder: &Decoder, path: &Path) -> Result<Vec<Rest>, Failure> {
+fn rests(decoder: &Decoder, path: &Path) -> Result<Vec<RestedLoad>, Failure> {
     let mut capture = Recording::open(path)?;
     // Only its filter counts, so any will do.
     let any = || profile::read("super-mario", OutputChoice::AsWritten).map(|read| read.profile().clone());

@@ -5,7 +5,7 @@
 use tactpad::lab::field_cache;
 use tactpad::lab::play::home::{AtHome, calibrated};
 use tactpad::lab::play::weights::Placement;
-use tactpad::lab::play::windows::{Gatherer, Seen, Window};
+use tactpad::lab::play::windows::{SampleContext, Window, WindowCollector};
 use tactpad::lab::tangent::Simulated;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
@@ -31,7 +31,7 @@ const WEIGHT_S: f64 = 3.0;
 const REST_S: f64 = 0.4;
 
 /// Windows of a recording, and the moments at which its contacts were there.
-fn windows(recorded: &Recorded, press_s: f64, gatherer: &mut Gatherer, at_s: &mut f64) -> Vec<f64> {
+fn windows(recorded: &Recorded, press_s: f64, gatherer: &mut WindowCollector, at_s: &mut f64) -> Vec<f64> {
     let mut moments = Vec::new();
     for (contact, uv) in recorded.truths.iter().zip(&recorded.measured.channels) {
         let is_rest = contact.force == [0.0; 3];
@@ -44,7 +44,7 @@ fn windows(recorded: &Recorded, press_s: f64, gatherer: &mut Gatherer, at_s: &mu
                 *at_s,
                 uv,
                 None,
-                if is_rest { Seen::Nothing } else { Seen::Contact(said(contact)) },
+                if is_rest { SampleContext::Nothing } else { SampleContext::Contact(said(contact)) },
             );
             *at_s += SAMPLE_S;
         }
@@ -67,7 +67,7 @@ fn played(wiring: &Wiring, seed: u64) -> (Vec<Window>, Vec<Placement>) {
     let weights = weighed(WEIGHT_N, &MARKS_MM, OFF_MM, seed);
     let [presses, weights] = [(presses, 2 * seed), (weights, 2 * seed + 1)]
         .map(|(rows, seed)| recorded(rows, &changes, wiring, &full_scale, seed));
-    let (mut gatherer, mut at_s) = (Gatherer::default(), 0.0);
+    let (mut gatherer, mut at_s) = (WindowCollector::default(), 0.0);
     windows(&presses, PRESS_S, &mut gatherer, &mut at_s);
     let moments = windows(&weights, WEIGHT_S, &mut gatherer, &mut at_s);
     let placement =

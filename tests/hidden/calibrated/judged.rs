@@ -7,7 +7,7 @@ use std::path::Path;
 use serde_json::Value;
 use tactpad::lab::evaluation::strain;
 use tactpad::pipeline::contact::{Decoder, read};
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::read::table;
 use tactpad::tables::recording::Recording;
 
@@ -109,7 +109,7 @@ fn decoded(decoder: &Path, unseen: &Path, truths: &[Contact]) -> Vec<Decoded> {
 
 /// The same of a measured table by its bytes.
 pub(super) fn decoded_by(decoder: &Decoder, unseen: &[u8], truths: &[Contact]) -> Vec<Decoded> {
-    let table = table(unseen, Kind::Measured, RIM_MM).unwrap();
+    let table = table(unseen, TableKind::Measured, RIM_MM).unwrap();
     let recording = Recording::of(table, FULL_SCALE_N).unwrap();
     let rows = recording.taken(decoder).rows;
     let one = |at: usize| {

@@ -25,11 +25,11 @@ pub struct Foreign {
     /// What it takes.
     pub zero: Zero,
     /// Behind a lock because tract writes in it. A run that panics leaves the lock broken, and is the last one.
-    running: Arc<Mutex<Running>>,
+    running: Arc<Mutex<RunnablePlan>>,
 }
 
 /// A plan with all that it needs to run.
-struct Running {
+struct RunnablePlan {
     state: TypedSimpleState,
     channels: Arc<Tensor>,
 }
@@ -47,7 +47,7 @@ impl Foreign {
     /// Bytes that are no model, one with another signature, or one that tract does not run.
     pub fn read(bytes: &[u8]) -> Result<Self, OnnxError> {
         let zero = onnx::zero(bytes)?;
-        let running = catch_unwind(|| Running::read(bytes)).map_err(|_| refused("it panicked"))?;
+        let running = catch_unwind(|| RunnablePlan::read(bytes)).map_err(|_| refused("it panicked"))?;
         let mut running = running.map_err(|error| refused(&format!("{error:#}")))?;
         match running.run(&[0.0; CHANNELS]) {
             Ok(Some(_)) => Ok(Self { zero, running: Arc::new(Mutex::new(running)) }),
@@ -64,7 +64,7 @@ impl Foreign {
     }
 }
 
-impl Running {
+impl RunnablePlan {
     fn read(mut bytes: &[u8]) -> TractResult<Self> {
         let model = tract_onnx::onnx().model_for_read(&mut bytes)?;
         let row = f32::fact([1, CHANNELS]);

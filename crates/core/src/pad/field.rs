@@ -4,7 +4,7 @@
 
 use std::fmt;
 
-use crate::bytes::{Broken, Reader, push_text, sealed, unsealed};
+use crate::bytes::{FormatError, Reader, push_text, sealed, unsealed};
 use crate::numeric::zernike::{Polynomial, count, norms};
 use crate::pad::device::Device;
 use crate::pad::device::parameter::Parameter;
@@ -116,8 +116,8 @@ pub(super) fn body_of<'b>(
     device: &Device,
 ) -> Result<Reader<'b>, FieldFileError> {
     let body = unsealed(magic, bytes).map_err(|broken| match broken {
-        Broken::Magic => FieldFileError::Version,
-        Broken::Damaged => FieldFileError::Damaged,
+        FormatError::Magic => FieldFileError::Version,
+        FormatError::Damaged => FieldFileError::Damaged,
     })?;
     let mut reader = Reader::new(body);
     let text = reader.text().ok_or(FieldFileError::Damaged)?;

@@ -152,16 +152,16 @@ impl Link {
             }
             None => None,
             Some(last) => match step_between(&last, &sample) {
-                Step::Next => None,
-                Step::Again => {
+                SequenceStep::Next => None,
+                SequenceStep::Again => {
                     health.frames_repeated += 1;
                     return LinkEvent::Fault(Fault::Repeated);
                 }
-                Step::Skipped(frames) => {
+                SequenceStep::Skipped(frames) => {
                     health.frames_lost += u64::from(frames);
                     Some(Fault::Lost)
                 }
-                Step::Anew => {
+                SequenceStep::Anew => {
                     health.restarts += 1;
                     Some(Fault::Restarted)
                 }
@@ -176,23 +176,23 @@ impl Link {
 }
 
 /// How one sample follows another by sequence number.
-enum Step {
+enum SequenceStep {
     Next,
     Again,
     Skipped(u32),
     Anew,
 }
 
-fn step_between(last: &Sample, next: &Sample) -> Step {
+fn step_between(last: &Sample, next: &Sample) -> SequenceStep {
     if next.status.restarted() {
-        return if next == last { Step::Again } else { Step::Anew };
+        return if next == last { SequenceStep::Again } else { SequenceStep::Anew };
     }
     match next.sequence.wrapping_sub(last.sequence) {
-        0 => Step::Again,
-        1 => Step::Next,
-        ahead if ahead <= u32::MAX / 2 => Step::Skipped(ahead - 1),
-        behind if behind.wrapping_neg() <= REORDER_MAX && next.time_us <= last.time_us => Step::Again,
-        _ => Step::Anew,
+        0 => SequenceStep::Again,
+        1 => SequenceStep::Next,
+        ahead if ahead <= u32::MAX / 2 => SequenceStep::Skipped(ahead - 1),
+        behind if behind.wrapping_neg() <= REORDER_MAX && next.time_us <= last.time_us => SequenceStep::Again,
+        _ => SequenceStep::Anew,
     }
 }
 

@@ -9,7 +9,7 @@ use super::health::Health;
 use super::mapping::profile::Profile;
 use super::phase::Phase;
 use super::refusal::Refusal;
-use super::weighing::Account;
+use super::weighing::WeighingReport;
 use crate::pipeline::mapping::live::Presses;
 use crate::pipeline::mapping::live::intent::Level;
 use crate::pipeline::mapping::live::verdict::Verdict;
@@ -78,7 +78,7 @@ impl Pipeline {
     }
 
     /// The newest weighing, if there was one.
-    pub const fn weighing(&self) -> Option<&Account> {
+    pub const fn weighing(&self) -> Option<&WeighingReport> {
         self.weighing.account()
     }
 

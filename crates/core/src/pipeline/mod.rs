@@ -34,7 +34,7 @@ use firmware_proto::sample::Sample;
 use crate::pad::weight::Weight;
 use crate::pipeline::call::Call;
 use crate::pipeline::contact::Decoder;
-use crate::pipeline::contact::stage::{ContactStage, Reading};
+use crate::pipeline::contact::stage::{ContactStage, DecodedSample};
 use crate::pipeline::control::OutputEvent;
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::{Cause, Effect};
@@ -44,11 +44,11 @@ use crate::pipeline::mapping::live::stated::Commands;
 use crate::pipeline::mapping::profile::{Command, Profile};
 use crate::pipeline::output::ledger::{Edges, Ledger};
 pub use crate::pipeline::phase::Phase;
-pub use crate::pipeline::probe::{NoProbe, Probe, Stage};
+pub use crate::pipeline::probe::{NoProbe, PipelineStage, Probe};
 use crate::pipeline::refusal::Refusal;
 use crate::pipeline::signal::Scale;
 use crate::pipeline::weighing::refusal::WeighError;
-use crate::pipeline::weighing::{Seen, Weighing};
+use crate::pipeline::weighing::{Weighing, WeighingSample};
 use crate::quantity::Contact;
 use crate::time::{HostInstant, StreamInstant};
 
@@ -241,14 +241,14 @@ impl Pipeline {
     fn handle_link<P: Probe>(&mut self, now: HostInstant, event: &LinkEvent, probe: &mut P) {
         match event {
             LinkEvent::Sample { at, sample, fault } => {
-                probe.mark(Stage::Sample);
+                probe.mark(PipelineStage::Sample);
                 self.advance(*at);
                 self.health.samples += 1;
                 if let Some(fault) = fault {
                     self.handle_fault(*fault);
                 }
                 self.handle_sample(sample, probe);
-                probe.mark(Stage::Events);
+                probe.mark(PipelineStage::Events);
             }
             LinkEvent::Fault(fault) => {
                 self.advance(self.link.stream_at(now));
@@ -267,24 +267,26 @@ impl Pipeline {
         let reading = self.stage.take(self.at, sample, &mut self.health, probe);
         self.look_at_weight(reading);
         match reading {
-            Reading::Contact(contact) => {
+            DecodedSample::Contact(contact) => {
                 self.phase = Phase::Playing;
                 self.map(contact.filter(|_| !self.weighing.hides()));
             }
-            Reading::Taring => self.tare(Phase::Taring),
-            Reading::Loaded => self.tare(Phase::Loaded),
-            Reading::Faulty => {
+            DecodedSample::Taring => self.tare(Phase::Taring),
+            DecodedSample::Loaded => self.tare(Phase::Loaded),
+            DecodedSample::Faulty => {
                 self.phase = Phase::Faulty;
                 self.interrupt(Cause::Faulty);
             }
         }
     }
 
-    fn look_at_weight(&mut self, reading: Reading) {
+    fn look_at_weight(&mut self, reading: DecodedSample) {
         let seen = match reading {
-            Reading::Contact(contact) => contact.and(self.stage.strain()).map_or(Seen::Nothing, Seen::Load),
-            Reading::Taring | Reading::Loaded => Seen::NoZero,
-            Reading::Faulty => Seen::Faulty,
+            DecodedSample::Contact(contact) => {
+                contact.and(self.stage.strain()).map_or(WeighingSample::Nothing, WeighingSample::Load)
+            }
+            DecodedSample::Taring | DecodedSample::Loaded => WeighingSample::NoZero,
+            DecodedSample::Faulty => WeighingSample::Faulty,
         };
         let ratio = self.weighing.see(self.at, seen, self.stage.gain().factor(), self.stage.decoder());
         if let Some(ratio) = ratio {

@@ -2,7 +2,7 @@
 
 /// A point inside the pipeline that a [`Probe`] can time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
+pub enum PipelineStage {
     /// A sample was unpacked from the bytes.
     Sample,
     /// Its contact was decoded.
@@ -14,7 +14,7 @@ pub enum Stage {
 /// Is told when a sample passes a stage. The live build passes [`NoProbe`], which costs nothing.
 pub trait Probe {
     /// The sample at hand has passed `stage`.
-    fn mark(&mut self, stage: Stage);
+    fn mark(&mut self, stage: PipelineStage);
 }
 
 /// A probe that looks away.
@@ -22,5 +22,5 @@ pub trait Probe {
 pub struct NoProbe;
 
 impl Probe for NoProbe {
-    fn mark(&mut self, _stage: Stage) {}
+    fn mark(&mut self, _stage: PipelineStage) {}
 }

@@ -39,7 +39,7 @@ pub struct Edit {
 
 /// A step on the way to a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum TablePathStep {
     /// Into the table of this key.
     Key(String),
     /// Into the table of this number in a list, from 0.
@@ -50,7 +50,7 @@ pub enum Step {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
     /// The way to the table; nothing for the text itself. A last key that is not there is made.
-    pub table: Vec<Step>,
+    pub table: Vec<TablePathStep>,
     /// The key.
     pub key: String,
     /// What it says from now on; without a value the key goes.
@@ -114,21 +114,24 @@ pub fn changed(text: &str, changes: &[Change]) -> Result<String, Unedited> {
 }
 
 /// Goes as far as there is something; what is left of the way is one key at most.
-fn follow<'i, 'w>(root: &'i mut Item, way: &'w [Step]) -> Result<(&'i mut Item, &'w [Step]), Unedited> {
+fn follow<'i, 'w>(
+    root: &'i mut Item,
+    way: &'w [TablePathStep],
+) -> Result<(&'i mut Item, &'w [TablePathStep]), Unedited> {
     let mut item = root;
     for (index, step) in way.iter().enumerate() {
         let rest = way.get(index..).unwrap_or_default();
-        let is_last_key = matches!(rest, [Step::Key(_)]);
+        let is_last_key = matches!(rest, [TablePathStep::Key(_)]);
         let is_there = match step {
-            Step::Key(key) => item.as_table_like().is_some_and(|table| table.contains_key(key)),
-            Step::Index(index) => item.get(*index).is_some(),
+            TablePathStep::Key(key) => item.as_table_like().is_some_and(|table| table.contains_key(key)),
+            TablePathStep::Index(index) => item.get(*index).is_some(),
         };
         if !is_there && is_last_key && item.is_table_like() {
             return Ok((item, rest));
         }
         let next = match step {
-            Step::Key(key) => item.as_table_like_mut().and_then(|table| table.get_mut(key)),
-            Step::Index(index) => item.get_mut(*index),
+            TablePathStep::Key(key) => item.as_table_like_mut().and_then(|table| table.get_mut(key)),
+            TablePathStep::Index(index) => item.get_mut(*index),
         };
         item = next.ok_or_else(|| no_table(way))?;
     }
@@ -136,17 +139,21 @@ fn follow<'i, 'w>(root: &'i mut Item, way: &'w [Step]) -> Result<(&'i mut Item, 
 }
 
 /// The table itself; one that is not there is made: beside others with a line of its own, inside another one in its line.
-fn opened<'i>(found: &'i mut Item, way: &[Step], is_inside: bool) -> Result<&'i mut dyn TableLike, Unedited> {
+fn opened<'i>(
+    found: &'i mut Item,
+    way: &[TablePathStep],
+    is_inside: bool,
+) -> Result<&'i mut dyn TableLike, Unedited> {
     let table = found.as_table_like_mut().ok_or_else(|| no_table(way))?;
-    let [Step::Key(key)] = way else { return Ok(table) };
+    let [TablePathStep::Key(key)] = way else { return Ok(table) };
     let new = if is_inside { toml_edit::value(toml_edit::InlineTable::new()) } else { Item::Table(begun()) };
     table.entry(key).or_insert(new).as_table_like_mut().ok_or_else(|| no_table(way))
 }
 
-fn no_table(way: &[Step]) -> Unedited {
-    let name = |step: &Step| match step {
-        Step::Key(key) => key.clone(),
-        Step::Index(index) => (index + 1).to_string(),
+fn no_table(way: &[TablePathStep]) -> Unedited {
+    let name = |step: &TablePathStep| match step {
+        TablePathStep::Key(key) => key.clone(),
+        TablePathStep::Index(index) => (index + 1).to_string(),
     };
     Unedited::NoTable(way.iter().map(name).collect::<Vec<_>>().join(" "))
 }

@@ -3,14 +3,14 @@
 use arrayvec::ArrayVec;
 
 use crate::pipeline::control::{Code, OutputDevice};
-use crate::pipeline::mapping::profile::{Binding, KEYS_MAX, Keys, Place};
+use crate::pipeline::mapping::profile::{Binding, ButtonPlace, KEYS_MAX, Keys};
 use crate::quantity::Contact;
 
 /// Two directions and one button.
 pub(super) const HELD_MAX: usize = 3 * KEYS_MAX;
 
 /// What is held, in the order in which a group of events states it: horizontal, vertical, button.
-pub(super) type Held = ArrayVec<Binding, HELD_MAX>;
+pub(super) type HeldKeys = ArrayVec<Binding, HELD_MAX>;
 
 /// The finger moves to a contact, smoothly, and stays there.
 #[derive(Clone, Debug)]
@@ -19,13 +19,13 @@ pub(super) struct Step {
     pub(super) ramp_us: u64,
     pub(super) stay_us: u64,
     /// What the player means to hold at the end of this step.
-    pub(super) held: Held,
+    pub(super) held: HeldKeys,
     /// What the player has tapped by making this step.
     pub(super) tapped: Option<Keys>,
     /// The button that the force is meant to press, by its place in the profile.
     pub(super) pressed: Option<usize>,
     /// Where the player means to touch: a zone or a direction; `None` if that does not matter.
-    pub(super) place: Option<Place>,
+    pub(super) place: Option<ButtonPlace>,
 }
 
 impl Step {
@@ -55,7 +55,7 @@ impl Gesture {
     /// Whether what is meant can be said: no control is wanted in two positions at once or turned over
     /// without a neutral moment, and nothing is tapped that is held.
     pub(super) fn is_consistent(&self) -> bool {
-        let mut before = Held::new();
+        let mut before = HeldKeys::new();
         self.steps.iter().all(|step| {
             let alone = |code: Code| step.held.iter().filter(|binding| binding.code == code).count() == 1;
             let kept =
@@ -69,7 +69,7 @@ impl Gesture {
 
     /// The edges that the gesture means, in order: per step releases, presses, then the tap.
     pub(super) fn expect(&self, expected: &mut Vec<(OutputDevice, Code, i32)>) {
-        let mut before = Held::new();
+        let mut before = HeldKeys::new();
         for step in &self.steps {
             let released = before.iter().filter(|binding| !step.held.contains(binding));
             expected.extend(released.map(|binding| (binding.device, binding.code, 0)));

@@ -5,10 +5,10 @@
 use crate::pipeline::contact::touch;
 use crate::pipeline::control::Code;
 use crate::pipeline::mapping::profile::{
-    Action, Button, Dpad, DpadMode, Effect, Force, Gain, Keys, Mode, Output, Place, Profile, When,
+    Action, Button, ButtonPlace, Dpad, DpadMode, Effect, Force, Gain, Keys, Mode, Output, Profile, When,
 };
 use crate::quantity::Contact;
-use crate::virtual_pad::gesture::{Gesture, Held, Step};
+use crate::virtual_pad::gesture::{Gesture, HeldKeys, Step};
 
 /// A ramp of force, as quick as a finger's.
 pub(super) const RAMP_US: u64 = 45_000;
@@ -39,7 +39,7 @@ pub(super) const FORCE_ERROR: f32 = 0.02;
 #[derive(Clone)]
 pub(super) struct Aim {
     pub(super) angle_deg: f32,
-    pub(super) held: Held,
+    pub(super) held: HeldKeys,
 }
 
 /// What a short press gives, and how long after its end.
@@ -135,7 +135,7 @@ impl<'p> Player<'p> {
     pub(super) fn cardinals(&self) -> Vec<Aim> {
         let Some(dpad) = &self.profile.dpad else {
             let angles_deg = self.profile.pointer.iter().flat_map(|_| [0.0, 90.0, 180.0, 270.0]);
-            return angles_deg.map(|angle_deg| Aim { angle_deg, held: Held::new() }).collect();
+            return angles_deg.map(|angle_deg| Aim { angle_deg, held: HeldKeys::new() }).collect();
         };
         let Gain { right, left, up, down } = self.profile.gain;
         let least_gain = [right, left, up, down].into_iter().fold(f32::INFINITY, f32::min);
@@ -313,7 +313,7 @@ impl<'p> Player<'p> {
             contact: Contact { x_mm, y_mm, fx_n: 0.0, fy_n: 0.0, fz_n: self.light_n },
             ramp_us: RAMP_US,
             stay_us: self.pause_us,
-            held: aim.map_or_else(Held::new, |aim| aim.held.clone()),
+            held: aim.map_or_else(HeldKeys::new, |aim| aim.held.clone()),
             tapped: None,
             pressed: None,
             place: None,
@@ -364,7 +364,7 @@ impl<'p> Player<'p> {
     }
 }
 
-fn both(a: &Aim, b: &Aim) -> Held {
+fn both(a: &Aim, b: &Aim) -> HeldKeys {
     let is_horizontal = |aim: &Aim| aim.angle_deg == 0.0 || aim.angle_deg == 180.0;
     let (first, second) = if is_horizontal(a) { (a, b) } else { (b, a) };
     first.held.iter().chain(&second.held).copied().collect()
@@ -385,8 +385,8 @@ fn shear_n(contact: &Contact) -> f32 {
 /// Whether the button counts only where the step certainly is not.
 fn is_elsewhere(button: &Button, step: &Step) -> bool {
     match (button.place, step.place) {
-        (Some(Place::Zone(one)), Some(Place::Zone(other))) => one != other,
-        (Some(Place::Direction(one)), Some(Place::Direction(other))) => one != other,
+        (Some(ButtonPlace::Zone(one)), Some(ButtonPlace::Zone(other))) => one != other,
+        (Some(ButtonPlace::Direction(one)), Some(ButtonPlace::Direction(other))) => one != other,
         _ => false,
     }
 }

@@ -2,9 +2,9 @@
 //! go down again and again.
 
 use crate::pipeline::mapping::profile::{
-    Action, Button, Direction, Dwell, Effect, Keys, Mode, Place, Profile, Skip, Timed, Zone,
+    Action, Button, ButtonPlace, Direction, Dwell, Effect, Keys, Mode, Profile, Skip, TimedEffect, Zone,
 };
-use crate::virtual_pad::gesture::{Gesture, Held, Step};
+use crate::virtual_pad::gesture::{Gesture, HeldKeys, Step};
 use crate::virtual_pad::player::{
     ANGLE_SLACK_DEG, FORCE_ERROR, LONG_PRESS_MAX_US, PLACE_SLACK_MM, Player, RADIUS_MAX_MM, RAMP_US,
     SLACK_US, cardinal_half_deg, plain,
@@ -36,8 +36,8 @@ struct Spot {
     /// As the profile counts it.
     at_mm: [f32; 2],
     /// The directions that a touch holds there.
-    held: Held,
-    place: Option<Place>,
+    held: HeldKeys,
+    place: Option<ButtonPlace>,
 }
 
 /// A button that is pressed at its spot.
@@ -147,7 +147,7 @@ impl Pressing<'_> {
     }
 
     /// Presses for long.
-    fn long(&self, hold: Timed) -> Option<Gesture> {
+    fn long(&self, hold: TimedEffect) -> Option<Gesture> {
         let keys = plain(hold.effect).filter(|_| hold.us <= LONG_PRESS_MAX_US)?;
         let mut wait = self.press(self.force_n(), None);
         wait.stay_us = hold.us.saturating_add(self.wait_us);
@@ -156,7 +156,7 @@ impl Pressing<'_> {
     }
 
     /// Presses twice, quickly.
-    fn twice(&self, double: Timed, short_us: u64) -> Option<Gesture> {
+    fn twice(&self, double: TimedEffect, short_us: u64) -> Option<Gesture> {
         let keys = plain(double.effect)?;
         let is_quick = double.us >= 2 * RAMP_US + SLACK_US && self.wait_us == 0;
         if !is_quick || self.player.profile.access.bounce_us > 0 {
@@ -245,14 +245,14 @@ fn eased_part(way: f32) -> f32 {
 }
 
 /// Where a button that counts at `place` is pressed.
-fn spot(player: &Player<'_>, place: Option<Place>) -> Option<Spot> {
+fn spot(player: &Player<'_>, place: Option<ButtonPlace>) -> Option<Spot> {
     let at = |radius_mm: f32, angle_deg: f32| {
         let (sin, cos) = libm::sincosf(angle_deg.to_radians());
         [radius_mm * cos, radius_mm * sin]
     };
     match place {
-        None => Some(Spot { at_mm: [0.0; 2], held: Held::new(), place }),
-        Some(Place::Direction(direction)) => {
+        None => Some(Spot { at_mm: [0.0; 2], held: HeldKeys::new(), place }),
+        Some(ButtonPlace::Direction(direction)) => {
             let quarter = match direction {
                 Direction::Right => 0,
                 Direction::Up => 1,
@@ -263,7 +263,7 @@ fn spot(player: &Player<'_>, place: Option<Place>) -> Option<Spot> {
             let rotation_deg = player.profile.dpad.as_ref()?.rotation_deg;
             Some(Spot { at_mm: at(player.radius_mm, aim.angle_deg + rotation_deg), held: aim.held, place })
         }
-        Some(Place::Zone(number)) => {
+        Some(ButtonPlace::Zone(number)) => {
             let (radius_mm, angle_deg) = zone_spot(player.profile, number)?;
             let held = held_at(player, radius_mm, angle_deg)?;
             Some(Spot { at_mm: at(radius_mm, angle_deg), held, place })
@@ -295,10 +295,10 @@ fn is_near(zone: &Zone, radius_mm: f32, angle_deg: f32) -> bool {
 }
 
 /// What the D-pad holds at a place; `None` where that is not certain.
-fn held_at(player: &Player<'_>, radius_mm: f32, angle_deg: f32) -> Option<Held> {
-    let Some(dpad) = &player.profile.dpad else { return Some(Held::new()) };
+fn held_at(player: &Player<'_>, radius_mm: f32, angle_deg: f32) -> Option<HeldKeys> {
+    let Some(dpad) = &player.profile.dpad else { return Some(HeldKeys::new()) };
     if radius_mm <= dpad.centre_radius_mm - dpad.radius_hysteresis_mm - PLACE_SLACK_MM {
-        return Some(Held::new());
+        return Some(HeldKeys::new());
     }
     let half_deg = cardinal_half_deg(dpad) - ANGLE_SLACK_DEG;
     let is_there = |angle: f32| apart_deg(angle_deg, angle + dpad.rotation_deg) <= half_deg;

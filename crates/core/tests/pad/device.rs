@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use proptest::prelude::{Just, Strategy, any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
-use tactpad_core::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, Play, Prony};
+use tactpad_core::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, PlayOperator, Prony};
 use tactpad_core::pad::device::parameter::Parameter;
 use tactpad_core::pad::device::schema::Effect;
 use tactpad_core::pad::device::unit::Unit;
@@ -221,8 +221,8 @@ fn behaviour_is_read_as_it_is_written() {
     assert_eq!(
         hysteresis,
         &[
-            Play { channels: [true; CHANNELS], threshold_uv: 20.0, share: 0.5 },
-            Play { channels: z_only, threshold_uv: 200.0, share: 0.25 }
+            PlayOperator { channels: [true; CHANNELS], threshold_uv: 20.0, share: 0.5 },
+            PlayOperator { channels: z_only, threshold_uv: 200.0, share: 0.25 }
         ]
     );
     assert_eq!(creep, &[Prony { channels: [true; CHANNELS], time_s: 30.0, share: 0.02 }]);

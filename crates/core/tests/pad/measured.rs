@@ -4,7 +4,7 @@
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
-use tactpad_core::tables::measured::columns::Kind;
+use tactpad_core::tables::measured::columns::TableKind;
 use tactpad_core::tables::measured::{Approach, Label, Row, Table, read, write};
 
 fn written(table: &Table) -> Vec<u8> {
@@ -80,14 +80,14 @@ proptest! {
     #[test]
     fn a_table_reads_as_it_was_written(table in table()) {
         let text = written(&table);
-        let read = read::table(&text[..], Kind::Measured, 30.0).unwrap();
+        let read = read::table(&text[..], TableKind::Measured, 30.0).unwrap();
         prop_assert_eq!(&read, &as_read(table));
         prop_assert_eq!(written(&read), text);
     }
 
     #[test]
     fn no_bytes_are_a_panic(bytes in vec(any::<u8>(), 0..200), kind in 0..3_usize) {
-        let kind = [Kind::Contacts, Kind::Plan, Kind::Measured][kind];
+        let kind = [TableKind::Contacts, TableKind::Plan, TableKind::Measured][kind];
         let header = b"trial,t_s,note,x_mm,y_mm,fx_n,fy_n,fz_n,approach\n";
         for text in [bytes.clone(), [&header[..], &bytes].concat()] {
             if let Err(error) = read::table(&text[..], kind, 30.0) {
@@ -99,7 +99,7 @@ proptest! {
     #[test]
     fn cells_that_look_like_rows_are_read_or_told(cells in vec("[-0-9.,\"eNa ]{0,5}", 9)) {
         let text = format!("trial,t_s,note,x_mm,y_mm,fx_n,fy_n,fz_n,approach\n{}\n", cells.join(","));
-        match read::table(text.as_bytes(), Kind::Plan, 30.0) {
+        match read::table(text.as_bytes(), TableKind::Plan, 30.0) {
             Ok(table) => prop_assert_eq!(written(&table).iter().filter(|byte| **byte == b'\n').count(), 2),
             Err(error) => prop_assert!(!error.fault.to_string().is_empty()),
         }
@@ -110,7 +110,7 @@ proptest! {
 fn unknown_columns_stay_with_their_rows() {
     let text =
         "x_mm,y_mm,fx_n,fy_n,fz_n,note,\"finger, which\"\n0,0,0,0,1,first,\"a \"\"b\"\"\"\n\n1,0,0,0,1,,7\n";
-    let mut table = read::table(text.as_bytes(), Kind::Plan, 30.0).unwrap();
+    let mut table = read::table(text.as_bytes(), TableKind::Plan, 30.0).unwrap();
     assert_eq!(written(&table), text.replace("\n\n", "\n").as_bytes());
     table.rows.reverse();
     let reversed = String::from_utf8(written(&table)).unwrap();

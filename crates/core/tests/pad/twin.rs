@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use tactpad_core::numeric::statistics::{mean, population_deviation};
 use tactpad_core::pad::device::Device;
-use tactpad_core::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, Play, Prony};
+use tactpad_core::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, PlayOperator, Prony};
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pad::twin::life::{Life, LifeError};
 use tactpad_core::pad::twin::pad::{Circumstances, TwinPad};
@@ -156,7 +156,8 @@ fn couplings_add_shares_of_others() {
 fn memory_acts_on_the_strain_before_the_gain() {
     let mut device = Device::nominal();
     device.modules[0].gain = [2.0; 3];
-    device.behaviour.hysteresis = vec![Play { channels: [true; CHANNELS], threshold_uv: 50.0, share: 0.1 }];
+    device.behaviour.hysteresis =
+        vec![PlayOperator { channels: [true; CHANNELS], threshold_uv: 50.0, share: 0.1 }];
     device.behaviour.creep = vec![Prony { channels: [true; CHANNELS], time_s: 5.0, share: 0.04 }];
     let mut pad = TwinPad::new(&device, field(), 1);
     let strain_uv = ideal_uv(&PRESS)[2];
@@ -212,7 +213,7 @@ fn lively() -> Device {
     let mut device = Device::nominal();
     let it = &mut device.behaviour;
     it.hysteresis = [60.0, 300.0]
-        .map(|threshold_uv| Play { channels: [true; CHANNELS], threshold_uv, share: 0.1 })
+        .map(|threshold_uv| PlayOperator { channels: [true; CHANNELS], threshold_uv, share: 0.1 })
         .to_vec();
     it.creep = vec![Prony { channels: [true; CHANNELS], time_s: 20.0, share: 0.05 }];
     it.ageing.share = [0.19; CHANNELS];

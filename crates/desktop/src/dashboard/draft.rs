@@ -6,7 +6,7 @@ use serde_json::{Map, Number, Value};
 use tactpad_core::pipeline::mapping::profile::sketch::Sketch;
 use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_core::toml_text::diag::Diagnostic;
-use tactpad_core::toml_text::edit::{self, Change, Step};
+use tactpad_core::toml_text::edit::{self, Change, TablePathStep};
 
 /// A text, and what is to be changed in it.
 #[derive(Debug, Deserialize)]
@@ -64,10 +64,10 @@ impl Draft {
 impl Asked {
     fn read(self) -> Result<Change, String> {
         let step = |step: Value| match step {
-            Value::String(key) => Ok(Step::Key(key)),
+            Value::String(key) => Ok(TablePathStep::Key(key)),
             Value::Number(index) => {
                 let index = index.as_u64().and_then(|index| usize::try_from(index).ok());
-                index.map(Step::Index).ok_or("a table's number is 0 or more")
+                index.map(TablePathStep::Index).ok_or("a table's number is 0 or more")
             }
             _ => Err("a table is named by keys and numbers"),
         };

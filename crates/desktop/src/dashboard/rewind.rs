@@ -9,7 +9,7 @@ use tactpad_core::pipeline::call::OwnedCall;
 use tactpad_core::pipeline::control::OutputEvent;
 use tactpad_core::pipeline::mapping::profile::Profile;
 use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
-use tactpad_lab::tuning::difference::{Difference, Only, Press, Side, presses};
+use tactpad_lab::tuning::difference::{Difference, Press, Side, UnmatchedPress, presses};
 
 /// Two profiles to compare.
 #[derive(Debug, Deserialize)]
@@ -92,7 +92,7 @@ fn replayed(past: &Past, profile: Profile) -> Vec<OutputEvent> {
 impl Answer {
     fn of(duration_us: u64, begin_us: u64, now: &[OutputEvent], draft: &[OutputEvent]) -> Self {
         let Difference { both, shift_max_us, only, .. } = Difference::between(now, draft);
-        let once = |only: &Only| Once {
+        let once = |only: &UnmatchedPress| Once {
             press: only.press,
             at_s: only.press.t_us.saturating_sub(begin_us) as f64 * 1e-6,
         };

@@ -2,7 +2,7 @@
 
 use tactpad_core::network::Zero;
 use tactpad_core::numeric::linear::Factor;
-use tactpad_core::pipeline::contact::neighbours::{KNOWN_MAX, Known, NEIGHBOURS, Neighbours};
+use tactpad_core::pipeline::contact::neighbours::{KNOWN_MAX, LabelledContact, NEIGHBOURS, Neighbours};
 use tactpad_core::pipeline::contact::regression::{Regression, TERMS, Target};
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::measured::Row;
@@ -63,7 +63,7 @@ pub fn neighbours(rows: &[Row], zero: Zero) -> Result<Neighbours, FitError> {
     let known = |row: &Row| {
         let uv = row.uv?;
         let channels = std::array::from_fn(|k| uv[k] as f32 / deviation_uv[k]);
-        Some(Known { channels, contact: row.label.into() })
+        Some(LabelledContact { channels, contact: row.label.into() })
     };
     Ok(Neighbours { zero, deviation_uv, known: rows.iter().filter_map(known).collect() })
 }

@@ -4,7 +4,7 @@ use super::causes::material::{creep, hysteresis};
 use super::report::Diagnosis;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::mechanics::side_share;
-use tactpad_core::pad::device::behaviour::{Crosstalk, ModuleCrosstalk, Play, Prony};
+use tactpad_core::pad::device::behaviour::{Crosstalk, ModuleCrosstalk, PlayOperator, Prony};
 use tactpad_core::pad::device::parameter::Parameter;
 use tactpad_core::pad::device::{Device, Module, Side};
 use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS};
@@ -192,7 +192,7 @@ fn remember(
             device.behaviour.creep.extend(creep::terms(&values).map(term));
         } else {
             let full_scale_uv = circumstances.full_scale.get(channel)?;
-            let play = |[threshold, share]: [f64; 2]| Play {
+            let play = |[threshold, share]: [f64; 2]| PlayOperator {
                 channels: own,
                 threshold_uv: threshold * full_scale_uv,
                 share,

@@ -39,7 +39,7 @@ mod validation;
 use std::fmt;
 
 use self::attribution::atlas::{Atlas, attributed};
-use self::attribution::{Applied, Attribution, Fit, Search};
+use self::attribution::{Applied, Attribution, AttributionFit, Search};
 use self::causes::CATALOGUE;
 use self::causes::cause::Cause;
 use self::data::observations::Observations;
@@ -48,7 +48,7 @@ use self::gatekeepers::{Gate, guarded};
 use self::model::Model;
 pub use self::model::mechanics::Pad;
 use self::naming::separation::Separation;
-use self::naming::withdrawal::{Candidate, Named, doubted, in_common, named};
+use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
 use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
 use self::simulation::simulated::Simulated;
 use self::statistics::covariance::{REMAINDER_MAX, Remainder};
@@ -65,7 +65,7 @@ const LOCATIONS_MIN: usize = 12;
 /// Why a table cannot be diagnosed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Unfit {
+pub enum DiagnosisError {
     /// Too few rows.
     Rows(usize),
     /// Too few locations.
@@ -78,7 +78,7 @@ pub enum Unfit {
     Singular,
 }
 
-impl fmt::Display for Unfit {
+impl fmt::Display for DiagnosisError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Rows(rows) => write!(
@@ -98,19 +98,19 @@ impl fmt::Display for Unfit {
     }
 }
 
-impl std::error::Error for Unfit {}
+impl std::error::Error for DiagnosisError {}
 
 /// Holds a measured table against a pad: what differs, and why.
 ///
 /// # Errors
 /// The table has too little in it to tell causes apart.
-pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
+pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, DiagnosisError> {
     check(table)?;
     let gate = checked(&Observations::of(table), pad)?;
     let all = &gate.observations;
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
     let mut model = Atlas::new(pad, all, &open);
-    let found = attributed(&mut model).ok_or(Unfit::Singular)?;
+    let found = attributed(&mut model).ok_or(DiagnosisError::Singular)?;
     let at_locked = model.at(&locked);
     let search = Search::new(&model, all, &open);
     let measured = gate.unrepaired.as_ref();
@@ -126,7 +126,7 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
         Rows { model: &model, observations: &open, unrepaired: as_measured(0) },
         Rows { model: &at_locked, observations: &locked, unrepaired: as_measured(1) },
     ];
-    let diagnosis = summary(&search, &found, &rows, &model.missing()).ok_or(Unfit::Singular)?;
+    let diagnosis = summary(&search, &found, &rows, &model.missing()).ok_or(DiagnosisError::Singular)?;
     let excess =
         pad.asks_for(EFFECT).then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
@@ -136,12 +136,12 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, Unfit> {
 }
 
 /// The observations after the checks of the recording.
-fn checked(observations: &Observations, pad: &Pad<'_>) -> Result<Gate, Unfit> {
+fn checked(observations: &Observations, pad: &Pad<'_>) -> Result<Gate, DiagnosisError> {
     let expected = Simulated::new(pad, (pad.device, pad.field), observations, (observations, observations))
         .readings(&[]);
     let gate = guarded(observations, Some(&expected), |effect| pad.asks_for(effect));
     let is_alive = |channel| gate.observations.is_alive(channel);
-    if (0..gate.observations.channels.len()).any(is_alive) { Ok(gate) } else { Err(Unfit::Silent) }
+    if (0..gate.observations.channels.len()).any(is_alive) { Ok(gate) } else { Err(DiagnosisError::Silent) }
 }
 
 /// What the checks of the recording found goes first.
@@ -167,13 +167,13 @@ pub fn effects() -> impl Iterator<Item = &'static str> {
 ///
 /// # Errors
 /// What is missing.
-pub fn check(table: &Table) -> Result<(), Unfit> {
+pub fn check(table: &Table) -> Result<(), DiagnosisError> {
     let all = Observations::of(table);
     let locations = all.clusters().into_iter().max().map_or(0, |last| last + 1);
     match all {
-        _ if all.rows() < ROWS_MIN => Err(Unfit::Rows(all.rows())),
-        _ if locations < LOCATIONS_MIN => Err(Unfit::Locations(locations)),
-        _ if all.load_rms() <= 0.0 => Err(Unfit::Unloaded),
+        _ if all.rows() < ROWS_MIN => Err(DiagnosisError::Rows(all.rows())),
+        _ if locations < LOCATIONS_MIN => Err(DiagnosisError::Locations(locations)),
+        _ if all.load_rms() <= 0.0 => Err(DiagnosisError::Unloaded),
         _ => Ok(()),
     }
 }
@@ -188,7 +188,7 @@ fn summary(
     let fit = &found.fit;
     let remainders = unnamed_squares(found);
     let whole = search.removed(fit)? + remainders.iter().sum::<f64>();
-    let Named { candidates, unnamed_by_channel, doubted_by_channel } =
+    let NamingResult { candidates, unnamed_by_channel, doubted_by_channel } =
         named(search, found, (whole, remainders))?;
     let unnamed: f64 = unnamed_by_channel.iter().sum();
     let separation = Separation::new(search, found);
@@ -224,7 +224,7 @@ fn summary(
 }
 
 /// Root mean square of the channels' noise.
-fn noise_floor(open: &Rows<'_>, fit: &Fit) -> f64 {
+fn noise_floor(open: &Rows<'_>, fit: &AttributionFit) -> f64 {
     let noise = fit.systems.noise.iter().zip(&fit.linearised.readings).enumerate();
     let alive = noise.filter(|(channel, _)| open.observations.is_alive(*channel));
     let in_series = open.observations.in_series();

@@ -187,7 +187,7 @@ pub struct Gain {
     /// The same of the loads, in N.
     pub force_mae: Option<Decoded>,
     /// What each cause is worth by itself.
-    pub per_cause: Vec<Without>,
+    pub per_cause: Vec<WithoutFinding>,
 }
 
 /// Mean magnitudes of the errors along each axis, of contacts decoded by the model.
@@ -203,7 +203,7 @@ pub struct Decoded {
 
 /// The residual with all findings but one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Without {
+pub struct WithoutFinding {
     /// The one.
     pub effect: &'static str,
     /// Where.

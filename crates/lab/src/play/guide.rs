@@ -2,7 +2,7 @@
 
 use firmware_proto::identity::SerialNumber;
 
-use crate::play::home::{Pressed, region_names};
+use crate::play::home::{PressedPlaces, region_names};
 use crate::play::reader::Reader;
 use crate::play::weights::Placement;
 use crate::play::windows::{WINDOW_S, Window};
@@ -36,7 +36,7 @@ const LIFTED: usize = 3;
 
 /// What to do now.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Step {
+pub enum GuideStep {
     /// Leave the pad alone.
     Rest {
         /// For so long it was left alone.
@@ -58,7 +58,7 @@ pub enum Step {
         /// Which of [`MARKS_MM`].
         mark: usize,
         /// What lies there.
-        lying: Lying,
+        lying: LoadOnPad,
     },
     /// Take it away again.
     TakeAway {
@@ -71,7 +71,7 @@ pub enum Step {
 
 /// What lies on the pad where a weight is waited for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Lying {
+pub enum LoadOnPad {
     /// Nothing.
     Nothing,
     /// Something that was put down just now, or moves.
@@ -97,7 +97,7 @@ pub enum Lying {
 
 /// Windows of one touch or one rest.
 #[derive(Clone, Copy, Debug, Default)]
-struct Run {
+struct WindowRun {
     stretch: usize,
     windows: usize,
     /// How many of the last ones the weight lay still in.
@@ -112,11 +112,11 @@ pub struct Guide {
     reader: Reader,
     weight_g: Option<f64>,
     placements: Vec<Placement>,
-    step: Step,
+    step: GuideStep,
     goal_s: f64,
     /// Windows that were judged.
     judged: usize,
-    run: Run,
+    run: WindowRun,
     /// A moment at which the weight that is to be taken away lay still.
     still_at_s: f64,
 }
@@ -128,10 +128,10 @@ impl Guide {
             reader,
             weight_g,
             placements: Vec::new(),
-            step: Step::Rest { rested_s: 0.0 },
+            step: GuideStep::Rest { rested_s: 0.0 },
             goal_s: PRESSED_S,
             judged: 0,
-            run: Run::default(),
+            run: WindowRun::default(),
             still_at_s: 0.0,
         }
     }
@@ -147,7 +147,7 @@ impl Guide {
         placements.retain(|it| it.found(self.reader.windows()).is_ok());
         self.placements = placements;
         self.judged = self.reader.windows().len();
-        self.run = Run::default();
+        self.run = WindowRun::default();
         let heard_s = self.pressed_s();
         if heard_s >= PRESSED_S && (self.weight_g.is_none() || self.mark_left().is_none()) {
             self.goal_s = heard_s + MORE_S;
@@ -164,7 +164,7 @@ impl Guide {
     }
 
     /// What to do now.
-    pub const fn step(&self) -> &Step {
+    pub const fn step(&self) -> &GuideStep {
         &self.step
     }
 
@@ -203,8 +203,8 @@ impl Guide {
         (self.reader.finish(), self.placements)
     }
 
-    fn pressed(&self) -> Pressed {
-        Pressed::of(self.reader.windows(), &self.placements)
+    fn pressed(&self) -> PressedPlaces {
+        PressedPlaces::of(self.reader.windows(), &self.placements)
     }
 
     fn mark_left(&self) -> Option<usize> {
@@ -214,45 +214,45 @@ impl Guide {
 
     fn judge(&mut self, window: &Window) {
         if self.run.stretch != window.stretch {
-            self.run = Run { stretch: window.stretch, ..Run::default() };
+            self.run = WindowRun { stretch: window.stretch, ..WindowRun::default() };
         }
         self.run.windows += 1;
         self.step = match self.step {
-            Step::Rest { .. } => self.rest(window),
-            Step::Press { .. } => self.press(window),
-            Step::Put { mark, lying } => self.put(mark, lying, window),
-            Step::TakeAway { mark } => self.take_away(mark, window),
-            Step::Done => Step::Done,
+            GuideStep::Rest { .. } => self.rest(window),
+            GuideStep::Press { .. } => self.press(window),
+            GuideStep::Put { mark, lying } => self.put(mark, lying, window),
+            GuideStep::TakeAway { mark } => self.take_away(mark, window),
+            GuideStep::Done => GuideStep::Done,
         };
     }
 
-    fn rest(&self, window: &Window) -> Step {
+    fn rest(&self, window: &Window) -> GuideStep {
         let rested_s = if window.contact.is_none() { WINDOW_S * self.run.windows as f64 } else { 0.0 };
-        if rested_s + 0.5 * WINDOW_S < REST_S { Step::Rest { rested_s } } else { self.press(window) }
+        if rested_s + 0.5 * WINDOW_S < REST_S { GuideStep::Rest { rested_s } } else { self.press(window) }
     }
 
-    fn press(&self, window: &Window) -> Step {
-        let Pressed { seconds: pressed_s, by_region } = self.pressed();
+    fn press(&self, window: &Window) -> GuideStep {
+        let PressedPlaces { seconds: pressed_s, by_region } = self.pressed();
         let missing = by_region.iter().filter(|count| **count == 0).count();
         let is_enough = pressed_s >= if missing == 0 { self.goal_s } else { PATIENCE * self.goal_s };
         if is_enough && window.contact.is_none() {
             return self.next_mark();
         }
         let least = by_region.iter().zip(region_names()).min_by_key(|(count, _)| **count);
-        Step::Press { pressed_s, of_s: self.goal_s, next: least.map_or("", |(_, name)| name), missing }
+        GuideStep::Press { pressed_s, of_s: self.goal_s, next: least.map_or("", |(_, name)| name), missing }
     }
 
-    fn next_mark(&self) -> Step {
+    fn next_mark(&self) -> GuideStep {
         match self.mark_left().filter(|_| self.weight_g.is_some()) {
-            Some(mark) => Step::Put { mark, lying: Lying::Nothing },
-            None => Step::Done,
+            Some(mark) => GuideStep::Put { mark, lying: LoadOnPad::Nothing },
+            None => GuideStep::Done,
         }
     }
 
-    fn put(&mut self, mark: usize, before: Lying, window: &Window) -> Step {
+    fn put(&mut self, mark: usize, before: LoadOnPad, window: &Window) -> GuideStep {
         let Some(contact) = window.contact else {
-            let is_told = before == Lying::TakenTooEarly;
-            return Step::Put { mark, lying: if is_told { before } else { Lying::Nothing } };
+            let is_told = before == LoadOnPad::TakenTooEarly;
+            return GuideStep::Put { mark, lying: if is_told { before } else { LoadOnPad::Nothing } };
         };
         let wrong = self.weight_g.and_then(|weight_g| wrong(&contact, MARKS_MM[mark], weight_g));
         let place_mm = [contact.x_mm, contact.y_mm];
@@ -264,19 +264,19 @@ impl Guide {
         let still_s = WINDOW_S * self.run.still as f64;
         if still_s + 0.5 * WINDOW_S >= STILL_S {
             self.still_at_s = window.at_s() - 0.5 * STILL_S;
-            return Step::TakeAway { mark };
+            return GuideStep::TakeAway { mark };
         }
         let lying = match wrong {
             Some(wrong) if self.run.windows > SETTLING => wrong,
-            None if is_still => Lying::Still { still_s },
-            _ => Lying::Moving,
+            None if is_still => LoadOnPad::Still { still_s },
+            _ => LoadOnPad::Moving,
         };
-        Step::Put { mark, lying }
+        GuideStep::Put { mark, lying }
     }
 
-    fn take_away(&mut self, mark: usize, window: &Window) -> Step {
+    fn take_away(&mut self, mark: usize, window: &Window) -> GuideStep {
         if window.contact.is_some() || self.run.windows < LIFTED {
-            return Step::TakeAway { mark };
+            return GuideStep::TakeAway { mark };
         }
         let weight_g = self.weight_g.unwrap_or_default();
         let placement = Placement { line: 0, at_s: self.still_at_s, place_mm: MARKS_MM[mark], weight_g };
@@ -286,18 +286,18 @@ impl Guide {
                 self.next_mark()
             }
             // It was lifted in between, so that no part of its rest is long enough.
-            Err(_) => Step::Put { mark, lying: Lying::TakenTooEarly },
+            Err(_) => GuideStep::Put { mark, lying: LoadOnPad::TakenTooEarly },
         }
     }
 }
 
 /// What is wrong with what lies there, as far as a pad tells that nobody calibrated yet.
-fn wrong(contact: &Contact, mark_mm: [f64; 2], weight_g: f64) -> Option<Lying> {
+fn wrong(contact: &Contact, mark_mm: [f64; 2], weight_g: f64) -> Option<LoadOnPad> {
     let (force_n, wanted_n) = (f64::from(contact.fz_n), weight_n(weight_g));
     if (force_n - wanted_n).abs() > FORCE_SHARE * wanted_n {
-        return Some(Lying::OtherForce { force_n });
+        return Some(LoadOnPad::OtherForce { force_n });
     }
     let place_mm = [contact.x_mm, contact.y_mm].map(f64::from);
     let off_mm = (place_mm[0] - mark_mm[0]).hypot(place_mm[1] - mark_mm[1]);
-    (off_mm > BESIDE_MM).then_some(Lying::Beside { place_mm })
+    (off_mm > BESIDE_MM).then_some(LoadOnPad::Beside { place_mm })
 }

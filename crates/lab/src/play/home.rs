@@ -4,12 +4,12 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 use crate::calibration::data::contacts::Knowledge;
-use crate::calibration::data::earlier::Earlier;
+use crate::calibration::data::earlier::EarlierCalibration;
 use crate::calibration::fit::search::Report;
 use crate::calibration::fit::{Calibration, FitError, fit_known};
-use crate::calibration::result::known::Known;
-use crate::play::weights::{Placement, Unusable};
-use crate::play::windows::{Play, Window};
+use crate::calibration::result::known::PressPrecision;
+use crate::play::weights::{Placement, PlacementError};
+use crate::play::windows::{PlayWindows, Window};
 use crate::tangent::Simulated;
 
 /// Fewer presses are no play; so many placements of a weight do without.
@@ -51,7 +51,7 @@ pub struct Region {
 #[non_exhaustive]
 pub enum HomeError {
     /// A placement is of no use.
-    Placement(Unusable),
+    Placement(PlacementError),
     /// The pad is never untouched for a moment.
     NoRest,
     /// There is hardly a press.
@@ -91,7 +91,7 @@ pub fn calibrated(
     windows: &[Window],
     placements: &[Placement],
     pad: &Simulated<'_>,
-    earlier: Option<Earlier<'_>>,
+    earlier: Option<EarlierCalibration<'_>>,
     report: Report<'_>,
 ) -> Result<AtHome, HomeError> {
     let placed: Vec<_> = placements
@@ -99,7 +99,7 @@ pub fn calibrated(
         .map(|placement| placement.found(windows))
         .collect::<Result<_, _>>()
         .map_err(HomeError::Placement)?;
-    let play = Play::of(windows, &placed, pad.device.contact.full_scale_n).ok_or(HomeError::NoRest)?;
+    let play = PlayWindows::of(windows, &placed, pad.device.contact.full_scale_n).ok_or(HomeError::NoRest)?;
     let presses = play.fitted.iter().filter(|it| it.knowledge == Knowledge::Unlabelled).count();
     if presses < PRESSES_MIN && placed.len() < PLACEMENTS_MIN {
         return Err(HomeError::TooFew { presses });
@@ -128,8 +128,9 @@ impl AtHome {
         presses.for_each(|it| counts[region_at([it.x_mm, it.y_mm].map(f64::from))] += 1);
         let map = &self.calibration.map;
         let region = |(at, name): (usize, &&'static str)| {
-            let here: Vec<&Known> = map.iter().filter(|known| region_at(known.place_mm) == at).collect();
-            let rms = |of: fn(&Known) -> f64| {
+            let here: Vec<&PressPrecision> =
+                map.iter().filter(|known| region_at(known.place_mm) == at).collect();
+            let rms = |of: fn(&PressPrecision) -> f64| {
                 let squares: f64 = here.iter().map(|known| of(known).powi(2)).sum();
                 (squares / here.len().max(1) as f64).sqrt()
             };
@@ -156,14 +157,14 @@ pub(super) const fn region_names() -> &'static [&'static str] {
 
 /// What was pressed, weights aside.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Pressed {
+pub(super) struct PressedPlaces {
     /// So long a finger pressed firmly.
     pub(super) seconds: f64,
     /// Windows that a fit can take, in each of the regions.
     pub(super) by_region: [usize; REGIONS.len()],
 }
 
-impl Pressed {
+impl PressedPlaces {
     /// What was pressed in these windows; the touches of these weights do not count.
     pub(super) fn of(windows: &[Window], placements: &[Placement]) -> Self {
         let holds =

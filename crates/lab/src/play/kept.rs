@@ -8,7 +8,7 @@ use std::fmt;
 use firmware_proto::identity::SerialNumber;
 
 use super::windows::{WINDOW_S, Window};
-use tactpad_core::bytes::{Broken, Reader, fnv1a, push_doubles, push_text, sealed, unsealed};
+use tactpad_core::bytes::{FormatError, Reader, fnv1a, push_doubles, push_text, sealed, unsealed};
 use tactpad_core::quantity::{CHANNELS, Contact};
 
 /// First bytes of a file; the number grows with every change of the form.
@@ -37,7 +37,7 @@ const NUMBER_MAX: f32 = 1e7;
 
 /// Kept play of one pad, decoded by one decoder.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Kept {
+pub struct KeptPlay {
     /// The pad that was played on.
     pub pad: SerialNumber,
     /// The mark of the decoder that played.
@@ -72,7 +72,7 @@ pub fn mark(decoder: &[u8]) -> u64 {
     fnv1a(decoder)
 }
 
-impl Kept {
+impl KeptPlay {
     /// Nothing yet.
     pub const fn new(pad: SerialNumber, decoder: u64) -> Self {
         Self { pad, decoder, windows: Vec::new(), shift: (0.0, 0) }
@@ -144,8 +144,8 @@ impl Kept {
     /// Bytes that [`Self::to_bytes`] did not write.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, KeptError> {
         let body = unsealed(MAGIC, bytes).map_err(|broken| match broken {
-            Broken::Magic => KeptError::Version,
-            Broken::Damaged => KeptError::Damaged,
+            FormatError::Magic => KeptError::Version,
+            FormatError::Damaged => KeptError::Damaged,
         })?;
         read(&mut Reader::new(body)).ok_or(KeptError::Damaged)
     }
@@ -168,14 +168,14 @@ fn push_window(to: &mut Vec<u8>, window: &Window) {
 }
 
 /// `None` for damaged bytes.
-fn read(from: &mut Reader<'_>) -> Option<Kept> {
+fn read(from: &mut Reader<'_>) -> Option<KeptPlay> {
     let pad = SerialNumber::from_ascii(std::str::from_utf8(from.text()?).ok()?)?;
     let decoder = from.bits()?;
     let count = from.length().filter(|count| *count <= WINDOWS_MAX)?;
     let windows: Vec<Window> = (0..count).map(|_| read_window(from)).collect::<Option<_>>()?;
     let goes_on = |pair: &[Window]| pair[0].end_s <= pair[1].begin_s && pair[0].stretch <= pair[1].stretch;
     let is_sound = from.is_at_end() && windows.windows(2).all(goes_on);
-    let mut kept = Kept { windows, ..Kept::new(pad, decoder) };
+    let mut kept = KeptPlay { windows, ..KeptPlay::new(pad, decoder) };
     kept.sit_down();
     is_sound.then_some(kept)
 }
@@ -231,8 +231,8 @@ mod tests {
         (0..2 * touches * windows).map(window).collect()
     }
 
-    fn kept(touches: usize, windows: usize) -> Kept {
-        let mut kept = Kept::new(pad(), 77);
+    fn kept(touches: usize, windows: usize) -> KeptPlay {
+        let mut kept = KeptPlay::new(pad(), 77);
         kept.add(&sitting(touches, windows));
         kept
     }
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn what_is_kept_is_read_again() {
         let kept = kept(20, 6);
-        let again = Kept::from_bytes(&kept.to_bytes()).unwrap();
+        let again = KeptPlay::from_bytes(&kept.to_bytes()).unwrap();
         assert_eq!((again.windows(), again.pad, again.decoder), (kept.windows(), kept.pad, 77));
         assert_eq!(kept.pressed(), 120);
     }
@@ -256,7 +256,7 @@ mod tests {
             assert_eq!(kept.windows().last().unwrap().uv, last.uv);
             let bytes = kept.to_bytes();
             assert!(bytes.len() <= BYTES_MAX && BYTES_MAX < 1_200_000, "{}", bytes.len());
-            assert!(Kept::from_bytes(&bytes).is_ok());
+            assert!(KeptPlay::from_bytes(&bytes).is_ok());
         }
     }
 
@@ -285,9 +285,9 @@ mod tests {
     #[test]
     fn damaged_and_hostile_bytes_are_refused() {
         let bytes = kept(3, 4).to_bytes();
-        assert_eq!(Kept::from_bytes(b"tactpad play 9\n").err(), Some(KeptError::Version));
+        assert_eq!(KeptPlay::from_bytes(b"tactpad play 9\n").err(), Some(KeptError::Version));
         for length in [0, 5, MAGIC.len(), MAGIC.len() + 9, bytes.len() - 1] {
-            assert!(Kept::from_bytes(&bytes[..length]).is_err(), "{length}");
+            assert!(KeptPlay::from_bytes(&bytes[..length]).is_err(), "{length}");
         }
         // Sound sums over what makes no sense.
         let body = &bytes[MAGIC.len()..bytes.len() - 8];
@@ -296,7 +296,7 @@ mod tests {
         let hostile = |at: usize, with: &[u8]| {
             let mut body = body.to_vec();
             body[at..at + with.len()].copy_from_slice(with);
-            Kept::from_bytes(&sealed(MAGIC, &body)).err()
+            KeptPlay::from_bytes(&sealed(MAGIC, &body)).err()
         };
         for (at, with) in [
             (0, &u32::MAX.to_le_bytes()[..]),

@@ -2,7 +2,7 @@
 
 use firmware_proto::identity::SerialNumber;
 
-use crate::play::windows::{Gatherer, Seen, Window};
+use crate::play::windows::{SampleContext, Window, WindowCollector};
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::contact::Decoder;
 use tactpad_core::pipeline::mapping::profile::Profile;
@@ -16,7 +16,7 @@ pub struct Reader {
     /// Of the recording's first sample.
     begin: Option<StreamInstant>,
     samples: u64,
-    gatherer: Gatherer,
+    gatherer: WindowCollector,
 }
 
 impl Reader {
@@ -29,7 +29,7 @@ impl Reader {
     /// One that goes on with a pipeline as it stands.
     pub fn going_on(pipeline: Pipeline) -> Self {
         let samples = pipeline.health().samples;
-        Self { pipeline, begin: None, samples, gatherer: Gatherer::default() }
+        Self { pipeline, begin: None, samples, gatherer: WindowCollector::default() }
     }
 
     /// Makes one call. What the player chose for the game is left out: a paused pad is pressed all the same.
@@ -84,9 +84,9 @@ impl Reader {
         self.samples = samples;
         self.begin.get_or_insert(self.pipeline.at());
         let seen = match (self.pipeline.phase(), self.pipeline.contact()) {
-            (Phase::Playing, Some(contact)) => Seen::Contact(*contact),
-            (Phase::Playing, None) => Seen::Nothing,
-            _ => Seen::Doubt,
+            (Phase::Playing, Some(contact)) => SampleContext::Contact(*contact),
+            (Phase::Playing, None) => SampleContext::Nothing,
+            _ => SampleContext::Doubt,
         };
         self.gatherer.push(self.now_s(), self.pipeline.raw_uv(), None, seen);
     }

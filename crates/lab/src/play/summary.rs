@@ -18,12 +18,12 @@ pub struct Summary {
     /// Whether a weight said how strong a newton is.
     pub scale_known: bool,
     /// The plate's parts.
-    pub map: Vec<Part>,
+    pub map: Vec<PlatePart>,
 }
 
 /// A part of the plate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Part {
+pub struct PlatePart {
     /// What people call it.
     pub name: &'static str,
     /// Standard deviation of the place by what is not known of the pad.
@@ -41,7 +41,7 @@ impl Summary {
     pub fn of(found: &AtHome, windows: &[Window]) -> Self {
         let regions = found.regions(windows);
         let open: Vec<&str> = AtHome::open(&regions).iter().map(|region| region.name).collect();
-        let part = |region: &Region| Part {
+        let part = |region: &Region| PlatePart {
             name: region.name,
             deviation_mm: region.deviation_mm,
             force_share: region.force_share,
@@ -84,7 +84,7 @@ mod tests {
 
     fn summary(scale_known: bool, open: &[&'static str]) -> Summary {
         let names = ["the middle", "the left rim", "the right rim"];
-        let part = |name| Part {
+        let part = |name| PlatePart {
             name,
             deviation_mm: 0.1,
             force_share: 0.01,

@@ -10,7 +10,7 @@ use tactpad_core::pipeline::mapping::profile::Profile;
 use tactpad_core::pipeline::weighing::factor::Weighed;
 use tactpad_core::pipeline::weighing::kept::kept;
 use tactpad_core::pipeline::weighing::refusal::WeighError;
-use tactpad_core::pipeline::weighing::resting::{Reading, Resting};
+use tactpad_core::pipeline::weighing::resting::{MeanReading, SettlingDetector};
 use tactpad_core::pipeline::{NoProbe, Pipeline};
 use tactpad_core::quantity::Strain;
 use tactpad_core::tables::measured::{Table, zero};
@@ -23,11 +23,11 @@ const ROUNDS: usize = 3;
 
 /// A load that rested in a recording.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rest {
+pub struct RestedLoad {
     /// When, in seconds since the first sample.
     pub at_s: f64,
     /// Its readings.
-    pub readings: Vec<Reading>,
+    pub readings: Vec<MeanReading>,
 }
 
 /// What was found in a file.
@@ -81,8 +81,10 @@ pub fn in_table(
     full_scale_n: f64,
 ) -> Result<InFile, FileError> {
     found(decoder, weight, |decoder| {
-        let rests =
-            Rest { at_s: 0.0, readings: of_table(decoder, table, full_scale_n).ok_or(FileError::NoZero)? };
+        let rests = RestedLoad {
+            at_s: 0.0,
+            readings: of_table(decoder, table, full_scale_n).ok_or(FileError::NoZero)?,
+        };
         Ok(vec![rests])
     })
     .map(|found| InFile { at_s: None, ..found })
@@ -96,7 +98,7 @@ pub fn in_table(
 pub fn found<E: From<FileError>>(
     decoder: &Decoder,
     weight: Weight,
-    mut rests: impl FnMut(&Decoder) -> Result<Vec<Rest>, E>,
+    mut rests: impl FnMut(&Decoder) -> Result<Vec<RestedLoad>, E>,
 ) -> Result<InFile, E> {
     let mut now = kept(decoder, 1.0, 0.0).ok_or(FileError::Decoder)?;
     let mut factor = 1.0;
@@ -117,11 +119,11 @@ pub fn found<E: From<FileError>>(
 
 /// The load that rests most evenly, of those that can be the weight; else why the most even one cannot.
 fn steadiest<'r>(
-    rests: &'r [Rest],
+    rests: &'r [RestedLoad],
     weight: Weight,
     decoder: &Decoder,
-) -> Result<(&'r Rest, Weighed), WeighError> {
-    let mut by_scatter: Vec<(f64, &Rest)> =
+) -> Result<(&'r RestedLoad, Weighed), WeighError> {
+    let mut by_scatter: Vec<(f64, &RestedLoad)> =
         rests.iter().map(|rest| (scatter(&rest.readings), rest)).collect();
     by_scatter.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut why = WeighError::NothingCame;
@@ -136,7 +138,7 @@ fn steadiest<'r>(
 }
 
 /// Variance of the normal force, as a share of its square.
-fn scatter(readings: &[Reading]) -> f64 {
+fn scatter(readings: &[MeanReading]) -> f64 {
     let count = readings.len().max(1) as f64;
     let mean_n = readings.iter().map(|it| f64::from(it.contact.fz_n)).sum::<f64>() / count;
     let off_n2 = readings.iter().map(|it| (f64::from(it.contact.fz_n) - mean_n).powi(2)).sum::<f64>() / count;
@@ -144,7 +146,7 @@ fn scatter(readings: &[Reading]) -> f64 {
 }
 
 /// The readings of a table's loads. `None` if nothing says what the untouched pad reads.
-fn of_table(decoder: &Decoder, table: &Table, full_scale_n: f64) -> Option<Vec<Reading>> {
+fn of_table(decoder: &Decoder, table: &Table, full_scale_n: f64) -> Option<Vec<MeanReading>> {
     let contacts = zero::contacts(table);
     let recording = Recording::tared_or_raw(table.clone(), full_scale_n);
     let recording = match decoder.compensation.zero_uv {
@@ -155,7 +157,7 @@ fn of_table(decoder: &Decoder, table: &Table, full_scale_n: f64) -> Option<Vec<R
     let taken = recording.into_taken(decoder);
     let read = |at: usize| taken.rows.get(at).and_then(|row| row.uv);
     let strains = contacts.into_iter().filter_map(read).map(|uv| Strain { uv: uv.map(|uv| uv as f32) });
-    Some(strains.map(|strain| Reading::of(strain, decoder)).collect())
+    Some(strains.map(|strain| MeanReading::of(strain, decoder)).collect())
 }
 
 /// Makes a recording's calls again and finds the loads that rest in it.
@@ -165,15 +167,15 @@ pub struct RestReader {
     decoder: Decoder,
     begin: Option<StreamInstant>,
     samples: u64,
-    resting: Resting,
-    rests: Vec<Rest>,
+    resting: SettlingDetector,
+    rests: Vec<RestedLoad>,
 }
 
 impl RestReader {
     /// One that has heard nothing. Of the profile only the filter matters.
     pub fn new(decoder: Decoder, profile: Profile) -> Self {
         let pipeline = Pipeline::new(decoder.clone(), profile);
-        let (begin, samples, resting, rests) = (None, 0, Resting::default(), Vec::new());
+        let (begin, samples, resting, rests) = (None, 0, SettlingDetector::default(), Vec::new());
         Self { pipeline, decoder, begin, samples, resting, rests }
     }
 
@@ -188,7 +190,7 @@ impl RestReader {
     }
 
     /// The loads that rested, in order of time.
-    pub fn finish(self) -> Vec<Rest> {
+    pub fn finish(self) -> Vec<RestedLoad> {
         self.rests
     }
 
@@ -210,6 +212,6 @@ impl RestReader {
         };
         let rested = self.resting.push(at, strain, &self.decoder);
         let at_s = 1e-6 * at.us_since(begin) as f64;
-        self.rests.extend(rested.map(|rested| Rest { at_s, readings: rested.into_iter().collect() }));
+        self.rests.extend(rested.map(|rested| RestedLoad { at_s, readings: rested.into_iter().collect() }));
     }
 }

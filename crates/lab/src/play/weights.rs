@@ -30,14 +30,14 @@ pub struct Placement {
 
 /// Why placements are of no use.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unusable {
+pub struct PlacementError {
     /// The line at fault, from 1; none where no single one is.
     pub line: Option<usize>,
     /// What is wrong and what to do.
     pub why: String,
 }
 
-impl fmt::Display for Unusable {
+impl fmt::Display for PlacementError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.line {
             Some(line) => write!(f, "line {line}: {}", self.why),
@@ -46,7 +46,7 @@ impl fmt::Display for Unusable {
     }
 }
 
-impl std::error::Error for Unusable {}
+impl std::error::Error for PlacementError {}
 
 impl Placement {
     /// The contact that it is.
@@ -65,8 +65,8 @@ impl Placement {
     ///
     /// # Errors
     /// Nothing lies still on the pad at its time.
-    pub fn found(&self, windows: &[Window]) -> Result<(usize, Label, Knowledge), Unusable> {
-        let refused = |why: String| Unusable { line: Some(self.line).filter(|line| *line > 0), why };
+    pub fn found(&self, windows: &[Window]) -> Result<(usize, Label, Knowledge), PlacementError> {
+        let refused = |why: String| PlacementError { line: Some(self.line).filter(|line| *line > 0), why };
         let is_now = |window: &Window| window.begin_s <= self.at_s && self.at_s <= window.end_s + 0.01;
         let Some(now) = windows.iter().find(|window| is_now(window) && window.contact.is_some()) else {
             return Err(refused(format!(
@@ -117,16 +117,16 @@ pub fn written(placements: &[Placement]) -> String {
 ///
 /// # Errors
 /// The first line that is none, with what to write.
-pub fn read(text: &str, reach_mm: f64) -> Result<Vec<Placement>, Unusable> {
+pub fn read(text: &str, reach_mm: f64) -> Result<Vec<Placement>, PlacementError> {
     let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
-    let at = |line: usize, why: String| Unusable { line: Some(line), why };
+    let at = |line: usize, why: String| PlacementError { line: Some(line), why };
     let is_header =
         |text: &str| text.trim_start_matches('\u{feff}').split(',').map(str::trim).eq(HEADER.split(','));
     match lines.next() {
         Some((_, header)) if is_header(header) => {}
         Some((line, _)) => return Err(at(line, format!("the first line must be {HEADER}"))),
         None => {
-            return Err(Unusable {
+            return Err(PlacementError {
                 line: None,
                 why: format!("it is empty; its first line must be {HEADER}"),
             });
@@ -135,7 +135,10 @@ pub fn read(text: &str, reach_mm: f64) -> Result<Vec<Placement>, Unusable> {
     let read = |(line, text): (usize, &str)| placement(line, text, reach_mm).map_err(|why| at(line, why));
     let placements: Vec<Placement> = lines.map(read).collect::<Result<_, _>>()?;
     if placements.is_empty() {
-        return Err(Unusable { line: None, why: "it has no placement; write one line for each".into() });
+        return Err(PlacementError {
+            line: None,
+            why: "it has no placement; write one line for each".into(),
+        });
     }
     Ok(placements)
 }

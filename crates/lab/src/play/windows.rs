@@ -18,7 +18,7 @@ const CONTACTS_MAX: usize = 1200;
 
 /// What is known of a sample beside its channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Seen {
+pub enum SampleContext {
     /// Nothing touches the pad.
     Nothing,
     /// A finger, or a weight, about there.
@@ -50,7 +50,7 @@ pub struct Window {
 
 /// Gathers samples into windows.
 #[derive(Clone, Debug, Default)]
-pub struct Gatherer {
+pub struct WindowCollector {
     windows: Vec<Window>,
     open: Option<Open>,
     stretch: usize,
@@ -72,17 +72,17 @@ struct Open {
     span_mm: [[f32; 2]; 2],
 }
 
-impl Gatherer {
+impl WindowCollector {
     /// Takes a sample; times go on.
-    pub fn push(&mut self, at_s: f64, raw_uv: &[f64; CHANNELS], temp_c: Option<f64>, seen: Seen) {
+    pub fn push(&mut self, at_s: f64, raw_uv: &[f64; CHANNELS], temp_c: Option<f64>, seen: SampleContext) {
         let contact = match seen {
-            Seen::Doubt => {
+            SampleContext::Doubt => {
                 self.close(false);
                 self.stretch += 1;
                 return;
             }
-            Seen::Nothing => None,
-            Seen::Contact(contact) => Some(contact),
+            SampleContext::Nothing => None,
+            SampleContext::Contact(contact) => Some(contact),
         };
         if self.was_touched != contact.is_some() {
             self.close(false);
@@ -200,14 +200,14 @@ impl Window {
 
 /// Play, ready to be fitted to.
 #[derive(Clone, Debug)]
-pub struct Play {
+pub struct PlayWindows {
     /// One row for each window, relative to the untouched pad.
     pub recording: Recording,
     /// What the fit takes.
     pub fitted: Vec<Fitted>,
 }
 
-impl Play {
+impl PlayWindows {
     /// `placed` are windows that a weight rests in, each with what it is; other windows of their touches are left out.
     /// `None` if the pad is never untouched for a moment.
     pub fn of(windows: &[Window], placed: &[(usize, Label, Knowledge)], full_scale_n: f64) -> Option<Self> {
@@ -256,13 +256,14 @@ mod tests {
 
     /// A thousand samples a second: the pad untouched, touched, untouched, … for so many milliseconds each.
     fn gathered(milliseconds: &[u32]) -> Vec<Window> {
-        let mut gatherer = Gatherer::default();
+        let mut gatherer = WindowCollector::default();
         let mut at_ms = 0;
         for (stretch, length_ms) in milliseconds.iter().enumerate() {
             for _ in 0..*length_ms {
                 at_ms += 1;
                 let contact = Contact { x_mm: 4.0, fz_n: 2.0, ..Contact::default() };
-                let seen = if stretch % 2 == 1 { Seen::Contact(contact) } else { Seen::Nothing };
+                let seen =
+                    if stretch % 2 == 1 { SampleContext::Contact(contact) } else { SampleContext::Nothing };
                 let uv = if stretch % 2 == 1 { 1000.0 } else { 10.0 };
                 gatherer.push(1e-3 * f64::from(at_ms), &[uv; CHANNELS], Some(25.0), seen);
             }
@@ -286,9 +287,9 @@ mod tests {
 
     #[test]
     fn doubt_ends_a_window_and_belongs_to_none() {
-        let mut gatherer = Gatherer::default();
+        let mut gatherer = WindowCollector::default();
         for ms in 0..40 {
-            let seen = if ms == 20 { Seen::Doubt } else { Seen::Nothing };
+            let seen = if ms == 20 { SampleContext::Doubt } else { SampleContext::Nothing };
             gatherer.push(1e-3 * f64::from(ms), &[if ms == 20 { 1e6 } else { 1.0 }; CHANNELS], None, seen);
         }
         let windows = gatherer.finish();
@@ -301,14 +302,14 @@ mod tests {
     #[test]
     fn presses_and_quiet_rests_are_taken() {
         let windows = gathered(&[500, 350, 600, 350, 120, 200]);
-        let play = Play::of(&windows, &[], 5.0).unwrap();
+        let play = PlayWindows::of(&windows, &[], 5.0).unwrap();
         assert_eq!(play.fitted.len(), 3 + 3 + 2);
         assert!(play.fitted.iter().all(|it| windows[it.row].contact.is_some()));
         // Two rests are long enough for two readings each; the short one has none that no finger is near.
         assert_eq!(play.recording.zeros().map(|zeros| zeros.len()).sum::<usize>(), 4);
         let uv = play.recording.tared().rows[play.fitted[0].row].uv.unwrap();
         assert_eq!(uv, [990.0; CHANNELS]);
-        assert!(Play::of(&gathered(&[0, 500]), &[], 5.0).is_none(), "never untouched");
+        assert!(PlayWindows::of(&gathered(&[0, 500]), &[], 5.0).is_none(), "never untouched");
     }
 
     #[test]
@@ -316,7 +317,7 @@ mod tests {
         let windows = gathered(&[500, 900, 500, 300, 300]);
         let weight = Label { fz_n: 1.96, ..Label::default() };
         let at = windows.iter().position(|it| it.contact.is_some()).unwrap() + 4;
-        let play = Play::of(&windows, &[(at, weight, Knowledge::Placed([0.4; 5]))], 5.0).unwrap();
+        let play = PlayWindows::of(&windows, &[(at, weight, Knowledge::Placed([0.4; 5]))], 5.0).unwrap();
         assert_eq!(play.fitted.len(), 1 + 3);
         assert_eq!((play.fitted[0].row, play.recording.tared().rows[at].label), (at, weight));
     }

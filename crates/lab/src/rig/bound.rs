@@ -30,7 +30,7 @@ const QUIET_UV: f64 = 1e-3;
 
 /// How a contact is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reading {
+pub enum ContactReading {
     /// Once, as a row of a time series.
     Single,
     /// As the mean over a second, as a static sample.
@@ -67,7 +67,7 @@ impl Bound {
 
     /// Least covariance of x, y (mm), Fx, Fy, Fz (N) of this contact; `None` where the channels do not tell it, as without
     /// force.
-    pub fn covariance(&self, contact: &Label, reading: Reading) -> Option<[[f64; 5]; 5]> {
+    pub fn covariance(&self, contact: &Label, reading: ContactReading) -> Option<[[f64; 5]; 5]> {
         let uv = self.signal_uv(contact.numbers());
         let slopes: [[f64; CHANNELS]; 5] = std::array::from_fn(|k| self.slope(contact, k));
         // I = Σₖ Jₖ Jₖᵀ/σₖ², with row k of J in `slopes[..][k]`.
@@ -85,7 +85,7 @@ impl Bound {
 
     /// Mean magnitude of the error of each of x, y, Fx, Fy, Fz over contacts, if all errors are as small as they can be;
     /// contacts that the channels do not tell are left out.
-    pub fn expected(&self, contacts: &[Label], reading: Reading) -> [f64; 5] {
+    pub fn expected(&self, contacts: &[Label], reading: ContactReading) -> [f64; 5] {
         let covariances: Vec<_> = contacts.iter().filter_map(|it| self.covariance(it, reading)).collect();
         let count = covariances.len().max(1) as f64;
         // E|e| = √(2/π) σ of a normal error.
@@ -115,10 +115,10 @@ impl Bound {
     }
 
     /// σ² = a²/n + v (b s)² with the relative noise's v of [`variance_of_mean`]; a single reading has n = v = 1.
-    fn variance(&self, channel: usize, uv: f64, reading: Reading) -> f64 {
+    fn variance(&self, channel: usize, uv: f64, reading: ContactReading) -> f64 {
         let (additive, relative) = match reading {
-            Reading::Single => (1.0, 1.0),
-            Reading::Mean => (1.0 / f64::from(READINGS), self.relative_variance),
+            ContactReading::Single => (1.0, 1.0),
+            ContactReading::Mean => (1.0 / f64::from(READINGS), self.relative_variance),
         };
         let own = additive * self.additive_uv[channel].powi(2);
         (own + relative * (self.share[channel] * uv).powi(2)).max(QUIET_UV * QUIET_UV)
@@ -162,7 +162,7 @@ mod tests {
             Inverse::new(field.signals.clone(), Noise::of_channels([8.0; CHANNELS], [0.01; CHANNELS]));
         for (x_mm, y_mm, fx_n) in [(0.0, 0.0, 0.5), (12.0, -5.0, 0.0), (-20.0, 18.0, -1.0)] {
             let contact = Label { x_mm, y_mm, fx_n, fy_n: 0.3, fz_n: 4.0 };
-            let least = bound.covariance(&contact, Reading::Single).unwrap();
+            let least = bound.covariance(&contact, ContactReading::Single).unwrap();
             let Strain { uv } = field.signals.strain_uv(&contact.into());
             let stated = decoder.estimate(&Strain { uv }).unwrap().covariance;
             // The decoder's prior makes it a little surer.
@@ -174,12 +174,12 @@ mod tests {
     #[test]
     fn a_mean_is_as_sure_as_its_noise_lets_it() {
         let contact = Label { x_mm: 5.0, y_mm: 5.0, fz_n: 3.0, ..Label::default() };
-        let variance = |share_time_s: f64, reading: Reading| {
+        let variance = |share_time_s: f64, reading: ContactReading| {
             let bound = Bound::new(&noisy(share_time_s), &PadField::nominal(), 1);
             bound.covariance(&contact, reading).unwrap()[4][4]
         };
         let gain = |share_time_s: f64| {
-            variance(share_time_s, Reading::Single) / variance(share_time_s, Reading::Mean)
+            variance(share_time_s, ContactReading::Single) / variance(share_time_s, ContactReading::Mean)
         };
         assert!(
             (gain(0.0) / f64::from(READINGS) - 1.0).abs() < 1e-6,
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn without_force_nothing_is_told() {
         let bound = Bound::new(&noisy(1.0), &PadField::nominal(), 1);
-        assert_eq!(bound.covariance(&Label::default(), Reading::Mean), None);
-        assert_eq!(bound.expected(&[Label::default()], Reading::Mean), [0.0; 5]);
+        assert_eq!(bound.covariance(&Label::default(), ContactReading::Mean), None);
+        assert_eq!(bound.expected(&[Label::default()], ContactReading::Mean), [0.0; 5]);
     }
 }

@@ -96,7 +96,7 @@ pub(super) fn turned([x, y]: [f64; 2], deg: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::stage::Stage;
+    use crate::rig::stage::LoadingStage;
     use tactpad_core::pad::device::behaviour::Behaviour;
     use tactpad_core::tables::measured::Label;
 
@@ -114,7 +114,7 @@ mod tests {
             ..Behaviour::IDEAL.rig
         };
         let meant = Label { x_mm: 10.0, y_mm: -4.0, fx_n: 0.5, fy_n: 0.2, fz_n: 2.0 };
-        let mut stage = Stage::new(rig, 1);
+        let mut stage = LoadingStage::new(rig, 1);
         for turned_deg in [0.0, 120.0, -75.0] {
             stage.clamp(turned_deg);
             let truth = stage.truth(&meant);

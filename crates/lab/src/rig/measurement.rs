@@ -3,7 +3,7 @@
 //! A row without trial is a static sample: lift, rest, press, hold, read the mean of a second. Rows of one trial are one
 //! approach, read row by row at their times. The clock goes on over all of it, as do creep, hysteresis and drift.
 
-use crate::rig::stage::Stage;
+use crate::rig::stage::LoadingStage;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pad::twin::hand::Hand;
@@ -77,7 +77,7 @@ pub fn carry_on(
 struct Bench {
     pad: TwinPad,
     hand: Hand,
-    stage: Stage,
+    stage: LoadingStage,
     around: Circumstances,
     reference_c: f64,
     full_scale_n: f64,
@@ -93,7 +93,7 @@ impl Bench {
         Self {
             pad: TwinPad::going_on(device, field, life.state),
             hand: Hand::new(behaviour.finger, seed),
-            stage: Stage::new(behaviour.rig, seed),
+            stage: LoadingStage::new(behaviour.rig, seed),
             around: life.around,
             reference_c: behaviour.thermal.reference_c,
             full_scale_n: device.contact.full_scale_n,

@@ -7,7 +7,7 @@ use tactpad_core::tables::measured::Label;
 
 /// A stage with a force sensor under, or above, the pad.
 #[derive(Clone, Debug)]
-pub(super) struct Stage {
+pub(super) struct LoadingStage {
     rig: Rig,
     approaches: SplitMix64,
     reference: SplitMix64,
@@ -18,7 +18,7 @@ pub(super) struct Stage {
     force_share: f64,
 }
 
-impl Stage {
+impl LoadingStage {
     pub(super) fn new(rig: Rig, seed: u64) -> Self {
         let approaches = SplitMix64::named(seed, "approach");
         let reference = SplitMix64::named(seed, "sensor");
@@ -83,10 +83,10 @@ mod tests {
 
     const MEANT: Label = Label { x_mm: 10.0, y_mm: 0.0, fx_n: 0.0, fy_n: 0.0, fz_n: 2.0 };
 
-    fn stage(change: impl Fn(&mut Rig)) -> Stage {
+    fn stage(change: impl Fn(&mut Rig)) -> LoadingStage {
         let mut rig = Behaviour::IDEAL.rig;
         change(&mut rig);
-        Stage::new(rig, 1)
+        LoadingStage::new(rig, 1)
     }
 
     fn near(left: [f64; 5], right: [f64; 5]) {

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::labels::Labels;
-use super::scoring::{Came, Score};
+use super::scoring::{LabelOutcome, Score};
 
 /// The column of what was meant, but more than once.
 const REPEATED: &str = "more than once";
@@ -31,9 +31,9 @@ impl Confusion {
         let mut counts = vec![vec![0; came.len()]; meant.len()];
         for (label, came) in labels.labels().iter().zip(score.came()) {
             let column = match came {
-                Came::Class(class) => *class,
-                Came::Repeated => meant.len(),
-                Came::Other => meant.len() + 1,
+                LabelOutcome::Class(class) => *class,
+                LabelOutcome::Repeated => meant.len(),
+                LabelOutcome::Other => meant.len() + 1,
             };
             if let Some(count) = counts.get_mut(label.class).and_then(|row| row.get_mut(column)) {
                 *count += 1;

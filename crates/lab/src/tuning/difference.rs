@@ -40,7 +40,7 @@ pub enum Side {
 
 /// A press that one profile gives and the other does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Only {
+pub struct UnmatchedPress {
     /// Which one.
     pub with: Side,
     /// The press.
@@ -56,7 +56,7 @@ pub struct Difference {
     /// By how much the later one of them is later at most.
     pub shift_max_us: u64,
     /// Those of one profile, in order of time.
-    pub only: Vec<Only>,
+    pub only: Vec<UnmatchedPress>,
     /// How far the pointer went with each, old and new, to all sides together.
     pub pointer_counts: [u64; 2],
 }
@@ -97,11 +97,11 @@ impl Difference {
                     (old, new) = (old_rest, new_rest);
                 }
                 (Some((was, rest)), is) if is.is_none_or(|(is, _)| was.t_us <= is.t_us) => {
-                    self.only.push(Only { with: Side::Old, press: *was });
+                    self.only.push(UnmatchedPress { with: Side::Old, press: *was });
                     old = rest;
                 }
                 (_, Some((is, rest))) => {
-                    self.only.push(Only { with: Side::New, press: *is });
+                    self.only.push(UnmatchedPress { with: Side::New, press: *is });
                     new = rest;
                 }
                 (_, None) => return,
@@ -184,8 +184,9 @@ mod tests {
 
     fn only(old: &[(u64, Code, i32)], new: &[(u64, Code, i32)]) -> Vec<(Side, u64, u64, i32)> {
         let found = Difference::between(&events(old), &events(new));
-        let shown =
-            |it: &Only| (it.with, it.press.t_us / 1_000, it.press.duration_us / 1_000, it.press.value);
+        let shown = |it: &UnmatchedPress| {
+            (it.with, it.press.t_us / 1_000, it.press.duration_us / 1_000, it.press.value)
+        };
         found.only.iter().map(shown).collect()
     }
 

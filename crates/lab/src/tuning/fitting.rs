@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::delay::delay_us;
 use super::knobs::{self, Knob, Settings, rounded};
 use super::labels::Labels;
-use super::places::{self, Hand};
+use super::places::{self, HandPose};
 use super::scoring::{AFTER_US, Score};
 use super::trace::Trace;
 use tactpad_core::pipeline::mapping::profile::Profile;
@@ -196,7 +196,7 @@ fn smoothed(scores: &[Option<f64>], index: usize) -> Option<f64> {
 }
 
 /// The settings of a hand's centre and rotation; `side` is −1 for a left-handed profile, which turns both.
-fn of_hand(hand: Hand, (moves, turns): (bool, bool), side: f64) -> Settings {
+fn of_hand(hand: HandPose, (moves, turns): (bool, bool), side: f64) -> Settings {
     let mut settings = Settings::new();
     let [x_mm, y_mm] = hand.centre_mm;
     // To half a millimetre: no finger comes back more exactly.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use tactpad_core::pipeline::contact::touch;
-use tactpad_core::pipeline::mapping::profile::{Action, Button, Dpad, DpadMode, Force, Place, Profile};
+use tactpad_core::pipeline::mapping::profile::{Action, Button, ButtonPlace, Dpad, DpadMode, Force, Profile};
 use tactpad_core::toml_text::edit::{self, Edit, Table, Value};
 
 /// A number's place in the profile.
@@ -192,7 +192,7 @@ fn button_times(table: Table, button: &Button, add: &mut Add<'_>) {
 /// Rings that buttons ask for.
 fn zones(profile: &Profile, add: &mut Add<'_>) {
     let is_used =
-        |number: usize| profile.buttons.iter().any(|button| button.place == Some(Place::Zone(number)));
+        |number: usize| profile.buttons.iter().any(|button| button.place == Some(ButtonPlace::Zone(number)));
     for (number, zone) in profile.zones.iter().enumerate().filter(|(number, _)| is_used(*number)) {
         let table = Table::Listed("zone", number);
         let edges = [("inner_radius_mm", zone.inner_radius_mm), ("outer_radius_mm", zone.outer_radius_mm)];

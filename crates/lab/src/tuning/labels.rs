@@ -41,14 +41,14 @@ pub struct Labels {
 
 /// Why a table of labels cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unusable {
+pub struct LabelsError {
     /// The line that is wrong, from 1.
     pub line: usize,
     /// What is wrong with it, and what to write.
     pub what: String,
 }
 
-impl fmt::Display for Unusable {
+impl fmt::Display for LabelsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.line, self.what)
     }
@@ -59,13 +59,13 @@ impl Labels {
     ///
     /// # Errors
     /// Says what is wrong with the first line that cannot be used.
-    pub fn read(text: &str, profile: &Profile) -> Result<Self, Unusable> {
+    pub fn read(text: &str, profile: &Profile) -> Result<Self, LabelsError> {
         let vocabulary = Vocabulary::of(profile);
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = (1..).zip(text.lines());
         let header = lines.next().map_or(String::new(), |(_, line)| cells(line).join(","));
         if header != HEADER {
-            return Err(Unusable {
+            return Err(LabelsError {
                 line: 1,
                 what: format!("the first line must be {HEADER}, not {}", quoted(&header)),
             });
@@ -73,11 +73,11 @@ impl Labels {
         let mut meant: Vec<(usize, [u64; 2], Vec<Binding>)> = Vec::new();
         for (line, text) in lines.filter(|(_, text)| !text.trim().is_empty()) {
             let (times_us, controls) =
-                read_line(text, &vocabulary).map_err(|what| Unusable { line, what })?;
+                read_line(text, &vocabulary).map_err(|what| LabelsError { line, what })?;
             meant.push((line, times_us, controls));
         }
         if meant.is_empty() {
-            return Err(Unusable {
+            return Err(LabelsError {
                 line: 2,
                 what: "the table has no labels: write a line for each press".into(),
             });
@@ -88,7 +88,7 @@ impl Labels {
                 && begin_us < end_us
             {
                 let what = format!("it begins before that of line {before} ends: no two may overlap");
-                return Err(Unusable { line: *line, what });
+                return Err(LabelsError { line: *line, what });
             }
         }
         Ok(Self::new(

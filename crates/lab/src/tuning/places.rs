@@ -1,7 +1,7 @@
 //! Where a hand has its centre, and how it is turned: by the places of touches that meant directions.
 
 use super::labels::Labels;
-use super::trace::{Heard, Trace};
+use super::trace::{Trace, TraceEvents};
 use super::vocabulary::in_order;
 use tactpad_core::pipeline::mapping::profile::{Binding, Dpad};
 use tactpad_core::quantity::Contact;
@@ -14,7 +14,7 @@ const TOUCHES_MIN: usize = 3;
 
 /// A hand on the plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hand {
+pub struct HandPose {
     /// Its centre.
     pub centre_mm: [f64; 2],
     /// What it takes for right is so far counter-clockwise of right.
@@ -25,11 +25,11 @@ pub struct Hand {
 
 /// The centre alone, for a hand that is not turned, and both together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
+pub struct PoseFits {
     /// With the rotation that was given.
-    pub shifted: Hand,
+    pub shifted: HandPose,
     /// With the rotation that fits best.
-    pub turned: Hand,
+    pub turned: HandPose,
 }
 
 /// Fits the place pₖ of touches that mean the direction uₖ:
@@ -39,7 +39,7 @@ pub struct Found {
 /// ```
 ///
 /// With a and b for r cos φ and r sin φ it is linear. `None` unless at least two directions are known that are not the same.
-pub fn hand(dpad: &Dpad, trace: &Trace, labels: &Labels, rotation_deg: f64) -> Option<Found> {
+pub fn hand(dpad: &Dpad, trace: &Trace, labels: &Labels, rotation_deg: f64) -> Option<PoseFits> {
     let known = directions(dpad, trace, labels);
     let total: f64 = known.iter().map(|it| it.weight).sum();
     let mean = |of: fn(&Direction) -> [f64; 2]| {
@@ -59,15 +59,15 @@ pub fn hand(dpad: &Dpad, trace: &Trace, labels: &Labels, rotation_deg: f64) -> O
         return None;
     }
     let (a, b) = (along / spread, across / spread);
-    let at = |a: f64, b: f64| Hand {
+    let at = |a: f64, b: f64| HandPose {
         centre_mm: [p[0] - (a * u[0] - b * u[1]), p[1] - (b * u[0] + a * u[1])],
         rotation_deg: b.atan2(a).to_degrees(),
         radius_mm: a.hypot(b),
     };
     let (sin, cos) = rotation_deg.to_radians().sin_cos();
     let radius_mm = a * cos + b * sin;
-    let shifted = Hand { rotation_deg, ..at(radius_mm * cos, radius_mm * sin) };
-    Some(Found { shifted, turned: at(a, b) })
+    let shifted = HandPose { rotation_deg, ..at(radius_mm * cos, radius_mm * sin) };
+    Some(PoseFits { shifted, turned: at(a, b) })
 }
 
 /// The touches that meant one direction.
@@ -110,8 +110,8 @@ fn towards(dpad: &Dpad, controls: &[Binding]) -> Option<[f64; 2]> {
 fn place_mm(stretch: &Trace) -> Option<[f64; 2]> {
     let touched = || {
         stretch.moments().iter().filter_map(|moment| match &moment.heard {
-            Heard::Contact(contact) => Some(contact),
-            Heard::Nothing | Heard::Doubt => None,
+            TraceEvents::Contact(contact) => Some(contact),
+            TraceEvents::Nothing | TraceEvents::Doubt => None,
         })
     };
     let highest_n = touched().map(|contact| contact.fz_n).fold(0.0, f32::max);
@@ -136,13 +136,13 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tuning::trace::Moment;
+    use crate::tuning::trace::TracePoint;
     use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
     use tactpad_core::pipeline::mapping::read::shipped;
     use tactpad_core::time::StreamInstant;
 
     /// A hand that touches `names` in turn, three times each.
-    fn found(names: &[&str], centre_mm: [f64; 2], rotation_deg: f64) -> Option<Found> {
+    fn found(names: &[&str], centre_mm: [f64; 2], rotation_deg: f64) -> Option<PoseFits> {
         let profile = read(shipped::text("contra").unwrap(), OutputChoice::AsWritten).0.unwrap();
         let angle_deg = |name: &str| match name {
             "right" => 0.0,
@@ -155,9 +155,9 @@ mod tests {
         for (number, name) in names.iter().cycle().take(3 * names.len()).enumerate() {
             table += &format!("{number},{number}.5,{name}\n");
             let (sin, cos) = (angle_deg(name) + rotation_deg).to_radians().sin_cos();
-            moments.extend((0..400).map(|ms| Moment {
+            moments.extend((0..400).map(|ms| TracePoint {
                 at: StreamInstant::from_us(1_000_000 * number as u64 + 1_000 * ms),
-                heard: Heard::Contact(Contact {
+                heard: TraceEvents::Contact(Contact {
                     x_mm: (centre_mm[0] + 12.0 * cos) as f32,
                     y_mm: (centre_mm[1] + 12.0 * sin) as f32,
                     fz_n: 1.0,
@@ -172,7 +172,7 @@ mod tests {
     #[test]
     fn a_hand_is_found_by_two_directions_or_more() {
         for names in [&["right", "up", "left", "down"][..], &["up", "down"], &["right", "up+right", "up"]] {
-            let Hand { centre_mm: [x, y], rotation_deg, radius_mm } =
+            let HandPose { centre_mm: [x, y], rotation_deg, radius_mm } =
                 found(names, [3.0, -4.0], 20.0).unwrap().turned;
             let misses = [x - 3.0, y + 4.0, rotation_deg - 20.0, radius_mm - 12.0];
             assert!(misses.iter().all(|miss| miss.abs() < 1e-3), "{names:?} {misses:?}");

@@ -11,7 +11,7 @@ pub const AFTER_US: u64 = 100_000;
 
 /// What came for one label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Came {
+pub enum LabelOutcome {
     /// What that class means, once each, and nothing else.
     Class(usize),
     /// What was meant, but something of it more than once, and nothing else.
@@ -23,7 +23,7 @@ pub enum Came {
 /// What came for each label.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Score {
-    came: Vec<Came>,
+    came: Vec<LabelOutcome>,
     correct: usize,
     strays: usize,
 }
@@ -55,14 +55,14 @@ impl Score {
             .zip(pressed)
             .map(|(label, pressed)| classified(labels, label.class, pressed))
             .collect();
-        let is_correct = |(came, class): &(&Came, usize)| **came == Came::Class(*class);
+        let is_correct = |(came, class): &(&LabelOutcome, usize)| **came == LabelOutcome::Class(*class);
         let correct =
             came.iter().zip(labels.labels().iter().map(|label| label.class)).filter(is_correct).count();
         Self { came, correct, strays }
     }
 
     /// What came, label by label.
-    pub fn came(&self) -> &[Came] {
+    pub fn came(&self) -> &[LabelOutcome] {
         &self.came
     }
 
@@ -89,14 +89,14 @@ pub(super) fn down(event: &OutputEvent) -> Option<Binding> {
     is_down.then_some(Binding { device, code, value })
 }
 
-fn classified(labels: &Labels, meant: usize, pressed: Vec<Binding>) -> Came {
+fn classified(labels: &Labels, meant: usize, pressed: Vec<Binding>) -> LabelOutcome {
     let count = pressed.len();
     let pressed = in_order(pressed);
     let class = labels.classes().iter().position(|class| class.controls == pressed);
     match class {
-        Some(class) if pressed.len() == count => Came::Class(class),
-        Some(class) if class == meant => Came::Repeated,
-        _ => Came::Other,
+        Some(class) if pressed.len() == count => LabelOutcome::Class(class),
+        Some(class) if class == meant => LabelOutcome::Repeated,
+        _ => LabelOutcome::Other,
     }
 }
 
@@ -104,7 +104,7 @@ fn classified(labels: &Labels, meant: usize, pressed: Vec<Binding>) -> Came {
 mod tests {
     use super::*;
     use crate::tuning::confusion::Confusion;
-    use crate::tuning::trace::{Heard, Moment};
+    use crate::tuning::trace::{TraceEvents, TracePoint};
     use tactpad_core::pipeline::mapping::read::check::{OutputChoice, read};
     use tactpad_core::pipeline::mapping::read::shipped;
     use tactpad_core::quantity::Contact;
@@ -120,13 +120,13 @@ mod tests {
                 fz_n,
                 ..Contact::default()
             };
-            let heard = press.map_or(Heard::Nothing, |press| Heard::Contact(contact(press)));
-            Moment { at: StreamInstant::from_us(1_000 * ms), heard }
+            let heard = press.map_or(TraceEvents::Nothing, |press| TraceEvents::Contact(contact(press)));
+            TracePoint { at: StreamInstant::from_us(1_000 * ms), heard }
         };
         Trace::new((0..4_000).map(moment).collect())
     }
 
-    fn scored(presses: &[([f32; 2], f32, u64, u64)], table: &str) -> (Vec<Came>, usize, String) {
+    fn scored(presses: &[([f32; 2], f32, u64, u64)], table: &str) -> (Vec<LabelOutcome>, usize, String) {
         let profile = read(shipped::text("super-mario").unwrap(), OutputChoice::AsWritten).0.unwrap();
         let labels = Labels::read(&format!("begin_s,end_s,meant\n{table}"), &profile).unwrap();
         let score = Score::of(&profile, &trace(presses), &labels, 100_000);
@@ -141,8 +141,8 @@ mod tests {
         let presses = [(RIGHT, 1.0, 1_000, 1_200), (MIDDLE, 1.0, 1_500, 1_600), (RIGHT, 3.0, 2_000, 2_200)];
         let table = "0.9,1.3,right\n1.4,1.7,none\n1.9,2.3,right\n2.5,2.6,none\n3,3.5,BTN_SOUTH\n";
         let (came, strays, shown) = scored(&presses, table);
-        let [right, none] = [1, 2].map(Came::Class);
-        assert_eq!(came, [right, none, Came::Other, none, none]);
+        let [right, none] = [1, 2].map(LabelOutcome::Class);
+        assert_eq!(came, [right, none, LabelOutcome::Other, none, none]);
         assert_eq!(strays, 0);
         let wanted = "\
 meant      BTN_SOUTH  right  none  something else
@@ -155,20 +155,20 @@ none               ·      ·     2               ·";
     #[test]
     fn once_is_once() {
         let presses = [(MIDDLE, 3.0, 1_000, 1_100), (MIDDLE, 3.0, 1_300, 1_400)];
-        assert_eq!(scored(&presses, "0.9,1.6,BTN_SOUTH\n").0, [Came::Repeated]);
-        assert_eq!(scored(&presses, "0.9,1.2,BTN_SOUTH\n1.2,1.6,BTN_SOUTH\n").0, [Came::Class(0); 2]);
+        assert_eq!(scored(&presses, "0.9,1.6,BTN_SOUTH\n").0, [LabelOutcome::Repeated]);
+        assert_eq!(scored(&presses, "0.9,1.2,BTN_SOUTH\n1.2,1.6,BTN_SOUTH\n").0, [LabelOutcome::Class(0); 2]);
     }
 
     #[test]
     fn a_tap_after_the_label_is_its_own_for_a_while() {
         // It comes when the force is gone: at 1.1 s.
         let presses = [(MIDDLE, 3.0, 1_000, 1_100)];
-        assert_eq!(scored(&presses, "0.9,1,BTN_SOUTH\n").0, [Came::Class(0)]);
+        assert_eq!(scored(&presses, "0.9,1,BTN_SOUTH\n").0, [LabelOutcome::Class(0)]);
         let (came, strays, _) = scored(&presses, "0.9,0.999,BTN_SOUTH\n");
-        assert_eq!((came, strays), (vec![Came::Class(1)], 1));
+        assert_eq!((came, strays), (vec![LabelOutcome::Class(1)], 1));
         assert_eq!(
             scored(&presses, "0.9,1.05,none\n1.08,1.2,BTN_SOUTH\n").0,
-            [Came::Class(1), Came::Class(0)]
+            [LabelOutcome::Class(1), LabelOutcome::Class(0)]
         );
     }
 }

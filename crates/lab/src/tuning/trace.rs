@@ -12,7 +12,7 @@ use tactpad_core::time::{HostInstant, StreamInstant};
 
 /// What a sample showed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Heard {
+pub enum TraceEvents {
     /// A touch.
     Contact(Contact),
     /// Nothing on the pad.
@@ -23,27 +23,27 @@ pub enum Heard {
 
 /// A sample of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct TracePoint {
     /// Since the recording's first sample, by the pad's clock.
     pub at: StreamInstant,
     /// What it showed.
-    pub heard: Heard,
+    pub heard: TraceEvents,
 }
 
 /// A recording as far as a mapping sees it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trace {
-    moments: Vec<Moment>,
+    moments: Vec<TracePoint>,
 }
 
 impl Trace {
     /// Of these samples, which must be in order of time.
-    pub const fn new(moments: Vec<Moment>) -> Self {
+    pub const fn new(moments: Vec<TracePoint>) -> Self {
         Self { moments }
     }
 
     /// The samples, in order of time.
-    pub fn moments(&self) -> &[Moment] {
+    pub fn moments(&self) -> &[TracePoint] {
         &self.moments
     }
 
@@ -72,7 +72,7 @@ impl Trace {
     /// The same with fewer samples: none follows another within `period_us`, but where a touch begins or ends.
     #[must_use]
     pub fn thinned(&self, period_us: u64) -> Self {
-        let mut moments: Vec<Moment> = Vec::new();
+        let mut moments: Vec<TracePoint> = Vec::new();
         for moment in &self.moments {
             let is_new = moments.last().is_none_or(|last| {
                 let turns = std::mem::discriminant(&last.heard) != std::mem::discriminant(&moment.heard);
@@ -89,17 +89,17 @@ impl Trace {
     pub fn play(&self, profile: &Profile, mut see: impl FnMut(&OutputEvent)) {
         let (mut engine, mut ledger) = (Engine::new(profile.clone()), Ledger::new(profile));
         let mut edges = Edges::new();
-        let end = self.moments.last().map(|last| Moment { heard: Heard::Nothing, ..*last });
+        let end = self.moments.last().map(|last| TracePoint { heard: TraceEvents::Nothing, ..*last });
         // A tap is stated once; the step behind the lift tells that it is over.
         for moment in self.moments.iter().chain(&end).chain(&end) {
             settle(&mut ledger, moment.at, &mut see);
             edges.clear();
             match &moment.heard {
-                Heard::Contact(contact) => {
+                TraceEvents::Contact(contact) => {
                     ledger.update(moment.at, &engine.step(moment.at, Some(contact)), &mut edges);
                 }
-                Heard::Nothing => ledger.update(moment.at, &engine.step(moment.at, None), &mut edges),
-                Heard::Doubt => {
+                TraceEvents::Nothing => ledger.update(moment.at, &engine.step(moment.at, None), &mut edges),
+                TraceEvents::Doubt => {
                     engine.cancel();
                     ledger.release_all(moment.at, &mut edges);
                 }
@@ -126,7 +126,7 @@ pub struct Tracer {
     /// Of the recording's first sample.
     begin: Option<StreamInstant>,
     samples: u64,
-    moments: Vec<Moment>,
+    moments: Vec<TracePoint>,
 }
 
 impl Tracer {
@@ -162,9 +162,9 @@ impl Tracer {
             left = self.pipeline.apply(now, call, &mut NoProbe);
         }
         let heard = match (self.pipeline.phase(), self.pipeline.contact()) {
-            (Phase::Playing, Some(contact)) => Heard::Contact(*contact),
-            (Phase::Playing, None) => Heard::Nothing,
-            _ => Heard::Doubt,
+            (Phase::Playing, Some(contact)) => TraceEvents::Contact(*contact),
+            (Phase::Playing, None) => TraceEvents::Nothing,
+            _ => TraceEvents::Doubt,
         };
         let samples = self.pipeline.health().samples;
         if samples > self.samples {
@@ -172,13 +172,13 @@ impl Tracer {
         }
         let is_new = match heard {
             // It is told by whatever brings it, and once.
-            Heard::Doubt => self.moments.last().is_some_and(|last| last.heard != Heard::Doubt),
-            Heard::Contact(_) | Heard::Nothing => samples > self.samples,
+            TraceEvents::Doubt => self.moments.last().is_some_and(|last| last.heard != TraceEvents::Doubt),
+            TraceEvents::Contact(_) | TraceEvents::Nothing => samples > self.samples,
         };
         self.samples = samples;
         if let Some(begin) = self.begin.filter(|_| is_new) {
             let at = StreamInstant::from_us(self.pipeline.at().us_since(begin));
-            self.moments.push(Moment { at, heard });
+            self.moments.push(TracePoint { at, heard });
         }
     }
 }

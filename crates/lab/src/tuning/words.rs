@@ -9,7 +9,7 @@ use tactpad_core::toml_text::edit::Table;
 
 /// A changed number for people and programs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Told {
+pub struct ChangedNumber {
     /// The key with the table it stands in, as `button.1.press_n`.
     pub key: String,
     /// What it was; nothing where it was not there and meant nothing then.
@@ -68,7 +68,7 @@ pub fn path((table, key): Key) -> String {
     }
 }
 
-impl Told {
+impl ChangedNumber {
     /// Says what a change means in this profile.
     pub fn of(change: &Change, profile: &Profile) -> Self {
         let Change { table, key, from, to } = *change;
@@ -116,13 +116,13 @@ mod tests {
         assert!(knobs.len() >= 18, "{}", knobs.len());
         for knob in knobs {
             let (table, key) = knob.key;
-            let told = Told::of(&Change { table, key, from: knob.present, to: 1.0 }, &profile);
+            let told = ChangedNumber::of(&Change { table, key, from: knob.present, to: 1.0 }, &profile);
             assert!(!told.words.contains("it is"), "{}", told.words);
             assert_eq!(knob.values.iter().filter(|value| **value == knob.present).count(), 1, "{key}");
         }
         let change =
             Change { table: Table::Listed("zone", 0), key: "outer_radius_mm", from: Some(15.0), to: 6.5 };
-        let told = Told::of(&change, &profile);
+        let told = ChangedNumber::of(&change, &profile);
         assert_eq!(
             told.words,
             "zone \"ring\": it ends 6.5 mm from the centre; before: 15 mm (outer_radius_mm)"
@@ -144,7 +144,7 @@ mod tests {
         let listed = [("stick", "release_force_n"), ("button", "hair_n")]
             .map(|(name, key)| (Table::Listed(name, 0), key));
         for (table, key) in levels.iter().map(|level| level.key).chain(releases).chain(listed) {
-            let told = Told::of(&Change { table, key, from: Some(2.0), to: 1.0 }, &profile);
+            let told = ChangedNumber::of(&Change { table, key, from: Some(2.0), to: 1.0 }, &profile);
             assert!(!told.words.contains("it is 1 N"), "{}", told.words);
         }
     }

@@ -12,7 +12,7 @@ use tactpad_core::pad::device::{Device, GAUGES, Module};
 
 use super::brick::{DOFS, Stiffness, box_stiffness, forces};
 use super::mesh::{Brick, Fineness, Mesh};
-use super::system::{Factor, Freedoms, SolveError, add_holding_forces, gathered};
+use super::system::{DegreesOfFreedom, Factor, SolveError, add_holding_forces, gathered};
 
 use self::gauge::gauge_weights;
 
@@ -83,7 +83,7 @@ pub struct Solution<'d> {
     module: &'d Module,
     /// The mesh it was solved on.
     pub mesh: Mesh,
-    freedoms: Freedoms,
+    freedoms: DegreesOfFreedom,
     factor: Factor,
     /// Free displacements, one column for each mode.
     fields: Mat<f64>,
@@ -104,7 +104,7 @@ impl<'d> Solution<'d> {
     /// # Errors
     /// As for [`Self::of`].
     pub fn on(mesh: Mesh, device: &'d Device, module: &'d Module) -> Result<Self, SolveError> {
-        let freedoms = Freedoms::new(&mesh, |node| mesh.is_fixed(node) || mesh.is_top(node));
+        let freedoms = DegreesOfFreedom::new(&mesh, |node| mesh.is_fixed(node) || mesh.is_top(node));
         let factor = Factor::of(&mesh, &freedoms, |brick| stiffness_of(device, module, brick))?;
         let fields = Mat::zeros(freedoms.unknowns(), MODES);
         let mut solution = Self { device, module, mesh, freedoms, factor, fields };

@@ -1,4 +1,4 @@
-//! Natural frequencies beside closed forms, and laws that they keep.
+//! NaturalModes frequencies beside closed forms, and laws that they keep.
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene fails")]
 
 use std::f64::consts::{PI, TAU};
@@ -10,7 +10,7 @@ use tactpad_core::pad::device::{Device, Material};
 use tactpad_mechanics::mesh::Fineness;
 use tactpad_mechanics::plate::{FIELDS, Plate, Rigidity, masses_t};
 use tactpad_mechanics::simulator::{PLATE_DEGREE, Simulator};
-use tactpad_mechanics::vibration::{Natural, NaturalMotion};
+use tactpad_mechanics::vibration::{NaturalModes, NaturalMotion};
 
 /// Leissa's Poisson ratio.
 const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.33, density_kg_m3: 7_850.0 };
@@ -32,7 +32,8 @@ fn free_plate(thickness_mm: f64) -> Vec<f64> {
         Mat::from_fn(FIELDS * size, FIELDS * few, |i, j| f64::from(u8::from(i == j / few * size + j % few)));
     let mass =
         |moved: &Mat<f64>| Mat::from_fn(moved.nrows(), moved.ncols(), |i, j| masses[i] * moved[(i, j)]);
-    let found = Natural::slowest(6 + FREE_PLATE.len(), start, |loads| Ok(plate.solve(loads)), mass).unwrap();
+    let found =
+        NaturalModes::slowest(6 + FREE_PLATE.len(), start, |loads| Ok(plate.solve(loads)), mass).unwrap();
     let frequencies: Vec<f64> = found.frequencies_hz().collect();
     assert!(frequencies[5] < 0.01 * frequencies[6], "six rigid motions: {frequencies:?}");
     frequencies[6..].to_vec()

@@ -11,14 +11,14 @@ use tactpad_lab::rig::measurement::{Measurement, carry_on};
 
 /// What was measured, and what was true, row for row.
 #[derive(Clone, Debug)]
-pub(super) struct CarriedOut {
+pub(super) struct ExecutedPlan {
     pub(super) recording: Recording,
     /// As it was measured, for a decoder that takes raw channels.
     raw: Vec<Row>,
     pub(super) truths: Vec<Label>,
 }
 
-impl CarriedOut {
+impl ExecutedPlan {
     /// The paper's plan on the new pad: what decoders are fitted to.
     pub(super) fn calibration(subject: &Subject<'_>) -> Self {
         Self::of(subject, calibrated(subject).0)

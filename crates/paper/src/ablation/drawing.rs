@@ -1,14 +1,14 @@
 //! Error against calibration samples and against force, and the six regions of Figure 11 in time.
 
-use super::entries::{Entry, Method, Samples};
-use super::regions::{Moment, REGIONS, TOUCH_S};
-use super::unseen::{Judged, Unseen};
+use super::entries::{AblationEntry, Method, Samples};
+use super::regions::{REGIONS, TOUCH_S, TouchMoment};
+use super::unseen::{Unseen, UnseenContacts};
 use crate::metrology::table3::PublishedErrors;
 use tactpad_core::network::numbers;
 use tactpad_core::numeric::statistics::mean;
 use tactpad_core::quantity::Contact;
 use tactpad_core::tables::measured::Label;
-use tactpad_plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
+use tactpad_plot::chart::{Chart, GuideLine, GuidePlace, Series, SeriesLook, Side, Value};
 use tactpad_plot::figure::Figure;
 use tactpad_plot::scale::Scale;
 
@@ -23,14 +23,14 @@ const HEAD: f64 = 40.0;
 const FORCE_BIN_N: f64 = 0.5;
 
 /// A decoder with what it made of the unseen contacts.
-pub type Outcome<'j> = (&'j Entry, &'j Judged);
+pub type DecoderContacts<'j> = (&'j AblationEntry, &'j UnseenContacts);
 
 /// One of the two errors that are drawn.
 #[derive(Clone, Copy)]
 pub(super) struct Quantity {
     pub(super) label: &'static str,
     pub(super) of: fn(&Contact, &Label) -> f64,
-    judged: fn(&Judged) -> f64,
+    judged: fn(&UnseenContacts) -> f64,
     paper: fn(&PublishedErrors) -> f64,
     least: fn(&Unseen, &[Label]) -> f64,
 }
@@ -60,9 +60,9 @@ fn off(found: f32, truth: f64) -> f64 {
 }
 
 /// Error against calibration samples: position beside force.
-pub fn by_samples(unseen: &Unseen, outcomes: &[Outcome<'_>]) -> Figure {
+pub fn by_samples(unseen: &Unseen, outcomes: &[DecoderContacts<'_>]) -> Figure {
     // What learnt from no measured contact has no place on a logarithmic axis.
-    let measured: Vec<Outcome<'_>> =
+    let measured: Vec<DecoderContacts<'_>> =
         outcomes.iter().copied().filter(|(entry, _)| entry.samples.measured() > 0).collect();
     let title = format!("Error by calibration samples, unseen contacts of the {} plan", unseen.plan);
     beside(&title, |quantity| {
@@ -77,14 +77,15 @@ pub fn by_samples(unseen: &Unseen, outcomes: &[Outcome<'_>]) -> Figure {
 }
 
 /// A curve for each method, the network's by kinds of load, and the paper's points.
-fn curves(measured: &[Outcome<'_>], quantity: &Quantity) -> Vec<Series> {
-    let curve = |name: &str, is_in: &dyn Fn(&Entry) -> bool| {
+fn curves(measured: &[DecoderContacts<'_>], quantity: &Quantity) -> Vec<Series> {
+    let curve = |name: &str, is_in: &dyn Fn(&AblationEntry) -> bool| {
         let values = measured.iter().filter(|(entry, _)| is_in(entry));
         let values = values.map(|(entry, judged)| [samples(entry), (quantity.judged)(judged)]);
         series(name, SeriesLook::LineAndPoints, values)
     };
     let of = |method: Method| curve(method.name(), &|entry| entry.method == method && entry.is_drawn());
-    let by_load = |entry: &Entry| entry.method == Method::Network && (!entry.is_drawn() || entry.has_all());
+    let by_load =
+        |entry: &AblationEntry| entry.method == Method::Network && (!entry.is_drawn() || entry.has_all());
     let papers = measured.iter().filter_map(|(entry, _)| Some((entry, entry.paper.as_ref()?)));
     let papers = papers.map(|(entry, paper)| [samples(entry), (quantity.paper)(paper)]);
     let methods = [Method::Network, Method::Knn, Method::Linear, Method::Wrench, Method::Inverse];
@@ -94,14 +95,15 @@ fn curves(measured: &[Outcome<'_>], quantity: &Quantity) -> Vec<Series> {
     curves
 }
 
-fn samples(entry: &Entry) -> f64 {
+fn samples(entry: &AblationEntry) -> f64 {
     entry.samples.measured() as f64
 }
 
 /// The bound, and the network that knows the simulation only.
-fn guides(unseen: &Unseen, outcomes: &[Outcome<'_>], quantity: &Quantity) -> Vec<Guide> {
-    let guide = |value: f64, label: &str| Guide { at: GuidePlace::Y(value), label: label.to_owned() };
-    let is_simulated = |entry: &Entry| entry.method == Method::Network && entry.samples == Samples::Simulated;
+fn guides(unseen: &Unseen, outcomes: &[DecoderContacts<'_>], quantity: &Quantity) -> Vec<GuideLine> {
+    let guide = |value: f64, label: &str| GuideLine { at: GuidePlace::Y(value), label: label.to_owned() };
+    let is_simulated =
+        |entry: &AblationEntry| entry.method == Method::Network && entry.samples == Samples::Simulated;
     let simulated = outcomes.iter().find(|(entry, _)| is_simulated(entry));
     let simulated = simulated.map(|(_, judged)| guide((quantity.judged)(judged), "network, simulation only"));
     let least = guide((quantity.least)(unseen, unseen.truths()), "least that the noise allows");
@@ -109,14 +111,14 @@ fn guides(unseen: &Unseen, outcomes: &[Outcome<'_>], quantity: &Quantity) -> Vec
 }
 
 /// Error against the contact's force, of the decoders that learnt from the whole plan: position beside force.
-pub fn by_force(unseen: &Unseen, outcomes: &[Outcome<'_>]) -> Figure {
+pub fn by_force(unseen: &Unseen, outcomes: &[DecoderContacts<'_>]) -> Figure {
     let order = in_order_of_force(unseen.truths());
     let bin = |index: &usize| (unseen.truths()[*index].resultant_n() / FORCE_BIN_N).round();
     let parts: Vec<&[usize]> = order.chunk_by(|one, next| bin(one) == bin(next)).collect();
     let truths = |part: &[usize]| part.iter().map(|index| unseen.truths()[*index]).collect::<Vec<_>>();
     let force_n = |part: &[usize]| mean(part.iter().map(|index| unseen.truths()[*index].resultant_n()));
     beside(&format!("Error by force, unseen contacts of the {} plan", unseen.plan), |quantity| {
-        let line = |(entry, judged): &Outcome<'_>| {
+        let line = |(entry, judged): &DecoderContacts<'_>| {
             let error = |index: &usize| (quantity.of)(&judged.found[*index], &unseen.truths()[*index]);
             let values = parts.iter().map(|part| [force_n(part), mean(part.iter().map(error))]);
             series(&entry.to_string(), SeriesLook::LineAndPoints, values)
@@ -139,7 +141,7 @@ fn in_order_of_force(truths: &[Label]) -> Vec<usize> {
 
 /// The touches of the regions, number by number over the time: true, and as each decoder has it. Where nothing touches, a
 /// decoder has no place.
-pub fn by_region(decoded: &[(String, Vec<Moment>)]) -> Figure {
+pub fn by_region(decoded: &[(String, Vec<TouchMoment>)]) -> Figure {
     let names = ["x in mm", "y in mm", "Fx in N", "Fy in N", "Fz in N"];
     let title = title();
     let mut page = Figure::new(STRIP_WIDTH, names.len() as f64 * STRIP_HEIGHT + HEAD, title.clone());
@@ -159,8 +161,8 @@ fn title() -> String {
     format!("Pressed in turn: {}; shear turns once round", names.join(", "))
 }
 
-fn strip(decoded: &[(String, Vec<Moment>)], number: usize, name: &str) -> Chart {
-    let value = |moment: &Moment, contact: [f64; 5]| {
+fn strip(decoded: &[(String, Vec<TouchMoment>)], number: usize, name: &str) -> Chart {
+    let value = |moment: &TouchMoment, contact: [f64; 5]| {
         let touches = moment.truth.fz_n > 0.0 || number > 1;
         [moment.t_s, if touches { contact[number] } else { f64::NAN }]
     };
@@ -174,7 +176,7 @@ fn strip(decoded: &[(String, Vec<Moment>)], number: usize, name: &str) -> Chart 
         series(&named(name), SeriesLook::ThinDashes, values)
     });
     let starts = (1_u32..).take(REGIONS.len() - 1).map(|index| TOUCH_S * f64::from(index));
-    let guides = starts.map(|t_s| Guide { at: GuidePlace::X(t_s), label: String::new() });
+    let guides = starts.map(|t_s| GuideLine { at: GuidePlace::X(t_s), label: String::new() });
     Chart {
         width: STRIP_WIDTH,
         // The truth lies below, so that what covers it is seen.

@@ -51,7 +51,7 @@ pub enum Samples {
 
 /// One row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Entry {
+pub struct AblationEntry {
     /// Its kind of decoder.
     pub method: Method,
     /// Its training samples.
@@ -65,7 +65,7 @@ pub struct Entry {
 }
 
 /// The paper's Table 3 in its order, its series of 162 to 648 contacts, and our own decoders.
-pub const ENTRIES: &[Entry] = &[
+pub const ENTRIES: &[AblationEntry] = &[
     published(Method::Network, Samples::Untared, NETWORK_SIMULATED),
     entry(Method::Network, Samples::Simulated),
     conflicting(Method::Network, Samples::First(NORMAL), NETWORK_216, errors(2.77, 0.14)),
@@ -101,12 +101,12 @@ pub const ENTRIES: &[Entry] = &[
     entry(Method::Inverse, Samples::Drawn(CONTACTS)),
 ];
 
-const fn entry(method: Method, samples: Samples) -> Entry {
-    Entry { method, samples, paper: None, conflict: None }
+const fn entry(method: Method, samples: Samples) -> AblationEntry {
+    AblationEntry { method, samples, paper: None, conflict: None }
 }
 
-const fn published(method: Method, samples: Samples, paper: PublishedErrors) -> Entry {
-    Entry { paper: Some(paper), ..entry(method, samples) }
+const fn published(method: Method, samples: Samples, paper: PublishedErrors) -> AblationEntry {
+    AblationEntry { paper: Some(paper), ..entry(method, samples) }
 }
 
 const fn conflicting(
@@ -114,8 +114,8 @@ const fn conflicting(
     samples: Samples,
     paper: PublishedErrors,
     reached: PublishedErrors,
-) -> Entry {
-    Entry { conflict: Some(reached), ..published(method, samples, paper) }
+) -> AblationEntry {
+    AblationEntry { conflict: Some(reached), ..published(method, samples, paper) }
 }
 
 const fn errors(position_mae_mm: f64, force_mae_n: f64) -> PublishedErrors {
@@ -155,7 +155,7 @@ impl Samples {
     }
 }
 
-impl Entry {
+impl AblationEntry {
     /// What was measured is a sample of all that the plan has.
     pub const fn is_drawn(&self) -> bool {
         matches!(self.samples, Samples::Drawn(_))
@@ -180,7 +180,7 @@ impl fmt::Display for Samples {
     }
 }
 
-impl fmt::Display for Entry {
+impl fmt::Display for AblationEntry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, {}", self.method.name(), self.samples)
     }
@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn what_is_published_gets_better_with_each_contact() {
-        let network: Vec<&Entry> =
+        let network: Vec<&AblationEntry> =
             ENTRIES.iter().filter(|entry| entry.method == Method::Network && entry.paper.is_some()).collect();
         let falls = |of: fn(&PublishedErrors) -> f64| {
             network.windows(2).all(|pair| {

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::carried_out::CarriedOut;
-use super::entries::{Entry, Method, Samples};
+use super::carried_out::ExecutedPlan;
+use super::entries::{AblationEntry, Method, Samples};
 use super::{Pad, Subject};
 use crate::scdf::adaptation::{self, TooFew, adapt};
 use crate::scdf::simulation;
@@ -21,9 +21,9 @@ use tactpad_lab::calibration::regression::{neighbours, regression};
 
 /// Why a decoder cannot be fitted.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unfitted {
+pub struct DecoderFitError {
     /// Which.
-    pub entry: Entry,
+    pub entry: AblationEntry,
     /// Why.
     pub why: Reason,
 }
@@ -37,7 +37,7 @@ pub enum Reason {
     Network(TooFew),
 }
 
-impl fmt::Display for Unfitted {
+impl fmt::Display for DecoderFitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.entry)?;
         match &self.why {
@@ -47,16 +47,16 @@ impl fmt::Display for Unfitted {
     }
 }
 
-impl std::error::Error for Unfitted {}
+impl std::error::Error for DecoderFitError {}
 
 /// Everything that a decoder can learn from.
-struct Known<'p> {
+struct TrainingData<'p> {
     subject: Subject<'p>,
     /// After stage I.
     network: &'p Network,
     simulated: Vec<Row>,
     /// The paper's plan.
-    measured: CarriedOut,
+    measured: ExecutedPlan,
 }
 
 /// Fits all decoders, as many at once as there are processors. `network` is that of stage I, for tared channels. `report`
@@ -67,24 +67,24 @@ struct Known<'p> {
 pub fn decoders(
     subject: Subject<'_>,
     network: &Network,
-    entries: &[Entry],
+    entries: &[AblationEntry],
     report: impl Fn(usize) + Sync,
-) -> Result<Vec<Decoder>, Unfitted> {
-    let known = Known::of(subject, network);
+) -> Result<Vec<Decoder>, DecoderFitError> {
+    let known = TrainingData::of(subject, network);
     let done = AtomicUsize::new(0);
-    let fitted = |entry: &Entry| {
-        let decoder = known.decoder(entry).map_err(|why| Unfitted { entry: *entry, why })?;
+    let fitted = |entry: &AblationEntry| {
+        let decoder = known.decoder(entry).map_err(|why| DecoderFitError { entry: *entry, why })?;
         report(done.fetch_add(1, Ordering::Relaxed) + 1);
         Ok(decoder)
     };
     entries.par_iter().map(fitted).collect()
 }
 
-impl<'p> Known<'p> {
+impl<'p> TrainingData<'p> {
     fn of(subject: Subject<'p>, network: &'p Network) -> Self {
         let designed = subject.designed;
         let simulated = simulation::examples(designed.device, designed.field, subject.seed);
-        let measured = CarriedOut::calibration(&subject);
+        let measured = ExecutedPlan::calibration(&subject);
         Self { subject, network, simulated: simulated.iter().map(row).collect(), measured }
     }
 
@@ -107,7 +107,7 @@ impl<'p> Known<'p> {
         }
     }
 
-    fn decoder(&self, entry: &Entry) -> Result<Decoder, Reason> {
+    fn decoder(&self, entry: &AblationEntry) -> Result<Decoder, Reason> {
         let (rows, zero) = (|| self.rows(entry.samples), entry.samples.zero());
         let fitted = match entry.method {
             Method::Statics => Ok(shipped::statics()),

@@ -1,6 +1,6 @@
 //! Where on the plate decoders are wrong.
 
-use super::drawing::{Outcome, QUANTITIES, Quantity};
+use super::drawing::{DecoderContacts, QUANTITIES, Quantity};
 use super::unseen::Unseen;
 use tactpad_plot::bands::Bands;
 use tactpad_plot::figure::Figure;
@@ -15,7 +15,7 @@ const NODES: usize = 61;
 const SPREAD_MM: f64 = 4.0;
 
 /// Mean errors around each place: a column for each decoder, position above force.
-pub fn over_plate(unseen: &Unseen, outcomes: &[Outcome<'_>], reach_mm: f64) -> Figure {
+pub fn over_plate(unseen: &Unseen, outcomes: &[DecoderContacts<'_>], reach_mm: f64) -> Figure {
     let rows = QUANTITIES.map(|quantity| row(unseen, outcomes, reach_mm, &quantity).figure());
     let [width, height] = rows[0].size();
     let mut page =
@@ -26,7 +26,7 @@ pub fn over_plate(unseen: &Unseen, outcomes: &[Outcome<'_>], reach_mm: f64) -> F
     page
 }
 
-fn row(unseen: &Unseen, outcomes: &[Outcome<'_>], reach_mm: f64, quantity: &Quantity) -> Multiples {
+fn row(unseen: &Unseen, outcomes: &[DecoderContacts<'_>], reach_mm: f64, quantity: &Quantity) -> Multiples {
     let grids: Vec<Grid> = outcomes.iter().map(|outcome| grid(unseen, outcome, reach_mm, quantity)).collect();
     let spans = grids.iter().filter_map(Grid::span);
     let span = spans.reduce(|one, other| [one[0].min(other[0]), one[1].max(other[1])]);
@@ -52,7 +52,7 @@ fn row(unseen: &Unseen, outcomes: &[Outcome<'_>], reach_mm: f64, quantity: &Quan
 }
 
 /// Means around each place, the nearer contacts counting more.
-fn grid(unseen: &Unseen, (_, judged): &Outcome<'_>, reach_mm: f64, quantity: &Quantity) -> Grid {
+fn grid(unseen: &Unseen, (_, judged): &DecoderContacts<'_>, reach_mm: f64, quantity: &Quantity) -> Grid {
     let pairs = || judged.found.iter().zip(unseen.truths());
     let errors: Vec<_> =
         pairs().map(|(found, truth)| ([truth.x_mm, truth.y_mm], (quantity.of)(found, truth))).collect();

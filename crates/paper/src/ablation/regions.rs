@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use super::Subject;
-use super::carried_out::CarriedOut;
+use super::carried_out::ExecutedPlan;
 use tactpad_core::pipeline::contact::Decoder;
 use tactpad_core::quantity::Contact;
 use tactpad_core::tables::measured::{Label, Row, Table, zero};
@@ -40,12 +40,12 @@ const SHEAR_SHARE: f64 = 0.35;
 /// The six touches on the pad, and readings of the untouched pad before and after them.
 #[derive(Clone, Debug)]
 pub struct Touches {
-    carried_out: CarriedOut,
+    carried_out: ExecutedPlan,
 }
 
 /// A moment of the touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct TouchMoment {
     /// Since the first one.
     pub t_s: f64,
     /// The true contact.
@@ -59,17 +59,21 @@ impl Touches {
     pub fn of(subject: &Subject<'_>) -> Self {
         let patch = &subject.actual.device.contact;
         let plan = plan(patch.max_centre_radius_mm, patch.full_scale_n);
-        Self { carried_out: CarriedOut::afterwards(subject, &plan, subject.seed) }
+        Self { carried_out: ExecutedPlan::afterwards(subject, &plan, subject.seed) }
     }
 
     /// The decoded contacts, moment by moment.
-    pub fn decoded(&self, decoder: &Decoder) -> Vec<Moment> {
+    pub fn decoded(&self, decoder: &Decoder) -> Vec<TouchMoment> {
         let rows = self.carried_out.taken(decoder);
         let found = evaluation::decoded(decoder, &rows);
         let moments = rows.iter().zip(&self.carried_out.truths).zip(found);
         let moments = moments.filter(|((row, _), _)| row.trial.is_some()).enumerate();
         moments
-            .map(|(index, ((_, truth), found))| Moment { t_s: index as f64 / RATE_HZ, truth: *truth, found })
+            .map(|(index, ((_, truth), found))| TouchMoment {
+                t_s: index as f64 / RATE_HZ,
+                truth: *truth,
+                found,
+            })
             .collect()
     }
 }

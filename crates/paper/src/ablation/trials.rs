@@ -1,12 +1,12 @@
 //! All decoders, tried on contacts that none has seen.
 
 use super::Subject;
-use super::drawing::{self, Outcome};
+use super::drawing::{self, DecoderContacts};
 use super::entries::{ENTRIES, Method};
-use super::fitting::{Unfitted, decoders};
+use super::fitting::{DecoderFitError, decoders};
 use super::maps;
 use super::regions::Touches;
-use super::unseen::{Judged, Unseen, unseen};
+use super::unseen::{Unseen, UnseenContacts, unseen};
 use tactpad_core::network::Network;
 use tactpad_core::pipeline::contact::Decoder;
 use tactpad_plot::figure::Figure;
@@ -18,7 +18,7 @@ pub struct Trials {
     /// The decoders, in the order of [`ENTRIES`].
     pub decoders: Vec<Decoder>,
     /// For each of the unseen tables, for each decoder.
-    pub judged: [Vec<Judged>; 2],
+    pub judged: [Vec<UnseenContacts>; 2],
 }
 
 impl Trials {
@@ -31,7 +31,7 @@ impl Trials {
         subject: &Subject<'_>,
         network: &Network,
         report: impl Fn(usize) + Sync,
-    ) -> Result<Self, Unfitted> {
+    ) -> Result<Self, DecoderFitError> {
         let decoders = decoders(*subject, network, ENTRIES, report)?;
         let unseen = unseen(subject);
         let judged = unseen.each_ref().map(|table| decoders.iter().map(|it| table.judged(it)).collect());
@@ -42,8 +42,8 @@ impl Trials {
     pub fn figures(&self, subject: &Subject<'_>) -> Vec<(String, Figure)> {
         let mut figures = vec![("ablation-regions".to_owned(), self.regions(subject))];
         for (unseen, judged) in self.unseen.iter().zip(&self.judged) {
-            let outcomes: Vec<Outcome<'_>> = ENTRIES.iter().zip(judged).collect();
-            let learnt: Vec<Outcome<'_>> =
+            let outcomes: Vec<DecoderContacts<'_>> = ENTRIES.iter().zip(judged).collect();
+            let learnt: Vec<DecoderContacts<'_>> =
                 outcomes.iter().copied().filter(|(entry, _)| entry.has_all()).collect();
             let reach_mm = subject.actual.device.contact.max_centre_radius_mm;
             figures.extend([

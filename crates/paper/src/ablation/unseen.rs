@@ -3,13 +3,13 @@
 use serde::Serialize;
 
 use super::Subject;
-use super::carried_out::CarriedOut;
+use super::carried_out::ExecutedPlan;
 use tactpad_core::pipeline::contact::Decoder;
 use tactpad_core::quantity::{Contact, Strain};
 use tactpad_core::tables::measured::{Label, Row, Table};
 use tactpad_core::tables::plans::{paper, recommended};
 use tactpad_lab::evaluation::{self, Errors, PerAxis};
-use tactpad_lab::rig::bound::{Bound, Reading};
+use tactpad_lab::rig::bound::{Bound, ContactReading};
 
 /// Static contacts of the pad with their truths.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub struct Unseen {
     pub plan: &'static str,
     /// The seed that drew them.
     pub seed: u64,
-    carried_out: CarriedOut,
+    carried_out: ExecutedPlan,
     /// Places of the contacts among its rows.
     contacts: Vec<usize>,
     /// Theirs.
@@ -39,7 +39,7 @@ pub struct Least {
 
 /// A decoder's contacts of an unseen table.
 #[derive(Clone, Debug)]
-pub struct Judged {
+pub struct UnseenContacts {
     /// The contacts that it found, in the order of [`Unseen::truths`].
     pub found: Vec<Contact>,
     /// Its errors.
@@ -63,7 +63,7 @@ pub fn unseen(subject: &Subject<'_>) -> [Unseen; 2] {
 
 impl Unseen {
     fn of(subject: &Subject<'_>, plan: &'static str, contacts: &Table, seed: u64) -> Self {
-        let carried_out = CarriedOut::afterwards(subject, contacts, seed);
+        let carried_out = ExecutedPlan::afterwards(subject, contacts, seed);
         let contacts = carried_out.recording.contacts();
         let truths = contacts.iter().map(|at| carried_out.truths[*at]).collect();
         let bound = Bound::new(subject.actual.device, subject.actual.field, seed);
@@ -77,7 +77,7 @@ impl Unseen {
 
     /// Cramér-Rao bound of the errors on some of the true contacts.
     pub fn least(&self, truths: &[Label]) -> Least {
-        let [x_mm, y_mm, fx_n, fy_n, fz_n] = self.bound.expected(truths, Reading::Mean);
+        let [x_mm, y_mm, fx_n, fy_n, fz_n] = self.bound.expected(truths, ContactReading::Mean);
         Least {
             position_mae_mm: (x_mm + y_mm) / 2.0,
             force_mae_n: (fx_n + fy_n + fz_n) / 3.0,
@@ -91,11 +91,11 @@ impl Unseen {
     }
 
     /// Decodes all of them.
-    pub fn judged(&self, decoder: &Decoder) -> Judged {
+    pub fn judged(&self, decoder: &Decoder) -> UnseenContacts {
         let rows = self.rows(decoder);
         let found = evaluation::decoded(decoder, &rows);
         let labels: Vec<Label> = rows.iter().map(|row| row.label).collect();
-        Judged {
+        UnseenContacts {
             by_truth: evaluation::errors(&found, &self.truths),
             by_labels: evaluation::errors(&found, &labels),
             coverage95: evaluation::coverage95(decoder, &rows, &self.truths),

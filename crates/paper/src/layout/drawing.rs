@@ -9,12 +9,12 @@ use super::swarm;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::device::pose::Pose;
 use tactpad_core::quantity::MODULES;
-use tactpad_plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
+use tactpad_plot::chart::{Chart, GuideLine, GuidePlace, Series, SeriesLook, Side, Value};
 use tactpad_plot::colour::Rgb;
 use tactpad_plot::figure::{Ends, Figure, Ink, Stroke, Text};
 use tactpad_plot::plan::Plan;
 use tactpad_plot::scale::Scale;
-use tactpad_plot::shape::{Look, Shape};
+use tactpad_plot::shape::{PaintStyle, Shape};
 
 const WIDTH: f64 = 480.0;
 const HEIGHT: f64 = 360.0;
@@ -65,7 +65,7 @@ pub fn swarms(radii: &Radii, first_seed: u64) -> Result<Figure, StudyError> {
     };
     let ruled = Chart {
         title: "Swarms over layouts that keep the rule".to_owned(),
-        guides: vec![Guide { at: GuidePlace::Y(-optimum_mm2), label: "closed form".to_owned() }],
+        guides: vec![GuideLine { at: GuidePlace::Y(-optimum_mm2), label: "closed form".to_owned() }],
         ..costs(radii, first_seed, swarm::costs)?
     };
     let mut both = Figure::new(2.0 * WIDTH, HEIGHT, "Best cost of the particle swarm by iteration");
@@ -75,10 +75,10 @@ pub fn swarms(radii: &Radii, first_seed: u64) -> Result<Figure, StudyError> {
 }
 
 /// The best cost of each of a swarm's rounds, for a seed.
-type Course = fn(&Radii, u64) -> Result<Vec<f64>, argmin::core::Error>;
+type SwarmCosts = fn(&Radii, u64) -> Result<Vec<f64>, argmin::core::Error>;
 
 /// The best costs of one kind of swarms by iteration, a curve for each seed.
-fn costs(radii: &Radii, first_seed: u64, of: Course) -> Result<Chart, StudyError> {
+fn costs(radii: &Radii, first_seed: u64, of: SwarmCosts) -> Result<Chart, StudyError> {
     let curve = |seed: u64| {
         let costs_mm2 = of(radii, seed).map_err(|error| StudyError::Swarm(error.to_string()))?;
         let values = (1_u32..).zip(costs_mm2).map(|(round, cost)| Value::new(f64::from(round), cost));
@@ -122,7 +122,7 @@ fn chart(pad: &Simulated, title: String, label: &str, merit: fn(&Precision) -> f
         x: side("Radius of the module centres, mm"),
         y: Side { also: vec![0.0], ..side(label) },
         series,
-        guides: vec![Guide {
+        guides: vec![GuideLine {
             at: GuidePlace::X(rule_mm),
             label: format!("the paper’s rule, {rule_mm:.1} mm"),
         }],
@@ -189,22 +189,22 @@ fn sharing(counts: &ModuleCounts) -> Series {
 pub fn regions(pad: &Simulated, spacing: &SpacingAnswers, device: &Device) -> Figure {
     let radius = device.plate.radius_mm();
     let mut shapes =
-        vec![Shape::Circle { centre: [0.0; 2], radius, look: Look::line(Stroke::solid(DARK, 1.2)) }];
+        vec![Shape::Circle { centre: [0.0; 2], radius, look: PaintStyle::line(Stroke::solid(DARK, 1.2)) }];
     for (module, pose) in device.poses().iter().enumerate() {
         let colour = Rgb::of_series(module);
         let circle = Stroke::solid(colour, 0.9).dashed(4.0, 3.0);
         let (centre, radius) = (pose.centre_mm, spacing.radii_mm[module]);
-        shapes.push(Shape::Circle { centre, radius, look: Look::line(circle) });
+        shapes.push(Shape::Circle { centre, radius, look: PaintStyle::line(circle) });
         // A direction without a place breaks the line.
         let corners = pad.outlines[module].iter().map(|place| place.unwrap_or([f64::NAN; 2])).collect();
-        let look = Look::line(Stroke::solid(colour, 1.8));
+        let look = PaintStyle::line(Stroke::solid(colour, 1.8));
         shapes.push(Shape::Line { corners, ends: Ends::Open, look });
     }
     shapes.extend(moved(device, &pad.by_rule.placement, Stroke::solid(PALE, 1.0)));
     if let Some(best) = &pad.search.best {
         shapes.extend(moved(device, &best.placement, Stroke::solid(PALE, 1.0).dashed(2.0, 2.0)));
     }
-    shapes.extend(footprints(device, Look::line(Stroke::solid(DARK, 1.2))));
+    shapes.extend(footprints(device, PaintStyle::line(Stroke::solid(DARK, 1.2))));
     let far_mm = |(pose, radius_mm): (&Pose, f64)| pose.centre_mm[0].hypot(pose.centre_mm[1]) + radius_mm;
     let reach = device.poses().iter().zip(spacing.radii_mm).map(far_mm).fold(radius, f64::max).ceil();
     let plan = Plan {
@@ -234,10 +234,10 @@ fn with_notes(figure: Figure, notes: &[&str]) -> Figure {
 
 /// The outlines of the modules, placed otherwise if that can be built.
 fn moved(device: &Device, placement: &Placement, stroke: Stroke) -> Vec<Shape> {
-    placement.on(device).map_or(vec![], |device| footprints(&device, Look::line(stroke)))
+    placement.on(device).map_or(vec![], |device| footprints(&device, PaintStyle::line(stroke)))
 }
 
-fn footprints(device: &Device, look: Look) -> Vec<Shape> {
+fn footprints(device: &Device, look: PaintStyle) -> Vec<Shape> {
     let half_mm = [device.stack.film_length_x_mm, device.stack.film_width_y_mm].map(|side| 0.5 * side);
     let outline =
         |pose: &Pose| Shape::Line { corners: pose.corners_mm(half_mm).to_vec(), ends: Ends::Closed, look };

@@ -99,7 +99,7 @@ fn squared(vector: &[f64]) -> f64 {
 
 /// A place of the plate that stands for an area around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct AreaPlace {
     /// Where it is.
     pub at_mm: [f64; 2],
     /// Its share of the area, relative to the others'.
@@ -110,7 +110,7 @@ pub struct Place {
 ///
 /// The places stand on rings half a millimetre apart, 3° apart on each. On the nominal pad no place between them is
 /// worse by 1 %.
-pub fn places(contact_radius_mm: f64) -> impl Iterator<Item = Place> {
+pub fn places(contact_radius_mm: f64) -> impl Iterator<Item = AreaPlace> {
     let rings = (contact_radius_mm / RING_STEP_MM).ceil().max(1.0) as usize;
     (0..=rings).flat_map(move |ring| {
         let radius = contact_radius_mm * ring as f64 / rings as f64;
@@ -118,26 +118,26 @@ pub fn places(contact_radius_mm: f64) -> impl Iterator<Item = Place> {
         let weight = if ring == rings { 0.5 * radius } else { radius };
         (0..PLACES).map(move |place| {
             let (sin, cos) = (place as f64 / PLACES as f64 * TAU).sin_cos();
-            Place { at_mm: [radius * cos, radius * sin], weight }
+            AreaPlace { at_mm: [radius * cos, radius * sin], weight }
         })
     })
 }
 
 /// The bound over contacts within `contact_radius_mm` of the pad's axis.
 pub fn over_plate(field: impl Fn(f64, f64) -> Gains, press: &Press, contact_radius_mm: f64) -> Precision {
-    let read = |place: Place| (place, field(place.at_mm[0], place.at_mm[1]));
+    let read = |place: AreaPlace| (place, field(place.at_mm[0], place.at_mm[1]));
     Precision::over(places(contact_radius_mm).map(read), press)
 }
 
 impl Precision {
     /// The bound over [`places`] whose gains are known.
     pub fn over<R: AsRef<[[f64; 3]]>>(
-        contacts: impl Iterator<Item = (Place, impl Borrow<Gains<R>>)>,
+        contacts: impl Iterator<Item = (AreaPlace, impl Borrow<Gains<R>>)>,
         press: &Press,
     ) -> Self {
         let mut found = Self { worst_mm: 0.0, worst_at_mm: [0.0; 2], rms_mm: 0.0, largest_uv: 0.0 };
         let (mut weighted, mut weights) = (0.0, 0.0);
-        for (Place { at_mm, weight }, gains) in contacts {
+        for (AreaPlace { at_mm, weight }, gains) in contacts {
             let error_mm = found.take(at_mm, gains.borrow(), press);
             weights += weight;
             // The centre has no area; an infinite error there must not make the sum undefined.

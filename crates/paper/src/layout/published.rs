@@ -8,7 +8,7 @@ use tactpad_core::quantity::CHANNELS;
 
 /// A row of the paper's Table 7, or one to stand beside it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Work {
+pub struct PublishedWork {
     /// Who.
     pub name: &'static str,
     /// What it senses with, in our words.
@@ -40,7 +40,7 @@ pub struct Accuracy {
     pub read_in: Option<&'static str>,
 }
 
-impl Work {
+impl PublishedWork {
     /// Area per channel from the row's own area and channels.
     pub fn area_per_channel_cm2(&self) -> f64 {
         self.area_cm2 / f64::from(self.channels)
@@ -52,8 +52,8 @@ impl Work {
     clippy::approx_constant,
     reason = "3.14 is printed so; that it is near π follows from 60 mm and nine channels"
 )]
-pub const WORKS: [Work; 5] = [
-    Work {
+pub const WORKS: [PublishedWork; 5] = [
+    PublishedWork {
         name: "the paper",
         principle: "sparse strain, learned decoder",
         channels: 9,
@@ -67,7 +67,7 @@ pub const WORKS: [Work; 5] = [
             read_in: None,
         },
     },
-    Work {
+    PublishedWork {
         name: "Kong et al.",
         principle: "sparse taxels, deep network",
         channels: 23,
@@ -81,7 +81,7 @@ pub const WORKS: [Work; 5] = [
             read_in: None,
         },
     },
-    Work {
+    PublishedWork {
         name: "Piacenza et al.",
         principle: "conductive elastomer, electrodes",
         channels: 6,
@@ -95,7 +95,7 @@ pub const WORKS: [Work; 5] = [
             read_in: None,
         },
     },
-    Work {
+    PublishedWork {
         name: "Lee et al.",
         principle: "strain gauges, microstructure",
         channels: 8,
@@ -109,7 +109,7 @@ pub const WORKS: [Work; 5] = [
             read_in: None,
         },
     },
-    Work {
+    PublishedWork {
         name: "Mêda et al.",
         principle: "magnetic elastomer array, network",
         channels: 16,
@@ -139,7 +139,7 @@ pub fn plate_area_cm2(plate_diameter_mm: f64) -> f64 {
 
 /// A row of the paper's Table 1, and what it is in this project.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Part {
+pub struct PublishedPart {
     /// What.
     pub name: &'static str,
     /// How many.
@@ -150,7 +150,7 @@ pub struct Part {
     pub here: &'static str,
 }
 
-impl Part {
+impl PublishedPart {
     /// Price of all of them.
     pub fn price_usd(&self) -> f64 {
         f64::from(self.quantity) * self.unit_price_usd
@@ -158,7 +158,7 @@ impl Part {
 }
 
 /// The paper's Table 1. Its sum is 15.0 USD; the paper's text says below 15.
-pub const PARTS: [Part; 7] = [
+pub const PARTS: [PublishedPart; 7] = [
     part("sensor module", 3, 1.1, "film with 7 gauges on a frame, post and bond: models/sstid.toml"),
     part("microcontroller", 1, 5.2, "any that writes the wire of firmware-proto/, by serial port or HID"),
     part("circuit board", 3, 1.0, "three half-bridges per module, nine channels in all"),
@@ -168,8 +168,8 @@ pub const PARTS: [Part; 7] = [
     part("electrical wire", 1, 1.0, "not part of the model"),
 ];
 
-const fn part(name: &'static str, quantity: u32, unit_price_usd: f64, here: &'static str) -> Part {
-    Part { name, quantity, unit_price_usd, here }
+const fn part(name: &'static str, quantity: u32, unit_price_usd: f64, here: &'static str) -> PublishedPart {
+    PublishedPart { name, quantity, unit_price_usd, here }
 }
 
 /// A row of the paper's Table 7, or of this pad beside it.
@@ -177,7 +177,7 @@ const fn part(name: &'static str, quantity: u32, unit_price_usd: f64, here: &'st
 pub struct AreaRow {
     /// The work.
     #[serde(flatten)]
-    pub work: Work,
+    pub work: PublishedWork,
     /// What a channel of it covers.
     pub area_per_channel_cm2: f64,
 }
@@ -185,7 +185,7 @@ pub struct AreaRow {
 /// The paper's Table 7, with this pad before it. `rms_mm` is the pad's root mean square location error at best, if it
 /// was simulated.
 pub fn area_rows(plate_diameter_mm: f64, rms_mm: Option<f64>) -> Vec<AreaRow> {
-    let own = Work {
+    let own = PublishedWork {
         name: "this pad",
         principle: "sparse strain",
         channels: CHANNELS as u32,
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn a_number_says_what_it_is() {
-        for Work { name, accuracy, .. } in WORKS {
+        for PublishedWork { name, accuracy, .. } in WORKS {
             assert!(!accuracy.of.is_empty(), "{name}");
             assert!(accuracy.location_mm.is_none() || !accuracy.location_is.is_empty(), "{name}");
         }
@@ -236,8 +236,9 @@ mod tests {
 
     #[test]
     fn two_rows_of_table_7_print_something_else_than_area_by_channels() {
-        let differs =
-            |work: &&Work| (work.area_per_channel_cm2() / work.printed_cm2.unwrap() - 1.0).abs() > 0.02;
+        let differs = |work: &&PublishedWork| {
+            (work.area_per_channel_cm2() / work.printed_cm2.unwrap() - 1.0).abs() > 0.02
+        };
         let names: Vec<_> = WORKS.iter().filter(differs).map(|work| work.name).collect();
         assert_eq!(names, ["Piacenza et al.", "Lee et al."]);
     }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::conditioning::Conditioning;
 use super::module_count::{ModuleCounts, Ringed, Wiring};
-use super::precision::{Place, Precision, Press, places};
+use super::precision::{AreaPlace, Precision, Press, places};
 use super::scan::PRESS_N;
 use super::study::StudyError;
 use tactpad_core::pad::device::{Device, GAUGES};
@@ -17,7 +17,7 @@ use tactpad_mechanics::ring::{BRIDGES, Ring};
 use tactpad_mechanics::simulator::{PLATE_DEGREE, Simulator};
 
 /// The readings of a contact at a place.
-type Contact = (Place, Gains<Vec<[f64; 3]>>);
+type Contact = (AreaPlace, Gains<Vec<[f64; 3]>>);
 
 impl ModuleCounts {
     /// Pads with these numbers of the device's modules at equal angles, each at least one; `noise_uv` is each reading's
@@ -61,7 +61,7 @@ impl ModuleCounts {
 }
 
 fn contacts(ring: &Ring<'_>, maps: &[ForceMaps], contact_radius_mm: f64) -> Vec<Contact> {
-    let places: Vec<Place> = places(contact_radius_mm).collect();
+    let places: Vec<AreaPlace> = places(contact_radius_mm).collect();
     places.into_par_iter().map(|place| (place, ring.gains(maps, place.at_mm))).collect()
 }
 

@@ -1,7 +1,7 @@
 //! Figures of the study of size: what a pad can do over its diameter, a curve for each thickness.
 
-use super::sizes::{CHANGE, ERROR, FREQUENCY, Law, SizedPad, Sizes, THICKNESSES_MM};
-use tactpad_plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
+use super::sizes::{CHANGE, ERROR, FREQUENCY, Law, SizeStudy, SizedPad, THICKNESSES_MM};
+use tactpad_plot::chart::{Chart, GuideLine, GuidePlace, Series, SeriesLook, Side, Value};
 use tactpad_plot::figure::Figure;
 use tactpad_plot::scale::Scale;
 
@@ -9,26 +9,26 @@ const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 400.0;
 
 /// The sensitivity to a place: that to the force is the same for all.
-pub fn sensitivity(sizes: &Sizes) -> Figure {
+pub fn sensitivity(sizes: &SizeStudy) -> Figure {
     let y = side("Change of the channels, µV per N and mm", Scale::Log10);
     let title = "Sensitivity to place by size, press in the middle".to_owned();
     chart(sizes, title, y, CHANGE, |pad| pad.change_uv_per_n_mm).figure()
 }
 
 /// The worst location error at best.
-pub fn error(sizes: &Sizes) -> Figure {
+pub fn error(sizes: &SizeStudy) -> Figure {
     let title = format!("Location error at best by size, press of 1 N, noise {} µV", sizes.noise_uv);
     let y = side("Worst error over the plate, mm", Scale::Log10);
     chart(sizes, title, y, ERROR, |pad| pad.precision.worst_mm).figure()
 }
 
 /// The first natural frequency, beside the converter's.
-pub fn frequency(sizes: &Sizes) -> Figure {
+pub fn frequency(sizes: &SizeStudy) -> Figure {
     let y = side("First natural frequency, Hz", Scale::Log10);
     let title = "First natural frequency by size".to_owned();
     let mut chart = chart(sizes, title, y, FREQUENCY, |pad| pad.first_hz);
     let half_hz = sizes.converter_hz / 2.0;
-    chart.guides.push(Guide {
+    chart.guides.push(GuideLine {
         at: GuidePlace::Y(half_hz),
         label: format!("half of {} conversions per second", sizes.converter_hz),
     });
@@ -36,7 +36,7 @@ pub fn frequency(sizes: &Sizes) -> Figure {
 }
 
 fn chart(
-    sizes: &Sizes,
+    sizes: &SizeStudy,
     title: String,
     y: Side,
     (quantity, _): (&str, &str),
@@ -54,7 +54,7 @@ fn chart(
 }
 
 /// The law for plates of 1 mm, where these are stiff.
-fn of_law(law: &Law, sizes: &Sizes) -> Series {
+fn of_law(law: &Law, sizes: &SizeStudy) -> Series {
     let stiff = sizes.pads.iter().filter(|pad| pad.size.thickness_mm == 1.0 && pad.is_stiff());
     let values = stiff.map(|pad| Value::new(pad.size.diameter_mm, law.at(pad.size))).collect();
     Series { name: "law of stiff plates, 1 mm".to_owned(), values, look: SeriesLook::Dashes }

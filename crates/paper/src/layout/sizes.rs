@@ -3,7 +3,7 @@
 //! The modules keep their size and stand at the same share of the plate's radius; the contacts reach as near to the rim as
 //! on the device (its patch keeps its size, too). Materials, gauges, bridges and noise stay.
 //!
-//! [`Sizes`] holds what each pad can do and the laws that hold for those whose plate is stiff beside its modules.
+//! [`SizeStudy`] holds what each pad can do and the laws that hold for those whose plate is stiff beside its modules.
 
 use std::f64::consts::TAU;
 
@@ -223,7 +223,7 @@ pub const USERS: [User; 3] = [
 
 /// The pad for a user.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Answer {
+pub struct RecommendedPad {
     /// Who.
     pub user: User,
     /// The thinnest plate of the user's diameter that is stiff, as thinner ones answer faster; the thickest where none is.
@@ -236,7 +236,7 @@ pub struct Answer {
 
 /// The study.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Sizes {
+pub struct SizeStudy {
     /// Standard deviation of each channel.
     pub noise_uv: f64,
     /// Conversions per second.
@@ -246,10 +246,10 @@ pub struct Sizes {
     /// Laws of the stiff ones; none where no plate is stiff.
     pub laws: Vec<Law>,
     /// Which pad a thumb, a hand, a foot wants.
-    pub answers: Vec<Answer>,
+    pub answers: Vec<RecommendedPad>,
 }
 
-impl Sizes {
+impl SizeStudy {
     /// What follows from the pads.
     pub fn of_pads(pads: Vec<SizedPad>, noise_uv: f64) -> Self {
         let laws = Law::all(&pads);
@@ -258,10 +258,10 @@ impl Sizes {
     }
 }
 
-fn answer(user: &User, pads: &[SizedPad]) -> Option<Answer> {
+fn answer(user: &User, pads: &[SizedPad]) -> Option<RecommendedPad> {
     let large: Vec<&SizedPad> = pads.iter().filter(|pad| pad.size.diameter_mm == user.diameter_mm).collect();
     let pad = **large.iter().find(|pad| pad.is_stiff()).or(large.last())?;
-    Some(Answer { user: *user, pad, stiff: pad.is_stiff(), bears: pad.grounding_n >= user.press_n })
+    Some(RecommendedPad { user: *user, pad, stiff: pad.is_stiff(), bears: pad.grounding_n >= user.press_n })
 }
 
 #[cfg(test)]
@@ -317,22 +317,22 @@ mod tests {
 
     #[test]
     fn laws_are_found_where_they_hold_and_their_residual_is_told() {
-        let exact = Sizes::of_pads(Size::all().map(|size| pad(size, 1.0)).collect(), 6.0);
+        let exact = SizeStudy::of_pads(Size::all().map(|size| pad(size, 1.0)).collect(), 6.0);
         assert_eq!(exact.laws.len(), 4);
         for (law, factor) in exact.laws.iter().zip([1_900.0, 55.0, 0.2, 600.0]) {
             assert!((law.factor / factor - 1.0).abs() < 1e-9 && law.residual_percent < 1e-7, "{law:?}");
         }
         let stiff = |size: Size| pad(size, 1.0).is_stiff();
         let bent = Size::all().map(|size| pad(size, if stiff(size) { 1.0 } else { 0.5 }));
-        let found = Sizes::of_pads(bent.collect(), 6.0);
+        let found = SizeStudy::of_pads(bent.collect(), 6.0);
         let [law, ..] = found.laws[..] else { panic!("no law") };
         assert!(law.residual_percent < 1e-7 && (law.outside_percent - 50.0).abs() < 1e-6, "{law:?}");
-        assert_eq!(Sizes::of_pads(vec![], 6.0).laws, vec![]);
+        assert_eq!(SizeStudy::of_pads(vec![], 6.0).laws, vec![]);
     }
 
     #[test]
     fn users_get_the_thinnest_stiff_plate() {
-        let found = Sizes::of_pads(Size::all().map(|size| pad(size, 1.0)).collect(), 6.0);
+        let found = SizeStudy::of_pads(Size::all().map(|size| pad(size, 1.0)).collect(), 6.0);
         for answer in &found.answers {
             let thinner = found.pads.iter().filter(|pad| {
                 pad.size.diameter_mm == answer.user.diameter_mm

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::precision::{Press, over_plate};
-use super::sizes::{CONVERTER_HZ, Size, SizedPad, Sizes};
+use super::sizes::{CONVERTER_HZ, Size, SizeStudy, SizedPad};
 use crate::damping::DAMPING_RATIO;
 use tactpad_core::numeric::oscillator::Oscillator;
 use tactpad_core::numeric::zernike::{Jet, jets};
@@ -31,7 +31,7 @@ const FEET_PER_RADIUS: f64 = 12.0;
 const RINGS: usize = 40;
 const RAYS: usize = 120;
 
-impl Sizes {
+impl SizeStudy {
     /// Pads of all sizes of the grid with the device's modules: `noise_uv` is each channel's standard deviation. `progress` hears what is
     /// done.
     ///

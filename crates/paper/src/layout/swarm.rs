@@ -54,7 +54,7 @@ fn swarmed<C>(problem: C, [low, high]: [[f64; PAIRS]; 2], seed: u64) -> Result<(
 where
     C: CostFunction<Param = Vec<f64>, Output = f64>,
 {
-    let course = Course::default();
+    let course = CostObserver::default();
     let swarm = ParticleSwarm::new((low.to_vec(), high.to_vec()), PARTICLES)
         .with_rng_generator(Xoshiro256PlusPlus::seed_from_u64(seed));
     let run = Executor::new(problem, swarm).configure(|state| state.max_iters(ROUNDS));
@@ -66,11 +66,11 @@ where
 
 /// Writes down the best cost of each round. The solver keeps its observers, so the list is shared.
 #[derive(Clone, Default)]
-struct Course {
+struct CostObserver {
     costs_mm2: Arc<Mutex<Vec<f64>>>,
 }
 
-impl<S: State<Float = f64>> Observe<S> for Course {
+impl<S: State<Float = f64>> Observe<S> for CostObserver {
     fn observe_iter(&mut self, state: &S, _: &KV) -> Result<(), Error> {
         let mut costs_mm2 = self.costs_mm2.lock().unwrap_or_else(PoisonError::into_inner);
         costs_mm2.push(state.get_best_cost());

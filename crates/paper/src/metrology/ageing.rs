@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Needs;
 use super::output::sum_uv;
-use super::rows::{Reading, Zeros, by_place, is_load, is_press, readings};
+use super::rows::{StaticReading, Zeros, by_place, is_load, is_press, readings};
 use tactpad_core::numeric::statistics::mean;
 use tactpad_core::tables::measured::Table;
 
@@ -36,7 +36,7 @@ pub struct Ageing {
 /// No place with both.
 pub fn after_cycles(table: &Table) -> Result<Ageing, Needs> {
     let is_wanted =
-        |reading: &Reading| is_press(&reading.row().label) && is_load(reading.row().label.fz_n, LOAD_N);
+        |reading: &StaticReading| is_press(&reading.row().label) && is_load(reading.row().label.fz_n, LOAD_N);
     let zeros = Zeros::of(table);
     let presses = readings(&zeros).filter(is_wanted);
     let counted = presses.filter(|reading| reading.row().cycle.is_some());
@@ -44,7 +44,7 @@ pub fn after_cycles(table: &Table) -> Result<Ageing, Needs> {
     places.each().find_map(of_place).ok_or(Needs::Rows(NEEDED))
 }
 
-fn of_place<'r>(place: impl Iterator<Item = &'r Reading<'r, 'r>>) -> Option<Ageing> {
+fn of_place<'r>(place: impl Iterator<Item = &'r StaticReading<'r, 'r>>) -> Option<Ageing> {
     let mut points: Vec<[f64; 2]> = place
         .filter_map(|reading| Some([reading.row().cycle?, sum_uv(&reading.uv()) / reading.row().label.fz_n]))
         .collect();

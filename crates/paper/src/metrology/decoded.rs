@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::rows::{Zeros, by_place, is_ordinary, is_usual, less, loads, usual_temperature_c};
-use super::same::Different;
+use super::same::DistinctContacts;
 use super::thermal::STEP_C;
 use super::{Decode, Needs};
 use tactpad_core::numeric::statistics;
 use tactpad_core::quantity::{CHANNELS, Contact};
-use tactpad_core::tables::measured::zero::Untouched;
+use tactpad_core::tables::measured::zero::UntouchedRows;
 use tactpad_core::tables::measured::{Label, Row, Table};
 
 const NEEDED: &str = "static loads, with unloaded rows";
@@ -113,7 +113,7 @@ fn over(
 
 /// The first row of each force at a place.
 fn different<'p>(table: &Table, place: impl Iterator<Item = &'p u32>) -> impl Iterator<Item = usize> {
-    let mut different = Different::default();
+    let mut different = DistinctContacts::default();
     place.map(|index| *index as usize).filter(move |index| different.take(&table.rows[*index].label))
 }
 
@@ -174,7 +174,7 @@ pub fn drift(table: &Table, decode: Option<Decode>) -> Result<DecodedDrift, Need
 fn pairs<'t: 'p, 'p>(place: impl Iterator<Item = &'p &'t Row>, usual_c: f64) -> Vec<Pair<'t>> {
     let (mut usual, other): (Vec<&Row>, Vec<&Row>) =
         place.copied().partition(|row| is_usual(row.temp_c, Some(usual_c)));
-    let mut different = Different::default();
+    let mut different = DistinctContacts::default();
     usual.retain(|row| different.take(&row.label));
     let pair = |load: &'t Row| {
         let change_c = (load.temp_c? - usual_c).abs();
@@ -209,7 +209,7 @@ struct UsualZeros {
 impl UsualZeros {
     /// `None` where nothing is read so.
     fn of(table: &Table, usual_c: f64) -> Option<Self> {
-        let untouched = Untouched::unloaded(table);
+        let untouched = UntouchedRows::unloaded(table);
         let is_zero = |row: &&Row| row.trial.is_none() && untouched.is(row) && is_near(row, usual_c);
         let zeros =
             || table.rows.iter().filter(is_zero).filter_map(|row| Some((row.session, row.uv.as_ref()?)));

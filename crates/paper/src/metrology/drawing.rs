@@ -6,14 +6,14 @@ use super::fem::simulated_uv;
 use super::figures::Figures;
 use super::hysteresis::Hysteresis;
 use super::location::LocationSpread;
-use super::rows::{Reading, Zeros, by_place, is_ordinary, is_press, is_same_place, readings};
+use super::rows::{StaticReading, Zeros, by_place, is_ordinary, is_press, is_same_place, readings};
 use super::series;
 use super::thermal::ThermalDrift;
 use tactpad_core::numeric::statistics::{deviation, mean, mean_vector};
 use tactpad_core::pad::influence::InfluenceField;
 use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
 use tactpad_core::tables::measured::{Label, Table};
-use tactpad_plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
+use tactpad_plot::chart::{Chart, GuideLine, GuidePlace, Series, SeriesLook, Side, Value};
 use tactpad_plot::columns::{Column, Columns};
 use tactpad_plot::scale::Scale;
 
@@ -60,7 +60,7 @@ fn static_loads(table: &Table) -> Vec<Vec<Load>> {
     let presses =
         readings(&zeros).filter(|reading| is_press(&reading.row().label) && is_ordinary(reading.row()));
     let places = by_place(presses, |reading| reading.row().label);
-    let load = |reading: &Reading| (reading.row().label, reading.uv());
+    let load = |reading: &StaticReading| (reading.row().label, reading.uv());
     places.each().map(|place| binned(place.map(load).collect())).collect()
 }
 
@@ -184,7 +184,7 @@ pub fn by_cycles(ageing: &Ageing) -> Chart {
     Chart {
         title: "Reading of 1 N after cycles of 1 N".to_owned(),
         series: vec![series(String::new(), values, SeriesLook::LineAndPoints)],
-        guides: vec![Guide { at: GuidePlace::X(50_001.0), label: "50,000".to_owned() }],
+        guides: vec![GuideLine { at: GuidePlace::X(50_001.0), label: "50,000".to_owned() }],
         x: Side { scale: Scale::Log10, also: vec![], ..chart.x },
         ..chart
     }

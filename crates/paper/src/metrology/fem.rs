@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Needs;
 use super::output::is_z;
-use super::rows::{Reading, Zeros, by_place, is_load, is_ordinary, is_press, loads, readings};
+use super::rows::{StaticReading, Zeros, by_place, is_load, is_ordinary, is_press, loads, readings};
 use tactpad_core::numeric::statistics::{Line, mean, mean_vector};
 use tactpad_core::pad::influence::InfluenceField;
 use tactpad_core::quantity::CHANNELS;
@@ -72,13 +72,13 @@ pub(super) fn simulated_uv(signals: &InfluenceField, label: &Label) -> [f64; CHA
 
 fn by_zero(table: &Table, zeros: &Zeros, signals: &InfluenceField) -> Vec<Pair> {
     let is_ordinary = is_ordinary(table);
-    let is_wanted = |reading: &Reading| {
+    let is_wanted = |reading: &StaticReading| {
         let label = &reading.row().label;
         is_press(label) && is_load(label.fz_n, LOAD_N) && is_ordinary(reading.row())
     };
     let places = by_place(readings(zeros).filter(is_wanted), |reading| reading.row().label);
     let pairs = places.each().map(|place| Pair {
-        measured_uv: channel_means(place.clone().map(Reading::uv)),
+        measured_uv: channel_means(place.clone().map(StaticReading::uv)),
         simulated_uv: channel_means(place.map(|reading| simulated_uv(signals, &reading.row().label))),
     });
     pairs.collect()

@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 use super::ageing::{Ageing, after_cycles};
 use super::decoded::{self, DecodedDrift, DecodedErrors};
 use super::fem::{FemError, against_pad};
-use super::holding::{Held, of_task};
+use super::holding::{HoldingLoad, of_task};
 use super::hysteresis::{Hysteresis, of_loops};
 use super::location::{LocationSpread, spreads};
 use super::repeatability::{Repeatability, at_full_scale};
@@ -80,7 +80,7 @@ pub struct Figures {
     pub step_response: Result<StepResponse, Needs>,
     /// The force-holding task.
     #[serde(serialize_with = "found")]
-    pub force_holding: Result<[Held; 3], Needs>,
+    pub force_holding: Result<[HoldingLoad; 3], Needs>,
 }
 
 impl Figures {
@@ -110,11 +110,11 @@ impl Figures {
 /// A figure as itself; else `{"needs": …}`.
 fn found<T: Serialize, S: Serializer>(figure: &Result<T, Needs>, serializer: S) -> Result<S::Ok, S::Error> {
     #[derive(Serialize)]
-    struct Lacking {
+    struct MissingFigures {
         needs: Needs,
     }
     match figure {
         Ok(figure) => figure.serialize(serializer),
-        Err(needs) => Lacking { needs: *needs }.serialize(serializer),
+        Err(needs) => MissingFigures { needs: *needs }.serialize(serializer),
     }
 }

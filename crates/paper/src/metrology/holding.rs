@@ -19,7 +19,7 @@ const NEEDED: &str = "a trial that holds 1, 3 and 5 N for 2 s or longer each, wi
 
 /// One load of the task.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Held {
+pub struct HoldingLoad {
     /// The load of the task.
     pub load_n: f64,
     /// Mean output minus mean labelled force.
@@ -33,11 +33,11 @@ pub struct Held {
 ///
 /// # Errors
 /// No such trial.
-pub fn of_task(table: &Table) -> Result<[Held; 3], Needs> {
+pub fn of_task(table: &Table) -> Result<[HoldingLoad; 3], Needs> {
     Trials::of(table).each().find_map(|trial| task(&trial)).ok_or(Needs::Rows(NEEDED))
 }
 
-fn task(trial: &[Sample]) -> Option<[Held; 3]> {
+fn task(trial: &[Sample]) -> Option<[HoldingLoad; 3]> {
     let presses = series::held(trial, HELD_S)
         .filter(|part| part.first().is_some_and(|sample| is_press(sample.label())));
     let presses: Vec<&[Sample]> = presses.collect();
@@ -47,7 +47,11 @@ fn task(trial: &[Sample]) -> Option<[Held; 3]> {
     let uv_per_n = mean_sum_uv(full) / mean_fz_n(full);
     let of = |load_n: f64, part: &[Sample]| {
         let output_n: Vec<f64> = filter::means(part, Sample::uv).map(|uv| sum_uv(&uv) / uv_per_n).collect();
-        Held { load_n, mean_error_n: mean(&output_n) - mean_fz_n(part), deviation_n: deviation(&output_n) }
+        HoldingLoad {
+            load_n,
+            mean_error_n: mean(&output_n) - mean_fz_n(part),
+            deviation_n: deviation(&output_n),
+        }
     };
     Some([of(LOADS_N[0], one), of(LOADS_N[1], three), of(LOADS_N[2], full)])
 }

@@ -226,7 +226,7 @@ mod tests {
     use super::super::Needs;
     use super::super::figures::{Evidence, Figures};
     use super::super::output::is_z;
-    use super::super::report::{Entry, Status, entries};
+    use super::super::report::{ReportEntry, Status, entries};
     use super::*;
     use tactpad_core::pad::influence::{InfluenceField, MAPS};
     use tactpad_core::quantity::CHANNELS;
@@ -279,7 +279,7 @@ mod tests {
         Table { rows: plan.rows.iter().map(measure).collect(), ..plan.clone() }
     }
 
-    fn found() -> Vec<Entry> {
+    fn found() -> Vec<ReportEntry> {
         let (table, signals) = (measured(&plan(&PATCH)), signals());
         let evidence = Evidence { table: &table, signals: &signals, decoder: None, simulation: None };
         entries(&[Figures::of(&evidence)], &[])

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::output::sum_uv;
-use super::rows::{Reading, Zeros, by_place, is_load, is_ordinary, is_press, readings};
+use super::rows::{StaticReading, Zeros, by_place, is_load, is_ordinary, is_press, readings};
 use super::series::{Sample, Trials, mean_fz_n, mean_sum_uv};
 use super::{FULL_SCALE_N, Needs};
 use tactpad_core::numeric::statistics::{deviation, mean};
@@ -58,7 +58,7 @@ fn is_full(label: &Label) -> bool {
 
 fn static_cycles(table: &Table) -> Vec<Cycle> {
     let is_ordinary = is_ordinary(table);
-    let is_wanted = |reading: &Reading| is_full(&reading.row().label) && is_ordinary(reading.row());
+    let is_wanted = |reading: &StaticReading| is_full(&reading.row().label) && is_ordinary(reading.row());
     let zeros = Zeros::of(table);
     let full = readings(&zeros).filter(is_wanted);
     full.map(|reading| Cycle { label: reading.row().label, sum_uv: sum_uv(&reading.uv()) }).collect()

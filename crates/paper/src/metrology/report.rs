@@ -47,7 +47,7 @@ pub enum Status {
 
 /// A line that is filled in.
 #[derive(Clone, Debug, Serialize)]
-pub struct Entry {
+pub struct ReportEntry {
     /// As in [`Line`].
     pub key: &'static str,
     /// As in [`Line`].
@@ -73,18 +73,18 @@ pub struct Entry {
 }
 
 /// All lines for the figures of one table, or of several by different seeds.
-pub fn entries(figures: &[Figures], conflicts: &[Conflict]) -> Vec<Entry> {
+pub fn entries(figures: &[Figures], conflicts: &[Conflict]) -> Vec<ReportEntry> {
     LINES.iter().map(|line| line.filled(figures, conflicts)).collect()
 }
 
 impl Line {
-    fn filled(&self, figures: &[Figures], conflicts: &[Conflict]) -> Entry {
+    fn filled(&self, figures: &[Figures], conflicts: &[Conflict]) -> ReportEntry {
         let found: Vec<Result<f64, Needs>> = figures.iter().map(self.value).collect();
         let values: Vec<f64> = found.iter().filter_map(|value| value.ok()).collect();
         let mean = (!values.is_empty()).then(|| mean(&values));
         let conflict = conflicts.iter().find(|conflict| self.is_shown_by(conflict));
         let status = self.status(mean, conflict);
-        Entry {
+        ReportEntry {
             key: self.key,
             name: self.name,
             unit: self.unit,
@@ -150,7 +150,7 @@ mod tests {
         }
     }
 
-    fn entry(key: &str, figures: &[Figures], conflicts: &[Conflict]) -> Entry {
+    fn entry(key: &str, figures: &[Figures], conflicts: &[Conflict]) -> ReportEntry {
         entries(figures, conflicts).into_iter().find(|entry| entry.key == key).unwrap()
     }
 

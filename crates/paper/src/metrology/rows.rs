@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use tactpad_core::numeric::statistics::median;
 use tactpad_core::quantity::CHANNELS;
-use tactpad_core::tables::measured::alike::Alike;
-use tactpad_core::tables::measured::zero::{self, UNLOADED_N, Untouched};
+use tactpad_core::tables::measured::alike::ZerosByTemperature;
+use tactpad_core::tables::measured::zero::{self, UNLOADED_N, UntouchedRows};
 use tactpad_core::tables::measured::{Label, Row, Table};
 
 /// Largest shear of a pure press: what a reference writes whose zero is off by the first and that is tilted
@@ -49,20 +49,20 @@ pub(super) fn is_same_place(one: &Label, other: &Label) -> bool {
 /// What the channels read without load.
 pub(super) struct Zeros<'t> {
     table: &'t Table,
-    alike: Option<Alike<'t>>,
+    alike: Option<ZerosByTemperature<'t>>,
 }
 
 impl<'t> Zeros<'t> {
     pub(super) fn of(table: &'t Table) -> Self {
-        let zeros = zero::Zeros::by(table, &Untouched::unloaded(table));
-        Self { table, alike: zeros.map(|zeros| Alike::of(table, zeros)) }
+        let zeros = zero::Zeros::by(table, &UntouchedRows::unloaded(table));
+        Self { table, alike: zeros.map(|zeros| ZerosByTemperature::of(table, zeros)) }
     }
 
     pub(super) const fn is_empty(&self) -> bool {
         self.alike.is_none()
     }
 
-    /// The zero at the row with this index, by [`Alike::at`]; `None` where there is none.
+    /// The zero at the row with this index, by [`ZerosByTemperature::at`]; `None` where there is none.
     pub(super) fn at(&self, index: usize) -> Option<[f64; CHANNELS]> {
         self.alike.as_ref()?.at(index)
     }
@@ -81,12 +81,12 @@ pub(super) fn less(uv: &[f64; CHANNELS], zero_uv: &[f64; CHANNELS]) -> [f64; CHA
 
 /// A static load for which a zero is known. A table may have a million: they stay in the table.
 #[derive(Clone, Copy)]
-pub(super) struct Reading<'z, 't> {
+pub(super) struct StaticReading<'z, 't> {
     zeros: &'z Zeros<'t>,
     index: usize,
 }
 
-impl<'t> Reading<'_, 't> {
+impl<'t> StaticReading<'_, 't> {
     pub(super) fn row(&self) -> &'t Row {
         &self.zeros.table.rows[self.index]
     }
@@ -98,14 +98,14 @@ impl<'t> Reading<'_, 't> {
 }
 
 /// The static loads for which a zero is known.
-pub(super) fn readings<'z, 't>(zeros: &'z Zeros<'t>) -> impl Iterator<Item = Reading<'z, 't>> {
+pub(super) fn readings<'z, 't>(zeros: &'z Zeros<'t>) -> impl Iterator<Item = StaticReading<'z, 't>> {
     let known = loads(zeros.table).filter(|(index, _)| zeros.tared(*index).is_some());
-    known.map(|(index, _)| Reading { zeros, index })
+    known.map(|(index, _)| StaticReading { zeros, index })
 }
 
 /// The static loads that have channels, with their indices.
 pub(super) fn loads(table: &Table) -> impl Iterator<Item = (usize, &Row)> {
-    let untouched = Untouched::unloaded(table);
+    let untouched = UntouchedRows::unloaded(table);
     let is_load = move |row: &Row| row.trial.is_none() && row.uv.is_some() && !untouched.is(row);
     table.rows.iter().enumerate().filter(move |(_, row)| is_load(row))
 }
@@ -145,7 +145,7 @@ impl<T> Places<T> {
 
 /// Sorts items by their place.
 pub(super) fn by_place<T>(items: impl IntoIterator<Item = T>, label: impl Fn(&T) -> Label) -> Places<T> {
-    let mut found = Found::default();
+    let mut found = KnownPlaces::default();
     let mut items: Vec<(u32, T)> = items.into_iter().map(|item| (found.place(&label(&item)), item)).collect();
     items.sort_by_key(|(place, _)| *place);
     Places { items }
@@ -153,14 +153,14 @@ pub(super) fn by_place<T>(items: impl IntoIterator<Item = T>, label: impl Fn(&T)
 
 /// The places that were found among labels so far.
 #[derive(Default)]
-struct Found {
+struct KnownPlaces {
     /// For each place where it is, and the one before it that lies in the same square of the plate.
     places: Vec<([f64; 2], Option<u32>)>,
     /// The last place in each square: near ones are in the squares around.
     squares: BTreeMap<[i64; 2], u32>,
 }
 
-impl Found {
+impl KnownPlaces {
     /// The number of the label's place: the first one that is near enough, else a new one.
     fn place(&mut self, label: &Label) -> u32 {
         let here = square(label);

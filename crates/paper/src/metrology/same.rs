@@ -10,13 +10,13 @@ const SAME_FORCE_N: f64 = 0.15;
 
 /// Contacts of one place, none of which is the same as one before it.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Different {
+pub(super) struct DistinctContacts {
     /// By the cube of forces, as wide as those that are the same, in which they lie.
     cubes: BTreeMap<[i64; 3], Vec<(usize, Label)>>,
     count: usize,
 }
 
-impl Different {
+impl DistinctContacts {
     /// Takes a contact, unless it is the same as an earlier one.
     pub(super) fn take(&mut self, label: &Label) -> bool {
         let is_new = self.find(label).is_none();
@@ -54,7 +54,7 @@ mod tests {
     #[test]
     fn a_contact_that_comes_again_is_none() {
         let label = |x_mm, fz_n| Label { x_mm, fz_n, ..Label::default() };
-        let mut different = Different::default();
+        let mut different = DistinctContacts::default();
         let taken = [label(0.0, 1.0), label(0.05, 1.1), label(0.0, 1.16), label(0.09, 2.0), label(0.2, 1.0)]
             .map(|label| different.take(&label));
         assert_eq!(taken, [true, false, true, true, true]);

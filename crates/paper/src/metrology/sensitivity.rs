@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Needs;
 use super::output::is_z;
-use super::rows::{Reading, Zeros, by_place, is_ordinary, is_press, readings};
+use super::rows::{StaticReading, Zeros, by_place, is_ordinary, is_press, readings};
 use tactpad_core::numeric::statistics::mean;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::measured::Table;
@@ -38,13 +38,13 @@ pub struct Sensitivity {
 pub fn of_channels(table: &Table) -> Result<Sensitivity, Needs> {
     let is_ordinary = is_ordinary(table);
     let zeros = Zeros::of(table);
-    let is_wanted = |reading: &Reading| is_press(&reading.row().label) && is_ordinary(reading.row());
+    let is_wanted = |reading: &StaticReading| is_press(&reading.row().label) && is_ordinary(reading.row());
     let places = by_place(readings(&zeros).filter(is_wanted), |reading| reading.row().label);
     let slopes: Vec<[f64; CHANNELS]> = places.each().map(slopes).collect();
     if slopes.is_empty() {
         return Err(Needs::Rows(NEEDED));
     }
-    let is_centre = |place: Option<&Reading>| {
+    let is_centre = |place: Option<&StaticReading>| {
         place.is_some_and(|first| first.row().label.x_mm.hypot(first.row().label.y_mm) <= CENTRE_MM)
     };
     let centre = places.each().position(|mut place| is_centre(place.next()));
@@ -61,7 +61,7 @@ pub fn of_channels(table: &Table) -> Result<Sensitivity, Needs> {
     })
 }
 
-fn slopes<'r>(place: impl Iterator<Item = &'r Reading<'r, 'r>>) -> [f64; CHANNELS] {
+fn slopes<'r>(place: impl Iterator<Item = &'r StaticReading<'r, 'r>>) -> [f64; CHANNELS] {
     let place: Vec<(f64, [f64; CHANNELS])> =
         place.map(|reading| (reading.row().label.fz_n, reading.uv())).collect();
     let squares: f64 = place.iter().map(|(fz_n, _)| fz_n.powi(2)).sum();

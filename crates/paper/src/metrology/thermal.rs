@@ -35,14 +35,14 @@ pub struct ThermalDrift {
 
 /// Unloaded rows: a temperature and the channels, less the mean of their session.
 #[derive(Clone, Copy)]
-struct Reading {
+struct UnloadedReading {
     temp_c: f64,
     relative_c: f64,
     uv: [f64; CHANNELS],
 }
 
 /// The mean of a session's unloaded rows.
-struct Middle {
+struct SessionMean {
     temp_c: f64,
     uv: [f64; CHANNELS],
 }
@@ -56,7 +56,8 @@ type Warm<'t> = (f64, &'t [f64; CHANNELS]);
 /// No session with unloaded rows at two temperatures.
 pub fn drift(table: &Table) -> Result<ThermalDrift, Needs> {
     let wide = sessions(table).into_iter().filter(|session| range_c(session) >= RANGE_C);
-    let sessions: Vec<(Middle, Vec<Warm>)> = wide.map(|session| (Middle::of(&session), session)).collect();
+    let sessions: Vec<(SessionMean, Vec<Warm>)> =
+        wide.map(|session| (SessionMean::of(&session), session)).collect();
     if sessions.is_empty() {
         return Err(Needs::Rows(NEEDED));
     }
@@ -94,7 +95,7 @@ fn range_c(session: &[Warm]) -> f64 {
     temperatures().fold(f64::MIN, f64::max) - temperatures().fold(f64::MAX, f64::min)
 }
 
-impl Middle {
+impl SessionMean {
     fn of(session: &[Warm]) -> Self {
         Self {
             temp_c: mean(session.iter().map(|(temp_c, _)| temp_c)),
@@ -102,8 +103,8 @@ impl Middle {
         }
     }
 
-    fn relative(&self, (temp_c, uv): &Warm) -> Reading {
-        Reading {
+    fn relative(&self, (temp_c, uv): &Warm) -> UnloadedReading {
+        UnloadedReading {
             temp_c: *temp_c,
             relative_c: temp_c - self.temp_c,
             uv: std::array::from_fn(|channel| uv[channel] - self.uv[channel]),
@@ -112,18 +113,18 @@ impl Middle {
 }
 
 /// Means over the readings whose temperatures round to the same degree, from cold to warm.
-fn by_temperature(readings: impl Iterator<Item = Reading>) -> Vec<Reading> {
+fn by_temperature(readings: impl Iterator<Item = UnloadedReading>) -> Vec<UnloadedReading> {
     // For each degree the sums of both temperatures and of the channels, and how many they are.
-    let mut degrees: BTreeMap<i64, (Reading, f64)> = BTreeMap::new();
-    for Reading { temp_c, relative_c, uv } in readings {
-        let none = Reading { temp_c: 0.0, relative_c: 0.0, uv: [0.0; CHANNELS] };
+    let mut degrees: BTreeMap<i64, (UnloadedReading, f64)> = BTreeMap::new();
+    for UnloadedReading { temp_c, relative_c, uv } in readings {
+        let none = UnloadedReading { temp_c: 0.0, relative_c: 0.0, uv: [0.0; CHANNELS] };
         let (sum, count) = degrees.entry(temp_c.round() as i64).or_insert((none, 0.0));
         sum.temp_c += temp_c;
         sum.relative_c += relative_c;
         sum.uv.iter_mut().zip(uv).for_each(|(sum, uv)| *sum += uv);
         *count += 1.0;
     }
-    let mean = |(sum, count): (Reading, f64)| Reading {
+    let mean = |(sum, count): (UnloadedReading, f64)| UnloadedReading {
         temp_c: sum.temp_c / count,
         relative_c: sum.relative_c / count,
         uv: sum.uv.map(|sum| sum / count),
@@ -131,7 +132,7 @@ fn by_temperature(readings: impl Iterator<Item = Reading>) -> Vec<Reading> {
     degrees.into_values().map(mean).collect()
 }
 
-fn nonlinearity(steps: &[Reading], lines: &[Line; CHANNELS]) -> f64 {
+fn nonlinearity(steps: &[UnloadedReading], lines: &[Line; CHANNELS]) -> f64 {
     let relative_c = || steps.iter().map(|step| step.relative_c);
     let range_c = relative_c().fold(f64::MIN, f64::max) - relative_c().fold(f64::MAX, f64::min);
     let of_channel = |channel: usize| {

@@ -3,7 +3,7 @@
 use super::simulation::Pretrained;
 use tactpad_core::network::training::Epoch;
 use tactpad_core::network::training::score::Score;
-use tactpad_plot::chart::{Chart, Guide, GuidePlace, Series, SeriesLook, Side, Value};
+use tactpad_plot::chart::{Chart, GuideLine, GuidePlace, Series, SeriesLook, Side, Value};
 use tactpad_plot::figure::Figure;
 use tactpad_plot::scale::Scale;
 
@@ -31,7 +31,8 @@ pub fn training(stage: &str, curve: &[Epoch], paper: Option<Score>) -> Figure {
         series(name, SeriesLook::Line, curve.iter().map(|epoch| [epoch.number as f64, of(epoch)]))
     };
     let guide = |of: fn(&Score) -> f64| {
-        let at = |score: &Score| Guide { at: GuidePlace::Y(of(score)), label: "the paper’s test".into() };
+        let at =
+            |score: &Score| GuideLine { at: GuidePlace::Y(of(score)), label: "the paper’s test".into() };
         paper.as_ref().map(at).into_iter().collect::<Vec<_>>()
     };
     let validation = |of| line("validation", of);

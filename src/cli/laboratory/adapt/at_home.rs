@@ -14,9 +14,9 @@ use crate::cli::files::field::field_of;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::tell;
-use tactpad::lab::calibration::data::earlier::Earlier;
+use tactpad::lab::calibration::data::earlier::EarlierCalibration;
 use tactpad::lab::play::home::{AtHome, HomeError, calibrated};
-use tactpad::lab::play::summary::{HEADING, Part, Summary};
+use tactpad::lab::play::summary::{HEADING, PlatePart, Summary};
 use tactpad::lab::play::weights::Placement;
 use tactpad::lab::play::windows::Window;
 use tactpad::lab::tangent::Simulated;
@@ -46,7 +46,7 @@ pub(crate) fn fitted(
     let progress = Progress::begin("fitting the pad's field");
     let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
     let pad = Simulated { solve: &|device| field_of(device).ok(), ..Simulated::known(device, field) };
-    calibrated(windows, placements, &pad, earlier.and_then(Earlier::of), &report)
+    calibrated(windows, placements, &pad, earlier.and_then(EarlierCalibration::of), &report)
 }
 
 /// Writes the decoder, and says what came of it: on standard output, unless that gets the decoder.
@@ -79,7 +79,7 @@ impl fmt::Display for Outcome {
         writeln!(f, "{}", self.summary.source())?;
         writeln!(f, "{}", self.pad)?;
         writeln!(f, "\n{HEADING}")?;
-        for Part { name, deviation_mm, force_share, presses, open } in &self.summary.map {
+        for PlatePart { name, deviation_mm, force_share, presses, open } in &self.summary.map {
             let mark = if *open { "  open" } else { "" };
             writeln!(
                 f,

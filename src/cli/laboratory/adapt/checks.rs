@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use tactpad::lab::calibration::result::predictive::{By, Check};
+use tactpad::lab::calibration::result::predictive::{Partition, PredictiveCheck};
 
 /// A third of the contacts, held against all of them.
 #[derive(Serialize)]
@@ -18,8 +18,8 @@ pub(super) struct Checked {
 }
 
 impl Checked {
-    pub(super) fn of(check: &Check) -> Self {
-        let Check { by, third, contacts, ratio, p_value } = *check;
+    pub(super) fn of(check: &PredictiveCheck) -> Self {
+        let PredictiveCheck { by, third, contacts, ratio, p_value } = *check;
         let (by, parts) = words(by);
         Self { by, part: parts[third.min(2)], contacts, ratio, p_value, missed: check.is_missed() }
     }
@@ -35,15 +35,15 @@ impl Checked {
     }
 }
 
-const fn words(by: By) -> (&'static str, [&'static str; 3]) {
+const fn words(by: Partition) -> (&'static str, [&'static str; 3]) {
     match by {
-        By::Radius => {
+        Partition::Radius => {
             ("radius", ["Contacts in the middle", "Contacts half way to the rim", "Contacts near the rim"])
         }
-        By::Force => {
+        Partition::Force => {
             ("force", ["The lightest contacts", "Contacts of middling force", "The strongest contacts"])
         }
-        By::Time => {
+        Partition::Time => {
             ("time", ["The first contacts", "Contacts midway through the table", "The last contacts"])
         }
     }

@@ -9,7 +9,7 @@ use crate::cli::files::tables;
 use tactpad::lab::calibration::screening::Fault;
 use tactpad::lab::contacts::Contacts;
 use tactpad::pad::device::Device;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::{Table, zero};
 use tactpad::tables::recording::Recording;
 
@@ -31,7 +31,7 @@ impl Measured {
     ) -> Result<Self, Failure> {
         let each: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
         let names = each.join(", ");
-        let read = |path: &PathBuf| tables::read(path, Kind::Measured, device.plate.radius_mm());
+        let read = |path: &PathBuf| tables::read(path, TableKind::Measured, device.plate.radius_mm());
         let tables = paths.iter().map(read).collect::<Result<Vec<_>, Failure>>()?;
         let kept = if method == Method::Inverse { tables.clone() } else { Vec::new() };
         let full_scale_n = device.contact.full_scale_n;

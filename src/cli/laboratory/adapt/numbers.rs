@@ -15,7 +15,7 @@ use tactpad::lab::calibration::result::numbers::{Number, Pair, Quantity, ToldBy}
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::numeric::statistics::mean;
 use tactpad::pipeline::compensation::creep::NO_CREEP;
-use tactpad::pipeline::compensation::hysteresis::Play;
+use tactpad::pipeline::compensation::hysteresis::PlayOperators;
 use tactpad::quantity::{CHANNEL_NAMES, CHANNELS};
 
 /// So many pairs that are not told apart are said to people; documents have all.
@@ -198,7 +198,7 @@ impl Pad {
         let plays = self.calibration.compensation.hysteresis.iter().filter(|it| mean(it.threshold_uv) > 0.0);
         plays
             .zip(self.numbers().filter(is_mean))
-            .map(|(play, number): (&Play, &Number)| Friction {
+            .map(|(play, number): (&PlayOperators, &Number)| Friction {
                 threshold_uv: mean(play.threshold_uv),
                 share: mean(play.share),
                 standing: self.standing(number),

@@ -8,7 +8,7 @@ use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::field::field_of;
 use crate::cli::printing::progress::Progress;
-use tactpad::lab::calibration::data::earlier::Earlier;
+use tactpad::lab::calibration::data::earlier::EarlierCalibration;
 use tactpad::lab::calibration::fit::Calibration;
 use tactpad::lab::tangent::Simulated;
 use tactpad::pad::changes::FieldChange;
@@ -53,7 +53,7 @@ fn calibrated(
 ) -> Result<(Decoder, Option<Calibration>), Failure> {
     let progress = Progress::begin("fitting the pad's field");
     let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
-    let earlier = earlier.and_then(Earlier::of);
+    let earlier = earlier.and_then(EarlierCalibration::of);
     let pad = Simulated { device, field, flaws, solve: &|device| field_of(device).ok() };
     let calibration = measured.contacts.calibration(&pad, earlier, &report);
     drop(progress);
@@ -64,7 +64,7 @@ fn calibrated(
 /// The other pad's decoder to begin with.
 fn another_pads(path: &Path) -> Result<Decoder, Failure> {
     let decoder = decoder_file::read(path)?;
-    if Earlier::of(&decoder).is_none() {
+    if EarlierCalibration::of(&decoder).is_none() {
         return Err(Failure::Unusable(format!(
             "--from {} is a {} decoder; inverse begins with one that adapt --method inverse wrote",
             path.display(),

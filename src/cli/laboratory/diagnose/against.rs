@@ -12,7 +12,7 @@ use super::{report, text};
 use crate::cli::failure::Failure;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{print_json, reason, stdout};
-use tactpad::lab::diagnosis::against::{Asked, compare};
+use tactpad::lab::diagnosis::against::{ColumnSelection, compare};
 use tactpad::lab::diagnosis::report::Diagnosis;
 use tactpad::tables::measured::error::{Fault, ReadError};
 use tactpad::tables::measured::sheet::{Sheet, sheet};
@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Arguments, measured: &Path, earlier: &Path) -> Res
     let [before, after] = [read(earlier)?, read(measured)?];
     let diagnosis = {
         let _progress = Progress::begin("looking for changes");
-        let asked = Asked { labels, channels, without };
+        let asked = ColumnSelection { labels, channels, without };
         compare(&before, &after, &asked).map_err(|why| {
             Failure::Unusable(format!("{} against {}: {why}", measured.display(), earlier.display()))
         })?

@@ -11,7 +11,7 @@ use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::quoted;
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report;
-use tactpad::lab::play::change::Changed;
+use tactpad::lab::play::change::DetectedChanges;
 use tactpad::quantity::{CHANNEL_NAMES, MODULES};
 
 /// Version of the document's form.
@@ -88,13 +88,13 @@ pub(crate) enum Since<'p> {
 
 /// What came of a comparison, and of what with what.
 pub(crate) struct Compared<'p> {
-    pub(crate) found: &'p Changed,
+    pub(crate) found: &'p DetectedChanges,
     pub(crate) since: Since<'p>,
     pub(crate) play: &'p Path,
 }
 
 impl<'c> Document<'c> {
-    pub(crate) fn of(found: &'c Changed) -> Self {
+    pub(crate) fn of(found: &'c DetectedChanges) -> Self {
         let (earlier, later) = found.presses;
         Self {
             schema: SCHEMA,
@@ -111,7 +111,7 @@ impl<'c> Document<'c> {
 }
 
 /// The gains of modules that no finding is of.
-fn not_detected(found: &Changed) -> Vec<NotDetected> {
+fn not_detected(found: &DetectedChanges) -> Vec<NotDetected> {
     let is_found = |target: &Target| found.findings.iter().any(|it| it.target == *target);
     let modules = (0..MODULES).map(Target::Module).filter(|target| !is_found(target));
     let gain = found.least_module_gain;
@@ -124,7 +124,7 @@ fn not_detected(found: &Changed) -> Vec<NotDetected> {
 }
 
 /// The findings as documents have them.
-pub(crate) fn findings(found: &Changed) -> Vec<Finding<'_>> {
+pub(crate) fn findings(found: &DetectedChanges) -> Vec<Finding<'_>> {
     found.findings.iter().map(|it| Finding::of(it, &names())).collect()
 }
 
@@ -147,7 +147,7 @@ fn said(finding: &report::Finding) -> String {
 }
 
 /// All changes on one line; where none was found, what would have been.
-pub(crate) fn line(found: &Changed) -> String {
+pub(crate) fn line(found: &DetectedChanges) -> String {
     let all: Vec<String> = found.findings.iter().map(said).collect();
     if all.is_empty() {
         return format!(
@@ -236,8 +236,8 @@ mod tests {
         }
     }
 
-    fn changed(findings: Vec<report::Finding>) -> Changed {
-        Changed { findings, presses: (None, 600), inflation: 1.0, least_module_gain: 0.021 }
+    fn changed(findings: Vec<report::Finding>) -> DetectedChanges {
+        DetectedChanges { findings, presses: (None, 600), inflation: 1.0, least_module_gain: 0.021 }
     }
 
     #[test]

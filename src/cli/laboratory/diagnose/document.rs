@@ -195,7 +195,7 @@ impl Decoded {
 impl Gain {
     fn of(gain: &report::Gain, channels: &[String]) -> Self {
         let [rmse_ratio_low95, rmse_ratio_high95] = gain.rmse_ratio_interval95;
-        let without = |it: &report::Without| Without {
+        let without = |it: &report::WithoutFinding| Without {
             cause: Cause::of(it.effect, &it.target, channels),
             rmse_ratio_without: it.rmse_ratio,
         };

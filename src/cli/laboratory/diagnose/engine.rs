@@ -4,7 +4,7 @@ use crate::cli::failure::Failure;
 use crate::cli::files::field::{changes_of, field_of};
 use crate::cli::printing::written::say;
 use tactpad::lab::diagnosis::report::Diagnosis;
-use tactpad::lab::diagnosis::{self, Unfit};
+use tactpad::lab::diagnosis::{self, DiagnosisError};
 use tactpad::pad::changes::FieldChange;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
@@ -15,7 +15,7 @@ pub(crate) fn diagnosed(
     table: &Table,
     (device, field, flaws): (&Device, &PadField, &[FieldChange]),
     without: &[String],
-) -> Result<Diagnosis, Unfit> {
+) -> Result<Diagnosis, DiagnosisError> {
     let solve = |device: &Device| field_of(device).ok();
     let pad = diagnosis::Pad { device, field, flaws, solve: &solve, without };
     diagnosis::diagnose(table, &pad)

@@ -26,10 +26,10 @@ use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{is_stdout, print_json, say, stdout};
 use tactpad::lab::diagnosis::extension::extended;
 use tactpad::lab::diagnosis::report::Diagnosis;
-use tactpad::lab::diagnosis::{self, Unfit};
+use tactpad::lab::diagnosis::{self, DiagnosisError};
 use tactpad::pad::device::Device;
 use tactpad::tables::measured::Table;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match (&arguments.play, &arguments.measured, &arguments.against) {
@@ -49,7 +49,7 @@ fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
     let saved = save_device.as_deref().map(|path| destination(path, arguments)).transpose()?;
     let device = pad.read()?;
     let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;
-    let table = tables::read(measured, Kind::Measured, device.plate.radius_mm())?;
+    let table = tables::read(measured, TableKind::Measured, device.plate.radius_mm())?;
     // It takes a while until the engine itself could say so.
     diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
     let field = field_of(&device)?;
@@ -82,7 +82,7 @@ fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
     Ok(write!(stdout(), "{}", text::Report(&diagnosis))?)
 }
 
-fn unfit(measured: &Path, why: &Unfit) -> Failure {
+fn unfit(measured: &Path, why: &DiagnosisError) -> Failure {
     Failure::Unusable(format!("{}: {why}", measured.display()))
 }
 

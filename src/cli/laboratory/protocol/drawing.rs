@@ -4,7 +4,7 @@ use tactpad::pad::device::Device;
 use tactpad::plot::colour::Rgb;
 use tactpad::plot::figure::{Anchor, Figure, Ink, Stroke, Text};
 use tactpad::plot::plan::Plan;
-use tactpad::plot::shape::{Look, Shape};
+use tactpad::plot::shape::{PaintStyle, Shape};
 use tactpad::tables::measured::Table;
 use tactpad::tables::measured::zero::ZERO;
 use tactpad::tables::plans::distinct_places;
@@ -17,8 +17,11 @@ const NAME_SIZE: f64 = 12.0;
 /// The plate with the places of contacts, in the colours of their sessions, whose names stand below.
 pub(super) fn places(title: String, plan: &Table, device: &Device) -> Figure {
     let rim_mm = device.plate.radius_mm();
-    let circle =
-        |radius: f64, stroke: Stroke| Shape::Circle { centre: [0.0; 2], radius, look: Look::line(stroke) };
+    let circle = |radius: f64, stroke: Stroke| Shape::Circle {
+        centre: [0.0; 2],
+        radius,
+        look: PaintStyle::line(stroke),
+    };
     let dashed = Stroke::solid(DARK, 0.7).dashed(3.0, 3.0);
     let mut shapes =
         vec![circle(rim_mm, Stroke::solid(DARK, 1.2)), circle(device.contact.max_centre_radius_mm, dashed)];
@@ -26,7 +29,7 @@ pub(super) fn places(title: String, plan: &Table, device: &Device) -> Figure {
     for (session, name) in plan.sessions.iter().enumerate().filter(|(_, name)| *name != ZERO) {
         let ink = Ink::opaque(Rgb::of_series(names.len()));
         let places = distinct_places(plan.rows.iter().filter(|row| row.session == Some(session)));
-        shapes.push(Shape::Dots { places, radius_px: DOT_PX, look: Look::fill(ink) });
+        shapes.push(Shape::Dots { places, radius_px: DOT_PX, look: PaintStyle::fill(ink) });
         names.push((name, ink));
     }
     let axis = |name: &str| format!("{name}, mm");

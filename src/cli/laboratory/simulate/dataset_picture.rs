@@ -6,7 +6,7 @@ use tactpad::plot::colour::Rgb;
 use tactpad::plot::figure::{Figure, Ink, Stroke};
 use tactpad::plot::plan::Plan;
 use tactpad::plot::scale::Scale;
-use tactpad::plot::shape::{Look, Shape};
+use tactpad::plot::shape::{PaintStyle, Shape};
 use tactpad::tables::dataset::PAPER_HALF;
 use tactpad::tables::measured::Label;
 
@@ -44,12 +44,12 @@ fn tilt_deg(label: &Label) -> Option<f64> {
 }
 
 fn places(halves: &[&[Label]; 2], device: &Device) -> Figure {
-    let circle = |radius, stroke| Shape::Circle { centre: [0.0; 2], radius, look: Look::line(stroke) };
+    let circle = |radius, stroke| Shape::Circle { centre: [0.0; 2], radius, look: PaintStyle::line(stroke) };
     let radius_mm = device.plate.radius_mm();
     let dots = |(order, half): (usize, &&[Label])| Shape::Dots {
         places: half.iter().take(DOTS).map(|label| [label.x_mm, label.y_mm]).collect(),
         radius_px: 1.7,
-        look: Look::fill(Ink::opaque(Rgb::of_series(order))),
+        look: PaintStyle::fill(Ink::opaque(Rgb::of_series(order))),
     };
     let rims = [
         circle(radius_mm, Stroke::solid(DARK, 1.2)),

@@ -28,7 +28,7 @@ use tactpad::pad::readout::Readout;
 use tactpad::pad::twin::bridges;
 use tactpad::quantity::Contact;
 use tactpad::tables::dataset;
-use tactpad::tables::measured::columns::{Column, Kind};
+use tactpad::tables::measured::columns::{Column, TableKind};
 use tactpad::tables::measured::write::Writer;
 use tactpad::tables::measured::{Label, Row, Table};
 
@@ -215,7 +215,7 @@ fn contacts(arguments: &Arguments, out: &Path, device: &Device) -> Result<Table,
     let Arguments { source: Source { contacts, dataset }, seed, .. } = arguments;
     match (contacts, dataset) {
         (Some(path), _) if is_same(path, out) => Err(written_over(out, "is the table of contacts")),
-        (Some(path), _) => tables::on_the_plate(path, Kind::Contacts, device),
+        (Some(path), _) => tables::on_the_plate(path, TableKind::Contacts, device),
         (None, Some(Dataset::Paper)) => Ok(drawn(&dataset::paper(&device.contact, *seed))),
         (None, None) => Err(Failure::Unusable("give --contacts or --dataset".into())),
     }

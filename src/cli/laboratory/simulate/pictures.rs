@@ -14,7 +14,7 @@ use tactpad::plot::grid::Grid;
 use tactpad::plot::isoline::Isolines;
 use tactpad::plot::multiples::{Bars, Multiples};
 use tactpad::plot::plan::{Field, Plan};
-use tactpad::plot::shape::{Look, Shape};
+use tactpad::plot::shape::{PaintStyle, Shape};
 use tactpad::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
 
 const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);
@@ -59,7 +59,7 @@ fn deflection(pressed: &PressedPad) -> Plan {
     shapes.push(Shape::Dots {
         places: vec![pressed.place_mm],
         radius_px: 3.5,
-        look: Look::fill(Ink::opaque(DARK)),
+        look: PaintStyle::fill(Ink::opaque(DARK)),
     });
     let title = format!("Deflection of the plate under {}", load(pressed));
     plate(title, device, field, shapes)
@@ -178,7 +178,7 @@ fn gauges(device: &Device) -> Vec<Shape> {
     for (index, gauge) in device.gauges.iter().enumerate() {
         let centre = [gauge.x_mm, gauge.y_mm];
         let size = half_sizes_mm(gauge).map(|half| 2.0 * half);
-        let look = Look::line(Stroke::solid(DARK, 1.0));
+        let look = PaintStyle::line(Stroke::solid(DARK, 1.0));
         shapes.push(Shape::Rectangle { centre, size, turn_deg: 0.0, look });
         shapes.push(Shape::Label { place: centre, text: format!("R{}", index + 1) });
     }
@@ -230,7 +230,7 @@ fn films(device: &Device) -> Vec<Shape> {
     let film = |module: usize| Shape::Line {
         corners: device.poses()[module].corners_mm(film_half_mm(device)).to_vec(),
         ends: Ends::Closed,
-        look: Look::line(Stroke::solid(DARK, 0.8)),
+        look: PaintStyle::line(Stroke::solid(DARK, 0.8)),
     };
     (0..MODULES).map(film).collect()
 }

@@ -16,7 +16,7 @@ use crate::cli::printing::written::{print_json, say, stdout};
 use tactpad::lab::rig::measurement::{Measurement, carry_on};
 use tactpad::pad::device::Device;
 use tactpad::pad::twin::life::Life;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::{Row, Table};
 use tactpad::tables::plans;
 
@@ -63,7 +63,7 @@ fn planned(plan: &Path, device: &Device, seed: u64) -> Result<Table, Failure> {
     match plan.to_str() {
         Some("paper") => Ok(plans::paper::plan(&device.contact)),
         Some("recommended") => Ok(plans::recommended::plan(&device.contact, seed)),
-        _ => tables::on_the_plate(plan, Kind::Plan, device),
+        _ => tables::on_the_plate(plan, TableKind::Plan, device),
     }
 }
 

@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::timing;
-use tactpad::lab::ablation::entries::{ENTRIES, Entry};
+use tactpad::lab::ablation::entries::{AblationEntry, ENTRIES};
 use tactpad::lab::ablation::trials::Trials;
-use tactpad::lab::ablation::unseen::{Judged, Least, Unseen};
+use tactpad::lab::ablation::unseen::{Least, Unseen, UnseenContacts};
 use tactpad::lab::evaluation::Errors;
 
 /// Everything that the verb finds out.
@@ -25,7 +25,7 @@ pub(super) struct AblationReport {
 #[derive(Serialize)]
 pub(super) struct Row {
     #[serde(flatten)]
-    pub(super) entry: Entry,
+    pub(super) entry: AblationEntry,
     /// Median time of one decode, one processor; null where this program has no clock.
     pub(super) decode_us: Option<f64>,
     pub(super) unseen: Vec<Tried>,
@@ -49,7 +49,7 @@ pub(super) struct Tried {
 
 /// A row for each decoder. Decodes are timed here.
 pub(super) fn rows(trials: &Trials) -> Vec<Row> {
-    let row = |(index, entry): (usize, &Entry)| Row {
+    let row = |(index, entry): (usize, &AblationEntry)| Row {
         entry: *entry,
         decode_us: timing::median_us(&trials.decoders[index], &trials.unseen),
         unseen: trials
@@ -63,7 +63,7 @@ pub(super) fn rows(trials: &Trials) -> Vec<Row> {
 }
 
 impl Tried {
-    fn of(unseen: &Unseen, judged: &Judged) -> Self {
+    fn of(unseen: &Unseen, judged: &UnseenContacts) -> Self {
         Self {
             plan: unseen.plan,
             seed: unseen.seed,

@@ -18,7 +18,7 @@ use crate::cli::printing::pictures;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::print_json;
 use tactpad::lab::layout::drawing;
-use tactpad::lab::layout::published::{PARTS, Part, area_rows};
+use tactpad::lab::layout::published::{PARTS, PublishedPart, area_rows};
 use tactpad::lab::layout::region::THRESHOLD;
 use tactpad::lab::layout::spacing::Radii;
 use tactpad::lab::layout::study::{Simulated, SpacingAnswers, StudyError};
@@ -91,7 +91,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         spacing,
         area_per_channel: area_rows(device.plate.diameter_mm, at_best.map(|found| found.rms_mm)),
         parts: PARTS,
-        parts_usd: PARTS.iter().map(Part::price_usd).sum(),
+        parts_usd: PARTS.iter().map(PublishedPart::price_usd).sum(),
         simulated,
     };
     if let Some(folder) = &folder {

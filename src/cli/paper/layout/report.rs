@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use tactpad::lab::layout::published::{AreaRow, PARTS, Part};
+use tactpad::lab::layout::published::{AreaRow, PARTS, PublishedPart};
 use tactpad::lab::layout::study::{Simulated, SpacingAnswers};
 
 /// Everything that the verb finds out.
@@ -14,6 +14,6 @@ pub(super) struct LayoutReport {
     #[serde(flatten)]
     pub(super) simulated: Option<Simulated>,
     pub(super) area_per_channel: Vec<AreaRow>,
-    pub(super) parts: [Part; PARTS.len()],
+    pub(super) parts: [PublishedPart; PARTS.len()],
     pub(super) parts_usd: f64,
 }

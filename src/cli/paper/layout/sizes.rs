@@ -10,7 +10,7 @@ use crate::cli::printing::progress::Progress;
 use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::{print_json, stdout};
 use tactpad::lab::layout::size_drawing;
-use tactpad::lab::layout::sizes::{Answer, Law, SizedPad, Sizes};
+use tactpad::lab::layout::sizes::{Law, RecommendedPad, SizeStudy, SizedPad};
 use tactpad::pad::device::Device;
 
 /// Where the study goes besides the screen.
@@ -41,13 +41,13 @@ pub(super) fn run(device: &Device, noise_uv: f64, wanted: &Wanted<'_>) -> Result
     if wanted.json { print_json(&sizes) } else { Ok(write(&mut stdout(), &sizes, wanted.devices)?) }
 }
 
-fn simulated(device: &Device, noise_uv: f64) -> Result<Sizes, Failure> {
+fn simulated(device: &Device, noise_uv: f64) -> Result<SizeStudy, Failure> {
     let progress = Progress::begin("solving the modules");
-    Sizes::of(device, noise_uv, |done, of, what| progress.part(done, of, what))
+    SizeStudy::of(device, noise_uv, |done, of, what| progress.part(done, of, what))
         .map_err(|error| Failure::Failed(format!("the simulator: {error}")))
 }
 
-fn write(out: &mut impl Write, sizes: &Sizes, devices: Option<&Path>) -> io::Result<()> {
+fn write(out: &mut impl Write, sizes: &SizeStudy, devices: Option<&Path>) -> io::Result<()> {
     writeln!(
         out,
         "Pads by size: press of 1 N, noise {} µV, converter at {} Hz",
@@ -125,7 +125,10 @@ fn significant(value: f64) -> String {
     format!("{value:.*}", decimals as usize)
 }
 
-fn write_answer(out: &mut impl Write, Answer { user, pad, stiff, bears }: &Answer) -> io::Result<()> {
+fn write_answer(
+    out: &mut impl Write,
+    RecommendedPad { user, pad, stiff, bears }: &RecommendedPad,
+) -> io::Result<()> {
     let text = format!(
         "{} mm wide, {} mm thick{}: located within {:.2} mm at 1 N, first rings at {:.0} Hz; a firm press of {} N {}",
         pad.size.diameter_mm,

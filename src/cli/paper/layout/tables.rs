@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use super::report::LayoutReport;
 use crate::cli::printing::written::stdout;
 use tactpad::lab::layout::placement::Candidate;
-use tactpad::lab::layout::published::{AreaRow, Part};
+use tactpad::lab::layout::published::{AreaRow, PublishedPart};
 use tactpad::lab::layout::study::{Simulated, SpacingAnswers};
 
 /// A free distance is one whose range is longer than this share of it.
@@ -163,7 +163,7 @@ fn write_accuracies(out: &mut impl Write, rows: &[AreaRow]) -> io::Result<()> {
     Ok(())
 }
 
-fn write_parts(out: &mut impl Write, parts: &[Part], sum_usd: f64) -> io::Result<()> {
+fn write_parts(out: &mut impl Write, parts: &[PublishedPart], sum_usd: f64) -> io::Result<()> {
     writeln!(out, "Parts, with the prices of the paper's Table 1")?;
     writeln!(out, "{:<16} {:>6} {:>6} {:>6}  here", "part", "number", "USD", "sum")?;
     for part in parts {

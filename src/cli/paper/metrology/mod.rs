@@ -28,7 +28,7 @@ use tactpad::mechanics::mesh::Fineness;
 use tactpad::mechanics::simulator::{PLATE_DEGREE, Simulator};
 use tactpad::numeric::zernike::jets;
 use tactpad::pad::device::Device;
-use tactpad::tables::measured::columns::Kind;
+use tactpad::tables::measured::columns::TableKind;
 
 /// Arguments of `tactpad metrology`.
 #[derive(Debug, Args)]
@@ -95,7 +95,7 @@ fn write_plan(arguments: &Arguments, path: &Path) -> Result<(), Failure> {
 /// The figures of a file. The pad that it is compared with is the device with its imperfections.
 fn of_file(arguments: &Arguments, path: &Path) -> Result<MetrologyReport, Failure> {
     let device = arguments.pad.read()?;
-    let table = read(path, Kind::Measured, device.plate.radius_mm())?;
+    let table = read(path, TableKind::Measured, device.plate.radius_mm())?;
     let decoders = arguments.decoders()?;
     let folder = arguments.folder()?;
     let field = field_of(&device)?;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use tactpad::lab::metrology::dynamics::PadDynamics;
 use tactpad::lab::metrology::figures::Figures;
-use tactpad::lab::metrology::report::Entry;
+use tactpad::lab::metrology::report::ReportEntry;
 
 /// Everything that the verb finds out.
 #[derive(Serialize)]
@@ -13,7 +13,7 @@ pub(super) struct MetrologyReport {
     pub(super) statement: String,
     /// None for a measured file.
     pub(super) seeds: Vec<u64>,
-    pub(super) rows: Vec<Entry>,
+    pub(super) rows: Vec<ReportEntry>,
     /// All that was found, by seed.
     pub(super) figures: Vec<Figures>,
     /// The simulated pad's own dynamics; nothing for a measured table or without the simulator.

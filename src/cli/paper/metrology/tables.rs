@@ -6,7 +6,7 @@ use super::report::MetrologyReport;
 use crate::cli::printing::wrapped::{hanging, lines};
 use crate::cli::printing::written::stdout;
 use tactpad::lab::metrology::dynamics::{InSeries, PadDynamics};
-use tactpad::lab::metrology::report::{Conflict, Entry, Status};
+use tactpad::lab::metrology::report::{Conflict, ReportEntry, Status};
 
 pub(super) fn print(report: &MetrologyReport) -> io::Result<()> {
     write(&mut stdout(), report)
@@ -82,7 +82,7 @@ fn write_in_series(out: &mut impl Write, name: &str, found: &InSeries) -> io::Re
 }
 
 /// What open figures need, each once, in their order.
-fn needs(rows: &[Entry]) -> Vec<String> {
+fn needs(rows: &[ReportEntry]) -> Vec<String> {
     let mut needs: Vec<String> = Vec::new();
     for need in rows.iter().filter_map(|entry| entry.needs).map(|needs| needs.to_string()) {
         if !needs.contains(&need) {
@@ -92,7 +92,7 @@ fn needs(rows: &[Entry]) -> Vec<String> {
     needs
 }
 
-fn write_entry(out: &mut impl Write, entry: &Entry, needs: &[String]) -> io::Result<()> {
+fn write_entry(out: &mut impl Write, entry: &ReportEntry, needs: &[String]) -> io::Result<()> {
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), significant);
     let percent = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.0}"));
     let cells = [
@@ -130,7 +130,7 @@ fn significant(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-fn status(entry: &Entry, needs: &[String]) -> String {
+fn status(entry: &ReportEntry, needs: &[String]) -> String {
     let needed = entry.needs.map(|needs| needs.to_string());
     let number = needs.iter().position(|need| Some(need) == needed.as_ref());
     match entry.status {
@@ -158,8 +158,8 @@ mod tests {
     use tactpad::lab::metrology::Needs;
     use tactpad::lab::metrology::report::Leaving;
 
-    fn entry(status: Status, mean: Option<f64>) -> Entry {
-        Entry {
+    fn entry(status: Status, mean: Option<f64>) -> ReportEntry {
+        ReportEntry {
             key: "hysteresis",
             name: "hysteresis, of 5 N",
             unit: "%",
@@ -174,7 +174,7 @@ mod tests {
         }
     }
 
-    fn text(rows: Vec<Entry>) -> String {
+    fn text(rows: Vec<ReportEntry>) -> String {
         let statement = "A numerical twin of the pad; no hardware was measured.".to_owned();
         let report = MetrologyReport {
             statement,
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn no_line_is_too_long() {
-        let far = |status, name| Entry {
+        let far = |status, name| ReportEntry {
             name,
             unit: "µV/N",
             paper: Some(0.820),
@@ -237,7 +237,7 @@ mod tests {
             leaving,
             reason: "noise falls with the load".into(),
         };
-        let text = text(vec![Entry { conflict: Some(conflict), ..entry(Status::Conflict, Some(0.5)) }]);
+        let text = text(vec![ReportEntry { conflict: Some(conflict), ..entry(Status::Conflict, Some(0.5)) }]);
         assert!(text.contains("spread_5 is in conflict: noise falls with the load"), "{text}");
         assert!(
             text.contains("fitted alone it reaches 0.870") && text.contains("spread_3 reads 1.50"),

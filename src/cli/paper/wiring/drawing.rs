@@ -6,7 +6,7 @@ use tactpad::pad::wiring::{HALF_BRIDGES, HalfBridge, gauge_name};
 use tactpad::plot::colour::Rgb;
 use tactpad::plot::figure::{Anchor, Circle, Ends, Figure, Ink, Mark, Path, Point, Stroke, Text};
 use tactpad::plot::plan::Plan;
-use tactpad::plot::shape::{Look, Shape};
+use tactpad::plot::shape::{PaintStyle, Shape};
 use tactpad::quantity::{CHANNEL_NAMES, MODULES};
 
 const DARK: Rgb = Rgb::new(0x1f, 0x24, 0x2b);
@@ -177,11 +177,11 @@ fn film(device: &Device) -> Figure {
         turn_deg: 0.0,
         look,
     };
-    let filled = |colour, stroke| Look { fill: Some(Ink::opaque(colour)), stroke: Some(stroke) };
+    let filled = |colour, stroke| PaintStyle { fill: Some(Ink::opaque(colour)), stroke: Some(stroke) };
     let mut shapes = vec![
         rectangle(half_mm, filled(EPOXY, Stroke::solid(DARK, 1.2))),
         rectangle(window_mm, filled(Rgb::WHITE, Stroke::solid(PALE, 0.9))),
-        rectangle(post_mm.map(|side| 0.5 * side), Look::fill(Ink::opaque(POST))),
+        rectangle(post_mm.map(|side| 0.5 * side), PaintStyle::fill(Ink::opaque(POST))),
     ];
     for (number, gauge) in device.gauges.iter().enumerate() {
         let half = half_of(gauge);
@@ -222,7 +222,7 @@ fn grid(number: usize, gauge: &Gauge) -> [Shape; 2] {
         centre: [gauge.x_mm, gauge.y_mm],
         size: half.map(|half| 2.0 * half),
         turn_deg: 0.0,
-        look: Look::line(Stroke::solid(colour, 0.7)),
+        look: PaintStyle::line(Stroke::solid(colour, 0.7)),
     };
     let (along, across) = match gauge.direction {
         Direction::X => (0, 1),
@@ -238,7 +238,7 @@ fn grid(number: usize, gauge: &Gauge) -> [Shape; 2] {
     };
     let ends = |line: u32| if line.is_multiple_of(2) { [-1.0, 1.0] } else { [1.0, -1.0] };
     let corners = (0..GRID_LINES).flat_map(|line| ends(line).map(|end| corner(line, end))).collect();
-    [outline, Shape::Line { corners, ends: Ends::Open, look: Look::line(Stroke::solid(colour, 1.6)) }]
+    [outline, Shape::Line { corners, ends: Ends::Open, look: PaintStyle::line(Stroke::solid(colour, 1.6)) }]
 }
 
 /// The films under the plate, seen from above.
@@ -247,7 +247,7 @@ fn plate(device: &Device) -> Figure {
     let mut shapes = vec![Shape::Circle {
         centre: [0.0; 2],
         radius: radius_mm,
-        look: Look::line(Stroke::solid(DARK, 1.2)),
+        look: PaintStyle::line(Stroke::solid(DARK, 1.2)),
     }];
     for (index, pose) in device.poses().iter().enumerate() {
         shapes.extend(module(device, index, pose));
@@ -274,7 +274,7 @@ fn module(device: &Device, index: usize, pose: &Pose) -> Vec<Shape> {
     let closed = |corners: Vec<[f64; 2]>, stroke| Shape::Line {
         corners,
         ends: Ends::Closed,
-        look: Look::line(stroke),
+        look: PaintStyle::line(stroke),
     };
     let mut shapes = vec![closed(pose.corners_mm(half_mm).to_vec(), Stroke::solid(DARK, 1.0))];
     for (number, gauge) in device.gauges.iter().enumerate() {

@@ -20,7 +20,7 @@ use tactpad::bridge::observer::{Observed, Observer, observe};
 use tactpad::bridge::parts::PlayingDecoder;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::lab::play::change::{Before, changed};
-use tactpad::lab::play::kept::{Kept, mark};
+use tactpad::lab::play::kept::{KeptPlay, mark};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::windows::Window;
 use tactpad::pad::device::Device;
@@ -68,7 +68,7 @@ struct Keeper {
     changes: ChangesSlot,
     reader: Option<Reader>,
     /// Of the pad that is played on, and where it is kept.
-    kept: Option<(Kept, PathBuf)>,
+    kept: Option<(KeptPlay, PathBuf)>,
     is_new: bool,
     /// Pressed windows since the last comparison.
     pressed: usize,

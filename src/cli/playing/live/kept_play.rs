@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::cli::files::played;
 use crate::cli::files::state_file;
 use firmware_proto::identity::SerialNumber;
-use tactpad::lab::play::kept::{Kept, mark};
+use tactpad::lab::play::kept::{KeptPlay, mark};
 
 /// The folder.
 const FOLDER: &str = "play";
@@ -27,14 +27,14 @@ pub(super) fn place(pad: SerialNumber, decoder: u64) -> Option<PathBuf> {
 }
 
 /// What was kept of this pad under this decoder. What is damaged, or another's, is as good as none.
-pub(super) fn read(path: &Path, pad: SerialNumber, decoder: u64) -> Kept {
+pub(super) fn read(path: &Path, pad: SerialNumber, decoder: u64) -> KeptPlay {
     let bytes = played::kept_bytes(path).and_then(Result::ok);
-    let kept = bytes.and_then(|bytes| Kept::from_bytes(&bytes).ok());
-    kept.filter(|kept| (kept.pad, kept.decoder) == (pad, decoder)).unwrap_or(Kept::new(pad, decoder))
+    let kept = bytes.and_then(|bytes| KeptPlay::from_bytes(&bytes).ok());
+    kept.filter(|kept| (kept.pad, kept.decoder) == (pad, decoder)).unwrap_or(KeptPlay::new(pad, decoder))
 }
 
 /// Writes it so that nobody else can read it. Who reads meanwhile finds this or what was there before.
-pub(super) fn write(path: &Path, kept: &Kept) -> io::Result<()> {
+pub(super) fn write(path: &Path, kept: &KeptPlay) -> io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
     fs::set_permissions(folder, Permissions::from_mode(0o700))?;
@@ -71,8 +71,8 @@ mod tests {
         let folder = folder.path().join("play");
         for number in 0..FILES_MAX + 3 {
             let path = folder.join(format!("{number}.{ENDING}"));
-            write(&path, &Kept::new(pad(number), 7)).unwrap();
-            assert_eq!(read(&path, pad(number), 7), Kept::new(pad(number), 7));
+            write(&path, &KeptPlay::new(pad(number), 7)).unwrap();
+            assert_eq!(read(&path, pad(number), 7), KeptPlay::new(pad(number), 7));
         }
         let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
         let files: Vec<_> = fs::read_dir(&folder).unwrap().map(|it| it.unwrap().path()).collect();

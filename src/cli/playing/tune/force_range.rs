@@ -12,11 +12,11 @@ use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::{print_json, stdout};
 use tactpad::lab::tuning::fitting::Fitted;
-use tactpad::lab::tuning::force_range::fit::{Reached, Unfit, fit};
+use tactpad::lab::tuning::force_range::fit::{ForceRangeError, ReachCount, fit};
 use tactpad::lab::tuning::force_range::levels::{self, ends_n, is_one_force};
 use tactpad::lab::tuning::force_range::peaks::Peaks;
 use tactpad::lab::tuning::force_range::range::{PRESSES_MIN, Range};
-use tactpad::lab::tuning::words::{Told, path};
+use tactpad::lab::tuning::words::{ChangedNumber, path};
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::pipeline::mapping::read::check::{OutputChoice, read};
 use tactpad::pipeline::mapping::read::shipped;
@@ -85,7 +85,7 @@ struct Outcome {
     /// Of the same recording that was fitted to.
     reach: Pair<Good>,
     held_out: Option<HeldOut>,
-    changes: Vec<Told>,
+    changes: Vec<ChangedNumber>,
     /// Whether one force is enough for the profile.
     #[serde(skip)]
     is_one_force: bool,
@@ -123,11 +123,11 @@ fn counted(count: usize, one: &str, many: &str) -> String {
 }
 
 /// Why a profile is not fitted, and what would be one for this hand.
-fn refused(name: &str, (profile, text): Whole<'_>, why: Unfit) -> Failure {
+fn refused(name: &str, (profile, text): Whole<'_>, why: ForceRangeError) -> Failure {
     let asked = ends_n(&levels::all(profile, text)).unwrap_or_default();
     Failure::Unusable(match why {
-        Unfit::NoLevels => format!("{name} asks for no normal force: there is nothing to fit"),
-        Unfit::NotApart(Range { light_most_n, hard_n, .. }) => format!(
+        ForceRangeError::NoLevels => format!("{name} asks for no normal force: there is nothing to fit"),
+        ForceRangeError::NotApart(Range { light_most_n, hard_n, .. }) => format!(
             "{name} asks for light presses ({} N) and hard ones ({} N), which this hand does not give surely apart (one light \
              press in ten exceeds {light_most_n:.2} N, one hard press in ten stays below {hard_n:.2} N): choose a profile \
              that needs one force, as {}, or tell presses by time, with tap, hold and long_press_ms or with dwell_ms, and by \
@@ -137,7 +137,7 @@ fn refused(name: &str, (profile, text): Whole<'_>, why: Unfit) -> Failure {
             one_force_names().join(", "),
             levels::ONE_FORCE,
         ),
-        Unfit::NoProfile(range) => format!(
+        ForceRangeError::NoProfile(range) => format!(
             "no profile can ask for the forces of this recording, {:.2} N to {:.2} N: record it again, and tare the pad before",
             range.lowest_n(),
             range.highest_n()
@@ -165,7 +165,7 @@ impl Outcome {
             thresholds: before.into_iter().zip(after).map(row).collect(),
             reach: Pair { before: Good::of(given, peaks), after: Good::of(whole(fitted), peaks) },
             held_out: held_out(given, peaks),
-            changes: fitted.changes.iter().map(|change| Told::of(change, &fitted.profile)).collect(),
+            changes: fitted.changes.iter().map(|change| ChangedNumber::of(change, &fitted.profile)).collect(),
             is_one_force: ends_n(&levels::all(given.0, given.1)).is_some_and(is_one_force),
             written: None,
         }
@@ -185,15 +185,15 @@ impl Presses {
 impl Good {
     fn of((profile, text): Whole<'_>, peaks: &Peaks) -> Self {
         let [lowest_n, highest_n] = ends_n(&levels::all(profile, text)).unwrap_or_default();
-        let Reached { light, hard } = Reached::of(peaks, highest_n);
-        Self { light_lowest: Reached::of(peaks, lowest_n).light, light_highest: light, hard_highest: hard }
+        let ReachCount { light, hard } = ReachCount::of(peaks, highest_n);
+        Self { light_lowest: ReachCount::of(peaks, lowest_n).light, light_highest: light, hard_highest: hard }
     }
 }
 
 /// Each threshold by its key, and how many presses reach it.
 fn thresholds((profile, text): Whole<'_>, peaks: &Peaks) -> Vec<(String, Threshold)> {
     let reached = |force_n: f64| {
-        let Reached { light, hard } = Reached::of(peaks, force_n);
+        let ReachCount { light, hard } = ReachCount::of(peaks, force_n);
         Threshold { force_n, light, hard }
     };
     let levels = levels::all(profile, text).into_iter();

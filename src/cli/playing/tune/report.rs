@@ -7,7 +7,7 @@ use serde::Serialize;
 use tactpad::lab::tuning::confusion::Confusion;
 use tactpad::lab::tuning::delay::delay_us;
 use tactpad::lab::tuning::fitting::{Fitted, Study};
-use tactpad::lab::tuning::words::Told;
+use tactpad::lab::tuning::words::ChangedNumber;
 use tactpad::pipeline::mapping::profile::Profile;
 
 /// With the profile that was given, and with the fitted one.
@@ -42,7 +42,7 @@ pub(super) struct Outcome {
     unlabelled: Pair<usize>,
     confusion: Pair<Confusion>,
     held_out: Option<HeldOut>,
-    changes: Vec<Told>,
+    changes: Vec<ChangedNumber>,
     delay_ms: Delay,
     /// The file that was written.
     pub(super) written: Option<String>,
@@ -66,7 +66,7 @@ impl Outcome {
                 after: Confusion::of(study.labels, after),
             },
             held_out,
-            changes: fitted.changes.iter().map(|change| Told::of(change, &fitted.profile)).collect(),
+            changes: fitted.changes.iter().map(|change| ChangedNumber::of(change, &fitted.profile)).collect(),
             delay_ms: Delay {
                 limit: milliseconds(study.delay_max_us),
                 before: late_before,

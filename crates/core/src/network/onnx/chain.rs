@@ -8,7 +8,7 @@ use crate::network::transposed::transposed;
 
 /// What happens to a row of numbers.
 #[derive(Debug)]
-pub(super) enum Step {
+pub(super) enum RowOperation {
     Subtract(Vec<f32>),
     Divide(Vec<f32>),
     Multiply(Vec<f32>),
@@ -17,7 +17,7 @@ pub(super) enum Step {
     Rectify,
 }
 
-impl Step {
+impl RowOperation {
     /// Whether it changes each number by itself.
     pub(super) const fn is_scaler(&self) -> bool {
         !matches!(self, Self::Connect(_) | Self::Rectify)
@@ -25,7 +25,7 @@ impl Step {
 }
 
 /// The steps from the graph's input to its output.
-pub(super) fn steps(graph: &Graph<'_>) -> Result<Vec<Step>, OnnxError> {
+pub(super) fn steps(graph: &Graph<'_>) -> Result<Vec<RowOperation>, OnnxError> {
     // Older files list their tensors among the inputs.
     let mut inputs = graph.inputs.iter().filter(|name| !graph.tensors.contains_key(**name));
     let (Some(mut last), None) = (inputs.next().copied(), inputs.next()) else {
@@ -57,7 +57,7 @@ fn is_nothing(node: &Node<'_>) -> bool {
     }
 }
 
-fn step(node: &Node<'_>, last: &[u8], graph: &Graph<'_>) -> Result<Step, OnnxError> {
+fn step(node: &Node<'_>, last: &[u8], graph: &Graph<'_>) -> Result<RowOperation, OnnxError> {
     let wrong = |why| unsupported(node, why);
     let others: Vec<&[u8]> = node.takes.iter().copied().filter(|name| *name != last).collect();
     let is_symmetric = matches!(node.operator, b"Add" | b"Mul");
@@ -71,12 +71,12 @@ fn step(node: &Node<'_>, last: &[u8], graph: &Graph<'_>) -> Result<Step, OnnxErr
         _ => Err(wrong("takes not one tensor")),
     };
     match node.operator {
-        b"Sub" => row().map(Step::Subtract),
-        b"Div" => row().map(Step::Divide),
-        b"Mul" => row().map(Step::Multiply),
-        b"Add" => row().map(Step::Add),
-        b"Relu" if tensors.is_empty() => Ok(Step::Rectify),
-        b"Gemm" | b"MatMul" => layer(node, &tensors).map(Step::Connect),
+        b"Sub" => row().map(RowOperation::Subtract),
+        b"Div" => row().map(RowOperation::Divide),
+        b"Mul" => row().map(RowOperation::Multiply),
+        b"Add" => row().map(RowOperation::Add),
+        b"Relu" if tensors.is_empty() => Ok(RowOperation::Rectify),
+        b"Gemm" | b"MatMul" => layer(node, &tensors).map(RowOperation::Connect),
         _ => Err(wrong("is no step of a perceptron")),
     }
 }

@@ -4,14 +4,14 @@ use std::array::from_fn;
 use std::iter::Peekable;
 use std::vec::IntoIter;
 
-use super::chain::{Step, steps};
+use super::chain::{RowOperation, steps};
 use super::error::OnnxError;
 use super::graph::Graph;
 use crate::network::{LAYERS_MAX, Layer, Network, OUTPUTS, Scaler, WIDTH_MAX};
 use crate::quantity::CHANNELS;
 
 /// Steps that are not used yet.
-type Rest = Peekable<IntoIter<Step>>;
+type UnusedSteps = Peekable<IntoIter<RowOperation>>;
 
 pub(super) fn network(bytes: &[u8]) -> Result<Network, OnnxError> {
     let graph = Graph::read(bytes)?;
@@ -34,28 +34,34 @@ struct Scaling<const N: usize> {
 
 impl<const N: usize> Scaling<N> {
     /// Takes the scalers that come next, in whatever order; none change nothing.
-    fn of(rest: &mut Rest) -> Result<Self, OnnxError> {
+    fn of(rest: &mut UnusedSteps) -> Result<Self, OnnxError> {
         let mut scaling = Self { factor: [1.0; N], shift: [0.0; N] };
-        while let Some(step) = rest.next_if(Step::is_scaler) {
+        while let Some(step) = rest.next_if(RowOperation::is_scaler) {
             match &step {
-                Step::Subtract(row) => scaling.apply(row, |number, by| *number -= by, Part::Shift)?,
-                Step::Add(row) => scaling.apply(row, |number, by| *number += by, Part::Shift)?,
-                Step::Divide(row) => scaling.apply(row, |number, by| *number /= by, Part::Both)?,
-                Step::Multiply(row) => scaling.apply(row, |number, by| *number *= by, Part::Both)?,
-                Step::Connect(_) | Step::Rectify => {}
+                RowOperation::Subtract(row) => {
+                    scaling.apply(row, |number, by| *number -= by, ScaledEnd::Shift)?
+                }
+                RowOperation::Add(row) => scaling.apply(row, |number, by| *number += by, ScaledEnd::Shift)?,
+                RowOperation::Divide(row) => {
+                    scaling.apply(row, |number, by| *number /= by, ScaledEnd::Both)?
+                }
+                RowOperation::Multiply(row) => {
+                    scaling.apply(row, |number, by| *number *= by, ScaledEnd::Both)?
+                }
+                RowOperation::Connect(_) | RowOperation::Rectify => {}
             }
         }
         Ok(scaling)
     }
 
-    fn apply(&mut self, row: &[f32], change: fn(&mut f64, f64), part: Part) -> Result<(), OnnxError> {
+    fn apply(&mut self, row: &[f32], change: fn(&mut f64, f64), part: ScaledEnd) -> Result<(), OnnxError> {
         let row: [f64; N] = match *row {
             [one] => [one.into(); N],
             _ => <[f32; N]>::try_from(row)
                 .map_err(|_| OnnxError::Shape(format!("it scales {} numbers, not {N}", row.len())))?
                 .map(f64::from),
         };
-        let factors = if part == Part::Both { &mut self.factor[..] } else { &mut [] };
+        let factors = if part == ScaledEnd::Both { &mut self.factor[..] } else { &mut [] };
         factors.iter_mut().zip(row).for_each(|(factor, by)| change(factor, by));
         self.shift.iter_mut().zip(row).for_each(|(shift, by)| change(shift, by));
         Ok(())
@@ -74,7 +80,7 @@ impl<const N: usize> Scaling<N> {
 
 /// What a scaler changes.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Part {
+enum ScaledEnd {
     Shift,
     Both,
 }
@@ -87,14 +93,16 @@ fn scaler<const N: usize>(mean: [f64; N], deviation: [f64; N]) -> Result<Scaler<
     if is_sound { Ok(Scaler { mean, deviation }) } else { Err(OnnxError::NotANumber) }
 }
 
-fn added(step: &Step) -> Option<&Vec<f32>> {
-    if let Step::Add(row) = step { Some(row) } else { None }
+fn added(step: &RowOperation) -> Option<&Vec<f32>> {
+    if let RowOperation::Add(row) = step { Some(row) } else { None }
 }
 
-fn layers(rest: &mut Rest) -> Result<Vec<Layer>, OnnxError> {
+fn layers(rest: &mut UnusedSteps) -> Result<Vec<Layer>, OnnxError> {
     let mut layers = Vec::new();
     let mut width = CHANNELS;
-    while let Some(Step::Connect(layer)) = rest.next_if(|step| matches!(step, Step::Connect(_))) {
+    while let Some(RowOperation::Connect(layer)) =
+        rest.next_if(|step| matches!(step, RowOperation::Connect(_)))
+    {
         let layer = biased(layer, rest)?;
         if layer.inputs() != width {
             return Err(OnnxError::Shape(format!("a layer takes {} numbers of {width}", layer.inputs())));
@@ -105,10 +113,10 @@ fn layers(rest: &mut Rest) -> Result<Vec<Layer>, OnnxError> {
             let most = format!("it has more than {LAYERS_MAX} layers or {WIDTH_MAX} neurons in one");
             return Err(OnnxError::Unsupported(most));
         }
-        if rest.next_if(|step| matches!(step, Step::Rectify)).is_none() {
+        if rest.next_if(|step| matches!(step, RowOperation::Rectify)).is_none() {
             break;
         }
-        if !matches!(rest.peek(), Some(Step::Connect(_))) {
+        if !matches!(rest.peek(), Some(RowOperation::Connect(_))) {
             return Err(OnnxError::Unsupported("its last layer is rectified".into()));
         }
     }
@@ -119,7 +127,7 @@ fn layers(rest: &mut Rest) -> Result<Vec<Layer>, OnnxError> {
 }
 
 /// The layer with the biases that an Add behind it holds, if it has none of its own.
-fn biased(layer: Layer, rest: &mut Rest) -> Result<Layer, OnnxError> {
+fn biased(layer: Layer, rest: &mut UnusedSteps) -> Result<Layer, OnnxError> {
     let Some(row) = rest.peek().and_then(added).filter(|_| layer.biases.iter().all(|bias| *bias == 0.0))
     else {
         return Ok(layer);

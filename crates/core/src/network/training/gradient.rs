@@ -11,7 +11,7 @@
 //!
 //! Source: D. E. Rumelhart, G. E. Hinton, R. J. Williams, Nature 323 (1986) 533.
 
-use super::parameters::{Place, Shape};
+use super::parameters::{LayerRange, Shape};
 use super::product::{padded, product, transposed_product};
 use crate::network::transposed::transposed;
 use crate::network::{Example, OUTPUTS};
@@ -136,7 +136,7 @@ fn sum_rows(into: &mut [f32], rows: &[f32]) {
 }
 
 /// Replaces the input's activations A by (Δ Wᵀ) ⊙ [A > 0]: a neuron that ReLU silenced passes no gradient.
-fn propagate_back(input: &mut [f32], delta: &[f32], weights: &[f32], place: &Place) {
+fn propagate_back(input: &mut [f32], delta: &[f32], weights: &[f32], place: &LayerRange) {
     let mut slopes = vec![0.0; input.len()];
     product(&mut slopes, delta, &transposed(weights, place.outputs), [place.outputs, place.inputs]);
     for (value, slope) in input.iter_mut().zip(slopes) {

@@ -10,12 +10,12 @@ use crate::network::{Layer, Network};
 /// Where each layer's numbers are.
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
-    pub(super) layers: Vec<Place>,
+    pub(super) layers: Vec<LayerRange>,
 }
 
 /// A layer's place among the parameters.
 #[derive(Clone, Debug)]
-pub(super) struct Place {
+pub(super) struct LayerRange {
     /// Padded.
     pub(super) inputs: usize,
     /// Padded.
@@ -32,7 +32,7 @@ impl Shape {
             let weights = end..end + inputs * outputs;
             let biases = weights.end..weights.end + outputs;
             end = biases.end;
-            Place { inputs, outputs, weights, biases }
+            LayerRange { inputs, outputs, weights, biases }
         };
         Self { layers: network.layers.iter().map(place).collect() }
     }

@@ -15,7 +15,7 @@ pub struct Behaviour {
     /// Modules that strain others, mechanically: before everything else.
     pub module_crosstalk: Vec<ModuleCrosstalk>,
     /// Hysteresis: the sum of play operators.
-    pub hysteresis: Vec<Play>,
+    pub hysteresis: Vec<PlayOperator>,
     /// Slow strain: the sum of Prony terms.
     pub creep: Vec<Prony>,
     /// What is lost with the cycles of load.
@@ -75,7 +75,7 @@ pub struct ModuleCrosstalk {
 /// A play operator: its state follows the strain but stays up to a threshold behind. A strain e with state p reads
 /// e + share (p − e). Where the strain turns far apart, loading and unloading differ by 2 share · threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Play {
+pub struct PlayOperator {
     /// Which channels have it.
     pub channels: [bool; CHANNELS],
     /// How far the state lags behind.

@@ -6,7 +6,7 @@
 use super::behaviour::Behaviour;
 use super::imperfection;
 use super::possible;
-use super::reading::Reading;
+use super::reading::DeviceText;
 use super::schema::{DIRECTIONS, GAUGE, GAUGE_NAMES, MATERIALS, REPORTED, SCHEMA, TABLES, Table};
 use super::{
     Circuit, Device, Direction, GAUGES, Gauge, GaugeLaw, Material, Materials, Module, Patch, Plate, Reported,
@@ -47,7 +47,7 @@ impl Device {
 
 /// Reads a complete device; see [`Device::from_toml`].
 fn device(text: &str) -> (Option<Device>, Vec<Diagnostic>) {
-    let mut reading = Reading::new(text);
+    let mut reading = DeviceText::new(text);
     let help = "a device is some hundred lines of TOML";
     let Some(tree) = toml_text::parse(text, help, &mut reading.findings) else {
         return (None, reading.findings.finish());
@@ -71,7 +71,7 @@ fn device(text: &str) -> (Option<Device>, Vec<Diagnostic>) {
 
 /// Reads tables of imperfections over `device`; see [`Device::with_imperfections`].
 fn imperfections(mut device: Device, text: &str) -> (Option<Device>, Vec<Diagnostic>) {
-    let mut reading = Reading::new(text);
+    let mut reading = DeviceText::new(text);
     let help = "imperfections are a few lines of TOML";
     let Some(tree) = toml_text::parse(text, help, &mut reading.findings) else {
         return (None, reading.findings.finish());
@@ -84,13 +84,13 @@ fn imperfections(mut device: Device, text: &str) -> (Option<Device>, Vec<Diagnos
 }
 
 /// The device, if nothing speaks against it, and all findings.
-fn settle(device: Device, mut reading: Reading<'_>) -> (Option<Device>, Vec<Diagnostic>) {
+fn settle(device: Device, mut reading: DeviceText<'_>) -> (Option<Device>, Vec<Diagnostic>) {
     possible::check(&device, &mut reading);
     let device = (!reading.findings.failed()).then_some(device);
     (device, reading.findings.finish())
 }
 
-fn read_schema(root: &Section<'_>, reading: &mut Reading<'_>) {
+fn read_schema(root: &Section<'_>, reading: &mut DeviceText<'_>) {
     root.word("schema", &[(SCHEMA, ())], &mut reading.findings);
 }
 
@@ -99,7 +99,7 @@ fn read_table(
     root: &Section<'_>,
     table: &'static Table<Device>,
     device: &mut Device,
-    reading: &mut Reading<'_>,
+    reading: &mut DeviceText<'_>,
 ) {
     let Table { path, words, keys } = *table;
     root.require(path, &format!("write a table headed [{path}]"), &mut reading.findings);
@@ -115,13 +115,13 @@ fn read_table(
     }
 }
 
-fn read_count(modules: &Section<'_>, reading: &mut Reading<'_>) {
+fn read_count(modules: &Section<'_>, reading: &mut DeviceText<'_>) {
     const COUNT: u32 = MODULES as u32;
     modules.require("count", "write count = 3", &mut reading.findings);
     modules.whole("count", Bounds { low: COUNT, high: COUNT, default: COUNT }, &mut reading.findings);
 }
 
-fn read_circuit(table: &Section<'_>, circuit: &mut Circuit, reading: &mut Reading<'_>) {
+fn read_circuit(table: &Section<'_>, circuit: &mut Circuit, reading: &mut DeviceText<'_>) {
     let help = format!("write channel_order = {CHANNEL_NAMES:?}");
     table.require("channel_order", &help, &mut reading.findings);
     let order = table.texts("channel_order", CHANNELS, &mut reading.findings).unwrap_or_default();
@@ -139,7 +139,7 @@ fn read_circuit(table: &Section<'_>, circuit: &mut Circuit, reading: &mut Readin
         table.flag("bridge_nonlinearity", &mut reading.findings).unwrap_or(circuit.bridge_nonlinearity);
 }
 
-fn read_materials(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
+fn read_materials(root: &Section<'_>, device: &mut Device, reading: &mut DeviceText<'_>) {
     let key_of = |table: &Table<Device>| table.path.trim_start_matches("material.");
     root.require("material", "write a table headed [material]", &mut reading.findings);
     let known = MATERIALS.each_ref().map(key_of);
@@ -158,7 +158,7 @@ fn read_materials(root: &Section<'_>, device: &mut Device, reading: &mut Reading
     }
 }
 
-fn read_gauges(root: &Section<'_>, gauges: &mut [Gauge; GAUGES], reading: &mut Reading<'_>) {
+fn read_gauges(root: &Section<'_>, gauges: &mut [Gauge; GAUGES], reading: &mut DeviceText<'_>) {
     const HELP: &str = "a module has the gauges R1 to R7, each in a table headed [[gauge]]";
     root.require("gauge", HELP, &mut reading.findings);
     let known: Vec<_> = GAUGE_WORDS.into_iter().chain(GAUGE.iter().map(|key| key.name)).collect();
@@ -185,7 +185,7 @@ fn read_gauges(root: &Section<'_>, gauges: &mut [Gauge; GAUGES], reading: &mut R
 fn read_gauge_name(
     table: &Section<'_>,
     named: &mut [bool; GAUGES],
-    reading: &mut Reading<'_>,
+    reading: &mut DeviceText<'_>,
 ) -> Option<usize> {
     let mut number = 0..;
     let words = GAUGE_NAMES.map(|name| (name, number.next().unwrap_or(0)));
@@ -201,7 +201,7 @@ fn read_gauge_name(
     Some(index)
 }
 
-fn read_gauge(table: &Section<'_>, index: Option<usize>, gauge: &mut Gauge, reading: &mut Reading<'_>) {
+fn read_gauge(table: &Section<'_>, index: Option<usize>, gauge: &mut Gauge, reading: &mut DeviceText<'_>) {
     let name = index.and_then(|index| GAUGE_NAMES.get(index)).copied().unwrap_or_default();
     reading.require(table, &GAUGE);
     reading.numbers(table, &format!("gauge.{name}"), &GAUGE, gauge);
@@ -215,7 +215,7 @@ fn read_gauge(table: &Section<'_>, index: Option<usize>, gauge: &mut Gauge, read
     }
 }
 
-fn read_reported(root: &Section<'_>, reading: &mut Reading<'_>) -> Option<Reported> {
+fn read_reported(root: &Section<'_>, reading: &mut DeviceText<'_>) -> Option<Reported> {
     let known = REPORTED.each_ref().map(|key| key.name);
     let section = root.table("reported", "[reported]".to_owned(), &known, &mut reading.findings)?;
     let mut reported = UNREAD_REPORTED;

@@ -8,13 +8,13 @@ use crate::toml_text::diag::Findings;
 use crate::toml_text::section::{Placed, Section};
 
 /// What is found while a text is read, and where its numbers stand.
-pub(super) struct Reading<'t> {
+pub(super) struct DeviceText<'t> {
     pub(super) findings: Findings<'t>,
     /// Byte offsets of the numbers, under the names of their parameters.
     places: BTreeMap<String, usize>,
 }
 
-impl<'t> Reading<'t> {
+impl<'t> DeviceText<'t> {
     pub(super) const fn new(text: &'t str) -> Self {
         Self { findings: Findings::new(text), places: BTreeMap::new() }
     }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::pad::{Circumstances, TwinPad};
 use super::state::PadState;
-use crate::bytes::{Broken, Reader, push_doubles, sealed, unsealed};
+use crate::bytes::{FormatError, Reader, push_doubles, sealed, unsealed};
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 use crate::quantity::Contact;
@@ -84,8 +84,8 @@ impl Life {
     /// others.
     pub fn from_bytes(bytes: &[u8], device: &Device) -> Result<Self, LifeError> {
         let body = unsealed(MAGIC, bytes).map_err(|broken| match broken {
-            Broken::Magic => LifeError::Version,
-            Broken::Damaged => LifeError::Damaged,
+            FormatError::Magic => LifeError::Version,
+            FormatError::Damaged => LifeError::Damaged,
         })?;
         let mut from = Reader::new(body);
         if from.bits().ok_or(LifeError::Damaged)? != device.pad_fingerprint() {

@@ -2,13 +2,13 @@
 
 use crate::bytes::{Reader, push_doubles};
 use crate::numeric::memory::{low_passed, pulled};
-use crate::pad::device::behaviour::{Behaviour, Play, Prony};
+use crate::pad::device::behaviour::{Behaviour, PlayOperator, Prony};
 use crate::quantity::CHANNELS;
 
 /// The state of all play operators and Prony terms of a pad.
 #[derive(Clone, Debug)]
 pub(super) struct Memory {
-    plays: Vec<(Play, [f64; CHANNELS])>,
+    plays: Vec<(PlayOperator, [f64; CHANNELS])>,
     terms: Vec<(Prony, [f64; CHANNELS])>,
     /// The strains last seen.
     strain_uv: [f64; CHANNELS],
@@ -76,7 +76,7 @@ mod tests {
 
     const ALL: [bool; CHANNELS] = [true; CHANNELS];
 
-    fn memory(hysteresis: Vec<Play>, creep: Vec<Prony>) -> Memory {
+    fn memory(hysteresis: Vec<PlayOperator>, creep: Vec<Prony>) -> Memory {
         Memory::new(&Behaviour { hysteresis, creep, ..Behaviour::IDEAL })
     }
 
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_play_operator_closes_its_loop() {
-        let play = Play { channels: ALL, threshold_uv: 100.0, share: 0.25 };
+        let play = PlayOperator { channels: ALL, threshold_uv: 100.0, share: 0.25 };
         let mut memory = memory(vec![play], vec![]);
         let up = |level: i32| f64::from(level) * 10.0;
         let loading: Vec<f64> = (0..=100).map(|level| reads(&mut memory, 0.01, up(level))).collect();
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn rates_do_not_matter_to_friction() {
-        let play = Play { channels: ALL, threshold_uv: 30.0, share: 0.4 };
+        let play = PlayOperator { channels: ALL, threshold_uv: 30.0, share: 0.4 };
         let (mut slow, mut fast) = (memory(vec![play], vec![]), memory(vec![play], vec![]));
         for strain_uv in [0.0, 300.0, 120.0, 500.0, -40.0] {
             assert_eq!(reads(&mut slow, 100.0, strain_uv), reads(&mut fast, 1e-3, strain_uv));
@@ -152,7 +152,7 @@ mod tests {
         let mut channels = ALL;
         channels[4] = false;
         let mut memory = memory(
-            vec![Play { channels, threshold_uv: 100.0, share: 0.5 }],
+            vec![PlayOperator { channels, threshold_uv: 100.0, share: 0.5 }],
             vec![Prony { channels, time_s: 1.0, share: 0.5 }],
         );
         let read_uv = memory.follow(10.0, &[1000.0; CHANNELS]);

@@ -18,7 +18,7 @@ pub(super) const HEAD_BYTES: usize = FIELDS_BYTES + CHECKSUM_BYTES;
 /// What an entry is; the number is its first byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub(super) enum Kind {
+pub(super) enum EntryKind {
     /// The payload is the pad's bytes.
     Bytes = 0,
     Timeout = 1,
@@ -40,22 +40,22 @@ pub(super) enum Kind {
 }
 
 /// All kinds, each at the place of its number.
-const KINDS: [Kind; 12] = [
-    Kind::Bytes,
-    Kind::Timeout,
-    Kind::Unplugged,
-    Kind::Pause,
-    Kind::Resume,
-    Kind::ReleaseAll,
-    Kind::Retare,
-    Kind::Profile,
-    Kind::KeyboardProfile,
-    Kind::Decoder,
-    Kind::Missing,
-    Kind::Weigh,
+const KINDS: [EntryKind; 12] = [
+    EntryKind::Bytes,
+    EntryKind::Timeout,
+    EntryKind::Unplugged,
+    EntryKind::Pause,
+    EntryKind::Resume,
+    EntryKind::ReleaseAll,
+    EntryKind::Retare,
+    EntryKind::Profile,
+    EntryKind::KeyboardProfile,
+    EntryKind::Decoder,
+    EntryKind::Missing,
+    EntryKind::Weigh,
 ];
 
-impl Kind {
+impl EntryKind {
     /// The kind of this number, if it is one.
     pub(super) fn of(number: u8) -> Option<Self> {
         KINDS.get(usize::from(number)).copied()
@@ -111,8 +111,8 @@ mod tests {
     #[test]
     fn each_kind_is_found_by_its_number() {
         for (number, kind) in KINDS.into_iter().enumerate() {
-            assert_eq!((kind as usize, Kind::of(kind as u8)), (number, Some(kind)));
+            assert_eq!((kind as usize, EntryKind::of(kind as u8)), (number, Some(kind)));
         }
-        assert_eq!(Kind::of(12), None);
+        assert_eq!(EntryKind::of(12), None);
     }
 }

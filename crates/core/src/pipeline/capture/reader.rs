@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{self, Read};
 
 use super::entry::{
-    CHECKSUM_BYTES, FIELDS_BYTES, HEAD_BYTES, Kind, MAGIC, PAYLOAD_BYTES_MAX, chained, weight,
+    CHECKSUM_BYTES, EntryKind, FIELDS_BYTES, HEAD_BYTES, MAGIC, PAYLOAD_BYTES_MAX, chained, weight,
 };
 use super::head::Head;
 use crate::pipeline::call::Call;
@@ -77,7 +77,7 @@ pub struct CaptureReader<R: Read> {
     entries: Entries<R>,
     head: Head,
     /// The first entry behind the head, read with it.
-    first: Option<Entry>,
+    first: Option<CaptureEntry>,
     /// The profile of the last call.
     profile: Option<ReadProfile>,
 }
@@ -91,7 +91,7 @@ impl<R: Read> CaptureReader<R> {
         let mut entries = Entries::new(from)?;
         let mut head = Head::default();
         let mut first = entries.read()?;
-        if first.is_some_and(|entry| entry.kind == Kind::Decoder) {
+        if first.is_some_and(|entry| entry.kind == EntryKind::Decoder) {
             head.decoder = Some(entries.payload.clone());
             first = entries.read()?;
         }
@@ -116,27 +116,27 @@ impl<R: Read> CaptureReader<R> {
         }
     }
 
-    fn call(&mut self, entry: Entry) -> Result<(HostInstant, Call<'_>), CaptureError> {
+    fn call(&mut self, entry: CaptureEntry) -> Result<(HostInstant, Call<'_>), CaptureError> {
         let call = match entry.kind {
-            Kind::Bytes => Call::Bytes(&self.entries.payload),
-            Kind::Timeout => Call::Timeout,
-            Kind::Unplugged => Call::Unplugged,
-            Kind::Pause => Call::Pause,
-            Kind::Resume => Call::Resume,
-            Kind::ReleaseAll => Call::ReleaseAll,
-            Kind::Retare => Call::Retare,
-            Kind::Weigh => {
+            EntryKind::Bytes => Call::Bytes(&self.entries.payload),
+            EntryKind::Timeout => Call::Timeout,
+            EntryKind::Unplugged => Call::Unplugged,
+            EntryKind::Pause => Call::Pause,
+            EntryKind::Resume => Call::Resume,
+            EntryKind::ReleaseAll => Call::ReleaseAll,
+            EntryKind::Retare => Call::Retare,
+            EntryKind::Weigh => {
                 let weight = weight(&self.entries.payload);
                 Call::Weigh(weight.ok_or(CaptureError::Damaged { offset: entry.offset })?)
             }
-            Kind::Profile | Kind::KeyboardProfile => {
+            EntryKind::Profile | EntryKind::KeyboardProfile => {
                 let output = entry.kind.output();
                 self.profile = output.and_then(|output| ReadProfile::read(self.entries.text(), output).0);
                 let read = self.profile.as_ref();
                 Call::Profile(read.ok_or(CaptureError::Profile { offset: entry.offset })?)
             }
-            Kind::Decoder => return Err(CaptureError::Damaged { offset: entry.offset }),
-            Kind::Missing => {
+            EntryKind::Decoder => return Err(CaptureError::Damaged { offset: entry.offset }),
+            EntryKind::Missing => {
                 self.entries.ended = true;
                 return Err(CaptureError::Missing { offset: entry.offset });
             }
@@ -147,8 +147,8 @@ impl<R: Read> CaptureReader<R> {
 
 /// An entry; its payload stays with the reader.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
-    kind: Kind,
+struct CaptureEntry {
+    kind: EntryKind,
     now: HostInstant,
     offset: u64,
 }
@@ -177,7 +177,7 @@ impl<R: Read> Entries<R> {
     }
 
     /// The next entry; `None` at the end and after an error.
-    fn read(&mut self) -> Result<Option<Entry>, CaptureError> {
+    fn read(&mut self) -> Result<Option<CaptureEntry>, CaptureError> {
         if self.ended {
             return Ok(None);
         }
@@ -197,7 +197,7 @@ impl<R: Read> Entries<R> {
         std::str::from_utf8(&self.payload).unwrap_or_default()
     }
 
-    fn entry(&mut self) -> Result<Option<Entry>, CaptureError> {
+    fn entry(&mut self) -> Result<Option<CaptureEntry>, CaptureError> {
         let offset = self.offset;
         let Some(EntryHead { kind, now, length, checksum }) = self.head()? else { return Ok(None) };
         let mut checksum_of_payload = [0; CHECKSUM_BYTES];
@@ -208,9 +208,10 @@ impl<R: Read> Entries<R> {
         self.offset += (HEAD_BYTES + CHECKSUM_BYTES) as u64 + u64::from(length);
         let is_sound = chained(checksum, &self.payload) == self.chain;
         let is_first = offset == MAGIC.len() as u64;
-        let kind = Kind::of(kind)
-            .filter(|kind| is_sound && kind.takes(&self.payload) && (is_first || *kind != Kind::Decoder));
-        Ok(Some(Entry { kind: kind.ok_or(CaptureError::Damaged { offset })?, now, offset }))
+        let kind = EntryKind::of(kind).filter(|kind| {
+            is_sound && kind.takes(&self.payload) && (is_first || *kind != EntryKind::Decoder)
+        });
+        Ok(Some(CaptureEntry { kind: kind.ok_or(CaptureError::Damaged { offset })?, now, offset }))
     }
 
     /// The head of the next entry; `None` at the end of the file.
@@ -447,7 +448,7 @@ mod tests {
     }
 
     /// A file of these entries, all at the beginning of time.
-    fn file(entries: &[(Kind, &[u8])]) -> Vec<u8> {
+    fn file(entries: &[(EntryKind, &[u8])]) -> Vec<u8> {
         let mut file = Vec::new();
         let mut writer = CaptureWriter::new(&mut file).unwrap();
         for (kind, payload) in entries {
@@ -458,8 +459,12 @@ mod tests {
 
     #[test]
     fn a_decoder_stands_first_or_the_file_is_damaged() {
-        let entries: [(Kind, &[u8]); 4] =
-            [(Kind::Decoder, b"one"), (Kind::Profile, b""), (Kind::Timeout, b""), (Kind::Decoder, b"two")];
+        let entries: [(EntryKind, &[u8]); 4] = [
+            (EntryKind::Decoder, b"one"),
+            (EntryKind::Profile, b""),
+            (EntryKind::Timeout, b""),
+            (EntryKind::Decoder, b"two"),
+        ];
         for (entries, calls) in [(&entries[..], 1), (&[entries[0], entries[3]], 0)] {
             let (read, error) = read(&file(entries));
             assert!(read.len() == calls && matches!(error, Some(CaptureError::Damaged { .. })), "{error:?}");
@@ -468,10 +473,14 @@ mod tests {
 
     #[test]
     fn a_head_may_be_missing_or_of_no_use() {
-        let bare = file(&[(Kind::Timeout, b"")]);
+        let bare = file(&[(EntryKind::Timeout, b"")]);
         assert_eq!(*CaptureReader::new(&bare[..]).unwrap().head(), Head::default());
         assert_eq!(read(&bare).0.len(), 1);
-        let useless = file(&[(Kind::Decoder, b"none"), (Kind::Profile, b"schema = 7"), (Kind::Pause, b"")]);
+        let useless = file(&[
+            (EntryKind::Decoder, b"none"),
+            (EntryKind::Profile, b"schema = 7"),
+            (EntryKind::Pause, b""),
+        ]);
         let reader = CaptureReader::new(&useless[..]).unwrap();
         assert!(reader.head().profile.is_none() && reader.head().read_decoder().is_err());
         assert_eq!(read(&useless).0.len(), 1);
@@ -479,8 +488,8 @@ mod tests {
 
     #[test]
     fn a_profile_of_no_use_in_the_middle_is_told_and_the_calls_behind_it_are_read() {
-        let entries: [(Kind, &[u8]); 3] =
-            [(Kind::Timeout, b""), (Kind::KeyboardProfile, b"schema = 7"), (Kind::Pause, b"")];
+        let entries: [(EntryKind, &[u8]); 3] =
+            [(EntryKind::Timeout, b""), (EntryKind::KeyboardProfile, b"schema = 7"), (EntryKind::Pause, b"")];
         let file = file(&entries);
         let mut reader = CaptureReader::new(&file[..]).unwrap();
         assert!(matches!(reader.next_call(), Some(Ok((_, Call::Timeout)))));
@@ -497,7 +506,8 @@ mod tests {
     #[test]
     fn a_weight_that_no_pad_feels_or_bears_is_damage() {
         for g in [0.0, -200.0, 1e9, f64::NAN] {
-            let (calls, error) = read(&file(&[(Kind::Timeout, b""), (Kind::Weigh, &g.to_le_bytes())]));
+            let (calls, error) =
+                read(&file(&[(EntryKind::Timeout, b""), (EntryKind::Weigh, &g.to_le_bytes())]));
             assert!(
                 calls.len() == 1 && matches!(error, Some(CaptureError::Damaged { .. })),
                 "{g}: {error:?}"

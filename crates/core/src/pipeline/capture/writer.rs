@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-use super::entry::{Kind, MAGIC, PAYLOAD_BYTES_MAX, chained};
+use super::entry::{EntryKind, MAGIC, PAYLOAD_BYTES_MAX, chained};
 use super::head::Head;
 use crate::pipeline::call::Call;
 use crate::time::HostInstant;
@@ -24,7 +24,7 @@ impl<W: Write> CaptureWriter<W> {
     pub fn begin(to: W, now: HostInstant, head: &Head) -> io::Result<Self> {
         let mut writer = Self::new(to)?;
         if let Some(decoder) = &head.decoder {
-            writer.write_entry(Kind::Decoder, now, decoder)?;
+            writer.write_entry(EntryKind::Decoder, now, decoder)?;
         }
         if let Some(profile) = &head.profile {
             writer.write(now, Call::Profile(profile))?;
@@ -52,7 +52,7 @@ impl<W: Write> CaptureWriter<W> {
     /// # Errors
     /// The mark cannot be written.
     pub fn write_missing(&mut self, now: HostInstant) -> io::Result<()> {
-        self.write_entry(Kind::Missing, now, &[])
+        self.write_entry(EntryKind::Missing, now, &[])
     }
 
     /// Where it is written to. What is taken from there is no less part of the capture.
@@ -60,7 +60,12 @@ impl<W: Write> CaptureWriter<W> {
         &mut self.to
     }
 
-    pub(super) fn write_entry(&mut self, kind: Kind, now: HostInstant, payload: &[u8]) -> io::Result<()> {
+    pub(super) fn write_entry(
+        &mut self,
+        kind: EntryKind,
+        now: HostInstant,
+        payload: &[u8],
+    ) -> io::Result<()> {
         let length = u32::try_from(payload.len()).ok().filter(|length| *length <= PAYLOAD_BYTES_MAX);
         let length = length.ok_or_else(|| io::Error::other("a call carries more than 16 MiB"))?;
         self.entry.clear();
@@ -85,17 +90,17 @@ impl<W: Write> CaptureWriter<W> {
 }
 
 /// The kind of a call's entry, and its payload.
-fn entry_of(call: Call<'_>) -> (Kind, Cow<'_, [u8]>) {
-    let plain = |kind: Kind| (kind, Cow::default());
+fn entry_of(call: Call<'_>) -> (EntryKind, Cow<'_, [u8]>) {
+    let plain = |kind: EntryKind| (kind, Cow::default());
     match call {
-        Call::Bytes(bytes) => (Kind::Bytes, bytes.into()),
-        Call::Timeout => plain(Kind::Timeout),
-        Call::Unplugged => plain(Kind::Unplugged),
-        Call::Pause => plain(Kind::Pause),
-        Call::Resume => plain(Kind::Resume),
-        Call::ReleaseAll => plain(Kind::ReleaseAll),
-        Call::Retare => plain(Kind::Retare),
-        Call::Weigh(weight) => (Kind::Weigh, weight.g().to_le_bytes().to_vec().into()),
-        Call::Profile(read) => (Kind::of_profile(read.output()), read.text().as_bytes().into()),
+        Call::Bytes(bytes) => (EntryKind::Bytes, bytes.into()),
+        Call::Timeout => plain(EntryKind::Timeout),
+        Call::Unplugged => plain(EntryKind::Unplugged),
+        Call::Pause => plain(EntryKind::Pause),
+        Call::Resume => plain(EntryKind::Resume),
+        Call::ReleaseAll => plain(EntryKind::ReleaseAll),
+        Call::Retare => plain(EntryKind::Retare),
+        Call::Weigh(weight) => (EntryKind::Weigh, weight.g().to_le_bytes().to_vec().into()),
+        Call::Profile(read) => (EntryKind::of_profile(read.output()), read.text().as_bytes().into()),
     }
 }

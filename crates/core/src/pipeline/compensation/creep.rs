@@ -28,12 +28,12 @@ impl Creep {
 
 /// How far a pad has crept.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Crept {
+pub struct CreepState {
     /// The strains, low-passed.
     pub state_uv: [f64; CHANNELS],
 }
 
-impl Crept {
+impl CreepState {
     /// These strains were held for so long. Without a relaxation time they are crept to at once.
     pub fn hold(&mut self, uv: &[f64; CHANNELS], held_s: f64, time_s: f64) {
         let left = left(held_s, time_s);
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn a_load_is_crept_to_however_its_time_is_cut() {
-        let (mut whole, mut cut) = (Crept::default(), Crept::default());
+        let (mut whole, mut cut) = (CreepState::default(), CreepState::default());
         whole.hold(&[1000.0; CHANNELS], 8.0, 8.0);
         (0..8000).for_each(|_| cut.hold(&[1000.0; CHANNELS], 1e-3, 8.0));
         let wanted_uv = 1000.0 * (1.0 - (-1.0_f64).exp());
@@ -72,7 +72,7 @@ mod tests {
         let added_uv = whole.added_uv(&Creep { time_s: 8.0, share: 0.01 });
         assert!((added_uv[4] - 0.01 * wanted_uv).abs() < 1e-9);
         whole.hold(&[0.0; CHANNELS], 1e9, 8.0);
-        assert_eq!(whole, Crept::default(), "all is forgotten in the end");
+        assert_eq!(whole, CreepState::default(), "all is forgotten in the end");
         assert_eq!(cut.added_uv(&NO_CREEP), [0.0; CHANNELS]);
     }
 }

@@ -3,7 +3,7 @@
 //! Such a pad reads r = z + β (T − T₀) + S (1 + γ (T − T₀)) s, where a calibrated one has S = 1; see
 //! [`Compensation`](super::Compensation). No press tells S, as a finger may press with any force. A known weight does.
 
-use crate::pipeline::signal::tare::Rest;
+use crate::pipeline::signal::tare::UntouchedOffset;
 use crate::quantity::Strain;
 
 /// The gain S of all channels against that at the calibration.
@@ -34,9 +34,9 @@ impl CommonGain {
     }
 
     /// What the untouched pad reads of a rest that is told as of the calibration.
-    pub fn read(self, rest: &Rest) -> Rest {
+    pub fn read(self, rest: &UntouchedOffset) -> UntouchedOffset {
         let read = |uv: f64| self.factor * uv;
-        Rest { uv: rest.uv.map(read), doubt_uv: rest.doubt_uv.map(read) }
+        UntouchedOffset { uv: rest.uv.map(read), doubt_uv: rest.doubt_uv.map(read) }
     }
 }
 
@@ -49,7 +49,7 @@ mod tests {
     fn a_gain_of_one_changes_no_bit() {
         let strain = Strain { uv: std::array::from_fn(|k| 0.1 + 333.3 * k as f32) };
         assert_eq!(CommonGain::ONE.calibrated(&strain), strain);
-        let rest = Rest { uv: [0.1; CHANNELS], doubt_uv: [0.7; CHANNELS] };
+        let rest = UntouchedOffset { uv: [0.1; CHANNELS], doubt_uv: [0.7; CHANNELS] };
         assert_eq!(CommonGain::ONE.read(&rest), rest);
     }
 

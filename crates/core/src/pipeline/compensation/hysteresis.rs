@@ -21,14 +21,14 @@ const ROUND_END_UV: f64 = 1e-7;
 
 /// One play operator in each channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Play {
+pub struct PlayOperators {
     /// Half the width of its band.
     pub threshold_uv: [f64; CHANNELS],
     /// Share w of the channel; one below zero corrects another operator's.
     pub share: [f64; CHANNELS],
 }
 
-impl Play {
+impl PlayOperators {
     /// A play operator that does nothing.
     pub const NONE: Self = Self { threshold_uv: [0.0; CHANNELS], share: [0.0; CHANNELS] };
 
@@ -39,10 +39,10 @@ impl Play {
 }
 
 /// The hysteresis of a pad. The magnitudes of a channel's shares are less than 1 in sum.
-pub type Hysteresis = [Play; PLAYS];
+pub type Hysteresis = [PlayOperators; PLAYS];
 
 /// A pad without hysteresis.
-pub const NO_HYSTERESIS: Hysteresis = [Play::NONE; PLAYS];
+pub const NO_HYSTERESIS: Hysteresis = [PlayOperators::NONE; PLAYS];
 
 /// Where the play operators of a pad are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,7 +80,7 @@ impl History {
         // by no more than e does.
         let mut free_uv = read_uv;
         for _ in 0..ROUNDS {
-            let added_uv = |(states, play): (&[f64; CHANNELS], &Play)| {
+            let added_uv = |(states, play): (&[f64; CHANNELS], &PlayOperators)| {
                 let state = play.pulled(channel, states[channel], free_uv);
                 play.share[channel] * (state - free_uv)
             };
@@ -101,7 +101,7 @@ mod tests {
     use crate::numeric::random::SplitMix64;
 
     fn hysteresis() -> Hysteresis {
-        let play = |threshold_uv: f64, share: f64| Play {
+        let play = |threshold_uv: f64, share: f64| PlayOperators {
             threshold_uv: std::array::from_fn(|channel| threshold_uv * (1.0 + 0.1 * channel as f64)),
             share: [share; CHANNELS],
         };

@@ -4,13 +4,13 @@
 //! While nothing touches the pad its strain is zero, so the play operators stay where the last press left them, and what
 //! they make the pad read then is known: the zero is followed around that. And where the operators are when play begins is
 //! not known, but each press narrows it down: it is followed from both ends of what it can be, and once the two have met,
-//! the zero that was taken before is mended (see [`Rest`]).
+//! the zero that was taken before is mended (see [`UntouchedOffset`]).
 
 use super::Compensation;
-use super::creep::{Creep, Crept, NO_CREEP};
+use super::creep::{Creep, CreepState, NO_CREEP};
 use super::hysteresis::{History, Hysteresis, NO_HYSTERESIS};
 use crate::pipeline::interruption::Effect;
-use crate::pipeline::signal::tare::Rest;
+use crate::pipeline::signal::tare::UntouchedOffset;
 use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
 
@@ -26,7 +26,7 @@ pub struct Memory {
     likely: History,
     /// From the lowest and the highest states that there can be.
     ends: [History; 2],
-    crept: Crept,
+    crept: CreepState,
     /// Of the sample before.
     at: Option<StreamInstant>,
 }
@@ -44,7 +44,7 @@ impl Memory {
             is_none: hysteresis == NO_HYSTERESIS && creep == NO_CREEP,
             likely: History::default(),
             ends: [History::default(); 2],
-            crept: Crept::default(),
+            crept: CreepState::default(),
             at: None,
         };
         memory.doubt();
@@ -75,9 +75,9 @@ impl Memory {
     }
 
     /// What the untouched pad reads now beside its zero.
-    pub fn rest(&self) -> Rest {
+    pub fn rest(&self) -> UntouchedOffset {
         if self.is_none {
-            return Rest::NONE;
+            return UntouchedOffset::NONE;
         }
         // Untouched, e = 0: it reads Σⱼ wⱼ pⱼ + w c, and with p⁻ ≤ p ≤ p⁺ that is off by Σⱼ |wⱼ| (p⁺ⱼ − p⁻ⱼ) / 2 at most if p
         // is in the middle.
@@ -88,7 +88,10 @@ impl Memory {
         };
         let (lag_uv, crept_uv) =
             (self.likely.added_uv(&self.hysteresis, &[0.0; CHANNELS]), self.crept.added_uv(&self.creep));
-        Rest { uv: std::array::from_fn(|k| lag_uv[k] + crept_uv[k]), doubt_uv: std::array::from_fn(doubt_uv) }
+        UntouchedOffset {
+            uv: std::array::from_fn(|k| lag_uv[k] + crept_uv[k]),
+            doubt_uv: std::array::from_fn(doubt_uv),
+        }
     }
 
     /// What these channels would read without hysteresis and creep.
@@ -133,15 +136,15 @@ impl Memory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::compensation::hysteresis::Play;
+    use crate::pipeline::compensation::hysteresis::PlayOperators;
 
     const HYSTERESIS: Hysteresis =
-        [Play { threshold_uv: [800.0; CHANNELS], share: [0.0625; CHANNELS] }, Play::NONE];
+        [PlayOperators { threshold_uv: [800.0; CHANNELS], share: [0.0625; CHANNELS] }, PlayOperators::NONE];
 
     #[test]
     fn a_press_says_where_hysteresis_is() {
         let mut memory = Memory::of(&Compensation { hysteresis: HYSTERESIS, ..Compensation::NONE });
-        assert_eq!(memory.rest(), Rest { uv: [0.0; CHANNELS], doubt_uv: [50.0; CHANNELS] });
+        assert_eq!(memory.rest(), UntouchedOffset { uv: [0.0; CHANNELS], doubt_uv: [50.0; CHANNELS] });
         let mut known = |press_uv: f32| {
             memory.follow(StreamInstant::default(), Some(&Strain { uv: [press_uv; CHANNELS] }));
             memory.follow(StreamInstant::default(), None);
@@ -152,7 +155,7 @@ mod tests {
         assert_eq!(known(3000.0), (50.0, 0.0), "a strong one all");
         assert_eq!(known(-1200.0), (-25.0, 0.0), "which stays so");
         memory.doubt();
-        assert_eq!(memory.rest(), Rest { uv: [-25.0; CHANNELS], doubt_uv: [50.0; CHANNELS] });
+        assert_eq!(memory.rest(), UntouchedOffset { uv: [-25.0; CHANNELS], doubt_uv: [50.0; CHANNELS] });
     }
 
     #[test]
@@ -178,7 +181,7 @@ mod tests {
     fn a_long_press_does_not_creep_and_leaves_nothing() {
         let creep = Creep { time_s: 8.0, share: 0.01 };
         let (mut memory, mut pad) =
-            (Memory::of(&Compensation { creep, ..Compensation::NONE }), Crept::default());
+            (Memory::of(&Compensation { creep, ..Compensation::NONE }), CreepState::default());
         let mut at = StreamInstant::default();
         for ms in 0..60_000 {
             let pressed_uv = if (5_000..35_000).contains(&ms) { 2000.0 } else { 0.0 };
@@ -199,6 +202,6 @@ mod tests {
         let mut memory = Memory::of(&Compensation::NONE);
         let strain = Strain { uv: [0.1; CHANNELS] };
         memory.follow(StreamInstant::default(), Some(&strain));
-        assert_eq!((memory.freed(&strain), memory.rest()), (strain, Rest::NONE));
+        assert_eq!((memory.freed(&strain), memory.rest()), (strain, UntouchedOffset::NONE));
     }
 }

@@ -32,7 +32,7 @@ pub(super) const NUMBERS: usize = CHANNELS * CHANNELS + TERMS * MAPS;
 
 /// One mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mode {
+pub struct ErrorMode {
     /// Q: for each channel what it has of all nine.
     pub mixture: [[f32; CHANNELS]; CHANNELS],
     /// P: of each polynomial its coefficients in the maps, µV/N, for Fx, Fy, Fz of the first channel, then of the next one.
@@ -42,12 +42,12 @@ pub struct Mode {
 /// The modes of a field's error.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FieldError {
-    modes: Vec<Mode>,
+    modes: Vec<ErrorMode>,
 }
 
 /// Where a field is asked, and what it says there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Asked<'f> {
+pub(super) struct FieldPoint<'f> {
     /// In units of the radius that the field covers.
     pub(super) place: [f64; 2],
     pub(super) force_n: &'f [f64; 3],
@@ -55,7 +55,7 @@ pub(super) struct Asked<'f> {
     pub(super) signals_uv: &'f [f64; CHANNELS],
 }
 
-impl Mode {
+impl ErrorMode {
     /// From its numbers, mixture first; `None` if one is not finite.
     pub(super) fn of(numbers: &[f32; NUMBERS]) -> Option<Self> {
         let (mixture, maps) = numbers.split_at(CHANNELS * CHANNELS);
@@ -70,7 +70,7 @@ impl Mode {
     }
 
     /// What it adds to the channels, by the values of the polynomials.
-    fn read(&self, values: &[f32; TERMS], asked: &Asked<'_>) -> [f64; CHANNELS] {
+    fn read(&self, values: &[f32; TERMS], asked: &FieldPoint<'_>) -> [f64; CHANNELS] {
         // Q (G F) + P F
         let mut maps = [0.0_f32; MAPS];
         for (coefficients, value) in self.maps.iter().zip(values) {
@@ -89,12 +89,12 @@ impl FieldError {
     pub const NONE: Self = Self { modes: Vec::new() };
 
     /// With these modes; `None` if there are more than [`MODES_MAX`].
-    pub fn of(modes: Vec<Mode>) -> Option<Self> {
+    pub fn of(modes: Vec<ErrorMode>) -> Option<Self> {
         (modes.len() <= MODES_MAX).then_some(Self { modes })
     }
 
     /// The modes.
-    pub fn modes(&self) -> &[Mode] {
+    pub fn modes(&self) -> &[ErrorMode] {
         &self.modes
     }
 
@@ -110,14 +110,18 @@ impl FieldError {
     /// What each mode adds to the channels.
     pub(super) fn channels_uv<'a>(
         &'a self,
-        asked: &'a Asked<'_>,
+        asked: &'a FieldPoint<'_>,
     ) -> impl Iterator<Item = [f64; CHANNELS]> + 'a {
         let values = zernike::values(asked.place).map(|value| value as f32);
         self.modes.iter().map(move |mode| mode.read(&values, asked))
     }
 
     /// Covariance of a decoded contact by the field's error: Σᵣ (K Mᵣ F)(K Mᵣ F)ᵀ, where `response` is K.
-    pub(super) fn covariance(&self, asked: &Asked<'_>, response: &[[f64; CHANNELS]; UNKNOWNS]) -> Covariance {
+    pub(super) fn covariance(
+        &self,
+        asked: &FieldPoint<'_>,
+        response: &[[f64; CHANNELS]; UNKNOWNS],
+    ) -> Covariance {
         let mut covariance = [[0.0; UNKNOWNS]; UNKNOWNS];
         if self.modes.is_empty() {
             return covariance;
@@ -141,9 +145,9 @@ mod tests {
         std::array::from_fn(|i| std::array::from_fn(|k| if i == k { 0.01 } else { 0.0 }))
     }
 
-    const SMOOTH: Mode = Mode { mixture: [[0.0; CHANNELS]; CHANNELS], maps: [[0.0; MAPS]; TERMS] };
-    const ASKED: Asked<'_> =
-        Asked { place: [0.1, 0.5], force_n: &[0.5, 0.0, 2.0], signals_uv: &[100.0; CHANNELS] };
+    const SMOOTH: ErrorMode = ErrorMode { mixture: [[0.0; CHANNELS]; CHANNELS], maps: [[0.0; MAPS]; TERMS] };
+    const ASKED: FieldPoint<'_> =
+        FieldPoint { place: [0.1, 0.5], force_n: &[0.5, 0.0, 2.0], signals_uv: &[100.0; CHANNELS] };
 
     #[test]
     fn a_mode_moves_a_contact_as_the_maps_are_changed() {
@@ -167,8 +171,8 @@ mod tests {
         assert!(FieldError::of(vec![SMOOTH; MODES_MAX]).is_some());
         assert!(FieldError::of(vec![SMOOTH; MODES_MAX + 1]).is_none());
         let mut numbers = std::array::from_fn(|at| at as f32);
-        assert!(Mode::of(&numbers).unwrap().numbers().eq(numbers));
+        assert!(ErrorMode::of(&numbers).unwrap().numbers().eq(numbers));
         numbers[77] = f32::NAN;
-        assert_eq!(Mode::of(&numbers), None);
+        assert_eq!(ErrorMode::of(&numbers), None);
     }
 }

@@ -2,13 +2,13 @@
 
 use std::fmt;
 
-use super::field_error::{FieldError, MODES_MAX, Mode, NUMBERS};
+use super::field_error::{ErrorMode, FieldError, MODES_MAX, NUMBERS};
 use super::inverse::{CROSSTALK_MAX, Crosstalk, Inverse};
-use super::neighbours::{Known, Neighbours};
+use super::neighbours::{LabelledContact, Neighbours};
 use super::regression::{Regression, Target};
 use super::uncertainty::Noise;
 use super::{Decoder, Method};
-use crate::bytes::{Broken, Reader, push_floats, push_text, sealed, unsealed};
+use crate::bytes::{FormatError, Reader, push_floats, push_text, sealed, unsealed};
 use crate::network::Zero;
 use crate::pad::influence::InfluenceField;
 use crate::pipeline::compensation::Compensation;
@@ -63,7 +63,7 @@ impl Decoder {
                 inverse.field().write(&mut body);
                 push_floats(&mut body, inverse.crosstalk().as_flattened());
                 let modes = inverse.field_error().modes().iter();
-                push_floats(&mut body, &modes.flat_map(Mode::numbers).collect::<Vec<f32>>());
+                push_floats(&mut body, &modes.flat_map(ErrorMode::numbers).collect::<Vec<f32>>());
             }
             _ if self.compensation != Compensation::NONE => return None,
             Method::Regression(regression) => {
@@ -90,8 +90,8 @@ impl Decoder {
     /// Bytes that [`Self::to_bytes`] did not write.
     pub fn from_bytes(bytes: &[u8]) -> Result<(Self, String), DecoderFileError> {
         let body = unsealed(MAGIC, bytes).map_err(|broken| match broken {
-            Broken::Magic => DecoderFileError::Version,
-            Broken::Damaged => DecoderFileError::Damaged,
+            FormatError::Magic => DecoderFileError::Version,
+            FormatError::Damaged => DecoderFileError::Damaged,
         })?;
         read(&mut Reader::new(body)).ok_or(DecoderFileError::Damaged)
     }
@@ -134,7 +134,7 @@ fn read_field_error(from: &mut Reader<'_>) -> Option<FieldError> {
     let (modes, rest) = numbers.as_chunks::<NUMBERS>();
     let is_sound = rest.is_empty() && modes.len() <= MODES_MAX;
     is_sound.then_some(())?;
-    FieldError::of(modes.iter().map(Mode::of).collect::<Option<_>>()?)
+    FieldError::of(modes.iter().map(ErrorMode::of).collect::<Option<_>>()?)
 }
 
 fn push_numbers<'n>(to: &mut Vec<u8>, numbers: impl IntoIterator<Item = &'n f64>) {
@@ -246,7 +246,7 @@ fn read_regression(from: &mut Reader<'_>, target: Target) -> Option<Regression> 
 
 fn push_neighbours(to: &mut Vec<u8>, neighbours: &Neighbours) {
     push_floats(to, &neighbours.deviation_uv);
-    let row = |known: &Known| {
+    let row = |known: &LabelledContact| {
         let Contact { x_mm, y_mm, fx_n, fy_n, fz_n } = known.contact;
         known.channels.into_iter().chain([x_mm, y_mm, fx_n, fy_n, fz_n])
     };
@@ -261,9 +261,9 @@ fn read_neighbours(from: &mut Reader<'_>) -> Option<Neighbours> {
     let known = |row: &[f32; CHANNELS + 5]| {
         let (channels, contact) = row.split_first_chunk::<CHANNELS>()?;
         let [x_mm, y_mm, fx_n, fy_n, fz_n] = *contact.first_chunk()?;
-        Some(Known { channels: *channels, contact: Contact { x_mm, y_mm, fx_n, fy_n, fz_n } })
+        Some(LabelledContact { channels: *channels, contact: Contact { x_mm, y_mm, fx_n, fy_n, fz_n } })
     };
-    let known: Vec<Known> = rows.iter().map(known).collect::<Option<_>>()?;
+    let known: Vec<LabelledContact> = rows.iter().map(known).collect::<Option<_>>()?;
     let is_sound = rest.is_empty() && numbers.iter().all(|number| number.is_finite()) && !known.is_empty();
     is_sound.then_some(Neighbours { zero, deviation_uv, known })
 }
@@ -272,7 +272,7 @@ fn read_neighbours(from: &mut Reader<'_>) -> Option<Neighbours> {
 mod tests {
     use super::*;
     use crate::pad::field::PadField;
-    use crate::pipeline::compensation::hysteresis::Play;
+    use crate::pipeline::compensation::hysteresis::PlayOperators;
     use crate::pipeline::contact::inverse::NO_CROSSTALK;
     use crate::pipeline::contact::statics::Statics;
     use crate::quantity::Strain;
@@ -285,12 +285,16 @@ mod tests {
             gain_per_c: [1e-3; CHANNELS],
         }),
         creep: Creep { time_s: 8.0, share: 0.01 },
-        hysteresis: [Play { threshold_uv: [700.0; CHANNELS], share: [0.05; CHANNELS] }, Play::NONE],
+        hysteresis: [
+            PlayOperators { threshold_uv: [700.0; CHANNELS], share: [0.05; CHANNELS] },
+            PlayOperators::NONE,
+        ],
     };
 
     /// A field that may be off by so many modes.
     fn uncertain(modes: usize) -> Inverse {
-        let mode = |at: usize| Mode::of(&std::array::from_fn(|k| (1 + at) as f32 / (1 + k) as f32)).unwrap();
+        let mode =
+            |at: usize| ErrorMode::of(&std::array::from_fn(|k| (1 + at) as f32 / (1 + k) as f32)).unwrap();
         let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
         let error = FieldError::of((0..modes).map(mode).collect()).unwrap();
         let mut crosstalk = NO_CROSSTALK;
@@ -304,7 +308,10 @@ mod tests {
         functions[4][2] = 2e-3;
         let regression =
             |target| Decoder::from(Regression { zero: Zero::Raw, target, functions, reach_mm: 29.0 });
-        let known = Known { channels: [1.0; CHANNELS], contact: Contact { fz_n: 2.0, ..Contact::default() } };
+        let known = LabelledContact {
+            channels: [1.0; CHANNELS],
+            contact: Contact { fz_n: 2.0, ..Contact::default() },
+        };
         vec![
             Decoder::from(Inverse::new(PadField::nominal().signals, noise)),
             Decoder::from(Inverse::new(PadField::nominal().signals, noise)).compensated_by(COMPENSATION),

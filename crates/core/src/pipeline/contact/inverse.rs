@@ -7,7 +7,7 @@
 //!
 //! Source: G. H. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, for least squares whose variables separate.
 
-use super::field_error::{Asked, FieldError};
+use super::field_error::{FieldError, FieldPoint};
 use super::uncertainty::{Covariance, Estimate, Linear, Noise, UNKNOWNS, Variances};
 use crate::numeric::linear::Factor;
 use crate::pad::influence::{Gains, InfluenceField};
@@ -77,7 +77,7 @@ struct Trial {
 
 /// A contact and what it does not explain.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Explained {
+pub struct ContactFit {
     /// The most likely contact.
     pub contact: Contact,
     /// What each channel reads beyond what the contact makes it read.
@@ -153,10 +153,10 @@ impl Inverse {
     }
 
     /// The same with what it leaves over; `None` for strain that is not finite, or beyond anything that a pad can read.
-    pub fn explain(&self, strain: &Strain) -> Option<Explained> {
+    pub fn explain(&self, strain: &Strain) -> Option<ContactFit> {
         let (trial, _) = self.searched(strain)?;
         let contact = Some(trial.contact()).filter(is_finite)?;
-        Some(Explained { contact, left_uv: trial.left_uv })
+        Some(ContactFit { contact, left_uv: trial.left_uv })
     }
 
     /// Sum of the squares of what the best contact leaves over of these channels, where each counts by its weight.
@@ -198,11 +198,11 @@ impl Inverse {
     }
 
     /// Asks about the field's error under a load.
-    fn asked<T>(&self, place_mm: [f64; 2], force_n: &[f64; 3], ask: impl FnOnce(&Asked<'_>) -> T) -> T {
+    fn asked<T>(&self, place_mm: [f64; 2], force_n: &[f64; 3], ask: impl FnOnce(&FieldPoint<'_>) -> T) -> T {
         let place = self.within(place_mm).map(|mm| mm / f64::from(self.field.radius_mm()));
         let gains = self.field.gains(place_mm[0] as f32, place_mm[1] as f32);
         let signals_uv = gains.value.map(|gain| dot(&gain, force_n));
-        ask(&Asked { place, force_n, signals_uv: &signals_uv })
+        ask(&FieldPoint { place, force_n, signals_uv: &signals_uv })
     }
 
     /// Covariance of a contact by the field's errors.

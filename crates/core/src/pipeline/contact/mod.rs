@@ -17,7 +17,7 @@ pub mod watch;
 use crate::network::foreign::Foreign;
 use crate::network::{Network, OUTPUTS, Zero};
 use crate::pipeline::compensation::Compensation;
-use crate::pipeline::contact::inverse::{Explained, Inverse};
+use crate::pipeline::contact::inverse::{ContactFit, Inverse};
 use crate::pipeline::contact::neighbours::Neighbours;
 use crate::pipeline::contact::regression::{Regression, Target};
 use crate::pipeline::contact::statics::Statics;
@@ -152,7 +152,7 @@ impl Decoder {
     }
 
     /// The contact that explains `strain`, and what it leaves over, if the decoder knows what each channel should read.
-    pub fn explain(&self, strain: &Strain) -> (Contact, Option<Explained>) {
+    pub fn explain(&self, strain: &Strain) -> (Contact, Option<ContactFit>) {
         match &self.method {
             Method::Inverse(inverse) => {
                 let explained = inverse.explain(strain);

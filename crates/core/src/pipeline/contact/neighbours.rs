@@ -11,7 +11,7 @@ pub const KNOWN_MAX: usize = 200_000;
 
 /// A contact that was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Known {
+pub struct LabelledContact {
     /// Channels, in standard deviations over all contacts.
     pub channels: [f32; CHANNELS],
     /// What was written down.
@@ -26,7 +26,7 @@ pub struct Neighbours {
     /// µV per standard deviation.
     pub deviation_uv: [f32; CHANNELS],
     /// At least one.
-    pub known: Vec<Known>,
+    pub known: Vec<LabelledContact>,
 }
 
 impl Neighbours {
@@ -67,7 +67,7 @@ mod tests {
         let known = |index: usize| {
             let mut channels = [0.0; CHANNELS];
             channels[3] = index as f32;
-            Known { channels, contact: Contact { fz_n: index as f32, ..Contact::default() } }
+            LabelledContact { channels, contact: Contact { fz_n: index as f32, ..Contact::default() } }
         };
         let mut deviation_uv = [1.0; CHANNELS];
         deviation_uv[3] = 100.0;

@@ -14,7 +14,7 @@ const UNEXPLAINED_MAX: f32 = 0.1;
 
 /// What a network makes of presses of the nominal pad.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Misses {
+pub struct PressErrors {
     /// Root mean square distance.
     pub place_mm: f32,
     /// Root mean square of the force's error.
@@ -23,7 +23,7 @@ pub struct Misses {
 }
 
 /// Decodes presses of the nominal pad; `None` where a contact is not finite, or absurd.
-pub(super) fn misses(decode: impl Fn(&[f32; CHANNELS]) -> [f32; OUTPUTS]) -> Option<Misses> {
+pub(super) fn misses(decode: impl Fn(&[f32; CHANNELS]) -> [f32; OUTPUTS]) -> Option<PressErrors> {
     let signals = PadField::nominal().signals;
     let reach_mm = signals.radius_mm();
     // Squares of the places' errors and of the places, of the forces' errors and of the forces.
@@ -46,14 +46,14 @@ pub(super) fn misses(decode: impl Fn(&[f32; CHANNELS]) -> [f32; OUTPUTS]) -> Opt
         squares.iter_mut().zip(all).for_each(|(sum, square)| *sum += square / f32::from(PRESSES));
     }
     let [place, places, force, forces] = squares;
-    Some(Misses {
+    Some(PressErrors {
         place_mm: libm::sqrtf(place),
         force_n: libm::sqrtf(force),
         is_large: place > UNEXPLAINED_MAX * places || force > UNEXPLAINED_MAX * forces,
     })
 }
 
-impl Misses {
+impl PressErrors {
     /// Whether the network is of another pad, or none of a pad.
     pub const fn are_large(&self) -> bool {
         self.is_large

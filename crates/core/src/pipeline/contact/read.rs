@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::file::DecoderFileError;
-use super::nominal::{self, Misses};
+use super::nominal::{self, PressErrors};
 use super::statics::{ModelError, Statics, StaticsModel};
 use super::{Decoder, Method};
 #[cfg(feature = "foreign-onnx")]
@@ -128,7 +128,7 @@ fn foreign(bytes: &[u8]) -> Result<Decoder, OnnxError> {
 
 /// How far a network without checksum is from presses of the nominal pad, if that is far: it may be of another pad. One that
 /// takes raw channels cannot be asked.
-pub fn doubts(bytes: &[u8], decoder: &Decoder) -> Option<Misses> {
+pub fn doubts(bytes: &[u8], decoder: &Decoder) -> Option<PressErrors> {
     if decoder.zero() == Zero::Raw || onnx::is_sealed(bytes) == Ok(true) {
         return None;
     }
@@ -138,5 +138,5 @@ pub fn doubts(bytes: &[u8], decoder: &Decoder) -> Option<Misses> {
         Method::Foreign(network) => nominal::misses(|uv| network.decode(uv)),
         _ => None,
     };
-    misses.filter(Misses::are_large)
+    misses.filter(PressErrors::are_large)
 }

@@ -11,14 +11,14 @@ use crate::pipeline::compensation::memory::Memory;
 use crate::pipeline::compensation::thermometer::Thermometer;
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::{Cause, Effect, Effects};
-use crate::pipeline::probe::{Probe, Stage};
+use crate::pipeline::probe::{PipelineStage, Probe};
 use crate::pipeline::signal::{Conditioned, PadState, Scale, Signal};
 use crate::quantity::{CHANNELS, Contact, Strain};
 use crate::time::StreamInstant;
 
 /// What a sample comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reading {
+pub enum DecodedSample {
     /// The contact; `None` if nothing touches the pad.
     Contact(Option<Contact>),
     /// Nothing can be said yet: the zero is being measured.
@@ -123,7 +123,7 @@ impl ContactStage {
         sample: &Sample,
         health: &mut Health,
         probe: &mut P,
-    ) -> Reading {
+    ) -> DecodedSample {
         let touched = self.touch.is_touched();
         self.thermometer.follow(at, sample, touched);
         let (gain, rest) = (self.gain, self.gain.read(&self.memory.rest()));
@@ -135,20 +135,20 @@ impl ContactStage {
             Conditioned::Strain(strain) => {
                 let strain = self.memory.freed(&self.thermometer.at_reference(&gain.calibrated(&strain)));
                 self.strain = Some(strain);
-                Reading::Contact(self.contact(at, &strain, health, probe))
+                DecodedSample::Contact(self.contact(at, &strain, health, probe))
             }
             Conditioned::Pulled => {
                 health.zeros_loaded += 1;
                 self.interrupt(Cause::Loaded);
-                self.wait(at, Reading::Loaded)
+                self.wait(at, DecodedSample::Loaded)
             }
-            Conditioned::Taring => self.wait(at, Reading::Taring),
-            Conditioned::Loaded => self.wait(at, Reading::Loaded),
-            Conditioned::Faulty => self.wait(at, Reading::Faulty),
+            Conditioned::Taring => self.wait(at, DecodedSample::Taring),
+            Conditioned::Loaded => self.wait(at, DecodedSample::Loaded),
+            Conditioned::Faulty => self.wait(at, DecodedSample::Faulty),
         }
     }
 
-    fn wait(&mut self, at: StreamInstant, reading: Reading) -> Reading {
+    fn wait(&mut self, at: StreamInstant, reading: DecodedSample) -> DecodedSample {
         self.memory.wait(at);
         reading
     }
@@ -162,7 +162,7 @@ impl ContactStage {
         probe: &mut P,
     ) -> Option<Contact> {
         let (contact, explained) = self.decoder.explain(strain);
-        probe.mark(Stage::Contact);
+        probe.mark(PipelineStage::Contact);
         let touch = self.touch.update(at, &contact);
         if touch == TouchState::Drifted {
             self.interrupt(Cause::Drifted);

@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-use super::inverse::{Explained, Inverse};
+use super::inverse::{ContactFit, Inverse};
 use super::uncertainty::Noise;
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::Effect;
@@ -145,7 +145,7 @@ impl Block {
         Self { begins, ..Self::default() }
     }
 
-    fn add(&mut self, strain: &Strain, explained: &Explained) {
+    fn add(&mut self, strain: &Strain, explained: &ContactFit) {
         let Contact { fx_n, fy_n, fz_n, .. } = explained.contact;
         self.samples += 1;
         self.sum.uv.iter_mut().zip(strain.uv).for_each(|(sum, uv)| *sum += f64::from(uv));
@@ -206,7 +206,7 @@ impl Watch {
         &mut self,
         at: StreamInstant,
         strain: &Strain,
-        explained: &Explained,
+        explained: &ContactFit,
         touched: bool,
         inverse: &Inverse,
         health: &mut Health,

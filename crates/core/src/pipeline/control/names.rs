@@ -53,13 +53,13 @@ pub const POINTER_BUTTONS: [Code; 3] = [Code::Key(0x110), Code::Key(0x111), Code
 const FIRST_BUTTON: u16 = 0x100;
 
 /// Names of consecutive numbers, from a first number on.
-type Run = (u16, &'static [&'static str]);
+type NameRange = (u16, &'static [&'static str]);
 
 macro_rules! runs {
     ($($first:literal: $($name:ident)+;)+) => { &[$(($first, &[$(stringify!($name)),+])),+] };
 }
 
-const KEYS: &[Run] = runs! {
+const KEYS: &[NameRange] = runs! {
     1: KEY_ESC KEY_1 KEY_2 KEY_3 KEY_4 KEY_5 KEY_6 KEY_7 KEY_8 KEY_9 KEY_0 KEY_MINUS KEY_EQUAL KEY_BACKSPACE;
     15: KEY_TAB KEY_Q KEY_W KEY_E KEY_R KEY_T KEY_Y KEY_U KEY_I KEY_O KEY_P KEY_LEFTBRACE KEY_RIGHTBRACE;
     28: KEY_ENTER KEY_LEFTCTRL KEY_A KEY_S KEY_D KEY_F KEY_G KEY_H KEY_J KEY_K KEY_L KEY_SEMICOLON;
@@ -96,12 +96,12 @@ const KEYS: &[Run] = runs! {
     0x220: BTN_DPAD_UP BTN_DPAD_DOWN BTN_DPAD_LEFT BTN_DPAD_RIGHT;
 };
 
-const AXES: &[Run] = runs! {
+const AXES: &[NameRange] = runs! {
     0x00: ABS_X ABS_Y ABS_Z ABS_RX ABS_RY ABS_RZ;
     0x10: ABS_HAT0X ABS_HAT0Y;
 };
 
-const MOVEMENTS: &[Run] = runs! {
+const MOVEMENTS: &[NameRange] = runs! {
     0x00: REL_X REL_Y;
     0x08: REL_WHEEL;
 };
@@ -175,7 +175,7 @@ fn aliases() -> impl Iterator<Item = (&'static str, Code)> {
     ALIASES.iter().filter_map(move |(alias, wanted)| Some((*alias, target(wanted)?.1)))
 }
 
-fn numbered(runs: &'static [Run]) -> impl Iterator<Item = (&'static str, u16)> {
+fn numbered(runs: &'static [NameRange]) -> impl Iterator<Item = (&'static str, u16)> {
     runs.iter().flat_map(|(first, names)| names.iter().copied().zip(*first..))
 }
 

@@ -38,7 +38,7 @@ const _: () = assert!(
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     axes: [Axis; POINTER_MOTION.len()],
-    places: [Place; POINTER_PLACE.len()],
+    places: [TabletPosition; POINTER_PLACE.len()],
     /// Up to here the rates are summed.
     at: StreamInstant,
     /// From here on the next step may come.
@@ -56,7 +56,7 @@ struct Axis {
 
 /// Where the pointer goes along one side of the screen; 0 is nowhere.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct TabletPosition {
     code: Code,
     wanted: i32,
     told: i32,
@@ -66,7 +66,7 @@ impl Motion {
     /// The pointer at rest.
     pub(super) fn new() -> Self {
         let axes = POINTER_MOTION.map(|code| Axis { code, rate: 0, rest: 0 });
-        let places = POINTER_PLACE.map(|code| Place { code, wanted: 0, told: 0 });
+        let places = POINTER_PLACE.map(|code| TabletPosition { code, wanted: 0, told: 0 });
         Self { axes, places, at: StreamInstant::default(), next_at: StreamInstant::default() }
     }
 
@@ -95,7 +95,7 @@ impl Motion {
             return [None; STEPS_MAX];
         }
         let [right, down] = self.axes.each_mut().map(Axis::take_step);
-        let [left, top] = self.places.each_mut().map(Place::take_step);
+        let [left, top] = self.places.each_mut().map(TabletPosition::take_step);
         let steps = [right, down, left, top];
         if steps.iter().any(Option::is_some) {
             self.next_at = self.at.plus_us(SPACING_US);
@@ -130,7 +130,7 @@ impl Axis {
     }
 }
 
-impl Place {
+impl TabletPosition {
     /// The place, if it is another one than was told last.
     fn take_step(&mut self) -> Option<MotionStep> {
         let is_new = self.wanted != self.told;

@@ -18,7 +18,7 @@ use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
 use fault::ChannelFaults;
 use filter::MeanFilter;
-use tare::{Rest, Tare};
+use tare::{Tare, UntouchedOffset};
 
 /// What a count means: told by the pad's identity, or the protocol's default.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,7 @@ pub struct PadState {
     /// Whether a contact is under way: the zero is followed only while not.
     pub touched: bool,
     /// What the pad reads while not.
-    pub rest: Rest,
+    pub rest: UntouchedOffset,
     /// What is added to the channels at any time (µV): it is taken off first.
     pub added_uv: [f64; CHANNELS],
 }
@@ -165,7 +165,7 @@ impl Signal {
         &mut self,
         at: StreamInstant,
         block_uv: &[f64; CHANNELS],
-        rest: &Rest,
+        rest: &UntouchedOffset,
         load_n: impl Fn(&Strain) -> f32,
     ) {
         if self.tare.measure(at, block_uv, rest, load_n) {

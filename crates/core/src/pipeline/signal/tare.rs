@@ -34,14 +34,14 @@ const FOLLOW_GAP_MAX_US: u64 = 10_000;
 
 /// What the untouched pad reads beside its zero: what earlier presses left behind.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rest {
+pub struct UntouchedOffset {
     /// For each channel, as far as it is known.
     pub uv: [f64; CHANNELS],
     /// How far off that may be.
     pub doubt_uv: [f64; CHANNELS],
 }
 
-impl Rest {
+impl UntouchedOffset {
     /// Of a pad that remembers nothing.
     pub const NONE: Self = Self { uv: [0.0; CHANNELS], doubt_uv: [0.0; CHANNELS] };
 }
@@ -123,7 +123,7 @@ impl Tare {
         &mut self,
         block_uv: &[f64; CHANNELS],
         touched: bool,
-        rest: &Rest,
+        rest: &UntouchedOffset,
         load_n: impl Fn(&Strain) -> f32,
     ) -> bool {
         let Some(zero_uv) = &self.zero_uv else { return false };
@@ -141,7 +141,7 @@ impl Tare {
         &mut self,
         at: StreamInstant,
         block_uv: &[f64; CHANNELS],
-        rest: &Rest,
+        rest: &UntouchedOffset,
         load_n: impl Fn(&Strain) -> f32,
     ) -> bool {
         let reference_uv = *self.reference_uv.get_or_insert(*block_uv);
@@ -176,7 +176,7 @@ impl Tare {
         at: StreamInstant,
         raw_uv: &[f64; CHANNELS],
         touched: bool,
-        rest: &Rest,
+        rest: &UntouchedOffset,
     ) -> Strain {
         // Nothing is known of a gap: a finger may have come meanwhile.
         let elapsed_s = at.us_since(self.followed_at).min(FOLLOW_GAP_MAX_US) as f64 * 1e-6;
@@ -187,7 +187,7 @@ impl Tare {
         relative(raw_uv, &self.zero_uv.unwrap_or(*raw_uv))
     }
 
-    fn follow(&mut self, elapsed_s: f64, raw_uv: &[f64; CHANNELS], rest: &Rest) {
+    fn follow(&mut self, elapsed_s: f64, raw_uv: &[f64; CHANNELS], rest: &UntouchedOffset) {
         // z ← z + (Δt / τ) (r − rest − z), and the doubt of z goes to that of the rest as fast.
         let Some(zero_uv) = &mut self.zero_uv else { return };
         for (k, (zero, doubt)) in zero_uv.iter_mut().zip(&mut self.doubt_uv).enumerate() {
@@ -212,7 +212,7 @@ mod tests {
     const UV_PER_N: f32 = 1_000.0;
 
     /// Feeds a reading of all channels towards a zero.
-    fn feed(tare: &mut Tare, ms: u64, uv: f64, rest: &Rest) {
+    fn feed(tare: &mut Tare, ms: u64, uv: f64, rest: &UntouchedOffset) {
         let at = StreamInstant::from_us(ms * 1_000);
         if let Some(block_uv) = tare.watch(at, &[uv; CHANNELS])
             && !tare.is_known()
@@ -224,7 +224,7 @@ mod tests {
     /// Feeds `raw_uv(t_ms)` in all channels every millisecond; the time at which the zero was known, in ms.
     fn known_at_ms(tare: &mut Tare, raw_uv: impl Fn(u64) -> f64) -> Option<u64> {
         (0..8_000).find(|&ms| {
-            feed(tare, ms, raw_uv(ms), &Rest::NONE);
+            feed(tare, ms, raw_uv(ms), &UntouchedOffset::NONE);
             tare.is_known()
         })
     }
@@ -235,7 +235,8 @@ mod tests {
         assert!(
             known_at_ms(&mut tare, |ms| 1_500.0 + if ms % 2 == 0 { 30.0 } else { -30.0 }).unwrap() <= 200
         );
-        let strain = tare.apply(StreamInstant::from_us(500_000), &[1_600.0; CHANNELS], true, &Rest::NONE);
+        let strain =
+            tare.apply(StreamInstant::from_us(500_000), &[1_600.0; CHANNELS], true, &UntouchedOffset::NONE);
         assert!(strain.uv.iter().all(|uv| (uv - 100.0).abs() < 1.0));
     }
 
@@ -271,7 +272,8 @@ mod tests {
         };
         let known = known_at_ms(&mut tare, load).unwrap();
         assert!((1_350..1_450).contains(&known), "{known} ms");
-        let strain = tare.apply(StreamInstant::from_us(1_500_000), &[1_000.0; CHANNELS], true, &Rest::NONE);
+        let strain =
+            tare.apply(StreamInstant::from_us(1_500_000), &[1_000.0; CHANNELS], true, &UntouchedOffset::NONE);
         assert!((strain.uv[4] - 1_000.0).abs() < 1e-3);
     }
 
@@ -280,7 +282,9 @@ mod tests {
         let mut tare = Tare::new();
         assert!(known_at_ms(&mut tare, |_| 0.0).is_some());
         let mut pulled = |touched| {
-            tare.is_pulled(&[-500.0; CHANNELS], touched, &Rest::NONE, |strain| strain.uv[0] / UV_PER_N)
+            tare.is_pulled(&[-500.0; CHANNELS], touched, &UntouchedOffset::NONE, |strain| {
+                strain.uv[0] / UV_PER_N
+            })
         };
         assert_eq!([false, true, false, false].map(&mut pulled), [false, false, false, true]);
     }
@@ -295,7 +299,7 @@ mod tests {
                     StreamInstant::from_us(500_000 + ms * 1_000),
                     &[100.0; CHANNELS],
                     touched,
-                    &Rest::NONE,
+                    &UntouchedOffset::NONE,
                 )
                 .uv[0]
             });
@@ -308,7 +312,12 @@ mod tests {
     fn a_load_that_came_during_a_gap_is_no_drift() {
         let mut tare = Tare::new();
         known_at_ms(&mut tare, |_| 0.0);
-        let strain = tare.apply(StreamInstant::from_us(60_000_000), &[1_000.0; CHANNELS], false, &Rest::NONE);
+        let strain = tare.apply(
+            StreamInstant::from_us(60_000_000),
+            &[1_000.0; CHANNELS],
+            false,
+            &UntouchedOffset::NONE,
+        );
         assert!(strain.uv[0] > 999.0, "{} µV", strain.uv[0]);
     }
 
@@ -316,7 +325,7 @@ mod tests {
     fn a_slow_pad_is_tared_too() {
         let mut tare = Tare::new();
         let known = (0..50).find(|&i| {
-            feed(&mut tare, 10 * i, 7.0, &Rest::NONE);
+            feed(&mut tare, 10 * i, 7.0, &UntouchedOffset::NONE);
             tare.is_known()
         });
         assert!(known.unwrap() * 10 <= 200);
@@ -324,13 +333,13 @@ mod tests {
 
     #[test]
     fn what_is_left_behind_is_not_taken_for_the_zero_and_what_was_is_mended_soon() {
-        let rest = |uv, doubt_uv| Rest { uv: [uv; CHANNELS], doubt_uv: [doubt_uv; CHANNELS] };
+        let rest = |uv, doubt_uv| UntouchedOffset { uv: [uv; CHANNELS], doubt_uv: [doubt_uv; CHANNELS] };
         let mut tare = Tare::new();
         // A pad with 30 µV of hysteresis, of which nothing is known yet.
         for ms in 0..500 {
             feed(&mut tare, ms, 130.0, &rest(0.0, 50.0));
         }
-        let mut reads_uv = |ms: std::ops::Range<u64>, rest: Rest| {
+        let mut reads_uv = |ms: std::ops::Range<u64>, rest: UntouchedOffset| {
             let mut uv = 0.0;
             for ms in ms {
                 let at = StreamInstant::from_us(ms * 1_000);

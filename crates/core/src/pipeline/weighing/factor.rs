@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::refusal::WeighError;
-use super::resting::Reading;
+use super::resting::MeanReading;
 use crate::pad::weight::{WEIGHT_SHARE, Weight};
 use crate::pipeline::contact::inverse::Inverse;
 use crate::pipeline::contact::{Decoder, watch};
@@ -36,8 +36,8 @@ impl Weighed {
     ///
     /// # Errors
     /// There are none, or what they show is not the weight on the plate.
-    pub fn of(readings: &[Reading], weight: Weight, decoder: &Decoder) -> Result<Self, WeighError> {
-        let mean = |of: fn(&Reading) -> f32| {
+    pub fn of(readings: &[MeanReading], weight: Weight, decoder: &Decoder) -> Result<Self, WeighError> {
+        let mean = |of: fn(&MeanReading) -> f32| {
             readings.iter().map(|reading| f64::from(of(reading))).sum::<f64>() / readings.len() as f64
         };
         let force_n = mean(|it| it.contact.fz_n);
@@ -73,17 +73,17 @@ fn reach_mm(decoder: &Decoder) -> f64 {
 }
 
 /// Whether most readings are not one load on the decoder's pad. A gain that all channels share leaves nothing over.
-fn is_foreign(readings: &[Reading], inverse: &Inverse) -> bool {
+fn is_foreign(readings: &[MeanReading], inverse: &Inverse) -> bool {
     let foreign = readings.iter().filter(|it| watch::warns(inverse, &it.strain) != Some(false)).count();
     2 * foreign > readings.len()
 }
 
 /// Standard deviation of a mean force, as a share of it, with that of the weight.
-fn deviation(readings: &[Reading], force_n: f64, inverse: Option<&Inverse>) -> f64 {
+fn deviation(readings: &[MeanReading], force_n: f64, inverse: Option<&Inverse>) -> f64 {
     // σ² = w² + (v̄ + q / n) / F̄², where w is the weight's own share, q the scatter of n readings, and v the variance of a
     // reading's force by what lasts: the field that the decoder does not know, and noise that holding longer does not average out.
     let count = readings.len() as f64;
-    let off_n2 = |it: &Reading| {
+    let off_n2 = |it: &MeanReading| {
         let off_n = f64::from(it.contact.fz_n) - force_n;
         off_n * off_n
     };
@@ -95,7 +95,7 @@ fn deviation(readings: &[Reading], force_n: f64, inverse: Option<&Inverse>) -> f
 }
 
 /// Variance of a normal force without that of the gain that all channels share.
-fn variance_n2(inverse: &Inverse, reading: &Reading) -> Option<f64> {
+fn variance_n2(inverse: &Inverse, reading: &MeanReading) -> Option<f64> {
     // C₅₅ − g² Fz², see [`Noise::gain`]
     let estimate = inverse.estimate(&reading.strain)?;
     let by_gain_n = inverse.noise().gain * f64::from(estimate.contact.fz_n);

@@ -1,7 +1,7 @@
 //! What a weighing found, kept for good: the decoder of the pad as it is now.
 
 use crate::pipeline::compensation::Compensation;
-use crate::pipeline::compensation::hysteresis::Play;
+use crate::pipeline::compensation::hysteresis::PlayOperators;
 use crate::pipeline::contact::Decoder;
 use crate::pipeline::contact::uncertainty::Noise;
 
@@ -23,7 +23,7 @@ pub fn kept(decoder: &Decoder, factor: f64, deviation: f64) -> Option<Decoder> {
     let hysteresis = decoder
         .compensation
         .hysteresis
-        .map(|play| Play { threshold_uv: play.threshold_uv.map(|uv| factor * uv), ..play });
+        .map(|play| PlayOperators { threshold_uv: play.threshold_uv.map(|uv| factor * uv), ..play });
     let compensation = Compensation { hysteresis, ..decoder.compensation };
     Some(Decoder::from(inverse.scaled(factor, noise)).compensated_by(compensation))
 }
@@ -32,7 +32,7 @@ pub fn kept(decoder: &Decoder, factor: f64, deviation: f64) -> Option<Decoder> {
 mod tests {
     use super::*;
     use crate::pad::influence::MAPS;
-    use crate::pipeline::contact::field_error::{FieldError, Mode, TERMS};
+    use crate::pipeline::contact::field_error::{ErrorMode, FieldError, TERMS};
     use crate::pipeline::shipped;
     use crate::quantity::{CHANNELS, Contact, Strain};
 
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn what_is_not_known_of_the_field_is_not_forgotten() {
-        let mode = Mode { mixture: [[0.01; CHANNELS]; CHANNELS], maps: [[2.0; MAPS]; TERMS] };
+        let mode = ErrorMode { mixture: [[0.01; CHANNELS]; CHANNELS], maps: [[2.0; MAPS]; TERMS] };
         let error = FieldError::of(vec![mode]).unwrap();
         let inverse = shipped::decoder().inverse().unwrap().clone().with_field_error(error);
         let found = kept(&Decoder::from(inverse), 0.5, 0.006).unwrap();
@@ -61,14 +61,14 @@ mod tests {
 
     #[test]
     fn thresholds_follow_the_gain_and_shares_stay() {
-        let play = Play { threshold_uv: [800.0; CHANNELS], share: [0.05; CHANNELS] };
+        let play = PlayOperators { threshold_uv: [800.0; CHANNELS], share: [0.05; CHANNELS] };
         let compensation = Compensation {
-            hysteresis: [play, Play::NONE],
+            hysteresis: [play, PlayOperators::NONE],
             zero_uv: Some([70.0; CHANNELS]),
             ..Compensation::NONE
         };
         let found = kept(&shipped::decoder().compensated_by(compensation), 0.75, 0.006).unwrap().compensation;
-        let wanted = Play { threshold_uv: [600.0; CHANNELS], ..play };
-        assert_eq!(found, Compensation { hysteresis: [wanted, Play::NONE], ..compensation });
+        let wanted = PlayOperators { threshold_uv: [600.0; CHANNELS], ..play };
+        assert_eq!(found, Compensation { hysteresis: [wanted, PlayOperators::NONE], ..compensation });
     }
 }

@@ -16,7 +16,7 @@ use crate::quantity::Strain;
 use crate::time::StreamInstant;
 use factor::{Weighed, is_possible};
 use refusal::WeighError;
-use resting::Resting;
+use resting::SettlingDetector;
 
 /// A load that does not begin to rest within this time is not waited for any longer.
 pub const WAIT_US: u64 = 10_000_000;
@@ -26,7 +26,7 @@ const FAULTS_MAX: u32 = 2;
 
 /// What a sample shows to a weighing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Seen<'a> {
+pub enum WeighingSample<'a> {
     /// Something lies on the pad: the channels as the decoder got them.
     Load(&'a Strain),
     /// Nothing lies on it.
@@ -50,7 +50,7 @@ pub enum Progress {
 
 /// The newest weighing, as people are told of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Account {
+pub struct WeighingReport {
     /// Counts the weighings, from 1.
     pub number: u64,
     /// The weight.
@@ -62,10 +62,10 @@ pub struct Account {
 /// Weighs when it is asked to.
 #[derive(Clone, Debug, Default)]
 pub struct Weighing {
-    newest: Option<Account>,
+    newest: Option<WeighingReport>,
     began: StreamInstant,
     faults: u32,
-    resting: Resting,
+    resting: SettlingDetector,
     /// Whether a load was there, and what was seen last where there was none.
     came: bool,
     lacks: Option<WeighError>,
@@ -75,7 +75,7 @@ pub struct Weighing {
 
 impl Weighing {
     /// The newest weighing, if there was one.
-    pub const fn account(&self) -> Option<&Account> {
+    pub const fn account(&self) -> Option<&WeighingReport> {
         self.newest.as_ref()
     }
 
@@ -85,13 +85,13 @@ impl Weighing {
     }
 
     const fn is_under_way(&self) -> bool {
-        matches!(self.newest, Some(Account { progress: Progress::Waiting | Progress::Resting, .. }))
+        matches!(self.newest, Some(WeighingReport { progress: Progress::Waiting | Progress::Resting, .. }))
     }
 
     /// Begins to weigh this weight at `at`. One that was under way is forgotten.
     pub fn begin(&mut self, at: StreamInstant, weight: Weight) {
         let number = self.newest.map_or(0, |newest| newest.number) + 1;
-        let newest = Account { number, weight, progress: Progress::Waiting };
+        let newest = WeighingReport { number, weight, progress: Progress::Waiting };
         *self = Self { newest: Some(newest), began: at, ..Self::default() };
     }
 
@@ -126,14 +126,20 @@ impl Weighing {
 
     /// Takes the sample at `at`, of a pad whose common gain was `gain` so far. How many times that the pad reads, once it is
     /// known.
-    pub fn see(&mut self, at: StreamInstant, seen: Seen<'_>, gain: f64, decoder: &Decoder) -> Option<f64> {
+    pub fn see(
+        &mut self,
+        at: StreamInstant,
+        seen: WeighingSample<'_>,
+        gain: f64,
+        decoder: &Decoder,
+    ) -> Option<f64> {
         match seen {
-            Seen::Load(_) => self.lies = self.hides(),
-            Seen::Nothing | Seen::NoZero => self.lies = false,
-            Seen::Faulty => {}
+            WeighingSample::Load(_) => self.lies = self.hides(),
+            WeighingSample::Nothing | WeighingSample::NoZero => self.lies = false,
+            WeighingSample::Faulty => {}
         }
         let newest = self.newest.filter(|_| self.is_under_way())?;
-        let Seen::Load(strain) = seen else {
+        let WeighingSample::Load(strain) = seen else {
             self.resting.break_off();
             self.lacks = lacking(seen);
             self.go_on(at);
@@ -163,11 +169,11 @@ impl Weighing {
 }
 
 /// What hinders a weighing where nothing can be weighed.
-const fn lacking(seen: Seen<'_>) -> Option<WeighError> {
+const fn lacking(seen: WeighingSample<'_>) -> Option<WeighError> {
     match seen {
-        Seen::Load(_) | Seen::Nothing => None,
-        Seen::NoZero => Some(WeighError::NoZero),
-        Seen::Faulty => Some(WeighError::Faults),
+        WeighingSample::Load(_) | WeighingSample::Nothing => None,
+        WeighingSample::NoZero => Some(WeighError::NoZero),
+        WeighingSample::Faulty => Some(WeighError::Faults),
     }
 }
 

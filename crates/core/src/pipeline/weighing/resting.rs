@@ -24,14 +24,14 @@ const GAP_US: u64 = 50_000;
 
 /// A mean of readings.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
+pub struct MeanReading {
     /// The channels, as a decoder takes them.
     pub strain: Strain,
     /// What it makes of them.
     pub contact: Contact,
 }
 
-impl Reading {
+impl MeanReading {
     /// What the decoder makes of these channels.
     pub fn of(strain: Strain, decoder: &Decoder) -> Self {
         Self { strain, contact: decoder.decode(&strain) }
@@ -39,19 +39,19 @@ impl Reading {
 }
 
 /// A load that has rested for long enough.
-pub type Rested = ArrayVec<Reading, MEANS>;
+pub type SettledLoad = ArrayVec<MeanReading, MEANS>;
 
 /// Waits for a load to rest, sample by sample.
 #[derive(Clone, Debug, Default)]
-pub struct Resting {
+pub struct SettlingDetector {
     begins: StreamInstant,
     last_at: StreamInstant,
     sum_uv: [f64; CHANNELS],
     samples: u32,
-    agreed: Rested,
+    agreed: SettledLoad,
 }
 
-impl Resting {
+impl SettlingDetector {
     /// Whether a load is there that rests so far.
     pub fn is_begun(&self) -> bool {
         self.agreed.len() > 1
@@ -64,7 +64,7 @@ impl Resting {
     }
 
     /// Takes the sample at `at` of a touched pad. The load, once it has rested for long enough; then it begins anew.
-    pub fn push(&mut self, at: StreamInstant, strain: &Strain, decoder: &Decoder) -> Option<Rested> {
+    pub fn push(&mut self, at: StreamInstant, strain: &Strain, decoder: &Decoder) -> Option<SettledLoad> {
         if at.us_since(self.last_at) > GAP_US {
             self.break_off();
         }
@@ -79,9 +79,9 @@ impl Resting {
         rested
     }
 
-    fn close(&mut self, decoder: &Decoder) -> Option<Rested> {
+    fn close(&mut self, decoder: &Decoder) -> Option<SettledLoad> {
         let samples = f64::from(std::mem::take(&mut self.samples));
-        let reading = Reading::of(Strain { uv: self.sum_uv.map(|sum| (sum / samples) as f32) }, decoder);
+        let reading = MeanReading::of(Strain { uv: self.sum_uv.map(|sum| (sum / samples) as f32) }, decoder);
         if !agrees(&self.agreed, &reading.contact) {
             self.agreed.clear();
         }
@@ -91,7 +91,7 @@ impl Resting {
 }
 
 /// Whether a contact is the one that was there before, at rest.
-fn agrees(before: &[Reading], contact: &Contact) -> bool {
+fn agrees(before: &[MeanReading], contact: &Contact) -> bool {
     let count = before.len().max(1) as f64;
     let mean =
         |of: fn(&Contact) -> f32| before.iter().map(|it| f64::from(of(&it.contact))).sum::<f64>() / count;

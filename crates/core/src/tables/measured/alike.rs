@@ -11,7 +11,7 @@ const SAME_TEMPERATURE_C: f64 = 1.0;
 
 /// What rows of a table read without load, by the untouched rows of their own temperature.
 #[derive(Clone, Debug)]
-pub struct Alike<'t> {
+pub struct ZerosByTemperature<'t> {
     table: &'t Table,
     zeros: Zeros,
     all: Group,
@@ -32,14 +32,14 @@ struct Group {
 #[derive(Clone, Debug, Default)]
 struct Degree {
     rows: Vec<usize>,
-    warmest: Highest,
+    warmest: MaximumTree,
     /// Of the temperatures' negatives.
-    coldest: Highest,
+    coldest: MaximumTree,
 }
 
 /// The largest number of each half of a list, of each quarter, and so on.
 #[derive(Clone, Debug, Default)]
-struct Highest {
+struct MaximumTree {
     /// A power of two.
     width: usize,
     nodes: Vec<f64>,
@@ -52,7 +52,7 @@ enum Side {
     After,
 }
 
-impl<'t> Alike<'t> {
+impl<'t> ZerosByTemperature<'t> {
     /// Of the table's untouched rows `zeros`.
     pub fn of(table: &'t Table, zeros: Zeros) -> Self {
         let mut by_session: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
@@ -97,7 +97,8 @@ impl Group {
             let temperatures = |sign: f64| -> Vec<f64> {
                 rows.iter().map(|row| sign * table.rows[*row].temp_c.unwrap_or_default()).collect()
             };
-            let (warmest, coldest) = (Highest::of(&temperatures(1.0)), Highest::of(&temperatures(-1.0)));
+            let (warmest, coldest) =
+                (MaximumTree::of(&temperatures(1.0)), MaximumTree::of(&temperatures(-1.0)));
             (degree, Degree { rows, warmest, coldest })
         };
         Self { rows, unknown, by_degree: by_degree.into_iter().map(of_degree).collect() }
@@ -126,7 +127,7 @@ fn degree(temp_c: f64) -> i64 {
 }
 
 impl Degree {
-    fn at_least(&self, numbers: &Highest, row: usize, least: f64, side: Side) -> Option<usize> {
+    fn at_least(&self, numbers: &MaximumTree, row: usize, least: f64, side: Side) -> Option<usize> {
         let place = numbers.nearest(self.rows.partition_point(|zero| *zero < row), least, side)?;
         self.rows.get(place).copied()
     }
@@ -140,7 +141,7 @@ impl Side {
     }
 }
 
-impl Highest {
+impl MaximumTree {
     fn of(numbers: &[f64]) -> Self {
         let width = numbers.len().next_power_of_two();
         let mut nodes = vec![f64::NEG_INFINITY; 2 * width];
@@ -204,7 +205,7 @@ mod tests {
             vec![at(0, 25.0, 7.0), at(1, 25.0, 1.0), at(0, 35.0, 2.0), load(0, 25.2), at(1, 25.0, 3.0)];
         let rows = [rows, vec![load(1, 35.5), load(1, 60.0)]].concat();
         let table = Table { sessions: vec!["one".into(), "two".into()], ..table(rows) };
-        let alike = Alike::of(&table, Zeros::of(&table).unwrap());
+        let alike = ZerosByTemperature::of(&table, Zeros::of(&table).unwrap());
         let first = |row| alike.at(row).map(|uv| uv[0]);
         assert_eq!([first(3), first(5), first(6), first(99)], [Some(7.0), Some(2.0), None, None]);
     }
@@ -221,7 +222,7 @@ mod tests {
             .collect();
         let table = table(rows);
         let zeros = Zeros::of(&table).unwrap();
-        let alike = Alike::of(&table, zeros.clone());
+        let alike = ZerosByTemperature::of(&table, zeros.clone());
         for (at, here) in table.rows.iter().enumerate() {
             let is_as_warm = |zero: &&usize| {
                 let apart =

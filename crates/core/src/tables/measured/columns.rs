@@ -4,7 +4,7 @@ use crate::quantity::{CHANNEL_NAMES, CHANNELS};
 
 /// What a table is read as: which of its columns count, and which it must have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TableKind {
     /// Contacts, all of one time series: `t_s` and the label. Whatever else a table has is not read.
     Contacts,
     /// Contacts that are to be measured: everything but the channels.
@@ -77,7 +77,7 @@ pub(super) fn channel_columns() -> [String; CHANNELS] {
     CHANNEL_NAMES.map(|name| format!("{name}_uv"))
 }
 
-impl Kind {
+impl TableKind {
     /// Whether this column counts.
     pub(super) fn reads(self, column: Column) -> bool {
         match self {

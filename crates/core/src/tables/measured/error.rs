@@ -3,7 +3,7 @@
 use std::fmt;
 use std::io;
 
-use super::columns::{Kind, LABEL};
+use super::columns::{LABEL, TableKind};
 
 /// A table that cannot be read: where, and why.
 #[derive(Debug)]
@@ -29,7 +29,7 @@ pub enum Fault {
     /// The system did not give the bytes.
     Io(io::Error),
     /// There is no line.
-    Empty(Kind),
+    Empty(TableKind),
     /// There is no line, where any names of columns would do.
     NoHeader,
     /// The text has two bytes for each character.
@@ -45,7 +45,7 @@ pub enum Fault {
         /// Theirs, with commas between.
         names: String,
         /// What the table was read as.
-        kind: Kind,
+        kind: TableKind,
     },
     /// No channel at all.
     NoChannels,
@@ -107,7 +107,7 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Io(error) => write!(f, "{error}"),
-            Self::Empty(kind) => write!(f, "the file is empty; it begins with {}", Expected(*kind)),
+            Self::Empty(kind) => write!(f, "the file is empty; it begins with {}", ExpectedHeader(*kind)),
             Self::NoHeader => f.write_str("the file is empty; it begins with a line of the columns' names"),
             Self::Utf16 => f.write_str("the table is UTF-16; save it as UTF-8"),
             Self::LongLine => f.write_str("the line is longer than 1 MB: this is no table of contacts"),
@@ -119,7 +119,7 @@ impl fmt::Display for Fault {
                 "the columns are not separated by commas; save the table as CSV with commas, and points in numbers",
             ),
             Self::MissingColumns { names, kind } => {
-                write!(f, "no column is named {names}; expected is {}", Expected(*kind))
+                write!(f, "no column is named {names}; expected is {}", ExpectedHeader(*kind))
             }
             Self::NoChannels => f.write_str(
                 "no column is a channel (m0x_uv to m2z_uv): this is a plan or a list of contacts; name a measured table",
@@ -173,11 +173,11 @@ const fn gap(unit: &str) -> &str {
 }
 
 /// What a table begins with.
-struct Expected(Kind);
+struct ExpectedHeader(TableKind);
 
-impl fmt::Display for Expected {
+impl fmt::Display for ExpectedHeader {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "a line of the columns' names: t_s if times are known, {}", LABEL.join(", "))?;
-        if self.0 == Kind::Measured { f.write_str(", m0x_uv to m2z_uv") } else { Ok(()) }
+        if self.0 == TableKind::Measured { f.write_str(", m0x_uv to m2z_uv") } else { Ok(()) }
     }
 }

@@ -1,6 +1,6 @@
 //! Where the columns of a file stand.
 
-use super::columns::{Column, Kind, LABEL, channel_columns};
+use super::columns::{Column, LABEL, TableKind, channel_columns};
 use super::error::Fault;
 use crate::quantity::CHANNELS;
 
@@ -21,7 +21,7 @@ pub(super) struct Layout {
 
 impl Layout {
     /// Finds the columns by the names in a table's first line.
-    pub(super) fn of(names: &[&str], kind: Kind) -> Result<Self, Fault> {
+    pub(super) fn of(names: &[&str], kind: TableKind) -> Result<Self, Fault> {
         let place = |wanted: &str| names.iter().position(|name| *name == wanted);
         let missing: Vec<_> = LABEL.into_iter().filter(|name| place(name).is_none()).collect();
         if let ([one], true) = (names, !missing.is_empty())
@@ -32,7 +32,7 @@ impl Layout {
         if !missing.is_empty() {
             return Err(Fault::MissingColumns { names: missing.join(", "), kind });
         }
-        let channels = if kind == Kind::Measured { Some(channels(place)?) } else { None };
+        let channels = if kind == TableKind::Measured { Some(channels(place)?) } else { None };
         let optional = Column::ALL.map(|column| column.name().filter(|_| kind.reads(column)).and_then(place));
         let known = |name: &str| {
             LABEL.contains(&name) || Column::ALL.iter().any(|column| column.name() == Some(name))
@@ -40,7 +40,7 @@ impl Layout {
         let channel_names = channel_columns();
         let is_channel = |name: &str| channel_names.iter().any(|channel| channel == name);
         for (index, name) in names.iter().enumerate() {
-            let counts = known(name) || (is_channel(name) && kind == Kind::Measured);
+            let counts = known(name) || (is_channel(name) && kind == TableKind::Measured);
             if counts && names.iter().take(index).any(|before| before == name) {
                 return Err(Fault::DoubledColumn((*name).to_owned()));
             }

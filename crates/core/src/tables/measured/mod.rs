@@ -142,12 +142,12 @@ pub struct Table {
     /// Names of the sessions, in the order in which they first appear.
     pub sessions: Vec<String>,
     /// Columns that nobody knows.
-    pub others: Others,
+    pub others: ExtraColumns,
 }
 
 /// Columns that are carried along: they belong to the lines of the file that they were read from.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Others {
+pub struct ExtraColumns {
     /// Their names.
     pub names: Vec<String>,
     /// A row's [`line`](Row::line), and its cells as CSV; sorted by line.

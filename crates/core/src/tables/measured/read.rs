@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::io::BufRead;
 use std::ops::RangeInclusive;
 
-use super::columns::{Column, Kind, LABEL, channel_columns};
+use super::columns::{Column, LABEL, TableKind, channel_columns};
 use super::error::{Fault, ReadError};
 use super::layout::Layout;
 use super::lines::{Lines, cells};
@@ -27,9 +27,9 @@ const CHANNELS_UV: RangeInclusive<f64> = -1e8..=1e8;
 /// Reads all rows of a table; at least one, or it is an error.
 ///
 /// Places beyond ±`place_max_mm` are refused. The first line names the columns, in any order. Empty lines do not count.
-/// Columns whose names are not known are carried along as texts, but for [`Kind::Contacts`]. An empty cell of an
+/// Columns whose names are not known are carried along as texts, but for [`TableKind::Contacts`]. An empty cell of an
 /// optional column says that this row has none; a table of contacts has all times or no column of them.
-pub fn table(from: impl BufRead, kind: Kind, place_max_mm: f64) -> Result<Table, ReadError> {
+pub fn table(from: impl BufRead, kind: TableKind, place_max_mm: f64) -> Result<Table, ReadError> {
     let mut lines = Lines::new(from);
     let header = match lines.next_line()? {
         Some((line, header)) => layout(&header, kind).map_err(|fault| ReadError { line, fault })?,
@@ -47,7 +47,7 @@ pub fn table(from: impl BufRead, kind: Kind, place_max_mm: f64) -> Result<Table,
     Ok(reader.table)
 }
 
-fn layout(header: &str, kind: Kind) -> Result<Layout, Fault> {
+fn layout(header: &str, kind: TableKind) -> Result<Layout, Fault> {
     let names = cells(header).ok_or(Fault::Quotation)?;
     let names: Vec<_> = names.iter().map(|name| name.trim()).collect();
     Layout::of(&names, kind)
@@ -55,7 +55,7 @@ fn layout(header: &str, kind: Kind) -> Result<Layout, Fault> {
 
 /// A table as far as it is read.
 struct Reader {
-    kind: Kind,
+    kind: TableKind,
     layout: Layout,
     channel_columns: [String; CHANNELS],
     places_mm: RangeInclusive<f64>,
@@ -65,7 +65,7 @@ struct Reader {
 }
 
 impl Reader {
-    fn new(layout: Layout, kind: Kind, place_max_mm: f64) -> Self {
+    fn new(layout: Layout, kind: TableKind, place_max_mm: f64) -> Self {
         let mut table = Table::default();
         table.others.names = layout.others.iter().map(|(_, name)| name.clone()).collect();
         Self {
@@ -131,7 +131,7 @@ impl Reader {
 
     /// The row's time, which in a series is not before the one above.
     fn time(&self, cells: &[Cow<'_, str>], trial: Option<usize>) -> Result<Option<f64>, Fault> {
-        let is_contact = self.kind == Kind::Contacts;
+        let is_contact = self.kind == TableKind::Contacts;
         let allowed = if is_contact { &CONTACT_TIMES_S } else { &TIMES_S };
         let t_s = self.optional(cells, Column::Time, allowed, "s")?;
         if is_contact && t_s.is_none() && self.layout.place(Column::Time).is_some() {
@@ -251,7 +251,7 @@ mod tests {
     use super::super::lines::LINE_BYTES_MAX;
     use super::*;
 
-    fn read(kind: Kind, text: impl AsRef<[u8]>) -> Result<Table, String> {
+    fn read(kind: TableKind, text: impl AsRef<[u8]>) -> Result<Table, String> {
         table(text.as_ref(), kind, 30.0).map_err(|error| format!("{}: {}", error.line, error.fault))
     }
 
@@ -259,7 +259,7 @@ mod tests {
     fn measured(first: &str, rows: &[&str]) -> Result<Table, String> {
         let header = format!("{first}{},{}\n", LABEL.join(","), channel_columns().join(","));
         let rows: String = rows.iter().map(|row| format!("{row},1,2,3,4,5,6,7,8,9.0005\n")).collect();
-        read(Kind::Measured, header + &rows)
+        read(TableKind::Measured, header + &rows)
     }
 
     #[test]
@@ -267,9 +267,9 @@ mod tests {
         let text = "\u{feff}fz_n, \"note, free\" ,t_s,\"x_mm\",y_mm,fx_n,fy_n\r\n\r\n 5 ,\"a,b\",0.5,1,2,3,\"4\"\r\n";
         let label = Label { x_mm: 1.0, y_mm: 2.0, fx_n: 3.0, fy_n: 4.0, fz_n: 5.0 };
         let row = Row { line: 3, t_s: Some(0.5), ..Row::of(label) };
-        let contacts = read(Kind::Contacts, text).unwrap();
+        let contacts = read(TableKind::Contacts, text).unwrap();
         assert_eq!(contacts, Table { rows: vec![row], ..Table::default() });
-        let plan = read(Kind::Plan, text).unwrap();
+        let plan = read(TableKind::Plan, text).unwrap();
         assert_eq!((plan.rows, plan.others.names), (vec![row], vec!["note, free".to_owned()]));
         assert_eq!(plan.others.texts, [(3, "\"a,b\"".to_owned())]);
     }
@@ -323,54 +323,70 @@ mod tests {
         let channels = channel_columns().join(",");
         for (kind, text, what) in [
             (
-                Kind::Measured,
+                TableKind::Measured,
                 "\n".into(),
                 "1: the file is empty; it begins with a line of the columns' names: t_s",
             ),
             (
-                Kind::Measured,
+                TableKind::Measured,
                 format!("{label}\n0,0,0,0,1\n"),
                 "1: no column is a channel (m0x_uv to m2z_uv): this is a",
             ),
-            (Kind::Measured, format!("{label},m0x_uv\n"), "1: no column is named m0y_uv, m0z_uv, m1x_uv, "),
             (
-                Kind::Measured,
+                TableKind::Measured,
+                format!("{label},m0x_uv\n"),
+                "1: no column is named m0y_uv, m0z_uv, m1x_uv, ",
+            ),
+            (
+                TableKind::Measured,
                 format!("{label},{channels},m1x_uv\n"),
                 "1: two columns are named m1x_uv; rename one",
             ),
             (
-                Kind::Measured,
+                TableKind::Measured,
                 channels.clone(),
                 "1: no column is named x_mm, y_mm, fx_n, fy_n, fz_n; expected is",
             ),
             (
-                Kind::Measured,
+                TableKind::Measured,
                 format!("{label},{channels}\n"),
                 "1: no contact follows the names of the columns",
             ),
-            (Kind::Plan, label.replace(',', ";"), "1: the columns are not separated by commas"),
-            (Kind::Plan, label.replace(',', "\t"), "1: the columns are not separated by commas"),
-            (Kind::Plan, format!("trial,{label},trial\n"), "1: two columns are named trial"),
-            (Kind::Plan, format!("{label},\"note\n"), "1: a quotation mark does not close"),
-            (Kind::Plan, format!("{label},note\n0,0,0,0,1,\"a\nb\"\n"), "2: a quotation mark does not close"),
-            (Kind::Plan, format!("{label}\n0,0,0,0,1,2\n"), "2: 6 values where the header names 5 columns"),
+            (TableKind::Plan, label.replace(',', ";"), "1: the columns are not separated by commas"),
+            (TableKind::Plan, label.replace(',', "\t"), "1: the columns are not separated by commas"),
+            (TableKind::Plan, format!("trial,{label},trial\n"), "1: two columns are named trial"),
+            (TableKind::Plan, format!("{label},\"note\n"), "1: a quotation mark does not close"),
             (
-                Kind::Plan,
+                TableKind::Plan,
+                format!("{label},note\n0,0,0,0,1,\"a\nb\"\n"),
+                "2: a quotation mark does not close",
+            ),
+            (
+                TableKind::Plan,
+                format!("{label}\n0,0,0,0,1,2\n"),
+                "2: 6 values where the header names 5 columns",
+            ),
+            (
+                TableKind::Plan,
                 format!("approach,{label}\nup,0,0,0,0,1\n"),
                 "2: approach is \"up\"; write loading or",
             ),
             (
-                Kind::Plan,
+                TableKind::Plan,
                 format!("dwell_s,{label}\n-1,0,0,0,0,1\n"),
                 "2: dwell_s is -1, and the pad's are 0 to",
             ),
-            (Kind::Plan, format!("cycle,{label}\n-1,0,0,0,0,1\n"), "2: cycle is -1, and the pad's are 0 to"),
             (
-                Kind::Plan,
+                TableKind::Plan,
+                format!("cycle,{label}\n-1,0,0,0,0,1\n"),
+                "2: cycle is -1, and the pad's are 0 to",
+            ),
+            (
+                TableKind::Plan,
                 format!("temp_c,{label}\nNaN,0,0,0,0,1\n"),
                 "2: temp_c is \"NaN\", which is not a number",
             ),
-            (Kind::Contacts, format!("t_s,{label}\n,0,0,0,0,1\n"), "2: t_s is empty"),
+            (TableKind::Contacts, format!("t_s,{label}\n,0,0,0,0,1\n"), "2: t_s is empty"),
         ] {
             let found = read(kind, &text).unwrap_err();
             assert!(found.starts_with(what), "{text:?}: {found}");
@@ -383,7 +399,7 @@ mod tests {
     fn names_that_are_no_text_are_refused_and_notes_are_not() {
         let table = |column: &str| {
             let text = format!("{column},{}\n", LABEL.join(","));
-            read(Kind::Plan, [text.as_bytes(), b"caf\xe9,0,0,0,0,1\n"].concat())
+            read(TableKind::Plan, [text.as_bytes(), b"caf\xe9,0,0,0,0,1\n"].concat())
         };
         assert_eq!(table("trial").unwrap_err(), "2: trial is not UTF-8 text; save the table as UTF-8");
         assert!(table("session").unwrap_err().starts_with("2: session is not UTF-8"));
@@ -394,7 +410,7 @@ mod tests {
     fn the_outermost_values_pass_and_the_next_do_not() {
         let header = "t_s,x_mm,y_mm,fx_n,fy_n,fz_n\n";
         for row in ["0,30,-30,100,-100,100", "1e6,-30,30,-100,100,-100", "0,0,0,0,0,0"] {
-            assert!(read(Kind::Contacts, format!("{header}{row}")).is_ok(), "{row}");
+            assert!(read(TableKind::Contacts, format!("{header}{row}")).is_ok(), "{row}");
         }
         for (row, what) in [
             ("-0.1,0,0,0,0,1", "t_s is -0.1, and the pad's are 0 to 1000000 s"),
@@ -407,7 +423,7 @@ mod tests {
             ("0,0,0,0,inf,0", "fy_n is \"inf\", which is not a number"),
             ("0,0,0,0,,0", "fy_n is empty"),
         ] {
-            let found = read(Kind::Contacts, format!("{header}\n{row}\n")).unwrap_err();
+            let found = read(TableKind::Contacts, format!("{header}\n{row}\n")).unwrap_err();
             assert!(found.starts_with(&format!("3: {what}")), "{found}");
         }
     }
@@ -415,8 +431,8 @@ mod tests {
     #[test]
     fn a_line_of_a_megabyte_is_the_longest() {
         let row = |bytes: usize| format!("{}\n0,0,0,0,{}1\n", LABEL.join(","), " ".repeat(bytes - 10));
-        assert_eq!(read(Kind::Plan, row(LINE_BYTES_MAX)).map(|table| table.rows.len()), Ok(1));
-        let found = read(Kind::Plan, row(LINE_BYTES_MAX + 1)).unwrap_err();
+        assert_eq!(read(TableKind::Plan, row(LINE_BYTES_MAX)).map(|table| table.rows.len()), Ok(1));
+        let found = read(TableKind::Plan, row(LINE_BYTES_MAX + 1)).unwrap_err();
         assert!(found.starts_with("2: the line is longer than 1 MB"), "{found}");
     }
 }

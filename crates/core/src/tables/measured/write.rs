@@ -176,7 +176,7 @@ pub(super) fn push_text(text: &mut String, cell: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tables::measured::{Label, Others};
+    use crate::tables::measured::{ExtraColumns, Label};
 
     fn written(table: &Table) -> Vec<String> {
         let mut text = Vec::new();
@@ -204,7 +204,7 @@ mod tests {
             rows: vec![row(2, 0), row(0, 1)],
             trials: vec!["a, \"b\"".into(), " c".into()],
             sessions: vec![],
-            others: Others {
+            others: ExtraColumns {
                 names: vec!["note".into(), "x,y".into()],
                 texts: vec![(2, "free,\"1,2\"".into())],
             },

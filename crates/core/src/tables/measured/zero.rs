@@ -9,9 +9,9 @@
 //! small forces may be none, too:
 //!
 //! - Figures of merit look at loads of 0.5 N and more. For them forces up to [`UNLOADED_N`] are none
-//!   ([`Untouched::unloaded`]).
+//!   ([`UntouchedRows::unloaded`]).
 //! - A decoder is fitted to light contacts, too. For it such forces are none only if the table's loads stand apart from
-//!   them, the least one being three times as large or more ([`Untouched::of`]).
+//!   them, the least one being three times as large or more ([`UntouchedRows::of`]).
 //!
 //! The *zero of a row* lies between the readings of the two untouched rows around it, by their times where all rows have
 //! times, else by their places in the table; before the first and after the last it stays.
@@ -19,7 +19,7 @@
 //! - A decoder knows how the zero follows the temperature, or takes it to be constant: all untouched rows count
 //!   ([`Zeros::at`]).
 //! - Figures of merit do not know: untouched rows of the row's own temperature count, those of its own session first
-//!   ([`super::alike::Alike`]).
+//!   ([`super::alike::ZerosByTemperature`]).
 
 use super::{Row, Table};
 use crate::quantity::CHANNELS;
@@ -35,7 +35,7 @@ const APART: f64 = 3.0;
 
 /// Which rows of a table are untouched.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Untouched {
+pub struct UntouchedRows {
     /// The table's session [`ZERO`].
     session: Option<usize>,
     /// The largest force that is none.
@@ -56,7 +56,7 @@ pub struct Zeros {
 /// Static samples if the table has any, else the rows of its time series: a series has many rows of one contact. Rows
 /// without channels are none.
 pub fn contacts(table: &Table) -> Vec<usize> {
-    let untouched = Untouched::of(table);
+    let untouched = UntouchedRows::of(table);
     let pressed = || {
         let rows = table.rows.iter().enumerate();
         rows.filter(|(_, row)| row.uv.is_some() && !untouched.is(row))
@@ -65,7 +65,7 @@ pub fn contacts(table: &Table) -> Vec<usize> {
     if samples.is_empty() { pressed().map(|(at, _)| at).collect() } else { samples }
 }
 
-impl Untouched {
+impl UntouchedRows {
     /// What figures of merit take as untouched.
     pub fn unloaded(table: &Table) -> Self {
         let session = table.sessions.iter().position(|name| name == ZERO);
@@ -94,11 +94,11 @@ impl Untouched {
 impl Zeros {
     /// Finds those that a decoder takes; `None` if the table never reads the untouched pad.
     pub fn of(table: &Table) -> Option<Self> {
-        Self::by(table, &Untouched::of(table))
+        Self::by(table, &UntouchedRows::of(table))
     }
 
     /// Finds those that are `untouched`; `None` if there is none.
-    pub fn by(table: &Table, untouched: &Untouched) -> Option<Self> {
+    pub fn by(table: &Table, untouched: &UntouchedRows) -> Option<Self> {
         let is_zero = |row: &Row| row.trial.is_none() && row.uv.is_some() && untouched.is(row);
         let rows = (0..).zip(&table.rows).filter(|(_, row)| is_zero(row)).map(|(at, _)| at).collect();
         Self::at_rows(table, rows)
@@ -219,7 +219,7 @@ mod tests {
         let light = table([rows, vec![row(0.08, 20.0), row(0.15, 40.0)]].concat());
         assert_eq!((tared(&light), contacts(&light).len()), (None, 5));
         // But what is exactly 0 stays so.
-        assert_eq!(Zeros::by(&light, &Untouched::unloaded(&light)).unwrap().rows(), [0, 2, 3]);
+        assert_eq!(Zeros::by(&light, &UntouchedRows::unloaded(&light)).unwrap().rows(), [0, 2, 3]);
         let exact = table(vec![row(0.0, 10.0), row(0.08, 20.0), row(0.15, 40.0)]);
         assert_eq!(first_channel(&tared(&exact).unwrap()), [0.0, 10.0, 30.0]);
     }

@@ -44,7 +44,7 @@ pub fn distinct_places<'r>(rows: impl Iterator<Item = &'r Row>) -> Vec<[f64; 2]>
 }
 
 /// A plan as far as it is written.
-struct Draft {
+struct PlanDraft {
     table: Table,
     dwell_s: f64,
 }
@@ -59,7 +59,7 @@ struct Load {
     azimuth_deg: f64,
 }
 
-impl Draft {
+impl PlanDraft {
     /// An empty plan whose zeros last for this time.
     fn new(dwell_s: f64) -> Self {
         Self { table: Table { sessions: vec![ZERO.to_owned()], ..Table::default() }, dwell_s }
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn a_plan_takes_its_dwells_its_series_and_the_ways_between() {
-        let mut draft = Draft::new(2.0);
+        let mut draft = PlanDraft::new(2.0);
         draft.zero();
         draft.press("a", Label::default(), Approach::Loading, 20.0);
         for name in ["one", "two"] {

@@ -4,7 +4,7 @@
 //! contacts, which is 72 × 3, and 432 inclined ones, 72 × 6. So the centre is left out of the calibration. It belongs to
 //! the comparison with the simulation, which names 73 presses of 1 N ([`places_mm`]).
 
-use super::{Draft, Load, cut_mm, label, polar_mm};
+use super::{Load, PlanDraft, cut_mm, label, polar_mm};
 use crate::pad::device::Patch;
 use crate::tables::measured::{Approach, Table};
 
@@ -51,7 +51,7 @@ pub fn places_mm(patch: &Patch) -> Vec<[f64; 2]> {
 pub fn plan(patch: &Patch) -> Table {
     let mut places_mm = places_mm(patch);
     places_mm.retain(|place_mm| *place_mm != [0.0; 2]);
-    let mut draft = Draft::new(DWELL_S);
+    let mut draft = PlanDraft::new(DWELL_S);
     let passes = std::iter::once(None).chain((0..AZIMUTHS_DEG.len()).map(Some));
     for pass in passes {
         for (index, place_mm) in places_mm.iter().enumerate() {

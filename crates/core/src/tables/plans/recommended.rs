@@ -2,7 +2,7 @@
 //!
 //! `docs/protocol.md` says which part tells which causes apart.
 
-use super::{Draft, Load, label, polar_mm};
+use super::{Load, PlanDraft, label, polar_mm};
 use crate::numeric::random::SplitMix64;
 use crate::pad::device::Patch;
 use crate::tables::measured::{Approach, Label, Table};
@@ -49,7 +49,7 @@ pub fn plan(patch: &Patch, seed: u64) -> Table {
     let mut presses = spread(patch, &mut random);
     presses.extend(replicates(patch, &mut random));
     random.shuffle(&mut presses);
-    let mut draft = Draft::new(DWELLS_S[0]);
+    let mut draft = PlanDraft::new(DWELLS_S[0]);
     draft.trial("rest", SERIES, [0.0; 2], (0..=300).map(|step| [f64::from(step) / 10.0, 0.0]));
     for (index, press) in presses.into_iter().enumerate() {
         if index % PRESSES_PER_ZERO == 0 {
@@ -97,7 +97,7 @@ fn replicates(patch: &Patch, random: &mut SplitMix64) -> Vec<Press> {
 }
 
 /// Up to full scale and back at the centre and over three directions, slowly and fast.
-fn ramps(draft: &mut Draft, patch: &Patch) {
+fn ramps(draft: &mut PlanDraft, patch: &Patch) {
     let out_mm = patch.max_centre_radius_mm * 2.0 / 3.0;
     let around = [0.0, 120.0, 240.0].map(|deg| polar_mm(out_mm, deg));
     for (index, place_mm) in std::iter::once([0.0; 2]).chain(around).enumerate() {

@@ -6,8 +6,8 @@
 
 mod part;
 
-pub use self::part::Untouched;
-use self::part::{Follow, Part};
+pub use self::part::UntouchedReading;
+use self::part::{Follow, RecordingPart};
 use crate::pipeline::compensation::Compensation;
 use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
 use crate::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS, PLAYS};
@@ -25,7 +25,7 @@ const ROUNDS: usize = 4;
 pub struct Recording {
     /// All rows, less what the untouched pad reads; of names only those of the first table.
     tared: Table,
-    parts: Vec<Part>,
+    parts: Vec<RecordingPart>,
     full_scale_n: f64,
 }
 
@@ -46,14 +46,14 @@ impl Recording {
     fn by(mut table: Table, zeros: Zeros, full_scale_n: f64) -> Self {
         let (rows, contacts) = (table.rows.len(), zero::contacts(&table));
         let readings = zeros.tare(&mut table);
-        let part = Part { first: 0, rows, zeros: Some(zeros), readings, contacts };
+        let part = RecordingPart { first: 0, rows, zeros: Some(zeros), readings, contacts };
         Self { tared: table, parts: vec![part], full_scale_n }
     }
 
     /// A table that need not read the untouched pad. Its channels stay raw.
     pub fn raw(raw: Table, full_scale_n: f64) -> Self {
         let (rows, contacts) = (raw.rows.len(), zero::contacts(&raw));
-        let part = Part { first: 0, rows, zeros: None, readings: Vec::new(), contacts };
+        let part = RecordingPart { first: 0, rows, zeros: None, readings: Vec::new(), contacts };
         Self { tared: raw, parts: vec![part], full_scale_n }
     }
 
@@ -71,7 +71,7 @@ impl Recording {
         let rows = self.tared.rows.len();
         // Trials of two tables are never the same one, whatever their indices are.
         self.tared.rows.extend(other.tared.rows);
-        let moved = |part: Part| Part { first: part.first + rows, ..part };
+        let moved = |part: RecordingPart| RecordingPart { first: part.first + rows, ..part };
         self.parts.extend(other.parts.into_iter().map(moved));
         self
     }
@@ -133,8 +133,9 @@ impl Recording {
     }
 
     /// The raw readings of the untouched pad, with their places; for each table on its own.
-    pub fn zeros(&self) -> impl Iterator<Item = Vec<Untouched>> {
-        let moved = |part: &Part| part.readings.iter().map(|(at, uv)| (part.first + at, *uv)).collect();
+    pub fn zeros(&self) -> impl Iterator<Item = Vec<UntouchedReading>> {
+        let moved =
+            |part: &RecordingPart| part.readings.iter().map(|(at, uv)| (part.first + at, *uv)).collect();
         self.parts.iter().map(moved)
     }
 
@@ -257,7 +258,7 @@ fn without(uv: f64, hysteresis: &Hysteresis, channel: usize, lags: &[f64; PLAYS]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::compensation::hysteresis::Play;
+    use crate::pipeline::compensation::hysteresis::PlayOperators;
     use crate::tables::measured::Label;
 
     /// Rows of (Fz, µV).
@@ -271,8 +272,8 @@ mod tests {
 
     #[test]
     fn each_table_has_its_own_zeros_and_begins_at_rest() {
-        let play = Play { threshold_uv: [100.0; CHANNELS], share: [0.1; CHANNELS] };
-        let hysteresis = [play, Play::NONE];
+        let play = PlayOperators { threshold_uv: [100.0; CHANNELS], share: [0.1; CHANNELS] };
+        let hysteresis = [play, PlayOperators::NONE];
         let tables = [table(&[(0.0, 10.0), (4.0, 2000.0)]), table(&[(1.0, 600.0), (0.0, 90.0)])];
         let recordings = tables.map(|table| Recording::of(table, 5.0).unwrap());
         let alone: Vec<Row> =

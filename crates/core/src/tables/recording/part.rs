@@ -11,18 +11,18 @@ use crate::tables::measured::zero::Zeros;
 use crate::tables::measured::{Approach, DWELL_S, READ_S, Row};
 
 /// A reading of the untouched pad: its row, and the channels.
-pub type Untouched = (usize, [f64; CHANNELS]);
+pub type UntouchedReading = (usize, [f64; CHANNELS]);
 
 /// A table of the recording.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+pub(super) struct RecordingPart {
     /// Its first row in the recording.
     pub(super) first: usize,
     pub(super) rows: usize,
     /// None in a table that never reads the untouched pad: there, channels are raw, or less a zero that is known otherwise.
     pub(super) zeros: Option<Zeros>,
     /// What the untouched pad reads in the rows of the zeros.
-    pub(super) readings: Vec<Untouched>,
+    pub(super) readings: Vec<UntouchedReading>,
     /// Places of what a decoder is fitted to, from the part's first row on.
     pub(super) contacts: Vec<usize>,
 }
@@ -39,13 +39,13 @@ pub(super) struct Follow<'r> {
 
 /// How long a row's load is held before the middle of its reading and after, and how long the pad rests before; `None` where that
 /// is unknown and counts as long.
-struct Stay {
+struct HoldTimes {
     rest_s: Option<f64>,
     before_s: f64,
     after_s: f64,
 }
 
-impl Stay {
+impl HoldTimes {
     fn of(row: &Row, previous: Option<&Row>) -> Self {
         // rest = (t − t_previous) − dwell − reading.
         let passed_s = previous.and_then(|previous| Some(row.t_s? - previous.t_s?)).filter(|s| *s >= 0.0);
@@ -63,7 +63,7 @@ impl Stay {
     }
 }
 
-impl Part {
+impl RecordingPart {
     /// Its rows in the recording, each with whether it is a reading of the untouched pad.
     fn places(&self) -> impl Iterator<Item = (usize, bool)> {
         let zeros = self.zeros.as_ref().map_or(&[][..], Zeros::rows);
@@ -87,7 +87,7 @@ impl Part {
         let mut previous: Option<&Row> = None;
         for (at, is_zero) in self.places() {
             let row = &rows[at];
-            let Stay { rest_s, before_s, after_s } = Stay::of(row, previous.replace(row));
+            let HoldTimes { rest_s, before_s, after_s } = HoldTimes::of(row, previous.replace(row));
             let rested_uv =
                 rest_s.map_or(0.0, |rest_s| creep::held_uv(crept_uv, 0.0, creep::left(rest_s, time_s)));
             let strain_uv = strain_uv(at, is_zero);

@@ -27,13 +27,13 @@ pub(super) struct Move {
 
 /// What was done so far.
 #[derive(Clone, Debug)]
-pub(super) struct Course {
+pub(super) struct GestureHistory {
     keyframes: Vec<Keyframe>,
     now_us: u64,
     end_us: u64,
 }
 
-impl Course {
+impl GestureHistory {
     /// A course that takes so long with its rests.
     pub(super) const fn new(duration_us: u64) -> Self {
         let end_us = duration_us.saturating_sub(REST_LAST_US);

@@ -2,10 +2,10 @@
 
 use std::f32::consts::FRAC_1_SQRT_2;
 
-use super::course::{Course, FORCE_MAX_N, Move, WITHIN_MM};
+use super::course::{FORCE_MAX_N, GestureHistory, Move, WITHIN_MM};
 use super::draw::{Draw, at, microseconds, towards, within};
 use crate::pipeline::contact::touch;
-use crate::pipeline::mapping::profile::{Action, Button, Direction, DpadMode, Force, Place, Profile};
+use crate::pipeline::mapping::profile::{Action, Button, ButtonPlace, Direction, DpadMode, Force, Profile};
 use crate::quantity::Contact;
 use crate::virtual_pad::script::Script;
 
@@ -43,7 +43,7 @@ const LOOK_MS: [f32; 2] = [1_000.0, 3_000.0];
 /// Where the profile has no directions, the thumb plays places of the plate as if it had four.
 pub fn play(profile: &Profile, duration_us: u64, within_mm: f32, seed: u64) -> Script {
     let mut draw = Draw::new(seed, "play");
-    let mut course = Course::new(duration_us);
+    let mut course = GestureHistory::new(duration_us);
     let mut thumb = Thumb::new(profile, within_mm, &mut draw);
     loop {
         let pause_ms = if thumb.draw.chance(LOOK_SHARE) { LOOK_MS } else { PAUSE_MS };
@@ -188,16 +188,16 @@ impl<'p> Thumb<'p> {
     }
 
     /// Where a button counts, roughly.
-    fn place_of(&mut self, place: Option<Place>) -> [f32; 2] {
+    fn place_of(&mut self, place: Option<ButtonPlace>) -> [f32; 2] {
         match place {
             None => self.aimed([0.0; 2], AIM_MIDDLE_MM),
-            Some(Place::Direction(direction)) => self.at_angle(match direction {
+            Some(ButtonPlace::Direction(direction)) => self.at_angle(match direction {
                 Direction::Right => 0.0,
                 Direction::Up => 90.0,
                 Direction::Left => 180.0,
                 Direction::Down => 270.0,
             }),
-            Some(Place::Zone(number)) => {
+            Some(ButtonPlace::Zone(number)) => {
                 let middle = self.profile.zones.get(number).map_or([0.0; 2], |zone| {
                     let is_disc = zone.half_width_deg >= 180.0 && zone.inner_radius_mm == 0.0;
                     let outer_mm = zone.outer_radius_mm.min(self.within_mm);

@@ -1,6 +1,6 @@
 //! Presses anywhere on the plate, as of somebody who tries the pad out.
 
-use super::course::{Course, FORCE_MAX_N, Move};
+use super::course::{FORCE_MAX_N, GestureHistory, Move};
 use super::draw::{Draw, at, microseconds, towards, within};
 use crate::virtual_pad::script::Script;
 
@@ -24,7 +24,7 @@ const PAUSE_MS: [f32; 2] = [150.0, 600.0];
 /// Presses over a disc around the centre, evenly, for `duration_us`; the seed draws them.
 pub fn presses(duration_us: u64, within_mm: f32, seed: u64) -> Script {
     let mut draw = Draw::new(seed, "presses");
-    let mut course = Course::new(duration_us);
+    let mut course = GestureHistory::new(duration_us);
     let drag_deg = draw.between([0.0, 360.0]);
     loop {
         let (moves, lift_us) = press(&mut draw, drag_deg, within_mm);

@@ -168,7 +168,8 @@ fn fitted(name: &str, text: &str, table: &str, trace: &Trace) -> Result<Outcome,
     if changes.is_empty() {
         return Ok(Outcome::words(format!("{told}. No other numbers give more: nothing changes.")));
     }
-    let changes: Vec<_> = changes.iter().map(|change| words::Told::of(change, &profile).words).collect();
+    let changes: Vec<_> =
+        changes.iter().map(|change| words::ChangedNumber::of(change, &profile).words).collect();
     let text_told = format!(
         "{told}; with what is proposed it would have been {after}, which looks better than it is, as it was fitted to the same presses. \
          Proposed: {}.",

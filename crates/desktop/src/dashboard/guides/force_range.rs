@@ -4,7 +4,7 @@ use super::guide::{Guide, Outcome, Proposal, Scene, Step, StepState, Told};
 use super::recording::{NO_NAME, Recording};
 use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_lab::tuning::fitting::Fitted;
-use tactpad_lab::tuning::force_range::fit::{Unfit, fit};
+use tactpad_lab::tuning::force_range::fit::{ForceRangeError, fit};
 use tactpad_lab::tuning::force_range::peaks::Peaks;
 use tactpad_lab::tuning::force_range::range::{PRESSES_MIN, Range};
 use tactpad_lab::tuning::trace::Trace;
@@ -101,19 +101,20 @@ fn fitted(name: &str, text: &str, trace: &Trace) -> Result<Outcome, String> {
     if changes.is_empty() {
         return Ok(Outcome::words(format!("{hand} The profile fits this hand: nothing changes.")));
     }
-    let changes: Vec<_> = changes.iter().map(|change| words::Told::of(change, &profile).words).collect();
+    let changes: Vec<_> =
+        changes.iter().map(|change| words::ChangedNumber::of(change, &profile).words).collect();
     let draft = Some(Proposal { profile: name.to_owned(), text });
     Ok(Outcome { draft, ..Outcome::words(format!("{hand} Proposed: {}.", changes.join("; "))) })
 }
 
-fn unfit(name: &str, why: Unfit) -> String {
+fn unfit(name: &str, why: ForceRangeError) -> String {
     match why {
-        Unfit::NoLevels => format!("{name} asks for no normal force: there is nothing to fit."),
-        Unfit::NotApart(Range { light_most_n, hard_n, .. }) => format!(
+        ForceRangeError::NoLevels => format!("{name} asks for no normal force: there is nothing to fit."),
+        ForceRangeError::NotApart(Range { light_most_n, hard_n, .. }) => format!(
             "{name} asks for light presses and for hard ones, which this hand does not give surely apart: one light press in ten exceeds \
              {light_most_n:.2} N, one hard press in ten stays below {hard_n:.2} N. Choose a profile that needs one force, as one-button."
         ),
-        Unfit::NoProfile(range) => format!(
+        ForceRangeError::NoProfile(range) => format!(
             "No profile can ask for these forces, {:.2} N to {:.2} N. Measure the zero, and begin anew.",
             range.lowest_n(),
             range.highest_n()

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::plays::{Changes, Compared, Plays};
-use super::was::Was;
-use crate::calibration::data::contacts::{Maps, Measured, Place, response};
-use crate::calibration::model::prior_deviations::Kind;
-use crate::calibration::model::{CERTAIN, Layout};
+use super::plays::{Changes, PlayEstimate, Plays};
+use super::reference::ReferenceState;
+use crate::calibration::data::contacts::{FieldAtPlace, Maps, Measured, response};
+use crate::calibration::model::prior_deviations::ParameterKind;
+use crate::calibration::model::{CERTAIN, ParameterLayout};
 use crate::calibration::noise::normal_equations::NormalEquations;
 use crate::calibration::problem::Problem;
 use tactpad_core::numeric::linear::Reduced;
@@ -32,7 +32,7 @@ const NUISANCES: usize = 2 + PLAYS + CHANNELS;
 
 /// The columns beside those of θ.
 pub(super) struct Columns<'m> {
-    was: &'m Was<'m>,
+    reference: &'m ReferenceState<'m>,
     /// How many modes there are.
     modes: usize,
     maps: Changes<'m>,
@@ -48,15 +48,15 @@ pub(super) struct Columns<'m> {
 impl<'m> Columns<'m> {
     pub(super) fn of(
         problem: &Problem<'_>,
-        was: &'m Was<'m>,
+        reference: &'m ReferenceState<'m>,
         plays: &Plays<'_>,
         (maps, changes): (Changes<'m>, &'m [f64]),
     ) -> Self {
         let later = plays.later;
         let earlier = problem.contacts.iter().filter(|(row, _)| *row < later).count();
         Self {
-            was,
-            modes: was.decoder.map_or(0, |decoder| decoder.field_error().modes().len()),
+            reference,
+            modes: reference.decoder.map_or(0, |decoder| decoder.field_error().modes().len()),
             maps,
             changes,
             count: maps([0.0; 2]).len(),
@@ -72,7 +72,7 @@ impl<'m> Columns<'m> {
 
     /// The problem whose contacts are where the pad as it was says, with its changes, and whose load path is what it makes of them.
     pub(super) fn located<'f>(&self, mut problem: Problem<'f>) -> Problem<'f> {
-        let Was { values, settings, estimates, .. } = self.was;
+        let ReferenceState { values, settings, estimates, .. } = self.reference;
         self.change_places(&mut problem);
         for _ in 0..RELOCATIONS {
             problem.follow_load_path(values, settings);
@@ -85,7 +85,8 @@ impl<'m> Columns<'m> {
     fn change_places(&self, problem: &mut Problem<'_>) {
         let Problem { prior, sensitivities, plate_mm, contacts, .. } = problem;
         for (_, contact) in contacts.iter_mut().filter(|(row, _)| *row >= self.later) {
-            contact.place = Arc::new(Place::of(&prior.field, sensitivities, *plate_mm, contact.place_mm));
+            contact.place =
+                Arc::new(FieldAtPlace::of(&prior.field, sensitivities, *plate_mm, contact.place_mm));
             self.change_place(contact);
         }
     }
@@ -118,7 +119,7 @@ impl<'m> Columns<'m> {
     }
 
     fn nuisances_at(&self) -> usize {
-        self.was.values.len() + self.modes
+        self.reference.values.len() + self.modes
     }
 
     fn changes_at(&self) -> usize {
@@ -139,7 +140,7 @@ impl<'m> Columns<'m> {
     }
 
     /// The equations of the changes when all above them is free.
-    pub(super) fn compared(&self, problem: &Problem<'_>) -> Option<Compared> {
+    pub(super) fn compared(&self, problem: &Problem<'_>) -> Option<PlayEstimate> {
         let equations = self.equations(problem, [0.0; 2])?;
         let reduced = equations.reduced(self.changes_at())?;
         let (mut changes, contrasts) = reduced.split(CHANNELS + self.count);
@@ -147,19 +148,20 @@ impl<'m> Columns<'m> {
         for (score, row) in changes.score.iter_mut().zip(&changes.information) {
             *score += row.iter().enumerate().map(|(at, entry)| entry * self.change(at)).sum::<f64>();
         }
-        Some(Compared { inflation: inflation(&contrasts)?, changes, contacts: self.contacts })
+        Some(PlayEstimate { inflation: inflation(&contrasts)?, changes, contacts: self.contacts })
     }
 
     /// ln p(y), where gains may have changed and nothing else has: a change is no noise. But for a constant that all noise shares.
     pub(super) fn log_evidence(&self, problem: &Problem<'_>) -> Option<f64> {
-        let likelihood = problem.log_likelihood(&self.was.values, &self.was.estimates.noise_model)?;
+        let likelihood =
+            problem.log_likelihood(&self.reference.values, &self.reference.estimates.noise_model)?;
         let gained = self.equations(problem, [GAIN_DEVIATION.powi(-2), CERTAIN])?.log_evidence_gained()?;
         Some(likelihood + gained)
     }
 
     /// The equations about the pad as it was; `changes` are the precisions of a gain's change and of a map's.
     fn equations(&self, problem: &Problem<'_>, changes: [f64; 2]) -> Option<NormalEquations> {
-        let mut precisions = self.was.precisions.clone();
+        let mut precisions = self.reference.precisions.clone();
         precisions.resize(self.nuisances_at(), 1.0);
         precisions.extend(self.nuisance_precisions());
         precisions.extend([changes[0]; CHANNELS]);
@@ -171,7 +173,7 @@ impl<'m> Columns<'m> {
             numbers.resize(self.size(), 0.0);
             numbers
         };
-        let Was { values, mean, estimates, .. } = self.was;
+        let ReferenceState { values, mean, estimates, .. } = self.reference;
         let prior = NormalEquations::of_prior(&precisions, &widened(mean), &widened(values));
         let widen = |at: usize, (row, contact): &(usize, Measured), rows: &mut [Vec<f64>]| {
             self.widen(at, (*row, contact), rows);
@@ -180,8 +182,8 @@ impl<'m> Columns<'m> {
     }
 
     fn nuisance_precisions(&self) -> Vec<f64> {
-        let zero_uv = self.was.estimates.prior_deviations.of(Kind::Zero);
-        let deviations = Layout::differing_deviations().into_iter().chain([zero_uv; CHANNELS]);
+        let zero_uv = self.reference.estimates.prior_deviations.of(ParameterKind::Zero);
+        let deviations = ParameterLayout::differing_deviations().into_iter().chain([zero_uv; CHANNELS]);
         deviations.map(|deviation| deviation.powi(-2)).collect()
     }
 
@@ -189,14 +191,14 @@ impl<'m> Columns<'m> {
     fn widen(&self, at: usize, (row, contact): (usize, &Measured), rows: &mut [Vec<f64>]) {
         let is_later = row >= self.later;
         let maps = if is_later { (self.maps)(contact.place_mm) } else { Vec::new() };
-        let modes = self.was.decoder.map(|it| it.modes_uv(contact.place_mm, &contact.force_n));
+        let modes = self.reference.decoder.map(|it| it.modes_uv(contact.place_mm, &contact.force_n));
         let contrasts = self.contrasts(at, is_later);
         for (channel, row) in rows.iter_mut().enumerate() {
-            let [(gain_at, _), _] = Layout::gain_terms(&self.was.values, channel);
+            let [(gain_at, _), _] = ParameterLayout::gain_terms(&self.reference.values, channel);
             // gₖ ∂f/∂gₖ: of a gain as a share of itself.
-            let by_gain = self.was.values[gain_at] * row[gain_at];
+            let by_gain = self.reference.values[gain_at] * row[gain_at];
             let by_gains = self.by_gains(channel, row, by_gain);
-            let nuisances = Layout::differing_at().map(|at| row[at]);
+            let nuisances = ParameterLayout::differing_at().map(|at| row[at]);
             // (M F)ₖ of each mode.
             row.extend(modes.iter().flatten().map(|uv| uv[channel]));
             row.resize(self.size(), 0.0);
@@ -214,7 +216,7 @@ impl<'m> Columns<'m> {
                 row[self.changes_at() + from] = slope / (1.0 + self.change(from));
             }
             // S gₖ Σₐ Fₐ Cₖₐ.
-            let gain = Layout::gain(&self.was.values, channel);
+            let gain = ParameterLayout::gain(&self.reference.values, channel);
             let by_map = maps.iter().map(|map| gain * response(&map[channel], &contact.force_n));
             row[self.changes_at() + CHANNELS..]
                 .iter_mut()
@@ -226,8 +228,8 @@ impl<'m> Columns<'m> {
     /// How a channel follows each channel's gain, as a share of itself: its own, and by crosstalk the others', Xₖₗ ∂f/∂Xₖₗ.
     fn by_gains(&self, channel: usize, row: &[f64], own: f64) -> [f64; CHANNELS] {
         std::array::from_fn(|from| {
-            let at = Layout::crosstalk_at(channel, from);
-            if from == channel { own } else { self.was.values[at] * row[at] }
+            let at = ParameterLayout::crosstalk_at(channel, from);
+            if from == channel { own } else { self.reference.values[at] * row[at] }
         })
     }
 

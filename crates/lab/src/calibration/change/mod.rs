@@ -24,17 +24,17 @@
 
 mod columns;
 pub mod plays;
-mod was;
+mod reference;
 
 use self::columns::Columns;
-use self::plays::{Changes, Compared, Plays};
-use self::was::Was;
+use self::plays::{Changes, PlayEstimate, Plays};
+use self::reference::ReferenceState;
 use super::fit::{FitError, same_plate};
-use super::model::Layout;
+use super::model::ParameterLayout;
 use super::problem::Problem;
 use crate::calibration::data::contacts::Fitted;
-use crate::calibration::data::earlier::Earlier;
-use crate::calibration::fit::prepared::Prepared;
+use crate::calibration::data::earlier::EarlierCalibration;
+use crate::calibration::fit::prepared::PreparedRecording;
 use crate::calibration::fit::search::{NOISE_TIMES_S, Report};
 use crate::calibration::model::prior::Prior;
 use tactpad_core::numeric::products::dot;
@@ -51,9 +51,9 @@ pub struct Comparison<'p> {
     plays: Plays<'p>,
     device: &'p Device,
     maps: Changes<'p>,
-    prepared: Prepared,
+    prepared: PreparedRecording,
     prior: Prior,
-    was: Was<'p>,
+    reference: ReferenceState<'p>,
 }
 
 impl<'p> Comparison<'p> {
@@ -73,13 +73,13 @@ impl<'p> Comparison<'p> {
         if earlier.is_empty() {
             return Err(FitError::TooFew { contacts: 0, least: 1 });
         }
-        let prepared = Prepared::of(recording, fitted, device, field).ok_or(FitError::Senseless)?;
+        let prepared = PreparedRecording::of(recording, fitted, device, field).ok_or(FitError::Senseless)?;
         let prior = Prior::simulated(field);
         // Thresholds and times are asked of some contacts, and all other numbers then of all.
         let some: Vec<Fitted> = earlier.iter().step_by(SETTLING_STRIDE).copied().collect();
         let [some, all] = [&some, &earlier].map(|it| prepared.problem(it, device, &prior));
-        let was = Was::by_play([some, all], &prior, report).ok_or(FitError::Senseless)?;
-        Ok(Self { plays, device, maps, prepared, prior, was })
+        let reference = ReferenceState::by_play([some, all], &prior, report).ok_or(FitError::Senseless)?;
+        Ok(Self { plays, device, maps, prepared, prior, reference })
     }
 
     /// Against the pad as a calibrated decoder has it.
@@ -89,41 +89,42 @@ impl<'p> Comparison<'p> {
     pub fn with_decoder(
         plays: Plays<'p>,
         (device, field): (&'p Device, &PadField),
-        decoder: &Earlier<'p>,
+        decoder: &EarlierCalibration<'p>,
         maps: Changes<'p>,
     ) -> Result<Self, FitError> {
         same_plate(decoder, field)?;
         let Plays { recording, fitted, .. } = plays;
-        let prepared = Prepared::of(recording, fitted, device, field).ok_or(FitError::Senseless)?;
+        let prepared = PreparedRecording::of(recording, fitted, device, field).ok_or(FitError::Senseless)?;
         // The decoder has what its pad is, and not by which of the device's numbers.
         let prior = Prior::at(field, decoder);
-        let was = Was::by_decoder(&prepared.problem(fitted, device, &prior), &prior, decoder.inverse);
-        let mut comparison = Self { plays, device, maps, prepared, prior, was };
-        comparison.was = comparison.lasting().ok_or(FitError::Senseless)?;
+        let reference =
+            ReferenceState::by_decoder(&prepared.problem(fitted, device, &prior), &prior, decoder.inverse);
+        let mut comparison = Self { plays, device, maps, prepared, prior, reference };
+        comparison.reference = comparison.lasting().ok_or(FitError::Senseless)?;
         Ok(comparison)
     }
 
     /// How long relative noise lasts in the later play: a decoder does not say.
-    fn lasting(&self) -> Option<Was<'p>> {
+    fn lasting(&self) -> Option<ReferenceState<'p>> {
         let problem = self.problem(&self.prepared);
-        let columns = Columns::of(&problem, &self.was, &self.plays, (self.maps, &[]));
+        let columns = Columns::of(&problem, &self.reference, &self.plays, (self.maps, &[]));
         let problem = columns.located(problem);
         let tried = NOISE_TIMES_S.into_iter().filter_map(|time_s| {
-            let was = self.was.lasting(time_s);
-            let columns = Columns::of(&problem, &was, &self.plays, (self.maps, &[]));
+            let reference = self.reference.lasting(time_s);
+            let columns = Columns::of(&problem, &reference, &self.plays, (self.maps, &[]));
             let log_evidence = columns.log_evidence(&problem)?;
-            Some((log_evidence, was))
+            Some((log_evidence, reference))
         });
-        tried.max_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, was)| was)
+        tried.max_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, reference)| reference)
     }
 
     /// The equations of the changes about these, in their order: those of the whole changes, not of what is beyond these.
     ///
     /// # Errors
     /// Readings beyond anything that a pad can read.
-    pub fn about(&self, changes: &[f64]) -> Result<Compared, FitError> {
+    pub fn about(&self, changes: &[f64]) -> Result<PlayEstimate, FitError> {
         // y = (1 + L)(1 + C) s, in the contacts and along the load path between them: what was read with C is taken to be read without.
-        let crosstalk = Layout::crosstalk(&self.was.values);
+        let crosstalk = ParameterLayout::crosstalk(&self.reference.values);
         let as_before = |uv: &[f64; CHANNELS]| {
             let own = own_uv(uv, &crosstalk);
             let own: [f64; CHANNELS] =
@@ -132,12 +133,12 @@ impl<'p> Comparison<'p> {
         };
         let prepared = self.prepared.changed(self.plays.later, as_before);
         let problem = self.problem(&prepared);
-        let columns = Columns::of(&problem, &self.was, &self.plays, (self.maps, changes));
+        let columns = Columns::of(&problem, &self.reference, &self.plays, (self.maps, changes));
         let problem = columns.located(problem);
         columns.compared(&problem).ok_or(FitError::Senseless)
     }
 
-    fn problem<'a>(&'a self, prepared: &'a Prepared) -> Problem<'a> {
+    fn problem<'a>(&'a self, prepared: &'a PreparedRecording) -> Problem<'a> {
         prepared.problem(self.plays.fitted, self.device, &self.prior)
     }
 }

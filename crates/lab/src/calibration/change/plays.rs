@@ -6,7 +6,7 @@ use tactpad_core::tables::recording::Recording;
 
 /// What a play says of the changes before it.
 #[derive(Clone, Debug)]
-pub struct Compared {
+pub struct PlayEstimate {
     /// S and s of the changes: the nine channels' gains, as shares of themselves, and then the maps.
     pub changes: Reduced,
     /// By how much the contrasts within the plays exceed chance: mean χ² for each degree of freedom, 1 at least.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::rig::Written;
+use super::rig::WrittenLabel;
 use tactpad_core::numeric::products::dot;
 use tactpad_core::numeric::zernike::{Jet, jets, norms};
 use tactpad_core::pad::field::{PadField, Sensitivity};
@@ -44,7 +44,7 @@ pub struct Fitted {
 
 /// The simulator's field at a place.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub(crate) struct FieldAtPlace {
     /// µV/N.
     pub(crate) gains: Maps,
     /// ∇G: µV/N per mm of x and of y.
@@ -67,14 +67,14 @@ pub(crate) struct Measured {
     /// What is known of it.
     pub(crate) knowledge: Knowledge,
     /// What was written down.
-    pub(crate) written: Written,
+    pub(crate) written: WrittenLabel,
     /// x, y, Fx, Fy, Fz that this stands for.
     pub(crate) label: [f64; UNKNOWNS],
     /// On the pad's clock; zero where rows have no time.
     pub(crate) at_s: f64,
     /// Where the contact is taken to be, and its force: the label's, or the most likely ones where the channels may correct it.
     pub(crate) place_mm: [f64; 2],
-    pub(crate) place: Arc<Place>,
+    pub(crate) place: Arc<FieldAtPlace>,
     pub(crate) force_n: [f64; 3],
     /// Channels relative to the zero.
     pub(crate) uv: [f64; CHANNELS],
@@ -88,7 +88,7 @@ pub(crate) struct Measured {
     pub(crate) crept_uv: [f64; CHANNELS],
 }
 
-impl Place {
+impl FieldAtPlace {
     /// The field at a place in millimetres.
     pub(crate) fn of(
         field: &PadField,
@@ -168,11 +168,11 @@ fn term_factors() -> [f64; TERMS] {
 
 impl Measured {
     /// A contact without readings, for predictions.
-    pub(crate) fn unmeasured(place_mm: [f64; 2], place: Place, force_n: [f64; 3]) -> Self {
+    pub(crate) fn unmeasured(place_mm: [f64; 2], place: FieldAtPlace, force_n: [f64; 3]) -> Self {
         let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) = (place_mm, force_n);
         Self {
             knowledge: Knowledge::Written,
-            written: Written::still([x_mm, y_mm, fx_n, fy_n, fz_n]),
+            written: WrittenLabel::still([x_mm, y_mm, fx_n, fy_n, fz_n]),
             label: [x_mm, y_mm, fx_n, fy_n, fz_n],
             at_s: 0.0,
             place_mm,
@@ -197,11 +197,11 @@ impl Measured {
         let row = rows.get(at)?;
         let Contact { x_mm, y_mm, .. } = Contact::from(row.label);
         let place_mm = [x_mm, y_mm].map(f64::from);
-        let place = Place::of(field, sensitivities, plate_mm, place_mm);
+        let place = FieldAtPlace::of(field, sensitivities, plate_mm, place_mm);
         let force_n = [row.label.fx_n, row.label.fy_n, row.label.fz_n];
         Some(Self {
             knowledge,
-            written: Written::of(rows, at)?,
+            written: WrittenLabel::of(rows, at)?,
             at_s: row.t_s.unwrap_or(0.0),
             uv: row.uv?,
             above_c: row.temp_c.zip(reference_c).map_or(0.0, |(temp_c, reference_c)| temp_c - reference_c),

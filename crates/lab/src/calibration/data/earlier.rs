@@ -6,14 +6,14 @@ use tactpad_core::pipeline::contact::inverse::Inverse;
 
 /// What its decoder tells of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Earlier<'d> {
+pub struct EarlierCalibration<'d> {
     /// Its field, and how its channels scatter.
     pub inverse: &'d Inverse,
     /// What it remembers of loads, and how it creeps. Zeros and temperature are each pad's own.
     pub compensation: &'d Compensation,
 }
 
-impl<'d> Earlier<'d> {
+impl<'d> EarlierCalibration<'d> {
     /// `None` for a decoder that knows no field.
     pub const fn of(decoder: &'d Decoder) -> Option<Self> {
         match decoder.inverse() {

@@ -160,7 +160,7 @@ pub(crate) fn errors(values: &[f64; RIG_NUMBERS]) -> RigErrors {
 
 /// What was written down about a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Written {
+pub(crate) struct WrittenLabel {
     /// x, y, Fx, Fy, Fz.
     numbers: [f64; UNKNOWNS],
     /// How fast these change, per second; zero for a static sample.
@@ -169,7 +169,7 @@ pub(crate) struct Written {
     turned_deg: f64,
 }
 
-impl Written {
+impl WrittenLabel {
     /// That of a row. In a time series it changes as from the row before to the row behind.
     pub(crate) fn of(rows: &[Row], at: usize) -> Option<Self> {
         let row = rows.get(at)?;
@@ -263,7 +263,7 @@ mod tests {
             [row(None, 0.0, 2.0), row(Some(0), 1.0, 2.0), row(Some(0), 1.5, 2.5), row(Some(0), 2.0, 4.0)];
         let mut late = [0.0; RIG_NUMBERS];
         late[RIG_NUMBERS - 1] = 100.0;
-        let fz_n = |at| Written::of(&rows, at).unwrap().contact(&late)[4];
+        let fz_n = |at| WrittenLabel::of(&rows, at).unwrap().contact(&late)[4];
         // Rates of 1, 2 and 3 N/s; a static sample stands still.
         for (at, wanted_n) in [2.0, 2.1, 2.7, 4.3].into_iter().enumerate() {
             assert!((fz_n(at) - wanted_n).abs() < 1e-12, "{at}: {}", fz_n(at));
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn slopes_are_those_of_small_errors() {
-        let written = Written::still([10.0, -5.0, 0.4, -0.2, 3.0]);
+        let written = WrittenLabel::still([10.0, -5.0, 0.4, -0.2, 3.0]);
         let slopes = written.slopes(&[0.0; RIG_NUMBERS]);
         let degree = 1.0_f64.to_radians();
         let wanted = [

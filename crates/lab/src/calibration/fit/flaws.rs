@@ -5,9 +5,9 @@
 
 use rayon::prelude::*;
 
-use crate::calibration::model::Layout;
+use crate::calibration::model::ParameterLayout;
 use crate::calibration::model::prior::Prior;
-use crate::calibration::problem::{Fit, Problem};
+use crate::calibration::problem::{PosteriorFit, Problem};
 use crate::diagnosis::model::mechanics::flawed;
 use crate::tangent::Simulated;
 use tactpad_core::pad::changes::{FieldChange, Flaw};
@@ -16,7 +16,7 @@ use tactpad_core::pad::field::PadField;
 use tactpad_core::quantity::MODULES;
 
 /// Whether flaws are looked for: channels of a module share more than they do on pads that are whole.
-pub(crate) fn are_asked((problem, fit): (&Problem<'_>, &Fit), pad: &Simulated<'_>) -> bool {
+pub(crate) fn are_asked((problem, fit): (&Problem<'_>, &PosteriorFit), pad: &Simulated<'_>) -> bool {
     // Only labels tell crosstalk within a module from its pose. Of a pad that was solved for it was asked before.
     let is_asked = !problem.layout.is_play && problem.prior.solved.is_none() && of(pad.device).is_none();
     is_asked && fit.estimates.prior_deviations.is_shared_within()
@@ -25,9 +25,9 @@ pub(crate) fn are_asked((problem, fit): (&Problem<'_>, &Fit), pad: &Simulated<'_
 /// The pad with the most probable flaw, if that is more probable than the whole pad, of which `whole` is the fit. `fitted` is the fit
 /// under a prior.
 pub(crate) fn found(
-    (problem, whole): (&Problem<'_>, &Fit),
+    (problem, whole): (&Problem<'_>, &PosteriorFit),
     pad: &Simulated<'_>,
-    fitted: impl Fn(&Prior) -> Option<Fit> + Sync,
+    fitted: impl Fn(&Prior) -> Option<PosteriorFit> + Sync,
 ) -> Option<(Device, PadField)> {
     let module = sharing_most(whole);
     let tried = |change: &FieldChange| {
@@ -64,8 +64,8 @@ pub(crate) fn of(device: &Device) -> Option<(usize, Flaw)> {
 }
 
 /// The module whose channels share most.
-fn sharing_most(fit: &Fit) -> usize {
-    let crosstalk = Layout::crosstalk(&fit.values);
+fn sharing_most(fit: &PosteriorFit) -> usize {
+    let crosstalk = ParameterLayout::crosstalk(&fit.values);
     let within = |module: usize| {
         let own = 3 * module..3 * module + 3;
         let shares = own.clone().flat_map(|into| own.clone().map(move |from| (into, from)));

@@ -1,9 +1,9 @@
 //! About which pad the field is linearised: the one that measured pads are held against, or, where the tangent does not reach, one
 //! that was found and solved for.
 
-use crate::calibration::model::Layout;
+use crate::calibration::model::ParameterLayout;
 use crate::calibration::model::physical::Physical;
-use crate::calibration::problem::{Fit, Problem};
+use crate::calibration::problem::{PosteriorFit, Problem};
 use crate::tangent::{Simulated, on_grid};
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
@@ -16,7 +16,7 @@ const FAR: f64 = 3.0;
 const SIGNIFICANT: f64 = 3.0;
 
 /// A number that is known to be beside the pad that the field is of.
-struct Beyond<'l> {
+struct OutOfReach<'l> {
     number: &'l Physical,
     value: f64,
     /// By how much the tangent's error could move the fit, in its standard deviations.
@@ -24,21 +24,25 @@ struct Beyond<'l> {
 }
 
 /// The pad that was found, and its field; none where the tangent reaches, or where the field cannot be had.
-pub(crate) fn solved(problem: &Problem<'_>, fit: &Fit, pad: &Simulated<'_>) -> Option<(Device, PadField)> {
+pub(crate) fn solved(
+    problem: &Problem<'_>,
+    fit: &PosteriorFit,
+    pad: &Simulated<'_>,
+) -> Option<(Device, PadField)> {
     let beyond = beyond(problem, fit, pad.device);
     let square: f64 = beyond.iter().map(|it| it.error * it.error).sum();
     if square <= FAR * FAR {
         return None;
     }
     let mut device = problem.prior.solved.as_ref().unwrap_or(pad.device).clone();
-    for Beyond { number, value, .. } in beyond {
+    for OutOfReach { number, value, .. } in beyond {
         number.put(&mut device, on_grid(value, number.reach(pad.device)));
     }
     let field = (pad.solve)(&device)?;
     Some((device, field))
 }
 
-fn beyond<'l>(problem: &'l Problem<'_>, fit: &Fit, device: &Device) -> Vec<Beyond<'l>> {
+fn beyond<'l>(problem: &'l Problem<'_>, fit: &PosteriorFit, device: &Device) -> Vec<OutOfReach<'l>> {
     let (_, precisions) = problem.prior_of(fit);
     let curvature = fit.factor.diagonal();
     let one = |(number, at): (&'l Physical, usize)| {
@@ -48,7 +52,7 @@ fn beyond<'l>(problem: &'l Problem<'_>, fit: &Fit, device: &Device) -> Vec<Beyon
         // J = H − P is their information of it when all other numbers are known: more than the fit has.
         let seen = by * by * (curvature[at] - precisions[at]).max(0.0);
         let error = (by / number.reach(device)).abs() * seen.sqrt();
-        (by.abs() > SIGNIFICANT * fit.deviation(at)).then_some(Beyond { number, value, error })
+        (by.abs() > SIGNIFICANT * fit.deviation(at)).then_some(OutOfReach { number, value, error })
     };
-    problem.layout.physical.iter().zip(Layout::first_physical()..).filter_map(one).collect()
+    problem.layout.physical.iter().zip(ParameterLayout::first_physical()..).filter_map(one).collect()
 }

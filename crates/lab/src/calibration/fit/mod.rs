@@ -9,21 +9,21 @@ pub mod search;
 use std::fmt;
 
 use self::linearised::SOLVED_MAX;
-use self::prepared::Prepared;
-use self::search::{Counted, LOG_EVIDENCE_GAIN, Report};
-use super::model::Layout;
+use self::prepared::PreparedRecording;
+use self::search::{FitCount, LOG_EVIDENCE_GAIN, Report};
+use super::model::ParameterLayout;
 use super::noise;
-use super::problem::{Fit, Problem};
+use super::problem::{PosteriorFit, Problem};
 use crate::calibration::data::contacts::{Fitted, Knowledge};
-use crate::calibration::data::earlier::Earlier;
+use crate::calibration::data::earlier::EarlierCalibration;
 use crate::calibration::data::thermal_fit::ThermalFit;
 use crate::calibration::model::prior::Prior;
 use crate::calibration::problem::effort::Effort;
 use crate::calibration::result::field_error;
-use crate::calibration::result::known::Known;
-use crate::calibration::result::numbers::{Asked, Number, Pair};
+use crate::calibration::result::known::PressPrecision;
+use crate::calibration::result::numbers::{Number, OptionalNumbers, Pair};
 use crate::calibration::result::open::{OpenByRig, by_rig};
-use crate::calibration::result::predictive::{Check, checks};
+use crate::calibration::result::predictive::{PredictiveCheck, checks};
 use crate::tangent::Simulated;
 use tactpad_core::pad::changes::Flaw;
 use tactpad_core::pad::device::Device;
@@ -70,11 +70,11 @@ pub struct Calibration {
     /// Contacts that it was fitted to.
     pub contacts: usize,
     /// How well the pad's field is known, at places all over the plate.
-    pub map: Vec<Known>,
+    pub map: Vec<PressPrecision>,
     /// Errors of the rig that are a large part of what is open there.
     pub open_by_rig: Vec<OpenByRig>,
     /// Parts of the contacts, held against all of them; none without labels.
-    pub checks: Vec<Check>,
+    pub checks: Vec<PredictiveCheck>,
 }
 
 /// Why there is no calibration.
@@ -127,19 +127,24 @@ impl fmt::Display for FitError {
 impl std::error::Error for FitError {}
 
 impl Calibration {
-    fn of(prepared: &Prepared, problem: &Problem<'_>, fit: &Fit, from_earlier: bool) -> Self {
-        let Fit { settings, values, .. } = fit;
-        let hysteresis = Layout::hysteresis(values, &settings.thresholds_uv);
-        let creep = Layout::creep(values, settings.creep_time_s);
+    fn of(
+        prepared: &PreparedRecording,
+        problem: &Problem<'_>,
+        fit: &PosteriorFit,
+        from_earlier: bool,
+    ) -> Self {
+        let PosteriorFit { settings, values, .. } = fit;
+        let hysteresis = ParameterLayout::hysteresis(values, &settings.thresholds_uv);
+        let creep = ParameterLayout::creep(values, settings.creep_time_s);
         let contacts = problem.compensated(values, &hysteresis, &creep);
         // What the residuals do not show: drift of the zeros, hysteresis states, the field's posterior covariance.
         let noise = noise::with_zeros(fit.estimates.noise_model.noise, &fit.estimates.drift_uv, &hysteresis);
         let decoder = field_error::decoder(problem, fit, noise);
         let (zero_uv, thermal_fit) = (prepared.zero_uv(fit), prepared.thermal(fit));
         let thermal = thermal_fit.map(|fit| fit.coefficients);
-        let asked = Asked { zero_uv, gains_follow_temperature: prepared.tells_gains() };
+        let asked = OptionalNumbers { zero_uv, gains_follow_temperature: prepared.tells_gains() };
         let (numbers, not_told_apart) = Number::all(&problem.layout, fit, &asked);
-        let map = Known::map(&decoder);
+        let map = PressPrecision::map(&decoder);
         let open_by_rig = by_rig(&numbers, &map);
         Self {
             noise: Noise {
@@ -149,7 +154,7 @@ impl Calibration {
             field: decoder.field().clone(),
             field_error: decoder.field_error().clone(),
             crosstalk: *decoder.crosstalk(),
-            gain: std::array::from_fn(|channel| Layout::gain(values, channel)),
+            gain: std::array::from_fn(|channel| ParameterLayout::gain(values, channel)),
             numbers,
             not_told_apart,
             background: settings.background,
@@ -186,7 +191,7 @@ pub fn fit(
     rows: &[usize],
     device: &Device,
     field: &PadField,
-    earlier: Option<Earlier<'_>>,
+    earlier: Option<EarlierCalibration<'_>>,
 ) -> Result<Calibration, FitError> {
     fit_reported(recording, rows, &Simulated::known(device, field), earlier, &|_, _| ())
 }
@@ -200,7 +205,7 @@ pub fn fit_reported(
     recording: &Recording,
     rows: &[usize],
     pad: &Simulated<'_>,
-    earlier: Option<Earlier<'_>>,
+    earlier: Option<EarlierCalibration<'_>>,
     report: Report<'_>,
 ) -> Result<Calibration, FitError> {
     let written: Vec<Fitted> =
@@ -216,7 +221,7 @@ pub fn fit_known(
     recording: &Recording,
     fitted: &[Fitted],
     pad: &Simulated<'_>,
-    earlier: Option<Earlier<'_>>,
+    earlier: Option<EarlierCalibration<'_>>,
     report: Report<'_>,
 ) -> Result<Calibration, FitError> {
     let field = pad.field;
@@ -224,9 +229,9 @@ pub fn fit_known(
     if fitted.is_empty() {
         return Err(FitError::TooFew { contacts: 0, least: 1 });
     }
-    let prepared = Prepared::of(recording, fitted, pad.device, field).ok_or(FitError::Senseless)?;
+    let prepared = PreparedRecording::of(recording, fitted, pad.device, field).ok_or(FitError::Senseless)?;
     let hypotheses = hypotheses(field, earlier);
-    let counted = Counted::of(hypotheses.iter().map(|it| &it.prior), report);
+    let counted = FitCount::of(hypotheses.iter().map(|it| &it.prior), report);
     let contacts = Contacts { prepared: &prepared, fitted, pad, counted: &counted };
     let mut best: Option<(f64, Calibration)> = None;
     for hypothesis in hypotheses {
@@ -239,10 +244,10 @@ pub fn fit_known(
 
 /// What was measured, and the simulated pad that it is held against.
 struct Contacts<'c> {
-    prepared: &'c Prepared,
+    prepared: &'c PreparedRecording,
     fitted: &'c [Fitted],
     pad: &'c Simulated<'c>,
-    counted: &'c Counted<'c>,
+    counted: &'c FitCount<'c>,
 }
 
 impl Contacts<'_> {
@@ -254,7 +259,7 @@ impl Contacts<'_> {
     /// there is one, about a pad that is nearer to what was found.
     fn calibrated(
         &self,
-        mut hypothesis: Hypothesis,
+        mut hypothesis: PriorHypothesis,
         least: f64,
     ) -> Result<Option<(f64, Calibration)>, FitError> {
         let mut solved = 0;
@@ -282,7 +287,7 @@ impl Contacts<'_> {
 
     /// A pad with its field that is nearer to the one that was found than the one about which it was: one that the tangent does not
     /// reach, or one that lacks something. A module that is far off is not to be taken for one that does.
-    fn nearer(&self, problem: &Problem<'_>, fit: &Fit) -> Option<(Device, PadField)> {
+    fn nearer(&self, problem: &Problem<'_>, fit: &PosteriorFit) -> Option<(Device, PadField)> {
         let solved = linearised::solved(problem, fit, self.pad);
         if !flaws::are_asked((problem, fit), self.pad) {
             return solved;
@@ -302,13 +307,13 @@ impl Contacts<'_> {
 }
 
 /// Refuses a decoder of a pad with another plate.
-pub(crate) fn same_plate(earlier: &Earlier<'_>, field: &PadField) -> Result<(), FitError> {
+pub(crate) fn same_plate(earlier: &EarlierCalibration<'_>, field: &PadField) -> Result<(), FitError> {
     let [one_mm, other_mm] = [earlier.inverse.field(), &field.signals].map(InfluenceField::radius_mm);
     if (one_mm - other_mm).abs() > PLATE_TOLERANCE_MM { Err(FitError::OtherPlate) } else { Ok(()) }
 }
 
 /// A prior that the pad may have been drawn from.
-struct Hypothesis {
+struct PriorHypothesis {
     prior: Prior,
     /// ln of its prior probability over that of the first hypothesis. A negative one demands as much more evidence.
     log_prior_odds: f64,
@@ -316,8 +321,9 @@ struct Hypothesis {
     from_earlier: bool,
 }
 
-fn hypotheses(field: &PadField, earlier: Option<Earlier<'_>>) -> Vec<Hypothesis> {
-    let hypothesis = |prior, log_prior_odds, from_earlier| Hypothesis { prior, log_prior_odds, from_earlier };
+fn hypotheses(field: &PadField, earlier: Option<EarlierCalibration<'_>>) -> Vec<PriorHypothesis> {
+    let hypothesis =
+        |prior, log_prior_odds, from_earlier| PriorHypothesis { prior, log_prior_odds, from_earlier };
     let Some(earlier) = earlier else { return vec![hypothesis(Prior::simulated(field), 0.0, false)] };
     vec![
         hypothesis(Prior::of_kind(field, &earlier), 0.0, false),

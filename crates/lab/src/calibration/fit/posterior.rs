@@ -1,8 +1,8 @@
 //! What a fit comes to: how probable it is and how sure, the pad's own field, and the contacts without what the past adds to them.
 
-use crate::calibration::data::contacts::{Knowledge, Measured, Place};
-use crate::calibration::model::Layout;
-use crate::calibration::problem::{Fit, Problem};
+use crate::calibration::data::contacts::{FieldAtPlace, Knowledge, Measured};
+use crate::calibration::model::ParameterLayout;
+use crate::calibration::problem::{PosteriorFit, Problem};
 use tactpad_core::numeric::products::dot;
 use tactpad_core::pad::influence::{InfluenceField, MAPS};
 use tactpad_core::pipeline::compensation::creep::Creep;
@@ -10,7 +10,7 @@ use tactpad_core::pipeline::compensation::hysteresis::Hysteresis;
 use tactpad_core::pipeline::compensation::thermal::Thermal;
 use tactpad_core::quantity::{CHANNELS, Strain};
 
-impl Fit {
+impl PosteriorFit {
     /// Posterior standard deviation of a parameter.
     pub(crate) fn deviation(&self, at: usize) -> f64 {
         // √(H⁻¹)ᵢᵢ = √(eᵢᵀ H⁻¹ eᵢ).
@@ -41,9 +41,10 @@ impl Problem<'_> {
         hysteresis: &Hysteresis,
         creep: &Creep,
     ) -> Vec<(Strain, [f64; 3])> {
-        let mut recording = self.recording.clone().less(&Layout::zeros(values));
+        let mut recording = self.recording.clone().less(&ParameterLayout::zeros(values));
         if let Some(reference_c) = self.reference_c {
-            let gain_per_c = std::array::from_fn(|channel| values[Layout::first_gain_slope() + channel]);
+            let gain_per_c =
+                std::array::from_fn(|channel| values[ParameterLayout::first_gain_slope() + channel]);
             let zero_uv_per_c = [0.0; CHANNELS];
             recording = recording.at_reference(&Thermal { reference_c, zero_uv_per_c, gain_per_c });
         }
@@ -53,7 +54,7 @@ impl Problem<'_> {
                 return None;
             }
             // As the pad would read it now.
-            let gain = Layout::younger_gain(values, it);
+            let gain = ParameterLayout::gain_before_ageing(values, it);
             let uv = compensated.rows.get(*at)?.uv?;
             Some((Strain { uv: uv.map(|uv| (uv / gain) as f32) }, it.force_n))
         };
@@ -64,7 +65,7 @@ impl Problem<'_> {
     pub(crate) fn corrected(&self, values: &[f64]) -> InfluenceField {
         let signals = &self.prior.field.signals;
         InfluenceField::sampled(f64::from(signals.spacing_mm()), self.reach_mm, self.reach_mm, |place_mm| {
-            let place = Place::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
+            let place = FieldAtPlace::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
             let maps = self.layout.maps(values, &self.scale, &place, Knowledge::Written);
             std::array::from_fn::<f64, MAPS, _>(|map| maps[map / 3][map % 3])
         })

@@ -3,11 +3,11 @@
 
 use crate::calibration::data::contacts::Fitted;
 use crate::calibration::data::thermal_fit::ThermalFit;
-use crate::calibration::model::Layout;
+use crate::calibration::model::ParameterLayout;
 use crate::calibration::model::prior::Prior;
 use crate::calibration::problem::effort::Effort;
 use crate::calibration::problem::hyperparameters::Settings;
-use crate::calibration::problem::{Fit, Problem};
+use crate::calibration::problem::{PosteriorFit, Problem};
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pipeline::compensation::hysteresis::PLAYS;
@@ -17,7 +17,7 @@ use tactpad_core::tables::recording::Recording;
 
 /// The recording, and what was taken off.
 #[derive(Clone, Debug)]
-pub(crate) struct Prepared {
+pub(crate) struct PreparedRecording {
     recording: Recording,
     /// Temperature coefficients; those of the gains are for the fit to find.
     thermal: Option<ThermalFit>,
@@ -27,7 +27,7 @@ pub(crate) struct Prepared {
     tells_gains: bool,
 }
 
-impl Prepared {
+impl PreparedRecording {
     /// `None` where the zeros cannot be found, as the readings are beyond anything that a pad can read.
     pub(crate) fn of(
         recording: &Recording,
@@ -54,7 +54,7 @@ impl Prepared {
             elastic_scale: 1.0,
         };
         let fit = prepared.problem(fitted, device, &prior).fitted(plain, None, Effort::FULL);
-        let zero_uv = Layout::zeros(&fit?.values);
+        let zero_uv = ParameterLayout::zeros(&fit?.values);
         Some(Self { recording: prepared.recording.less(&zero_uv), zero_uv: Some(zero_uv), ..prepared })
     }
 
@@ -74,8 +74,8 @@ impl Prepared {
     }
 
     /// The zeros, corrected by those of a fit.
-    pub(crate) fn zero_uv(&self, fit: &Fit) -> Option<[f64; CHANNELS]> {
-        let remainder_uv = Layout::zeros(&fit.values);
+    pub(crate) fn zero_uv(&self, fit: &PosteriorFit) -> Option<[f64; CHANNELS]> {
+        let remainder_uv = ParameterLayout::zeros(&fit.values);
         self.zero_uv.map(|zero_uv| std::array::from_fn(|k| zero_uv[k] + remainder_uv[k]))
     }
 
@@ -85,12 +85,12 @@ impl Prepared {
     }
 
     /// The temperature coefficients, completed by those of a fit.
-    pub(crate) fn thermal(&self, fit: &Fit) -> Option<ThermalFit> {
+    pub(crate) fn thermal(&self, fit: &PosteriorFit) -> Option<ThermalFit> {
         let thermal = self.thermal?;
         if !self.tells_gains() {
             return Some(thermal);
         }
-        let at = |channel: usize| Layout::first_gain_slope() + channel;
+        let at = |channel: usize| ParameterLayout::first_gain_slope() + channel;
         let gain_per_c = std::array::from_fn(|channel| fit.values[at(channel)]);
         Some(ThermalFit {
             coefficients: Thermal { gain_per_c, ..thermal.coefficients },

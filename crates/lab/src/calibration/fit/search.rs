@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::calibration::model::prior::Prior;
 use crate::calibration::problem::effort::Effort;
 use crate::calibration::problem::hyperparameters::Settings;
-use crate::calibration::problem::{Fit, Problem};
+use crate::calibration::problem::{PosteriorFit, Problem};
 use tactpad_core::pipeline::compensation::creep::Creep;
 
 /// Prior standard deviations of the background that are tried beside none, as a share of each map: the larger ones where the
@@ -35,13 +35,13 @@ pub(crate) const LOG_EVIDENCE_GAIN: f64 = 15.0;
 pub type Report<'r> = &'r (dyn Fn(usize, usize) + Sync);
 
 /// Fits, counted.
-pub(crate) struct Counted<'r> {
+pub(crate) struct FitCount<'r> {
     done: AtomicUsize,
     most: AtomicUsize,
     report: Report<'r>,
 }
 
-impl<'r> Counted<'r> {
+impl<'r> FitCount<'r> {
     /// As many as all priors can ask for.
     pub(crate) fn of<'p>(priors: impl IntoIterator<Item = &'p Prior>, report: Report<'r>) -> Self {
         let most = priors.into_iter().map(Self::most).sum();
@@ -76,8 +76,8 @@ impl<'r> Counted<'r> {
         &self,
         problem: &Problem<'_>,
         settings: Settings,
-        (from, effort): (Option<&Fit>, Effort),
-    ) -> Option<Fit> {
+        (from, effort): (Option<&PosteriorFit>, Effort),
+    ) -> Option<PosteriorFit> {
         let fit = problem.clone().fitted(settings, from, effort);
         (self.report)(self.done.fetch_add(1, Ordering::Relaxed) + 1, self.most.load(Ordering::Relaxed));
         fit
@@ -89,8 +89,8 @@ impl<'r> Counted<'r> {
 pub(crate) fn fitted<'b>(
     problem: Problem<'b>,
     prior: &Prior,
-    counted: &Counted<'_>,
-) -> Option<(Problem<'b>, Fit)> {
+    counted: &FitCount<'_>,
+) -> Option<(Problem<'b>, PosteriorFit)> {
     let plain = with_lasting_noise(&problem, prior, counted)?;
     let plain = if problem.layout.is_play { built_alike(&problem, plain, counted) } else { plain };
     // The memory first, as a background would explain part of it; then the background's size with the memory's settings.
@@ -99,7 +99,11 @@ pub(crate) fn fitted<'b>(
 }
 
 /// The same with a background, if the evidence asks for one.
-fn with_background<'b>(problem: Problem<'b>, plain: Fit, counted: &Counted<'_>) -> (Problem<'b>, Fit) {
+fn with_background<'b>(
+    problem: Problem<'b>,
+    plain: PosteriorFit,
+    counted: &FitCount<'_>,
+) -> (Problem<'b>, PosteriorFit) {
     let smooth = problem.clone().with_background();
     // Of so many parameters a step that gains little may stand before one that gains much: each is carried to its maximum.
     let tried = |background| {
@@ -111,7 +115,7 @@ fn with_background<'b>(problem: Problem<'b>, plain: Fit, counted: &Counted<'_>) 
     let small = most_probable(SMALL_BACKGROUNDS.to_vec(), tried);
     let is_largest = small.as_ref().is_some_and(|it| it.settings.background == largest);
     let large = if is_largest { most_probable(LARGE_BACKGROUNDS.to_vec(), tried) } else { None };
-    let evidence = |fit: &Fit| fit.log_evidence;
+    let evidence = |fit: &PosteriorFit| fit.log_evidence;
     let found = small.into_iter().chain(large).max_by(|one, other| evidence(one).total_cmp(&evidence(other)));
     match found.filter(|found| evidence(found) > evidence(&plain)) {
         Some(found) => (smooth, found),
@@ -120,20 +124,29 @@ fn with_background<'b>(problem: Problem<'b>, plain: Fit, counted: &Counted<'_>) 
 }
 
 /// The fit without a background, whose memory and lasting noise are what the evidence asks for; `report` hears how far it is.
-pub(crate) fn settled_reported(problem: &Problem<'_>, prior: &Prior, report: Report<'_>) -> Option<Fit> {
-    let counted = Counted::of([prior], report);
+pub(crate) fn settled_reported(
+    problem: &Problem<'_>,
+    prior: &Prior,
+    report: Report<'_>,
+) -> Option<PosteriorFit> {
+    let counted = FitCount::of([prior], report);
     let plain = with_lasting_noise(problem, prior, &counted)?;
     Some(with_memory(problem, prior, plain, &counted))
 }
 
-fn with_memory(problem: &Problem<'_>, prior: &Prior, plain: Fit, counted: &Counted<'_>) -> Fit {
+fn with_memory(
+    problem: &Problem<'_>,
+    prior: &Prior,
+    plain: PosteriorFit,
+    counted: &FitCount<'_>,
+) -> PosteriorFit {
     let plain = with_hysteresis(problem, prior, plain, counted);
     with_creep(problem, plain, counted)
 }
 
 /// The fit with nothing but what is known of pads of this kind. In play noise lasts from one contact to the next: as long as
 /// the evidence says.
-fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_>) -> Option<Fit> {
+fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &FitCount<'_>) -> Option<PosteriorFit> {
     let Prior { thresholds_uv, creep: Creep { time_s: creep_time_s, .. }, .. } = *prior;
     let tried = |noise_time_s: f64| {
         let settings =
@@ -145,16 +158,21 @@ fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &Counted<'_
 
 /// The same where stiffnesses, moduli and thickness are near what they should be, if that is more probable. Presses without labels
 /// hardly tell them from gains and crosstalk.
-fn built_alike(problem: &Problem<'_>, plain: Fit, counted: &Counted<'_>) -> Fit {
+fn built_alike(problem: &Problem<'_>, plain: PosteriorFit, counted: &FitCount<'_>) -> PosteriorFit {
     let settings = Settings { elastic_scale: ALIKE, ..plain.settings };
     let alike = counted.fitted(problem, settings, (None, Effort::FULL));
     alike.filter(|alike| alike.log_probability() > plain.log_probability()).unwrap_or(plain)
 }
 
 /// The same with as many play operators as the evidence asks for. Known thresholds are only refined.
-fn with_hysteresis(problem: &Problem<'_>, prior: &Prior, mut best: Fit, counted: &Counted<'_>) -> Fit {
+fn with_hysteresis(
+    problem: &Problem<'_>,
+    prior: &Prior,
+    mut best: PosteriorFit,
+    counted: &FitCount<'_>,
+) -> PosteriorFit {
     for (play, known_uv) in prior.thresholds_uv.into_iter().enumerate() {
-        let tried = |threshold_uv, from: &Fit, effort| {
+        let tried = |threshold_uv, from: &PosteriorFit, effort| {
             let mut settings = from.settings;
             settings.thresholds_uv[play] = threshold_uv;
             counted.fitted(problem, settings, (Some(from), effort))
@@ -173,7 +191,7 @@ fn with_hysteresis(problem: &Problem<'_>, prior: &Prior, mut best: Fit, counted:
 }
 
 /// The same with creep, if the evidence asks for it.
-fn with_creep(problem: &Problem<'_>, best: Fit, counted: &Counted<'_>) -> Fit {
+fn with_creep(problem: &Problem<'_>, best: PosteriorFit, counted: &FitCount<'_>) -> PosteriorFit {
     let least = best.log_evidence + LOG_EVIDENCE_GAIN;
     let found = most_probable(CREEP_TIMES_S.to_vec(), |creep_time_s| {
         let mut settings = best.settings;
@@ -187,10 +205,10 @@ fn with_creep(problem: &Problem<'_>, best: Fit, counted: &Counted<'_>) -> Fit {
 /// to the evidence `least` nobody asks how far it came.
 fn searched(
     play: usize,
-    plain: &Fit,
+    plain: &PosteriorFit,
     least: f64,
-    tried: impl Fn(f64, &Fit, Effort) -> Option<Fit> + Send + Sync,
-) -> Option<Fit> {
+    tried: impl Fn(f64, &PosteriorFit, Effort) -> Option<PosteriorFit> + Send + Sync,
+) -> Option<PosteriorFit> {
     // 40 µV · 1.6ᵏ: up to 4.4 mV.
     let coarse = (0..THRESHOLDS).map(|step| THRESHOLD_MIN_UV * THRESHOLD_RATIO.powi(step));
     let effort = Effort { least, ..Effort::COARSE };
@@ -203,10 +221,10 @@ fn searched(
 /// The threshold of the largest evidence near the best one, by a factor ±½, ±¼, ±⅛ of a coarse step.
 fn refined(
     play: usize,
-    mut best: Fit,
+    mut best: PosteriorFit,
     effort: Effort,
-    tried: &(impl Fn(f64, &Fit, Effort) -> Option<Fit> + Send + Sync),
-) -> Fit {
+    tried: &(impl Fn(f64, &PosteriorFit, Effort) -> Option<PosteriorFit> + Send + Sync),
+) -> PosteriorFit {
     for halving in 1..=HALVINGS {
         let factor = THRESHOLD_RATIO.powf(0.5_f64.powi(halving));
         let centre_uv = best.settings.thresholds_uv[play];
@@ -218,7 +236,10 @@ fn refined(
 }
 
 /// The fit of the largest evidence, tried in parallel; of equal ones the last.
-fn most_probable(settings: Vec<f64>, tried: impl Fn(f64) -> Option<Fit> + Send + Sync) -> Option<Fit> {
-    let fits: Vec<Fit> = settings.into_par_iter().filter_map(tried).collect();
+fn most_probable(
+    settings: Vec<f64>,
+    tried: impl Fn(f64) -> Option<PosteriorFit> + Send + Sync,
+) -> Option<PosteriorFit> {
+    let fits: Vec<PosteriorFit> = settings.into_par_iter().filter_map(tried).collect();
     fits.into_iter().max_by(|one, other| one.log_evidence.total_cmp(&other.log_evidence))
 }

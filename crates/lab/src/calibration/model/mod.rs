@@ -20,15 +20,15 @@ use self::physical::Physical;
 use self::prior::Prior;
 use self::prior_deviations::{
     AGEING_DEVIATION, BLUR_DEVIATION_MM2, CREEP_DEVIATION, FINGER_BLUR_DEVIATION_MM2, GAIN_DEVIATION,
-    GAIN_SLOPE_DEVIATION, Kind, LOG_SCALE_DEVIATION, PriorDeviations, SHARE_DEVIATION,
+    GAIN_SLOPE_DEVIATION, LOG_SCALE_DEVIATION, ParameterKind, PriorDeviations, SHARE_DEVIATION,
     WEIGHT_BLUR_DEVIATION_MM2, background_share,
 };
 use crate::calibration::data::contacts::{
-    BACKGROUND_DEGREE, Knowledge, Lags, Maps, Measured, Place, TERMS, response,
+    BACKGROUND_DEGREE, FieldAtPlace, Knowledge, Lags, Maps, Measured, TERMS, response,
 };
 use crate::calibration::data::rig::{RIG_NUMBERS, RigPrior};
 use tactpad_core::pipeline::compensation::creep::{Creep, NO_CREEP};
-use tactpad_core::pipeline::compensation::hysteresis::{Hysteresis, PLAYS, Play};
+use tactpad_core::pipeline::compensation::hysteresis::{Hysteresis, PLAYS, PlayOperators};
 use tactpad_core::pipeline::contact::inverse::CROSSTALK_MAX;
 use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
 use tactpad_core::quantity::CHANNELS;
@@ -44,7 +44,7 @@ const GAIN_MIN: f64 = 0.05;
 /// difference), creep, blur, temperature coefficients of the gains, ln S, blur of a weight, ageing, the rig, physical
 /// parameters, background (channel, force, polynomial).
 #[derive(Clone, Debug)]
-pub(crate) struct Layout {
+pub(crate) struct ParameterLayout {
     pub(crate) physical: Vec<Physical>,
     /// Polynomials of the background for each channel and force: 0 or [`TERMS`].
     pub(crate) terms: usize,
@@ -66,7 +66,7 @@ const AGEING: usize = WEIGHT_BLUR + 1;
 const RIG_AT: usize = AGEING + 1;
 const PHYSICAL: usize = RIG_AT + RIG_NUMBERS;
 
-impl Layout {
+impl ParameterLayout {
     pub(crate) const fn size(&self) -> usize {
         self.background(0, 0) + 3 * CHANNELS * self.terms
     }
@@ -102,14 +102,14 @@ impl Layout {
     ) -> Vec<f64> {
         let mut deviations = vec![0.0; self.size()];
         // P = 1/σ² with these σ, kind by kind.
-        deviations[ZEROS..GAINS].fill(prior_deviations.of(Kind::Zero));
+        deviations[ZEROS..GAINS].fill(prior_deviations.of(ParameterKind::Zero));
         deviations[GAINS..CROSSTALKS].fill(GAIN_DEVIATION);
         // A channel has no crosstalk with itself.
         for (index, deviation) in deviations[CROSSTALKS..SHARES].iter_mut().enumerate() {
             *deviation = self.crosstalk_kind(index).map_or(0.0, |kind| prior_deviations.of(kind));
         }
         deviations[SHARES..OWN_SHARES].fill(SHARE_DEVIATION);
-        deviations[OWN_SHARES..CREEP].fill(prior_deviations.of(Kind::OwnHysteresis));
+        deviations[OWN_SHARES..CREEP].fill(prior_deviations.of(ParameterKind::OwnHysteresis));
         deviations[CREEP] = CREEP_DEVIATION;
         deviations[BLUR] = BLUR_DEVIATION_MM2;
         deviations[GAIN_SLOPES..LOG_SCALE].fill(GAIN_SLOPE_DEVIATION);
@@ -138,17 +138,17 @@ impl Layout {
 
     /// The kind of the crosstalk at this place of the matrix. Presses without labels hardly tell what is within a module from its
     /// pose: there all crosstalk has one deviation.
-    fn crosstalk_kind(&self, index: usize) -> Option<Kind> {
-        let kind = Kind::of_crosstalk(index)?;
-        Some(if self.is_play { Kind::CrosstalkUnlabelled } else { kind })
+    fn crosstalk_kind(&self, index: usize) -> Option<ParameterKind> {
+        let kind = ParameterKind::of_crosstalk(index)?;
+        Some(if self.is_play { ParameterKind::CrosstalkUnlabelled } else { kind })
     }
 
     /// Places of the parameters whose kinds share a prior standard deviation, and the module that each is of.
-    pub(crate) fn kinds(&self) -> impl Iterator<Item = (Kind, Option<usize>, usize)> {
+    pub(crate) fn kinds(&self) -> impl Iterator<Item = (ParameterKind, Option<usize>, usize)> {
         let physical =
             self.physical.iter().zip(PHYSICAL..).map(|(it, at)| (it.kind(), it.parameter.module(), at));
-        let own = (OWN_SHARES..CREEP).map(|at| (Kind::OwnHysteresis, None, at));
-        let zeros = (ZEROS..GAINS).map(|at| (Kind::Zero, None, at));
+        let own = (OWN_SHARES..CREEP).map(|at| (ParameterKind::OwnHysteresis, None, at));
+        let zeros = (ZEROS..GAINS).map(|at| (ParameterKind::Zero, None, at));
         let crosstalk = (0..CHANNELS * CHANNELS)
             .filter_map(|index| Some((self.crosstalk_kind(index)?, None, CROSSTALKS + index)));
         zeros.chain(crosstalk).chain(own).chain(physical)
@@ -166,7 +166,7 @@ impl Layout {
 
     /// The hysteresis by these parameters. Thresholds are in strains before gains: rᵢₖ = thresholdᵢ |gₖ|.
     pub(crate) fn hysteresis(values: &[f64], thresholds_uv: &[f64; PLAYS]) -> Hysteresis {
-        std::array::from_fn(|play| Play {
+        std::array::from_fn(|play| PlayOperators {
             threshold_uv: std::array::from_fn(|k| thresholds_uv[play] * Self::gain(values, k).abs()),
             share: std::array::from_fn(|k| Self::share(values, play, k).clamp(-SHARE_MAX, SHARE_MAX)),
         })
@@ -224,14 +224,14 @@ impl Layout {
         AGEING
     }
 
-    /// How much more a contact's load gave than it gives now: 1 + A b.
-    pub(crate) fn younger_gain(values: &[f64], contact: &Measured) -> f64 {
+    /// Gain at a contact over the gain after the measurement, dimensionless: 1 + A b, with ageing A and the part b of it still to come.
+    pub(crate) fn gain_before_ageing(values: &[f64], contact: &Measured) -> f64 {
         1.0 + values[AGEING] * contact.to_come
     }
 
     /// The force that would give now what a contact's gave then.
     fn force_now_n(values: &[f64], contact: &Measured) -> [f64; 3] {
-        contact.force_n.map(|n| Self::younger_gain(values, contact) * n)
+        contact.force_n.map(|n| Self::gain_before_ageing(values, contact) * n)
     }
 
     /// Place of the first channel's temperature coefficient of gain, 1/°C.
@@ -308,7 +308,7 @@ impl Layout {
     }
 
     /// The strain maps E at a place, µV/N before gains.
-    fn strain_maps(&self, values: &[f64], scale: &Maps, place: &Place, knowledge: Knowledge) -> Maps {
+    fn strain_maps(&self, values: &[f64], scale: &Maps, place: &FieldAtPlace, knowledge: Knowledge) -> Maps {
         // E = G + b ∇²G …
         let mut maps = place.gains;
         for (map, laplacian) in maps.as_flattened_mut().iter_mut().zip(place.laplacian.as_flattened()) {
@@ -331,7 +331,13 @@ impl Layout {
     }
 
     /// The channels' maps at a place, µV/N.
-    pub(crate) fn maps(&self, values: &[f64], scale: &Maps, place: &Place, knowledge: Knowledge) -> Maps {
+    pub(crate) fn maps(
+        &self,
+        values: &[f64],
+        scale: &Maps,
+        place: &FieldAtPlace,
+        knowledge: Knowledge,
+    ) -> Maps {
         // S (gₖ Eₖₐ + Σₗ Xₖₗ Eₗₐ).
         let strain_maps = self.strain_maps(values, scale, place, knowledge);
         Self::mixture(values).map(|factors| {
@@ -348,7 +354,7 @@ impl Layout {
     }
 
     /// ∇E along x or y at a place, µV/N per mm. The blur is left out.
-    fn strain_gradient(&self, values: &[f64], scale: &Maps, place: &Place, axis: usize) -> Maps {
+    fn strain_gradient(&self, values: &[f64], scale: &Maps, place: &FieldAtPlace, axis: usize) -> Maps {
         // ∇G + Σⱼ wⱼ ∇∂G/∂pⱼ + scale Σₜ βₜ ∇Uₜ(x, y).
         let mut maps = place.gradient[axis];
         for ([weight, _], slope) in self.weights(values).zip(&place.sensitivity_gradients) {
@@ -374,7 +380,7 @@ impl Layout {
         contact: &Measured,
     ) -> [[f64; UNKNOWNS]; CHANNELS] {
         let maps = self.maps(values, scale, &contact.place, contact.knowledge);
-        let (gain, force_n) = (Self::younger_gain(values, contact), Self::force_now_n(values, contact));
+        let (gain, force_n) = (Self::gain_before_ageing(values, contact), Self::force_now_n(values, contact));
         // By the place S (gₖ Σₐ Fₐ ∇Eₖₐ + Σₗ Xₖₗ Σₐ Fₐ ∇Eₗₐ); by the force the maps.
         let of_strains = [0, 1].map(|axis| {
             let gradient = self.strain_gradient(values, scale, &contact.place, axis);
@@ -400,7 +406,7 @@ impl Layout {
         mut each: impl FnMut(usize, f64, &[f64]),
     ) {
         let Measured { knowledge, place, lags, crept_uv, above_c, to_come, .. } = contact;
-        let younger_gain = Self::younger_gain(values, contact);
+        let gain_before_ageing = Self::gain_before_ageing(values, contact);
         let force_n = &Self::force_now_n(values, contact);
         let strain_maps = self.strain_maps(values, scale, place, *knowledge);
         let strains_uv = strain_maps.map(|map| response(&map, force_n));
@@ -426,7 +432,7 @@ impl Layout {
             derivatives[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
             derivatives[LOG_SCALE] = loaded_uv;
             // ∂/∂A = b (h eₖ + S Σₗ Xₖₗ eₗ)/(1 + A b).
-            derivatives[AGEING] = to_come * loaded_uv / younger_gain;
+            derivatives[AGEING] = to_come * loaded_uv / gain_before_ageing;
             // ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ, ∂/∂βₖₐₜ = h Fₐ scaleₖₐ Uₜ.
             derivatives[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
             let physical = weights.iter().zip(&place.sensitivities);

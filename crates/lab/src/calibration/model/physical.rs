@@ -9,7 +9,7 @@
 //!
 //! Where G is the field of a pad that has q₀ already, E and t are that pad's, and q − q₀ stands for p and q.
 
-use super::prior_deviations::Kind;
+use super::prior_deviations::ParameterKind;
 use crate::tangent::{STIFFNESS_REACH, TURN_REACH_DEG, shift_reach_mm};
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::device::parameter::Parameter;
@@ -21,7 +21,7 @@ use tactpad_core::pad::field::{PadField, Sensitivity};
 pub struct Physical {
     /// Which.
     pub parameter: Parameter,
-    kind: Kind,
+    kind: ParameterKind,
     /// Its value in a pad that does not differ.
     expected: f64,
     /// q₀: by how much the pad that the field is of differs.
@@ -41,12 +41,16 @@ impl Physical {
     /// `None` for a number in which pads of a kind do not differ, or one that the prior's other parameters stand for.
     fn of(parameter: Parameter, own: &Device, expected: &Device) -> Option<Self> {
         let kind = match (parameter.module(), parameter.unit()) {
-            (Some(_), Unit::Millimetre) => Kind::Shift,
-            (Some(_), Unit::Degree) => Kind::Turn,
-            (Some(_), _) => Kind::Stiffness,
+            (Some(_), Unit::Millimetre) => ParameterKind::Shift,
+            (Some(_), Unit::Degree) => ParameterKind::Turn,
+            (Some(_), _) => ParameterKind::Stiffness,
             // Sheet metal has one modulus and many thicknesses.
-            (None, Unit::Millimetre) if parameter.name() == "plate.thickness_mm" => Kind::PlateThickness,
-            (None, Unit::Megapascal) if parameter.name() != "material.plate.e_mpa" => Kind::CommonModulus,
+            (None, Unit::Millimetre) if parameter.name() == "plate.thickness_mm" => {
+                ParameterKind::PlateThickness
+            }
+            (None, Unit::Megapascal) if parameter.name() != "material.plate.e_mpa" => {
+                ParameterKind::CommonModulus
+            }
             (None, _) => return None,
         };
         let mut it = Self { parameter, kind, expected: parameter.get(expected), about: 0.0 };
@@ -56,18 +60,21 @@ impl Physical {
     }
 
     /// The kind, which has a prior.
-    pub(crate) const fn kind(&self) -> Kind {
+    pub(crate) const fn kind(&self) -> ParameterKind {
         self.kind
     }
 
     /// Whether the fit has the logarithm of a factor.
     pub(crate) const fn is_factor(&self) -> bool {
-        matches!(self.kind, Kind::Stiffness | Kind::PlateThickness | Kind::CommonModulus)
+        matches!(
+            self.kind,
+            ParameterKind::Stiffness | ParameterKind::PlateThickness | ParameterKind::CommonModulus
+        )
     }
 
     /// n of 1/qⁿ in which the field is linear; of a pose there is none.
     const fn power(&self) -> f64 {
-        if matches!(self.kind, Kind::PlateThickness) { 3.0 } else { 1.0 }
+        if matches!(self.kind, ParameterKind::PlateThickness) { 3.0 } else { 1.0 }
     }
 
     /// The weight w of ∂G/∂p in the field, and ∂w/∂q.
@@ -100,8 +107,8 @@ impl Physical {
     /// How far that may be until the field's tangent is off by as much as it says.
     pub(crate) fn reach(&self, device: &Device) -> f64 {
         match self.kind {
-            Kind::Shift => shift_reach_mm(device),
-            Kind::Turn => TURN_REACH_DEG,
+            ParameterKind::Shift => shift_reach_mm(device),
+            ParameterKind::Turn => TURN_REACH_DEG,
             // A plate's stiffness goes with the cube of its thickness.
             _ => STIFFNESS_REACH / self.power(),
         }

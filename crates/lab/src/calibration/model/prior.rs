@@ -1,7 +1,7 @@
 //! The prior of a pad: centred on the simulated pad, or on another pad of its kind.
 
 use crate::calibration::data::contacts::Maps;
-use crate::calibration::data::earlier::Earlier;
+use crate::calibration::data::earlier::EarlierCalibration;
 use crate::calibration::data::plate::{PLACES, places};
 use crate::calibration::noise::NoisePrior;
 use tactpad_core::pad::device::Device;
@@ -40,8 +40,8 @@ impl Prior {
     }
 
     /// Centred on the simulated field, with the gains, hysteresis, creep and noise of another pad of its kind.
-    pub(crate) fn of_kind(field: &PadField, earlier: &Earlier<'_>) -> Self {
-        let Earlier { inverse, compensation } = earlier;
+    pub(crate) fn of_kind(field: &PadField, earlier: &EarlierCalibration<'_>) -> Self {
+        let EarlierCalibration { inverse, compensation } = earlier;
         let gain = gains(&field.signals, inverse.field());
         let noise = NoisePrior::of_kind(inverse.noise());
         let prior = Self::with_hysteresis(field.clone(), gain, &compensation.hysteresis, noise);
@@ -49,7 +49,7 @@ impl Prior {
     }
 
     /// Centred on another pad's field as well. That field is factorised into gains and the strains before them.
-    pub(crate) fn centred_on(field: &PadField, earlier: &Earlier<'_>) -> Self {
+    pub(crate) fn centred_on(field: &PadField, earlier: &EarlierCalibration<'_>) -> Self {
         let prior = Self::of_kind(field, earlier);
         // G′ = g E: the strains before gains are E = G′/g.
         let strain = |place_mm: [f64; 2]| {
@@ -67,7 +67,7 @@ impl Prior {
 
     /// At a decoder: all of its field, in which no number of the device may differ from what it has, taken apart into crosstalk, gains
     /// and strains.
-    pub(crate) fn at(field: &PadField, earlier: &Earlier<'_>) -> Self {
+    pub(crate) fn at(field: &PadField, earlier: &EarlierCalibration<'_>) -> Self {
         let mut prior = Self::of_kind(field, earlier);
         // G′ = (1 + L) g E, and X = L g.
         let inverse = earlier.inverse;
@@ -141,7 +141,7 @@ fn gains(simulated: &InfluenceField, earlier: &InfluenceField) -> [f64; CHANNELS
 mod tests {
     use super::*;
     use tactpad_core::pipeline::compensation::Compensation;
-    use tactpad_core::pipeline::compensation::hysteresis::Play;
+    use tactpad_core::pipeline::compensation::hysteresis::PlayOperators;
     use tactpad_core::pipeline::contact::Decoder;
     use tactpad_core::pipeline::contact::inverse::Inverse;
     use tactpad_core::pipeline::contact::uncertainty::Noise;
@@ -158,11 +158,11 @@ mod tests {
         };
         let signals = InfluenceField::sampled(spacing_mm, reach_mm, reach_mm, amplified);
         let threshold_uv = gain.map(|gain| 700.0 * gain);
-        let hysteresis = [Play { threshold_uv, share: [0.05; CHANNELS] }, Play::NONE];
+        let hysteresis = [PlayOperators { threshold_uv, share: [0.05; CHANNELS] }, PlayOperators::NONE];
         let noise = Noise::of_channels([3.0; CHANNELS], [0.01; CHANNELS]);
         let compensation = Compensation { hysteresis, ..Compensation::NONE };
         let decoder = Decoder::from(Inverse::new(signals, noise)).compensated_by(compensation);
-        let prior = Prior::centred_on(&field, &Earlier::of(&decoder).unwrap());
+        let prior = Prior::centred_on(&field, &EarlierCalibration::of(&decoder).unwrap());
         assert!(prior.gain.iter().zip(gain).all(|(found, gain)| (found / gain - 1.0).abs() < 1e-3));
         assert!((prior.thresholds_uv[0] - 700.0).abs() < 1.0 && prior.thresholds_uv[1] == 0.0);
         for place_mm in places(reach_mm, PLACES) {

@@ -11,7 +11,7 @@ use tactpad_core::quantity::{CHANNELS, MODULES};
 
 /// Kinds of parameters that share a prior standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum ParameterKind {
     /// Of a module, mm.
     Shift,
     /// Of a module, degrees.
@@ -34,7 +34,7 @@ pub(crate) enum Kind {
     OwnHysteresis,
 }
 
-impl Kind {
+impl ParameterKind {
     /// Of the crosstalk at this place of the matrix, row by row; a channel has none with itself.
     pub(crate) const fn of_crosstalk(index: usize) -> Option<Self> {
         let (into, from) = (index / CHANNELS, index % CHANNELS);
@@ -90,7 +90,7 @@ const PSEUDO_COUNT: f64 = 4.0;
 /// A parameter beside the mean m of its prior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Deviating {
-    pub(crate) kind: Kind,
+    pub(crate) kind: ParameterKind,
     /// The module that it is of.
     pub(crate) module: Option<usize>,
     /// θ − m.
@@ -133,7 +133,9 @@ impl PriorDeviations {
 
     /// The same where those of stiffnesses, moduli and the plate's thickness begin with this share of what pads of all kinds have.
     pub(crate) fn scaled(mut self, elastic_scale: f64) -> Self {
-        for kind in [Kind::Stiffness, Kind::PlateThickness, Kind::CommonModulus].map(|kind| kind as usize) {
+        for kind in [ParameterKind::Stiffness, ParameterKind::PlateThickness, ParameterKind::CommonModulus]
+            .map(|kind| kind as usize)
+        {
             let initial = elastic_scale * Self::TARED.initial[kind];
             self.deviations[kind] *= initial / self.initial[kind];
             self.initial[kind] = initial;
@@ -142,17 +144,17 @@ impl PriorDeviations {
     }
 
     /// The standard deviation of a kind.
-    pub(crate) const fn of(&self, kind: Kind) -> f64 {
+    pub(crate) const fn of(&self, kind: ParameterKind) -> f64 {
         self.deviations[kind as usize]
     }
 
     /// Whether channels of one module share more than leaks do.
     pub(crate) fn is_shared_within(&self) -> bool {
-        self.of(Kind::CrosstalkWithin) > SHARED_WITHIN * CROSSTALK
+        self.of(ParameterKind::CrosstalkWithin) > SHARED_WITHIN * CROSSTALK
     }
 
     /// The standard deviation of a parameter of a kind, of this module if it is one's: σ/√λ.
-    pub(crate) fn of_one(&self, kind: Kind, module: Option<usize>) -> f64 {
+    pub(crate) fn of_one(&self, kind: ParameterKind, module: Option<usize>) -> f64 {
         self.of(kind) / self.precision_factor(kind, module).sqrt()
     }
 
@@ -172,9 +174,9 @@ impl PriorDeviations {
     }
 
     /// λ.
-    const fn precision_factor(&self, kind: Kind, module: Option<usize>) -> f64 {
+    const fn precision_factor(&self, kind: ParameterKind, module: Option<usize>) -> f64 {
         match (kind, module) {
-            (Kind::Shift, Some(module)) => self.displaced[module],
+            (ParameterKind::Shift, Some(module)) => self.displaced[module],
             _ => 1.0,
         }
     }
@@ -198,16 +200,16 @@ impl PriorDeviations {
             let factor = self.precision_factor(kind, module);
             squares[kind as usize] += factor * difference * difference;
             counts[kind as usize] += (1.0 - factor * variance / self.of(kind).powi(2)).clamp(0.0, 1.0);
-            if let (Kind::Shift, Some(module)) = (kind, module) {
+            if let (ParameterKind::Shift, Some(module)) = (kind, module) {
                 displaced_mm2[module] += difference * difference + variance;
             }
         }
-        let displaced = displaced_mm2.map(|mm2| expected_factor(mm2 / self.of(Kind::Shift).powi(2)));
+        let displaced = displaced_mm2.map(|mm2| expected_factor(mm2 / self.of(ParameterKind::Shift).powi(2)));
         // σ² = Σ λ (θ − m)²/Σ γ, both with the pseudo-observations.
         let mut deviations: [f64; KINDS] = std::array::from_fn(|kind| (squares[kind] / counts[kind]).sqrt());
-        let own_hysteresis = &mut deviations[Kind::OwnHysteresis as usize];
+        let own_hysteresis = &mut deviations[ParameterKind::OwnHysteresis as usize];
         *own_hysteresis = own_hysteresis.min(SHARE_DEVIATION);
-        let crosstalk = &mut deviations[Kind::CrosstalkUnlabelled as usize];
+        let crosstalk = &mut deviations[ParameterKind::CrosstalkUnlabelled as usize];
         *crosstalk = crosstalk.max(CROSSTALK);
         Self { deviations, displaced, ..*self }
     }
@@ -243,7 +245,7 @@ mod tests {
     fn a_module_that_is_far_off_is_of_the_wide_part_and_the_others_are_not() {
         let both = |module: usize, mm: f64| {
             [mm, -mm].map(|difference| Deviating {
-                kind: Kind::Shift,
+                kind: ParameterKind::Shift,
                 module: Some(module),
                 difference,
                 variance: 1e-3,
@@ -251,19 +253,19 @@ mod tests {
         };
         let numbers = || [both(0, 1.1), both(1, 0.2), both(2, 0.1)].into_iter().flatten();
         let found = (0..20).fold(PriorDeviations::TARED, |found, _| found.reestimated(numbers()));
-        let of = |module| found.of_one(Kind::Shift, Some(module));
-        assert!(of(0) > 3.0 * found.of(Kind::Shift), "{found:?}");
-        assert!([1, 2].iter().all(|module| of(*module) < 1.1 * found.of(Kind::Shift)), "{found:?}");
+        let of = |module| found.of_one(ParameterKind::Shift, Some(module));
+        assert!(of(0) > 3.0 * found.of(ParameterKind::Shift), "{found:?}");
+        assert!([1, 2].iter().all(|module| of(*module) < 1.1 * found.of(ParameterKind::Shift)), "{found:?}");
         // One module that is far off does not say that the others are.
-        assert!(found.of(Kind::Shift) < 1.2 * SHIFT_MM, "{found:?}");
-        assert_eq!(found.of_one(Kind::Turn, Some(0)), TURN_DEG);
+        assert!(found.of(ParameterKind::Shift) < 1.2 * SHIFT_MM, "{found:?}");
+        assert_eq!(found.of_one(ParameterKind::Turn, Some(0)), TURN_DEG);
     }
 
     #[test]
     fn channels_do_not_differ_in_hysteresis_by_more_than_pads_do() {
         let shares = |share: f64| {
             (0..18).map(move |at| Deviating {
-                kind: Kind::OwnHysteresis,
+                kind: ParameterKind::OwnHysteresis,
                 module: None,
                 difference: if at % 2 == 0 { share } else { -share },
                 variance: 1e-6,
@@ -271,7 +273,7 @@ mod tests {
         };
         let found = |share| {
             let of = (0..20).fold(PriorDeviations::TARED, |found, _| found.reestimated(shares(share)));
-            of.of(Kind::OwnHysteresis)
+            of.of(ParameterKind::OwnHysteresis)
         };
         assert!((found(0.03) - 0.03).abs() < 0.005, "{}", found(0.03));
         assert_eq!(found(15.0), SHARE_DEVIATION);
@@ -286,27 +288,34 @@ mod tests {
             };
             (0..20).fold(PriorDeviations::TARED, |found, _| found.reestimated(numbers())).of(kind)
         };
-        assert_eq!(found(Kind::CrosstalkUnlabelled, 0.005), CROSSTALK);
-        assert!(found(Kind::Crosstalk, 0.005) < 0.5 * CROSSTALK);
-        assert!((found(Kind::CrosstalkUnlabelled, 0.05) - 0.05).abs() < 0.002);
+        assert_eq!(found(ParameterKind::CrosstalkUnlabelled, 0.005), CROSSTALK);
+        assert!(found(ParameterKind::Crosstalk, 0.005) < 0.5 * CROSSTALK);
+        assert!((found(ParameterKind::CrosstalkUnlabelled, 0.05) - 0.05).abs() < 0.002);
     }
 
     #[test]
     fn a_scale_of_the_deviations_is_neither_for_nor_against_a_pad() {
         let wide = PriorDeviations::TARED;
         let alike = wide.scaled(0.25);
-        assert_eq!([Kind::Stiffness, Kind::Turn].map(|kind| alike.of(kind)), [0.25 * STIFFNESS, TURN_DEG]);
-        assert!((alike.scaled(1.0).of(Kind::Stiffness) - STIFFNESS).abs() < 1e-12);
+        assert_eq!(
+            [ParameterKind::Stiffness, ParameterKind::Turn].map(|kind| alike.of(kind)),
+            [0.25 * STIFFNESS, TURN_DEG]
+        );
+        assert!((alike.scaled(1.0).of(ParameterKind::Stiffness) - STIFFNESS).abs() < 1e-12);
         assert!((alike.log_density() - wide.log_density()).abs() < 1e-9);
         // What was found is in proportion.
         let stiff = (0..9).map(|_| Deviating {
-            kind: Kind::Stiffness,
+            kind: ParameterKind::Stiffness,
             module: None,
             difference: 0.6,
             variance: 1e-3,
         });
         let found = wide.reestimated(stiff);
-        assert!((found.scaled(0.25).of(Kind::Stiffness) / found.of(Kind::Stiffness) - 0.25).abs() < 1e-12);
+        assert!(
+            (found.scaled(0.25).of(ParameterKind::Stiffness) / found.of(ParameterKind::Stiffness) - 0.25)
+                .abs()
+                < 1e-12
+        );
         assert!(found.log_density() < wide.log_density() - 0.5, "{found:?}");
     }
 

@@ -272,7 +272,7 @@ fn parts(residuals: &[SquaredResidual], prior: &[f64; PARTS], pseudo_readings: f
         count: pseudo_readings / 2.0,
     });
     let all: Vec<Squared> = measured.chain(known).collect();
-    let groups: Vec<Group> = all.chunks(LANES).map(Group::of).collect();
+    let groups: Vec<VarianceGroup> = all.chunks(LANES).map(VarianceGroup::of).collect();
     widest(
         #[inline(always)]
         || (0..ROUNDS).fold(*prior, |parts, _| reweighted(&parts, &groups)),
@@ -291,13 +291,13 @@ const LANES: usize = 8;
 
 /// The same for each of them, number by number. What a group lacks counts nothing.
 #[derive(Clone, Copy)]
-struct Group {
+struct VarianceGroup {
     terms: [[f64; LANES]; PARTS],
     square: [f64; LANES],
     count: [f64; LANES],
 }
 
-impl Group {
+impl VarianceGroup {
     fn of(squared: &[Squared]) -> Self {
         let each =
             |of: &dyn Fn(&Squared) -> f64| std::array::from_fn(|lane| squared.get(lane).map_or(0.0, of));
@@ -316,9 +316,9 @@ impl Group {
 /// pₖ ← pₖ Σ w xₖ y / Σ w xₖ ŷ,    ŷ = Σₖ xₖ pₖ,    w = count/ŷ²
 /// ```
 #[inline(always)]
-fn reweighted(parts: &[f64; PARTS], groups: &[Group]) -> [f64; PARTS] {
+fn reweighted(parts: &[f64; PARTS], groups: &[VarianceGroup]) -> [f64; PARTS] {
     let [mut wanted, mut found] = [[[0.0; LANES]; PARTS]; 2];
-    for Group { terms, square, count } in groups {
+    for VarianceGroup { terms, square, count } in groups {
         // By indices: iterators would be calls of their own, outside the widest vectors.
         for lane in 0..LANES {
             let mut expected = 0.0;

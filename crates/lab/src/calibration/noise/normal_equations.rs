@@ -23,7 +23,7 @@ pub(crate) struct NormalEquations {
 }
 
 /// A Gauss-Newton step δ, and the factor of the curvature H.
-pub(crate) struct Step {
+pub(crate) struct GaussNewtonStep {
     pub(crate) delta: Vec<f64>,
     pub(crate) factor: LargeFactor,
 }
@@ -85,10 +85,10 @@ impl NormalEquations {
     }
 
     /// δ = H⁻¹ g; `None` where H is not positive definite or not finite.
-    pub(crate) fn solved(mut self) -> Option<Step> {
+    pub(crate) fn solved(mut self) -> Option<GaussNewtonStep> {
         self.add_collected();
         let factor = self.curvature.factorised()?;
-        Some(Step { delta: factor.solve(&self.gradient), factor })
+        Some(GaussNewtonStep { delta: factor.solve(&self.gradient), factor })
     }
 
     /// ½ (gᵀ H⁻¹ g − ln det H): what integrating over the unknowns adds to ln p at θ.

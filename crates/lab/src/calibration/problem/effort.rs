@@ -1,9 +1,9 @@
-//! How far the maximum of a posterior is sought: the evidence of many settings is compared, and most of them are far from the best.
+//! Stopping rule of the search for a posterior's maximum: the evidence of many settings is compared, and most of them are far from the best.
 
-/// All further steps together gain less than so many times the present one.
-const HOPE: f64 = 5.0;
+/// Upper bound of the gain in log evidence by all further Gauss-Newton steps together, in multiples of the present step's gain.
+const REMAINING_STEPS_MAX: f64 = 5.0;
 
-/// How far a fit is carried.
+/// Tolerances at which a fit stops, in natural log units of evidence.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
     /// A step that changes the log evidence by less is the last.
@@ -18,8 +18,8 @@ impl Effort {
     /// Near enough to choose among settings that differ by more.
     pub(crate) const COARSE: Self = Self { tolerance: 3.0, ..Self::FULL };
 
-    /// Whether a step that gained so much is the last.
+    /// Whether the step with this `gain` is the last: gain < tolerance, or log evidence + [`REMAINING_STEPS_MAX`] · gain < least.
     pub(crate) fn is_enough(self, log_evidence: f64, gain: f64) -> bool {
-        gain < self.tolerance || log_evidence + HOPE * gain < self.least
+        gain < self.tolerance || log_evidence + REMAINING_STEPS_MAX * gain < self.least
     }
 }

@@ -1,10 +1,10 @@
 //! Jumps of the zero: what the untouched pad reads now, less what it read before. Hysteresis and creep make them, and drift.
 
 use crate::calibration::data::contacts::Lags;
-use crate::calibration::model::Layout;
+use crate::calibration::model::ParameterLayout;
 use tactpad_core::pipeline::compensation::hysteresis::PLAYS;
 use tactpad_core::quantity::CHANNELS;
-use tactpad_core::tables::recording::{Recording, Untouched};
+use tactpad_core::tables::recording::{Recording, UntouchedReading};
 
 /// Standard deviation of a zero's drift between two readings: its least value, and the one that the fit begins with.
 const DRIFT_MIN_UV: f64 = 1.0;
@@ -40,7 +40,7 @@ impl Jumps {
     /// the parameters.
     pub(crate) fn each(
         &self,
-        layout: &Layout,
+        layout: &ParameterLayout,
         values: &[f64],
         drift_uv: &[f64; CHANNELS],
         mut then: impl FnMut(usize, f64, f64, &[f64]),
@@ -49,7 +49,7 @@ impl Jumps {
         for Jump { change_uv, lags, crept_uv, .. } in &self.all {
             for channel in 0..CHANNELS {
                 derivatives.fill(0.0);
-                let memory_uv = Layout::memory_uv(values, channel, lags, crept_uv, &mut derivatives);
+                let memory_uv = ParameterLayout::memory_uv(values, channel, lags, crept_uv, &mut derivatives);
                 let residual_uv = change_uv[channel] - memory_uv;
                 // σ = max(drift, |r|/3): beyond three standard deviations an outlier weighs 9/r².
                 let deviation = drift_uv[channel].max(JUMP_PART * residual_uv.abs());
@@ -59,7 +59,7 @@ impl Jumps {
     }
 
     /// Standard deviation of each channel's drift between readings of the zero, by the median magnitude of the jumps' residuals.
-    pub(crate) fn drift_uv(&self, layout: &Layout, values: &[f64]) -> [f64; CHANNELS] {
+    pub(crate) fn drift_uv(&self, layout: &ParameterLayout, values: &[f64]) -> [f64; CHANNELS] {
         let mut magnitudes = [const { Vec::new() }; CHANNELS];
         self.each(layout, values, &[DRIFT_UV; CHANNELS], |channel, residual_uv, _, _| {
             magnitudes[channel].push(residual_uv.abs());
@@ -74,7 +74,12 @@ impl Jumps {
     }
 
     /// ln p(jumps | θ) = −½ Σ (r²/σ² + ln σ²), but for a constant.
-    pub(crate) fn log_likelihood(&self, layout: &Layout, values: &[f64], drift_uv: &[f64; CHANNELS]) -> f64 {
+    pub(crate) fn log_likelihood(
+        &self,
+        layout: &ParameterLayout,
+        values: &[f64],
+        drift_uv: &[f64; CHANNELS],
+    ) -> f64 {
         let mut cost = 0.0;
         self.each(layout, values, drift_uv, |_, residual_uv, variance, _| {
             cost += residual_uv * residual_uv / variance + variance.ln();
@@ -84,8 +89,8 @@ impl Jumps {
 }
 
 /// From each reading of the untouched pad to the next.
-fn jumps(zeros: Vec<Untouched>) -> Vec<Jump> {
-    let jump = |((first, earlier), (second, later)): (&Untouched, &Untouched)| Jump {
+fn jumps(zeros: Vec<UntouchedReading>) -> Vec<Jump> {
+    let jump = |((first, earlier), (second, later)): (&UntouchedReading, &UntouchedReading)| Jump {
         rows: [*first, *second],
         change_uv: std::array::from_fn(|k| later[k] - earlier[k]),
         lags: [[0.0; CHANNELS]; PLAYS],

@@ -20,10 +20,10 @@ use self::effort::Effort;
 use self::evidence::{log_likelihood_of_contacts, log_prior};
 use self::hyperparameters::{Estimates, Settings};
 use self::jumps::{Jump, Jumps};
-use super::model::Layout;
+use super::model::ParameterLayout;
 use super::noise::NoisePrior;
 use crate::ageing;
-use crate::calibration::data::contacts::{Fitted, Knowledge, Maps, Measured, Place, TERMS};
+use crate::calibration::data::contacts::{FieldAtPlace, Fitted, Knowledge, Maps, Measured, TERMS};
 use crate::calibration::data::plate::scale;
 use crate::calibration::data::rig::RigPrior;
 use crate::calibration::model::physical::free;
@@ -31,7 +31,7 @@ use crate::calibration::model::prior::Prior;
 use crate::calibration::model::prior_deviations::Deviating;
 use crate::calibration::noise::lasting::Filter;
 use crate::calibration::noise::model::NoiseModel;
-use crate::calibration::noise::normal_equations::{NormalEquations, Step};
+use crate::calibration::noise::normal_equations::{GaussNewtonStep, NormalEquations};
 use crate::calibration::noise::residual::{MarginalPrecision, Residual};
 use tactpad_core::numeric::linear::LargeFactor;
 use tactpad_core::numeric::products::{combined, dot};
@@ -56,7 +56,7 @@ pub(crate) struct Problem<'f> {
     pub(crate) recording: &'f Recording,
     pub(crate) reference_c: Option<f64>,
     pub(crate) sensitivities: Vec<&'f Sensitivity>,
-    pub(crate) layout: Layout,
+    pub(crate) layout: ParameterLayout,
     /// Rows of the recording, and what was measured in them.
     pub(crate) contacts: Vec<(usize, Measured)>,
     /// From one reading of the untouched pad to the next.
@@ -69,9 +69,9 @@ pub(crate) struct Problem<'f> {
 
 /// The posterior for some settings.
 #[derive(Clone, Debug)]
-pub(crate) struct Fit {
+pub(crate) struct PosteriorFit {
     pub(crate) settings: Settings,
-    /// Its maximum, in the order of [`Layout`].
+    /// Its maximum, in the order of [`ParameterLayout`].
     pub(crate) values: Vec<f64>,
     pub(crate) estimates: Estimates,
     /// Of the curvature H.
@@ -87,13 +87,13 @@ pub(crate) struct Fit {
 struct Located {
     place_mm: [f64; 2],
     /// The field there, which takes long to find.
-    place: Arc<Place>,
+    place: Arc<FieldAtPlace>,
     force_n: [f64; 3],
 }
 
 /// A contact as a fit explains it.
 #[derive(Clone, Debug)]
-pub(crate) struct Explained {
+pub(crate) struct ExplainedContact {
     pub(crate) place_mm: [f64; 2],
     pub(crate) residual: Residual,
     /// Inverse covariance of the residual by the noise model.
@@ -121,7 +121,7 @@ impl<'f> Problem<'f> {
         };
         let contacts = fitted.iter().filter_map(measured).collect();
         let is_play = fitted.iter().all(|it| it.knowledge != Knowledge::Written);
-        let layout = Layout { physical, terms: 0, is_play };
+        let layout = ParameterLayout { physical, terms: 0, is_play };
         Self {
             jumps: Jumps::of(recording),
             prior,
@@ -154,7 +154,12 @@ impl<'f> Problem<'f> {
 
     /// The maximum of the posterior. The search begins at `start`, or at the prior's mean. `None` where the curvature is not
     /// positive definite or a parameter not finite.
-    pub(crate) fn fitted(mut self, settings: Settings, start: Option<&Fit>, effort: Effort) -> Option<Fit> {
+    pub(crate) fn fitted(
+        mut self,
+        settings: Settings,
+        start: Option<&PosteriorFit>,
+        effort: Effort,
+    ) -> Option<PosteriorFit> {
         let mut estimates =
             Estimates::first(self.prior.noise, settings.noise_time_s, self.recording.is_tared());
         let mut values = self.layout.prior_mean(self.prior, &estimates.rig);
@@ -166,14 +171,14 @@ impl<'f> Problem<'f> {
             self.take_up(&start.located);
         }
         estimates.prior_deviations = estimates.prior_deviations.scaled(settings.elastic_scale);
-        let mut found: Option<Fit> = None;
+        let mut found: Option<PosteriorFit> = None;
         for _ in 0..STEPS_MAX {
             // One Gauss-Newton step with the present hyperparameters.
             let mean = self.layout.prior_mean(self.prior, &estimates.rig);
             let precisions =
                 self.layout.precisions(settings.background, &estimates.prior_deviations, &estimates.rig);
             self.follow_load_path(&values, &settings);
-            let Step { delta, factor } = self.step(&values, &estimates, &mean, &precisions)?;
+            let GaussNewtonStep { delta, factor } = self.step(&values, &estimates, &mean, &precisions)?;
             values.iter_mut().zip(&delta).for_each(|(value, delta)| *value += delta);
             self.relabel(&values);
             self.relocate(&values, &estimates.noise_model);
@@ -187,7 +192,14 @@ impl<'f> Problem<'f> {
             let gain =
                 found.as_ref().map_or(f64::INFINITY, |previous| (log_evidence - previous.log_evidence).abs());
             let located = self.located();
-            found = Some(Fit { settings, values: values.clone(), estimates, factor, log_evidence, located });
+            found = Some(PosteriorFit {
+                settings,
+                values: values.clone(),
+                estimates,
+                factor,
+                log_evidence,
+                located,
+            });
             // Then the hyperparameters at the new parameters.
             let deviating = self.layout.kinds().map(|(kind, module, at)| {
                 let (difference, variance) = (values[at] - mean[at], variances[at]);
@@ -212,7 +224,7 @@ impl<'f> Problem<'f> {
         if self.layout.is_play {
             *present
         } else {
-            present.matched(&Layout::rig(values), &variances[Layout::first_of_rig()..])
+            present.matched(&ParameterLayout::rig(values), &variances[ParameterLayout::first_of_rig()..])
         }
     }
 
@@ -225,7 +237,7 @@ impl<'f> Problem<'f> {
         let strains: BTreeMap<usize, [f64; CHANNELS]> = self.contacts.iter().map(strain).collect();
         self.follow_creep(settings.creep_time_s, &strains);
         // Lags l = p − e of the play operators, relative to those of the untouched pad's readings.
-        let hysteresis = Layout::hysteresis(values, &settings.thresholds_uv);
+        let hysteresis = ParameterLayout::hysteresis(values, &settings.thresholds_uv);
         for channel in 0..CHANNELS {
             let known = |at: usize| strains.get(&at).map(|uv| uv[channel]);
             let states = self.recording.states(channel, &hysteresis, known);
@@ -259,7 +271,13 @@ impl<'f> Problem<'f> {
     }
 
     /// The Gauss-Newton step from θ (`values`).
-    fn step(&self, values: &[f64], estimates: &Estimates, mean: &[f64], precisions: &[f64]) -> Option<Step> {
+    fn step(
+        &self,
+        values: &[f64],
+        estimates: &Estimates,
+        mean: &[f64],
+        precisions: &[f64],
+    ) -> Option<GaussNewtonStep> {
         let prior = NormalEquations::of_prior(precisions, mean, values);
         self.equations(prior, values, estimates, |_, _, _| ())?.solved()
     }
@@ -305,7 +323,7 @@ impl<'f> Problem<'f> {
     }
 
     /// Mean and precisions of the prior at a fit's hyperparameters.
-    pub(crate) fn prior_of(&self, fit: &Fit) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn prior_of(&self, fit: &PosteriorFit) -> (Vec<f64>, Vec<f64>) {
         let Estimates { prior_deviations, rig, .. } = &fit.estimates;
         let precisions = self.layout.precisions(fit.settings.background, prior_deviations, rig);
         (self.layout.prior_mean(self.prior, rig), precisions)
@@ -322,9 +340,9 @@ impl<'f> Problem<'f> {
         let label_jacobian = self.layout.label_jacobian(values, &self.scale, contact);
         if contact.knowledge == Knowledge::Written {
             // ∂f/∂ρⱼ = J ∂T/∂ρⱼ.
-            let slopes = contact.written.slopes(&Layout::rig(values));
+            let slopes = contact.written.slopes(&ParameterLayout::rig(values));
             for (row, jacobian) in rows.iter_mut().zip(&label_jacobian) {
-                let of_rig = row[Layout::first_of_rig()..].iter_mut().zip(&slopes);
+                let of_rig = row[ParameterLayout::first_of_rig()..].iter_mut().zip(&slopes);
                 of_rig.for_each(|(entry, slope)| *entry = dot(jacobian, slope));
             }
         }
@@ -351,7 +369,7 @@ impl<'f> Problem<'f> {
 
     /// What the written labels stand for, by these errors of the rig.
     fn relabel(&mut self, values: &[f64]) {
-        let rig = Layout::rig(values);
+        let rig = ParameterLayout::rig(values);
         let written = self.contacts.iter_mut().filter(|(_, contact)| contact.knowledge == Knowledge::Written);
         written.for_each(|(_, contact)| contact.label = contact.written.contact(&rig));
     }
@@ -384,7 +402,7 @@ impl<'f> Problem<'f> {
             // So near the field is linear, and nothing is gained by being there.
             let [dx_mm, dy_mm] = [0, 1].map(|axis| place_mm[axis] - contact.place_mm[axis]);
             if libm::hypot(dx_mm, dy_mm) > RELOCATED_MM {
-                contact.place = Arc::new(Place::of(field, &self.sensitivities, plate_mm, place_mm));
+                contact.place = Arc::new(FieldAtPlace::of(field, &self.sensitivities, plate_mm, place_mm));
                 contact.place_mm = place_mm;
             }
         }
@@ -408,14 +426,14 @@ impl<'f> Problem<'f> {
     }
 
     /// A fit's contacts, as it explains them.
-    pub(crate) fn explained(mut self, fit: &Fit) -> Vec<Explained> {
+    pub(crate) fn explained(mut self, fit: &PosteriorFit) -> Vec<ExplainedContact> {
         self.relabel(&fit.values);
         self.take_up(&fit.located);
         self.follow_load_path(&fit.values, &fit.settings);
         let contacts = self.contacts.iter().zip(self.residuals(&fit.values));
         let explained = contacts.filter_map(|((_, contact), residual)| {
             let precision = fit.estimates.noise_model.marginal_precision(&residual)?;
-            Some(Explained { place_mm: contact.place_mm, residual, precision })
+            Some(ExplainedContact { place_mm: contact.place_mm, residual, precision })
         });
         explained.collect()
     }

@@ -6,18 +6,18 @@
 //! the changes of the maps along those v that move decoded contacts most, and then along those that make channels contradict each
 //! other most.
 
-use crate::calibration::data::contacts::{BACKGROUND_DEGREE, Measured, Place};
+use crate::calibration::data::contacts::{BACKGROUND_DEGREE, FieldAtPlace, Measured};
 use crate::calibration::data::plate::{loads, places};
-use crate::calibration::model::Layout;
+use crate::calibration::model::ParameterLayout;
 use crate::calibration::noise::{self, FieldCovariance};
-use crate::calibration::problem::{Fit, Problem};
+use crate::calibration::problem::{PosteriorFit, Problem};
 use tactpad_core::numeric::dense::{Matrix, gram};
 use tactpad_core::numeric::linear::{Factor, LargeFactor};
 use tactpad_core::numeric::principal::{Principal, beside, principal_directions};
 use tactpad_core::numeric::products::dot;
 use tactpad_core::numeric::zernike;
 use tactpad_core::pad::influence::{InfluenceField, MAPS};
-use tactpad_core::pipeline::contact::field_error::{DEGREE, FieldError, MODES_MAX, Mode, TERMS};
+use tactpad_core::pipeline::contact::field_error::{DEGREE, ErrorMode, FieldError, MODES_MAX, TERMS};
 use tactpad_core::pipeline::contact::inverse::Inverse;
 use tactpad_core::pipeline::contact::uncertainty::{Noise, UNKNOWNS};
 use tactpad_core::quantity::CHANNELS;
@@ -41,7 +41,7 @@ struct Load {
 }
 
 /// A mode before it is rounded.
-struct Found {
+struct UnroundedMode {
     /// v, a unit vector.
     direction: Vec<f64>,
     /// Q, line by line.
@@ -65,7 +65,7 @@ struct Basis {
 }
 
 /// A decoder with the pad's own field, that field's errors and their part of the noise; `noise` is of the channels alone.
-pub(crate) fn decoder(problem: &Problem<'_>, fit: &Fit, noise: Noise) -> Inverse {
+pub(crate) fn decoder(problem: &Problem<'_>, fit: &PosteriorFit, noise: Noise) -> Inverse {
     let field = problem.corrected(&fit.values);
     let loads: Vec<Load> =
         loads(problem.reach_mm).map(|(place_mm, force_n)| problem.load(fit, place_mm, force_n)).collect();
@@ -77,16 +77,16 @@ pub(crate) fn decoder(problem: &Problem<'_>, fit: &Fit, noise: Noise) -> Inverse
     let left = |load: &Load| load.left_by(&modes, certain.field(), problem.reach_mm);
     let rest: Vec<FieldCovariance> = loads.iter().map(left).collect();
     let noise = Noise { by_field: noise::mean_by_field(&certain, &rest), ..noise };
-    let rounded = modes.iter().map(Found::rounded).collect();
-    let crosstalk = Layout::crosstalk(&fit.values).map(|line| line.map(|share| share as f32));
+    let rounded = modes.iter().map(UnroundedMode::rounded).collect();
+    let crosstalk = ParameterLayout::crosstalk(&fit.values).map(|line| line.map(|share| share as f32));
     Inverse::new(certain.field().clone(), noise)
         .with_field_error(FieldError::of(rounded).unwrap_or_default())
         .with_crosstalk(crosstalk)
 }
 
 impl Problem<'_> {
-    fn load(&self, fit: &Fit, place_mm: [f64; 2], force_n: [f64; 3]) -> Load {
-        let place = Place::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
+    fn load(&self, fit: &PosteriorFit, place_mm: [f64; 2], force_n: [f64; 3]) -> Load {
+        let place = FieldAtPlace::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
         let mut halves = Vec::with_capacity(CHANNELS);
         let contact = Measured::unmeasured(place_mm, place, force_n);
         self.layout.readings(&fit.values, &self.scale, &contact, |_, _, derivatives| {
@@ -97,9 +97,9 @@ impl Problem<'_> {
 
     /// The loads as a pad reads them whose zeros are taken anew: those of a recording that has its own are no errors of the field.
     /// Where it has none the decoder keeps the zeros of the fit, and their errors.
-    fn without_zeros(&self, fit: &Fit, mut loads: Vec<Load>) -> Vec<Load> {
+    fn without_zeros(&self, fit: &PosteriorFit, mut loads: Vec<Load>) -> Vec<Load> {
         if self.recording.is_tared() {
-            let zeros = (0..CHANNELS).map(|channel| fit.halved(&[(Layout::zero_at(channel), 1.0)]));
+            let zeros = (0..CHANNELS).map(|channel| fit.halved(&[(ParameterLayout::zero_at(channel), 1.0)]));
             let zeros: Vec<Vec<f64>> = zeros.collect();
             for (half, zero) in loads.iter_mut().flat_map(|load| load.halves.iter_mut().zip(&zeros)) {
                 half.iter_mut().zip(zero).for_each(|(entry, zero)| *entry -= zero);
@@ -109,7 +109,12 @@ impl Problem<'_> {
     }
 
     /// The modes of these directions.
-    fn modes(&self, fit: &Fit, principal: &[Principal], field: &InfluenceField) -> Option<Vec<Found>> {
+    fn modes(
+        &self,
+        fit: &PosteriorFit,
+        principal: &[Principal],
+        field: &InfluenceField,
+    ) -> Option<Vec<UnroundedMode>> {
         let changes: Vec<Vec<f64>> =
             principal.iter().map(|it| fit.factor.solve_upper(&it.direction)).collect();
         let basis = Basis::of(field, self.reach_mm)?;
@@ -124,8 +129,8 @@ impl Problem<'_> {
     }
 
     /// How the maps at a place change with each of these changes of the parameters, µV/N.
-    fn changed_maps(&self, fit: &Fit, changes: &[Vec<f64>], place_mm: [f64; 2]) -> Vec<[f64; MAPS]> {
-        let place = Place::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
+    fn changed_maps(&self, fit: &PosteriorFit, changes: &[Vec<f64>], place_mm: [f64; 2]) -> Vec<[f64; MAPS]> {
+        let place = FieldAtPlace::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
         let mut contact = Measured::unmeasured(place_mm, place, [0.0; 3]);
         let mut maps = vec![[0.0; MAPS]; changes.len()];
         for axis in 0..3 {
@@ -133,7 +138,7 @@ impl Problem<'_> {
             self.layout.readings(&fit.values, &self.scale, &contact, |channel, _, derivatives| {
                 for (maps, change) in maps.iter_mut().zip(changes) {
                     // ∂sₖ/∂θ δθ; a zero is no part of a map.
-                    let zero_uv = change[Layout::zero_at(channel)];
+                    let zero_uv = change[ParameterLayout::zero_at(channel)];
                     maps[3 * channel + axis] = dot(derivatives, change) - zero_uv;
                 }
             });
@@ -168,7 +173,7 @@ impl Basis {
     }
 
     /// The mode whose maps have these values at the places.
-    fn found(&self, direction: Vec<f64>, maps: &[Vec<f64>]) -> Found {
+    fn found(&self, direction: Vec<f64>, maps: &[Vec<f64>]) -> UnroundedMode {
         // M = Q G + P by least squares. What polynomials do not hold of G tells Q, as it is orthogonal to them: Q R Rᵀ = M Rᵀ; then P
         // is what comes closest to M − Q G.
         let mixture: [[f64; CHANNELS]; CHANNELS] =
@@ -180,7 +185,7 @@ impl Basis {
             }
             closest(&self.normal, &self.polynomials, &rest)
         };
-        Found { direction, mixture, maps: maps.iter().enumerate().map(smooth).collect() }
+        UnroundedMode { direction, mixture, maps: maps.iter().enumerate().map(smooth).collect() }
     }
 }
 
@@ -289,7 +294,7 @@ impl Load {
     }
 
     /// What these modes leave of the channels' covariance.
-    fn left_by(&self, modes: &[Found], field: &InfluenceField, reach_mm: f64) -> FieldCovariance {
+    fn left_by(&self, modes: &[UnroundedMode], field: &InfluenceField, reach_mm: f64) -> FieldCovariance {
         // Σₖₗ − Σᵣ cᵣₖ cᵣₗ + Σᵣ eᵣₖ eᵣₗ, where c = vᵀL⁻¹a is what a mode does and e what its polynomials miss of that.
         let values = polynomials(&self.place_mm, reach_mm);
         let contact = noise::contact(&self.place_mm, &self.force_n);
@@ -304,7 +309,12 @@ impl Load {
     }
 
     /// What a mode does to each channel, and what its mixture and polynomials miss of that.
-    fn read(&self, mode: &Found, values: &[f64], signals_uv: &[f64; CHANNELS]) -> [[f64; 2]; CHANNELS] {
+    fn read(
+        &self,
+        mode: &UnroundedMode,
+        values: &[f64],
+        signals_uv: &[f64; CHANNELS],
+    ) -> [[f64; 2]; CHANNELS] {
         std::array::from_fn(|channel| {
             let exact = dot(&mode.direction, &self.halves[channel]);
             let smooth = mode.maps[3 * channel..].iter().zip(self.force_n);
@@ -314,10 +324,10 @@ impl Load {
     }
 }
 
-impl Found {
-    fn rounded(&self) -> Mode {
+impl UnroundedMode {
+    fn rounded(&self) -> ErrorMode {
         let maps = std::array::from_fn(|term| std::array::from_fn(|map| self.maps[map][term] as f32));
-        Mode { mixture: self.mixture.map(|line| line.map(|share| share as f32)), maps }
+        ErrorMode { mixture: self.mixture.map(|line| line.map(|share| share as f32)), maps }
     }
 }
 
@@ -325,7 +335,7 @@ impl Found {
 mod tests {
     use super::*;
     use crate::calibration::data::contacts::{Fitted, Knowledge};
-    use crate::calibration::fit::prepared::Prepared;
+    use crate::calibration::fit::prepared::PreparedRecording;
     use crate::calibration::model::prior::Prior;
     use crate::calibration::problem::effort::Effort;
     use crate::calibration::problem::hyperparameters::Settings;
@@ -365,7 +375,7 @@ mod tests {
     }
 
     /// Makes a small fit and asks about it.
-    fn on_a_fit(ask: impl FnOnce(&Problem<'_>, &Fit, &Inverse)) {
+    fn on_a_fit(ask: impl FnOnce(&Problem<'_>, &PosteriorFit, &Inverse)) {
         let (device, field) = (Device::nominal(), PadField::nominal());
         let recording = recording(&field);
         let fitted: Vec<Fitted> = recording
@@ -374,7 +384,7 @@ mod tests {
             .map(|row| Fitted { row: *row, knowledge: Knowledge::Written })
             .collect();
         let prior = Prior::simulated(&field);
-        let prepared = Prepared::of(&recording, &fitted, &device, &field).unwrap();
+        let prepared = PreparedRecording::of(&recording, &fitted, &device, &field).unwrap();
         let problem = prepared.problem(&fitted, &device, &prior).with_background();
         let fit = problem.clone().fitted(SETTINGS, None, Effort::FULL).unwrap();
         ask(&problem, &fit, &decoder(&problem, &fit, fit.estimates.noise_model.noise));
@@ -388,7 +398,7 @@ mod tests {
     /// What the decoder says of the field's errors at a contact, over R Σ Rᵀ with Σₖₗ = aₖᵀ H⁻¹ aₗ, the zeros left out.
     fn stated_over_exact(
         problem: &Problem<'_>,
-        fit: &Fit,
+        fit: &PosteriorFit,
         decoder: &Inverse,
         place_mm: [f64; 2],
         force_n: [f64; 3],
@@ -430,7 +440,7 @@ mod tests {
             let mut random = SplitMix64::new(9);
             let places_mm = [[1.0, 2.0], [-5.0, 3.0], [24.0, 5.0], [-13.0, -21.0]];
             let of = |place_mm| {
-                Place::of(&problem.prior.field, &problem.sensitivities, problem.plate_mm, place_mm)
+                FieldAtPlace::of(&problem.prior.field, &problem.sensitivities, problem.plate_mm, place_mm)
             };
             let contacts =
                 places_mm.map(|place_mm| Measured::unmeasured(place_mm, of(place_mm), [0.4, -0.3, 2.0]));
@@ -443,7 +453,7 @@ mod tests {
                 for (contact, held) in contacts.iter().zip(&mut held) {
                     let mut uv = problem.layout.load_uv(&fit.values, &problem.scale, contact);
                     problem.layout.readings(&fit.values, &problem.scale, contact, |k, _, derivatives| {
-                        uv[k] += dot(derivatives, &change) - change[Layout::zero_at(k)];
+                        uv[k] += dot(derivatives, &change) - change[ParameterLayout::zero_at(k)];
                     });
                     let variances = decoder.noise().variances(&uv, contact.force_n[2]).noise;
                     let noisy = |k: usize| uv[k] + variances[k].sqrt() * f64::from(random.normal());

@@ -7,7 +7,7 @@ use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
 
 /// A press, and how exactly it would be decoded by channels without noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Known {
+pub struct PressPrecision {
     /// Where.
     pub place_mm: [f64; 2],
     /// Standard deviation of the place, as a mean over x and y.
@@ -16,7 +16,7 @@ pub struct Known {
     pub force_share: f64,
 }
 
-impl Known {
+impl PressPrecision {
     /// At loads all over the plate; without those where the field does not tell a contact.
     pub(crate) fn map(decoder: &Inverse) -> Vec<Self> {
         let loads = loads(f64::from(decoder.field().radius_mm()));

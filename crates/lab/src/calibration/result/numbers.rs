@@ -3,9 +3,9 @@
 //! They serve the decoder. None of them is a cause: what no parameter stands for is taken up by those that there are.
 
 use crate::calibration::data::rig::{RIG, RigNumber, RigPrior};
-use crate::calibration::model::Layout;
+use crate::calibration::model::ParameterLayout;
 use crate::calibration::model::physical::Physical;
-use crate::calibration::problem::Fit;
+use crate::calibration::problem::PosteriorFit;
 use crate::diagnosis::data::target::Target;
 use tactpad_core::numeric::products::dot;
 use tactpad_core::pipeline::compensation::hysteresis::PLAYS;
@@ -86,14 +86,14 @@ pub struct Pair {
 
 /// Of what a fit has numbers beside those that it always has.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Asked {
+pub(crate) struct OptionalNumbers {
     /// Zeros, where no row reads the untouched pad.
     pub(crate) zero_uv: Option<[f64; CHANNELS]>,
     pub(crate) gains_follow_temperature: bool,
 }
 
 /// A number, and the parameters that it is the sum of, each with its factor.
-type Combined = (Quantity, Target, Vec<(usize, f64)>);
+type ParameterSum = (Quantity, Target, Vec<(usize, f64)>);
 
 impl Quantity {
     /// Its name; that of a module's number is the device's.
@@ -199,13 +199,17 @@ impl Number {
     }
 
     /// All numbers of a fit, and the pairs that are not told apart.
-    pub(crate) fn all(layout: &Layout, fit: &Fit, asked: &Asked) -> (Vec<Self>, Vec<Pair>) {
+    pub(crate) fn all(
+        layout: &ParameterLayout,
+        fit: &PosteriorFit,
+        asked: &OptionalNumbers,
+    ) -> (Vec<Self>, Vec<Pair>) {
         let precisions =
             layout.precisions(fit.settings.background, &fit.estimates.prior_deviations, &RigPrior::new());
         let combined = combined(layout, fit, asked);
         // A triangular solve for each, some 100 in all: nothing beside one step of the fit.
         let halves: Vec<Vec<f64>> = combined.iter().map(|(.., sum)| fit.halved(sum)).collect();
-        let number = |((quantity, target, sum), half): (&Combined, &Vec<f64>)| {
+        let number = |((quantity, target, sum), half): (&ParameterSum, &Vec<f64>)| {
             let value = value(*quantity, *target, sum, fit, asked);
             let unit = quantity.unit(value);
             // Var cᵀθ = Σ c²/P, as the prior's parameters are independent.
@@ -230,10 +234,16 @@ impl Number {
     }
 }
 
-fn value(quantity: Quantity, target: Target, sum: &[(usize, f64)], fit: &Fit, asked: &Asked) -> f64 {
+fn value(
+    quantity: Quantity,
+    target: Target,
+    sum: &[(usize, f64)],
+    fit: &PosteriorFit,
+    asked: &OptionalNumbers,
+) -> f64 {
     match (quantity, target, asked.zero_uv) {
         (Quantity::Zero, Target::Channel(channel), Some(zero_uv)) => zero_uv[channel],
-        (Quantity::Gain, Target::Channel(channel), _) => Layout::gain(&fit.values, channel),
+        (Quantity::Gain, Target::Channel(channel), _) => ParameterLayout::gain(&fit.values, channel),
         (Quantity::Physical(it), ..) => it.value(sum_of(sum, fit)),
         (Quantity::Rig(RigNumber { is_factor: true, .. }), ..) => libm::exp(sum_of(sum, fit)),
         // Of 1 + A nothing but 1 is left: A/(1 + A) was lost.
@@ -243,31 +253,31 @@ fn value(quantity: Quantity, target: Target, sum: &[(usize, f64)], fit: &Fit, as
 }
 
 /// cᵀθ.
-fn sum_of(sum: &[(usize, f64)], fit: &Fit) -> f64 {
+fn sum_of(sum: &[(usize, f64)], fit: &PosteriorFit) -> f64 {
     sum.iter().map(|(at, factor)| factor * fit.values[*at]).sum()
 }
 
 /// What the numbers are of, and of which parameters.
-fn combined(layout: &Layout, fit: &Fit, asked: &Asked) -> Vec<Combined> {
+fn combined(layout: &ParameterLayout, fit: &PosteriorFit, asked: &OptionalNumbers) -> Vec<ParameterSum> {
     let channels = |quantity, is_asked: bool, at: fn(usize) -> usize| {
         let channels = (0..CHANNELS).filter(move |_| is_asked);
         channels.map(move |channel| (quantity, Target::Channel(channel), vec![(at(channel), 1.0)]))
     };
     let gains = (0..CHANNELS).map(|channel| {
-        (Quantity::Gain, Target::Channel(channel), Layout::gain_terms(&fit.values, channel).to_vec())
+        (Quantity::Gain, Target::Channel(channel), ParameterLayout::gain_terms(&fit.values, channel).to_vec())
     });
     let pairs = (0..CHANNELS).flat_map(|into| (0..CHANNELS).map(move |from| (into, from)));
     let crosstalks = pairs.filter(|(into, from)| into != from).map(|(into, from)| {
         let target = Target::Channels { into, from };
-        (Quantity::Crosstalk, target, vec![(Layout::crosstalk_at(into, from), 1.0)])
+        (Quantity::Crosstalk, target, vec![(ParameterLayout::crosstalk_at(into, from), 1.0)])
     });
-    let physical = layout.physical.iter().zip(Layout::first_physical()..).map(|(it, at)| {
+    let physical = layout.physical.iter().zip(ParameterLayout::first_physical()..).map(|(it, at)| {
         let target = it.parameter.module().map_or(Target::Pad, Target::Module);
         (Quantity::Physical(*it), target, vec![(at, 1.0)])
     });
-    let [creep, blur] = Layout::creep_and_blur_at();
+    let [creep, blur] = ParameterLayout::creep_and_blur_at();
     let creep = (fit.settings.creep_time_s > 0.0).then(|| (Quantity::Creep, Target::Pad, vec![(creep, 1.0)]));
-    let slope = |channel| Layout::first_gain_slope() + channel;
+    let slope = |channel| ParameterLayout::first_gain_slope() + channel;
     gains
         .chain(physical)
         .chain(crosstalks)
@@ -276,33 +286,37 @@ fn combined(layout: &Layout, fit: &Fit, asked: &Asked) -> Vec<Combined> {
         .chain([(Quantity::Blur, Target::Rig, vec![(blur, 1.0)])])
         .chain(by_reference(layout))
         .chain(channels(Quantity::GainSlope, asked.gains_follow_temperature, slope))
-        .chain(channels(Quantity::Zero, asked.zero_uv.is_some(), Layout::zero_at))
+        .chain(channels(Quantity::Zero, asked.zero_uv.is_some(), ParameterLayout::zero_at))
         .collect()
 }
 
 /// What only a reference tells: ageing, and its own errors.
-fn by_reference(layout: &Layout) -> Vec<Combined> {
+fn by_reference(layout: &ParameterLayout) -> Vec<ParameterSum> {
     if layout.is_play {
         return Vec::new();
     }
-    let ageing = (Quantity::Ageing, Target::Pad, vec![(Layout::ageing_at(), 1.0)]);
-    let rig = RIG.iter().zip(Layout::first_of_rig()..);
+    let ageing = (Quantity::Ageing, Target::Pad, vec![(ParameterLayout::ageing_at(), 1.0)]);
+    let rig = RIG.iter().zip(ParameterLayout::first_of_rig()..);
     let rig = rig.map(|(number, at)| (Quantity::Rig(number), Target::Rig, vec![(at, 1.0)]));
     std::iter::once(ageing).chain(rig).collect()
 }
 
 /// The shares of a play operator: the mean over the channels, then each channel's.
-fn frictions(play: usize, threshold_uv: f64) -> Vec<Combined> {
+fn frictions(play: usize, threshold_uv: f64) -> Vec<ParameterSum> {
     if threshold_uv == 0.0 {
         return Vec::new();
     }
     let quantity = Quantity::Friction { threshold_uv };
     // w̄ᵢ + Σₖ δᵢₖ/9 of all, and wᵢₖ = w̄ᵢ + δᵢₖ of a channel.
-    let of_all = |channel: usize| (Layout::share_at(play, channel)[1], 1.0 / CHANNELS as f64);
-    let [share, _] = Layout::share_at(play, 0);
+    let of_all = |channel: usize| (ParameterLayout::share_at(play, channel)[1], 1.0 / CHANNELS as f64);
+    let [share, _] = ParameterLayout::share_at(play, 0);
     let mean = std::iter::once((share, 1.0)).chain((0..CHANNELS).map(of_all)).collect();
     let own = (0..CHANNELS).map(|channel| {
-        (quantity, Target::Channel(channel), Layout::share_at(play, channel).map(|at| (at, 1.0)).to_vec())
+        (
+            quantity,
+            Target::Channel(channel),
+            ParameterLayout::share_at(play, channel).map(|at| (at, 1.0)).to_vec(),
+        )
     });
     std::iter::once((quantity, Target::Pad, mean)).chain(own).collect()
 }

@@ -1,6 +1,6 @@
 //! What a rig leaves open of a pad: errors of its own that the contacts do not tell from the pad's.
 
-use super::known::Known;
+use super::known::PressPrecision;
 use super::numbers::Number;
 
 /// An error of the rig is worth a word if it is at least this part of the variance of what it blurs.
@@ -32,9 +32,9 @@ pub enum Blurred {
 ///
 /// A contact is decoded in the frame of the labels. So the stage's offset is an error of the place one by one, its turn one of r φ,
 /// a tilt of the reference one of F τ across the force, its gain one of F γ along it.
-pub(crate) fn by_rig(numbers: &[Number], map: &[Known]) -> Vec<OpenByRig> {
+pub(crate) fn by_rig(numbers: &[Number], map: &[PressPrecision]) -> Vec<OpenByRig> {
     let count = map.len().max(1) as f64;
-    let mean = |of: &dyn Fn(&Known) -> f64| map.iter().map(of).sum::<f64>() / count;
+    let mean = |of: &dyn Fn(&PressPrecision) -> f64| map.iter().map(of).sum::<f64>() / count;
     let (place_mm2, force2) = (mean(&|it| it.deviation_mm.powi(2)), mean(&|it| it.force_share.powi(2)));
     let square_mm2 = mean(&|it| it.place_mm.iter().map(|mm| mm * mm).sum());
     // Σ σ² of the numbers of a cause.
@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn what_blurs_most_is_said_with_its_part() {
-        let known = |x_mm| Known { place_mm: [x_mm, 0.0], deviation_mm: 0.1, force_share: 0.01 };
+        let known = |x_mm| PressPrecision { place_mm: [x_mm, 0.0], deviation_mm: 0.1, force_share: 0.01 };
         let map = [known(10.0), known(-10.0)];
         let numbers = [
             number("stage_offset.x_mm", 0.08),

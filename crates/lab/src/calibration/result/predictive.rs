@@ -8,7 +8,7 @@
 //! Source: A. Gelman, X.-L. Meng, H. Stern, Statistica Sinica 6 (1996) 733.
 
 use crate::calibration::data::contacts::Knowledge;
-use crate::calibration::problem::Explained;
+use crate::calibration::problem::ExplainedContact;
 use tactpad_core::numeric::chi_square::exceeded;
 use tactpad_core::quantity::CHANNELS;
 
@@ -23,7 +23,7 @@ const CONTACTS_MIN: usize = 8;
 
 /// What contacts are divided by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum By {
+pub enum Partition {
     /// Their distance from the middle.
     Radius,
     /// The magnitude of their force.
@@ -32,10 +32,10 @@ pub enum By {
     Time,
 }
 
-impl By {
+impl Partition {
     const ALL: [Self; 3] = [Self::Radius, Self::Force, Self::Time];
 
-    fn of(self, contact: &Explained) -> f64 {
+    fn of(self, contact: &ExplainedContact) -> f64 {
         match self {
             Self::Radius => libm::hypot(contact.place_mm[0], contact.place_mm[1]),
             Self::Force => contact.residual.force_n,
@@ -46,9 +46,9 @@ impl By {
 
 /// One part of the contacts, held against all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Check {
+pub struct PredictiveCheck {
     /// What they are divided by.
-    pub by: By,
+    pub by: Partition,
     /// Which third, by that, from the smallest on.
     pub third: usize,
     /// Contacts in it.
@@ -59,25 +59,25 @@ pub struct Check {
     pub p_value: f64,
 }
 
-impl Check {
+impl PredictiveCheck {
     /// Whether they miss by more than the noise model says.
     pub fn is_missed(&self) -> bool {
-        self.ratio >= RATIO_MIN && self.p_value < LEVEL / (By::ALL.len() * PARTS) as f64
+        self.ratio >= RATIO_MIN && self.p_value < LEVEL / (Partition::ALL.len() * PARTS) as f64
     }
 }
 
 /// The checks of all written contacts; none of presses, whose noise lasts from one to the next.
-pub(crate) fn checks(contacts: &[Explained]) -> Vec<Check> {
-    let written: Vec<&Explained> =
+pub(crate) fn checks(contacts: &[ExplainedContact]) -> Vec<PredictiveCheck> {
+    let written: Vec<&ExplainedContact> =
         contacts.iter().filter(|it| it.residual.knowledge == Knowledge::Written).collect();
     let mean = written.iter().map(|it| square(it)).sum::<f64>() / written.len().max(1) as f64;
     if written.len() < PARTS * CONTACTS_MIN || mean <= 0.0 {
         return Vec::new();
     }
-    By::ALL.into_iter().flat_map(|by| thirds(by, &written, mean)).collect()
+    Partition::ALL.into_iter().flat_map(|by| thirds(by, &written, mean)).collect()
 }
 
-fn thirds(by: By, contacts: &[&Explained], mean: f64) -> Vec<Check> {
+fn thirds(by: Partition, contacts: &[&ExplainedContact], mean: f64) -> Vec<PredictiveCheck> {
     let mut sorted = contacts.to_vec();
     sorted.sort_by(|one, other| by.of(one).total_cmp(&by.of(other)));
     // Tables without times have one time.
@@ -85,17 +85,23 @@ fn thirds(by: By, contacts: &[&Explained], mean: f64) -> Vec<Check> {
         return Vec::new();
     }
     let length = sorted.len().div_ceil(PARTS);
-    let check = |(third, part): (usize, &[&Explained])| {
+    let check = |(third, part): (usize, &[&ExplainedContact])| {
         let squares: f64 = part.iter().map(|it| square(it)).sum();
         let freedom = CHANNELS * part.len();
         let p_value = exceeded(CHANNELS as f64 * squares / mean, freedom);
-        Check { by, third, contacts: part.len(), ratio: squares / mean / part.len() as f64, p_value }
+        PredictiveCheck {
+            by,
+            third,
+            contacts: part.len(),
+            ratio: squares / mean / part.len() as f64,
+            p_value,
+        }
     };
     sorted.chunks(length).enumerate().map(check).collect()
 }
 
 /// q.
-fn square(contact: &Explained) -> f64 {
+fn square(contact: &ExplainedContact) -> f64 {
     contact.precision.square(&contact.residual.residual_uv)
 }
 
@@ -107,7 +113,7 @@ mod tests {
     use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
 
     /// Contacts with noise of 1, and of `rim` beyond 20 mm.
-    fn contacts(rim: f64, knowledge: Knowledge, seed: u64) -> Vec<Explained> {
+    fn contacts(rim: f64, knowledge: Knowledge, seed: u64) -> Vec<ExplainedContact> {
         let mut random = SplitMix64::new(seed);
         let precision = MarginalPrecision {
             weights: [1.0; CHANNELS],
@@ -125,7 +131,7 @@ mod tests {
                 residual_uv: [0; CHANNELS].map(|_| size * f64::from(random.normal())),
                 label_jacobian: [[0.0; UNKNOWNS]; CHANNELS],
             };
-            Explained { place_mm: [radius_mm, 0.0], residual, precision }
+            ExplainedContact { place_mm: [radius_mm, 0.0], residual, precision }
         };
         (0..300).map(one).collect()
     }
@@ -135,7 +141,7 @@ mod tests {
         let missed = (0..50).filter(|seed| {
             let found = checks(&contacts(1.0, Knowledge::Written, *seed));
             assert_eq!(found.len(), 9);
-            found.iter().any(Check::is_missed)
+            found.iter().any(PredictiveCheck::is_missed)
         });
         assert_eq!(missed.count(), 0);
     }
@@ -145,7 +151,7 @@ mod tests {
         let found = checks(&contacts(1.5, Knowledge::Written, 1));
         let missed: Vec<_> = found.iter().filter(|it| it.is_missed()).collect();
         let [rim] = missed.as_slice() else { panic!("{found:?}") };
-        assert_eq!((rim.by, rim.third, rim.contacts), (By::Radius, 2, 100));
+        assert_eq!((rim.by, rim.third, rim.contacts), (Partition::Radius, 2, 100));
         // 78 of these 100 have 2.25 times the square, of all 300 a quarter: 1.97/1.32.
         assert!((rim.ratio - 1.5).abs() < 0.15, "{rim:?}");
     }

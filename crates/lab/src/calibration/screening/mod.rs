@@ -20,10 +20,10 @@ pub(crate) mod moments;
 use std::fmt;
 
 use self::moments::Moments;
-use crate::calibration::data::contacts::{Maps, Place, response};
+use crate::calibration::data::contacts::{FieldAtPlace, Maps, response};
 use crate::calibration::data::plate::{PLACES, places};
 use crate::calibration::model::physical::free;
-use crate::calibration::model::prior_deviations::{GAIN_DEVIATION, Kind, PriorDeviations};
+use crate::calibration::model::prior_deviations::{GAIN_DEVIATION, ParameterKind, PriorDeviations};
 use tactpad_core::numeric::statistics::median;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
@@ -62,7 +62,7 @@ pub enum Fault {
 /// Why a table is not of the pad.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Unexplained {
+pub enum TableMismatch {
     /// The channels follow the contacts no better than chance would.
     Chance,
     /// No single fault explains it: these would have to come together.
@@ -93,7 +93,7 @@ impl fmt::Display for Fault {
     }
 }
 
-impl fmt::Display for Unexplained {
+impl fmt::Display for TableMismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Chance => f.write_str(
@@ -113,7 +113,7 @@ impl fmt::Display for Unexplained {
     }
 }
 
-impl std::error::Error for Unexplained {}
+impl std::error::Error for TableMismatch {}
 
 /// Holds contacts against the device: `None` for a table without a fault that shows.
 ///
@@ -121,13 +121,13 @@ impl std::error::Error for Unexplained {}
 ///
 /// # Errors
 /// No pad of this kind explains the channels, not even one with one fault.
-pub fn screened(rows: &[Row], device: &Device, field: &PadField) -> Result<Option<Fault>, Unexplained> {
+pub fn screened(rows: &[Row], device: &Device, field: &PadField) -> Result<Option<Fault>, TableMismatch> {
     let screening = Screening::of(rows, device, field);
     match screening.faults()[..] {
-        _ if screening.is_chance() => Err(Unexplained::Chance),
+        _ if screening.is_chance() => Err(TableMismatch::Chance),
         [] => Ok(None),
         [fault] => Ok(Some(fault)),
-        ref faults => Err(Unexplained::Faults(faults.to_vec())),
+        ref faults => Err(TableMismatch::Faults(faults.to_vec())),
     }
 }
 
@@ -288,7 +288,7 @@ fn differing(device: &Device, field: &PadField) -> Maps {
     let mut count = 0.0;
     for place_mm in places(f64::from(field.signals.radius_mm()), PLACES) {
         count += 1.0;
-        let place = Place::of(field, &sensitivities, device.plate.radius_mm(), place_mm);
+        let place = FieldAtPlace::of(field, &sensitivities, device.plate.radius_mm(), place_mm);
         for (channel, squares) in squares.iter_mut().enumerate() {
             for (axis, square) in squares.iter_mut().enumerate() {
                 let by_parameters = place
@@ -299,7 +299,7 @@ fn differing(device: &Device, field: &PadField) -> Maps {
                 let by_crosstalk = place
                     .gains
                     .iter()
-                    .map(|other| (prior.of(Kind::Crosstalk) * other[axis]).powi(2))
+                    .map(|other| (prior.of(ParameterKind::Crosstalk) * other[axis]).powi(2))
                     .sum::<f64>();
                 *square += by_parameters.sum::<f64>() + by_crosstalk;
             }

@@ -16,7 +16,7 @@ use crate::diagnosis::report::NotTestable;
 
 /// What a hypothesis changes.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Act {
+pub(super) enum ChangeKind {
     /// The gain of a channel, or of all.
     Gain(Option<usize>),
     /// What is written of a load.
@@ -79,19 +79,21 @@ impl Changes {
         }
     }
 
-    pub(super) fn apply(&mut self, act: &Act, values: &[f64]) {
+    pub(super) fn apply(&mut self, act: &ChangeKind, values: &[f64]) {
         let each = |of: Option<usize>, numbers: &mut Vec<f64>, change: &dyn Fn(&mut f64)| match of {
             Some(channel) => change(&mut numbers[channel]),
             None => numbers.iter_mut().for_each(change),
         };
         match act {
-            Act::Gain(of) => each(*of, &mut self.gains, &|it| *it *= values[0]),
-            Act::Drift(of) => each(*of, &mut self.drifts_per_h, &|it| *it += values[0]),
-            Act::Thermal(of) => each(*of, &mut self.zeros_per_c, &|it| *it += values[0]),
-            Act::Load => self.load *= values[0],
-            Act::Offset(axes) => axes.iter().zip(values).for_each(|(axis, mm)| self.offset_mm[*axis] += mm),
-            Act::Rotation => self.rotation_deg += values[0],
-            Act::Lag => self.lag_ms += values[0],
+            ChangeKind::Gain(of) => each(*of, &mut self.gains, &|it| *it *= values[0]),
+            ChangeKind::Drift(of) => each(*of, &mut self.drifts_per_h, &|it| *it += values[0]),
+            ChangeKind::Thermal(of) => each(*of, &mut self.zeros_per_c, &|it| *it += values[0]),
+            ChangeKind::Load => self.load *= values[0],
+            ChangeKind::Offset(axes) => {
+                axes.iter().zip(values).for_each(|(axis, mm)| self.offset_mm[*axis] += mm)
+            }
+            ChangeKind::Rotation => self.rotation_deg += values[0],
+            ChangeKind::Lag => self.lag_ms += values[0],
         }
     }
 
@@ -101,7 +103,7 @@ impl Changes {
     }
 }
 
-impl Act {
+impl ChangeKind {
     /// Whether only what is read from the labels changes, not the labels.
     pub(super) const fn is_of_channels(&self) -> bool {
         matches!(self, Self::Gain(_) | Self::Load | Self::Drift(_) | Self::Thermal(_))
@@ -114,7 +116,7 @@ pub(super) fn hypotheses(
     extents: &[[f64; 2]],
     there: Circumstances,
     asks_for: impl Fn(&str) -> bool,
-) -> Vec<(Hypothesis, Act)> {
+) -> Vec<(Hypothesis, ChangeKind)> {
     let channels = columns.channels.len();
     let gain = || vec![Parameter::factor("gain", [0.05, 20.0])];
     let drift = || vec![Parameter::additive("uv_per_h", [-1e7, 1e7], 1.0)];
@@ -125,29 +127,44 @@ pub(super) fn hypotheses(
         let half = 0.5 * (high - low);
         Parameter::additive(AXES[*axis], [-half, half], 1e-3 * half)
     };
-    let mut all: Vec<(&'static str, Target, Vec<Parameter>, Act)> = Vec::new();
-    all.push(("excitation_gain", Target::All, gain(), Act::Gain(None)));
-    all.push(("reference_gain", Target::All, gain(), Act::Load));
-    all.extend((0..channels).map(|k| ("channel_gain", Target::Channel(k), gain(), Act::Gain(Some(k)))));
+    let mut all: Vec<(&'static str, Target, Vec<Parameter>, ChangeKind)> = Vec::new();
+    all.push(("excitation_gain", Target::All, gain(), ChangeKind::Gain(None)));
+    all.push(("reference_gain", Target::All, gain(), ChangeKind::Load));
+    all.extend(
+        (0..channels).map(|k| ("channel_gain", Target::Channel(k), gain(), ChangeKind::Gain(Some(k)))),
+    );
     if there.has_time {
-        all.push(("zero_drift", Target::All, drift(), Act::Drift(None)));
-        all.extend((0..channels).map(|k| ("zero_drift", Target::Channel(k), drift(), Act::Drift(Some(k)))));
+        all.push(("zero_drift", Target::All, drift(), ChangeKind::Drift(None)));
+        all.extend(
+            (0..channels).map(|k| ("zero_drift", Target::Channel(k), drift(), ChangeKind::Drift(Some(k)))),
+        );
     }
     if there.has_temperature {
-        all.push(("thermal_zero", Target::All, thermal(), Act::Thermal(None)));
+        all.push(("thermal_zero", Target::All, thermal(), ChangeKind::Thermal(None)));
         all.extend(
-            (0..channels).map(|k| ("thermal_zero", Target::Channel(k), thermal(), Act::Thermal(Some(k)))),
+            (0..channels)
+                .map(|k| ("thermal_zero", Target::Channel(k), thermal(), ChangeKind::Thermal(Some(k)))),
         );
     }
     if !axes.is_empty() {
-        all.push(("stage_offset", Target::All, axes.iter().map(mm).collect(), Act::Offset(axes.clone())));
+        all.push((
+            "stage_offset",
+            Target::All,
+            axes.iter().map(mm).collect(),
+            ChangeKind::Offset(axes.clone()),
+        ));
     }
     if axes.starts_with(&[0, 1]) {
         let deg = vec![Parameter::additive("deg", [-180.0, 180.0], 1e-2)];
-        all.push(("stage_rotation", Target::All, deg, Act::Rotation));
+        all.push(("stage_rotation", Target::All, deg, ChangeKind::Rotation));
     }
     if there.has_series {
-        all.push(("time_lag", Target::All, vec![Parameter::additive("ms", [-1e4, 1e4], 1.0)], Act::Lag));
+        all.push((
+            "time_lag",
+            Target::All,
+            vec![Parameter::additive("ms", [-1e4, 1e4], 1.0)],
+            ChangeKind::Lag,
+        ));
     }
     let all = all.into_iter().filter(|(effect, ..)| asks_for(effect));
     all.map(|(effect, target, parameters, act)| {

@@ -1,6 +1,6 @@
 //! Which columns of two tables are labels and which are channels.
 
-use super::unfit::Unfit;
+use super::unfit::ComparisonError;
 use crate::diagnosis::statistics::regression::Group;
 use tactpad_core::tables::measured::sheet::Sheet;
 
@@ -17,7 +17,7 @@ const LAST_DIGITS: f64 = 1e-5;
 
 /// What is asked for; empty: whatever both tables have.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Asked<'a> {
+pub struct ColumnSelection<'a> {
     /// Names of the labels.
     pub labels: &'a [String],
     /// Names of the channels.
@@ -26,7 +26,7 @@ pub struct Asked<'a> {
     pub without: &'a [String],
 }
 
-impl Asked<'_> {
+impl ColumnSelection<'_> {
     pub(super) fn asks_for(&self, effect: &str) -> bool {
         self.without.iter().all(|other| other != effect)
     }
@@ -45,15 +45,19 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub(super) fn of(earlier: &Sheet, later: &Sheet, asked: &Asked<'_>) -> Result<Self, Unfit> {
+    pub(super) fn of(
+        earlier: &Sheet,
+        later: &Sheet,
+        asked: &ColumnSelection<'_>,
+    ) -> Result<Self, ComparisonError> {
         for name in asked.labels.iter().chain(asked.channels) {
             let is_text = ["trial", "session"].contains(&name.as_str());
             for (sheet, which) in [(earlier, "the earlier recording"), (later, "the measured table")] {
                 if !sheet.has(name) {
-                    return Err(Unfit::Missing { name: name.clone(), which });
+                    return Err(ComparisonError::Missing { name: name.clone(), which });
                 }
                 if !is_text && sheet.numbers(name).is_none() {
-                    return Err(Unfit::NoNumbers { name: name.clone(), which });
+                    return Err(ComparisonError::NoNumbers { name: name.clone(), which });
                 }
             }
         }
@@ -72,7 +76,7 @@ impl Columns {
             asked.channels.to_vec()
         };
         if channels.is_empty() {
-            return Err(Unfit::Channels);
+            return Err(ComparisonError::Channels);
         }
         let is_input = |name: &&str| {
             both.contains(name)
@@ -93,9 +97,9 @@ impl Columns {
         both.iter().copied().filter(is_other).for_each(|name| columns.add([name].into_iter(), false));
         columns.circumstances = CIRCUMSTANCES.into_iter().filter(|name| is_label(name)).collect();
         if !both.iter().any(|name| is_label(name) && !CIRCUMSTANCES.contains(name)) {
-            return Err(Unfit::Labels);
+            return Err(ComparisonError::Labels);
         }
-        if columns.inputs.is_empty() { Err(Unfit::Constant) } else { Ok(columns) }
+        if columns.inputs.is_empty() { Err(ComparisonError::Constant) } else { Ok(columns) }
     }
 
     fn add<'n>(&mut self, names: impl Iterator<Item = &'n str>, is_load: bool) {

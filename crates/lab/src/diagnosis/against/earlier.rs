@@ -5,10 +5,10 @@
 
 use super::columns::{Columns, extent};
 use super::recording::Recording;
-use super::unfit::{ROWS_MIN, Unfit};
+use super::unfit::{ComparisonError, ROWS_MIN};
 use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::model::Signature;
-use crate::diagnosis::statistics::regression::{Fit, Labels, Regression};
+use crate::diagnosis::statistics::regression::{Labels, Regression, RegressionFit};
 use tactpad_core::numeric::statistics::{mean, population_deviation, rms};
 
 /// Parts that a recording is held against itself in.
@@ -27,7 +27,7 @@ const STATIC_MIN: usize = 2 * ROWS_MIN;
 
 /// A sensor as an earlier recording knows it.
 #[derive(Clone, Debug)]
-pub(super) struct Earlier {
+pub(super) struct EarlierRecording {
     regression: Regression,
     /// None: too little is told of the channel.
     pub(super) channels: Vec<Option<Channel>>,
@@ -41,7 +41,7 @@ pub(super) struct Earlier {
 /// A channel as the earlier recording knows it.
 #[derive(Clone, Debug)]
 pub(super) struct Channel {
-    pub(super) fit: Fit,
+    pub(super) fit: RegressionFit,
     /// Weights of the covariances with the pivots.
     spread: Vec<f64>,
     /// By how much the zero differs from part to part, as a standard deviation, and drifts over the recording.
@@ -55,13 +55,17 @@ pub(super) struct Channel {
 
 /// Zero and gain of a part, and their variances.
 #[derive(Clone, Copy)]
-struct Part {
+struct PartZeroGain {
     zero: [f64; 2],
     gain: [f64; 2],
 }
 
-impl Earlier {
-    pub(super) fn of(recording: &Recording, columns: &Columns, has_temperature: bool) -> Result<Self, Unfit> {
+impl EarlierRecording {
+    pub(super) fn of(
+        recording: &Recording,
+        columns: &Columns,
+        has_temperature: bool,
+    ) -> Result<Self, ComparisonError> {
         let samples = &recording.observations.samples;
         let has_time = samples.iter().all(|sample| sample.t_s.is_some());
         let temp_c = has_temperature
@@ -76,12 +80,12 @@ impl Earlier {
             .filter(|channel| observations.is_told[*channel].iter().filter(|it| **it).count() >= ROWS_MIN)
             .collect();
         let readings: Vec<Vec<f64>> = alive.iter().map(|channel| centred(recording, *channel)).collect();
-        let regression = Regression::of(&labels, &readings).ok_or(Unfit::Singular)?;
+        let regression = Regression::of(&labels, &readings).ok_or(ComparisonError::Singular)?;
         let functions = regression.functions_at(&labels);
         let mut channels = vec![None; observations.channels.len()];
         for channel in alive {
-            let known = Known { recording, functions: &functions, channel };
-            let fit = known.fitted(&regression).ok_or(Unfit::Singular)?;
+            let known = EarlierChannel { recording, functions: &functions, channel };
+            let fit = known.fitted(&regression).ok_or(ComparisonError::Singular)?;
             let own = known.parts(&fit);
             channels[channel] = Some(Channel {
                 wander: between(own.iter().map(|part| part.zero)),
@@ -180,21 +184,21 @@ impl Channel {
 }
 
 /// A channel of a recording.
-struct Known<'r> {
+struct EarlierChannel<'r> {
     recording: &'r Recording,
     functions: &'r [Vec<f64>],
     channel: usize,
 }
 
-impl Known<'_> {
-    fn fitted(&self, regression: &Regression) -> Option<Fit> {
+impl EarlierChannel<'_> {
+    fn fitted(&self, regression: &Regression) -> Option<RegressionFit> {
         let observations = &self.recording.observations;
         let (readings, is_told) = (&observations.readings[self.channel], &observations.is_told[self.channel]);
         regression.fitted(self.functions, readings, is_told, &observations.follows())
     }
 
     /// What the fit leaves, and its weights.
-    fn left(&self, fit: &Fit) -> Vec<[f64; 2]> {
+    fn left(&self, fit: &RegressionFit) -> Vec<[f64; 2]> {
         let observations = &self.recording.observations;
         let correlated = correlated(fit);
         let rows = observations.readings[self.channel].iter().zip(&observations.is_told[self.channel]);
@@ -206,7 +210,7 @@ impl Known<'_> {
     }
 
     /// Zero and gain of what the fit leaves, part by part.
-    fn parts(&self, fit: &Fit) -> Vec<Part> {
+    fn parts(&self, fit: &RegressionFit) -> Vec<PartZeroGain> {
         let observations = &self.recording.observations;
         let (readings, is_told) = (&observations.readings[self.channel], &observations.is_told[self.channel]);
         let told: Vec<usize> = (0..readings.len()).filter(|row| is_told[*row]).collect();
@@ -227,13 +231,13 @@ impl Known<'_> {
                     ]
                 })
                 .collect();
-            Part::of(&told, correlated)
+            PartZeroGain::of(&told, correlated)
         };
         (0..PARTS).map(part).collect()
     }
 }
 
-impl Part {
+impl PartZeroGain {
     /// By weighted least squares of what is left on 1 and the signal; rows are signal, what is left, weight.
     fn of(rows: &[[f64; 3]], correlated: f64) -> Self {
         let whole: f64 = rows.iter().map(|[.., weight]| weight).sum();
@@ -254,7 +258,7 @@ pub(super) fn counted(samples: &[Sample], rows: Vec<usize>) -> Vec<usize> {
 }
 
 /// How many rows say as much as one that the row before does not foretell.
-fn correlated(fit: &Fit) -> f64 {
+fn correlated(fit: &RegressionFit) -> f64 {
     (1.0 + fit.memory) / (1.0 - fit.memory)
 }
 

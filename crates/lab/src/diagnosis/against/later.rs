@@ -1,8 +1,8 @@
 //! A later recording of a sensor that an earlier one knows, as a model of its channels.
 
-use super::change::{Act, Changes, Circumstances, hypotheses};
-use super::columns::{Asked, Columns};
-use super::earlier::{Earlier, PARTS, counted};
+use super::change::{ChangeKind, Changes, Circumstances, hypotheses};
+use super::columns::{ColumnSelection, Columns};
+use super::earlier::{EarlierRecording, PARTS, counted};
 use super::recording::Recording;
 use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::model::{CommonError, Hypothesis, Linearised, Model, Signature};
@@ -14,9 +14,9 @@ const NOTHING: f64 = 1e-9;
 /// What all of the later recording has: any rows of it are held against the same.
 #[derive(Clone, Copy)]
 pub(super) struct Setting<'r> {
-    pub(super) earlier: &'r Earlier,
+    pub(super) earlier: &'r EarlierRecording,
     pub(super) columns: &'r Columns,
-    pub(super) asked: &'r Asked<'r>,
+    pub(super) asked: &'r ColumnSelection<'r>,
     pub(super) there: Circumstances,
     /// First and last time, and each channel's root mean square.
     pub(super) times_s: [f64; 2],
@@ -24,21 +24,21 @@ pub(super) struct Setting<'r> {
     /// Mean temperature.
     pub(super) temp_c: f64,
     /// What the earlier recording shows in itself of changes of all channels: their acts, which of their numbers, and how much.
-    pub(super) own: &'r [(Act, usize, f64)],
+    pub(super) own: &'r [(ChangeKind, usize, f64)],
 }
 
 /// The channels of some rows.
-pub(super) struct Later<'r> {
+pub(super) struct LaterRecording<'r> {
     setting: Setting<'r>,
     recording: &'r Recording,
     hypotheses: Vec<Hypothesis>,
-    acts: Vec<Act>,
+    acts: Vec<ChangeKind>,
     /// For each row, what each channel reads beside its zero if nothing has changed.
     unchanged: Vec<Vec<f64>>,
     errors: Vec<Vec<Vec<f64>>>,
 }
 
-impl<'r> Later<'r> {
+impl<'r> LaterRecording<'r> {
     pub(super) fn new(setting: Setting<'r>, recording: &'r Recording) -> Self {
         let mut later = Self::without_errors(setting, recording);
         later.errors = (0..setting.columns.channels.len()).map(|channel| later.errors_of(channel)).collect();
@@ -91,7 +91,7 @@ impl<'r> Later<'r> {
     }
 
     /// What the earlier recording, of which these are the rows, shows in itself of changes that all channels share.
-    pub(super) fn contradictions(&self) -> Vec<(Act, usize, f64)> {
+    pub(super) fn contradictions(&self) -> Vec<(ChangeKind, usize, f64)> {
         let samples = &self.recording.observations.samples;
         let count = samples.len();
         let counted = counted(samples, (0..count).collect());
@@ -102,10 +102,10 @@ impl<'r> Later<'r> {
         let by_trial: Vec<Option<usize>> = samples.iter().map(|it| it.trial).collect();
         let mut own = Vec::new();
         for (at, act) in self.acts.iter().enumerate() {
-            if matches!(act, Act::Gain(Some(_)) | Act::Drift(_) | Act::Thermal(_)) {
+            if matches!(act, ChangeKind::Gain(Some(_)) | ChangeKind::Drift(_) | ChangeKind::Thermal(_)) {
                 continue;
             }
-            let parts = if *act == Act::Lag && trials > 1 { &by_trial } else { &by_row };
+            let parts = if *act == ChangeKind::Lag && trials > 1 { &by_trial } else { &by_row };
             for parameter in 0..self.hypotheses[at].parameters.len() {
                 let deviation = self.setting.earlier.contradiction(&self.of(at, parameter), parts);
                 own.push((act.clone(), parameter, deviation));
@@ -217,18 +217,22 @@ impl<'r> Later<'r> {
     }
 
     /// ∂readings/∂ψ of what happens in the channels, in closed form.
-    fn of_channels(&self, act: &Act, signals: &[Vec<f64>], changes: &Changes) -> Signature {
+    fn of_channels(&self, act: &ChangeKind, signals: &[Vec<f64>], changes: &Changes) -> Signature {
         let rows = || 0..signals.len();
         let slope = |k: usize| -> Vec<f64> {
             match act {
-                Act::Gain(_) => rows().map(|row| changes.gains[k] / changes.load * signals[row][k]).collect(),
-                Act::Load => rows().map(|row| -changes.gains[k] / changes.load * signals[row][k]).collect(),
-                Act::Thermal(_) => rows().map(|row| self.above_c(row)).collect(),
+                ChangeKind::Gain(_) => {
+                    rows().map(|row| changes.gains[k] / changes.load * signals[row][k]).collect()
+                }
+                ChangeKind::Load => {
+                    rows().map(|row| -changes.gains[k] / changes.load * signals[row][k]).collect()
+                }
+                ChangeKind::Thermal(_) => rows().map(|row| self.above_c(row)).collect(),
                 _ => rows().map(|row| self.hours(row)).collect(),
             }
         };
         let of = match act {
-            Act::Gain(of) | Act::Drift(of) | Act::Thermal(of) => *of,
+            ChangeKind::Gain(of) | ChangeKind::Drift(of) | ChangeKind::Thermal(of) => *of,
             _ => None,
         };
         let is_known = |k: &usize| self.setting.earlier.channels[*k].is_some();
@@ -259,7 +263,7 @@ impl<'r> Later<'r> {
     }
 }
 
-impl Model for Later<'_> {
+impl Model for LaterRecording<'_> {
     fn hypotheses(&self) -> &[Hypothesis] {
         &self.hypotheses
     }
@@ -276,7 +280,7 @@ impl Model for Later<'_> {
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
         let changes = self.changes(applied);
         let signals = self.signals(&changes);
-        let of = |(at, act): (usize, &Act)| {
+        let of = |(at, act): (usize, &ChangeKind)| {
             if act.is_of_channels() {
                 return vec![self.of_channels(act, &signals, &changes)];
             }
@@ -294,7 +298,7 @@ impl Model for Later<'_> {
 
     fn common_errors(&self) -> Vec<CommonError> {
         let own = self.setting.own.iter().filter(|(.., deviation)| *deviation > 0.0);
-        let signature = |act: &Act, parameter: usize| {
+        let signature = |act: &ChangeKind, parameter: usize| {
             let at = self.acts.iter().position(|other| other == act)?;
             Some(self.of(at, parameter))
         };
@@ -310,7 +314,7 @@ impl Model for Later<'_> {
 }
 
 /// Each channel's root mean square at rows, beside its zero.
-pub(super) fn sizes(earlier: &Earlier, recording: &Recording) -> Vec<f64> {
+pub(super) fn sizes(earlier: &EarlierRecording, recording: &Recording) -> Vec<f64> {
     let temps = recording.observations.samples.iter().map(|sample| sample.temp_c);
     let signals: Vec<Vec<f64>> =
         recording.inputs.iter().zip(temps).map(|(row, temp_c)| earlier.signals(row, temp_c)).collect();

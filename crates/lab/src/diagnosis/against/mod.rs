@@ -13,13 +13,13 @@ mod standing;
 mod unfit;
 
 use self::change::{Circumstances, EFFECTS, missing};
-pub use self::columns::Asked;
+pub use self::columns::ColumnSelection;
 use self::columns::{Columns, extent};
-use self::earlier::Earlier;
-use self::later::{Later, Setting, sizes};
+use self::earlier::EarlierRecording;
+use self::later::{LaterRecording, Setting, sizes};
 use self::recording::Recording;
 use self::standing::standing;
-pub use self::unfit::Unfit;
+pub use self::unfit::ComparisonError;
 use self::unfit::{BLOCKS_MIN, ROWS_MIN};
 use crate::diagnosis::attribution::Search;
 use crate::diagnosis::attribution::columns::ZERO;
@@ -45,24 +45,28 @@ pub fn effects() -> impl Iterator<Item = &'static str> {
 ///
 /// # Errors
 /// The tables have too little in common, or too little in them.
-pub fn compare(earlier: &Sheet, later: &Sheet, asked: &Asked<'_>) -> Result<Diagnosis, Unfit> {
+pub fn compare(
+    earlier: &Sheet,
+    later: &Sheet,
+    asked: &ColumnSelection<'_>,
+) -> Result<Diagnosis, ComparisonError> {
     let columns = Columns::of(earlier, later, asked)?;
     let [before, after] = [earlier, later].map(|sheet| Recording::of(sheet, &columns));
     for (recording, which) in [(&before, "the earlier recording"), (&after, "the measured table")] {
         if recording.inputs.len() < ROWS_MIN {
-            return Err(Unfit::Rows { rows: recording.inputs.len(), which });
+            return Err(ComparisonError::Rows { rows: recording.inputs.len(), which });
         }
     }
     let has_temperature = [&before, &after].into_iter().all(varies_in_temperature);
     let sound = guarded(&before.observations, None, |_| true);
     let before = before.mended(&sound.observations);
-    let known = Earlier::of(&before, &columns, has_temperature)?;
+    let known = EarlierRecording::of(&before, &columns, has_temperature)?;
     let reached: Vec<usize> =
         (0..after.inputs.len()).filter(|row| known.reaches(&after.inputs[*row])).collect();
     if reached.len() < ROWS_MIN {
-        return Err(Unfit::Apart(reached.len()));
+        return Err(ComparisonError::Apart(reached.len()));
     }
-    let lost = Lost { unlabelled: after.unlabelled, beyond: after.inputs.len() - reached.len() };
+    let lost = ExcludedRows { unlabelled: after.unlabelled, beyond: after.inputs.len() - reached.len() };
     let mut after = after.picked(&reached);
     after.placed(&columns, &known.extents);
     let (after, gate) = checked(&after, &known, asked)?;
@@ -72,7 +76,11 @@ pub fn compare(earlier: &Sheet, later: &Sheet, asked: &Asked<'_>) -> Result<Diag
 }
 
 /// The later recording after the checks: beside its channels' earlier zeros, and in clusters.
-fn checked(after: &Recording, known: &Earlier, asked: &Asked<'_>) -> Result<(Recording, Gate), Unfit> {
+fn checked(
+    after: &Recording,
+    known: &EarlierRecording,
+    asked: &ColumnSelection<'_>,
+) -> Result<(Recording, Gate), ComparisonError> {
     let rows = after.inputs.iter().zip(&after.observations.samples);
     let signals: Vec<Vec<f64>> = rows.map(|(row, sample)| known.signals(row, sample.temp_c)).collect();
     let zeros: Vec<f64> = known.channels.iter().map(|it| it.as_ref().map_or(0.0, |it| it.zero())).collect();
@@ -100,42 +108,43 @@ fn checked(after: &Recording, known: &Earlier, asked: &Asked<'_>) -> Result<(Rec
     distinct.sort_unstable();
     distinct.dedup();
     if distinct.len() < BLOCKS_MIN {
-        return Err(Unfit::Blocks(distinct.len()));
+        return Err(ComparisonError::Blocks(distinct.len()));
     }
     let is_alive = (0..zeros.len()).any(|channel| after.observations.is_alive(channel));
-    if is_alive { Ok((after, gate)) } else { Err(Unfit::Silent) }
+    if is_alive { Ok((after, gate)) } else { Err(ComparisonError::Silent) }
 }
 
 /// What the engine finds.
 fn told(
     columns: &Columns,
-    known: &Earlier,
+    known: &EarlierRecording,
     [before, after]: [&Recording; 2],
-    asked: &Asked<'_>,
+    asked: &ColumnSelection<'_>,
     gate: Gate,
-) -> Result<Diagnosis, Unfit> {
+) -> Result<Diagnosis, ComparisonError> {
     let all = &after.observations;
     let there = circumstances(after, known);
     let times_s = extent(all.samples.iter().filter_map(|sample| sample.t_s));
     let temp_c = mean(all.samples.iter().filter_map(|sample| sample.temp_c).collect::<Vec<_>>());
     let sizes = sizes(known, after);
     let setting = Setting { earlier: known, columns, asked, there, times_s, sizes: &sizes, temp_c, own: &[] };
-    let own = Later::without_errors(setting, before).contradictions();
+    let own = LaterRecording::without_errors(setting, before).contradictions();
     let setting = Setting { own: &own, ..setting };
     let [open, locked] = all.split().map(|rows| {
         let mut part = after.picked(&rows);
         part.observations = all.picked(&rows);
         part
     });
-    let (model, at_locked) = (Later::new(setting, &open), Later::new(setting, &locked));
+    let (model, at_locked) = (LaterRecording::new(setting, &open), LaterRecording::new(setting, &locked));
     let search = Search::new(&model, all, &open.observations);
-    let found = search.run(&Vec::new()).ok_or(Unfit::Singular)?;
+    let found = search.run(&Vec::new()).ok_or(ComparisonError::Singular)?;
     let rows = [(&model, &open), (&at_locked, &locked)].map(|(model, part)| Rows {
         model: model as &dyn Model,
         observations: &part.observations,
         unrepaired: None,
     });
-    let mut diagnosis = summary(&search, &found, &rows, &missing(columns, there)).ok_or(Unfit::Singular)?;
+    let mut diagnosis =
+        summary(&search, &found, &rows, &missing(columns, there)).ok_or(ComparisonError::Singular)?;
     standing(&mut diagnosis, &search, &rows, &found);
     let signals = &found.fit.linearised.readings;
     let excess =
@@ -178,7 +187,7 @@ fn unplaced(diagnosis: &mut Diagnosis, columns: &Columns) {
     }
 }
 
-fn circumstances(after: &Recording, known: &Earlier) -> Circumstances {
+fn circumstances(after: &Recording, known: &EarlierRecording) -> Circumstances {
     let samples = &after.observations.samples;
     let [first, last] = extent(samples.iter().filter_map(|sample| sample.t_s));
     let in_series = samples.iter().filter(|sample| sample.trial.is_some() && sample.t_s.is_some());
@@ -196,12 +205,12 @@ fn varies_in_temperature(recording: &Recording) -> bool {
 }
 
 /// Rows that have no part in anything.
-struct Lost {
+struct ExcludedRows {
     unlabelled: usize,
     beyond: usize,
 }
 
-impl Lost {
+impl ExcludedRows {
     fn notices(&self) -> Vec<Notice> {
         let notice = |detail: String| Notice { check: "missing", channel: None, detail };
         let unlabelled = format!(

@@ -10,7 +10,7 @@ pub(super) const BLOCKS_MIN: usize = 6;
 /// Why two tables cannot be compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Unfit {
+pub enum ComparisonError {
     /// A column that was asked for is not there.
     Missing {
         /// Its name.
@@ -48,7 +48,7 @@ pub enum Unfit {
     Singular,
 }
 
-impl fmt::Display for Unfit {
+impl fmt::Display for ComparisonError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Missing { name, which } => write!(f, "{which} has no column {name}"),
@@ -82,4 +82,4 @@ impl fmt::Display for Unfit {
     }
 }
 
-impl std::error::Error for Unfit {}
+impl std::error::Error for ComparisonError {}

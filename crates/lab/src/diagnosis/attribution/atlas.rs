@@ -1,11 +1,13 @@
 //! The simulated pad about more than one field: its own, and those of changed pads that lie too far off for its tangent.
 
-use super::{Applied, Attribution, Fit, Search};
+use super::{Applied, Attribution, AttributionFit, Search};
 use crate::diagnosis::data::observations::Observations;
 use crate::diagnosis::extension::{Circumstances, with};
 use crate::diagnosis::model::inverse::Written;
 use crate::diagnosis::model::mechanics::{Pad, changed};
-use crate::diagnosis::model::{CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter, Told};
+use crate::diagnosis::model::{
+    ChannelBaselines, CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter,
+};
 use crate::diagnosis::report::NotTestable;
 use crate::diagnosis::simulation::bench::contacts;
 use crate::diagnosis::simulation::simulated::Simulated;
@@ -154,7 +156,7 @@ impl<'f> Atlas<'f> {
     }
 
     /// Whether the tangent's error moves a number of a fitted cause by more than that is known.
-    fn is_far(&self, fit: &Fit) -> Option<bool> {
+    fn is_far(&self, fit: &AttributionFit) -> Option<bool> {
         let at = self.nearest(&fit.applied).map_or(&[][..], |k| &self.solved[k].at);
         let search = self.search();
         for (place, (hypothesis, psi)) in fit.applied.iter().enumerate() {
@@ -197,7 +199,11 @@ impl Model for Atlas<'_> {
         self.first.common_errors()
     }
 
-    fn contacts(&self, applied: &[(usize, Vec<f64>)], told: &Told<'_>) -> Option<Vec<Option<Written>>> {
+    fn contacts(
+        &self,
+        applied: &[(usize, Vec<f64>)],
+        told: &ChannelBaselines<'_>,
+    ) -> Option<Vec<Option<Written>>> {
         let nearest = self.nearest(applied);
         let field = nearest.and_then(|k| self.solved.get(k)).map_or(self.pad.field, |solved| &solved.field);
         let (about, plate_mm) = (self.about(applied), self.pad.device.plate.radius_mm());

@@ -38,7 +38,7 @@ const STANDS: f64 = 0.1;
 pub(crate) type Applied = Vec<(usize, Vec<f64>)>;
 
 /// The measurement about a fitted point.
-pub(crate) struct Fit {
+pub(crate) struct AttributionFit {
     /// What holds, with the fitted coordinates.
     pub(crate) applied: Applied,
     pub(crate) systems: Systems,
@@ -50,7 +50,7 @@ pub(crate) struct Fit {
 }
 
 /// A Gauss-Newton step in all columns, and how much of it is taken.
-struct Step {
+struct GaussNewtonStep {
     coordinates: Vec<f64>,
     fraction: f64,
 }
@@ -58,7 +58,7 @@ struct Step {
 /// What was found.
 pub(crate) struct Attribution {
     /// About the causes that hold.
-    pub(crate) fit: Fit,
+    pub(crate) fit: AttributionFit,
     /// The p-value below which a cause is found: the family-wise level's quantile of the least of all.
     pub(crate) critical: f64,
 }
@@ -110,7 +110,12 @@ impl<'m> Search<'m> {
 
     /// The fit, or where its last cause ended at an end of its range, that with a rival in its place which explains the data as well
     /// and does not; if there is one that is not barred. Then the cause is.
-    fn within_range(&self, fit: Fit, critical: f64, barred: &mut Vec<usize>) -> Option<Fit> {
+    fn within_range(
+        &self,
+        fit: AttributionFit,
+        critical: f64,
+        barred: &mut Vec<usize>,
+    ) -> Option<AttributionFit> {
         let Some(last) = fit.applied.len().checked_sub(1).filter(|last| self.is_at_an_end(&fit, *last))
         else {
             return Some(fit);
@@ -136,10 +141,10 @@ impl<'m> Search<'m> {
 
     /// The fit of these hypotheses by Gauss and Newton's method, with the covariance that goes with it. With `start`, a fit of nearly the
     /// same ones, that is not sought from the beginning.
-    pub(crate) fn fitted(&self, applied: &Applied, start: Option<&Fit>) -> Option<Fit> {
+    pub(crate) fn fitted(&self, applied: &Applied, start: Option<&AttributionFit>) -> Option<AttributionFit> {
         let mut applied = applied.clone();
         let mut before: Option<(Systems, Background)> = None;
-        let mut last: Option<Step> = None;
+        let mut last: Option<GaussNewtonStep> = None;
         for step in 0..=REFITS {
             let linearised = self.model.linearised(&applied);
             let systems = Systems::of(
@@ -158,7 +163,7 @@ impl<'m> Search<'m> {
             let solved = fitted.solved(&marginal)?;
             let moves = self.moves(&applied, &solved.coordinates, &marginal);
             if step == REFITS || moves < STANDS {
-                return Some(Fit {
+                return Some(AttributionFit {
                     applied,
                     systems,
                     background: found,
@@ -189,19 +194,19 @@ impl<'m> Search<'m> {
         applied: &Applied,
         coordinates: Vec<f64>,
         marginal: &Marginal,
-        last: Option<&Step>,
-    ) -> Step {
+        last: Option<&GaussNewtonStep>,
+    ) -> GaussNewtonStep {
         let columns: Vec<usize> = applied.iter().flat_map(|(at, _)| self.columns.all_of(*at)).collect();
         let of = |step: &[f64]| columns.iter().map(|column| step[*column]).collect::<Vec<f64>>();
-        let by_secant = |last: &Step| {
+        let by_secant = |last: &GaussNewtonStep| {
             let before = of(&last.coordinates);
             let weighted = marginal.fisher.picked(&columns, &columns).times(&before);
             fraction(last.fraction, dot(&weighted, &of(&coordinates)) / dot(&weighted, &before))
         };
-        Step { fraction: last.map_or(1.0, by_secant), coordinates }
+        GaussNewtonStep { fraction: last.map_or(1.0, by_secant), coordinates }
     }
 
-    fn step(&self, applied: &mut Applied, Step { coordinates: step, fraction }: &Step) {
+    fn step(&self, applied: &mut Applied, GaussNewtonStep { coordinates: step, fraction }: &GaussNewtonStep) {
         for (at, coordinates) in applied {
             let hypothesis = &self.model.hypotheses()[*at];
             let columns = self.columns.all_of(*at);
@@ -214,7 +219,7 @@ impl<'m> Search<'m> {
     }
 
     /// The critical p-value where these causes hold.
-    fn critical(&self, fit: &Fit) -> Option<f64> {
+    fn critical(&self, fit: &AttributionFit) -> Option<f64> {
         let projected = self.projected(fit)?;
         let mut bootstrap = Bootstrap::of(
             &fit.systems,
@@ -244,7 +249,7 @@ impl<'m> Search<'m> {
     }
 
     /// The channels' parts in what is known of a hypothesis: they add up to 1.
-    pub(crate) fn parts(&self, fit: &Fit, hypothesis: usize) -> Vec<f64> {
+    pub(crate) fn parts(&self, fit: &AttributionFit, hypothesis: usize) -> Vec<f64> {
         let columns = &self.columns.of_hypothesis[hypothesis];
         let of_channel = |at: usize| {
             let own = fit.systems.channels[at]
@@ -260,7 +265,7 @@ impl<'m> Search<'m> {
         parts.iter().map(|part| if whole > 0.0 { part / whole } else { 1.0 / parts.len() as f64 }).collect()
     }
 
-    pub(crate) fn projected(&self, fit: &Fit) -> Option<Projected> {
+    pub(crate) fn projected(&self, fit: &AttributionFit) -> Option<Projected> {
         Projected::of(&fit.marginal, &self.columns.fitted(fit.applied.iter().map(|(at, _)| *at)))
     }
 
@@ -275,7 +280,7 @@ impl<'m> Search<'m> {
     }
 
     /// The candidate with the best fit, if it is significant.
-    fn next(&self, fit: &Fit, critical: f64, barred: &[usize]) -> Option<Option<usize>> {
+    fn next(&self, fit: &AttributionFit, critical: f64, barred: &[usize]) -> Option<Option<usize>> {
         let projected = self.projected(fit)?;
         let least = self.least_square(fit)?;
         let holds = |at: usize| barred.contains(&at) || fit.applied.iter().any(|(held, _)| *held == at);
@@ -302,7 +307,7 @@ impl<'m> Search<'m> {
 
     /// Schwarz's criterion of the fit with a candidate beside the held causes, and the candidate's test. The covariance is found
     /// anew, so that the background does not take the candidate's part.
-    fn criterion(&self, fit: &Fit, at: usize) -> Option<(f64, Test)> {
+    fn criterion(&self, fit: &AttributionFit, at: usize) -> Option<(f64, Test)> {
         let held = || fit.applied.iter().map(|(held, _)| *held);
         let both = self.columns.fitted(held().chain([at]));
         let background = fit.systems.resized(&both, &fit.background)?;
@@ -314,7 +319,7 @@ impl<'m> Search<'m> {
     }
 
     /// The place in the fit of a cause that is not significant beside the others; the least of them.
-    fn superfluous(&self, fit: &Fit, critical: f64) -> Option<Option<usize>> {
+    fn superfluous(&self, fit: &AttributionFit, critical: f64) -> Option<Option<usize>> {
         let mut worst: Option<(f64, usize)> = None;
         let least = self.least_square(fit)?;
         for at in 0..fit.applied.len() {
@@ -332,7 +337,7 @@ impl<'m> Search<'m> {
     /// What a cause must take off the weighted squares to be more than the signatures of those with a course may be wrong by: where a
     /// signature goes with the load in proportion the background holds its error; where it has a course of its own, so much of what the
     /// cause explains may be that cause still, in another guise.
-    fn least_square(&self, fit: &Fit) -> Option<f64> {
+    fn least_square(&self, fit: &AttributionFit) -> Option<f64> {
         let has_course = |at: &usize| !self.columns.shapes[fit.applied[*at].0].is_empty();
         let mut squares =
             (0..fit.applied.len()).filter(has_course).map(|at| Some(self.test_within(fit, at)?.square));
@@ -341,7 +346,7 @@ impl<'m> Search<'m> {
     }
 
     /// The test of a fitted cause beside all others that are fitted.
-    pub(crate) fn test_within(&self, fit: &Fit, at: usize) -> Option<Test> {
+    pub(crate) fn test_within(&self, fit: &AttributionFit, at: usize) -> Option<Test> {
         let (hypothesis, _) = fit.applied[at];
         let own = &self.columns.of_hypothesis[hypothesis];
         let (projected, score) = self.without(fit, at)?;
@@ -349,7 +354,7 @@ impl<'m> Search<'m> {
     }
 
     /// Everything but one fitted cause projected out, and the score of the residual without that cause.
-    pub(crate) fn without(&self, fit: &Fit, at: usize) -> Option<(Projected, Vec<f64>)> {
+    pub(crate) fn without(&self, fit: &AttributionFit, at: usize) -> Option<(Projected, Vec<f64>)> {
         let others =
             fit.applied.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, (held, _))| *held);
         let projected = Projected::of(&fit.marginal, &self.columns.fitted(others))?;
@@ -366,7 +371,7 @@ impl<'m> Search<'m> {
     }
 
     /// Covariance of a fitted cause's coordinates.
-    pub(crate) fn covariance(&self, fit: &Fit, at: usize) -> Option<Matrix> {
+    pub(crate) fn covariance(&self, fit: &AttributionFit, at: usize) -> Option<Matrix> {
         let (projected, _) = self.without(fit, at)?;
         let own: Vec<usize> = self.columns.all_of(fit.applied[at].0).collect();
         let mut inner = projected.fisher.picked(&own, &own);

@@ -7,7 +7,7 @@ use crate::diagnosis::model::setting::Setting;
 
 /// Where in the chain a cause acts first. What lies before it need not be computed anew.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stage {
+pub(crate) enum ChainStage {
     /// On the contact itself.
     Contact,
     /// On the strains under it.
@@ -23,7 +23,7 @@ pub(crate) trait Cause: Sync {
     /// Its numbers.
     fn parameters(&self, setting: &Setting) -> Vec<Parameter>;
     /// Where it acts first.
-    fn stage(&self) -> Stage;
+    fn stage(&self) -> ChainStage;
     /// The places where it may be.
     fn targets(&self, setting: &Setting) -> Vec<Target>;
     /// The column without which it cannot be seen, if that is missing or stays the same.

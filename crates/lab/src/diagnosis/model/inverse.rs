@@ -67,7 +67,7 @@ struct Trial<S> {
 }
 
 /// ½ ∂²misfit/∂u² and −½ ∂misfit/∂u.
-struct Normal {
+struct MisfitDerivatives {
     curvature: [[f64; UNKNOWNS]; UNKNOWNS],
     slope: Written,
 }
@@ -167,7 +167,7 @@ impl<F: Forward> Inverse<F> {
     }
 
     /// The misfit's slope and curvature about a trial.
-    fn normal(&self, row: usize, read: &Weighted, trial: &Trial<F::Site>) -> Normal {
+    fn normal(&self, row: usize, read: &Weighted, trial: &Trial<F::Site>) -> MisfitDerivatives {
         let [x, y, fx, fy, fz] = trial.at;
         let here = self.forward.reading(row, &trial.site, [fx, fy, fz]);
         let slopes: Vec<Vec<f64>> = (0..UNKNOWNS)
@@ -186,7 +186,7 @@ impl<F: Forward> Inverse<F> {
             .collect();
         // JᵀWJ + Λ and JᵀW r − Λ u, Λ being the prior's precision.
         let precisions = self.precisions();
-        let mut normal = Normal { curvature: [[0.0; UNKNOWNS]; UNKNOWNS], slope: [0.0; UNKNOWNS] };
+        let mut normal = MisfitDerivatives { curvature: [[0.0; UNKNOWNS]; UNKNOWNS], slope: [0.0; UNKNOWNS] };
         for i in 0..UNKNOWNS {
             for j in 0..=i {
                 normal.curvature[i][j] = products(&read.weights, &slopes[i], &slopes[j]);

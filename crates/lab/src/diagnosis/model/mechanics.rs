@@ -93,7 +93,7 @@ pub(crate) fn at_place(field: &PadField, flaws: &[FieldChange], place: [f64; 2])
     let polynomials = jets(degree(free(field).map(|it| &it.maps)), place);
     let numbers = free(field).map(|it| values(&it.maps, &polynomials));
     // All modules are alike: the pad is turned until the flawed one is in the place of the first.
-    let turns: Vec<Turn> = (0..MODULES).map(Turn::back).collect();
+    let turns: Vec<PadRotation> = (0..MODULES).map(PadRotation::back).collect();
     let degree = degree(flaws.iter().map(|it| &it.maps));
     let turned: Vec<Vec<Jet>> = turns.iter().map(|turn| jets(degree, turn.vector(place))).collect();
     let flaws = flaws.iter().flat_map(|it| {
@@ -115,8 +115,8 @@ pub(crate) fn changed(
     let numbers: Vec<&Sensitivity> = free(field).collect();
     let (of_numbers, of_flaws) = weights.split_at(numbers.len().min(weights.len()));
     let smooth = mixed(numbers.iter().map(|it| &it.maps).zip(of_numbers));
-    let turns: Vec<Turn> = (0..MODULES).map(Turn::back).collect();
-    let turned: Vec<(&Turn, [ForceMaps; CHANNELS])> = (turns.iter().enumerate())
+    let turns: Vec<PadRotation> = (0..MODULES).map(PadRotation::back).collect();
+    let turned: Vec<(&PadRotation, [ForceMaps; CHANNELS])> = (turns.iter().enumerate())
         .map(|(module, turn)| {
             let own = of_flaws.iter().skip(module).step_by(MODULES);
             (turn, mixed(flaws.iter().map(|it| &it.maps).zip(own)))
@@ -137,7 +137,7 @@ pub(crate) fn changed(
 
 /// The signals of a pad of which this module has the flaw.
 pub(crate) fn flawed(field: &PadField, change: &FieldChange, module: usize, plate_mm: f64) -> InfluenceField {
-    let (turn, degree) = (Turn::back(module), degree([&change.maps].into_iter()));
+    let (turn, degree) = (PadRotation::back(module), degree([&change.maps].into_iter()));
     let at = |place_mm: [f64; 2]| {
         let own = field.signals.gains(place_mm[0] as f32, place_mm[1] as f32).value;
         let jets = jets(degree, turn.vector(place_mm.map(|mm| mm / plate_mm)));
@@ -174,13 +174,13 @@ fn values(maps: &[ForceMaps; CHANNELS], polynomials: &[Jet]) -> Maps {
 }
 
 /// A turn of the pad that takes a module to the place of module 0.
-struct Turn {
+struct PadRotation {
     module: usize,
     sin: f64,
     cos: f64,
 }
 
-impl Turn {
+impl PadRotation {
     fn back(module: usize) -> Self {
         let angle = -(module as f64) * std::f64::consts::TAU / MODULES as f64;
         Self { module, sin: libm::sin(angle), cos: libm::cos(angle) }

@@ -13,7 +13,7 @@ use tactpad_core::tables::measured::Label;
 
 /// Friction in one channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Play {
+pub(crate) struct ChannelFriction {
     pub(crate) channel: usize,
     /// r: half the width of its band, as a share of the channel's full scale.
     pub(crate) threshold: f64,
@@ -36,13 +36,13 @@ pub(crate) struct Prony {
 /// What the channels remember.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct MemoryChain {
-    pub(crate) plays: Vec<Play>,
+    pub(crate) plays: Vec<ChannelFriction>,
     pub(crate) prony: Vec<Prony>,
 }
 
 /// How a row came about.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Step {
+enum RowTransition {
     /// From rest, or down from so many times its load; held for so long, where that is written.
     Static { overload: Option<f64>, dwell_s: Option<f64> },
     /// The first of a series.
@@ -53,18 +53,18 @@ enum Step {
 
 /// The rows in their order.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Course {
-    steps: Vec<Step>,
+pub(crate) struct RowSequence {
+    steps: Vec<RowTransition>,
 }
 
 /// A moment between two rows of a series: their numbers, and how far it is from the first to the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Moment {
+pub(crate) struct RowInterval {
     pub(crate) rows: [usize; 2],
     pub(crate) part: f64,
 }
 
-impl Course {
+impl RowSequence {
     /// `follows` says which rows go on with the row before; a series whose rows have no times is a run of static loads.
     /// `full_scale_n` is the largest load, from which others are approached downwards.
     pub(crate) fn of(samples: &[Sample], follows: &[bool], full_scale_n: f64) -> Self {
@@ -74,8 +74,8 @@ impl Course {
         };
         let after_s = |at: usize| Some((samples[at].t_s? - samples[at.checked_sub(1)?].t_s?).max(0.0));
         let step = |at: usize| match after_s(at).filter(|_| follows[at]) {
-            Some(after_s) => Step::Next { after_s },
-            None if is_series(at) => Step::First,
+            Some(after_s) => RowTransition::Next { after_s },
+            None if is_series(at) => RowTransition::First,
             None => from_rest(&samples[at], full_scale_n),
         };
         Self { steps: (0..samples.len()).map(step).collect() }
@@ -83,13 +83,13 @@ impl Course {
 
     /// Whether any rows are a time series.
     pub(crate) fn has_series(&self) -> bool {
-        self.steps.iter().any(|step| matches!(step, Step::Next { .. }))
+        self.steps.iter().any(|step| matches!(step, RowTransition::Next { .. }))
     }
 
     /// Whether static loads were reached from both sides.
     pub(crate) fn has_both_ways(&self) -> bool {
-        let comes_down = |step: &Step| match step {
-            Step::Static { overload, .. } => Some(overload.is_some()),
+        let comes_down = |step: &RowTransition| match step {
+            RowTransition::Static { overload, .. } => Some(overload.is_some()),
             _ => None,
         };
         let mut ways = self.steps.iter().filter_map(comes_down);
@@ -98,8 +98,8 @@ impl Course {
 
     /// How long static loads were held: nobody knows, always the same, or not.
     pub(crate) fn dwells(&self) -> Dwells {
-        let dwell = |step: &Step| match step {
-            Step::Static { dwell_s, .. } => *dwell_s,
+        let dwell = |step: &RowTransition| match step {
+            RowTransition::Static { dwell_s, .. } => *dwell_s,
             _ => None,
         };
         let mut dwells = self.steps.iter().filter_map(dwell);
@@ -111,27 +111,27 @@ impl Course {
     }
 
     /// The moment that is so much later than a row: within its series, at whose ends time stands still.
-    pub(crate) fn moment(&self, row: usize, later_s: f64) -> Moment {
+    pub(crate) fn moment(&self, row: usize, later_s: f64) -> RowInterval {
         let (mut at, mut left_s) = (row, later_s);
         let gap_s = |row: usize| match self.steps.get(row) {
-            Some(Step::Next { after_s }) => Some(*after_s),
+            Some(RowTransition::Next { after_s }) => Some(*after_s),
             _ => None,
         };
         while left_s > 0.0 {
-            let Some(gap_s) = gap_s(at + 1) else { return Moment { rows: [at; 2], part: 0.0 } };
+            let Some(gap_s) = gap_s(at + 1) else { return RowInterval { rows: [at; 2], part: 0.0 } };
             if left_s < gap_s {
-                return Moment { rows: [at, at + 1], part: left_s / gap_s };
+                return RowInterval { rows: [at, at + 1], part: left_s / gap_s };
             }
             (at, left_s) = (at + 1, left_s - gap_s);
         }
         while left_s < 0.0 {
-            let Some(gap_s) = gap_s(at) else { return Moment { rows: [at; 2], part: 0.0 } };
+            let Some(gap_s) = gap_s(at) else { return RowInterval { rows: [at; 2], part: 0.0 } };
             if -left_s < gap_s {
-                return Moment { rows: [at, at - 1], part: -left_s / gap_s };
+                return RowInterval { rows: [at, at - 1], part: -left_s / gap_s };
             }
             (at, left_s) = (at - 1, left_s + gap_s);
         }
-        Moment { rows: [at; 2], part: 0.0 }
+        RowInterval { rows: [at; 2], part: 0.0 }
     }
 
     /// p − e, row by row, of a play operator.
@@ -140,11 +140,11 @@ impl Course {
         let rows = self.steps.iter().zip(strain);
         rows.map(|(step, strain)| {
             match step {
-                Step::Static { overload: Some(times), .. } => {
+                RowTransition::Static { overload: Some(times), .. } => {
                     state = pulled(0.0, strain * (1.0 + above * (times - 1.0)), threshold);
                 }
-                Step::Static { .. } | Step::First => state = 0.0,
-                Step::Next { .. } => {}
+                RowTransition::Static { .. } | RowTransition::First => state = 0.0,
+                RowTransition::Next { .. } => {}
             }
             state = pulled(state, *strain, threshold);
             state - strain
@@ -159,12 +159,12 @@ impl Course {
         let rows = self.steps.iter().zip(strain);
         rows.map(|(step, strain)| {
             state = match step {
-                Step::Static { dwell_s, .. } => {
+                RowTransition::Static { dwell_s, .. } => {
                     // 1 − exp(−t/τ)
                     dwell_s.map_or(0.0, |dwell_s| -strain * libm::expm1(-dwell_s / time_s))
                 }
-                Step::First => 0.0,
-                Step::Next { after_s } => {
+                RowTransition::First => 0.0,
+                RowTransition::Next { after_s } => {
                     let times = after_s / time_s;
                     let first = before + early.max(0.0) * (strain - before);
                     let last = strain + early.min(0.0) * (strain - before);
@@ -186,7 +186,7 @@ pub(crate) enum Dwells {
     Different,
 }
 
-impl Moment {
+impl RowInterval {
     /// A value there, on the line between the rows.
     pub(crate) fn of(&self, value: impl Fn(usize) -> f64) -> f64 {
         let [from, to] = self.rows.map(value);
@@ -199,7 +199,7 @@ impl MemoryChain {
     /// the load has changed.
     pub(crate) fn added(
         &self,
-        course: &Course,
+        course: &RowSequence,
         channel: usize,
         full_scale: f64,
         (strain, early): (&[f64], f64),
@@ -216,10 +216,10 @@ impl MemoryChain {
     }
 }
 
-fn from_rest(sample: &Sample, full_scale_n: f64) -> Step {
+fn from_rest(sample: &Sample, full_scale_n: f64) -> RowTransition {
     let ([x_mm, y_mm], [fx_n, fy_n, fz_n]) = (sample.place_mm, sample.load);
     let label = Label { x_mm, y_mm, fx_n, fy_n, fz_n };
-    Step::Static {
+    RowTransition::Static {
         overload: sample.is_unloading.then(|| label.overload(full_scale_n)),
         dwell_s: sample.dwell_s,
     }
@@ -229,7 +229,7 @@ fn from_rest(sample: &Sample, full_scale_n: f64) -> Step {
 mod tests {
     use super::*;
 
-    fn series(rows: usize, step_s: f64) -> Course {
+    fn series(rows: usize, step_s: f64) -> RowSequence {
         let sample = |row: usize| Sample {
             trial: Some(0),
             t_s: Some(100.0 + step_s * row as f64),
@@ -237,7 +237,7 @@ mod tests {
         };
         let samples: Vec<Sample> = (0..rows).map(sample).collect();
         let follows: Vec<bool> = (0..rows).map(|row| row > 0).collect();
-        Course::of(&samples, &follows, 5.0)
+        RowSequence::of(&samples, &follows, 5.0)
     }
 
     fn held(is_unloading: bool, dwell_s: f64) -> Sample {
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn a_loop_of_a_series_is_that_of_static_loads_from_both_sides() {
         let chain = MemoryChain {
-            plays: vec![Play { channel: 0, threshold: 0.1, share: 0.2, above: 1.0 }],
+            plays: vec![ChannelFriction { channel: 0, threshold: 0.1, share: 0.2, above: 1.0 }],
             prony: Vec::new(),
         };
         let up_and_down: Vec<f64> =
@@ -255,7 +255,7 @@ mod tests {
         let added = chain.added(&series(21, 1.0), 0, 1000.0, (&up_and_down, 0.0)).unwrap();
         // 2 w r S
         assert!((added[15] - added[5] - 2.0 * 0.2 * 0.1 * 1000.0).abs() < 1e-9, "{added:?}");
-        let course = Course::of(&[held(false, 1.0), held(true, 1.0)], &[false; 2], 5.0);
+        let course = RowSequence::of(&[held(false, 1.0), held(true, 1.0)], &[false; 2], 5.0);
         assert!(course.has_both_ways() && !course.has_series() && course.dwells() == Dwells::Alike);
         let ways = chain.added(&course, 0, 1000.0, (&[500.0; 2], 0.0)).unwrap();
         assert_eq!([ways[0], ways[1]], [added[5], added[15]]);
@@ -270,7 +270,7 @@ mod tests {
         strain[0] = 0.0;
         // Within 0.1 s of the load.
         let added = chain.added(&series(101, 0.1), 0, 1000.0, (&strain, 0.0)).unwrap();
-        let course = Course::of(&[held(false, 9.95), held(false, 1.0)], &[false; 2], 5.0);
+        let course = RowSequence::of(&[held(false, 9.95), held(false, 1.0)], &[false; 2], 5.0);
         assert_eq!(course.dwells(), Dwells::Different);
         let by_dwell = chain.added(&course, 0, 1000.0, (&[500.0; 2], 0.0)).unwrap();
         assert!((added[100] - by_dwell[0]).abs() < 1e-3, "{} {}", added[100], by_dwell[0]);
@@ -289,7 +289,7 @@ mod tests {
         {
             assert!((at(row, later_s) - wanted).abs() < 1e-9, "{row} {later_s}: {}", at(row, later_s));
         }
-        let alone = Course::of(&[held(false, 1.0)], &[false], 5.0);
+        let alone = RowSequence::of(&[held(false, 1.0)], &[false], 5.0);
         assert_eq!(alone.moment(0, 1.0).rows, [0, 0]);
     }
 }

@@ -152,7 +152,7 @@ pub(crate) struct Linearised {
 }
 
 /// What is known of each channel beside its readings.
-pub(crate) struct Told<'t> {
+pub(crate) struct ChannelBaselines<'t> {
     /// What it reads without load.
     pub(crate) zeros: &'t [f64],
     /// Its noise.
@@ -181,7 +181,11 @@ pub(crate) trait Model: Sync {
     }
     /// For each row, the contact that must have been written for these hypotheses to read what was read. None where the model
     /// knows no contacts.
-    fn contacts(&self, _applied: &[(usize, Vec<f64>)], _told: &Told<'_>) -> Option<Vec<Option<Written>>> {
+    fn contacts(
+        &self,
+        _applied: &[(usize, Vec<f64>)],
+        _told: &ChannelBaselines<'_>,
+    ) -> Option<Vec<Option<Written>>> {
         None
     }
     /// The same at other rows, which nobody measured, and what the model gets wrong there. None where it cannot say.

@@ -12,7 +12,7 @@ pub(crate) mod specification;
 pub(crate) mod withdrawal;
 
 use self::withdrawal::{OVER_NEAR, doubted, is_over};
-use super::attribution::{Attribution, Fit, Search};
+use super::attribution::{Attribution, AttributionFit, Search};
 use super::report::{Estimate, Finding, NotDetected};
 use crate::diagnosis::attribution::columns::ZERO;
 use crate::diagnosis::attribution::inference::{Projected, Test};
@@ -94,7 +94,7 @@ impl Search<'_> {
     /// The rivals that explain the data as well as a fitted cause, `projected` and `score` being without it.
     pub(crate) fn rivals(
         &self,
-        fit: &Fit,
+        fit: &AttributionFit,
         critical: f64,
         at: usize,
         (projected, score): (&Projected, &[f64]),
@@ -130,7 +130,7 @@ impl Search<'_> {
     }
 
     /// What all fitted causes together take off the weighted squares, beside the nuisances.
-    pub(crate) fn removed(&self, fit: &Fit) -> Option<f64> {
+    pub(crate) fn removed(&self, fit: &AttributionFit) -> Option<f64> {
         let projected = Projected::of(&fit.marginal, &self.columns.fitted([]))?;
         let mut score = projected.score.clone();
         let mut columns = Vec::new();
@@ -179,7 +179,7 @@ impl Search<'_> {
     }
 
     /// The zeros with a rival in the place of a fitted cause; `None` where the other causes reproduce it.
-    fn zeros_with(&self, fit: &Fit, at: usize, rival: usize) -> Option<Vec<[f64; 2]>> {
+    fn zeros_with(&self, fit: &AttributionFit, at: usize, rival: usize) -> Option<Vec<[f64; 2]>> {
         let others =
             fit.applied.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, (held, _))| *held);
         let fitted = self.columns.fitted(others.chain([rival]));

@@ -36,19 +36,19 @@ const REPEATS_MAX: usize = 30;
 /// What makes columns unique that others reproduce, as a part of their information.
 const RIDGE: f64 = 1e-9;
 /// A column in the present rows and in further ones.
-struct Pair {
+struct CausePair {
     present: Signature,
     further: Signature,
     precision: f64,
 }
 
 /// Present rows and those of an experiment.
-struct Both<'s, 'm> {
+struct JointRows<'s, 'm> {
     search: &'s Search<'m>,
     found: &'s Attribution,
     experiment: &'s Experiment,
     further: &'s Linearised,
-    pairs: Vec<Pair>,
+    pairs: Vec<CausePair>,
 }
 
 /// A fitted cause and its rivals, in numbers of columns.
@@ -76,11 +76,11 @@ pub(crate) struct Separation<'s, 'm> {
     search: &'s Search<'m>,
     found: &'s Attribution,
     experiments: Vec<Experiment>,
-    elsewhere: Vec<OnceCell<Option<Elsewhere>>>,
+    elsewhere: Vec<OnceCell<Option<ExperimentModel>>>,
 }
 
 /// The model at the rows of an experiment.
-type Elsewhere = (Linearised, Vec<CommonError>);
+type ExperimentModel = (Linearised, Vec<CommonError>);
 
 impl<'s, 'm> Separation<'s, 'm> {
     pub(crate) fn new(search: &'s Search<'m>, found: &'s Attribution) -> Self {
@@ -121,11 +121,11 @@ impl<'s, 'm> Separation<'s, 'm> {
     }
 
     /// With an experiment; none where the model cannot say.
-    fn both(&self, number: usize) -> Option<Both<'_, 'm>> {
+    fn both(&self, number: usize) -> Option<JointRows<'_, 'm>> {
         let (experiment, applied) = (&self.experiments[number], &self.found.fit.applied);
         let model = self.search.model;
         let elsewhere = self.elsewhere[number].get_or_init(|| model.elsewhere(&experiment.rows, applied));
-        Some(Both::of(self.search, self.found, (experiment, elsewhere.as_ref()?)))
+        Some(JointRows::of(self.search, self.found, (experiment, elsewhere.as_ref()?)))
     }
 }
 
@@ -139,11 +139,11 @@ fn sentence(repeats: usize, experiment: &Experiment) -> String {
     format!("{what}, {times}: {why}")
 }
 
-impl<'s, 'm> Both<'s, 'm> {
+impl<'s, 'm> JointRows<'s, 'm> {
     fn of(
         search: &'s Search<'m>,
         found: &'s Attribution,
-        (experiment, (further, errors)): (&'s Experiment, &'s Elsewhere),
+        (experiment, (further, errors)): (&'s Experiment, &'s ExperimentModel),
     ) -> Self {
         let channels = search.observations.channels.len();
         let rows = [search.observations.rows(), experiment.rows.rows()];
@@ -152,22 +152,22 @@ impl<'s, 'm> Both<'s, 'm> {
             (0..channels).map(|k| (k == channel).then(|| vec![1.0; rows])).collect()
         };
         let none = || -> Signature { vec![None; channels] };
-        let mut pairs: Vec<Pair> = (0..channels)
+        let mut pairs: Vec<CausePair> = (0..channels)
             .flat_map(|k| {
-                let own = Pair { present: zero(k, rows[0]), further: none(), precision: 0.0 };
-                [own, Pair { present: none(), further: zero(k, rows[1]), precision: 0.0 }]
+                let own = CausePair { present: zero(k, rows[0]), further: none(), precision: 0.0 };
+                [own, CausePair { present: none(), further: zero(k, rows[1]), precision: 0.0 }]
             })
             .collect();
         pairs.extend(search.model.common_errors().into_iter().zip(errors).map(|(present, further)| {
             let CommonError { deviation, signature } = present;
             let precision = 1.0 / (deviation * deviation);
-            Pair { present: signature, further: further.signature.clone(), precision }
+            CausePair { present: signature, further: further.signature.clone(), precision }
         }));
         Self { search, found, experiment, further, pairs }
     }
 
     /// A hypothesis' columns here and there.
-    fn hypothesis(&self, number: usize) -> Vec<Pair> {
+    fn hypothesis(&self, number: usize) -> Vec<CausePair> {
         let Experiment { silent, by_hand, .. } = self.experiment;
         let effect = self.search.model.hypotheses()[number].effect;
         let present = self.found.fit.linearised.signatures[number].clone();
@@ -178,7 +178,7 @@ impl<'s, 'm> Both<'s, 'm> {
         let precision = by_hand.filter(|(of, _)| *of == effect).map_or(0.0, |(_, sd)| 1.0 / (sd * sd));
         let asked = self.search.model.hypotheses()[number].asked().len();
         let both = present.into_iter().zip(further).take(asked);
-        both.map(|(present, further)| Pair { present, further, precision }).collect()
+        both.map(|(present, further)| CausePair { present, further, precision }).collect()
     }
 
     /// How often it takes the experiment to tell the cause from each rival; none if it does not.
@@ -203,7 +203,7 @@ impl<'s, 'm> Both<'s, 'm> {
     /// The columns of a fitted cause, of the others beside it and of its rivals, with what the rows tell of them.
     fn discrimination(&self, at: usize, rivals: &[usize]) -> Option<Discrimination> {
         let fit = &self.found.fit;
-        let mut columns: Vec<Pair> = Vec::new();
+        let mut columns: Vec<CausePair> = Vec::new();
         let mut groups = Vec::new();
         let others = fit.applied.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, (held, _))| *held);
         let (cause, psi) = &fit.applied[at];
@@ -212,7 +212,7 @@ impl<'s, 'm> Both<'s, 'm> {
             groups.push(columns.len()..columns.len() + own.len());
             columns.extend(own);
         }
-        let all: Vec<&Pair> = self.pairs.iter().chain(&columns).collect();
+        let all: Vec<&CausePair> = self.pairs.iter().chain(&columns).collect();
         let shifted = |group: &Range<usize>| group.start + self.pairs.len()..group.end + self.pairs.len();
         let groups: Vec<Range<usize>> = groups.iter().map(shifted).collect();
         let (held, rest) = groups.split_at(groups.len() - rivals.len() - 1);
@@ -269,14 +269,14 @@ impl<'s, 'm> Both<'s, 'm> {
     }
 
     /// What each channel that is alive tells of these columns.
-    fn channels(&self, columns: &[&Pair]) -> Option<Vec<ChannelEquations>> {
+    fn channels(&self, columns: &[&CausePair]) -> Option<Vec<ChannelEquations>> {
         let alive = (0..self.further.readings.len()).into_par_iter();
         let alive = alive.filter(|channel| self.search.observations.is_alive(*channel));
         alive.map(|channel| self.of_channel(channel, columns)).collect()
     }
 
     /// What the present rows of a channel tell of the columns that it knows, and what those of one measurement do.
-    fn of_channel(&self, channel: usize, columns: &[&Pair]) -> Option<ChannelEquations> {
+    fn of_channel(&self, channel: usize, columns: &[&CausePair]) -> Option<ChannelEquations> {
         let (fit, rows) = (&self.found.fit, &self.experiment.rows);
         let (system, noise) = (&fit.systems.channels[channel], &fit.systems.noise[channel]);
         let weight = |(row, f): (usize, &f64)| {
@@ -293,10 +293,11 @@ impl<'s, 'm> Both<'s, 'm> {
             let none = || vec![0.0; system.residual.len()];
             values.map_or_else(none, |it| system.whitening.whitened(it))
         };
-        let known =
-            |(_, pair): &(usize, &&Pair)| pair.present[channel].is_some() || pair.further[channel].is_some();
-        let known: Vec<(usize, &&Pair)> = columns.iter().enumerate().filter(known).collect();
-        let of = |column: &dyn Fn(&Pair) -> Vec<f64>| -> Vec<(usize, Vec<f64>)> {
+        let known = |(_, pair): &(usize, &&CausePair)| {
+            pair.present[channel].is_some() || pair.further[channel].is_some()
+        };
+        let known: Vec<(usize, &&CausePair)> = columns.iter().enumerate().filter(known).collect();
+        let of = |column: &dyn Fn(&CausePair) -> Vec<f64>| -> Vec<(usize, Vec<f64>)> {
             known.iter().map(|(number, pair)| (*number, column(pair))).collect()
         };
         // What is measured by hand has no rows, and so no functions there.

@@ -7,7 +7,7 @@
 //! Source: J. A. Hausman, Econometrica 46 (1978) 1251 (two estimates of one number that must agree if the model is right).
 
 use crate::diagnosis::attribution::inference::Projected;
-use crate::diagnosis::attribution::{Fit, Search};
+use crate::diagnosis::attribution::{AttributionFit, Search};
 use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::model::Signature;
 use tactpad_core::numeric::statistics::median;
@@ -24,19 +24,24 @@ const SHEAR_MIN: f64 = 0.2;
 impl Search<'_> {
     /// Whether a fitted cause is as large in all parts of the measurement, as far as they tell, and no number of it ended where it
     /// can go no further.
-    pub(crate) fn holds_throughout(&self, fit: &Fit, at: usize) -> Option<bool> {
+    pub(crate) fn holds_throughout(&self, fit: &AttributionFit, at: usize) -> Option<bool> {
         let own = self.test_within(fit, at)?.square;
         Some(!self.is_at_an_end(fit, at) && self.is_alike(fit, &self.effect(fit, at), own)?)
     }
 
     /// The same of a channel's zero, whose square over its variance is `own`.
-    pub(crate) fn zero_holds_throughout(&self, fit: &Fit, channel: usize, own: f64) -> Option<bool> {
+    pub(crate) fn zero_holds_throughout(
+        &self,
+        fit: &AttributionFit,
+        channel: usize,
+        own: f64,
+    ) -> Option<bool> {
         let is_own = |at: usize| (at == channel).then(|| vec![1.0; self.observations.rows()]);
         self.is_alike(fit, &(0..self.observations.channels.len()).map(is_own).collect(), own)
     }
 
     /// Whether a number that is asked for ended at an end of its range that is not its none.
-    pub(crate) fn is_at_an_end(&self, fit: &Fit, at: usize) -> bool {
+    pub(crate) fn is_at_an_end(&self, fit: &AttributionFit, at: usize) -> bool {
         let (hypothesis, coordinates) = &fit.applied[at];
         self.model.hypotheses()[*hypothesis].asked().iter().zip(coordinates).any(|(it, psi)| {
             let is_there = |end: f64| end != it.none && (it.coordinate(end) - psi).abs() <= AT_END;
@@ -45,7 +50,7 @@ impl Search<'_> {
     }
 
     /// Whether an effect that takes `own` off the weighted squares is as large in all parts.
-    fn is_alike(&self, fit: &Fit, effect: &Signature, own: f64) -> Option<bool> {
+    fn is_alike(&self, fit: &AttributionFit, effect: &Signature, own: f64) -> Option<bool> {
         let partitions = self.partitions(effect);
         let fitted = self.columns.fitted(fit.applied.iter().map(|(held, _)| *held));
         for parts in &partitions {
@@ -61,7 +66,7 @@ impl Search<'_> {
     }
 
     /// Σ J ψ̂ of a fitted cause.
-    fn effect(&self, fit: &Fit, at: usize) -> Signature {
+    fn effect(&self, fit: &AttributionFit, at: usize) -> Signature {
         let (hypothesis, coordinates) = &fit.applied[at];
         let signatures = &fit.linearised.signatures[*hypothesis];
         let channel = |channel: usize| {

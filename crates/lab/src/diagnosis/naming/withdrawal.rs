@@ -32,7 +32,7 @@ pub(crate) struct Candidate {
 }
 
 /// What was found, and what was not.
-pub(crate) struct Named {
+pub(crate) struct NamingResult {
     pub(crate) candidates: Vec<Candidate>,
     /// For each channel, the weighted squares that are left without an explanation.
     pub(crate) unnamed_by_channel: Vec<f64>,
@@ -47,7 +47,7 @@ pub(crate) fn named(
     search: &Search<'_>,
     found: &Attribution,
     (whole, remainders): (f64, Vec<f64>),
-) -> Option<Named> {
+) -> Option<NamingResult> {
     let fit = &found.fit;
     let squares = |place: usize, finding: &Finding| -> Vec<f64> {
         let parts = search.parts(fit, fit.applied[place].0);
@@ -68,7 +68,7 @@ pub(crate) fn named(
         candidates[at].is_doubted = true;
         add(&mut doubted_by_channel, &squares(candidates[at].place, &candidates[at].finding));
     }
-    Some(Named { candidates, unnamed_by_channel, doubted_by_channel })
+    Some(NamingResult { candidates, unnamed_by_channel, doubted_by_channel })
 }
 
 fn add(to: &mut [f64], squares: &[f64]) {

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::row::response;
 use super::simulated::Simulated;
-use crate::diagnosis::model::Told;
+use crate::diagnosis::model::ChannelBaselines;
 use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::inverse::{Forward, Inverse, UNKNOWNS, Weighted, Written};
 use crate::diagnosis::model::mechanics::Maps;
@@ -25,7 +25,7 @@ pub(crate) fn contacts(
     chain: Chain,
     changed: Option<InfluenceField>,
     radius_mm: f64,
-    told: &Told<'_>,
+    told: &ChannelBaselines<'_>,
 ) -> Vec<Option<Written>> {
     let of_order = simulated.of_order(&chain);
     let observations = simulated.sequence;
@@ -85,7 +85,7 @@ mod tests {
     use crate::diagnosis::attribution::atlas::Atlas;
     use crate::diagnosis::data::noise::Noise;
     use crate::diagnosis::data::observations::{Observations, Sample};
-    use crate::diagnosis::model::{Model, Told};
+    use crate::diagnosis::model::{ChannelBaselines, Model};
     use crate::diagnosis::{Applied, Pad};
     use tactpad_core::numeric::random::SplitMix64;
     use tactpad_core::numeric::statistics::mean;
@@ -142,7 +142,7 @@ mod tests {
         measured.is_told[2][7] = false;
         (0..5).for_each(|channel| measured.is_told[channel][8] = false);
         let model = Atlas::new(&pad, &measured, &measured);
-        let told = Told { zeros: &[0.0; CHANNELS], noise: &levels };
+        let told = ChannelBaselines { zeros: &[0.0; CHANNELS], noise: &levels };
         let found = model.contacts(&applied(&model, known), &told).unwrap();
         assert!(found[8].is_none());
         let off = |axes: std::ops::Range<usize>| {

@@ -1,7 +1,7 @@
 //! The chain of a device: what its file says beside the field.
 
 use crate::diagnosis::model::chain::{Chain, ChannelChain, MechanicsChain, Reference};
-use crate::diagnosis::model::memory::{MemoryChain, Play, Prony};
+use crate::diagnosis::model::memory::{ChannelFriction, MemoryChain, Prony};
 use crate::rig::errors::RigErrors;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::device::behaviour::{self, Behaviour, ModuleCrosstalk};
@@ -47,10 +47,13 @@ pub(crate) fn own_chain(device: &Device, weights: Vec<f64>, reference: &Referenc
 }
 
 /// A play operator, channel by channel.
-fn plays<'r>(it: &'r behaviour::Play, reference: &'r Reference) -> impl Iterator<Item = Play> + 'r {
+fn plays<'r>(
+    it: &'r behaviour::PlayOperator,
+    reference: &'r Reference,
+) -> impl Iterator<Item = ChannelFriction> + 'r {
     let of = |channel: usize| {
         let threshold = it.threshold_uv / reference.full_scale[channel];
-        Play { channel, threshold, share: it.share, above: 1.0 }
+        ChannelFriction { channel, threshold, share: it.share, above: 1.0 }
     };
     (0..CHANNELS).filter(|channel| it.channels[*channel]).map(of)
 }

@@ -7,11 +7,11 @@ use rayon::prelude::*;
 use super::own::own_chain;
 use super::row::{Row, continued, response};
 use crate::diagnosis::causes::CATALOGUE;
-use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::observations::{Observations, Sample};
 use crate::diagnosis::model::chain::{Chain, Reference};
 use crate::diagnosis::model::mechanics::{Maps, Pad, at_places, changes, side_share};
-use crate::diagnosis::model::memory::{Course, MemoryChain};
+use crate::diagnosis::model::memory::{MemoryChain, RowSequence};
 use crate::diagnosis::model::setting::{Change, Setting};
 use crate::diagnosis::model::{
     BACKGROUND_MAX, CommonError, Hypothesis, Linearised, Model, Parameter, SIGNATURE_ERROR, Signature,
@@ -38,7 +38,7 @@ pub(crate) struct Simulated<'f> {
     signals: InfluenceField,
     /// The rows in their order: what is remembered is so in that.
     pub(crate) sequence: &'f Observations,
-    course: Course,
+    course: RowSequence,
     /// The rows of it that are asked for.
     pub(crate) picked: Vec<usize>,
     setting: Setting,
@@ -72,7 +72,7 @@ impl<'f> Simulated<'f> {
         (sequence, observations): (&'f Observations, &Observations),
     ) -> Self {
         let course =
-            |of: &Observations| Course::of(&of.samples, &of.follows(), pad.device.contact.full_scale_n);
+            |of: &Observations| RowSequence::of(&of.samples, &of.follows(), pad.device.contact.full_scale_n);
         let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all, &course(all));
         let mut hypotheses = Vec::new();
         let mut causes: Vec<&'static dyn Cause> = Vec::new();
@@ -83,7 +83,11 @@ impl<'f> Simulated<'f> {
                     effect: cause.effect(),
                     target,
                     parameters: cause.parameters(&setting),
-                    signature_error: if cause.stage() == Stage::Channels { 0.0 } else { SIGNATURE_ERROR },
+                    signature_error: if cause.stage() == ChainStage::Channels {
+                        0.0
+                    } else {
+                        SIGNATURE_ERROR
+                    },
                 });
                 causes.push(cause);
             }
@@ -262,16 +266,16 @@ impl<'f> Simulated<'f> {
     fn perturbed(
         &self,
         Point { rows, remembered, .. }: &Point<'_>,
-        stage: Stage,
+        stage: ChainStage,
         chain: &Chain,
     ) -> Vec<Vec<f64>> {
         let strains = match stage {
-            Stage::Contact => {
+            ChainStage::Contact => {
                 let row = |(at, near)| self.row(at, chain, Some(near)).strain(chain);
                 rows.iter().enumerate().map(row).collect()
             }
-            Stage::Mechanics => rows.iter().map(|row| row.strain(chain)).collect(),
-            Stage::Channels => return self.read(remembered, chain),
+            ChainStage::Mechanics => rows.iter().map(|row| row.strain(chain)).collect(),
+            ChainStage::Channels => return self.read(remembered, chain),
         };
         self.read(&self.remembered(strains, chain), chain)
     }
@@ -371,7 +375,12 @@ impl Model for Simulated<'_> {
     }
 }
 
-fn setting(device: &Device, changes: Vec<Change>, observations: &Observations, course: &Course) -> Setting {
+fn setting(
+    device: &Device,
+    changes: Vec<Change>,
+    observations: &Observations,
+    course: &RowSequence,
+) -> Setting {
     let differs = |of: fn(&Sample) -> Option<f64>| {
         let mut values = observations.samples.iter().filter_map(of);
         values.next().is_some_and(|first| values.any(|value| value != first))

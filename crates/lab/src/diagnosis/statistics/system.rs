@@ -24,11 +24,11 @@ pub(crate) struct ChannelSystem {
     /// D⁻½ r.
     pub(crate) residual: Vec<f64>,
     /// What the model states of its own errors.
-    pub(crate) stated: Stated,
+    pub(crate) stated: StatedErrors,
 }
 
 /// The model's stated errors E, and the other columns' products with them.
-pub(crate) struct Stated {
+pub(crate) struct StatedErrors {
     /// D⁻½ E, column by column.
     pub(crate) columns: Vec<Vec<f64>>,
     /// L; none without errors.
@@ -39,7 +39,7 @@ pub(crate) struct Stated {
     residual: Vec<f64>,
 }
 
-impl Stated {
+impl StatedErrors {
     fn of(
         columns: Vec<Vec<f64>>,
         signatures: &[Vec<f64>],
@@ -93,7 +93,7 @@ impl ChannelSystem {
             signatures.iter().map(|(_, column)| whitening.whitened(column)).collect();
         let background: Vec<Vec<f64>> = whitened(background);
         let residual = whitening.whitened(residual);
-        let stated = Stated::of(whitened(errors), &signatures, &background, &residual)?;
+        let stated = StatedErrors::of(whitened(errors), &signatures, &background, &residual)?;
         let against = |of: &[Vec<f64>], own: &[Vec<f64>]| {
             let of = of.iter().zip(own);
             of.map(|(column, own)| dot(column, &residual) - dot(own, &stated.residual)).collect()

@@ -1,11 +1,11 @@
 //! What the findings are worth on rows that had no part in finding them.
 
 use super::mean_square::{Draw, Population, Squares};
-use crate::diagnosis::attribution::{Applied, Fit, Search};
+use crate::diagnosis::attribution::{Applied, AttributionFit, Search};
 use crate::diagnosis::data::noise::Noise;
 use crate::diagnosis::data::observations::{Observations, Sample};
-use crate::diagnosis::model::{Hypothesis, Model, Told};
-use crate::diagnosis::report::{Decoded, Gain, Without};
+use crate::diagnosis::model::{ChannelBaselines, Hypothesis, Model};
+use crate::diagnosis::report::{Decoded, Gain, WithoutFinding};
 use tactpad_core::numeric::statistics::mean;
 use tactpad_core::tables::measured::zero::UNLOADED_N;
 
@@ -57,7 +57,7 @@ impl Rows<'_> {
 
     /// For each row, how far the decoded contact is from the one that was written; one without a contact counts nothing. None where
     /// the model knows no contacts.
-    fn errors(&self, applied: &Applied, told: &Told<'_>) -> Option<Vec<Errors>> {
+    fn errors(&self, applied: &Applied, told: &ChannelBaselines<'_>) -> Option<Vec<Errors>> {
         let contacts = self.model.contacts(applied, told)?;
         let off =
             |found: &[f64], written: &[f64]| mean(found.iter().zip(written).map(|(a, b)| (a - b).abs()));
@@ -151,7 +151,7 @@ fn is_asked([open, locked]: [&Rows<'_>; 2], applied: &Applied) -> bool {
 
 impl Search<'_> {
     /// The gain of `applied` on the locked rows; none where nothing was found. Zeros are those of the open ones.
-    pub(crate) fn gain(&self, fit: &Fit, rows: [&Rows<'_>; 2], applied: &Applied) -> Option<Gain> {
+    pub(crate) fn gain(&self, fit: &AttributionFit, rows: [&Rows<'_>; 2], applied: &Applied) -> Option<Gain> {
         if !is_asked(rows, applied) {
             return None;
         }
@@ -159,7 +159,7 @@ impl Search<'_> {
         let measured = [open.measured(), locked.measured()];
         let noise = &fit.systems.noise;
         let expected = rows.map(|rows| self.expected(fit, rows));
-        let expected = Expected { readings: &expected, noise };
+        let expected = ExpectedGain { readings: &expected, noise };
         let squares = |applied: &Applied| squares(rows, applied, Some(&expected));
         let (nothing, extended) = (Applied::new(), squares(applied));
         // Nobody expected what was repaired.
@@ -178,7 +178,7 @@ impl Search<'_> {
             let others: Applied =
                 applied.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, it)| it.clone()).collect();
             let Hypothesis { effect, target, .. } = self.model.hypotheses()[applied[at].0];
-            Without { effect, target, rmse_ratio: ratio(&squares(&others), &as_measured) }
+            WithoutFinding { effect, target, rmse_ratio: ratio(&squares(&others), &as_measured) }
         };
         let [position_mae, force_mae] = decoded(measured, rows, applied, (noise, &population));
         Some(Gain {
@@ -192,7 +192,7 @@ impl Search<'_> {
     }
 
     /// The readings that the fit lets expect at rows, without noise: ŷ = f(ψ̂) + ẑero + Σ ê E + B ẑ.
-    fn expected(&self, fit: &Fit, rows: &Rows<'_>) -> Vec<Vec<f64>> {
+    fn expected(&self, fit: &AttributionFit, rows: &Rows<'_>) -> Vec<Vec<f64>> {
         let mut readings = rows.model.readings(&fit.applied);
         let channels = readings.len();
         for (channel, of) in readings.iter_mut().enumerate() {
@@ -213,16 +213,16 @@ impl Search<'_> {
 }
 
 /// What the fit lets expect.
-struct Expected<'e> {
+struct ExpectedGain<'e> {
     /// At the open and at the locked rows, channel by channel.
     readings: &'e [Vec<Vec<f64>>; 2],
     noise: &'e [Noise],
 }
 
 /// Squares of the residuals with these hypotheses, and those that are to be expected, if that is known.
-fn squares([open, locked]: [&Rows<'_>; 2], applied: &Applied, known: Option<&Expected<'_>>) -> Squares {
+fn squares([open, locked]: [&Rows<'_>; 2], applied: &Applied, known: Option<&ExpectedGain<'_>>) -> Squares {
     let zeros = open.zeros(applied);
-    let expected = known.map(|Expected { readings: [at_open, at_locked], noise }| {
+    let expected = known.map(|ExpectedGain { readings: [at_open, at_locked], noise }| {
         [(locked, at_locked), (open, at_open)]
             .map(|(rows, expected)| rows.expected_squares((applied, &zeros), expected, noise))
     });
@@ -261,7 +261,7 @@ fn decoded(
     (noise, population): (&[Noise], &Population),
 ) -> [Option<Decoded>; 2] {
     let errors = |[open, locked]: [&Rows<'_>; 2], applied: &Applied| {
-        locked.errors(applied, &Told { zeros: &open.zeros(applied), noise })
+        locked.errors(applied, &ChannelBaselines { zeros: &open.zeros(applied), noise })
     };
     let both = errors(measured, &Applied::new()).zip(errors(rows, applied));
     [0, 1].map(|at| both.as_ref().and_then(|(nominal, extended)| changed(nominal, extended, at, population)))

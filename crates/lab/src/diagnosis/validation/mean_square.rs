@@ -40,12 +40,12 @@ pub(crate) struct Squares {
 
 /// What means are taken over: the locked and the open rows.
 pub(crate) struct Population {
-    parts: [Part; 2],
+    parts: [RowClass; 2],
 }
 
 /// Rows of one kind.
 #[derive(Default)]
-struct Part {
+struct RowClass {
     clusters: Vec<usize>,
     /// How many readings each row has that tell something.
     counts: Vec<f64>,
@@ -67,7 +67,12 @@ impl Population {
         let standard = standardised(features);
         let mut parts = rows.into_iter().zip(noise).zip(standard).map(|((rows, noise), features)| {
             let told = |row: usize| rows.is_told.iter().filter(|of| of[row]).count() as f64;
-            Part { clusters: rows.clusters(), counts: (0..rows.rows()).map(told).collect(), noise, features }
+            RowClass {
+                clusters: rows.clusters(),
+                counts: (0..rows.rows()).map(told).collect(),
+                noise,
+                features,
+            }
         });
         Self { parts: std::array::from_fn(|_| parts.next().unwrap_or_default()) }
     }
@@ -106,7 +111,7 @@ impl Population {
     }
 }
 
-impl Part {
+impl RowClass {
     /// How often each row is drawn, as often as there are clusters, times exp(Σ aₖ xₖ).
     fn drawn(&self, tilt: &[f64; FEATURES], random: &mut SplitMix64) -> Vec<f64> {
         let clusters = self.clusters.iter().max().map_or(0, |last| last + 1);

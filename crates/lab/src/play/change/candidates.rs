@@ -15,7 +15,7 @@ const INFORMATION_MIN: f64 = 1e-9;
 
 /// How a column's multiple c becomes the number that is told.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Told {
+pub(super) enum MultipleScale {
     /// A gain 1 + c.
     Gain,
     /// A factor 1/(1 − c): compliances add up.
@@ -24,7 +24,7 @@ pub(super) enum Told {
     Times(f64),
 }
 
-impl Told {
+impl MultipleScale {
     pub(super) fn value(self, multiple: f64) -> f64 {
         match self {
             Self::Gain => 1.0 + multiple,
@@ -38,9 +38,9 @@ impl Told {
 
 /// A number of a candidate.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Number {
+pub(super) struct CandidateNumber {
     pub(super) name: &'static str,
-    told: Told,
+    told: MultipleScale,
     /// Values that a pad can have: those of the diagnosis.
     bounds: [f64; 2],
     /// Its column, by the changes of the equations.
@@ -52,22 +52,22 @@ pub(super) struct Number {
 pub(super) struct Candidate {
     pub(super) effect: &'static str,
     pub(super) target: Target,
-    pub(super) numbers: Vec<Number>,
+    pub(super) numbers: Vec<CandidateNumber>,
     /// Of a bond: places and shares of the known changes.
     bond: Vec<(usize, f64)>,
 }
 
 /// A candidate fitted.
 #[derive(Clone, Debug)]
-pub(super) struct Explained {
+pub(super) struct FittedCandidate {
     /// With its columns as they are there.
     pub(super) candidate: Candidate,
     /// χ².
     pub(super) square: f64,
 }
 
-impl Number {
-    fn of(name: &'static str, told: Told, bounds: [f64; 2], column: Vec<f64>) -> Self {
+impl CandidateNumber {
+    fn of(name: &'static str, told: MultipleScale, bounds: [f64; 2], column: Vec<f64>) -> Self {
         Self { name, told, bounds, column }
     }
 
@@ -84,7 +84,7 @@ impl Number {
 }
 
 impl Candidate {
-    fn of(effect: &'static str, target: Target, numbers: Vec<Number>) -> Self {
+    fn of(effect: &'static str, target: Target, numbers: Vec<CandidateNumber>) -> Self {
         Self { effect, target, numbers, bond: Vec::new() }
     }
 
@@ -93,7 +93,7 @@ impl Candidate {
     }
 
     /// What it explains; `None` where it has no size that a pad can have, or nothing tells it.
-    pub(super) fn explained(&self, equations: &Reduced) -> Option<Explained> {
+    pub(super) fn explained(&self, equations: &Reduced) -> Option<FittedCandidate> {
         if !self.bond.is_empty() {
             return self.came_off(equations);
         }
@@ -102,11 +102,11 @@ impl Candidate {
         let (solution, _) = is_told.then(|| own.solved()).flatten()?;
         let is_possible = self.numbers.iter().zip(&solution).all(|(number, c)| number.is_possible(*c));
         let square = solution.iter().zip(&own.score).map(|(c, score)| c * score).sum();
-        is_possible.then(|| Explained { candidate: self.clone(), square })
+        is_possible.then(|| FittedCandidate { candidate: self.clone(), square })
     }
 
     /// The share s of the bond with the largest χ²(s) = 2 sᵀc − cᵀSc, where its change c(s) has one size. As a column it is c(s)/s.
-    fn came_off(&self, equations: &Reduced) -> Option<Explained> {
+    fn came_off(&self, equations: &Reduced) -> Option<FittedCandidate> {
         let size = equations.score.len();
         let tried = SHARES.map(|step| {
             let share = SHARE_STEP * f64::from(step);
@@ -118,7 +118,7 @@ impl Candidate {
         let mut candidate = self.clone();
         let [number] = candidate.numbers.as_mut_slice() else { return None };
         number.column = column.iter().map(|entry| entry / share).collect();
-        (square > 0.0).then_some(Explained { candidate, square })
+        (square > 0.0).then_some(FittedCandidate { candidate, square })
     }
 }
 
@@ -144,7 +144,7 @@ pub(super) fn candidates(device: &Device, changes: &[Change]) -> Vec<Candidate> 
     };
     let gain = |channels: std::ops::Range<usize>| {
         let entries: Vec<(usize, f64)> = channels.map(|channel| (channel, 1.0)).collect();
-        vec![Number::of("gain", Told::Gain, [0.05, 20.0], unit(&entries))]
+        vec![CandidateNumber::of("gain", MultipleScale::Gain, [0.05, 20.0], unit(&entries))]
     };
     let mut all: Vec<Candidate> = (0..CHANNELS)
         .map(|channel| Candidate::of("channel_gain", Target::Channel(channel), gain(channel..channel + 1)))
@@ -173,9 +173,9 @@ impl Mechanics<'_> {
         let added = |effect, numbers: &[(&'static str, &str)], most: f64| {
             let number = |(name, of): &(&'static str, &str)| {
                 let column = self.column(&key(of), 1.0)?;
-                Some(Number::of(name, Told::Times(1.0), [-most, most], column))
+                Some(CandidateNumber::of(name, MultipleScale::Times(1.0), [-most, most], column))
             };
-            let numbers: Option<Vec<Number>> = numbers.iter().map(number).collect();
+            let numbers: Option<Vec<CandidateNumber>> = numbers.iter().map(number).collect();
             Some(Candidate::of(effect, target, numbers?))
         };
         let shifts = [("radial_mm", "radial_mm"), ("tangential_mm", "tangential_mm")];
@@ -213,14 +213,14 @@ impl Mechanics<'_> {
             Change::Number { name: of, own, .. } if *of == name => Some(*own),
             _ => None,
         })?;
-        let number = Number::of("factor", Told::Factor, bounds, self.column(name, own)?);
+        let number = CandidateNumber::of("factor", MultipleScale::Factor, bounds, self.column(name, own)?);
         Some(Candidate::of(effect, target, vec![number]))
     }
 
     fn open(&self, module: usize, side: Side) -> Option<Candidate> {
         let whole = side_share(self.device, side);
         let column = self.at(|change| *change == Change::FrameOpen(module, side), 1.0)?;
-        let number = Number::of("area_share", Told::Times(whole), [0.0, whole], column);
+        let number = CandidateNumber::of("area_share", MultipleScale::Times(whole), [0.0, whole], column);
         Some(Candidate::of("module_frame_open", Target::ModuleSide(module, side), vec![number]))
     }
 
@@ -230,7 +230,8 @@ impl Mechanics<'_> {
             _ => None,
         });
         let bond: Vec<(usize, f64)> = known.collect();
-        let number = Number::of("area_share", Told::Times(1.0), [0.0, 0.8], vec![0.0; self.size]);
+        let number =
+            CandidateNumber::of("area_share", MultipleScale::Times(1.0), [0.0, 0.8], vec![0.0; self.size]);
         let of = Candidate::of("module_debonded", Target::ModuleSide(module, side), vec![number]);
         (!bond.is_empty()).then_some(Candidate { bond, ..of })
     }
@@ -311,9 +312,9 @@ mod tests {
 
     #[test]
     fn numbers_are_told_as_the_diagnosis_tells_them() {
-        assert!((Told::Gain.value(-0.08) - 0.92).abs() < 1e-12);
-        assert!((Told::Factor.value(0.5) - 2.0).abs() < 1e-12);
-        assert_eq!(Told::Factor.value(1.5), f64::INFINITY);
-        assert!((Told::Times(0.25).value(0.5) - 0.125).abs() < 1e-12);
+        assert!((MultipleScale::Gain.value(-0.08) - 0.92).abs() < 1e-12);
+        assert!((MultipleScale::Factor.value(0.5) - 2.0).abs() < 1e-12);
+        assert_eq!(MultipleScale::Factor.value(1.5), f64::INFINITY);
+        assert!((MultipleScale::Times(0.25).value(0.5) - 0.125).abs() < 1e-12);
     }
 }

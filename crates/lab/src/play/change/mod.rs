@@ -13,14 +13,14 @@ use std::fmt;
 use self::candidates::{Candidate, candidates};
 use self::selection::Selection;
 use crate::calibration::change::Comparison;
-use crate::calibration::change::plays::{Compared, Plays};
+use crate::calibration::change::plays::{PlayEstimate, Plays};
 use crate::calibration::data::contacts::Fitted;
-use crate::calibration::data::earlier::Earlier;
+use crate::calibration::data::earlier::EarlierCalibration;
 use crate::calibration::fit::FitError;
 use crate::calibration::fit::search::Report;
 use crate::diagnosis::model::mechanics::{at_place, changes};
 use crate::diagnosis::report::Finding;
-use crate::play::windows::{Play, Window};
+use crate::play::windows::{PlayWindows, Window};
 use tactpad_core::pad::changes::FieldChange;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
@@ -45,7 +45,7 @@ pub enum Before<'b> {
 
 /// What a play says.
 #[derive(Clone, Debug)]
-pub struct Changed {
+pub struct DetectedChanges {
     /// What changed, the clearest first.
     pub findings: Vec<Finding>,
     /// Presses, as windows of a tenth of a second: of the earlier play, if there is one, and of the later.
@@ -124,7 +124,7 @@ pub fn changed(
     (device, field): (&Device, &PadField),
     flaws: &[FieldChange],
     report: Report<'_>,
-) -> Result<Changed, ChangeError> {
+) -> Result<DetectedChanges, ChangeError> {
     let plate_mm = device.plate.radius_mm();
     let maps = |place_mm: [f64; 2]| at_place(field, flaws, place_mm.map(|mm| mm / plate_mm)).to_vec();
     let candidates = candidates(device, &changes(device, device, field, flaws));
@@ -133,21 +133,21 @@ pub fn changed(
             let (play, later) = one_after_the_other([earlier, later], device)?;
             let plays = Plays { recording: &play.recording, fitted: &play.fitted, later };
             let comparison = Comparison::with_play(plays, (device, field), &maps, report);
-            Changed::by(&comparison.map_err(ChangeError::Fit)?, &candidates)
+            DetectedChanges::by(&comparison.map_err(ChangeError::Fit)?, &candidates)
         }
         Before::Decoder(decoder) => {
             let as_it_was = calibrated(decoder)?;
             let play = play(later, Which::Later, device)?;
             let plays = Plays { recording: &play.recording, fitted: &play.fitted, later: 0 };
             let comparison = Comparison::with_decoder(plays, (device, field), &as_it_was, &maps);
-            Changed::by(&comparison.map_err(ChangeError::Fit)?, &candidates)
+            DetectedChanges::by(&comparison.map_err(ChangeError::Fit)?, &candidates)
         }
     }
 }
 
 /// What a decoder tells of its pad, if it says how far that may be off.
-fn calibrated(decoder: &Decoder) -> Result<Earlier<'_>, ChangeError> {
-    Earlier::of(decoder)
+fn calibrated(decoder: &Decoder) -> Result<EarlierCalibration<'_>, ChangeError> {
+    EarlierCalibration::of(decoder)
         .filter(|it| !it.inverse.field_error().modes().is_empty())
         .ok_or(ChangeError::Untold(decoder.name()))
 }
@@ -156,7 +156,7 @@ fn calibrated(decoder: &Decoder) -> Result<Earlier<'_>, ChangeError> {
 fn one_after_the_other(
     [earlier, later]: [&[Window]; 2],
     device: &Device,
-) -> Result<(Play, usize), ChangeError> {
+) -> Result<(PlayWindows, usize), ChangeError> {
     let first = play(earlier, Which::Earlier, device)?;
     let begin_s = earlier.last().map_or(0.0, |it| it.end_s) + APART_S;
     let moved = |it: &Window| Window { begin_s: it.begin_s + begin_s, end_s: it.end_s + begin_s, ..*it };
@@ -165,10 +165,10 @@ fn one_after_the_other(
     let rows = earlier.len();
     let mut fitted = first.fitted;
     fitted.extend(second.fitted.iter().map(|it| Fitted { row: rows + it.row, ..*it }));
-    Ok((Play { recording: first.recording.then(second.recording), fitted }, rows))
+    Ok((PlayWindows { recording: first.recording.then(second.recording), fitted }, rows))
 }
 
-impl Changed {
+impl DetectedChanges {
     fn by(comparison: &Comparison<'_>, candidates: &[Candidate]) -> Result<Self, ChangeError> {
         let mut compared = comparison.about(&[]).map_err(ChangeError::Fit)?;
         for _ in 0..ROUNDS {
@@ -181,7 +181,7 @@ impl Changed {
         Ok(Self::of(candidates, &compared))
     }
 
-    fn of(candidates: &[Candidate], compared: &Compared) -> Self {
+    fn of(candidates: &[Candidate], compared: &PlayEstimate) -> Self {
         let selection = Selection::of(candidates, compared);
         let modules = candidates.iter().filter(|it| it.effect == "module_gain");
         let [earlier, later] = compared.contacts;
@@ -195,8 +195,9 @@ impl Changed {
 }
 
 /// A play's contacts, evenly over its time.
-fn play(windows: &[Window], which: Which, device: &Device) -> Result<Play, ChangeError> {
-    let mut play = Play::of(windows, &[], device.contact.full_scale_n).ok_or(ChangeError::NoRest(which))?;
+fn play(windows: &[Window], which: Which, device: &Device) -> Result<PlayWindows, ChangeError> {
+    let mut play =
+        PlayWindows::of(windows, &[], device.contact.full_scale_n).ok_or(ChangeError::NoRest(which))?;
     let presses = play.fitted.len();
     if presses < PRESSES_MIN {
         return Err(ChangeError::TooFew(which, presses));

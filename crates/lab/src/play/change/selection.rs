@@ -2,8 +2,8 @@
 //!
 //! χ² counts in units of what the plays contradict themselves by. The level of false alarms is one for all candidates together.
 
-use super::candidates::{Candidate, Explained, Number};
-use crate::calibration::change::plays::Compared;
+use super::candidates::{Candidate, CandidateNumber, FittedCandidate};
+use crate::calibration::change::plays::PlayEstimate;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Estimate, Finding};
 use tactpad_core::numeric::chi_square::{exceeded, noncentrality, quantile};
@@ -28,7 +28,7 @@ pub(super) struct Selection<'c> {
 }
 
 impl<'c> Selection<'c> {
-    pub(super) fn of(candidates: &'c [Candidate], compared: &'c Compared) -> Self {
+    pub(super) fn of(candidates: &'c [Candidate], compared: &'c PlayEstimate) -> Self {
         Self { candidates, equations: &compared.changes, inflation: compared.inflation }
     }
 
@@ -52,7 +52,7 @@ impl<'c> Selection<'c> {
         exceeded(square / self.inflation, numbers)
     }
 
-    fn p_of(&self, explained: &Explained) -> f64 {
+    fn p_of(&self, explained: &FittedCandidate) -> f64 {
         self.p_value(explained.square, explained.candidate.numbers.len())
     }
 
@@ -64,14 +64,14 @@ impl<'c> Selection<'c> {
         };
         let whole: f64 = self.equations.combined(&columns(&selected)).square().unwrap_or_default();
         let mut numbers = solution.into_iter().zip(variances);
-        let finding = |(at, it): (usize, &Explained)| {
-            let estimate = |number: &Number| {
+        let finding = |(at, it): (usize, &FittedCandidate)| {
+            let estimate = |number: &CandidateNumber| {
                 let (multiple, variance) = numbers.next().unwrap_or((f64::NAN, f64::NAN));
                 let (value, interval95) = number.estimate(multiple, (variance * self.inflation).sqrt());
                 let [one, other] = interval95;
                 Estimate { name: number.name, value, interval95: [one.min(other), one.max(other)] }
             };
-            let others: Vec<Explained> =
+            let others: Vec<FittedCandidate> =
                 selected.iter().enumerate().filter(|(of, _)| *of != at).map(|(_, it)| it.clone()).collect();
             let alone = self.beside(&others, &it.candidate).unwrap_or_else(|| it.clone());
             Finding {
@@ -89,15 +89,15 @@ impl<'c> Selection<'c> {
     }
 
     /// What a candidate explains beside changes that are free.
-    fn beside(&self, free: &[Explained], candidate: &Candidate) -> Option<Explained> {
+    fn beside(&self, free: &[FittedCandidate], candidate: &Candidate) -> Option<FittedCandidate> {
         if free.is_empty() {
             return candidate.explained(self.equations);
         }
         candidate.explained(&self.equations.beside(&columns(free))?)
     }
 
-    fn selected(&self) -> Vec<Explained> {
-        let mut selected: Vec<Explained> = Vec::new();
+    fn selected(&self) -> Vec<FittedCandidate> {
+        let mut selected: Vec<FittedCandidate> = Vec::new();
         while selected.len() < FINDINGS_MAX {
             let is_new = |it: &&Candidate| {
                 selected.iter().all(|of| (of.candidate.effect, of.candidate.target) != (it.effect, it.target))
@@ -114,20 +114,20 @@ impl<'c> Selection<'c> {
     }
 
     /// The smaller p-value first; where both are none to speak of, the larger χ² for each number.
-    fn order(&self, one: &Explained, other: &Explained) -> std::cmp::Ordering {
-        let each = |it: &Explained| it.square / it.candidate.numbers.len() as f64;
+    fn order(&self, one: &FittedCandidate, other: &FittedCandidate) -> std::cmp::Ordering {
+        let each = |it: &FittedCandidate| it.square / it.candidate.numbers.len() as f64;
         self.p_of(one).total_cmp(&self.p_of(other)).then(each(other).total_cmp(&each(one)))
     }
 
     /// The candidates beside which nothing significant of a finding is left.
-    fn rivals(&self, others: &[Explained], finding: &Explained) -> Vec<(&'static str, Target)> {
+    fn rivals(&self, others: &[FittedCandidate], finding: &FittedCandidate) -> Vec<(&'static str, Target)> {
         let own = (finding.candidate.effect, finding.candidate.target);
         let is_rival = |candidate: &&Candidate| {
             if (candidate.effect, candidate.target) == own {
                 return false;
             }
             let Some(rival) = self.beside(others, candidate) else { return false };
-            let free: Vec<Explained> = others.iter().cloned().chain([rival]).collect();
+            let free: Vec<FittedCandidate> = others.iter().cloned().chain([rival]).collect();
             let left = self.beside(&free, &finding.candidate);
             left.is_none_or(|left| {
                 self.p_of(&left) > self.critical() || left.square < SIGNATURE_PART * finding.square
@@ -145,7 +145,7 @@ impl<'c> Selection<'c> {
     }
 }
 
-fn columns(explained: &[Explained]) -> Vec<Vec<f64>> {
+fn columns(explained: &[FittedCandidate]) -> Vec<Vec<f64>> {
     explained.iter().flat_map(|it| it.candidate.columns()).collect()
 }
 

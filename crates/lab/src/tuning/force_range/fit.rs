@@ -1,6 +1,6 @@
 //! A profile with the normal forces of a hand.
 
-use super::levels::{self, Follower, Level};
+use super::levels::{self, DependentNumber, Level};
 use super::peaks::Peaks;
 use super::range::Range;
 use crate::tuning::fitting::{Change, Fitted};
@@ -16,7 +16,7 @@ const REST: Key = (Table::Named("access"), "rest_n");
 
 /// Why a profile is not fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Unfit {
+pub enum ForceRangeError {
     /// It asks for no normal force.
     NoLevels,
     /// It asks for more than one, and this hand's light and hard presses are not told apart.
@@ -29,11 +29,11 @@ pub enum Unfit {
 ///
 /// # Errors
 /// The profile has no use for them, or the hand has too little range for it.
-pub fn fit(text: &str, profile: &Profile, range: &Range) -> Result<Fitted, Unfit> {
+pub fn fit(text: &str, profile: &Profile, range: &Range) -> Result<Fitted, ForceRangeError> {
     let levels = levels::all(profile, text);
-    let ends_n = levels::ends_n(&levels).ok_or(Unfit::NoLevels)?;
+    let ends_n = levels::ends_n(&levels).ok_or(ForceRangeError::NoLevels)?;
     if !levels::is_one_force(ends_n) && !range.is_told_apart() {
-        return Err(Unfit::NotApart(*range));
+        return Err(ForceRangeError::NotApart(*range));
     }
     let mut before = Settings::new();
     let mut after = Settings::new();
@@ -53,7 +53,7 @@ pub fn fit(text: &str, profile: &Profile, range: &Range) -> Result<Fitted, Unfit
         after.insert(REST, rest_n.min(rounded(REST.1, range.lowest_n())));
     }
     after.retain(|key, to| before.get(key) != Some(to));
-    let no_profile = Unfit::NoProfile(*range);
+    let no_profile = ForceRangeError::NoProfile(*range);
     let text = edit::edited(text, &knobs::edits(&after)).map_err(|_| no_profile)?;
     let profile = check::read(&text, OutputChoice::AsWritten).0.ok_or(no_profile)?;
     let change = |(key, to): (&Key, &f64)| Change {
@@ -78,21 +78,21 @@ fn mapped_n(force_n: f64, [lowest_n, highest_n]: [f64; 2], range: &Range) -> f64
 }
 
 /// What goes with a level keeps its share, and stays less than it.
-fn followed_n(follower: &Follower, level: &Level, force_n: f64) -> f64 {
+fn followed_n(follower: &DependentNumber, level: &Level, force_n: f64) -> f64 {
     let shared_n = follower.force_n * force_n / level.force_n;
     rounded(level.key.1, shared_n.min(force_n - STEP_N).max(follower.least_n))
 }
 
 /// How many presses reach a force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Reached {
+pub struct ReachCount {
     /// Of the light ones.
     pub light: usize,
     /// Of the hard ones.
     pub hard: usize,
 }
 
-impl Reached {
+impl ReachCount {
     /// Of these presses, by their highest force in newtons.
     pub fn of(peaks: &Peaks, force_n: f64) -> Self {
         let [light, hard] =
@@ -109,7 +109,7 @@ mod tests {
     const HAND: Range = Range { light_n: 0.4, light_most_n: 0.8, hard_n: 1.25 };
     const FLAT: Range = Range { light_n: 0.4, light_most_n: 0.8, hard_n: 0.9 };
 
-    fn fitted(text: &str, range: &Range) -> Result<Fitted, Unfit> {
+    fn fitted(text: &str, range: &Range) -> Result<Fitted, ForceRangeError> {
         fit(text, &check::read(text, OutputChoice::AsWritten).0.unwrap(), range)
     }
 
@@ -155,7 +155,7 @@ mod tests {
         let one = shipped::text("one-button").unwrap();
         assert_eq!(changes(one, &FLAT), [("press_n", 0.2), ("release_n", 0.11)]);
         let several = fitted(shipped::text("contra").unwrap(), &FLAT);
-        assert_eq!(several.unwrap_err(), Unfit::NotApart(FLAT));
+        assert_eq!(several.unwrap_err(), ForceRangeError::NotApart(FLAT));
     }
 
     #[test]
@@ -173,15 +173,15 @@ mod tests {
         assert_eq!(changes(text, &HAND), wanted);
         assert_eq!(
             fitted("schema = 1\nname = \"x\"\noutput = \"gamepad\"\n", &HAND).unwrap_err(),
-            Unfit::NoLevels
+            ForceRangeError::NoLevels
         );
         let giant = Range { light_n: 60.0, light_most_n: 60.0, hard_n: 600.0 };
-        assert_eq!(fitted(text, &giant).unwrap_err(), Unfit::NoProfile(giant));
+        assert_eq!(fitted(text, &giant).unwrap_err(), ForceRangeError::NoProfile(giant));
     }
 
     #[test]
     fn presses_that_reach_a_force_are_counted() {
         let peaks = Peaks { light_n: vec![0.5, 1.0, 0.2], hard_n: vec![0.5, 0.4] };
-        assert_eq!(Reached::of(&peaks, 0.5), Reached { light: 2, hard: 1 });
+        assert_eq!(ReachCount::of(&peaks, 0.5), ReachCount { light: 2, hard: 1 });
     }
 }

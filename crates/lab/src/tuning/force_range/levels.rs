@@ -15,14 +15,14 @@ pub struct Level {
     /// What it is, written or by default.
     pub force_n: f64,
     /// Other numbers that are written and keep their share of it, each with what it is and the least that it may be.
-    pub(super) followers: Vec<Follower>,
+    pub(super) followers: Vec<DependentNumber>,
     /// The key of the same table that must stay less.
     pub(super) above: Option<&'static str>,
 }
 
 /// A number that goes with a level.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Follower {
+pub(super) struct DependentNumber {
     pub(super) key: &'static str,
     pub(super) force_n: f64,
     pub(super) least_n: f64,
@@ -104,7 +104,7 @@ impl Found<'_> {
         if let Some(level) = self.levels.last_mut()
             && edit::written(self.text, level.key.0, key).is_some()
         {
-            level.followers.push(Follower { key, force_n: shortest(force_n), least_n });
+            level.followers.push(DependentNumber { key, force_n: shortest(force_n), least_n });
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The presses of a recording in which somebody presses lightly at first and hard afterwards.
 
-use crate::tuning::trace::{Heard, Moment, Trace};
+use crate::tuning::trace::{Trace, TraceEvents, TracePoint};
 
 /// Touches that are no farther apart are one press: a light finger that trembles crosses the touch threshold more than once.
 const GAP_US: u64 = 100_000;
@@ -57,36 +57,36 @@ struct Press {
 }
 
 /// The whole presses, in order of time.
-fn presses(moments: &[Moment]) -> Vec<Press> {
+fn presses(moments: &[TracePoint]) -> Vec<Press> {
     let mut presses: Vec<Press> = Vec::new();
     // Before the first sample the finger may have been down already.
-    let mut before = Heard::Doubt;
-    for Moment { at, heard } in moments {
+    let mut before = TraceEvents::Doubt;
+    for TracePoint { at, heard } in moments {
         let us = at.as_us();
         match heard {
-            Heard::Contact(contact) => {
+            TraceEvents::Contact(contact) => {
                 let peak_n = f64::from(contact.fz_n);
                 match presses.last_mut() {
                     Some(last) if us - last.end_us <= GAP_US => {
                         (last.end_us, last.peak_n) = (us, last.peak_n.max(peak_n));
-                        last.is_whole &= before != Heard::Doubt;
+                        last.is_whole &= before != TraceEvents::Doubt;
                     }
                     _ => presses.push(Press {
                         begin_us: us,
                         end_us: us,
                         peak_n,
-                        is_whole: before != Heard::Doubt,
+                        is_whole: before != TraceEvents::Doubt,
                     }),
                 }
             }
-            Heard::Doubt if matches!(before, Heard::Contact(_)) => {
+            TraceEvents::Doubt if matches!(before, TraceEvents::Contact(_)) => {
                 presses.iter_mut().next_back().into_iter().for_each(|last| last.is_whole = false);
             }
-            Heard::Doubt | Heard::Nothing => {}
+            TraceEvents::Doubt | TraceEvents::Nothing => {}
         }
         before = *heard;
     }
-    if matches!(before, Heard::Contact(_)) {
+    if matches!(before, TraceEvents::Contact(_)) {
         presses.pop();
     }
     presses.retain(|press| press.is_whole && press.end_us - press.begin_us >= PRESS_MIN_US);
@@ -104,11 +104,11 @@ mod tests {
         let moment = |ms: u64| {
             let press = presses.iter().find(|(from, to, _)| (*from..*to).contains(&ms));
             let heard = match press {
-                _ if doubt.contains(&ms) => Heard::Doubt,
-                Some((.., fz_n)) => Heard::Contact(Contact { fz_n: *fz_n, ..Contact::default() }),
-                None => Heard::Nothing,
+                _ if doubt.contains(&ms) => TraceEvents::Doubt,
+                Some((.., fz_n)) => TraceEvents::Contact(Contact { fz_n: *fz_n, ..Contact::default() }),
+                None => TraceEvents::Nothing,
             };
-            Moment { at: StreamInstant::from_us(1_000 * ms), heard }
+            TracePoint { at: StreamInstant::from_us(1_000 * ms), heard }
         };
         Peaks::of(&Trace::new((0..3_001).map(moment).collect()))
     }

@@ -4,7 +4,7 @@ use faer::Mat;
 use tactpad_core::pad::device::Material;
 use tactpad_mechanics::brick::{DOFS, NODES, box_stiffness, lame_mpa, shapes, slopes};
 use tactpad_mechanics::mesh::{Brick, Layer, Mesh};
-use tactpad_mechanics::system::{Factor, Freedoms, add_holding_forces, gathered};
+use tactpad_mechanics::system::{DegreesOfFreedom, Factor, add_holding_forces, gathered};
 
 /// Four points of Gauss's rule on [−1, 1] with their weights: more than the elements use themselves.
 const GAUSS: [(f64, f64); 4] = [
@@ -44,7 +44,7 @@ impl Body {
     ) -> Self {
         let given: Vec<Option<Vector>> =
             (0..mesh.lattice.len()).map(|node| given_mm(mesh.place_mm(node))).collect();
-        let freedoms = Freedoms::new(&mesh, |node| given[node].is_some());
+        let freedoms = DegreesOfFreedom::new(&mesh, |node| given[node].is_some());
         let stiffness = |brick: &Brick| box_stiffness(brick.size_mm, material(brick.layer));
         let mut right = Mat::zeros(freedoms.unknowns(), 1);
         add_body_forces(&mesh, &freedoms, force_n_per_mm3, &mut right);
@@ -92,7 +92,12 @@ pub(crate) fn stress_mpa(gradient: &Gradient, material: Material) -> [f64; 6] {
     [normal(0), normal(1), normal(2), shear(1, 2), shear(0, 2), shear(0, 1)]
 }
 
-fn add_body_forces(mesh: &Mesh, freedoms: &Freedoms, force: impl Fn(Vector) -> Vector, right: &mut Mat<f64>) {
+fn add_body_forces(
+    mesh: &Mesh,
+    freedoms: &DegreesOfFreedom,
+    force: impl Fn(Vector) -> Vector,
+    right: &mut Mat<f64>,
+) {
     for brick in &mesh.bricks {
         for (at, weight) in points() {
             let force = force(place_mm(mesh, brick, at));

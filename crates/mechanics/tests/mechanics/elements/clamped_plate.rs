@@ -12,8 +12,8 @@ use tactpad_mechanics::brick::box_mass_t;
 use tactpad_mechanics::brick::box_stiffness;
 use tactpad_mechanics::grid::{Sizing, graded};
 use tactpad_mechanics::mesh::{Layer, Mesh};
-use tactpad_mechanics::system::{Factor, Freedoms};
-use tactpad_mechanics::vibration::Natural;
+use tactpad_mechanics::system::{DegreesOfFreedom, Factor};
+use tactpad_mechanics::vibration::NaturalModes;
 
 use super::body::{Body, Vector};
 
@@ -78,7 +78,7 @@ fn an_oblong_film_bends_as_kirchhoff_says() {
 fn natural(length_mm: f64) -> Vec<f64> {
     const WANTED: usize = 3;
     let mesh = mesh(length_mm);
-    let freedoms = Freedoms::new(&mesh, |node| clamped(length_mm, mesh.place_mm(node)).is_some());
+    let freedoms = DegreesOfFreedom::new(&mesh, |node| clamped(length_mm, mesh.place_mm(node)).is_some());
     let factor = Factor::of(&mesh, &freedoms, |brick| box_stiffness(brick.size_mm, MATERIAL)).unwrap();
     let solve = |loads: &Mat<f64>| {
         let mut moved = loads.clone();
@@ -102,7 +102,7 @@ fn natural(length_mm: f64) -> Vec<f64> {
     };
     // Bumps and waves along the film, so that the slowest shapes are in reach.
     let start = start(&mesh, &freedoms, length_mm);
-    let found = Natural::slowest(WANTED, start, solve, mass).unwrap();
+    let found = NaturalModes::slowest(WANTED, start, solve, mass).unwrap();
     let Material { e_mpa, nu, density_kg_m3 } = MATERIAL;
     let rigidity = e_mpa * THICKNESS_MM.powi(3) / (12.0 * (1.0 - nu * nu));
     let scale = SIDE_MM * SIDE_MM * (1e-12 * density_kg_m3 * THICKNESS_MM / rigidity).sqrt();
@@ -110,7 +110,7 @@ fn natural(length_mm: f64) -> Vec<f64> {
 }
 
 /// Ten lifts of the film: powers of x and y up to the third, zero along the edge.
-fn start(mesh: &Mesh, freedoms: &Freedoms, length_mm: f64) -> Mat<f64> {
+fn start(mesh: &Mesh, freedoms: &DegreesOfFreedom, length_mm: f64) -> Mat<f64> {
     let powers: Vec<[i32; 2]> = (0..4).flat_map(|n| (0..=n).map(move |m| [n - m, m])).collect();
     let mut start = Mat::zeros(freedoms.unknowns(), powers.len());
     for node in 0..mesh.lattice.len() {

@@ -7,7 +7,7 @@ use crate::cli::files::device::Pad;
 use crate::cli::playing::live::playing::{not_opened, virtual_pad};
 use tactpad::bridge::opening::OpenedPad;
 use tactpad::bridge::transport::virtual_pad::PadFirmware;
-use tactpad::lab::play::guide::Step;
+use tactpad::lab::play::guide::GuideStep;
 use tactpad::pad::marks::MARKS_MM;
 use tactpad::virtual_pad::firmware::VirtualPad;
 use tactpad::virtual_pad::freehand::Calibrator;
@@ -45,14 +45,14 @@ pub(super) fn open(pad: &Pad) -> Result<(OpenedPad, Hands), Failure> {
 
 impl Hands {
     /// Does what a step asks for; called when it begins.
-    pub(super) fn obey(&mut self, step: &Step, weight_g: Option<f64>) {
+    pub(super) fn obey(&mut self, step: &GuideStep, weight_g: Option<f64>) {
         let touch = match step {
-            Step::Rest { .. } | Step::Done => Touch::Finger(Calibrator::rest()),
-            Step::Press { .. } => Touch::Finger(self.calibrator.press()),
-            Step::Put { mark, .. } => {
+            GuideStep::Rest { .. } | GuideStep::Done => Touch::Finger(Calibrator::rest()),
+            GuideStep::Press { .. } => Touch::Finger(self.calibrator.press()),
+            GuideStep::Put { mark, .. } => {
                 Touch::Weight(self.calibrator.lay(MARKS_MM[*mark], weight_g.unwrap_or_default()))
             }
-            Step::TakeAway { .. } => Touch::Weight(self.calibrator.take_away()),
+            GuideStep::TakeAway { .. } => Touch::Weight(self.calibrator.take_away()),
         };
         // A pad that is gone feels nothing.
         let _ = self.to.send(touch);

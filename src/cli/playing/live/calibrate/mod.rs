@@ -34,7 +34,7 @@ use tactpad::bridge::parts::{Parts, PlayingDecoder};
 use tactpad::bridge::running::Bridge;
 use tactpad::bridge::sink::null::NullSink;
 use tactpad::bridge::transport::address::PadAddress;
-use tactpad::lab::play::guide::{Guide, Step};
+use tactpad::lab::play::guide::{Guide, GuideStep};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::sheet::Sheet;
 use tactpad::lab::play::words::WITHOUT_WEIGHT;
@@ -150,7 +150,7 @@ fn calibrate(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
     }
     let playing = PlayingDecoder { decoder, name: shipped::INVERSE.into(), place: None, file: head.decoder };
     let guide = lead(arguments, (opened, hands), (guide, kept), (playing, profile))?;
-    if *guide.step() != Step::Done {
+    if *guide.step() != GuideStep::Done {
         return Err(Failure::Failed(format!(
             "stopped before the end: what was heard is kept in {}, and the same command goes on from there",
             kept::capture_beside(out).display()

@@ -9,7 +9,7 @@ use super::told::Told;
 use crate::cli::failure::Failure;
 use tactpad::bridge::observer::Observed;
 use tactpad::bridge::request::{Asker, Request};
-use tactpad::lab::play::guide::{Guide, Step};
+use tactpad::lab::play::guide::{Guide, GuideStep};
 use tactpad::lab::play::words::is_other;
 use tactpad::pipeline::call::Call;
 use tactpad::time::HostInstant;
@@ -25,7 +25,7 @@ pub(super) struct Session {
     asker: Asker,
     told: Told,
     /// The step that was begun last, and how many windows were judged when it was told.
-    begun: Option<Step>,
+    begun: Option<GuideStep>,
     judged: usize,
 }
 
@@ -47,7 +47,7 @@ impl Session {
 
     fn hear(&mut self, heard: &Receiver<Observed>) -> Result<(), Failure> {
         self.attend()?;
-        while *self.guide.step() != Step::Done {
+        while *self.guide.step() != GuideStep::Done {
             match heard.recv_timeout(LOOK) {
                 Ok(Observed::Call { at, call }) => self.take(at, call.as_call())?,
                 // Calls that found no room are missing in the capture, too: for the guide they are a gap.

@@ -1,31 +1,33 @@
 //! What people are told in each step, in lines of a terminal.
 
-use tactpad::lab::play::guide::{Lying, REST_S, STILL_S, Step};
+use tactpad::lab::play::guide::{GuideStep, LoadOnPad, REST_S, STILL_S};
 use tactpad::lab::play::words;
 
 /// Cells of a bar.
 const CELLS: usize = 12;
 
 /// What to do, and in which step.
-pub(super) fn instruction(step: &Step, weight_g: Option<f64>) -> String {
+pub(super) fn instruction(step: &GuideStep, weight_g: Option<f64>) -> String {
     let steps = if weight_g.is_some() { 3 } else { 2 };
     let what = words::instruction(step, weight_g);
     match step {
-        Step::Rest { .. } => format!("step 1 of {steps}: {what}"),
-        Step::Press { .. } => format!("step 2 of {steps}: {what}"),
-        Step::Put { .. } | Step::TakeAway { .. } => format!("step 3 of 3: {what}"),
-        Step::Done => what,
+        GuideStep::Rest { .. } => format!("step 1 of {steps}: {what}"),
+        GuideStep::Press { .. } => format!("step 2 of {steps}: {what}"),
+        GuideStep::Put { .. } | GuideStep::TakeAway { .. } => format!("step 3 of 3: {what}"),
+        GuideStep::Done => what,
     }
 }
 
 /// How far it is.
-pub(super) fn progress(step: &Step) -> String {
+pub(super) fn progress(step: &GuideStep) -> String {
     let how_far = words::progress(step);
     match step {
-        Step::Rest { rested_s } => bar(rested_s / REST_S),
-        Step::Press { pressed_s, of_s, .. } => format!("{} {how_far}", bar(pressed_s / of_s)),
-        Step::Put { lying: Lying::Still { still_s }, .. } => format!("{} {how_far}", bar(still_s / STILL_S)),
-        Step::Put { .. } | Step::TakeAway { .. } | Step::Done => how_far,
+        GuideStep::Rest { rested_s } => bar(rested_s / REST_S),
+        GuideStep::Press { pressed_s, of_s, .. } => format!("{} {how_far}", bar(pressed_s / of_s)),
+        GuideStep::Put { lying: LoadOnPad::Still { still_s }, .. } => {
+            format!("{} {how_far}", bar(still_s / STILL_S))
+        }
+        GuideStep::Put { .. } | GuideStep::TakeAway { .. } | GuideStep::Done => how_far,
     }
 }
 
@@ -40,27 +42,31 @@ mod tests {
 
     #[test]
     fn each_step_has_its_number_and_its_bar() {
-        let put = Step::Put { mark: 1, lying: Lying::Nothing };
+        let put = GuideStep::Put { mark: 1, lying: LoadOnPad::Nothing };
         assert_eq!(
             instruction(&put, Some(200.0)),
             "step 3 of 3: put the weight of 200 g on mark 2 of 5 (right)"
         );
-        let press = Step::Press { pressed_s: 30.0, of_s: 60.0, next: "the left rim", missing: 3 };
+        let press = GuideStep::Press { pressed_s: 30.0, of_s: 60.0, next: "the left rim", missing: 3 };
         assert_eq!(progress(&press), "[######------] 30 of 60 s; not yet: the left rim, and 2 more");
     }
 
     #[test]
     fn lines_fit_an_ordinary_terminal() {
-        let press =
-            Step::Press { pressed_s: 89.0, of_s: 90.0, next: "half way to the upper right", missing: 13 };
-        let put = |lying| Step::Put { mark: 4, lying };
+        let press = GuideStep::Press {
+            pressed_s: 89.0,
+            of_s: 90.0,
+            next: "half way to the upper right",
+            missing: 13,
+        };
+        let put = |lying| GuideStep::Put { mark: 4, lying };
         let steps = [
             press,
-            put(Lying::Still { still_s: 1.9 }),
-            put(Lying::OtherForce { force_n: 4.9 }),
-            put(Lying::Beside { place_mm: [-15.0, -15.0] }),
-            put(Lying::TakenTooEarly),
-            Step::TakeAway { mark: 4 },
+            put(LoadOnPad::Still { still_s: 1.9 }),
+            put(LoadOnPad::OtherForce { force_n: 4.9 }),
+            put(LoadOnPad::Beside { place_mm: [-15.0, -15.0] }),
+            put(LoadOnPad::TakenTooEarly),
+            GuideStep::TakeAway { mark: 4 },
         ];
         for step in steps {
             let weight_g = Some(1000.0);

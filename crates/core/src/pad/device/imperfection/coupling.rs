@@ -3,7 +3,7 @@
 use crate::pad::device::Device;
 use crate::pad::device::behaviour::{Crosstalk, ModuleCrosstalk};
 use crate::pad::device::lines::{lines, quoted};
-use crate::pad::device::reading::Reading;
+use crate::pad::device::reading::DeviceText;
 use crate::pad::device::schema::Key;
 use crate::pad::device::schema::behaviour::{CROSSTALK, MODULE_CROSSTALK};
 use crate::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
@@ -72,7 +72,7 @@ fn read_module(
     section.whole(key, bounds, findings).map(|Placed { value, at }| Placed { value: value as usize, at })
 }
 
-pub(super) fn read_crosstalk(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
+pub(super) fn read_crosstalk(root: &Section<'_>, device: &mut Device, reading: &mut DeviceText<'_>) {
     CHANNEL.read_over(root, &mut device.behaviour.crosstalk, reading);
 }
 
@@ -80,7 +80,7 @@ pub(super) fn crosstalk_text(device: &Device) -> String {
     CHANNEL.text(&device.behaviour.crosstalk)
 }
 
-pub(super) fn read_module_crosstalk(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
+pub(super) fn read_module_crosstalk(root: &Section<'_>, device: &mut Device, reading: &mut DeviceText<'_>) {
     MODULE.read_over(root, &mut device.behaviour.module_crosstalk, reading);
 }
 
@@ -90,7 +90,7 @@ pub(super) fn module_crosstalk_text(device: &Device) -> String {
 
 impl<T> Coupling<T> {
     /// Puts the text's list in the place of `couplings`, if it has one.
-    fn read_over(&self, root: &Section<'_>, couplings: &mut Vec<T>, reading: &mut Reading<'_>) {
+    fn read_over(&self, root: &Section<'_>, couplings: &mut Vec<T>, reading: &mut DeviceText<'_>) {
         if root.place_of(self.table).is_none() {
             return;
         }
@@ -113,7 +113,12 @@ impl<T> Coupling<T> {
     }
 
     /// Receiver and source; `None` (and a finding) if the table does not say them, or says what cannot be.
-    fn read_ends(&self, table: &Section<'_>, before: &[T], reading: &mut Reading<'_>) -> Option<[usize; 2]> {
+    fn read_ends(
+        &self,
+        table: &Section<'_>,
+        before: &[T],
+        reading: &mut DeviceText<'_>,
+    ) -> Option<[usize; 2]> {
         for (key, what) in [(self.receiver, "receives"), (SOURCE, "leaks")] {
             let help = format!("write {key} = {}, the {} that {what}", self.help, self.receiver);
             table.require(key, &help, &mut reading.findings);

@@ -2,9 +2,9 @@
 
 use super::coupling::channel_words;
 use crate::pad::device::Device;
-use crate::pad::device::behaviour::{Play, Prony};
+use crate::pad::device::behaviour::{PlayOperator, Prony};
 use crate::pad::device::lines::{lines, quoted};
-use crate::pad::device::reading::Reading;
+use crate::pad::device::reading::DeviceText;
 use crate::pad::device::schema::Key;
 use crate::pad::device::schema::behaviour::{CREEP, HYSTERESIS};
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
@@ -25,10 +25,10 @@ struct Term<T: 'static> {
     channels: fn(&mut T) -> &mut [bool; CHANNELS],
 }
 
-static PLAY: Term<Play> = Term {
+static PLAY: Term<PlayOperator> = Term {
     table: "hysteresis",
     keys: &HYSTERESIS,
-    unread: Play { channels: [true; CHANNELS], threshold_uv: f64::NAN, share: f64::NAN },
+    unread: PlayOperator { channels: [true; CHANNELS], threshold_uv: f64::NAN, share: f64::NAN },
     channels: |play| &mut play.channels,
 };
 
@@ -39,7 +39,7 @@ static PRONY: Term<Prony> = Term {
     channels: |term| &mut term.channels,
 };
 
-pub(super) fn read_hysteresis(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
+pub(super) fn read_hysteresis(root: &Section<'_>, device: &mut Device, reading: &mut DeviceText<'_>) {
     PLAY.read_over(root, &mut device.behaviour.hysteresis, reading);
 }
 
@@ -47,7 +47,7 @@ pub(super) fn hysteresis_text(device: &Device) -> String {
     PLAY.text(&device.behaviour.hysteresis)
 }
 
-pub(super) fn read_creep(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
+pub(super) fn read_creep(root: &Section<'_>, device: &mut Device, reading: &mut DeviceText<'_>) {
     PRONY.read_over(root, &mut device.behaviour.creep, reading);
 }
 
@@ -57,7 +57,7 @@ pub(super) fn creep_text(device: &Device) -> String {
 
 impl<T: Copy> Term<T> {
     /// Puts the text's list in the place of `terms`, if it has one.
-    fn read_over(&self, root: &Section<'_>, terms: &mut Vec<T>, reading: &mut Reading<'_>) {
+    fn read_over(&self, root: &Section<'_>, terms: &mut Vec<T>, reading: &mut DeviceText<'_>) {
         if root.place_of(self.table).is_none() {
             return;
         }
@@ -86,7 +86,7 @@ impl<T: Copy> Term<T> {
     }
 }
 
-fn read_channels(table: &Section<'_>, channels: &mut [bool; CHANNELS], reading: &mut Reading<'_>) {
+fn read_channels(table: &Section<'_>, channels: &mut [bool; CHANNELS], reading: &mut DeviceText<'_>) {
     let Some(written) = table.words(WHERE, &channel_words(), &mut reading.findings) else { return };
     *channels = [false; CHANNELS];
     for channel in written {

@@ -9,7 +9,7 @@
 use super::Device;
 use super::behaviour::Behaviour;
 use super::lines::lines_unlike;
-use super::reading::Reading;
+use super::reading::DeviceText;
 use super::schema::behaviour::BEHAVIOUR;
 use super::schema::{PATCH, Table};
 use crate::toml_text::section::Section;
@@ -23,7 +23,7 @@ struct List {
     /// Their header.
     table: &'static str,
     /// Reads what the text's root has of them over the device.
-    read: fn(&Section<'_>, &mut Device, &mut Reading<'_>),
+    read: fn(&Section<'_>, &mut Device, &mut DeviceText<'_>),
     /// The text of what a device has of them; empty where that is nothing.
     write: fn(&Device) -> String,
 }
@@ -46,7 +46,7 @@ pub(super) fn tables() -> impl Iterator<Item = &'static str> {
 }
 
 /// Reads what the text's root has of imperfections over the device.
-pub(super) fn read(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
+pub(super) fn read(root: &Section<'_>, device: &mut Device, reading: &mut DeviceText<'_>) {
     LISTS.iter().for_each(|list| (list.read)(root, device, reading));
     BEHAVIOUR.iter().for_each(|table| read_table(root, table, device, reading));
 }
@@ -55,7 +55,7 @@ fn read_table(
     root: &Section<'_>,
     table: &'static Table<Behaviour>,
     device: &mut Device,
-    reading: &mut Reading<'_>,
+    reading: &mut DeviceText<'_>,
 ) {
     let Table { path, words, keys } = *table;
     let known: Vec<_> = words.iter().copied().chain(keys.iter().map(|key| key.name)).collect();

@@ -1,13 +1,13 @@
 //! `[[module]]`: how one module differs from the nominal one.
 
 use crate::pad::device::lines::{lines_unlike, quoted};
-use crate::pad::device::reading::Reading;
+use crate::pad::device::reading::DeviceText;
 use crate::pad::device::schema::{MODULE, SIDES};
 use crate::pad::device::{Device, Module};
 use crate::quantity::MODULES;
 use crate::toml_text::section::{Bounds, Placed, Section};
 
-pub(super) fn read(root: &Section<'_>, device: &mut Device, reading: &mut Reading<'_>) {
+pub(super) fn read(root: &Section<'_>, device: &mut Device, reading: &mut DeviceText<'_>) {
     let known: Vec<_> = ["index", "frame_open", "debonded_side"]
         .into_iter()
         .chain(MODULE.iter().map(|key| key.name))
@@ -29,7 +29,7 @@ pub(super) fn read(root: &Section<'_>, device: &mut Device, reading: &mut Readin
 }
 
 /// Reads where the bond has come off; share and side say nothing without each other.
-fn read_debonding(table: &Section<'_>, module: &mut Module, reading: &mut Reading<'_>) {
+fn read_debonding(table: &Section<'_>, module: &mut Module, reading: &mut DeviceText<'_>) {
     if let Some(side) = table.word("debonded_side", &SIDES, &mut reading.findings) {
         module.debonded_side = Some(side.value);
     }
@@ -49,7 +49,7 @@ fn read_debonding(table: &Section<'_>, module: &mut Module, reading: &mut Readin
 fn read_index(
     table: &Section<'_>,
     described: &mut [bool; MODULES],
-    reading: &mut Reading<'_>,
+    reading: &mut DeviceText<'_>,
 ) -> Option<usize> {
     table.require("index", "write index = 0, 1 or 2: the module that differs", &mut reading.findings);
     let at = table.place_of("index")?;

@@ -1,16 +1,16 @@
 //! Where contradictions of a text are told.
 
-use crate::pad::device::reading::Reading;
+use crate::pad::device::reading::DeviceText;
 
 /// What does not fit together, told once for each place of the text.
 pub(super) struct Finding<'r, 't> {
-    reading: &'r mut Reading<'t>,
+    reading: &'r mut DeviceText<'t>,
     /// Places that already have their reason.
     told: Vec<usize>,
 }
 
 impl<'r, 't> Finding<'r, 't> {
-    pub(super) const fn new(reading: &'r mut Reading<'t>) -> Self {
+    pub(super) const fn new(reading: &'r mut DeviceText<'t>) -> Self {
         Self { reading, told: Vec::new() }
     }
 

@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use self::finding::Finding;
-use super::reading::Reading;
+use super::reading::DeviceText;
 use super::schema::GAUGE_NAMES;
 use super::unit::shown;
 use super::{Device, Direction, Gauge};
@@ -21,7 +21,7 @@ const CLOSE_DEG: f64 = 30.0;
 const ROUNDING_MM: f64 = 1e-9;
 
 /// Reports every pair of numbers that contradict each other. A number that is NaN contradicts none.
-pub(super) fn check(device: &Device, reading: &mut Reading<'_>) {
+pub(super) fn check(device: &Device, reading: &mut DeviceText<'_>) {
     let mut finding = Finding::new(reading);
     check_window(device, &mut finding);
     check_gauges(device, &mut finding);

@@ -6,7 +6,7 @@
 use std::slice;
 
 use super::{AXES, Access, DEG, Effect, Key, MM, NEWTON, PATCH, RATIO, TILT_DEG, Table, UV};
-use crate::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, Play, Prony};
+use crate::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, PlayOperator, Prony};
 use crate::pad::device::unit::Unit;
 use crate::quantity::CHANNEL_NAMES;
 
@@ -238,9 +238,9 @@ pub(in crate::pad::device) static MODULE_CROSSTALK: [Key<ModuleCrosstalk>; 1] = 
 )];
 
 /// The numbers of a `[[hysteresis]]` table.
-pub(in crate::pad::device) static HYSTERESIS: [Key<Play>; 2] = [
-    entry!(Play, threshold_uv, UV, (0.1, 20_000.0), "how far the play operator stays behind"),
-    entry!(Play, share, RATIO, (0.0, 0.9), "the play operator's part of the strain"),
+pub(in crate::pad::device) static HYSTERESIS: [Key<PlayOperator>; 2] = [
+    entry!(PlayOperator, threshold_uv, UV, (0.1, 20_000.0), "how far the play operator stays behind"),
+    entry!(PlayOperator, share, RATIO, (0.0, 0.9), "the play operator's part of the strain"),
 ];
 
 /// The numbers of a `[[creep]]` table.

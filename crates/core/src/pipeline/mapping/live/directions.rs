@@ -1,6 +1,6 @@
 //! Which directions count: those that the place of the contact asks for, as far as Slow Keys and Bounce Keys let them.
 
-use super::verdict::{Told, Verdict, Verdicts};
+use super::verdict::{Verdict, VerdictEvent, Verdicts};
 use crate::pipeline::mapping::live::button::accept::{Accept, Conditions, Presses};
 use crate::pipeline::mapping::live::button::gate::Touch;
 use crate::pipeline::mapping::profile::sector::Sector;
@@ -13,7 +13,7 @@ const DIRECTIONS: [Direction; 4] = [Direction::Left, Direction::Right, Direction
 
 /// Where each direction stands.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Directed {
+pub(crate) struct DirectionGates {
     accepts: [Accept; DIRECTIONS.len()],
 }
 
@@ -21,7 +21,7 @@ pub(crate) struct Directed {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Directions([bool; DIRECTIONS.len()]);
 
-impl Directed {
+impl DirectionGates {
     /// None was ever on.
     pub(crate) const fn fresh() -> Self {
         Self { accepts: [Accept::Off { since: None }; DIRECTIONS.len()] }
@@ -46,7 +46,7 @@ impl Directed {
             *is_on = accept.step(conditions, t, (touch, contact), presses);
             if let Some(is_rejected) = presses.since(before).filter(|_| may_reject) {
                 let rejected = is_rejected.then(|| accept.why_rejected(conditions));
-                verdicts.keep(Verdict { t, told: Told::Direction { direction, rejected } });
+                verdicts.keep(Verdict { t, told: VerdictEvent::Direction { direction, rejected } });
             }
         }
         on

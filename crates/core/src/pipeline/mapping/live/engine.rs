@@ -2,20 +2,20 @@
 
 use arrayvec::ArrayVec;
 
-use super::button::{Touched, force_of};
-use super::directions::{Directed, Directions};
+use super::button::{ButtonState, force_of};
+use super::directions::{DirectionGates, Directions};
 use super::intent::Intents;
-use super::macros::Running;
-use super::stated::{Commands, Stated};
-use super::verdict::{Told, Verdict, Verdicts};
+use super::macros::MacroPlayback;
+use super::stated::{Commands, StepOutput};
+use super::verdict::{Verdict, VerdictEvent, Verdicts};
 use crate::pipeline::mapping::live::Presses;
 use crate::pipeline::mapping::live::contact::heading;
-use crate::pipeline::mapping::live::contact::pointer::{self, Steered};
-use crate::pipeline::mapping::live::contact::rest::{Load, Resting};
-use crate::pipeline::mapping::live::contact::tremor::Calm;
+use crate::pipeline::mapping::live::contact::pointer::{self, PointerOutput};
+use crate::pipeline::mapping::live::contact::rest::{Load, RestDetector};
+use crate::pipeline::mapping::live::contact::tremor::TremorFilter;
 use crate::pipeline::mapping::live::contact::zone;
 use crate::pipeline::mapping::profile::sector::Sector;
-use crate::pipeline::mapping::profile::{BUTTONS_MAX, Button, Direction, Place, Profile, SIDES};
+use crate::pipeline::mapping::profile::{BUTTONS_MAX, Button, ButtonPlace, Direction, Profile, SIDES};
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
 
@@ -28,16 +28,16 @@ pub struct Engine {
     profile: Profile,
     held: Option<Sector>,
     zone: Option<usize>,
-    moving: Option<Steered>,
-    buttons: ArrayVec<Touched, BUTTONS_MAX>,
+    moving: Option<PointerOutput>,
+    buttons: ArrayVec<ButtonState, BUTTONS_MAX>,
     last: Option<Contact>,
-    calm: Option<Calm>,
-    resting: Option<Resting>,
-    directed: Directed,
+    calm: Option<TremorFilter>,
+    resting: Option<RestDetector>,
+    directed: DirectionGates,
     directions: Directions,
     /// The layer that is on.
     layer: Option<usize>,
-    running: Running,
+    running: MacroPlayback,
     /// Whether each stick is moved.
     sticks: [bool; SIDES],
     /// What presses of the last step ask of the bridge.
@@ -50,7 +50,7 @@ pub struct Engine {
 impl Engine {
     /// An engine that has seen no contact yet.
     pub fn new(profile: Profile) -> Self {
-        let buttons = profile.buttons.iter().map(|_| Touched::fresh()).collect();
+        let buttons = profile.buttons.iter().map(|_| ButtonState::fresh()).collect();
         Self {
             profile,
             held: None,
@@ -60,10 +60,10 @@ impl Engine {
             last: None,
             calm: None,
             resting: None,
-            directed: Directed::fresh(),
+            directed: DirectionGates::fresh(),
             directions: Directions::default(),
             layer: None,
-            running: Running::default(),
+            running: MacroPlayback::default(),
             sticks: [false; SIDES],
             commands: Commands::new(),
             is_acting: false,
@@ -91,7 +91,7 @@ impl Engine {
         self.last = contact.copied();
         let meant = self.meant(t, contact);
         let contact = meant.as_ref();
-        let mut stated = Stated::default();
+        let mut stated = StepOutput::default();
         self.direct(t, contact, &mut stated);
         self.zone = contact.and_then(|contact| zone::follow(&self.profile.zones, self.zone, contact));
         self.press(t, contact, &mut stated);
@@ -111,10 +111,11 @@ impl Engine {
     }
 
     /// States the directions.
-    fn direct(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut Stated) {
+    fn direct(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut StepOutput) {
         let Some(dpad) = &self.profile.dpad else {
             // The profile before may have had directions.
-            (self.held, self.directed, self.directions) = (None, Directed::fresh(), Directions::default());
+            (self.held, self.directed, self.directions) =
+                (None, DirectionGates::fresh(), Directions::default());
             return;
         };
         self.held = contact.and_then(|contact| heading::follow(dpad, self.held, contact));
@@ -134,7 +135,7 @@ impl Engine {
     }
 
     /// States where sticks and triggers are.
-    fn steer(&mut self, contact: Option<&Contact>, stated: &mut Stated) {
+    fn steer(&mut self, contact: Option<&Contact>, stated: &mut StepOutput) {
         for (stick, is_held) in self.profile.sticks.iter().zip(&mut self.sticks) {
             let position = contact.and_then(|contact| stick.follow(*is_held, contact));
             *is_held = position.is_some();
@@ -152,7 +153,7 @@ impl Engine {
     }
 
     /// States what the buttons do. A layer that one of them switches counts from the next sample on.
-    fn press(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut Stated) {
+    fn press(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut StepOutput) {
         let at = (self.zone, self.directions);
         let access = self.profile.access;
         for (number, (button, touched)) in (1..).zip(self.profile.buttons.iter().zip(&mut self.buttons)) {
@@ -167,7 +168,7 @@ impl Engine {
             touched.step(button, t, (contact, is_in_place), help).for_each(|playing| stated.take(playing));
             if let Some(is_rejected) = self.presses.since(before) {
                 let rejected = is_rejected.then(|| touched.why_rejected(button, access));
-                self.verdicts.keep(Verdict { t, told: Told::Button { number, rejected } });
+                self.verdicts.keep(Verdict { t, told: VerdictEvent::Button { number, rejected } });
             }
         }
     }
@@ -179,16 +180,17 @@ impl Engine {
             return None;
         };
         let access = self.profile.access;
-        let load = access.rest.map_or(Load::Touch, |rest| Resting::step(&mut self.resting, rest, t, contact));
+        let load =
+            access.rest.map_or(Load::Touch, |rest| RestDetector::step(&mut self.resting, rest, t, contact));
         if let Load::Rest { is_news } = load {
             if is_news {
-                self.verdicts.keep(Verdict { t, told: Told::Rest });
+                self.verdicts.keep(Verdict { t, told: VerdictEvent::Rest });
             }
             self.calm = None;
             return None;
         }
         let calmed = match &access.tremor {
-            Some(tremor) => Calm::step(&mut self.calm, tremor, t, contact),
+            Some(tremor) => TremorFilter::step(&mut self.calm, tremor, t, contact),
             None => *contact,
         };
         let [x_mm, y_mm] = self.profile.centre_mm;
@@ -202,7 +204,7 @@ impl Engine {
         let is_acting =
             !self.directions.is_empty() || buttons().any(|(button, touched)| touched.is_acting(button));
         if self.is_acting && !is_acting {
-            self.buttons.iter_mut().for_each(Touched::unlatch);
+            self.buttons.iter_mut().for_each(ButtonState::unlatch);
         }
         self.is_acting = is_acting;
     }
@@ -239,11 +241,11 @@ impl Engine {
     /// on.
     pub fn cancel(&mut self) {
         (self.held, self.zone, self.moving, self.calm, self.resting) = (None, None, None, None, None);
-        (self.layer, self.running, self.is_acting) = (None, Running::default(), false);
-        (self.directed, self.directions) = (Directed::fresh(), Directions::default());
+        (self.layer, self.running, self.is_acting) = (None, MacroPlayback::default(), false);
+        (self.directed, self.directions) = (DirectionGates::fresh(), Directions::default());
         self.sticks = [false; SIDES];
         self.commands.clear();
-        self.buttons.iter_mut().for_each(Touched::forget);
+        self.buttons.iter_mut().for_each(ButtonState::forget);
     }
 
     /// Goes on with another profile, also in the middle of a contact.
@@ -271,34 +273,38 @@ impl Engine {
             self.layer = None;
         }
         if self.profile.macros != profile.macros {
-            self.running = Running::default();
+            self.running = MacroPlayback::default();
         }
         (self.sticks, self.is_acting) = ([false; SIDES], false);
         self.profile = profile;
     }
 
     /// Where the same button stands.
-    fn unchanged(&self, button: &Button) -> Option<Touched> {
+    fn unchanged(&self, button: &Button) -> Option<ButtonState> {
         let mut all = self.profile.buttons.iter().zip(&self.buttons);
         all.find(|(old, _)| *old == button).map(|(_, touched)| *touched)
     }
 
     /// Where a button of another profile stands that takes over now.
-    fn taken_over(&self, button: &Button) -> Touched {
+    fn taken_over(&self, button: &Button) -> ButtonState {
         let force_n = self.last.map_or(0.0, |contact| force_of(button.force, &contact));
         let mut same_force =
             self.profile.buttons.iter().zip(&self.buttons).filter(|(old, _)| old.force == button.force);
         let is_under_way = same_force.any(|(_, touched)| touched.is_under_way());
-        if is_under_way || force_n >= button.press_n { Touched::spent(force_n) } else { Touched::fresh() }
+        if is_under_way || force_n >= button.press_n {
+            ButtonState::spent(force_n)
+        } else {
+            ButtonState::fresh()
+        }
     }
 }
 
 /// Whether the contact is there, being in this zone and having these directions.
-fn is_in((zone, directions): (Option<usize>, Directions), place: Option<Place>) -> bool {
+fn is_in((zone, directions): (Option<usize>, Directions), place: Option<ButtonPlace>) -> bool {
     match place {
         None => true,
-        Some(Place::Zone(number)) => zone == Some(number),
-        Some(Place::Direction(direction)) => directions.has(direction),
+        Some(ButtonPlace::Zone(number)) => zone == Some(number),
+        Some(ButtonPlace::Direction(direction)) => directions.has(direction),
     }
 }
 

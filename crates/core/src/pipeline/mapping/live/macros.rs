@@ -1,19 +1,19 @@
 //! Macros that are playing.
 
-use super::stated::Stated;
+use super::stated::StepOutput;
 use crate::pipeline::mapping::profile::{MACROS_MAX, Macro};
 use crate::time::StreamInstant;
 
 /// Since when each macro plays.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Running {
+pub(crate) struct MacroPlayback {
     since: [Option<StreamInstant>; MACROS_MAX],
 }
 
-impl Running {
+impl MacroPlayback {
     /// Lets those begin that `stated` says, and states what all press at `t`. A macro that plays does not begin anew, and has all its
     /// controls for its own, so that what the fingers do meanwhile does not get among its steps.
-    pub(crate) fn step(&mut self, macros: &[Macro], t: StreamInstant, stated: &mut Stated) {
+    pub(crate) fn step(&mut self, macros: &[Macro], t: StreamInstant, stated: &mut StepOutput) {
         for ((it, since), begun) in macros.iter().zip(&mut self.since).zip(stated.begun) {
             if begun {
                 since.get_or_insert(t);

@@ -6,7 +6,7 @@ use super::intent::{Intents, Level};
 use crate::pipeline::control::names::{POINTER_MOTION, POINTER_PLACE};
 use crate::pipeline::control::{Code, OutputDevice};
 use crate::pipeline::mapping::live::button::effect::Playing;
-use crate::pipeline::mapping::live::contact::pointer::{Steered, Velocity};
+use crate::pipeline::mapping::live::contact::pointer::{PointerOutput, Velocity};
 use crate::pipeline::mapping::profile::{Binding, Command, Keys, MACROS_MAX, Output};
 
 /// The most commands of one step.
@@ -17,14 +17,14 @@ pub type Commands = ArrayVec<Command, COMMANDS_MAX>;
 
 /// What one step states, while it is collected.
 #[derive(Default)]
-pub(crate) struct Stated {
+pub(crate) struct StepOutput {
     pub(crate) levels: Intents,
     pub(crate) layer: Option<usize>,
     pub(crate) begun: [bool; MACROS_MAX],
     pub(crate) commands: Commands,
 }
 
-impl Stated {
+impl StepOutput {
     /// Takes up what is on. Of several layers the last one counts.
     pub(crate) fn take(&mut self, Playing { output, begins }: Playing) {
         match output {
@@ -62,13 +62,13 @@ impl Stated {
     }
 
     /// Adds the pointer's way, or its place.
-    pub(crate) fn state_motion(&mut self, steered: Option<Steered>) {
+    pub(crate) fn state_motion(&mut self, steered: Option<PointerOutput>) {
         let (device, codes, values) = match steered {
             None => return,
-            Some(Steered::Moving(Velocity { right, down })) => {
+            Some(PointerOutput::Moving(Velocity { right, down })) => {
                 (OutputDevice::Pointer, POINTER_MOTION, [right, down])
             }
-            Some(Steered::At(place)) => (OutputDevice::Tablet, POINTER_PLACE, place),
+            Some(PointerOutput::At(place)) => (OutputDevice::Tablet, POINTER_PLACE, place),
         };
         for (code, value) in codes.into_iter().zip(values).filter(|(_, value)| *value != 0) {
             self.state(Binding { device, code, value });

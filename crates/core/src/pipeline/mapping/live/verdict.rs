@@ -27,12 +27,12 @@ pub struct Verdict {
     /// Stream time at which it was clear.
     pub t: StreamInstant,
     /// What is told.
-    pub told: Told,
+    pub told: VerdictEvent,
 }
 
 /// What a verdict tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Told {
+pub enum VerdictEvent {
     /// A press of a button.
     Button {
         /// Counted from 1 in the file's order.

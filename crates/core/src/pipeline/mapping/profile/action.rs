@@ -111,12 +111,12 @@ pub struct Macro {
     /// The name by which presses begin it.
     pub name: String,
     /// In their order.
-    pub steps: Vec<Step>,
+    pub steps: Vec<MacroStep>,
 }
 
 /// One step of a macro.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Step {
+pub struct MacroStep {
     /// What is down; nothing in a pause.
     pub keys: Option<Keys>,
     /// It ends so long after the macro began.
@@ -125,7 +125,7 @@ pub struct Step {
 
 /// A kind of press that is told by a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Timed {
+pub struct TimedEffect {
     /// What it does.
     pub effect: Effect,
     /// The time that tells it.
@@ -142,9 +142,9 @@ pub enum Action {
         /// A short press, when it ends. Where there is a double press: when that can no longer come.
         tap: Effect,
         /// A press that begins less than this time after the end of a short one, as long as it lasts.
-        double: Option<Timed>,
+        double: Option<TimedEffect>,
         /// A press from this duration on, until it ends; without it none is long.
-        hold: Option<Timed>,
+        hold: Option<TimedEffect>,
     },
     /// By how hard a press is.
     ByForce {

@@ -1,6 +1,6 @@
 //! Sticks and triggers of the gamepad, and by which numbers they follow the contact.
 
-use super::place::Place;
+use super::place::ButtonPlace;
 use crate::pipeline::control::Code;
 use crate::pipeline::control::names::{STICKS, TRIGGERS};
 
@@ -56,7 +56,7 @@ pub struct Trigger {
     /// In between it goes with this power of the part of the way.
     pub curve: f32,
     /// Where it counts; everywhere if that is not said.
-    pub place: Option<Place>,
+    pub place: Option<ButtonPlace>,
 }
 
 impl Stick {

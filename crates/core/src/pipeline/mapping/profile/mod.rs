@@ -16,13 +16,13 @@ pub(crate) mod words;
 use arrayvec::ArrayVec;
 
 pub use self::action::{
-    Action, Command, Effect, Layer, Macro, Mode, Output, PROFILE_NAME_MAX, Role, Roles, Skip, Step, Timed,
-    When,
+    Action, Command, Effect, Layer, Macro, MacroStep, Mode, Output, PROFILE_NAME_MAX, Role, Roles, Skip,
+    TimedEffect, When,
 };
 use self::angle::wrapped;
 pub use self::axes::{SIDES, Side, Source, Stick, Trigger};
 pub use self::keys::{Binding, KEYS_MAX, Keys};
-pub use self::place::{Direction, Dpad, DpadMode, Gain, Place, Pointer, PointerMode, Zone};
+pub use self::place::{ButtonPlace, Direction, Dpad, DpadMode, Gain, Pointer, PointerMode, Zone};
 pub use self::program::Program;
 use crate::pipeline::control::{Code, OutputDevice};
 
@@ -57,7 +57,7 @@ pub struct Access {
     /// Calms the place of the contact.
     pub tremor: Option<Tremor>,
     /// A hand that rests on the pad is no touch.
-    pub rest: Option<Rest>,
+    pub rest: Option<RestRejection>,
 }
 
 /// A low-pass of the contact's place.
@@ -78,7 +78,7 @@ impl Tremor {
 
 /// What tells a touch from a hand that rests.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rest {
+pub struct RestRejection {
     /// A touch is by so much above the load that rests, in newtons,
     pub n: f32,
     /// which follows slow changes in this time.
@@ -123,7 +123,7 @@ pub struct Button {
     /// It counts when the finger has rested.
     pub dwell: Option<Dwell>,
     /// Where it counts; everywhere if that is not said.
-    pub place: Option<Place>,
+    pub place: Option<ButtonPlace>,
     /// When it counts.
     pub when: When,
     /// What a press does.

@@ -133,7 +133,7 @@ pub struct Zone {
 
 /// Where a button counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum ButtonPlace {
     /// In the zone of this number.
     Zone(usize),
     /// While the D-pad holds this direction.

@@ -5,7 +5,9 @@ use serde::Serialize;
 use super::place::{Direction, Dpad, Pointer, Zone};
 use super::sector;
 use super::words::{COMMANDS, DPAD_MODES, FORCES, POINTER_MODES, SIDES, SOURCES};
-use super::{Action, Button, Command, Effect, Mode, Output, Place, Profile, Role, Stick, Trigger, When};
+use super::{
+    Action, Button, ButtonPlace, Command, Effect, Mode, Output, Profile, Role, Stick, Trigger, When,
+};
 use crate::pipeline::control::Code;
 
 /// A profile as it is drawn. Angles in degrees counter-clockwise from right; `centre_mm` is where the hand has its centre.
@@ -20,9 +22,9 @@ pub struct Sketch {
     /// Window of the mean filter.
     pub filter_samples: usize,
     /// Its directions.
-    pub dpad: Option<Directions>,
+    pub dpad: Option<DpadSketch>,
     /// Its zones, in the file's order.
-    pub zones: Vec<Region>,
+    pub zones: Vec<ZoneSketch>,
     /// The rings that move the pointer.
     pub pointer: Option<PointerRings>,
     /// Its sticks.
@@ -35,7 +37,7 @@ pub struct Sketch {
 
 /// Directions as they are drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Directions {
+pub struct DpadSketch {
     /// `4way`, `4way-sticky` or `8way`.
     pub mode: &'static str,
     /// A direction starts at this distance from the centre,
@@ -55,12 +57,12 @@ pub struct Directions {
     /// See [`Dpad::release_force_n`].
     pub release_force_n: f32,
     /// The parts of the plate, counter-clockwise from right.
-    pub sectors: Vec<Part>,
+    pub sectors: Vec<SectorOutline>,
 }
 
 /// A sector of the plate and what is held there; nothing where the last direction stays.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Part {
+pub struct SectorOutline {
     /// It begins
     pub from_deg: f32,
     /// and ends.
@@ -71,7 +73,7 @@ pub struct Part {
 
 /// A zone as it is drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Region {
+pub struct ZoneSketch {
     /// Its name.
     pub name: String,
     /// It begins; nothing for a ring.
@@ -149,12 +151,12 @@ pub struct ButtonForces {
     /// The layer in which it counts; always without.
     pub layer: Option<String>,
     /// What its kinds of press do.
-    pub does: Vec<Does>,
+    pub does: Vec<EffectLabel>,
 }
 
 /// What a kind of press does.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Does {
+pub struct EffectLabel {
     /// The kind of press, as its key in the profile.
     pub role: &'static str,
     /// Names of controls with `+` between them, or what it acts on in words.
@@ -169,8 +171,8 @@ impl Sketch {
             output: profile.output.name(),
             centre_mm: profile.centre_mm,
             filter_samples: profile.filter_samples,
-            dpad: profile.dpad.as_ref().map(Directions::of),
-            zones: profile.zones.iter().map(Region::of).collect(),
+            dpad: profile.dpad.as_ref().map(DpadSketch::of),
+            zones: profile.zones.iter().map(ZoneSketch::of).collect(),
             pointer: profile.pointer.as_ref().map(PointerRings::of),
             sticks: profile.sticks.iter().map(StickReach::of).collect(),
             triggers: profile.triggers.iter().map(TriggerForces::of).collect(),
@@ -187,7 +189,7 @@ fn word<T: PartialEq>(words: &[(&'static str, T)], of: &T) -> &'static str {
     words.iter().find(|(_, value)| value == of).map_or("", |(word, _)| word)
 }
 
-impl Directions {
+impl DpadSketch {
     fn of(dpad: &Dpad) -> Self {
         Self {
             mode: word(&DPAD_MODES, &dpad.mode),
@@ -200,20 +202,20 @@ impl Directions {
             min_force_n: dpad.min_force_n,
             release_force_n: dpad.release_force_n,
             sectors: sector::parts(dpad)
-                .map(|(from_deg, to_deg, held)| Part::of([from_deg, to_deg], held))
+                .map(|(from_deg, to_deg, held)| SectorOutline::of([from_deg, to_deg], held))
                 .collect(),
         }
     }
 }
 
-impl Part {
+impl SectorOutline {
     fn of([from_deg, to_deg]: [f32; 2], held: impl Fn(Direction) -> bool) -> Self {
         let held = Direction::ALL.into_iter().filter(|direction| held(*direction));
         Self { from_deg, to_deg, directions: held.map(Direction::name).collect() }
     }
 }
 
-impl Region {
+impl ZoneSketch {
     fn of(zone: &Zone) -> Self {
         let edges = (zone.half_width_deg < 180.0)
             .then_some((zone.middle_deg - zone.half_width_deg, zone.middle_deg + zone.half_width_deg));
@@ -278,15 +280,17 @@ impl ButtonForces {
             dwell_ms: button.dwell.map(|it| ms(it.us)),
             zone: button.place.and_then(|place| place_name(place, profile)),
             layer: layer_name(button.when, profile),
-            does: effects.filter_map(|(role, effect)| Some(Does::of(role, &effect?, profile))).collect(),
+            does: effects
+                .filter_map(|(role, effect)| Some(EffectLabel::of(role, &effect?, profile)))
+                .collect(),
         }
     }
 }
 
-fn place_name(place: Place, profile: &Profile) -> Option<String> {
+fn place_name(place: ButtonPlace, profile: &Profile) -> Option<String> {
     match place {
-        Place::Zone(number) => profile.zones.get(number).map(|zone| zone.name.clone()),
-        Place::Direction(direction) => Some(direction.name().into()),
+        ButtonPlace::Zone(number) => profile.zones.get(number).map(|zone| zone.name.clone()),
+        ButtonPlace::Direction(direction) => Some(direction.name().into()),
     }
 }
 
@@ -298,7 +302,7 @@ fn layer_name(when: When, profile: &Profile) -> Option<String> {
     }
 }
 
-impl Does {
+impl EffectLabel {
     fn of(role: Role, effect: &Effect, profile: &Profile) -> Self {
         let acts_on = match &effect.output {
             Output::Keys(_) => {

@@ -16,9 +16,9 @@ use crate::pipeline::mapping::read::common::limits::{
 };
 use crate::pipeline::mapping::read::section::access::{self, ACCESS_KEYS};
 use crate::pipeline::mapping::read::section::axes;
-use crate::pipeline::mapping::read::section::button::{BUTTON_KEYS, ButtonDraft, Surroundings};
+use crate::pipeline::mapping::read::section::button::{BUTTON_KEYS, ButtonContext, ButtonDraft};
 use crate::pipeline::mapping::read::section::dpad::{DPAD_KEYS, DpadDraft, read_gate};
-use crate::pipeline::mapping::read::section::effects::Around;
+use crate::pipeline::mapping::read::section::effects::EffectContext;
 use crate::pipeline::mapping::read::section::layers::LayerDraft;
 use crate::pipeline::mapping::read::section::macros::MacroDraft;
 use crate::pipeline::mapping::read::section::plate;
@@ -83,14 +83,14 @@ pub fn read(text: &str, output: OutputChoice) -> (Option<Profile>, Vec<Diagnosti
         return (None, findings.finish());
     };
     let root = Section::root(&tree, "the profile", &ROOT_KEYS, &mut findings);
-    let draft = Draft::read(&root, &mut findings);
+    let draft = ProfileDraft::read(&root, &mut findings);
     draft.check_conflicts(&mut findings);
     let profile = if findings.failed() { None } else { draft.settle(output) };
     (profile, findings.finish())
 }
 
 /// A profile while it is read: what is unusable is `None` and reported.
-struct Draft {
+struct ProfileDraft {
     name: Option<String>,
     programs: Vec<Program>,
     output: Option<OutputDevice>,
@@ -111,7 +111,7 @@ struct Draft {
     buttons: Vec<ButtonDraft>,
 }
 
-impl Draft {
+impl ProfileDraft {
     fn read(root: &Section<'_>, findings: &mut Findings<'_>) -> Self {
         read_schema(root, findings);
         let output = root.word("output", &OUTPUTS, findings).map(|word| word.value);
@@ -127,8 +127,8 @@ impl Draft {
         let macros = MacroDraft::read_all(root, min_press_ms, findings);
         let layer_names: Vec<&str> = layers.iter().map(|it| it.name.as_str()).collect();
         let macro_names: Vec<&str> = macros.iter().map(|it| it.name.as_str()).collect();
-        let effects = Around { min_press_ms, layers: &layer_names, macros: &macro_names };
-        let around = Surroundings { effects, zones: &zones, has_dpad };
+        let effects = EffectContext { min_press_ms, layers: &layer_names, macros: &macro_names };
+        let around = ButtonContext { effects, zones: &zones, has_dpad };
         // One more than there can be, so that the first one too many is known by its place.
         let buttons = root.tables("button", &BUTTON_KEYS, BUTTONS_MAX + 1, findings);
         check_counts(root, &buttons, findings);

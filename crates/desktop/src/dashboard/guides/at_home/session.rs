@@ -15,7 +15,7 @@ use tactpad_core::pipeline::mapping::read::check::OutputChoice;
 use tactpad_core::pipeline::mapping::read::shipped as profiles;
 use tactpad_core::pipeline::{Phase, shipped};
 use tactpad_core::time::HostInstant;
-use tactpad_lab::play::guide::{Guide, Step};
+use tactpad_lab::play::guide::{Guide, GuideStep};
 use tactpad_lab::play::reader::Reader;
 use tactpad_lab::play::words::{is_news, is_other};
 
@@ -45,8 +45,8 @@ pub(super) struct Session {
     begin: Option<HostInstant>,
     pad: Option<SerialNumber>,
     /// The step that was begun last, and the one that asked for something else last.
-    begun: Step,
-    cue: Step,
+    begun: GuideStep,
+    cue: GuideStep,
     judged: usize,
     phase: Phase,
 }
@@ -98,7 +98,7 @@ impl Session {
 
     /// Whether nothing is left to do.
     pub(super) fn is_done(&self) -> bool {
-        *self.guide.step() == Step::Done
+        *self.guide.step() == GuideStep::Done
     }
 
     /// Sees that everything is kept.
@@ -142,7 +142,7 @@ mod tests {
     use tactpad_core::pipeline::call::OwnedCall;
     use tactpad_core::virtual_pad::firmware::VirtualPad;
     use tactpad_core::virtual_pad::freehand::Calibrator;
-    use tactpad_lab::play::guide::Lying;
+    use tactpad_lab::play::guide::LoadOnPad;
     use tactpad_lab::play::weights::Placement;
 
     const WEIGHT_G: f64 = 200.0;
@@ -177,7 +177,7 @@ mod tests {
     struct Scene {
         pad: VirtualPad,
         hands: Calibrator,
-        obeyed: Option<Step>,
+        obeyed: Option<GuideStep>,
         /// How far beside the mark the weight is put.
         off_mm: f64,
     }
@@ -197,19 +197,19 @@ mod tests {
             (HostInstant::default().plus_us(BEGIN_US + now_us), bytes)
         }
 
-        fn obey(&mut self, step: &Step) {
+        fn obey(&mut self, step: &GuideStep) {
             if self.obeyed.as_ref().is_some_and(|obeyed| !is_other(obeyed, step)) {
                 return;
             }
             self.obeyed = Some(step.clone());
             match step {
-                Step::Rest { .. } | Step::Done => self.pad.play(Calibrator::rest()),
-                Step::Press { .. } => self.pad.play(self.hands.press()),
-                Step::Put { mark, .. } => {
+                GuideStep::Rest { .. } | GuideStep::Done => self.pad.play(Calibrator::rest()),
+                GuideStep::Press { .. } => self.pad.play(self.hands.press()),
+                GuideStep::Put { mark, .. } => {
                     let [x_mm, y_mm] = MARKS_MM[*mark];
                     self.pad.lay(self.hands.lay([x_mm + self.off_mm, y_mm], WEIGHT_G))
                 }
-                Step::TakeAway { .. } => self.pad.lay(self.hands.take_away()),
+                GuideStep::TakeAway { .. } => self.pad.lay(self.hands.take_away()),
             };
         }
 
@@ -252,9 +252,9 @@ mod tests {
     fn it_leads_from_the_middle_of_a_paused_game_to_a_decoder_that_knows_the_scale() {
         let (mut scene, memory) = (Scene::new(5), Memory::default());
         let mut session = begun(&memory, Some(WEIGHT_G));
-        scene.lead(&mut session, |it| matches!(it.step, Step::TakeAway { mark: 4 }));
+        scene.lead(&mut session, |it| matches!(it.step, GuideStep::TakeAway { mark: 4 }));
         assert_eq!(memory.placements.lock().unwrap().len(), 4, "each mark is kept as soon as it is done");
-        scene.lead(&mut session, |it| it.step == Step::Done);
+        scene.lead(&mut session, |it| it.step == GuideStep::Done);
         session.settle().unwrap();
         let calls = memory.calls.lock().unwrap();
         assert!(matches!(&calls[0], (at, OwnedCall::Bytes(_)) if *at == HostInstant::default()));
@@ -274,7 +274,8 @@ mod tests {
         let (mut scene, memory) = (Scene::new(6), Memory::default());
         let mut session = begun(&memory, Some(WEIGHT_G));
         scene.off_mm = 10.0;
-        let is_beside = |step: &Step| matches!(step, Step::Put { lying: Lying::Beside { .. }, .. });
+        let is_beside =
+            |step: &GuideStep| matches!(step, GuideStep::Put { lying: LoadOnPad::Beside { .. }, .. });
         let first = scene.lead(&mut session, |it| is_beside(&it.step));
         let cue = first.cue.clone();
         assert!(is_beside(&cue), "{first:?}");
@@ -289,7 +290,7 @@ mod tests {
     fn what_was_kept_is_gone_on_from() {
         let (mut scene, memory) = (Scene::new(7), Memory::default());
         let mut session = begun(&memory, Some(WEIGHT_G));
-        scene.lead(&mut session, |it| matches!(it.step, Step::Put { mark: 2, .. }));
+        scene.lead(&mut session, |it| matches!(it.step, GuideStep::Put { mark: 2, .. }));
         let pressed_s = session.finish().pressed_s();
         let (mut again, _) = guide(Some(WEIGHT_G)).unwrap();
         let calls = memory.calls.lock().unwrap().clone();
@@ -300,8 +301,8 @@ mod tests {
         assert!((again.pressed_s() - pressed_s).abs() < 0.05, "{} {pressed_s}", again.pressed_s());
         let kept = Memory { begin_us: end.as_ns() / 1_000, ..Memory::default() };
         let mut second = Session::begin(again, Box::new(kept), Some(&identity("A-1"))).unwrap();
-        let next = scene.lead(&mut second, |it| !matches!(it.step, Step::Rest { .. }));
-        assert!(matches!(next.step, Step::Put { mark: 2, .. }) && next.placed == 2, "{next:?}");
+        let next = scene.lead(&mut second, |it| !matches!(it.step, GuideStep::Rest { .. }));
+        assert!(matches!(next.step, GuideStep::Put { mark: 2, .. }) && next.placed == 2, "{next:?}");
     }
 
     #[test]

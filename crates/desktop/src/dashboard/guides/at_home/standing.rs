@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::dashboard::guides::guide::Outcome;
 use tactpad_core::pipeline::Phase;
-use tactpad_lab::play::guide::{Guide, Step};
+use tactpad_lab::play::guide::{Guide, GuideStep};
 
 /// How it stands.
 #[derive(Clone, Debug, Default)]
@@ -17,7 +17,7 @@ pub(super) enum Standing {
     /// The decoder is fitted: so much of it is done, from 0 to 1.
     Fitting(f64),
     /// It broke off in this step.
-    Broken(Step, String),
+    Broken(GuideStep, String),
     /// What came of the fit, or why nothing did.
     Over(Result<Outcome, String>),
 }
@@ -25,9 +25,9 @@ pub(super) enum Standing {
 /// Where a session that listens is.
 #[derive(Clone, Debug)]
 pub(super) struct Position {
-    pub(super) step: Step,
+    pub(super) step: GuideStep,
     /// The same step, as it was when something else was to be done or mended last.
-    pub(super) cue: Step,
+    pub(super) cue: GuideStep,
     /// Marks that the weight was put on.
     pub(super) placed: usize,
     /// What the pad is doing.
@@ -52,7 +52,7 @@ impl Shared {
     /// It failed where it stands.
     pub(super) fn fail(&self, why: String) {
         self.set(match self.now() {
-            Standing::Opening => Standing::Broken(Step::Rest { rested_s: 0.0 }, why),
+            Standing::Opening => Standing::Broken(GuideStep::Rest { rested_s: 0.0 }, why),
             Standing::Guided(Position { step, .. }) | Standing::Broken(step, _) => {
                 Standing::Broken(step, why)
             }
@@ -79,7 +79,7 @@ impl Standing {
 
 impl Position {
     /// Where this guide is; it asks for the same as at `cue`.
-    pub(super) fn of(guide: &Guide, cue: &Step) -> Self {
+    pub(super) fn of(guide: &Guide, cue: &GuideStep) -> Self {
         Self {
             step: guide.step().clone(),
             cue: cue.clone(),

@@ -7,7 +7,7 @@ use tactpad_bridge::state::State;
 use tactpad_core::pad::marks::MARKS_MM;
 use tactpad_core::pad::weight::GRAMS;
 use tactpad_core::pipeline::Phase;
-use tactpad_lab::play::guide::{Lying, REST_S, STILL_S, Step};
+use tactpad_lab::play::guide::{GuideStep, LoadOnPad, REST_S, STILL_S};
 use tactpad_lab::play::words::{WITHOUT_WEIGHT, instruction, progress, wrong};
 
 /// What people can choose before it begins.
@@ -73,10 +73,10 @@ const fn number_of(standing: &Standing) -> usize {
     match standing {
         Standing::Opening => REST,
         Standing::Guided(Position { step, .. }) | Standing::Broken(step, _) => match step {
-            Step::Rest { .. } => REST,
-            Step::Press { .. } => PRESS,
-            Step::Put { .. } | Step::TakeAway { .. } => PUT,
-            Step::Done => FIT,
+            GuideStep::Rest { .. } => REST,
+            GuideStep::Press { .. } => PRESS,
+            GuideStep::Put { .. } | GuideStep::TakeAway { .. } => PUT,
+            GuideStep::Done => FIT,
         },
         Standing::Fitting(_) | Standing::Over(_) => FIT,
     }
@@ -145,14 +145,14 @@ const fn obstacle(phase: Phase) -> Option<&'static str> {
 fn share(position: &Position) -> f64 {
     let marks = MARKS_MM.len() as f64;
     let done = match &position.step {
-        Step::Rest { rested_s } => rested_s / REST_S,
-        Step::Press { pressed_s, of_s, .. } => pressed_s / of_s,
-        Step::Put { lying: Lying::Still { still_s }, .. } => {
+        GuideStep::Rest { rested_s } => rested_s / REST_S,
+        GuideStep::Press { pressed_s, of_s, .. } => pressed_s / of_s,
+        GuideStep::Put { lying: LoadOnPad::Still { still_s }, .. } => {
             (position.placed as f64 + still_s / STILL_S) / marks
         }
-        Step::Put { .. } => position.placed as f64 / marks,
-        Step::TakeAway { .. } => (position.placed as f64 + 1.0) / marks,
-        Step::Done => 1.0,
+        GuideStep::Put { .. } => position.placed as f64 / marks,
+        GuideStep::TakeAway { .. } => (position.placed as f64 + 1.0) / marks,
+        GuideStep::Done => 1.0,
     };
     done.clamp(0.0, 1.0)
 }
@@ -168,7 +168,7 @@ mod tests {
         Stage::Begun(Begun { weight_g, shared: Arc::default(), stop: Arc::default(), standing })
     }
 
-    fn guided(step: Step, phase: Phase) -> Standing {
+    fn guided(step: GuideStep, phase: Phase) -> Standing {
         Standing::Guided(Position { cue: step.clone(), step, placed: 1, phase })
     }
 
@@ -192,18 +192,18 @@ mod tests {
 
     #[test]
     fn each_step_has_its_cue_and_how_much_of_it_is_done() {
-        let press = Step::Press { pressed_s: 15.0, of_s: 60.0, next: "the left rim", missing: 2 };
+        let press = GuideStep::Press { pressed_s: 15.0, of_s: 60.0, next: "the left rim", missing: 2 };
         let step = doing(&begun(guided(press, Phase::Playing), None));
         assert_eq!((step.id, step.progress), ("press", Some(0.25)));
         assert_eq!(step.detail.as_deref(), Some("15 of 60 s; not yet: the left rim, and 1 more"));
-        let still = Step::Put { mark: 1, lying: Lying::Still { still_s: 1.0 } };
+        let still = GuideStep::Put { mark: 1, lying: LoadOnPad::Still { still_s: 1.0 } };
         let step = doing(&begun(guided(still, Phase::Playing), Some(200.0)));
         assert_eq!(step.cue.as_deref(), Some("put the weight of 200 g on mark 2 of 5 (right)"));
         assert!((step.progress.unwrap() - 0.3).abs() < 1e-9);
-        let early = Step::Put { mark: 1, lying: Lying::TakenTooEarly };
+        let early = GuideStep::Put { mark: 1, lying: LoadOnPad::TakenTooEarly };
         let step = doing(&begun(guided(early, Phase::Playing), Some(200.0)));
         assert!(step.cue.unwrap().contains("once more"));
-        let rest = Step::Rest { rested_s: 0.0 };
+        let rest = GuideStep::Rest { rested_s: 0.0 };
         let step = doing(&begun(guided(rest, Phase::Waiting), Some(200.0)));
         assert_eq!(step.cue.as_deref(), Some(State::Waiting.sentence()), "the pad comes first");
     }
@@ -216,8 +216,10 @@ mod tests {
         assert_eq!(fit(Standing::Fitting(0.5)), Some(("fit", StepState::Doing)));
         assert_eq!(fit(Standing::Over(Ok(Outcome::default()))), Some(("fit", StepState::Done)));
         assert_eq!(fit(Standing::Over(Err("no".into()))), Some(("fit", StepState::Failed)));
-        let lifted =
-            Standing::Broken(Step::Press { pressed_s: 9.0, of_s: 60.0, next: "", missing: 1 }, "full".into());
+        let lifted = Standing::Broken(
+            GuideStep::Press { pressed_s: 9.0, of_s: 60.0, next: "", missing: 1 },
+            "full".into(),
+        );
         let broken = begun(lifted.clone(), None);
         assert!(states(&broken).contains(&("press", StepState::Failed)), "it failed where it was");
         assert_eq!(lifted.outcome(), Some(Outcome::words("full")));

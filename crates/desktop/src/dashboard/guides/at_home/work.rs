@@ -20,7 +20,7 @@ use tactpad_core::pipeline::call::{Call, OwnedCall};
 use tactpad_core::time::HostInstant;
 use tactpad_lab::play::guide::Guide;
 use tactpad_lab::play::home::calibrated;
-use tactpad_lab::play::summary::{HEADING, Part, Summary};
+use tactpad_lab::play::summary::{HEADING, PlatePart, Summary};
 use tactpad_lab::tangent::Simulated;
 use tactpad_mechanics::field_cache;
 
@@ -142,8 +142,8 @@ pub(super) fn fitted(guide: Guide, report: &(dyn Fn(f64) + Sync)) -> Result<(Vec
 
 /// What people read in the end.
 fn outcome(summary: &Summary, path: &str, command: String) -> Outcome {
-    let row = |part: &Part| {
-        let Part { name, deviation_mm, force_share, presses, open } = part;
+    let row = |part: &PlatePart| {
+        let PlatePart { name, deviation_mm, force_share, presses, open } = part;
         let is_open = if *open { "open" } else { "" };
         let [deviation, share] = [format!("{deviation_mm:.2} mm"), format!("{:.1} %", 100.0 * force_share)];
         vec![(*name).to_owned(), deviation, share, presses.to_string(), is_open.to_owned()]

@@ -1,6 +1,6 @@
 //! A channel's sensitivity differs: gauge factor, glue, amplifier.
 
-use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -20,8 +20,8 @@ impl Cause for ChannelGain {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Channels
+    fn stage(&self) -> ChainStage {
+        ChainStage::Channels
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

@@ -1,6 +1,6 @@
 //! A channel's zero is not zero: the bridge is out of balance.
 
-use crate::diagnosis::causes::cause::{Cause, Stage, each_channel};
+use crate::diagnosis::causes::cause::{Cause, ChainStage, each_channel};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -20,8 +20,8 @@ impl Cause for ChannelOffset {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Channels
+    fn stage(&self) -> ChainStage {
+        ChainStage::Channels
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

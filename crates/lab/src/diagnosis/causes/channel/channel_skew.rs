@@ -1,6 +1,6 @@
 //! A channel is converted later than the others, or earlier.
 
-use crate::diagnosis::causes::cause::{Cause, Stage, each_channel};
+use crate::diagnosis::causes::cause::{Cause, ChainStage, each_channel};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -20,8 +20,8 @@ impl Cause for ChannelSkew {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Channels
+    fn stage(&self) -> ChainStage {
+        ChainStage::Channels
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

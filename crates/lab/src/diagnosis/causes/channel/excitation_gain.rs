@@ -1,6 +1,6 @@
 //! All channels have one gain: the excitation, or the converter's reference, differs.
 
-use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -20,8 +20,8 @@ impl Cause for ExcitationGain {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Channels
+    fn stage(&self) -> ChainStage {
+        ChainStage::Channels
     }
 
     fn targets(&self, _: &Setting) -> Vec<Target> {

@@ -1,6 +1,6 @@
 //! A channel bends: at full scale it reads more, or less, than its slope at rest promises.
 
-use crate::diagnosis::causes::cause::{Cause, Stage, each_channel};
+use crate::diagnosis::causes::cause::{Cause, ChainStage, each_channel};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -20,8 +20,8 @@ impl Cause for GaugeNonlinearity {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Channels
+    fn stage(&self) -> ChainStage {
+        ChainStage::Channels
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

@@ -1,6 +1,6 @@
 //! Glue and film give way slowly: a load that is held reads more and more, or less and less.
 
-use crate::diagnosis::causes::cause::{Cause, Stage, channels_of, pad_and_channels};
+use crate::diagnosis::causes::cause::{Cause, ChainStage, channels_of, pad_and_channels};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::memory::{Dwells, Prony};
@@ -29,8 +29,8 @@ impl Cause for Creep {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Mechanics
+    fn stage(&self) -> ChainStage {
+        ChainStage::Mechanics
     }
 
     /// One channel's is a gain where all loads are held equally long.

@@ -1,9 +1,9 @@
 //! Friction between the pad's parts: on the way down a channel reads more than on the way up.
 
-use crate::diagnosis::causes::cause::{Cause, Stage, channels_of, pad_and_channels};
+use crate::diagnosis::causes::cause::{Cause, ChainStage, channels_of, pad_and_channels};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::chain::Chain;
-use crate::diagnosis::model::memory::Play;
+use crate::diagnosis::model::memory::ChannelFriction;
 use crate::diagnosis::model::setting::Setting;
 use crate::diagnosis::model::{Parameter, with_shapes};
 
@@ -40,8 +40,8 @@ impl Cause for Hysteresis {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Mechanics
+    fn stage(&self) -> ChainStage {
+        ChainStage::Mechanics
     }
 
     /// One channel's is a gain, or bends it, where all loads come from the same side.
@@ -56,7 +56,7 @@ impl Cause for Hysteresis {
     fn apply(&self, target: &Target, values: &[f64], setting: &Setting, chain: &mut Chain) {
         let above = values[1 + THRESHOLDS.len()];
         for channel in channels_of(target, setting) {
-            let play = |[threshold, share]: [f64; 2]| Play { channel, threshold, share, above };
+            let play = |[threshold, share]: [f64; 2]| ChannelFriction { channel, threshold, share, above };
             chain.memory.plays.extend(plays(values).map(play));
         }
     }

@@ -1,6 +1,6 @@
 //! A module strains another one, axis by axis: through the base, before the channels.
 
-use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -20,8 +20,8 @@ impl Cause for ModuleCrosstalk {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Channels
+    fn stage(&self) -> ChainStage {
+        ChainStage::Channels
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

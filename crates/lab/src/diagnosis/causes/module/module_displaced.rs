@@ -1,6 +1,6 @@
 //! A module stands elsewhere under the plate.
 
-use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -23,8 +23,8 @@ impl Cause for ModuleDisplaced {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Mechanics
+    fn stage(&self) -> ChainStage {
+        ChainStage::Mechanics
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

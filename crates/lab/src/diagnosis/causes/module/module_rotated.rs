@@ -1,6 +1,6 @@
 //! A module is turned about its own axis.
 
-use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -20,8 +20,8 @@ impl Cause for ModuleRotated {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Mechanics
+    fn stage(&self) -> ChainStage {
+        ChainStage::Mechanics
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

@@ -1,6 +1,6 @@
 //! The plate bends less, or more: another thickness, another modulus.
 
-use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -20,8 +20,8 @@ impl Cause for PlateStiffness {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Mechanics
+    fn stage(&self) -> ChainStage {
+        ChainStage::Mechanics
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

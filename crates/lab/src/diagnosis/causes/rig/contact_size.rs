@@ -1,6 +1,6 @@
 //! The load is spread over another patch than the model's: an indenter of another size, a soft finger.
 
-use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::setting::Setting;
@@ -30,8 +30,8 @@ impl Cause for ContactSize {
         }]
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Mechanics
+    fn stage(&self) -> ChainStage {
+        ChainStage::Mechanics
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

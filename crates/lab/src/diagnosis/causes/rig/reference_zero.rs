@@ -1,6 +1,6 @@
 //! The force sensor of the rig has a zero of its own.
 
-use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -24,8 +24,8 @@ impl Cause for ReferenceZero {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Contact
+    fn stage(&self) -> ChainStage {
+        ChainStage::Contact
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

@@ -1,6 +1,6 @@
 //! The stage is turned against the pad.
 
-use crate::diagnosis::causes::cause::{Cause, Stage};
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
@@ -20,8 +20,8 @@ impl Cause for StageRotation {
         PARAMETERS.to_vec()
     }
 
-    fn stage(&self) -> Stage {
-        Stage::Contact
+    fn stage(&self) -> ChainStage {
+        ChainStage::Contact
     }
 
     fn targets(&self, setting: &Setting) -> Vec<Target> {

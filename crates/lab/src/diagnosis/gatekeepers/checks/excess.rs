@@ -59,7 +59,7 @@ struct Level {
 
 /// A channel's noise beside what the others let expect, as logarithms.
 #[derive(Clone, Copy)]
-struct Beside {
+struct NoiseExcess {
     noise: f64,
     excess: f64,
     variance: f64,
@@ -81,7 +81,7 @@ pub(crate) fn excess(observations: &Observations, noise: &[Noise], signals: &[Ve
         .filter(|levels| levels.len() > OTHERS_MIN)
         .collect();
     let mut found = Excess::default();
-    let all: Vec<(usize, Beside)> =
+    let all: Vec<(usize, NoiseExcess)> =
         (0..noise.len()).filter_map(|channel| Some((channel, beside(&by_kind, channel)?))).collect();
     let critical = chi_square::quantile(2.0 * LEVEL / all.len() as f64, 1).sqrt();
     for (channel, own) in all {
@@ -121,12 +121,12 @@ fn level(
 }
 
 /// A channel's noise beside what the others let expect, in the kind of row that tells it best.
-fn beside(by_kind: &[Vec<Level>], channel: usize) -> Option<Beside> {
+fn beside(by_kind: &[Vec<Level>], channel: usize) -> Option<NoiseExcess> {
     let of_kind = |levels: &Vec<Level>| {
         let own = levels.iter().find(|it| it.channel == channel)?;
         let others: Vec<Level> = levels.iter().filter(|it| it.channel != channel).copied().collect();
         let [should, variance] = predicted(&others, own);
-        Some(Beside { noise: own.noise, excess: own.noise - should, variance: variance + own.variance })
+        Some(NoiseExcess { noise: own.noise, excess: own.noise - should, variance: variance + own.variance })
     };
     by_kind.iter().filter_map(of_kind).min_by(|one, other| one.variance.total_cmp(&other.variance))
 }
@@ -181,7 +181,7 @@ fn finding(channel: usize, excess: f64, deviation: f64) -> Finding {
     }
 }
 
-fn notice(observations: &Observations, channel: usize, own: &Beside) -> Notice {
+fn notice(observations: &Observations, channel: usize, own: &NoiseExcess) -> Notice {
     let detail = format!(
         "{} has {:.1} times the noise that the other channels let expect: {:.1} instead of {:.1}; its rows keep as little weight \
          as that; look at its wires, and at its spectrum in a series at rest",

@@ -18,7 +18,7 @@ const LEFT_MIN: f64 = 0.5;
 
 /// Rows of a series that follow each other.
 #[derive(Clone, Debug)]
-pub(crate) struct Stretch {
+pub(crate) struct RowRun {
     /// Which rows.
     pub(crate) rows: Vec<usize>,
     t_s: Vec<f64>,
@@ -34,7 +34,7 @@ pub(crate) struct Waves {
     parts: [f64; 3],
 }
 
-impl Stretch {
+impl RowRun {
     /// `t_s` are the times of `rows`.
     pub(crate) fn of(rows: Vec<usize>, t_s: Vec<f64>) -> Self {
         let first = t_s.first().copied().unwrap_or(0.0);

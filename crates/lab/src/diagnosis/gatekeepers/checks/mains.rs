@@ -6,7 +6,7 @@
 //!
 //! Source: R. A. Fisher, Statistical Methods for Research Workers (1925), 21.1 (combined tests).
 
-use super::line::{Stretch, Waves};
+use super::line::{RowRun, Waves};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text};
 use crate::diagnosis::report::{Estimate, NotDetected, NotTestable};
@@ -77,7 +77,7 @@ pub(crate) fn check(gate: &mut Gate) {
     let loads = loaded(gate, &stretches, &combs, critical);
     for channel in 0..gate.channels() {
         let residual = residual(gate, channel);
-        let is_told = |it: &Stretch| it.rows.iter().all(|row| gate.observations.is_told[channel][*row]);
+        let is_told = |it: &RowRun| it.rows.iter().all(|row| gate.observations.is_told[channel][*row]);
         let told: Vec<bool> = picked(&stretches).iter().map(|it| is_told(it)).collect();
         let own = picked(&stretches);
         let mut peaks: Vec<Peak> =
@@ -99,7 +99,7 @@ pub(crate) fn check(gate: &mut Gate) {
 }
 
 /// The grids whose line is in the loads, too.
-fn loaded(gate: &Gate, stretches: &[Stretch], combs: &[Comb], critical: f64) -> Vec<f64> {
+fn loaded(gate: &Gate, stretches: &[RowRun], combs: &[Comb], critical: f64) -> Vec<f64> {
     let own = picked(stretches);
     let told = vec![true; own.len()];
     let has_line = |comb: &&Comb| {
@@ -120,7 +120,7 @@ fn residual(gate: &Gate, channel: usize) -> Vec<f64> {
 }
 
 /// The series in stretches.
-fn stretches(gate: &Gate) -> Vec<Stretch> {
+fn stretches(gate: &Gate) -> Vec<RowRun> {
     let mut stretches = Vec::new();
     for series in gate.series() {
         let mut rest = series.as_slice();
@@ -129,7 +129,7 @@ fn stretches(gate: &Gate) -> Vec<Stretch> {
             let within = rest.partition_point(|row| gate.t_s(*row) <= end_s).clamp(1, SAMPLES[1]);
             let (rows, after) = rest.split_at(within);
             if rows.len() >= SAMPLES[0] {
-                stretches.push(Stretch::of(rows.to_vec(), rows.iter().map(|row| gate.t_s(*row)).collect()));
+                stretches.push(RowRun::of(rows.to_vec(), rows.iter().map(|row| gate.t_s(*row)).collect()));
             }
             rest = after;
         }
@@ -138,17 +138,17 @@ fn stretches(gate: &Gate) -> Vec<Stretch> {
     stretches
 }
 
-fn picked(stretches: &[Stretch]) -> Vec<&Stretch> {
+fn picked(stretches: &[RowRun]) -> Vec<&RowRun> {
     stretches.iter().step_by(stretches.len().div_ceil(STRETCHES_MAX).max(1)).collect()
 }
 
-fn of_rows(values: &[f64], stretch: &Stretch) -> Vec<f64> {
+fn of_rows(values: &[f64], stretch: &RowRun) -> Vec<f64> {
     stretch.rows.iter().map(|row| values[*row]).collect()
 }
 
 impl Comb {
     /// `None` if no stretch sees the grid.
-    fn of(grid_hz: f64, stretches: &[&Stretch]) -> Option<Self> {
+    fn of(grid_hz: f64, stretches: &[&RowRun]) -> Option<Self> {
         let span_s = stretches.iter().map(|it| it.span_s()).fold(f64::NAN, f64::max);
         let step = 1.0 / (PER_RESOLUTION * span_s.max(1.0));
         let steps = |from: f64, to: f64| {
@@ -165,7 +165,7 @@ impl Comb {
     }
 
     /// The largest line of the grid in `values`, by the stretches in which the channel is `told`; none where no stretch tells it.
-    fn peak(&self, stretches: &[&Stretch], told: &[bool], values: &[f64], critical: f64) -> Option<Peak> {
+    fn peak(&self, stretches: &[&RowRun], told: &[bool], values: &[f64], critical: f64) -> Option<Peak> {
         let cut: Vec<Vec<f64>> = stretches.iter().map(|it| of_rows(values, it)).collect();
         let told = (0..cut.len()).filter(|at| told[*at]);
         let usable: Vec<Noise> = told.filter_map(|at| self.noise(at, stretches[at], &cut[at])).collect();
@@ -203,7 +203,7 @@ impl Comb {
     }
 
     /// A stretch's noise per degree of freedom, and how many it is known by.
-    fn noise(&self, at: usize, stretch: &Stretch, values: &[f64]) -> Option<Noise> {
+    fn noise(&self, at: usize, stretch: &RowRun, values: &[f64]) -> Option<Noise> {
         let beside: Vec<f64> = self.waves[at][self.searched..]
             .iter()
             .flatten()
@@ -260,7 +260,7 @@ fn top(mut frequency_hz: f64, step_hz: f64, total: &dyn Fn(f64) -> f64) -> (f64,
 }
 
 /// Takes the largest line out of a channel, and says so.
-fn take_out(gate: &mut Gate, channel: usize, stretches: &[Stretch], residual: &[f64], peaks: &[Peak]) {
+fn take_out(gate: &mut Gate, channel: usize, stretches: &[RowRun], residual: &[f64], peaks: &[Peak]) {
     let Some(peak) = peaks.first() else { return };
     let mut rows = 0;
     let share = gate.mended(|gate| {

@@ -21,13 +21,13 @@ const BLENDS: [f64; 4] = [1e-6, 1e-4, 1e-2, 1.0];
 const PASSES: usize = 3;
 
 /// Rows by which the kernel is chosen.
-pub(crate) struct Choice {
+pub(crate) struct KernelSelection {
     rows: Vec<Vec<f64>>,
     others: Vec<Vec<f64>>,
     readings: Vec<Vec<f64>>,
 }
 
-impl Choice {
+impl KernelSelection {
     pub(crate) fn of(labels: &Labels, rows: &[Vec<f64>], readings: &[Vec<f64>]) -> Self {
         let count = rows.len().min(ROWS_CHOICE);
         let picked: Vec<usize> = (0..count).map(|at| at * rows.len() / count).collect();

@@ -18,7 +18,7 @@ mod choice;
 mod kernel;
 mod system;
 
-use self::choice::{Choice, RATIOS};
+use self::choice::{KernelSelection, RATIOS};
 pub(crate) use self::kernel::{Group, Labels};
 use self::kernel::{Kernel, pivots, scale, scaled};
 use self::system::{Solution, System};
@@ -51,7 +51,7 @@ pub(crate) struct Regression {
 
 /// A channel's regression.
 #[derive(Clone, Debug)]
-pub(crate) struct Fit {
+pub(crate) struct RegressionFit {
     weights: Vec<f64>,
     /// Of the weights' precision.
     factor: LargeFactor,
@@ -72,7 +72,7 @@ impl Regression {
             labels.groups.iter().map(|group| scale(group, &labels.rows)).collect();
         let rows: Vec<Vec<f64>> =
             labels.rows.iter().map(|row| scaled(&labels.groups, &scales, row)).collect();
-        let kernel = Choice::of(labels, &rows, readings).chosen(labels)?;
+        let kernel = KernelSelection::of(labels, &rows, readings).chosen(labels)?;
         let others = labels.others.first().map_or(0, Vec::len);
         let (pivots, factor) = pivots(&labels.groups, &kernel, &rows, PIVOTS_MAX)?;
         let pivots = pivots.into_iter().map(|at| rows[at].clone()).collect();
@@ -112,7 +112,7 @@ impl Regression {
     }
 
     /// What a fit's smooth part is of these covariances: φᵀ w = kᵀ (L⁻ᵀ w), which costs no solution for each row.
-    pub(crate) fn spread(&self, fit: &Fit) -> Vec<f64> {
+    pub(crate) fn spread(&self, fit: &RegressionFit) -> Vec<f64> {
         self.factor.solve_upper(&fit.weights[1 + self.others..])
     }
 
@@ -124,7 +124,7 @@ impl Regression {
         readings: &[f64],
         is_told: &[bool],
         follows: &[bool],
-    ) -> Option<Fit> {
+    ) -> Option<RegressionFit> {
         let count = functions.first()?.len();
         let columns: Vec<Vec<f64>> =
             (0..count).map(|at| functions.iter().map(|row| row[at]).collect()).collect();
@@ -167,7 +167,7 @@ impl Regression {
         columns: &[Vec<f64>],
         readings: &[f64],
         whitening: &Whitening,
-    ) -> Option<(Fit, Vec<f64>)> {
+    ) -> Option<(RegressionFit, Vec<f64>)> {
         let columns: Vec<Vec<f64>> = columns.iter().map(|column| whitening.whitened(column)).collect();
         let readings = whitening.whitened(readings);
         let system = System::of(&columns, &readings, 1 + self.others, whitening.told());
@@ -200,11 +200,14 @@ impl Regression {
         let untold: f64 = inverse.iter().enumerate().map(|(at, own)| own * system.precision(at, ratio)).sum();
         let freedom = weights.len() as f64 - untold;
         let noise = NoiseLevel::first(&[1.0]);
-        Some((Fit { weights, factor, deviation: variance.sqrt(), noise, memory: 0.0, freedom }, left))
+        Some((
+            RegressionFit { weights, factor, deviation: variance.sqrt(), noise, memory: 0.0, freedom },
+            left,
+        ))
     }
 }
 
-impl Fit {
+impl RegressionFit {
     /// The reading that these functions let expect.
     pub(crate) fn value(&self, functions: &[f64]) -> f64 {
         dot(&self.weights, functions)

@@ -13,18 +13,18 @@ pub(crate) struct Playing {
 
 /// What goes on at a button.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Follower {
+pub(crate) struct EffectState {
     /// The kinds of press that are on.
     roles: Roles,
     /// Each since when.
     since: [StreamInstant; Role::ALL.len()],
     /// The kinds whose keys stay down.
-    stays: [Stay; Role::ALL.len()],
+    stays: [StickyState; Role::ALL.len()],
 }
 
 /// Whether keys stay down when their press is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stay {
+enum StickyState {
     Up,
     /// Until another press has ended.
     Latched,
@@ -32,7 +32,7 @@ enum Stay {
     Locked,
 }
 
-impl Stay {
+impl StickyState {
     /// What a press makes of it.
     const fn pressed(self, mode: Mode) -> Self {
         match (self, mode) {
@@ -43,11 +43,11 @@ impl Stay {
     }
 }
 
-impl Follower {
+impl EffectState {
     /// Nothing.
     pub(crate) const fn nothing() -> Self {
         let since = [StreamInstant::from_us(0); Role::ALL.len()];
-        Self { roles: Roles::NONE, since, stays: [Stay::Up; Role::ALL.len()] }
+        Self { roles: Roles::NONE, since, stays: [StickyState::Up; Role::ALL.len()] }
     }
 
     /// Goes on to `roles` at `t`; what is then on.
@@ -69,7 +69,7 @@ impl Follower {
             }
             let is_on = match effect.mode {
                 Mode::Plain => is_pressed,
-                Mode::Toggle | Mode::Sticky => *stay != Stay::Up,
+                Mode::Toggle | Mode::Sticky => *stay != StickyState::Up,
                 // Down in [0, T/2) of each period T.
                 Mode::Turbo { period_us } => {
                     is_pressed && 2 * (t.us_since(*since) % period_us.max(1)) < period_us
@@ -91,7 +91,10 @@ impl Follower {
 
     /// Another press has ended: what was latched goes up.
     pub(crate) fn unlatch(&mut self) {
-        self.stays.iter_mut().filter(|stay| **stay == Stay::Latched).for_each(|stay| *stay = Stay::Up);
+        self.stays
+            .iter_mut()
+            .filter(|stay| **stay == StickyState::Latched)
+            .for_each(|stay| *stay = StickyState::Up);
     }
 }
 
@@ -115,7 +118,7 @@ mod tests {
             when: When::Always,
             action,
         };
-        let mut follower = Follower::nothing();
+        let mut follower = EffectState::nothing();
         let step = |(ms, is_on): &(u64, bool)| {
             let roles = if *is_on { Role::Out.into() } else { Roles::NONE };
             follower

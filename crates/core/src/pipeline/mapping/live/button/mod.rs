@@ -7,10 +7,10 @@ mod press;
 mod stage;
 
 use self::accept::{Accept, Conditions, Presses};
-use self::effect::{Follower, Playing};
+use self::effect::{EffectState, Playing};
 use self::gate::{Gate, Thresholds, Touch};
-use self::press::Press;
-use self::stage::Stage;
+use self::press::TimedPress;
+use self::stage::TwoStagePress;
 use super::verdict::Reason;
 use crate::pipeline::mapping::profile::{Access, Action, Button, Force, Roles};
 use crate::quantity::Contact;
@@ -18,25 +18,25 @@ use crate::time::StreamInstant;
 
 /// Where a button stands.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Touched {
+pub(crate) struct ButtonState {
     gate: Gate,
     hard: Gate,
     accept: Accept,
-    press: Press,
-    stage: Stage,
-    follower: Follower,
+    press: TimedPress,
+    stage: TwoStagePress,
+    follower: EffectState,
 }
 
-impl Touched {
+impl ButtonState {
     /// Where a button stands that nothing has pressed yet.
     pub(crate) const fn fresh() -> Self {
         Self {
             gate: Gate::Off,
             hard: Gate::Off,
             accept: Accept::Off { since: None },
-            press: Press::Up,
-            stage: Stage::Up,
-            follower: Follower::nothing(),
+            press: TimedPress::Up,
+            stage: TwoStagePress::Up,
+            follower: EffectState::nothing(),
         }
     }
 
@@ -44,8 +44,8 @@ impl Touched {
     pub(crate) const fn spent(force_n: f32) -> Self {
         Self {
             gate: Gate::On { highest_n: force_n },
-            press: Press::Spent,
-            stage: Stage::Spent,
+            press: TimedPress::Spent,
+            stage: TwoStagePress::Spent,
             ..Self::fresh()
         }
     }
@@ -65,8 +65,8 @@ impl Touched {
         let conditions = Conditions { access, dwell: button.dwell };
         // A forgotten press is over when its force is, whether it would count or not.
         let is_spent = match button.action {
-            Action::ByForce { .. } => self.stage == Stage::Spent,
-            Action::Hold(_) | Action::ByTime { .. } => self.press == Press::Spent,
+            Action::ByForce { .. } => self.stage == TwoStagePress::Spent,
+            Action::Hold(_) | Action::ByTime { .. } => self.press == TimedPress::Spent,
         };
         if !is_spent {
             let is_accepted = self.accept.step(conditions, t, (touch, contact), presses);
@@ -110,11 +110,11 @@ impl Touched {
         let is_on = self.gate.is_on();
         self.press.forget(is_on);
         self.stage.forget(is_on);
-        self.follower = Follower::nothing();
+        self.follower = EffectState::nothing();
         self.accept.forget();
     }
 
-    /// Whether an action is on, see [`Follower::is_acting`].
+    /// Whether an action is on, see [`EffectState::is_acting`].
     pub(crate) fn is_acting(&self, button: &Button) -> bool {
         self.follower.is_acting(button)
     }

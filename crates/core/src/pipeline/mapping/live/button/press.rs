@@ -6,7 +6,7 @@ use crate::time::StreamInstant;
 
 /// Where a button stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Press {
+pub(crate) enum TimedPress {
     /// Not pressed.
     Up,
     /// Pressed since then; `long` once it was stated as a long press.
@@ -19,7 +19,7 @@ pub(crate) enum Press {
     Spent,
 }
 
-impl Press {
+impl TimedPress {
     /// The kind of press that is on at `t`.
     pub(crate) fn step(&mut self, action: &Action, t: StreamInstant, touch: Touch) -> Option<Role> {
         let Touch { is_on, is_in_place, .. } = touch;
@@ -111,7 +111,7 @@ impl Press {
 mod tests {
     use super::*;
     use crate::pipeline::mapping::live::button::gate::{Gate, Thresholds};
-    use crate::pipeline::mapping::profile::{Effect, Keys, Mode, Output, Timed};
+    use crate::pipeline::mapping::profile::{Effect, Keys, Mode, Output, TimedEffect};
 
     const OUT: Option<Role> = Some(Role::Out);
     const TAP: Option<Role> = Some(Role::Tap);
@@ -123,18 +123,19 @@ mod tests {
     /// A button with these times in milliseconds.
     fn by_time(double_ms: Option<u64>, hold_ms: Option<u64>) -> Action {
         let effect = Effect { output: Output::Keys(Keys::new([])), mode: Mode::Plain };
-        let [double, hold] = [double_ms, hold_ms].map(|ms| ms.map(|ms| Timed { effect, us: 1_000 * ms }));
+        let [double, hold] =
+            [double_ms, hold_ms].map(|ms| ms.map(|ms| TimedEffect { effect, us: 1_000 * ms }));
         Action::ByTime { tap: effect, double, hold }
     }
 
     /// Steps a fresh press through (milliseconds, force) and returns what was on at each step.
     fn played(action: &Action, steps: &[(u64, Option<f32>)]) -> Vec<Option<Role>> {
-        let (mut press, mut gate) = (Press::Up, Gate::Off);
+        let (mut press, mut gate) = (TimedPress::Up, Gate::Off);
         steps.iter().map(|step| stepped((&mut press, &mut gate), action, *step)).collect()
     }
 
     fn stepped(
-        (press, gate): (&mut Press, &mut Gate),
+        (press, gate): (&mut TimedPress, &mut Gate),
         action: &Action,
         (ms, force_n): (u64, Option<f32>),
     ) -> Option<Role> {
@@ -178,7 +179,7 @@ mod tests {
     #[test]
     fn a_forgotten_press_does_nothing_until_released() {
         let button = by_time(None, Some(400));
-        let mut press = Press::Down { since: StreamInstant::from_us(0), long: false };
+        let mut press = TimedPress::Down { since: StreamInstant::from_us(0), long: false };
         press.forget(true);
         let mut gate = Gate::On { highest_n: 2.5 };
         let mut step = |ms, force_n| stepped((&mut press, &mut gate), &button, (ms, force_n));
@@ -213,7 +214,7 @@ mod tests {
     #[test]
     fn a_forgotten_short_press_never_taps() {
         let button = by_time(Some(300), None);
-        let mut press = Press::Between { since: StreamInstant::from_us(0) };
+        let mut press = TimedPress::Between { since: StreamInstant::from_us(0) };
         press.forget(false);
         assert_eq!(stepped((&mut press, &mut Gate::Off), &button, (300, None)), None);
     }
@@ -221,11 +222,11 @@ mod tests {
     #[test]
     fn who_slides_off_taps_nothing() {
         let button = by_time(None, None);
-        let mut press = Press::Down { since: StreamInstant::from_us(0), long: false };
+        let mut press = TimedPress::Down { since: StreamInstant::from_us(0), long: false };
         let touch = |is_in_place| Touch { is_on: true, is_hard: false, is_in_place };
         assert_eq!(press.step(&button, StreamInstant::from_us(1_000), touch(false)), None);
-        assert_eq!(press, Press::Up);
+        assert_eq!(press, TimedPress::Up);
         assert_eq!(press.step(&button, StreamInstant::from_us(2_000), touch(true)), None);
-        assert!(matches!(press, Press::Down { .. }), "who slides back presses anew");
+        assert!(matches!(press, TimedPress::Down { .. }), "who slides back presses anew");
     }
 }

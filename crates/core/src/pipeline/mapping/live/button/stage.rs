@@ -6,7 +6,7 @@ use crate::time::StreamInstant;
 
 /// Where a press with two stages stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Stage {
+pub(crate) enum TwoStagePress {
     /// Not pressed.
     Up,
     /// Pressed since then, and still neither light nor hard.
@@ -19,7 +19,7 @@ pub(crate) enum Stage {
     Spent,
 }
 
-impl Stage {
+impl TwoStagePress {
     /// The kinds of press that are on at `t`.
     pub(crate) fn step(&mut self, skip: Skip, t: StreamInstant, touch: Touch) -> Roles {
         let Touch { is_on, is_hard, is_in_place } = touch;
@@ -56,25 +56,25 @@ impl Stage {
 }
 
 /// What a press begins as.
-const fn begun(skip: Skip, t: StreamInstant, is_hard: bool) -> Stage {
+const fn begun(skip: Skip, t: StreamInstant, is_hard: bool) -> TwoStagePress {
     match (skip, is_hard) {
-        (Skip::No, _) => Stage::Light,
-        (Skip::May { .. } | Skip::Must { .. }, true) => Stage::Hard,
-        (Skip::May { .. } | Skip::Must { .. }, false) => Stage::Waiting { since: t },
+        (Skip::No, _) => TwoStagePress::Light,
+        (Skip::May { .. } | Skip::Must { .. }, true) => TwoStagePress::Hard,
+        (Skip::May { .. } | Skip::Must { .. }, false) => TwoStagePress::Waiting { since: t },
     }
 }
 
 /// What a press has become that was neither light nor hard for so long.
-const fn waited(skip: Skip, for_us: u64, before: Stage, is_hard: bool) -> Stage {
+const fn waited(skip: Skip, for_us: u64, before: TwoStagePress, is_hard: bool) -> TwoStagePress {
     match skip {
         Skip::May { us } | Skip::Must { us } if for_us < us => {
             if is_hard {
-                Stage::Hard
+                TwoStagePress::Hard
             } else {
                 before
             }
         }
-        _ => Stage::Light,
+        _ => TwoStagePress::Light,
     }
 }
 
@@ -87,7 +87,7 @@ mod tests {
 
     /// What is on at each (milliseconds, 0 off, 1 on, 2 hard).
     fn played(skip: Skip, steps: &[(u64, u8)]) -> Vec<u8> {
-        let mut stage = Stage::Up;
+        let mut stage = TwoStagePress::Up;
         let step = |(ms, force): &(u64, u8)| {
             let touch = Touch { is_on: *force > 0, is_hard: *force > 1, is_in_place: true };
             let roles = stage.step(skip, StreamInstant::from_us(1_000 * ms), touch);
@@ -125,13 +125,13 @@ mod tests {
 
     #[test]
     fn a_forgotten_press_and_one_that_left_its_place_do_nothing() {
-        let mut stage = Stage::Waiting { since: StreamInstant::from_us(0) };
+        let mut stage = TwoStagePress::Waiting { since: StreamInstant::from_us(0) };
         let touch = |is_on, is_in_place| Touch { is_on, is_hard: false, is_in_place };
         assert_eq!(
             stage.step(Skip::May { us: 150_000 }, StreamInstant::from_us(9), touch(true, false)),
             Roles::NONE
         );
-        assert_eq!(stage, Stage::Up);
+        assert_eq!(stage, TwoStagePress::Up);
         stage.forget(true);
         assert_eq!(stage.step(Skip::No, StreamInstant::from_us(10), touch(true, true)), Roles::NONE);
         assert_eq!(stage.step(Skip::No, StreamInstant::from_us(11), touch(false, true)), Roles::NONE);

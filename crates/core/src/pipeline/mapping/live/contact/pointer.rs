@@ -14,7 +14,7 @@ pub(crate) struct Velocity {
 
 /// What becomes of the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Steered {
+pub(crate) enum PointerOutput {
     /// It moves.
     Moving(Velocity),
     /// It goes to this place of the screen, from the left and from the top, in 1 to [`POINTER_PLACE_MAX`].
@@ -25,11 +25,17 @@ pub(crate) enum Steered {
 /// step before.
 ///
 /// The speed is continuous at the centre's edge, so the place needs no hysteresis as that of a direction does.
-pub(crate) fn follow(pointer: &Pointer, held: Option<Steered>, contact: &Contact) -> Option<Steered> {
+pub(crate) fn follow(
+    pointer: &Pointer,
+    held: Option<PointerOutput>,
+    contact: &Contact,
+) -> Option<PointerOutput> {
     let gate_n = if held.is_some() { pointer.release_force_n } else { pointer.min_force_n };
     (contact.fz_n >= gate_n).then(|| match pointer.mode {
-        PointerMode::Relative => Steered::Moving(velocity(pointer, contact)),
-        PointerMode::Absolute => Steered::At([contact.x_mm, -contact.y_mm].map(|mm| place(pointer, mm))),
+        PointerMode::Relative => PointerOutput::Moving(velocity(pointer, contact)),
+        PointerMode::Absolute => {
+            PointerOutput::At([contact.x_mm, -contact.y_mm].map(|mm| place(pointer, mm)))
+        }
     })
 }
 
@@ -75,8 +81,8 @@ mod tests {
         right_and_down(follow(&POINTER, None, &contact))
     }
 
-    fn right_and_down(steered: Option<Steered>) -> (i32, i32) {
-        let Some(Steered::Moving(Velocity { right, down })) = steered else { panic!("{steered:?}") };
+    fn right_and_down(steered: Option<PointerOutput>) -> (i32, i32) {
+        let Some(PointerOutput::Moving(Velocity { right, down })) = steered else { panic!("{steered:?}") };
         (right, down)
     }
 
@@ -120,14 +126,14 @@ mod tests {
         let pointer = Pointer { mode: PointerMode::Absolute, ..POINTER };
         let at =
             |x_mm, y_mm| follow(&pointer, None, &Contact { x_mm, y_mm, fz_n: 1.0, ..Contact::default() });
-        assert_eq!(at(0.0, 0.0), Some(Steered::At([16_384, 16_384])));
-        assert_eq!(at(-25.0, 25.0), Some(Steered::At([1, 1])));
-        assert_eq!(at(f32::MAX, -26.0), Some(Steered::At([32_767, 32_767])));
+        assert_eq!(at(0.0, 0.0), Some(PointerOutput::At([16_384, 16_384])));
+        assert_eq!(at(-25.0, 25.0), Some(PointerOutput::At([1, 1])));
+        assert_eq!(at(f32::MAX, -26.0), Some(PointerOutput::At([32_767, 32_767])));
     }
 
     #[test]
     fn the_gate_has_a_hysteresis() {
-        let moving = Some(Steered::Moving(Velocity { right: 0, down: 0 }));
+        let moving = Some(PointerOutput::Moving(Velocity { right: 0, down: 0 }));
         let pressed = |held, fz_n| {
             let contact = Contact { x_mm: 20.0, fz_n, ..Contact::default() };
             follow(&POINTER, held, &contact).is_some()

@@ -1,6 +1,6 @@
 //! A hand that rests on the pad: load that came slowly, or is light, is no touch.
 
-use crate::pipeline::mapping::profile::Rest;
+use crate::pipeline::mapping::profile::RestRejection;
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
 
@@ -9,7 +9,7 @@ const END_SHARE: f32 = 2.0 / 3.0;
 
 /// The load that rests, and whether there is a touch on top of it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Resting {
+pub(crate) struct RestDetector {
     resting_n: f32,
     at: StreamInstant,
     /// Since when there is no touch; while there is one, the last sample.
@@ -29,10 +29,15 @@ pub(crate) enum Load {
     },
 }
 
-impl Resting {
+impl RestDetector {
     /// What the contact at `t` is. A touch: its force is by `rest.n` above the load that rests, which follows it as long as it is none:
     /// db/dt = (Fz − b)/τ. So load that grows by less than n/τ never is one. `None` is a pad that nothing has lain on since the last lift.
-    pub(crate) fn step(resting: &mut Option<Self>, rest: Rest, t: StreamInstant, contact: &Contact) -> Load {
+    pub(crate) fn step(
+        resting: &mut Option<Self>,
+        rest: RestRejection,
+        t: StreamInstant,
+        contact: &Contact,
+    ) -> Load {
         let before = resting.unwrap_or(Self { resting_n: 0.0, at: t, since: t, is_touch: false });
         let above_n = contact.fz_n - before.resting_n;
         let is_touch = above_n >= if before.is_touch { END_SHARE * rest.n } else { rest.n };

@@ -15,14 +15,14 @@ const SPEED_CUTOFF_HZ: f32 = 1.0;
 
 /// The filter's state since a contact began.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Calm {
+pub(crate) struct TremorFilter {
     t: StreamInstant,
     raw_mm: [f32; 2],
     place_mm: [f32; 2],
     speed_mm_per_s: [f32; 2],
 }
 
-impl Calm {
+impl TremorFilter {
     /// The contact with its place calmed; a new one begins where it is.
     pub(crate) fn step(
         state: &mut Option<Self>,
@@ -74,7 +74,9 @@ mod tests {
         let mut state = None;
         let at = |ms: u64| Contact { x_mm: x_mm(ms as f32 * 1e-3), ..Contact::default() };
         (0..ms)
-            .map(|ms| Calm::step(&mut state, &TREMOR, StreamInstant::from_us(1_000 * ms), &at(ms)).x_mm)
+            .map(|ms| {
+                TremorFilter::step(&mut state, &TREMOR, StreamInstant::from_us(1_000 * ms), &at(ms)).x_mm
+            })
             .collect()
     }
 
@@ -100,7 +102,7 @@ mod tests {
         let mut state = None;
         let at = |x_mm| Contact { x_mm, ..Contact::default() };
         let t = StreamInstant::from_us(5);
-        assert_eq!(Calm::step(&mut state, &TREMOR, t, &at(1.0)).x_mm, 1.0);
-        assert_eq!(Calm::step(&mut state, &TREMOR, t, &at(9.0)).x_mm, 1.0);
+        assert_eq!(TremorFilter::step(&mut state, &TREMOR, t, &at(1.0)).x_mm, 1.0);
+        assert_eq!(TremorFilter::step(&mut state, &TREMOR, t, &at(9.0)).x_mm, 1.0);
     }
 }

@@ -8,7 +8,9 @@ use std::fmt;
 
 use super::binding::Outputs;
 use crate::pipeline::control::{Code, OutputDevice};
-use crate::pipeline::mapping::profile::{Binding, CONTROLS_MAX, Direction, DpadMode, Keys, Place, When};
+use crate::pipeline::mapping::profile::{
+    Binding, ButtonPlace, CONTROLS_MAX, Direction, DpadMode, Keys, When,
+};
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::Placed;
 
@@ -44,7 +46,7 @@ pub(crate) struct Use {
     /// Whether it stays down when its press is over.
     pub(crate) toggles: bool,
     /// Where it counts, if not everywhere.
-    pub(crate) place: Option<Place>,
+    pub(crate) place: Option<ButtonPlace>,
     /// And when.
     pub(crate) when: When,
 }
@@ -157,11 +159,11 @@ fn are_apart_in_time(left: &Use, right: &Use) -> bool {
 }
 
 /// Whether no contact is at both places: it is in one zone at a time, and holds no two opposite directions.
-const fn are_apart(left: Option<Place>, right: Option<Place>) -> bool {
+const fn are_apart(left: Option<ButtonPlace>, right: Option<ButtonPlace>) -> bool {
     use Direction::{Down, Left, Right, Up};
     match (left, right) {
-        (Some(Place::Zone(one)), Some(Place::Zone(other))) => one != other,
-        (Some(Place::Direction(one)), Some(Place::Direction(other))) => {
+        (Some(ButtonPlace::Zone(one)), Some(ButtonPlace::Zone(other))) => one != other,
+        (Some(ButtonPlace::Direction(one)), Some(ButtonPlace::Direction(other))) => {
             matches!((one, other), (Left, Right) | (Right, Left) | (Up, Down) | (Down, Up))
         }
         _ => false,

@@ -1,6 +1,6 @@
 //! A profile's help for hands that press what they do not mean.
 
-use crate::pipeline::mapping::profile::{Access, Dwell, Rest, Tremor};
+use crate::pipeline::mapping::profile::{Access, Dwell, RestRejection, Tremor};
 use crate::pipeline::mapping::read::common::limits::{
     BOUNCE_MS, DWELL_MM, DWELL_MS, REST_MS, REST_N, SLOW_MS, TREMOR_HZ, TREMOR_PER_MM,
 };
@@ -27,7 +27,7 @@ pub(crate) fn read(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<A
         is_written
     });
     let tremor = Tremor { cutoff_hz: cutoff?.value, per_mm: per_mm?.value };
-    let rest = Rest { n: force?.value, us: u64::from(time?.value) * 1_000 };
+    let rest = RestRejection { n: force?.value, us: u64::from(time?.value) * 1_000 };
     Some(Access {
         slow_us: u64::from(slow?.value) * 1_000,
         bounce_us: u64::from(bounce?.value) * 1_000,

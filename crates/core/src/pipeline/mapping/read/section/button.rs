@@ -1,14 +1,14 @@
 //! A profile's buttons: which force presses them, and what their kinds of press do.
 
 use super::access;
-use super::effects::{Around, EffectDraft};
+use super::effects::{EffectContext, EffectDraft};
 use super::layers::BASE;
 use super::plate;
 use super::stages::{self, Stages};
 use crate::pipeline::control::OutputDevice;
 use crate::pipeline::mapping::profile::words::FORCES;
 use crate::pipeline::mapping::profile::{
-    Action, Button, Dwell, Effect, Force, Place, Role, Timed, When, Zone,
+    Action, Button, ButtonPlace, Dwell, Effect, Force, Role, TimedEffect, When, Zone,
 };
 use crate::pipeline::mapping::read::common::conflict::{Owner, Use};
 use crate::pipeline::mapping::read::common::limits::{
@@ -48,7 +48,7 @@ pub(crate) struct ButtonDraft {
     release_n: Option<f32>,
     hair_n: Option<f32>,
     dwell: Option<Option<Dwell>>,
-    place: Option<Place>,
+    place: Option<ButtonPlace>,
     when: Option<When>,
     action: Option<ActionDraft>,
 }
@@ -63,15 +63,15 @@ struct ActionDraft {
 
 /// What a button is read beside.
 #[derive(Clone, Copy)]
-pub(crate) struct Surroundings<'p> {
-    pub(crate) effects: Around<'p>,
+pub(crate) struct ButtonContext<'p> {
+    pub(crate) effects: EffectContext<'p>,
     pub(crate) zones: &'p [Zone],
     pub(crate) has_dpad: bool,
 }
 
 impl ButtonDraft {
     /// Reads a `[[button]]`.
-    pub(crate) fn read(table: &Section<'_>, around: Surroundings<'_>, findings: &mut Findings<'_>) -> Self {
+    pub(crate) fn read(table: &Section<'_>, around: ButtonContext<'_>, findings: &mut Findings<'_>) -> Self {
         table.require("force", "write the force that presses it, as force = \"fz\"", findings);
         let force = table.word("force", &FORCES, findings).map(|word| word.value);
         table.require("press_n", "write the force in newtons that presses it, as press_n = 2.0", findings);
@@ -132,7 +132,7 @@ fn read_when(table: &Section<'_>, layers: &[&str], findings: &mut Findings<'_>) 
 impl ActionDraft {
     fn read(
         table: &Section<'_>,
-        (around, press): (Around<'_>, Option<Placed<f32>>),
+        (around, press): (EffectContext<'_>, Option<Placed<f32>>),
         findings: &mut Findings<'_>,
     ) -> Option<Self> {
         let effects = Role::ALL.map(|role| EffectDraft::read(table, role, around, findings));
@@ -149,7 +149,7 @@ impl ActionDraft {
         let [out, tap, double, hold, light, hard] =
             self.effects.map(|effect| effect.and_then(|effect| effect.settle(device)));
         let timed = |effect: Option<Effect>, ms: Option<u32>| {
-            effect.zip(ms).map(|(effect, ms)| Timed { effect, us: u64::from(ms) * 1_000 })
+            effect.zip(ms).map(|(effect, ms)| TimedEffect { effect, us: u64::from(ms) * 1_000 })
         };
         let (double, hold) = (timed(double, self.double_press_ms), timed(hold, self.long_press_ms));
         let by_time = || tap.map(|tap| Action::ByTime { tap, double, hold });

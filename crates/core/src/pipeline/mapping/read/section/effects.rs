@@ -18,7 +18,7 @@ const MODE_KEYS: [&str; 3] = ["toggle", "sticky", "turbo_ms"];
 
 /// What an effect is read beside.
 #[derive(Clone, Copy)]
-pub(crate) struct Around<'p> {
+pub(crate) struct EffectContext<'p> {
     /// Nothing may be shorter than this.
     pub(crate) min_press_ms: Option<u32>,
     pub(crate) layers: &'p [&'p str],
@@ -44,7 +44,7 @@ impl EffectDraft {
     pub(crate) fn read(
         table: &Section<'_>,
         role: Role,
-        around: Around<'_>,
+        around: EffectContext<'_>,
         findings: &mut Findings<'_>,
     ) -> Option<Self> {
         let title = format!("\"{}\" of {}", role.name(), table.title);
@@ -78,7 +78,7 @@ impl EffectDraft {
 }
 
 impl Target {
-    fn read(section: &Section<'_>, around: Around<'_>, findings: &mut Findings<'_>) -> Self {
+    fn read(section: &Section<'_>, around: EffectContext<'_>, findings: &mut Findings<'_>) -> Self {
         let mut written = TARGET_KEYS.iter().filter_map(|key| Some((*key, section.place_of(key)?)));
         let Some((key, at)) = written.next() else { return Self::Devices(Outputs::read(section, findings)) };
         if written.next().is_some() || DEVICE_KEYS.iter().any(|key| section.place_of(key).is_some()) {
@@ -120,7 +120,7 @@ fn check_mode(section: &Section<'_>, target: &str, findings: &mut Findings<'_>) 
 }
 
 /// A mode that is written.
-struct Written {
+struct WrittenMode {
     key: &'static str,
     at: usize,
     /// `None` where it is unusable.
@@ -143,11 +143,11 @@ fn read_mode(
             findings.error(at, "a tap is over at once: it has no \"turbo_ms\"", help);
         }
         let mode = ms.map(|ms| Mode::Turbo { period_us: u64::from(ms) * 1_000 });
-        Written { key: "turbo_ms", at, mode }
+        WrittenMode { key: "turbo_ms", at, mode }
     });
     let mut written = [toggle, sticky, turbo].into_iter().flatten();
     let Some(first) = written.next() else { return Some(Mode::Plain) };
-    if let Some(Written { key, at, .. }) = written.next() {
+    if let Some(WrittenMode { key, at, .. }) = written.next() {
         let message = format!("{} is both \"{}\" and \"{key}\"", section.title, first.key);
         findings.error(at, message, "remove one of them");
     }
@@ -160,11 +160,11 @@ fn read_flag(
     key: &'static str,
     mode: Mode,
     findings: &mut Findings<'_>,
-) -> Option<Written> {
+) -> Option<WrittenMode> {
     let at = section.place_of(key)?;
     match section.flag(key, findings) {
         Some(false) => None,
-        is_set => Some(Written { key, at, mode: is_set.map(|_| mode) }),
+        is_set => Some(WrittenMode { key, at, mode: is_set.map(|_| mode) }),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A profile's macros: keys that are pressed one after the other.
 
 use crate::pipeline::control::OutputDevice;
-use crate::pipeline::mapping::profile::{MACROS_MAX, Macro, STEPS_MAX, Step, When};
+use crate::pipeline::mapping::profile::{MACROS_MAX, Macro, MacroStep, STEPS_MAX, When};
 use crate::pipeline::mapping::read::common::binding::{Outputs, with_keys};
 use crate::pipeline::mapping::read::common::conflict::{Owner, Use};
 use crate::pipeline::mapping::read::common::limits::{STEP_MS, WAIT_MS};
@@ -60,7 +60,7 @@ impl MacroDraft {
                 Some(outputs) => Some(outputs.settle(device)?),
                 None => None,
             };
-            Some(Step { keys, until_us })
+            Some(MacroStep { keys, until_us })
         };
         let steps = self.steps.iter().map(step).collect::<Option<Vec<_>>>()?;
         Some(Macro { name: self.name, steps })

@@ -1,7 +1,7 @@
 //! How a profile divides the plate: how far each side counts, and zones.
 
 use crate::pipeline::mapping::profile::angle::wrapped;
-use crate::pipeline::mapping::profile::{Direction, Gain, Place, ZONES_MAX, Zone};
+use crate::pipeline::mapping::profile::{ButtonPlace, Direction, Gain, ZONES_MAX, Zone};
 use crate::pipeline::mapping::read::common::limits::{
     ANGLE_DEG, CENTRE_MM, GAIN, HYSTERESIS_DEG, INNER_RADIUS_MM, OUTER_RADIUS_MM, RADIUS_HYSTERESIS_MM,
     ZONE_DEG_MIN, ZONE_HYSTERESIS_MM, ZONE_MM_MIN,
@@ -150,12 +150,15 @@ pub(crate) fn find(
     asked: Placed<&str>,
     (zones, has_dpad): (&[Zone], bool),
     findings: &mut Findings<'_>,
-) -> Option<Place> {
+) -> Option<ButtonPlace> {
     let own = if has_dpad { &Direction::ALL[..] } else { &[] };
     let zones = zones.iter().map(|zone| zone.name.as_str());
     let known: Vec<&str> = own.iter().map(|it| it.name()).chain(zones).collect();
     let number = named::find(asked, "zone", &known, findings)?;
-    Some(own.get(number).map_or(Place::Zone(number - own.len().min(number)), |it| Place::Direction(*it)))
+    Some(
+        own.get(number)
+            .map_or(ButtonPlace::Zone(number - own.len().min(number)), |it| ButtonPlace::Direction(*it)),
+    )
 }
 
 #[cfg(test)]

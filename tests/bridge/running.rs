@@ -5,11 +5,13 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rustix::event::{PollFd, Timespec, poll};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
+
+use crate::clock::monotonic_ns;
 
 /// Far longer than anything takes that is waited for, on a machine that does other work, too. It only bounds how long a
 /// test takes that fails.
@@ -32,12 +34,12 @@ pub(crate) fn comes_true(holds: impl FnMut() -> bool) -> bool {
 }
 
 fn comes_true_every(pause_ms: i64, mut holds: impl FnMut() -> bool) -> bool {
-    let begin = Instant::now();
+    let begin_ns = monotonic_ns();
     loop {
         if holds() {
             return true;
         }
-        if begin.elapsed() > LIMIT {
+        if Duration::from_nanos(monotonic_ns() - begin_ns) > LIMIT {
             return false;
         }
         pause(pause_ms);

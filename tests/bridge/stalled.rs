@@ -7,13 +7,14 @@ use std::io::Read;
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rustix::fs::{CWD, FileType, Mode, OFlags, mknodat};
 use rustix::pipe::fcntl_setpipe_size;
 use rustix::process::Signal;
 use serde_json::Value;
 
+use crate::clock::monotonic_ns;
 use crate::guest::in_guest;
 use crate::running::{Running, comes_true};
 
@@ -48,10 +49,10 @@ fn start(folder: tempfile::TempDir, line: &str) -> Running {
 
 /// Asks the bridge to end, and sees that it does so in time; how it ended.
 fn ended(bridge: &mut Running) -> ExitStatus {
-    let asked = Instant::now();
+    let asked_ns = monotonic_ns();
     bridge.signal(Signal::TERM);
     let status = bridge.ends().unwrap();
-    let took = asked.elapsed();
+    let took = Duration::from_nanos(monotonic_ns() - asked_ns);
     assert!(took <= END_LIMIT, "it ended after {took:?}: {}", bridge.told());
     status
 }

@@ -5,6 +5,8 @@
 mod access;
 mod browser;
 mod calibrate;
+#[path = "../support/clock.rs"]
+mod clock;
 mod disturbance;
 mod editor;
 mod finger;

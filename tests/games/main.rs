@@ -73,7 +73,7 @@ const SEED: u64 = 1;
 fn supertux_is_played() {
     if has_desk() && supertux::is_there() {
         in_guest("supertux_is_played", || {
-            is_played(SuperTux::start, &supertux::segment(), supertux::PROFILE)
+            is_played(SuperTux::start, &supertux::segment(), supertux::PROFILE);
         });
     }
 }
@@ -82,7 +82,7 @@ fn supertux_is_played() {
 fn vitetris_is_played() {
     if has_desk() && vitetris::is_there() {
         in_guest("vitetris_is_played", || {
-            is_played(Vitetris::start, &vitetris::segment(), vitetris::PROFILE)
+            is_played(Vitetris::start, &vitetris::segment(), vitetris::PROFILE);
         });
     }
 }

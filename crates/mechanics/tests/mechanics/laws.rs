@@ -1,6 +1,10 @@
 //! Laws that any right model of the pad keeps: symmetry, equilibrium, reciprocity; and its derivatives.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop at what it did not expect")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test may stop at what it did not expect, and prints what it saw"
+)]
 
 use std::f64::consts::TAU;
 use std::sync::{LazyLock, Mutex};

@@ -39,14 +39,14 @@ impl<const N: usize> Scaling<N> {
         while let Some(step) = rest.next_if(RowOperation::is_scaler) {
             match &step {
                 RowOperation::Subtract(row) => {
-                    scaling.apply(row, |number, by| *number -= by, ScaledEnd::Shift)?
+                    scaling.apply(row, |number, by| *number -= by, ScaledEnd::Shift)?;
                 }
                 RowOperation::Add(row) => scaling.apply(row, |number, by| *number += by, ScaledEnd::Shift)?,
                 RowOperation::Divide(row) => {
-                    scaling.apply(row, |number, by| *number /= by, ScaledEnd::Both)?
+                    scaling.apply(row, |number, by| *number /= by, ScaledEnd::Both)?;
                 }
                 RowOperation::Multiply(row) => {
-                    scaling.apply(row, |number, by| *number *= by, ScaledEnd::Both)?
+                    scaling.apply(row, |number, by| *number *= by, ScaledEnd::Both)?;
                 }
                 RowOperation::Connect(_) | RowOperation::Rectify => {}
             }

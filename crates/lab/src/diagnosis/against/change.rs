@@ -90,7 +90,7 @@ impl Changes {
             ChangeKind::Thermal(of) => each(*of, &mut self.zeros_per_c, &|it| *it += values[0]),
             ChangeKind::Load => self.load *= values[0],
             ChangeKind::Offset(axes) => {
-                axes.iter().zip(values).for_each(|(axis, mm)| self.offset_mm[*axis] += mm)
+                axes.iter().zip(values).for_each(|(axis, mm)| self.offset_mm[*axis] += mm);
             }
             ChangeKind::Rotation => self.rotation_deg += values[0],
             ChangeKind::Lag => self.lag_ms += values[0],

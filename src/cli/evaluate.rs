@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::device::Pad;
+use super::device::PadOptions;
 use super::failure::Failure;
 use super::progress::Progress;
 use super::written::{print_json, stdout};
@@ -31,7 +31,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "T.csv")]
     truth: Option<PathBuf>,
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
@@ -100,7 +100,7 @@ mod tests {
         arguments: Arguments,
     }
 
-    /// What comes of a measured row and its true contact at these x.
+    /// Evaluates a measured row and its true contact at these x, in millimetres.
     fn evaluated(measured_mm: f64, true_mm: f64) -> Result<(), Failure> {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name).display().to_string();

@@ -6,21 +6,29 @@ use super::failure::Failure;
 use super::progress::Progress;
 use super::written::{reason, say};
 use tactpad::lab::field_cache::{self, FieldError, Obtained};
-use tactpad::pad::changes::FieldChanges;
+use tactpad::pad::changes::{FieldChange, FieldChanges};
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 
+/// The model of a pad that is not measured yet: the device, its field, and the flaws that its modules may have.
+#[derive(Clone, Copy)]
+pub(super) struct PadModel<'p> {
+    pub(super) device: &'p Device,
+    pub(super) field: &'p PadField,
+    pub(super) flaws: &'p [FieldChange],
+}
+
 /// The field of `device`, known or computed.
 pub(super) fn field_of(device: &Device) -> Result<PadField, Failure> {
-    told(|step| field_cache::field_of(device, step))
+    obtained(|step| field_cache::field_of(device, step))
 }
 
-/// What flaws change in the field of `device`, known or computed.
+/// The changes of the field of `device` by flaws, known or computed.
 pub(super) fn changes_of(device: &Device) -> Result<FieldChanges, Failure> {
-    told(|step| field_cache::changes_of(device, step))
+    obtained(|step| field_cache::changes_of(device, step))
 }
 
-fn told<T>(
+fn obtained<T>(
     obtain: impl FnOnce(&mut dyn FnMut(fmt::Arguments<'_>)) -> Result<Obtained<T>, FieldError>,
 ) -> Result<T, Failure> {
     let mut progress = None;

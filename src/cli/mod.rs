@@ -96,7 +96,7 @@ enum Verb {
     Completions(completions::Arguments),
 }
 
-/// What stands on the command line, or what is meant where nothing does; `None` if that is done already.
+/// The words of the command line, or those that are meant where there are none; `None` if that is done already.
 fn words() -> Result<Option<Vec<OsString>>, Failure> {
     #[cfg(all(feature = "tray", target_os = "linux"))]
     if env::args_os().len() < 2 && live::alone::is_on_desktop() {

@@ -19,7 +19,7 @@ use tactpad::pipeline::mapping::check::OutputChoice;
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::pipeline::shipped;
 
-/// What was played.
+/// Recorded play.
 pub(super) struct Played {
     /// In order of time.
     pub(super) windows: Vec<Window>,

@@ -7,7 +7,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::destination::{Destination, Folder};
-use super::device::Pad;
+use super::device::PadOptions;
 use super::failure::Failure;
 use super::field::field_of;
 use super::progress::Progress;
@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "0")]
     seed: u64,
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Write the figures train-network, train-loss and train-scatter-x to -fz into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -41,9 +41,9 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// What was learnt.
+/// The report of `tactpad train`.
 #[derive(Serialize)]
-struct Outcome {
+struct TrainReport {
     seed: u64,
     widths: Vec<usize>,
     parameters: usize,
@@ -76,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             pictures::write(folder, &format!("train-scatter-{name}"), &figure)?;
         }
     }
-    let outcome = Outcome::of(&pretrained, *seed);
+    let outcome = TrainReport::of(&pretrained, *seed);
     tell(&outcome, out, *json)
 }
 
@@ -88,7 +88,7 @@ fn trained(examples: Vec<Example>, seed: u64) -> Pretrained {
     })
 }
 
-impl Outcome {
+impl TrainReport {
     fn of(pretrained: &Pretrained, seed: u64) -> Self {
         let Pretrained { trained, scores, test } = pretrained;
         Self {
@@ -104,7 +104,7 @@ impl Outcome {
     }
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for TrainReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let widths: Vec<_> = self.widths.iter().map(usize::to_string).collect();
         writeln!(f, "{}: {} weights, {} epochs", widths.join("-"), self.parameters, self.curve.len())?;

@@ -10,7 +10,7 @@ use clap::Args;
 
 use self::report::AblationReport;
 use super::destination::Folder;
-use super::device::Pad as PadFiles;
+use super::device::PadOptions as PadFiles;
 use super::failure::Failure;
 use super::field::field_of;
 use super::progress::Progress;

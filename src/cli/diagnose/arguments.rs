@@ -1,4 +1,4 @@
-//! What `tactpad diagnose` is asked, and where its files go.
+//! The arguments of `tactpad diagnose`, and the places of its files.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 
 use crate::cli::destination::{Destination, Folder};
-use crate::cli::device::Pad;
+use crate::cli::device::PadOptions;
 use crate::cli::failure::Failure;
 use crate::cli::reports;
 use crate::cli::written::{both_print, is_same, is_stdout, written_over};
@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "against")]
     pub(super) channels: Vec<String>,
     #[command(flatten)]
-    pub(super) pad: Pad,
+    pub(super) pad: PadOptions,
     /// A device file to write: the model with the named causes in it; - is standard output.
     #[arg(long, value_name = "E.toml")]
     pub(super) save_device: Option<PathBuf>,

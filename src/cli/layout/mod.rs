@@ -12,7 +12,7 @@ use clap::Args;
 use self::counts::Counts;
 use self::report::LayoutReport;
 use super::destination::Folder;
-use super::device::Pad;
+use super::device::PadOptions;
 use super::failure::Failure;
 use super::pictures;
 use super::progress::Progress;
@@ -32,7 +32,7 @@ use tactpad::virtual_pad::front_end::NOISE_RMS_UV;
 #[group(skip)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Radii of the modules' effective regions in millimetres: only the paper's rule for them, and no simulation.
     #[arg(long, value_name = "R1,R2,R3", value_parser = parse_radii, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["threshold", "noise_uv", "imperfections"])]
@@ -78,8 +78,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.sizes {
         let (figures, devices) = (folder.as_ref(), arguments.devices.as_deref());
-        let wanted = sizes::Wanted { figures, devices, json: arguments.json };
-        return sizes::run(&device, arguments.noise_uv, &wanted);
+        let options = sizes::SizesOptions { figures, devices, json: arguments.json };
+        return sizes::run(&device, arguments.noise_uv, &options);
     }
     let (spacing, simulated) = match &arguments.radii {
         Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),

@@ -11,18 +11,18 @@ use super::files::{self, Files};
 use super::newest::Newest;
 use super::output::Output;
 use super::playing::{
-    Audience, Terminal, Waits, create_capture, microseconds, open_pad, patience, play, requests,
+    Audience, TerminalHost, WaitOption, create_capture, microseconds, open_pad, patience, play, requests,
 };
 use super::{chosen, ctl};
-use crate::cli::decoder_file::Choice;
-use crate::cli::device::Pad;
+use crate::cli::decoder_file::DecoderChoice;
+use crate::cli::device::PadOptions;
 use crate::cli::failure::Failure;
 use crate::cli::profile;
 use crate::cli::seconds;
 use crate::cli::written::{Named, say};
+use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
-use tactpad::bridge::parts::Parts;
-use tactpad::bridge::running::Bridge;
+use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::bridge::transport::fault::FaultPlan;
 
@@ -41,12 +41,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]
-    device: Pad,
+    device: PadOptions,
     /// A profile's name or file; it is kept in the capture, and so is the decoder.
     #[arg(long, default_value = "super-mario")]
     profile: String,
     #[command(flatten)]
-    decoder: Choice,
+    decoder: DecoderChoice,
     /// Where events go meanwhile: auto (virtual devices, else an event log here), uinput, x11, log:FILE (- is stdout),
     /// none.
     #[arg(long, default_value = "none")]
@@ -79,7 +79,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let decoder = chosen::read(decoder)?;
     let profile = profile::read(profile, output.choice())?;
     let (sink, missing) = output.open_or(|| Newest::default().sink(false))?;
-    let patience = patience(&arguments.pad, Waits::NotAsked);
+    let patience = patience(&arguments.pad, WaitOption::NotGiven);
     let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
     let opened = opened.with_faults(arguments.faults)?;
     let place = capture.display().to_string();
@@ -89,9 +89,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     say(format_args!("recording {} in {place}", arguments.pad));
     let audience = Audience::Stderr;
-    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
+    let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let seconds = arguments.seconds.or(arguments.force_range.then_some(FORCE_RANGE_S));
-    let mut bridge = Bridge::new(Parts {
+    let mut bridge = Bridge::new(BridgeParts {
         pad: opened,
         patience,
         decoder,

@@ -11,7 +11,7 @@ use clap::Args;
 
 use self::report::MetrologyReport;
 use super::destination::{Destination, Folder};
-use super::device::Pad;
+use super::device::PadOptions;
 use super::failure::Failure;
 use super::field::field_of;
 use super::pictures;
@@ -36,7 +36,7 @@ use tactpad::tables::measured::columns::Kind;
 #[group(skip)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// A measured file; without it the twin of the pad carries out the paper's procedures.
     #[arg(long, value_name = "M.csv")]
     measured: Option<PathBuf>,

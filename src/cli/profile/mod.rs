@@ -22,7 +22,7 @@ pub(super) use chosen::{file, read};
 pub(super) use chosen::{is_known, known, next, read_aside};
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
 pub(super) use kept::{entries, save, stored};
-pub(super) use stored::Stored;
+pub(super) use stored::ProfileDestination;
 
 /// Arguments of `tactpad profile`.
 #[derive(Debug, Args)]

@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use serde::Serialize;
 
 use super::destination::{Destination, Folder};
-use super::device::Pad;
+use super::device::PadOptions;
 use super::failure::Failure;
 use super::written::{both_print, is_stdout, tell};
 use super::{pictures, tables};
@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Draw where the contacts are into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -51,7 +51,7 @@ enum Plan {
     Recommended,
 }
 
-/// What a plan holds.
+/// The contents of a plan.
 #[derive(Serialize)]
 struct PlanReport {
     plan: Plan,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::device::Pad;
+use crate::cli::device::PadOptions;
 use crate::cli::failure::Failure;
 use crate::cli::profile;
 use crate::cli::seconds;
@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PLAN")]
     pub(super) plan: PathBuf,
     #[command(flatten)]
-    pub(super) pad: Pad,
+    pub(super) pad: PadOptions,
     /// Draws what is random: the same seed gives the same file. Of a pad that --state takes up it draws the plan, the hand
     /// and the rig, not the pad.
     #[arg(long, default_value = "0")]

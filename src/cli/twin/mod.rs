@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::written::{both_print, is_stdout};
 
 pub(super) use self::arguments::{Arguments, NUMERICAL};
-use self::capture::Hands;
+use self::capture::HandMotion;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let prints = is_stdout(&arguments.out);
@@ -18,8 +18,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     arguments.keep_apart()?;
     let hands = match arguments.plan.to_str() {
-        Some("play") => Some(Hands::Play),
-        Some("presses") => Some(Hands::Presses),
+        Some("play") => Some(HandMotion::Play),
+        Some("presses") => Some(HandMotion::Presses),
         _ => None,
     };
     arguments.refuse_foreign(hands.is_some())?;

@@ -10,7 +10,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::destination::Folder;
-use super::device::Pad;
+use super::device::PadOptions;
 use super::failure::Failure;
 use super::pictures;
 use super::written::{print_json, stdout};
@@ -24,7 +24,7 @@ use tactpad::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
 #[group(skip)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Write the figures wiring-bridges, wiring-film and wiring-plate into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// What a builder needs to know.
+/// The wiring, for a builder.
 #[derive(Serialize)]
 struct Wiring {
     excitation_v: f64,

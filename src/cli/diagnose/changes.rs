@@ -209,13 +209,14 @@ impl fmt::Display for ChangesText<'_> {
     }
 }
 
-/// The command that makes a decoder of the pad as it is now by this play.
+/// The command that makes a decoder of the pad as it is now by this play. That decoder has lost the old scale of forces, also with
+/// `--from`: its forces need a weight.
 fn write_adapt_command(f: &mut fmt::Formatter<'_>, play: &Path, decoder: &Path) -> fmt::Result {
     let [play, from] = [play, decoder].map(|path| quoted(&path.display().to_string()));
     writeln!(f, "\nA decoder of the pad as it is now, by this play, beside the old one:")?;
     writeln!(f, "\n  tactpad adapt --play {play} --from {from} --out new.decoder")?;
-    let then = "Its forces have the old scale, but for what the change took from it. One weight mends that: \
-                tactpad ctl weigh, while it plays.";
+    let then = "Its forces have no scale: play alone cannot tell it, also with --from. It needs one known weight: run it, then \
+                tactpad ctl weigh.";
     writeln!(f, "\n{}", hanging("", then))
 }
 

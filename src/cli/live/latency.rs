@@ -27,7 +27,9 @@ use tactpad::pipeline::Pipeline;
 
 /// Arguments of `tactpad latency`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tactpad latency --seconds 10 --json")]
+#[command(
+    after_help = "Example: tactpad latency --seconds 10 --json, or tactpad latency --pad auto while you press your own pad"
+)]
 pub(crate) struct Arguments {
     /// How long to measure.
     #[arg(long, default_value = "10", value_parser = seconds::parse, allow_hyphen_values = true)]

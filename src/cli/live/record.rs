@@ -28,9 +28,7 @@ use tactpad::bridge::transport::fault::FaultPlan;
 
 /// Arguments of `tactpad record`.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example: tactpad record game.cap --pad serial:/dev/ttyACM0, then tactpad replay game.cap"
-)]
+#[command(after_help = "Example: tactpad record game.cap --pad auto, then tactpad replay game.cap")]
 pub(crate) struct Arguments {
     /// The file to write; a file that is there already is kept, and - is standard output.
     capture: PathBuf,
@@ -58,7 +56,8 @@ pub(crate) struct Arguments {
     /// End after this many seconds; without it Ctrl-C ends.
     #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
-    /// Say when to press lightly and when hard, for tune --force-range; it ends after 30 s, or after --seconds.
+    /// Say when to press lightly and when hard, for tune --force-range; it ends after 30 s, or after --seconds. It is for your own
+    /// hand: give --pad auto.
     #[arg(long)]
     force_range: bool,
 }

@@ -20,8 +20,8 @@ use tactpad::pipeline::mapping::profile::Profile;
     The table begins with the line begin_s,end_s,meant. Each line below it is a press: seconds since the recording's \
     first sample by the pad's clock, and what was meant: up, down, left, right, button 1, a control's name as \
     BTN_SOUTH, several as right+BTN_SOUTH, or none.\n\n\
-    Without a table: tactpad record range.cap --force-range, which says when to press lightly and when hard; then \
-    tactpad tune range.cap --force-range --profile super-mario --write mine"
+    Without a table: tactpad record range.cap --pad auto --force-range, which says when to press lightly and when \
+    hard; then tactpad tune range.cap --force-range --profile super-mario --write mine"
 )]
 pub(crate) struct Arguments {
     /// The capture that tactpad record made; without it the one beside the table, game.cap for game.csv.

@@ -30,7 +30,7 @@ impl From<io::Error> for Failure {
     }
 }
 
-/// What is printed on the way to a verdict: a reader that went away is no reason to skip the verdict.
+/// Ignores that the reader went away: that is no reason to skip the verdict.
 pub(super) fn if_read(printed: Result<(), Failure>) -> Result<(), Failure> {
     match printed {
         Err(Failure::Unread) => Ok(()),

@@ -62,7 +62,7 @@ fn verbs(group: &Command) -> String {
     group.get_subcommands().map(verb).collect()
 }
 
-/// What stands on the command line, or what is meant where nothing does; `None` if that is done already.
+/// The words of the command line, or those that are meant where there are none; `None` if that is done already.
 fn words() -> Result<Option<Vec<OsString>>, Failure> {
     #[cfg(all(feature = "tray", target_os = "linux"))]
     if env::args_os().len() < 2 && playing::live::alone::is_on_desktop() {

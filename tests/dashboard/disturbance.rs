@@ -15,7 +15,7 @@ use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
 use rustix::fs::{CWD, FileType, Mode, mknodat};
 use tactpad::bridge::clock::Clock;
-use tactpad::bridge::transport::virtual_pad::{PadFirmware, VirtualPad};
+use tactpad::bridge::transport::virtual_pad::{PadFirmware, VirtualPadPort};
 use tactpad::pad::field::PadField;
 use tactpad::quantity::Contact;
 use tactpad::time::HostInstant;
@@ -52,12 +52,12 @@ impl Pulse {
     /// It rests for so many frames, in which the bridge measures its zero.
     const REST: u32 = 4_000;
 
-    fn start(clock: Clock) -> (VirtualPad, Arc<Mutex<VecDeque<HostInstant>>>) {
+    fn start(clock: Clock) -> (VirtualPadPort, Arc<Mutex<VecDeque<HostInstant>>>) {
         let contact = Contact { fz_n: 1.0, ..Contact::default() };
         let uv = PadField::nominal().signals.strain_uv(&contact).uv.map(f64::from);
         let edges = Arc::default();
         let pulse = Self { uv_per_n: uv, clock, edges: Arc::clone(&edges), sequence: 0 };
-        (VirtualPad::start(pulse).unwrap(), edges)
+        (VirtualPadPort::start(pulse).unwrap(), edges)
     }
 
     fn force_n(&self) -> f64 {
@@ -103,7 +103,7 @@ impl PadFirmware for Pulse {
 /// A bridge, and how long its events take.
 struct Way {
     shown: Shown,
-    _pad: VirtualPad,
+    _pad: VirtualPadPort,
     took_us: Receiver<f64>,
 }
 

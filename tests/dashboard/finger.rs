@@ -7,7 +7,7 @@ use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::{Sample, Status};
-use tactpad::bridge::transport::virtual_pad::{PadFirmware, VirtualPad};
+use tactpad::bridge::transport::virtual_pad::{PadFirmware, VirtualPadPort};
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::pad::twin::pad::{Circumstances, TwinPad};
@@ -28,7 +28,7 @@ const SEED: u64 = 1;
 
 /// The pad; it is pulled out when this is dropped.
 pub(crate) struct Finger {
-    pad: VirtualPad,
+    pad: VirtualPadPort,
     does: Arc<Mutex<Does>>,
     /// The pad's own time.
     time_us: Arc<AtomicU64>,
@@ -78,7 +78,7 @@ impl Finger {
             period_us: 1_000,
             sequence: 0,
         };
-        Self { pad: VirtualPad::start(firmware).unwrap(), does, time_us }
+        Self { pad: VirtualPadPort::start(firmware).unwrap(), does, time_us }
     }
 
     /// The pad as `--pad` names it.

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use tactpad::bridge::transport::virtual_pad::{PadFirmware, VirtualPad as Terminal};
+use tactpad::bridge::transport::virtual_pad::{PadFirmware, VirtualPadPort as Terminal};
 use tactpad::lab::field_cache::field_of;
 use tactpad::numeric::random::SplitMix64;
 use tactpad::pad::device::Device;

@@ -1,5 +1,5 @@
-//! What ordinary play shows of changes in the pad since its decoder was made. Whoever compares them hands it in here, at leisure and on
-//! a thread of its own; the bridge only tells it on.
+//! Changes in the pad since its decoder was made, as ordinary play shows them. Another thread compares and sets them here; the bridge
+//! only adds them to its status.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -7,9 +7,9 @@ use firmware_proto::identity::SerialNumber;
 use serde::Serialize;
 use serde_json::Value;
 
-/// What was found of one pad.
+/// The changes that were found of one pad.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Changes {
+pub struct PadChanges {
     /// The pad.
     #[serde(skip)]
     pub pad: SerialNumber,
@@ -21,18 +21,18 @@ pub struct Changes {
     pub text: String,
 }
 
-/// Where it is handed in; clones share it.
+/// The slot for the changes that were found; clones share it.
 #[derive(Clone, Debug, Default)]
-pub struct ChangesSlot(Arc<Mutex<Option<Changes>>>);
+pub struct ChangesSlot(Arc<Mutex<Option<PadChanges>>>);
 
 impl ChangesSlot {
-    /// Hands in what was found; it takes the place of what was found before.
-    pub fn set(&self, changes: Changes) {
+    /// Sets the changes that were found, in place of earlier ones.
+    pub fn set(&self, changes: PadChanges) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(changes);
     }
 
-    /// What was found of this pad.
-    pub(super) fn of(&self, pad: Option<SerialNumber>) -> Option<Changes> {
+    /// The changes that were found of this pad.
+    pub(super) fn of(&self, pad: Option<SerialNumber>) -> Option<PadChanges> {
         let found = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         found.as_ref().filter(|changes| pad == Some(changes.pad)).cloned()
     }
@@ -47,7 +47,7 @@ mod tests {
         let [one, other] = ["A-1", "A-2"].map(SerialNumber::from_ascii);
         let slot = ChangesSlot::default();
         assert_eq!(slot.of(one), None);
-        let changes = Changes {
+        let changes = PadChanges {
             pad: one.unwrap(),
             since: "my.decoder".into(),
             findings: Value::Null,

@@ -11,7 +11,7 @@ use rustix::net::sockopt::socket_peercred;
 use rustix::process::getuid;
 
 use crate::clock::Clock;
-use crate::request::{ANSWER_LIMIT, Asker, Request};
+use crate::request::{ANSWER_LIMIT, Request, RequestSender};
 use crate::watchers::Watchers;
 use tactpad_core::time::HostInstant;
 
@@ -43,7 +43,7 @@ pub(super) struct Server {
     /// The oldest first.
     clients: VecDeque<Client>,
     clock: Clock,
-    asker: Asker,
+    sender: RequestSender,
     /// Held while a client gets its answer.
     answering: Arc<Mutex<()>>,
     watchers: Watchers,
@@ -56,12 +56,12 @@ impl Server {
     /// The listener cannot be polled.
     pub(super) fn new(
         listener: UnixListener,
-        asker: Asker,
+        sender: RequestSender,
         answering: Arc<Mutex<()>>,
         watchers: Watchers,
     ) -> io::Result<Self> {
         listener.set_nonblocking(true)?;
-        Ok(Self { listener, clients: VecDeque::new(), clock: Clock::start(), asker, answering, watchers })
+        Ok(Self { listener, clients: VecDeque::new(), clock: Clock::start(), sender, answering, watchers })
     }
 
     /// Serves until the process ends.
@@ -133,7 +133,7 @@ impl Server {
             return writeln!(&client.stream, r#"{{"ok":false,"error":"unknown request"}}"#);
         };
         let _answering = self.answering.lock();
-        let answer = self.asker.answer(request)?;
+        let answer = self.sender.send_and_wait(request)?;
         // An answer has room in the socket; who leaves none is not waited for.
         (&client.stream).write_all(format!("{answer}\n").as_bytes())
     }
@@ -232,10 +232,10 @@ mod tests {
         let wake = UnixStream::pair().unwrap().0;
         let listener = UnixListener::bind(&path).unwrap();
         let watchers = Watchers::default();
-        (Server::new(listener, Asker { ask, wake }, Arc::default(), watchers).unwrap(), path)
+        (Server::new(listener, RequestSender { queue: ask, wake }, Arc::default(), watchers).unwrap(), path)
     }
 
-    /// What the client was answered; `None` if it was sent away.
+    /// The answer to the client; `None` if it was sent away.
     fn answer(mut client: &UnixStream) -> Option<String> {
         let mut answer = String::new();
         client.read_to_string(&mut answer).ok().filter(|read| *read > 0).map(|_| answer)

@@ -9,7 +9,7 @@ use rustix::fs::{OFlags, fcntl_setfl};
 use rustix::io::Errno;
 
 /// A new file, or a named pipe. A pipe that nobody reads yet is opened by the first write, which waits for a reader: let
-/// a [`crate::queue::Queue`] do that.
+/// a [`crate::queue::WriteQueue`] do that.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,

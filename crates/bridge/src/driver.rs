@@ -6,7 +6,7 @@ use crate::clock::Clock;
 use crate::error::BridgeError;
 use crate::latency::Durations;
 use crate::observer::Observer;
-use crate::queue::Written;
+use crate::queue::OnWritten;
 use crate::recorder::Recorder;
 use crate::sink::Sink;
 use crate::snapshot::Drops;
@@ -26,7 +26,7 @@ pub(super) struct Driver {
     pub(super) clock: Clock,
     /// From bytes readable to events written, one per group. Some sinks write in a thread of their own.
     pub(super) latency: Arc<Mutex<Durations>>,
-    /// What presses asked for, and was not done yet.
+    /// Commands of presses that are not carried out yet.
     pub(super) commands: Commands,
     /// Told what becomes of each press.
     pub(super) watchers: Watchers,
@@ -90,13 +90,13 @@ impl Driver {
         self.latency.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What was dropped so far.
+    /// Counts of dropped groups and unrecorded calls so far.
     pub(super) fn drops(&self) -> Drops {
         let calls_unrecorded = self.recorder.as_ref().map_or(0, Recorder::missed);
         Drops { groups_dropped: self.sink.dropped(), calls_unrecorded }
     }
 
-    /// What will have been dropped if nothing more is taken.
+    /// The same counts, if nothing more is written.
     pub(super) fn drops_at_end(&self) -> Drops {
         let Drops { groups_dropped, calls_unrecorded } = self.drops();
         let calls_waiting = self.recorder.as_ref().map_or(0, Recorder::waiting);
@@ -108,7 +108,7 @@ impl Driver {
 }
 
 /// Records, when the events of the bytes that were readable at `since` are out, how long that took.
-fn timed(latency: &Arc<Mutex<Durations>>, clock: Clock, since: HostInstant) -> Written {
+fn timed(latency: &Arc<Mutex<Durations>>, clock: Clock, since: HostInstant) -> OnWritten {
     let latency = Arc::clone(latency);
     Box::new(move || {
         let took_ns = clock.now().as_ns().saturating_sub(since.as_ns());

@@ -1,6 +1,6 @@
-//! What a bridge needs of the program that it runs in.
+//! The host: the interface of the program that a bridge runs in.
 
-use crate::offer::Offer;
+use crate::profile_update::ProfileUpdate;
 use tactpad_core::pipeline::mapping::read::ReadProfile;
 
 /// The program that a bridge runs in. It is called between two turns of the loop, so it should answer soon.
@@ -19,7 +19,7 @@ pub trait Host {
     fn next_profile(&mut self) -> Result<ReadProfile, String>;
 
     /// Whether a profile that is offered is still wanted: people may have asked for another one meanwhile.
-    fn wants(&self, _offer: &Offer) -> bool {
+    fn wants(&self, _offer: &ProfileUpdate) -> bool {
         true
     }
 

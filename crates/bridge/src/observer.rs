@@ -8,17 +8,17 @@ use tactpad_core::pipeline::Pipeline;
 use tactpad_core::pipeline::call::{Call, OwnedCall};
 use tactpad_core::time::HostInstant;
 
-/// So many calls may wait: two seconds of a pad at 8 kHz, whose reads bring a frame each.
+/// Largest number of calls that wait: two seconds of a pad at 8 kHz, whose reads bring a frame each.
 const CALLS_MAX: usize = 16 << 10;
 
-/// After calls that found no room the whole is offered this often: copying it takes longer than a call.
-const WHOLE_US: u64 = 100_000;
+/// Interval between checkpoints after calls that found no room, in microseconds: copying the pipeline takes longer than a call.
+const CHECKPOINT_US: u64 = 100_000;
 
-/// What an observer hears.
+/// A message to an observer.
 #[derive(Clone, Debug)]
-pub enum Observed {
-    /// The pipeline as it stands, at the begin and after calls that found no room. What follows goes on from here.
-    Whole {
+pub enum Observation {
+    /// A copy of the pipeline, at the start and after calls that found no room. What follows goes on from here.
+    Checkpoint {
         /// The clock of all instants.
         clock: Clock,
         /// When it stood so.
@@ -35,48 +35,48 @@ pub enum Observed {
     },
 }
 
-/// The bridge's end.
+/// The bridge's end of the channel to an observer.
 #[derive(Debug)]
 pub struct Observer {
-    to: SyncSender<Observed>,
-    /// The other end has to begin anew, as calls are missing: from then on.
-    begin_at: Option<HostInstant>,
-    has_left: bool,
+    to: SyncSender<Observation>,
+    /// Time of the next checkpoint, because calls are missing at the other end.
+    checkpoint_at: Option<HostInstant>,
+    is_disconnected: bool,
 }
 
-/// An observer for a bridge, and what hears it. Nothing wakes the one who hears: it looks when it wants to.
-pub fn observe() -> (Observer, Receiver<Observed>) {
+/// An observer for a bridge, and the receiver of its messages. Nothing wakes the receiver: it polls.
+pub fn observe() -> (Observer, Receiver<Observation>) {
     let (to, from) = sync_channel(CALLS_MAX);
-    (Observer { to, begin_at: None, has_left: false }, from)
+    (Observer { to, checkpoint_at: None, is_disconnected: false }, from)
 }
 
 impl Observer {
-    /// Tells of the pipeline before its first call.
+    /// Sends the pipeline before its first call.
     pub(super) fn begin(&mut self, clock: Clock, at: HostInstant, pipeline: &Pipeline) {
-        self.tell_whole(clock, at, pipeline);
+        self.send_checkpoint(clock, at, pipeline);
     }
 
-    /// Tells of a call that was made. After calls that found no room it tells of the whole pipeline, as soon as there is room.
+    /// Sends a call that was made. After calls that found no room it sends the whole pipeline, as soon as there is room.
     pub(super) fn tell(&mut self, clock: Clock, at: HostInstant, call: Call<'_>, pipeline: &Pipeline) {
-        if self.has_left {
+        if self.is_disconnected {
             return;
         }
-        match self.begin_at {
-            None => self.send(at, Observed::Call { at, call: call.into() }),
-            Some(begin_at) if begin_at <= at => self.tell_whole(clock, at, pipeline),
+        match self.checkpoint_at {
+            None => self.send(at, Observation::Call { at, call: call.into() }),
+            Some(checkpoint_at) if checkpoint_at <= at => self.send_checkpoint(clock, at, pipeline),
             Some(_) => {}
         }
     }
 
-    fn tell_whole(&mut self, clock: Clock, at: HostInstant, pipeline: &Pipeline) {
-        self.send(at, Observed::Whole { clock, at, pipeline: Box::new(pipeline.clone()) });
+    fn send_checkpoint(&mut self, clock: Clock, at: HostInstant, pipeline: &Pipeline) {
+        self.send(at, Observation::Checkpoint { clock, at, pipeline: Box::new(pipeline.clone()) });
     }
 
-    fn send(&mut self, at: HostInstant, observed: Observed) {
+    fn send(&mut self, at: HostInstant, observed: Observation) {
         match self.to.try_send(observed) {
-            Ok(()) => self.begin_at = None,
-            Err(TrySendError::Full(_)) => self.begin_at = Some(at.plus_us(WHOLE_US)),
-            Err(TrySendError::Disconnected(_)) => self.has_left = true,
+            Ok(()) => self.checkpoint_at = None,
+            Err(TrySendError::Full(_)) => self.checkpoint_at = Some(at.plus_us(CHECKPOINT_US)),
+            Err(TrySendError::Disconnected(_)) => self.is_disconnected = true,
         }
     }
 }
@@ -106,18 +106,20 @@ mod tests {
         }
         let heard: Vec<_> = from.try_iter().collect();
         assert_eq!(heard.len(), CALLS_MAX);
-        assert!(matches!(heard[0], Observed::Whole { .. }));
-        assert!(heard[1..].iter().all(|it| matches!(it, Observed::Call { .. })));
+        assert!(matches!(heard[0], Observation::Checkpoint { .. }));
+        assert!(heard[1..].iter().all(|it| matches!(it, Observation::Call { .. })));
         let _ = live.apply(HostInstant::default(), Call::Resume, &mut NoProbe);
         let [soon, later] =
-            [1, 2].map(|part| HostInstant::default().plus_us(CALLS_MAX as u64 + part * WHOLE_US));
+            [1, 2].map(|part| HostInstant::default().plus_us(CALLS_MAX as u64 + part * CHECKPOINT_US));
         observer.tell(clock, HostInstant::default(), Call::Resume, &live);
         assert_eq!(from.try_iter().count(), 0, "it was offered just now");
         observer.tell(clock, soon, Call::Resume, &live);
         observer.tell(clock, later, Call::Pause, &live);
         let heard: Vec<_> = from.try_iter().collect();
-        assert!(matches!(&heard[0], Observed::Whole { pipeline, .. } if pipeline.phase() == live.phase()));
-        assert!(matches!(&heard[1], Observed::Call { call: OwnedCall::Plain(Call::Pause), .. }));
+        assert!(
+            matches!(&heard[0], Observation::Checkpoint { pipeline, .. } if pipeline.phase() == live.phase())
+        );
+        assert!(matches!(&heard[1], Observation::Call { call: OwnedCall::Plain(Call::Pause), .. }));
     }
 
     #[test]
@@ -125,6 +127,6 @@ mod tests {
         let (mut observer, from) = observe();
         drop(from);
         observer.begin(Clock::start(), HostInstant::default(), &pipeline());
-        assert!(observer.has_left);
+        assert!(observer.is_disconnected);
     }
 }

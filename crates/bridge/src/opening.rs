@@ -12,7 +12,7 @@ use crate::transport::address::PadAddress;
 use crate::transport::fault::{FaultPlan, FaultyLine};
 use crate::transport::pads::{Opener, PadError};
 use crate::transport::playback::Playback;
-use crate::transport::virtual_pad::{PadFirmware, VirtualPad as PadOnTerminal};
+use crate::transport::virtual_pad::{PadFirmware, VirtualPadPort};
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::reader::{CaptureError, CaptureReader};
 use tactpad_core::time::HostInstant;
@@ -26,7 +26,7 @@ const PERMISSION_WAIT: Timespec = Timespec { tv_sec: 0, tv_nsec: 250_000_000 };
 /// Opens the pad, again and again if need be.
 pub type Reopen = Box<dyn FnMut() -> Result<Box<dyn Transport>, PadError>>;
 
-/// What to do about a pad that is not there at the start, or sends no sound frame.
+/// The policy for a pad that is not there at the start, or sends no valid frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Patience {
     /// Give up with a sentence.
@@ -66,7 +66,7 @@ pub struct OpenedPad {
     /// Opens it again after it was unplugged; `None` for a pad that ends, as a capture does.
     pub(super) opener: Option<Reopen>,
     /// The virtual pad behind the terminal, if it is one; it ends when this is dropped.
-    _virtual_pad: Option<PadOnTerminal>,
+    _virtual_pad: Option<VirtualPadPort>,
 }
 
 impl OpenedPad {
@@ -94,7 +94,7 @@ impl OpenedPad {
     /// # Errors
     /// [`OpenError::Io`] if there is no terminal for it, [`OpenError::Pad`] if that cannot be opened.
     pub fn simulated<F: PadFirmware + Send + 'static>(pad: F) -> Result<Self, OpenError> {
-        let pad = PadOnTerminal::start(pad).map_err(OpenError::Io)?;
+        let pad = VirtualPadPort::start(pad).map_err(OpenError::Io)?;
         let terminal = PadAddress::Serial { path: pad.path().to_owned(), baud: firmware_proto::DEFAULT_BAUD };
         Ok(Self { _virtual_pad: Some(pad), ..Self::device(terminal, Patience::Limited)? })
     }

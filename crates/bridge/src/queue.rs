@@ -10,50 +10,50 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// What is done as soon as a group is out.
-pub type Written = Box<dyn FnOnce() + Send>;
+/// Callback for the moment at which a group is written.
+pub type OnWritten = Box<dyn FnOnce() + Send>;
 
 /// The end of a run waits this long for what is still to be written.
 const SETTLE_LIMIT: Duration = Duration::from_millis(400);
 
 /// Bytes that belong together.
 #[derive(Default)]
-pub struct Group {
-    /// What is written.
+pub struct WriteGroup {
+    /// The bytes to write.
     pub bytes: Vec<u8>,
     /// How many things it holds, for whoever counts those that were not written.
     pub count: u64,
     /// Called by the writing thread once the bytes are out.
-    pub written: Option<Written>,
+    pub written: Option<OnWritten>,
 }
 
 /// A queue with a thread that writes. Dropping it waits a little for what is still to be written.
-pub struct Queue {
+pub struct WriteQueue {
     shared: Arc<Shared>,
     bytes_max: usize,
 }
 
 struct Shared {
-    state: Mutex<State>,
+    state: Mutex<QueueState>,
     changed: Condvar,
 }
 
 #[derive(Default)]
-struct State {
-    groups: VecDeque<Group>,
-    last: Option<Group>,
+struct QueueState {
+    groups: VecDeque<WriteGroup>,
+    last: Option<WriteGroup>,
     /// Bytes in `groups`.
     bytes: usize,
-    /// What the group that is being written counts.
+    /// The count of the group that is being written.
     writing: Option<u64>,
     is_closed: bool,
     /// The end was waited for in vain.
     is_stalled: bool,
-    /// What the writing ended with.
+    /// The error that ended the writing.
     failed: Option<(io::ErrorKind, String)>,
 }
 
-impl Queue {
+impl WriteQueue {
     /// Writes to `to` from a thread called `name`; at most `bytes_max` wait, and one group however long it is.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl Queue {
     ///
     /// # Errors
     /// An earlier group could not be written.
-    pub fn push(&self, group: Group) -> io::Result<bool> {
+    pub fn push(&self, group: WriteGroup) -> io::Result<bool> {
         let mut state = self.shared.sound()?;
         if !state.has_room(group.bytes.len(), self.bytes_max) {
             return Ok(false);
@@ -92,7 +92,7 @@ impl Queue {
     ///
     /// # Errors
     /// An earlier group could not be written.
-    pub fn put_last(&self, group: Group) -> io::Result<()> {
+    pub fn put_last(&self, group: WriteGroup) -> io::Result<()> {
         self.shared.sound()?.last = Some(group);
         self.shared.changed.notify_all();
         Ok(())
@@ -102,7 +102,7 @@ impl Queue {
     ///
     /// # Errors
     /// An earlier group could not be written.
-    pub fn replace_last(&self, group: Group) -> io::Result<bool> {
+    pub fn replace_last(&self, group: WriteGroup) -> io::Result<bool> {
         let mut state = self.shared.sound()?;
         Ok(state.last.as_mut().map(|last| *last = group).is_some())
     }
@@ -113,7 +113,7 @@ impl Queue {
     /// A group could not be written.
     pub fn settle(&self) -> io::Result<()> {
         let state = self.shared.sound()?;
-        let is_left = |state: &mut State| state.is_busy() && state.failed.is_none();
+        let is_left = |state: &mut QueueState| state.is_busy() && state.failed.is_none();
         let waited = self.shared.changed.wait_timeout_while(state, SETTLE_LIMIT, is_left);
         let (mut state, limit) = waited.unwrap_or_else(PoisonError::into_inner);
         state.is_stalled = limit.timed_out();
@@ -126,7 +126,7 @@ impl Queue {
     }
 }
 
-impl Drop for Queue {
+impl Drop for WriteQueue {
     fn drop(&mut self) {
         if !self.shared.lock().is_stalled {
             // Whoever wants to know of errors has settled before.
@@ -137,7 +137,7 @@ impl Drop for Queue {
     }
 }
 
-impl State {
+impl QueueState {
     fn has_room(&self, bytes: usize, bytes_max: usize) -> bool {
         self.last.is_none() && (self.groups.is_empty() || self.bytes + bytes <= bytes_max)
     }
@@ -157,7 +157,7 @@ impl State {
         }
     }
 
-    fn next(&mut self) -> Option<Group> {
+    fn next(&mut self) -> Option<WriteGroup> {
         let group = self.groups.pop_front().or_else(|| self.last.take())?;
         self.bytes = self.groups.iter().map(|group| group.bytes.len()).sum();
         self.writing = Some(group.count);
@@ -166,12 +166,12 @@ impl State {
 }
 
 impl Shared {
-    fn lock(&self) -> MutexGuard<'_, State> {
+    fn lock(&self) -> MutexGuard<'_, QueueState> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The state, if nothing failed.
-    fn sound(&self) -> io::Result<MutexGuard<'_, State>> {
+    fn sound(&self) -> io::Result<MutexGuard<'_, QueueState>> {
         let state = self.lock();
         state.check()?;
         Ok(state)
@@ -179,7 +179,7 @@ impl Shared {
 
     /// Writes groups until the queue is dropped or one cannot be written.
     fn write_to(&self, mut to: impl Write) {
-        while let Some(Group { bytes, written, .. }) = self.next() {
+        while let Some(WriteGroup { bytes, written, .. }) = self.next() {
             let done = to.write_all(&bytes).and_then(|()| to.flush());
             if let (Ok(()), Some(written)) = (&done, written) {
                 written();
@@ -195,7 +195,7 @@ impl Shared {
     }
 
     /// Waits for the next group; `None` once the queue is dropped.
-    fn next(&self) -> Option<Group> {
+    fn next(&self) -> Option<WriteGroup> {
         let mut state = self.lock();
         loop {
             if let Some(group) = state.next() {
@@ -233,17 +233,17 @@ mod tests {
         }
     }
 
-    fn gated() -> (Queue, Sender<()>, Receiver<Vec<u8>>) {
+    fn gated() -> (WriteQueue, Sender<()>, Receiver<Vec<u8>>) {
         let ((open, may), (out, seen)) = (channel(), channel());
-        (Queue::start("test", Gate { may, out }, 8).unwrap(), open, seen)
+        (WriteQueue::start("test", Gate { may, out }, 8).unwrap(), open, seen)
     }
 
-    fn group(bytes: &[u8]) -> Group {
-        Group { bytes: bytes.to_vec(), count: 1, written: None }
+    fn group(bytes: &[u8]) -> WriteGroup {
+        WriteGroup { bytes: bytes.to_vec(), count: 1, written: None }
     }
 
     /// Waits until everything is out, however late the writing thread has its turn.
-    fn settle(queue: &Queue) {
+    fn settle(queue: &WriteQueue) {
         while queue.waiting() > 0 {
             queue.settle().unwrap();
         }
@@ -304,8 +304,8 @@ mod tests {
     fn a_group_is_told_when_it_is_out() {
         let (queue, open, seen) = gated();
         let (tell, told) = channel();
-        let written: Written = Box::new(move || tell.send(()).unwrap());
-        queue.push(Group { written: Some(written), ..group(b"a") }).unwrap();
+        let written: OnWritten = Box::new(move || tell.send(()).unwrap());
+        queue.push(WriteGroup { written: Some(written), ..group(b"a") }).unwrap();
         assert!(told.try_recv().is_err(), "it is not out yet");
         open.send(()).unwrap();
         settle(&queue);

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::queue::{Group, Queue};
+use crate::queue::{WriteGroup, WriteQueue};
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::head::Head;
 use tactpad_core::pipeline::capture::writer::CaptureWriter;
@@ -20,7 +20,7 @@ pub(super) struct Recorder {
     /// Writes into the batch.
     capture: CaptureWriter<Vec<u8>>,
     in_batch: u64,
-    queue: Queue,
+    queue: WriteQueue,
     is_over: bool,
     /// Calls made after the capture was over.
     missed: u64,
@@ -32,7 +32,7 @@ impl Recorder {
     /// # Errors
     /// The system has no thread to give, or the head is longer than a capture can hold.
     pub(super) fn begin(to: Box<dyn Write + Send>, now: HostInstant, head: &Head) -> io::Result<Self> {
-        let queue = Queue::start("recorder", to, QUEUE_BYTES_MAX)?;
+        let queue = WriteQueue::start("recorder", to, QUEUE_BYTES_MAX)?;
         let capture = CaptureWriter::begin(Vec::new(), now, head)?;
         Ok(Self { capture, in_batch: 0, queue, is_over: false, missed: 0 })
     }
@@ -40,7 +40,7 @@ impl Recorder {
     /// Adds one call that was made at host time `now`.
     ///
     /// # Errors
-    /// What came before cannot be written, or the call carries more than a capture can hold.
+    /// Earlier calls cannot be written, or this one carries more than a capture can hold.
     pub(super) fn write(&mut self, now: HostInstant, call: Call<'_>) -> io::Result<()> {
         if self.is_over {
             self.missed += 1;
@@ -62,7 +62,7 @@ impl Recorder {
     /// Hands the batch on.
     fn hand_on(&mut self) -> io::Result<()> {
         let bytes = std::mem::take(self.capture.get_mut());
-        let group = Group { bytes, count: std::mem::take(&mut self.in_batch), written: None };
+        let group = WriteGroup { bytes, count: std::mem::take(&mut self.in_batch), written: None };
         if self.is_over { self.queue.put_last(group) } else { self.queue.push(group).map(|_| ()) }
     }
 

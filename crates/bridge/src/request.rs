@@ -1,18 +1,18 @@
-//! What can be asked of a running bridge, and by whom.
+//! Requests to a running bridge, and the handle that sends them from other threads.
 
 use std::io::{self, Write};
 use std::os::unix::net::UnixStream;
 use std::sync::mpsc::{Receiver, Sender, SyncSender, sync_channel};
 use std::time::Duration;
 
-use crate::offer::Offer;
+use crate::profile_update::ProfileUpdate;
 use tactpad_core::pad::weight::Weight;
 use tactpad_core::pipeline::mapping::read::ReadProfile;
 
 /// The bridge answers in well under a millisecond; one that does not has ended or is stopped.
 pub(super) const ANSWER_LIMIT: Duration = Duration::from_secs(2);
 
-/// What is asked for.
+/// A request to a running bridge.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// Release everything and end.
@@ -35,8 +35,8 @@ pub enum Request {
     Profile(Option<String>),
     /// Go over to the next profile that a press can leave again.
     NextProfile,
-    /// Take a profile that was read away from the loop, if it is still wanted.
-    Offer(Box<Offer>),
+    /// Play a profile that was read on another thread, if nobody has asked for another one meanwhile.
+    UpdateProfile(Box<ProfileUpdate>),
     /// Play a profile that is not kept yet, until another one is asked for or offered, or this one is read again.
     Preview(Box<ReadProfile>),
     /// Tell what the bridge is doing.
@@ -68,65 +68,65 @@ impl Request {
     }
 }
 
-/// A request and whoever waits for its answer.
+/// A request in the queue, and the channel for its reply.
 #[derive(Debug)]
-pub struct Asked {
-    /// What is asked for.
+pub struct PendingRequest {
+    /// The request.
     pub request: Request,
-    pub(super) answer: Option<SyncSender<String>>,
+    pub(super) reply_to: Option<SyncSender<String>>,
 }
 
-impl Asked {
-    /// A request that gets no answer.
+impl PendingRequest {
+    /// A request without a reply.
     pub(super) const fn unanswered(request: Request) -> Self {
-        Self { request, answer: None }
+        Self { request, reply_to: None }
     }
 
-    /// Answers with one line of JSON. A signal gets no answer.
-    pub fn answer(&self, line: String) {
-        if let Some(answer) = &self.answer {
+    /// Sends the reply: one line of JSON. A signal waits for none.
+    pub fn reply(&self, line: String) {
+        if let Some(reply_to) = &self.reply_to {
             // A client that went away needs no answer.
-            let _ = answer.try_send(line);
+            let _ = reply_to.try_send(line);
         }
     }
 }
 
-/// Asks the bridge from any thread of its program.
+/// Handle that sends requests to the bridge from any thread of its program.
 #[derive(Debug)]
-pub struct Asker {
-    pub(super) ask: Sender<Asked>,
+pub struct RequestSender {
+    pub(super) queue: Sender<PendingRequest>,
     pub(super) wake: UnixStream,
 }
 
-impl Asker {
-    /// Asks, and does not wait for an answer.
+impl RequestSender {
+    /// Sends a request without waiting for a reply.
     ///
     /// # Errors
     /// The bridge has ended.
-    pub fn ask(&self, request: Request) -> io::Result<()> {
-        self.send(Asked::unanswered(request))
+    pub fn send(&self, request: Request) -> io::Result<()> {
+        self.enqueue(PendingRequest::unanswered(request))
     }
 
-    /// Asks, and waits for the answer: a line of JSON.
+    /// Sends a request and waits for the reply: one line of JSON. Blocks for at most 2 s.
     ///
     /// # Errors
     /// The bridge has ended, or does not answer: then the kind is `TimedOut`.
-    pub fn answer(&self, request: Request) -> io::Result<String> {
-        self.question(request)?.recv_timeout(ANSWER_LIMIT).map_err(|_| io::ErrorKind::TimedOut.into())
+    pub fn send_and_wait(&self, request: Request) -> io::Result<String> {
+        self.send_for_reply(request)?.recv_timeout(ANSWER_LIMIT).map_err(|_| io::ErrorKind::TimedOut.into())
     }
 
-    /// Asks, and does not wait: the answer, a line of JSON, comes through what is returned.
+    /// Sends a request and returns the channel on which the reply, one line of JSON, will arrive.
     ///
     /// # Errors
     /// The bridge has ended.
-    pub fn question(&self, request: Request) -> io::Result<Receiver<String>> {
-        let (answer, answered) = sync_channel(1);
-        self.send(Asked { request, answer: Some(answer) })?;
-        Ok(answered)
+    pub fn send_for_reply(&self, request: Request) -> io::Result<Receiver<String>> {
+        let (reply_to, reply) = sync_channel(1);
+        self.enqueue(PendingRequest { request, reply_to: Some(reply_to) })?;
+        Ok(reply)
     }
 
-    pub(super) fn send(&self, asked: Asked) -> io::Result<()> {
-        self.ask.send(asked).map_err(|_| io::Error::from(io::ErrorKind::BrokenPipe))?;
+    pub(super) fn enqueue(&self, pending: PendingRequest) -> io::Result<()> {
+        self.queue.send(pending).map_err(|_| io::Error::from(io::ErrorKind::BrokenPipe))?;
         (&self.wake).write_all(&[1])
     }
 }

@@ -1,4 +1,4 @@
-//! What people ask of a running bridge: by a signal, through the control socket, or in the program around it.
+//! The queue of requests to a running bridge. They come by signals, through the control socket, or from other threads of the program.
 
 use std::fs::{self, Permissions};
 use std::io::{self, Read};
@@ -14,18 +14,18 @@ use std::thread;
 use signal_hook::{flag, low_level};
 
 use crate::control::Server;
-use crate::request::{Asked, Asker, Request};
-use crate::signals::Start;
+use crate::request::{PendingRequest, Request, RequestSender};
+use crate::signals::StartConditions;
 use crate::watchers::Watchers;
 
-/// Requests as a descriptor to poll and a queue to take from.
+/// The queue of requests, with a file descriptor that polls readable while one waits.
 #[derive(Debug)]
 pub struct Requests {
     woken: UnixStream,
     wake: UnixStream,
     flags: Vec<(Arc<AtomicBool>, Request)>,
-    queue: Receiver<Asked>,
-    ask: Sender<Asked>,
+    received: Receiver<PendingRequest>,
+    queue: Sender<PendingRequest>,
     /// Held while a client gets its answer.
     answering: Arc<Mutex<()>>,
     watchers: Watchers,
@@ -33,16 +33,16 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Nobody asks yet: see [`Requests::asker`], [`Requests::catch_signals`] and [`Requests::listen`].
+    /// An empty queue; for its sources see [`Requests::sender`], [`Requests::catch_signals`] and [`Requests::listen`].
     ///
     /// # Errors
     /// The system has no descriptor to give.
     pub fn new() -> io::Result<Self> {
         let (woken, wake) = UnixStream::pair()?;
         woken.set_nonblocking(true)?;
-        let (ask, queue) = channel();
+        let (queue, received) = channel();
         let (flags, answering, watchers) = (Vec::new(), Arc::default(), Watchers::default());
-        Ok(Self { woken, wake, flags, queue, ask, answering, watchers, socket: None })
+        Ok(Self { woken, wake, flags, received, queue, answering, watchers, socket: None })
     }
 
     /// Takes the process's signals, and the end of its terminal, as requests from now on. A program that has its own use for them does not call this.
@@ -50,7 +50,7 @@ impl Requests {
     /// # Errors
     /// The system refuses to.
     pub fn catch_signals(&mut self) -> io::Result<()> {
-        let start = Start::of_this_process();
+        let start = StartConditions::of_this_process();
         for (signal, request) in start.signals() {
             let flag = Arc::new(AtomicBool::new(false));
             // The flag first: when the descriptor wakes the loop, the flag already stands.
@@ -58,15 +58,15 @@ impl Requests {
             low_level::pipe::register(signal, self.wake.try_clone()?)?;
             self.flags.push((flag, request));
         }
-        start.watch_terminal(self.asker()?)
+        start.watch_terminal(self.sender()?)
     }
 
-    /// Asks this bridge from another thread.
+    /// A handle that sends requests from another thread.
     ///
     /// # Errors
     /// The system has no descriptor to give.
-    pub fn asker(&self) -> io::Result<Asker> {
-        Ok(Asker { ask: self.ask.clone(), wake: self.wake.try_clone()? })
+    pub fn sender(&self) -> io::Result<RequestSender> {
+        Ok(RequestSender { queue: self.queue.clone(), wake: self.wake.try_clone()? })
     }
 
     /// Listens at `path` too. A socket that nobody listens at any more is taken over.
@@ -82,28 +82,28 @@ impl Requests {
         fs::set_permissions(path, Permissions::from_mode(0o600))?;
         self.socket = Some(path.to_owned());
         let (answering, watchers) = (Arc::clone(&self.answering), self.watchers.clone());
-        let mut server = Server::new(listener, self.asker()?, answering, watchers)?;
+        let mut server = Server::new(listener, self.sender()?, answering, watchers)?;
         thread::Builder::new().name("control".into()).spawn(move || server.run())?;
         Ok(())
     }
 
-    /// Those who watch what becomes of presses.
+    /// The subscribers to the outcome of presses.
     pub(super) fn watchers(&self) -> Watchers {
         self.watchers.clone()
     }
 
-    /// Polls readable when something was asked.
+    /// The file descriptor that polls readable when a request waits.
     pub fn fd(&self) -> BorrowedFd<'_> {
         self.woken.as_fd()
     }
 
     /// The next request, if there is one.
-    pub fn take(&mut self) -> Option<Asked> {
+    pub fn take(&mut self) -> Option<PendingRequest> {
         while matches!(self.woken.read(&mut [0; 64]), Ok(read) if read > 0) {}
         let raised = self.flags.iter().find(|(flag, _)| flag.swap(false, Ordering::AcqRel));
         match raised {
-            Some((_, request)) => Some(Asked::unanswered(request.clone())),
-            None => self.queue.try_recv().ok(),
+            Some((_, request)) => Some(PendingRequest::unanswered(request.clone())),
+            None => self.received.try_recv().ok(),
         }
     }
 }
@@ -111,7 +111,7 @@ impl Requests {
 impl Drop for Requests {
     fn drop(&mut self) {
         // Who asked the bridge to end still gets the answer; the process takes the control thread with it.
-        while self.queue.try_recv().is_ok() {}
+        while self.received.try_recv().is_ok() {}
         drop(self.answering.lock());
         if let Some(socket) = &self.socket {
             let _ = fs::remove_file(socket);
@@ -136,9 +136,9 @@ mod tests {
         };
         let mut fds = [rustix::event::PollFd::from_borrowed_fd(requests.fd(), rustix::event::PollFlags::IN)];
         rustix::event::poll(&mut fds, None).unwrap();
-        let asked = requests.take().unwrap();
-        assert_eq!(asked.request, Request::Pause);
-        asked.answer("{}".into());
+        let pending = requests.take().unwrap();
+        assert_eq!(pending.request, Request::Pause);
+        pending.reply("{}".into());
         assert_eq!(asking.join().unwrap().unwrap(), "{}");
         assert!(Requests::new().unwrap().listen(&path).is_err(), "two bridges at one socket");
         drop(requests);
@@ -149,13 +149,13 @@ mod tests {
     fn a_program_asks_its_own_bridge_from_another_thread() {
         let mut requests = Requests::new().unwrap();
         assert!(requests.take().is_none());
-        let asker = requests.asker().unwrap();
-        thread::spawn(move || asker.ask(Request::TogglePause)).join().unwrap().unwrap();
+        let sender = requests.sender().unwrap();
+        thread::spawn(move || sender.send(Request::TogglePause)).join().unwrap().unwrap();
         let mut fds = [rustix::event::PollFd::from_borrowed_fd(requests.fd(), rustix::event::PollFlags::IN)];
         rustix::event::poll(&mut fds, None).unwrap();
-        assert_eq!(requests.take().map(|asked| asked.request), Some(Request::TogglePause));
-        let asker = requests.asker().unwrap();
+        assert_eq!(requests.take().map(|pending| pending.request), Some(Request::TogglePause));
+        let sender = requests.sender().unwrap();
         drop(requests);
-        assert!(asker.ask(Request::End).is_err(), "nobody is there to ask");
+        assert!(sender.send(Request::End).is_err(), "nobody is there to ask");
     }
 }

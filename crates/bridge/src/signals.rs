@@ -1,4 +1,4 @@
-//! What each signal asks of a bridge: one table. And the end of its terminal, which not every shell passes on as a signal.
+//! The table of signals and the request that each makes; and the end of the terminal, which not every shell passes on as a signal.
 
 use std::fs::{self, File};
 use std::io;
@@ -8,19 +8,19 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGSTOP, SIGTERM, SIGTSTP, SIGUSR1, SIGUSR2};
 use signal_hook::low_level;
 
-use crate::request::{Asker, Request};
+use crate::request::{Request, RequestSender};
 
-/// What the process was started with, as far as it decides what signals mean.
+/// The conditions at the start of the process that decide the meaning of signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Start {
+pub(super) struct StartConditions {
     /// Whether there is a controlling terminal, whose end is a hang-up.
     has_terminal: bool,
     /// The signals that were ignored then, as `nohup` has it: bit 0 is signal 1.
     ignored: u64,
 }
 
-impl Start {
-    /// What this process was started with, if nobody has changed it yet.
+impl StartConditions {
+    /// The conditions of this process, if nobody has changed them yet.
     pub(super) fn of_this_process() -> Self {
         let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
         Self { has_terminal: terminal().is_some(), ignored: ignored(&status) }
@@ -30,13 +30,13 @@ impl Start {
     ///
     /// # Errors
     /// The system has no thread to give.
-    pub(super) fn watch_terminal(self, asker: Asker) -> io::Result<()> {
+    pub(super) fn watch_terminal(self, sender: RequestSender) -> io::Result<()> {
         let ends = self.signals().any(|(signal, request)| signal == SIGHUP && request == Request::End);
         if let Some(terminal) = terminal().filter(|_| ends) {
             thread::Builder::new().name("terminal".into()).spawn(move || {
                 await_hang_up(&terminal);
                 // A bridge that has ended already needs not be asked.
-                let _ = asker.ask(Request::End);
+                let _ = sender.send(Request::End);
             })?;
         }
         Ok(())
@@ -49,25 +49,25 @@ impl Start {
         #[rustfmt::skip]
         let table = [
             // signal  asks for               and if it was ignored at the start
-            (SIGINT,  Request::End,          Ignored::Counts),
-            (SIGTERM, Request::End,          Ignored::Counts),
-            (SIGQUIT, Request::End,          Ignored::Counts),
-            (SIGHUP,  hang_up,               Ignored::Stays),
-            (SIGTSTP, Request::Stop,         Ignored::Stays),
-            (SIGUSR1, Request::ReleaseAll,   Ignored::Counts),
-            (SIGUSR2, Request::TogglePause,  Ignored::Counts),
+            (SIGINT,  Request::End,          WhenIgnored::Counts),
+            (SIGTERM, Request::End,          WhenIgnored::Counts),
+            (SIGQUIT, Request::End,          WhenIgnored::Counts),
+            (SIGHUP,  hang_up,               WhenIgnored::Stays),
+            (SIGTSTP, Request::Stop,         WhenIgnored::Stays),
+            (SIGUSR1, Request::ReleaseAll,   WhenIgnored::Counts),
+            (SIGUSR2, Request::TogglePause,  WhenIgnored::Counts),
         ];
         let is_ignored = move |signal: i32| self.ignored >> (signal - 1) & 1 == 1;
         let caught = table
             .into_iter()
-            .filter(move |(signal, _, ignored)| *ignored == Ignored::Counts || !is_ignored(*signal));
+            .filter(move |(signal, _, ignored)| *ignored == WhenIgnored::Counts || !is_ignored(*signal));
         caught.map(|(signal, request, _)| (signal, request))
     }
 }
 
-/// What becomes of a signal that was ignored when the process was started.
+/// The policy for a signal that was ignored when the process was started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Ignored {
+enum WhenIgnored {
     /// It counts all the same: a shell that runs a script ignores some for programs in the background.
     Counts,
     /// It stays ignored: whoever started the bridge wants it so.
@@ -111,25 +111,25 @@ pub(super) fn stop_process() -> io::Result<()> {
 mod tests {
     use super::*;
 
-    const FOREGROUND: Start = Start { has_terminal: true, ignored: 0 };
+    const FOREGROUND: StartConditions = StartConditions { has_terminal: true, ignored: 0 };
 
-    fn asked_by(signal: i32, start: Start) -> Option<Request> {
+    fn asked_by(signal: i32, start: StartConditions) -> Option<Request> {
         start.signals().find(|(caught, _)| *caught == signal).map(|(_, request)| request)
     }
 
     #[test]
     fn a_hang_up_ends_reloads_or_stays_ignored() {
         assert_eq!(asked_by(SIGHUP, FOREGROUND), Some(Request::End));
-        let service = Start { has_terminal: false, ..FOREGROUND };
+        let service = StartConditions { has_terminal: false, ..FOREGROUND };
         assert_eq!(asked_by(SIGHUP, service), Some(Request::Profile(None)));
         for start in [FOREGROUND, service] {
-            assert_eq!(asked_by(SIGHUP, Start { ignored: 1, ..start }), None);
+            assert_eq!(asked_by(SIGHUP, StartConditions { ignored: 1, ..start }), None);
         }
     }
 
     #[test]
     fn what_ends_a_bridge_ends_it_also_where_a_shell_ignores_it() {
-        let in_background = Start { ignored: 0b110, ..FOREGROUND };
+        let in_background = StartConditions { ignored: 0b110, ..FOREGROUND };
         for signal in [SIGINT, SIGQUIT, SIGTERM] {
             assert_eq!(asked_by(signal, in_background), Some(Request::End));
         }

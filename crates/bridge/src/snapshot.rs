@@ -3,7 +3,7 @@
 use firmware_proto::identity::SerialNumber;
 use serde::{Serialize, Serializer};
 
-use crate::changes::Changes;
+use crate::changes::PadChanges;
 use crate::latency::Percentiles;
 use crate::state::State;
 use crate::weighing::WeighingStatus;
@@ -21,7 +21,7 @@ pub struct Snapshot {
     /// Host time of the snapshot.
     #[serde(rename = "at_s", serialize_with = "in_seconds")]
     pub at: HostInstant,
-    /// What it is doing, and with what.
+    /// The status at that time.
     #[serde(flatten)]
     pub status: Status,
     /// The newest channels as the decoder got them, in the order of [`tactpad_core::quantity::CHANNEL_NAMES`]; `None` while
@@ -31,10 +31,10 @@ pub struct Snapshot {
     pub uncertainty: Option<Uncertainty>,
 }
 
-/// What a bridge is doing, and with what; the answer to `ctl status`.
+/// The status of a bridge; the answer to `ctl status`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Status {
-    /// What it is doing.
+    /// The state of the bridge.
     pub state: State,
     /// The pad's serial number, if it told.
     #[serde(serialize_with = "as_text")]
@@ -45,35 +45,35 @@ pub struct Status {
     pub layer: Option<String>,
     /// Why it is this one, for people.
     pub profile_reason: String,
-    /// What is wrong with the one that would be played else, for people.
+    /// The error of the profile that would be played otherwise, for people.
     pub profile_error: Option<String>,
     /// Whether it is played for a try, and is not kept.
     pub preview: bool,
-    /// What people call the decoder.
+    /// Display name of the decoder.
     pub decoder: String,
     /// Where events go.
     pub output: String,
     /// The contact that is being mapped.
     pub contact: Option<Contact>,
-    /// What is held; as text, the names of the controls.
+    /// The held controls; as text, their names.
     #[serde(serialize_with = "by_name")]
     pub held: Vec<Level>,
-    /// What the player should know of the touches.
+    /// A warning about the touches, for the player.
     pub warning: Option<Warning>,
     /// How many presses of buttons counted, and how many did not (Slow Keys, Bounce Keys, dwell).
     pub presses: Presses,
-    /// What went wrong so far.
+    /// Counts of errors so far.
     pub health: BridgeHealth,
     /// From bytes readable to events written.
     pub latency_us: Percentiles,
     /// The file of the decoder, by its whole path or its name in the program; `None` where nothing was read.
     pub decoder_file: Option<String>,
-    /// What the pad reads over what it would read as it was calibrated: 1 unless a weighing told otherwise.
+    /// Gain: the pad's readings over those at its calibration, without a unit. 1 unless a weighing found another one.
     pub gain: f64,
     /// The newest weighing.
     pub weighing: Option<WeighingStatus>,
-    /// What play shows of changes in the pad since its decoder was made; nothing before enough was played.
-    pub changes: Option<Changes>,
+    /// Changes in the pad that play shows since its decoder was made; `None` before enough was played.
+    pub changes: Option<PadChanges>,
 }
 
 /// Everything that went wrong, on the way from the pad and on the way out.
@@ -87,7 +87,7 @@ pub struct BridgeHealth {
     pub drops: Drops,
 }
 
-/// What nobody took in time. The bridge waits for no log and for no capture.
+/// Counts of groups and calls that were not taken in time. The bridge waits for no log and for no capture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Drops {
     /// Groups of events that are missing in the event log.

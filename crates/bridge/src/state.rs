@@ -1,11 +1,11 @@
-//! What the bridge is doing, in words: for the screen, for `ctl status`, and for the terminal.
+//! The state of the bridge, in words: for the screen, for `ctl status`, and for the terminal.
 
 use serde::Serialize;
 
-use crate::keeper::Absence;
+use crate::pad_connection::NoPadReason;
 use tactpad_core::pipeline::{Phase, Pipeline};
 
-/// What the bridge is doing.
+/// The state of the bridge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum State {
@@ -36,12 +36,12 @@ pub enum State {
 }
 
 impl State {
-    pub(super) fn of(pipeline: &Pipeline, absence: Option<Absence>) -> Self {
-        match (pipeline.phase(), absence) {
+    pub(super) fn of(pipeline: &Pipeline, no_pad_reason: Option<NoPadReason>) -> Self {
+        match (pipeline.phase(), no_pad_reason) {
             (Phase::Paused, _) => Self::Paused,
-            (_, Some(Absence::Denied)) => Self::Denied,
-            (_, Some(Absence::Unclear)) => Self::Unclear,
-            (_, Some(Absence::Gone)) => Self::Waiting,
+            (_, Some(NoPadReason::Denied)) => Self::Denied,
+            (_, Some(NoPadReason::Ambiguous)) => Self::Unclear,
+            (_, Some(NoPadReason::Gone)) => Self::Waiting,
             (Phase::Refused, None) => Self::Refused,
             (Phase::Waiting, None) => Self::Silent,
             (Phase::Taring, None) => Self::Taring,

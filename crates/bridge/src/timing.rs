@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::clock::Clock;
 use crate::latency::{Durations, Percentiles};
 use crate::opening::{OpenedPad, Reopen};
-use crate::queue::Written;
+use crate::queue::OnWritten;
 use crate::sink::{Sink, SinkError};
 use crate::transport::Transport;
 use tactpad_core::pipeline::call::Call;
@@ -36,9 +36,9 @@ pub struct Stages<T> {
     pub write: T,
 }
 
-/// What a timed run came to.
+/// The times of the stages in one run.
 #[derive(Clone, Debug)]
-pub struct Timed {
+pub struct StageTimes {
     /// How long each stage takes.
     pub stages_us: Stages<Percentiles>,
     /// Mean time between samples; 0 if there were none.
@@ -47,7 +47,7 @@ pub struct Timed {
 
 /// Delays that a profile asks for; no part of the processing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Policy {
+pub struct ProfileDelays {
     /// The mean filter's: half of its window.
     pub filter: f64,
     /// Until a press is long, or can no longer become a double or a hard one.
@@ -58,7 +58,7 @@ pub struct Policy {
     pub tremor: f64,
 }
 
-impl Policy {
+impl ProfileDelays {
     /// Delays in milliseconds of a profile whose samples are `period_us` apart.
     pub fn of(profile: &Profile, period_us: u64) -> Self {
         let window = profile.filter_samples.max(1);
@@ -81,8 +81,8 @@ impl Policy {
 /// Times the pad and the sink of a run that records into it.
 #[derive(Clone, Default)]
 pub struct Timing {
-    live: Live,
-    calls: Calls,
+    live: SharedStages,
+    calls: MemoryCapture,
 }
 
 impl Timing {
@@ -117,11 +117,11 @@ impl Timing {
     ///
     /// # Errors
     /// The run was not recorded here.
-    pub fn finish(&self, pipeline: Pipeline) -> Result<Timed, CaptureError> {
+    pub fn finish(&self, pipeline: Pipeline) -> Result<StageTimes, CaptureError> {
         let mut stages = self.live.0.lock().map(|stages| stages.clone()).unwrap_or_default();
         let calls = self.calls.0.lock().map(|calls| calls.clone()).unwrap_or_default();
         let period_us = replay_timed(&calls, pipeline, &mut stages)?;
-        Ok(Timed { stages_us: stages.percentiles(), period_us })
+        Ok(StageTimes { stages_us: stages.percentiles(), period_us })
     }
 }
 
@@ -193,9 +193,9 @@ impl Stages<Durations> {
 
 /// Durations of the system calls, shared by the timed pad and the timed sink.
 #[derive(Clone, Default)]
-struct Live(Arc<Mutex<Stages<Durations>>>);
+struct SharedStages(Arc<Mutex<Stages<Durations>>>);
 
-impl Live {
+impl SharedStages {
     fn record(&self, stage: fn(&mut Stages<Durations>) -> &mut Durations, clock: &Clock) {
         if let Ok(mut stages) = self.0.lock() {
             stage(&mut stages).record_ns(clock.now().as_ns());
@@ -205,7 +205,7 @@ impl Live {
 
 struct TimedPad {
     pad: Box<dyn Transport>,
-    live: Live,
+    live: SharedStages,
 }
 
 impl Transport for TimedPad {
@@ -227,7 +227,7 @@ impl Transport for TimedPad {
 
 struct TimedSink {
     sink: Box<dyn Sink>,
-    live: Live,
+    live: SharedStages,
 }
 
 impl Sink for TimedSink {
@@ -239,7 +239,7 @@ impl Sink for TimedSink {
         self.write_then(group, Box::new(|| ()))
     }
 
-    fn write_then(&mut self, group: &[OutputEvent], written: Written) -> Result<(), SinkError> {
+    fn write_then(&mut self, group: &[OutputEvent], written: OnWritten) -> Result<(), SinkError> {
         let (clock, live) = (Clock::start(), self.live.clone());
         let timed = move || {
             live.record(|stages| &mut stages.write, &clock);
@@ -267,9 +267,9 @@ impl Sink for TimedSink {
 
 /// A capture in memory.
 #[derive(Clone, Default)]
-struct Calls(Arc<Mutex<Vec<u8>>>);
+struct MemoryCapture(Arc<Mutex<Vec<u8>>>);
 
-impl Write for Calls {
+impl Write for MemoryCapture {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self.0.lock() {
             Ok(mut all) => all.write(bytes),
@@ -294,7 +294,7 @@ mod tests {
                     tap = { gamepad = \"BTN_SOUTH\", keyboard = \"KEY_A\" }\n\
                     hold = { gamepad = \"BTN_EAST\", keyboard = \"KEY_B\" }\n";
         let profile = read(text, OutputChoice::AsWritten).0.unwrap();
-        let Policy { filter, hold, slow, tremor } = Policy::of(&profile, 1_000);
+        let ProfileDelays { filter, hold, slow, tremor } = ProfileDelays::of(&profile, 1_000);
         assert_eq!((filter, hold, slow), (2.0, 400.0, 800.0));
         assert!((tremor - 79.58).abs() < 0.01, "{tremor}");
     }

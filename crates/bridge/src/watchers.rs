@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use serde::Serialize;
 
-use crate::queue::{Group, Queue};
+use crate::queue::{WriteGroup, WriteQueue};
 use tactpad_core::pipeline::mapping::live::verdict::{Reason, Verdict, VerdictEvent};
 
 /// So many may watch at a time.
@@ -28,14 +28,14 @@ pub(super) struct Watchers {
 
 struct Watcher {
     stream: UnixStream,
-    lines: Queue,
+    lines: WriteQueue,
     /// Presses that found no room since the last line.
     lost: u64,
 }
 
 /// A press as watchers read it.
 #[derive(Clone, Debug, Serialize)]
-pub struct Line {
+pub struct PressLine {
     t_us: u64,
     #[serde(skip_serializing_if = "Option::is_none")]
     button: Option<usize>,
@@ -54,7 +54,7 @@ const fn is_none(lost: &u64) -> bool {
     *lost == 0
 }
 
-impl Line {
+impl PressLine {
     /// That of a verdict, before which so many were lost.
     pub fn of(verdict: &Verdict, lost: u64) -> Self {
         let (button, direction, rejected) = match verdict.told {
@@ -83,8 +83,8 @@ impl Watchers {
             return Ok(false);
         }
         stream.set_nonblocking(false)?;
-        let lines = Queue::start("watch", stream.try_clone()?, QUEUE_BYTES_MAX)?;
-        lines.push(Group { bytes: b"{\"ok\":true}\n".to_vec(), ..Group::default() })?;
+        let lines = WriteQueue::start("watch", stream.try_clone()?, QUEUE_BYTES_MAX)?;
+        lines.push(WriteGroup { bytes: b"{\"ok\":true}\n".to_vec(), ..WriteGroup::default() })?;
         all.push(Watcher { stream: stream.try_clone()?, lines, lost: 0 });
         self.count.store(all.len(), Ordering::Release);
         Ok(true)
@@ -113,9 +113,9 @@ impl Watcher {
 
     /// Hands a line on, or counts it as lost.
     fn tell(&mut self, verdict: &Verdict) -> io::Result<()> {
-        let line = Line::of(verdict, self.lost);
+        let line = PressLine::of(verdict, self.lost);
         let bytes = (serde_json::to_string(&line).map_err(io::Error::other)? + "\n").into_bytes();
-        let is_taken = self.lines.push(Group { bytes, count: 1, written: None })?;
+        let is_taken = self.lines.push(WriteGroup { bytes, count: 1, written: None })?;
         self.lost = if is_taken { 0 } else { self.lost + 1 };
         Ok(())
     }
@@ -152,7 +152,7 @@ mod tests {
     fn directions_and_hands_that_rest_have_lines_of_their_own() {
         let line = |told| {
             let verdict = Verdict { t: StreamInstant::from_us(7), told };
-            serde_json::to_string(&Line::of(&verdict, 0)).unwrap()
+            serde_json::to_string(&PressLine::of(&verdict, 0)).unwrap()
         };
         let left = |rejected| VerdictEvent::Direction { direction: Direction::Left, rejected };
         assert_eq!(line(left(None)), r#"{"t_us":7,"direction":"left","press":"accepted"}"#);

@@ -1,11 +1,11 @@
-//! A weighing, as the status tells it.
+//! The newest weighing, as the status shows it.
 
 use serde::Serialize;
 
 use tactpad_core::pipeline::weighing::{Progress, WeighingReport};
 
-/// A gain that differs by less is told as none.
-const TOLD: f64 = 5e-4;
+/// Smallest change of the gain that is reported, as a share.
+const REPORTED_CHANGE_MIN: f64 = 5e-4;
 
 /// The newest weighing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -16,9 +16,9 @@ pub struct WeighingStatus {
     pub weight_g: f64,
     /// `waiting`, `resting`, `weighed` or `refused`.
     pub state: &'static str,
-    /// What the pad reads over what it would read as it was calibrated, and the standard deviation of that as a share.
+    /// The factor: the pad's readings over those at its calibration, without a unit.
     pub factor: Option<f64>,
-    /// See there.
+    /// Standard deviation of the factor, without a unit.
     pub deviation: Option<f64>,
     /// Why there is no factor, for people.
     pub error: Option<String>,
@@ -38,11 +38,11 @@ impl WeighingStatus {
     }
 }
 
-/// What a common gain means to people; `None` for one that is none.
+/// A sentence about a common gain; `None` for a gain of 1.
 pub fn gain_sentence(factor: f64) -> Option<String> {
     let change = factor - 1.0;
     let than = if change < 0.0 { "less" } else { "more" };
-    (change.abs() >= TOLD).then(|| {
+    (change.abs() >= REPORTED_CHANGE_MIN).then(|| {
         format!(
             "the pad reads {:.1} % {than} than when it was calibrated; forces are corrected by it",
             100.0 * change.abs()

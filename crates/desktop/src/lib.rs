@@ -1,4 +1,4 @@
-//! What a desktop shows of a running bridge: a page in the browser, and an icon among those of the desktop (Linux).
+//! The displays of a running bridge on a desktop: a page in the browser, and an icon in the tray (Linux).
 
 #![cfg(target_os = "linux")]
 

@@ -18,24 +18,24 @@ use tactpad::pipeline::shipped;
 /// Far more than any decoder needs, and no more than a capture's entry holds.
 const BYTES_MAX: u64 = 16_000_000;
 
-/// What decoders of all versions begin with.
+/// The first bytes of decoders of all versions.
 const KIND: &[u8; 16] = b"tactpad decoder ";
 
 /// The decoder of a verb that plays.
 #[derive(Debug, Args)]
-pub(crate) struct Choice {
+pub(crate) struct DecoderChoice {
     /// What turns channels into a contact: a file that adapt or train wrote, inverse (the default), statics, or scdf.
     #[arg(long, value_name = "NAME|FILE")]
     decoder: Option<String>,
 }
 
-impl Choice {
+impl DecoderChoice {
     /// Whether one was chosen.
     pub(crate) const fn is_given(&self) -> bool {
         self.decoder.is_some()
     }
 
-    /// What was chosen, or plays anyway.
+    /// The name or file of the decoder: the chosen one, or the default.
     pub(crate) fn name(&self) -> &str {
         self.decoder.as_deref().unwrap_or(shipped::INVERSE)
     }
@@ -94,7 +94,7 @@ pub(crate) fn write_network(to: &Destination, network: &Network) -> Result<(), F
     to.write(&onnx::write(network))
 }
 
-/// What a name or a file stands for. A file of a shipped decoder's name is meant by `./NAME`.
+/// The bytes of the decoder with this name or file. A file of a shipped decoder's name is meant by `./NAME`.
 fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     if let Some(bytes) = path.to_str().and_then(shipped::bytes) {
         return Ok(bytes.into_owned());

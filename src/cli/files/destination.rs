@@ -15,7 +15,7 @@ const LINKS_MAX: usize = 40;
 /// Where output goes. Nothing is changed before [`Destination::begin`], and no unfinished file lies about meanwhile.
 #[derive(Debug)]
 pub(crate) struct Destination {
-    /// What people call it.
+    /// Display name.
     place: String,
     way: Way,
 }

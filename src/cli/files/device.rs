@@ -14,7 +14,7 @@ const PAPER: &str = include_str!("../../../models/imperfections/paper.toml");
 
 /// Which pad; flattened into the arguments of each verb that simulates or decodes.
 #[derive(Debug, Args)]
-pub(crate) struct Pad {
+pub(crate) struct PadOptions {
     /// A device file; without it the nominal pad, whose file is models/sstid.toml.
     #[arg(long, value_name = "FILE")]
     device: Option<PathBuf>,
@@ -24,7 +24,7 @@ pub(crate) struct Pad {
     imperfections: Option<PathBuf>,
 }
 
-impl Pad {
+impl PadOptions {
     /// Refuses to write over a file that is read.
     pub(crate) fn spare(&self, written: &Path) -> Result<(), Failure> {
         let files = [(&self.device, "is the device"), (&self.imperfections, "is the file of imperfections")];
@@ -115,10 +115,10 @@ mod tests {
     #[derive(Parser)]
     struct Verb {
         #[command(flatten)]
-        pad: Pad,
+        pad: PadOptions,
     }
 
-    /// What a verb gets for these texts under `--device` and `--imperfections`: a device or what is told.
+    /// The device for these texts under `--device` and `--imperfections`, or the error message.
     fn given(device: Option<&str>, imperfections: Option<&str>) -> Result<Device, String> {
         let folder = tempfile::tempdir().unwrap();
         let mut arguments = vec!["verb".into()];

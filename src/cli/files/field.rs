@@ -6,21 +6,29 @@ use crate::cli::failure::Failure;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{reason, say};
 use tactpad::lab::field_cache::{self, FieldError, Obtained};
-use tactpad::pad::changes::FieldChanges;
+use tactpad::pad::changes::{FieldChange, FieldChanges};
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 
+/// The model of a pad that is not measured yet: the device, its field, and the flaws that its modules may have.
+#[derive(Clone, Copy)]
+pub(crate) struct PadModel<'p> {
+    pub(crate) device: &'p Device,
+    pub(crate) field: &'p PadField,
+    pub(crate) flaws: &'p [FieldChange],
+}
+
 /// The field of `device`, known or computed.
 pub(crate) fn field_of(device: &Device) -> Result<PadField, Failure> {
-    told(|step| field_cache::field_of(device, step))
+    obtained(|step| field_cache::field_of(device, step))
 }
 
-/// What flaws change in the field of `device`, known or computed.
+/// The changes of the field of `device` by flaws, known or computed.
 pub(crate) fn changes_of(device: &Device) -> Result<FieldChanges, Failure> {
-    told(|step| field_cache::changes_of(device, step))
+    obtained(|step| field_cache::changes_of(device, step))
 }
 
-fn told<T>(
+fn obtained<T>(
     obtain: impl FnOnce(&mut dyn FnMut(fmt::Arguments<'_>)) -> Result<Obtained<T>, FieldError>,
 ) -> Result<T, Failure> {
     let mut progress = None;

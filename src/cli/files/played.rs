@@ -19,7 +19,7 @@ use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::pipeline::shipped;
 
-/// What was played.
+/// Recorded play.
 pub(crate) struct Played {
     /// In order of time.
     pub(crate) windows: Vec<Window>,

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use super::decoder_file::Choice;
 use crate::cli::failure::Failure;
+use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::printing::written::say;
 use tactpad::pipeline::call::Call;
 use tactpad::pipeline::capture::reader::{CaptureError, CaptureReader};
@@ -13,7 +13,7 @@ use tactpad::pipeline::contact::{Decoder, read};
 use tactpad::pipeline::mapping::profile::Profile;
 use tactpad::time::HostInstant;
 
-/// What becomes of profiles that were chosen while the recording went on.
+/// The policy for profiles that were chosen while the recording went on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Profiles {
     /// They are calls like others.
@@ -45,7 +45,7 @@ impl Recording {
     }
 
     /// The decoder that is chosen, else the recorded one.
-    pub(crate) fn decoder(&self, chosen: &Choice) -> Result<Decoder, Failure> {
+    pub(crate) fn decoder(&self, chosen: &DecoderChoice) -> Result<Decoder, Failure> {
         if chosen.is_given() {
             // What it plays is looked at, not felt: one that cannot play will do.
             return Ok(chosen.read_by(read::tared)?.0);

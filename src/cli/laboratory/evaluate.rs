@@ -7,7 +7,7 @@ use clap::Args;
 
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::files::tables;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{print_json, stdout};
@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "T.csv")]
     truth: Option<PathBuf>,
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
@@ -101,7 +101,7 @@ mod tests {
         arguments: Arguments,
     }
 
-    /// What comes of a measured row and its true contact at these x.
+    /// Evaluates a measured row and its true contact at these x, in millimetres.
     fn evaluated(measured_mm: f64, true_mm: f64) -> Result<(), Failure> {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name).display().to_string();

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::destination::{Destination, Folder};
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
 use crate::cli::printing::pictures;
 use crate::cli::printing::progress::Progress;
@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "0")]
     seed: u64,
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Write the figures train-network, train-loss and train-scatter-x to -fz into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -42,9 +42,9 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// What was learnt.
+/// The report of `tactpad train`.
 #[derive(Serialize)]
-struct Outcome {
+struct TrainReport {
     seed: u64,
     widths: Vec<usize>,
     parameters: usize,
@@ -77,7 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             pictures::write(folder, &format!("train-scatter-{name}"), &figure)?;
         }
     }
-    let outcome = Outcome::of(&pretrained, *seed);
+    let outcome = TrainReport::of(&pretrained, *seed);
     tell(&outcome, out, *json)
 }
 
@@ -89,7 +89,7 @@ fn trained(examples: Vec<Example>, seed: u64) -> Pretrained {
     })
 }
 
-impl Outcome {
+impl TrainReport {
     fn of(pretrained: &Pretrained, seed: u64) -> Self {
         let Pretrained { trained, scores, test } = pretrained;
         Self {
@@ -105,7 +105,7 @@ impl Outcome {
     }
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for TrainReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let widths: Vec<_> = self.widths.iter().map(usize::to_string).collect();
         writeln!(f, "{}: {} weights, {} epochs", widths.join("-"), self.parameters, self.curve.len())?;

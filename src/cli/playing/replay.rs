@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::profile;
 use crate::cli::failure::{Failure, if_read};
-use crate::cli::files::decoder_file::Choice;
+use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::recording::{Profiles, Recording};
 use crate::cli::files::tables;
+use crate::cli::playing::profile;
 use crate::cli::printing::written::{print_json, stdout};
 use tactpad::lab::tuning::difference::{Difference, Side, UnmatchedPress};
 use tactpad::pipeline::control::{Code, OutputEvent};
@@ -55,11 +55,11 @@ pub(crate) struct Arguments {
     json: bool,
     /// Without it a capture replays with the one it was recorded with.
     #[command(flatten)]
-    decoder: Choice,
+    decoder: DecoderChoice,
 }
 
 /// Takes simultaneous events.
-type See<'s> = dyn FnMut(&[OutputEvent]) -> Result<(), Failure> + 's;
+type EventHandler<'s> = dyn FnMut(&[OutputEvent]) -> Result<(), Failure> + 's;
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let read =
@@ -88,13 +88,17 @@ fn compare(arguments: &Arguments, old: Profile, new: Profile) -> Result<(), Fail
         Ok::<_, Failure>(events)
     };
     let difference = Difference::between(&events(old)?, &events(new)?);
-    if arguments.json { print_json(&difference) } else { Ok(writeln!(stdout(), "{}", Told(&difference))?) }
+    if arguments.json {
+        print_json(&difference)
+    } else {
+        Ok(writeln!(stdout(), "{}", DifferenceText(&difference))?)
+    }
 }
 
 /// A difference for people.
-struct Told<'d>(&'d Difference);
+struct DifferenceText<'d>(&'d Difference);
 
-impl fmt::Display for Told<'_> {
+impl fmt::Display for DifferenceText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Difference { both, shift_max_us, only, pointer_counts: [old, new] } = self.0;
         for UnmatchedPress { with, press } in only {
@@ -131,7 +135,7 @@ impl fmt::Display for Told<'_> {
 
 impl Arguments {
     /// Plays the capture or the contacts.
-    fn play(&self, chosen: Option<Profile>, see: &mut See<'_>) -> Result<(), Failure> {
+    fn play(&self, chosen: Option<Profile>, see: &mut EventHandler<'_>) -> Result<(), Failure> {
         match (&self.capture, &self.contacts, chosen) {
             (Some(path), _, chosen) => replay_capture(path, chosen, &self.decoder, see),
             (None, Some(_), _) if self.decoder.is_given() => {
@@ -146,8 +150,8 @@ impl Arguments {
 fn replay_capture(
     path: &Path,
     chosen: Option<Profile>,
-    decoder: &Choice,
-    see: &mut See<'_>,
+    decoder: &DecoderChoice,
+    see: &mut EventHandler<'_>,
 ) -> Result<(), Failure> {
     let mut recording = Recording::open(path)?;
     let profiles = if chosen.is_some() { Profiles::Skipped } else { Profiles::Followed };
@@ -167,7 +171,7 @@ fn replay_capture(
 }
 
 /// Maps contacts as they stand: each row is a sample, a row without normal force is a lift.
-fn replay_contacts(path: &Path, profile: Profile, see: &mut See<'_>) -> Result<(), Failure> {
+fn replay_contacts(path: &Path, profile: Profile, see: &mut EventHandler<'_>) -> Result<(), Failure> {
     let rows = tables::read(path, TableKind::Contacts, PLATE_RADIUS_MM)?.rows;
     let mut replay = ContactReplay::new(profile);
     let mut deliver = |events: &[OutputEvent]| see(events);

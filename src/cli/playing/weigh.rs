@@ -10,7 +10,7 @@ use super::profile;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::destination::Destination;
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::files::recording::{Profiles, Recording};
 use crate::cli::files::tables;
 use crate::cli::printing::progress::Progress;
@@ -57,15 +57,15 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Print one JSON document: what came of it.
     #[arg(long)]
     json: bool,
 }
 
-/// What came of it.
+/// The report of `tactpad weigh`.
 #[derive(Serialize)]
-struct Outcome {
+struct WeighReport {
     factor: f64,
     deviation: f64,
     readings: Option<usize>,
@@ -114,9 +114,9 @@ impl Arguments {
     }
 
     /// The decoder of the pad as it is now, and what is told of it.
-    fn weighed(&self, decoder: &Decoder) -> Result<(Decoder, Outcome), Failure> {
+    fn weighed(&self, decoder: &Decoder) -> Result<(Decoder, WeighReport), Failure> {
         if let Some((factor, deviation)) = self.factor.zip(self.deviation) {
-            return self.told(decoder, factor, deviation);
+            return self.by_factor(decoder, factor, deviation);
         }
         let weight = Weight::of_g(self.weight_g.unwrap_or_default())
             .map_err(|why| Failure::Unusable(format!("--weight-g: {why}")))?;
@@ -127,11 +127,16 @@ impl Arguments {
         let InFile { weighed, readings, at_s, decoder } = found;
         let place_mm = at_s.map(|_| [weighed.x_mm, weighed.y_mm]);
         let (factor, deviation) = (weighed.factor, weighed.deviation);
-        Ok((decoder, Outcome { factor, deviation, readings: Some(readings), at_s, place_mm }))
+        Ok((decoder, WeighReport { factor, deviation, readings: Some(readings), at_s, place_mm }))
     }
 
-    /// What a running bridge has told.
-    fn told(&self, decoder: &Decoder, factor: f64, deviation: f64) -> Result<(Decoder, Outcome), Failure> {
+    /// The decoder with the factor that a running bridge has found.
+    fn by_factor(
+        &self,
+        decoder: &Decoder,
+        factor: f64,
+        deviation: f64,
+    ) -> Result<(Decoder, WeighReport), Failure> {
         let unusable = |why: &str| Failure::Unusable(why.to_owned());
         if !is_possible(factor) {
             return Err(unusable("--factor is what the pad reads over what it read, from 0.5 to 2"));
@@ -143,7 +148,7 @@ impl Arguments {
         }
         let now = kept(decoder, factor, deviation)
             .ok_or_else(|| self.refused(&self.decoder, FileError::Decoder))?;
-        Ok((now, Outcome { factor, deviation, readings: None, at_s: None, place_mm: None }))
+        Ok((now, WeighReport { factor, deviation, readings: None, at_s: None, place_mm: None }))
     }
 
     fn in_table(&self, decoder: &Decoder, path: &Path, weight: Weight) -> Result<InFile, Failure> {
@@ -184,7 +189,7 @@ fn rests(decoder: &Decoder, path: &Path) -> Result<Vec<RestedLoad>, Failure> {
     Ok(reader.finish())
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for WeighReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { factor, deviation, readings, at_s, place_mm } = self;
         if let (Some(at_s), Some([x_mm, y_mm])) = (at_s, place_mm) {

@@ -57,7 +57,7 @@ impl Summary {
         self.rows += 1;
     }
 
-    /// What the rows come to.
+    /// The report of the rows.
     pub(crate) fn report(&self) -> ChannelReport {
         let channels = CHANNEL_NAMES.into_iter().zip(&self.channels);
         let channels = channels.map(|(channel, sizes)| sizes.report(channel, self.rows));
@@ -84,7 +84,7 @@ impl Sizes {
     }
 }
 
-/// What a table comes to.
+/// The report of a table.
 #[derive(Debug, Serialize)]
 pub(crate) struct ChannelReport {
     rows: usize,

@@ -1,4 +1,4 @@
-//! What a stream's reader takes.
+//! Abilities of the terminal at the end of a stream.
 
 use std::env;
 use std::ffi::OsStr;

@@ -70,7 +70,7 @@ impl<W: Write> Named<W> {
         Self { to, place }
     }
 
-    /// What was written to.
+    /// The writer inside.
     pub(crate) fn into_inner(self) -> W {
         self.to
     }
@@ -130,7 +130,7 @@ fn is_one(left: &Path, right: &Path) -> io::Result<bool> {
     Ok(fs::canonicalize(left)? == fs::canonicalize(right)?)
 }
 
-/// What the system says, without its number.
+/// The system's message, without its number.
 pub(crate) fn reason(error: &io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or(&text).to_owned()

@@ -1,4 +1,4 @@
-//! What the virtual devices say they are.
+//! The identities and controls of the virtual devices.
 //!
 //! The gamepad is an Xbox 360 pad on a wire, down to the last axis range, because games, browsers and SDL
 //! recognise controllers by their numbers and count buttons and axes by the order of the codes. Version
@@ -17,7 +17,7 @@ const BUS_VIRTUAL: u16 = 0x06;
 
 /// The numbers and the name by which programs recognise a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Identity {
+pub struct DeviceIdentity {
     /// The bus it claims to be on (`BUS_*` of `linux/input.h`).
     pub bus: u16,
     /// The name that people see.
@@ -31,7 +31,7 @@ pub struct Identity {
 }
 
 /// The Xbox 360 pad.
-pub const GAMEPAD: Identity = Identity {
+pub const GAMEPAD: DeviceIdentity = DeviceIdentity {
     bus: BUS_USB,
     name: "Microsoft X-Box 360 pad",
     vendor: 0x045e,
@@ -40,20 +40,35 @@ pub const GAMEPAD: Identity = Identity {
 };
 
 /// The keyboard. Nothing looks for its numbers: they are two of those that pid.codes keeps free for tests.
-pub const KEYBOARD: Identity =
-    Identity { bus: BUS_VIRTUAL, name: "tactpad keyboard", vendor: 0x1209, product: 0x0002, version: 0x0001 };
+pub const KEYBOARD: DeviceIdentity = DeviceIdentity {
+    bus: BUS_VIRTUAL,
+    name: "tactpad keyboard",
+    vendor: 0x1209,
+    product: 0x0002,
+    version: 0x0001,
+};
 
 /// The pointer, told from other mice by its name alone.
-pub const POINTER: Identity =
-    Identity { bus: BUS_VIRTUAL, name: "tactpad pointer", vendor: 0x1209, product: 0x0003, version: 0x0001 };
+pub const POINTER: DeviceIdentity = DeviceIdentity {
+    bus: BUS_VIRTUAL,
+    name: "tactpad pointer",
+    vendor: 0x1209,
+    product: 0x0003,
+    version: 0x0001,
+};
 
 /// The tablet, told from others by its name alone.
-pub const TABLET: Identity =
-    Identity { bus: BUS_VIRTUAL, name: "tactpad tablet", vendor: 0x1209, product: 0x0004, version: 0x0001 };
+pub const TABLET: DeviceIdentity = DeviceIdentity {
+    bus: BUS_VIRTUAL,
+    name: "tactpad tablet",
+    vendor: 0x1209,
+    product: 0x0004,
+    version: 0x0001,
+};
 
 /// One axis of the pad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Axis {
+pub struct AbsoluteAxis {
     /// The kernel's number, `ABS_*`.
     pub code: u16,
     /// Smallest position.
@@ -67,25 +82,25 @@ pub struct Axis {
 }
 
 /// The pad's axes: X, Y, Z, RX, RY, RZ, HAT0X, HAT0Y. All rest at 0.
-pub const GAMEPAD_AXES: [Axis; 8] =
+pub const GAMEPAD_AXES: [AbsoluteAxis; 8] =
     [stick(0x00), stick(0x01), trigger(0x02), stick(0x03), stick(0x04), trigger(0x05), hat(0x10), hat(0x11)];
 
-const fn stick(code: u16) -> Axis {
-    Axis { code, min: -32_768, max: 32_767, fuzz: 16, flat: 128 }
+const fn stick(code: u16) -> AbsoluteAxis {
+    AbsoluteAxis { code, min: -32_768, max: 32_767, fuzz: 16, flat: 128 }
 }
 
-const fn trigger(code: u16) -> Axis {
-    Axis { code, min: 0, max: 255, fuzz: 0, flat: 0 }
+const fn trigger(code: u16) -> AbsoluteAxis {
+    AbsoluteAxis { code, min: 0, max: 255, fuzz: 0, flat: 0 }
 }
 
-const fn hat(code: u16) -> Axis {
-    Axis { code, min: -1, max: 1, fuzz: 0, flat: 0 }
+const fn hat(code: u16) -> AbsoluteAxis {
+    AbsoluteAxis { code, min: -1, max: 1, fuzz: 0, flat: 0 }
 }
 
 /// The axes of the tablet.
-pub const TABLET_AXES: [Axis; 2] = [
-    Axis { code: 0x00, min: 1, max: POINTER_PLACE_MAX, fuzz: 0, flat: 0 },
-    Axis { code: 0x01, min: 1, max: POINTER_PLACE_MAX, fuzz: 0, flat: 0 },
+pub const TABLET_AXES: [AbsoluteAxis; 2] = [
+    AbsoluteAxis { code: 0x00, min: 1, max: POINTER_PLACE_MAX, fuzz: 0, flat: 0 },
+    AbsoluteAxis { code: 0x01, min: 1, max: POINTER_PLACE_MAX, fuzz: 0, flat: 0 },
 ];
 
 /// The numbers of all keys of `device`.

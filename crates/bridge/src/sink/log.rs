@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::levels::Levels;
+use super::held_controls::HeldControls;
 use super::{Sink, SinkError};
 use crate::destination::Destination;
-use crate::queue::{Group, Queue, Written};
+use crate::queue::{OnWritten, WriteGroup, WriteQueue};
 use tactpad_core::pipeline::control::{OutputDevice, OutputEvent};
 use tactpad_core::pipeline::output::event_log;
 
@@ -18,16 +18,16 @@ const QUEUE_BYTES_MAX: usize = 128 << 10;
 /// Groups that find no room are dropped. In their place the log says, as soon as there is room, what led from what its
 /// readers know to what is held then: so whatever they see go down they see come up.
 pub struct LogSink {
-    queue: Queue,
+    queue: WriteQueue,
     place: String,
     /// Whether the log waits for somebody to read it.
     waits_for_reader: bool,
-    /// What is held.
-    held: Levels,
-    /// What is held after everything that was handed to the queue.
-    logged: Levels,
-    /// What is held after what waits in the queue's last place.
-    caught_up: Option<Levels>,
+    /// The controls that are held now.
+    held: HeldControls,
+    /// The controls that are held after everything in the queue.
+    logged: HeldControls,
+    /// The controls that are held after the group in the queue's last place.
+    caught_up: Option<HeldControls>,
     dropped: u64,
 }
 
@@ -48,8 +48,9 @@ impl LogSink {
     /// # Errors
     /// The system has no thread to give.
     pub fn new(out: impl Write + Send + 'static, place: String) -> Result<Self, SinkError> {
-        let queue = Queue::start("log", out, QUEUE_BYTES_MAX).map_err(|error| refused(&place, &error))?;
-        let [held, logged] = [Levels::default(), Levels::default()];
+        let queue =
+            WriteQueue::start("log", out, QUEUE_BYTES_MAX).map_err(|error| refused(&place, &error))?;
+        let [held, logged] = [HeldControls::default(), HeldControls::default()];
         Ok(Self { queue, place, waits_for_reader: false, held, logged, caught_up: None, dropped: 0 })
     }
 
@@ -59,7 +60,7 @@ impl LogSink {
     }
 
     /// Queues a group, or what is true instead of it. False if the group was dropped.
-    fn queue(&mut self, group: &[OutputEvent], written: Written) -> io::Result<bool> {
+    fn queue(&mut self, group: &[OutputEvent], written: OnWritten) -> io::Result<bool> {
         self.held.apply(group);
         if let Some(caught_up) = self.caught_up.take() {
             if self.queue.replace_last(self.catch_up()?)? {
@@ -68,7 +69,7 @@ impl LogSink {
             // That is out by now.
             self.logged = caught_up;
         }
-        let group = Group { bytes: lines(group)?, count: 1, written: Some(written) };
+        let group = WriteGroup { bytes: lines(group)?, count: 1, written: Some(written) };
         if self.queue.push(group)? {
             self.logged.clone_from(&self.held);
             return Ok(true);
@@ -77,9 +78,9 @@ impl LogSink {
         Ok(false)
     }
 
-    /// What leads from what was logged to what is held.
-    fn catch_up(&self) -> io::Result<Group> {
-        Ok(Group { bytes: lines(&self.logged.lead_to(&self.held))?, ..Group::default() })
+    /// The events that lead from the logged controls to the held ones.
+    fn catch_up(&self) -> io::Result<WriteGroup> {
+        Ok(WriteGroup { bytes: lines(&self.logged.events_to(&self.held))?, ..WriteGroup::default() })
     }
 }
 
@@ -102,7 +103,7 @@ impl Sink for LogSink {
         self.write_then(group, Box::new(|| ()))
     }
 
-    fn write_then(&mut self, group: &[OutputEvent], written: Written) -> Result<(), SinkError> {
+    fn write_then(&mut self, group: &[OutputEvent], written: OnWritten) -> Result<(), SinkError> {
         let is_queued = self.queue(group, written).map_err(|error| refused(&self.place, &error))?;
         if !is_queued {
             self.caught_up = Some(self.held.clone());
@@ -142,7 +143,7 @@ mod tests {
         OutputEvent { at, device: OutputDevice::Keyboard, code: Code::Key(key), value }
     }
 
-    /// What reaches the other side, piece by piece.
+    /// The pieces that reach the other side.
     #[derive(Clone, Default)]
     struct Pieces(Arc<Mutex<Vec<Vec<u8>>>>);
 
@@ -212,7 +213,7 @@ mod tests {
             let mut keys =
                 (0..).map(|press| event(press, 44 + (press / 2 % 2) as u16, 1 - (press % 2) as i32));
             // Until a group is dropped that a key went down in; then some that are dropped, too.
-            while sink.dropped() == 0 || sink.held.lead_to(&Levels::default()).is_empty() {
+            while sink.dropped() == 0 || sink.held.events_to(&HeldControls::default()).is_empty() {
                 sink.write(&[keys.next().unwrap()]).unwrap();
                 written += 1;
             }

@@ -1,16 +1,16 @@
 //! Where output events go.
 
+mod held_controls;
 pub mod identity;
-mod levels;
 pub mod log;
 pub mod null;
+pub mod recording;
 pub mod uinput;
-pub mod witness;
 pub mod x11;
 
 use std::fmt;
 
-use crate::queue::Written;
+use crate::queue::OnWritten;
 use tactpad_core::pipeline::control::{OutputDevice, OutputEvent};
 use tactpad_core::pipeline::mapping::profile::Binding;
 
@@ -41,7 +41,7 @@ pub trait Sink {
     ///
     /// # Errors
     /// The events did not get out.
-    fn write_then(&mut self, group: &[OutputEvent], written: Written) -> Result<(), SinkError> {
+    fn write_then(&mut self, group: &[OutputEvent], written: OnWritten) -> Result<(), SinkError> {
         self.write(group)?;
         written();
         Ok(())

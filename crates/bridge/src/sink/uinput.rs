@@ -15,7 +15,7 @@ use rustix::event::{Timespec, poll};
 use rustix::io::Errno;
 
 use super::identity::{
-    GAMEPAD, GAMEPAD_AXES, Identity, KEYBOARD, POINTER, TABLET, TABLET_AXES, declares, keys, movements,
+    DeviceIdentity, GAMEPAD, GAMEPAD_AXES, KEYBOARD, POINTER, TABLET, TABLET_AXES, declares, keys, movements,
 };
 use super::{Sink, SinkError};
 use tactpad_core::pipeline::control::{Code, OutputDevice, OutputEvent};
@@ -52,10 +52,10 @@ const DEVICES: [OutputDevice; 4] =
 /// The virtual gamepad, keyboard and pointer. Each is made when it is first prepared.
 #[derive(Debug)]
 pub struct UinputSink {
-    gamepad: Option<Unit>,
-    keyboard: Option<Unit>,
-    pointer: Option<Unit>,
-    tablet: Option<Unit>,
+    gamepad: Option<UinputDevice>,
+    keyboard: Option<UinputDevice>,
+    pointer: Option<UinputDevice>,
+    tablet: Option<UinputDevice>,
 }
 
 impl UinputSink {
@@ -83,7 +83,7 @@ impl UinputSink {
         unit.as_ref().map(|unit| unit.node.as_path())
     }
 
-    fn unit(&mut self, device: OutputDevice) -> Result<&mut Unit, SinkError> {
+    fn unit(&mut self, device: OutputDevice) -> Result<&mut UinputDevice, SinkError> {
         let place = match device {
             OutputDevice::Gamepad => &mut self.gamepad,
             OutputDevice::Keyboard => &mut self.keyboard,
@@ -92,7 +92,7 @@ impl UinputSink {
         };
         match place {
             Some(unit) => Ok(unit),
-            None => Ok(place.insert(Unit::make(device)?)),
+            None => Ok(place.insert(UinputDevice::make(device)?)),
         }
     }
 }
@@ -141,7 +141,7 @@ impl Sink for UinputSink {
 
 /// One virtual device.
 #[derive(Debug)]
-struct Unit {
+struct UinputDevice {
     device: VirtualDevice,
     name: &'static str,
     node: PathBuf,
@@ -149,7 +149,7 @@ struct Unit {
     held: Vec<Code>,
 }
 
-impl Unit {
+impl UinputDevice {
     fn make(device: OutputDevice) -> Result<Self, SinkError> {
         let (made, name) = match device {
             OutputDevice::Gamepad => (make_gamepad(), GAMEPAD.name),
@@ -180,7 +180,7 @@ impl Unit {
     }
 }
 
-impl Drop for Unit {
+impl Drop for UinputDevice {
     fn drop(&mut self) {
         let held = std::mem::take(&mut self.held);
         let spoke = !self.bytes.is_empty();
@@ -266,7 +266,7 @@ fn make_pointer() -> io::Result<VirtualDevice> {
     builder.with_keys(&keys)?.with_relative_axes(&movements)?.build()
 }
 
-fn input_id(identity: &Identity) -> InputId {
+fn input_id(identity: &DeviceIdentity) -> InputId {
     InputId::new(BusType(identity.bus), identity.vendor, identity.product, identity.version)
 }
 

@@ -23,7 +23,7 @@ use tactpad_core::pipeline::control::names::{POINTER_PLACE_MAX, POINTER_WHEEL};
 use tactpad_core::pipeline::control::{Code, OutputDevice, OutputEvent};
 use tactpad_core::pipeline::mapping::profile::Binding;
 
-/// What the X server adds to the kernel's number of a key.
+/// The offset of the X server's key codes from the kernel's.
 const OFFSET: u16 = 8;
 
 /// A key that every layout has in the same place: up, with its symbol `XK_Up`.
@@ -37,12 +37,12 @@ pub struct X11Sink {
     display: String,
     /// Whether the layout gives the key of this number a symbol.
     has_symbol: Vec<bool>,
-    held: Vec<Act>,
+    held: Vec<X11Action>,
 }
 
 /// One thing for the X server to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Act {
+enum X11Action {
     /// The key of this number, on its way down or up.
     Key(u8, Direction),
     /// A button of the pointer, on its way down or up.
@@ -70,19 +70,19 @@ impl X11Sink {
         Ok(Self { connection, enigo: None, display: place, has_symbol, held: Vec::new() })
     }
 
-    fn act(&self, event: &OutputEvent) -> Result<Act, SinkError> {
+    fn act(&self, event: &OutputEvent) -> Result<X11Action, SinkError> {
         let direction = if event.value == 0 { Direction::Release } else { Direction::Press };
         match (event.device, event.code) {
             (OutputDevice::Gamepad, _) => Err(no_gamepad()),
-            (OutputDevice::Keyboard, code) => self.key(code).map(|key| Act::Key(key, direction)),
-            (OutputDevice::Pointer, Code::Relative(0x00)) => Ok(Act::Move(event.value, 0)),
-            (OutputDevice::Pointer, Code::Relative(0x01)) => Ok(Act::Move(0, event.value)),
-            (OutputDevice::Pointer, POINTER_WHEEL) => Ok(Act::Scroll(-event.value)),
-            (OutputDevice::Pointer, Code::Key(0x110)) => Ok(Act::Button(Button::Left, direction)),
-            (OutputDevice::Pointer, Code::Key(0x111)) => Ok(Act::Button(Button::Right, direction)),
-            (OutputDevice::Pointer, Code::Key(0x112)) => Ok(Act::Button(Button::Middle, direction)),
-            (OutputDevice::Tablet, Code::Axis(0x00)) => Ok(Act::Across(event.value)),
-            (OutputDevice::Tablet, Code::Axis(0x01)) => Ok(Act::Down(event.value)),
+            (OutputDevice::Keyboard, code) => self.key(code).map(|key| X11Action::Key(key, direction)),
+            (OutputDevice::Pointer, Code::Relative(0x00)) => Ok(X11Action::Move(event.value, 0)),
+            (OutputDevice::Pointer, Code::Relative(0x01)) => Ok(X11Action::Move(0, event.value)),
+            (OutputDevice::Pointer, POINTER_WHEEL) => Ok(X11Action::Scroll(-event.value)),
+            (OutputDevice::Pointer, Code::Key(0x110)) => Ok(X11Action::Button(Button::Left, direction)),
+            (OutputDevice::Pointer, Code::Key(0x111)) => Ok(X11Action::Button(Button::Right, direction)),
+            (OutputDevice::Pointer, Code::Key(0x112)) => Ok(X11Action::Button(Button::Middle, direction)),
+            (OutputDevice::Tablet, Code::Axis(0x00)) => Ok(X11Action::Across(event.value)),
+            (OutputDevice::Tablet, Code::Axis(0x01)) => Ok(X11Action::Down(event.value)),
             (OutputDevice::Pointer | OutputDevice::Tablet, code) => Err(no_such_movement(code)),
         }
     }
@@ -95,23 +95,23 @@ impl X11Sink {
     }
 
     /// Has it done, and waits until it is.
-    fn perform(&mut self, act: Act) -> Result<(), SinkError> {
+    fn perform(&mut self, act: X11Action) -> Result<(), SinkError> {
         match act {
-            Act::Key(key, direction) => self.send_key(key, direction)?,
-            Act::Button(button, direction) => {
+            X11Action::Key(key, direction) => self.send_key(key, direction)?,
+            X11Action::Button(button, direction) => {
                 let done = self.enigo()?.button(button, direction);
                 done.map_err(|error| lost(&self.display, &error))?;
             }
-            Act::Across(share) | Act::Down(share) => {
-                let is_across = matches!(act, Act::Across(_));
+            X11Action::Across(share) | X11Action::Down(share) => {
+                let is_across = matches!(act, X11Action::Across(_));
                 let done = go_to(self.enigo()?, share, is_across);
                 done.map_err(|error| lost(&self.display, &error))?;
             }
-            Act::Move(right, down) => {
+            X11Action::Move(right, down) => {
                 let done = self.enigo()?.move_mouse(right, down, Coordinate::Rel);
                 done.map_err(|error| lost(&self.display, &error))?;
             }
-            Act::Scroll(notches) => {
+            X11Action::Scroll(notches) => {
                 let done = self.enigo()?.scroll(notches, Axis::Vertical);
                 done.map_err(|error| lost(&self.display, &error))?;
             }
@@ -128,11 +128,11 @@ impl X11Sink {
     }
 
     /// Keeps the acts that release what is down.
-    fn remember(&mut self, act: Act) {
+    fn remember(&mut self, act: X11Action) {
         let release = match act {
-            Act::Key(key, _) => Act::Key(key, Direction::Release),
-            Act::Button(button, _) => Act::Button(button, Direction::Release),
-            Act::Move(..) | Act::Across(_) | Act::Down(_) | Act::Scroll(_) => return,
+            X11Action::Key(key, _) => X11Action::Key(key, Direction::Release),
+            X11Action::Button(button, _) => X11Action::Button(button, Direction::Release),
+            X11Action::Move(..) | X11Action::Across(_) | X11Action::Down(_) | X11Action::Scroll(_) => return,
         };
         self.held.retain(|held| *held != release);
         if act != release {

@@ -48,14 +48,14 @@ pub enum AddressError {
         /// The whole text.
         text: String,
     },
-    /// What must follow the word is not there.
+    /// The part that must follow the word is missing.
     Incomplete {
         /// The word before the colon.
         kind: &'static str,
-        /// What belongs behind it.
+        /// The part that is missing.
         wanted: &'static str,
     },
-    /// What follows `@` is no rate.
+    /// The text after `@` is no rate.
     BadBaud {
         /// The text before `@`.
         path: String,

@@ -26,15 +26,15 @@ pub const DELAY_US: u64 = 20_000;
 /// A stalled line passes nothing for this long: the link counts as silent meanwhile.
 pub const STALL_US: u64 = 200_000;
 
-/// What comes without a zero is passed on in pieces of this length; no frame is so long.
+/// Length of the pieces in which bytes without a zero are passed on, in bytes; no frame is so long.
 const FRAME_MAX: usize = 512;
 
 /// Each probability where only a seed is given.
 const PROBABILITY_DEFAULT: f32 = 0.001;
 
-/// What can happen to a frame.
+/// A fault of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum FaultKind {
     /// It does not come.
     Drop,
     /// It comes twice.
@@ -49,13 +49,13 @@ enum Kind {
     Stall,
 }
 
-const KINDS: [(&str, Kind); 6] = [
-    ("drop", Kind::Drop),
-    ("repeat", Kind::Repeat),
-    ("reorder", Kind::Reorder),
-    ("corrupt", Kind::Corrupt),
-    ("delay", Kind::Delay),
-    ("stall", Kind::Stall),
+const KINDS: [(&str, FaultKind); 6] = [
+    ("drop", FaultKind::Drop),
+    ("repeat", FaultKind::Repeat),
+    ("reorder", FaultKind::Reorder),
+    ("corrupt", FaultKind::Corrupt),
+    ("delay", FaultKind::Delay),
+    ("stall", FaultKind::Stall),
 ];
 
 /// How bad a line is: a seed, and for each fault its probability per frame.
@@ -132,7 +132,7 @@ impl std::error::Error for FaultPlanError {}
 struct Injector {
     probabilities: [f32; KINDS.len()],
     random: SplitMix64,
-    /// What came of the frame that has not ended yet.
+    /// The bytes of the frame that has not ended yet.
     frame: Vec<u8>,
     /// The frame that comes after the next one.
     overtaken: Option<Vec<u8>>,
@@ -165,19 +165,19 @@ impl Injector {
     fn strike(&mut self, mut frame: Vec<u8>, pass: &mut impl FnMut(Vec<u8>, u64)) {
         let fault = self.draw();
         match fault {
-            Some(Kind::Drop) => return,
-            Some(Kind::Reorder) if self.overtaken.is_none() => {
+            Some(FaultKind::Drop) => return,
+            Some(FaultKind::Reorder) if self.overtaken.is_none() => {
                 self.overtaken = Some(frame);
                 return;
             }
-            Some(Kind::Repeat) => pass(frame.clone(), 0),
-            Some(Kind::Corrupt) => self.flip_bit(&mut frame),
+            Some(FaultKind::Repeat) => pass(frame.clone(), 0),
+            Some(FaultKind::Corrupt) => self.flip_bit(&mut frame),
             // A frame that is to come after the next one, while another is so already, is that next one.
-            None | Some(Kind::Reorder | Kind::Delay | Kind::Stall) => {}
+            None | Some(FaultKind::Reorder | FaultKind::Delay | FaultKind::Stall) => {}
         }
         let late_us = match fault {
-            Some(Kind::Delay) => DELAY_US,
-            Some(Kind::Stall) => STALL_US,
+            Some(FaultKind::Delay) => DELAY_US,
+            Some(FaultKind::Stall) => STALL_US,
             _ => 0,
         };
         pass(frame, late_us);
@@ -187,7 +187,7 @@ impl Injector {
     }
 
     /// The fault of the next frame.
-    fn draw(&mut self) -> Option<Kind> {
+    fn draw(&mut self) -> Option<FaultKind> {
         let mut rest = self.random.fraction();
         for ((_, kind), probability) in KINDS.into_iter().zip(self.probabilities) {
             if rest < probability {
@@ -335,7 +335,7 @@ mod tests {
         (0..FRAMES).map(|n| [format!("{n:05}").into_bytes(), vec![0]].concat()).collect()
     }
 
-    /// What comes through, with its delays.
+    /// The frames that come through, with their delays.
     fn injected(text: &str, pieces: &[Vec<u8>]) -> Vec<(Vec<u8>, u64)> {
         let (mut injector, mut out) = (Injector::new(&plan(text)), Vec::new());
         let mut pass = |frame: Vec<u8>, late_us| out.push((frame, late_us));

@@ -27,7 +27,7 @@ impl Hid {
     /// Opens the node at `path`.
     ///
     /// # Errors
-    /// What the system says: `NotFound`, `PermissionDenied`.
+    /// The system's error: `NotFound`, `PermissionDenied`.
     pub fn open(path: &Path) -> io::Result<Self> {
         let flags = i32::try_from(OFlags::NONBLOCK.bits()).unwrap_or(0);
         let file = OpenOptions::new().read(true).write(true).custom_flags(flags).open(path)?;

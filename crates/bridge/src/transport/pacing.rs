@@ -32,9 +32,9 @@ pub(super) fn limit(us: u64) -> Timespec {
 
 /// Tells a thread to stop; every wait of that thread ends at once.
 #[derive(Clone, Debug)]
-pub(super) struct Stop(Arc<OwnedFd>);
+pub(super) struct StopSignal(Arc<OwnedFd>);
 
-impl Stop {
+impl StopSignal {
     /// A signal that is not raised.
     ///
     /// # Errors
@@ -52,7 +52,7 @@ impl Stop {
 
 /// Why a wait ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wake {
+pub(super) enum WaitOutcome {
     /// The time has come, or the descriptor has something to say.
     Ready,
     /// Nobody is at the other end of the descriptor.
@@ -66,10 +66,10 @@ pub(super) enum Wake {
 /// # Errors
 /// The descriptors cannot be polled.
 pub(super) fn wait(
-    stop: &Stop,
+    stop: &StopSignal,
     watched: Option<(BorrowedFd<'_>, PollFlags)>,
     until_us: u64,
-) -> io::Result<Wake> {
+) -> io::Result<WaitOutcome> {
     let (fd, events) = watched.unwrap_or((stop.0.as_fd(), PollFlags::IN));
     let mut fds = [PollFd::new(&stop.0, PollFlags::IN), PollFd::from_borrowed_fd(fd, events)];
     match poll(&mut fds, Some(&limit(until_us.saturating_sub(monotonic_us())))) {
@@ -78,17 +78,17 @@ pub(super) fn wait(
     }
     let [told, other] = fds;
     Ok(if told.revents().contains(PollFlags::IN) {
-        Wake::Stopped
+        WaitOutcome::Stopped
     } else if other.revents().intersects(PollFlags::HUP | PollFlags::ERR) {
-        Wake::Gone
+        WaitOutcome::Gone
     } else {
-        Wake::Ready
+        WaitOutcome::Ready
     })
 }
 
 /// How a write ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Written {
+pub(super) enum WriteOutcome {
     /// Every byte is out; `blocked_us` of that time the other end took nothing.
     Whole {
         /// Time spent waiting for room, in microseconds.
@@ -104,27 +104,27 @@ pub(super) enum Written {
 ///
 /// # Errors
 /// The write failed for another reason than a missing reader.
-pub(super) fn write_whole(stop: &Stop, to: BorrowedFd<'_>, bytes: &[u8]) -> io::Result<Written> {
+pub(super) fn write_whole(stop: &StopSignal, to: BorrowedFd<'_>, bytes: &[u8]) -> io::Result<WriteOutcome> {
     let mut rest = bytes;
     let mut blocked_us = 0_u64;
     while !rest.is_empty() {
         match rustix::io::write(to, rest) {
             Ok(count) => rest = rest.get(count..).unwrap_or_default(),
             Err(Errno::INTR) => {}
-            Err(Errno::PIPE | Errno::IO) => return Ok(Written::Gone),
+            Err(Errno::PIPE | Errno::IO) => return Ok(WriteOutcome::Gone),
             Err(Errno::AGAIN) => {
                 let from_us = monotonic_us();
                 match wait(stop, Some((to, PollFlags::OUT)), from_us.saturating_add(RETRY_US))? {
-                    Wake::Ready => {}
-                    Wake::Gone => return Ok(Written::Gone),
-                    Wake::Stopped => return Ok(Written::Stopped),
+                    WaitOutcome::Ready => {}
+                    WaitOutcome::Gone => return Ok(WriteOutcome::Gone),
+                    WaitOutcome::Stopped => return Ok(WriteOutcome::Stopped),
                 }
                 blocked_us = blocked_us.saturating_add(monotonic_us().saturating_sub(from_us));
             }
             Err(error) => return Err(error.into()),
         }
     }
-    Ok(Written::Whole { blocked_us })
+    Ok(WriteOutcome::Whole { blocked_us })
 }
 
 #[cfg(test)]
@@ -133,18 +133,18 @@ mod tests {
 
     #[test]
     fn wait_ends_at_the_deadline_and_not_before() {
-        let stop = Stop::new().unwrap();
+        let stop = StopSignal::new().unwrap();
         let until_us = monotonic_us() + 3_000;
-        assert_eq!(wait(&stop, None, until_us).unwrap(), Wake::Ready);
+        assert_eq!(wait(&stop, None, until_us).unwrap(), WaitOutcome::Ready);
         assert!(monotonic_us() >= until_us);
     }
 
     #[test]
     fn raised_stop_ends_every_wait_at_once() {
-        let stop = Stop::new().unwrap();
+        let stop = StopSignal::new().unwrap();
         stop.clone().raise();
         for _ in 0..2 {
-            assert_eq!(wait(&stop, None, u64::MAX).unwrap(), Wake::Stopped);
+            assert_eq!(wait(&stop, None, u64::MAX).unwrap(), WaitOutcome::Stopped);
         }
     }
 

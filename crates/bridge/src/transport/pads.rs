@@ -12,7 +12,7 @@ use serialport::SerialPortType;
 use super::Transport;
 use super::address::PadAddress;
 use super::hid::Hid;
-use super::serial::{OpenError, Serial};
+use super::serial::{Serial, SerialOpenError};
 
 /// The usage page of the pad's report descriptor: vendor-defined.
 const USAGE_PAGE: u16 = 0xFF00;
@@ -169,7 +169,7 @@ fn choose(
     }
 }
 
-/// What a pad is called in a list.
+/// The name of a pad in a list.
 fn name(pad: &FoundPad) -> String {
     let number = pad.serial_number.as_deref().unwrap_or("without serial number");
     format!("{number} at {}", pad.path.display())
@@ -199,8 +199,8 @@ fn hid_error(pad: &FoundPad, error: &io::Error) -> PadError {
 fn open_serial(path: &str, baud: u32) -> Result<Box<dyn Transport>, PadError> {
     match Serial::open(path, baud) {
         Ok(serial) => Ok(Box::new(serial)),
-        Err(error @ OpenError::NoSuchPort { .. }) => Err(PadError::NotThere(error.to_string())),
-        Err(error @ (OpenError::NoPermission { .. } | OpenError::Busy { .. })) => {
+        Err(error @ SerialOpenError::NoSuchPort { .. }) => Err(PadError::NotThere(error.to_string())),
+        Err(error @ (SerialOpenError::NoPermission { .. } | SerialOpenError::Busy { .. })) => {
             Err(PadError::Denied(error.to_string()))
         }
         Err(error) => Err(PadError::Unusable(error.to_string())),

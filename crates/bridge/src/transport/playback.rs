@@ -9,13 +9,13 @@ use rustix::io::Errno;
 use rustix::pipe::{PipeFlags, pipe_with};
 
 use super::Transport;
-use super::pacing::{Stop, Wake, Written, monotonic_us, wait, write_whole};
+use super::pacing::{StopSignal, WaitOutcome, WriteOutcome, monotonic_us, wait, write_whole};
 
 /// A recording that plays on its own thread. Dropping it stops the thread.
 #[derive(Debug)]
 pub struct Playback {
     reader: OwnedFd,
-    stop: Stop,
+    stop: StopSignal,
     player: Option<JoinHandle<io::Result<()>>>,
 }
 
@@ -30,7 +30,7 @@ impl Playback {
         C::IntoIter: Send + 'static,
     {
         let (reader, writer) = pipe_with(PipeFlags::CLOEXEC | PipeFlags::NONBLOCK)?;
-        let stop = Stop::new()?;
+        let stop = StopSignal::new()?;
         let (chunks, told) = (chunks.into_iter(), stop.clone());
         let player =
             thread::Builder::new().name("playback".into()).spawn(move || play(chunks, &writer, &told))?;
@@ -38,16 +38,16 @@ impl Playback {
     }
 }
 
-fn play(chunks: impl Iterator<Item = (u64, Vec<u8>)>, writer: &OwnedFd, stop: &Stop) -> io::Result<()> {
+fn play(chunks: impl Iterator<Item = (u64, Vec<u8>)>, writer: &OwnedFd, stop: &StopSignal) -> io::Result<()> {
     let mut at_us = monotonic_us();
     for (delay_us, bytes) in chunks {
         at_us = at_us.saturating_add(delay_us);
         while monotonic_us() < at_us {
-            if wait(stop, None, at_us)? == Wake::Stopped {
+            if wait(stop, None, at_us)? == WaitOutcome::Stopped {
                 return Ok(());
             }
         }
-        if !matches!(write_whole(stop, writer.as_fd(), &bytes)?, Written::Whole { .. }) {
+        if !matches!(write_whole(stop, writer.as_fd(), &bytes)?, WriteOutcome::Whole { .. }) {
             return Ok(());
         }
     }

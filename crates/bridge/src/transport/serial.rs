@@ -35,7 +35,7 @@ impl Serial {
     ///
     /// # Errors
     /// There is no such port, it is no port, it is in use, it may not be opened, or it refuses the settings.
-    pub fn open(path: &str, baud: u32) -> Result<Self, OpenError> {
+    pub fn open(path: &str, baud: u32) -> Result<Self, SerialOpenError> {
         // Not blocking: an open port without carrier would wait for one.
         let flags = OFlags::NOCTTY | OFlags::NONBLOCK;
         let flags = i32::try_from(flags.bits()).unwrap_or(0);
@@ -44,13 +44,13 @@ impl Serial {
             .write(true)
             .custom_flags(flags)
             .open(path)
-            .map_err(|error| OpenError::from_open(path, &error))?;
+            .map_err(|error| SerialOpenError::from_open(path, &error))?;
         if !rustix::termios::isatty(&file) {
-            return Err(OpenError::NotATerminal { path: path.into() });
+            return Err(SerialOpenError::NotATerminal { path: path.into() });
         }
         let port = serialport::new(path, baud).open_native();
-        let port = port.map_err(|error| OpenError::from_settings(path, baud, error))?;
-        port.clear(ClearBuffer::Input).map_err(|error| OpenError::from_settings(path, baud, error))?;
+        let port = port.map_err(|error| SerialOpenError::from_settings(path, baud, error))?;
+        port.clear(ClearBuffer::Input).map_err(|error| SerialOpenError::from_settings(path, baud, error))?;
         Ok(Self { port, file })
     }
 }
@@ -130,32 +130,32 @@ fn lost_or(error: Errno) -> io::Error {
 /// Why a serial port cannot be opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum OpenError {
+pub enum SerialOpenError {
     /// Nothing is there.
     NoSuchPort {
-        /// What was to be opened.
+        /// The path that was to be opened.
         path: String,
         /// The serial ports of this machine.
         present: Vec<String>,
     },
     /// Something is there, but no serial port.
     NotATerminal {
-        /// What was to be opened.
+        /// The path that was to be opened.
         path: String,
     },
     /// Another program has it.
     Busy {
-        /// What was to be opened.
+        /// The path that was to be opened.
         path: String,
     },
     /// This user may not open it.
     NoPermission {
-        /// What was to be opened.
+        /// The path that was to be opened.
         path: String,
     },
     /// The port is there but does not do what it is asked.
     Refused {
-        /// What was to be opened.
+        /// The path that was to be opened.
         path: String,
         /// The rate that was to be set, in bits per second.
         baud: u32,
@@ -164,14 +164,14 @@ pub enum OpenError {
     },
     /// The system says something else.
     Other {
-        /// What was to be opened.
+        /// The path that was to be opened.
         path: String,
         /// The system's words.
         cause: String,
     },
 }
 
-impl OpenError {
+impl SerialOpenError {
     fn from_open(path: &str, error: &io::Error) -> Self {
         let path = path.to_owned();
         match error.kind() {
@@ -206,7 +206,7 @@ fn present() -> Vec<String> {
     ports.into_iter().map(|port| port.port_name).collect()
 }
 
-impl fmt::Display for OpenError {
+impl fmt::Display for SerialOpenError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoSuchPort { path, present } if present.is_empty() => {
@@ -240,7 +240,7 @@ impl fmt::Display for OpenError {
     }
 }
 
-impl std::error::Error for OpenError {}
+impl std::error::Error for SerialOpenError {}
 
 #[cfg(test)]
 mod tests {
@@ -343,7 +343,7 @@ mod tests {
     fn second_opening_is_busy_until_the_first_is_dropped() {
         let (_pad, path) = open_terminal().unwrap();
         let port = Serial::open(&path, BAUD).unwrap();
-        assert_eq!(Serial::open(&path, BAUD).unwrap_err(), OpenError::Busy { path: path.clone() });
+        assert_eq!(Serial::open(&path, BAUD).unwrap_err(), SerialOpenError::Busy { path: path.clone() });
         drop(port);
         Serial::open(&path, BAUD).unwrap();
     }
@@ -353,7 +353,10 @@ mod tests {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), b"kept").unwrap();
         for path in [file.path().to_str().unwrap(), "/dev/null", "/tmp"] {
-            assert_eq!(Serial::open(path, BAUD).unwrap_err(), OpenError::NotATerminal { path: path.into() });
+            assert_eq!(
+                Serial::open(path, BAUD).unwrap_err(),
+                SerialOpenError::NotATerminal { path: path.into() }
+            );
         }
         assert_eq!(std::fs::read(file.path()).unwrap(), b"kept");
     }
@@ -361,9 +364,9 @@ mod tests {
     #[test]
     fn missingport_is_named_with_those_that_exist() {
         let error = Serial::open("/dev/no-such-pad", BAUD).unwrap_err();
-        assert!(matches!(error, OpenError::NoSuchPort { .. }));
+        assert!(matches!(error, SerialOpenError::NoSuchPort { .. }));
         let present = vec!["/dev/ttyACM0".into(), "/dev/ttyS0".into()];
-        let text = OpenError::NoSuchPort { path: "/dev/x".into(), present }.to_string();
+        let text = SerialOpenError::NoSuchPort { path: "/dev/x".into(), present }.to_string();
         assert!(
             text.contains("/dev/x does not exist") && text.contains("/dev/ttyACM0, /dev/ttyS0"),
             "{text}"
@@ -374,11 +377,15 @@ mod tests {
     fn refusals_of_the_system_say_the_way_out() {
         let path = || "/dev/ttyACM0".to_owned();
         for (code, expected, way_out) in [
-            (Errno::ACCESS, OpenError::NoPermission { path: path() }, "dialout"),
-            (Errno::BUSY, OpenError::Busy { path: path() }, "fuser"),
-            (Errno::NXIO, OpenError::NoSuchPort { path: path(), present: present() }, "plug the pad in"),
+            (Errno::ACCESS, SerialOpenError::NoPermission { path: path() }, "dialout"),
+            (Errno::BUSY, SerialOpenError::Busy { path: path() }, "fuser"),
+            (
+                Errno::NXIO,
+                SerialOpenError::NoSuchPort { path: path(), present: present() },
+                "plug the pad in",
+            ),
         ] {
-            let error = OpenError::from_open("/dev/ttyACM0", &code.into());
+            let error = SerialOpenError::from_open("/dev/ttyACM0", &code.into());
             assert!(error.to_string().contains(way_out), "{error}");
             assert_eq!(error, expected);
         }

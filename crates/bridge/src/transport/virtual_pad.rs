@@ -15,7 +15,9 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use tactpad_core::virtual_pad::firmware;
 
-use super::pacing::{RETRY_US, Stop, Wake, Written, limit, monotonic_us, wait, write_whole};
+use super::pacing::{
+    RETRY_US, StopSignal, WaitOutcome, WriteOutcome, limit, monotonic_us, wait, write_whole,
+};
 
 /// The program of a pad, as its wire sees it. Times are microseconds since the pad was started.
 pub trait PadFirmware {
@@ -46,13 +48,13 @@ impl PadFirmware for firmware::VirtualPad {
 
 /// A running virtual pad. Dropping it pulls the plug.
 #[derive(Debug)]
-pub struct VirtualPad {
+pub struct VirtualPadPort {
     path: String,
-    stop: Stop,
+    stop: StopSignal,
     thread: Option<JoinHandle<io::Result<()>>>,
 }
 
-impl VirtualPad {
+impl VirtualPadPort {
     /// Makes the terminal and starts the pad's clock.
     ///
     /// While nobody has the terminal open the pad talks to nobody, like a port that no program reads. While
@@ -63,7 +65,7 @@ impl VirtualPad {
     /// The system has no pseudo-terminal or no thread to give.
     pub fn start<F: PadFirmware + Send + 'static>(firmware: F) -> io::Result<Self> {
         let (master, path) = open_terminal()?;
-        let stop = Stop::new()?;
+        let stop = StopSignal::new()?;
         let mut wire = Wire { firmware, master, stop: stop.clone(), origin_us: monotonic_us() };
         let thread = thread::Builder::new().name("virtual pad".into()).spawn(move || wire.run())?;
         Ok(Self { path, stop, thread: Some(thread) })
@@ -75,7 +77,7 @@ impl VirtualPad {
     }
 }
 
-impl Drop for VirtualPad {
+impl Drop for VirtualPadPort {
     fn drop(&mut self) {
         self.stop.raise();
         if let Some(thread) = self.thread.take() {
@@ -106,7 +108,7 @@ pub(super) fn open_terminal() -> io::Result<(OwnedFd, String)> {
 struct Wire<F> {
     firmware: F,
     master: OwnedFd,
-    stop: Stop,
+    stop: StopSignal,
     origin_us: u64,
 }
 
@@ -115,7 +117,7 @@ impl<F: PadFirmware> Wire<F> {
         let mut bytes = Vec::new();
         loop {
             let open = self.is_open()?;
-            if self.wait_for_work(open)? == Wake::Stopped {
+            if self.wait_for_work(open)? == WaitOutcome::Stopped {
                 return Ok(());
             }
             if open {
@@ -126,13 +128,13 @@ impl<F: PadFirmware> Wire<F> {
             if self.firmware.due_us() <= now_us {
                 self.firmware.emit(now_us, &mut bytes);
             }
-            if open && self.write(&bytes)? == Wake::Stopped {
+            if open && self.write(&bytes)? == WaitOutcome::Stopped {
                 return Ok(());
             }
         }
     }
 
-    fn wait_for_work(&self, open: bool) -> io::Result<Wake> {
+    fn wait_for_work(&self, open: bool) -> io::Result<WaitOutcome> {
         let due_us = self.origin_us.saturating_add(self.firmware.due_us());
         if open {
             return wait(&self.stop, Some((self.master.as_fd(), PollFlags::IN)), due_us);
@@ -159,13 +161,13 @@ impl<F: PadFirmware> Wire<F> {
         Ok(())
     }
 
-    fn write(&mut self, bytes: &[u8]) -> io::Result<Wake> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<WaitOutcome> {
         match write_whole(&self.stop, self.master.as_fd(), bytes)? {
-            Written::Whole { blocked_us } => self.origin_us = self.origin_us.saturating_add(blocked_us),
-            Written::Gone => {}
-            Written::Stopped => return Ok(Wake::Stopped),
+            WriteOutcome::Whole { blocked_us } => self.origin_us = self.origin_us.saturating_add(blocked_us),
+            WriteOutcome::Gone => {}
+            WriteOutcome::Stopped => return Ok(WaitOutcome::Stopped),
         }
-        Ok(Wake::Ready)
+        Ok(WaitOutcome::Ready)
     }
 }
 
@@ -235,7 +237,7 @@ mod tests {
 
     /// Waits until `condition` holds.
     fn eventually(condition: impl Fn() -> bool) {
-        let stop = Stop::new().unwrap();
+        let stop = StopSignal::new().unwrap();
         let until_us = monotonic_us() + 60_000_000;
         while !condition() {
             assert!(monotonic_us() < until_us, "never happened");
@@ -243,14 +245,14 @@ mod tests {
         }
     }
 
-    fn open(pad: &VirtualPad) -> Serial {
+    fn open(pad: &VirtualPadPort) -> Serial {
         Serial::open(pad.path(), 2_000_000).unwrap()
     }
 
     #[test]
     fn a_thousand_chunks_arrive_unchanged_and_in_order() {
         const LEN: usize = 260;
-        let pad = VirtualPad::start(Fake::new(200, u32::MAX, LEN)).unwrap();
+        let pad = VirtualPadPort::start(Fake::new(200, u32::MAX, LEN)).unwrap();
         let mut port = open(&pad);
         let bytes = read_exactly(&mut port, 1001 * LEN);
         // The first chunk may have been cut by the opening: its number tells where the next begins.
@@ -270,7 +272,7 @@ mod tests {
     fn commands_reach_the_firmware_unchanged() {
         let fake = Fake::new(0, 0, 0);
         let heard = Arc::clone(&fake.heard);
-        let pad = VirtualPad::start(fake).unwrap();
+        let pad = VirtualPadPort::start(fake).unwrap();
         let port = open(&pad);
         let every_byte: Vec<u8> = (0..=255).collect();
         for _ in 0..10 {
@@ -285,11 +287,11 @@ mod tests {
         const LEN: usize = 20_000;
         let fake = Fake::new(20_000, u32::MAX, LEN);
         let sent = Arc::clone(&fake.sent);
-        let pad = VirtualPad::start(fake).unwrap();
+        let pad = VirtualPadPort::start(fake).unwrap();
         let mut port = open(&pad);
         let from_us = monotonic_us();
         // 400 ms without a reader: twenty chunks are due, the terminal holds fewer than five.
-        let stop = Stop::new().unwrap();
+        let stop = StopSignal::new().unwrap();
         while monotonic_us() < from_us + 400_000 {
             wait(&stop, None, from_us + 400_000).unwrap();
         }
@@ -305,7 +307,7 @@ mod tests {
     fn unopened_pad_talks_to_nobody() {
         let fake = Fake::new(500, u32::MAX, 4);
         let sent = Arc::clone(&fake.sent);
-        let pad = VirtualPad::start(fake).unwrap();
+        let pad = VirtualPadPort::start(fake).unwrap();
         eventually(|| sent.load(Ordering::SeqCst) >= 20);
         let mut port = open(&pad);
         let first = u32::from_le_bytes(read_exactly(&mut port, 4).try_into().unwrap());
@@ -314,7 +316,7 @@ mod tests {
 
     #[test]
     fn pad_can_be_opened_again() {
-        let pad = VirtualPad::start(Fake::new(500, u32::MAX, 4)).unwrap();
+        let pad = VirtualPadPort::start(Fake::new(500, u32::MAX, 4)).unwrap();
         let number = |port: &mut Serial| u32::from_le_bytes(read_exactly(port, 4).try_into().unwrap());
         let first = number(&mut open(&pad));
         let second = number(&mut open(&pad));
@@ -323,7 +325,7 @@ mod tests {
 
     #[test]
     fn dropping_is_pulling_the_plug() {
-        let pad = VirtualPad::start(Fake::new(0, 0, 0)).unwrap();
+        let pad = VirtualPadPort::start(Fake::new(0, 0, 0)).unwrap();
         let mut port = open(&pad);
         drop(pad);
         assert!(polls(&port));
@@ -334,7 +336,7 @@ mod tests {
     fn dropping_ends_a_pad_that_waits_for_room() {
         let fake = Fake::new(0, 1, 1_000_000);
         let sent = Arc::clone(&fake.sent);
-        let pad = VirtualPad::start(fake).unwrap();
+        let pad = VirtualPadPort::start(fake).unwrap();
         let _port = open(&pad);
         eventually(|| sent.load(Ordering::SeqCst) == 1);
         drop(pad);

@@ -12,22 +12,22 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
+use super::app_state::AppState;
 use super::draft::Draft;
 use super::guard::too_long;
-use super::library::{Over, Unsaved};
-use super::office::Office;
+use super::host::{Overwrite, SaveError};
 use super::refusal::Refusal;
-use super::rewind::{self, Uncompared};
+use super::rewind::{self, RewindError};
 use tactpad_bridge::request::Request;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pipeline::mapping::read::ReadProfile;
 use tactpad_core::pipeline::mapping::read::shipped;
 use tactpad_lab::play::sheet::Sheet;
 
-type Shared = State<Arc<Office>>;
+type Shared = State<Arc<AppState>>;
 
 /// The answer of most requests.
-pub(super) type Answer = Result<Response, Refusal>;
+pub(super) type ApiResult = Result<Response, Refusal>;
 
 /// Works on a thread that may wait.
 pub(super) async fn wait<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Result<T, Refusal> {
@@ -35,13 +35,13 @@ pub(super) async fn wait<T: Send + 'static>(work: impl FnOnce() -> T + Send + 's
 }
 
 /// Asks the bridge, and hands on its answer.
-pub(super) async fn ask(office: Arc<Office>, request: Request) -> Answer {
-    let answer = wait(move || office.ask(request)).await??;
-    Ok(told(answer))
+pub(super) async fn ask(app: Arc<AppState>, request: Request) -> ApiResult {
+    let answer = wait(move || app.ask(request)).await??;
+    Ok(response(answer))
 }
 
 /// An answer of the bridge; one that refuses is no success.
-fn told(answer: Value) -> Response {
+fn response(answer: Value) -> Response {
     let is_refused = answer.get("ok").is_some_and(|ok| ok == false);
     let status = if is_refused { StatusCode::CONFLICT } else { StatusCode::OK };
     (status, Json(answer)).into_response()
@@ -49,18 +49,18 @@ fn told(answer: Value) -> Response {
 
 /// The JSON of a request, or what is wrong with it.
 pub(super) fn body<T: DeserializeOwned>(body: Result<Json<T>, JsonRejection>) -> Result<T, Refusal> {
-    body.map(|Json(asked)| asked).map_err(|rejection| match rejection.status() {
+    body.map(|Json(request)| request).map_err(|rejection| match rejection.status() {
         StatusCode::PAYLOAD_TOO_LARGE => too_long(),
         status => Refusal::new(status, rejection.body_text()),
     })
 }
 
-pub(super) async fn status(State(office): Shared) -> Answer {
-    ask(office, Request::Status).await
+pub(super) async fn status(State(app): Shared) -> ApiResult {
+    ask(app, Request::Status).await
 }
 
 /// `POST /api/pause`, `resume`, `panic`, `tare`.
-pub(super) async fn act(State(office): Shared, Path(action): Path<String>) -> Answer {
+pub(super) async fn act(State(app): Shared, Path(action): Path<String>) -> ApiResult {
     let request = match action.as_str() {
         "pause" => Request::Pause,
         "resume" => Request::Resume,
@@ -68,24 +68,24 @@ pub(super) async fn act(State(office): Shared, Path(action): Path<String>) -> An
         "tare" => Request::Retare,
         _ => return Err(Refusal::new(StatusCode::NOT_FOUND, "there is no such request")),
     };
-    ask(office, request).await
+    ask(app, request).await
 }
 
 #[derive(Deserialize)]
-pub(super) struct Named {
+pub(super) struct PlayRequest {
     name: String,
 }
 
 /// `POST /api/play`: goes over to another profile.
-pub(super) async fn play(State(office): Shared, asked: Result<Json<Named>, JsonRejection>) -> Answer {
-    let Named { name } = body(asked)?;
+pub(super) async fn play(State(app): Shared, request: Result<Json<PlayRequest>, JsonRejection>) -> ApiResult {
+    let PlayRequest { name } = body(request)?;
     wait(move || {
         // Only names: what is a file is not the page's to read.
-        if office.library.read(&name).is_none() {
+        if app.host.read(&name).is_none() {
             return Err(unknown(&name));
         }
-        office.forget_preview();
-        office.ask(Request::Profile(Some(name))).map(told)
+        app.forget_preview();
+        app.ask(Request::Profile(Some(name))).map(response)
     })
     .await?
 }
@@ -94,23 +94,23 @@ fn unknown(name: &str) -> Refusal {
     Refusal::new(StatusCode::NOT_FOUND, format!("there is no profile {name:?}: choose one of the list"))
 }
 
-pub(super) async fn profiles(State(office): Shared) -> Answer {
-    let (profiles, playing) = wait(move || (office.library.entries(), office.library.playing())).await?;
+pub(super) async fn profiles(State(app): Shared) -> ApiResult {
+    let (profiles, playing) = wait(move || (app.host.entries(), app.host.playing())).await?;
     Ok(Json(json!({"profiles": profiles, "playing": playing})).into_response())
 }
 
-pub(super) async fn profile(State(office): Shared, Path(name): Path<String>) -> Answer {
-    let (stored, name) = wait(move || (office.library.read(&name), name)).await?;
+pub(super) async fn profile(State(app): Shared, Path(name): Path<String>) -> ApiResult {
+    let (stored, name) = wait(move || (app.host.read(&name), name)).await?;
     stored.map(|stored| Json(stored).into_response()).ok_or_else(|| unknown(&name))
 }
 
 /// `PUT /api/profile/NAME`: keeps the text of the body. `If-Match: VERSION` and `If-None-Match: *` say what it may be written over.
 pub(super) async fn save(
-    State(office): Shared,
+    State(app): Shared,
     Path(name): Path<String>,
     headers: HeaderMap,
     text: Result<Bytes, BytesRejection>,
-) -> Answer {
+) -> ApiResult {
     let text = text.map_err(|rejection| match rejection.status() {
         StatusCode::PAYLOAD_TOO_LARGE => too_long(),
         status => Refusal::new(status, rejection.body_text()),
@@ -119,35 +119,35 @@ pub(super) async fn save(
         .map_err(|_| Refusal::new(StatusCode::UNPROCESSABLE_ENTITY, "a profile is text in UTF-8"))?;
     let over = over(&headers);
     wait(move || {
-        let saved = match office.library.save(&name, &text, &over) {
+        let saved = match app.host.save(&name, &text, &over) {
             Ok(saved) => saved,
             Err(why) => return unsaved(why),
         };
-        if office.library.playing() == name {
-            office.forget_preview();
-            office.ask(Request::Profile(None))?;
+        if app.host.playing() == name {
+            app.forget_preview();
+            app.ask(Request::Profile(None))?;
         }
         Ok(Json(json!({"ok": true, "version": saved.version, "path": saved.path})).into_response())
     })
     .await?
 }
 
-fn over(headers: &HeaderMap) -> Over {
+fn over(headers: &HeaderMap) -> Overwrite {
     let text = |name| headers.get(name).and_then(|value| value.to_str().ok());
     match (text(header::IF_MATCH), text(header::IF_NONE_MATCH)) {
-        (Some(version), _) if version != "*" => Over::Version(version.trim_matches('"').to_owned()),
-        (None, Some("*")) => Over::Nothing,
-        _ => Over::Anything,
+        (Some(version), _) if version != "*" => Overwrite::Version(version.trim_matches('"').to_owned()),
+        (None, Some("*")) => Overwrite::Nothing,
+        _ => Overwrite::Anything,
     }
 }
 
 /// Why a profile was not kept, as an answer.
-fn unsaved(unsaved: Unsaved) -> Result<Response, Refusal> {
+fn unsaved(unsaved: SaveError) -> Result<Response, Refusal> {
     match unsaved {
-        Unsaved::Name(error) => Err(Refusal::new(StatusCode::BAD_REQUEST, error)),
-        Unsaved::Changed(error) => Err(Refusal::new(StatusCode::PRECONDITION_FAILED, error)),
-        Unsaved::Failed(error) => Err(Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, error)),
-        Unsaved::Errors(diagnostics) => {
+        SaveError::Name(error) => Err(Refusal::new(StatusCode::BAD_REQUEST, error)),
+        SaveError::Changed(error) => Err(Refusal::new(StatusCode::PRECONDITION_FAILED, error)),
+        SaveError::Failed(error) => Err(Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, error)),
+        SaveError::Errors(diagnostics) => {
             let answer = json!({"ok": false, "error": "the profile has errors", "diagnostics": diagnostics});
             Ok((StatusCode::UNPROCESSABLE_ENTITY, Json(answer)).into_response())
         }
@@ -159,67 +159,69 @@ pub(super) async fn schema() -> Response {
 }
 
 /// `POST /api/draft`: changes a text and says what there is to say of it.
-pub(super) async fn draft(State(office): Shared, asked: Result<Json<Draft>, JsonRejection>) -> Answer {
-    let draft = body(asked)?;
-    Ok(Json(wait(move || draft.answer(office.library.output())).await?).into_response())
+pub(super) async fn draft(State(app): Shared, request: Result<Json<Draft>, JsonRejection>) -> ApiResult {
+    let draft = body(request)?;
+    Ok(Json(wait(move || draft.answer(app.host.output())).await?).into_response())
 }
 
 #[derive(Deserialize)]
-pub(super) struct Text {
+pub(super) struct PreviewRequest {
     text: String,
 }
 
 /// `POST /api/preview`: plays a text that is not kept.
-pub(super) async fn preview(State(office): Shared, asked: Result<Json<Text>, JsonRejection>) -> Answer {
-    let Text { text } = body(asked)?;
+pub(super) async fn preview(
+    State(app): Shared,
+    request: Result<Json<PreviewRequest>, JsonRejection>,
+) -> ApiResult {
+    let PreviewRequest { text } = body(request)?;
     wait(move || {
-        let (read, diagnostics) = ReadProfile::read(&text, office.library.output());
+        let (read, diagnostics) = ReadProfile::read(&text, app.host.output());
         let Some(read) = read else {
             let answer = json!({"ok": false, "error": "the profile has errors", "diagnostics": diagnostics});
             return Ok((StatusCode::UNPROCESSABLE_ENTITY, Json(answer)).into_response());
         };
-        let mut answer = office.preview(read)?;
+        let mut answer = app.preview(read)?;
         if let Some(answer) = answer.as_object_mut() {
             answer.insert("diagnostics".into(), json!(diagnostics));
         }
-        Ok(told(answer))
+        Ok(response(answer))
     })
     .await?
 }
 
 /// `DELETE /api/preview`: plays what is kept.
-pub(super) async fn end_preview(State(office): Shared) -> Answer {
-    Ok(told(wait(move || office.end_preview()).await??))
+pub(super) async fn end_preview(State(app): Shared) -> ApiResult {
+    Ok(response(wait(move || app.end_preview()).await??))
 }
 
 /// `POST /api/rewind`: what a text would have done in the last minute.
 pub(super) async fn rewind(
-    State(office): Shared,
-    asked: Result<Json<rewind::Asked>, JsonRejection>,
-) -> Answer {
-    let asked = body(asked)?;
-    let answer = wait(move || asked.answer(office.past(), office.library.output())).await?;
+    State(app): Shared,
+    request: Result<Json<rewind::RewindRequest>, JsonRejection>,
+) -> ApiResult {
+    let request = body(request)?;
+    let answer = wait(move || request.answer(app.past(), app.host.output())).await?;
     answer.map(|answer| Json(answer).into_response()).map_err(|why| match why {
-        Uncompared::Errors => Refusal::new(StatusCode::UNPROCESSABLE_ENTITY, "the profile has errors"),
-        Uncompared::NoPlay => {
+        RewindError::Errors => Refusal::new(StatusCode::UNPROCESSABLE_ENTITY, "the profile has errors"),
+        RewindError::NoPlay => {
             Refusal::new(StatusCode::CONFLICT, "nothing was played yet: press the pad, then ask again")
         }
     })
 }
 
-pub(super) async fn doctor(State(office): Shared) -> Answer {
-    Ok(Json(wait(move || office.library.doctor()).await?).into_response())
+pub(super) async fn doctor(State(app): Shared) -> ApiResult {
+    Ok(Json(wait(move || app.host.doctor()).await?).into_response())
 }
 
-pub(super) async fn reports(State(office): Shared) -> Answer {
-    let reports = wait(move || office.library.reports()).await?;
+pub(super) async fn reports(State(app): Shared) -> ApiResult {
+    let reports = wait(move || app.host.reports()).await?;
     Ok(Json(json!({"reports": reports})).into_response())
 }
 
 /// `GET /report/ID`: the page of a diagnosis.
-pub(super) async fn report(State(office): Shared, Path(id): Path<String>) -> Answer {
-    let page =
-        wait(move || office.library.report(&id).and_then(|path| std::fs::read_to_string(path).ok())).await?;
+pub(super) async fn report(State(app): Shared, Path(id): Path<String>) -> ApiResult {
+    let page = wait(move || app.host.report(&id).and_then(|path| std::fs::read_to_string(path).ok())).await?;
     page.map(|page| Html(page).into_response()).ok_or_else(|| {
         Refusal::new(
             StatusCode::NOT_FOUND,
@@ -229,16 +231,16 @@ pub(super) async fn report(State(office): Shared, Path(id): Path<String>) -> Ans
 }
 
 /// `GET /api/guides`: how all guides stand.
-pub(super) async fn guides(State(office): Shared) -> Answer {
-    let told = office.with_guides(|guides, scene| {
-        guides.look(scene);
-        guides.told()
+pub(super) async fn guides(State(app): Shared) -> ApiResult {
+    let statuses = app.with_guides(|guides, context| {
+        guides.update(context);
+        guides.statuses()
     });
-    Ok(Json(json!({"guides": told})).into_response())
+    Ok(Json(json!({"guides": statuses})).into_response())
 }
 
 /// `GET /sheet/NAME`: the marks that a known weight is put on, in true size.
-pub(super) async fn sheet(Path(name): Path<String>) -> Answer {
+pub(super) async fn sheet(Path(name): Path<String>) -> ApiResult {
     let sheet = || Sheet::of(&Device::nominal());
     let (kind, bytes) = match name.as_str() {
         "marks.pdf" => ("application/pdf", sheet().pdf()),
@@ -251,7 +253,7 @@ pub(super) async fn sheet(Path(name): Path<String>) -> Answer {
 }
 
 #[derive(Deserialize)]
-pub(super) struct Action {
+pub(super) struct GuideRequest {
     #[serde(rename = "do")]
     action: String,
     /// The number that the action takes.
@@ -260,20 +262,20 @@ pub(super) struct Action {
 
 /// `POST /api/guides/ID`: begins a guide, stops it, or does what a step offers.
 pub(super) async fn guide(
-    State(office): Shared,
+    State(app): Shared,
     Path(id): Path<String>,
-    asked: Result<Json<Action>, JsonRejection>,
-) -> Answer {
-    let Action { action, number } = body(asked)?;
+    request: Result<Json<GuideRequest>, JsonRejection>,
+) -> ApiResult {
+    let GuideRequest { action, number } = body(request)?;
     wait(move || {
-        let done = office.with_guides(|guides, scene| guides.act(&id, (&action, number), scene));
+        let done = app.with_guides(|guides, context| guides.act(&id, &action, number, context));
         let done =
             done.ok_or_else(|| Refusal::new(StatusCode::NOT_FOUND, format!("there is no guide {id:?}")))?;
         let done = done.map_err(|error| Refusal::new(StatusCode::CONFLICT, error))?;
         if let Some(request) = done.request {
-            office.ask(request)?;
+            app.ask(request)?;
         }
-        Ok(Json(done.told).into_response())
+        Ok(Json(done.status).into_response())
     })
     .await?
 }

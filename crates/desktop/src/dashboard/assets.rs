@@ -11,7 +11,7 @@ macro_rules! files {
     ($($name:literal),* $(,)?) => { [$(($name, include_str!(concat!("page/", $name)))),*] };
 }
 
-/// What browsers are told of a file, by the end of its name.
+/// The media types of files, by the ends of their names.
 const KINDS: [(&str, &str); 4] = [
     (".html", "text/html; charset=utf-8"),
     (".css", "text/css; charset=utf-8"),

@@ -13,12 +13,12 @@ use tactpad_core::toml_text::edit::{self, Change, TablePathStep};
 pub(super) struct Draft {
     text: String,
     #[serde(default)]
-    changes: Vec<Asked>,
+    changes: Vec<RequestedChange>,
 }
 
 /// One change: where the table stands, the key, and what it says from now on; null takes it away.
 #[derive(Debug, Deserialize)]
-struct Asked {
+struct RequestedChange {
     table: Vec<Value>,
     key: String,
     value: Value,
@@ -26,7 +26,7 @@ struct Asked {
 
 /// The text after the changes, and what there is to say of it.
 #[derive(Debug, Serialize)]
-pub(super) struct Answer {
+pub(super) struct DraftAnswer {
     /// Whether it can be played.
     ok: bool,
     text: String,
@@ -40,8 +40,8 @@ pub(super) struct Answer {
 
 impl Draft {
     /// Makes the changes and reads what came of them.
-    pub(super) fn answer(self, output: OutputChoice) -> Answer {
-        let changes: Result<Vec<_>, _> = self.changes.into_iter().map(Asked::read).collect();
+    pub(super) fn answer(self, output: OutputChoice) -> DraftAnswer {
+        let changes: Result<Vec<_>, _> = self.changes.into_iter().map(RequestedChange::read).collect();
         let changed = changes
             .and_then(|changes| edit::changed(&self.text, &changes).map_err(|error| error.to_string()));
         let (text, error) = match changed {
@@ -50,7 +50,7 @@ impl Draft {
         };
         let (profile, diagnostics) = check::read(&text, output);
         let document = toml::from_str::<toml::Table>(&text).ok().map(|table| json(toml::Value::Table(table)));
-        Answer {
+        DraftAnswer {
             ok: profile.is_some(),
             diagnostics,
             document,
@@ -61,7 +61,7 @@ impl Draft {
     }
 }
 
-impl Asked {
+impl RequestedChange {
     fn read(self) -> Result<Change, String> {
         let step = |step: Value| match step {
             Value::String(key) => Ok(TablePathStep::Key(key)),
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
     use tactpad_core::pipeline::mapping::read::shipped;
 
-    fn answer(changes: Value) -> Answer {
+    fn answer(changes: Value) -> DraftAnswer {
         let asked = serde_json::json!({"text": shipped::text("contra").unwrap(), "changes": changes});
         serde_json::from_value::<Draft>(asked).unwrap().answer(OutputChoice::AsWritten)
     }

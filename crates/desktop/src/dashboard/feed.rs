@@ -1,4 +1,4 @@
-//! What there is to see of the live bridge: the newest moment, and what happened since somebody looked.
+//! The feed of the live bridge for its pages: the newest moment, and the events since a reader's last look.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -39,25 +39,25 @@ pub(super) struct Moment {
 }
 
 /// A point of the trace: where the finger was, or that it was lifted.
-pub(super) type Point = (StreamInstant, Option<Contact>);
+pub(super) type TracePoint = (StreamInstant, Option<Contact>);
 
-/// What came of some calls.
+/// The events of some calls, and the moment after them.
 #[derive(Debug, Default)]
-pub(super) struct Seen {
+pub(super) struct FeedUpdate {
     /// The last moment, if there were any calls.
     pub(super) now: Option<Moment>,
-    pub(super) trace: Vec<Point>,
+    pub(super) trace: Vec<TracePoint>,
     pub(super) events: Vec<OutputEvent>,
     pub(super) presses: Vec<Verdict>,
     /// The profile, if it is another one.
     pub(super) profile: Option<Box<Profile>>,
 }
 
-/// What is kept for readers.
+/// The contents of the feed.
 #[derive(Debug)]
-pub(super) struct Newest {
+pub(super) struct FeedContents {
     pub(super) now: Option<Moment>,
-    pub(super) trace: Ring<Point>,
+    pub(super) trace: Ring<TracePoint>,
     pub(super) events: Ring<OutputEvent>,
     pub(super) presses: Ring<Verdict>,
     pub(super) profile: Option<Box<Profile>>,
@@ -68,7 +68,7 @@ pub(super) struct Newest {
 /// The newest of the bridge, for any number of readers.
 #[derive(Debug)]
 pub(super) struct Feed {
-    newest: Mutex<Newest>,
+    newest: Mutex<FeedContents>,
     /// Counts what was added; 0 is the end.
     added: watch::Sender<u64>,
 }
@@ -76,7 +76,7 @@ pub(super) struct Feed {
 impl Feed {
     /// Nothing was seen yet.
     pub(super) fn new() -> Self {
-        let newest = Newest {
+        let newest = FeedContents {
             now: None,
             trace: Ring::new(POINTS_MAX),
             events: Ring::new(EVENTS_MAX),
@@ -88,8 +88,8 @@ impl Feed {
     }
 
     /// Adds what was seen, if there was anything.
-    pub(super) fn add(&self, seen: Seen) {
-        let Seen { now: Some(now), trace, events, presses, profile } = seen else { return };
+    pub(super) fn add(&self, seen: FeedUpdate) {
+        let FeedUpdate { now: Some(now), trace, events, presses, profile } = seen else { return };
         let mut newest = self.newest();
         newest.now = Some(now);
         trace.into_iter().for_each(|it| newest.trace.push(it));
@@ -108,8 +108,8 @@ impl Feed {
         self.added.send_replace(0);
     }
 
-    /// What is kept.
-    pub(super) fn newest(&self) -> MutexGuard<'_, Newest> {
+    /// The contents.
+    pub(super) fn newest(&self) -> MutexGuard<'_, FeedContents> {
         self.newest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

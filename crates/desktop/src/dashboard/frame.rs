@@ -1,13 +1,13 @@
-//! What the page reads from the websocket: JSON, a document a message.
+//! The messages to the page on the websocket: JSON, a document a message.
 
 use serde::ser::SerializeSeq;
 use serde::{Serialize, Serializer};
 
-use super::feed::{Feed, Moment, Point};
+use super::feed::{Feed, Moment, TracePoint};
 use tactpad_bridge::latency::{Durations, Percentiles};
 use tactpad_bridge::snapshot::{Status, Uncertainty};
-use tactpad_bridge::timing::{Policy, Stages};
-use tactpad_bridge::watchers::Line;
+use tactpad_bridge::timing::{ProfileDelays, Stages};
+use tactpad_bridge::watchers::PressLine;
 use tactpad_core::pipeline::control::OutputEvent;
 use tactpad_core::pipeline::mapping::profile::sketch::{Sketch, control};
 use tactpad_core::quantity::{CHANNELS, Contact};
@@ -23,7 +23,7 @@ pub(super) struct Cursor {
 
 /// The newest moment, and what happened since the last frame.
 #[derive(Serialize)]
-struct Frame {
+struct FastFrame {
     kind: &'static str,
     host_us: u64,
     t_us: u64,
@@ -32,17 +32,17 @@ struct Frame {
     channels_uv: Option<[f32; CHANNELS]>,
     held: Vec<String>,
     is_playing: bool,
-    trace: Vec<TracePoint>,
-    events: Vec<Event>,
-    presses: Vec<Line>,
+    trace: Vec<JsonTracePoint>,
+    events: Vec<JsonEvent>,
+    presses: Vec<PressLine>,
     /// How many points, events and presses came and went unseen.
     missed: u64,
 }
 
 /// A point as `[t_us, x_mm, y_mm, fx_n, fy_n, fz_n]`; a lift as `[t_us]`.
-struct TracePoint(Point);
+struct JsonTracePoint(TracePoint);
 
-impl Serialize for TracePoint {
+impl Serialize for JsonTracePoint {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let (t, contact) = &self.0;
         let mut list = to.serialize_seq(None)?;
@@ -59,14 +59,14 @@ impl Serialize for TracePoint {
 
 /// An event as the event log has it.
 #[derive(Serialize)]
-struct Event {
+struct JsonEvent {
     t_us: u64,
     device: &'static str,
     code: String,
     value: i32,
 }
 
-impl From<&OutputEvent> for Event {
+impl From<&OutputEvent> for JsonEvent {
     fn from(event: &OutputEvent) -> Self {
         let OutputEvent { at, device, code, value } = event;
         Self { t_us: at.as_us(), device: device.name(), code: code.to_string(), value: *value }
@@ -75,25 +75,25 @@ impl From<&OutputEvent> for Event {
 
 /// The profile that is played, as it is drawn.
 #[derive(Serialize)]
-struct Drawn<'s> {
+struct SketchMessage<'s> {
     kind: &'static str,
     profile: &'s str,
     sketch: Sketch,
 }
 
-/// What changes slowly.
+/// The message about everything that changes slowly.
 #[derive(Serialize)]
-struct Slow<'s> {
+struct SlowFrame<'s> {
     kind: &'static str,
-    status: Told<'s>,
+    status: StatusMessage<'s>,
     stages_us: Latency<Percentiles>,
     histogram_us: Latency<Vec<(f64, u64)>>,
-    policy_ms: Option<Policy>,
+    policy_ms: Option<ProfileDelays>,
 }
 
 /// The status, and what people read of it.
 #[derive(Serialize)]
-pub(super) struct Told<'s> {
+pub(super) struct StatusMessage<'s> {
     #[serde(flatten)]
     pub(super) status: &'s Status,
     pub(super) sentence: &'static str,
@@ -126,7 +126,7 @@ impl Cursor {
             (newest.trace.since(self.trace), newest.events.since(self.events));
         let (presses, no_presses) = newest.presses.since(self.presses);
         let Moment { at, t, contact, uncertainty, channels_uv, held, is_playing, .. } = now.clone();
-        let frame = Frame {
+        let frame = FastFrame {
             kind: "frame",
             host_us: at.as_ns() / 1_000,
             t_us: t.as_us(),
@@ -135,15 +135,15 @@ impl Cursor {
             channels_uv,
             held: held.iter().map(|level| control(level.code, level.value)).collect(),
             is_playing,
-            trace: trace.copied().map(TracePoint).collect(),
-            events: events.map(Event::from).collect(),
-            presses: presses.map(|verdict| Line::of(verdict, 0)).collect(),
+            trace: trace.copied().map(JsonTracePoint).collect(),
+            events: events.map(JsonEvent::from).collect(),
+            presses: presses.map(|verdict| PressLine::of(verdict, 0)).collect(),
             missed: no_points + no_events + no_presses,
         };
         (self.trace, self.events, self.presses) =
             (newest.trace.end(), newest.events.end(), newest.presses.end());
         let drawn = newest.profile.as_ref().filter(|_| newest.profiles != self.profiles);
-        let drawn = drawn.map(|profile| Drawn {
+        let drawn = drawn.map(|profile| SketchMessage {
             kind: "sketch",
             profile: &profile.name,
             sketch: Sketch::of(profile),
@@ -155,15 +155,15 @@ impl Cursor {
 }
 
 /// The message of what changes slowly.
-pub(super) fn slow(
-    told: Told<'_>,
+pub(super) fn status_message(
+    status: StatusMessage<'_>,
     stages: &Stages<Durations>,
     end_to_end: &Durations,
-    policy_ms: Option<Policy>,
+    policy_ms: Option<ProfileDelays>,
 ) -> String {
-    json(&Slow {
+    json(&SlowFrame {
         kind: "status",
-        status: told,
+        status,
         stages_us: Latency {
             stages: stages.map(Durations::percentiles),
             end_to_end: end_to_end.percentiles(),

@@ -22,7 +22,7 @@ pub(super) const BODY_BYTES_MAX: usize = 1 << 20;
 /// Random bytes of a token.
 const TOKEN_BYTES: usize = 16;
 
-/// What is served to whoever asks from this machine: the page's own files, which hold no secret.
+/// Paths that are served to everybody on this machine: the page's own files, which hold no secret.
 const OPEN: [&str; 2] = ["/", "/page/"];
 
 /// Nothing is loaded from elsewhere, no other page shows this one, and no text of the page runs as a program.
@@ -33,7 +33,7 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 const POLICY_OF_REPORTS: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; \
                                  form-action 'none'; frame-ancestors 'none'; sandbox";
 
-/// What this server is, and what it asks for.
+/// The port of this server, and the token that requests need.
 #[derive(Clone, Debug)]
 pub(super) struct Guard {
     port: u16,
@@ -94,9 +94,9 @@ impl Guard {
 
     /// Whether the token stands in the header or, as browsers' websockets have no header of their own, in the address.
     fn has_token(&self, uri: &Uri, headers: &HeaderMap) -> bool {
-        let told = text(headers, header::AUTHORIZATION).and_then(|it| it.strip_prefix("Bearer "));
+        let given = text(headers, header::AUTHORIZATION).and_then(|it| it.strip_prefix("Bearer "));
         let in_address = || uri.query()?.split('&').find_map(|pair| pair.strip_prefix("token="));
-        told.or_else(in_address).is_some_and(|told| is_same(told.as_bytes(), self.token.as_bytes()))
+        given.or_else(in_address).is_some_and(|given| is_same(given.as_bytes(), self.token.as_bytes()))
     }
 }
 
@@ -115,8 +115,9 @@ fn text(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
 }
 
 /// Whether both are the same, in a time that does not tell how much of them is.
-fn is_same(told: &[u8], own: &[u8]) -> bool {
-    told.len() == own.len() && told.iter().zip(own).fold(0, |other, (told, own)| other | (told ^ own)) == 0
+fn is_same(given: &[u8], own: &[u8]) -> bool {
+    given.len() == own.len()
+        && given.iter().zip(own).fold(0, |other, (given, own)| other | (given ^ own)) == 0
 }
 
 /// Lets a request through, or refuses it; and tells the browser what the answer may do.

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! calls ─observer→ shadow: the same pipeline once more ─feed→ websocket ─→ the page
-//!                  ├ the last minute ─rewind→ what another profile would have done
-//!                  └ ears ─→ a calibration, which hears each call from its begin on
-//! the page ─api→ requests on the bridge, profiles of the library
+//!                  ├ replay_buffer: the last minute ─rewind→ the presses of another profile
+//!                  └ call_subscribers ─→ a calibration, which gets each call from its start on
+//! the page ─api→ requests on the bridge, profiles of the host
 //! ```
 //!
 //! It is served on the loopback interface alone. Each request is looked at by `guard.rs`: its host, its origin, its token. The live path does
@@ -12,19 +12,19 @@
 //! page sees each event, and each stage is timed, without an instrument in the live path.
 
 mod api;
+mod app_state;
 mod assets;
+mod call_subscribers;
 mod draft;
-mod ears;
 mod feed;
 mod frame;
 mod guard;
 mod guides;
-pub mod library;
-mod live;
-mod office;
-mod past;
+pub mod host;
 mod refusal;
+mod replay_buffer;
 mod rewind;
 mod ring;
 pub mod server;
 mod shadow;
+mod websocket;

@@ -9,7 +9,7 @@ use serde_json::json;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Refusal {
     pub(super) status: StatusCode,
-    /// What is wrong, and the way out.
+    /// The error, and the way out.
     pub(super) error: String,
 }
 

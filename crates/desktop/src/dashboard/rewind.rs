@@ -1,10 +1,10 @@
-//! What another profile would have done: the last minute of play once more, with both.
+//! Rewind: replays the last minute of play with two profiles and compares their presses.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::past::{Past, make};
+use super::replay_buffer::{ReplayBuffer, make};
 use tactpad_core::pipeline::call::OwnedCall;
 use tactpad_core::pipeline::control::OutputEvent;
 use tactpad_core::pipeline::mapping::profile::Profile;
@@ -13,39 +13,39 @@ use tactpad_lab::tuning::difference::{Difference, Press, Side, UnmatchedPress, p
 
 /// Two profiles to compare.
 #[derive(Debug, Deserialize)]
-pub(super) struct Asked {
+pub(super) struct RewindRequest {
     /// The changed one,
     text: String,
     /// and the one that it is held against; without it the one that is played.
     saved: Option<String>,
 }
 
-/// What they come to.
+/// The presses of both profiles, compared.
 #[derive(Debug, Serialize)]
-pub(super) struct Answer {
+pub(super) struct RewindAnswer {
     ok: bool,
     /// So long was the play.
     seconds: f64,
-    now: Tally,
-    draft: Tally,
+    now: PressCounts,
+    draft: PressCounts,
     /// How many presses both give.
     both: usize,
     /// By how much the later one of them is later at most.
     shift_max_ms: f64,
-    only_now: Vec<Once>,
-    only_draft: Vec<Once>,
+    only_now: Vec<JsonUnmatchedPress>,
+    only_draft: Vec<JsonUnmatchedPress>,
 }
 
 /// How many presses there are of each control.
 #[derive(Debug, Serialize)]
-struct Tally {
+struct PressCounts {
     downs: usize,
     presses: BTreeMap<String, usize>,
 }
 
 /// A press that only one of both gives.
 #[derive(Debug, Serialize)]
-struct Once {
+struct JsonUnmatchedPress {
     #[serde(flatten)]
     press: Press,
     /// Since the beginning of the play.
@@ -54,28 +54,32 @@ struct Once {
 
 /// Why nothing can be compared.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Uncompared {
+pub(super) enum RewindError {
     /// A profile has errors.
     Errors,
     /// Nothing was played yet.
     NoPlay,
 }
 
-impl Asked {
+impl RewindRequest {
     /// Plays the past once more with each profile. It takes about a third of a second for a minute at 1 kHz.
-    pub(super) fn answer(&self, past: Option<Past>, output: OutputChoice) -> Result<Answer, Uncompared> {
-        let past = past.filter(|past| past.duration_us() > 0).ok_or(Uncompared::NoPlay)?;
-        let read = |text: &str| check::read(text, output).0.ok_or(Uncompared::Errors);
+    pub(super) fn answer(
+        &self,
+        past: Option<ReplayBuffer>,
+        output: OutputChoice,
+    ) -> Result<RewindAnswer, RewindError> {
+        let past = past.filter(|past| past.duration_us() > 0).ok_or(RewindError::NoPlay)?;
+        let read = |text: &str| check::read(text, output).0.ok_or(RewindError::Errors);
         let draft = read(&self.text)?;
         let now = self.saved.as_deref().map_or_else(|| Ok(past.begin.profile().clone()), read)?;
         let [now, draft] = [now, draft].map(|profile| replayed(&past, profile));
         let begin_us = past.begin.at().as_us();
-        Ok(Answer::of(past.duration_us(), begin_us, &now, &draft))
+        Ok(RewindAnswer::of(past.duration_us(), begin_us, &now, &draft))
     }
 }
 
 /// The events of the past with another profile; changes of it are left out.
-fn replayed(past: &Past, profile: Profile) -> Vec<OutputEvent> {
+fn replayed(past: &ReplayBuffer, profile: Profile) -> Vec<OutputEvent> {
     let mut pipeline = past.begin.clone();
     let Some((begin, _)) = past.calls.front() else { return Vec::new() };
     pipeline.set_profile(*begin, profile);
@@ -89,10 +93,10 @@ fn replayed(past: &Past, profile: Profile) -> Vec<OutputEvent> {
     events
 }
 
-impl Answer {
+impl RewindAnswer {
     fn of(duration_us: u64, begin_us: u64, now: &[OutputEvent], draft: &[OutputEvent]) -> Self {
         let Difference { both, shift_max_us, only, .. } = Difference::between(now, draft);
-        let once = |only: &UnmatchedPress| Once {
+        let once = |only: &UnmatchedPress| JsonUnmatchedPress {
             press: only.press,
             at_s: only.press.t_us.saturating_sub(begin_us) as f64 * 1e-6,
         };
@@ -100,8 +104,8 @@ impl Answer {
         Self {
             ok: true,
             seconds: duration_us as f64 * 1e-6,
-            now: Tally::of(now),
-            draft: Tally::of(draft),
+            now: PressCounts::of(now),
+            draft: PressCounts::of(draft),
             both,
             shift_max_ms: shift_max_us as f64 * 1e-3,
             only_now: of(Side::Old),
@@ -110,7 +114,7 @@ impl Answer {
     }
 }
 
-impl Tally {
+impl PressCounts {
     fn of(events: &[OutputEvent]) -> Self {
         let all = presses(events);
         let mut tally = Self { downs: all.len(), presses: BTreeMap::new() };

@@ -10,22 +10,22 @@ use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post};
 use axum::{Router, middleware};
 
+use super::app_state::{AppState, BridgeHandles};
 use super::feed::Feed;
 use super::guard::{BODY_BYTES_MAX, Guard, watch};
-use super::library::Library;
-use super::office::{Office, Sight};
-use super::shadow::{self, Known};
-use super::{api, assets, live};
-use tactpad_bridge::observer::{Observed, Observer, observe};
-use tactpad_bridge::request::Asker;
-use tactpad_bridge::running::Bridge;
+use super::host::DashboardHost;
+use super::shadow::{self, ShadowState};
+use super::{api, assets, websocket};
+use tactpad_bridge::event_loop::Bridge;
+use tactpad_bridge::observer::{Observation, Observer, observe};
+use tactpad_bridge::request::RequestSender;
 use tactpad_bridge::timing::Timing;
 
 /// A server that has its port, but shows no bridge yet.
 pub struct Dashboard {
     listener: TcpListener,
     guard: Guard,
-    observed: Receiver<Observed>,
+    observed: Receiver<Observation>,
 }
 
 impl Dashboard {
@@ -53,15 +53,16 @@ impl Dashboard {
     pub fn start(
         self,
         bridge: &Bridge,
-        asker: Asker,
+        sender: RequestSender,
         timing: Timing,
-        library: Arc<dyn Library>,
+        host: Arc<dyn DashboardHost>,
     ) -> io::Result<()> {
-        let (feed, known) = (Arc::new(Feed::new()), Arc::new(Mutex::new(Known::default())));
-        shadow::start(self.observed, Arc::clone(&feed), Arc::clone(&known))?;
-        let sight = Sight { snapshot: bridge.snapshot(), timing, end_to_end: bridge.shared_latency() };
-        let office = Arc::new(Office::new(asker, library, feed, known, sight));
-        let router = router(office, Arc::new(self.guard));
+        let (feed, shadow) = (Arc::new(Feed::new()), Arc::new(Mutex::new(ShadowState::default())));
+        shadow::start(self.observed, Arc::clone(&feed), Arc::clone(&shadow))?;
+        let handles =
+            BridgeHandles { snapshot: bridge.snapshot(), timing, end_to_end: bridge.shared_latency() };
+        let app = Arc::new(AppState::new(sender, host, feed, shadow, handles));
+        let router = router(app, Arc::new(self.guard));
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         let listener = self.listener;
         thread::Builder::new().name("dashboard".into()).spawn(move || {
@@ -74,13 +75,13 @@ impl Dashboard {
     }
 }
 
-fn router(office: Arc<Office>, guard: Arc<Guard>) -> Router {
+fn router(app: Arc<AppState>, guard: Arc<Guard>) -> Router {
     Router::new()
         .route("/", get(assets::index))
         .route("/page/{name}", get(assets::file))
         .route("/report/{id}", get(api::report))
         .route("/sheet/{name}", get(api::sheet))
-        .route("/api/live", get(live::live))
+        .route("/api/live", get(websocket::upgrade))
         .route("/api/status", get(api::status))
         .route("/api/schema", get(api::schema))
         .route("/api/profiles", get(api::profiles))
@@ -94,7 +95,7 @@ fn router(office: Arc<Office>, guard: Arc<Guard>) -> Router {
         .route("/api/guides", get(api::guides))
         .route("/api/guides/{id}", post(api::guide))
         .route("/api/{action}", post(api::act))
-        .with_state(office)
+        .with_state(app)
         .layer(DefaultBodyLimit::max(BODY_BYTES_MAX))
         .layer(middleware::from_fn_with_state(guard, watch))
 }

@@ -1,4 +1,4 @@
-//! The pipeline once more: makes the calls that the bridge made, and hands on what comes of them.
+//! The shadow pipeline: repeats the calls of the bridge on another thread, and feeds the page with the results.
 
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,12 +7,12 @@ use std::thread;
 use firmware_proto::identity::Identity;
 use rustix::event::{Timespec, poll};
 
-use super::ears::Ears;
-use super::feed::{Feed, Moment, Seen};
-use super::past::Past;
+use super::call_subscribers::CallSubscribers;
+use super::feed::{Feed, FeedUpdate, Moment};
+use super::replay_buffer::ReplayBuffer;
 use tactpad_bridge::clock::Clock;
 use tactpad_bridge::latency::Durations;
-use tactpad_bridge::observer::Observed;
+use tactpad_bridge::observer::Observation;
 use tactpad_bridge::snapshot::Uncertainty;
 use tactpad_bridge::timing::{Stages, Stopwatch};
 use tactpad_core::pipeline::call::OwnedCall;
@@ -25,28 +25,28 @@ const LOOK: Timespec = Timespec { tv_sec: 0, tv_nsec: 12_000_000 };
 /// Points of the trace are at least so far apart.
 const POINT_US: u64 = 2_000;
 
-/// What came of the calls so far, for who asks now and then.
+/// The state of the shadow pipeline, for readers on other threads.
 #[derive(Debug, Default)]
-pub(super) struct Known {
+pub(super) struct ShadowState {
     /// The last minute; nothing before the bridge has begun.
-    pub(super) past: Option<Past>,
-    /// The pad that is heard, and who it said that it is.
-    pub(super) pad: Pad,
-    /// Who hears the calls themselves.
-    pub(super) ears: Ears,
+    pub(super) replay: Option<ReplayBuffer>,
+    /// The connected pad and its identity.
+    pub(super) pad: ConnectedPad,
+    /// Subscribers to the calls themselves.
+    pub(super) call_subscribers: CallSubscribers,
     /// How long decoding and mapping take here.
     pub(super) stages: Stages<Durations>,
 }
 
 /// The pad at the other end.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pad {
+pub(super) struct ConnectedPad {
     pub(super) is_heard: bool,
     pub(super) identity: Option<Identity>,
 }
 
-/// The pipeline, as far as it was told.
-struct Shadow {
+/// A copy of the bridge's pipeline that follows its calls.
+struct ShadowPipeline {
     pipeline: Pipeline,
     clock: Clock,
     /// The stream's time when this began, and how many samples there were by then.
@@ -60,14 +60,14 @@ struct Shadow {
 /// # Errors
 /// The system has no thread to give.
 pub(super) fn start(
-    from: Receiver<Observed>,
+    from: Receiver<Observation>,
     feed: Arc<Feed>,
-    known: Arc<Mutex<Known>>,
+    state: Arc<Mutex<ShadowState>>,
 ) -> std::io::Result<()> {
     thread::Builder::new().name("shadow".into()).spawn(move || {
         let mut shadow = None;
-        while let Some(seen) = look(&from, &mut shadow, &known) {
-            feed.add(seen);
+        while let Some(update) = drain(&from, &mut shadow, &state) {
+            feed.add(update);
             // Nothing wakes it: it lets time pass.
             let _ = poll(&mut [], Some(&LOOK));
         }
@@ -77,41 +77,51 @@ pub(super) fn start(
 }
 
 /// Makes all calls that wait. `None` once the bridge has ended.
-fn look(from: &Receiver<Observed>, shadow: &mut Option<Shadow>, known: &Mutex<Known>) -> Option<Seen> {
+fn drain(
+    from: &Receiver<Observation>,
+    shadow: &mut Option<ShadowPipeline>,
+    state: &Mutex<ShadowState>,
+) -> Option<FeedUpdate> {
     use std::sync::mpsc::TryRecvError::{Disconnected, Empty};
-    let mut seen = Seen::default();
-    let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut update = FeedUpdate::default();
+    let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
     loop {
         match from.try_recv() {
-            Ok(Observed::Whole { clock, at, pipeline }) => {
-                known.past = Some(Past::new((*pipeline).clone()));
-                let begun = shadow.insert(Shadow::begin(clock, *pipeline));
-                seen.profile = Some(Box::new(begun.pipeline.profile().clone()));
-                seen.now = Some(begun.now(at));
+            Ok(Observation::Checkpoint { clock, at, pipeline }) => {
+                state.replay = Some(ReplayBuffer::new((*pipeline).clone()));
+                let begun = shadow.insert(ShadowPipeline::begin(clock, *pipeline));
+                update.profile = Some(Box::new(begun.pipeline.profile().clone()));
+                update.now = Some(begun.now(at));
             }
-            Ok(Observed::Call { at, call }) => {
+            Ok(Observation::Call { at, call }) => {
                 if let Some(shadow) = shadow {
-                    shadow.make(at, &call, &mut known.stages, &mut seen);
-                    known.pad = shadow.pad();
+                    shadow.make(at, &call, &mut state.stages, &mut update);
+                    state.pad = shadow.pad();
                 }
-                known.ears.tell(at, &call);
-                if let Some(past) = &mut known.past {
-                    past.push(at, call);
+                state.call_subscribers.publish(at, &call);
+                if let Some(replay) = &mut state.replay {
+                    replay.push(at, call);
                 }
             }
-            Err(Empty) => return Some(seen),
+            Err(Empty) => return Some(update),
             Err(Disconnected) => return None,
         }
     }
 }
 
-impl Shadow {
+impl ShadowPipeline {
     fn begin(clock: Clock, pipeline: Pipeline) -> Self {
         let begun = (pipeline.at(), pipeline.health().samples);
         Self { pipeline, clock, begun, last_point: Default::default() }
     }
 
-    fn make(&mut self, at: HostInstant, call: &OwnedCall, stages: &mut Stages<Durations>, seen: &mut Seen) {
+    fn make(
+        &mut self,
+        at: HostInstant,
+        call: &OwnedCall,
+        stages: &mut Stages<Durations>,
+        seen: &mut FeedUpdate,
+    ) {
         let mut left = Some(call.as_call());
         let mut probe = Stopwatch::start(self.clock, stages);
         while let Some(call) = left {
@@ -128,7 +138,7 @@ impl Shadow {
     }
 
     /// Adds where the finger is to the trace, if there is something new.
-    fn add_point(&mut self, seen: &mut Seen) {
+    fn add_point(&mut self, seen: &mut FeedUpdate) {
         let (t, contact) = (self.pipeline.at(), self.pipeline.contact().copied());
         let (last, was_touched) = self.last_point;
         let is_new = contact.is_some() && t.us_since(last) >= POINT_US;
@@ -138,8 +148,8 @@ impl Shadow {
         }
     }
 
-    fn pad(&self) -> Pad {
-        Pad { is_heard: self.pipeline.is_heard(), identity: self.pipeline.identity().copied() }
+    fn pad(&self) -> ConnectedPad {
+        ConnectedPad { is_heard: self.pipeline.is_heard(), identity: self.pipeline.identity().copied() }
     }
 
     fn now(&self, at: HostInstant) -> Moment {

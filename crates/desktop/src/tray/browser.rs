@@ -30,7 +30,7 @@ pub fn open(url: &str) -> Result<Opening, String> {
 }
 
 impl Opening {
-    /// What came of it, once that is known. It does not wait.
+    /// The outcome, once it is known. Does not wait.
     pub fn outcome(&mut self) -> Option<Result<(), String>> {
         match self.opener.try_wait() {
             Ok(None) => None,
@@ -39,7 +39,7 @@ impl Opening {
         }
     }
 
-    /// What came of it. Waits until that is known.
+    /// The outcome. Waits until it is known.
     ///
     /// # Errors
     /// The page was not opened; the text is for people.

@@ -3,7 +3,7 @@
 use tiny_skia::{Color, FillRule, LineCap, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, Transform};
 use tray_icon::Icon;
 
-use crate::tray::face::Face;
+use crate::tray::icon_state::IconState;
 
 /// Twice the usual height of a panel's icons.
 pub(super) const SIDE_PX: u32 = 44;
@@ -14,49 +14,49 @@ const LINE_PX: f32 = 5.0;
 const RIM_PX: f32 = 3.0;
 
 /// A part of an icon.
-enum Part {
+enum Shape {
     Line(Path),
     Area(Path),
 }
 
-/// The icon for `face`; `None` only where there is no memory for it.
-pub(super) fn draw(face: Face) -> Option<Icon> {
-    Icon::from_rgba(pixels(face)?, SIDE_PX, SIDE_PX).ok()
+/// The icon for `icon_state`; `None` only where there is no memory for it.
+pub(super) fn draw(icon_state: IconState) -> Option<Icon> {
+    Icon::from_rgba(pixels(icon_state)?, SIDE_PX, SIDE_PX).ok()
 }
 
 /// Its pixels: red, green, blue and opacity, from the top left.
-fn pixels(face: Face) -> Option<Vec<u8>> {
+fn pixels(icon_state: IconState) -> Option<Vec<u8>> {
     let mut picture = Pixmap::new(SIDE_PX, SIDE_PX)?;
-    let parts = parts(face)?;
+    let parts = parts(icon_state)?;
     parts.iter().for_each(|part| part.draw(&mut picture, Color::from_rgba8(24, 28, 34, 255), RIM_PX));
-    parts.iter().for_each(|part| part.draw(&mut picture, colour(face), 0.0));
+    parts.iter().for_each(|part| part.draw(&mut picture, colour(icon_state), 0.0));
     let straight = picture.pixels().iter().map(|pixel| pixel.demultiply());
     Some(straight.flat_map(|it| [it.red(), it.green(), it.blue(), it.alpha()]).collect())
 }
 
 /// The colour says again what the shape says.
-fn colour(face: Face) -> Color {
-    match face {
-        Face::NoPad | Face::Paused => Color::from_rgba8(205, 210, 216, 255),
-        Face::Idle | Face::Contact => Color::WHITE,
-        Face::Pressed => Color::from_rgba8(126, 222, 140, 255),
-        Face::Fault => Color::from_rgba8(255, 186, 48, 255),
+fn colour(icon_state: IconState) -> Color {
+    match icon_state {
+        IconState::NoPad | IconState::Paused => Color::from_rgba8(205, 210, 216, 255),
+        IconState::Idle | IconState::Contact => Color::WHITE,
+        IconState::Pressed => Color::from_rgba8(126, 222, 140, 255),
+        IconState::Fault => Color::from_rgba8(255, 186, 48, 255),
     }
 }
 
 /// The pad is a disc, seen from above.
-fn parts(face: Face) -> Option<Vec<Part>> {
+fn parts(icon_state: IconState) -> Option<Vec<Shape>> {
     let disc = |radius_px| PathBuilder::from_circle(CENTRE_PX, CENTRE_PX, radius_px);
     let bar = |left: f32, top: f32, width: f32, height: f32| {
-        Some(Part::Area(PathBuilder::from_rect(Rect::from_xywh(left, top, width, height)?)))
+        Some(Shape::Area(PathBuilder::from_rect(Rect::from_xywh(left, top, width, height)?)))
     };
-    Some(match face {
-        Face::NoPad => vec![Part::Line(disc(RADIUS_PX)?), Part::Line(slash()?)],
-        Face::Idle => vec![Part::Line(disc(RADIUS_PX)?)],
-        Face::Contact => vec![Part::Line(disc(RADIUS_PX)?), Part::Area(disc(5.5)?)],
-        Face::Pressed => vec![Part::Area(disc(RADIUS_PX + LINE_PX / 2.0)?)],
-        Face::Paused => vec![bar(10.0, 6.0, 8.0, 32.0)?, bar(26.0, 6.0, 8.0, 32.0)?],
-        Face::Fault => vec![bar(18.0, 4.0, 8.0, 23.0)?, bar(18.0, 32.0, 8.0, 8.0)?],
+    Some(match icon_state {
+        IconState::NoPad => vec![Shape::Line(disc(RADIUS_PX)?), Shape::Line(slash()?)],
+        IconState::Idle => vec![Shape::Line(disc(RADIUS_PX)?)],
+        IconState::Contact => vec![Shape::Line(disc(RADIUS_PX)?), Shape::Area(disc(5.5)?)],
+        IconState::Pressed => vec![Shape::Area(disc(RADIUS_PX + LINE_PX / 2.0)?)],
+        IconState::Paused => vec![bar(10.0, 6.0, 8.0, 32.0)?, bar(26.0, 6.0, 8.0, 32.0)?],
+        IconState::Fault => vec![bar(18.0, 4.0, 8.0, 23.0)?, bar(18.0, 32.0, 8.0, 8.0)?],
     })
 }
 
@@ -67,7 +67,7 @@ fn slash() -> Option<Path> {
     path.finish()
 }
 
-impl Part {
+impl Shape {
     /// Draws it, and `rim_px` around it.
     fn draw(&self, picture: &mut Pixmap, colour: Color, rim_px: f32) {
         let mut paint = Paint { anti_alias: true, ..Paint::default() };
@@ -91,12 +91,18 @@ impl Part {
 mod tests {
     use super::*;
 
-    const FACES: [Face; 6] =
-        [Face::NoPad, Face::Idle, Face::Contact, Face::Pressed, Face::Paused, Face::Fault];
+    const FACES: [IconState; 6] = [
+        IconState::NoPad,
+        IconState::Idle,
+        IconState::Contact,
+        IconState::Pressed,
+        IconState::Paused,
+        IconState::Fault,
+    ];
 
     /// The light parts alone at half the size, as a panel of 22 px shows them, without their colours.
-    fn shape(face: Face) -> Vec<bool> {
-        let pixels = pixels(face).unwrap();
+    fn shape(state: IconState) -> Vec<bool> {
+        let pixels = pixels(state).unwrap();
         let side = SIDE_PX as usize;
         let is_light = |x: usize, y: usize| pixels[4 * (y * side + x)] > 100;
         (0..side / 2)
@@ -113,29 +119,29 @@ mod tests {
 
     #[test]
     fn each_icon_has_a_shape_of_its_own_at_the_size_of_a_panel() {
-        for (k, face) in FACES.iter().enumerate() {
+        for (k, state) in FACES.iter().enumerate() {
             for other in &FACES[..k] {
-                let differing = shape(*face).iter().zip(shape(*other)).filter(|(a, b)| **a != *b).count();
-                assert!(differing >= 20, "{face:?} and {other:?} differ in {differing} of 484 pixels");
+                let differing = shape(*state).iter().zip(shape(*other)).filter(|(a, b)| **a != *b).count();
+                assert!(differing >= 20, "{state:?} and {other:?} differ in {differing} of 484 pixels");
             }
         }
     }
 
     #[test]
     fn each_icon_stands_out_from_light_and_from_dark() {
-        for face in FACES {
-            let pixels = pixels(face).unwrap();
+        for state in FACES {
+            let pixels = pixels(state).unwrap();
             let opaque: Vec<_> = pixels.chunks(4).filter(|pixel| pixel[3] == 255).collect();
             let count = |holds: &dyn Fn(u8) -> bool| opaque.iter().filter(|pixel| holds(pixel[1])).count();
             let (light, dark) = (count(&|green| green > 180), count(&|green| green < 60));
-            assert!(light > 200 && dark > 200, "{face:?}: {light} light and {dark} dark pixels");
+            assert!(light > 200 && dark > 200, "{state:?}: {light} light and {dark} dark pixels");
             // Nothing is cut off at the rim of the picture.
             let side = SIDE_PX as usize;
             assert!(
                 (0..side).all(|k| [k, side * (side - 1) + k, side * k, side * k + side - 1]
                     .iter()
                     .all(|at| pixels[4 * at + 3] == 0)),
-                "{face:?}"
+                "{state:?}"
             );
         }
     }

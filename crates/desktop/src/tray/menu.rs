@@ -4,12 +4,12 @@ use tray_icon::menu::{
     CheckMenuItem, IsMenuItem, Menu, MenuId, MenuItem, PredefinedMenuItem, Result, Submenu,
 };
 
-/// What stands before a profile's name in the name of its entry.
+/// Prefix of a profile's name in the name of its entry.
 const PROFILE: &str = "profile:";
 
-/// What people choose in the menu.
+/// A choice of people in the menu.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Choice {
+pub(super) enum MenuChoice {
     /// Go over to this profile.
     Profile(String),
     /// Pause, or go on.
@@ -27,20 +27,20 @@ pub(super) enum Choice {
 }
 
 /// The entries without a profile: their names, their texts, and what they stand for.
-const ENTRIES: [(&str, &str, Choice); 6] = [
-    ("pause", "Pause", Choice::Pause),
-    ("tare", "Measure the zero", Choice::Tare),
-    ("panic", "Release everything", Choice::Panic),
-    ("page", "Open dashboard…", Choice::Page),
-    ("doctor", "Doctor…", Choice::Doctor),
-    ("quit", "Quit", Choice::Quit),
+const ENTRIES: [(&str, &str, MenuChoice); 6] = [
+    ("pause", "Pause", MenuChoice::Pause),
+    ("tare", "Measure the zero", MenuChoice::Tare),
+    ("panic", "Release everything", MenuChoice::Panic),
+    ("page", "Open dashboard…", MenuChoice::Page),
+    ("doctor", "Doctor…", MenuChoice::Doctor),
+    ("quit", "Quit", MenuChoice::Quit),
 ];
 
-/// The text of the entry for [`Choice::Pause`] while the bridge is paused.
+/// The text of the entry for [`MenuChoice::Pause`] while the bridge is paused.
 const GO_ON: &str = "Go on";
 
-impl Choice {
-    /// What the entry of this name stands for.
+impl MenuChoice {
+    /// The choice of the entry with this name.
     pub(super) fn of(entry: &MenuId) -> Option<Self> {
         let name = entry.as_ref();
         if let Some(profile) = name.strip_prefix(PROFILE) {
@@ -56,14 +56,14 @@ impl Choice {
 }
 
 /// A menu, and those of its entries that change.
-pub(super) struct Entries {
+pub(super) struct MenuEntries {
     line: MenuItem,
     pause: MenuItem,
     profiles: Vec<(String, CheckMenuItem)>,
     is_paused: bool,
 }
 
-impl Entries {
+impl MenuEntries {
     /// A menu for these profiles. What the page shows can be chosen only where there is one.
     ///
     /// # Errors
@@ -131,19 +131,23 @@ mod tests {
     #[test]
     fn names_of_entries_stand_for_choices() {
         for (name, _, choice) in ENTRIES {
-            assert_eq!(Choice::of(&MenuId::new(name)), Some(choice));
+            assert_eq!(MenuChoice::of(&MenuId::new(name)), Some(choice));
         }
-        assert_eq!(Choice::of(&MenuId::new("profile:my game")), Some(Choice::Profile("my game".into())));
-        assert_eq!(Choice::of(&MenuId::new("another's")), None);
+        assert_eq!(
+            MenuChoice::of(&MenuId::new("profile:my game")),
+            Some(MenuChoice::Profile("my game".into()))
+        );
+        assert_eq!(MenuChoice::of(&MenuId::new("another's")), None);
     }
 
     #[test]
     fn the_menu_shows_the_state_and_the_profile_that_is_played() {
-        let (_, mut entries) = Entries::build(vec!["a&b".into(), "c".into()], true).unwrap();
+        let (_, mut entries) = MenuEntries::build(vec!["a&b".into(), "c".into()], true).unwrap();
         entries.show("A & B: paused", true, Some("a&b"));
         assert_eq!((entries.line.text(), entries.pause.text()), ("A && B: paused".into(), GO_ON.into()));
-        let checked =
-            |entries: &Entries| entries.profiles.iter().map(|(_, it)| it.is_checked()).collect::<Vec<_>>();
+        let checked = |entries: &MenuEntries| {
+            entries.profiles.iter().map(|(_, it)| it.is_checked()).collect::<Vec<_>>()
+        };
         assert_eq!(checked(&entries), [true, false]);
         // A click changes a mark, though the bridge may refuse the profile.
         entries.profiles[1].1.set_checked(true);

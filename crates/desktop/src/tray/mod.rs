@@ -5,11 +5,11 @@
 
 pub mod browser;
 mod bus;
-pub mod desk;
-mod face;
+pub mod host;
 mod icon;
+mod icon_state;
 mod menu;
-mod shown;
+mod view;
 
 use std::io;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -19,9 +19,9 @@ use std::time::Duration;
 
 use tray_icon::menu::MenuEvent;
 
-use crate::tray::desk::Desk;
-use crate::tray::shown::Shown;
-use tactpad_bridge::request::Asker;
+use crate::tray::host::TrayHost;
+use crate::tray::view::TrayView;
+use tactpad_bridge::request::RequestSender;
 use tactpad_bridge::snapshot::Snapshot;
 
 /// It looks at the bridge this often.
@@ -36,20 +36,20 @@ const DESKTOP_LIMIT: Duration = Duration::from_secs(2);
 /// # Errors
 /// The system has no thread to give.
 pub fn start(
-    desk: Box<dyn Desk + Send>,
+    host: Box<dyn TrayHost + Send>,
     snapshot: Arc<Mutex<Snapshot>>,
-    asker: Asker,
+    sender: RequestSender,
 ) -> io::Result<Result<(), String>> {
     let (tell, told) = channel();
-    thread::Builder::new().name("tray".into()).spawn(move || show(desk, &snapshot, asker, &tell))?;
+    thread::Builder::new().name("tray".into()).spawn(move || show(host, &snapshot, sender, &tell))?;
     Ok(told.recv_timeout(DESKTOP_LIMIT).unwrap_or_else(|_| Err("the session bus does not answer".into())))
 }
 
 /// The thread's work. Why the icon is not there now goes to `tell`; who waits for that may have given up.
 fn show(
-    desk: Box<dyn Desk + Send>,
+    host: Box<dyn TrayHost + Send>,
     snapshot: &Mutex<Snapshot>,
-    asker: Asker,
+    sender: RequestSender,
     tell: &Sender<Result<(), String>>,
 ) {
     let (click, clicked) = channel();
@@ -58,10 +58,10 @@ fn show(
         let _ = click.send(event);
     }));
     let place = bus::find_place();
-    match Shown::begin(desk, asker, snapshot) {
-        Ok(shown) => {
+    match TrayView::begin(host, sender, snapshot) {
+        Ok(view) => {
             let _ = tell.send(place);
-            attend(shown, snapshot, &clicked);
+            attend(view, snapshot, &clicked);
         }
         Err(error) => {
             let _ = tell.send(Err(place.err().unwrap_or(error)));
@@ -70,17 +70,17 @@ fn show(
 }
 
 /// Shows and asks until the bridge has ended.
-fn attend(mut shown: Shown, snapshot: &Mutex<Snapshot>, clicked: &Receiver<MenuEvent>) {
+fn attend(mut view: TrayView, snapshot: &Mutex<Snapshot>, clicked: &Receiver<MenuEvent>) {
     loop {
         match clicked.recv_timeout(LOOK) {
             Ok(event) => {
-                if shown.obey(event.id()).is_err() {
+                if view.obey(event.id()).is_err() {
                     return;
                 }
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return,
         }
-        shown.renew(snapshot);
+        view.renew(snapshot);
     }
 }

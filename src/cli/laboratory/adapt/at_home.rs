@@ -1,4 +1,4 @@
-//! A decoder from presses without labels and a weight on marks: how it is fitted, and what is told of it.
+//! The fit of a decoder to presses without labels and a weight on marks, and its report.
 
 use std::fmt;
 use std::path::Path;
@@ -6,11 +6,11 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::method::Method;
-use super::named::Named;
-use super::numbers::Pad as FoundPad;
+use super::named::NamedCauses;
+use super::numbers::FoundPad;
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
-use crate::cli::files::field::field_of;
+use crate::cli::files::field::{PadModel, field_of};
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::tell;
@@ -27,9 +27,9 @@ use tactpad::pipeline::contact::Decoder;
 /// How a weight is put on the marks.
 const WEIGHING: &str = "tactpad calibrate --weight-g says when and where; the moments of a recording of your own go to adapt --weights.";
 
-/// What came of it.
+/// The report of the fit.
 #[derive(Serialize)]
-struct Outcome {
+struct AtHomeReport {
     method: Method,
     #[serde(flatten)]
     summary: Summary,
@@ -40,7 +40,8 @@ struct Outcome {
 pub(crate) fn fitted(
     windows: &[Window],
     placements: &[Placement],
-    (device, field): (&Device, &PadField),
+    device: &Device,
+    field: &PadField,
     earlier: Option<&Decoder>,
 ) -> Result<AtHome, HomeError> {
     let progress = Progress::begin("fitting the pad's field");
@@ -53,28 +54,32 @@ pub(crate) fn fitted(
 pub(crate) fn write(
     found: AtHome,
     windows: &[Window],
-    (to, out): (&Destination, &Path),
+    to: &Destination,
+    out: &Path,
     json: bool,
 ) -> Result<(), Failure> {
     to.write(&found.file())?;
-    let outcome = Outcome::of(found, windows);
+    let outcome = AtHomeReport::of(found, windows);
     tell(&outcome, out, json)
 }
 
-impl Outcome {
+impl AtHomeReport {
     fn of(found: AtHome, windows: &[Window]) -> Self {
         Self {
             method: Method::Inverse,
             summary: Summary::of(&found, windows),
             pad: FoundPad::of(
                 found.calibration,
-                Named::by(&[], (&Device::nominal(), &PadField::nominal(), &[])),
+                NamedCauses::by(
+                    &[],
+                    PadModel { device: &Device::nominal(), field: &PadField::nominal(), flaws: &[] },
+                ),
             ),
         }
     }
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for AtHomeReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.summary.source())?;
         writeln!(f, "{}", self.pad)?;

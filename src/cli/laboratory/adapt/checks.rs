@@ -6,7 +6,7 @@ use tactpad::lab::calibration::result::predictive::{Partition, PredictiveCheck};
 
 /// A third of the contacts, held against all of them.
 #[derive(Serialize)]
-pub(super) struct Checked {
+pub(super) struct CheckResult {
     by: &'static str,
     part: &'static str,
     contacts: usize,
@@ -17,14 +17,14 @@ pub(super) struct Checked {
     missed: bool,
 }
 
-impl Checked {
+impl CheckResult {
     pub(super) fn of(check: &PredictiveCheck) -> Self {
         let PredictiveCheck { by, third, contacts, ratio, p_value } = *check;
         let (by, parts) = words(by);
         Self { by, part: parts[third.min(2)], contacts, ratio, p_value, missed: check.is_missed() }
     }
 
-    /// What to say of a check that is missed.
+    /// The sentence about a check that is missed.
     pub(super) fn words(&self) -> String {
         format!(
             "{} miss by {:.2} times what all do: the fit lacks something there, and regions that are stated there are too narrow by as \

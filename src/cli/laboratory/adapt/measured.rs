@@ -26,7 +26,8 @@ impl Measured {
     pub(super) fn read(
         paths: &[PathBuf],
         device: &Device,
-        (rows, seed): (Option<usize>, u64),
+        rows: Option<usize>,
+        seed: u64,
         method: Method,
     ) -> Result<Self, Failure> {
         let each: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();

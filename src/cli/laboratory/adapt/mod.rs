@@ -20,14 +20,14 @@ use serde::Serialize;
 
 use self::measured::Measured;
 use self::method::Method;
-use self::named::Named;
-use self::numbers::Pad as FoundPad;
-use super::diagnose::engine::flaws;
+use self::named::NamedCauses;
+use self::numbers::FoundPad;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::destination::{Destination, Folder};
-use crate::cli::files::device::Pad;
-use crate::cli::files::field::field_of;
+use crate::cli::files::device::PadOptions;
+use crate::cli::files::field::{PadModel, field_of};
+use crate::cli::laboratory::diagnose::engine::flaws;
 use crate::cli::printing::pictures;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, say, tell, written_over};
 
@@ -71,7 +71,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Write the figure adapt-loss, how scdf learns, into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR", conflicts_with = "play")]
     figures: Option<PathBuf>,
@@ -80,25 +80,25 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// What came of it.
+/// The report of `tactpad adapt`.
 #[derive(Serialize)]
-struct Outcome {
+struct AdaptReport {
     method: Method,
     rows: usize,
     /// Whether channels were taken relative to the untouched pad.
     tared: bool,
-    /// What is wrong with the pad that was measured, as far as it shows.
+    /// Faults of the pad that was measured, as far as they show.
     warnings: Vec<String>,
     #[serde(flatten)]
-    fit: Fit,
+    fit: FitReport,
 }
 
-/// What each way found.
+/// The result of each kind of method.
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Fit {
-    Network(scdf::Fit),
-    /// What the inverse decoder's calibration found; nothing for the other methods.
+enum FitReport {
+    Network(scdf::ScdfFit),
+    /// The inverse decoder's calibration; nothing for the other methods.
     Own {
         #[serde(skip_serializing_if = "Option::is_none")]
         pad: Option<Box<FoundPad>>,
@@ -114,11 +114,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let device = arguments.pad.read()?;
     if let Some(play) = &arguments.play {
         let (weights, from) = (arguments.weights.as_deref(), arguments.from.as_deref());
-        let wanted = play::Wanted { method: arguments.method, play, weights, from, out, json: *json };
-        return play::run(&wanted, &device);
+        let options = play::PlayOptions { method: arguments.method, play, weights, from, out, json: *json };
+        return play::run(&options, &device);
     }
     let method = &arguments.method.unwrap_or(Method::Inverse);
-    let measured = Measured::read(&arguments.measured, &device, (arguments.rows, arguments.seed), *method)?;
+    let measured = Measured::read(&arguments.measured, &device, arguments.rows, arguments.seed, *method)?;
     let to = Destination::of(out)?;
     let folder = arguments.folder(*method)?;
     let from = arguments.from.as_deref();
@@ -131,24 +131,25 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         if let Some(folder) = &folder {
             pictures::write(folder, "adapt-loss", &fit.drawn())?;
         }
-        Fit::Network(fit)
+        FitReport::Network(fit)
     } else {
         let flaws = flaws(&device);
+        let model = PadModel { device: &device, field: &field, flaws: &flaws };
         // Neither waits for the other: what is named has no part in the fit.
         let (adapted, named) = rayon::join(
-            || own::adapt(*method, &measured, earlier.as_ref(), (&device, &field, &flaws)),
-            || Named::by(&measured.tables, (&device, &field, &flaws)),
+            || own::adapt(*method, &measured, earlier.as_ref(), model),
+            || NamedCauses::by(&measured.tables, model),
         );
         let (decoder, found) = adapted?;
         let note = format!("{} contacts of {}", measured.contacts.count(), measured.names);
         to.write(&decoder.to_bytes(&note).unwrap_or_default())?;
         let pad = found.map(|found| FoundPad::of(found, named));
-        Fit::Own { pad: pad.map(Box::new) }
+        FitReport::Own { pad: pad.map(Box::new) }
     };
     let (rows, tared) = (measured.contacts.count(), measured.contacts.is_tared());
     let warnings: Vec<String> = fault.map(|fault| measured.warning(fault)).into_iter().collect();
     warnings.iter().for_each(|warning| say(format_args!("warning: {warning}")));
-    let outcome = Outcome { method: *method, rows, tared, warnings, fit };
+    let outcome = AdaptReport { method: *method, rows, tared, warnings, fit };
     tell(&outcome, out, *json)
 }
 
@@ -184,7 +185,7 @@ impl Arguments {
     }
 }
 
-impl fmt::Display for Fit {
+impl fmt::Display for FitReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Network(fit) => fit.fmt(f),
@@ -194,7 +195,7 @@ impl fmt::Display for Fit {
     }
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for AdaptReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let taken = if self.tared {
             "relative to the untouched pad"

@@ -1,9 +1,10 @@
-//! What a diagnosis of the measured tables names: a number of the fit has a name only where this gives it.
+//! The causes that a diagnosis of the measured tables names: a number of the fit has a name only where this gives it.
 
 use std::fmt;
 
 use serde::Serialize;
 
+use crate::cli::files::field::PadModel;
 use crate::cli::laboratory::diagnose::document;
 use crate::cli::laboratory::diagnose::engine::diagnosed;
 use crate::cli::laboratory::diagnose::text::sized;
@@ -12,9 +13,6 @@ use tactpad::lab::calibration::result::numbers::Number;
 use tactpad::lab::diagnosis;
 use tactpad::lab::diagnosis::agreement::agreed;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Verdict};
-use tactpad::pad::changes::FieldChange;
-use tactpad::pad::device::Device;
-use tactpad::pad::field::PadField;
 use tactpad::tables::measured::Table;
 
 /// Of more rows causes are looked for by `tactpad diagnose` alone: it would take longer than the fit.
@@ -24,7 +22,7 @@ const ROWS_MAX: usize = 10_000;
 ///
 /// Each table is diagnosed by itself, as `tactpad diagnose` would do it. A name counts if each table that can be diagnosed gives
 /// it ([`agreed`]).
-pub(super) struct Named {
+pub(super) struct NamedCauses {
     /// By the tables' names.
     diagnoses: Vec<(String, Diagnosis)>,
     /// Why others have none.
@@ -33,18 +31,18 @@ pub(super) struct Named {
 
 /// A finding, and the table that it is of.
 #[derive(Serialize)]
-pub(super) struct FoundIn<'d> {
+pub(super) struct TableFinding<'d> {
     measured: &'d str,
     #[serde(flatten)]
     finding: document::Finding<'d>,
 }
 
-impl Named {
+impl NamedCauses {
     /// Diagnoses the tables.
-    pub(super) fn by(tables: &[(String, Table)], pad: (&Device, &PadField, &[FieldChange])) -> Self {
+    pub(super) fn by(tables: &[(String, Table)], model: PadModel<'_>) -> Self {
         let mut named = Self { diagnoses: Vec::new(), unfit: Vec::new() };
         for (name, table) in tables {
-            match of_table(table, pad) {
+            match of_table(table, model) {
                 Ok(diagnosis) => named.diagnoses.push((name.clone(), diagnosis)),
                 Err(why) => named.unfit.push(format!("{name}: {why}")),
             }
@@ -52,7 +50,7 @@ impl Named {
         named
     }
 
-    /// What is named, as it stands in each table.
+    /// The named findings, as they stand in each table.
     fn findings(&self) -> Vec<Vec<&Finding>> {
         agreed(&self.diagnoses.iter().map(|(_, diagnosis)| diagnosis).collect::<Vec<_>>())
     }
@@ -63,9 +61,17 @@ impl Named {
         self.findings().iter().flatten().any(|finding| is_its(finding))
     }
 
-    /// What is named, as documents write it.
-    pub(super) fn documents(&self) -> Vec<FoundIn<'_>> {
-        self.findings().into_iter().flat_map(|all| self.diagnoses.iter().zip(all).map(found_in)).collect()
+    /// The named findings, as documents write them.
+    pub(super) fn documents(&self) -> Vec<TableFinding<'_>> {
+        self.findings()
+            .into_iter()
+            .flat_map(|all| {
+                self.diagnoses
+                    .iter()
+                    .zip(all)
+                    .map(|((name, diagnosis), finding)| found_in(name, diagnosis, finding))
+            })
+            .collect()
     }
 
     /// Why tables are not diagnosed.
@@ -79,17 +85,17 @@ impl Named {
     }
 }
 
-fn found_in<'d>(((measured, diagnosis), finding): (&'d (String, Diagnosis), &'d Finding)) -> FoundIn<'d> {
-    FoundIn { measured, finding: document::Finding::of(finding, &diagnosis.channels) }
+fn found_in<'d>(measured: &'d str, diagnosis: &'d Diagnosis, finding: &'d Finding) -> TableFinding<'d> {
+    TableFinding { measured, finding: document::Finding::of(finding, &diagnosis.channels) }
 }
 
-fn of_table(table: &Table, pad: (&Device, &PadField, &[FieldChange])) -> Result<Diagnosis, String> {
+fn of_table(table: &Table, model: PadModel<'_>) -> Result<Diagnosis, String> {
     diagnosis::check(table).map_err(|why| why.to_string())?;
     let rows = table.rows.len();
     if rows > ROWS_MAX {
         return Err(format!("causes are looked for in {ROWS_MAX} rows at most, and here are {rows}"));
     }
-    diagnosed(table, pad, &[]).map_err(|why| why.to_string())
+    diagnosed(table, model, &[]).map_err(|why| why.to_string())
 }
 
 /// Why a table's diagnosis names nothing.
@@ -103,7 +109,7 @@ const fn nameless(diagnosis: &Diagnosis) -> &'static str {
     }
 }
 
-impl fmt::Display for Named {
+impl fmt::Display for NamedCauses {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let several = self.diagnoses.len() > 1;
         let findings = self.findings();

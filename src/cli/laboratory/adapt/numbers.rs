@@ -5,9 +5,9 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::checks::Checked;
-use super::named::{FoundIn, Named};
-use super::open::Open;
+use super::checks::CheckResult;
+use super::named::{NamedCauses, TableFinding};
+use super::open::OpenNumber;
 use super::thermal::FoundThermal;
 use crate::cli::printing::wrapped::hanging;
 use tactpad::lab::calibration::fit::Calibration;
@@ -21,15 +21,15 @@ use tactpad::quantity::{CHANNEL_NAMES, CHANNELS};
 /// So many pairs that are not told apart are said to people; documents have all.
 const PAIRS_SAID: usize = 5;
 
-/// What the calibration found.
-pub(super) struct Pad {
-    named: Named,
+/// The result of the calibration.
+pub(super) struct FoundPad {
+    named: NamedCauses,
     calibration: Calibration,
 }
 
 /// The same as a document.
 #[derive(Serialize)]
-struct Document<'d> {
+struct FoundPadDocument<'d> {
     gain: [f64; CHANNELS],
     noise_uv: [f64; CHANNELS],
     noise_share: [f64; CHANNELS],
@@ -38,13 +38,13 @@ struct Document<'d> {
     friction: Vec<Friction>,
     #[serde(skip_serializing_if = "Option::is_none")]
     creep: Option<Creep>,
-    parameters: Vec<Parameter>,
-    numbers: Vec<Told>,
-    not_told_apart: Vec<NotToldApart>,
-    findings: Vec<FoundIn<'d>>,
+    parameters: Vec<DeviceParameter>,
+    numbers: Vec<FitNumber>,
+    not_told_apart: Vec<CorrelatedPair>,
+    findings: Vec<TableFinding<'d>>,
     /// Why tables name nothing.
     not_diagnosed: &'d [String],
-    /// What the untouched pad reads, where no row reads it.
+    /// Readings of the untouched pad in microvolts, where no row reads it.
     #[serde(skip_serializing_if = "Option::is_none")]
     zero_uv: Option<[f64; CHANNELS]>,
     /// How channels follow the temperature, where it was measured at several.
@@ -55,15 +55,15 @@ struct Document<'d> {
     /// The module's flaw that the field is fitted with.
     #[serde(skip_serializing_if = "Option::is_none")]
     flaw: Option<String>,
-    /// What the rig leaves open.
-    open_by_rig: Vec<Open>,
+    /// Numbers that the rig leaves open.
+    open_by_rig: Vec<OpenNumber>,
     /// Whether contacts miss alike in all parts of the measurement.
-    checks: Vec<Checked>,
+    checks: Vec<CheckResult>,
 }
 
 /// How well a number is known, and whether a diagnosis names its cause.
 #[derive(Serialize)]
-struct Standing {
+struct NumberCertainty {
     deviation: f64,
     told_by: &'static str,
     named: bool,
@@ -71,19 +71,19 @@ struct Standing {
 
 /// A number of the fit and of what it is.
 #[derive(Serialize)]
-struct Told {
+struct FitNumber {
     #[serde(flatten)]
-    place: Place,
+    place: NumberName,
     value: f64,
     /// Of a pad that does not differ from the device.
     expected: f64,
     prior_deviation: f64,
     #[serde(flatten)]
-    standing: Standing,
+    standing: NumberCertainty,
 }
 
 #[derive(Serialize)]
-struct Place {
+struct NumberName {
     name: &'static str,
     target: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -94,8 +94,8 @@ struct Place {
 }
 
 #[derive(Serialize)]
-struct NotToldApart {
-    pair: [Place; 2],
+struct CorrelatedPair {
+    pair: [NumberName; 2],
     correlation: f64,
 }
 
@@ -104,29 +104,29 @@ struct Friction {
     threshold_uv: f64,
     share: f64,
     #[serde(flatten)]
-    standing: Standing,
+    standing: NumberCertainty,
 }
 
-/// What a load adds to itself in the end.
+/// The creep of a load: its share in the end, and its time constant.
 #[derive(Serialize)]
 struct Creep {
     time_s: f64,
     share: f64,
     #[serde(flatten)]
-    standing: Standing,
+    standing: NumberCertainty,
 }
 
 /// How much a number of the device differs from the device's own.
 #[derive(Serialize)]
-struct Parameter {
+struct DeviceParameter {
     name: &'static str,
     change: f64,
     #[serde(flatten)]
-    standing: Standing,
+    standing: NumberCertainty,
 }
 
-impl Pad {
-    pub(super) const fn of(calibration: Calibration, named: Named) -> Self {
+impl FoundPad {
+    pub(super) const fn of(calibration: Calibration, named: NamedCauses) -> Self {
         Self { named, calibration }
     }
 
@@ -134,9 +134,9 @@ impl Pad {
         self.calibration.numbers.iter()
     }
 
-    fn document(&self) -> Document<'_> {
+    fn document(&self) -> FoundPadDocument<'_> {
         let Calibration { gain, noise, background, compensation, thermal, .. } = &self.calibration;
-        Document {
+        FoundPadDocument {
             gain: *gain,
             noise_uv: noise.additive_uv,
             noise_share: noise.share,
@@ -157,22 +157,22 @@ impl Pad {
             thermal: thermal.as_ref().map(FoundThermal::of),
             field_from_earlier: self.calibration.from_earlier,
             flaw: self.calibration.flaw.map(|(module, flaw)| format!("module{module} {flaw}")),
-            open_by_rig: self.calibration.open_by_rig.iter().map(Open::of).collect(),
-            checks: self.calibration.checks.iter().map(Checked::of).collect(),
+            open_by_rig: self.calibration.open_by_rig.iter().map(OpenNumber::of).collect(),
+            checks: self.calibration.checks.iter().map(CheckResult::of).collect(),
         }
     }
 
-    fn standing(&self, number: &Number) -> Standing {
+    fn standing(&self, number: &Number) -> NumberCertainty {
         let told_by = match number.told_by() {
             ToldBy::Data => "data",
             ToldBy::Prior => "prior",
         };
-        Standing { deviation: number.deviation, told_by, named: self.named.names(number) }
+        NumberCertainty { deviation: number.deviation, told_by, named: self.named.names(number) }
     }
 
-    fn told(&self, number: &Number) -> Told {
-        Told {
-            place: Place::of(number),
+    fn told(&self, number: &Number) -> FitNumber {
+        FitNumber {
+            place: NumberName::of(number),
             value: number.value,
             expected: number.expected,
             prior_deviation: number.prior_deviation,
@@ -180,15 +180,15 @@ impl Pad {
         }
     }
 
-    fn not_told_apart(&self, pair: &Pair) -> NotToldApart {
-        let place = |at: usize| Place::of(&self.calibration.numbers[at]);
-        NotToldApart { pair: pair.places.map(place), correlation: pair.correlation }
+    fn not_told_apart(&self, pair: &Pair) -> CorrelatedPair {
+        let place = |at: usize| NumberName::of(&self.calibration.numbers[at]);
+        CorrelatedPair { pair: pair.places.map(place), correlation: pair.correlation }
     }
 
-    fn parameter(&self, number: &Number) -> Option<Parameter> {
+    fn parameter(&self, number: &Number) -> Option<DeviceParameter> {
         let Quantity::Physical(_) = number.quantity else { return None };
         let (name, change) = (number.quantity.name(), number.value - number.expected);
-        Some(Parameter { name, change, standing: self.standing(number) })
+        Some(DeviceParameter { name, change, standing: self.standing(number) })
     }
 
     /// The play operators that the fit has.
@@ -214,7 +214,7 @@ impl Pad {
     }
 }
 
-impl Place {
+impl NumberName {
     fn of(number: &Number) -> Self {
         let channels = CHANNEL_NAMES.map(str::to_owned);
         let threshold_uv = match number.quantity {
@@ -226,7 +226,7 @@ impl Place {
     }
 }
 
-impl Serialize for Pad {
+impl Serialize for FoundPad {
     fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         self.document().serialize(to)
     }
@@ -261,7 +261,7 @@ fn mark(number: &Number) -> &'static str {
     }
 }
 
-impl fmt::Display for Pad {
+impl fmt::Display for FoundPad {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "\n{}\n", self.named)?;
         let heading = "The decoder's own coefficients. They serve the decoder and are no findings. ± is one \
@@ -283,10 +283,10 @@ impl fmt::Display for Pad {
             writeln!(f, "{}", hanging("", &fitted))?;
         }
         for open in &self.calibration.open_by_rig {
-            writeln!(f, "{}", hanging("", &Open::of(open).words()))?;
+            writeln!(f, "{}", hanging("", &OpenNumber::of(open).words()))?;
         }
         for check in self.calibration.checks.iter().filter(|it| it.is_missed()) {
-            writeln!(f, "{}", hanging("", &Checked::of(check).words()))?;
+            writeln!(f, "{}", hanging("", &CheckResult::of(check).words()))?;
         }
         write!(f, "smooth background: {:.1} % of each map", 100.0 * self.calibration.background)?;
         let is_earlier = self.calibration.from_earlier;
@@ -294,7 +294,7 @@ impl fmt::Display for Pad {
     }
 }
 
-impl Pad {
+impl FoundPad {
     /// The numbers of one kind, channel by channel.
     fn by_channel(&self, quantity: Quantity) -> Vec<&Number> {
         self.numbers().filter(|it| it.quantity == quantity).collect()
@@ -360,7 +360,7 @@ impl Pad {
         )
     }
 
-    /// What the data do not tell apart.
+    /// Writes the pairs of numbers that the data do not tell apart.
     fn write_pairs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let pairs = &self.calibration.not_told_apart;
         for Pair { places, .. } in pairs.iter().take(PAIRS_SAID) {

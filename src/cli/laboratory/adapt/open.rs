@@ -1,4 +1,4 @@
-//! What the rig leaves open, and the next measurement that tells it.
+//! Numbers that the rig leaves open, and the next measurement that determines each.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use tactpad::lab::calibration::result::open::{Blurred, OpenByRig};
 
 /// An error of the rig that the contacts do not tell from the pad's.
 #[derive(Serialize)]
-pub(super) struct Open {
+pub(super) struct OpenNumber {
     effect: &'static str,
     /// `place` or `force`.
     of: &'static str,
@@ -14,11 +14,11 @@ pub(super) struct Open {
     deviation: f64,
     /// Its part of the variance of that.
     share: f64,
-    /// What tells it.
+    /// The measurement that determines it.
     next: &'static str,
 }
 
-impl Open {
+impl OpenNumber {
     pub(super) fn of(open: &OpenByRig) -> Self {
         let OpenByRig { effect, of, deviation, share } = *open;
         let of = match of {

@@ -6,14 +6,11 @@ use super::measured::Measured;
 use super::method::Method;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
-use crate::cli::files::field::field_of;
+use crate::cli::files::field::{PadModel, field_of};
 use crate::cli::printing::progress::Progress;
 use tactpad::lab::calibration::data::earlier::EarlierCalibration;
 use tactpad::lab::calibration::fit::Calibration;
 use tactpad::lab::tangent::Simulated;
-use tactpad::pad::changes::FieldChange;
-use tactpad::pad::device::Device;
-use tactpad::pad::field::PadField;
 use tactpad::pipeline::contact::Decoder;
 use tactpad::pipeline::contact::regression::Target;
 
@@ -34,11 +31,11 @@ pub(super) fn adapt(
     method: Method,
     measured: &Measured,
     earlier: Option<&Decoder>,
-    (device, field, flaws): (&Device, &PadField, &[FieldChange]),
+    model: PadModel<'_>,
 ) -> Result<(Decoder, Option<Calibration>), Failure> {
-    let (contacts, reach_mm) = (&measured.contacts, device.contact.max_centre_radius_mm);
+    let (contacts, reach_mm) = (&measured.contacts, model.device.contact.max_centre_radius_mm);
     let fitted = match method {
-        Method::Inverse => return calibrated(measured, earlier, (device, field, flaws)),
+        Method::Inverse => return calibrated(measured, earlier, model),
         Method::Knn => contacts.neighbours(),
         Method::Wrench => contacts.regression(Target::Wrench, reach_mm),
         Method::Linear | Method::Scdf => contacts.regression(Target::Contact, reach_mm),
@@ -49,8 +46,9 @@ pub(super) fn adapt(
 fn calibrated(
     measured: &Measured,
     earlier: Option<&Decoder>,
-    (device, field, flaws): (&Device, &PadField, &[FieldChange]),
+    model: PadModel<'_>,
 ) -> Result<(Decoder, Option<Calibration>), Failure> {
+    let PadModel { device, field, flaws } = model;
     let progress = Progress::begin("fitting the pad's field");
     let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
     let earlier = earlier.and_then(EarlierCalibration::of);

@@ -14,8 +14,8 @@ use tactpad::lab::play::home::HomeError;
 use tactpad::lab::play::weights::{self, Placement};
 use tactpad::pad::device::Device;
 
-/// What is asked for.
-pub(super) struct Wanted<'a> {
+/// The options of `tactpad adapt --play`.
+pub(super) struct PlayOptions<'a> {
     pub(super) method: Option<Method>,
     /// The capture, or kept play.
     pub(super) play: &'a Path,
@@ -26,8 +26,8 @@ pub(super) struct Wanted<'a> {
     pub(super) json: bool,
 }
 
-pub(super) fn run(wanted: &Wanted<'_>, device: &Device) -> Result<(), Failure> {
-    let Wanted { method, play, weights, from, out, json } = *wanted;
+pub(super) fn run(options: &PlayOptions<'_>, device: &Device) -> Result<(), Failure> {
+    let PlayOptions { method, play, weights, from, out, json } = *options;
     if method.is_some_and(|method| method != Method::Inverse) {
         return Err(Failure::Unusable(
             "from play there is only --method inverse: the others learn from labels".into(),
@@ -39,14 +39,14 @@ pub(super) fn run(wanted: &Wanted<'_>, device: &Device) -> Result<(), Failure> {
     let earlier = own::earlier(Method::Inverse, from)?;
     let field = field_of(device)?;
     let windows = played::read(play, earlier.as_ref())?.windows;
-    let found = at_home::fitted(&windows, &placements, (device, &field), earlier.as_ref());
+    let found = at_home::fitted(&windows, &placements, device, &field, earlier.as_ref());
     let found = found.map_err(|error| {
         let name = weights.unwrap_or(play);
         let is_placement = matches!(error, HomeError::Placement(_));
         let name = if is_placement { name } else { play };
         Failure::Unusable(format!("{}: {error}", name.display()))
     })?;
-    at_home::write(found, &windows, (&to, out), json)
+    at_home::write(found, &windows, &to, out, json)
 }
 
 /// Reads a table of placements.

@@ -17,22 +17,26 @@ use tactpad::plot::figure::Figure;
 
 /// How the network took to the pad.
 #[derive(Serialize)]
-pub(super) struct Fit {
+pub(super) struct ScdfFit {
     beta: f32,
     validation_mse: f64,
     /// For each β the mean squared error on the contacts that were not learnt from.
-    sweep: Vec<Tried>,
+    sweep: Vec<BetaTrial>,
     curve: Vec<Epoch>,
 }
 
 #[derive(Serialize)]
-struct Tried {
+struct BetaTrial {
     beta: f32,
     validation_mse: f64,
 }
 
 /// Trains the network of `--from` on.
-pub(super) fn adapt(measured: &Measured, from: Option<&Path>, seed: u64) -> Result<(Network, Fit), Failure> {
+pub(super) fn adapt(
+    measured: &Measured,
+    from: Option<&Path>,
+    seed: u64,
+) -> Result<(Network, ScdfFit), Failure> {
     let from = from.ok_or_else(|| {
         Failure::Unusable(
             "--method scdf trains a network on: make one with tactpad train --out scdf.onnx, and give it as --from scdf.onnx"
@@ -52,17 +56,17 @@ pub(super) fn adapt(measured: &Measured, from: Option<&Path>, seed: u64) -> Resu
         });
     drop(progress);
     let adapted = adapted.map_err(|error| measured.refused(error))?;
-    Ok((adapted.trained.network.clone(), Fit::of(adapted)))
+    Ok((adapted.trained.network.clone(), ScdfFit::of(adapted)))
 }
 
-impl Fit {
+impl ScdfFit {
     /// How errors fell with the β that was chosen.
     pub(super) fn drawn(&self) -> Figure {
         drawing::training(&format!("Stage II, β = {}", self.beta), &self.curve, None)
     }
 
     fn of(adapted: Adapted) -> Self {
-        let tried = |(beta, validation_mse)| Tried { beta, validation_mse };
+        let tried = |(beta, validation_mse)| BetaTrial { beta, validation_mse };
         Self {
             beta: adapted.beta,
             validation_mse: adapted.trained.validation_mse,
@@ -72,9 +76,9 @@ impl Fit {
     }
 }
 
-impl fmt::Display for Fit {
+impl fmt::Display for ScdfFit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for Tried { beta, validation_mse } in &self.sweep {
+        for BetaTrial { beta, validation_mse } in &self.sweep {
             let chosen = if *beta == self.beta { "  chosen" } else { "" };
             writeln!(f, "β = {beta:<7} mean squared error {validation_mse:.4}, standardised{chosen}")?;
         }

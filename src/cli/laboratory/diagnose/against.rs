@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use super::arguments::{Arguments, folder};
-use super::document::Document;
+use super::document::DiagnosisDocument;
 use super::files::{file_name, write_report};
 use super::{report, text};
 use crate::cli::failure::Failure;
@@ -67,9 +67,9 @@ pub(super) fn run(arguments: &Arguments, measured: &Path, earlier: &Path) -> Res
         write_report(&folder, &in_unit(&report::page(&subject), unit), &diagnosis)?;
     }
     if *json {
-        return print_json(&Document::of(&diagnosis));
+        return print_json(&DiagnosisDocument::of(&diagnosis));
     }
-    Ok(write!(stdout(), "{}", in_unit(&text::Report(&diagnosis).to_string(), unit))?)
+    Ok(write!(stdout(), "{}", in_unit(&text::DiagnosisText(&diagnosis).to_string(), unit))?)
 }
 
 /// Numbers of channels have the names that those of a pad have; what people read has the channels' own unit.

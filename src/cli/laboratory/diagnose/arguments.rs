@@ -1,4 +1,4 @@
-//! What `tactpad diagnose` is asked, and where its files go.
+//! The arguments of `tactpad diagnose`, and the places of its files.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use clap::builder::PossibleValuesParser;
 
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::{Destination, Folder};
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::printing::reports;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, written_over};
 use tactpad::lab::diagnosis;
@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "against")]
     pub(super) channels: Vec<String>,
     #[command(flatten)]
-    pub(super) pad: Pad,
+    pub(super) pad: PadOptions,
     /// A device file to write: the model with the named causes in it; - is standard output.
     #[arg(long, value_name = "E.toml")]
     pub(super) save_device: Option<PathBuf>,

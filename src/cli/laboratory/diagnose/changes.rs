@@ -1,4 +1,4 @@
-//! What is told of changes that play shows: a document, a page of text, and one line.
+//! The report of changes that play shows: a document, a page of text, and one line.
 
 use std::fmt;
 use std::path::Path;
@@ -16,17 +16,17 @@ use tactpad::quantity::{CHANNEL_NAMES, MODULES};
 
 /// Version of the document's form.
 const SCHEMA: u32 = 1;
-/// What no press tells.
+/// Changes that no press shows.
 const UNSEEN: &str = "A gain that all channels share, and a shift or turn of all modules, stay unseen: no press tells them. A known \
                       weight tells the gain (tactpad weigh).";
 
 /// The document.
 #[derive(Serialize)]
-pub(crate) struct Document<'c> {
+pub(crate) struct ChangesDocument<'c> {
     schema: u32,
     verdict: &'static str,
     findings: Vec<Finding<'c>>,
-    presses: Presses,
+    presses: PressNumbers,
     inflation: f64,
     not_detected: Vec<NotDetected>,
     not_testable: [NotTestable; 3],
@@ -55,7 +55,7 @@ struct NotTestable {
     needs: &'static str,
 }
 
-/// What no press tells.
+/// Changes that no press shows.
 const NOT_TESTABLE: [NotTestable; 3] = [
     NotTestable { effect: "excitation_gain", target: "pad", needs: "a known weight: tactpad weigh" },
     NotTestable {
@@ -72,35 +72,35 @@ const NOT_TESTABLE: [NotTestable; 3] = [
 
 /// Of a decoder there is no earlier number.
 #[derive(Serialize)]
-struct Presses {
+struct PressNumbers {
     earlier: Option<usize>,
     later: usize,
 }
 
-/// Since when something may have changed.
+/// The reference with which play is compared.
 #[derive(Clone, Copy)]
-pub(crate) enum Since<'p> {
+pub(crate) enum Reference<'p> {
     /// An earlier play.
     Played,
     /// This decoder's calibration.
     Calibrated(&'p Path),
 }
 
-/// What came of a comparison, and of what with what.
-pub(crate) struct Compared<'p> {
+/// The result of a comparison, with its reference and its play.
+pub(crate) struct Comparison<'p> {
     pub(crate) found: &'p DetectedChanges,
-    pub(crate) since: Since<'p>,
+    pub(crate) since: Reference<'p>,
     pub(crate) play: &'p Path,
 }
 
-impl<'c> Document<'c> {
+impl<'c> ChangesDocument<'c> {
     pub(crate) fn of(found: &'c DetectedChanges) -> Self {
         let (earlier, later) = found.presses;
         Self {
             schema: SCHEMA,
             verdict: if found.findings.is_empty() { "no_discrepancy" } else { "explained" },
             findings: findings(found),
-            presses: Presses { earlier, later },
+            presses: PressNumbers { earlier, later },
             inflation: found.inflation,
             not_detected: not_detected(found),
             not_testable: NOT_TESTABLE,
@@ -172,18 +172,18 @@ fn told(finding: &report::Finding) -> String {
     }
 }
 
-/// What people read.
-pub(crate) struct Text<'c>(pub(crate) &'c Compared<'c>);
+/// The report for people.
+pub(crate) struct ChangesText<'c>(pub(crate) &'c Comparison<'c>);
 
-impl fmt::Display for Text<'_> {
+impl fmt::Display for ChangesText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(Compared { found, since, play }) = self;
+        let Self(Comparison { found, since, play }) = self;
         let (earlier, later) = found.presses;
         let (held, when) = match (since, earlier) {
-            (Since::Calibrated(decoder), _) => {
+            (Reference::Calibrated(decoder), _) => {
                 (format!("{later} presses against {}", decoder.display()), " since it was calibrated")
             }
-            (Since::Played, earlier) => {
+            (Reference::Played, earlier) => {
                 (format!("{later} presses against {} earlier ones", earlier.unwrap_or_default()), "")
             }
         };
@@ -201,19 +201,22 @@ impl fmt::Display for Text<'_> {
         }
         writeln!(f, "\n{}", hanging("", UNSEEN))?;
         match since {
-            Since::Calibrated(decoder) if !found.findings.is_empty() => offer(f, play, decoder),
+            Reference::Calibrated(decoder) if !found.findings.is_empty() => {
+                write_adapt_command(f, play, decoder)
+            }
             _ => Ok(()),
         }
     }
 }
 
-/// How a decoder of the pad as it is now is made of this play: nothing makes it unasked.
-fn offer(f: &mut fmt::Formatter<'_>, play: &Path, decoder: &Path) -> fmt::Result {
+/// The command that makes a decoder of the pad as it is now by this play. That decoder has lost the old scale of forces, also with
+/// `--from`: its forces need a weight.
+fn write_adapt_command(f: &mut fmt::Formatter<'_>, play: &Path, decoder: &Path) -> fmt::Result {
     let [play, from] = [play, decoder].map(|path| quoted(&path.display().to_string()));
     writeln!(f, "\nA decoder of the pad as it is now, by this play, beside the old one:")?;
     writeln!(f, "\n  tactpad adapt --play {play} --from {from} --out new.decoder")?;
-    let then = "Its forces have the old scale, but for what the change took from it. One weight mends that: \
-                tactpad ctl weigh, while it plays.";
+    let then = "Its forces have no scale: play alone cannot tell it, also with --from. It needs one known weight: run it, then \
+                tactpad ctl weigh.";
     writeln!(f, "\n{}", hanging("", then))
 }
 
@@ -255,11 +258,12 @@ mod tests {
     #[test]
     fn a_new_decoder_is_offered_where_a_decoder_is_old() {
         let found = changed(vec![finding("module_gain", Target::Module(1), "gain", 0.919)]);
-        let text =
-            |since| Text(&Compared { found: &found, since, play: Path::new("my play.cap") }).to_string();
-        let offered = text(Since::Calibrated(Path::new("my.decoder")));
+        let text = |since| {
+            ChangesText(&Comparison { found: &found, since, play: Path::new("my play.cap") }).to_string()
+        };
+        let offered = text(Reference::Calibrated(Path::new("my.decoder")));
         let command = "tactpad adapt --play 'my play.cap' --from my.decoder --out new.decoder";
         assert!(offered.contains(command) && offered.contains("since it was calibrated"), "{offered}");
-        assert!(!text(Since::Played).contains("adapt"));
+        assert!(!text(Reference::Played).contains("adapt"));
     }
 }

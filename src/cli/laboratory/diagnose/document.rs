@@ -14,7 +14,7 @@ const SCHEMA: u32 = 1;
 
 /// The whole answer.
 #[derive(Serialize)]
-pub(super) struct Document<'d> {
+pub(super) struct DiagnosisDocument<'d> {
     schema: u32,
     verdict: &'static str,
     noise_floor_uv: f64,
@@ -52,7 +52,7 @@ struct Cause {
     side: Option<&'static str>,
 }
 
-/// What was found, with its numbers.
+/// A finding with its numbers.
 #[derive(Serialize)]
 pub(crate) struct Finding<'d> {
     status: &'static str,
@@ -106,7 +106,7 @@ struct Decoded {
     change_high95: f64,
 }
 
-/// What a check of the recording found; `channel` is `all` where it was in whole rows.
+/// The result of a check of the recording; `channel` is `all` where it was in whole rows.
 #[derive(Serialize)]
 struct Notice<'d> {
     check: &'static str,
@@ -121,7 +121,7 @@ struct Without {
     rmse_ratio_without: f64,
 }
 
-impl<'d> Document<'d> {
+impl<'d> DiagnosisDocument<'d> {
     pub(super) fn of(diagnosis: &'d Diagnosis) -> Self {
         let cause = |effect, target: &Target| Cause::of(effect, target, &diagnosis.channels);
         let not_detected = diagnosis.not_detected.iter().map(|it| NotDetected {

@@ -1,27 +1,27 @@
-//! The engine with what the program knows of a pad.
+//! The diagnosis of a table with the program's own model of the pad.
 
 use crate::cli::failure::Failure;
-use crate::cli::files::field::{changes_of, field_of};
+use crate::cli::files::field::{PadModel, changes_of, field_of};
 use crate::cli::printing::written::say;
 use tactpad::lab::diagnosis::report::Diagnosis;
 use tactpad::lab::diagnosis::{self, DiagnosisError};
 use tactpad::pad::changes::FieldChange;
 use tactpad::pad::device::Device;
-use tactpad::pad::field::PadField;
 use tactpad::tables::measured::Table;
 
-/// Holds a table against a device, whose field this is, and whose modules may have these flaws.
+/// Diagnoses a table: compares it with the model of the pad. `without` names causes that are left out.
 pub(crate) fn diagnosed(
     table: &Table,
-    (device, field, flaws): (&Device, &PadField, &[FieldChange]),
+    model: PadModel<'_>,
     without: &[String],
 ) -> Result<Diagnosis, DiagnosisError> {
+    let PadModel { device, field, flaws } = model;
     let solve = |device: &Device| field_of(device).ok();
     let pad = diagnosis::Pad { device, field, flaws, solve: &solve, without };
     diagnosis::diagnose(table, &pad)
 }
 
-/// What flaws of a module change; none where that cannot be had.
+/// The changes of the field by flaws of a module; empty where they cannot be computed.
 pub(crate) fn flaws(device: &Device) -> Vec<FieldChange> {
     match changes_of(device) {
         Ok(changes) => changes.0,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::document::Document;
+use super::document::DiagnosisDocument;
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Folder;
 use crate::cli::printing::reports;
@@ -17,8 +17,10 @@ pub(super) fn file_name(path: &Path) -> String {
 /// Writes the page and its document.
 pub(super) fn write_report(folder: &Folder, page: &str, diagnosis: &Diagnosis) -> Result<(), Failure> {
     let page = folder.write(reports::PAGE, page.as_bytes())?;
-    let document =
-        folder.write(reports::DOCUMENT, format!("{}\n", json_text(&Document::of(diagnosis))?).as_bytes())?;
+    let document = folder.write(
+        reports::DOCUMENT,
+        format!("{}\n", json_text(&DiagnosisDocument::of(diagnosis))?).as_bytes(),
+    )?;
     reports::remember(Path::new(&page).parent().unwrap_or(Path::new(".")));
     say(format_args!("the report is {page}, its numbers are {document}"));
     Ok(())

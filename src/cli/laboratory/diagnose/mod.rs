@@ -15,12 +15,12 @@ use std::path::Path;
 
 pub(crate) use self::arguments::Arguments;
 use self::arguments::{destination, folder};
-use self::document::Document;
+use self::document::DiagnosisDocument;
 use self::engine::{diagnosed, flaws};
 use self::files::{file_name, write_report};
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
-use crate::cli::files::field::field_of;
+use crate::cli::files::field::{PadModel, field_of};
 use crate::cli::files::tables;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{is_stdout, print_json, say, stdout};
@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// What a table shows.
+/// Diagnoses a measured table.
 fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
     let Arguments { pad, save_device, report, without, json, .. } = arguments;
     let saved = save_device.as_deref().map(|path| destination(path, arguments)).transpose()?;
@@ -54,8 +54,9 @@ fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
     diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
     let field = field_of(&device)?;
     let progress = Progress::begin("looking for causes");
-    let diagnosis = diagnosed(&table, (&device, &field, &flaws(&device)), without)
-        .map_err(|why| unfit(measured, &why))?;
+    let flaws = flaws(&device);
+    let model = PadModel { device: &device, field: &field, flaws: &flaws };
+    let diagnosis = diagnosed(&table, model, without).map_err(|why| unfit(measured, &why))?;
     drop(progress);
     if let Some(to) = saved {
         save(&to, &device, &diagnosis, &table)?;
@@ -72,14 +73,14 @@ fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
         write_report(&folder, &report::page(&subject), &diagnosis)?;
     }
     if *json {
-        return print_json(&Document::of(&diagnosis));
+        return print_json(&DiagnosisDocument::of(&diagnosis));
     }
     if save_device.as_deref().is_some_and(is_stdout) {
-        say(text::Report(&diagnosis));
+        say(text::DiagnosisText(&diagnosis));
         return Ok(());
     }
     use std::io::Write as _;
-    Ok(write!(stdout(), "{}", text::Report(&diagnosis))?)
+    Ok(write!(stdout(), "{}", text::DiagnosisText(&diagnosis))?)
 }
 
 fn unfit(measured: &Path, why: &DiagnosisError) -> Failure {

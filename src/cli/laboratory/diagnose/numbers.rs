@@ -81,7 +81,7 @@ pub(super) fn with_unit(value: &str, unit: &str) -> String {
     format!("{value}{gap}{unit}")
 }
 
-/// What a number is, and its unit: `radial_mm` is a `radial` in `mm`.
+/// The quantity of a number, and its unit: `radial_mm` is a `radial` in `mm`.
 pub(super) fn parts(name: &str) -> (String, &'static str) {
     let ends = |(ending, _): &&(&str, &str)| {
         name.strip_suffix(ending).is_some_and(|before| before.is_empty() || before.ends_with('_'))

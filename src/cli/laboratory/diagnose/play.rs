@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use super::arguments::Arguments;
-use super::changes::{Compared, Document, Since, Text};
+use super::changes::{ChangesDocument, ChangesText, Comparison, Reference};
 use super::engine::flaws;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
@@ -15,7 +15,7 @@ use crate::cli::printing::written::{print_json, stdout};
 use tactpad::lab::play::change::{Before, ChangeError, Which, changed};
 use tactpad::pipeline::contact::Decoder;
 
-/// What play is held against.
+/// The reference with which play is compared.
 enum Earlier {
     Play(Played),
     Decoder(Box<Decoder>),
@@ -36,10 +36,10 @@ pub(super) fn run(arguments: &Arguments, paths: [&Path; 2]) -> Result<(), Failur
     };
     let found = found.map_err(|error| refused(&error, paths))?;
     if arguments.json {
-        return print_json(&Document::of(&found));
+        return print_json(&ChangesDocument::of(&found));
     }
     let since = earlier.since(before);
-    Ok(write!(stdout(), "{}", Text(&Compared { found: &found, since, play }))?)
+    Ok(write!(stdout(), "{}", ChangesText(&Comparison { found: &found, since, play }))?)
 }
 
 impl Earlier {
@@ -66,10 +66,10 @@ impl Earlier {
         }
     }
 
-    const fn since<'p>(&self, path: &'p Path) -> Since<'p> {
+    const fn since<'p>(&self, path: &'p Path) -> Reference<'p> {
         match self {
-            Self::Decoder(_) => Since::Calibrated(path),
-            Self::Play(_) => Since::Played,
+            Self::Decoder(_) => Reference::Calibrated(path),
+            Self::Play(_) => Reference::Played,
         }
     }
 

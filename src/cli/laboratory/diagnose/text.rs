@@ -1,4 +1,4 @@
-//! What people read.
+//! The text of a diagnosis for people.
 
 use std::fmt;
 
@@ -8,9 +8,9 @@ use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, UNLISTED, Verdict};
 
 /// A diagnosis in lines of a terminal.
-pub(super) struct Report<'d>(pub(super) &'d Diagnosis);
+pub(super) struct DiagnosisText<'d>(pub(super) &'d Diagnosis);
 
-impl fmt::Display for Report<'_> {
+impl fmt::Display for DiagnosisText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(diagnosis) = self;
         writeln!(f, "{}", hanging("", &verdict(diagnosis)))?;
@@ -122,7 +122,7 @@ fn gained(gain: &Gain, diagnosis: &Diagnosis) -> String {
     text
 }
 
-/// What could not be asked for, by the column that it needs.
+/// Writes the causes that could not be tested, by the column that each needs.
 fn untested(f: &mut fmt::Formatter<'_>, diagnosis: &Diagnosis) -> fmt::Result {
     let mut needs: Vec<&str> = diagnosis.not_testable.iter().map(|it| it.needs).collect();
     needs.sort_unstable();
@@ -136,7 +136,7 @@ fn untested(f: &mut fmt::Formatter<'_>, diagnosis: &Diagnosis) -> fmt::Result {
     Ok(())
 }
 
-/// What would have been found, a line for each effect.
+/// Writes the detection limits, a line for each effect.
 fn undetected(f: &mut fmt::Formatter<'_>, all: &[NotDetected]) -> fmt::Result {
     let mut effects: Vec<&str> = Vec::new();
     for it in all.iter().filter(|it| !it.minimum_detectable.is_empty()) {

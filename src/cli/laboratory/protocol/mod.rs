@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::{Destination, Folder};
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::files::tables;
 use crate::cli::printing::pictures;
 use crate::cli::printing::written::{both_print, is_stdout, tell};
@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Draw where the contacts are into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -52,7 +52,7 @@ enum Plan {
     Recommended,
 }
 
-/// What a plan holds.
+/// The contents of a plan.
 #[derive(Serialize)]
 struct PlanReport {
     plan: Plan,

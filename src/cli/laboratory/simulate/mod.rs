@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::{Destination, Folder};
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
 use crate::cli::files::tables;
 use crate::cli::printing::pictures::write as pictures_of;
@@ -44,7 +44,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     source: Source,
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Draws the dataset; the same seed draws the same contacts.
     #[arg(long, default_value = "0", conflicts_with = "contacts")]
     seed: u64,
@@ -97,9 +97,9 @@ struct Folders {
     at: [f64; 2],
 }
 
-/// What was done.
+/// The report of `tactpad simulate`.
 #[derive(Serialize)]
-struct Outcome {
+struct SimulateReport {
     #[serde(flatten)]
     table: Option<ChannelReport>,
     /// Figures and meshes.
@@ -130,7 +130,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let table = contacts.zip(to).map(|(contacts, to)| table(&contacts, &to, &device)).transpose()?;
     files.extend(folders.fill(&device, shown, vtk.as_ref())?);
-    let outcome = Outcome { table, files };
+    let outcome = SimulateReport { table, files };
     match (json, prints_table) {
         (true, _) => print_json(&outcome),
         (false, true) => {
@@ -169,7 +169,7 @@ fn parse_place(text: &str) -> Result<[f64; 2], String> {
     place_mm.ok_or_else(|| "write x and y in millimetres with a comma between, as in 12,-5".into())
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for SimulateReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let files = self.files.iter().map(|file| format!("{file} is written"));
         let lines: Vec<String> = self.table.iter().map(ChannelReport::to_string).chain(files).collect();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use crate::cli::failure::Failure;
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
 use crate::cli::printing::written::{is_same, written_over};
@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PLAN")]
     pub(super) plan: PathBuf,
     #[command(flatten)]
-    pub(super) pad: Pad,
+    pub(super) pad: PadOptions,
     /// Draws what is random: the same seed gives the same file. Of a pad that --state takes up it draws the plan, the hand
     /// and the rig, not the pad.
     #[arg(long, default_value = "0")]

@@ -6,7 +6,7 @@ use std::io::{self, BufWriter, Write};
 use serde::Serialize;
 
 use super::arguments::{Arguments, NUMERICAL};
-use super::life::{self, Kept};
+use super::life::{self, LifeFile};
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
 use crate::cli::files::field::field_of;
@@ -35,47 +35,47 @@ const PROFILE: &str = "super-mario";
 /// One row of the truth in so many microseconds.
 const TRUTH_US: u64 = 10_000;
 
-/// What a hand does.
+/// The motion of a hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Hands {
+pub(super) enum HandMotion {
     /// It plays a profile.
     Play,
     /// It presses anywhere.
     Presses,
 }
 
-/// What was made.
+/// The report of a capture.
 #[derive(Serialize)]
-struct Outcome {
+struct CaptureReport {
     samples: u64,
     touches: u64,
     weights: usize,
     seconds: f64,
-    /// What the pad has behind it in the end.
+    /// Age of the pad in the end, in seconds.
     pad_seconds: f64,
     pad_cycles: f64,
     twin: &'static str,
 }
 
 /// The files to write.
-struct Files {
+struct TwinFiles {
     capture: Destination,
     truth: Option<Destination>,
     weights: Option<Destination>,
-    state: Option<Kept>,
+    state: Option<LifeFile>,
 }
 
 /// Records what a hand does.
-pub(super) fn make(arguments: &Arguments, hands: Hands, prints_capture: bool) -> Result<(), Failure> {
+pub(super) fn make(arguments: &Arguments, hands: HandMotion, prints_capture: bool) -> Result<(), Failure> {
     let device = arguments.pad.read_imperfect()?;
     let profile = profile::read(arguments.profile(), OutputChoice::AsWritten)?;
     let (script, duration_us) = arguments.script(hands, profile.profile(), &device)?;
     let weights = arguments.weights_on(&device)?;
-    let files = Files {
+    let files = TwinFiles {
         capture: Destination::of(&arguments.out)?,
         truth: arguments.truth.as_deref().map(Destination::of).transpose()?,
         weights: arguments.weights.as_deref().map(Destination::of).transpose()?,
-        state: arguments.state.as_deref().map(Kept::of).transpose()?,
+        state: arguments.state.as_deref().map(LifeFile::of).transpose()?,
     };
     let life = life::begun(files.state.as_ref(), &device, arguments.seed)?;
     let field = field_of(&device)?;
@@ -96,8 +96,13 @@ impl Arguments {
         self.profile.as_deref().unwrap_or(PROFILE)
     }
 
-    /// What the hand does, and how long.
-    fn script(&self, hands: Hands, profile: &Profile, device: &Device) -> Result<(Script, u64), Failure> {
+    /// The script of the hand's motion.
+    fn script(
+        &self,
+        hands: HandMotion,
+        profile: &Profile,
+        device: &Device,
+    ) -> Result<(Script, u64), Failure> {
         let duration_us = (1e6 * self.seconds.unwrap_or(SECONDS)) as u64;
         if duration_us < LEAST_US {
             let least = LEAST_US / 1_000_000;
@@ -107,8 +112,8 @@ impl Arguments {
         }
         let within_mm = self.within_mm(&device.contact)?;
         let script = match hands {
-            Hands::Play => play(profile, duration_us, within_mm, self.seed),
-            Hands::Presses => presses(duration_us, within_mm, self.seed),
+            HandMotion::Play => play(profile, duration_us, within_mm, self.seed),
+            HandMotion::Presses => presses(duration_us, within_mm, self.seed),
         };
         Ok((script, duration_us))
     }
@@ -141,7 +146,7 @@ impl Arguments {
     }
 }
 
-impl Files {
+impl TwinFiles {
     /// Writes capture, truth and weights.
     fn record(
         &self,
@@ -230,7 +235,7 @@ fn report(
     prints_capture: bool,
 ) -> Result<(), Failure> {
     let Recorded { samples, touches } = recorded;
-    let outcome = Outcome {
+    let outcome = CaptureReport {
         samples,
         touches,
         weights: weights.map_or(0, |weights| weights.placements.len()),

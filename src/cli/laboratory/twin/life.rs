@@ -16,12 +16,12 @@ use tactpad::tables::measured::Table;
 const BYTES_MAX: u64 = 1_000_000;
 
 /// Where a life is kept.
-pub(super) struct Kept {
+pub(super) struct LifeFile {
     path: PathBuf,
     to: Destination,
 }
 
-impl Kept {
+impl LifeFile {
     /// Tries whether it can be written.
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
         if is_stdout(path) {
@@ -59,12 +59,12 @@ impl Kept {
 }
 
 /// The life that goes on: the one that is kept, else a new one that the seed draws.
-pub(super) fn begun(kept: Option<&Kept>, device: &Device, seed: u64) -> Result<Life, Failure> {
+pub(super) fn begun(kept: Option<&LifeFile>, device: &Device, seed: u64) -> Result<Life, Failure> {
     let known = kept.map_or(Ok(None), |kept| kept.read(device))?;
     Ok(known.unwrap_or_else(|| Life::new(device, seed)))
 }
 
-/// What people are told of it.
+/// The pad's age and cycles, in words.
 pub(super) fn told(life: &Life) -> String {
     let (age_s, cycles) = (life.state.age_s(), life.around.cycles);
     format!("; the pad is {age_s:.0} s old and has {cycles} cycles behind it")

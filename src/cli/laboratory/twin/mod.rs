@@ -9,7 +9,7 @@ use crate::cli::failure::Failure;
 use crate::cli::printing::written::{both_print, is_stdout};
 
 pub(crate) use self::arguments::{Arguments, NUMERICAL};
-use self::capture::Hands;
+use self::capture::HandMotion;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let prints = is_stdout(&arguments.out);
@@ -18,8 +18,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     arguments.keep_apart()?;
     let hands = match arguments.plan.to_str() {
-        Some("play") => Some(Hands::Play),
-        Some("presses") => Some(Hands::Presses),
+        Some("play") => Some(HandMotion::Play),
+        Some("presses") => Some(HandMotion::Presses),
         _ => None,
     };
     arguments.refuse_foreign(hands.is_some())?;

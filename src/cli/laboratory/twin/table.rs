@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::arguments::{Arguments, NUMERICAL};
-use super::life::{self, Kept};
+use super::life::{self, LifeFile};
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
 use crate::cli::files::field::field_of;
@@ -20,13 +20,13 @@ use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::{Row, Table};
 use tactpad::tables::plans;
 
-/// What was made.
+/// The report of a table.
 #[derive(Serialize)]
-struct Outcome {
+struct TableReport {
     rows: usize,
     trials: usize,
     seconds: f64,
-    /// What the pad has behind it in the end.
+    /// Age of the pad in the end, in seconds.
     pad_seconds: f64,
     pad_cycles: f64,
     twin: &'static str,
@@ -39,7 +39,7 @@ pub(super) fn make(arguments: &Arguments, prints_table: bool) -> Result<(), Fail
     let plan = planned(path, &device, *seed)?;
     let to = Destination::of(&arguments.out)?;
     let truth_to = arguments.truth.as_deref().map(Destination::of).transpose()?;
-    let kept = arguments.state.as_deref().map(Kept::of).transpose()?;
+    let kept = arguments.state.as_deref().map(LifeFile::of).transpose()?;
     let life = life::begun(kept.as_ref(), &device, *seed)?;
     life::fits(&plan, path, &life, *cycles)?;
     let field = field_of(&device)?;
@@ -83,7 +83,7 @@ fn report(
     prints_table: bool,
 ) -> Result<(), Failure> {
     let Table { rows, trials, .. } = &measurement.table;
-    let outcome = Outcome {
+    let outcome = TableReport {
         rows: rows.len(),
         trials: trials.len(),
         seconds: rows.last().and_then(|row| row.t_s).unwrap_or_default(),
@@ -94,7 +94,7 @@ fn report(
     if arguments.json {
         return print_json(&outcome);
     }
-    let Outcome { rows, trials, seconds, .. } = outcome;
+    let TableReport { rows, trials, seconds, .. } = outcome;
     let lived = match arguments.state {
         Some(_) => life::told(life),
         None => String::new(),

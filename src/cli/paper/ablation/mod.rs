@@ -12,7 +12,7 @@ use self::report::AblationReport;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::destination::Folder;
-use crate::cli::files::device::Pad as PadFiles;
+use crate::cli::files::device::PadOptions as PadFiles;
 use crate::cli::files::field::field_of;
 use crate::cli::laboratory::twin::NUMERICAL;
 use crate::cli::printing::pictures;

@@ -1,4 +1,4 @@
-//! What the verb prints.
+//! The report of `tactpad ablation`.
 
 use serde::Serialize;
 
@@ -13,9 +13,9 @@ use tactpad::lab::evaluation::Errors;
 pub(super) struct AblationReport {
     /// Whose figures these are.
     pub(super) statement: String,
-    /// What the decoders learnt from.
+    /// Seed of the training data.
     pub(super) seed: u64,
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<DecoderRow>,
     /// Files that were written.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) files: Vec<String>,
@@ -23,17 +23,17 @@ pub(super) struct AblationReport {
 
 /// A decoder and its errors.
 #[derive(Serialize)]
-pub(super) struct Row {
+pub(super) struct DecoderRow {
     #[serde(flatten)]
     pub(super) entry: AblationEntry,
     /// Median time of one decode, one processor; null where this program has no clock.
     pub(super) decode_us: Option<f64>,
-    pub(super) unseen: Vec<Tried>,
+    pub(super) unseen: Vec<DecoderErrors>,
 }
 
 /// Its errors on one table.
 #[derive(Clone, Copy, Serialize)]
-pub(super) struct Tried {
+pub(super) struct DecoderErrors {
     pub(super) plan: &'static str,
     pub(super) seed: u64,
     pub(super) contacts: usize,
@@ -48,21 +48,21 @@ pub(super) struct Tried {
 }
 
 /// A row for each decoder. Decodes are timed here.
-pub(super) fn rows(trials: &Trials) -> Vec<Row> {
-    let row = |(index, entry): (usize, &AblationEntry)| Row {
+pub(super) fn rows(trials: &Trials) -> Vec<DecoderRow> {
+    let row = |(index, entry): (usize, &AblationEntry)| DecoderRow {
         entry: *entry,
         decode_us: timing::median_us(&trials.decoders[index], &trials.unseen),
         unseen: trials
             .unseen
             .iter()
             .zip(&trials.judged)
-            .map(|(it, judged)| Tried::of(it, &judged[index]))
+            .map(|(it, judged)| DecoderErrors::of(it, &judged[index]))
             .collect(),
     };
     ENTRIES.iter().enumerate().map(row).collect()
 }
 
-impl Tried {
+impl DecoderErrors {
     fn of(unseen: &Unseen, judged: &UnseenContacts) -> Self {
         Self {
             plan: unseen.plan,

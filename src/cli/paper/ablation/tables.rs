@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::report::{AblationReport, Row, Tried};
+use super::report::{AblationReport, DecoderErrors, DecoderRow};
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Folder;
 use crate::cli::printing::written::stdout;
@@ -29,10 +29,10 @@ fn write(out: &mut impl Write, report: &AblationReport) -> io::Result<()> {
     report.files.iter().try_for_each(|file| writeln!(out, "{file} is written"))
 }
 
-fn write_table(out: &mut impl Write, rows: &[Row], table: usize) -> io::Result<()> {
-    let tried: Vec<(&Row, &Tried)> =
+fn write_table(out: &mut impl Write, rows: &[DecoderRow], table: usize) -> io::Result<()> {
+    let tried: Vec<(&DecoderRow, &DecoderErrors)> =
         rows.iter().filter_map(|row| Some((row, row.unseen.get(table)?))).collect();
-    let Some((_, Tried { plan, seed, contacts, bound, .. })) = tried.first() else { return Ok(()) };
+    let Some((_, DecoderErrors { plan, seed, contacts, bound, .. })) = tried.first() else { return Ok(()) };
     writeln!(out, "\n{contacts} unseen contacts: twin --plan {plan} --seed {seed} --state pad.state")?;
     let (mm, n) = (bound.position_mae_mm, bound.force_mae_n);
     writeln!(out, "The noise allows no less than {mm:.3} mm and {n:.4} N.\n")?;
@@ -49,9 +49,9 @@ fn write_table(out: &mut impl Write, rows: &[Row], table: usize) -> io::Result<(
     tried.into_iter().try_for_each(|(row, tried)| write_row(out, row, tried))
 }
 
-/// What is published and no pad reaches.
-fn write_conflicts(out: &mut impl Write, rows: &[Row]) -> io::Result<()> {
-    let conflict = |row: &Row| Some((row.entry.to_string(), row.entry.paper?, row.entry.conflict?));
+/// Writes the published figures that no pad reaches.
+fn write_conflicts(out: &mut impl Write, rows: &[DecoderRow]) -> io::Result<()> {
+    let conflict = |row: &DecoderRow| Some((row.entry.to_string(), row.entry.paper?, row.entry.conflict?));
     let conflicts: Vec<_> = rows.iter().filter_map(conflict).collect();
     if conflicts.is_empty() {
         return Ok(());
@@ -68,7 +68,7 @@ fn write_conflicts(out: &mut impl Write, rows: &[Row]) -> io::Result<()> {
     writeln!(out, "  and then it is off in other figures: docs/network.md. These mm are the distance.")
 }
 
-fn write_row(out: &mut impl Write, row: &Row, tried: &Tried) -> io::Result<()> {
+fn write_row(out: &mut impl Write, row: &DecoderRow, tried: &DecoderErrors) -> io::Result<()> {
     let optional = |value: Option<f64>, decimals: usize| {
         value.map_or_else(|| "–".to_owned(), |value| format!("{value:.decimals$}"))
     };
@@ -100,7 +100,7 @@ fn fitting(value: f64, decimals: usize, width: usize) -> String {
 }
 
 /// A row for each decoder and each table of unseen contacts. Gives the file's name.
-pub(super) fn write_csv(folder: &Folder, rows: &[Row]) -> Result<String, Failure> {
+pub(super) fn write_csv(folder: &Folder, rows: &[DecoderRow]) -> Result<String, Failure> {
     let tried = rows.iter().flat_map(|row| row.unseen.iter().map(move |tried| (row, tried)));
     let lines = std::iter::once(columns()).chain(tried.map(|(row, tried)| cells(row, tried)));
     let text: String = lines.map(|cells| cells.join(",") + "\n").collect();
@@ -119,7 +119,7 @@ fn columns() -> Vec<String> {
     names.chain(last.iter().map(ToString::to_string)).collect()
 }
 
-fn cells(row: &Row, tried: &Tried) -> Vec<String> {
+fn cells(row: &DecoderRow, tried: &DecoderErrors) -> Vec<String> {
     let optional = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let paper = row.entry.paper;
     let mut cells = vec![

@@ -13,7 +13,7 @@ use self::counts::Counts;
 use self::report::LayoutReport;
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Folder;
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::printing::pictures;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::print_json;
@@ -32,7 +32,7 @@ use tactpad::virtual_pad::front_end::NOISE_RMS_UV;
 #[group(skip)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Radii of the modules' effective regions in millimetres: only the paper's rule for them, and no simulation.
     #[arg(long, value_name = "R1,R2,R3", value_parser = parse_radii, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["threshold", "noise_uv", "imperfections"])]
@@ -78,8 +78,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.sizes {
         let (figures, devices) = (folder.as_ref(), arguments.devices.as_deref());
-        let wanted = sizes::Wanted { figures, devices, json: arguments.json };
-        return sizes::run(&device, arguments.noise_uv, &wanted);
+        let options = sizes::SizesOptions { figures, devices, json: arguments.json };
+        return sizes::run(&device, arguments.noise_uv, &options);
     }
     let (spacing, simulated) = match &arguments.radii {
         Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),

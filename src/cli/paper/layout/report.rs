@@ -1,4 +1,4 @@
-//! What the verb prints.
+//! The report of `tactpad layout`.
 
 use serde::Serialize;
 

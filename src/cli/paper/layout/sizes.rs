@@ -14,7 +14,7 @@ use tactpad::lab::layout::sizes::{Law, RecommendedPad, SizeStudy, SizedPad};
 use tactpad::pad::device::Device;
 
 /// Where the study goes besides the screen.
-pub(super) struct Wanted<'a> {
+pub(super) struct SizesOptions<'a> {
     /// Folder of the figures.
     pub(super) figures: Option<&'a Folder>,
     /// Folder of the device files.
@@ -23,10 +23,10 @@ pub(super) struct Wanted<'a> {
     pub(super) json: bool,
 }
 
-pub(super) fn run(device: &Device, noise_uv: f64, wanted: &Wanted<'_>) -> Result<(), Failure> {
-    let devices = wanted.devices.map(Folder::of).transpose()?;
+pub(super) fn run(device: &Device, noise_uv: f64, options: &SizesOptions<'_>) -> Result<(), Failure> {
+    let devices = options.devices.map(Folder::of).transpose()?;
     let sizes = simulated(device, noise_uv)?;
-    if let Some(folder) = wanted.figures {
+    if let Some(folder) = options.figures {
         pictures::write(folder, "size-sensitivity", &size_drawing::sensitivity(&sizes))?;
         pictures::write(folder, "size-error", &size_drawing::error(&sizes))?;
         pictures::write(folder, "size-frequency", &size_drawing::frequency(&sizes))?;
@@ -38,7 +38,7 @@ pub(super) fn run(device: &Device, noise_uv: f64, wanted: &Wanted<'_>) -> Result
             }
         }
     }
-    if wanted.json { print_json(&sizes) } else { Ok(write(&mut stdout(), &sizes, wanted.devices)?) }
+    if options.json { print_json(&sizes) } else { Ok(write(&mut stdout(), &sizes, options.devices)?) }
 }
 
 fn simulated(device: &Device, noise_uv: f64) -> Result<SizeStudy, Failure> {

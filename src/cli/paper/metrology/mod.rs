@@ -12,7 +12,7 @@ use clap::Args;
 use self::report::MetrologyReport;
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::{Destination, Folder};
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
 use crate::cli::files::tables::{read, write};
 use crate::cli::printing::pictures;
@@ -36,7 +36,7 @@ use tactpad::tables::measured::columns::TableKind;
 #[group(skip)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// A measured file; without it the twin of the pad carries out the paper's procedures.
     #[arg(long, value_name = "M.csv")]
     measured: Option<PathBuf>,

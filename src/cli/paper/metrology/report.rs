@@ -1,4 +1,4 @@
-//! What the verb prints.
+//! The report of `tactpad metrology`.
 
 use serde::Serialize;
 

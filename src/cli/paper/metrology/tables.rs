@@ -81,7 +81,7 @@ fn write_in_series(out: &mut impl Write, name: &str, found: &InSeries) -> io::Re
     )
 }
 
-/// What open figures need, each once, in their order.
+/// The needs of open figures, each once, in their order.
 fn needs(rows: &[ReportEntry]) -> Vec<String> {
     let mut needs: Vec<String> = Vec::new();
     for need in rows.iter().filter_map(|entry| entry.needs).map(|needs| needs.to_string()) {

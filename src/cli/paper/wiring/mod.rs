@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Folder;
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::printing::pictures;
 use crate::cli::printing::written::{print_json, stdout};
 use tactpad::pad::device::{Device, Direction, GAUGES, Gauge};
@@ -24,7 +24,7 @@ use tactpad::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
 #[group(skip)]
 pub(crate) struct Arguments {
     #[command(flatten)]
-    pad: Pad,
+    pad: PadOptions,
     /// Write the figures wiring-bridges, wiring-film and wiring-plate into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// What a builder needs to know.
+/// The wiring, for a builder.
 #[derive(Serialize)]
 struct Wiring {
     excitation_v: f64,

@@ -1,15 +1,15 @@
-//! What calibrations from the page keep, in the user's own folder: decoders, and beside each what its session heard.
+//! The files of calibrations from the page, in the user's own folder: decoders, and beside each the recording of its session.
 
 use std::fs;
 use std::path::PathBuf;
 
-use super::calibrate::kept::{Begin, Kept, capture_beside};
+use super::calibrate::kept::{SessionFiles, SessionStart, capture_beside};
 use super::files::holds_play;
 use crate::cli::failure::Failure;
 use crate::cli::files::config_folder;
 use crate::cli::files::destination::Destination;
 use crate::cli::printing::written::quoted;
-use tactpad::dashboard::library::{KeptDecoder, Session};
+use tactpad::dashboard::host::{KeptDecoder, SessionStore};
 use tactpad::lab::play::guide::Guide;
 use tactpad::lab::play::weights::Placement;
 use tactpad::pipeline::call::Call;
@@ -27,11 +27,11 @@ pub(super) fn open(
     fresh: bool,
     guide: &mut Guide,
     head: &Head,
-) -> Result<Box<dyn Session>, Failure> {
+) -> Result<Box<dyn SessionStore>, Failure> {
     let decoder = place(name)?;
     decoder.parent().map_or(Ok(()), fs::create_dir_all)?;
-    let how = Begin { fresh, way_to_fresh: "choose to forget what was heard earlier" };
-    Ok(Box::new(Kept::begin(&decoder, how, guide, head)?))
+    let how = SessionStart { fresh, way_to_fresh: "choose to forget what was heard earlier" };
+    Ok(Box::new(SessionFiles::begin(&decoder, how, guide, head)?))
 }
 
 /// Writes the decoder of this name.
@@ -55,7 +55,7 @@ fn place(name: &str) -> Result<PathBuf, Failure> {
     Ok(folder.join(format!("{name}.decoder")))
 }
 
-impl Session for Kept {
+impl SessionStore for SessionFiles {
     fn at(&self, at: HostInstant) -> HostInstant {
         Self::at(self, at)
     }

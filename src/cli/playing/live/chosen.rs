@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use crate::cli::failure::Failure;
-use crate::cli::files::decoder_file::Choice;
-use tactpad::bridge::parts::PlayingDecoder;
+use crate::cli::files::decoder_file::DecoderChoice;
+use tactpad::bridge::bridge_parts::PlayingDecoder;
 use tactpad::pipeline::contact::read;
 use tactpad::pipeline::shipped;
 
 /// Reads the decoder that is to play.
-pub(super) fn read(choice: &Choice) -> Result<PlayingDecoder, Failure> {
+pub(super) fn read(choice: &DecoderChoice) -> Result<PlayingDecoder, Failure> {
     let (decoder, bytes) = choice.read_by(read::playing)?;
     let (name, kind) = (choice.name(), decoder.name());
     let told = if name == kind { name.into() } else { format!("{kind} ({name})") };
@@ -19,6 +19,6 @@ pub(super) fn read(choice: &Choice) -> Result<PlayingDecoder, Failure> {
 }
 
 /// The file that is read, if it is one.
-pub(super) fn file(choice: &Choice) -> Option<&Path> {
+pub(super) fn file(choice: &DecoderChoice) -> Option<&Path> {
     Some(choice.name()).filter(|name| !shipped::is_known(name)).map(Path::new)
 }

@@ -195,7 +195,7 @@ fn print_status(status: &Value) -> io::Result<()> {
     Ok(())
 }
 
-/// What a status warns of, in a few words.
+/// The warning of a status, in a few words.
 pub(super) fn warning(status: &Value) -> Option<String> {
     let warning = status.get("warning")?;
     let text = |key: &str| warning.get(key).and_then(Value::as_str);

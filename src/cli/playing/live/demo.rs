@@ -10,24 +10,24 @@ use super::chosen;
 use super::files::Files;
 use super::newest::line;
 use super::output::{Output, log_to};
-use super::playing::{Audience, Terminal, microseconds, open_virtual, play, requests};
+use super::playing::{Audience, TerminalHost, microseconds, open_virtual, play, requests};
 use super::screen::Screen;
-use super::shown::Shown;
+use super::shown::DisplayOptions;
 use crate::cli::failure::{Failure, if_read};
-use crate::cli::files::decoder_file::Choice;
-use crate::cli::files::device::Pad;
+use crate::cli::files::decoder_file::DecoderChoice;
+use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
 use crate::cli::printing::terminal;
 use crate::cli::printing::written::{print_json, say, stdout};
+use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
+use tactpad::bridge::event_loop::{Bridge, Ending};
 use tactpad::bridge::latency::Percentiles;
 use tactpad::bridge::opening::Patience;
-use tactpad::bridge::parts::Parts;
-use tactpad::bridge::running::{Bridge, Ending};
 use tactpad::bridge::sink::Sink;
 use tactpad::bridge::sink::null::NullSink;
-use tactpad::bridge::sink::witness::{Account, Expected, Witness};
+use tactpad::bridge::sink::recording::{ExpectedEvent, RecordedEvents, RecordingSink};
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::pipeline::control::OutputDevice;
 use tactpad::pipeline::mapping::profile::Profile;
@@ -44,14 +44,14 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "super-mario")]
     profile: String,
     #[command(flatten)]
-    decoder: Choice,
+    decoder: DecoderChoice,
     #[command(flatten)]
-    device: Pad,
+    device: PadOptions,
     /// Where events go: auto (a virtual gamepad, else the screen), uinput, x11, log:FILE (- is stdout), none.
     #[arg(long, default_value = "auto")]
     output: Output,
     #[command(flatten)]
-    shown: Shown,
+    shown: DisplayOptions,
     /// Print one JSON document on stdout.
     #[arg(long)]
     json: bool,
@@ -63,7 +63,7 @@ const SECONDS: f64 = 20.0;
 /// No gesture of the player takes longer.
 const SECONDS_OF_A_GESTURE_MAX: u32 = 60;
 
-/// What the demo comes to.
+/// The report of `tactpad demo`.
 #[derive(Serialize)]
 struct Summary {
     frames: u64,
@@ -89,21 +89,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let name = profile.profile().name.clone();
     let (sink, title) = open_sink(arguments, profile.profile())?;
     if_read(tell(arguments, &title))?;
-    let witness = if duration.is_some() { Witness::new(sink) } else { Witness::counting(sink) };
-    let seen = witness.seen();
+    let recording = if duration.is_some() { RecordingSink::new(sink) } else { RecordingSink::counting(sink) };
+    let recorded = recording.recorded();
     let audience = Audience::Nobody;
-    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
+    let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let requests = requests(None, audience)?;
-    let mut prepared = arguments.shown.prepare(&requests, &host.wish(), output.choice())?;
+    let mut prepared = arguments.shown.prepare(&requests, &host.selection(), output.choice())?;
     if let Some(url) = &prepared.url {
         if_read(tell(arguments, &format!("Dashboard: {url}")))?;
     }
-    let mut bridge = Bridge::new(Parts {
+    let mut bridge = Bridge::new(BridgeParts {
         pad: prepared.pad(open_virtual(&arguments.device, script)?),
         patience: Patience::Limited,
         decoder,
         profile,
-        sink: prepared.sink(Box::new(witness)),
+        sink: prepared.sink(Box::new(recording)),
         requests,
         host: Box::new(host.with_page(prepared.url.clone())),
         record: None,
@@ -113,17 +113,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     prepared.start(&bridge)?;
     let screen =
-        is_shown(arguments).then(|| start_screen(format!("{name} on a virtual pad"), &bridge, &seen));
+        is_shown(arguments).then(|| start_screen(format!("{name} on a virtual pad"), &bridge, &recorded));
     let played = play(&mut bridge, &PadAddress::Virtual);
     drop(screen);
     let ending = played?;
-    let seen = seen.lock().map(|seen| seen.clone()).unwrap_or_default();
-    if_read(report(arguments, &bridge, &seen))?;
+    let recorded = recorded.lock().map(|recorded| recorded.clone()).unwrap_or_default();
+    if_read(report(arguments, &bridge, &recorded))?;
     if arguments.shown.has_page() {
         // Whoever sees the page may have changed what is played.
         return Ok(());
     }
-    verdict.check(ending, &seen, &bridge)?;
+    verdict.check(ending, &recorded, &bridge)?;
     if_read(tell(arguments, &verdict.words()))
 }
 
@@ -134,7 +134,7 @@ impl Arguments {
     }
 }
 
-/// What the player plays. A time in which nothing can be played is refused, unless nothing ever can.
+/// The script of the player. A time in which nothing can be played is refused, unless nothing ever can.
 fn script(profile: &Profile, seconds: Option<f64>) -> Result<Script, Failure> {
     let Some(seconds) = seconds else { return Ok(Script::endless(profile)) };
     let script = Script::for_profile(profile, microseconds(seconds));
@@ -152,9 +152,9 @@ fn script(profile: &Profile, seconds: Option<f64>) -> Result<Script, Failure> {
 const SILENT: &str = "the demo was stopped for a while (Ctrl-Z, or a machine that stood still), so the script was not \
                       played whole";
 
-/// What the script wants.
+/// The events and contacts that the script expects.
 struct Verdict {
-    expected: Vec<Expected>,
+    expected: Vec<ExpectedEvent>,
     contacts: u64,
     steered: bool,
 }
@@ -169,13 +169,13 @@ impl Verdict {
         }
     }
 
-    /// What is told where everything is as the player meant it.
+    /// The message for a run without differences.
     fn words(&self) -> String {
         let (events, contacts) = (self.expected.len(), self.contacts);
         format!("all {events} events and {contacts} contacts are those that the player meant")
     }
 
-    fn check(&self, ending: Ending, seen: &Account, bridge: &Bridge) -> Result<(), Failure> {
+    fn check(&self, ending: Ending, seen: &RecordedEvents, bridge: &Bridge) -> Result<(), Failure> {
         if ending != Ending::TimeOver {
             return Err(Failure::Failed("interrupted: the events were not compared with the script".into()));
         }
@@ -185,7 +185,7 @@ impl Verdict {
         })
     }
 
-    fn compare(&self, seen: &Account, bridge: &Bridge) -> Result<(), String> {
+    fn compare(&self, seen: &RecordedEvents, bridge: &Bridge) -> Result<(), String> {
         seen.compare(&self.expected)?;
         if self.steered && seen.pointer_moves == 0 {
             return Err("the pointer did not move".into());
@@ -247,7 +247,7 @@ impl<W: Write> Write for WhileRead<W> {
     }
 }
 
-/// What people read goes to stdout, or to stderr where stdout is for a program.
+/// Prints a line to stdout, or to stderr where stdout is for a program.
 fn tell(arguments: &Arguments, line: &str) -> Result<(), Failure> {
     if arguments.json || arguments.output == Output::Stdout {
         say(line);
@@ -256,7 +256,7 @@ fn tell(arguments: &Arguments, line: &str) -> Result<(), Failure> {
     Ok(writeln!(stdout(), "{line}")?)
 }
 
-fn start_screen(title: String, bridge: &Bridge, seen: &Arc<Mutex<Account>>) -> Screen {
+fn start_screen(title: String, bridge: &Bridge, seen: &Arc<Mutex<RecordedEvents>>) -> Screen {
     let seen = Arc::clone(seen);
     Screen::start(title, bridge.snapshot(), move || {
         let newest = seen.lock().map(|seen| seen.newest.clone());
@@ -264,17 +264,17 @@ fn start_screen(title: String, bridge: &Bridge, seen: &Arc<Mutex<Account>>) -> S
     })
 }
 
-fn report(arguments: &Arguments, bridge: &Bridge, seen: &Account) -> Result<(), Failure> {
+fn report(arguments: &Arguments, bridge: &Bridge, seen: &RecordedEvents) -> Result<(), Failure> {
     let health = bridge.health();
-    let tally = seen.tally();
+    let edge_counts = seen.edge_counts();
     let summary = Summary {
         frames: health.samples,
         frames_lost: health.frames_lost + health.frames_damaged,
         contacts: health.contacts,
-        downs: tally.downs,
-        ups: tally.ups,
+        downs: edge_counts.downs,
+        ups: edge_counts.ups,
         pointer_moves: seen.pointer_moves,
-        held_at_end: tally.held,
+        held_at_end: edge_counts.held,
         latency_us: bridge.latency().percentiles(),
     };
     if arguments.json {

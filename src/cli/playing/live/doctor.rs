@@ -74,7 +74,7 @@ impl Check {
     }
 }
 
-/// What stands in the way, and what does not.
+/// All findings of the doctor.
 #[derive(Serialize)]
 pub(super) struct DoctorReport {
     ok: bool,
@@ -223,7 +223,7 @@ fn check_joydev(root: &Path) -> Check {
     }
 }
 
-/// What the environment tells SDL about gamepads can hide or bend ours.
+/// Environment variables that make SDL hide or change our gamepad.
 fn check_sdl(variable: impl Fn(&str) -> Option<String>) -> Vec<Check> {
     let mut checks = Vec::new();
     let mapping = variable("SDL_GAMECONTROLLERCONFIG").unwrap_or_default();

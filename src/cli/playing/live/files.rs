@@ -11,7 +11,7 @@ use crate::cli::printing::written::{is_same, is_stdout, say, written_over};
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::pipeline::capture::reader::{CaptureError, CaptureReader};
 
-/// What a live verb reads and writes.
+/// The files that a live verb reads and writes.
 pub(super) struct Files<'a> {
     pub(super) pad: &'a PadAddress,
     pub(super) profile: &'a str,
@@ -120,7 +120,7 @@ fn check_capture(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// What ends the capture too early. A pad that is played needs none of the profiles in it.
+/// The first error of a capture. A pad that is played needs none of the profiles in it.
 fn first_error(mut capture: CaptureReader<BufReader<File>>) -> Option<CaptureError> {
     loop {
         match capture.next_call()? {

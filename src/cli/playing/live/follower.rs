@@ -1,5 +1,5 @@
-//! Follows the file of the profile that is played, and the program in front, on a thread of its own: what it reads and parses takes no
-//! time from the bridge.
+//! Watches the file of the profile in play and the program in the foreground. It reads and parses on its own thread, so the bridge loses
+//! no time.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -8,12 +8,12 @@ use std::thread;
 
 use rustix::event::{Timespec, poll};
 
-use super::wish::{Stamp, Wish};
+use super::wish::{FileStamp, ProfileSelection};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
-use tactpad::bridge::front::{Desktop, Front};
-use tactpad::bridge::offer::Offer;
-use tactpad::bridge::request::{Asker, Request};
+use tactpad::bridge::foreground::{Foreground, WindowSystem};
+use tactpad::bridge::profile_update::ProfileUpdate;
+use tactpad::bridge::request::{Request, RequestSender};
 use tactpad::pipeline::mapping::profile::Program;
 use tactpad::pipeline::mapping::read::ReadProfile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
@@ -27,13 +27,17 @@ const LOOKS_WITHOUT_DESKTOP: u32 = 20;
 /// Why a profile is played while none is for the program in front.
 const NONE_IS_FOR_IT: &str = "none is for the program in front";
 
-/// Starts to follow what `wish` says. The thread ends with the bridge.
-pub(super) fn start(wish: Arc<Mutex<Wish>>, output: OutputChoice, asker: Asker) -> io::Result<()> {
-    let mut follower = Follower::new(wish, output);
+/// Starts to follow what `selection` says. The thread ends with the bridge.
+pub(super) fn start(
+    selection: Arc<Mutex<ProfileSelection>>,
+    output: OutputChoice,
+    sender: RequestSender,
+) -> io::Result<()> {
+    let mut follower = Follower::new(selection, output);
     thread::Builder::new().name("profiles".into()).spawn(move || {
         loop {
-            for offer in follower.look() {
-                if asker.ask(Request::Offer(Box::new(offer))).is_err() {
+            for update in follower.look() {
+                if sender.send(Request::UpdateProfile(Box::new(update))).is_err() {
                     return;
                 }
             }
@@ -44,44 +48,44 @@ pub(super) fn start(wish: Arc<Mutex<Wish>>, output: OutputChoice, asker: Asker) 
     Ok(())
 }
 
-/// What is to be played, and why.
+/// The profile that is to be played, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Choice {
+struct ProfileChoice {
     name: String,
-    stamp: Option<Stamp>,
+    stamp: Option<FileStamp>,
     /// Where it follows the program in front.
     reason: Option<String>,
 }
 
-/// What a profile of one's own was for at the last look.
+/// The programs that a profile was for at the last look.
 struct Candidate {
-    stamp: Option<Stamp>,
+    stamp: Option<FileStamp>,
     is_read: bool,
     programs: Vec<Program>,
 }
 
 struct Follower {
-    wish: Arc<Mutex<Wish>>,
+    selection: Arc<Mutex<ProfileSelection>>,
     output: OutputChoice,
-    /// What was offered last, or was there at the start.
-    offered: Choice,
-    /// How often people had asked then.
-    asked: u64,
+    /// The choice that was sent to the bridge last, or the one at the start.
+    sent: ProfileChoice,
+    /// Number of profile requests by people at that time.
+    request_count: u64,
     /// A change that was seen at the last look.
-    seen: Option<Choice>,
+    seen: Option<ProfileChoice>,
     candidates: BTreeMap<String, Candidate>,
-    desktop: Result<Desktop, String>,
+    desktop: Result<WindowSystem, String>,
     looks_without_desktop: u32,
 }
 
 impl Follower {
-    fn new(wish: Arc<Mutex<Wish>>, output: OutputChoice) -> Self {
-        let begun = wish.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    fn new(selection: Arc<Mutex<ProfileSelection>>, output: OutputChoice) -> Self {
+        let begun = selection.lock().unwrap_or_else(PoisonError::into_inner).clone();
         Self {
-            wish,
+            selection,
             output,
-            offered: Choice { name: begun.name, stamp: begun.stamp, reason: None },
-            asked: begun.asked,
+            sent: ProfileChoice { name: begun.name, stamp: begun.stamp, reason: None },
+            request_count: begun.request_count,
             seen: None,
             candidates: BTreeMap::new(),
             desktop: Err(String::new()),
@@ -89,28 +93,33 @@ impl Follower {
         }
     }
 
-    /// What there is to offer now: errors of profiles that may be for a program, then the profile to be played.
-    fn look(&mut self) -> Vec<Offer> {
-        let wish = self.wish.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        if wish.asked != self.asked {
-            self.asked = wish.asked;
-            self.offered = Choice { name: wish.name.clone(), stamp: wish.stamp.clone(), reason: None };
+    /// The updates to send now: errors of profiles that may be for a program, then the profile to be played.
+    fn look(&mut self) -> Vec<ProfileUpdate> {
+        let selection = self.selection.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        if selection.request_count != self.request_count {
+            self.request_count = selection.request_count;
+            self.sent =
+                ProfileChoice { name: selection.name.clone(), stamp: selection.stamp.clone(), reason: None };
         }
-        let mut offers = Vec::new();
-        let choice = match &wish.fallback {
+        let mut updates = Vec::new();
+        let choice = match &selection.fallback {
             Some(fallback) => {
-                offers.extend(self.read_candidates().into_iter().map(|error| self.offer(Err(error), None)));
+                updates.extend(self.read_candidates().into_iter().map(|error| self.update(Err(error), None)));
                 self.in_front(fallback)
             }
-            None => Choice { name: wish.name.clone(), stamp: Stamp::of(&wish.name), reason: None },
+            None => ProfileChoice {
+                name: selection.name.clone(),
+                stamp: FileStamp::of(&selection.name),
+                reason: None,
+            },
         };
-        offers.extend(self.changed(choice));
-        offers
+        updates.extend(self.changed(choice));
+        updates
     }
 
-    /// The choice as an offer, if it is another one than before and has come to rest.
-    fn changed(&mut self, choice: Choice) -> Option<Offer> {
-        if choice == self.offered {
+    /// The update for a choice that differs from the last one and is stable.
+    fn changed(&mut self, choice: ProfileChoice) -> Option<ProfileUpdate> {
+        if choice == self.sent {
             self.seen = None;
             return None;
         }
@@ -119,37 +128,39 @@ impl Follower {
             return None;
         }
         let read = read(&choice.name, self.output);
-        if Stamp::of(&choice.name) != choice.stamp {
+        if FileStamp::of(&choice.name) != choice.stamp {
             // It was written meanwhile: what was read may be half of it.
             return None;
         }
-        let mut wish = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
-        if wish.asked == self.asked && read.is_ok() {
-            (wish.name, wish.stamp) = (choice.name.clone(), choice.stamp.clone());
+        let mut selection = self.selection.lock().unwrap_or_else(PoisonError::into_inner);
+        if selection.request_count == self.request_count && read.is_ok() {
+            (selection.name, selection.stamp) = (choice.name.clone(), choice.stamp.clone());
         }
-        drop(wish);
-        let reason = Some(&choice.reason).filter(|reason| **reason != self.offered.reason).cloned().flatten();
-        self.offered = choice;
+        drop(selection);
+        let reason = Some(&choice.reason).filter(|reason| **reason != self.sent.reason).cloned().flatten();
+        self.sent = choice;
         self.seen = None;
-        Some(self.offer(read, reason))
+        Some(self.update(read, reason))
     }
 
-    fn offer(&self, read: Result<ReadProfile, String>, reason: Option<String>) -> Offer {
-        Offer { read, reason, asked: self.asked }
+    fn update(&self, read: Result<ReadProfile, String>, reason: Option<String>) -> ProfileUpdate {
+        ProfileUpdate { read, reason, request_count: self.request_count }
     }
 
-    /// What is to be played with the program that is in front.
-    fn in_front(&mut self, fallback: &str) -> Choice {
-        let chosen = |name: &str, reason: String| Choice {
+    /// The profile for the program in the foreground.
+    fn in_front(&mut self, fallback: &str) -> ProfileChoice {
+        let chosen = |name: &str, reason: String| ProfileChoice {
             name: name.to_owned(),
-            stamp: Stamp::of(name),
+            stamp: FileStamp::of(name),
             reason: Some(reason),
         };
         match self.front() {
             Err(why) => chosen(fallback, why),
-            Ok(Front::Ourselves) => Choice { stamp: Stamp::of(&self.offered.name), ..self.offered.clone() },
-            Ok(Front::Nobody) => chosen(fallback, NONE_IS_FOR_IT.into()),
-            Ok(Front::Program { classes, executable }) => {
+            Ok(Foreground::OwnProgram) => {
+                ProfileChoice { stamp: FileStamp::of(&self.sent.name), ..self.sent.clone() }
+            }
+            Ok(Foreground::Unknown) => chosen(fallback, NONE_IS_FOR_IT.into()),
+            Ok(Foreground::Program { classes, executable }) => {
                 let classes: Vec<&str> = classes.iter().map(String::as_str).collect();
                 let is_for = |candidate: &Candidate| {
                     candidate.programs.iter().any(|program| program.is(&classes, executable.as_deref()))
@@ -166,13 +177,13 @@ impl Follower {
     }
 
     /// Asks the desktop. One that is not there, or does not answer any more, is looked for again after a while.
-    fn front(&mut self) -> Result<Front, String> {
+    fn front(&mut self) -> Result<Foreground, String> {
         self.looks_without_desktop += 1;
         if self.desktop.is_err() && self.looks_without_desktop > LOOKS_WITHOUT_DESKTOP {
             self.looks_without_desktop = 0;
-            self.desktop = Desktop::open();
+            self.desktop = WindowSystem::open();
         }
-        let front = self.desktop.as_ref().map_err(String::clone).and_then(Desktop::front);
+        let front = self.desktop.as_ref().map_err(String::clone).and_then(WindowSystem::front);
         if let Err(why) = &front {
             self.desktop = Err(why.clone());
         }
@@ -185,7 +196,7 @@ impl Follower {
         self.candidates.retain(|name, _| names.contains(name));
         let mut errors = Vec::new();
         for name in names {
-            let stamp = Stamp::of(&name);
+            let stamp = FileStamp::of(&name);
             let known = self.candidates.entry(name.clone()).or_insert_with(|| Candidate {
                 stamp: None,
                 is_read: false,
@@ -221,8 +232,8 @@ mod tests {
     fn following(folder: &Path, text: &str) -> (Follower, String) {
         let path = folder.join("mine.toml").to_str().unwrap().to_owned();
         fs::write(&path, text).unwrap();
-        let wish = Arc::new(Mutex::new(Wish::of(&path)));
-        (Follower::new(wish, OutputChoice::AsWritten), path)
+        let selection = Arc::new(Mutex::new(ProfileSelection::of(&path)));
+        (Follower::new(selection, OutputChoice::AsWritten), path)
     }
 
     fn text(name: &str) -> String {
@@ -230,7 +241,7 @@ mod tests {
     }
 
     /// The names and errors that are offered at so many looks.
-    fn offered(follower: &mut Follower, looks: usize) -> Vec<Result<String, String>> {
+    fn updates(follower: &mut Follower, looks: usize) -> Vec<Result<String, String>> {
         let offers = (0..looks).flat_map(|_| follower.look()).collect::<Vec<_>>();
         offers.into_iter().map(|offer| offer.read.map(|read| read.profile().name.clone())).collect()
     }
@@ -239,20 +250,20 @@ mod tests {
     fn a_file_is_offered_once_it_is_at_rest_and_an_error_once() {
         let folder = tempfile::tempdir().unwrap();
         let (mut follower, path) = following(folder.path(), &text("One"));
-        assert_eq!(offered(&mut follower, 3), []);
+        assert_eq!(updates(&mut follower, 3), []);
         // Half of it is there at this look, and all of it at the next.
         fs::write(&path, "schema = 1\nname = \"Tw").unwrap();
-        assert_eq!(offered(&mut follower, 1), []);
+        assert_eq!(updates(&mut follower, 1), []);
         fs::write(&path, text("Two")).unwrap();
-        assert_eq!(offered(&mut follower, 1), []);
-        assert_eq!(offered(&mut follower, 3), [Ok("Two".into())]);
+        assert_eq!(updates(&mut follower, 1), []);
+        assert_eq!(updates(&mut follower, 3), [Ok("Two".into())]);
         fs::write(&path, "schema = 2").unwrap();
-        let told = offered(&mut follower, 4);
+        let told = updates(&mut follower, 4);
         assert!(matches!(&told[..], [Err(error)] if error.contains("mine.toml:1:10")), "{told:?}");
         let aside = folder.path().join("aside");
         fs::write(&aside, text("Three")).unwrap();
         fs::rename(&aside, &path).unwrap();
-        assert_eq!(offered(&mut follower, 3), [Ok("Three".into())]);
+        assert_eq!(updates(&mut follower, 3), [Ok("Three".into())]);
     }
 
     #[test]
@@ -260,10 +271,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (mut follower, path) = following(folder.path(), &text("One"));
         fs::remove_file(&path).unwrap();
-        let told = offered(&mut follower, 3);
+        let told = updates(&mut follower, 3);
         assert!(matches!(&told[..], [Err(error)] if error.contains("mine.toml")), "{told:?}");
         fs::write(&path, text("One")).unwrap();
-        assert_eq!(offered(&mut follower, 3), [Ok("One".into())]);
+        assert_eq!(updates(&mut follower, 3), [Ok("One".into())]);
     }
 
     #[test]
@@ -271,10 +282,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (mut follower, path) = following(folder.path(), &text("One"));
         fs::write(&path, text("Two")).unwrap();
-        assert_eq!(offered(&mut follower, 1), []);
-        let asked = follower.wish.lock().unwrap().asked(Some("contra"));
-        *follower.wish.lock().unwrap() = asked;
-        assert_eq!(offered(&mut follower, 3), []);
-        assert_eq!(follower.wish.lock().unwrap().name, "contra");
+        assert_eq!(updates(&mut follower, 1), []);
+        let requested = follower.selection.lock().unwrap().requested(Some("contra"));
+        *follower.selection.lock().unwrap() = requested;
+        assert_eq!(updates(&mut follower, 3), []);
+        assert_eq!(follower.selection.lock().unwrap().name, "contra");
     }
 }

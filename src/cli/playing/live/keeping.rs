@@ -1,5 +1,5 @@
-//! Keeps ordinary play beside a running bridge, and says now and then what it shows of changes in the pad. The bridge waits for neither:
-//! one thread makes its calls again and writes, another one compares.
+//! Records ordinary play beside a running bridge, and reports now and then which changes of the pad it shows. The bridge waits for
+//! neither: one thread replays its calls and writes, another one compares.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -15,9 +15,9 @@ use crate::cli::laboratory::diagnose::changes::{findings, line};
 use crate::cli::laboratory::diagnose::engine::flaws;
 use crate::cli::printing::written::{quoted, say};
 use firmware_proto::identity::SerialNumber;
-use tactpad::bridge::changes::{Changes, ChangesSlot};
-use tactpad::bridge::observer::{Observed, Observer, observe};
-use tactpad::bridge::parts::PlayingDecoder;
+use tactpad::bridge::bridge_parts::PlayingDecoder;
+use tactpad::bridge::changes::{ChangesSlot, PadChanges};
+use tactpad::bridge::observer::{Observation, Observer, observe};
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::lab::play::change::{Before, changed};
 use tactpad::lab::play::kept::{KeptPlay, mark};
@@ -46,25 +46,25 @@ pub(super) enum KeepPlay {
     No,
 }
 
-/// What keeps the play of a bridge that is about to be made; it may be nothing.
+/// The recording of play for a bridge that is about to be made; empty where nothing is recorded.
 #[derive(Default)]
-pub(super) struct Keeping {
+pub(super) struct PlayKeeping {
     observer: Option<Observer>,
     changes: ChangesSlot,
     thread: Option<JoinHandle<()>>,
 }
 
-/// A decoder that changes are held against.
+/// The decoder with which play is compared.
 #[derive(Clone)]
-struct Calibrated {
+struct ReferenceDecoder {
     decoder: Decoder,
     file: String,
     mark: u64,
 }
 
-/// The thread that hears.
-struct Keeper {
-    calibrated: Calibrated,
+/// The thread that replays the bridge's calls and records them.
+struct PlayRecorder {
+    reference: ReferenceDecoder,
     changes: ChangesSlot,
     reader: Option<Reader>,
     /// Of the pad that is played on, and where it is kept.
@@ -77,38 +77,38 @@ struct Keeper {
     is_refused: bool,
 }
 
-impl Keeping {
+impl PlayKeeping {
     /// Play that was recorded is no new play, and without a decoder of this pad there is nothing to hold it against.
     pub(super) fn begin(keep: KeepPlay, pad: &PadAddress, decoder: &PlayingDecoder) -> io::Result<Self> {
-        let calibrated = Calibrated::of(decoder).filter(|_| keep == KeepPlay::Yes);
+        let reference = ReferenceDecoder::of(decoder).filter(|_| keep == KeepPlay::Yes);
         let is_recorded = matches!(pad, PadAddress::Capture { .. });
-        let Some(calibrated) = calibrated.filter(|_| !is_recorded) else { return Ok(Self::default()) };
-        let (observer, heard) = observe();
+        let Some(reference) = reference.filter(|_| !is_recorded) else { return Ok(Self::default()) };
+        let (observer, calls) = observe();
         let changes = ChangesSlot::default();
-        let keeper = Keeper::new(calibrated, changes.clone());
-        let thread = thread::Builder::new().name("kept play".into()).spawn(move || keeper.run(&heard))?;
+        let recorder = PlayRecorder::new(reference, changes.clone());
+        let thread = thread::Builder::new().name("kept play".into()).spawn(move || recorder.run(&calls))?;
         Ok(Self { observer: Some(observer), changes, thread: Some(thread) })
     }
 
-    /// What the bridge needs for it to hear.
+    /// The observer for the bridge, once.
     pub(super) const fn observer(&mut self) -> Option<Observer> {
         self.observer.take()
     }
 
-    /// Where it says what it found.
+    /// The slot for the changes that were found.
     pub(super) fn changes(&self) -> ChangesSlot {
         self.changes.clone()
     }
 
     /// Waits until all is written, once the bridge is gone.
     pub(super) fn end(self) {
-        // Whoever never heard of a bridge must not wait for it.
+        // Without a bridge its end would never come.
         drop(self.observer);
         let _ = self.thread.map(JoinHandle::join);
     }
 }
 
-impl Calibrated {
+impl ReferenceDecoder {
     fn of(playing: &PlayingDecoder) -> Option<Self> {
         let PlayingDecoder { decoder, place, file, .. } = playing;
         let has_errors = decoder.inverse().is_some_and(|it| !it.field_error().modes().is_empty());
@@ -117,10 +117,10 @@ impl Calibrated {
     }
 }
 
-impl Keeper {
-    const fn new(calibrated: Calibrated, changes: ChangesSlot) -> Self {
+impl PlayRecorder {
+    const fn new(reference: ReferenceDecoder, changes: ChangesSlot) -> Self {
         Self {
-            calibrated,
+            reference,
             changes,
             reader: None,
             kept: None,
@@ -133,9 +133,9 @@ impl Keeper {
     }
 
     /// Until the bridge ends.
-    fn run(mut self, heard: &Receiver<Observed>) {
+    fn run(mut self, calls: &Receiver<Observation>) {
         let mut looks = 0;
-        while self.hear(heard) {
+        while self.drain(calls) {
             looks += 1;
             if looks % (WRITE_LOOKS / 10) == 0 {
                 self.take();
@@ -152,15 +152,15 @@ impl Keeper {
     }
 
     /// Makes all calls that wait; false once the bridge has ended.
-    fn hear(&mut self, heard: &Receiver<Observed>) -> bool {
+    fn drain(&mut self, calls: &Receiver<Observation>) -> bool {
         loop {
-            match heard.try_recv() {
-                Ok(Observed::Call { at, call }) => {
+            match calls.try_recv() {
+                Ok(Observation::Call { at, call }) => {
                     if let Some(reader) = &mut self.reader {
                         reader.apply(at, call.as_call());
                     }
                 }
-                Ok(Observed::Whole { pipeline, .. }) => {
+                Ok(Observation::Checkpoint { pipeline, .. }) => {
                     self.take();
                     self.reader = Some(Reader::going_on(*pipeline));
                     if let Some((kept, _)) = &mut self.kept {
@@ -191,7 +191,7 @@ impl Keeper {
             return;
         }
         self.write();
-        let mark = self.calibrated.mark;
+        let mark = self.reference.mark;
         self.kept = kept_play::place(pad, mark).map(|path| (kept_play::read(&path, pad, mark), path));
         self.has_compared = false;
     }
@@ -219,11 +219,11 @@ impl Keeper {
         // What its command names has to be there.
         self.is_new = true;
         self.write();
-        let (calibrated, changes) = (self.calibrated.clone(), self.changes.clone());
+        let (reference, changes) = (self.reference.clone(), self.changes.clone());
         let compare = move || {
             // It counts for this thread alone. Where it is refused, it compares all the same.
             let _ = nice(NICENESS);
-            if let Some(found) = calibrated.changes(&windows, pad, &path) {
+            if let Some(found) = reference.changes(&windows, pad, &path) {
                 changes.set(found);
             }
         };
@@ -231,9 +231,9 @@ impl Keeper {
     }
 }
 
-impl Calibrated {
-    /// What these windows show; nothing where they are too few.
-    fn changes(&self, windows: &[Window], pad: SerialNumber, path: &Path) -> Option<Changes> {
+impl ReferenceDecoder {
+    /// The changes that these windows show; `None` where there are too few windows.
+    fn changes(&self, windows: &[Window], pad: SerialNumber, path: &Path) -> Option<PadChanges> {
         let device = Device::nominal();
         let nominal = (&device, &PadField::nominal());
         let before = Before::Decoder(&self.decoder);
@@ -244,6 +244,6 @@ impl Calibrated {
             text += &format!(": tactpad diagnose --play {play} --against {decoder}");
         }
         let findings = serde_json::to_value(findings(&found)).ok()?;
-        Some(Changes { pad, since: self.file.clone(), findings, text })
+        Some(PadChanges { pad, since: self.file.clone(), findings, text })
     }
 }

@@ -12,7 +12,7 @@ use tactpad::lab::play::kept::{KeptPlay, mark};
 
 /// The folder.
 const FOLDER: &str = "play";
-/// What their names end in.
+/// The ending of their names.
 const ENDING: &str = "play";
 /// Of more the oldest are deleted.
 const FILES_MAX: usize = 8;
@@ -26,7 +26,7 @@ pub(super) fn place(pad: SerialNumber, decoder: u64) -> Option<PathBuf> {
     state_file::place(FOLDER).map(|folder| folder.join(format!("{name}-{both:016x}.{ENDING}")))
 }
 
-/// What was kept of this pad under this decoder. What is damaged, or another's, is as good as none.
+/// The recorded play of this pad under this decoder. A damaged file, or another pad's, counts as empty.
 pub(super) fn read(path: &Path, pad: SerialNumber, decoder: u64) -> KeptPlay {
     let bytes = played::kept_bytes(path).and_then(Result::ok);
     let kept = bytes.and_then(|bytes| KeptPlay::from_bytes(&bytes).ok());

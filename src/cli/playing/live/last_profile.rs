@@ -6,7 +6,7 @@ use crate::cli::files::state_file;
 /// The file that remembers it.
 const FILE: &str = "last-profile";
 
-/// What was kept, as `run --profile` takes it.
+/// The saved choice, as `run --profile` takes it.
 pub(super) fn kept() -> Option<String> {
     let text = state_file::read(FILE);
     Some(text.trim_end().to_owned()).filter(|name| !name.is_empty() && !name.contains('\n'))

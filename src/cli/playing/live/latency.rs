@@ -8,26 +8,28 @@ use serde::Serialize;
 use super::chosen;
 use super::files::Files;
 use super::output::Output;
-use super::playing::{Audience, Terminal, microseconds, open_pad, play, requests};
+use super::playing::{Audience, TerminalHost, microseconds, open_pad, play, requests};
 use crate::cli::failure::Failure;
-use crate::cli::files::decoder_file::Choice;
-use crate::cli::files::device::Pad;
+use crate::cli::files::decoder_file::DecoderChoice;
+use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
 use crate::cli::printing::written::{print_json, say, stdout};
+use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
+use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::latency::Percentiles;
 use tactpad::bridge::opening::Patience;
-use tactpad::bridge::parts::Parts;
-use tactpad::bridge::running::Bridge;
 use tactpad::bridge::sink::{Sink, null::NullSink, uinput};
-use tactpad::bridge::timing::{Policy, Stages, Timing};
+use tactpad::bridge::timing::{ProfileDelays, Stages, Timing};
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::pipeline::Pipeline;
 
 /// Arguments of `tactpad latency`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tactpad latency --seconds 10 --json")]
+#[command(
+    after_help = "Example: tactpad latency --seconds 10 --json, or tactpad latency --pad auto while you press your own pad"
+)]
 pub(crate) struct Arguments {
     /// How long to measure.
     #[arg(long, default_value = "10", value_parser = seconds::parse, allow_hyphen_values = true)]
@@ -36,12 +38,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]
-    device: Pad,
+    device: PadOptions,
     /// A profile's name or file.
     #[arg(long, default_value = "super-mario")]
     profile: String,
     #[command(flatten)]
-    decoder: Choice,
+    decoder: DecoderChoice,
     /// Where events go: auto (a virtual gamepad, else nowhere), uinput, x11, log:FILE (- is stdout), none.
     #[arg(long, default_value = "auto")]
     output: Output,
@@ -56,7 +58,7 @@ struct LatencyReport {
     writes: u64,
     stages_us: Stages<Percentiles>,
     end_to_end_us: Percentiles,
-    policy_ms: Policy,
+    policy_ms: ProfileDelays,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -73,8 +75,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let played = profile.profile().clone();
     let pipeline = Pipeline::new(decoder.decoder.clone(), played.clone());
     let audience = Audience::Nobody;
-    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
-    let mut bridge = Bridge::new(Parts {
+    let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
+    let mut bridge = Bridge::new(BridgeParts {
         pad: timing.pad(opened),
         patience: Patience::Limited,
         decoder,
@@ -94,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         writes: bridge.latency().len(),
         stages_us: timed.stages_us,
         end_to_end_us: bridge.latency().percentiles(),
-        policy_ms: Policy::of(&played, timed.period_us),
+        policy_ms: ProfileDelays::of(&played, timed.period_us),
     };
     match output {
         _ if arguments.json => print_json(&report),
@@ -124,7 +126,7 @@ fn print(report: &LatencyReport, out: &mut impl Write) -> io::Result<()> {
     for (name, Percentiles { p50, p95, p99, max }) in rows {
         writeln!(out, "{name:<11} {p50:>9.1} {p95:>9.1} {p99:>9.1} {max:>9.1}")?;
     }
-    let Policy { filter, hold, slow, tremor } = report.policy_ms;
+    let ProfileDelays { filter, hold, slow, tremor } = report.policy_ms;
     write!(out, "asked for by the profile: filter {filter:.1} ms, long press {hold:.0} ms")?;
     for (name, delay_ms) in [("slow press", slow), ("tremor", tremor)] {
         if delay_ms > 0.0 {

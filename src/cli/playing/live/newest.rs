@@ -12,7 +12,7 @@ use tactpad::pipeline::control::{OutputDevice, OutputEvent};
 /// More have no room beside the plate.
 const NEWEST: usize = 8;
 
-/// What people call it.
+/// Display name.
 const PLACE: &str = "event log, here";
 
 /// The newest events, which a sink writes and a picture shows.

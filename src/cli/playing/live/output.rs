@@ -93,7 +93,7 @@ pub(super) fn log_to(stdout: impl Write + Send + 'static) -> Result<Box<dyn Sink
     Ok(Box::new(sink.map_err(|error| Failure::Failed(error.message))?))
 }
 
-/// What is told where an event log stands in for virtual devices.
+/// The message where an event log stands in for virtual devices.
 fn missing(error: &SinkError) -> String {
     format!("Output: an event log, here. For a virtual gamepad: {}", error.message)
 }

@@ -5,17 +5,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::Value;
 
-use super::wish::Wish;
+use super::wish::ProfileSelection;
 use super::{calibrated, doctor, reported};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::reason;
+use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::observer::Observer;
-use tactpad::bridge::request::Asker;
-use tactpad::bridge::running::Bridge;
+use tactpad::bridge::request::RequestSender;
 use tactpad::bridge::timing::Timing;
-use tactpad::dashboard::library::{
-    Entry, KeptDecoder, Library, Over, Report, Saved, Session, Stored, Unsaved,
+use tactpad::dashboard::host::{
+    DashboardHost, KeptDecoder, Overwrite, ProfileEntry, ReportEntry, SaveError, SavedProfile, SessionStore,
+    StoredProfile,
 };
 use tactpad::dashboard::server::Dashboard;
 use tactpad::lab::play::guide::Guide;
@@ -25,15 +26,15 @@ use tactpad::pipeline::mapping::read::check::OutputChoice;
 /// A page that has its address, and waits for its bridge.
 pub(super) struct Page {
     dashboard: Dashboard,
-    asker: Asker,
+    sender: RequestSender,
     shelf: Arc<Shelf>,
 }
 
 impl Page {
-    /// Opens a port for the page of a bridge that `asker` reaches, and gives the observer that the bridge needs.
+    /// Opens a port for the page of a bridge that `sender` reaches, and gives the observer that the bridge needs.
     pub(super) fn open(
-        asker: Asker,
-        wish: Arc<Mutex<Wish>>,
+        sender: RequestSender,
+        selection: Arc<Mutex<ProfileSelection>>,
         output: OutputChoice,
     ) -> Result<(Self, Observer), Failure> {
         let (dashboard, observer) = Dashboard::open(0).map_err(|error| {
@@ -42,7 +43,7 @@ impl Page {
                 reason(&error)
             ))
         })?;
-        Ok((Self { dashboard, asker, shelf: Arc::new(Shelf { wish, output }) }, observer))
+        Ok((Self { dashboard, sender, shelf: Arc::new(Shelf { selection, output }) }, observer))
     }
 
     /// Where it is.
@@ -52,34 +53,34 @@ impl Page {
 
     /// Shows `bridge` until the process ends.
     pub(super) fn start(self, bridge: &Bridge, timing: Timing) -> Result<(), Failure> {
-        Ok(self.dashboard.start(bridge, self.asker, timing, self.shelf)?)
+        Ok(self.dashboard.start(bridge, self.sender, timing, self.shelf)?)
     }
 }
 
 /// Profiles, the doctor and reports.
 struct Shelf {
-    wish: Arc<Mutex<Wish>>,
+    selection: Arc<Mutex<ProfileSelection>>,
     output: OutputChoice,
 }
 
-impl Library for Shelf {
-    fn entries(&self) -> Vec<Entry> {
+impl DashboardHost for Shelf {
+    fn entries(&self) -> Vec<ProfileEntry> {
         profile::entries()
     }
 
     fn playing(&self) -> String {
-        self.wish.lock().unwrap_or_else(PoisonError::into_inner).name.clone()
+        self.selection.lock().unwrap_or_else(PoisonError::into_inner).name.clone()
     }
 
     fn output(&self) -> OutputChoice {
         self.output
     }
 
-    fn read(&self, name: &str) -> Option<Stored> {
+    fn read(&self, name: &str) -> Option<StoredProfile> {
         profile::stored(name)
     }
 
-    fn save(&self, name: &str, text: &str, over: &Over) -> Result<Saved, Unsaved> {
+    fn save(&self, name: &str, text: &str, over: &Overwrite) -> Result<SavedProfile, SaveError> {
         profile::save(name, text, over)
     }
 
@@ -87,7 +88,7 @@ impl Library for Shelf {
         serde_json::to_value(doctor::examine()).unwrap_or_default()
     }
 
-    fn reports(&self) -> Vec<Report> {
+    fn reports(&self) -> Vec<ReportEntry> {
         reported::all()
     }
 
@@ -105,7 +106,7 @@ impl Library for Shelf {
         fresh: bool,
         guide: &mut Guide,
         head: &Head,
-    ) -> Result<Box<dyn Session>, String> {
+    ) -> Result<Box<dyn SessionStore>, String> {
         calibrated::open(name, fresh, guide, head).map_err(Failure::sentence)
     }
 

@@ -1,23 +1,23 @@
-//! What the live verbs share: which pad they play with, who is told, and how a run ends.
+//! Shared parts of the live verbs: opening the pad, messages to people, and the end of a run.
 
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::wish::Wish;
+use super::wish::ProfileSelection;
 use crate::cli::failure::Failure;
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::{is_stdout, reason, say};
 use tactpad::bridge::destination::Destination;
 use tactpad::bridge::error::BridgeError;
+use tactpad::bridge::event_loop::{Bridge, Ending};
 use tactpad::bridge::host::Host;
-use tactpad::bridge::offer::Offer;
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
-use tactpad::bridge::queue::{Group, Queue};
+use tactpad::bridge::profile_update::ProfileUpdate;
+use tactpad::bridge::queue::{WriteGroup, WriteQueue};
 use tactpad::bridge::requests::Requests;
-use tactpad::bridge::running::{Bridge, Ending};
 use tactpad::bridge::snapshot::Drops;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::pipeline::mapping::profile::Profile;
@@ -35,7 +35,7 @@ const VIRTUAL_SEED: u64 = 1;
 /// Opens the pad at `address`. The virtual pad is `pad` and plays a script made for `profile`.
 pub(super) fn open_pad(
     address: &PadAddress,
-    pad: &Pad,
+    pad: &PadOptions,
     profile: &Profile,
     patience: Patience,
 ) -> Result<OpenedPad, Failure> {
@@ -56,12 +56,12 @@ pub(super) fn open_pad(
 }
 
 /// Starts a virtual pad that plays `script`.
-pub(super) fn open_virtual(pad: &Pad, script: Script) -> Result<OpenedPad, Failure> {
+pub(super) fn open_virtual(pad: &PadOptions, script: Script) -> Result<OpenedPad, Failure> {
     OpenedPad::simulated(virtual_pad(pad, script)?).map_err(not_opened)
 }
 
 /// The virtual pad, on which `script` is played.
-pub(super) fn virtual_pad(pad: &Pad, script: Script) -> Result<VirtualPad, Failure> {
+pub(super) fn virtual_pad(pad: &PadOptions, script: Script) -> Result<VirtualPad, Failure> {
     if !pad.is_given() {
         return Ok(VirtualPad::new(script, VIRTUAL_SEED));
     }
@@ -77,20 +77,20 @@ pub(super) fn not_opened(error: OpenError) -> Failure {
 }
 
 /// How long to wait for a pad: `auto` always waits, a named one only if that is asked for.
-pub(super) fn patience(pad: &PadAddress, waits: Waits) -> Patience {
+pub(super) fn patience(pad: &PadAddress, waits: WaitOption) -> Patience {
     match (pad, waits) {
-        (PadAddress::Auto { .. }, _) | (_, Waits::Asked) => Patience::Endless,
-        (_, Waits::NotAsked) => Patience::Limited,
+        (PadAddress::Auto { .. }, _) | (_, WaitOption::Given) => Patience::Endless,
+        (_, WaitOption::NotGiven) => Patience::Limited,
     }
 }
 
 /// Whether `--wait` was given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Waits {
+pub(super) enum WaitOption {
     /// It was.
-    Asked,
+    Given,
     /// It was not.
-    NotAsked,
+    NotGiven,
 }
 
 /// The file of a capture, which is written where it stands: what was recorded before a crash is there. Or the pipe.
@@ -117,28 +117,33 @@ pub(super) fn tell_of_waiting(path: &Path, waits: bool) {
     }
 }
 
-/// What people are told may wait so long to be read.
-const TOLD_BYTES_MAX: usize = 16 << 10;
+/// Largest size of the messages that wait to be read, in bytes.
+const MESSAGE_BYTES_MAX: usize = 16 << 10;
 
-/// The program around a bridge that was started from a command line.
-pub(super) struct Terminal {
+/// The host of a bridge that was started from a command line.
+pub(super) struct TerminalHost {
     /// The profile that is read again when nobody names another one.
-    wish: Arc<Mutex<Wish>>,
+    selection: Arc<Mutex<ProfileSelection>>,
     output: OutputChoice,
-    /// Where the page of the bridge is.
+    /// Address of the bridge's page.
     page: Option<String>,
     /// Stderr, if somebody reads it. A terminal that is held with Ctrl-S must not keep the bridge waiting.
-    told: Option<Queue>,
+    messages: Option<WriteQueue>,
 }
 
-impl Terminal {
+impl TerminalHost {
     /// A bridge that plays `profile` for an output of this kind.
     pub(super) fn new(profile: &str, output: OutputChoice, audience: Audience) -> io::Result<Self> {
-        let told = match audience {
-            Audience::Stderr => Some(Queue::start("told", io::stderr(), TOLD_BYTES_MAX)?),
+        let messages = match audience {
+            Audience::Stderr => Some(WriteQueue::start("told", io::stderr(), MESSAGE_BYTES_MAX)?),
             Audience::Nobody => None,
         };
-        Ok(Self { wish: Arc::new(Mutex::new(Wish::of(profile))), output, page: None, told })
+        Ok(Self {
+            selection: Arc::new(Mutex::new(ProfileSelection::of(profile))),
+            output,
+            page: None,
+            messages,
+        })
     }
 
     /// The same, of a bridge that is shown at this address.
@@ -146,28 +151,28 @@ impl Terminal {
         Self { page, ..self }
     }
 
-    /// What people wish to be played, for whoever follows it.
-    pub(super) fn wish(&self) -> Arc<Mutex<Wish>> {
-        Arc::clone(&self.wish)
+    /// The profile selection, shared with the thread that follows it.
+    pub(super) fn selection(&self) -> Arc<Mutex<ProfileSelection>> {
+        Arc::clone(&self.selection)
     }
 }
 
-impl Host for Terminal {
+impl Host for TerminalHost {
     fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
-        let mut wish = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
-        let asked = wish.asked(name);
-        let read = profile::read(&asked.name, self.output).map_err(Failure::sentence)?;
+        let mut selection = self.selection.lock().unwrap_or_else(PoisonError::into_inner);
+        let requested = selection.requested(name);
+        let read = profile::read(&requested.name, self.output).map_err(Failure::sentence)?;
         // A profile that was chosen and can be used is the one to be read again.
-        *wish = asked;
+        *selection = requested;
         Ok(read)
     }
 
     fn next_profile(&mut self) -> Result<ReadProfile, String> {
-        let mut wish = self.wish.lock().unwrap_or_else(PoisonError::into_inner);
-        let (chosen, read) = profile::next(&wish.name, self.output).ok_or(
+        let mut selection = self.selection.lock().unwrap_or_else(PoisonError::into_inner);
+        let (chosen, read) = profile::next(&selection.name, self.output).ok_or(
             "there is no other profile from which a press leads on: add one with bridge = \"next-profile\"",
         )?;
-        *wish = wish.asked(Some(&chosen));
+        *selection = selection.requested(Some(&chosen));
         Ok(read)
     }
 
@@ -175,19 +180,19 @@ impl Host for Terminal {
         self.page.clone()
     }
 
-    fn wants(&self, offer: &Offer) -> bool {
-        offer.asked == self.wish.lock().unwrap_or_else(PoisonError::into_inner).asked
+    fn wants(&self, update: &ProfileUpdate) -> bool {
+        update.request_count == self.selection.lock().unwrap_or_else(PoisonError::into_inner).request_count
     }
 
     fn tell(&mut self, line: &str) {
-        if let Some(told) = &self.told {
+        if let Some(messages) = &self.messages {
             // Where nobody reads, the bridge plays on.
-            let _ = told.push(Group { bytes: format!("{line}\n").into(), ..Group::default() });
+            let _ = messages.push(WriteGroup { bytes: format!("{line}\n").into(), ..WriteGroup::default() });
         }
     }
 }
 
-/// Who is told what the bridge is doing.
+/// The reader of messages about the bridge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Audience {
     /// Somebody who reads stderr.

@@ -11,26 +11,24 @@ use super::files::{self, Files};
 use super::newest::Newest;
 use super::output::Output;
 use super::playing::{
-    Audience, Terminal, Waits, create_capture, microseconds, open_pad, patience, play, requests,
+    Audience, TerminalHost, WaitOption, create_capture, microseconds, open_pad, patience, play, requests,
 };
 use super::{chosen, ctl};
 use crate::cli::failure::Failure;
-use crate::cli::files::decoder_file::Choice;
-use crate::cli::files::device::Pad;
+use crate::cli::files::decoder_file::DecoderChoice;
+use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
 use crate::cli::printing::written::{Named, say};
+use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
-use tactpad::bridge::parts::Parts;
-use tactpad::bridge::running::Bridge;
+use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::bridge::transport::fault::FaultPlan;
 
 /// Arguments of `tactpad record`.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example: tactpad record game.cap --pad serial:/dev/ttyACM0, then tactpad replay game.cap"
-)]
+#[command(after_help = "Example: tactpad record game.cap --pad auto, then tactpad replay game.cap")]
 pub(crate) struct Arguments {
     /// The file to write; a file that is there already is kept, and - is standard output.
     capture: PathBuf,
@@ -41,12 +39,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]
-    device: Pad,
+    device: PadOptions,
     /// A profile's name or file; it is kept in the capture, and so is the decoder.
     #[arg(long, default_value = "super-mario")]
     profile: String,
     #[command(flatten)]
-    decoder: Choice,
+    decoder: DecoderChoice,
     /// Where events go meanwhile: auto (virtual devices, else an event log here), uinput, x11, log:FILE (- is stdout),
     /// none.
     #[arg(long, default_value = "none")]
@@ -58,7 +56,8 @@ pub(crate) struct Arguments {
     /// End after this many seconds; without it Ctrl-C ends.
     #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
-    /// Say when to press lightly and when hard, for tune --force-range; it ends after 30 s, or after --seconds.
+    /// Say when to press lightly and when hard, for tune --force-range; it ends after 30 s, or after --seconds. It is for your own
+    /// hand: give --pad auto.
     #[arg(long)]
     force_range: bool,
 }
@@ -79,7 +78,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let decoder = chosen::read(decoder)?;
     let profile = profile::read(profile, output.choice())?;
     let (sink, missing) = output.open_or(|| Newest::default().sink(false))?;
-    let patience = patience(&arguments.pad, Waits::NotAsked);
+    let patience = patience(&arguments.pad, WaitOption::NotGiven);
     let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
     let opened = opened.with_faults(arguments.faults)?;
     let place = capture.display().to_string();
@@ -89,9 +88,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     say(format_args!("recording {} in {place}", arguments.pad));
     let audience = Audience::Stderr;
-    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
+    let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let seconds = arguments.seconds.or(arguments.force_range.then_some(FORCE_RANGE_S));
-    let mut bridge = Bridge::new(Parts {
+    let mut bridge = Bridge::new(BridgeParts {
         pad: opened,
         patience,
         decoder,

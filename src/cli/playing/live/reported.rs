@@ -7,10 +7,10 @@ use std::time::UNIX_EPOCH;
 use serde_json::Value;
 
 use crate::cli::printing::reports::{DOCUMENT, PAGE, folders};
-use tactpad::dashboard::library::Report;
+use tactpad::dashboard::host::ReportEntry;
 
 /// Reports that are still there, the newest first.
-pub(super) fn all() -> Vec<Report> {
+pub(super) fn all() -> Vec<ReportEntry> {
     folders().iter().enumerate().filter_map(|(number, folder)| report(number, folder)).rev().collect()
 }
 
@@ -20,10 +20,10 @@ pub(super) fn page(id: &str) -> Option<PathBuf> {
     Some(folder.join(PAGE)).filter(|page| page.is_file())
 }
 
-fn report(number: usize, folder: &Path) -> Option<Report> {
+fn report(number: usize, folder: &Path) -> Option<ReportEntry> {
     let written = fs::metadata(folder.join(PAGE)).ok()?.modified().ok()?;
     let document: Value = serde_json::from_slice(&fs::read(folder.join(DOCUMENT)).ok()?).ok()?;
-    Some(Report {
+    Some(ReportEntry {
         id: number.to_string(),
         name: folder.file_name()?.to_string_lossy().into_owned(),
         folder: folder.display().to_string(),
@@ -33,7 +33,7 @@ fn report(number: usize, folder: &Path) -> Option<Report> {
     })
 }
 
-/// What was found, in one line.
+/// The findings, in one line.
 fn summary(document: &Value) -> String {
     let findings = document.get("findings").and_then(Value::as_array).into_iter().flatten();
     let text =

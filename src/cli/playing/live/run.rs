@@ -7,23 +7,23 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::files::Files;
 use super::follower;
-use super::keeping::{KeepPlay, Keeping};
+use super::keeping::{KeepPlay, PlayKeeping};
 use super::newest::Newest;
 use super::output::Output;
-use super::playing::{Audience, Terminal, Waits, microseconds, open_pad, patience, play, requests};
+use super::playing::{Audience, TerminalHost, WaitOption, microseconds, open_pad, patience, play, requests};
 use super::screen::Screen;
-use super::shown::Shown;
+use super::shown::DisplayOptions;
 use super::wish;
 use super::{chosen, ctl};
 use crate::cli::failure::Failure;
-use crate::cli::files::decoder_file::Choice;
-use crate::cli::files::device::Pad;
+use crate::cli::files::decoder_file::DecoderChoice;
+use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
 use crate::cli::printing::terminal;
 use crate::cli::printing::written::{printable, say};
-use tactpad::bridge::parts::Parts;
-use tactpad::bridge::running::{Bridge, Ending};
+use tactpad::bridge::bridge_parts::BridgeParts;
+use tactpad::bridge::event_loop::{Bridge, Ending};
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::bridge::transport::fault::FaultPlan;
 
@@ -40,17 +40,17 @@ pub(crate) struct Arguments {
     #[arg(long)]
     wait: bool,
     #[command(flatten)]
-    device: Pad,
+    device: PadOptions,
     /// A profile's name or file; it is read again when it is changed. Or auto[:NAME]: the one whose [[program]] is in front, else NAME.
     #[arg(long, default_value = "super-mario")]
     profile: String,
     #[command(flatten)]
-    decoder: Choice,
+    decoder: DecoderChoice,
     /// Where events go: auto (virtual devices, else an event log here), uinput, x11, log:FILE (- is stdout), none.
     #[arg(long, default_value = "auto")]
     output: Output,
     #[command(flatten)]
-    shown: Shown,
+    shown: DisplayOptions,
     /// Try a bad line: SEED[:FAULT=PROBABILITY,...] with drop, repeat, reorder, corrupt, delay, stall; each
     /// probability is per frame, and 0.001 where only a seed is given.
     #[arg(long, value_name = "FAULTS")]
@@ -71,10 +71,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
     let decoder = chosen::read(decoder)?;
     let audience = audience(output);
-    let host = Terminal::new(&arguments.profile, output.choice(), audience)?;
-    let wish = host.wish();
+    let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
+    let selection = host.selection();
     let profile = profile::read(profile, output.choice())?;
-    let patience = patience(&arguments.pad, if arguments.wait { Waits::Asked } else { Waits::NotAsked });
+    let patience =
+        patience(&arguments.pad, if arguments.wait { WaitOption::Given } else { WaitOption::NotGiven });
     let is_shown = audience == Audience::Nobody;
     let newest = Newest::default();
     let (sink, missing) = output.open_or(|| newest.sink(is_shown))?;
@@ -89,13 +90,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     audience.tell(&title);
     let requests = requests(Some(&ctl::socket_path()), audience)?;
-    let mut prepared = arguments.shown.prepare(&requests, &wish, output.choice())?;
+    let mut prepared = arguments.shown.prepare(&requests, &selection, output.choice())?;
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));
     }
-    follower::start(wish, output.choice(), requests.asker()?)?;
-    let mut keeping = Keeping::begin(arguments.keep_play, pad, &decoder)?;
-    let mut bridge = Bridge::new(Parts {
+    follower::start(selection, output.choice(), requests.sender()?)?;
+    let mut keeping = PlayKeeping::begin(arguments.keep_play, pad, &decoder)?;
+    let mut bridge = Bridge::new(BridgeParts {
         pad: prepared.pad(opened),
         patience,
         decoder,

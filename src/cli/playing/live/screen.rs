@@ -106,7 +106,7 @@ impl Size {
     }
 }
 
-/// What is drawn, for a terminal of this size.
+/// The lines of the screen, for a terminal of this size.
 pub(super) struct Picture {
     size: Size,
     lines: Vec<String>,

@@ -1,23 +1,23 @@
-//! How a running bridge is shown beside the terminal: by the dashboard and the tray.
+//! The displays of a running bridge beside the terminal: the dashboard and the tray.
 
 use std::sync::{Arc, Mutex};
 
 use clap::Args;
 
 #[cfg(feature = "tray")]
-use super::desk::Around;
+use super::desk::TrayProfiles;
 #[cfg(feature = "dashboard")]
 use super::page::Page;
-use super::wish::Wish;
+use super::wish::ProfileSelection;
 use crate::cli::failure::Failure;
 #[cfg(feature = "tray")]
 use crate::cli::printing::written::say;
+use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::observer::Observer;
 use tactpad::bridge::opening::OpenedPad;
 #[cfg(any(feature = "dashboard", feature = "tray"))]
-use tactpad::bridge::request::Asker;
+use tactpad::bridge::request::RequestSender;
 use tactpad::bridge::requests::Requests;
-use tactpad::bridge::running::Bridge;
 use tactpad::bridge::sink::Sink;
 use tactpad::bridge::timing::Timing;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
@@ -26,7 +26,7 @@ use tactpad::tray;
 
 /// What people ask for.
 #[derive(Clone, Copy, Debug, Args)]
-pub(super) struct Shown {
+pub(super) struct DisplayOptions {
     /// Show the bridge in a page of this machine's browser, and change profiles there; its address is printed.
     #[cfg(feature = "dashboard")]
     #[arg(long)]
@@ -37,21 +37,21 @@ pub(super) struct Shown {
     tray: bool,
 }
 
-/// What shows a bridge that is about to be made.
+/// The displays, opened before the bridge is made.
 #[derive(Default)]
-pub(super) struct Prepared {
+pub(super) struct OpenedDisplays {
     #[cfg(feature = "dashboard")]
     page: Option<Page>,
     #[cfg(feature = "tray")]
-    tray: Option<(Around, Asker)>,
-    /// Who wants to hear of each call.
+    tray: Option<(TrayProfiles, RequestSender)>,
+    /// The observer of each call, for the page.
     pub(super) observer: Option<Observer>,
-    /// Where the page is.
+    /// Address of the page.
     pub(super) url: Option<String>,
     timing: Option<Timing>,
 }
 
-impl Shown {
+impl DisplayOptions {
     /// Whether there is a page.
     pub(super) const fn has_page(self) -> bool {
         #[cfg(feature = "dashboard")]
@@ -60,41 +60,46 @@ impl Shown {
         false
     }
 
-    /// Opens what shows the bridge that `requests` reach.
+    /// Opens the displays of the bridge that `requests` reach.
     pub(super) fn prepare(
         self,
         requests: &Requests,
-        wish: &Arc<Mutex<Wish>>,
+        selection: &Arc<Mutex<ProfileSelection>>,
         output: OutputChoice,
-    ) -> Result<Prepared, Failure> {
-        let prepared = Prepared::default();
+    ) -> Result<OpenedDisplays, Failure> {
+        let prepared = OpenedDisplays::default();
         #[cfg(feature = "dashboard")]
         let prepared = match self.dashboard {
-            true => prepared.with_page(requests.asker()?, Arc::clone(wish), output)?,
+            true => prepared.with_page(requests.sender()?, Arc::clone(selection), output)?,
             false => prepared,
         };
         #[cfg(feature = "tray")]
         let prepared = match self.tray {
-            true => prepared.with_icon(requests.asker()?, Arc::clone(wish)),
+            true => prepared.with_icon(requests.sender()?, Arc::clone(selection)),
             false => prepared,
         };
-        let _ = (requests, wish, output);
+        let _ = (requests, selection, output);
         Ok(prepared)
     }
 }
 
-impl Prepared {
+impl OpenedDisplays {
     #[cfg(feature = "dashboard")]
-    fn with_page(self, asker: Asker, wish: Arc<Mutex<Wish>>, output: OutputChoice) -> Result<Self, Failure> {
-        let (page, observer) = Page::open(asker, wish, output)?;
+    fn with_page(
+        self,
+        sender: RequestSender,
+        selection: Arc<Mutex<ProfileSelection>>,
+        output: OutputChoice,
+    ) -> Result<Self, Failure> {
+        let (page, observer) = Page::open(sender, selection, output)?;
         let (observer, url, timing) = (Some(observer), Some(page.url()), Some(Timing::default()));
         Ok(Self { page: Some(page), observer, url, timing, ..self })
     }
 
     #[cfg(feature = "tray")]
-    fn with_icon(self, asker: Asker, wish: Arc<Mutex<Wish>>) -> Self {
-        let around = Around::new(wish, self.url.clone());
-        Self { tray: Some((around, asker)), ..self }
+    fn with_icon(self, sender: RequestSender, selection: Arc<Mutex<ProfileSelection>>) -> Self {
+        let profiles = TrayProfiles::new(selection, self.url.clone());
+        Self { tray: Some((profiles, sender)), ..self }
     }
 
     /// The same pad; its reads are timed for the page.
@@ -120,8 +125,8 @@ impl Prepared {
             page.start(bridge, self.timing.unwrap_or_default())?;
         }
         #[cfg(feature = "tray")]
-        if let Some((around, asker)) = self.tray
-            && let Err(why) = tray::start(Box::new(around), bridge.snapshot(), asker)?
+        if let Some((profiles, sender)) = self.tray
+            && let Err(why) = tray::start(Box::new(profiles), bridge.snapshot(), sender)?
         {
             say(format_args!(
                 "there is no tray here ({why}): `tactpad ctl` does everything that its menu does"

@@ -19,7 +19,7 @@ use tempfile::{NamedTempFile, TempDir};
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{reason, say};
 
-/// What plays a file, the best first, each with the package that has it in Debian.
+/// Programs that play a sound file, the best first, each with its package in Debian.
 const PLAYERS: [(&str, &str); 3] =
     [("pw-play", "pipewire-bin"), ("paplay", "pulseaudio-utils"), ("aplay", "alsa-utils")];
 

@@ -13,7 +13,7 @@ use tactpad::pipeline::mapping::read::shipped;
 /// A profile that says all defaults; its lines `#key = …` are what is not written.
 const TEMPLATE: &str = include_str!("template.toml");
 
-/// What the template calls its profile.
+/// The line of the template with its profile's name.
 const TEMPLATE_NAME: &str = "name = \"My game\"";
 
 /// Prints a new profile, or writes it into the user's own folder.

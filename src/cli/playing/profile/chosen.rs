@@ -11,7 +11,7 @@ use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::pipeline::mapping::read::shipped;
 
 /// A profile's text and what findings call the place where it stands.
-pub(super) struct Chosen {
+pub(super) struct ProfileSource {
     pub(super) text: String,
     pub(super) place: String,
 }
@@ -35,7 +35,7 @@ pub(crate) fn known() -> Vec<String> {
     shipped.chain(more).collect()
 }
 
-/// What is wrong with a name that nothing has.
+/// The error for a name that no profile has.
 pub(super) fn unknown(name: &str) -> Failure {
     Failure::Unusable(format!(
         "there is no profile {name:?}: choose one of {}, or give a file",
@@ -44,10 +44,10 @@ pub(super) fn unknown(name: &str) -> Failure {
 }
 
 /// The text of the profile `name`. A name with a dot or a slash is a file's.
-pub(super) fn find(name: &str) -> Result<Chosen, Failure> {
+pub(super) fn find(name: &str) -> Result<ProfileSource, Failure> {
     let Some(path) = file(name) else {
         let text = shipped::text(name).unwrap_or_default().to_owned();
-        return Ok(Chosen { text, place: name.to_owned() });
+        return Ok(ProfileSource { text, place: name.to_owned() });
     };
     if path == Path::new(name) && !name.contains(['.', '/']) && !path.exists() {
         return Err(unknown(name));
@@ -59,7 +59,7 @@ pub(super) fn find(name: &str) -> Result<Chosen, Failure> {
             "profile {place} cannot be read: {why}; name another file, or one of {known}"
         ))
     })?;
-    Ok(Chosen { text, place })
+    Ok(ProfileSource { text, place })
 }
 
 /// The profile after `name`, in the order of `profile list`, that can be used and from which a press leads on, with its name.
@@ -76,22 +76,23 @@ pub(crate) fn next(name: &str, output: OutputChoice) -> Option<(String, ReadProf
 
 /// Reads a profile that is to be used. Warnings go to stderr; errors make it unusable.
 pub(crate) fn read(name: &str, output: OutputChoice) -> Result<ReadProfile, Failure> {
-    let (read, told) = read_aside(name, output)?;
+    let (read, messages) = read_aside(name, output)?;
     // Where people cannot be warned, the profile still plays.
-    let _ = io::stderr().write_all(told.as_bytes());
+    let _ = io::stderr().write_all(messages.as_bytes());
     Ok(read)
 }
 
 /// The same, and the warnings for whoever tells them.
 pub(crate) fn read_aside(name: &str, output: OutputChoice) -> Result<(ReadProfile, String), Failure> {
-    let Chosen { text, place } = find(name)?;
+    let ProfileSource { text, place } = find(name)?;
     let (read, diagnostics) = ReadProfile::read(&text, output);
-    let mut told: String = diagnostics.iter().map(|diagnostic| diagnostic.render(&place) + "\n").collect();
+    let mut messages: String =
+        diagnostics.iter().map(|diagnostic| diagnostic.render(&place) + "\n").collect();
     match read {
-        Some(read) => Ok((read, told)),
+        Some(read) => Ok((read, messages)),
         None => {
-            told.insert_str(0, &format!("profile {place} cannot be used\n"));
-            Err(Failure::Unusable(told.trim_end().to_owned()))
+            messages.insert_str(0, &format!("profile {place} cannot be used\n"));
+            Err(Failure::Unusable(messages.trim_end().to_owned()))
         }
     }
 }

@@ -11,14 +11,14 @@ use tactpad::pipeline::mapping::read::shipped;
 
 /// The profiles that have names.
 #[derive(Serialize)]
-struct Listing {
+struct ProfileList {
     /// The folder of one's own, which need not be there; none where the user has no home.
     folder: Option<String>,
-    profiles: Vec<Entry>,
+    profiles: Vec<ListedProfile>,
 }
 
 #[derive(Serialize)]
-struct Entry {
+struct ListedProfile {
     name: String,
     /// Whether it is the user's own.
     own: bool,
@@ -33,10 +33,10 @@ pub(super) fn run(json: bool) -> Result<(), Failure> {
     let profiles: Vec<_> = chosen::known().into_iter().map(entry).collect();
     if json {
         let folder = own::folder().map(|folder| folder.display().to_string());
-        return print_json(&Listing { folder, profiles });
+        return print_json(&ProfileList { folder, profiles });
     }
     let mut text = String::new();
-    for Entry { name, own, shipped, .. } in profiles {
+    for ListedProfile { name, own, shipped, .. } in profiles {
         text += &match (own, shipped) {
             (false, _) => format!("{name}\n"),
             (true, false) => format!("{name:<18} your own\n"),
@@ -46,7 +46,7 @@ pub(super) fn run(json: bool) -> Result<(), Failure> {
     Ok(stdout().write_all(text.as_bytes())?)
 }
 
-fn entry(name: String) -> Entry {
+fn entry(name: String) -> ListedProfile {
     let file = own::file(&name).map(|path| path.display().to_string());
-    Entry { own: file.is_some(), shipped: shipped::text(&name).is_some(), file, name }
+    ListedProfile { own: file.is_some(), shipped: shipped::text(&name).is_some(), file, name }
 }

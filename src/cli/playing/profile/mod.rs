@@ -21,8 +21,8 @@ pub(crate) use chosen::{file, read};
 #[cfg(target_os = "linux")]
 pub(crate) use chosen::{is_known, known, next, read_aside};
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
-pub(crate) use kept::{entries, save, stored};
-pub(crate) use stored::Stored;
+pub(super) use kept::{entries, save, stored};
+pub(super) use stored::ProfileDestination;
 
 /// Arguments of `tactpad profile`.
 #[derive(Debug, Args)]

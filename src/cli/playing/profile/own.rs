@@ -16,7 +16,7 @@ const NAME_CHARS_MAX: usize = 64;
 /// `run --profile` takes this for the profile whose program is in front.
 const AUTO: &str = "auto";
 
-/// What the schema is called, as the first line of profiles says.
+/// File name of the schema, as the first line of profiles gives it.
 const SCHEMA_FILE: &str = "profile.schema.json";
 
 /// The folder, which need not be there; `None` where the user has no home.

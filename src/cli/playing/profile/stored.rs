@@ -9,14 +9,14 @@ use crate::cli::printing::written::is_stdout;
 
 /// A place that can be written; it is looked at before the work.
 #[derive(Debug)]
-pub(crate) enum Stored {
+pub(crate) enum ProfileDestination {
     /// A new profile of the user's own.
     Own(String),
     /// A file, new or there already.
     File(Destination, PathBuf),
 }
 
-impl Stored {
+impl ProfileDestination {
     /// The place that a name or a file stands for. A profile of one's own that is there is only written over if it is `changed`, the
     /// one that the verb began with.
     pub(crate) fn of(name: &str, changed: &str) -> Result<Self, Failure> {

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use serde::Serialize;
 
-use super::chosen::{self, Chosen};
+use super::chosen::{self, ProfileSource};
 use crate::cli::failure::{Failure, if_read};
 use crate::cli::printing::written::{print_json, stdout};
 use tactpad::pipeline::mapping::profile::Profile;
@@ -19,7 +19,7 @@ struct CheckReport<'a> {
 
 /// Says what there is to say about the profile `name`; it fails if that has errors.
 pub(super) fn run(name: &str, json: bool) -> Result<(), Failure> {
-    let Chosen { text, place } = chosen::find(name)?;
+    let ProfileSource { text, place } = chosen::find(name)?;
     let (read, diagnostics) = check::read(&text, OutputChoice::AsWritten);
     if_read(print(&place, read.as_ref(), &diagnostics, json))?;
     read.map(|_| ()).ok_or_else(|| Failure::Failed(format!("profile {place} has errors")))

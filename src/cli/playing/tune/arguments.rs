@@ -1,13 +1,13 @@
-//! What `tactpad tune` is given, and what it reads and writes by that.
+//! The arguments of `tactpad tune`, and the files that they name.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use crate::cli::failure::Failure;
-use crate::cli::files::decoder_file::Choice;
+use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::recording::{Profiles, Recording};
-use crate::cli::playing::profile::Stored;
+use crate::cli::playing::profile::ProfileDestination;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, written_over};
 use tactpad::lab::tuning::trace::{Trace, Tracer};
@@ -20,8 +20,8 @@ use tactpad::pipeline::mapping::profile::Profile;
     The table begins with the line begin_s,end_s,meant. Each line below it is a press: seconds since the recording's \
     first sample by the pad's clock, and what was meant: up, down, left, right, button 1, a control's name as \
     BTN_SOUTH, several as right+BTN_SOUTH, or none.\n\n\
-    Without a table: tactpad record range.cap --force-range, which says when to press lightly and when hard; then \
-    tactpad tune range.cap --force-range --profile super-mario --write mine"
+    Without a table: tactpad record range.cap --pad auto --force-range, which says when to press lightly and when \
+    hard; then tactpad tune range.cap --force-range --profile super-mario --write mine"
 )]
 pub(crate) struct Arguments {
     /// The capture that tactpad record made; without it the one beside the table, game.cap for game.csv.
@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     pub(super) profile: String,
     /// Without it the contacts are those of the decoder that the capture was recorded with.
     #[command(flatten)]
-    pub(super) decoder: Choice,
+    pub(super) decoder: DecoderChoice,
     /// The profile may decide so late, in milliseconds; one that is later already may stay so.
     #[arg(long, value_name = "MS", default_value_t = 200, value_parser = clap::value_parser!(u32).range(0..=5_000))]
     pub(super) delay_ms: u32,
@@ -67,8 +67,8 @@ impl Arguments {
     }
 
     /// Where the profile is to be written, which is no file that is read.
-    pub(super) fn stored(&self, to: &str, capture: &Path) -> Result<Stored, Failure> {
-        let stored = Stored::of(to, &self.profile)?;
+    pub(super) fn stored(&self, to: &str, capture: &Path) -> Result<ProfileDestination, Failure> {
+        let stored = ProfileDestination::of(to, &self.profile)?;
         let table = self.labelled.as_deref().map(|labelled| (labelled, "is the table"));
         for (read, what) in [(capture, "is the recording")].into_iter().chain(table) {
             if let Some(path) = stored.path().filter(|path| is_same(path, read)) {

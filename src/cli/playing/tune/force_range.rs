@@ -25,7 +25,11 @@ use tactpad::pipeline::mapping::read::shipped;
 const HELD_OUT_MIN: usize = 2 * PRESSES_MIN;
 
 /// A profile and its text.
-type Whole<'p> = (&'p Profile, &'p str);
+#[derive(Clone, Copy)]
+struct ProfileText<'p> {
+    profile: &'p Profile,
+    text: &'p str,
+}
 
 /// How many presses there are of each kind.
 #[derive(Clone, Copy, Serialize)]
@@ -52,7 +56,7 @@ struct Threshold {
 
 /// A threshold before and after.
 #[derive(Serialize)]
-struct Row {
+struct ThresholdRow {
     key: String,
     #[serde(flatten)]
     force: Pair<Threshold>,
@@ -60,7 +64,7 @@ struct Row {
 
 /// How many presses do what they should.
 #[derive(Clone, Copy, Serialize)]
-struct Good {
+struct ReachCounts {
     /// Light ones that reach the lowest threshold,
     light_lowest: usize,
     /// and those that reach the highest one;
@@ -69,22 +73,22 @@ struct Good {
     hard_highest: usize,
 }
 
-/// What becomes of later presses with a profile that was fitted to earlier ones alone.
+/// Numbers of later presses with a profile that was fitted to earlier ones alone.
 #[derive(Serialize)]
-struct HeldOut {
+struct HeldOutPresses {
     presses: Presses,
-    reach: Pair<Good>,
+    reach: Pair<ReachCounts>,
 }
 
-/// What came of it.
+/// The report of `tactpad tune --force-range`.
 #[derive(Serialize)]
-struct Outcome {
+struct ForceRangeReport {
     presses: Presses,
     range: Forces,
-    thresholds: Vec<Row>,
+    thresholds: Vec<ThresholdRow>,
     /// Of the same recording that was fitted to.
-    reach: Pair<Good>,
-    held_out: Option<HeldOut>,
+    reach: Pair<ReachCounts>,
+    held_out: Option<HeldOutPresses>,
     changes: Vec<ChangedNumber>,
     /// Whether one force is enough for the profile.
     #[serde(skip)]
@@ -99,9 +103,9 @@ pub(super) fn run(arguments: &Arguments, capture: &Path) -> Result<(), Failure> 
     let stored = write.as_deref().map(|to| arguments.stored(to, capture)).transpose()?;
     let peaks = Peaks::of(&arguments.trace(capture, read.profile())?);
     let range = Range::of(&peaks).ok_or_else(|| too_few(capture, &peaks))?;
-    let given = (read.profile(), read.text());
-    let fitted = fit(given.1, given.0, &range).map_err(|why| refused(name, given, why))?;
-    let mut outcome = Outcome::of(given, &fitted, &peaks, &range);
+    let given = ProfileText { profile: read.profile(), text: read.text() };
+    let fitted = fit(given.text, given.profile, &range).map_err(|why| refused(name, given, why))?;
+    let mut outcome = ForceRangeReport::of(given, &fitted, &peaks, &range);
     if let Some(stored) = stored.filter(|_| !fitted.changes.is_empty()) {
         outcome.written = Some(stored.write(&fitted.text)?.display().to_string());
     }
@@ -123,7 +127,7 @@ fn counted(count: usize, one: &str, many: &str) -> String {
 }
 
 /// Why a profile is not fitted, and what would be one for this hand.
-fn refused(name: &str, (profile, text): Whole<'_>, why: ForceRangeError) -> Failure {
+fn refused(name: &str, ProfileText { profile, text }: ProfileText<'_>, why: ForceRangeError) -> Failure {
     let asked = ends_n(&levels::all(profile, text)).unwrap_or_default();
     Failure::Unusable(match why {
         ForceRangeError::NoLevels => format!("{name} asks for no normal force: there is nothing to fit"),
@@ -155,25 +159,28 @@ fn one_force_names() -> Vec<&'static str> {
     shipped::names().filter(is_one).collect()
 }
 
-impl Outcome {
-    fn of(given: Whole<'_>, fitted: &Fitted, peaks: &Peaks, range: &Range) -> Self {
+impl ForceRangeReport {
+    fn of(given: ProfileText<'_>, fitted: &Fitted, peaks: &Peaks, range: &Range) -> Self {
         let [before, after] = [given, whole(fitted)].map(|profile| thresholds(profile, peaks));
-        let row = |((key, before), (_, after))| Row { key, force: Pair { before, after } };
+        let row = |((key, before), (_, after))| ThresholdRow { key, force: Pair { before, after } };
         Self {
             presses: Presses::of(peaks),
             range: Forces { light_n: range.light_n, light_most_n: range.light_most_n, hard_n: range.hard_n },
             thresholds: before.into_iter().zip(after).map(row).collect(),
-            reach: Pair { before: Good::of(given, peaks), after: Good::of(whole(fitted), peaks) },
+            reach: Pair {
+                before: ReachCounts::of(given, peaks),
+                after: ReachCounts::of(whole(fitted), peaks),
+            },
             held_out: held_out(given, peaks),
             changes: fitted.changes.iter().map(|change| ChangedNumber::of(change, &fitted.profile)).collect(),
-            is_one_force: ends_n(&levels::all(given.0, given.1)).is_some_and(is_one_force),
+            is_one_force: ends_n(&levels::all(given.profile, given.text)).is_some_and(is_one_force),
             written: None,
         }
     }
 }
 
-const fn whole(fitted: &Fitted) -> Whole<'_> {
-    (&fitted.profile, fitted.text.as_str())
+const fn whole(fitted: &Fitted) -> ProfileText<'_> {
+    ProfileText { profile: &fitted.profile, text: fitted.text.as_str() }
 }
 
 impl Presses {
@@ -182,8 +189,8 @@ impl Presses {
     }
 }
 
-impl Good {
-    fn of((profile, text): Whole<'_>, peaks: &Peaks) -> Self {
+impl ReachCounts {
+    fn of(ProfileText { profile, text }: ProfileText<'_>, peaks: &Peaks) -> Self {
         let [lowest_n, highest_n] = ends_n(&levels::all(profile, text)).unwrap_or_default();
         let ReachCount { light, hard } = ReachCount::of(peaks, highest_n);
         Self { light_lowest: ReachCount::of(peaks, lowest_n).light, light_highest: light, hard_highest: hard }
@@ -191,7 +198,7 @@ impl Good {
 }
 
 /// Each threshold by its key, and how many presses reach it.
-fn thresholds((profile, text): Whole<'_>, peaks: &Peaks) -> Vec<(String, Threshold)> {
+fn thresholds(ProfileText { profile, text }: ProfileText<'_>, peaks: &Peaks) -> Vec<(String, Threshold)> {
     let reached = |force_n: f64| {
         let ReachCount { light, hard } = ReachCount::of(peaks, force_n);
         Threshold { force_n, light, hard }
@@ -202,19 +209,24 @@ fn thresholds((profile, text): Whole<'_>, peaks: &Peaks) -> Vec<(String, Thresho
 }
 
 /// Fits to the earlier half of both kinds and counts what becomes of the later half; nothing if they are few, or too near to each other.
-fn held_out(given: Whole<'_>, peaks: &Peaks) -> Option<HeldOut> {
+fn held_out(given: ProfileText<'_>, peaks: &Peaks) -> Option<HeldOutPresses> {
     let Presses { light, hard } = Presses::of(peaks);
     if light.min(hard) < HELD_OUT_MIN {
         return None;
     }
     let [first, second] = peaks.halves();
-    let fitted = fit(given.1, given.0, &Range::of(&first)?).ok()?;
-    let reach = Pair { before: Good::of(given, &second), after: Good::of(whole(&fitted), &second) };
-    Some(HeldOut { presses: Presses::of(&second), reach })
+    let fitted = fit(given.text, given.profile, &Range::of(&first)?).ok()?;
+    let reach =
+        Pair { before: ReachCounts::of(given, &second), after: ReachCounts::of(whole(&fitted), &second) };
+    Some(HeldOutPresses { presses: Presses::of(&second), reach })
 }
 
-/// What presses reach, in words: a line for each kind.
-fn told(presses: Presses, Good { light_lowest, light_highest, hard_highest }: Good, is_one: bool) -> String {
+/// Numbers of presses that reach the thresholds, in words: a line for each kind.
+fn told(
+    presses: Presses,
+    ReachCounts { light_lowest, light_highest, hard_highest }: ReachCounts,
+    is_one: bool,
+) -> String {
     let Presses { light, hard } = presses;
     if is_one {
         return format!("  {light_highest} of {light} light presses are enough");
@@ -225,7 +237,7 @@ fn told(presses: Presses, Good { light_lowest, light_highest, hard_highest }: Go
     )
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for ForceRangeReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { presses, range, thresholds, reach, .. } = self;
         let Forces { light_n, light_most_n, hard_n } = range;
@@ -237,7 +249,7 @@ impl fmt::Display for Outcome {
         writeln!(f, "nine of ten hard presses reach {hard_n:.2} N\n")?;
         let wide = thresholds.iter().map(|row| row.key.len()).chain([9]).max().unwrap_or_default();
         writeln!(f, "{:<wide$}    before  light  hard     after  light  hard", "threshold")?;
-        for Row { key, force: Pair { before, after } } in thresholds {
+        for ThresholdRow { key, force: Pair { before, after } } in thresholds {
             let [before, after] =
                 [before, after].map(|it| format!("{:>6.2} N  {:>5}  {:>4}", it.force_n, it.light, it.hard));
             writeln!(f, "{key:<wide$}  {before}  {after}")?;
@@ -252,7 +264,7 @@ impl fmt::Display for Outcome {
             self.changes.iter().try_for_each(|change| writeln!(f, "  {}", change.words))?;
             write!(f, "\nwith that, in this same recording:\n{}", told(*presses, reach.after))?;
         }
-        if let Some(HeldOut { presses, reach }) = &self.held_out {
+        if let Some(HeldOutPresses { presses, reach }) = &self.held_out {
             let after = told(*presses, reach.after);
             write!(f, "\nfitted to the earlier half of both alone, the presses after them:\n{after}")?;
         }

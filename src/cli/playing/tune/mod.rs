@@ -7,8 +7,8 @@ mod report;
 use std::io::Write;
 use std::path::Path;
 
-pub(crate) use self::arguments::Arguments;
-use self::report::{HeldOut, Outcome, Pair};
+pub(super) use self::arguments::Arguments;
+use self::report::{HeldOut, Pair, TuneReport};
 use super::profile;
 use crate::cli::failure::Failure;
 use crate::cli::files::text_file;
@@ -51,7 +51,7 @@ fn fit_labelled(arguments: &Arguments, labelled: &Path) -> Result<(), Failure> {
     let study = Study { trace: &trace, labels: &labels, delay_max_us: 1_000 * u64::from(arguments.delay_ms) };
     let fitted = fit(&study, read.text())?;
     let held_out = held_out(&study, read.text(), read.profile())?;
-    let mut outcome = Outcome::of(&study, read.profile(), &fitted, held_out);
+    let mut outcome = TuneReport::of(&study, read.profile(), &fitted, held_out);
     if let Some(stored) = stored.filter(|_| !fitted.changes.is_empty()) {
         outcome.written = Some(stored.write(&fitted.text)?.display().to_string());
     }

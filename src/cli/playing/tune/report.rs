@@ -1,4 +1,4 @@
-//! What came of fitting a profile, for people and programs.
+//! The report of a fitted profile, for people and programs.
 
 use std::fmt;
 
@@ -25,20 +25,20 @@ struct Delay {
     after: f64,
 }
 
-/// What is right of the second half with a profile that was fitted to the first alone.
+/// Numbers of right presses of the second half with a profile that was fitted to the first alone.
 #[derive(Serialize)]
 pub(super) struct HeldOut {
     pub(super) events: usize,
     pub(super) correct: Pair<usize>,
 }
 
-/// What came of it.
+/// The report of `tactpad tune`.
 #[derive(Serialize)]
-pub(super) struct Outcome {
+pub(super) struct TuneReport {
     events: usize,
     correct: Pair<usize>,
     share: Pair<f64>,
-    /// What came down where nothing is said of what was meant.
+    /// Numbers of presses where the labels say nothing.
     unlabelled: Pair<usize>,
     confusion: Pair<Confusion>,
     held_out: Option<HeldOut>,
@@ -48,7 +48,7 @@ pub(super) struct Outcome {
     pub(super) written: Option<String>,
 }
 
-impl Outcome {
+impl TuneReport {
     /// Compares both profiles.
     pub(super) fn of(study: &Study<'_>, given: &Profile, fitted: &Fitted, held_out: Option<HeldOut>) -> Self {
         let scores = [given, &fitted.profile].map(|profile| study.score(profile));
@@ -85,7 +85,7 @@ fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
 
-impl fmt::Display for Outcome {
+impl fmt::Display for TuneReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { events, correct, share, unlabelled, confusion, delay_ms, .. } = self;
         writeln!(f, "as it is: {} of {events} correct ({})", correct.before, percent(share.before))?;

@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::guide::{Guide, Outcome, Progress, Proposal, Scene, Step, StepState, Told};
+use super::guide::{
+    GuideContext, GuideResult, GuideState, GuideStatus, PageGuide, PageStep, Proposal, StepState,
+};
 use super::recording::{NO_NAME, Recording};
 use tactpad_core::pipeline::mapping::profile::Profile;
 use tactpad_core::pipeline::mapping::profile::sketch::Sketch;
@@ -30,22 +32,22 @@ pub(super) struct Cues {
     recording: Recording,
     /// The profile that is fitted: its name and its text.
     profile: (String, String),
-    /// What can be meant: by its word, and as people are told.
-    meant: Vec<Meant>,
+    /// The targets of presses: each by its word, and as the cue shows it.
+    meant: Vec<CueTarget>,
 }
 
 /// Something that can be meant.
 #[derive(Clone, Debug, PartialEq)]
-struct Meant {
+struct CueTarget {
     word: String,
     cue: String,
 }
 
-/// What a profile lets people mean: its directions, and what its buttons press.
-fn meant(profile: &Profile) -> Vec<Meant> {
+/// The targets that a profile has: its directions, and the controls of its buttons.
+fn meant(profile: &Profile) -> Vec<CueTarget> {
     let directions = profile.dpad.iter().flat_map(|_| ["right", "up", "left", "down"]);
     let mut all: Vec<_> = directions
-        .map(|word| Meant { word: word.into(), cue: format!("press {word} of the middle") })
+        .map(|word| CueTarget { word: word.into(), cue: format!("press {word} of the middle") })
         .collect();
     for button in Sketch::of(profile).buttons {
         let is_one = button.does.len() == 1;
@@ -59,7 +61,7 @@ fn meant(profile: &Profile) -> Vec<Meant> {
                 "hard" => "press hard",
                 _ => "press",
             };
-            all.push(Meant {
+            all.push(CueTarget {
                 word: format!("button {}{kind}", button.number),
                 cue: format!("{how}{} ({})", towards(button.force), does.keys),
             });
@@ -80,13 +82,13 @@ fn towards(force: &str) -> &'static str {
 }
 
 impl Cues {
-    /// What is asked for at this time, if anything is.
-    fn cue(&self, us: u64) -> Option<&Meant> {
+    /// The cue at this time since the start, in microseconds, if there is one.
+    fn cue(&self, us: u64) -> Option<&CueTarget> {
         let number = usize::try_from(us / CUE_US).ok()?;
         self.meant.get(number % self.meant.len().max(1)).filter(|_| number < CUES)
     }
 
-    /// What was asked for when, as a table of labels.
+    /// The cues and their times, as a table of labels.
     fn table(&self) -> String {
         let mut table = format!("{HEADER}\n");
         for number in 0..CUES as u64 {
@@ -100,49 +102,49 @@ impl Cues {
     }
 }
 
-impl Guide for Cues {
+impl PageGuide for Cues {
     fn id(&self) -> &'static str {
         "tune"
     }
 
-    fn start(&mut self, scene: &Scene<'_>) -> Result<(), String> {
-        let (name, text) = (scene.profile)().ok_or(NO_NAME)?;
+    fn start(&mut self, context: &GuideContext<'_>) -> Result<(), String> {
+        let (name, text) = (context.profile)().ok_or(NO_NAME)?;
         let profile =
             check::read(&text, OutputChoice::AsWritten).0.ok_or("the profile has errors: mend it first")?;
         let meant = meant(&profile);
         if meant.is_empty() {
             return Err("this profile has neither directions nor buttons: there is nothing to fit".into());
         }
-        *self = Self { recording: Recording::begin(scene), profile: (name, text), meant };
+        *self = Self { recording: Recording::begin(context), profile: (name, text), meant };
         Ok(())
     }
 
-    fn stop(&mut self, _scene: &Scene<'_>) {
+    fn stop(&mut self, _scene: &GuideContext<'_>) {
         *self = Self::default();
     }
 
-    fn look(&mut self, scene: &Scene<'_>) {
-        if self.recording.progress() != Progress::Running {
+    fn update(&mut self, context: &GuideContext<'_>) {
+        if self.recording.progress() != GuideState::Running {
             return;
         }
         let ((name, text), table) = (self.profile.clone(), self.table());
-        self.recording.go_on(scene, CUES as u64 * CUE_US, move |trace| fitted(&name, &text, &table, trace));
+        self.recording.go_on(context, CUES as u64 * CUE_US, move |trace| fitted(&name, &text, &table, trace));
     }
 
-    fn told(&self) -> Told {
+    fn status(&self) -> GuideStatus {
         let recorded_us = self.recording.for_us();
         let done = recorded_us.map(|us| us as f64 / (CUES as u64 * CUE_US) as f64);
         let state = self.recording.step(done);
         let cue = recorded_us.and_then(|us| Some((us / CUE_US + 1, self.cue(us)?)));
         let text = "Every two seconds you are asked for something else. Do it at once, then lift the finger.";
-        let cues = Step {
+        let cues = PageStep {
             state,
             detail: cue.map(|(number, _)| format!("{number} of {CUES}")),
             cue: cue.map(|(_, meant)| meant.cue.clone()),
             progress: done.filter(|_| state == StepState::Doing),
-            ..Step::to_do("cues", "Do what is asked", text)
+            ..PageStep::to_do("cues", "Do what is asked", text)
         };
-        Told {
+        GuideStatus {
             id: self.id(),
             title: "Tune in 30 seconds",
             about: "The page asks for presses, and fits the numbers of the profile in play so that more of what you mean comes out. You see \
@@ -155,7 +157,7 @@ impl Guide for Cues {
 }
 
 /// The profile that gives most of what was asked for.
-fn fitted(name: &str, text: &str, table: &str, trace: &Trace) -> Result<Outcome, String> {
+fn fitted(name: &str, text: &str, table: &str, trace: &Trace) -> Result<GuideResult, String> {
     let profile =
         check::read(text, OutputChoice::AsWritten).0.ok_or("the profile has errors: mend it first")?;
     let labels = Labels::read(table, &profile).map_err(|error| error.to_string())?;
@@ -164,17 +166,17 @@ fn fitted(name: &str, text: &str, table: &str, trace: &Trace) -> Result<Outcome,
     let Fitted { text, profile, changes } =
         study.fit(text, &|_, _| ()).ok_or("the profile cannot be fitted")?;
     let after = study.score(&profile).correct();
-    let told = format!("{before} of {CUES} came as they were asked for");
+    let came = format!("{before} of {CUES} came as they were asked for");
     if changes.is_empty() {
-        return Ok(Outcome::words(format!("{told}. No other numbers give more: nothing changes.")));
+        return Ok(GuideResult::words(format!("{came}. No other numbers give more: nothing changes.")));
     }
     let changes: Vec<_> =
         changes.iter().map(|change| words::ChangedNumber::of(change, &profile).words).collect();
     let text_told = format!(
-        "{told}; with what is proposed it would have been {after}, which looks better than it is, as it was fitted to the same presses. \
+        "{came}; with what is proposed it would have been {after}, which looks better than it is, as it was fitted to the same presses. \
          Proposed: {}.",
         changes.join("; ")
     );
     let draft = Some(Proposal { profile: name.to_owned(), text });
-    Ok(Outcome { draft, ..Outcome::words(text_told) })
+    Ok(GuideResult { draft, ..GuideResult::words(text_told) })
 }

@@ -1,13 +1,15 @@
 //! The first run: find the pad, may it be opened, measure its zero, press it.
 
-use super::guide::{Action, Guide, NO_ACTION, Progress, Scene, Step, StepState, Told};
+use super::guide::{
+    GuideContext, GuideState, GuideStatus, NO_ACTION, PageGuide, PageStep, StepAction, StepState,
+};
 use tactpad_bridge::request::Request;
 use tactpad_bridge::state::State;
 
 /// So many touches are enough to believe that it works.
 const TOUCHES: u64 = 3;
 
-const TARE: Action = Action { name: "tare", label: "Measure the zero", number: None };
+const TARE: StepAction = StepAction { name: "tare", label: "Measure the zero", number: None };
 
 /// The steps: a name, a title, what to do.
 const STEPS: [(&str, &str, &str); 4] = [
@@ -28,7 +30,7 @@ const STEPS: [(&str, &str, &str); 4] = [
 /// The guide.
 #[derive(Default)]
 pub(super) struct FirstRun {
-    state: Progress,
+    state: GuideState,
     /// How many steps are done.
     done: usize,
     /// How many touches there were when the last step began.
@@ -47,25 +49,25 @@ const fn reached(state: State) -> usize {
     }
 }
 
-impl Guide for FirstRun {
+impl PageGuide for FirstRun {
     fn id(&self) -> &'static str {
         "first-run"
     }
 
-    fn start(&mut self, _scene: &Scene<'_>) -> Result<(), String> {
-        *self = Self { state: Progress::Running, ..Self::default() };
+    fn start(&mut self, _scene: &GuideContext<'_>) -> Result<(), String> {
+        *self = Self { state: GuideState::Running, ..Self::default() };
         Ok(())
     }
 
-    fn stop(&mut self, _scene: &Scene<'_>) {
+    fn stop(&mut self, _scene: &GuideContext<'_>) {
         *self = Self::default();
     }
 
-    fn look(&mut self, scene: &Scene<'_>) {
-        if self.state != Progress::Running {
+    fn update(&mut self, context: &GuideContext<'_>) {
+        if self.state != GuideState::Running {
             return;
         }
-        let status = scene.status;
+        let status = context.status;
         let reached = reached(status.state);
         self.sentence = (reached < 3).then(|| status.state.sentence());
         // A pad that is pulled out has to be found again.
@@ -77,7 +79,7 @@ impl Guide for FirstRun {
         let contacts = status.health.pipeline.contacts;
         self.touches = contacts - *self.touches_before.get_or_insert(contacts);
         if self.touches >= TOUCHES {
-            (self.state, self.done) = (Progress::Done, STEPS.len());
+            (self.state, self.done) = (GuideState::Done, STEPS.len());
         }
     }
 
@@ -85,15 +87,15 @@ impl Guide for FirstRun {
         &mut self,
         action: &str,
         _number: Option<f64>,
-        _scene: &Scene<'_>,
+        _scene: &GuideContext<'_>,
     ) -> Result<Option<Request>, String> {
         if action == TARE.name { Ok(Some(Request::Retare)) } else { Err(NO_ACTION.into()) }
     }
 
-    fn told(&self) -> Told {
+    fn status(&self) -> GuideStatus {
         let step = |(index, (id, title, text)): (usize, (&'static str, &'static str, &'static str))| {
             let state = match (self.state, index) {
-                (Progress::Idle | Progress::Failed, _) => StepState::Todo,
+                (GuideState::Idle | GuideState::Failed, _) => StepState::Todo,
                 (_, index) if index < self.done => StepState::Done,
                 (_, index) if index == self.done => StepState::Doing,
                 _ => StepState::Todo,
@@ -101,7 +103,7 @@ impl Guide for FirstRun {
             let is_doing = state == StepState::Doing;
             let is_try = index == 3;
             let counted = || format!("{} of {TOUCHES} touches", self.touches);
-            Step {
+            PageStep {
                 state,
                 detail: if is_try {
                     is_doing.then(counted)
@@ -109,11 +111,15 @@ impl Guide for FirstRun {
                     self.sentence.filter(|_| is_doing).map(Into::into)
                 },
                 progress: (is_try && is_doing).then_some(self.touches as f64 / TOUCHES as f64),
-                actions: if index == 2 && self.state == Progress::Running { vec![TARE] } else { Vec::new() },
-                ..Step::to_do(id, title, text)
+                actions: if index == 2 && self.state == GuideState::Running {
+                    vec![TARE]
+                } else {
+                    Vec::new()
+                },
+                ..PageStep::to_do(id, title, text)
             }
         };
-        Told {
+        GuideStatus {
             id: self.id(),
             title: "First run",
             about: "From the plugged-in pad to the first press.",

@@ -1,6 +1,6 @@
 //! The force range: half a minute of presses, light and then hard, and a profile whose forces suit them.
 
-use super::guide::{Guide, Outcome, Proposal, Scene, Step, StepState, Told};
+use super::guide::{GuideContext, GuideResult, GuideStatus, PageGuide, PageStep, Proposal, StepState};
 use super::recording::{NO_NAME, Recording};
 use tactpad_core::pipeline::mapping::read::check::{self, OutputChoice};
 use tactpad_lab::tuning::fitting::Fitted;
@@ -24,31 +24,31 @@ pub(super) struct ForceRange {
     touches: u64,
 }
 
-impl Guide for ForceRange {
+impl PageGuide for ForceRange {
     fn id(&self) -> &'static str {
         "force-range"
     }
 
-    fn start(&mut self, scene: &Scene<'_>) -> Result<(), String> {
-        let profile = (scene.profile)().ok_or(NO_NAME)?;
-        let touches_before = scene.status.health.pipeline.contacts;
-        *self = Self { recording: Recording::begin(scene), profile, touches_before, touches: 0 };
+    fn start(&mut self, context: &GuideContext<'_>) -> Result<(), String> {
+        let profile = (context.profile)().ok_or(NO_NAME)?;
+        let touches_before = context.status.health.pipeline.contacts;
+        *self = Self { recording: Recording::begin(context), profile, touches_before, touches: 0 };
         Ok(())
     }
 
-    fn stop(&mut self, _scene: &Scene<'_>) {
+    fn stop(&mut self, _scene: &GuideContext<'_>) {
         *self = Self::default();
     }
 
-    fn look(&mut self, scene: &Scene<'_>) {
+    fn update(&mut self, context: &GuideContext<'_>) {
         let (name, text) = self.profile.clone();
         if self.recording.for_us().is_some() {
-            self.touches = scene.status.health.pipeline.contacts.saturating_sub(self.touches_before);
+            self.touches = context.status.health.pipeline.contacts.saturating_sub(self.touches_before);
         }
-        self.recording.go_on(scene, 2 * KIND_US, move |trace| fitted(&name, &text, trace));
+        self.recording.go_on(context, 2 * KIND_US, move |trace| fitted(&name, &text, trace));
     }
 
-    fn told(&self) -> Told {
+    fn status(&self) -> GuideStatus {
         let recorded_us = self.recording.for_us();
         let part = recorded_us.map(|us| us as f64 / KIND_US as f64);
         let steps = [
@@ -62,14 +62,14 @@ impl Guide for ForceRange {
         let kinds = (0..).zip(steps).map(|(index, (id, title, text))| {
             let done = part.map(|part| part - f64::from(index));
             let state = self.recording.step(done);
-            Step {
+            PageStep {
                 state,
                 detail: (state == StepState::Doing).then(|| format!("{} presses so far", self.touches)),
                 progress: done.filter(|_| state == StepState::Doing),
-                ..Step::to_do(id, title, text)
+                ..PageStep::to_do(id, title, text)
             }
         });
-        Told {
+        GuideStatus {
             id: self.id(),
             title: "Force range",
             about: "Half a minute of presses. The forces of the profile in play are then fitted to your hand; you see them in the editor before \
@@ -82,7 +82,7 @@ impl Guide for ForceRange {
 }
 
 /// The profile with the forces of a recording's presses, or why it has none.
-fn fitted(name: &str, text: &str, trace: &Trace) -> Result<Outcome, String> {
+fn fitted(name: &str, text: &str, trace: &Trace) -> Result<GuideResult, String> {
     let profile =
         check::read(text, OutputChoice::AsWritten).0.ok_or("the profile has errors: mend it first")?;
     let peaks = Peaks::of(trace);
@@ -99,12 +99,12 @@ fn fitted(name: &str, text: &str, trace: &Trace) -> Result<Outcome, String> {
         range.light_n, range.light_most_n, range.hard_n
     );
     if changes.is_empty() {
-        return Ok(Outcome::words(format!("{hand} The profile fits this hand: nothing changes.")));
+        return Ok(GuideResult::words(format!("{hand} The profile fits this hand: nothing changes.")));
     }
     let changes: Vec<_> =
         changes.iter().map(|change| words::ChangedNumber::of(change, &profile).words).collect();
     let draft = Some(Proposal { profile: name.to_owned(), text });
-    Ok(Outcome { draft, ..Outcome::words(format!("{hand} Proposed: {}.", changes.join("; "))) })
+    Ok(GuideResult { draft, ..GuideResult::words(format!("{hand} Proposed: {}.", changes.join("; "))) })
 }
 
 fn unfit(name: &str, why: ForceRangeError) -> String {

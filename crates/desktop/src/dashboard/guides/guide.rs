@@ -1,15 +1,15 @@
-//! What a guide is, and how it tells where it is.
+//! The interface of a guide, and its status as the page shows it.
 
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
 use serde::Serialize;
 
-use crate::dashboard::ears::Heard;
-use crate::dashboard::library::Library;
-use crate::dashboard::past::Past;
-use crate::dashboard::shadow::Pad;
-use tactpad_bridge::request::{Asker, Request};
+use crate::dashboard::call_subscribers::TimedCall;
+use crate::dashboard::host::DashboardHost;
+use crate::dashboard::replay_buffer::ReplayBuffer;
+use crate::dashboard::shadow::ConnectedPad;
+use tactpad_bridge::request::{Request, RequestSender};
 use tactpad_bridge::snapshot::Status;
 use tactpad_core::time::HostInstant;
 
@@ -17,7 +17,7 @@ use tactpad_core::time::HostInstant;
 pub(super) const NO_ACTION: &str = "this step has no such action";
 
 /// A guide.
-pub(super) trait Guide: Send {
+pub(super) trait PageGuide: Send {
     /// Its name in requests.
     fn id(&self) -> &'static str;
 
@@ -25,16 +25,16 @@ pub(super) trait Guide: Send {
     ///
     /// # Errors
     /// It cannot begin; the text is for people.
-    fn start(&mut self, scene: &Scene<'_>) -> Result<(), String>;
+    fn start(&mut self, context: &GuideContext<'_>) -> Result<(), String>;
 
     /// Ends before its end.
-    fn stop(&mut self, scene: &Scene<'_>);
+    fn stop(&mut self, context: &GuideContext<'_>);
 
     /// Nobody looks any more.
-    fn leave(&mut self, _scene: &Scene<'_>) {}
+    fn on_page_closed(&mut self, _scene: &GuideContext<'_>) {}
 
     /// Looks at what has happened; called some ten times a second.
-    fn look(&mut self, scene: &Scene<'_>);
+    fn update(&mut self, context: &GuideContext<'_>);
 
     /// Does what people choose in a step, with the number that they gave; what is to be asked of the bridge for it.
     ///
@@ -44,48 +44,48 @@ pub(super) trait Guide: Send {
         &mut self,
         _action: &str,
         _number: Option<f64>,
-        _scene: &Scene<'_>,
+        _scene: &GuideContext<'_>,
     ) -> Result<Option<Request>, String> {
         Err(NO_ACTION.into())
     }
 
     /// How it stands.
-    fn told(&self) -> Told;
+    fn status(&self) -> GuideStatus;
 }
 
-/// What a guide sees.
-pub(in crate::dashboard) struct Scene<'s> {
+/// The context of a guide: the state of the bridge and the handles that it may use.
+pub(in crate::dashboard) struct GuideContext<'s> {
     /// Host time.
     pub(in crate::dashboard) now: HostInstant,
     pub(in crate::dashboard) status: &'s Status,
-    pub(in crate::dashboard) pad: Pad,
+    pub(in crate::dashboard) pad: ConnectedPad,
     /// The text of the profile that is played, if it has a name, and that name.
     pub(in crate::dashboard) profile: &'s dyn Fn() -> Option<(String, String)>,
     /// The last minute of play.
-    pub(in crate::dashboard) past: &'s dyn Fn() -> Option<Past>,
+    pub(in crate::dashboard) past: &'s dyn Fn() -> Option<ReplayBuffer>,
     /// Hears all calls from now on.
-    pub(in crate::dashboard) hear: &'s dyn Fn() -> Receiver<Heard>,
+    pub(in crate::dashboard) subscribe: &'s dyn Fn() -> Receiver<TimedCall>,
     /// Asks the bridge, also later and from another thread.
-    pub(in crate::dashboard) asker: &'s Arc<Asker>,
+    pub(in crate::dashboard) sender: &'s Arc<RequestSender>,
     /// The program around the bridge.
-    pub(in crate::dashboard) library: &'s Arc<dyn Library>,
+    pub(in crate::dashboard) host: &'s Arc<dyn DashboardHost>,
 }
 
 /// How a guide stands, as the page reads it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(in crate::dashboard) struct Told {
+pub(in crate::dashboard) struct GuideStatus {
     pub(super) id: &'static str,
     pub(super) title: &'static str,
     pub(super) about: &'static str,
-    pub(super) state: Progress,
-    pub(super) steps: Vec<Step>,
-    pub(super) result: Option<Outcome>,
+    pub(super) state: GuideState,
+    pub(super) steps: Vec<PageStep>,
+    pub(super) result: Option<GuideResult>,
 }
 
 /// Where a guide is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum Progress {
+pub(super) enum GuideState {
     /// Not begun.
     #[default]
     Idle,
@@ -99,23 +99,23 @@ pub(super) enum Progress {
 
 /// One step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Step {
+pub(super) struct PageStep {
     pub(super) id: &'static str,
     pub(super) title: &'static str,
-    /// What to do.
+    /// The instruction.
     pub(super) text: &'static str,
     pub(super) state: StepState,
-    /// What there is to say of it now.
+    /// Details at this moment.
     pub(super) detail: Option<String>,
-    /// What to do at this very moment; it is read out as soon as it changes.
+    /// The instruction at this very moment; it is read out as soon as it changes.
     pub(super) cue: Option<String>,
     /// How much of it is done, from 0 to 1.
     pub(super) progress: Option<f64>,
-    pub(super) actions: Vec<Action>,
+    pub(super) actions: Vec<StepAction>,
     pub(super) links: Vec<Link>,
 }
 
-impl Step {
+impl PageStep {
     /// One that comes later.
     pub(super) fn to_do(id: &'static str, title: &'static str, text: &'static str) -> Self {
         let (actions, links) = (Vec::new(), Vec::new());
@@ -147,9 +147,9 @@ pub(super) enum StepState {
     Failed,
 }
 
-/// What people can choose in a step.
+/// An action that people can choose in a step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Action {
+pub(super) struct StepAction {
     #[serde(rename = "do")]
     pub(super) name: &'static str,
     pub(super) label: &'static str,
@@ -173,21 +173,21 @@ pub(super) struct Link {
     pub(super) label: &'static str,
 }
 
-/// What came of a guide.
+/// The result of a guide.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub(super) struct Outcome {
+pub(super) struct GuideResult {
     pub(super) text: String,
     /// A profile to look at in the editor.
     pub(super) draft: Option<Proposal>,
     /// Numbers that belong to it.
-    pub(super) table: Option<Table>,
-    /// What people may want to type into a terminal.
+    pub(super) table: Option<ResultTable>,
+    /// Commands for a terminal.
     pub(super) commands: Vec<CommandLine>,
 }
 
 /// Numbers with their names.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Table {
+pub(super) struct ResultTable {
     pub(super) caption: &'static str,
     pub(super) heads: Vec<&'static str>,
     pub(super) rows: Vec<Vec<String>>,
@@ -200,7 +200,7 @@ pub(super) struct CommandLine {
     pub(super) text: String,
 }
 
-impl Outcome {
+impl GuideResult {
     /// Words alone.
     pub(super) fn words(text: impl Into<String>) -> Self {
         Self { text: text.into(), ..Self::default() }
@@ -214,5 +214,5 @@ pub(super) struct Proposal {
     pub(super) text: String,
 }
 
-/// What a guide works out beside the server's thread: a result, or why there is none.
-pub(super) type Worked = Receiver<Result<Outcome, String>>;
+/// A result that is computed on another thread, or the reason why there is none.
+pub(super) type PendingResult = Receiver<Result<GuideResult, String>>;

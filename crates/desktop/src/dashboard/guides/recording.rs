@@ -3,8 +3,8 @@
 use std::sync::mpsc::{TryRecvError, channel};
 use std::thread;
 
-use super::guide::{Outcome, Progress, Scene, Step, StepState, Worked};
-use crate::dashboard::past::{Past, make};
+use super::guide::{GuideContext, GuideResult, GuideState, PageStep, PendingResult, StepState};
+use crate::dashboard::replay_buffer::{ReplayBuffer, make};
 use tactpad_core::time::HostInstant;
 use tactpad_lab::tuning::trace::{Trace, Tracer};
 
@@ -25,35 +25,37 @@ pub(super) enum Recording {
         for_us: u64,
     },
     /// It works out what came of it.
-    Working(Worked),
+    Working(PendingResult),
     /// That is known.
-    Over(Result<Outcome, String>),
+    Overwrite(Result<GuideResult, String>),
 }
 
 impl Recording {
     /// Begins to record.
-    pub(super) fn begin(scene: &Scene<'_>) -> Self {
-        Self::On { begin: scene.now, for_us: 0 }
+    pub(super) fn begin(context: &GuideContext<'_>) -> Self {
+        Self::On { begin: context.now, for_us: 0 }
     }
 
     /// Goes on: records until `length_us` are over, then lets `work` find what came of it.
     pub(super) fn go_on(
         &mut self,
-        scene: &Scene<'_>,
+        context: &GuideContext<'_>,
         length_us: u64,
-        work: impl FnOnce(&Trace) -> Result<Outcome, String> + Send + 'static,
+        work: impl FnOnce(&Trace) -> Result<GuideResult, String> + Send + 'static,
     ) {
         match self {
-            Self::On { begin, for_us } if scene.now.us_since(*begin) < length_us => {
-                *for_us = scene.now.us_since(*begin);
+            Self::On { begin, for_us } if context.now.us_since(*begin) < length_us => {
+                *for_us = context.now.us_since(*begin);
             }
-            Self::On { begin, .. } => *self = worked((scene.past)(), *begin, work),
+            Self::On { begin, .. } => *self = worked((context.past)(), *begin, work),
             Self::Working(worked) => match worked.try_recv() {
-                Ok(outcome) => *self = Self::Over(outcome),
+                Ok(outcome) => *self = Self::Overwrite(outcome),
                 Err(TryRecvError::Empty) => {}
-                Err(TryRecvError::Disconnected) => *self = Self::Over(Err("this failed: begin anew".into())),
+                Err(TryRecvError::Disconnected) => {
+                    *self = Self::Overwrite(Err("this failed: begin anew".into()))
+                }
             },
-            Self::Idle | Self::Over(_) => {}
+            Self::Idle | Self::Overwrite(_) => {}
         }
     }
 
@@ -61,7 +63,7 @@ impl Recording {
     pub(super) const fn for_us(&self) -> Option<u64> {
         match self {
             Self::On { for_us, .. } => Some(*for_us),
-            Self::Idle | Self::Working(_) | Self::Over(_) => None,
+            Self::Idle | Self::Working(_) | Self::Overwrite(_) => None,
         }
     }
 
@@ -76,41 +78,41 @@ impl Recording {
     }
 
     /// The step in which it is worked out what came of it.
-    pub(super) fn working(&self) -> Step {
+    pub(super) fn working(&self) -> PageStep {
         let state = match self {
             Self::Idle | Self::On { .. } => StepState::Todo,
             Self::Working(_) => StepState::Doing,
-            Self::Over(Ok(_)) => StepState::Done,
-            Self::Over(Err(_)) => StepState::Failed,
+            Self::Overwrite(Ok(_)) => StepState::Done,
+            Self::Overwrite(Err(_)) => StepState::Failed,
         };
         let text = "This takes a few seconds; nothing is to be done.";
-        Step { state, ..Step::to_do("fit", "Fit the profile", text) }
+        PageStep { state, ..PageStep::to_do("fit", "Fit the profile", text) }
     }
 
     /// Where the guide is.
-    pub(super) const fn progress(&self) -> Progress {
+    pub(super) const fn progress(&self) -> GuideState {
         match self {
-            Self::Idle => Progress::Idle,
-            Self::On { .. } | Self::Working(_) => Progress::Running,
-            Self::Over(Ok(_)) => Progress::Done,
-            Self::Over(Err(_)) => Progress::Failed,
+            Self::Idle => GuideState::Idle,
+            Self::On { .. } | Self::Working(_) => GuideState::Running,
+            Self::Overwrite(Ok(_)) => GuideState::Done,
+            Self::Overwrite(Err(_)) => GuideState::Failed,
         }
     }
 
-    /// What came of it, if that is known: a proposal, or in words why there is none.
-    pub(super) fn outcome(&self) -> Option<Outcome> {
+    /// The result, if it is known: a proposal, or in words why there is none.
+    pub(super) fn outcome(&self) -> Option<GuideResult> {
         match self {
-            Self::Over(Ok(outcome)) => Some(outcome.clone()),
-            Self::Over(Err(text)) => Some(Outcome::words(text)),
+            Self::Overwrite(Ok(outcome)) => Some(outcome.clone()),
+            Self::Overwrite(Err(text)) => Some(GuideResult::words(text)),
             Self::Idle | Self::On { .. } | Self::Working(_) => None,
         }
     }
 }
 
 fn worked(
-    past: Option<Past>,
+    past: Option<ReplayBuffer>,
     begin: HostInstant,
-    work: impl FnOnce(&Trace) -> Result<Outcome, String> + Send + 'static,
+    work: impl FnOnce(&Trace) -> Result<GuideResult, String> + Send + 'static,
 ) -> Recording {
     let (tell, worked) = channel();
     let spawned = thread::Builder::new().name("guide".into()).spawn(move || {
@@ -120,13 +122,13 @@ fn worked(
     });
     match spawned {
         Ok(_) => Recording::Working(worked),
-        Err(error) => Recording::Over(Err(error.to_string())),
+        Err(error) => Recording::Overwrite(Err(error.to_string())),
     }
 }
 
 /// The contacts since `begin`.
-fn traced(past: Past, begin: HostInstant) -> Trace {
-    let Past { begin: mut pipeline, mut calls, .. } = past;
+fn traced(past: ReplayBuffer, begin: HostInstant) -> Trace {
+    let ReplayBuffer { begin: mut pipeline, mut calls, .. } = past;
     let earlier = calls.partition_point(|(at, _)| *at < begin);
     calls.drain(..earlier).for_each(|(at, call)| make(&mut pipeline, at, &call, |_| ()));
     let mut tracer = Tracer::going_on(pipeline);

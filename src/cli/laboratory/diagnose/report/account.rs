@@ -1,4 +1,4 @@
-//! What the causes are worth on locked rows, what was noticed before, and how all of it was computed.
+//! The gain of the causes on locked rows, notices from before the diagnosis, and how all of it was computed.
 
 use super::super::numbers::{Decoded, carried, decoded, rounded};
 use super::causes::bar;
@@ -70,7 +70,7 @@ fn table(subject: &Subject<'_>, gain: &Gain) -> String {
     )
 }
 
-/// What checks before the diagnosis found; empty where they found nothing.
+/// The notices of the checks before the diagnosis; empty where there are none.
 pub(super) fn notices(subject: &Subject<'_>) -> String {
     if subject.diagnosis.gatekeepers.is_empty() {
         return String::new();

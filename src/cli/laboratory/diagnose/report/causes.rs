@@ -23,7 +23,7 @@ pub(super) fn section(subject: &Subject<'_>) -> String {
     )
 }
 
-/// What no cause explains.
+/// The part of the residuals that no cause explains.
 fn unnamed(subject: &Subject<'_>) -> String {
     let share = subject.diagnosis.unnamed_share;
     if share > 0.0 {
@@ -97,7 +97,7 @@ fn interval(estimate: &Estimate, title: &str) -> String {
     drawing.html()
 }
 
-/// What speaks for it.
+/// The evidence for a finding.
 fn evidence(subject: &Subject<'_>, finding: &Finding) -> String {
     let without = subject.diagnosis.gain.as_ref().and_then(|gain| {
         gain.per_cause.iter().find(|it| it.effect == finding.effect && it.target == finding.target)
@@ -135,7 +135,7 @@ pub(super) fn bar(share: f64, title: &str) -> String {
     drawing.html()
 }
 
-/// What could not be told apart, and what to measure next.
+/// The causes that could not be told apart, and the next measurement.
 pub(super) fn confounded(subject: &Subject<'_>) -> String {
     let sets = subject.diagnosis.findings.iter().filter(|it| !it.confounded_with.is_empty());
     let sets: String = sets.map(|finding| set(finding, &subject.diagnosis.channels)).collect();

@@ -1,4 +1,4 @@
-//! What was written beside the rows, as axes: load, its direction, time, temperature, cycles.
+//! The circumstances of the rows, as axes: load, its direction, time, temperature, cycles.
 
 use super::subject::Subject;
 use tactpad::lab::diagnosis::data::observations::Sample;
@@ -11,7 +11,7 @@ const ROWS_MIN: usize = 20;
 
 /// One axis: a number for each row, NaN where there is none.
 pub(super) struct Circumstance {
-    /// What it is.
+    /// The title.
     pub(super) title: String,
     /// Its values, row by row.
     pub(super) values: Vec<f64>,

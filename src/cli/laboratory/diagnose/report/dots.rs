@@ -49,7 +49,7 @@ pub(super) fn places(places_mm: &[[f64; 2]], width: f64, count: usize) -> Vec<Pl
     cells.into_values().map(|rows| Place { at: [0, 1].map(|axis| middle(&rows, axis)), rows }).collect()
 }
 
-/// What contacts near each other say together: the root mean square of their residuals, with a sign if they have one.
+/// The residuals of contacts near each other: their root mean square, with a sign if they have one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Dot {
     /// Where.

@@ -1,4 +1,4 @@
-//! What could not have been seen: the sizes from which on causes are found, and what could not be asked for.
+//! Detection limits: the sizes from which on causes are found, and the causes that could not be tested.
 
 use super::super::numbers::{decimals, parts, rounded, with_unit};
 use super::drawing::escaped;
@@ -72,7 +72,7 @@ impl Group {
     }
 }
 
-/// What a number is called.
+/// The name of a number.
 fn what(name: &str) -> String {
     let (what, _) = parts(name);
     if what.is_empty() { "size".to_owned() } else { what }
@@ -117,7 +117,7 @@ fn list(subject: &Subject<'_>) -> String {
     )
 }
 
-/// What could not be asked for, by what it needs.
+/// The causes that could not be tested, by the columns that they need.
 pub(super) fn untested(subject: &Subject<'_>) -> String {
     let all = &subject.diagnosis.not_testable;
     let head = "<section id=\"untested\"><h2>What could not be tested</h2>";

@@ -16,7 +16,7 @@ const MAP_PX: f64 = 172.0;
 /// How far below a map's upper edge its name stands, as a share of its width.
 const WHEN: f64 = 0.05;
 
-/// What the maps show: left, top, and width in millimetres, y down.
+/// The area of the maps: left, top, and width in millimetres, y down.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     left: f64,
@@ -100,7 +100,7 @@ fn ground(drawing: &mut Drawing, plate: Option<&Plate>) {
     }
 }
 
-/// What discs, rings and squares and their sizes mean, and which module is which.
+/// The legend: discs, rings and squares, their sizes, and the modules.
 fn legend(subject: &Subject<'_>, scale: DotScale) -> String {
     let entry = |mark: String, what: &str| format!("<span class=\"entry\">{mark}<span>{what}</span></span>");
     let examples = scale.examples();

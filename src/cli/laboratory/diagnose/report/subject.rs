@@ -1,22 +1,22 @@
-//! What a report is of.
+//! The subject of a report.
 
 use tactpad::lab::diagnosis::report::Diagnosis;
 use tactpad::numeric::statistics::rms;
 use tactpad::pad::device::Device;
 
-/// What a report is of.
+/// The subject of a report.
 pub(crate) struct Subject<'d> {
-    /// What was found.
+    /// The diagnosis.
     pub(crate) diagnosis: &'d Diagnosis,
-    /// What was measured, in a few words: the file's name.
+    /// Name of the measured file.
     pub(crate) measured: String,
-    /// What it was held against.
+    /// Name of the model with which it was compared.
     pub(crate) model: String,
     /// Unit of the channels; empty where it is not known.
     pub(crate) unit: &'d str,
     /// Unit of the loads, where it is known.
     pub(crate) load_unit: Option<&'d str>,
-    /// What to draw under the contacts.
+    /// The plate that is drawn under the contacts.
     pub(crate) plate: Option<Plate>,
 }
 

@@ -153,7 +153,7 @@ fn plain(label: &str) -> String {
     label.replace("^{", "^").replace('}', "")
 }
 
-/// What band, line and ground mean.
+/// The legend: band, line and ground.
 fn legend(subject: &Subject<'_>) -> String {
     let swatch = |class: &str, what: &str| {
         let mut drawing = Drawing::new("swatch", [0.0, 0.0, 30.0, 14.0], what);

@@ -49,7 +49,7 @@ fn told(diagnosis: &Diagnosis) -> String {
     findings.iter().map(|finding| clause(finding, channels)).collect::<Vec<_>>().join("; ")
 }
 
-/// What the findings are, those of one effect together.
+/// The names of the findings, those of one effect together.
 fn names(findings: &[Finding], channels: &[String]) -> Vec<String> {
     let mut effects: Vec<&str> = Vec::new();
     for finding in findings.iter().filter(|it| !matches!(it.target, Target::Pad | Target::Rig | Target::All))

@@ -102,7 +102,7 @@ pub(super) fn cause(effect: &str, target: &Target, channels: &[String]) -> Strin
     }
 }
 
-/// What a finding says, without its full stop.
+/// The sentence of a finding, without its full stop.
 pub(super) fn sentence(finding: &Finding, channels: &[String]) -> String {
     let Some((.., template)) = EFFECTS.iter().find(|(name, ..)| *name == finding.effect) else {
         let numbers: Vec<String> = finding.parameters.iter().map(estimate).collect();
@@ -141,7 +141,7 @@ pub(super) fn chance(p_value: f64) -> String {
     format!("once in {} measurements", format!("{count:.0} {word}").trim())
 }
 
-/// What stands for a placeholder.
+/// The text for a placeholder.
 fn filled(wanted: &str, finding: &Finding, channels: &[String]) -> String {
     let Finding { target, parameters, .. } = finding;
     match wanted {

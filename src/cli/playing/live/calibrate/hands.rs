@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::cli::failure::Failure;
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::playing::live::playing::{not_opened, virtual_pad};
 use tactpad::bridge::opening::OpenedPad;
 use tactpad::bridge::transport::virtual_pad::PadFirmware;
@@ -13,10 +13,10 @@ use tactpad::virtual_pad::firmware::VirtualPad;
 use tactpad::virtual_pad::freehand::Calibrator;
 use tactpad::virtual_pad::script::Script;
 
-/// What they do is drawn by this.
+/// Seed of the hands' movements.
 const SEED: u64 = 1;
 
-/// What touches the pad.
+/// An object that touches the pad.
 enum Touch {
     Finger(Script),
     /// It stays where it is put, as no finger does.
@@ -30,15 +30,15 @@ pub(super) struct Hands {
 }
 
 /// A pad on which they play what they are asked for.
-struct Obedient {
+struct GuidedPad {
     pad: VirtualPad,
     touches: Receiver<Touch>,
 }
 
 /// The virtual pad, which nothing touches yet, and the hands.
-pub(super) fn open(pad: &Pad) -> Result<(OpenedPad, Hands), Failure> {
+pub(super) fn open(pad: &PadOptions) -> Result<(OpenedPad, Hands), Failure> {
     let (to, touches) = channel();
-    let pad = Obedient { pad: virtual_pad(pad, Calibrator::rest())?, touches };
+    let pad = GuidedPad { pad: virtual_pad(pad, Calibrator::rest())?, touches };
     let opened = OpenedPad::simulated(pad).map_err(not_opened)?;
     Ok((opened, Hands { calibrator: Calibrator::new(SEED), to }))
 }
@@ -59,7 +59,7 @@ impl Hands {
     }
 }
 
-impl PadFirmware for Obedient {
+impl PadFirmware for GuidedPad {
     fn receive(&mut self, bytes: &[u8]) {
         self.pad.receive(bytes);
     }

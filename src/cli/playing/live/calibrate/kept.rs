@@ -1,4 +1,4 @@
-//! What a session keeps beside its decoder: a capture of all calls and a table of placements, from which a later one goes on.
+//! The files of a session beside its decoder: a capture of all calls and a table of placements, from which a later one goes on.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter};
@@ -25,15 +25,15 @@ const BREAK_US: u64 = 1_000_000;
 
 /// How a session begins.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Begin {
+pub(crate) struct SessionStart {
     /// Whether what was heard earlier is to be forgotten.
     pub(crate) fresh: bool,
-    /// What people do for that.
+    /// The instruction for people who want that.
     pub(crate) way_to_fresh: &'static str,
 }
 
 /// The files of a session.
-pub(crate) struct Kept {
+pub(crate) struct SessionFiles {
     capture: CaptureWriter<BufWriter<File>>,
     weights: PathBuf,
     /// When the session began, in the capture's time.
@@ -52,9 +52,14 @@ fn beside(out: &Path, ending: &str) -> PathBuf {
     name.into()
 }
 
-impl Kept {
+impl SessionFiles {
     /// Opens the files. What an earlier session heard is told to the guide and stays in them, unless this one is to begin afresh.
-    pub(crate) fn begin(out: &Path, how: Begin, guide: &mut Guide, head: &Head) -> Result<Self, Failure> {
+    pub(crate) fn begin(
+        out: &Path,
+        how: SessionStart,
+        guide: &mut Guide,
+        head: &Head,
+    ) -> Result<Self, Failure> {
         let (place, weights) = (capture_beside(out), beside(out, ".weights.csv"));
         let goes_on = spared(&place, &weights, how)?;
         let folder = place.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -102,7 +107,7 @@ impl Kept {
 }
 
 /// Whether there is a session to go on from. Refuses to write over what is none.
-fn spared(place: &Path, weights: &Path, how: Begin) -> Result<bool, Failure> {
+fn spared(place: &Path, weights: &Path, how: SessionStart) -> Result<bool, Failure> {
     if holds_play(place) {
         return Ok(!how.fresh);
     }
@@ -121,7 +126,7 @@ fn spared(place: &Path, weights: &Path, how: Begin) -> Result<bool, Failure> {
 /// Tells the guide what an earlier session heard, and writes it down once more. When the new session begins, in the capture's time.
 fn remember(
     place: &Path,
-    how: Begin,
+    how: SessionStart,
     guide: &mut Guide,
     capture: &mut CaptureWriter<BufWriter<File>>,
 ) -> Result<HostInstant, Failure> {

@@ -14,24 +14,24 @@ use std::thread;
 use clap::Args;
 
 use self::hands::Hands;
-use self::kept::{Begin, Kept};
+use self::kept::{SessionFiles, SessionStart};
 use self::session::Session;
-use self::told::{Teller, Told};
-use super::playing::{Audience, Terminal, Waits, open_pad, patience, play, requests};
+use self::told::{SessionHost, SessionScreen};
+use super::playing::{Audience, TerminalHost, WaitOption, open_pad, patience, play, requests};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::destination::Destination;
-use crate::cli::files::device::Pad;
+use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
 use crate::cli::laboratory::adapt::at_home;
 use crate::cli::playing::profile;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{is_same, is_stdout, say, stdout, written_over};
+use tactpad::bridge::bridge_parts::{BridgeParts, PlayingDecoder};
 use tactpad::bridge::changes::ChangesSlot;
+use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::observer::observe;
 use tactpad::bridge::opening::OpenedPad;
-use tactpad::bridge::parts::{Parts, PlayingDecoder};
-use tactpad::bridge::running::Bridge;
 use tactpad::bridge::sink::null::NullSink;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::lab::play::guide::{Guide, GuideStep};
@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
     #[command(flatten)]
-    device: Pad,
+    device: PadOptions,
     /// The weight that is put on the marks, in grams; without it the force's scale stays unknown.
     #[arg(long, value_name = "G", requires = "out", allow_hyphen_values = true)]
     weight_g: Option<f64>,
@@ -149,7 +149,8 @@ fn calibrate(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
         say(format_args!("without --weight-g GRAMS no weight is asked for, and {WITHOUT_WEIGHT}"));
     }
     let playing = PlayingDecoder { decoder, name: shipped::INVERSE.into(), place: None, file: head.decoder };
-    let guide = lead(arguments, (opened, hands), (guide, kept), (playing, profile))?;
+    let guide =
+        lead(arguments, SessionParts { pad: opened, hands, guide, files: kept, decoder: playing, profile })?;
     if *guide.step() != GuideStep::Done {
         return Err(Failure::Failed(format!(
             "stopped before the end: what was heard is kept in {}, and the same command goes on from there",
@@ -159,15 +160,15 @@ fn calibrate(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
     let (windows, placements) = guide.finish();
     let device = arguments.device.designed()?;
     let field = field_of(&device)?;
-    let found = at_home::fitted(&windows, &placements, (&device, &field), None)
+    let found = at_home::fitted(&windows, &placements, &device, &field, None)
         .map_err(|error| Failure::Failed(format!("{}: {error}", kept::capture_beside(out).display())))?;
-    at_home::write(found, &windows, (&to, out), arguments.json)
+    at_home::write(found, &windows, &to, out, arguments.json)
 }
 
 /// Opens what the session keeps, and says where it goes on.
-fn begin(out: &Path, fresh: bool, guide: &mut Guide, head: &Head) -> Result<Kept, Failure> {
+fn begin(out: &Path, fresh: bool, guide: &mut Guide, head: &Head) -> Result<SessionFiles, Failure> {
     let progress = Progress::begin("reading what was heard earlier");
-    let kept = Kept::begin(out, Begin { fresh, way_to_fresh: "give --fresh" }, guide, head)?;
+    let kept = SessionFiles::begin(out, SessionStart { fresh, way_to_fresh: "give --fresh" }, guide, head)?;
     drop(progress);
     if kept.goes_on() {
         say(format_args!(
@@ -186,30 +187,36 @@ fn open(arguments: &Arguments, profile: &Profile) -> Result<(OpenedPad, Option<H
     if arguments.pad == PadAddress::Virtual {
         return hands::open(&arguments.device).map(|(pad, hands)| (pad, Some(hands)));
     }
-    let patience = patience(&arguments.pad, Waits::NotAsked);
+    let patience = patience(&arguments.pad, WaitOption::NotGiven);
     Ok((open_pad(&arguments.pad, &arguments.device, profile, patience)?, None))
 }
 
+/// The parts of a session: the pad and its bridge, the guide, and the files.
+struct SessionParts {
+    pad: OpenedPad,
+    hands: Option<Hands>,
+    guide: Guide,
+    files: SessionFiles,
+    decoder: PlayingDecoder,
+    profile: ReadProfile,
+}
+
 /// Runs the bridge, and the session beside it, until nothing is left to do or somebody stops it.
-fn lead(
-    arguments: &Arguments,
-    (pad, hands): (OpenedPad, Option<Hands>),
-    (guide, kept): (Guide, Kept),
-    (decoder, profile): (PlayingDecoder, ReadProfile),
-) -> Result<Guide, Failure> {
+fn lead(arguments: &Arguments, parts: SessionParts) -> Result<Guide, Failure> {
+    let SessionParts { pad, hands, guide, files, decoder, profile } = parts;
     let requests = requests(None, Audience::Nobody)?;
     let (observer, heard) = observe();
     let (tell, said) = channel();
-    let terminal = Terminal::new("super-mario", OutputChoice::AsWritten, Audience::Nobody)?;
-    let session = Session::new((guide, kept), hands, requests.asker()?, Told::new(said));
-    let mut bridge = Bridge::new(Parts {
+    let terminal = TerminalHost::new("super-mario", OutputChoice::AsWritten, Audience::Nobody)?;
+    let session = Session::new(guide, files, hands, requests.sender()?, SessionScreen::new(said));
+    let mut bridge = Bridge::new(BridgeParts {
         pad,
-        patience: patience(&arguments.pad, Waits::NotAsked),
+        patience: patience(&arguments.pad, WaitOption::NotGiven),
         decoder,
         profile,
         sink: Box::new(NullSink),
         requests,
-        host: Box::new(Teller::new(terminal, tell)),
+        host: Box::new(SessionHost::new(terminal, tell)),
         record: None,
         observers: vec![observer],
         changes: ChangesSlot::default(),

@@ -1,32 +1,32 @@
-//! What is told while a session goes on: a few lines that are written over on a terminal, else a line when something changes.
+//! The screen of a session: a few lines that are written over on a terminal, else a line when something changes.
 
 use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, Sender};
 
 use super::words::{instruction, progress};
-use crate::cli::playing::live::playing::Terminal;
+use crate::cli::playing::live::playing::TerminalHost;
 use crate::cli::playing::live::screen::{Picture, Size};
 use crate::cli::printing::terminal;
 use crate::cli::printing::written::say;
 use tactpad::bridge::host::Host;
-use tactpad::bridge::offer::Offer;
+use tactpad::bridge::profile_update::ProfileUpdate;
 use tactpad::lab::play::guide::Guide;
 use tactpad::lab::play::words::wrong;
 use tactpad::pipeline::mapping::read::ReadProfile;
 
 /// Hands on what the bridge tells of the pad, so that it stands among the session's lines.
-pub(super) struct Teller {
-    terminal: Terminal,
+pub(super) struct SessionHost {
+    terminal: TerminalHost,
     tell: Sender<String>,
 }
 
-impl Teller {
-    pub(super) const fn new(terminal: Terminal, tell: Sender<String>) -> Self {
+impl SessionHost {
+    pub(super) const fn new(terminal: TerminalHost, tell: Sender<String>) -> Self {
         Self { terminal, tell }
     }
 }
 
-impl Host for Teller {
+impl Host for SessionHost {
     fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
         self.terminal.read_profile(name)
     }
@@ -35,8 +35,8 @@ impl Host for Teller {
         self.terminal.next_profile()
     }
 
-    fn wants(&self, offer: &Offer) -> bool {
-        self.terminal.wants(offer)
+    fn wants(&self, update: &ProfileUpdate) -> bool {
+        self.terminal.wants(update)
     }
 
     fn tell(&mut self, line: &str) {
@@ -46,17 +46,17 @@ impl Host for Teller {
 }
 
 /// The lines.
-pub(super) struct Told {
+pub(super) struct SessionScreen {
     is_drawn: bool,
     last: Option<Picture>,
-    /// What was said last where nothing is drawn: what to do, and whether something was wrong.
+    /// The last message where nothing is drawn: the instruction, and whether something was wrong.
     said: Option<(String, bool)>,
-    /// What the bridge tells, and what it told last.
+    /// Messages of the bridge, and the last one.
     from_bridge: Receiver<String>,
     of_pad: String,
 }
 
-impl Told {
+impl SessionScreen {
     pub(super) fn new(from_bridge: Receiver<String>) -> Self {
         let is_drawn = terminal::moves_cursor(&io::stderr());
         Self { is_drawn, last: None, said: None, from_bridge, of_pad: String::new() }

@@ -1,4 +1,4 @@
-//! What people are told in each step, in lines of a terminal.
+//! The instructions of each step, in lines of a terminal.
 
 use tactpad::lab::play::guide::{GuideStep, LoadOnPad, REST_S, STILL_S};
 use tactpad::lab::play::words;
@@ -6,7 +6,7 @@ use tactpad::lab::play::words;
 /// Cells of a bar.
 const CELLS: usize = 12;
 
-/// What to do, and in which step.
+/// The instruction, and the step that it belongs to.
 pub(super) fn instruction(step: &GuideStep, weight_g: Option<f64>) -> String {
     let steps = if weight_g.is_some() { 3 } else { 2 };
     let what = words::instruction(step, weight_g);

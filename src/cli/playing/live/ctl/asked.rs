@@ -9,7 +9,7 @@ use crate::cli::failure::Failure;
 use crate::cli::printing::written::reason;
 use tactpad::bridge::control::ask;
 
-/// What the bridge answers, as its line and as a document. An error in it is one here.
+/// The bridge's answer, as a line and as a document. An error in it is one here.
 pub(super) fn answered(path: &Path, request: &str) -> Result<(String, Value), Failure> {
     let answer = ask(path, request).map_err(|error| Failure::Failed(no_answer(path, &error)))?;
     let document: Value =

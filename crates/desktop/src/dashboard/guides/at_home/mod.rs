@@ -4,21 +4,21 @@
 
 mod pause;
 mod session;
+mod session_state;
 mod stage;
-mod standing;
-mod told;
-mod work;
+mod steps;
+mod worker;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, Weak};
 
 use self::pause::Pause;
-use self::stage::{Begun, Choice, Stage};
-use self::standing::Shared;
-use self::told::{ANEW, NO_WEIGHT, WEIGHT, steps};
-use self::work::Work;
-use super::guide::{Guide, NO_ACTION, Outcome, Progress, Scene, Told};
-use crate::dashboard::shadow::Pad;
+use self::session_state::SharedSessionState;
+use self::stage::{RunningSession, SessionOptions, Stage};
+use self::steps::{ANEW, NO_WEIGHT, WEIGHT, steps};
+use self::worker::Worker;
+use super::guide::{GuideContext, GuideResult, GuideState, GuideStatus, NO_ACTION, PageGuide};
+use crate::dashboard::shadow::ConnectedPad;
 use tactpad_bridge::request::Request;
 use tactpad_bridge::state::State;
 use tactpad_core::pad::weight::check_weight;
@@ -36,28 +36,28 @@ pub(super) struct AtHome {
     pause: Weak<Pause>,
 }
 
-impl Guide for AtHome {
+impl PageGuide for AtHome {
     fn id(&self) -> &'static str {
         "at-home"
     }
 
-    fn start(&mut self, scene: &Scene<'_>) -> Result<(), String> {
-        if !scene.pad.is_heard {
-            return Err(format!("there is no pad to calibrate: {}", absence(scene.status.state)));
+    fn start(&mut self, context: &GuideContext<'_>) -> Result<(), String> {
+        if !context.pad.is_heard {
+            return Err(format!("there is no pad to calibrate: {}", absence(context.status.state)));
         }
-        self.stop(scene);
-        let name = name_of(&scene.pad);
-        let was_begun = scene.library.has_session(&name);
-        self.stage = Stage::Choosing(Choice { name, was_begun, is_fresh: false });
+        self.stop(context);
+        let name = name_of(&context.pad);
+        let was_begun = context.host.has_session(&name);
+        self.stage = Stage::Choosing(SessionOptions { name, was_begun, is_fresh: false });
         Ok(())
     }
 
-    fn stop(&mut self, scene: &Scene<'_>) {
-        self.look(scene);
+    fn stop(&mut self, context: &GuideContext<'_>) {
+        self.update(context);
         self.stage = match &self.stage {
-            Stage::Begun(begun) if begun.progress() == Progress::Running => {
+            Stage::RunningSession(begun) if begun.progress() == GuideState::Running => {
                 begun.stop.store(true, Ordering::Release);
-                Stage::Idle(Some(Outcome::words(
+                Stage::Idle(Some(GuideResult::words(
                     "Stopped. What was heard is kept: start again, and it goes on from there.",
                 )))
             }
@@ -65,16 +65,16 @@ impl Guide for AtHome {
         };
     }
 
-    fn leave(&mut self, scene: &Scene<'_>) {
-        self.look(scene);
+    fn on_page_closed(&mut self, context: &GuideContext<'_>) {
+        self.update(context);
         // A pad that nobody plays on would else stay paused. A fit needs nobody.
-        if matches!(&self.stage, Stage::Begun(begun) if begun.standing.listens()) {
-            self.stop(scene);
+        if matches!(&self.stage, Stage::RunningSession(begun) if begun.standing.listens()) {
+            self.stop(context);
         }
     }
 
-    fn look(&mut self, _scene: &Scene<'_>) {
-        if let Stage::Begun(begun) = &mut self.stage {
+    fn update(&mut self, _scene: &GuideContext<'_>) {
+        if let Stage::RunningSession(begun) = &mut self.stage {
             begun.standing = begun.shared.now();
         }
     }
@@ -83,7 +83,7 @@ impl Guide for AtHome {
         &mut self,
         action: &str,
         number: Option<f64>,
-        scene: &Scene<'_>,
+        context: &GuideContext<'_>,
     ) -> Result<Option<Request>, String> {
         let Stage::Choosing(choice) = &mut self.stage else { return Err(NO_ACTION.into()) };
         match action {
@@ -91,21 +91,21 @@ impl Guide for AtHome {
             WEIGHT => {
                 let weight_g = number.ok_or("write how many grams the weight has")?;
                 check_weight(weight_g)?;
-                self.begin(Some(weight_g), scene)?;
+                self.begin(Some(weight_g), context)?;
             }
-            NO_WEIGHT => self.begin(None, scene)?,
+            NO_WEIGHT => self.begin(None, context)?,
             _ => return Err(NO_ACTION.into()),
         }
         Ok(None)
     }
 
-    fn told(&self) -> Told {
+    fn status(&self) -> GuideStatus {
         let (state, result) = match &self.stage {
-            Stage::Idle(result) => (Progress::Idle, result.clone()),
-            Stage::Choosing(_) => (Progress::Running, None),
-            Stage::Begun(begun) => (begun.progress(), begun.standing.outcome()),
+            Stage::Idle(result) => (GuideState::Idle, result.clone()),
+            Stage::Choosing(_) => (GuideState::Running, None),
+            Stage::RunningSession(begun) => (begun.progress(), begun.standing.outcome()),
         };
-        Told {
+        GuideStatus {
             id: self.id(),
             title: "Calibrate at home",
             about: "Two to three minutes of presses and a known weight on five marks. A decoder is fitted to your pad and written to a file; \
@@ -118,31 +118,31 @@ impl Guide for AtHome {
 }
 
 impl AtHome {
-    fn begin(&mut self, weight_g: Option<f64>, scene: &Scene<'_>) -> Result<(), String> {
+    fn begin(&mut self, weight_g: Option<f64>, context: &GuideContext<'_>) -> Result<(), String> {
         let Stage::Choosing(choice) = &self.stage else { return Err(NO_ACTION.into()) };
         let pause = match self.pause.upgrade() {
             Some(pause) => pause,
-            None => Arc::new(Pause::begin(scene.asker, scene.status.state == State::Paused)?),
+            None => Arc::new(Pause::begin(context.sender, context.status.state == State::Paused)?),
         };
         self.pause = Arc::downgrade(&pause);
-        let (shared, stop) = (Arc::<Shared>::default(), Arc::<AtomicBool>::default());
-        let work = Work {
+        let (shared, stop) = (Arc::<SharedSessionState>::default(), Arc::<AtomicBool>::default());
+        let work = Worker {
             name: choice.name.clone(),
             is_fresh: choice.is_fresh,
             weight_g,
-            library: Arc::clone(scene.library),
+            host: Arc::clone(context.host),
             files: Arc::clone(&self.files),
-            identity: scene.pad.identity,
+            identity: context.pad.identity,
             shared: Arc::clone(&shared),
             stop: Arc::clone(&stop),
         };
-        work.start(pause, (scene.hear)())?;
-        self.stage = Stage::Begun(Begun { weight_g, standing: shared.now(), shared, stop });
+        work.start(pause, (context.subscribe)())?;
+        self.stage = Stage::RunningSession(RunningSession { weight_g, standing: shared.now(), shared, stop });
         Ok(())
     }
 }
 
-/// What keeps the pad from being heard.
+/// The reason why the pad sends nothing.
 const fn absence(state: State) -> &'static str {
     match state {
         // Behind a pause the bridge tells of nothing else.
@@ -152,7 +152,7 @@ const fn absence(state: State) -> &'static str {
 }
 
 /// The name of what is kept of a pad. What a file's name should not have becomes `_`.
-fn name_of(pad: &Pad) -> String {
+fn name_of(pad: &ConnectedPad) -> String {
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-';
     let plain = |letter: char| if is_plain(letter) { letter } else { '_' };
     let serial = pad.identity.map(|identity| identity.serial_number.as_str().chars().map(plain).collect());
@@ -169,12 +169,13 @@ mod tests {
     use serde_json::Value;
 
     use super::*;
-    use crate::dashboard::ears::Ears;
-    use crate::dashboard::library::{
-        Entry, KeptDecoder, Library, Over, Report, Saved, Session, Stored, Unsaved,
+    use crate::dashboard::call_subscribers::CallSubscribers;
+    use crate::dashboard::host::{
+        DashboardHost, KeptDecoder, Overwrite, ProfileEntry, ReportEntry, SaveError, SavedProfile,
+        SessionStore, StoredProfile,
     };
     use tactpad_bridge::latency::Percentiles;
-    use tactpad_bridge::request::Asker;
+    use tactpad_bridge::request::RequestSender;
     use tactpad_bridge::requests::Requests;
     use tactpad_bridge::snapshot::{BridgeHealth, Status};
     use tactpad_core::pipeline::call::Call;
@@ -188,7 +189,7 @@ mod tests {
     /// Keeps nothing, and knows of an earlier session.
     struct Shelf;
 
-    impl Session for Shelf {
+    impl SessionStore for Shelf {
         fn at(&self, at: HostInstant) -> HostInstant {
             at
         }
@@ -202,8 +203,8 @@ mod tests {
         }
     }
 
-    impl Library for Shelf {
-        fn entries(&self) -> Vec<Entry> {
+    impl DashboardHost for Shelf {
+        fn entries(&self) -> Vec<ProfileEntry> {
             Vec::new()
         }
 
@@ -215,19 +216,19 @@ mod tests {
             OutputChoice::AsWritten
         }
 
-        fn read(&self, _name: &str) -> Option<Stored> {
+        fn read(&self, _name: &str) -> Option<StoredProfile> {
             None
         }
 
-        fn save(&self, _name: &str, _text: &str, _over: &Over) -> Result<Saved, Unsaved> {
-            Err(Unsaved::Failed("nothing is kept".into()))
+        fn save(&self, _name: &str, _text: &str, _over: &Overwrite) -> Result<SavedProfile, SaveError> {
+            Err(SaveError::Failed("nothing is kept".into()))
         }
 
         fn doctor(&self) -> Value {
             Value::Null
         }
 
-        fn reports(&self) -> Vec<Report> {
+        fn reports(&self) -> Vec<ReportEntry> {
             Vec::new()
         }
 
@@ -245,7 +246,7 @@ mod tests {
             _fresh: bool,
             _guide: &mut Led,
             _head: &Head,
-        ) -> Result<Box<dyn Session>, String> {
+        ) -> Result<Box<dyn SessionStore>, String> {
             Ok(Box::new(Self))
         }
 
@@ -257,32 +258,34 @@ mod tests {
     /// A bridge that only writes down what it is asked.
     struct Bridge {
         requests: Requests,
-        asker: Arc<Asker>,
-        ears: Mutex<Ears>,
-        library: Arc<dyn Library>,
+        sender: Arc<RequestSender>,
+        call_subscribers: Mutex<CallSubscribers>,
+        host: Arc<dyn DashboardHost>,
         status: Status,
-        pad: Pad,
+        pad: ConnectedPad,
     }
 
     impl Bridge {
         fn new(state: State) -> Self {
             let requests = Requests::new().unwrap();
-            let asker = Arc::new(requests.asker().unwrap());
+            let sender = Arc::new(requests.sender().unwrap());
             let status = Status { state, ..status() };
-            let pad = Pad { is_heard: state != State::Waiting, identity: None };
-            Self { requests, asker, ears: Mutex::default(), library: Arc::new(Shelf), status, pad }
+            let pad = ConnectedPad { is_heard: state != State::Waiting, identity: None };
+            Self { requests, sender, call_subscribers: Mutex::default(), host: Arc::new(Shelf), status, pad }
         }
 
-        fn with<T>(&self, work: impl FnOnce(&Scene<'_>) -> T) -> T {
-            work(&Scene {
+        fn with<T>(&self, work: impl FnOnce(&GuideContext<'_>) -> T) -> T {
+            work(&GuideContext {
                 now: HostInstant::default(),
                 status: &self.status,
                 pad: self.pad,
                 profile: &|| None,
                 past: &|| None,
-                hear: &|| self.ears.lock().unwrap_or_else(PoisonError::into_inner).add(),
-                asker: &self.asker,
-                library: &self.library,
+                subscribe: &|| {
+                    self.call_subscribers.lock().unwrap_or_else(PoisonError::into_inner).subscribe()
+                },
+                sender: &self.sender,
+                host: &self.host,
             })
         }
 
@@ -319,27 +322,27 @@ mod tests {
     }
 
     fn begin(guide: &mut AtHome, bridge: &Bridge) {
-        bridge.with(|scene| guide.start(scene)).unwrap();
-        bridge.with(|scene| guide.act(WEIGHT, Some(200.0), scene)).unwrap();
+        bridge.with(|context| guide.start(context)).unwrap();
+        bridge.with(|context| guide.act(WEIGHT, Some(200.0), context)).unwrap();
     }
 
     #[test]
     fn without_a_pad_it_says_why_it_does_not_begin() {
         let (bridge, mut guide) = (Bridge::new(State::Waiting), AtHome::default());
-        let refused = bridge.with(|scene| guide.start(scene)).unwrap_err();
+        let refused = bridge.with(|context| guide.start(context)).unwrap_err();
         assert!(refused.contains("no pad") && refused.contains("plug it in"), "{refused}");
-        assert_eq!(guide.told().state, Progress::Idle);
+        assert_eq!(guide.status().state, GuideState::Idle);
     }
 
     #[test]
     fn a_weight_that_no_pad_bears_begins_nothing() {
         let (mut bridge, mut guide) = (Bridge::new(State::Playing), AtHome::default());
-        bridge.with(|scene| guide.start(scene)).unwrap();
+        bridge.with(|context| guide.start(context)).unwrap();
         for (number, why) in [(None, "how many grams"), (Some(2.0), "30 to 1000 g"), (Some(f64::NAN), "g")] {
-            let refused = bridge.with(|scene| guide.act(WEIGHT, number, scene)).unwrap_err();
+            let refused = bridge.with(|context| guide.act(WEIGHT, number, context)).unwrap_err();
             assert!(refused.contains(why), "{refused}");
         }
-        assert_eq!(bridge.with(|scene| guide.act("dance", None, scene)).unwrap_err(), NO_ACTION);
+        assert_eq!(bridge.with(|context| guide.act("dance", None, context)).unwrap_err(), NO_ACTION);
         assert!(bridge.requests.take().is_none(), "nothing was paused");
     }
 
@@ -349,15 +352,17 @@ mod tests {
         begin(&mut guide, &bridge);
         assert_eq!(bridge.asked(), Request::Pause);
         // Somebody lets the bridge go on meanwhile.
-        bridge.ears.lock().unwrap().tell(HostInstant::default(), &Call::Resume.into());
+        bridge.call_subscribers.lock().unwrap().publish(HostInstant::default(), &Call::Resume.into());
         assert_eq!(bridge.asked(), Request::Pause);
-        bridge.with(|scene| guide.stop(scene));
+        bridge.with(|context| guide.stop(context));
         assert_eq!(bridge.asked(), Request::Resume);
-        let told = guide.told();
-        assert!(told.state == Progress::Idle && told.result.is_some_and(|it| it.text.contains("goes on")));
+        let status = guide.status();
+        assert!(
+            status.state == GuideState::Idle && status.result.is_some_and(|it| it.text.contains("goes on"))
+        );
         begin(&mut guide, &bridge);
         assert_eq!(bridge.asked(), Request::Pause);
-        bridge.with(|scene| guide.leave(scene));
+        bridge.with(|context| guide.on_page_closed(context));
         assert_eq!(bridge.asked(), Request::Resume);
     }
 
@@ -367,7 +372,7 @@ mod tests {
         begin(&mut guide, &bridge);
         assert_eq!(bridge.asked(), Request::Pause);
         let pause = guide.pause.clone();
-        bridge.with(|scene| guide.stop(scene));
+        bridge.with(|context| guide.stop(context));
         while pause.strong_count() > 0 {
             std::thread::yield_now();
         }
@@ -385,10 +390,13 @@ mod tests {
                 rate_hz: 1000,
                 picovolts_per_count: 1,
             };
-            Pad { is_heard: true, identity: Some(identity) }
+            ConnectedPad { is_heard: true, identity: Some(identity) }
         };
         assert_eq!(name_of(&pad("TP-0042")), "TP-0042");
         assert_eq!(name_of(&pad("../a:b")), "___a_b");
-        assert_eq!((name_of(&pad("")), name_of(&Pad::default())), (NAMELESS.into(), NAMELESS.into()));
+        assert_eq!(
+            (name_of(&pad("")), name_of(&ConnectedPad::default())),
+            (NAMELESS.into(), NAMELESS.into())
+        );
     }
 }

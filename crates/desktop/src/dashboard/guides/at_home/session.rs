@@ -1,12 +1,12 @@
-//! What a session does with each call: it keeps it, and asks the guide what is to be done after it.
+//! A running calibration session: it saves each call, and asks the guide for the next step.
 
 use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
 use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::encode_message;
 
-use super::standing::Position;
-use crate::dashboard::library;
+use super::session_state::Position;
+use crate::dashboard::host;
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::head::Head;
 use tactpad_core::pipeline::contact::read;
@@ -19,7 +19,7 @@ use tactpad_lab::play::guide::{Guide, GuideStep};
 use tactpad_lab::play::reader::Reader;
 use tactpad_lab::play::words::{is_news, is_other};
 
-/// What was heard is on the disk at most so many windows of a tenth of a second later.
+/// Interval between two writes to the disk, in windows of a tenth of a second.
 const SETTLE_WINDOWS: usize = 10;
 
 /// A guide that has heard nothing, and what a capture of what it hears begins with.
@@ -40,7 +40,7 @@ pub(super) fn guide(weight_g: Option<f64>) -> Result<(Guide, Head), String> {
 /// A session that goes on.
 pub(super) struct Session {
     guide: Guide,
-    kept: Box<dyn library::Session>,
+    kept: Box<dyn host::SessionStore>,
     /// The host time of the first call.
     begin: Option<HostInstant>,
     pad: Option<SerialNumber>,
@@ -55,7 +55,7 @@ impl Session {
     /// A session of a pad that said earlier who it is: that belongs to what is heard.
     pub(super) fn begin(
         guide: Guide,
-        kept: Box<dyn library::Session>,
+        kept: Box<dyn host::SessionStore>,
         identity: Option<&Identity>,
     ) -> Result<Self, String> {
         let (step, judged, phase) = (guide.step().clone(), guide.judged(), guide.phase());
@@ -106,7 +106,7 @@ impl Session {
         self.kept.settle(self.guide.placements())
     }
 
-    /// What was heard.
+    /// The guide, with all recorded presses.
     pub(super) fn finish(self) -> Guide {
         self.guide
     }
@@ -136,7 +136,7 @@ mod tests {
 
     use firmware_proto::link::MessageReceiver;
 
-    use super::super::work::fitted;
+    use super::super::worker::fitted;
     use super::*;
     use tactpad_core::pad::marks::MARKS_MM;
     use tactpad_core::pipeline::call::OwnedCall;
@@ -149,7 +149,7 @@ mod tests {
     /// The bridge runs for an hour already.
     const BEGIN_US: u64 = 3_600_000_000;
 
-    /// What is kept, in memory.
+    /// A session store in memory.
     #[derive(Clone, Default)]
     struct Memory {
         calls: Arc<Mutex<Vec<(HostInstant, OwnedCall)>>>,
@@ -157,7 +157,7 @@ mod tests {
         begin_us: u64,
     }
 
-    impl library::Session for Memory {
+    impl host::SessionStore for Memory {
         fn at(&self, at: HostInstant) -> HostInstant {
             at.plus_us(self.begin_us)
         }
@@ -174,7 +174,7 @@ mod tests {
     }
 
     /// A pad that somebody plays with, and hands that do what is asked once a calibration begins.
-    struct Scene {
+    struct GuideContext {
         pad: VirtualPad,
         hands: Calibrator,
         obeyed: Option<GuideStep>,
@@ -182,13 +182,13 @@ mod tests {
         off_mm: f64,
     }
 
-    impl Scene {
+    impl GuideContext {
         /// The pad has said who it is long before.
         fn new(seed: u64) -> Self {
             let pad = VirtualPad::new(Calibrator::rest(), seed);
-            let mut scene = Self { pad, hands: Calibrator::new(seed), obeyed: None, off_mm: 0.0 };
-            (0..1_500).for_each(|_| drop(scene.emitted()));
-            scene
+            let mut context = Self { pad, hands: Calibrator::new(seed), obeyed: None, off_mm: 0.0 };
+            (0..1_500).for_each(|_| drop(context.emitted()));
+            context
         }
 
         fn emitted(&mut self) -> (HostInstant, Vec<u8>) {
@@ -250,11 +250,11 @@ mod tests {
 
     #[test]
     fn it_leads_from_the_middle_of_a_paused_game_to_a_decoder_that_knows_the_scale() {
-        let (mut scene, memory) = (Scene::new(5), Memory::default());
+        let (mut context, memory) = (GuideContext::new(5), Memory::default());
         let mut session = begun(&memory, Some(WEIGHT_G));
-        scene.lead(&mut session, |it| matches!(it.step, GuideStep::TakeAway { mark: 4 }));
+        context.lead(&mut session, |it| matches!(it.step, GuideStep::TakeAway { mark: 4 }));
         assert_eq!(memory.placements.lock().unwrap().len(), 4, "each mark is kept as soon as it is done");
-        scene.lead(&mut session, |it| it.step == GuideStep::Done);
+        context.lead(&mut session, |it| it.step == GuideStep::Done);
         session.settle().unwrap();
         let calls = memory.calls.lock().unwrap();
         assert!(matches!(&calls[0], (at, OwnedCall::Bytes(_)) if *at == HostInstant::default()));
@@ -271,16 +271,16 @@ mod tests {
 
     #[test]
     fn a_weight_beside_its_mark_is_asked_for_elsewhere_without_trembling() {
-        let (mut scene, memory) = (Scene::new(6), Memory::default());
+        let (mut context, memory) = (GuideContext::new(6), Memory::default());
         let mut session = begun(&memory, Some(WEIGHT_G));
-        scene.off_mm = 10.0;
+        context.off_mm = 10.0;
         let is_beside =
             |step: &GuideStep| matches!(step, GuideStep::Put { lying: LoadOnPad::Beside { .. }, .. });
-        let first = scene.lead(&mut session, |it| is_beside(&it.step));
+        let first = context.lead(&mut session, |it| is_beside(&it.step));
         let cue = first.cue.clone();
         assert!(is_beside(&cue), "{first:?}");
         for _ in 0..2_000 {
-            let (at, bytes) = scene.emitted();
+            let (at, bytes) = context.emitted();
             session.take(at, Call::Bytes(&bytes)).unwrap();
             assert_eq!(session.position().cue, cue);
         }
@@ -288,9 +288,9 @@ mod tests {
 
     #[test]
     fn what_was_kept_is_gone_on_from() {
-        let (mut scene, memory) = (Scene::new(7), Memory::default());
+        let (mut context, memory) = (GuideContext::new(7), Memory::default());
         let mut session = begun(&memory, Some(WEIGHT_G));
-        scene.lead(&mut session, |it| matches!(it.step, GuideStep::Put { mark: 2, .. }));
+        context.lead(&mut session, |it| matches!(it.step, GuideStep::Put { mark: 2, .. }));
         let pressed_s = session.finish().pressed_s();
         let (mut again, _) = guide(Some(WEIGHT_G)).unwrap();
         let calls = memory.calls.lock().unwrap().clone();
@@ -301,7 +301,7 @@ mod tests {
         assert!((again.pressed_s() - pressed_s).abs() < 0.05, "{} {pressed_s}", again.pressed_s());
         let kept = Memory { begin_us: end.as_ns() / 1_000, ..Memory::default() };
         let mut second = Session::begin(again, Box::new(kept), Some(&identity("A-1"))).unwrap();
-        let next = scene.lead(&mut second, |it| !matches!(it.step, GuideStep::Rest { .. }));
+        let next = context.lead(&mut second, |it| !matches!(it.step, GuideStep::Rest { .. }));
         assert!(matches!(next.step, GuideStep::Put { mark: 2, .. }) && next.placed == 2, "{next:?}");
     }
 

@@ -3,21 +3,21 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::standing::{Shared, Standing};
-use crate::dashboard::guides::guide::{Outcome, Progress};
+use super::session_state::{SessionState, SharedSessionState};
+use crate::dashboard::guides::guide::{GuideResult, GuideState};
 
 /// Where it is.
 pub(super) enum Stage {
     /// It has not begun, or was stopped: what is said of that.
-    Idle(Option<Outcome>),
+    Idle(Option<GuideResult>),
     /// People say which weight they have.
-    Choosing(Choice),
+    Choosing(SessionOptions),
     /// It listens, fits, or is over.
-    Begun(Begun),
+    RunningSession(RunningSession),
 }
 
-/// What is to be begun.
-pub(super) struct Choice {
+/// The options of a session that has not begun.
+pub(super) struct SessionOptions {
     /// The name of what is kept of this pad.
     pub(super) name: String,
     /// Whether there is an earlier session.
@@ -27,12 +27,12 @@ pub(super) struct Choice {
 }
 
 /// A session.
-pub(super) struct Begun {
+pub(super) struct RunningSession {
     pub(super) weight_g: Option<f64>,
-    pub(super) shared: Arc<Shared>,
+    pub(super) shared: Arc<SharedSessionState>,
     pub(super) stop: Arc<AtomicBool>,
     /// How it stood when somebody looked last.
-    pub(super) standing: Standing,
+    pub(super) standing: SessionState,
 }
 
 impl Default for Stage {
@@ -41,13 +41,13 @@ impl Default for Stage {
     }
 }
 
-impl Begun {
+impl RunningSession {
     /// How that is, as guides tell it.
-    pub(super) const fn progress(&self) -> Progress {
+    pub(super) const fn progress(&self) -> GuideState {
         match &self.standing {
-            Standing::Over(Ok(_)) => Progress::Done,
-            Standing::Over(Err(_)) | Standing::Broken(..) => Progress::Failed,
-            _ => Progress::Running,
+            SessionState::Finished(Ok(_)) => GuideState::Done,
+            SessionState::Finished(Err(_)) | SessionState::Broken(..) => GuideState::Failed,
+            _ => GuideState::Running,
         }
     }
 }

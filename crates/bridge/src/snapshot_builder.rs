@@ -1,46 +1,47 @@
-//! What there is to see of a bridge at one moment.
+//! Builds the snapshot of a running bridge.
 
 use crate::changes::ChangesSlot;
 use crate::driver::Driver;
-use crate::keeper::Keeper;
-use crate::offer::Standing;
+use crate::pad_connection::PadConnection;
+use crate::profile_update::ProfileStatus;
 use crate::snapshot::{BridgeHealth, Snapshot, Status, Uncertainty};
 use crate::state::State;
 use crate::weighing::WeighingStatus;
 use tactpad_core::time::HostInstant;
 
-/// What it is doing.
-pub(super) fn state(driver: &Driver, keeper: &Keeper) -> State {
-    State::of(&driver.pipeline, keeper.absence())
+/// The state of the bridge.
+pub(super) fn state(driver: &Driver, connection: &PadConnection) -> State {
+    State::of(&driver.pipeline, connection.no_pad_reason())
 }
 
-/// The decoder, as people know it.
-pub(super) struct Known {
-    /// What they call it.
+/// The decoder in use, as the status shows it.
+pub(super) struct DecoderInfo {
+    /// Display name.
     pub(super) name: String,
-    /// Where it was read.
+    /// Path of its file, if it was read from one.
     pub(super) place: Option<String>,
-    /// What play shows of changes in the pad since it was made.
+    /// Changes in the pad that play shows since the decoder was made.
     pub(super) changes: ChangesSlot,
 }
 
-/// All that there is to see at `now`.
-pub(super) fn look(
+/// The snapshot at host time `now`.
+pub(super) fn snapshot(
     now: HostInstant,
     driver: &Driver,
-    keeper: &Keeper,
-    (decoder, standing): (&Known, &Standing),
+    connection: &PadConnection,
+    decoder: &DecoderInfo,
+    profile_status: &ProfileStatus,
 ) -> Snapshot {
     let Driver { pipeline, sink, .. } = driver;
     let pad = pipeline.identity().map(|identity| identity.serial_number);
     let status = Status {
-        state: state(driver, keeper),
+        state: state(driver, connection),
         pad,
         profile: pipeline.profile().name.clone(),
         layer: pipeline.layer().map(str::to_owned),
-        profile_reason: standing.reason.clone(),
-        profile_error: standing.error.clone(),
-        preview: standing.is_preview,
+        profile_reason: profile_status.reason.clone(),
+        profile_error: profile_status.error.clone(),
+        preview: profile_status.is_preview,
         decoder: decoder.name.clone(),
         output: sink.describe(),
         contact: pipeline.contact().copied(),

@@ -1,8 +1,8 @@
 //! The steps of the guide, as the page shows them.
 
-use super::stage::{Begun, Choice, Stage};
-use super::standing::{Position, Standing};
-use crate::dashboard::guides::guide::{Action, Link, NumberField, Step as Told, StepState};
+use super::session_state::{Position, SessionState};
+use super::stage::{RunningSession, SessionOptions, Stage};
+use crate::dashboard::guides::guide::{Link, NumberField, PageStep, StepAction, StepState};
 use tactpad_bridge::state::State;
 use tactpad_core::pad::marks::MARKS_MM;
 use tactpad_core::pad::weight::GRAMS;
@@ -10,7 +10,7 @@ use tactpad_core::pipeline::Phase;
 use tactpad_lab::play::guide::{GuideStep, LoadOnPad, REST_S, STILL_S};
 use tactpad_lab::play::words::{WITHOUT_WEIGHT, instruction, progress, wrong};
 
-/// What people can choose before it begins.
+/// The actions that people can choose before it begins.
 pub(super) const WEIGHT: &str = "weight";
 pub(super) const NO_WEIGHT: &str = "no-weight";
 pub(super) const ANEW: &str = "anew";
@@ -49,15 +49,15 @@ const STEPS: [(&str, &str, &str); 5] = [
 ];
 
 /// The steps as they stand.
-pub(super) fn steps(stage: &Stage) -> Vec<Told> {
+pub(super) fn steps(stage: &Stage) -> Vec<PageStep> {
     let at = match stage {
         Stage::Idle(_) => None,
         Stage::Choosing(_) => Some(PREPARE),
-        Stage::Begun(begun) => Some(number_of(&begun.standing)),
+        Stage::RunningSession(begun) => Some(number_of(&begun.standing)),
     };
-    let has_marks = !matches!(stage, Stage::Begun(Begun { weight_g: None, .. }));
-    let told = |(number, (id, title, text)): (usize, (&'static str, &'static str, &'static str))| {
-        let mut step = Told::to_do(id, title, text);
+    let has_marks = !matches!(stage, Stage::RunningSession(RunningSession { weight_g: None, .. }));
+    let step_of = |(number, (id, title, text)): (usize, (&'static str, &'static str, &'static str))| {
+        let mut step = PageStep::to_do(id, title, text);
         match at {
             Some(at) if number < at => step.state = StepState::Done,
             Some(at) if number == at => begin(&mut step, stage),
@@ -65,40 +65,40 @@ pub(super) fn steps(stage: &Stage) -> Vec<Told> {
         }
         step
     };
-    STEPS.into_iter().enumerate().filter(|(number, _)| has_marks || *number != PUT).map(told).collect()
+    STEPS.into_iter().enumerate().filter(|(number, _)| has_marks || *number != PUT).map(step_of).collect()
 }
 
 /// Where a session is.
-const fn number_of(standing: &Standing) -> usize {
+const fn number_of(standing: &SessionState) -> usize {
     match standing {
-        Standing::Opening => REST,
-        Standing::Guided(Position { step, .. }) | Standing::Broken(step, _) => match step {
+        SessionState::Opening => REST,
+        SessionState::Guided(Position { step, .. }) | SessionState::Broken(step, _) => match step {
             GuideStep::Rest { .. } => REST,
             GuideStep::Press { .. } => PRESS,
             GuideStep::Put { .. } | GuideStep::TakeAway { .. } => PUT,
             GuideStep::Done => FIT,
         },
-        Standing::Fitting(_) | Standing::Over(_) => FIT,
+        SessionState::Fitting(_) | SessionState::Finished(_) => FIT,
     }
 }
 
-/// What is told of the step that is done now.
-fn begin(step: &mut Told, stage: &Stage) {
+/// Fills in the step that is done now.
+fn begin(step: &mut PageStep, stage: &Stage) {
     step.state = StepState::Doing;
     match stage {
         Stage::Idle(_) => {}
         Stage::Choosing(choice) => prepare(step, choice),
-        Stage::Begun(begun) => match &begun.standing {
-            Standing::Opening => step.detail = Some("reading what was heard earlier".into()),
-            Standing::Guided(position) => guided(step, position, begun.weight_g),
-            Standing::Fitting(share) => step.progress = Some(*share),
-            Standing::Over(Ok(_)) => step.state = StepState::Done,
-            Standing::Over(Err(_)) | Standing::Broken(..) => step.state = StepState::Failed,
+        Stage::RunningSession(begun) => match &begun.standing {
+            SessionState::Opening => step.detail = Some("reading what was heard earlier".into()),
+            SessionState::Guided(position) => guided(step, position, begun.weight_g),
+            SessionState::Fitting(share) => step.progress = Some(*share),
+            SessionState::Finished(Ok(_)) => step.state = StepState::Done,
+            SessionState::Finished(Err(_)) | SessionState::Broken(..) => step.state = StepState::Failed,
         },
     }
 }
 
-fn prepare(step: &mut Told, choice: &Choice) {
+fn prepare(step: &mut PageStep, choice: &SessionOptions) {
     let earlier = match (choice.was_begun, choice.is_fresh) {
         (false, _) => "",
         (true, false) => " What was heard of this pad earlier is kept, and it goes on from there.",
@@ -108,11 +108,11 @@ fn prepare(step: &mut Told, choice: &Choice) {
     let [least, largest] = GRAMS;
     let number = Some(NumberField { label: "Weight in grams", least, largest });
     step.actions = vec![
-        Action { name: WEIGHT, label: "Begin with this weight", number },
-        Action { name: NO_WEIGHT, label: "Begin without a weight", number: None },
+        StepAction { name: WEIGHT, label: "Begin with this weight", number },
+        StepAction { name: NO_WEIGHT, label: "Begin without a weight", number: None },
     ];
     if choice.was_begun && !choice.is_fresh {
-        step.actions.push(Action { name: ANEW, label: "Forget what was heard earlier", number: None });
+        step.actions.push(StepAction { name: ANEW, label: "Forget what was heard earlier", number: None });
     }
     step.links = vec![
         Link { path: "/sheet/marks.pdf", label: "Sheet with the marks (PDF)" },
@@ -120,7 +120,7 @@ fn prepare(step: &mut Told, choice: &Choice) {
     ];
 }
 
-fn guided(step: &mut Told, position: &Position, weight_g: Option<f64>) {
+fn guided(step: &mut PageStep, position: &Position, weight_g: Option<f64>) {
     let cue = wrong(&position.cue, weight_g).unwrap_or_else(|| instruction(&position.cue, weight_g));
     step.cue = Some(obstacle(position.phase).map_or(cue, Into::into));
     let how_far = wrong(&position.step, weight_g).unwrap_or_else(|| progress(&position.step));
@@ -128,7 +128,7 @@ fn guided(step: &mut Told, position: &Position, weight_g: Option<f64>) {
     step.progress = Some(share(position));
 }
 
-/// What the pad needs first.
+/// The obstacle that has to be removed first.
 const fn obstacle(phase: Phase) -> Option<&'static str> {
     let state = match phase {
         Phase::Waiting => State::Waiting,
@@ -162,23 +162,29 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::dashboard::guides::guide::Outcome;
+    use crate::dashboard::guides::guide::GuideResult;
 
-    fn begun(standing: Standing, weight_g: Option<f64>) -> Stage {
-        Stage::Begun(Begun { weight_g, shared: Arc::default(), stop: Arc::default(), standing })
+    fn begun(standing: SessionState, weight_g: Option<f64>) -> Stage {
+        Stage::RunningSession(RunningSession {
+            weight_g,
+            shared: Arc::default(),
+            stop: Arc::default(),
+            standing,
+        })
     }
 
-    fn guided(step: GuideStep, phase: Phase) -> Standing {
-        Standing::Guided(Position { cue: step.clone(), step, placed: 1, phase })
+    fn guided(step: GuideStep, phase: Phase) -> SessionState {
+        SessionState::Guided(Position { cue: step.clone(), step, placed: 1, phase })
     }
 
-    fn doing(stage: &Stage) -> Told {
+    fn doing(stage: &Stage) -> PageStep {
         steps(stage).into_iter().find(|step| step.state == StepState::Doing).unwrap()
     }
 
     #[test]
     fn a_weight_is_asked_for_with_its_bounds_and_earlier_sessions_can_be_forgotten() {
-        let choice = |was_begun, is_fresh| Stage::Choosing(Choice { name: "a".into(), was_begun, is_fresh });
+        let choice =
+            |was_begun, is_fresh| Stage::Choosing(SessionOptions { name: "a".into(), was_begun, is_fresh });
         let names = |stage: &Stage| doing(stage).actions.iter().map(|it| it.name).collect::<Vec<_>>();
         assert_eq!(names(&choice(false, false)), [WEIGHT, NO_WEIGHT]);
         assert_eq!(names(&choice(true, false)), [WEIGHT, NO_WEIGHT, ANEW]);
@@ -212,17 +218,17 @@ mod tests {
     fn without_a_weight_there_are_no_marks_and_an_end_is_done_or_failed() {
         let states = |stage: &Stage| steps(stage).iter().map(|it| (it.id, it.state)).collect::<Vec<_>>();
         let fit = |standing| states(&begun(standing, None)).last().copied();
-        assert!(states(&begun(Standing::Opening, None)).iter().all(|(id, _)| *id != "marks"));
-        assert_eq!(fit(Standing::Fitting(0.5)), Some(("fit", StepState::Doing)));
-        assert_eq!(fit(Standing::Over(Ok(Outcome::default()))), Some(("fit", StepState::Done)));
-        assert_eq!(fit(Standing::Over(Err("no".into()))), Some(("fit", StepState::Failed)));
-        let lifted = Standing::Broken(
+        assert!(states(&begun(SessionState::Opening, None)).iter().all(|(id, _)| *id != "marks"));
+        assert_eq!(fit(SessionState::Fitting(0.5)), Some(("fit", StepState::Doing)));
+        assert_eq!(fit(SessionState::Finished(Ok(GuideResult::default()))), Some(("fit", StepState::Done)));
+        assert_eq!(fit(SessionState::Finished(Err("no".into()))), Some(("fit", StepState::Failed)));
+        let lifted = SessionState::Broken(
             GuideStep::Press { pressed_s: 9.0, of_s: 60.0, next: "", missing: 1 },
             "full".into(),
         );
         let broken = begun(lifted.clone(), None);
         assert!(states(&broken).contains(&("press", StepState::Failed)), "it failed where it was");
-        assert_eq!(lifted.outcome(), Some(Outcome::words("full")));
+        assert_eq!(lifted.outcome(), Some(GuideResult::words("full")));
         assert!(states(&Stage::default()).iter().all(|(_, state)| *state == StepState::Todo));
     }
 }

@@ -10,10 +10,10 @@ use firmware_proto::identity::Identity;
 
 use super::pause::Pause;
 use super::session::{Session, guide};
-use super::standing::{Shared, Standing};
-use crate::dashboard::ears::Heard;
-use crate::dashboard::guides::guide::{CommandLine, Outcome, Table};
-use crate::dashboard::library::Library;
+use super::session_state::{SessionState, SharedSessionState};
+use crate::dashboard::call_subscribers::TimedCall;
+use crate::dashboard::guides::guide::{CommandLine, GuideResult, ResultTable};
+use crate::dashboard::host::DashboardHost;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pipeline::call::{Call, OwnedCall};
@@ -30,30 +30,30 @@ const LOOK: Duration = Duration::from_millis(100);
 /// How a weight is put on the marks.
 const WEIGHING: &str = "Start again with a weight: the guide says when and where.";
 
-/// What a session works with.
-pub(super) struct Work {
+/// The worker of a session, with its parameters.
+pub(super) struct Worker {
     /// The name of what is kept.
     pub(super) name: String,
     pub(super) is_fresh: bool,
     pub(super) weight_g: Option<f64>,
-    pub(super) library: Arc<dyn Library>,
+    pub(super) host: Arc<dyn DashboardHost>,
     /// Held as long as files are read and written.
     pub(super) files: Arc<Mutex<()>>,
     /// Who the pad said that it is.
     pub(super) identity: Option<Identity>,
-    pub(super) shared: Arc<Shared>,
+    pub(super) shared: Arc<SharedSessionState>,
     pub(super) stop: Arc<AtomicBool>,
 }
 
-impl Work {
+impl Worker {
     /// Works on a thread of its own; the pause ends as soon as nobody has to press any more.
     ///
     /// # Errors
     /// The system has no thread to give.
-    pub(super) fn start(self, pause: Arc<Pause>, calls: Receiver<Heard>) -> Result<(), String> {
+    pub(super) fn start(self, pause: Arc<Pause>, calls: Receiver<TimedCall>) -> Result<(), String> {
         let spawned = thread::Builder::new().name("calibration".into()).spawn(move || {
             match self.work(pause, calls) {
-                Ok(Some(outcome)) => self.shared.set(Standing::Over(Ok(outcome))),
+                Ok(Some(outcome)) => self.shared.set(SessionState::Finished(Ok(outcome))),
                 // Who stopped it hears no more of it.
                 Ok(None) => {}
                 Err(why) => self.shared.fail(why),
@@ -63,29 +63,29 @@ impl Work {
     }
 
     /// `None` where it was stopped.
-    fn work(&self, pause: Arc<Pause>, calls: Receiver<Heard>) -> Result<Option<Outcome>, String> {
+    fn work(&self, pause: Arc<Pause>, calls: Receiver<TimedCall>) -> Result<Option<GuideResult>, String> {
         let heard = self.listen(&pause, &calls);
         drop((pause, calls));
         let Some(guide) = heard? else { return Ok(None) };
         let (file, summary) = {
             let shared = &self.shared;
-            fitted(guide, &|share| shared.set(Standing::Fitting(share)))?
+            fitted(guide, &|share| shared.set(SessionState::Fitting(share)))?
         };
         if self.is_stopped() {
             return Ok(None);
         }
         let _files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
-        let kept = self.library.keep_decoder(&self.name, &file)?;
+        let kept = self.host.keep_decoder(&self.name, &file)?;
         Ok(Some(outcome(&summary, &kept.path, kept.command)))
     }
 
     /// Listens until nothing is left to do. `None` where it was stopped before.
-    fn listen(&self, pause: &Pause, calls: &Receiver<Heard>) -> Result<Option<Guide>, String> {
+    fn listen(&self, pause: &Pause, calls: &Receiver<TimedCall>) -> Result<Option<Guide>, String> {
         let _files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
         let (mut guide, head) = guide(self.weight_g)?;
-        let kept = self.library.open_session(&self.name, self.is_fresh, &mut guide, &head)?;
+        let kept = self.host.open_session(&self.name, self.is_fresh, &mut guide, &head)?;
         let mut session = Session::begin(guide, kept, self.identity.as_ref())?;
-        self.shared.set(Standing::Guided(session.position()));
+        self.shared.set(SessionState::Guided(session.position()));
         let went = self.hear(&mut session, pause, calls);
         let settled = session.settle();
         let is_whole = went?;
@@ -94,13 +94,18 @@ impl Work {
     }
 
     /// Hears calls until nothing is left to do; whether it came to that.
-    fn hear(&self, session: &mut Session, pause: &Pause, calls: &Receiver<Heard>) -> Result<bool, String> {
+    fn hear(
+        &self,
+        session: &mut Session,
+        pause: &Pause,
+        calls: &Receiver<TimedCall>,
+    ) -> Result<bool, String> {
         while !session.is_done() {
             if self.is_stopped() {
                 return Ok(false);
             }
             match calls.recv_timeout(LOOK) {
-                Ok((at, call)) => self.take(session, pause, (at, &call))?,
+                Ok((at, call)) => self.take(session, pause, at, &call)?,
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return Ok(false),
             }
@@ -112,13 +117,14 @@ impl Work {
         &self,
         session: &mut Session,
         pause: &Pause,
-        (at, call): (HostInstant, &OwnedCall),
+        at: HostInstant,
+        call: &OwnedCall,
     ) -> Result<(), String> {
         if *call == OwnedCall::Plain(Call::Resume) {
             pause.again();
         }
         if session.take(at, call.as_call())? {
-            self.shared.set(Standing::Guided(session.position()));
+            self.shared.set(SessionState::Guided(session.position()));
         }
         Ok(())
     }
@@ -140,22 +146,22 @@ pub(super) fn fitted(guide: Guide, report: &(dyn Fn(f64) + Sync)) -> Result<(Vec
     Ok((found.file(), Summary::of(&found, &windows)))
 }
 
-/// What people read in the end.
-fn outcome(summary: &Summary, path: &str, command: String) -> Outcome {
+/// The result for people.
+fn outcome(summary: &Summary, path: &str, command: String) -> GuideResult {
     let row = |part: &PlatePart| {
         let PlatePart { name, deviation_mm, force_share, presses, open } = part;
         let is_open = if *open { "open" } else { "" };
         let [deviation, share] = [format!("{deviation_mm:.2} mm"), format!("{:.1} %", 100.0 * force_share)];
         vec![(*name).to_owned(), deviation, share, presses.to_string(), is_open.to_owned()]
     };
-    Outcome {
-        table: Some(Table {
+    GuideResult {
+        table: Some(ResultTable {
             caption: HEADING,
-            heads: vec!["Part", "Place", "Force", "Presses", "Open"],
+            heads: vec!["PlatePart", "Place", "Force", "Presses", "Open"],
             rows: summary.map.iter().map(row).collect(),
         }),
         commands: vec![CommandLine { label: "Play with it", text: command }],
-        ..Outcome::words(format!(
+        ..GuideResult::words(format!(
             "The decoder is written: {path}. It plays from the next start that names it. It comes from {}. {}",
             summary.source(),
             summary.next(WEIGHING)

@@ -1,4 +1,4 @@
-//! What a bridge is made of.
+//! The parts of which a bridge is made.
 
 use std::io::Write;
 
@@ -16,7 +16,7 @@ use tactpad_core::pipeline::mapping::read::ReadProfile;
 pub struct PlayingDecoder {
     /// The decoder itself.
     pub decoder: Decoder,
-    /// What people call it.
+    /// Display name.
     pub name: String,
     /// Where it was read, for who reads it again: a file's whole path, or its name inside the program.
     pub place: Option<String>,
@@ -24,19 +24,19 @@ pub struct PlayingDecoder {
     pub file: Option<Vec<u8>>,
 }
 
-/// What a bridge is made of.
-pub struct Parts {
+/// The parts of which a bridge is made.
+pub struct BridgeParts {
     /// The pad, opened once already so that errors were told.
     pub pad: OpenedPad,
     /// Whether to go on waiting for a pad that sends no sound frame.
     pub patience: Patience,
-    /// What decodes.
+    /// The decoder.
     pub decoder: PlayingDecoder,
-    /// What is played.
+    /// The profile in play at the start.
     pub profile: ReadProfile,
     /// Where events go.
     pub sink: Box<dyn Sink>,
-    /// What people ask for.
+    /// The queue of requests by people.
     pub requests: Requests,
     /// The program around the bridge.
     pub host: Box<dyn Host>,

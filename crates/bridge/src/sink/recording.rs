@@ -1,26 +1,26 @@
-//! Remembers what went out, so that it can be shown, counted, and held against what should have gone out.
+//! A sink that records the events which pass through it, so that they can be shown, counted and compared with expected ones.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex};
 
 use super::{Sink, SinkError};
-use crate::queue::Written;
+use crate::queue::OnWritten;
 use tactpad_core::pipeline::control::{Code, OutputDevice, OutputEvent};
 use tactpad_core::pipeline::mapping::profile::Binding;
 
-/// The newest events that an account keeps of all.
+/// Number of newest events that are kept.
 const NEWEST: usize = 8;
 
-/// One event as a script lists it.
-pub type Expected = (OutputDevice, Code, i32);
+/// An expected event, as a script lists it.
+pub type ExpectedEvent = (OutputDevice, Code, i32);
 
-/// What went out, in order. The pointer's steps are many and no two runs have the same: they are counted.
+/// The recorded events, in order. Steps of the pointer are only counted: they are many, and no two runs have the same.
 #[derive(Clone, Debug, Default)]
-pub struct Account {
+pub struct RecordedEvents {
     /// All but the pointer's steps, where they are kept.
     pub edges: Vec<OutputEvent>,
     keeps_edges: bool,
-    tally: Tally,
+    edge_counts: EdgeCounts,
     held: BTreeMap<(OutputDevice, Code), i32>,
     /// How many steps the pointer made.
     pub pointer_moves: usize,
@@ -28,9 +28,9 @@ pub struct Account {
     pub newest: VecDeque<OutputEvent>,
 }
 
-/// How often controls went down and up.
+/// Numbers of press and release edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct EdgeCounts {
     /// From neutral to held, or from one held value to another.
     pub downs: usize,
     /// From held to neutral, or from one held value to another.
@@ -39,7 +39,7 @@ pub struct Tally {
     pub held: usize,
 }
 
-impl Account {
+impl RecordedEvents {
     fn extend(&mut self, group: &[OutputEvent]) {
         for event in group {
             match event.code {
@@ -56,25 +56,25 @@ impl Account {
     fn count(&mut self, event: &OutputEvent) {
         // A hat that goes over from one side to the other is an up and a down in one event.
         let before = self.held.insert((event.device, event.code), event.value).unwrap_or(0);
-        self.tally.ups += usize::from(before != 0);
-        self.tally.downs += usize::from(event.value != 0);
+        self.edge_counts.ups += usize::from(before != 0);
+        self.edge_counts.downs += usize::from(event.value != 0);
         if self.keeps_edges {
             self.edges.push(*event);
         }
     }
 
-    /// How often controls went down and up.
-    pub fn tally(&self) -> Tally {
-        Tally { held: self.held.values().filter(|value| **value != 0).count(), ..self.tally }
+    /// The numbers of press and release edges.
+    pub fn edge_counts(&self) -> EdgeCounts {
+        EdgeCounts { held: self.held.values().filter(|value| **value != 0).count(), ..self.edge_counts }
     }
 
-    /// Holds the edges against those of a script; times do not count.
+    /// Compares the edges with those of a script; times do not count.
     ///
     /// # Errors
     /// They differ; the text says where first.
-    pub fn compare(&self, expected: &[Expected]) -> Result<(), String> {
+    pub fn compare(&self, expected: &[ExpectedEvent]) -> Result<(), String> {
         let edges = self.edges.iter().map(|event| (event.device, event.code, event.value));
-        let seen: Vec<Expected> = edges.collect();
+        let seen: Vec<ExpectedEvent> = edges.collect();
         let differs = seen.iter().zip(expected).position(|(seen, expected)| seen != expected);
         let Some(index) = differs.or((seen.len() != expected.len()).then(|| seen.len().min(expected.len())))
         else {
@@ -91,37 +91,40 @@ impl Account {
     }
 }
 
-fn name(event: Option<&Expected>) -> String {
+fn name(event: Option<&ExpectedEvent>) -> String {
     match event {
         Some((device, code, value)) => format!("{} {code} {value}", device.name()),
         None => "nothing".into(),
     }
 }
 
-/// Lets events pass and remembers them.
-pub struct Witness {
+/// A sink that hands events on and records them.
+pub struct RecordingSink {
     sink: Box<dyn Sink>,
-    seen: Arc<Mutex<Account>>,
+    recorded: Arc<Mutex<RecordedEvents>>,
 }
 
-impl Witness {
-    /// Watches over what goes to `sink`, and keeps each edge.
+impl RecordingSink {
+    /// Records the events for `sink`, and keeps each edge.
     pub fn new(sink: Box<dyn Sink>) -> Self {
-        Self { sink, seen: Arc::new(Mutex::new(Account { keeps_edges: true, ..Account::default() })) }
+        Self {
+            sink,
+            recorded: Arc::new(Mutex::new(RecordedEvents { keeps_edges: true, ..RecordedEvents::default() })),
+        }
     }
 
-    /// Watches over what goes to `sink`, however long that goes on: edges are counted, and the newest ones are kept.
+    /// Records the events for `sink` in constant memory: edges are counted, and the newest ones are kept.
     pub fn counting(sink: Box<dyn Sink>) -> Self {
-        Self { sink, seen: Arc::default() }
+        Self { sink, recorded: Arc::default() }
     }
 
-    /// What went out so far, for whoever wants to look while it plays.
-    pub fn seen(&self) -> Arc<Mutex<Account>> {
-        Arc::clone(&self.seen)
+    /// The recorded events so far, shared with readers on other threads.
+    pub fn recorded(&self) -> Arc<Mutex<RecordedEvents>> {
+        Arc::clone(&self.recorded)
     }
 }
 
-impl Sink for Witness {
+impl Sink for RecordingSink {
     fn prepare(&mut self, device: OutputDevice) -> Result<(), SinkError> {
         self.sink.prepare(device)
     }
@@ -134,10 +137,10 @@ impl Sink for Witness {
         self.write_then(group, Box::new(|| ()))
     }
 
-    fn write_then(&mut self, group: &[OutputEvent], written: Written) -> Result<(), SinkError> {
+    fn write_then(&mut self, group: &[OutputEvent], written: OnWritten) -> Result<(), SinkError> {
         self.sink.write_then(group, written)?;
-        if let Ok(mut seen) = self.seen.lock() {
-            seen.extend(group);
+        if let Ok(mut recorded) = self.recorded.lock() {
+            recorded.extend(group);
         }
         Ok(())
     }
@@ -171,28 +174,28 @@ mod tests {
 
     #[test]
     fn edges_are_kept_steps_are_counted_and_a_hat_that_swings_over_is_an_up_and_a_down() {
-        let mut witness = Witness::new(Box::new(NullSink));
-        let seen = witness.seen();
+        let mut recording = RecordingSink::new(Box::new(NullSink));
+        let recorded = recording.recorded();
         let hat = Code::Axis(16);
         for group in [[event(hat, 1), event(Code::Relative(0), 5)], [event(hat, -1), event(hat, 0)]] {
-            witness.write(&group).unwrap();
+            recording.write(&group).unwrap();
         }
-        let seen = seen.lock().unwrap();
-        assert_eq!(seen.tally(), Tally { downs: 2, ups: 2, held: 0 });
-        assert_eq!((seen.edges.len(), seen.pointer_moves, seen.newest.len()), (3, 1, 4));
+        let recorded = recorded.lock().unwrap();
+        assert_eq!(recorded.edge_counts(), EdgeCounts { downs: 2, ups: 2, held: 0 });
+        assert_eq!((recorded.edges.len(), recorded.pointer_moves, recorded.newest.len()), (3, 1, 4));
         let script = [1, -1, 0].map(|value| (OutputDevice::Gamepad, hat, value));
-        assert_eq!(seen.compare(&script), Ok(()));
-        let told = seen.compare(&script[..2]).unwrap_err();
+        assert_eq!(recorded.compare(&script), Ok(()));
+        let told = recorded.compare(&script[..2]).unwrap_err();
         assert!(told.contains("event 3 is gamepad ABS_HAT0X 0 where the script has nothing"), "{told}");
     }
 
     #[test]
     fn what_the_end_released_is_not_held() {
         let (south, east) = (Code::Key(0x130), Code::Key(0x131));
-        let mut account = Account::default();
-        account.extend(&[event(south, 1), event(east, 1)]);
-        assert_eq!(account.tally(), Tally { downs: 2, ups: 0, held: 2 });
-        account.extend(&[event(south, 0), event(east, 0)]);
-        assert_eq!(account.tally(), Tally { downs: 2, ups: 2, held: 0 });
+        let mut recorded = RecordedEvents::default();
+        recorded.extend(&[event(south, 1), event(east, 1)]);
+        assert_eq!(recorded.edge_counts(), EdgeCounts { downs: 2, ups: 0, held: 2 });
+        recorded.extend(&[event(south, 0), event(east, 0)]);
+        assert_eq!(recorded.edge_counts(), EdgeCounts { downs: 2, ups: 2, held: 0 });
     }
 }

@@ -1,4 +1,4 @@
-//! What stands on the desktop now.
+//! The icon and the menu as they are shown now.
 
 use std::io;
 use std::sync::mpsc::Receiver;
@@ -9,11 +9,11 @@ use tray_icon::menu::MenuId;
 use tray_icon::{TrayIcon, TrayIconBuilder};
 
 use crate::tray::browser::{self, Opening};
-use crate::tray::desk::Desk;
-use crate::tray::face::Face;
+use crate::tray::host::TrayHost;
 use crate::tray::icon;
-use crate::tray::menu::{Choice, Entries};
-use tactpad_bridge::request::{Asker, Request};
+use crate::tray::icon_state::IconState;
+use crate::tray::menu::{MenuChoice, MenuEntries};
+use tactpad_bridge::request::{Request, RequestSender};
 use tactpad_bridge::snapshot::{Snapshot, Status};
 use tactpad_bridge::state::State;
 
@@ -21,44 +21,45 @@ use tactpad_bridge::state::State;
 const LOOKS_FOR_PROFILES: u32 = 10;
 
 /// The icon and its menu, and what they show.
-pub(super) struct Shown {
+pub(super) struct TrayView {
     icon: TrayIcon,
-    entries: Entries,
-    face: Face,
+    entries: MenuEntries,
+    icon_state: IconState,
     tooltip: String,
-    desk: Box<dyn Desk + Send>,
-    asker: Asker,
+    host: Box<dyn TrayHost + Send>,
+    sender: RequestSender,
     opening: Option<Opening>,
     answer: Option<Receiver<String>>,
-    /// What went wrong with the last choice, for people.
+    /// Error of the last choice, for people.
     trouble: Option<String>,
     looks: u32,
 }
 
-impl Shown {
+impl TrayView {
     /// Puts the icon on the desktop.
     ///
     /// # Errors
     /// There is no desktop; the text is for people.
     pub(super) fn begin(
-        mut desk: Box<dyn Desk + Send>,
-        asker: Asker,
+        mut host: Box<dyn TrayHost + Send>,
+        sender: RequestSender,
         snapshot: &Mutex<Snapshot>,
     ) -> Result<Self, String> {
-        let names = desk.profiles();
-        let (menu, entries) = Entries::build(names, desk.page().is_some()).map_err(|it| it.to_string())?;
-        let face = Face::of(&look(snapshot));
+        let names = host.profiles();
+        let (menu, entries) =
+            MenuEntries::build(names, host.page().is_some()).map_err(|it| it.to_string())?;
+        let icon_state = IconState::of(&look(snapshot));
         let mut builder =
             TrayIconBuilder::new().with_id("tactpad").with_title("tactpad").with_menu(Box::new(menu));
-        if let Some(icon) = icon::draw(face) {
+        if let Some(icon) = icon::draw(icon_state) {
             builder = builder.with_icon(icon);
         }
         let icon = builder.build().map_err(|error| error.to_string())?;
         let (tooltip, opening, answer, trouble) = (String::new(), None, None, None);
-        let mut shown =
-            Self { icon, entries, face, tooltip, desk, asker, opening, answer, trouble, looks: 0 };
-        shown.renew(snapshot);
-        Ok(shown)
+        let mut view =
+            Self { icon, entries, icon_state, tooltip, host, sender, opening, answer, trouble, looks: 0 };
+        view.renew(snapshot);
+        Ok(view)
     }
 
     /// Shows what the bridge is doing now.
@@ -66,20 +67,20 @@ impl Shown {
         self.hear();
         if self.looks.is_multiple_of(LOOKS_FOR_PROFILES) {
             self.renew_profiles();
-            self.desk.remember();
+            self.host.remember();
         }
         self.looks = self.looks.wrapping_add(1);
         let status = look(snapshot);
-        let face = Face::of(&status);
-        if self.face != face {
-            self.face = face;
+        let icon_state = IconState::of(&status);
+        if self.icon_state != icon_state {
+            self.icon_state = icon_state;
             // Without memory for a picture the old one stays; the words change.
-            let _ = icon::draw(face).map(|drawn| self.icon.set_icon(Some(drawn)));
+            let _ = icon::draw(icon_state).map(|drawn| self.icon.set_icon(Some(drawn)));
         }
         let tooltip = self
             .trouble
             .clone()
-            .unwrap_or_else(|| format!("{}, profile {}", face.words(status.state), status.profile));
+            .unwrap_or_else(|| format!("{}, profile {}", icon_state.words(status.state), status.profile));
         if self.tooltip != tooltip {
             let _ = self.icon.set_tooltip(Some(&tooltip));
             self.tooltip = tooltip;
@@ -88,7 +89,7 @@ impl Shown {
         let trouble = self.trouble.as_ref().and_then(|it| it.lines().next());
         let line =
             trouble.map_or_else(|| format!("{}: {}", status.profile, status.state.word()), str::to_owned);
-        let playing = self.desk.playing(&status.profile);
+        let playing = self.host.playing(&status.profile);
         self.entries.show(&line, status.state == State::Paused, playing.as_deref());
     }
 
@@ -107,11 +108,11 @@ impl Shown {
 
     /// Makes the menu anew if there are other profiles than in it.
     fn renew_profiles(&mut self) {
-        let names = self.desk.profiles();
+        let names = self.host.profiles();
         if names.iter().eq(self.entries.profiles()) {
             return;
         }
-        if let Ok((menu, entries)) = Entries::build(names, self.desk.page().is_some()) {
+        if let Ok((menu, entries)) = MenuEntries::build(names, self.host.page().is_some()) {
             self.entries = entries;
             self.icon.set_menu(Some(Box::new(menu)));
         }
@@ -123,30 +124,30 @@ impl Shown {
     /// The bridge has ended.
     pub(super) fn obey(&mut self, entry: &MenuId) -> io::Result<()> {
         self.trouble = None;
-        let request = match Choice::of(entry) {
-            Some(Choice::Profile(name)) => Request::Profile(Some(name)),
-            Some(Choice::Pause) if self.entries.is_paused() => Request::Resume,
-            Some(Choice::Pause) => Request::Pause,
-            Some(Choice::Tare) => Request::Retare,
-            Some(Choice::Panic) => Request::ReleaseAll,
-            Some(Choice::Quit) => Request::End,
-            Some(Choice::Page) => {
+        let request = match MenuChoice::of(entry) {
+            Some(MenuChoice::Profile(name)) => Request::Profile(Some(name)),
+            Some(MenuChoice::Pause) if self.entries.is_paused() => Request::Resume,
+            Some(MenuChoice::Pause) => Request::Pause,
+            Some(MenuChoice::Tare) => Request::Retare,
+            Some(MenuChoice::Panic) => Request::ReleaseAll,
+            Some(MenuChoice::Quit) => Request::End,
+            Some(MenuChoice::Page) => {
                 self.open("");
                 return Ok(());
             }
-            Some(Choice::Doctor) => {
+            Some(MenuChoice::Doctor) => {
                 self.open("#doctor");
                 return Ok(());
             }
             None => return Ok(()),
         };
-        self.answer = Some(self.asker.question(request)?);
+        self.answer = Some(self.sender.send_for_reply(request)?);
         Ok(())
     }
 
     /// Opens this part of the page.
     fn open(&mut self, part: &str) {
-        let Some(page) = self.desk.page() else { return };
+        let Some(page) = self.host.page() else { return };
         match browser::open(&format!("{page}{part}")) {
             Ok(opening) => self.opening = Some(opening),
             Err(error) => self.trouble = Some(error),
@@ -154,7 +155,7 @@ impl Shown {
     }
 }
 
-/// What the bridge is doing. The bridge does not wait for this: it skips a snapshot that is being read.
+/// The status of the bridge. The bridge does not wait for this: it skips a snapshot that is being read.
 fn look(snapshot: &Mutex<Snapshot>) -> Status {
     snapshot.lock().unwrap_or_else(PoisonError::into_inner).status.clone()
 }

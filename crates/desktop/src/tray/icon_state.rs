@@ -1,11 +1,11 @@
-//! What the icon tells, and the same in words.
+//! The states of the icon, also in words.
 
 use tactpad_bridge::snapshot::Status;
 use tactpad_bridge::state::State;
 
-/// What the icon tells at a glance.
+/// The state that the icon shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Face {
+pub(super) enum IconState {
     /// No pad speaks.
     NoPad,
     /// Nothing lies on the pad, or the zero is being measured.
@@ -20,7 +20,7 @@ pub(super) enum Face {
     Fault,
 }
 
-impl Face {
+impl IconState {
     pub(super) fn of(status: &Status) -> Self {
         match status.state {
             State::Waiting | State::Silent => Self::NoPad,

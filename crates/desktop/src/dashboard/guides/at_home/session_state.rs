@@ -2,14 +2,14 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::dashboard::guides::guide::Outcome;
+use crate::dashboard::guides::guide::GuideResult;
 use tactpad_core::pipeline::Phase;
 use tactpad_lab::play::guide::{Guide, GuideStep};
 
 /// How it stands.
 #[derive(Clone, Debug, Default)]
-pub(super) enum Standing {
-    /// What was heard earlier is read.
+pub(super) enum SessionState {
+    /// The recording of an earlier session is read.
     #[default]
     Opening,
     /// It listens.
@@ -18,8 +18,8 @@ pub(super) enum Standing {
     Fitting(f64),
     /// It broke off in this step.
     Broken(GuideStep, String),
-    /// What came of the fit, or why nothing did.
-    Over(Result<Outcome, String>),
+    /// The result of the fit, or why there is none.
+    Finished(Result<GuideResult, String>),
 }
 
 /// Where a session that listens is.
@@ -30,48 +30,48 @@ pub(super) struct Position {
     pub(super) cue: GuideStep,
     /// Marks that the weight was put on.
     pub(super) placed: usize,
-    /// What the pad is doing.
+    /// The phase of the pad.
     pub(super) phase: Phase,
 }
 
 /// The place where it is told.
 #[derive(Debug, Default)]
-pub(super) struct Shared(Mutex<Standing>);
+pub(super) struct SharedSessionState(Mutex<SessionState>);
 
-impl Shared {
+impl SharedSessionState {
     /// How it stands now.
-    pub(super) fn now(&self) -> Standing {
+    pub(super) fn now(&self) -> SessionState {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// It stands so from now on.
-    pub(super) fn set(&self, standing: Standing) {
+    pub(super) fn set(&self, standing: SessionState) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = standing;
     }
 
     /// It failed where it stands.
     pub(super) fn fail(&self, why: String) {
         self.set(match self.now() {
-            Standing::Opening => Standing::Broken(GuideStep::Rest { rested_s: 0.0 }, why),
-            Standing::Guided(Position { step, .. }) | Standing::Broken(step, _) => {
-                Standing::Broken(step, why)
+            SessionState::Opening => SessionState::Broken(GuideStep::Rest { rested_s: 0.0 }, why),
+            SessionState::Guided(Position { step, .. }) | SessionState::Broken(step, _) => {
+                SessionState::Broken(step, why)
             }
-            Standing::Fitting(_) | Standing::Over(_) => Standing::Over(Err(why)),
+            SessionState::Fitting(_) | SessionState::Finished(_) => SessionState::Finished(Err(why)),
         });
     }
 }
 
-impl Standing {
+impl SessionState {
     /// Whether it needs somebody at the pad.
     pub(super) const fn listens(&self) -> bool {
         matches!(self, Self::Opening | Self::Guided(_))
     }
 
-    /// What came of it, in words where nothing did.
-    pub(super) fn outcome(&self) -> Option<Outcome> {
+    /// The result, or the error in words.
+    pub(super) fn outcome(&self) -> Option<GuideResult> {
         match self {
-            Self::Over(Ok(outcome)) => Some(outcome.clone()),
-            Self::Over(Err(why)) | Self::Broken(_, why) => Some(Outcome::words(why)),
+            Self::Finished(Ok(outcome)) => Some(outcome.clone()),
+            Self::Finished(Err(why)) | Self::Broken(_, why) => Some(GuideResult::words(why)),
             _ => None,
         }
     }

@@ -1,4 +1,4 @@
-//! What the requests of the page act on.
+//! The state that the handlers of the page's requests share.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -7,28 +7,28 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde_json::Value;
 
 use super::feed::Feed;
-use super::frame::{Told, slow};
-use super::guides::guide::Scene;
+use super::frame::{StatusMessage, status_message};
+use super::guides::guide::GuideContext;
 use super::guides::list::Guides;
-use super::library::Library;
-use super::past::Past;
+use super::host::DashboardHost;
 use super::refusal::Refusal;
-use super::shadow::Known;
+use super::replay_buffer::ReplayBuffer;
+use super::shadow::ShadowState;
 use tactpad_bridge::latency::Durations;
-use tactpad_bridge::request::{Asker, Request};
+use tactpad_bridge::request::{Request, RequestSender};
 use tactpad_bridge::snapshot::Snapshot;
-use tactpad_bridge::timing::{Policy, Stages, Timing};
+use tactpad_bridge::timing::{ProfileDelays, Stages, Timing};
 use tactpad_core::pipeline::mapping::read::ReadProfile;
 
 /// So many pages may look at a time.
 const PAGES_MAX: usize = 8;
 
-/// What is known of the running bridge, and how to ask it.
-pub(super) struct Office {
-    pub(super) asker: Arc<Asker>,
-    pub(super) library: Arc<dyn Library>,
+/// The shared state of all request handlers: handles of the running bridge, its feed, and the guides.
+pub(super) struct AppState {
+    pub(super) sender: Arc<RequestSender>,
+    pub(super) host: Arc<dyn DashboardHost>,
     pub(super) feed: Arc<Feed>,
-    pub(super) known: Arc<Mutex<Known>>,
+    pub(super) shadow: Arc<Mutex<ShadowState>>,
     pub(super) snapshot: Arc<Mutex<Snapshot>>,
     /// How long reading and writing take, where the bridge's pad and sink tell it.
     pub(super) timing: Timing,
@@ -40,33 +40,33 @@ pub(super) struct Office {
     previews: AtomicBool,
 }
 
-/// What the bridge gives to look at it.
-pub(super) struct Sight {
+/// The handles of a bridge through which its state and its times are read.
+pub(super) struct BridgeHandles {
     pub(super) snapshot: Arc<Mutex<Snapshot>>,
     pub(super) timing: Timing,
     pub(super) end_to_end: Arc<Mutex<Durations>>,
 }
 
 /// A page that looks; it is forgotten when this is dropped.
-pub(super) struct Page(Arc<Office>);
+pub(super) struct PageConnection(Arc<AppState>);
 
-impl Office {
+impl AppState {
     pub(super) fn new(
-        asker: Asker,
-        library: Arc<dyn Library>,
+        sender: RequestSender,
+        host: Arc<dyn DashboardHost>,
         feed: Arc<Feed>,
-        known: Arc<Mutex<Known>>,
-        Sight { snapshot, timing, end_to_end }: Sight,
+        shadow: Arc<Mutex<ShadowState>>,
+        BridgeHandles { snapshot, timing, end_to_end }: BridgeHandles,
     ) -> Self {
         let (pages, previews) = (AtomicUsize::new(0), AtomicBool::new(false));
         let guides = Mutex::new(Guides::new());
-        let asker = Arc::new(asker);
-        Self { asker, library, feed, known, snapshot, timing, end_to_end, guides, pages, previews }
+        let sender = Arc::new(sender);
+        Self { sender, host, feed, shadow, snapshot, timing, end_to_end, guides, pages, previews }
     }
 
     /// Asks the bridge and waits for its answer.
     pub(super) fn ask(&self, request: Request) -> Result<Value, Refusal> {
-        let answer = self.asker.answer(request).map_err(|error| match error.kind() {
+        let answer = self.sender.send_and_wait(request).map_err(|error| match error.kind() {
             io::ErrorKind::TimedOut => {
                 Refusal::unavailable("the bridge does not answer: if it was stopped, continue it")
             }
@@ -95,70 +95,72 @@ impl Office {
     }
 
     /// Lets one more page look; `None` if there are too many.
-    pub(super) fn enter(self: &Arc<Self>) -> Option<Page> {
+    pub(super) fn enter(self: &Arc<Self>) -> Option<PageConnection> {
         let entered = self.pages.fetch_update(Ordering::AcqRel, Ordering::Acquire, |pages| {
             (pages < PAGES_MAX).then_some(pages + 1)
         });
-        entered.ok().map(|_| Page(Arc::clone(self)))
+        entered.ok().map(|_| PageConnection(Arc::clone(self)))
     }
 
     /// The guides, and what they see now.
-    pub(super) fn with_guides<T>(&self, work: impl FnOnce(&mut Guides, &Scene<'_>) -> T) -> T {
+    pub(super) fn with_guides<T>(&self, work: impl FnOnce(&mut Guides, &GuideContext<'_>) -> T) -> T {
         let snapshot = self.snapshot.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let now = self.feed.newest().now.as_ref().map(|now| now.clock.now());
-        let pad = self.known.lock().unwrap_or_else(PoisonError::into_inner).pad;
-        let scene = Scene {
+        let pad = self.shadow.lock().unwrap_or_else(PoisonError::into_inner).pad;
+        let context = GuideContext {
             now: now.unwrap_or(snapshot.at),
             status: &snapshot.status,
             pad,
             profile: &|| {
-                let name = self.library.playing();
-                self.library.read(&name).map(|stored| (name, stored.text))
+                let name = self.host.playing();
+                self.host.read(&name).map(|stored| (name, stored.text))
             },
             past: &|| self.past(),
-            hear: &|| self.known.lock().unwrap_or_else(PoisonError::into_inner).ears.add(),
-            asker: &self.asker,
-            library: &self.library,
+            subscribe: &|| {
+                self.shadow.lock().unwrap_or_else(PoisonError::into_inner).call_subscribers.subscribe()
+            },
+            sender: &self.sender,
+            host: &self.host,
         };
-        work(&mut self.guides.lock().unwrap_or_else(PoisonError::into_inner), &scene)
+        work(&mut self.guides.lock().unwrap_or_else(PoisonError::into_inner), &context)
     }
 
     /// The last minute of play.
-    pub(super) fn past(&self) -> Option<Past> {
-        self.known.lock().unwrap_or_else(PoisonError::into_inner).past.clone()
+    pub(super) fn past(&self) -> Option<ReplayBuffer> {
+        self.shadow.lock().unwrap_or_else(PoisonError::into_inner).replay.clone()
     }
 
     /// The message of what changes slowly.
-    pub(super) fn slow(&self) -> String {
+    pub(super) fn status_message(&self) -> String {
         let snapshot = self.snapshot.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let status = &snapshot.status;
-        let told = Told {
+        let status = StatusMessage {
             sentence: status.state.sentence(),
             warning_sentence: status.warning.map(|warning| warning.to_string()),
-            profile_id: self.library.playing(),
+            profile_id: self.host.playing(),
             status,
         };
-        let shadowed = self.known.lock().unwrap_or_else(PoisonError::into_inner).stages.clone();
+        let shadowed = self.shadow.lock().unwrap_or_else(PoisonError::into_inner).stages.clone();
         let live = self.timing.live();
         let stages = Stages { read: live.read, write: live.write, ..shadowed };
         let end_to_end = self.end_to_end.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let newest = self.feed.newest();
         let period_us = newest.now.as_ref().map_or(0, |now| now.period_us);
-        let policy = newest.profile.as_ref().map(|profile| Policy::of(profile, period_us));
+        let policy = newest.profile.as_ref().map(|profile| ProfileDelays::of(profile, period_us));
         drop(newest);
-        slow(told, &stages, &end_to_end, policy)
+        status_message(status, &stages, &end_to_end, policy)
     }
 }
 
-impl Drop for Page {
+impl Drop for PageConnection {
     fn drop(&mut self) {
         if self.0.pages.fetch_sub(1, Ordering::AcqRel) > 1 {
             return;
         }
-        self.0.with_guides(Guides::leave);
+        self.0.with_guides(Guides::on_page_closed);
         // Who tried a profile and went away has not kept it.
         if self.0.previews.swap(false, Ordering::AcqRel) {
-            let _ = self.0.asker.ask(Request::Profile(None));
+            let _ = self.0.sender.send(Request::Profile(None));
         }
     }
 }

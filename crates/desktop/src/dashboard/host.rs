@@ -1,4 +1,4 @@
-//! What the page needs of the program around the bridge: profiles, the doctor, reports.
+//! The host of the page: the interface of the program around the bridge, for profiles, the doctor and reports.
 
 use std::path::PathBuf;
 
@@ -13,9 +13,9 @@ use tactpad_lab::play::guide::Guide;
 use tactpad_lab::play::weights::Placement;
 
 /// The program around the bridge. Its functions may read and write files; they are called on a thread that may wait.
-pub trait Library: Send + Sync {
+pub trait DashboardHost: Send + Sync {
     /// All profiles that have names.
-    fn entries(&self) -> Vec<Entry>;
+    fn entries(&self) -> Vec<ProfileEntry>;
 
     /// The profile that is played: its name, or its file.
     fn playing(&self) -> String;
@@ -24,19 +24,19 @@ pub trait Library: Send + Sync {
     fn output(&self) -> OutputChoice;
 
     /// A profile by its name. `None` if there is none, or if it is no name: no file outside the folder of profiles is read.
-    fn read(&self, name: &str) -> Option<Stored>;
+    fn read(&self, name: &str) -> Option<StoredProfile>;
 
     /// Keeps a profile in the user's own folder.
     ///
     /// # Errors
     /// Nothing was written.
-    fn save(&self, name: &str, text: &str, over: &Over) -> Result<Saved, Unsaved>;
+    fn save(&self, name: &str, text: &str, over: &Overwrite) -> Result<SavedProfile, SaveError>;
 
-    /// What stands in the way on this machine, as `tactpad doctor --json` prints it.
+    /// The findings about this machine, as `tactpad doctor --json` prints them.
     fn doctor(&self) -> serde_json::Value;
 
     /// Reports of diagnoses, the newest first.
-    fn reports(&self) -> Vec<Report>;
+    fn reports(&self) -> Vec<ReportEntry>;
 
     /// The page of the report of this number.
     fn report(&self, id: &str) -> Option<PathBuf>;
@@ -54,7 +54,7 @@ pub trait Library: Send + Sync {
         fresh: bool,
         guide: &mut Guide,
         head: &Head,
-    ) -> Result<Box<dyn Session>, String>;
+    ) -> Result<Box<dyn SessionStore>, String>;
 
     /// Keeps the decoder that the calibration of this name came to. It plays nowhere by that.
     ///
@@ -63,8 +63,8 @@ pub trait Library: Send + Sync {
     fn keep_decoder(&self, name: &str, bytes: &[u8]) -> Result<KeptDecoder, String>;
 }
 
-/// What a calibration has heard, kept so that it can be taken up again.
-pub trait Session: Send {
+/// The store of a calibration's calls, from which a later session goes on.
+pub trait SessionStore: Send {
     /// A moment of the session in the time of what is kept.
     fn at(&self, at: HostInstant) -> HostInstant;
 
@@ -92,7 +92,7 @@ pub struct KeptDecoder {
 
 /// A profile that has a name.
 #[derive(Clone, Debug, Serialize)]
-pub struct Entry {
+pub struct ProfileEntry {
     /// The name.
     pub name: String,
     /// Whether it is the user's own.
@@ -103,19 +103,19 @@ pub struct Entry {
 
 /// A profile as it is kept.
 #[derive(Clone, Debug, Serialize)]
-pub struct Stored {
+pub struct StoredProfile {
     /// Its name, and whose it is.
     #[serde(flatten)]
-    pub entry: Entry,
+    pub entry: ProfileEntry,
     /// Its text.
     pub text: String,
     /// Tells this text from others.
     pub version: String,
 }
 
-/// What a profile may be written over.
+/// The version that a profile may overwrite.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Over {
+pub enum Overwrite {
     /// Whatever is there.
     Anything,
     /// Only this version.
@@ -126,7 +126,7 @@ pub enum Over {
 
 /// A profile was kept.
 #[derive(Clone, Debug, Serialize)]
-pub struct Saved {
+pub struct SavedProfile {
     /// Tells the text from others.
     pub version: String,
     /// The file.
@@ -135,7 +135,7 @@ pub struct Saved {
 
 /// Why a profile was not kept; the texts are for people.
 #[derive(Clone, Debug)]
-pub enum Unsaved {
+pub enum SaveError {
     /// It cannot have this name.
     Name(String),
     /// It has errors.
@@ -148,8 +148,8 @@ pub enum Unsaved {
 
 /// A report of a diagnosis.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// By which [`Library::report`] finds it.
+pub struct ReportEntry {
+    /// By which [`DashboardHost::report`] finds it.
     pub id: String,
     /// The folder's name.
     pub name: String,
@@ -159,6 +159,6 @@ pub struct Report {
     pub modified_s: u64,
     /// Its verdict.
     pub verdict: String,
-    /// What was found, in one line.
+    /// The findings, in one line.
     pub summary: String,
 }

@@ -1,4 +1,4 @@
-//! What the readers of a log take for held.
+//! The controls that readers of a log believe to be held.
 
 use std::collections::BTreeMap;
 
@@ -7,13 +7,13 @@ use tactpad_core::time::StreamInstant;
 
 /// The controls that are held, with their values, and when that was.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Levels {
+pub(super) struct HeldControls {
     held: BTreeMap<(OutputDevice, Code), i32>,
     at: StreamInstant,
 }
 
-impl Levels {
-    /// What is held after `group`.
+impl HeldControls {
+    /// Updates the held controls by `group`.
     pub(super) fn apply(&mut self, group: &[OutputEvent]) {
         for event in group {
             self.at = event.at;
@@ -31,7 +31,7 @@ impl Levels {
     }
 
     /// The events that lead from here to `later`: releases first.
-    pub(super) fn lead_to(&self, later: &Self) -> Vec<OutputEvent> {
+    pub(super) fn events_to(&self, later: &Self) -> Vec<OutputEvent> {
         let event =
             |(device, code): (OutputDevice, Code), value| OutputEvent { at: later.at, device, code, value };
         let released = self.held.keys().filter(|control| !later.held.contains_key(control));
@@ -56,16 +56,16 @@ mod tests {
             value,
         };
         let [hat, south, east] = [Code::Axis(16), Code::Key(0x130), Code::Key(0x131)];
-        let mut levels = Levels::default();
-        levels.apply(&[event(hat, 1, 1), event(south, 1, 1), event(Code::Relative(0), 5, 1)]);
-        let before = levels.clone();
-        assert_eq!(before.lead_to(&levels), []);
-        levels.apply(&[event(south, 0, 2), event(hat, -1, 2), event(east, 1, 2)]);
-        levels.apply(&[event(east, 0, 3), event(east, 1, 4)]);
-        let way = before.lead_to(&levels);
+        let mut controls = HeldControls::default();
+        controls.apply(&[event(hat, 1, 1), event(south, 1, 1), event(Code::Relative(0), 5, 1)]);
+        let before = controls.clone();
+        assert_eq!(before.events_to(&controls), []);
+        controls.apply(&[event(south, 0, 2), event(hat, -1, 2), event(east, 1, 2)]);
+        controls.apply(&[event(east, 0, 3), event(east, 1, 4)]);
+        let way = before.events_to(&controls);
         assert_eq!(way, [event(south, 0, 4), event(east, 1, 4), event(hat, -1, 4)]);
         let mut there = before;
         there.apply(&way);
-        assert_eq!(there, levels);
+        assert_eq!(there, controls);
     }
 }

@@ -15,11 +15,11 @@ const WINDOWS_ABOVE_MAX: usize = 16;
 
 /// The window that has the keyboard.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Front {
+pub enum Foreground {
     /// None has it, or one that says nothing of itself.
-    Nobody,
+    Unknown,
     /// One of this program.
-    Ourselves,
+    OwnProgram,
     /// One of another program.
     Program {
         /// The words of its class (`WM_CLASS`).
@@ -30,7 +30,7 @@ pub enum Front {
 }
 
 /// A connection to the X server that is asked for the program in front.
-pub struct Desktop {
+pub struct WindowSystem {
     connection: RustConnection,
     root: Window,
     active_window: Atom,
@@ -44,7 +44,7 @@ fn unknown(why: &str) -> String {
     format!("which program is in front cannot be known ({why}): choose with `tactpad ctl profile NAME`")
 }
 
-impl Desktop {
+impl WindowSystem {
     /// Connects to the X server of the environment.
     ///
     /// # Errors
@@ -74,16 +74,16 @@ impl Desktop {
     ///
     /// # Errors
     /// The X server does not answer any more; the text is for people.
-    pub fn front(&self) -> Result<Front, String> {
+    pub fn front(&self) -> Result<Foreground, String> {
         self.asked().map_err(|error| unknown(&error.to_string()))
     }
 
-    fn asked(&self) -> Result<Front, ReplyError> {
+    fn asked(&self) -> Result<Foreground, ReplyError> {
         let mut window = self.focused()?;
         // Windows come and go while one asks: what is gone says nothing.
         for _ in 0..WINDOWS_ABOVE_MAX {
             if window <= 1 || window == self.root {
-                return Ok(Front::Nobody);
+                return Ok(Foreground::Unknown);
             }
             if let Some(front) = passed(self.owner(window))?.flatten() {
                 return Ok(front);
@@ -91,7 +91,7 @@ impl Desktop {
             let Some(tree) = passed(self.connection.query_tree(window)?.reply())? else { break };
             window = tree.parent;
         }
-        Ok(Front::Nobody)
+        Ok(Foreground::Unknown)
     }
 
     /// The window that the window manager says is active; without one, that which has the keyboard.
@@ -103,7 +103,7 @@ impl Desktop {
     }
 
     /// Whose window it is, if it says so.
-    fn owner(&self, window: Window) -> Result<Option<Front>, ReplyError> {
+    fn owner(&self, window: Window) -> Result<Option<Foreground>, ReplyError> {
         let class = WmClass::get(&self.connection, window)?.reply()?;
         let classes = class.map_or(Vec::new(), |class| {
             let words = [class.instance(), class.class()];
@@ -118,10 +118,10 @@ impl Desktop {
             _ => None,
         };
         if path.is_some() && path == self.own {
-            return Ok(Some(Front::Ourselves));
+            return Ok(Some(Foreground::OwnProgram));
         }
         let executable = path.map(|path| path.to_string_lossy().trim_end_matches(" (deleted)").to_owned());
-        Ok(Some(Front::Program { classes, executable }))
+        Ok(Some(Foreground::Program { classes, executable }))
     }
 
     /// Whether a window's program runs on this machine: the number of another machine's process means nothing here.
@@ -140,7 +140,7 @@ impl Desktop {
     }
 }
 
-/// What the server answered; `None` where it could not, as for a window that is gone.
+/// The server's answer; `None` where it could not give one, as for a window that is gone.
 fn passed<T>(answer: Result<T, ReplyError>) -> Result<Option<T>, ReplyError> {
     match answer {
         Ok(answer) => Ok(Some(answer)),

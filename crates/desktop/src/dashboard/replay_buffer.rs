@@ -14,13 +14,13 @@ const BYTES_MAX: usize = 20 << 20;
 
 /// The calls of the last minute, and the pipeline on which the first of them was made.
 #[derive(Clone, Debug)]
-pub(super) struct Past {
+pub(super) struct ReplayBuffer {
     pub(super) begin: Pipeline,
     pub(super) calls: VecDeque<(HostInstant, OwnedCall)>,
     bytes: usize,
 }
 
-impl Past {
+impl ReplayBuffer {
     /// Nothing was called yet.
     pub(super) const fn new(begin: Pipeline) -> Self {
         Self { begin, calls: VecDeque::new(), bytes: 0 }
@@ -85,7 +85,7 @@ mod tests {
     #[test]
     fn what_is_older_than_a_minute_is_made_and_forgotten() {
         let profile = read(profiles::text("contra").unwrap(), OutputChoice::AsWritten).0.unwrap();
-        let mut past = Past::new(Pipeline::new(shipped::decoder(), profile));
+        let mut past = ReplayBuffer::new(Pipeline::new(shipped::decoder(), profile));
         let at = |s: u64| HostInstant::default().plus_us(s * 1_000_000);
         past.push(at(0), Call::Pause.into());
         (1..60).for_each(|s| past.push(at(s), Call::Timeout.into()));

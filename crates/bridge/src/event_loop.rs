@@ -1,4 +1,4 @@
-//! The loop of a running bridge.
+//! The event loop of a running bridge.
 
 use std::io;
 use std::ops::ControlFlow;
@@ -7,21 +7,21 @@ use std::sync::{Arc, Mutex};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::answer::{done, page, refused, weighing};
+use crate::bridge_parts::BridgeParts;
 use crate::clock::Clock;
 use crate::driver::{Driver, prepare};
 use crate::error::BridgeError;
-use crate::herald::Herald;
 use crate::host::Host;
-use crate::keeper::Keeper;
 use crate::latency::Durations;
-use crate::offer::{Offer, Standing, kept};
-use crate::parts::Parts;
+use crate::notifier::Notifier;
+use crate::pad_connection::PadConnection;
+use crate::profile_update::{ProfileStatus, ProfileUpdate, unchanged_message};
 use crate::recorder::Recorder;
-use crate::request::{Asked, Request};
+use crate::request::{PendingRequest, Request};
 use crate::requests::Requests;
-use crate::sight::{Known, look, state};
 use crate::signals;
 use crate::snapshot::{Drops, Snapshot};
+use crate::snapshot_builder::{DecoderInfo, snapshot, state};
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::head::Head;
 use tactpad_core::pipeline::health::Health;
@@ -38,7 +38,7 @@ const SNAPSHOT_US: u64 = 40_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// Somebody asked for it.
-    Asked,
+    Requested,
     /// Its time was over.
     TimeOver,
     /// The pad was a capture, and it ended.
@@ -48,22 +48,22 @@ pub enum Ending {
 /// The running bridge.
 pub struct Bridge {
     driver: Driver,
-    decoder: Known,
-    standing: Standing,
-    keeper: Keeper,
+    decoder: DecoderInfo,
+    profile_status: ProfileStatus,
+    connection: PadConnection,
     requests: Requests,
     host: Box<dyn Host>,
     end_at: Option<HostInstant>,
-    herald: Herald,
+    notifier: Notifier,
     snapshot: Arc<Mutex<Snapshot>>,
     snapshot_at: HostInstant,
     held_when_over: usize,
     drops: Drops,
-    /// What the pad sent last.
+    /// The bytes that the pad sent last.
     bytes: [u8; 4096],
 }
 
-/// What woke the loop.
+/// The sources that woke the loop.
 #[derive(Clone, Copy, Debug)]
 struct Woken {
     pad: bool,
@@ -75,10 +75,10 @@ impl Bridge {
     ///
     /// # Errors
     /// The beginning of the capture cannot be written.
-    pub fn new(parts: Parts) -> io::Result<Self> {
+    pub fn new(parts: BridgeParts) -> io::Result<Self> {
         let clock = Clock::start();
         let now = clock.now();
-        let Parts {
+        let BridgeParts {
             pad,
             patience,
             decoder,
@@ -93,25 +93,26 @@ impl Bridge {
         } = parts;
         let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
         let head = Head { decoder: decoder.file, profile: Some(profile) };
-        let decoder = Known { name: decoder.name, place: decoder.place, changes };
+        let decoder = DecoderInfo { name: decoder.name, place: decoder.place, changes };
         let recorder = record.map(|to| Recorder::begin(to, now, &head)).transpose()?;
         let (latency, watchers) = (Arc::default(), requests.watchers());
         let commands = Commands::new();
         observers.iter_mut().for_each(|observer| observer.begin(clock, now, &pipeline));
         let driver = Driver { pipeline, sink, recorder, clock, latency, commands, watchers, observers };
-        let keeper = Keeper::new(pad, patience, now);
-        let standing = Standing::begun();
-        let snapshot = Arc::new(Mutex::new(look(now, &driver, &keeper, (&decoder, &standing))));
+        let connection = PadConnection::new(pad, patience, now);
+        let profile_status = ProfileStatus::new();
+        let first_snapshot =
+            Arc::new(Mutex::new(snapshot(now, &driver, &connection, &decoder, &profile_status)));
         Ok(Self {
             driver,
             decoder,
-            standing,
-            keeper,
+            profile_status,
+            connection,
             requests,
             host,
             end_at: duration_us.map(|duration_us| now.plus_us(duration_us)),
-            herald: Herald::new(now),
-            snapshot,
+            notifier: Notifier::new(now),
+            snapshot: first_snapshot,
             snapshot_at: now,
             held_when_over: 0,
             drops: Drops::default(),
@@ -134,7 +135,7 @@ impl Bridge {
         Arc::clone(&self.driver.latency)
     }
 
-    /// What went wrong so far.
+    /// Counts of lost and damaged frames so far.
     pub const fn health(&self) -> &Health {
         self.driver.pipeline.health()
     }
@@ -144,7 +145,7 @@ impl Bridge {
         self.held_when_over
     }
 
-    /// What nobody had taken when the run ended.
+    /// Events and calls that had not been written when the run ended.
     pub const fn drops(&self) -> Drops {
         self.drops
     }
@@ -159,7 +160,7 @@ impl Bridge {
         self.held_when_over = self.driver.pipeline.held().count();
         let released = self.driver.call(self.driver.clock.now(), Call::ReleaseAll);
         // Before anything that takes time: a pad that nobody reads any more has to count what is not taken.
-        self.keeper.close();
+        self.connection.close();
         let settled = self.driver.settle();
         self.drops = self.driver.drops_at_end();
         released.and(settled).and(ending)
@@ -189,14 +190,14 @@ impl Bridge {
             if self.read_pad(now)? {
                 return Ok(Some(Ending::CaptureEnded));
             }
-            self.obey(now)?;
+            self.run_commands(now)?;
         } else {
             self.driver.call_if_due(now)?;
         }
         if self.end_at.is_some_and(|end_at| end_at <= now) {
             return Ok(Some(Ending::TimeOver));
         }
-        self.keeper.attend(now, &self.driver.pipeline)?;
+        self.connection.maintain(now, &self.driver.pipeline)?;
         self.publish(now);
         Ok(None)
     }
@@ -205,7 +206,7 @@ impl Bridge {
     fn wait(&self, now: HostInstant) -> io::Result<Woken> {
         let timeout = self.next_deadline().map(|deadline| until(now, deadline));
         let request = PollFd::from_borrowed_fd(self.requests.fd(), PollFlags::IN);
-        let Some(pad) = self.keeper.pad() else {
+        let Some(pad) = self.connection.pad() else {
             let mut fds = [request];
             poll_once(&mut fds, timeout.as_ref())?;
             return Ok(Woken { pad: false, request: is_woken(&fds[0]) });
@@ -218,15 +219,16 @@ impl Bridge {
     /// When there is something to do though nobody asks and no pad speaks.
     fn next_deadline(&self) -> Option<HostInstant> {
         let pipeline = &self.driver.pipeline;
-        // Without a pad the picture stands still but for what the keeper finds, and that wakes the loop anyway.
-        let publish = self.keeper.pad().map(|_| self.snapshot_at.plus_us(SNAPSHOT_US));
-        let deadlines = [self.end_at, pipeline.poll_timeout(), self.keeper.next_deadline(pipeline), publish];
+        // Without a pad the picture stands still but for what the connection finds, and that wakes the loop anyway.
+        let publish = self.connection.pad().map(|_| self.snapshot_at.plus_us(SNAPSHOT_US));
+        let deadlines =
+            [self.end_at, pipeline.poll_timeout(), self.connection.next_deadline(pipeline), publish];
         deadlines.into_iter().flatten().min()
     }
 
     /// Reads once. True if the pad was a capture that ended.
     fn read_pad(&mut self, now: HostInstant) -> Result<bool, BridgeError> {
-        match self.keeper.read(&mut self.bytes) {
+        match self.connection.read(&mut self.bytes) {
             Ok(Some(read)) => {
                 self.driver.call(now, Call::Bytes(self.bytes.get(..read).unwrap_or_default()))?;
             }
@@ -234,8 +236,8 @@ impl Bridge {
             Err(_) => {
                 // Release first: closing a port can take time.
                 self.driver.call(now, Call::Unplugged)?;
-                self.keeper.lose(now);
-                return Ok(!self.keeper.can_return());
+                self.connection.on_unplugged(now);
+                return Ok(!self.connection.can_return());
             }
         }
         Ok(false)
@@ -243,17 +245,17 @@ impl Bridge {
 
     /// Breaks off the turn if somebody asks to end, or if the process was stopped: then `now` is long past.
     fn answer_requests(&mut self, now: HostInstant) -> Result<ControlFlow<Option<Ending>>, BridgeError> {
-        while let Some(asked) = self.requests.take() {
-            match asked.request {
+        while let Some(pending) = self.requests.take() {
+            match pending.request {
                 Request::End => {
-                    asked.answer(done());
-                    return Ok(ControlFlow::Break(Some(Ending::Asked)));
+                    pending.reply(done());
+                    return Ok(ControlFlow::Break(Some(Ending::Requested)));
                 }
                 Request::Stop => {
                     self.stop(now)?;
                     return Ok(ControlFlow::Break(None));
                 }
-                _ => self.answer(now, &asked)?,
+                _ => self.answer(now, &pending)?,
             }
         }
         Ok(ControlFlow::Continue(()))
@@ -268,12 +270,12 @@ impl Bridge {
         signals::stop_process().map_err(BridgeError::Io)?;
         let now = self.driver.clock.now();
         self.driver.call_if_due(now)?;
-        self.keeper.skip(now, &mut self.bytes);
+        self.connection.discard_input(now, &mut self.bytes);
         Ok(())
     }
 
-    fn answer(&mut self, now: HostInstant, asked: &Asked) -> Result<(), BridgeError> {
-        let answer = match &asked.request {
+    fn answer(&mut self, now: HostInstant, pending: &PendingRequest) -> Result<(), BridgeError> {
+        let answer = match &pending.request {
             Request::Status => self.status(now),
             Request::Page => page(self.host.page()),
             Request::Preview(read) => self.preview(now, read)?,
@@ -285,7 +287,7 @@ impl Bridge {
                 let read = self.host.next_profile();
                 self.change_profile(now, read, true)?
             }
-            Request::Offer(offer) => self.consider(now, offer)?,
+            Request::UpdateProfile(update) => self.update_profile(now, update)?,
             Request::Weigh(weight) => {
                 self.driver.call(now, Call::Weigh(*weight))?;
                 weighing(self.driver.pipeline.weighing().map_or(0, |it| it.number))
@@ -302,12 +304,12 @@ impl Bridge {
                 done()
             }
         };
-        asked.answer(answer);
+        pending.reply(answer);
         Ok(())
     }
 
-    /// Does what presses asked for.
-    fn obey(&mut self, now: HostInstant) -> Result<(), BridgeError> {
+    /// Runs the commands that presses have triggered.
+    fn run_commands(&mut self, now: HostInstant) -> Result<(), BridgeError> {
         for command in std::mem::take(&mut self.driver.commands) {
             let request = match command {
                 Command::NextProfile => Request::NextProfile,
@@ -316,7 +318,7 @@ impl Bridge {
                 Command::Panic => Request::ReleaseAll,
                 Command::Tare => Request::Retare,
             };
-            self.answer(now, &Asked::unanswered(request))?;
+            self.answer(now, &PendingRequest::unanswered(request))?;
         }
         Ok(())
     }
@@ -331,12 +333,12 @@ impl Bridge {
         match read.and_then(|read| self.prepared(read)) {
             Ok(read) => {
                 self.host.tell(&format!("profile {}", read.profile().name));
-                self.standing.asked(is_named);
+                self.profile_status.on_request(is_named);
                 self.driver.call(now, Call::Profile(&read))?;
                 Ok(done())
             }
             Err(error) => {
-                self.host.tell(&kept(&error));
+                self.host.tell(&unchanged_message(&error));
                 Ok(refused(&error))
             }
         }
@@ -346,7 +348,7 @@ impl Bridge {
     fn preview(&mut self, now: HostInstant, read: &ReadProfile) -> Result<String, BridgeError> {
         match prepare(self.driver.sink.as_mut(), read.profile()) {
             Ok(()) => {
-                self.standing.previewed();
+                self.profile_status.on_preview();
                 self.driver.call(now, Call::Profile(read))?;
                 Ok(done())
             }
@@ -354,15 +356,16 @@ impl Bridge {
         }
     }
 
-    /// Goes over to a profile that is offered, if people have not asked for another one meanwhile. What does not differ from the one
-    /// that is played changes nothing, nor does one that cannot be used.
-    fn consider(&mut self, now: HostInstant, offer: &Offer) -> Result<String, BridgeError> {
-        if !self.host.wants(offer) {
+    /// Switches to a profile that another thread has read, unless somebody has asked for another one meanwhile. A profile that equals the
+    /// one in play, or cannot be used, changes nothing.
+    fn update_profile(&mut self, now: HostInstant, update: &ProfileUpdate) -> Result<String, BridgeError> {
+        if !self.host.wants(update) {
             return Ok(done());
         }
-        let read = offer.read.clone().and_then(|read| self.prepared(read));
+        let read = update.read.clone().and_then(|read| self.prepared(read));
         let is_same = read.as_ref().is_ok_and(|read| read.profile() == self.driver.pipeline.profile());
-        if let Some(line) = self.standing.offered(offer, read.as_ref().map(|read| (read.profile(), is_same)))
+        if let Some(line) =
+            self.profile_status.apply(update, read.as_ref().map(|read| (read.profile(), is_same)))
         {
             self.host.tell(&line);
         }
@@ -381,12 +384,12 @@ impl Bridge {
         }
     }
 
-    fn look(&self, now: HostInstant) -> Snapshot {
-        look(now, &self.driver, &self.keeper, (&self.decoder, &self.standing))
+    fn take_snapshot(&self, now: HostInstant) -> Snapshot {
+        snapshot(now, &self.driver, &self.connection, &self.decoder, &self.profile_status)
     }
 
     fn status(&self, now: HostInstant) -> String {
-        serde_json::to_string(&self.look(now).status).unwrap_or_else(|error| error.to_string())
+        serde_json::to_string(&self.take_snapshot(now).status).unwrap_or_else(|error| error.to_string())
     }
 
     /// Renews the snapshot, and tells a state that lasts.
@@ -395,21 +398,21 @@ impl Bridge {
             return;
         }
         self.snapshot_at = now;
-        if let Some(state) = self.herald.hear(now, state(&self.driver, &self.keeper)) {
+        if let Some(state) = self.notifier.state_to_report(now, state(&self.driver, &self.connection)) {
             self.host.tell(state.sentence());
         }
-        if let Some(warning) = self.herald.warn(self.driver.pipeline.warning()) {
+        if let Some(warning) = self.notifier.warning_to_report(self.driver.pipeline.warning()) {
             self.host.tell(&warning.to_string());
         }
-        if let Some(line) = self.herald.weighed(self.driver.pipeline.weighing()) {
+        if let Some(line) = self.notifier.weighing_to_report(self.driver.pipeline.weighing()) {
             self.host.tell(&line);
         }
-        for line in self.herald.drops(self.driver.drops()).into_iter().flatten() {
+        for line in self.notifier.drops_to_report(self.driver.drops()).into_iter().flatten() {
             self.host.tell(line);
         }
         let is_shown = Arc::strong_count(&self.snapshot) > 1;
         if is_shown && let Ok(mut snapshot) = self.snapshot.try_lock() {
-            *snapshot = self.look(now);
+            *snapshot = self.take_snapshot(now);
         }
     }
 }
@@ -442,9 +445,9 @@ mod tests {
     use firmware_proto::sample::{Sample, Status};
 
     use super::*;
+    use crate::bridge_parts::PlayingDecoder;
     use crate::changes::ChangesSlot;
     use crate::opening::{OpenedPad, Patience};
-    use crate::parts::PlayingDecoder;
     use crate::sink::null::NullSink;
     use crate::sink::{Sink, SinkError};
     use crate::transport::Transport;
@@ -456,11 +459,11 @@ mod tests {
     use tactpad_core::pipeline::shipped;
     use tactpad_core::quantity::Contact;
 
-    /// Remembers what it was told.
+    /// Keeps the messages that it was given.
     #[derive(Clone, Default)]
-    struct Ear(Arc<Mutex<Vec<String>>>);
+    struct MessageLog(Arc<Mutex<Vec<String>>>);
 
-    impl Host for Ear {
+    impl Host for MessageLog {
         fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
             let text = name.and_then(profiles::text).ok_or("there is none")?;
             ReadProfile::read(text, OutputChoice::AsWritten).0.ok_or("it has errors".into())
@@ -476,19 +479,19 @@ mod tests {
     }
 
     /// A bridge whose pad never comes, what it tells, and how often it looked for the pad.
-    fn without_pad() -> (Bridge, Ear, Arc<AtomicUsize>) {
-        let (ear, looked) = (Ear::default(), Arc::new(AtomicUsize::new(0)));
+    fn without_pad() -> (Bridge, MessageLog, Arc<AtomicUsize>) {
+        let (messages, looked) = (MessageLog::default(), Arc::new(AtomicUsize::new(0)));
         let looking = Arc::clone(&looked);
         let pad = OpenedPad::absent(Box::new(move || {
             looking.fetch_add(1, Ordering::Relaxed);
             Err(PadError::NotThere("no".into()))
         }));
-        (bridge(pad, Box::new(NullSink), &ear), ear, looked)
+        (bridge(pad, Box::new(NullSink), &messages), messages, looked)
     }
 
     /// A bridge that plays Contra on this pad.
-    fn bridge(pad: OpenedPad, sink: Box<dyn Sink>, ear: &Ear) -> Bridge {
-        let bridge = Bridge::new(Parts {
+    fn bridge(pad: OpenedPad, sink: Box<dyn Sink>, messages: &MessageLog) -> Bridge {
+        let bridge = Bridge::new(BridgeParts {
             pad,
             patience: Patience::Endless,
             decoder: PlayingDecoder {
@@ -497,10 +500,10 @@ mod tests {
                 place: None,
                 file: None,
             },
-            profile: ear.clone().read_profile(Some("contra")).unwrap(),
+            profile: messages.clone().read_profile(Some("contra")).unwrap(),
             sink,
             requests: Requests::new().unwrap(),
-            host: Box::new(ear.clone()),
+            host: Box::new(messages.clone()),
             record: None,
             observers: Vec::new(),
             changes: ChangesSlot::default(),
@@ -523,44 +526,47 @@ mod tests {
 
     #[test]
     fn without_a_pad_it_wakes_at_most_five_times_a_second_and_still_looks_and_tells() {
-        let (mut bridge, ear, looked) = without_pad();
+        let (mut bridge, messages, looked) = without_pad();
         let snapshot = bridge.snapshot();
         let begin = bridge.snapshot_at;
         let count = wake_ups(&mut bridge, begin.plus_us(10_000_000));
         assert!(count <= 50, "{count} times in ten seconds");
         let looked = looked.load(Ordering::Relaxed);
         assert!(looked >= 35, "it looked {looked} times");
-        assert_eq!(*ear.0.lock().unwrap(), ["waiting for the pad: plug it in"]);
+        assert_eq!(*messages.0.lock().unwrap(), ["waiting for the pad: plug it in"]);
         assert!(snapshot.lock().unwrap().at >= begin.plus_us(9_000_000), "the picture is old");
     }
 
     #[test]
     fn another_profile_is_taken_and_one_that_cannot_be_read_is_told() {
-        let (mut bridge, ear, _) = without_pad();
+        let (mut bridge, messages, _) = without_pad();
         let now = bridge.snapshot_at;
         let read = bridge.host.read_profile(Some("tetris"));
         assert_eq!(bridge.change_profile(now, read, true).unwrap(), done());
-        assert_eq!(bridge.look(now).status.profile, "Tetris");
+        assert_eq!(bridge.take_snapshot(now).status.profile, "Tetris");
         let read = bridge.host.read_profile(None);
         let answer = bridge.change_profile(now, read, false).unwrap();
         assert_eq!(answer, r#"{"error":"there is none","ok":false}"#);
-        assert_eq!(*ear.0.lock().unwrap(), ["profile Tetris", "there is none\nthe profile in use stays"]);
+        assert_eq!(
+            *messages.0.lock().unwrap(),
+            ["profile Tetris", "there is none\nthe profile in use stays"]
+        );
     }
 
     #[test]
     fn what_a_press_asks_for_is_done() {
-        let (mut bridge, ear, _) = without_pad();
+        let (mut bridge, messages, _) = without_pad();
         let now = bridge.snapshot_at;
         let mut ask = |command| {
             bridge.driver.commands.push(command);
-            bridge.obey(now).unwrap();
-            (bridge.driver.pipeline.phase(), bridge.look(now).status.profile)
+            bridge.run_commands(now).unwrap();
+            (bridge.driver.pipeline.phase(), bridge.take_snapshot(now).status.profile)
         };
         assert_eq!(ask(Command::TogglePause).0, Phase::Paused);
         assert_eq!(ask(Command::TogglePause).0, Phase::Waiting);
         assert_eq!(ask(Command::Profile("tetris".try_into().unwrap())).1, "Tetris");
         assert_eq!(ask(Command::NextProfile).1, "Tetris");
-        let told = ear.0.lock().unwrap();
+        let told = messages.0.lock().unwrap();
         assert_eq!(*told, ["profile Tetris", "there is no next one\nthe profile in use stays"]);
     }
 
@@ -633,7 +639,7 @@ mod tests {
                 Some(Box::new(Told { line: Arc::clone(&line), nothing }));
             let pad =
                 OpenedPad::absent(Box::new(move || first.take().ok_or(PadError::NotThere("no".into()))));
-            let bridge = bridge(pad, Box::new(written.clone()), &Ear::default());
+            let bridge = bridge(pad, Box::new(written.clone()), &MessageLog::default());
             let now = bridge.snapshot_at;
             let press = Contact { fz_n: 1.0, ..Contact::default() };
             let uv_per_n = PadField::nominal().signals.strain_uv(&press).uv;
@@ -743,7 +749,7 @@ mod tests {
     #[test]
     fn a_program_ends_its_own_bridge_without_signals() {
         let (mut bridge, ..) = without_pad();
-        bridge.requests.asker().unwrap().ask(Request::End).unwrap();
-        assert_eq!(bridge.run().unwrap(), Ending::Asked);
+        bridge.requests.sender().unwrap().send(Request::End).unwrap();
+        assert_eq!(bridge.run().unwrap(), Ending::Requested);
     }
 }

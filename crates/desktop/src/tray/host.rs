@@ -1,7 +1,7 @@
-//! What the tray needs of the program around it.
+//! The host of the tray: the interface of the program around it.
 
 /// The program around the tray. It is called on the tray's thread, so the bridge does not wait for it.
-pub trait Desk {
+pub trait TrayHost {
     /// The names of the profiles that there are now, in the order of the menu.
     fn profiles(&mut self) -> Vec<String>;
 

@@ -175,8 +175,8 @@ fn compared(kind: Kind, since: Since, seconds: u64, seed: u64) -> DetectedChange
     let script = kind.script(true, end_us, seed);
     let (later, _) = played(script, (&device, &field), life, (end_us, seed + 1_000));
     let before = decoder.as_ref().map_or(Before::Play(&earlier), Before::Decoder);
-    let nominal = (&Device::nominal(), &PadField::nominal());
-    let found = changed(before, &later, nominal, &FieldChanges::nominal().0, &|_, _| ()).unwrap();
+    let (device, field) = (Device::nominal(), PadField::nominal());
+    let found = changed(before, &later, &device, &field, &FieldChanges::nominal().0, &|_, _| ()).unwrap();
     let told: Vec<String> = found.findings.iter().map(told).collect();
     println!(
         "pad {seed:3}  {kind:?} since {since:?}: {:?} presses, inflation {:.2}, least gain {:.4}; {}",

@@ -1,6 +1,6 @@
 //! Little-endian numbers and texts in a row, as the program's own files keep them.
 
-/// What is left of a file while it is read; `None` wherever it ends early or makes no sense.
+/// Remaining bytes of a file while it is read; `None` wherever it ends early or makes no sense.
 #[derive(Clone, Copy, Debug)]
 pub struct Reader<'b> {
     rest: &'b [u8],

@@ -5,7 +5,7 @@
 /// Number of strain channels: three modules, three axes each.
 pub const CHANNELS: usize = 9;
 
-/// What a gram weighs: standard gravity, 9.80665 m/s² (CGPM 1901).
+/// Weight of a gram, N: standard gravity, 9.80665 m/s² (CGPM 1901).
 pub const WEIGHT_N_PER_G: f64 = 9.806_65e-3;
 
 /// Number of strain modules under the plate, at 0°, 120° and 240° counter-clockwise from +x.

@@ -160,7 +160,7 @@ fn taken(decoder: &Decoder, table: Table, full_scale_n: f64) -> Option<Table> {
     Some(recording.into_taken(decoder))
 }
 
-/// What the decoder makes of tared rows; a row without channels is no contact.
+/// Decoded contacts of tared rows; a row without channels is no contact.
 pub fn decoded(decoder: &Decoder, rows: &[Row]) -> Vec<Contact> {
     rows.iter().map(|row| decoder.decode(&strain(row))).collect()
 }

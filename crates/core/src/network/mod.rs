@@ -25,7 +25,7 @@ pub const WIDTH_MAX: usize = 512;
 /// Most layers with weights.
 pub const LAYERS_MAX: usize = 16;
 
-/// What the nine inputs of a network are.
+/// Zero of the nine inputs of a network: tared or raw channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Zero {
     /// The untouched pad reads zero: channels minus their zeros.
@@ -63,7 +63,7 @@ pub struct Network {
     output: Scaler<OUTPUTS>,
 }
 
-/// What a pad reads for a contact.
+/// Training example: a contact and the channels that a pad reads for it, µV.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Example {
     /// Channels, microvolts.

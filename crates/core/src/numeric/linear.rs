@@ -224,7 +224,7 @@ fn runs(vector: &[f64]) -> Vec<Range<usize>> {
     runs
 }
 
-/// What is left of equations when some of their unknowns are free: S and s of the others.
+/// Normal equations S x = s that remain when the other unknowns are free (Schur complement).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduced {
     /// S, row by row.

@@ -40,7 +40,7 @@ pub fn principal_directions(rows: &Matrix, count: usize) -> Vec<Principal> {
     rotated(&square, &basis).into_iter().take(count).collect()
 }
 
-/// What a row has beside these directions, which are orthonormal.
+/// Residual of a row beside these orthonormal directions: v − Σ d (d · v).
 pub fn beside(mut row: Vec<f64>, directions: &[Principal]) -> Vec<f64> {
     for Principal { direction, .. } in directions {
         let along = dot(&row, direction);

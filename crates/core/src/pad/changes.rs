@@ -1,4 +1,4 @@
-//! What a pad's channels gain or lose where a part of a module has come off: changes of the field that are not small.
+//! Changes of a pad's channels, µV/N, where a part of a module has come off: changes of the field that are not small.
 //!
 //! Each is the difference of two solutions: of a pad whose module 0 has the flaw, and of the pad as it is. The nominal pad's are
 //! part of the program; others lie in a cache, beside the fields.
@@ -20,7 +20,7 @@ const MAGIC: &[u8] = b"tactpad changes 1\n";
 /// then off by 1 % of itself at most, but at a share of 0.9 by 15 %.
 pub const DEBONDED_SHARES: [f64; 3] = [0.1, 0.4, 0.75];
 
-/// What a module may lack.
+/// Flaw of a module: the part that it lacks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Flaw {
     /// The frame on a side.
@@ -74,7 +74,7 @@ impl FromStr for Flaw {
 pub struct FieldChange {
     /// The flaw.
     pub flaw: Flaw,
-    /// What the channels then read beyond those of the whole pad, µV/N.
+    /// Change of the channels against the whole pad, µV/N.
     pub maps: [ForceMaps; CHANNELS],
 }
 

@@ -11,11 +11,11 @@ use crate::pad::device::parameter::Parameter;
 use crate::pad::influence::{InfluenceField, MAPS};
 use crate::quantity::CHANNELS;
 
-/// What one channel reads per newton along +x, along +y and pressing, as polynomials over the plate in the place
+/// Sensitivity of one channel, µV/N, along +x, along +y and pressing, as polynomials over the plate in the place
 /// divided by its radius.
 pub type ForceMaps = [Polynomial; 3];
 
-/// What may be lost of a sensitivity's maps in a file, as a share of their mean square over the plate.
+/// Largest loss of a sensitivity's maps in a file, as a share of their mean square over the plate.
 const LOST_SHARE: f64 = 1e-4;
 
 /// Highest degree of the polynomials that are kept of a sensitivity: where a module stands matters most over its foot,
@@ -109,7 +109,7 @@ impl PadField {
     }
 }
 
-/// What follows the device's text in the body of a file that begins with `magic`.
+/// Bytes that follow the device's text in the body of a file that begins with `magic`.
 pub(super) fn body_of<'b>(
     magic: &[u8],
     bytes: &'b [u8],

@@ -142,7 +142,7 @@ impl InfluenceField {
         self.nodes = kept;
     }
 
-    /// What each channel reads per newton at a place, and its slopes.
+    /// Gains of each channel at a place, µV/N, and their slopes, µV/(N mm).
     ///
     /// A place beyond [`Self::radius_mm`] reads as the one at that radius on the same ray: the field ends where a
     /// finger would reach over the rim. A place that is not finite reads as the centre.
@@ -183,7 +183,7 @@ impl InfluenceField {
         })
     }
 
-    /// What an ideal pad reports for `contact`, in microvolts. Linear in the forces.
+    /// Strain that an ideal pad reports for `contact`, µV. Linear in the forces.
     ///
     /// A contact that is not finite reads zero; for the place see [`Self::gains`].
     pub fn strain_uv(&self, contact: &Contact) -> Strain {

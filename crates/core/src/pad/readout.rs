@@ -37,7 +37,7 @@ use crate::pad::device::behaviour::{Behaviour, ModuleCrosstalk, Thermal};
 use crate::pad::device::{Circuit, Device, Module};
 use crate::quantity::CHANNELS;
 
-/// What the nine half-bridges carry for one contact, in microvolts: gauge law and excitation are in it.
+/// Signals of the nine half-bridges for one contact, µV: gauge law and excitation are in it.
 ///
 /// Both arrays are in the order of [`CHANNEL_NAMES`](crate::quantity::CHANNEL_NAMES).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +115,7 @@ impl Readout {
         std::array::from_fn(|channel| signal_uv[channel] + zero_uv[channel])
     }
 
-    /// What the modules' strains are worth, in microvolts: the bridges by the circuit's law, with what modules take of
+    /// Channels by the modules' strains, µV: the bridges by the circuit's law, with what modules take of
     /// each other.
     pub fn strain_uv(&self, bridges: &Bridges) -> [f64; CHANNELS] {
         let bridges_uv = if self.circuit.bridge_nonlinearity {
@@ -137,7 +137,7 @@ impl Readout {
         mixed(&self.crosstalk, &amplified)
     }
 
-    /// What an untouched pad reads.
+    /// Zeros of the untouched pad, µV.
     pub fn zero_uv(&self, temperature_c: f64) -> [f64; CHANNELS] {
         let Thermal { reference_c, zero_uv_per_c, zero_uv_per_c2, .. } = &self.thermal;
         // z = offset + (β + β₂ ΔT) ΔT.

@@ -28,13 +28,13 @@ impl Weight {
         self.g
     }
 
-    /// What it presses with on a level plate.
+    /// Force on a level plate, N.
     pub fn force_n(self) -> f64 {
         weight_n(self.g)
     }
 }
 
-/// What so many grams press with: m g.
+/// Force of a mass in grams, N: m g.
 pub fn weight_n(weight_g: f64) -> f64 {
     WEIGHT_N_PER_G * weight_g
 }

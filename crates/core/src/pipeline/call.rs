@@ -1,4 +1,4 @@
-//! What can happen to a pipeline, as one type: the bridge makes calls, a capture keeps them, a replay makes them again.
+//! Calls to a pipeline, as one type: the bridge makes calls, a capture keeps them, a replay makes them again.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What interrupts the stream of contacts, and what becomes of each part of the pipeline then: one table.
+//! Interruptions of the stream of contacts, and what becomes of each part of the pipeline then: one table.
 
 use crate::pipeline::link::Fault;
 

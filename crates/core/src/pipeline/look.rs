@@ -72,7 +72,7 @@ impl Pipeline {
         self.contact.and_then(|_| self.stage.estimate())
     }
 
-    /// What the player should know of the touch at hand or the last one; only the inverse decoder tells it.
+    /// Warning about the touch at hand or the last one; only the inverse decoder tells it.
     pub const fn warning(&self) -> Option<Warning> {
         self.stage.warning()
     }

@@ -175,7 +175,7 @@ impl Pipeline {
         &self.edges
     }
 
-    /// What presses asked of the bridge in the last call, in their order. Valid until the next call. The pipeline does none of it by
+    /// Commands that presses asked of the bridge in the last call, in their order. Valid until the next call. The pipeline does none of it by
     /// itself: who drives it makes the call that is meant, so that a capture has it, too.
     pub fn commands(&self) -> &[Command] {
         &self.commands

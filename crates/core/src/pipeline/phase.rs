@@ -1,6 +1,6 @@
-//! What a pipeline is doing, in a word.
+//! Phase of a pipeline, in a word.
 
-/// What the pipeline is doing, for people.
+/// Phase of the pipeline, for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// No pad is heard.

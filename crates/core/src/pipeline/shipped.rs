@@ -13,14 +13,14 @@ use crate::quantity::CHANNELS;
 /// Plays unless another one is asked for: of those that know no pad but the nominal one, it is nearest to the truth.
 /// `docs/decoding.md` has the figures.
 pub const INVERSE: &str = "inverse";
-/// What captures without a decoder were made with.
+/// Decoder of captures that name none.
 pub const STATICS: &str = "statics";
 /// The paper's network after its stage I.
 const SCDF: &str = "scdf";
 
 /// How far a pad's channels are from those of the nominal one, as a share of each: gains of a pad made by hand.
 const PAD_SHARE: f64 = 0.1;
-/// What a channel takes over from the others: 1 % of what a z channel reads of a newton over its module.
+/// Crosstalk of a channel, µV/N: 1 % of what a z channel reads of a newton over its module.
 const CROSSTALK_UV_PER_N: f64 = 20.0;
 /// How far all its channels are together: the authors' earlier pad has gains of 0.83 to 1.33.
 const PAD_GAIN: f64 = 0.2;

@@ -76,9 +76,12 @@ fn special(player: &Player<'_>, index: usize) -> Option<Vec<Gesture>> {
             vec![tapped.filter(|_| !is_simple || tap.mode != Mode::Plain), held, twice]
         }
         Action::ByForce { light, hard, hard_press_n, hard_release_n, skip } => {
-            let keys = plain(light).zip(plain(hard))?;
+            let (light, hard) = plain(light).zip(plain(hard))?;
             let forces_n = [hard_press_n, hard_release_n];
-            vec![pressing.slowly_hard(keys, forces_n, skip), pressing.quickly_hard(keys.1, forces_n, skip)]
+            vec![
+                pressing.slowly_hard(light, hard, forces_n, skip),
+                pressing.quickly_hard(hard, forces_n, skip),
+            ]
         }
     };
     Some(gestures.into_iter().flatten().collect())
@@ -199,7 +202,7 @@ impl Pressing<'_> {
     }
 
     /// Presses lightly, then hard, then lightly.
-    fn slowly_hard(&self, (light, hard): (Keys, Keys), forces_n: [f32; 2], skip: Skip) -> Option<Gesture> {
+    fn slowly_hard(&self, light: Keys, hard: Keys, forces_n: [f32; 2], skip: Skip) -> Option<Gesture> {
         let (light_n, hard_n) = self.stages_n(forces_n)?;
         let waits_us = match skip {
             Skip::No => 0,

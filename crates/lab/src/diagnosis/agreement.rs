@@ -1,4 +1,4 @@
-//! What several recordings of one pad say alike.
+//! Findings that several recordings of one pad share.
 
 use super::report::{Diagnosis, Finding};
 
@@ -16,7 +16,7 @@ pub fn agreed<'d>(diagnoses: &[&'d Diagnosis]) -> Vec<Vec<&'d Finding>> {
     named(first).filter_map(everywhere).collect()
 }
 
-/// What a diagnosis names; sets of causes are no names.
+/// Named findings of a diagnosis; sets of causes are no names.
 fn named(diagnosis: &Diagnosis) -> impl Iterator<Item = &Finding> {
     diagnosis.findings.iter().filter(|it| it.confounded_with.is_empty())
 }

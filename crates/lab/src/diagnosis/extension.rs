@@ -12,7 +12,7 @@ use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS};
 /// A device file opens the side of a frame or does not: from this part of the side on, open is nearer.
 const NEARER_OPEN: f64 = 0.5;
 
-/// What a finding's value does to a number of the device.
+/// Change of a device's number by a finding's value.
 #[derive(Clone, Copy, Debug)]
 enum Change {
     Add,
@@ -66,7 +66,7 @@ pub fn extended(
     for finding in diagnosis.findings.iter().filter(|finding| finding.confounded_with.is_empty()) {
         let asked = finding.parameters.iter().map(|it| (it.name, it.value));
         let numbers: Vec<_> = asked.chain(finding.shapes.iter().copied()).collect();
-        match with(&device, (finding.effect, finding.target), &numbers, &circumstances) {
+        match with(&device, finding.effect, finding.target, &numbers, &circumstances) {
             Some(changed) => device = changed,
             None => left_out.push(finding.effect),
         }
@@ -93,7 +93,8 @@ fn reads_back(device: &Device) -> bool {
 /// The device with one cause more, of these numbers; none where it has no number for it, or none within its range.
 pub(super) fn with(
     device: &Device,
-    (effect, target): (&'static str, Target),
+    effect: &'static str,
+    target: Target,
     numbers: &[(&str, f64)],
     circumstances: &Circumstances<'_>,
 ) -> Option<Device> {
@@ -111,8 +112,8 @@ pub(super) fn with(
         }
         ("module_frame_open", Target::ModuleSide(module, side)) => open(&mut device, module, side, first)?,
         ("module_debonded", Target::ModuleSide(module, side)) => debond(&mut device, module, side, first)?,
-        ("hysteresis" | "creep", _) => remember(&mut device, (effect, target), numbers, circumstances)?,
-        _ => set_numbers(&mut device, (effect, target), numbers, circumstances.last_cycle)?,
+        ("hysteresis" | "creep", _) => remember(&mut device, effect, target, numbers, circumstances)?,
+        _ => set_numbers(&mut device, effect, target, numbers, circumstances.last_cycle)?,
     }
     if effect == "contact_size" {
         // A wider finger leaves the plate earlier.
@@ -176,7 +177,8 @@ fn debond(device: &mut Device, module: usize, side: Side, share: f64) -> Option<
 /// Adds play operators, or terms of creep, in each channel of the target.
 fn remember(
     device: &mut Device,
-    (effect, target): (&str, Target),
+    effect: &str,
+    target: Target,
     numbers: &[(&str, f64)],
     circumstances: &Circumstances<'_>,
 ) -> Option<()> {
@@ -205,7 +207,8 @@ fn remember(
 
 fn set_numbers(
     device: &mut Device,
-    (effect, target): (&'static str, Target),
+    effect: &'static str,
+    target: Target,
     numbers: &[(&str, f64)],
     last_cycle: Option<f64>,
 ) -> Option<()> {

@@ -137,8 +137,8 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, DiagnosisErro
 
 /// The observations after the checks of the recording.
 fn checked(observations: &Observations, pad: &Pad<'_>) -> Result<Gate, DiagnosisError> {
-    let expected = Simulated::new(pad, (pad.device, pad.field), observations, (observations, observations))
-        .readings(&[]);
+    let expected =
+        Simulated::new(pad, pad.device, pad.field, observations, observations, observations).readings(&[]);
     let gate = guarded(observations, Some(&expected), |effect| pad.asks_for(effect));
     let is_alive = |channel| gate.observations.is_alive(channel);
     if (0..gate.observations.channels.len()).any(is_alive) { Ok(gate) } else { Err(DiagnosisError::Silent) }
@@ -189,7 +189,7 @@ fn summary(
     let remainders = unnamed_squares(found);
     let whole = search.removed(fit)? + remainders.iter().sum::<f64>();
     let NamingResult { candidates, unnamed_by_channel, doubted_by_channel } =
-        named(search, found, (whole, remainders))?;
+        named(search, found, whole, remainders)?;
     let unnamed: f64 = unnamed_by_channel.iter().sum();
     let separation = Separation::new(search, found);
     let applied: Applied = candidates.iter().map(|it| fit.applied[it.place].clone()).collect();
@@ -231,7 +231,7 @@ fn noise_floor(open: &Rows<'_>, fit: &AttributionFit) -> f64 {
     mean(alive.map(|(_, (noise, signal))| noise.mean_square(signal, &in_series))).sqrt()
 }
 
-/// What the model misses at the open rows, as it is and with what was found.
+/// Residuals of the model at the open rows, without and with the findings.
 fn residuals(open: &Rows<'_>, found: &Attribution, applied: &Applied) -> Residuals {
     let noise = found.fit.systems.noise.iter().zip(&found.fit.linearised.readings);
     let in_series = open.observations.in_series();

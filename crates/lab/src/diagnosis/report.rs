@@ -1,4 +1,4 @@
-//! What a diagnosis says.
+//! Report of a diagnosis.
 
 use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::data::target::Target;
@@ -7,7 +7,7 @@ use crate::diagnosis::data::target::Target;
 /// unexplained, or of one reason that several findings have in common.
 pub const UNLISTED: &str = "unlisted_cause";
 
-/// What is said where nothing tells confounded causes apart.
+/// Sentence where nothing tells confounded causes apart.
 pub(super) const INSEPARABLE: &str = "no measurement in the catalogue separates these";
 
 /// The whole answer.
@@ -29,23 +29,23 @@ pub struct Diagnosis {
     pub background_mm: f64,
     /// See [`Self::background_mm`].
     pub background_share: f64,
-    /// What was found, the largest first.
+    /// Findings, the largest first.
     pub findings: Vec<Finding>,
-    /// What was asked for and not found.
+    /// Effects that were tested and not found.
     pub not_detected: Vec<NotDetected>,
-    /// What could not be asked for.
+    /// Effects that could not be tested.
     pub not_testable: Vec<NotTestable>,
     /// Part of the weighted squared residual above noise and background that no cause explains; 0 where that is chance.
     pub unnamed_share: f64,
     /// For each channel, the weighted squares of what no cause explains.
     pub unnamed_by_channel: Vec<f64>,
-    /// What the findings remove of what a flexible model could; `None`: no such model was fitted.
+    /// Share that the findings remove of what a flexible model could; `None`: no such model was fitted.
     pub ceiling_share: Option<f64>,
     /// On the locked rows; `None` where nothing was found.
     pub gain: Option<Gain>,
-    /// What the checks before it found in the recording, and did about it.
+    /// Notices of the checks of the recording.
     pub gatekeepers: Vec<Notice>,
-    /// What the model misses, row by row.
+    /// Residuals, row by row.
     pub residuals: Residuals,
 }
 
@@ -75,10 +75,10 @@ impl Diagnosis {
     }
 }
 
-/// What the model misses at the rows by which causes were found, each channel's zero taken off.
+/// Residuals at the rows by which causes were found, each channel's zero taken off.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Residuals {
-    /// What was written beside each row.
+    /// Labels of each row.
     pub samples: Vec<Sample>,
     /// Root mean square of each channel's noise, in its unit.
     pub noise: Vec<f64>,
@@ -88,7 +88,7 @@ pub struct Residuals {
     pub extended: Vec<Vec<f64>>,
 }
 
-/// What a check of the recording found and did.
+/// Notice of a check of the recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
     /// The check, in a word.
@@ -173,7 +173,7 @@ pub struct NotTestable {
     pub needs: &'static str,
 }
 
-/// What the findings are worth on rows that had no part in finding them.
+/// Gain of the findings on rows that had no part in finding them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gain {
     /// How many rows.
@@ -186,7 +186,7 @@ pub struct Gain {
     pub position_mae: Option<Decoded>,
     /// The same of the loads, in N.
     pub force_mae: Option<Decoded>,
-    /// What each cause is worth by itself.
+    /// Gain of each cause by itself.
     pub per_cause: Vec<WithoutFinding>,
 }
 

@@ -34,7 +34,7 @@ const SETTLING: usize = 5;
 /// The pad is free again after so many windows.
 const LIFTED: usize = 3;
 
-/// What to do now.
+/// Step to do now.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GuideStep {
     /// Leave the pad alone.
@@ -69,7 +69,7 @@ pub enum GuideStep {
     Done,
 }
 
-/// What lies on the pad where a weight is waited for.
+/// Load on the pad where a weight is waited for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LoadOnPad {
     /// Nothing.
@@ -163,7 +163,7 @@ impl Guide {
         }
     }
 
-    /// What to do now.
+    /// Step to do now.
     pub const fn step(&self) -> &GuideStep {
         &self.step
     }

@@ -36,7 +36,7 @@ pub struct AtHome {
 /// A part of the plate, and how well it is known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// What people call it.
+    /// Name for people.
     pub name: &'static str,
     /// Root mean square over the region of the place's standard deviation by the field.
     pub deviation_mm: f64,
@@ -155,7 +155,7 @@ pub(super) const fn region_names() -> &'static [&'static str] {
     &REGIONS
 }
 
-/// What was pressed, weights aside.
+/// Places that were pressed, weights aside.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PressedPlaces {
     /// So long a finger pressed firmly.

@@ -1,4 +1,4 @@
-//! What came of a calibration at home, as people are told: what it knows of the plate part by part, what is open, what helps most.
+//! Summary of a calibration at home: what it knows of the plate part by part, what is open, what helps most.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use crate::play::windows::Window;
 /// What the numbers of the parts are.
 pub const HEADING: &str = "What is known of the pad, as what it leaves open of a press of 2.5 N:";
 
-/// What came of a calibration, for people.
+/// Summary of a calibration, for people.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// Windows of a tenth of a second with a press.
@@ -24,7 +24,7 @@ pub struct Summary {
 /// A part of the plate.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlatePart {
-    /// What people call it.
+    /// Name for people.
     pub name: &'static str,
     /// Standard deviation of the place by what is not known of the pad.
     pub deviation_mm: f64,

@@ -30,10 +30,10 @@ pub struct RestedLoad {
     pub readings: Vec<MeanReading>,
 }
 
-/// What was found in a file.
+/// Findings in a file.
 #[derive(Clone, Debug)]
 pub struct InFile {
-    /// What the weight tells.
+    /// Gain factor by the weight.
     pub weighed: Weighed,
     /// How many readings it was told by.
     pub readings: usize,

@@ -16,7 +16,7 @@ const TRAVEL_MAX_MM: f32 = 3.0;
 /// More contacts than these tell hardly more, as noise lasts: of more, every second one or fewer is taken.
 const CONTACTS_MAX: usize = 1200;
 
-/// What is known of a sample beside its channels.
+/// Context of a sample beside its channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SampleContext {
     /// Nothing touches the pad.

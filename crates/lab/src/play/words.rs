@@ -1,4 +1,4 @@
-//! What people are told in each step of a calibration at home.
+//! Texts of each step of a calibration at home.
 
 use std::mem::discriminant;
 

@@ -1,4 +1,4 @@
-//! What two profiles make of one recording, as a difference.
+//! Difference of two profiles on one recording.
 
 use serde::{Serialize, Serializer};
 

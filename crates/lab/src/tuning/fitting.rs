@@ -21,7 +21,7 @@ const WORTH: f64 = 0.5;
 /// All numbers are gone through so often at most.
 const ROUNDS_MAX: usize = 3;
 
-/// What a profile is fitted to.
+/// Data to which a profile is fitted.
 #[derive(Clone, Copy, Debug)]
 pub struct Study<'s> {
     /// The contacts.
@@ -57,7 +57,7 @@ pub struct Change {
 }
 
 impl Study<'_> {
-    /// What comes with a profile for what was meant.
+    /// Score of a profile against the labels.
     pub fn score(&self, profile: &Profile) -> Score {
         Score::of(profile, self.trace, self.labels, self.after_us())
     }
@@ -137,10 +137,12 @@ impl Search<'_> {
             1.0
         };
         let mut tried = vec![none];
-        for (hand, moves, turns) in
-            [(found.turned, false, true), (found.shifted, true, false), (found.turned, true, true)]
-        {
-            tried.push(of_hand(hand, (moves, turns), side));
+        for (hand, fitted) in [
+            (found.turned, FittedPose { centre: false, rotation: true }),
+            (found.shifted, FittedPose { centre: true, rotation: false }),
+            (found.turned, FittedPose { centre: true, rotation: true }),
+        ] {
+            tried.push(of_hand(hand, fitted, side));
         }
         let scores: Vec<_> = tried.par_iter().map(|settings| self.correct(settings)).collect();
         let mut best = 0;
@@ -195,17 +197,26 @@ fn smoothed(scores: &[Option<f64>], index: usize) -> Option<f64> {
     Some(0.25 * (beside(index.checked_sub(1)) + 2.0 * here + beside(index.checked_add(1))))
 }
 
-/// The settings of a hand's centre and rotation; `side` is −1 for a left-handed profile, which turns both.
-fn of_hand(hand: HandPose, (moves, turns): (bool, bool), side: f64) -> Settings {
+/// The parts of a hand's pose that are written into the profile.
+#[derive(Clone, Copy)]
+struct FittedPose {
+    /// Its centre, in millimetres.
+    centre: bool,
+    /// Its rotation, in degrees.
+    rotation: bool,
+}
+
+/// The settings of a hand's centre and rotation, as far as they are fitted; `side` is −1 for a left-handed profile, which turns both.
+fn of_hand(hand: HandPose, fitted: FittedPose, side: f64) -> Settings {
     let mut settings = Settings::new();
     let [x_mm, y_mm] = hand.centre_mm;
     // To half a millimetre: no finger comes back more exactly.
     let half = |mm: f64| ((2.0 * mm).round() / 2.0).clamp(-15.0, 15.0);
-    if moves {
+    if fitted.centre {
         settings.insert((Table::Root, "centre_x_mm"), half(side * x_mm));
         settings.insert((Table::Root, "centre_y_mm"), half(y_mm));
     }
-    if turns {
+    if fitted.rotation {
         settings.insert(
             (Table::Named("dpad"), "rotation_deg"),
             rounded("rotation_deg", side * hand.rotation_deg),
@@ -214,7 +225,7 @@ fn of_hand(hand: HandPose, (moves, turns): (bool, bool), side: f64) -> Settings 
     settings
 }
 
-/// What settings change in a text.
+/// Changes of a text by settings.
 fn changes(settings: &Settings, knobs: &[Knob], text: &str) -> Vec<Change> {
     let before = |(table, key): knobs::Key| {
         let knob = knobs.iter().find(|knob| knob.key == (table, key)).and_then(|knob| knob.present);

@@ -19,11 +19,11 @@ pub struct Label {
     pub begin_us: u64,
     /// and ends.
     pub end_us: u64,
-    /// What was meant: the number of a class.
+    /// Number of the class that was meant.
     pub class: usize,
 }
 
-/// What can be meant.
+/// Class of a label.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Class {
     /// Its name for people.

@@ -1,4 +1,4 @@
-//! What came for each thing that was meant.
+//! Outcomes of a profile for each label.
 
 use super::labels::Labels;
 use super::trace::Trace;
@@ -9,7 +9,7 @@ use tactpad_core::pipeline::mapping::profile::{Binding, Profile};
 /// What comes up to so much after a label's end, beside the delay that is allowed, is still its own: a tap comes when the press ends.
 pub const AFTER_US: u64 = 100_000;
 
-/// What came for one label.
+/// Outcome for one label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelOutcome {
     /// What that class means, once each, and nothing else.
@@ -20,7 +20,7 @@ pub enum LabelOutcome {
     Other,
 }
 
-/// What came for each label.
+/// Outcomes, label by label.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Score {
     came: Vec<LabelOutcome>,
@@ -61,7 +61,7 @@ impl Score {
         Self { came, correct, strays }
     }
 
-    /// What came, label by label.
+    /// Outcomes, label by label.
     pub fn came(&self) -> &[LabelOutcome] {
         &self.came
     }
@@ -82,7 +82,7 @@ impl Score {
     }
 }
 
-/// What came down with an event, if it did.
+/// Control that went down with an event, if one did.
 pub(super) fn down(event: &OutputEvent) -> Option<Binding> {
     let OutputEvent { device, code, value, .. } = *event;
     let is_down = value != 0 && !matches!(code, Code::Relative(_));

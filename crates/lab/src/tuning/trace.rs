@@ -10,7 +10,7 @@ use tactpad_core::pipeline::{NoProbe, Phase, Pipeline};
 use tactpad_core::quantity::Contact;
 use tactpad_core::time::{HostInstant, StreamInstant};
 
-/// What a sample showed.
+/// Events of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TraceEvents {
     /// A touch.

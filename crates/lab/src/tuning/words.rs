@@ -1,4 +1,4 @@
-//! What a changed number means, in words.
+//! Text of a changed number.
 
 use serde::Serialize;
 

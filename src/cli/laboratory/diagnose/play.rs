@@ -32,7 +32,7 @@ pub(super) fn run(arguments: &Arguments, paths: [&Path; 2]) -> Result<(), Failur
     let found = {
         let progress = Progress::begin("looking for changes");
         let report = |done: usize, of: usize| progress.part(done, of, "looking for changes");
-        changed(earlier.before(), &later.windows, (&device, &field), &flaws, &report)
+        changed(earlier.before(), &later.windows, &device, &field, &flaws, &report)
     };
     let found = found.map_err(|error| refused(&error, paths))?;
     if arguments.json {

@@ -235,9 +235,9 @@ impl ReferenceDecoder {
     /// The changes that these windows show; `None` where there are too few windows.
     fn changes(&self, windows: &[Window], pad: SerialNumber, path: &Path) -> Option<PadChanges> {
         let device = Device::nominal();
-        let nominal = (&device, &PadField::nominal());
+        let field = PadField::nominal();
         let before = Before::Decoder(&self.decoder);
-        let found = changed(before, windows, nominal, &flaws(&device), &|_, _| ()).ok()?;
+        let found = changed(before, windows, &device, &field, &flaws(&device), &|_, _| ()).ok()?;
         let mut text = line(&found);
         if !found.findings.is_empty() {
             let [play, decoder] = [&path.display().to_string(), &self.file].map(|it| quoted(it));

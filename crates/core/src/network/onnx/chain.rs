@@ -6,7 +6,7 @@ use super::tensor::{FLOAT, Tensor};
 use crate::network::Layer;
 use crate::network::transposed::transposed;
 
-/// What happens to a row of numbers.
+/// Operation on a row of numbers.
 #[derive(Debug)]
 pub(super) enum RowOperation {
     Subtract(Vec<f32>),

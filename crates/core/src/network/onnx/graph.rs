@@ -14,7 +14,7 @@ const NODES_MAX: usize = 8 * LAYERS_MAX;
 /// Where a file says what it takes; `tared` or `raw`. A file of others, which says nothing, takes tared channels.
 pub(super) const CHANNELS_KEY: &str = "tactpad.channels";
 
-/// What is read of a model.
+/// Graph of an ONNX model, as far as it is read.
 #[derive(Debug)]
 pub(super) struct Graph<'b> {
     pub(super) zero: Zero,
@@ -152,7 +152,7 @@ impl<'b> Attribute<'b> {
     }
 }
 
-/// What a ModelProto says that it takes; tared channels if it says nothing.
+/// Zero of the channels that a ModelProto takes; tared channels if it says nothing.
 pub(super) fn zero(model: &[u8]) -> Result<Zero, OnnxError> {
     let mut zero = Zero::Tared;
     for field in Fields::of(model) {
@@ -163,7 +163,7 @@ pub(super) fn zero(model: &[u8]) -> Result<Zero, OnnxError> {
     Ok(zero)
 }
 
-/// What a property of the model says about its channels, if it says that.
+/// Zero of the channels by a property of the model, if that is such a property.
 fn zero_of(property: &[u8]) -> Result<Option<Zero>, OnnxError> {
     if text_field(property, 1)? != CHANNELS_KEY.as_bytes() {
         return Ok(None);

@@ -25,7 +25,7 @@ pub fn write(network: &Network) -> Vec<u8> {
     write::model(network)
 }
 
-/// What a model takes, as it says itself.
+/// Zero of the channels that a model takes, as it says itself.
 ///
 /// # Errors
 /// Bytes that are no model.

@@ -25,7 +25,7 @@ pub(super) fn network(bytes: &[u8]) -> Result<Network, OnnxError> {
     Ok(Network { zero: graph.zero, input, layers, output })
 }
 
-/// What scalers in a row do to each number: factor · number + shift. In doubles, so that each pair of floats that a
+/// Scalers in a row, each number x to factor · x + shift. In doubles, so that each pair of floats that a
 /// scaler is written with comes out as it went in.
 struct Scaling<const N: usize> {
     factor: [f64; N],
@@ -39,14 +39,16 @@ impl<const N: usize> Scaling<N> {
         while let Some(step) = rest.next_if(RowOperation::is_scaler) {
             match &step {
                 RowOperation::Subtract(row) => {
-                    scaling.apply(row, |number, by| *number -= by, ScaledEnd::Shift)?;
+                    scaling.apply(row, |number, by| *number -= by, ScalerParts::Shift)?;
                 }
-                RowOperation::Add(row) => scaling.apply(row, |number, by| *number += by, ScaledEnd::Shift)?,
+                RowOperation::Add(row) => {
+                    scaling.apply(row, |number, by| *number += by, ScalerParts::Shift)?;
+                }
                 RowOperation::Divide(row) => {
-                    scaling.apply(row, |number, by| *number /= by, ScaledEnd::Both)?;
+                    scaling.apply(row, |number, by| *number /= by, ScalerParts::Both)?;
                 }
                 RowOperation::Multiply(row) => {
-                    scaling.apply(row, |number, by| *number *= by, ScaledEnd::Both)?;
+                    scaling.apply(row, |number, by| *number *= by, ScalerParts::Both)?;
                 }
                 RowOperation::Connect(_) | RowOperation::Rectify => {}
             }
@@ -54,14 +56,14 @@ impl<const N: usize> Scaling<N> {
         Ok(scaling)
     }
 
-    fn apply(&mut self, row: &[f32], change: fn(&mut f64, f64), part: ScaledEnd) -> Result<(), OnnxError> {
+    fn apply(&mut self, row: &[f32], change: fn(&mut f64, f64), part: ScalerParts) -> Result<(), OnnxError> {
         let row: [f64; N] = match *row {
             [one] => [one.into(); N],
             _ => <[f32; N]>::try_from(row)
                 .map_err(|_| OnnxError::Shape(format!("it scales {} numbers, not {N}", row.len())))?
                 .map(f64::from),
         };
-        let factors = if part == ScaledEnd::Both { &mut self.factor[..] } else { &mut [] };
+        let factors = if part == ScalerParts::Both { &mut self.factor[..] } else { &mut [] };
         factors.iter_mut().zip(row).for_each(|(factor, by)| change(factor, by));
         self.shift.iter_mut().zip(row).for_each(|(shift, by)| change(shift, by));
         Ok(())
@@ -78,9 +80,9 @@ impl<const N: usize> Scaling<N> {
     }
 }
 
-/// What a scaler changes.
+/// Parts of a scaler that change numbers: the shift alone, or shift and factor.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum ScaledEnd {
+enum ScalerParts {
     Shift,
     Both,
 }

@@ -10,7 +10,7 @@ const FIXED32: u64 = 5;
 /// More than ten bytes are no number of 64 bits.
 const VARINT_BYTES_MAX: usize = 10;
 
-/// What a field holds.
+/// Value of a protobuf field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Value<'b> {
     Number(u64),

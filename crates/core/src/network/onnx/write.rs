@@ -14,7 +14,7 @@ const FLOAT: u64 = 1;
 struct Graph {
     nodes: Vec<u8>,
     initializers: Vec<u8>,
-    /// What the last node gives.
+    /// Output name of the last node.
     last: String,
     count: usize,
 }

@@ -1,4 +1,4 @@
-//! What a pad does beyond its mechanics, and what the rig that measures it does: temperature, couplings, memory, noise,
+//! Behaviour of a pad beyond its mechanics, and errors of the rig that measures it: temperature, couplings, memory, noise,
 //! sampling, the finger, the labels.
 //!
 //! `docs/twin.md` has the equations, in the order in which a contact passes them.
@@ -18,9 +18,9 @@ pub struct Behaviour {
     pub hysteresis: Vec<PlayOperator>,
     /// Slow strain: the sum of Prony terms.
     pub creep: Vec<Prony>,
-    /// What is lost with the cycles of load.
+    /// Loss of strain with the cycles of load.
     pub ageing: Ageing,
-    /// What is random, and what drifts.
+    /// Random noise and drift.
     pub noise: Noise,
     /// Pickup from the mains.
     pub mains: Mains,
@@ -28,7 +28,7 @@ pub struct Behaviour {
     pub sampling: Sampling,
     /// How still a finger, or an indenter, stays.
     pub finger: Finger,
-    /// What the measuring rig gets wrong.
+    /// Errors of the measuring rig.
     pub rig: Rig,
 }
 
@@ -149,7 +149,7 @@ pub struct Sampling {
     pub skew_us: [f64; CHANNELS],
 }
 
-/// What holds the contact.
+/// Finger that holds the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finger {
     /// Standard deviation of the place along x and along y while it is held.

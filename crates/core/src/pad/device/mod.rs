@@ -46,13 +46,13 @@ pub struct Device {
     pub gauges: [Gauge; GAUGES],
     /// The bridges.
     pub circuit: Circuit,
-    /// What a contact is.
+    /// Patch of a contact.
     pub contact: Patch,
     /// What was measured on the hardware that it describes, where the file says so.
     pub reported: Option<Reported>,
     /// How each module differs from the nominal one.
     pub modules: [Module; MODULES],
-    /// What it does beyond its mechanics.
+    /// Behaviour beyond its mechanics.
     pub behaviour: Behaviour,
 }
 

@@ -70,7 +70,7 @@ fn add<T>(list: &mut Vec<Listed>, path: &str, key: &Key<T>, home: Home) {
     }));
 }
 
-/// What a key says of its number, whichever table it is in.
+/// Traits of a key's number, whichever table it is in.
 struct Traits {
     unit: Unit,
     range: (f64, f64),
@@ -122,7 +122,7 @@ impl Parameter {
         }
     }
 
-    /// What it is counted in.
+    /// Unit of the number.
     pub fn unit(self) -> Unit {
         self.traits().unit
     }
@@ -132,7 +132,7 @@ impl Parameter {
         self.traits().range
     }
 
-    /// What it changes.
+    /// Part of the pad that it changes.
     pub fn effect(self) -> Effect {
         self.traits().effect
     }

@@ -1,6 +1,6 @@
 //! The units of a device file, and those that people take for them.
 
-/// What a number of the device file is counted in.
+/// Unit of a number of the device file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Lengths.

@@ -20,7 +20,7 @@ impl Delay {
         Self { delay_s, longest_s: delay_s.iter().copied().fold(0.0, f64::max), past: VecDeque::new() }
     }
 
-    /// What the channels show at `at_s`, when their signals are `now_uv`. Between two calls signals go evenly; before
+    /// Delayed channels at `at_s`, µV, when their signals are `now_uv`. Between two calls signals go evenly; before
     /// the first one they were as they were then.
     pub(super) fn show(&mut self, at_s: f64, now_uv: [f64; CHANNELS]) -> [f64; CHANNELS] {
         if self.longest_s <= 0.0 {

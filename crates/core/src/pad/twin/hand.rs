@@ -1,4 +1,4 @@
-//! What holds the contact: a finger, or an indenter, that does not stay quite where it was put.
+//! Finger or indenter that holds the contact, that does not stay quite where it was put.
 
 use super::noise::Lasting;
 use crate::numeric::random::SplitMix64;

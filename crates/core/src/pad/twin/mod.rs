@@ -32,7 +32,7 @@ pub fn drawn(device: &Device, seed: u64) -> Device {
     device
 }
 
-/// What the bridges carry for several contacts at once: the pad is linear in their forces.
+/// Signals of the bridges for several contacts at once, µV: the pad is linear in their forces.
 pub fn bridges_of(field: &PadField, contacts: &[Contact]) -> Bridges {
     let mut sum = Bridges { signal_uv: [0.0; CHANNELS], sum_uv: [0.0; CHANNELS] };
     for Bridges { signal_uv, sum_uv } in contacts.iter().map(|contact| bridges(field, contact)) {
@@ -42,7 +42,7 @@ pub fn bridges_of(field: &PadField, contacts: &[Contact]) -> Bridges {
     sum
 }
 
-/// What the bridges carry for a contact.
+/// Signals of the bridges for a contact, µV.
 pub fn bridges(field: &PadField, contact: &Contact) -> Bridges {
     Bridges {
         signal_uv: field.signals.strain_uv(contact).uv.map(f64::from),

@@ -10,7 +10,7 @@ use crate::pad::field::PadField;
 use crate::pad::readout::Readout;
 use crate::quantity::{CHANNELS, Contact};
 
-/// What surrounds a reading.
+/// Circumstances of a reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circumstances {
     /// Temperature of the pad.
@@ -61,7 +61,7 @@ impl TwinPad {
         self.state
     }
 
-    /// What the channels read `after_s` after the last reading, in microvolts: raw, not tared.
+    /// Channels `after_s` after the last reading, µV: raw, not tared.
     ///
     /// Between the two the strains went evenly. A contact beyond the field's radius, or one that is not finite, reads as
     /// [`InfluenceField::strain_uv`](crate::pad::influence::InfluenceField::strain_uv) says.

@@ -1,4 +1,4 @@
-//! What of a pad goes on in time, apart from what it is made of.
+//! State of a pad that goes on in time, apart from its constants.
 
 use super::delay::Delay;
 use super::memory::Memory;

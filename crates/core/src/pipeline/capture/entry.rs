@@ -15,7 +15,7 @@ pub(super) const FIELDS_BYTES: usize = 13;
 pub(super) const CHECKSUM_BYTES: usize = 4;
 pub(super) const HEAD_BYTES: usize = FIELDS_BYTES + CHECKSUM_BYTES;
 
-/// What an entry is; the number is its first byte.
+/// Kind of an entry; the number is its first byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum EntryKind {

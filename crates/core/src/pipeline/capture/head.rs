@@ -1,4 +1,4 @@
-//! What a capture begins with.
+//! Head of a capture.
 
 use crate::pipeline::contact::Decoder;
 use crate::pipeline::contact::read::{self, Unreadable};

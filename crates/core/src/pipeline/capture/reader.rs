@@ -102,7 +102,7 @@ impl<R: Read> CaptureReader<R> {
         Ok(Self { entries, head, first, profile: None })
     }
 
-    /// What the capture begins with.
+    /// Head of the capture.
     pub const fn head(&self) -> &Head {
         &self.head
     }
@@ -238,7 +238,7 @@ impl<R: Read> Entries<R> {
     }
 }
 
-/// What stands before an entry's payload.
+/// Head of an entry, before its payload.
 struct EntryHead {
     kind: u8,
     now: HostInstant,

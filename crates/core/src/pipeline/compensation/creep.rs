@@ -1,4 +1,4 @@
-//! What a channel still makes of a load a while after it came: adhesive and polyimide give way slowly.
+//! Creep: the part of a channel's reading that follows a load late, µV: adhesive and polyimide give way slowly.
 //!
 //! A channel reads s = e + w c, where e is the strain of a sudden load and c that strain low-passed with a relaxation time:
 //! the first term of a Prony series.
@@ -12,7 +12,7 @@ use crate::quantity::CHANNELS;
 pub struct Creep {
     /// Relaxation time.
     pub time_s: f64,
-    /// What a load adds in the end, as a share of itself.
+    /// Final share c of creep in a load, dimensionless.
     pub share: f64,
 }
 
@@ -20,7 +20,7 @@ pub struct Creep {
 pub const NO_CREEP: Creep = Creep { time_s: 0.0, share: 0.0 };
 
 impl Creep {
-    /// What creep adds to a channel that has crept so far.
+    /// Creep of a channel, µV: c u, with the share c and the state u.
     pub const fn added_uv(&self, crept_uv: f64) -> f64 {
         self.share * crept_uv
     }
@@ -40,7 +40,7 @@ impl CreepState {
         self.state_uv.iter_mut().zip(uv).for_each(|(state, uv)| *state = held_uv(*state, *uv, left));
     }
 
-    /// What creep adds to the channels.
+    /// Creep of the channels, µV.
     pub fn added_uv(&self, creep: &Creep) -> [f64; CHANNELS] {
         self.state_uv.map(|uv| creep.added_uv(uv))
     }

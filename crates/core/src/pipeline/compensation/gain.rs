@@ -27,7 +27,7 @@ impl CommonGain {
         Self { factor: self.factor * ratio }
     }
 
-    /// What channels beyond their zero would have read at the calibration.
+    /// Channels beyond their zero as at the calibration, µV.
     pub fn calibrated(self, strain: &Strain) -> Strain {
         // s = s(S) / S
         Strain { uv: strain.uv.map(|uv| (f64::from(uv) / self.factor) as f32) }

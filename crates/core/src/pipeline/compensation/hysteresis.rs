@@ -1,4 +1,4 @@
-//! What a channel remembers of earlier loads: hysteresis, by friction between the pad's parts. The model is Prandtl's and
+//! Hysteresis of a channel, µV, by friction between the pad's parts. The model is Prandtl's and
 //! Ishlinskii's.
 //!
 //! A channel reads s = e + Σⱼ wⱼ (pⱼ − e), where e is the strain without hysteresis and pⱼ the state of a play operator: it
@@ -66,7 +66,7 @@ impl History {
         std::array::from_fn(|channel| self.free_uv(hysteresis, channel, read_uv[channel]))
     }
 
-    /// What hysteresis adds to the readings of these strains.
+    /// Hysteresis in the readings of these strains, µV.
     pub fn added_uv(&self, hysteresis: &Hysteresis, free_uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
         std::array::from_fn(|channel| {
             // Σⱼ wⱼ (pⱼ − e)

@@ -1,4 +1,4 @@
-//! What the pad remembers of earlier loads, followed and taken off in play: hysteresis and creep.
+//! Memory of earlier loads, followed and subtracted in play: hysteresis and creep.
 //!
 //! A table of contacts is whole before it is decoded; in play nothing is known but what came so far. Two things help.
 //! While nothing touches the pad its strain is zero, so the play operators stay where the last press left them, and what
@@ -17,7 +17,7 @@ use crate::time::StreamInstant;
 /// So long without a sample is a silence: a finger that is there after it need not have been there all the time.
 pub(super) const SILENCE_US: u64 = 100_000;
 
-/// What a pad remembers, followed sample by sample.
+/// State of hysteresis and creep, followed sample by sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Memory {
     hysteresis: Hysteresis,
@@ -74,7 +74,7 @@ impl Memory {
         states.chain(&mut self.crept.state_uv).for_each(|uv| *uv *= by);
     }
 
-    /// What the untouched pad reads now beside its zero.
+    /// Offset of the untouched pad beside its zero now, µV.
     pub fn rest(&self) -> UntouchedOffset {
         if self.is_none {
             return UntouchedOffset::NONE;
@@ -94,7 +94,7 @@ impl Memory {
         }
     }
 
-    /// What these channels would read without hysteresis and creep.
+    /// Channels without hysteresis and creep, µV.
     pub fn freed(&self, strain: &Strain) -> Strain {
         if self.is_none {
             return *strain;

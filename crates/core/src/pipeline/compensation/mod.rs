@@ -1,4 +1,4 @@
-//! What a strain owes to something else than the contact at hand: earlier loads and the temperature.
+//! Compensation of a strain for earlier loads and the temperature.
 
 pub mod creep;
 pub mod gain;
@@ -12,7 +12,7 @@ use crate::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS};
 use crate::pipeline::compensation::thermal::Thermal;
 use crate::quantity::CHANNELS;
 
-/// What is known of a pad beside what a contact makes it read, so that it can be taken off. Any decoder can have one.
+/// Compensation of a pad's channels for all that is not the contact. Any decoder can have one.
 ///
 /// Channel by channel, a pad at temperature T reads
 ///
@@ -31,7 +31,7 @@ pub struct Compensation {
     pub thermal: Option<Thermal>,
     /// How much the channels creep.
     pub creep: Creep,
-    /// What the channels remember of earlier loads.
+    /// Hysteresis of the channels.
     pub hysteresis: Hysteresis,
 }
 

@@ -33,14 +33,14 @@ impl Thermal {
             && ends.iter().all(|temp_c| self.gain(Some(*temp_c)).iter().all(|gain| *gain >= GAIN_MIN))
     }
 
-    /// What the zeros differ by from those at the reference. Where the temperature is not known it is taken for the reference.
+    /// Shift of the zeros against those at the reference temperature, µV: α (T − T₀). Where the temperature is not known it is taken for the reference.
     pub fn zero_uv(&self, temp_c: Option<f64>) -> [f64; CHANNELS] {
         // β (T − T₀)
         let above_c = self.above_c(temp_c);
         self.zero_uv_per_c.map(|uv_per_c| uv_per_c * above_c)
     }
 
-    /// What the channels beyond their zeros are multiplied by.
+    /// Gain of the channels beyond their zeros, dimensionless.
     pub fn gain(&self, temp_c: Option<f64>) -> [f64; CHANNELS] {
         // 1 + γ (T − T₀)
         let above_c = self.above_c(temp_c);

@@ -37,7 +37,7 @@ pub struct Thermometer {
     thermal: Option<Thermal>,
     /// `None` before the first sensible reading.
     smooth_c: Option<f64>,
-    /// What was followed since the beginning.
+    /// Change of temperature followed since the beginning, °C.
     followed_c: f64,
     /// The temperature of the gains; `None` before the pad lay untouched with a known one.
     gains_at_c: Option<f64>,
@@ -126,7 +126,7 @@ impl Thermometer {
         }
     }
 
-    /// What the change of temperature has added to the channels since the beginning.
+    /// Shift of the channels by the change of temperature since the beginning, µV.
     pub fn added_uv(&self) -> [f64; CHANNELS] {
         // β Σ Δϑ
         self.thermal.map_or([0.0; CHANNELS], |thermal| {
@@ -134,7 +134,7 @@ impl Thermometer {
         })
     }
 
-    /// What channels beyond their zero would read at the decoder's temperature.
+    /// Channels beyond their zero as at the decoder's temperature, µV.
     pub fn at_reference(&self, strain: &Strain) -> Strain {
         let Some(thermal) = &self.thermal else { return *strain };
         // s = s(T) / (1 + γ (T − T₀))

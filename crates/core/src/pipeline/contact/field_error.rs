@@ -69,7 +69,7 @@ impl ErrorMode {
         self.mixture.as_flattened().iter().chain(self.maps.as_flattened()).copied()
     }
 
-    /// What it adds to the channels, by the values of the polynomials.
+    /// Addition to the channels, µV, by the values of the polynomials.
     fn read(&self, values: &[f32; TERMS], asked: &FieldPoint<'_>) -> [f64; CHANNELS] {
         // Q (G F) + P F
         let mut maps = [0.0_f32; MAPS];
@@ -107,7 +107,7 @@ impl FieldError {
         scaled
     }
 
-    /// What each mode adds to the channels.
+    /// Addition of each mode to the channels, µV.
     pub(super) fn channels_uv<'a>(
         &'a self,
         asked: &'a FieldPoint<'_>,

@@ -80,11 +80,11 @@ struct Trial {
 pub struct ContactFit {
     /// The most likely contact.
     pub contact: Contact,
-    /// What each channel reads beyond what the contact makes it read.
+    /// Residual of each channel, µV.
     pub left_uv: [f64; CHANNELS],
 }
 
-/// What is to be expected of the estimate of a contact.
+/// Expected error of the estimate of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// How it follows the nine channels: x, y in mm and Fx, Fy, Fz in N, per microvolt.
@@ -192,7 +192,7 @@ impl Inverse {
         std::array::from_fn(|channel| slopes(&gains, channel, force_n))
     }
 
-    /// What each mode of the field's error adds to the channels under a load.
+    /// Addition of each mode of the field's error to the channels under a load, µV.
     pub fn modes_uv(&self, place_mm: [f64; 2], force_n: &[f64; 3]) -> Vec<[f64; CHANNELS]> {
         self.asked(place_mm, force_n, |it| self.field_error.channels_uv(it).collect())
     }

@@ -28,7 +28,7 @@ use crate::quantity::{Contact, Strain};
 pub struct Decoder {
     /// How strain becomes a contact.
     pub method: Method,
-    /// What is to be taken off the channels first. It is no work of [`Decoder::decode`]: strains come without it. A decoder
+    /// Compensation to subtract from the channels first. It is no work of [`Decoder::decode`]: strains come without it. A decoder
     /// that takes raw channels learnt them with all of this in them, and has none.
     pub compensation: Compensation,
 }
@@ -103,7 +103,7 @@ impl Decoder {
         Self { compensation, ..self }
     }
 
-    /// What people call it.
+    /// Name for people.
     pub fn name(&self) -> &'static str {
         match &self.method {
             Method::Statics(_) => "statics",
@@ -117,7 +117,7 @@ impl Decoder {
         }
     }
 
-    /// What it takes: channels relative to the untouched pad, but for one that was made by a table that never reads it. The
+    /// Zero that it takes: channels relative to the untouched pad, but for one that was made by a table that never reads it. The
     /// inverse decoder takes them relative even then, as it knows what to take off.
     pub const fn zero(&self) -> Zero {
         match &self.method {

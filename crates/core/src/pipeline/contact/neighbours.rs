@@ -14,14 +14,14 @@ pub const KNOWN_MAX: usize = 200_000;
 pub struct LabelledContact {
     /// Channels, in standard deviations over all contacts.
     pub channels: [f32; CHANNELS],
-    /// What was written down.
+    /// Label as it was written.
     pub contact: Contact,
 }
 
 /// The contacts, and how channels are made comparable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbours {
-    /// What the channels are taken relative to.
+    /// Zero of the channels.
     pub zero: Zero,
     /// µV per standard deviation.
     pub deviation_uv: [f32; CHANNELS],

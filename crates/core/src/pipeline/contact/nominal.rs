@@ -9,10 +9,10 @@ const PRESSES: u16 = 60;
 /// Far beyond any plate and any finger: what gives more is no decoder, or its file is damaged.
 const PLACE_MAX_MM: f32 = 300.0;
 const FORCE_MAX_N: f32 = 100.0;
-/// What a network may leave unexplained of the presses' places, and of their forces, as a share of their mean square.
+/// Largest unexplained part of the presses' places, and of their forces, as a share of their mean square.
 const UNEXPLAINED_MAX: f32 = 0.1;
 
-/// What a network makes of presses of the nominal pad.
+/// Errors of a network at presses of the nominal pad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressErrors {
     /// Root mean square distance.

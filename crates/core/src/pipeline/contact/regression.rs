@@ -11,7 +11,7 @@ use crate::quantity::{CHANNELS, Contact, Strain};
 /// Terms of each function: nine channels and a constant.
 pub const TERMS: usize = CHANNELS + 1;
 
-/// What the five functions give.
+/// Target of the five functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// x, y, Fx, Fy, Fz.
@@ -23,9 +23,9 @@ pub enum Target {
 /// Five linear functions of the channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regression {
-    /// What the channels are taken relative to.
+    /// Zero of the channels.
     pub zero: Zero,
-    /// What they give.
+    /// Target of the functions.
     pub target: Target,
     /// Factors of the channels in µV, then the constant; mm, N·mm and N.
     pub functions: [[f64; TERMS]; 5],

@@ -16,7 +16,7 @@ use crate::pipeline::signal::{Conditioned, PadState, Scale, Signal};
 use crate::quantity::{CHANNELS, Contact, Strain};
 use crate::time::StreamInstant;
 
-/// What a sample comes to.
+/// Result of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DecodedSample {
     /// The contact; `None` if nothing touches the pad.
@@ -47,9 +47,9 @@ pub struct ContactStage {
     decoder: Decoder,
     touch: Touch,
     watch: Watch,
-    /// What was decoded last; `None` if the last sample could not be.
+    /// Strain decoded last, µV; `None` if the last sample could not be.
     strain: Option<Strain>,
-    /// What the channels of the last sample read.
+    /// Raw channels of the last sample, µV.
     raw_uv: [f64; CHANNELS],
 }
 
@@ -74,7 +74,7 @@ impl ContactStage {
         self.strain.as_ref()
     }
 
-    /// What the channels of the last sample read: not tared, nothing taken off.
+    /// Raw channels of the last sample, µV: not tared, nothing taken off.
     pub const fn raw_uv(&self) -> &[f64; CHANNELS] {
         &self.raw_uv
     }
@@ -84,12 +84,12 @@ impl ContactStage {
         self.decoder.inverse()?.estimate(self.strain.as_ref()?)
     }
 
-    /// What the player should know of the touch at hand or the last one; only the inverse decoder tells it.
+    /// Warning about the touch at hand or the last one; only the inverse decoder tells it.
     pub const fn warning(&self) -> Option<Warning> {
         self.watch.warning()
     }
 
-    /// What decodes.
+    /// Decoder in use.
     pub const fn decoder(&self) -> &Decoder {
         &self.decoder
     }

@@ -66,7 +66,7 @@ pub struct Statics {
     outward: [(f32, f32); MODULES],
 }
 
-/// What the three modules carry together, before the correction of false shear.
+/// Wrench that the three modules carry together, N and N mm, before the correction of false shear.
 #[derive(Clone, Copy, Default)]
 struct RawWrench {
     fx_n: f32,

@@ -10,7 +10,7 @@ pub const ON_N: f32 = 0.15;
 /// A touch ends below this normal force.
 const OFF_N: f32 = 0.10;
 
-/// What a lifted pad may still read, as a share of the hardest press of the touch: the published hysteresis, 3.1 %.
+/// Largest residue of a lifted pad, as a share of the hardest press of the touch: the published hysteresis, 3.1 %.
 const RESIDUE_SHARE: f32 = 0.031;
 
 /// The residue never raises the thresholds by more; so they stay below those of the shipped profiles.
@@ -25,7 +25,7 @@ const GUARD_N: f32 = 0.30;
 /// … for this long is drift, not a finger.
 const GUARD_US: u64 = 10_000_000;
 
-/// What the touch detector says of a sample.
+/// State of the touch detector at a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TouchState {
     /// Nothing touches the pad.

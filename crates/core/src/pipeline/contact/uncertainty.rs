@@ -30,13 +30,13 @@ pub struct Noise {
 /// Variances of the channels at one reading.
 #[derive(Clone, Copy, Debug)]
 pub struct Variances {
-    /// The reading's own noise.
+    /// Variance by the reading's own noise, µV².
     pub noise: [f64; CHANNELS],
-    /// What the field does not know.
+    /// Variance by the field's own error, µV².
     pub field: [f64; CHANNELS],
 }
 
-/// What the channels say of a contact.
+/// Estimate of a contact by the channels, with its covariance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The most likely contact.

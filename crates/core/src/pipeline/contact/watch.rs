@@ -18,7 +18,7 @@ use crate::pipeline::interruption::Effect;
 use crate::quantity::{CHANNEL_NAMES, CHANNELS, Contact, Strain};
 use crate::time::StreamInstant;
 
-/// What is averaged: five periods of 50 Hz mains, six of 60 Hz.
+/// Block over which is averaged: five periods of 50 Hz mains, six of 60 Hz.
 const BLOCK_US: u64 = 100_000;
 
 /// As a finger comes, filter and skew make channels of different moments one reading; it takes about so long.
@@ -47,7 +47,7 @@ const SCATTER_BLOCKS: f64 = 100.0;
 const TOUCHES: u32 = 8;
 const OTHER_TOUCHES: u32 = 6;
 
-/// What the player should know.
+/// Warning to the player.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 #[non_exhaustive]
@@ -100,13 +100,13 @@ impl fmt::Display for Warning {
 struct Mean {
     /// The channels as they were decoded: compensated.
     uv: [f64; CHANNELS],
-    /// What the contact leaves over.
+    /// Residual of the contact, µV.
     left_uv: [f64; CHANNELS],
     /// The force's magnitude.
     force_n: f64,
 }
 
-/// What a stretch of a touch comes to by itself.
+/// Finding about a stretch of a touch by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Finding {
     Fine,
@@ -117,7 +117,7 @@ enum Finding {
 /// Looks at samples, one by one.
 #[derive(Clone, Debug)]
 pub struct Watch {
-    /// What blocks of the untouched pad scatter by, as variances, and how many tell it.
+    /// Variances of blocks of the untouched pad, µV², and their number.
     scatter_uv2: [f64; CHANNELS],
     scatter_blocks: f64,
     /// The last two blocks of the untouched pad; they count once the next is untouched, too.
@@ -180,7 +180,7 @@ impl Watch {
         }
     }
 
-    /// What the player should know now. A second finger is that of the touch at hand, or of the last one that lasted long
+    /// Warning to the player now. A second finger is that of the touch at hand, or of the last one that lasted long
     /// enough to be judged.
     pub const fn warning(&self) -> Option<Warning> {
         let other_fingers = (self.touches & ((1 << TOUCHES) - 1)).count_ones();

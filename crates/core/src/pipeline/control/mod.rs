@@ -1,4 +1,4 @@
-//! What a game can see: devices, their keys and axes, and one change of one of them.
+//! Outputs that a game can see: devices, their keys and axes, and one change of one of them.
 
 use crate::time::StreamInstant;
 
@@ -13,7 +13,7 @@ pub enum OutputDevice {
     Keyboard,
     /// The virtual mouse.
     Pointer,
-    /// What puts the pointer to a place of the screen, as a tablet does. Its buttons are the mouse's.
+    /// Tablet, which puts the pointer to a place of the screen, as a tablet does. Its buttons are the mouse's.
     Tablet,
 }
 

@@ -33,7 +33,7 @@ struct Slot {
     since: StreamInstant,
 }
 
-/// What is held, in the profile's order: horizontal direction, vertical direction, buttons, the pointer's way.
+/// Controls that are held, in the profile's order: horizontal direction, vertical direction, buttons, the pointer's way.
 #[derive(Clone, Debug)]
 pub struct Ledger {
     slots: ArrayVec<Slot, CONTROLS_MAX>,
@@ -111,7 +111,7 @@ impl Ledger {
         }
     }
 
-    /// What is held now, in the profile's order.
+    /// Controls that are held now, in the profile's order.
     pub fn held(&self) -> impl Iterator<Item = Level> + '_ {
         let held = self.slots.iter().filter(|slot| slot.held != 0);
         let held = held.map(|slot| Level { device: slot.device, code: slot.code, value: slot.held });

@@ -50,7 +50,7 @@ struct Axis {
     code: Code,
     /// Counts per second.
     rate: i32,
-    /// What was not told yet, in millionths of a count.
+    /// Motion not told yet, in millionths of a count.
     rest: i64,
 }
 

@@ -20,7 +20,7 @@ use fault::ChannelFaults;
 use filter::MeanFilter;
 use tare::{Tare, UntouchedOffset};
 
-/// What a count means: told by the pad's identity, or the protocol's default.
+/// Scale of a count, µV: told by the pad's identity, or the protocol's default.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     /// Microvolts at the bridge per count.
@@ -48,7 +48,7 @@ impl Scale {
     }
 }
 
-/// What a sample comes to.
+/// Result of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Conditioned {
     /// Strain relative to the untouched pad.
@@ -63,14 +63,14 @@ pub enum Conditioned {
     Faulty,
 }
 
-/// What is known of the pad before a sample comes.
+/// State of the pad before a sample comes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PadState {
     /// Whether a contact is under way: the zero is followed only while not.
     pub touched: bool,
     /// What the pad reads while not.
     pub rest: UntouchedOffset,
-    /// What is added to the channels at any time (µV): it is taken off first.
+    /// Offset of the channels at any time, µV: it is subtracted first.
     pub added_uv: [f64; CHANNELS],
 }
 
@@ -126,7 +126,7 @@ impl Signal {
         }
     }
 
-    /// What the channels of a sample read.
+    /// Raw channels of a sample, µV.
     pub fn raw_uv(&self, sample: &Sample) -> [f64; CHANNELS] {
         sample.counts.map(|count| f64::from(count) * self.scale.uv_per_count)
     }

@@ -32,7 +32,7 @@ const SETTLED_UV: f64 = 1.0;
 /// A gap in the stream counts as no longer than this: the period of the slowest pad.
 const FOLLOW_GAP_MAX_US: u64 = 10_000;
 
-/// What the untouched pad reads beside its zero: what earlier presses left behind.
+/// Offset of the untouched pad beside its zero, µV: the rest of earlier presses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UntouchedOffset {
     /// For each channel, as far as it is known.
@@ -63,7 +63,7 @@ pub struct Tare {
     doubt_uv: [f64; CHANNELS],
     followed_at: StreamInstant,
     stillness: Stillness,
-    /// What loads are measured from while there is no zero: the first reading, or a zero that turned out to be a load.
+    /// Reference of loads while there is no zero, µV: the first reading, or a zero that turned out to be a load.
     reference_uv: Option<[f64; CHANNELS]>,
     floor: Option<Floor>,
     loaded: bool,
@@ -199,7 +199,7 @@ impl Tare {
     }
 }
 
-/// What a reading differs from another.
+/// Difference of two readings, µV.
 fn relative(uv: &[f64; CHANNELS], from_uv: &[f64; CHANNELS]) -> Strain {
     Strain { uv: std::array::from_fn(|k| (uv[k] - from_uv[k]) as f32) }
 }

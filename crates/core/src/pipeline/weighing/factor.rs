@@ -1,4 +1,4 @@
-//! What a known weight tells of a pad: by how much its readings have changed, and how sure that is.
+//! Gain factor of a pad by a known weight: by how much its readings have changed, and how sure that is.
 
 use serde::Serialize;
 
@@ -16,7 +16,7 @@ const REACH_MM: f64 = 29.0;
 /// A place so near to that may be beyond it.
 const RIM_MM: f64 = 0.5;
 
-/// What a weighing found.
+/// Result of a weighing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Weighed {
     /// S: what the pad reads, over what it would read if it were as it was calibrated.
@@ -27,12 +27,12 @@ pub struct Weighed {
     pub x_mm: f64,
     /// About where the weight stood.
     pub y_mm: f64,
-    /// What the decoder took it for.
+    /// Force by the decoder, N.
     pub force_n: f64,
 }
 
 impl Weighed {
-    /// What readings of a weight tell of the pad.
+    /// Gain factor by readings of a weight.
     ///
     /// # Errors
     /// There are none, or what they show is not the weight on the plate.

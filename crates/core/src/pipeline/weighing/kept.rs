@@ -1,4 +1,4 @@
-//! What a weighing found, kept for good: the decoder of the pad as it is now.
+//! Result of a weighing, kept for good: the decoder of the pad as it is now.
 
 use crate::pipeline::compensation::Compensation;
 use crate::pipeline::compensation::hysteresis::PlayOperators;

@@ -24,7 +24,7 @@ pub const WAIT_US: u64 = 10_000_000;
 /// So many faults end a weighing: one begins its mean anew.
 const FAULTS_MAX: u32 = 2;
 
-/// What a sample shows to a weighing.
+/// Sample as a weighing sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WeighingSample<'a> {
     /// Something lies on the pad: the channels as the decoder got them.

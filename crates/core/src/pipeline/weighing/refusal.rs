@@ -16,7 +16,7 @@ pub enum WeighError {
     NotSteady,
     /// What rests presses with a force that is not the weight's, however old the pad is.
     OtherForce {
-        /// What the decoder takes it for.
+        /// Force by the decoder, N.
         force_n: f64,
         /// The weight that was told.
         weight_g: f64,

@@ -6,7 +6,7 @@ use crate::pipeline::contact::Decoder;
 use crate::quantity::{CHANNELS, Contact, Strain};
 use crate::time::StreamInstant;
 
-/// What is averaged: whole periods of 50 and of 60 Hz mains.
+/// Window of the mean: whole periods of 50 and of 60 Hz mains.
 const MEAN_US: u64 = 100_000;
 
 /// So many means in a row agree if a load rests, 1.8 s: a weight that is left alone for two seconds has them, whenever they
@@ -32,7 +32,7 @@ pub struct MeanReading {
 }
 
 impl MeanReading {
-    /// What the decoder makes of these channels.
+    /// Decoded contact of these channels.
     pub fn of(strain: Strain, decoder: &Decoder) -> Self {
         Self { strain, contact: decoder.decode(&strain) }
     }

@@ -9,7 +9,7 @@ use crate::quantity::CHANNELS;
 /// Temperatures closer than this have a common zero.
 const SAME_TEMPERATURE_C: f64 = 1.0;
 
-/// What rows of a table read without load, by the untouched rows of their own temperature.
+/// Zeros of a table's rows, µV, by the untouched rows of their own temperature.
 #[derive(Clone, Debug)]
 pub struct ZerosByTemperature<'t> {
     table: &'t Table,
@@ -68,7 +68,7 @@ impl<'t> ZerosByTemperature<'t> {
         }
     }
 
-    /// What a row reads without load, by the untouched rows of its own temperature, as far as temperatures are known. Those of
+    /// Zero of a row, µV, by the untouched rows of its own temperature, as far as temperatures are known. Those of
     /// its own session come first; a session without any, as where zeros are a session of their own, has those of all. `None`
     /// where there is none.
     pub fn at(&self, row: usize) -> Option<[f64; CHANNELS]> {

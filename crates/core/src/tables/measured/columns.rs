@@ -2,7 +2,7 @@
 
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
 
-/// What a table is read as: which of its columns count, and which it must have.
+/// Kind of a table: which of its columns count, and which it must have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableKind {
     /// Contacts, all of one time series: `t_s` and the label. Whatever else a table has is not read.

@@ -1,4 +1,4 @@
-//! What can be wrong with a table.
+//! Errors of a table.
 
 use std::fmt;
 use std::io;
@@ -10,7 +10,7 @@ use super::columns::{LABEL, TableKind};
 pub struct ReadError {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// Fault of it.
     pub fault: Fault,
 }
 

@@ -26,7 +26,7 @@ pub const READ_S: f64 = 1.0;
 /// A load that is reached downwards comes from this much more than itself at least.
 const OVERLOAD_MIN: f64 = 1.2;
 
-/// What was written down about a contact: place and force on the plate, not the truth.
+/// Label of a contact: place, mm, and force, N, on the plate, not the truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Label {
     /// Along +x.

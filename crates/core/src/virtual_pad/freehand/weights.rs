@@ -55,7 +55,7 @@ impl Weights {
         Self { script: Script::of(keyframes), placements, duration_us: now_us + PAUSE_US }
     }
 
-    /// What so many grams press with: m g.
+    /// Force of a mass in grams, N: m g.
     pub fn force_n(weight_g: f64) -> f64 {
         weight_n(weight_g)
     }

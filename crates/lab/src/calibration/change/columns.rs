@@ -27,7 +27,7 @@ const CONTRASTS: [[f64; PARTS]; 3] = [[1.0, -1.0, 1.0, -1.0], [1.0, 1.0, -1.0, -
 const CONTRAST_COLUMNS: usize = CONTRASTS.len() * CHANNELS;
 /// Of a gain that all channels share presses tell nothing, so a contrast has one degree of freedom less than channels.
 const CONTRAST_FREEDOM: usize = CHANNELS - 1;
-/// What may always differ: the blur, the shares of play operators and creep, zeros.
+/// Nuisance parameters: the blur, the shares of play operators and creep, zeros.
 const NUISANCES: usize = 2 + PLAYS + CHANNELS;
 
 /// The columns beside those of θ.
@@ -50,7 +50,8 @@ impl<'m> Columns<'m> {
         problem: &Problem<'_>,
         reference: &'m ReferenceState<'m>,
         plays: &Plays<'_>,
-        (maps, changes): (Changes<'m>, &'m [f64]),
+        maps: Changes<'m>,
+        changes: &'m [f64],
     ) -> Self {
         let later = plays.later;
         let earlier = problem.contacts.iter().filter(|(row, _)| *row < later).count();
@@ -176,7 +177,7 @@ impl<'m> Columns<'m> {
         let ReferenceState { values, mean, estimates, .. } = self.reference;
         let prior = NormalEquations::of_prior(&precisions, &widened(mean), &widened(values));
         let widen = |at: usize, (row, contact): &(usize, Measured), rows: &mut [Vec<f64>]| {
-            self.widen(at, (*row, contact), rows);
+            self.widen(at, *row, contact, rows);
         };
         problem.equations(prior, values, estimates, widen)
     }
@@ -188,7 +189,7 @@ impl<'m> Columns<'m> {
     }
 
     /// Adds the columns of contact `at` to the derivatives by θ.
-    fn widen(&self, at: usize, (row, contact): (usize, &Measured), rows: &mut [Vec<f64>]) {
+    fn widen(&self, at: usize, row: usize, contact: &Measured, rows: &mut [Vec<f64>]) {
         let is_later = row >= self.later;
         let maps = if is_later { (self.maps)(contact.place_mm) } else { Vec::new() };
         let modes = self.reference.decoder.map(|it| it.modes_uv(contact.place_mm, &contact.force_n));

@@ -1,4 +1,4 @@
-//! What changed in a pad between two recordings without labels, or since it was calibrated, beside all that both share.
+//! Changes of a pad between two recordings without labels, or since it was calibrated, beside all that both share.
 //!
 //! The pad as it was has the parameters θ of the fit. In the later play each channel reads beyond f(θ) also M a + B c + N n, with the
 //! columns B of possible changes (a channel's gain, a change of the field's maps), N of what may always differ (the finger's blur, the
@@ -64,7 +64,8 @@ impl<'p> Comparison<'p> {
     /// No contact, or readings beyond anything that a pad can read.
     pub fn with_play(
         plays: Plays<'p>,
-        (device, field): (&'p Device, &PadField),
+        device: &'p Device,
+        field: &PadField,
         maps: Changes<'p>,
         report: Report<'_>,
     ) -> Result<Self, FitError> {
@@ -88,7 +89,8 @@ impl<'p> Comparison<'p> {
     /// A decoder of a pad with another plate, or readings beyond anything that a pad can read.
     pub fn with_decoder(
         plays: Plays<'p>,
-        (device, field): (&'p Device, &PadField),
+        device: &'p Device,
+        field: &PadField,
         decoder: &EarlierCalibration<'p>,
         maps: Changes<'p>,
     ) -> Result<Self, FitError> {
@@ -107,11 +109,11 @@ impl<'p> Comparison<'p> {
     /// How long relative noise lasts in the later play: a decoder does not say.
     fn lasting(&self) -> Option<ReferenceState<'p>> {
         let problem = self.problem(&self.prepared);
-        let columns = Columns::of(&problem, &self.reference, &self.plays, (self.maps, &[]));
+        let columns = Columns::of(&problem, &self.reference, &self.plays, self.maps, &[]);
         let problem = columns.located(problem);
         let tried = NOISE_TIMES_S.into_iter().filter_map(|time_s| {
             let reference = self.reference.lasting(time_s);
-            let columns = Columns::of(&problem, &reference, &self.plays, (self.maps, &[]));
+            let columns = Columns::of(&problem, &reference, &self.plays, self.maps, &[]);
             let log_evidence = columns.log_evidence(&problem)?;
             Some((log_evidence, reference))
         });
@@ -133,7 +135,7 @@ impl<'p> Comparison<'p> {
         };
         let prepared = self.prepared.changed(self.plays.later, as_before);
         let problem = self.problem(&prepared);
-        let columns = Columns::of(&problem, &self.reference, &self.plays, (self.maps, changes));
+        let columns = Columns::of(&problem, &self.reference, &self.plays, self.maps, changes);
         let problem = columns.located(problem);
         columns.compared(&problem).ok_or(FitError::Senseless)
     }

@@ -4,7 +4,7 @@ use crate::calibration::data::contacts::{Fitted, Maps};
 use tactpad_core::numeric::linear::Reduced;
 use tactpad_core::tables::recording::Recording;
 
-/// What a play says of the changes before it.
+/// Estimate of the changes before a play.
 #[derive(Clone, Debug)]
 pub struct PlayEstimate {
     /// S and s of the changes: the nine channels' gains, as shares of themselves, and then the maps.

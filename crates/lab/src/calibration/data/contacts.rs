@@ -22,7 +22,7 @@ pub(crate) type Maps = [[f64; 3]; CHANNELS];
 /// For each play operator and channel: its state beside the strain, relative to the same of the untouched pad.
 pub(crate) type Lags = [[f64; CHANNELS]; PLAYS];
 
-/// What is known of a contact beside its channels.
+/// Knowledge of a contact beside its channels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Knowledge {
     /// A reference wrote it down: how well, the fit finds.
@@ -38,7 +38,7 @@ pub enum Knowledge {
 pub struct Fitted {
     /// Its row in the recording.
     pub row: usize,
-    /// What is known of it.
+    /// Knowledge of it.
     pub knowledge: Knowledge,
 }
 
@@ -64,9 +64,9 @@ pub(crate) struct FieldAtPlace {
 /// One measured contact.
 #[derive(Clone, Debug)]
 pub(crate) struct Measured {
-    /// What is known of it.
+    /// Knowledge of it.
     pub(crate) knowledge: Knowledge,
-    /// What was written down.
+    /// Label as it was written.
     pub(crate) written: WrittenLabel,
     /// x, y, Fx, Fy, Fz that this stands for.
     pub(crate) label: [f64; UNKNOWNS],
@@ -191,7 +191,9 @@ impl Measured {
         field: &PadField,
         sensitivities: &[&Sensitivity],
         plate_mm: f64,
-        (rows, at, knowledge): (&[Row], usize, Knowledge),
+        rows: &[Row],
+        at: usize,
+        knowledge: Knowledge,
         reference_c: Option<f64>,
     ) -> Option<Self> {
         let row = rows.get(at)?;

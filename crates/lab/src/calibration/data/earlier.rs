@@ -4,7 +4,7 @@ use tactpad_core::pipeline::compensation::Compensation;
 use tactpad_core::pipeline::contact::Decoder;
 use tactpad_core::pipeline::contact::inverse::Inverse;
 
-/// What its decoder tells of it.
+/// Decoder of an earlier calibration.
 #[derive(Clone, Copy, Debug)]
 pub struct EarlierCalibration<'d> {
     /// Its field, and how its channels scatter.

@@ -158,7 +158,7 @@ pub(crate) fn errors(values: &[f64; RIG_NUMBERS]) -> RigErrors {
     }
 }
 
-/// What was written down about a contact.
+/// Label of a contact as it was written.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct WrittenLabel {
     /// x, y, Fx, Fy, Fz.

@@ -15,7 +15,7 @@ const SPAN_MIN_C: f64 = 1.0;
 /// Coefficients with their standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThermalFit {
-    /// What was found; zero where nothing tells it.
+    /// Coefficients found; zero where nothing tells them.
     pub coefficients: Thermal,
     /// Standard deviations of the zeros' coefficients, µV/°C; none if the untouched pad was read at one temperature.
     pub zero_deviation: Option<[f64; CHANNELS]>,

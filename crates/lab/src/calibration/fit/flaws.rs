@@ -16,7 +16,7 @@ use tactpad_core::pad::field::PadField;
 use tactpad_core::quantity::MODULES;
 
 /// Whether flaws are looked for: channels of a module share more than they do on pads that are whole.
-pub(crate) fn are_asked((problem, fit): (&Problem<'_>, &PosteriorFit), pad: &Simulated<'_>) -> bool {
+pub(crate) fn are_asked(problem: &Problem<'_>, fit: &PosteriorFit, pad: &Simulated<'_>) -> bool {
     // Only labels tell crosstalk within a module from its pose. Of a pad that was solved for it was asked before.
     let is_asked = !problem.layout.is_play && problem.prior.solved.is_none() && of(pad.device).is_none();
     is_asked && fit.estimates.prior_deviations.is_shared_within()
@@ -25,7 +25,8 @@ pub(crate) fn are_asked((problem, fit): (&Problem<'_>, &PosteriorFit), pad: &Sim
 /// The pad with the most probable flaw, if that is more probable than the whole pad, of which `whole` is the fit. `fitted` is the fit
 /// under a prior.
 pub(crate) fn found(
-    (problem, whole): (&Problem<'_>, &PosteriorFit),
+    problem: &Problem<'_>,
+    whole: &PosteriorFit,
     pad: &Simulated<'_>,
     fitted: impl Fn(&Prior) -> Option<PosteriorFit> + Sync,
 ) -> Option<(Device, PadField)> {

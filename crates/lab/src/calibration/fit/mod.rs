@@ -47,7 +47,7 @@ pub struct Calibration {
     pub field: InfluenceField,
     /// How far it may be off.
     pub field_error: FieldError,
-    /// What its channels have of one another.
+    /// Crosstalk between its channels.
     pub crosstalk: Crosstalk,
     /// The channels' noise around it.
     pub noise: Noise,
@@ -63,7 +63,7 @@ pub struct Calibration {
     pub from_earlier: bool,
     /// The flaw of a module with which the evidence is larger than with any crosstalk. It is no finding.
     pub flaw: Option<(usize, Flaw)>,
-    /// What is to be taken off the channels. It has a zero if the recording does not read the untouched pad itself.
+    /// Compensation to subtract from the channels. It has a zero if the recording does not read the untouched pad itself.
     pub compensation: Compensation,
     /// Temperature coefficients; none if the pad was measured at one temperature.
     pub thermal: Option<ThermalFit>,
@@ -242,7 +242,7 @@ pub fn fit_known(
     best.map(|(_, calibration)| calibration).filter(is_sound).ok_or(FitError::Senseless)
 }
 
-/// What was measured, and the simulated pad that it is held against.
+/// Measured contacts, and the simulated pad that they are compared with.
 struct Contacts<'c> {
     prepared: &'c PreparedRecording,
     fitted: &'c [Fitted],
@@ -289,20 +289,20 @@ impl Contacts<'_> {
     /// reach, or one that lacks something. A module that is far off is not to be taken for one that does.
     fn nearer(&self, problem: &Problem<'_>, fit: &PosteriorFit) -> Option<(Device, PadField)> {
         let solved = linearised::solved(problem, fit, self.pad);
-        if !flaws::are_asked((problem, fit), self.pad) {
+        if !flaws::are_asked(problem, fit, self.pad) {
             return solved;
         }
         let fitted = |prior: &Prior| {
             self.counted.expect(1);
             let about = self.problem(prior);
             let about = if problem.layout.terms > 0 { about.with_background() } else { about };
-            self.counted.fitted(&about, fit.settings, (None, Effort::FULL))
+            self.counted.fitted(&about, fit.settings, None, Effort::FULL)
         };
         let about = |(device, field): &(Device, PadField)| {
             fitted(&problem.prior.clone().about(device.clone(), field.clone()))
         };
         let whole = solved.as_ref().and_then(about);
-        flaws::found((problem, whole.as_ref().unwrap_or(fit)), self.pad, fitted).or(solved)
+        flaws::found(problem, whole.as_ref().unwrap_or(fit), self.pad, fitted).or(solved)
     }
 }
 

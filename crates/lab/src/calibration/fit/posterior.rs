@@ -1,4 +1,4 @@
-//! What a fit comes to: how probable it is and how sure, the pad's own field, and the contacts without what the past adds to them.
+//! Result of a fit: how probable it is and how sure, the pad's own field, and the contacts without what the past adds to them.
 
 use crate::calibration::data::contacts::{FieldAtPlace, Knowledge, Measured};
 use crate::calibration::model::ParameterLayout;

@@ -76,7 +76,8 @@ impl<'r> FitCount<'r> {
         &self,
         problem: &Problem<'_>,
         settings: Settings,
-        (from, effort): (Option<&PosteriorFit>, Effort),
+        from: Option<&PosteriorFit>,
+        effort: Effort,
     ) -> Option<PosteriorFit> {
         let fit = problem.clone().fitted(settings, from, effort);
         (self.report)(self.done.fetch_add(1, Ordering::Relaxed) + 1, self.most.load(Ordering::Relaxed));
@@ -109,7 +110,7 @@ fn with_background<'b>(
     let tried = |background| {
         let mut settings = plain.settings;
         settings.background = background;
-        counted.fitted(&smooth, settings, (Some(&plain), Effort::FULL))
+        counted.fitted(&smooth, settings, Some(&plain), Effort::FULL)
     };
     let [_, largest] = SMALL_BACKGROUNDS;
     let small = most_probable(SMALL_BACKGROUNDS.to_vec(), tried);
@@ -151,7 +152,7 @@ fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &FitCount<'
     let tried = |noise_time_s: f64| {
         let settings =
             Settings { background: 0.0, thresholds_uv, creep_time_s, noise_time_s, elastic_scale: 1.0 };
-        counted.fitted(problem, settings, (None, Effort::FULL))
+        counted.fitted(problem, settings, None, Effort::FULL)
     };
     if problem.layout.is_play { most_probable(NOISE_TIMES_S.to_vec(), tried) } else { tried(0.0) }
 }
@@ -160,7 +161,7 @@ fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &FitCount<'
 /// hardly tell them from gains and crosstalk.
 fn built_alike(problem: &Problem<'_>, plain: PosteriorFit, counted: &FitCount<'_>) -> PosteriorFit {
     let settings = Settings { elastic_scale: ALIKE, ..plain.settings };
-    let alike = counted.fitted(problem, settings, (None, Effort::FULL));
+    let alike = counted.fitted(problem, settings, None, Effort::FULL);
     alike.filter(|alike| alike.log_probability() > plain.log_probability()).unwrap_or(plain)
 }
 
@@ -175,7 +176,7 @@ fn with_hysteresis(
         let tried = |threshold_uv, from: &PosteriorFit, effort| {
             let mut settings = from.settings;
             settings.thresholds_uv[play] = threshold_uv;
-            counted.fitted(problem, settings, (Some(from), effort))
+            counted.fitted(problem, settings, Some(from), effort)
         };
         if known_uv > 0.0 {
             best = refined(play, best.clone(), Effort::FULL, &tried);
@@ -196,7 +197,7 @@ fn with_creep(problem: &Problem<'_>, best: PosteriorFit, counted: &FitCount<'_>)
     let found = most_probable(CREEP_TIMES_S.to_vec(), |creep_time_s| {
         let mut settings = best.settings;
         settings.creep_time_s = creep_time_s;
-        counted.fitted(problem, settings, (Some(&best), Effort { least, ..Effort::FULL }))
+        counted.fitted(problem, settings, Some(&best), Effort { least, ..Effort::FULL })
     });
     found.filter(|found| found.log_evidence > least).unwrap_or(best)
 }

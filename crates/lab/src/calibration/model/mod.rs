@@ -184,7 +184,7 @@ impl ParameterLayout {
         values[SHARES + play] + values[OWN_SHARES + play * CHANNELS + channel]
     }
 
-    /// What earlier loads add to a channel, by lags l and creep states u. Its derivatives by the shares w and c are set in
+    /// Memory of earlier loads in a channel, µV: Σᵢ wᵢ lᵢ + c u, by lags l and creep states u. Its derivatives by the shares w and c are set in
     /// `derivatives`.
     pub(crate) fn memory_uv(
         values: &[f64],
@@ -249,7 +249,7 @@ impl ParameterLayout {
         ZEROS + channel
     }
 
-    /// What each channel has of the nine strains: S gₖ of its own, S Xₖₗ of the others.
+    /// Mixture matrix of the nine strains: S gₖ on the diagonal, S Xₖₗ beside it.
     fn mixture(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
         let scale = Self::scale_factor(values);
         std::array::from_fn(|into| {
@@ -260,7 +260,7 @@ impl ParameterLayout {
         })
     }
 
-    /// What channels have of one another's own signals: Lₖₗ = Xₖₗ/gₗ, of which no decoder has more than a bound.
+    /// Crosstalk by the channels' own signals: Lₖₗ = Xₖₗ/gₗ, of which no decoder has more than a bound.
     pub(crate) fn crosstalk(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
         let most = f64::from(CROSSTALK_MAX);
         let share = |into: usize, from: usize| {

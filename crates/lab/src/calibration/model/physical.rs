@@ -30,7 +30,8 @@ pub struct Physical {
 
 /// Those that the field of a pad knows, with its derivatives by them. They are 0 in `expected`.
 pub(crate) fn free<'f>(
-    (field, own): (&'f PadField, &Device),
+    field: &'f PadField,
+    own: &Device,
     expected: &Device,
 ) -> (Vec<Physical>, Vec<&'f Sensitivity>) {
     let of = |it: &'f Sensitivity| Some((Physical::of(it.parameter, own, expected)?, it));
@@ -114,7 +115,7 @@ impl Physical {
         }
     }
 
-    /// What a deviation of the parameter is in the number's unit, about a pad that does not differ.
+    /// Scale from a deviation of the parameter to the number's unit, about a pad that does not differ.
     pub(crate) const fn unit(&self) -> f64 {
         if self.is_factor() { self.expected } else { 1.0 }
     }

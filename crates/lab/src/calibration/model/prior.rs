@@ -22,7 +22,7 @@ pub(crate) struct Prior {
     /// The pad that this field was solved for, where it is not the one that measured pads are held against.
     pub(crate) solved: Option<Device>,
     pub(crate) gain: [f64; CHANNELS],
-    /// What each channel has of each other's strain.
+    /// Crosstalk: share of each other channel's strain.
     pub(crate) crosstalk: [[f64; CHANNELS]; CHANNELS],
     /// Thresholds of the play operators, in strains before gains; an operator with zero does nothing.
     pub(crate) thresholds_uv: [f64; PLAYS],

@@ -43,7 +43,7 @@ pub(crate) struct Filter<'w> {
     cost: f64,
 }
 
-/// What all contacts together say of the gains at each of them.
+/// Smoothed gains at each contact, by all contacts together.
 pub(crate) struct Smoothed {
     /// Means of ν.
     pub(crate) mean: Vec<[f64; CHANNELS]>,

@@ -49,7 +49,7 @@ const RELOCATED_MM: f64 = 0.1;
 /// Least part of the readings that counts as degrees of freedom, however many parameters are fitted.
 const DEGREES_OF_FREEDOM_RATIO_MIN: f64 = 0.05;
 
-/// What is fitted, and to what.
+/// Least-squares problem: measured contacts and the parameters that are fitted.
 #[derive(Clone)]
 pub(crate) struct Problem<'f> {
     pub(crate) prior: &'f Prior,
@@ -110,13 +110,12 @@ impl<'f> Problem<'f> {
         prior: &'f Prior,
     ) -> Self {
         let field = &prior.field;
-        let (physical, sensitivities) = free((field, prior.solved.as_ref().unwrap_or(device)), device);
+        let (physical, sensitivities) = free(field, prior.solved.as_ref().unwrap_or(device), device);
         let plate_mm = device.plate.radius_mm();
         let rows = &recording.tared().rows;
         let to_come = ageing::to_come(rows);
         let measured = |Fitted { row, knowledge }: &Fitted| {
-            let known = (rows.as_slice(), *row, *knowledge);
-            let contact = Measured::of(field, &sensitivities, plate_mm, known, reference_c)?;
+            let contact = Measured::of(field, &sensitivities, plate_mm, rows, *row, *knowledge, reference_c)?;
             Some((*row, Measured { to_come: to_come[*row], ..contact }))
         };
         let contacts = fitted.iter().filter_map(measured).collect();
@@ -282,7 +281,7 @@ impl<'f> Problem<'f> {
         self.equations(prior, values, estimates, |_, _, _| ())?.solved()
     }
 
-    /// What all contacts and jumps add to the equations of a prior about θ. Where these have more unknowns than θ, `widen` adds the
+    /// Contribution of all contacts and jumps to the normal equations of a prior about θ. Where these have more unknowns than θ, `widen` adds the
     /// derivatives by them to those of each contact, which it is told by its place.
     pub(crate) fn equations(
         &self,
@@ -367,7 +366,7 @@ impl<'f> Problem<'f> {
         log_likelihood_of_contacts(&self.residuals(values), noise_model)
     }
 
-    /// What the written labels stand for, by these errors of the rig.
+    /// Corrected labels, by these errors of the rig.
     fn relabel(&mut self, values: &[f64]) {
         let rig = ParameterLayout::rig(values);
         let written = self.contacts.iter_mut().filter(|(_, contact)| contact.knowledge == Knowledge::Written);

@@ -1,4 +1,4 @@
-//! What the contacts leave open of the field, as modes over the plate: the principal directions of the posterior, seen through the
+//! Posterior uncertainty of the field, as modes over the plate: the principal directions of the posterior, seen through the
 //! decoder.
 //!
 //! With the curvature H = L Lᵀ a channel under a load, aₖ = ∂sₖ/∂θ, has the posterior covariance aₖᵀH⁻¹aₗ = (L⁻¹aₖ)ᵀ(L⁻¹aₗ). Unit
@@ -264,7 +264,7 @@ impl Load {
         self.weights(certain).map(|weights| self.combined(&weights))
     }
 
-    /// What no contact explains of unit steps there, in the channels' deviations: (I − J K) s.
+    /// Part of unit steps that no contact explains there, in the channels' deviations: (I − J K) s.
     fn unexplained(&self, certain: &Inverse) -> Option<Vec<Vec<f64>>> {
         let contact = noise::contact(&self.place_mm, &self.force_n);
         let response = certain.expected(&contact)?.response;
@@ -293,7 +293,7 @@ impl Load {
         weights.iter().map(combined).collect()
     }
 
-    /// What these modes leave of the channels' covariance.
+    /// Covariance of the channels that these modes leave.
     fn left_by(&self, modes: &[UnroundedMode], field: &InfluenceField, reach_mm: f64) -> FieldCovariance {
         // Σₖₗ − Σᵣ cᵣₖ cᵣₗ + Σᵣ eᵣₖ eᵣₗ, where c = vᵀL⁻¹a is what a mode does and e what its polynomials miss of that.
         let values = polynomials(&self.place_mm, reach_mm);
@@ -308,7 +308,7 @@ impl Load {
         })
     }
 
-    /// What a mode does to each channel, and what its mixture and polynomials miss of that.
+    /// Addition of a mode to each channel, and the error of its mixture and polynomials in that.
     fn read(
         &self,
         mode: &UnroundedMode,

@@ -21,12 +21,12 @@ const TOLD_VARIANCE_SHARE: f64 = 0.25;
 /// other's deviation down to √(1 − 0.9²) = 0.44 of what it is.
 const CORRELATION_MIN: f64 = 0.9;
 
-/// What a number is.
+/// Quantity that a number is of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Quantity {
     /// A channel's gain.
     Gain,
-    /// What a channel has of another one.
+    /// Crosstalk of a channel from another one, dimensionless.
     Crosstalk,
     /// The share of a play operator: the mean over the channels, or a channel's own.
     Friction {
@@ -39,11 +39,11 @@ pub enum Quantity {
     Blur,
     /// A gain's temperature coefficient, 1/°C.
     GainSlope,
-    /// What a channel reads untouched, µV.
+    /// Zero of a channel, µV.
     Zero,
     /// A module's pose, as a change; a stiffness; the plate's thickness.
     Physical(Physical),
-    /// What ageing took over the measurement, as a share of what there was before.
+    /// Loss by ageing over the measurement, as a share of what there was before.
     Ageing,
     /// An error of the rig.
     Rig(&'static RigNumber),
@@ -67,7 +67,7 @@ pub struct Number {
     pub target: Target,
     /// The posterior's maximum.
     pub value: f64,
-    /// What it would be of a pad that does not differ from the device.
+    /// Value of a pad that does not differ from the device.
     pub expected: f64,
     /// Posterior standard deviation.
     pub deviation: f64,
@@ -135,7 +135,7 @@ impl Quantity {
         }
     }
 
-    /// What it is of a pad, or a rig, that does not differ.
+    /// Value of a pad, or a rig, that does not differ.
     fn expected(self) -> f64 {
         match self {
             Self::Gain | Self::Rig(RigNumber { is_factor: true, .. }) => 1.0,
@@ -144,7 +144,7 @@ impl Quantity {
         }
     }
 
-    /// What a deviation of the parameters is in its unit, at this value.
+    /// Scale from a deviation of the parameters to its unit, at this value.
     const fn unit(self, value: f64) -> f64 {
         match self {
             Self::Physical(it) if it.is_factor() => value,
@@ -290,7 +290,7 @@ fn combined(layout: &ParameterLayout, fit: &PosteriorFit, asked: &OptionalNumber
         .collect()
 }
 
-/// What only a reference tells: ageing, and its own errors.
+/// Numbers that only a reference tells: ageing, and its own errors.
 fn by_reference(layout: &ParameterLayout) -> Vec<ParameterSum> {
     if layout.is_play {
         return Vec::new();
@@ -390,7 +390,7 @@ mod tests {
     #[test]
     fn each_number_has_a_name_and_only_what_a_diagnosis_knows_has_an_effect() {
         let (device, field) = (Device::nominal(), PadField::nominal());
-        let (physical, _) = free((&field, &device), &device);
+        let (physical, _) = free(&field, &device, &device);
         let parameter =
             |name: &str| Quantity::Physical(*physical.iter().find(|it| it.parameter.name() == name).unwrap());
         let effect = |name: &str| parameter(name).effect();

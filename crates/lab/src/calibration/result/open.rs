@@ -1,4 +1,4 @@
-//! What a rig leaves open of a pad: errors of its own that the contacts do not tell from the pad's.
+//! Ambiguity between pad and rig: errors of its own that the contacts do not tell from the pad's.
 
 use super::known::PressPrecision;
 use super::numbers::Number;
@@ -11,7 +11,7 @@ const SHARE_MIN: f64 = 0.25;
 pub struct OpenByRig {
     /// The cause in a diagnosis.
     pub effect: &'static str,
-    /// What it blurs.
+    /// Number that it blurs.
     pub of: Blurred,
     /// Its standard deviation: mm of the place along an axis, a share of the force along it, or across it.
     pub deviation: f64,
@@ -19,7 +19,7 @@ pub struct OpenByRig {
     pub share: f64,
 }
 
-/// What an error of the rig blurs.
+/// Number that an error of the rig blurs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blurred {
     /// x and y.

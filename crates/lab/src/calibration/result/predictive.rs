@@ -21,7 +21,7 @@ const RATIO_MIN: f64 = 1.25;
 /// Fewer contacts than these in a part are no part.
 const CONTACTS_MIN: usize = 8;
 
-/// What contacts are divided by.
+/// Partition of the contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Partition {
     /// Their distance from the middle.
@@ -47,7 +47,7 @@ impl Partition {
 /// One part of the contacts, held against all of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictiveCheck {
-    /// What they are divided by.
+    /// Partition of the contacts.
     pub by: Partition,
     /// Which third, by that, from the smallest on.
     pub third: usize,

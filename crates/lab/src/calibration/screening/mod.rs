@@ -279,7 +279,7 @@ impl Screening {
 /// poses and stiffnesses of modules, and of crosstalk. A plate of another thickness, or glue of another modulus, changes all channels
 /// much alike, which is told from no gain.
 fn differing(device: &Device, field: &PadField) -> Maps {
-    let (physical, sensitivities) = free((field, device), device);
+    let (physical, sensitivities) = free(field, device, device);
     let of_modules =
         physical.into_iter().zip(sensitivities).filter(|(it, _)| it.parameter.module().is_some());
     let (physical, sensitivities): (Vec<_>, Vec<_>) = of_modules.unzip();

@@ -1,4 +1,4 @@
-//! What may have changed in a sensor, or in what measured it, since an earlier recording.
+//! Hypotheses of change in a sensor, or in the rig that measured it, since an earlier recording.
 //!
 //! ```text
 //! place = d + R(φ) written(t + lag),   load = written(t + lag)
@@ -14,7 +14,7 @@ use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::{Hypothesis, Parameter};
 use crate::diagnosis::report::NotTestable;
 
-/// What a hypothesis changes.
+/// Kind of change of a hypothesis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum ChangeKind {
     /// The gain of a channel, or of all.
@@ -33,7 +33,7 @@ pub(super) enum ChangeKind {
     Lag,
 }
 
-/// What is there to tell changes by.
+/// Columns by which changes can be told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Circumstances {
     pub(super) has_time: bool,
@@ -173,7 +173,7 @@ pub(super) fn hypotheses(
     .collect()
 }
 
-/// What cannot be asked for, and what is missing.
+/// Hypotheses that cannot be tested, and the columns that are missing.
 pub(super) fn missing(columns: &Columns, there: Circumstances) -> Vec<NotTestable> {
     let has_place = AXES.iter().any(|name| columns.input(name).is_some());
     let turns = ["x_mm", "y_mm"].iter().all(|name| columns.input(name).is_some());

@@ -15,7 +15,7 @@ const PLANNED: [&str; 2] = ["dwell_s", "approach"];
 /// What varies by less than this part of itself stays the same.
 const LAST_DIGITS: f64 = 1e-5;
 
-/// What is asked for; empty: whatever both tables have.
+/// Selection of columns; empty: whatever both tables have.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ColumnSelection<'a> {
     /// Names of the labels.

@@ -1,4 +1,4 @@
-//! What an earlier recording says that a sensor should read, how far that may be off, and how far the recording contradicts itself.
+//! Prediction of a sensor by an earlier recording, how far that may be off, and how far the recording contradicts itself.
 //!
 //! A recording is cut into parts. What zero and gain of a channel differ by from part to part, beyond chance, is what a sensor does by
 //! itself; and so is a zero's drift over the recording. No more than that is expected of a later one, either.
@@ -49,7 +49,7 @@ pub(super) struct Channel {
     pub(super) drift: f64,
     /// By how much the gain differs from part to part.
     pub(super) gain: f64,
-    /// What the fit leaves of each row, and one over its variance; 0 where nothing is told.
+    /// Residual of each row, and one over its variance; 0 where nothing is told.
     left: Vec<[f64; 2]>,
 }
 
@@ -110,7 +110,7 @@ impl EarlierRecording {
         row.iter().zip(&self.extents).all(is_within) && self.regression.unknown(row) < UNKNOWN_MAX
     }
 
-    /// What each channel reads beside its zero under these labels; nothing for one that is not known.
+    /// Signal of each channel beside its zero under these labels; nothing for one that is not known.
     pub(super) fn signals(&self, row: &[f64], temp_c: Option<f64>) -> Vec<f64> {
         let with = self.regression.covariances(row);
         let above_c = self.above_c(temp_c);
@@ -172,7 +172,7 @@ impl EarlierRecording {
 }
 
 impl Channel {
-    /// What the channel reads under no load, or whatever else makes its signal none.
+    /// Zero of the channel under no load, or whatever else makes its signal none.
     pub(super) fn zero(&self) -> f64 {
         self.fit.zero()
     }
@@ -197,7 +197,7 @@ impl EarlierChannel<'_> {
         regression.fitted(self.functions, readings, is_told, &observations.follows())
     }
 
-    /// What the fit leaves, and its weights.
+    /// Residuals of the fit, and their weights.
     fn left(&self, fit: &RegressionFit) -> Vec<[f64; 2]> {
         let observations = &self.recording.observations;
         let correlated = correlated(fit);

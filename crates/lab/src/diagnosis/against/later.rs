@@ -192,7 +192,7 @@ impl<'r> LaterRecording<'r> {
         inputs[low].iter().zip(&inputs[high]).map(|(a, b)| a + share * (b - a)).collect()
     }
 
-    /// What the channels make of signals, channel by channel.
+    /// Readings of the channels by their signals, channel by channel.
     fn read(&self, signals: &[Vec<f64>], changes: &Changes) -> Vec<Vec<f64>> {
         let rows = || signals.iter().enumerate();
         let channel = |k: usize| {

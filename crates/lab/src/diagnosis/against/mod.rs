@@ -1,4 +1,4 @@
-//! What changed in a sensor since an earlier recording of it: neither a simulator nor forces are needed.
+//! Changes of a sensor since an earlier recording of it: neither a simulator nor forces are needed.
 //!
 //! The way of the data: two tables have columns in common (`columns`), rows become observations (`recording`); a regression of the
 //! earlier ones says what the later ones should read, and how far that may be off (`earlier`); changes of the sensor and of what

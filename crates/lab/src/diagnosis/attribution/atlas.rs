@@ -60,15 +60,16 @@ pub(crate) fn attributed(atlas: &mut Atlas<'_>) -> Option<Attribution> {
 impl<'f> Atlas<'f> {
     /// The pad at some `observations` of `all`.
     pub(crate) fn new(pad: &Pad<'f>, all: &'f Observations, observations: &'f Observations) -> Self {
-        Self::in_order(pad, all, (all, observations))
+        Self::in_order(pad, all, all, observations)
     }
 
     fn in_order(
         pad: &Pad<'f>,
         all: &'f Observations,
-        (sequence, observations): (&'f Observations, &'f Observations),
+        sequence: &'f Observations,
+        observations: &'f Observations,
     ) -> Self {
-        let first = Simulated::new(pad, (pad.device, pad.field), all, (sequence, observations));
+        let first = Simulated::new(pad, pad.device, pad.field, all, sequence, observations);
         let module_mm = shift_reach_mm(pad.device);
         let reaches = first.hypotheses().iter().enumerate().map(|(at, hypothesis)| {
             let reaches = hypothesis.parameters.iter().map(|it| reach(it, module_mm)).collect();
@@ -111,7 +112,7 @@ impl<'f> Atlas<'f> {
 
     fn add(&mut self, solved: Solved) {
         let own = (&solved.device, &solved.field);
-        self.others.push(Simulated::new(&self.pad, own, self.all, (self.sequence, self.observations)));
+        self.others.push(Simulated::new(&self.pad, own.0, own.1, self.all, self.sequence, self.observations));
         self.solved.push(solved);
     }
 
@@ -125,7 +126,7 @@ impl<'f> Atlas<'f> {
             let Hypothesis { effect, target, ref parameters, .. } = self.first.hypotheses()[*hypothesis];
             let values = parameters.iter().zip(&coordinates);
             let numbers: Vec<_> = values.map(|(it, psi)| (it.name, it.value(*psi))).collect();
-            if let Some(changed) = with(&device, (effect, target), &numbers, &Circumstances::default()) {
+            if let Some(changed) = with(&device, effect, target, &numbers, &Circumstances::default()) {
                 device = changed;
                 at.push((*hypothesis, coordinates));
             }
@@ -217,7 +218,7 @@ impl Model for Atlas<'_> {
         rows: &Observations,
         applied: &[(usize, Vec<f64>)],
     ) -> Option<(Linearised, Vec<CommonError>)> {
-        let there = self.with(Atlas::in_order(&self.pad, self.all, (rows, rows)));
+        let there = self.with(Atlas::in_order(&self.pad, self.all, rows, rows));
         Some((there.linearised(applied), there.common_errors()))
     }
 }

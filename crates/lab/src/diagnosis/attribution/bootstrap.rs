@@ -35,7 +35,7 @@ pub(crate) struct Bootstrap {
     random: SplitMix64,
 }
 
-/// What one draw is.
+/// One bootstrap draw.
 pub(crate) struct Draw {
     /// Aᵀ V⁻¹ r*.
     pub(crate) score: Vec<f64>,

@@ -25,7 +25,7 @@ pub(crate) struct Projected {
 /// A group's test.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Test {
-    /// What it takes off the weighted squares.
+    /// Reduction of the weighted squares.
     pub(crate) square: f64,
     /// In how many directions.
     pub(crate) freedom: usize,

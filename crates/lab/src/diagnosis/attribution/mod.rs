@@ -39,7 +39,7 @@ pub(crate) type Applied = Vec<(usize, Vec<f64>)>;
 
 /// The measurement about a fitted point.
 pub(crate) struct AttributionFit {
-    /// What holds, with the fitted coordinates.
+    /// Applied hypotheses, with the fitted coordinates.
     pub(crate) applied: Applied,
     pub(crate) systems: Systems,
     pub(crate) background: Background,
@@ -55,7 +55,7 @@ struct GaussNewtonStep {
     fraction: f64,
 }
 
-/// What was found.
+/// Result of the search for causes.
 pub(crate) struct Attribution {
     /// About the causes that hold.
     pub(crate) fit: AttributionFit,
@@ -121,7 +121,7 @@ impl<'m> Search<'m> {
             return Some(fit);
         };
         let (projected, score) = self.without(&fit, last)?;
-        let mut rivals = self.rivals(&fit, critical, last, (&projected, &score));
+        let mut rivals = self.rivals(&fit, critical, last, &projected, &score);
         rivals.retain(|rival| !barred.contains(rival));
         for rival in rivals {
             let mut applied = fit.applied.clone();
@@ -148,9 +148,11 @@ impl<'m> Search<'m> {
         for step in 0..=REFITS {
             let linearised = self.model.linearised(&applied);
             let systems = Systems::of(
-                (self.observations, &self.smooth),
+                self.observations,
+                &self.smooth,
                 self.model,
-                (&linearised, &self.columns.signatures(&linearised)),
+                &linearised,
+                &self.columns.signatures(&linearised),
                 before.as_ref().map(|(systems, _)| systems).or(start.map(|fit| &fit.systems)),
             )?;
             let fitted = self.columns.fitted(applied.iter().map(|(at, _)| *at));

@@ -1,4 +1,4 @@
-//! What a cause is.
+//! Interface of a cause.
 
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::Parameter;

@@ -1,4 +1,4 @@
-//! What was measured, and the rows, channels and quantities that it is about.
+//! Observations, and the rows, channels and quantities that they are about.
 
 pub(crate) mod noise;
 pub mod observations;

@@ -1,4 +1,4 @@
-//! What was measured, for any number of channels: readings, and what was written down beside them.
+//! Observations of any number of channels: readings, and the labels beside them.
 
 use tactpad_core::numeric::random::SplitMix64;
 use tactpad_core::numeric::statistics::rms;
@@ -55,7 +55,7 @@ pub struct Observations {
     pub readings: Vec<Vec<f64>>,
     /// The same way, whether a reading tells anything: one that is missing or clipped does not.
     pub is_told: Vec<Vec<bool>>,
-    /// What was written beside them.
+    /// Labels beside them.
     pub samples: Vec<Sample>,
     /// The rows' numbers in the whole measurement.
     pub numbers: Vec<usize>,

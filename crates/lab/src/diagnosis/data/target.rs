@@ -9,7 +9,7 @@ use tactpad_core::pad::device::Side;
 pub enum Target {
     /// All of the pad.
     Pad,
-    /// What measured it.
+    /// Rig that measured it.
     Rig,
     /// All channels, or all labels, of a sensor that nothing more is known of.
     All,

@@ -15,7 +15,7 @@ pub(crate) struct Gate {
     pub(crate) observations: Observations,
     /// The same before what channels and electronics do was mended, where anything was.
     pub(crate) unrepaired: Option<Observations>,
-    /// What the channels should read, if a model says so.
+    /// Expected readings of the channels, if a model gives them.
     pub(super) expected: Option<Vec<Vec<f64>>>,
     /// What was found and done.
     pub(crate) notices: Vec<Notice>,
@@ -45,7 +45,7 @@ impl Gate {
         rows.iter().map(|row| self.observations.readings[channel][*row]).collect()
     }
 
-    /// What a channel should read in these rows.
+    /// Expected readings of a channel in these rows.
     pub(super) fn expected(&self, channel: usize, rows: &[usize]) -> Option<Vec<f64>> {
         let expected = self.expected.as_ref()?.get(channel)?;
         Some(rows.iter().map(|row| expected[*row]).collect())

@@ -21,7 +21,7 @@ const OF_TABLE: [Check; 4] = [clock::check, missing::check, stuck::check, rates:
 /// Checks of channels and electronics: wires before whatever holds a channel against its own model.
 const OF_CHANNELS: [Check; 5] = [dead::check, wiring::check, clipping::check, steps::check, mains::check];
 
-/// What the checks name, this one and [`excess`] among them.
+/// Effects that the checks name, this one and [`excess`] among them.
 pub(super) const EFFECTS: [&str; 6] =
     ["channel_dead", "channels_swapped", "channel_polarity", "adc_clipping", "mains_pickup", excess::EFFECT];
 

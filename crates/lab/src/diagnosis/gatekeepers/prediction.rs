@@ -1,4 +1,4 @@
-//! What a channel should read by others: least squares.
+//! Prediction of a channel by others: least squares.
 
 use super::gate::squares;
 use tactpad_core::numeric::dense::{Matrix, gram};

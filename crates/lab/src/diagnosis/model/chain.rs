@@ -21,7 +21,7 @@ use crate::diagnosis::data::observations::Sample;
 use crate::rig::errors::RigErrors;
 use tactpad_core::pad::device::Side;
 
-/// What differs in the contact and the mechanics.
+/// Parameters of the chain in the contact and the mechanics.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MechanicsChain {
     /// h: how far above the plate's surface forces act.
@@ -32,7 +32,7 @@ pub(crate) struct MechanicsChain {
     pub(crate) weights: Vec<f64>,
 }
 
-/// What differs in the channels.
+/// Parameters of the chain in the channels.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ChannelChain {
     /// M, as (into, from, share).
@@ -64,7 +64,7 @@ pub(crate) struct Chain {
     pub(crate) rig: RigErrors,
     /// Contact and plate.
     pub(crate) mechanics: MechanicsChain,
-    /// What the channels remember.
+    /// Memory of the channels.
     pub(crate) memory: MemoryChain,
     /// The channels.
     pub(crate) channels: ChannelChain,

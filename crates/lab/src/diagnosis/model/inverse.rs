@@ -28,7 +28,7 @@ const STEP_END: f64 = 1e-4;
 /// Differences that make slopes.
 const BY_MM: f64 = 0.05;
 const BY_LOAD: f64 = 0.05;
-/// What a failed step multiplies the added curvature by, and a good one divides it by.
+/// Damping factor: a failed step multiplies the added curvature by it, a good one divides.
 const DAMPING: f64 = 8.0;
 const DAMPING_FIRST: f64 = 1e-3;
 
@@ -41,11 +41,11 @@ pub(crate) trait Forward {
     type Site;
     /// A place, as it would be written.
     fn site(&self, place_mm: [f64; 2]) -> Self::Site;
-    /// What the channels read in the circumstances of a row.
+    /// Readings of the channels in the circumstances of a row.
     fn reading(&self, row: usize, site: &Self::Site, load: [f64; 3]) -> Vec<f64>;
 }
 
-/// What the channels read in a row, and how much each counts: one over its variance.
+/// Readings of a row with their weights: one over the variance.
 pub(crate) struct Weighted {
     pub(crate) readings: Vec<f64>,
     pub(crate) weights: Vec<f64>,
@@ -92,7 +92,7 @@ impl<F: Forward> Inverse<F> {
         let mut starts: Vec<Trial<F::Site>> = self
             .starts
             .iter()
-            .filter_map(|(place_mm, site)| self.loaded(row, read, (*place_mm, site)))
+            .filter_map(|(place_mm, site)| self.loaded(row, read, *place_mm, site))
             .collect();
         starts.sort_by(|one, other| one.misfit.total_cmp(&other.misfit));
         let ends = starts.into_iter().take(FOLLOWED).filter_map(|start| self.followed(row, read, start));
@@ -104,7 +104,8 @@ impl<F: Forward> Inverse<F> {
         &self,
         row: usize,
         read: &Weighted,
-        (place_mm, site): ([f64; 2], &F::Site),
+        place_mm: [f64; 2],
+        site: &F::Site,
     ) -> Option<Trial<F::Site>> {
         let none = self.forward.reading(row, site, [0.0; 3]);
         let slopes: Vec<Vec<f64>> = (0..3)

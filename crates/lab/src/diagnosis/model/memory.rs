@@ -33,7 +33,7 @@ pub(crate) struct Prony {
     pub(crate) share: f64,
 }
 
-/// What the channels remember.
+/// Memory of the channels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct MemoryChain {
     pub(crate) plays: Vec<ChannelFriction>,
@@ -202,7 +202,8 @@ impl MemoryChain {
         course: &RowSequence,
         channel: usize,
         full_scale: f64,
-        (strain, early): (&[f64], f64),
+        strain: &[f64],
+        early: f64,
     ) -> Option<Vec<f64>> {
         let plays = self.plays.iter().filter(|it| it.channel == channel && it.share != 0.0);
         let plays = plays.map(|it| (it.share, course.held_back(it.threshold * full_scale, it.above, strain)));
@@ -252,14 +253,14 @@ mod tests {
         };
         let up_and_down: Vec<f64> =
             (0..=20).map(|row: i32| 100.0 * f64::from(10 - (row - 10).abs())).collect();
-        let added = chain.added(&series(21, 1.0), 0, 1000.0, (&up_and_down, 0.0)).unwrap();
+        let added = chain.added(&series(21, 1.0), 0, 1000.0, &up_and_down, 0.0).unwrap();
         // 2 w r S
         assert!((added[15] - added[5] - 2.0 * 0.2 * 0.1 * 1000.0).abs() < 1e-9, "{added:?}");
         let course = RowSequence::of(&[held(false, 1.0), held(true, 1.0)], &[false; 2], 5.0);
         assert!(course.has_both_ways() && !course.has_series() && course.dwells() == Dwells::Alike);
-        let ways = chain.added(&course, 0, 1000.0, (&[500.0; 2], 0.0)).unwrap();
+        let ways = chain.added(&course, 0, 1000.0, &[500.0; 2], 0.0).unwrap();
         assert_eq!([ways[0], ways[1]], [added[5], added[15]]);
-        assert_eq!(chain.added(&course, 1, 1000.0, (&[500.0; 2], 0.0)), None);
+        assert_eq!(chain.added(&course, 1, 1000.0, &[500.0; 2], 0.0), None);
     }
 
     #[test]
@@ -269,12 +270,12 @@ mod tests {
         let mut strain = vec![500.0; 101];
         strain[0] = 0.0;
         // Within 0.1 s of the load.
-        let added = chain.added(&series(101, 0.1), 0, 1000.0, (&strain, 0.0)).unwrap();
+        let added = chain.added(&series(101, 0.1), 0, 1000.0, &strain, 0.0).unwrap();
         let course = RowSequence::of(&[held(false, 9.95), held(false, 1.0)], &[false; 2], 5.0);
         assert_eq!(course.dwells(), Dwells::Different);
-        let by_dwell = chain.added(&course, 0, 1000.0, (&[500.0; 2], 0.0)).unwrap();
+        let by_dwell = chain.added(&course, 0, 1000.0, &[500.0; 2], 0.0).unwrap();
         assert!((added[100] - by_dwell[0]).abs() < 1e-3, "{} {}", added[100], by_dwell[0]);
-        let at = |early: f64| chain.added(&series(101, 0.1), 0, 1000.0, (&strain, early)).unwrap()[1];
+        let at = |early: f64| chain.added(&series(101, 0.1), 0, 1000.0, &strain, early).unwrap()[1];
         // 0.1 s of 4 s, half of them, none.
         assert!((at(1.0) - 25.0 * 0.024_690).abs() < 1e-4 && (2.0 * at(0.0) / at(1.0) - 1.0).abs() < 0.02);
         assert!(at(-1.0).abs() < 1e-9, "{}", at(-1.0));

@@ -151,7 +151,7 @@ pub(crate) struct Linearised {
     pub(crate) signatures: Vec<Vec<Signature>>,
 }
 
-/// What is known of each channel beside its readings.
+/// Zero and noise of each channel.
 pub(crate) struct ChannelBaselines<'t> {
     /// What it reads without load.
     pub(crate) zeros: &'t [f64],

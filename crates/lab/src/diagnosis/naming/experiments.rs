@@ -54,7 +54,7 @@ pub(crate) fn catalogue(rows: &Observations) -> Vec<Experiment> {
     all.extend(without_reference(rows, &repeated));
     all.extend(BY_HAND.map(|(effect, deviation, what, why)| Experiment {
         by_hand: Some((effect, deviation)),
-        ..plain(rows, (what.to_owned(), why), BY_HAND_MIN, Vec::new())
+        ..plain(rows, what.to_owned(), why, BY_HAND_MIN, Vec::new())
     }));
     all.sort_by(|one, other| one.minutes.total_cmp(&other.minutes));
     all
@@ -63,7 +63,8 @@ pub(crate) fn catalogue(rows: &Observations) -> Vec<Experiment> {
 /// Rows on which all causes act as they did.
 fn plain(
     like: &Observations,
-    (what, why): (String, &'static str),
+    what: String,
+    why: &'static str,
     minutes: f64,
     samples: Vec<Sample>,
 ) -> Experiment {
@@ -75,13 +76,12 @@ fn plain(
 fn again(rows: &Observations, repeated: &[Sample]) -> Vec<Experiment> {
     let count = repeated.len();
     let minutes = count as f64 * CONTACT_S / 60.0;
-    let of =
-        |what: String, why, more_min: f64| plain(rows, (what, why), more_min + minutes, repeated.to_vec());
+    let of = |what: String, why, more_min: f64| plain(rows, what, why, more_min + minutes, repeated.to_vec());
     let clamped = format!(
         "clamp the pad turned by {CLAMPED_DEG} degrees, repeat {count} contacts and write so under turned_deg"
     );
     let why = "what is wrong with the rig stays with the rig, what is wrong with the pad turns with it";
-    let turned = plain(rows, (clamped, why), CLAMP_MIN + minutes, clamped_anew(repeated));
+    let turned = plain(rows, clamped, why, CLAMP_MIN + minutes, clamped_anew(repeated));
     let cap = of(
         format!("repeat {count} contacts with a cap of another height, which is measured"),
         "only the old cap's height is in doubt",
@@ -107,12 +107,13 @@ fn again(rows: &Observations, repeated: &[Sample]) -> Vec<Experiment> {
         Experiment { silent: vec!["contact_size"], ..indenter },
         plain(
             rows,
-            (dwells, "a gain does not know how long"),
+            dwells,
+            "a gain does not know how long",
             LONG_S / 120.0 * count as f64 + minutes,
             held(repeated),
         ),
-        plain(rows, (above, "only what keeps a load differs"), minutes, from_above(repeated)),
-        plain(rows, (random, why), WARM_MIN + minutes, warmed(repeated)),
+        plain(rows, above, "only what keeps a load differs", minutes, from_above(repeated)),
+        plain(rows, random, why, WARM_MIN + minutes, warmed(repeated)),
     ]
 }
 
@@ -121,16 +122,14 @@ fn without_reference(rows: &Observations, repeated: &[Sample]) -> [Experiment; 2
     let weight_n = weight_n(repeated);
     let placed = plain(
         rows,
-        (
-            format!("place a known weight of {weight_n:.0} N at {WEIGHTS} of the places"),
-            "it needs no force sensor, so what is wrong with the pad still shows, and what is wrong with the sensor does not",
-        ),
+        format!("place a known weight of {weight_n:.0} N at {WEIGHTS} of the places"),
+        "it needs no force sensor, so what is wrong with the pad still shows, and what is wrong with the sensor does not",
         WEIGHT_MIN * WEIGHTS as f64,
         weights(repeated, weight_n),
     );
     let why = "no force sensor and no place has a part in that";
     let what = "record the untouched pad for an hour".to_owned();
-    let rested = plain(rows, (what, why), UNTOUCHED_MIN, untouched(repeated));
+    let rested = plain(rows, what, why, UNTOUCHED_MIN, untouched(repeated));
     [placed, rested].map(|it| Experiment { silent: REFERENCE.to_vec(), ..it })
 }
 

@@ -51,7 +51,7 @@ impl Search<'_> {
                 p_value: test.p_value(),
                 share: (test.square / whole).clamp(0.0, 1.0),
                 confounded_with: self
-                    .rivals(&found.fit, found.critical, at, (&projected, &score))
+                    .rivals(&found.fit, found.critical, at, &projected, &score)
                     .into_iter()
                     .map(named)
                     .collect(),
@@ -97,7 +97,8 @@ impl Search<'_> {
         fit: &AttributionFit,
         critical: f64,
         at: usize,
-        (projected, score): (&Projected, &[f64]),
+        projected: &Projected,
+        score: &[f64],
     ) -> Vec<usize> {
         let (own, _) = fit.applied[at];
         let columns = &self.columns.of_hypothesis[own];
@@ -165,7 +166,7 @@ impl Search<'_> {
         let mut least = self.zeros(found)?;
         for at in 0..found.fit.applied.len() {
             let (projected, score) = self.without(&found.fit, at)?;
-            for rival in self.rivals(&found.fit, found.critical, at, (&projected, &score)) {
+            for rival in self.rivals(&found.fit, found.critical, at, &projected, &score) {
                 let zeros = self.zeros_with(&found.fit, at, rival).into_iter().flatten();
                 let square = |[zero, variance]: [f64; 2]| zero * zero / variance;
                 for (least, other) in

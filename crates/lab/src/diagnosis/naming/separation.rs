@@ -33,7 +33,7 @@ use tactpad_core::numeric::dense::Matrix;
 
 /// No measurement is asked for more often than this.
 const REPEATS_MAX: usize = 30;
-/// What makes columns unique that others reproduce, as a part of their information.
+/// Ridge that makes columns unique that others reproduce, as a part of their information.
 const RIDGE: f64 = 1e-9;
 /// A column in the present rows and in further ones.
 struct CausePair {

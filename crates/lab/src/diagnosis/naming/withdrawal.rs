@@ -31,7 +31,7 @@ pub(crate) struct Candidate {
     pub(crate) is_doubted: bool,
 }
 
-/// What was found, and what was not.
+/// Named and unnamed candidates.
 pub(crate) struct NamingResult {
     pub(crate) candidates: Vec<Candidate>,
     /// For each channel, the weighted squares that are left without an explanation.
@@ -46,7 +46,8 @@ pub(crate) struct NamingResult {
 pub(crate) fn named(
     search: &Search<'_>,
     found: &Attribution,
-    (whole, remainders): (f64, Vec<f64>),
+    whole: f64,
+    remainders: Vec<f64>,
 ) -> Option<NamingResult> {
     let fit = &found.fit;
     let squares = |place: usize, finding: &Finding| -> Vec<f64> {

@@ -61,7 +61,7 @@ pub(crate) fn contacts(
 }
 
 impl Forward for Bench<'_, '_> {
-    /// What a unit of true force along each axis strains.
+    /// Strains by a unit of true force along each axis.
     type Site = Maps;
 
     fn site(&self, place_mm: [f64; 2]) -> Maps {

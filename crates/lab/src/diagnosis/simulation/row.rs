@@ -1,4 +1,4 @@
-//! What a row strains, by its place, its force and the field there.
+//! Strains of a row, by its place, its force and the field there.
 
 use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::mechanics::Maps;
@@ -11,7 +11,7 @@ pub(crate) struct Row {
     pub(crate) force_n: [f64; 3],
     pub(crate) gains: Gains,
     pub(crate) laplacian: Maps,
-    /// What each change of the field adds to the strains.
+    /// Addition of each change of the field to the strains.
     pub(crate) changes: Vec<[f64; CHANNELS]>,
 }
 

@@ -67,9 +67,11 @@ impl<'f> Simulated<'f> {
     /// `all` rows and of the pad that is held to be right, so that any part, about any field, has the same.
     pub(crate) fn new(
         pad: &Pad<'_>,
-        (own, field): (&Device, &PadField),
+        own: &Device,
+        field: &PadField,
         all: &Observations,
-        (sequence, observations): (&'f Observations, &Observations),
+        sequence: &'f Observations,
+        observations: &Observations,
     ) -> Self {
         let course =
             |of: &Observations| RowSequence::of(&of.samples, &of.follows(), pad.device.contact.full_scale_n);
@@ -180,8 +182,7 @@ impl<'f> Simulated<'f> {
     fn remembered(&self, mut strains: Vec<[f64; CHANNELS]>, chain: &Chain) -> Vec<[f64; CHANNELS]> {
         for (channel, full_scale) in self.reference.full_scale.iter().enumerate() {
             let own: Vec<f64> = strains.iter().map(|strain| strain[channel]).collect();
-            let added =
-                chain.memory.added(&self.course, channel, *full_scale, (&own, 0.0)).unwrap_or_default();
+            let added = chain.memory.added(&self.course, channel, *full_scale, &own, 0.0).unwrap_or_default();
             strains.iter_mut().zip(added).for_each(|(strain, added)| strain[channel] += added);
         }
         strains
@@ -201,7 +202,7 @@ impl<'f> Simulated<'f> {
             let added = |memory: &MemoryChain, off: f64, early: f64| {
                 let off = |magnitude: f64| off * BACKGROUND_MAX * size * magnitude / load_rms;
                 let own = strains.iter().zip(&magnitudes).map(|(strain, it)| strain[channel] + off(*it));
-                memory.added(&self.course, channel, full_scale, (&own.collect::<Vec<_>>(), early))
+                memory.added(&self.course, channel, full_scale, &own.collect::<Vec<_>>(), early)
             };
             let pairs = [
                 [1.0, -1.0].map(|off| added(&friction, off, 0.0)),
@@ -222,7 +223,7 @@ impl<'f> Simulated<'f> {
         (0..CHANNELS).into_par_iter().map(doubt).collect()
     }
 
-    /// What the channels read at strains with their memory, at the rows that are asked for.
+    /// Readings of the channels at strains with their memory, at the rows that are asked for.
     fn read(&self, strains: &[[f64; CHANNELS]], chain: &Chain) -> Vec<Vec<f64>> {
         let mut channels = vec![Vec::new(); CHANNELS];
         for (at, strain) in strains.iter().enumerate() {
@@ -237,7 +238,7 @@ impl<'f> Simulated<'f> {
         self.picked(channels)
     }
 
-    /// What a row's channels read when they are strained so and remember nothing.
+    /// Readings of a row at these strains, without memory.
     pub(crate) fn reading(&self, at: usize, strain: &[f64; CHANNELS], chain: &Chain) -> [f64; CHANNELS] {
         let mut values = *strain;
         chain.channels.read(&mut values, &self.sequence.samples[at], &self.reference);

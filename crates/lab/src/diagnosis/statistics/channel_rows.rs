@@ -17,7 +17,7 @@ const NOISE_ROUNDS_AGAIN: usize = 1;
 /// Least part of the rows that count as degrees of freedom.
 const FREEDOM_RATIO_MIN: f64 = 0.1;
 
-/// What a channel's system is made of.
+/// Rows, background and errors of which a channel's system is made.
 pub(crate) struct ChannelRows<'r> {
     pub(crate) observations: &'r Observations,
     pub(crate) channel: usize,

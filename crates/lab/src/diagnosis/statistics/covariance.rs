@@ -77,7 +77,7 @@ impl Smooth {
     }
 }
 
-/// What the background's functions say of a channel's residual.
+/// Smooth remainder of a channel's residual in the background's functions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Remainder {
     /// Over the rows, as a share of the channel's mean square.
@@ -106,9 +106,11 @@ impl Systems {
     /// `columns` are the signatures about the present point, `linearised` that point. The `model` says what it knows of its channels.
     /// With `before`, the systems about another point, the noise is not sought from the beginning.
     pub(crate) fn of(
-        (observations, smooth): (&Observations, &Arc<Smooth>),
+        observations: &Observations,
+        smooth: &Arc<Smooth>,
         model: &dyn Model,
-        (linearised, columns): (&Linearised, &[Column<'_>]),
+        linearised: &Linearised,
+        columns: &[Column<'_>],
         before: Option<&Self>,
     ) -> Option<Self> {
         let basis = &smooth.basis;
@@ -313,7 +315,7 @@ impl Systems {
             let marginal = self.marginal_of(&equations, self.columns, &background)?;
             let solution = fitted.solved(&marginal)?;
             likelihood = -0.5 * (marginal.square - solution.removed + marginal.log_determinant);
-            background = self.updated(&background, (&equations, &marginal), &solution.coordinates);
+            background = self.updated(&background, &equations, &marginal, &solution.coordinates);
         }
         Some((likelihood, background))
     }
@@ -350,7 +352,8 @@ impl Systems {
     fn updated(
         &self,
         background: &Background,
-        (equations, marginal): (&[&NormalEquations], &Marginal),
+        equations: &[&NormalEquations],
+        marginal: &Marginal,
         coordinates: &[f64],
     ) -> Background {
         let prior = &background.prior;
@@ -389,7 +392,7 @@ pub(crate) struct Fitted<'p> {
 pub(crate) struct Solved {
     /// For all columns, zero where they are not free.
     pub(crate) coordinates: Vec<f64>,
-    /// What the solution takes off the square.
+    /// Reduction of the square by the solution.
     pub(crate) removed: f64,
 }
 

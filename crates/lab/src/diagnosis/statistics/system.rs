@@ -13,7 +13,7 @@ use tactpad_core::numeric::products::dot;
 
 /// One channel.
 pub(crate) struct ChannelSystem {
-    /// What its rows come to.
+    /// Normal equations of its rows.
     pub(crate) equations: NormalEquations,
     /// Of each row.
     pub(crate) whitening: Whitening,
@@ -23,7 +23,7 @@ pub(crate) struct ChannelSystem {
     pub(crate) background: Vec<Vec<f64>>,
     /// D⁻½ r.
     pub(crate) residual: Vec<f64>,
-    /// What the model states of its own errors.
+    /// Stated errors of the model.
     pub(crate) stated: StatedErrors,
 }
 

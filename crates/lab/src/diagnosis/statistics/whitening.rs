@@ -9,7 +9,7 @@
 const MEMORY_MAX: f64 = 0.95;
 const PAIRS_MIN: usize = 20;
 
-/// What a channel's rows are multiplied by.
+/// Whitening of a channel's rows: weights, and the correlation ρ with the row before.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Whitening {
     /// One over each row's standard deviation; 0 where it tells nothing.

@@ -1,4 +1,4 @@
-//! What a flexible model could remove of the residual: the most that any causes could.
+//! Ceiling of the explained residual by a flexible model: the most that any causes could.
 //!
 //! Such a model is a Gaussian-process regression of each channel's residual on all that was written: places and loads, and in
 //! proportion time, temperature, the way by which a load came and how long it was held. It learns at the open rows and is judged at the
@@ -80,7 +80,7 @@ fn left(
     Some(squares)
 }
 
-/// What is written beside rows, as the regression takes it.
+/// Labels of rows, as the regression takes them.
 fn labels(observations: &Observations) -> Labels {
     let inputs = |sample: &Sample| [sample.place_mm.as_slice(), &sample.load].concat();
     let others = |sample: &Sample| {

@@ -1,4 +1,4 @@
-//! What the findings are worth on rows that had no part in finding them.
+//! Gain of the findings on rows that had no part in finding them.
 
 use super::mean_square::{Draw, Population, Squares};
 use crate::diagnosis::attribution::{Applied, AttributionFit, Search};
@@ -105,7 +105,8 @@ impl Rows<'_> {
     /// are the readings without it.
     fn expected_squares(
         &self,
-        (applied, zeros): (&Applied, &[f64]),
+        applied: &Applied,
+        zeros: &[f64],
         expected: &[Vec<f64>],
         noise: &[Noise],
     ) -> Vec<f64> {
@@ -180,7 +181,7 @@ impl Search<'_> {
             let Hypothesis { effect, target, .. } = self.model.hypotheses()[applied[at].0];
             WithoutFinding { effect, target, rmse_ratio: ratio(&squares(&others), &as_measured) }
         };
-        let [position_mae, force_mae] = decoded(measured, rows, applied, (noise, &population));
+        let [position_mae, force_mae] = decoded(measured, rows, applied, noise, &population);
         Some(Gain {
             rows_locked: locked.observations.rows(),
             rmse_ratio: ratio(&extended, &as_measured),
@@ -212,7 +213,7 @@ impl Search<'_> {
     }
 }
 
-/// What the fit lets expect.
+/// Gain that the fit lets expect.
 struct ExpectedGain<'e> {
     /// At the open and at the locked rows, channel by channel.
     readings: &'e [Vec<Vec<f64>>; 2],
@@ -224,7 +225,7 @@ fn squares([open, locked]: [&Rows<'_>; 2], applied: &Applied, known: Option<&Exp
     let zeros = open.zeros(applied);
     let expected = known.map(|ExpectedGain { readings: [at_open, at_locked], noise }| {
         [(locked, at_locked), (open, at_open)]
-            .map(|(rows, expected)| rows.expected_squares((applied, &zeros), expected, noise))
+            .map(|(rows, expected)| rows.expected_squares(applied, &zeros, expected, noise))
     });
     let mut found = locked.squares(applied, &zeros);
     if let Some(silent) = silent([open, locked]) {
@@ -258,7 +259,8 @@ fn decoded(
     measured: [&Rows<'_>; 2],
     rows: [&Rows<'_>; 2],
     applied: &Applied,
-    (noise, population): (&[Noise], &Population),
+    noise: &[Noise],
+    population: &Population,
 ) -> [Option<Decoded>; 2] {
     let errors = |[open, locked]: [&Rows<'_>; 2], applied: &Applied| {
         locked.errors(applied, &ChannelBaselines { zeros: &open.zeros(applied), noise })

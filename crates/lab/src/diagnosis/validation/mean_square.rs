@@ -23,7 +23,7 @@ use tactpad_core::numeric::statistics::{mean, rms};
 const DRAWS: usize = 1000;
 /// The same draws for the same data.
 const SEED: u64 = 0x6a19;
-/// What a plan chooses: load, shear, radius, kind of row.
+/// Features that a plan chooses: load, shear, radius, kind of row.
 const FEATURES: usize = 4;
 /// By how many of its own deviations over the rows another plan's mean of each of these is off.
 const PLAN_DEVIATION: f64 = 0.5;
@@ -38,7 +38,7 @@ pub(crate) struct Squares {
     pub(crate) expected: Option<[Vec<f64>; 2]>,
 }
 
-/// What means are taken over: the locked and the open rows.
+/// Populations over which means are taken: the locked and the open rows.
 pub(crate) struct Population {
     parts: [RowClass; 2],
 }
@@ -128,7 +128,7 @@ impl RowClass {
     }
 }
 
-/// What a plan chooses of a row.
+/// Features of a row that a plan chooses.
 fn features(sample: &Sample) -> [f64; FEATURES] {
     let [fx, fy, _] = sample.load;
     let load = libm::sqrt(sample.load.iter().map(|n| n * n).sum());

@@ -1,4 +1,4 @@
-//! What changed in a pad before a play that nobody labelled: since an earlier play, or since it was calibrated.
+//! Changes of a pad before a play without labels: since an earlier play, or since it was calibrated.
 //!
 //! Nine channels against five unknowns of a contact leave four equations for each press. The pad as it was (its gains, poses,
 //! crosstalk, memory) is what the earlier play, or the decoder, says; what only the later play has is a change
@@ -43,10 +43,10 @@ pub enum Before<'b> {
     Decoder(&'b Decoder),
 }
 
-/// What a play says.
+/// Changes that a play shows.
 #[derive(Clone, Debug)]
 pub struct DetectedChanges {
-    /// What changed, the clearest first.
+    /// Changes, the clearest first.
     pub findings: Vec<Finding>,
     /// Presses, as windows of a tenth of a second: of the earlier play, if there is one, and of the later.
     pub presses: (Option<usize>, usize),
@@ -114,14 +114,15 @@ impl fmt::Display for ChangeError {
 
 impl std::error::Error for ChangeError {}
 
-/// What changed before a play. `field` is that of `device`, the nominal pad, and `flaws` what its modules may lack.
+/// Changes before a play. `field` is that of `device`, the nominal pad, and `flaws` what its modules may lack.
 ///
 /// # Errors
 /// Too few presses, no rest, a decoder that does not say how far it may be off, or readings beyond anything that a pad can read.
 pub fn changed(
     before: Before<'_>,
     later: &[Window],
-    (device, field): (&Device, &PadField),
+    device: &Device,
+    field: &PadField,
     flaws: &[FieldChange],
     report: Report<'_>,
 ) -> Result<DetectedChanges, ChangeError> {
@@ -132,14 +133,14 @@ pub fn changed(
         Before::Play(earlier) => {
             let (play, later) = one_after_the_other([earlier, later], device)?;
             let plays = Plays { recording: &play.recording, fitted: &play.fitted, later };
-            let comparison = Comparison::with_play(plays, (device, field), &maps, report);
+            let comparison = Comparison::with_play(plays, device, field, &maps, report);
             DetectedChanges::by(&comparison.map_err(ChangeError::Fit)?, &candidates)
         }
         Before::Decoder(decoder) => {
             let as_it_was = calibrated(decoder)?;
             let play = play(later, Which::Later, device)?;
             let plays = Plays { recording: &play.recording, fitted: &play.fitted, later: 0 };
-            let comparison = Comparison::with_decoder(plays, (device, field), &as_it_was, &maps);
+            let comparison = Comparison::with_decoder(plays, device, field, &as_it_was, &maps);
             DetectedChanges::by(&comparison.map_err(ChangeError::Fit)?, &candidates)
         }
     }

@@ -56,7 +56,7 @@ impl<'c> Selection<'c> {
         self.p_value(explained.square, explained.candidate.numbers.len())
     }
 
-    /// What was found, the clearest first.
+    /// Findings, the clearest first.
     pub(super) fn findings(&self) -> Vec<Finding> {
         let selected = self.selected();
         let Some((solution, variances)) = self.equations.combined(&columns(&selected)).solved() else {

@@ -1,4 +1,4 @@
-//! What is light and what is hard for a hand.
+//! Forces of light and hard presses of a hand, N.
 
 use super::peaks::Peaks;
 use tactpad_core::pipeline::contact::touch;

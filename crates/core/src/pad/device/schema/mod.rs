@@ -11,12 +11,12 @@ use super::unit::Unit;
 use super::{Device, Direction, Gauge, Module, Reported, Side};
 use crate::quantity::CHANNELS;
 
-/// What a number changes.
+/// Part of the pad that a number changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// The influence field: microvolts per newton, and where they are known.
     Field,
-    /// What is made of the field's signals: gains and offsets.
+    /// Gains and offsets of the field's signals.
     Readout,
     /// What comes and goes in time, and what the measuring rig adds: see [`Behaviour`](super::behaviour::Behaviour).
     Behaviour,

@@ -33,8 +33,10 @@ impl DirectionGates {
         &mut self,
         access: Access,
         t: StreamInstant,
-        (sector, contact): (Option<Sector>, Option<&Contact>),
-        (presses, verdicts): (&mut Presses, &mut Verdicts),
+        sector: Option<Sector>,
+        contact: Option<&Contact>,
+        presses: &mut Presses,
+        verdicts: &mut Verdicts,
     ) -> Directions {
         let conditions = Conditions { access, dwell: None };
         let may_reject = [access.slow_us, access.bounce_us] != [0, 0];
@@ -43,7 +45,7 @@ impl DirectionGates {
             let is_asked = sector.is_some_and(|sector| sector.has(direction));
             let touch = Touch { is_on: is_asked, is_hard: false, is_in_place: true };
             let before = *presses;
-            *is_on = accept.step(conditions, t, (touch, contact), presses);
+            *is_on = accept.step(conditions, t, touch, contact, presses);
             if let Some(is_rejected) = presses.since(before).filter(|_| may_reject) {
                 let rejected = is_rejected.then(|| accept.why_rejected(conditions));
                 verdicts.keep(Verdict { t, told: VerdictEvent::Direction { direction, rejected } });

@@ -119,9 +119,14 @@ impl Engine {
             return;
         };
         self.held = contact.and_then(|contact| heading::follow(dpad, self.held, contact));
-        let asked = (self.held, contact);
-        let heard = (&mut self.presses, &mut self.verdicts);
-        self.directions = self.directed.step(self.profile.access, t, asked, heard);
+        self.directions = self.directed.step(
+            self.profile.access,
+            t,
+            self.held,
+            contact,
+            &mut self.presses,
+            &mut self.verdicts,
+        );
         let layer = self.layer.and_then(|number| self.profile.layers.get(number));
         for direction in self.directions.iter() {
             let (own, in_layer) = match direction {
@@ -143,31 +148,32 @@ impl Engine {
                 .axes()
                 .into_iter()
                 .zip(position.unwrap_or_default())
-                .for_each(|axis| stated.state_axis(axis));
+                .for_each(|(code, value)| stated.state_axis(code, value));
         }
-        let at = (self.zone, self.directions);
-        for trigger in self.profile.triggers.iter().filter(|trigger| is_in(at, trigger.place)) {
+        let (zone, directions) = (self.zone, self.directions);
+        for trigger in self.profile.triggers.iter().filter(|trigger| is_in(zone, directions, trigger.place)) {
             let position = contact.map_or(0, |contact| trigger.position(contact.fz_n));
-            stated.state_axis((trigger.axis(), position));
+            stated.state_axis(trigger.axis(), position);
         }
     }
 
     /// States what the buttons do. A layer that one of them switches counts from the next sample on.
     fn press(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut StepOutput) {
-        let at = (self.zone, self.directions);
+        let (zone, directions) = (self.zone, self.directions);
         let access = self.profile.access;
-        for (number, (button, touched)) in (1..).zip(self.profile.buttons.iter().zip(&mut self.buttons)) {
+        for (number, (button, state)) in (1..).zip(self.profile.buttons.iter().zip(&mut self.buttons)) {
             if !button.when.is_met(self.layer) {
-                touched.sleep(button, t, contact).for_each(|playing| stated.take(playing));
+                state.sleep(button, t, contact).for_each(|playing| stated.take(playing));
                 continue;
             }
             // A lifted contact was where it was.
-            let is_in_place = contact.is_none() || is_in(at, button.place);
+            let is_in_place = contact.is_none() || is_in(zone, directions, button.place);
             let before = self.presses;
-            let help = (access, &mut self.presses);
-            touched.step(button, t, (contact, is_in_place), help).for_each(|playing| stated.take(playing));
+            state
+                .step(button, t, contact, is_in_place, access, &mut self.presses)
+                .for_each(|playing| stated.take(playing));
             if let Some(is_rejected) = self.presses.since(before) {
-                let rejected = is_rejected.then(|| touched.why_rejected(button, access));
+                let rejected = is_rejected.then(|| state.why_rejected(button, access));
                 self.verdicts.keep(Verdict { t, told: VerdictEvent::Button { number, rejected } });
             }
         }
@@ -202,7 +208,7 @@ impl Engine {
     fn unlatch(&mut self) {
         let buttons = || self.profile.buttons.iter().zip(&self.buttons);
         let is_acting =
-            !self.directions.is_empty() || buttons().any(|(button, touched)| touched.is_acting(button));
+            !self.directions.is_empty() || buttons().any(|(button, state)| state.is_acting(button));
         if self.is_acting && !is_acting {
             self.buttons.iter_mut().for_each(ButtonState::unlatch);
         }
@@ -259,7 +265,7 @@ impl Engine {
     pub fn replace_profile(&mut self, profile: Profile) {
         let is_changed_only = self.profile.name == profile.name;
         let taken_over = |button: &Button| match self.unchanged(button) {
-            Some(touched) if is_changed_only => touched,
+            Some(state) if is_changed_only => state,
             _ => self.taken_over(button),
         };
         self.buttons = profile.buttons.iter().map(taken_over).collect();
@@ -282,7 +288,7 @@ impl Engine {
     /// Where the same button stands.
     fn unchanged(&self, button: &Button) -> Option<ButtonState> {
         let mut all = self.profile.buttons.iter().zip(&self.buttons);
-        all.find(|(old, _)| *old == button).map(|(_, touched)| *touched)
+        all.find(|(old, _)| *old == button).map(|(_, state)| *state)
     }
 
     /// Where a button of another profile stands that takes over now.
@@ -290,7 +296,7 @@ impl Engine {
         let force_n = self.last.map_or(0.0, |contact| force_of(button.force, &contact));
         let mut same_force =
             self.profile.buttons.iter().zip(&self.buttons).filter(|(old, _)| old.force == button.force);
-        let is_under_way = same_force.any(|(_, touched)| touched.is_under_way());
+        let is_under_way = same_force.any(|(_, state)| state.is_under_way());
         if is_under_way || force_n >= button.press_n {
             ButtonState::spent(force_n)
         } else {
@@ -300,7 +306,7 @@ impl Engine {
 }
 
 /// Whether the contact is there, being in this zone and having these directions.
-fn is_in((zone, directions): (Option<usize>, Directions), place: Option<ButtonPlace>) -> bool {
+fn is_in(zone: Option<usize>, directions: Directions, place: Option<ButtonPlace>) -> bool {
     match place {
         None => true,
         Some(ButtonPlace::Zone(number)) => zone == Some(number),

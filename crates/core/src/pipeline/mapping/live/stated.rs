@@ -50,7 +50,7 @@ impl StepOutput {
     }
 
     /// Adds the position of an axis; at rest it needs none.
-    pub(crate) fn state_axis(&mut self, (code, value): (Code, i32)) {
+    pub(crate) fn state_axis(&mut self, code: Code, value: i32) {
         if value != 0 {
             self.state(Binding { device: OutputDevice::Gamepad, code, value });
         }

@@ -20,7 +20,7 @@ pub enum Mode {
     },
 }
 
-/// What a kind of press does.
+/// Effect of a kind of press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effect {
     /// What it acts on.
@@ -126,13 +126,13 @@ pub struct MacroStep {
 /// A kind of press that is told by a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimedEffect {
-    /// What it does.
+    /// Effect of the press.
     pub effect: Effect,
     /// The time that tells it.
     pub us: u64,
 }
 
-/// What a press does.
+/// Effect of a press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// Any press, as long as it lasts.
@@ -156,12 +156,12 @@ pub enum Action {
         hard_press_n: f32,
         /// No longer hard below this force; less than `hard_press_n`.
         hard_release_n: f32,
-        /// What becomes of the light one on the way to a hard one.
+        /// Fate of the light one on the way to a hard one.
         skip: Skip,
     },
 }
 
-/// What becomes of a light press on the way to a hard one.
+/// Fate of a light press on the way to a hard one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Skip {
     /// The light one begins at once, the hard one comes on top.

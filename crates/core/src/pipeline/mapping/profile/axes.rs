@@ -16,7 +16,7 @@ pub enum Side {
     Right,
 }
 
-/// What moves a stick.
+/// Quantity that moves a stick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The place of the contact; its numbers are in millimetres from the centre.
@@ -30,7 +30,7 @@ pub enum Source {
 pub struct Stick {
     /// Which one.
     pub side: Side,
-    /// What moves it.
+    /// Quantity that moves it.
     pub source: Source,
     /// Up to here it rests,
     pub rest: f32,

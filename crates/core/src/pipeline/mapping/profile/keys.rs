@@ -1,11 +1,11 @@
-//! What goes down together.
+//! Keys that go down together.
 
 use crate::pipeline::control::{Code, OutputDevice};
 
 /// The most keys that one press gives at once.
 pub const KEYS_MAX: usize = 4;
 
-/// What a control does when it is active: one key, or one axis pushed to a position.
+/// Binding of a control: one key, or one axis pushed to a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Binding {
     /// The device it is on.

@@ -76,7 +76,7 @@ impl Tremor {
     }
 }
 
-/// What tells a touch from a hand that rests.
+/// Thresholds that tell a touch from a resting hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestRejection {
     /// A touch is by so much above the load that rests, in newtons,
@@ -126,7 +126,7 @@ pub struct Button {
     pub place: Option<ButtonPlace>,
     /// When it counts.
     pub when: When,
-    /// What a press does.
+    /// Effect of a press.
     pub action: Action,
 }
 
@@ -197,7 +197,7 @@ impl Profile {
         sticks.chain(self.triggers.iter().map(Trigger::axis))
     }
 
-    /// What its presses can ask of the bridge.
+    /// Commands that its presses can ask of the bridge.
     pub fn commands(&self) -> impl Iterator<Item = Command> + '_ {
         let effects = self.buttons.iter().flat_map(|button| button.effects().into_iter().flatten());
         effects.filter_map(|effect| match effect.output {
@@ -243,7 +243,7 @@ impl Force {
 }
 
 impl Button {
-    /// What its kinds of press do, in the order of [`Role::ALL`].
+    /// Effects of its kinds of press, in the order of [`Role::ALL`].
     pub fn effects(&self) -> [Option<Effect>; Role::ALL.len()] {
         match self.action {
             Action::Hold(effect) => [Some(effect), None, None, None, None, None],
@@ -254,7 +254,7 @@ impl Button {
         }
     }
 
-    /// What it can press.
+    /// Controls that it can press.
     pub fn bindings(&self) -> impl Iterator<Item = Binding> + use<> {
         self.effects().into_iter().flatten().flat_map(|effect| effect.output.bindings())
     }

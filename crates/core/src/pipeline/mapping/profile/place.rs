@@ -1,4 +1,4 @@
-//! What the place of a contact means in a profile: directions, the pointer's way, zones, and how far each side counts.
+//! Meaning of the contact's place in a profile: directions, the pointer's way, zones, and how far each side counts.
 
 use super::keys::Keys;
 use crate::quantity::Contact;

@@ -150,11 +150,11 @@ pub struct ButtonForces {
     pub zone: Option<String>,
     /// The layer in which it counts; always without.
     pub layer: Option<String>,
-    /// What its kinds of press do.
+    /// Effects of its kinds of press.
     pub does: Vec<EffectLabel>,
 }
 
-/// What a kind of press does.
+/// Effect of a kind of press.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EffectLabel {
     /// The kind of press, as its key in the profile.

@@ -20,7 +20,7 @@ pub(crate) const FORCES: [(&str, Force); 5] = [
 pub(crate) const SIDES: [(&str, Side); 2] = [("left", Side::Left), ("right", Side::Right)];
 /// The quantity that moves a stick.
 pub(crate) const SOURCES: [(&str, Source); 2] = [("place", Source::Place), ("shear", Source::Shear)];
-/// What can be asked of the bridge, but for going over to a profile of a name.
+/// Commands to the bridge, but for going over to a profile of a name.
 pub(crate) const COMMANDS: [(&str, Command); 4] = [
     ("next-profile", Command::NextProfile),
     ("pause", Command::TogglePause),

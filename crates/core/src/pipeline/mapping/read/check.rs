@@ -150,7 +150,7 @@ impl ProfileDraft {
             dpad: dpad.map(|dpad| DpadDraft::read(&dpad, findings)),
             pointer: pointer.map(|pointer| read_pointer(&pointer, findings)),
             sticks: axes::read_sticks(root, findings),
-            triggers: axes::read_triggers(root, (&zones, has_dpad), findings),
+            triggers: axes::read_triggers(root, &zones, has_dpad, findings),
             buttons: buttons.iter().map(|button| ButtonDraft::read(button, around, findings)).collect(),
             zones,
             layers,

@@ -6,7 +6,7 @@ use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::setting::Setting;
 
-/// What the untouched channel reads.
+/// Zero of the untouched channel.
 pub(crate) struct ChannelOffset;
 
 const PARAMETERS: [Parameter; 1] = [Parameter::additive("offset_uv", [-1e6, 1e6], 1.0)];

@@ -7,7 +7,7 @@ use crate::diagnosis::model::memory::{Dwells, Prony};
 use crate::diagnosis::model::setting::Setting;
 use crate::diagnosis::model::{Parameter, with_shapes};
 
-/// What a load has added to itself after 20 s, as a share. How it goes differs from glue to glue: the parts of the relaxation times
+/// Creep after 20 s, as a share of the load. How it goes differs from glue to glue: the parts of the relaxation times
 /// are fitted beside the share.
 ///
 /// Source: J. D. Ferry, Viscoelastic Properties of Polymers (1980), chapter 3 (spectra of relaxation times).

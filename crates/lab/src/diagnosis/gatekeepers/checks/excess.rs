@@ -30,7 +30,7 @@ const POWER_90: f64 = 1.281_552;
 /// Its name in reports.
 pub(crate) const EFFECT: &str = "noise_excess";
 
-/// What the noise of the channels says.
+/// Excess noise of the channels.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Excess {
     pub(crate) notices: Vec<Notice>,

@@ -58,7 +58,7 @@ impl RowRun {
         self.t_s.last().zip(self.t_s.first()).map_or(0.0, |(last, first)| last - first)
     }
 
-    /// What a smooth course leaves of a function, and its norm.
+    /// Residual of a function beside a smooth course, and its norm.
     fn without_smooth(&self, mut function: Vec<f64>) -> (Vec<f64>, f64) {
         // Twice: what rounding leaves goes as well.
         for smooth in self.smooth.iter().chain(&self.smooth) {
@@ -100,7 +100,7 @@ impl RowRun {
 }
 
 impl Waves {
-    /// What the line takes off the squares.
+    /// Reduction of the squares by the line.
     pub(crate) fn square(&self, values: &[f64]) -> f64 {
         self.pair.iter().map(|wave| dot(wave, values).powi(2)).sum()
     }

@@ -111,7 +111,7 @@ fn loaded(gate: &Gate, stretches: &[RowRun], combs: &[Comb], critical: f64) -> V
     combs.iter().filter(has_line).map(|comb| comb.grid_hz).collect()
 }
 
-/// What the model leaves of a channel.
+/// Residual of a channel beside the model.
 fn residual(gate: &Gate, channel: usize) -> Vec<f64> {
     let rows: Vec<usize> = (0..gate.observations.rows()).collect();
     let readings = gate.readings(channel, &rows);

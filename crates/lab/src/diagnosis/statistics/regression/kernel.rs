@@ -15,7 +15,7 @@ pub(crate) struct Group {
     pub(crate) is_load: bool,
 }
 
-/// What is written beside rows.
+/// Labels of rows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Labels {
     /// The inputs' groups.

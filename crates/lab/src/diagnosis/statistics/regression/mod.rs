@@ -1,4 +1,4 @@
-//! What channels read by what is written beside them: Gaussian-process regression in low-rank form.
+//! Regression of channels on their labels: Gaussian-process regression in low-rank form.
 //!
 //! With loads l and places p, both in units of their extent, a reading is a + bᵀ c + φ(x)ᵀ w + n. The functions φ stand for a process
 //! with the covariance
@@ -61,7 +61,7 @@ pub(crate) struct RegressionFit {
     pub(crate) noise: NoiseLevel,
     /// Of the noise, from row to row of a series.
     pub(crate) memory: f64,
-    /// What the rows tell of the weights, in numbers.
+    /// Effective degrees of freedom of the weights.
     pub(crate) freedom: f64,
 }
 

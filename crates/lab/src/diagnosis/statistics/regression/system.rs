@@ -4,7 +4,7 @@ use tactpad_core::numeric::dense::{Matrix, gram};
 use tactpad_core::numeric::linear::LargeFactor;
 use tactpad_core::numeric::products::dot;
 
-/// What makes numbers without a prior unique, as a precision.
+/// Precision that makes numbers without a prior unique.
 const FREE: f64 = 1e-6;
 
 /// Least squares with priors: the products of whitened columns.

@@ -50,7 +50,8 @@ impl Accept {
         &mut self,
         conditions: Conditions,
         t: StreamInstant,
-        (touch, contact): (Touch, Option<&Contact>),
+        touch: Touch,
+        contact: Option<&Contact>,
         presses: &mut Presses,
     ) -> bool {
         let is_on = touch.is_on && touch.is_in_place;

@@ -55,8 +55,10 @@ impl ButtonState {
         &mut self,
         button: &Button,
         t: StreamInstant,
-        (contact, is_in_place): (Option<&Contact>, bool),
-        (access, presses): (Access, &mut Presses),
+        contact: Option<&Contact>,
+        is_in_place: bool,
+        access: Access,
+        presses: &mut Presses,
     ) -> impl Iterator<Item = Playing> + use<> {
         let force_n = contact.map(|contact| force_of(button.force, contact));
         let Button { press_n, release_n, hair_n, .. } = *button;
@@ -69,7 +71,7 @@ impl ButtonState {
             Action::Hold(_) | Action::ByTime { .. } => self.press == TimedPress::Spent,
         };
         if !is_spent {
-            let is_accepted = self.accept.step(conditions, t, (touch, contact), presses);
+            let is_accepted = self.accept.step(conditions, t, touch, contact, presses);
             touch.is_on = is_accepted || (is_on && !is_in_place);
         }
         let roles = match &button.action {

@@ -28,13 +28,13 @@ impl TimedPress {
                 *self = Self::Down { since: t, long: false };
                 self.on(action, t)
             }
-            Self::Between { since } => self.wait(action, (since, t), is_on && is_in_place),
+            Self::Between { since } => self.wait(action, since, t, is_on && is_in_place),
             // Who slides off a button has changed their mind: nothing is tapped.
             Self::Down { .. } | Self::Twice if !is_in_place => {
                 *self = Self::Up;
                 None
             }
-            Self::Down { since, long } if !is_on => self.end(action, (since, t), long),
+            Self::Down { since, long } if !is_on => self.end(action, since, t, long),
             Self::Twice | Self::Spent if !is_on => {
                 *self = Self::Up;
                 None
@@ -63,12 +63,7 @@ impl TimedPress {
 
     /// What a press that ends is. A long one between whose long moment and its end no sample came is stated here, or it would be
     /// lost.
-    fn end(
-        &mut self,
-        action: &Action,
-        (since, t): (StreamInstant, StreamInstant),
-        long: bool,
-    ) -> Option<Role> {
+    fn end(&mut self, action: &Action, since: StreamInstant, t: StreamInstant, long: bool) -> Option<Role> {
         *self = Self::Up;
         let Action::ByTime { double, hold, .. } = action else { return None };
         if hold.is_some_and(|hold| t.us_since(since) >= hold.us) {
@@ -85,7 +80,8 @@ impl TimedPress {
     fn wait(
         &mut self,
         action: &Action,
-        (since, t): (StreamInstant, StreamInstant),
+        since: StreamInstant,
+        t: StreamInstant,
         pressed: bool,
     ) -> Option<Role> {
         let window_us = match action {

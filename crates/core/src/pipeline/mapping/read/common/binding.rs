@@ -16,7 +16,7 @@ const PLAYED: [OutputDevice; 2] = [OutputDevice::Gamepad, OutputDevice::Keyboard
 pub(crate) const DEVICE_KEYS: [&str; 3] =
     [OutputDevice::Gamepad.name(), OutputDevice::Keyboard.name(), OutputDevice::Pointer.name()];
 
-/// What one control of the profile does: on the gamepad or the keyboard, whichever is played, or on the pointer
+/// Outputs of one control of the profile: on the gamepad or the keyboard, whichever is played, or on the pointer
 /// in any case. `None` where there is none or the text is unusable (and reported).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Outputs {
@@ -26,7 +26,7 @@ pub(crate) struct Outputs {
 }
 
 impl Outputs {
-    /// What it does on `device`.
+    /// Output on `device`.
     pub(crate) const fn on(self, device: OutputDevice) -> Option<Placed<Keys>> {
         match device {
             OutputDevice::Gamepad => self.gamepad,
@@ -35,7 +35,7 @@ impl Outputs {
         }
     }
 
-    /// What it does where `output` is played.
+    /// Output where `output` is played.
     pub(crate) fn settle(self, output: OutputDevice) -> Option<Keys> {
         self.pointer.or(self.on(output)).map(|keys| keys.value)
     }

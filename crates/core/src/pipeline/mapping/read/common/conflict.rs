@@ -17,7 +17,7 @@ use crate::toml_text::section::Placed;
 /// The pointer's buttons and its wheel: they are driven beside the keyboard or the gamepad.
 const POINTER_CONTROLS_MAX: usize = 4;
 
-/// What drives a control.
+/// Owner that drives a control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Owner {
     /// A direction of the D-pad: `up`, `down`, `left` or `right`.

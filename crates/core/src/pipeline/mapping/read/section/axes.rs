@@ -40,12 +40,17 @@ pub(crate) fn read_sticks(root: &Section<'_>, findings: &mut Findings<'_>) -> Ve
 /// Reads all `[[trigger]]`s; `None` for one that is unusable.
 pub(crate) fn read_triggers(
     root: &Section<'_>,
-    around: (&[Zone], bool),
+    zones: &[Zone],
+    has_dpad: bool,
     findings: &mut Findings<'_>,
 ) -> Vec<Option<Trigger>> {
     let tables = read_tables(root, "trigger", &TRIGGER_KEYS, findings);
     let sides = read_sides(&tables, "trigger", findings);
-    tables.iter().zip(sides).map(|(table, side)| read_trigger(table, side, around, findings)).collect()
+    tables
+        .iter()
+        .zip(sides)
+        .map(|(table, side)| read_trigger(table, side, zones, has_dpad, findings))
+        .collect()
 }
 
 /// Their tables; reports more than a gamepad has, and such of a profile that plays keys.
@@ -85,8 +90,8 @@ fn read_stick(table: &Section<'_>, side: Option<Side>, findings: &mut Findings<'
         Some(_) => table.word("from", &SOURCES, findings).map(|word| word.value),
         None => Some(Source::Place),
     };
-    let place = read_way(table, (PLACE_KEYS, [STICK_CENTRE_MM, FULL_RADIUS_MM]), findings);
-    let shear = read_way(table, (SHEAR_KEYS, [SHEAR_REST_N, SHEAR_FULL_N]), findings);
+    let place = read_way(table, PLACE_KEYS, [STICK_CENTRE_MM, FULL_RADIUS_MM], findings);
+    let shear = read_way(table, SHEAR_KEYS, [SHEAR_REST_N, SHEAR_FULL_N], findings);
     let curve = table.number("curve", STICK_CURVE, findings);
     let (min_force_n, release_force_n) = read_gate(table, findings);
     let (way, (others, word)) = match source? {
@@ -111,13 +116,14 @@ fn read_stick(table: &Section<'_>, side: Option<Side>, findings: &mut Findings<'
 fn read_trigger(
     table: &Section<'_>,
     side: Option<Side>,
-    around: (&[Zone], bool),
+    zones: &[Zone],
+    has_dpad: bool,
     findings: &mut Findings<'_>,
 ) -> Option<Trigger> {
-    let way = read_way(table, (["from_n", "full_n"], [TRIGGER_FROM_N, TRIGGER_FULL_N]), findings);
+    let way = read_way(table, ["from_n", "full_n"], [TRIGGER_FROM_N, TRIGGER_FULL_N], findings);
     let curve = table.number("curve", STICK_CURVE, findings);
     let place = match table.text("zone", findings) {
-        Some(name) => Some(plate::find(name, around, findings)?),
+        Some(name) => Some(plate::find(name, zones, has_dpad, findings)?),
         None => None,
     };
     let [from_n, full_n] = way?;
@@ -127,7 +133,8 @@ fn read_trigger(
 /// Where an axis begins to move, and where it is at its end.
 fn read_way(
     table: &Section<'_>,
-    (keys, bounds): ([&'static str; 2], [Bounds<f32>; 2]),
+    keys: [&'static str; 2],
+    bounds: [Bounds<f32>; 2],
     findings: &mut Findings<'_>,
 ) -> Option<[f32; 2]> {
     let [rest, full] = [0, 1].map(|at| table.number(keys[at], bounds[at], findings));

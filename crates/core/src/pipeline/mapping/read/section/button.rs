@@ -53,7 +53,7 @@ pub(crate) struct ButtonDraft {
     action: Option<ActionDraft>,
 }
 
-/// What its kinds of press do, in the order of [`Role::ALL`], and the times that tell them.
+/// Effects of its kinds of press, in the order of [`Role::ALL`], and the times that tell them.
 struct ActionDraft {
     effects: [Option<EffectDraft>; Role::ALL.len()],
     double_press_ms: Option<u32>,
@@ -61,7 +61,7 @@ struct ActionDraft {
     stages: Option<Stages>,
 }
 
-/// What a button is read beside.
+/// Context in which a button is read.
 #[derive(Clone, Copy)]
 pub(crate) struct ButtonContext<'p> {
     pub(crate) effects: EffectContext<'p>,
@@ -81,8 +81,8 @@ impl ButtonDraft {
         table.require_less(("release_n", release), ("press_n", press), findings);
         let hair_n = table.place_of("hair_n").and_then(|_| table.number("hair_n", HAIR_N, findings));
         let name = table.text("zone", findings);
-        let place = name.and_then(|name| plate::find(name, (around.zones, around.has_dpad), findings));
-        let action = ActionDraft::read(table, (around.effects, press), findings);
+        let place = name.and_then(|name| plate::find(name, around.zones, around.has_dpad, findings));
+        let action = ActionDraft::read(table, around.effects, press, findings);
         let newtons = |force: Option<Placed<f32>>| force.map(|force| force.value);
         Self {
             force,
@@ -96,7 +96,7 @@ impl ButtonDraft {
         }
     }
 
-    /// What the kinds of press of this button, the `number`th, drive.
+    /// Controls that the kinds of press of this button, the `number`th, drive.
     pub(crate) fn uses(&self, number: usize) -> impl Iterator<Item = Use> + use<> {
         let (place, when) = (self.place, self.when.unwrap_or(When::Always));
         let effects = self.action.as_ref().map(|action| action.effects);
@@ -132,12 +132,13 @@ fn read_when(table: &Section<'_>, layers: &[&str], findings: &mut Findings<'_>) 
 impl ActionDraft {
     fn read(
         table: &Section<'_>,
-        (around, press): (EffectContext<'_>, Option<Placed<f32>>),
+        around: EffectContext<'_>,
+        press: Option<Placed<f32>>,
         findings: &mut Findings<'_>,
     ) -> Option<Self> {
         let effects = Role::ALL.map(|role| EffectDraft::read(table, role, around, findings));
-        let double = read_time(table, (Role::Double, "double_press_ms"), DOUBLE_PRESS_MS, findings);
-        let long = read_time(table, (Role::Hold, "long_press_ms"), LONG_PRESS_MS, findings);
+        let double = read_time(table, Role::Double, "double_press_ms", DOUBLE_PRESS_MS, findings);
+        let long = read_time(table, Role::Hold, "long_press_ms", LONG_PRESS_MS, findings);
         let stages = stages::read(table, press, findings);
         check_roles(table, findings)?;
         check_times(table, [double, long], around.min_press_ms, findings);
@@ -192,7 +193,8 @@ const OUT_HELP: &str =
 /// The time that tells a kind of press; none where there is no such kind.
 fn read_time(
     table: &Section<'_>,
-    (role, key): (Role, &str),
+    role: Role,
+    key: &str,
     bounds: Bounds<u32>,
     findings: &mut Findings<'_>,
 ) -> Option<Placed<u32>> {

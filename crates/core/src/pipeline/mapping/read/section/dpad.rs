@@ -66,7 +66,7 @@ impl DpadDraft {
         Self { shape: read_shape(table, mode, findings), mode, directions: read_directions(table, findings) }
     }
 
-    /// What its directions drive.
+    /// Controls that its directions drive.
     pub(crate) fn uses(&self) -> impl Iterator<Item = Use> + use<> {
         let named = self.directions.into_iter().zip(Direction::NAMES);
         named.map(|(outputs, name)| Use {

@@ -1,4 +1,4 @@
-//! What a kind of press does, as a profile writes it.
+//! Effect of a kind of press, as a profile writes it.
 
 use arrayvec::ArrayString;
 
@@ -11,12 +11,12 @@ use crate::pipeline::mapping::read::common::named;
 use crate::toml_text::diag::{Findings, quoted};
 use crate::toml_text::section::{Placed, Section};
 
-/// What there may be in place of a device.
+/// Keys that may stand in place of a device.
 const TARGET_KEYS: [&str; 3] = ["layer", "macro", "bridge"];
 /// How it follows the press.
 const MODE_KEYS: [&str; 3] = ["toggle", "sticky", "turbo_ms"];
 
-/// What an effect is read beside.
+/// Context in which an effect is read.
 #[derive(Clone, Copy)]
 pub(crate) struct EffectContext<'p> {
     /// Nothing may be shorter than this.
@@ -25,14 +25,14 @@ pub(crate) struct EffectContext<'p> {
     pub(crate) macros: &'p [&'p str],
 }
 
-/// What a kind of press does, while it is read.
+/// Effect of a kind of press, while it is read.
 #[derive(Clone, Copy)]
 pub(crate) struct EffectDraft {
     target: Target,
     mode: Option<Mode>,
 }
 
-/// What it acts on: on devices, or on something else, which is `None` where that is unusable.
+/// Target that it acts on: devices, or on something else, which is `None` where that is unusable.
 #[derive(Clone, Copy)]
 enum Target {
     Devices(Outputs),
@@ -54,7 +54,7 @@ impl EffectDraft {
         Some(Self { target, mode: read_mode(&section, role, around.min_press_ms, findings) })
     }
 
-    /// What it drives; none where that is no device.
+    /// Controls that it drives; none where that is no device.
     pub(crate) const fn outputs(&self) -> Option<Outputs> {
         match self.target {
             Target::Devices(outputs) => Some(outputs),

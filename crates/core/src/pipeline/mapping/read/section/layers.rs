@@ -39,7 +39,7 @@ impl LayerDraft {
         layers
     }
 
-    /// What the directions of this layer, the `number`th from 0, drive.
+    /// Controls that the directions of this layer, the `number`th from 0, drive.
     pub(crate) fn uses(&self, number: usize) -> impl Iterator<Item = Use> + use<> {
         Direction::NAMES.into_iter().zip(self.directions).filter_map(move |(name, outputs)| {
             let owner = Owner::Direction(name);

@@ -43,7 +43,7 @@ impl MacroDraft {
         macros
     }
 
-    /// What the steps of this macro, the `number`th, drive.
+    /// Controls that the steps of this macro, the `number`th, drive.
     pub(crate) fn uses(&self, number: usize) -> impl Iterator<Item = Use> + '_ {
         self.steps.iter().filter_map(move |step| {
             let (owner, outputs) = (Owner::Macro(number), step.outputs?);

@@ -148,7 +148,8 @@ fn limit_hysteresis(zones: &mut [Zone]) {
 /// The place that a button asks for by its name; none (and a finding) where there is no such place.
 pub(crate) fn find(
     asked: Placed<&str>,
-    (zones, has_dpad): (&[Zone], bool),
+    zones: &[Zone],
+    has_dpad: bool,
     findings: &mut Findings<'_>,
 ) -> Option<ButtonPlace> {
     let own = if has_dpad { &Direction::ALL[..] } else { &[] };

@@ -5,7 +5,7 @@ use crate::pipeline::mapping::read::common::limits::{HARD_N, RELEASE_SHARE, SKIP
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::{Bounds, Placed, Section};
 
-/// What only a button with "hard" has.
+/// Keys that only a button with "hard" has.
 const KEYS: [&str; 4] = ["hard_press_n", "hard_release_n", "skip", "skip_ms"];
 /// How a skip is written, and whether it waits.
 const SKIPS: [(&str, Word); 3] = [("no", Word::No), ("may", Word::May), ("must", Word::Must)];

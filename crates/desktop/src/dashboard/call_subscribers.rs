@@ -58,7 +58,7 @@ mod tests {
         let mut call_subscribers = CallSubscribers::default();
         let heard = call_subscribers.subscribe();
         (0..CALLS_MAX as u64 + 5).for_each(|us| {
-            call_subscribers.publish(HostInstant::default().plus_us(us), &Call::Timeout.into())
+            call_subscribers.publish(HostInstant::default().plus_us(us), &Call::Timeout.into());
         });
         assert_eq!(heard.try_iter().count(), CALLS_MAX);
         call_subscribers.publish(HostInstant::default(), &Call::Pause.into());

@@ -5,7 +5,7 @@ use std::io;
 
 use serde_json::Value;
 
-use super::{ctl, last_profile, wish};
+use super::{ctl, last_profile, profile_selection};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::say;
@@ -32,7 +32,7 @@ pub(crate) fn command_line() -> Result<Option<Vec<String>>, Failure> {
             let words = ["tactpad", "run", &profile].into_iter().chain(shown.iter().copied());
             Ok(Some(words.map(str::to_owned).collect()))
         }
-        Err(error) => Err(Failure::Failed(ctl::asked::no_answer(&path, &error))),
+        Err(error) => Err(Failure::Failed(ctl::answer::no_answer(&path, &error))),
     }
 }
 
@@ -49,13 +49,13 @@ fn open_page(answer: &str) -> Result<(), Failure> {
 
 /// The profile that was played last, if it can still be used.
 fn last_profile() -> String {
-    let Some(kept) = last_profile::kept() else { return wish::FALLBACK.to_owned() };
-    if profile::read_aside(wish::first(&kept), OutputChoice::AsWritten).is_ok() {
+    let Some(kept) = last_profile::kept() else { return profile_selection::FALLBACK.to_owned() };
+    if profile::read_aside(profile_selection::first(&kept), OutputChoice::AsWritten).is_ok() {
         return kept;
     }
     say(format_args!(
         "the profile that was played last, {kept}, cannot be used any more: playing {}",
-        wish::FALLBACK
+        profile_selection::FALLBACK
     ));
-    wish::FALLBACK.to_owned()
+    profile_selection::FALLBACK.to_owned()
 }

@@ -1,6 +1,6 @@
 //! `tactpad ctl`: talks to the running bridge.
 
-pub(super) mod asked;
+pub(super) mod answer;
 mod weigh;
 
 use std::env;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use serde_json::Value;
 
-use self::asked::{answered, no_answer};
+use self::answer::{answered, no_answer};
 use super::sound::{Sounds, Which};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;

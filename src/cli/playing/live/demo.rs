@@ -7,12 +7,12 @@ use clap::Args;
 use serde::Serialize;
 
 use super::chosen;
+use super::displays::DisplayOptions;
 use super::files::Files;
 use super::newest::line;
 use super::output::{Output, log_to};
 use super::playing::{Audience, TerminalHost, microseconds, open_virtual, play, requests};
 use super::screen::Screen;
-use super::shown::DisplayOptions;
 use crate::cli::failure::{Failure, if_read};
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;

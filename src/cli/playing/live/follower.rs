@@ -8,7 +8,7 @@ use std::thread;
 
 use rustix::event::{Timespec, poll};
 
-use super::wish::{FileStamp, ProfileSelection};
+use super::profile_selection::{FileStamp, ProfileSelection};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
 use tactpad::bridge::foreground::{Foreground, WindowSystem};

@@ -8,9 +8,8 @@ mod calibrated;
 mod chosen;
 pub(super) mod ctl;
 pub(super) mod demo;
-#[cfg(feature = "tray")]
-mod desk;
 pub(super) mod devices;
+mod displays;
 pub(super) mod doctor;
 mod files;
 mod follower;
@@ -24,11 +23,12 @@ mod output;
 #[cfg(feature = "dashboard")]
 mod page;
 mod playing;
+mod profile_selection;
 pub(super) mod record;
 #[cfg(feature = "dashboard")]
 mod reported;
 pub(super) mod run;
 mod screen;
-mod shown;
 mod sound;
-mod wish;
+#[cfg(feature = "tray")]
+mod tray_profiles;

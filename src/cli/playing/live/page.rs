@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::Value;
 
-use super::wish::ProfileSelection;
+use super::profile_selection::ProfileSelection;
 use super::{calibrated, doctor, reported};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;

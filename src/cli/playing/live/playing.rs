@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::wish::ProfileSelection;
+use super::profile_selection::ProfileSelection;
 use crate::cli::failure::Failure;
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;

@@ -5,15 +5,15 @@ use std::io;
 use clap::Args;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
+use super::displays::DisplayOptions;
 use super::files::Files;
 use super::follower;
 use super::keeping::{KeepPlay, PlayKeeping};
 use super::newest::Newest;
 use super::output::Output;
 use super::playing::{Audience, TerminalHost, WaitOption, microseconds, open_pad, patience, play, requests};
+use super::profile_selection;
 use super::screen::Screen;
-use super::shown::DisplayOptions;
-use super::wish;
 use super::{chosen, ctl};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
@@ -67,7 +67,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { pad, profile, output, decoder, .. } = arguments;
-    let profile = wish::first(profile);
+    let profile = profile_selection::first(profile);
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
     let decoder = chosen::read(decoder)?;
     let audience = audience(output);

@@ -8,11 +8,11 @@ use crate::cli::failure::Failure;
 use crate::cli::printing::written::stdout;
 use tactpad::pipeline::mapping::read::shipped;
 
-mod begun;
 mod chosen;
 #[cfg(all(feature = "dashboard", target_os = "linux"))]
 mod kept;
 mod list;
+mod new;
 mod own;
 mod stored;
 mod verdict;
@@ -87,8 +87,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::List { json } => list::run(*json),
         Action::Show { profile } => Ok(stdout().write_all(chosen::find(profile)?.text.as_bytes())?),
         Action::Check { profile, json } => verdict::run(profile, *json),
-        Action::New { name, save } => begun::new(name, *save),
-        Action::Edit { name } => begun::edit(name),
+        Action::New { name, save } => new::new(name, *save),
+        Action::Edit { name } => new::edit(name),
         Action::Schema => Ok(stdout().write_all(shipped::schema().as_bytes())?),
     }
 }

@@ -27,7 +27,7 @@ pub(super) enum Recording {
     /// It works out what came of it.
     Working(PendingResult),
     /// That is known.
-    Overwrite(Result<GuideResult, String>),
+    Finished(Result<GuideResult, String>),
 }
 
 impl Recording {
@@ -49,13 +49,13 @@ impl Recording {
             }
             Self::On { begin, .. } => *self = worked((context.past)(), *begin, work),
             Self::Working(worked) => match worked.try_recv() {
-                Ok(outcome) => *self = Self::Overwrite(outcome),
+                Ok(outcome) => *self = Self::Finished(outcome),
                 Err(TryRecvError::Empty) => {}
                 Err(TryRecvError::Disconnected) => {
-                    *self = Self::Overwrite(Err("this failed: begin anew".into()))
+                    *self = Self::Finished(Err("this failed: begin anew".into()));
                 }
             },
-            Self::Idle | Self::Overwrite(_) => {}
+            Self::Idle | Self::Finished(_) => {}
         }
     }
 
@@ -63,7 +63,7 @@ impl Recording {
     pub(super) const fn for_us(&self) -> Option<u64> {
         match self {
             Self::On { for_us, .. } => Some(*for_us),
-            Self::Idle | Self::Working(_) | Self::Overwrite(_) => None,
+            Self::Idle | Self::Working(_) | Self::Finished(_) => None,
         }
     }
 
@@ -82,8 +82,8 @@ impl Recording {
         let state = match self {
             Self::Idle | Self::On { .. } => StepState::Todo,
             Self::Working(_) => StepState::Doing,
-            Self::Overwrite(Ok(_)) => StepState::Done,
-            Self::Overwrite(Err(_)) => StepState::Failed,
+            Self::Finished(Ok(_)) => StepState::Done,
+            Self::Finished(Err(_)) => StepState::Failed,
         };
         let text = "This takes a few seconds; nothing is to be done.";
         PageStep { state, ..PageStep::to_do("fit", "Fit the profile", text) }
@@ -94,16 +94,16 @@ impl Recording {
         match self {
             Self::Idle => GuideState::Idle,
             Self::On { .. } | Self::Working(_) => GuideState::Running,
-            Self::Overwrite(Ok(_)) => GuideState::Done,
-            Self::Overwrite(Err(_)) => GuideState::Failed,
+            Self::Finished(Ok(_)) => GuideState::Done,
+            Self::Finished(Err(_)) => GuideState::Failed,
         }
     }
 
     /// The result, if it is known: a proposal, or in words why there is none.
     pub(super) fn outcome(&self) -> Option<GuideResult> {
         match self {
-            Self::Overwrite(Ok(outcome)) => Some(outcome.clone()),
-            Self::Overwrite(Err(text)) => Some(GuideResult::words(text)),
+            Self::Finished(Ok(outcome)) => Some(outcome.clone()),
+            Self::Finished(Err(text)) => Some(GuideResult::words(text)),
             Self::Idle | Self::On { .. } | Self::Working(_) => None,
         }
     }
@@ -122,7 +122,7 @@ fn worked(
     });
     match spawned {
         Ok(_) => Recording::Working(worked),
-        Err(error) => Recording::Overwrite(Err(error.to_string())),
+        Err(error) => Recording::Finished(Err(error.to_string())),
     }
 }
 

@@ -2,8 +2,8 @@
 
 mod hands;
 pub(super) mod kept;
+mod screen;
 mod session;
-mod told;
 mod words;
 
 use std::io::Write;
@@ -15,8 +15,8 @@ use clap::Args;
 
 use self::hands::Hands;
 use self::kept::{SessionFiles, SessionStart};
+use self::screen::{SessionHost, SessionScreen};
 use self::session::Session;
-use self::told::{SessionHost, SessionScreen};
 use super::playing::{Audience, TerminalHost, WaitOption, open_pad, patience, play, requests};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;

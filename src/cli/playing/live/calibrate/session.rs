@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::hands::Hands;
 use super::kept::SessionFiles;
-use super::told::SessionScreen;
+use super::screen::SessionScreen;
 use crate::cli::failure::Failure;
 use tactpad::bridge::observer::Observation;
 use tactpad::bridge::request::{Request, RequestSender};

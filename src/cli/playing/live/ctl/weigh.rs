@@ -6,7 +6,7 @@ use std::path::Path;
 use rustix::event::{PollFd, Timespec, poll};
 use serde_json::Value;
 
-use super::asked::answered;
+use super::answer::answered;
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{print_json, quoted, say, stdout};
 use tactpad::bridge::weighing::gain_sentence;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::last_profile;
-use super::wish::{FileStamp, ProfileSelection};
+use super::profile_selection::{FileStamp, ProfileSelection};
 use crate::cli::playing::profile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::tray::host::TrayHost;

@@ -4,11 +4,11 @@ use std::sync::{Arc, Mutex};
 
 use clap::Args;
 
-#[cfg(feature = "tray")]
-use super::desk::TrayProfiles;
 #[cfg(feature = "dashboard")]
 use super::page::Page;
-use super::wish::ProfileSelection;
+use super::profile_selection::ProfileSelection;
+#[cfg(feature = "tray")]
+use super::tray_profiles::TrayProfiles;
 use crate::cli::failure::Failure;
 #[cfg(feature = "tray")]
 use crate::cli::printing::written::say;

@@ -230,7 +230,7 @@ fn nothing_is_held_and_nothing_grows() {
 }
 
 #[test]
-#[ignore = "proof: 620 s: ten minutes of real time, whose bounds ask for a quiet machine"]
+#[ignore = "proof: ten minutes of real time, whose bounds ask for a quiet machine"]
 fn nothing_is_held_and_nothing_grows_in_ten_minutes() {
     let seconds = std::env::var("TACTPAD_SOAK_SECONDS").ok().and_then(|text| text.parse().ok());
     let seconds = seconds.unwrap_or(600);

@@ -144,7 +144,7 @@ fn p99(took_us: &[f64]) -> f64 {
 }
 
 #[test]
-#[ignore = "proof: 120 s: two minutes that measure what a page costs, which only a quiet machine tells"]
+#[ignore = "proof: two minutes that measure what a page costs, which only a quiet machine tells"]
 fn an_open_page_makes_the_live_path_hardly_slower() {
     let events = FRAMES / FRAMES_PER_EDGE as usize;
     let (measured, other) = (Way::start(), Way::start());

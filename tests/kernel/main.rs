@@ -175,7 +175,7 @@ fn an_edge_waits_for_nothing() {
 }
 
 #[test]
-#[ignore = "proof: 300 s: how much work a bridge is compared with an echo, which only a quiet machine tells"]
+#[ignore = "proof: how much work a bridge is compared with an echo, which only a quiet machine tells"]
 fn latency_is_at_most_twice_an_echo() {
     if program::compiled("echo", &[]) {
         in_guest_in_real_time("latency_is_at_most_twice_an_echo", latency::against_an_echo);

@@ -112,7 +112,7 @@ fn at_eight_thousand_samples_a_second_no_frame_is_lost() {
 }
 
 #[test]
-#[ignore = "proof: 125 s: a minute of real time at each rate, for which the bridge needs a quiet machine"]
+#[ignore = "proof: a minute of real time at each rate, for which the bridge needs a quiet machine"]
 fn a_minute_without_a_lost_frame() {
     // 59,800 and 479,500.
     nothing_is_lost(1_000, 60, 0.9966);

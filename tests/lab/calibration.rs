@@ -287,8 +287,8 @@ fn coarse(device: &Device) -> Option<PadField> {
 
 static COARSE_NOMINAL: LazyLock<PadField> = LazyLock::new(|| coarse(&Device::nominal()).unwrap());
 
-/// With this simulator, and the nominal pad's field by it.
-fn is_calibrated_about_its_own_field(solve: Solve<'_>, field: &PadField) {
+/// With this simulator, and the nominal pad's field by it. Beside it, if that is asked for, stands what the tangent alone comes to.
+fn is_calibrated_about_its_own_field(solve: Solve<'_>, field: &PadField, is_compared: bool) {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
     (device.modules[0].tangential_mm, device.modules[0].rotation_deg) = (2.0, -8.0);
@@ -307,24 +307,29 @@ fn is_calibrated_about_its_own_field(solve: Solve<'_>, field: &PadField) {
         let found = fit_reported(&measured.recording, &measured.some(216), &pad, None, &|_, _| ()).unwrap();
         (stated(&found, &device), errors_of(&found.decoder(), &unseen), found.flaw)
     };
-    let (on_tangent, about_own) = (tried(&|_| None), tried(&counted));
-    println!("on the tangent {on_tangent:?}\nabout its own field {about_own:?}");
+    let about_own = tried(&counted);
+    println!("about its own field {about_own:?}");
     assert!((1..=2).contains(&solved.into_inner()) && about_own.2.is_none());
-    assert!(about_own.0 < 1.0 && on_tangent.0 > 1.5 * about_own.0);
-    assert!(about_own.1.position_mae_mm < on_tangent.1.position_mae_mm);
+    assert!(about_own.0 < 1.0);
+    if is_compared {
+        let on_tangent = tried(&|_| None);
+        println!("on the tangent {on_tangent:?}");
+        assert!(on_tangent.0 > 1.5 * about_own.0);
+        assert!(about_own.1.position_mae_mm < on_tangent.1.position_mae_mm);
+    }
     let [place, force] = beyond_bound(&device, &own, &about_own.1, &unseen);
     assert!(place < 1.3 && force < 1.3, "{place} {force}");
 }
 
 #[test]
 fn a_pad_that_the_tangent_does_not_reach_is_calibrated_about_its_own_field() {
-    is_calibrated_about_its_own_field(&coarse, &COARSE_NOMINAL);
+    is_calibrated_about_its_own_field(&coarse, &COARSE_NOMINAL, false);
 }
 
 #[test]
-#[ignore = "proof: 40 s: fields on the program's own mesh instead of a coarse one"]
+#[ignore = "proof: 30 s: fields on the program's own mesh instead of a coarse one, and beside what the tangent comes to"]
 fn a_pad_that_the_tangent_does_not_reach_is_calibrated_about_its_own_fine_field() {
-    is_calibrated_about_its_own_field(&solve, field());
+    is_calibrated_about_its_own_field(&solve, field(), true);
 }
 
 /// The flaw that is fitted to a pad of this device and field, by a program that knows this nominal field, and that flaws change it so.

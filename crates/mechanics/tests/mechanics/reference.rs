@@ -139,6 +139,7 @@ fn a_turned_module_changes_the_channels_as_in_the_reference() {
 }
 
 #[test]
+#[ignore = "proof: 10 s: another module to solve for; an open frame is one, and stays a test"]
 fn a_softer_frame_changes_the_channels_as_in_the_reference() {
     assert!(error_of_change("m2_soft_frame.csv", |device| device.modules[2].frame_e_factor = 0.6) < 0.05);
 }

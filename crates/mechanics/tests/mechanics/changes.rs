@@ -1,6 +1,7 @@
 //! The shipped changes by a module's flaws are what the simulator makes of the shipped device.
 //!
 //! With `TACTPAD_WRITE_FIELD` set, they are written anew: `TACTPAD_WRITE_FIELD=1 cargo test --release --test mechanics changes:: -- --ignored`.
+#![allow(clippy::unwrap_used, reason = "a test may stop at what it did not expect")]
 
 use std::path::{Path, PathBuf};
 

@@ -208,16 +208,19 @@ fn check_durations(bridge: &Bridge, hold_start_ns: u64, tap: &str, hold: &str) {
     // A machine that stood still stamps the start of what it times late: that is missing from what is measured here,
     // and no fault of the bridge.
     let late_ms = lateness_ms();
-    let tap_ms = (at(tap, 0) - at(tap, 1)) / MS;
-    let tap_range_ms = MIN_PRESS_MS.saturating_sub(late_ms)..MIN_PRESS_MS + slack_ms();
+    // Times are counted in samples of the pad, and the stamp of an edge lies within a period behind its sample.
+    let lasts = |wanted_ms: u64, took_ns: u64| {
+        let least_ns = (wanted_ms.saturating_sub(late_ms) * MS).saturating_sub(period_ns());
+        (least_ns..(wanted_ms + slack_ms()) * MS).contains(&took_ns)
+    };
+    let tap_ns = at(tap, 0) - at(tap, 1);
     assert!(
-        tap_range_ms.contains(&tap_ms),
-        "the tap lasted {tap_ms} ms, the machine stood still for {late_ms} ms"
+        lasts(MIN_PRESS_MS, tap_ns),
+        "the tap lasted {tap_ns} ns, the machine stood still for {late_ms} ms"
     );
-    let long_ms = (at(hold, 1) - hold_start_ns) / MS;
-    let long_range_ms = LONG_PRESS_MS.saturating_sub(late_ms)..LONG_PRESS_MS + slack_ms();
+    let long_ns = at(hold, 1) - hold_start_ns;
     assert!(
-        long_range_ms.contains(&long_ms),
-        "long after {long_ms} ms, the machine stood still for {late_ms} ms"
+        lasts(LONG_PRESS_MS, long_ns),
+        "long after {long_ns} ns, the machine stood still for {late_ms} ms"
     );
 }

@@ -119,7 +119,7 @@ fn are_enough(pads: u64, most: f64) {
 }
 
 #[test]
-#[ignore = "proof: 30 s: tests/lab has the same on the simulator's field"]
+#[ignore = "proof: 30 s: tests/lab and tests/program have smaller ones on the simulator's field"]
 fn a_thousand_presses_without_labels_and_a_weight() {
     // A single pad may be a quarter worse than the median of ten.
     are_enough(1, 1.25);

@@ -51,18 +51,24 @@ fn has_desk() -> bool {
 /// One game at a time: two would take each other's time.
 static TURN: Mutex<()> = Mutex::new(());
 
-/// Plays a segment by the pad; then with nobody at it, and with left and right exchanged, which must both fail.
+/// Whether the game's screen shows all that the segment asks for.
+fn reaches<G: Game>(start: impl Fn() -> G, who: &str, segment: &Segment, profile: &str) -> bool {
+    let outcome = play(&mut start(), segment, Way::Pad { style: ORDINARY, seed: SEED, profile });
+    println!("{profile}, {who}: {outcome}");
+    outcome.reached_s.is_ok()
+}
+
+/// Plays a segment by the pad.
 fn is_played<G: Game>(start: impl Fn() -> G, segment: &Segment, profile: &str) {
-    let reaches = |who: &str, segment: &Segment| {
-        let outcome = play(&mut start(), segment, Way::Pad { style: ORDINARY, seed: SEED, profile });
-        println!("{profile}, {who}: {outcome}");
-        outcome.reached_s.is_ok()
-    };
-    assert!(reaches("by the finger", segment), "{profile} by the finger");
+    assert!(reaches(start, "by the finger", segment, profile), "{profile} by the finger");
+}
+
+/// Plays a segment with nobody at the pad, and with left and right exchanged: both must fail.
+fn takes_a_player<G: Game>(start: impl Fn() -> G, segment: &Segment, profile: &str) {
     for (who, other) in
         [("with nobody at the pad", segment.muted()), ("with left and right exchanged", segment.mirrored())]
     {
-        assert!(!reaches(who, &other), "{profile} {who}");
+        assert!(!reaches(&start, who, &other, profile), "{profile} {who}");
     }
 }
 
@@ -92,6 +98,28 @@ fn btanks_is_played() {
     if has_desk() && tanks::is_there() {
         in_guest("btanks_is_played", || is_played(Tanks::start, &tanks::segment(), tanks::PROFILE));
     }
+}
+
+#[test]
+#[ignore = "proof: 15 s: without its player the game is not won, so that playing it proves something"]
+fn supertux_takes_a_player() {
+    in_guest("supertux_takes_a_player", || {
+        takes_a_player(SuperTux::start, &supertux::segment(), supertux::PROFILE);
+    });
+}
+
+#[test]
+#[ignore = "proof: 25 s: without its player the game is not won, so that playing it proves something"]
+fn vitetris_takes_a_player() {
+    in_guest("vitetris_takes_a_player", || {
+        takes_a_player(Vitetris::start, &vitetris::segment(), vitetris::PROFILE);
+    });
+}
+
+#[test]
+#[ignore = "proof: 35 s: without its player the game is not won, so that playing it proves something"]
+fn btanks_takes_a_player() {
+    in_guest("btanks_takes_a_player", || takes_a_player(Tanks::start, &tanks::segment(), tanks::PROFILE));
 }
 
 /// How often a long study plays a segment: `TACTPAD_GAMES` of its name, as `block=20`.

@@ -216,7 +216,7 @@ fn first_root(name: &str, time: Time) -> tempfile::TempDir {
     fs::copy(shell, root.path().join("busybox")).expect("a copy of busybox");
     write_script(&root.path().join("init"), include_str!("init.sh"));
     let command = format!(
-        "#!/bin/sh\ncd {} && {} TACTPAD_IN_GUEST={} exec {} --exact {name} --nocapture\n",
+        "#!/bin/sh\ncd {} && {} TACTPAD_IN_GUEST={} exec {} --include-ignored --exact {name} --nocapture\n",
         quoted(&env::current_dir().expect("a working directory").to_string_lossy()),
         settings(),
         time.name(),

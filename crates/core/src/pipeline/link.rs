@@ -24,6 +24,9 @@ const PACE_US: u64 = 1_000_000;
 /// such frame is not: one damaged frame in 65,536 has a checksum that is right.
 pub const NEWER_US: u64 = 2_000_000;
 
+/// No pad samples faster than once in so many microseconds.
+const PERIOD_MIN_US: u64 = 50;
+
 /// A frame this little behind the newest is an old one that came again; farther behind, the pad began anew.
 const REORDER_MAX: u32 = 64;
 
@@ -71,6 +74,8 @@ pub enum LinkEvent {
 pub struct Link {
     receiver: MessageReceiver,
     last: Option<Sample>,
+    /// The last sample before the silence that lasts, and when it was heard.
+    before_silence: Option<(Sample, HostInstant)>,
     clock: StreamClock,
     /// The first and the last of the frames of a newer version since something was understood.
     newer: Option<[HostInstant; 2]>,
@@ -85,7 +90,13 @@ impl Default for Link {
 impl Link {
     /// A link that has heard nothing yet.
     pub fn new() -> Self {
-        Self { receiver: MessageReceiver::new(), last: None, clock: StreamClock::new(), newer: None }
+        Self {
+            receiver: MessageReceiver::new(),
+            last: None,
+            before_silence: None,
+            clock: StreamClock::new(),
+            newer: None,
+        }
     }
 
     /// Takes one byte that came at `now`; counts what is wrong in `health`.
@@ -128,11 +139,18 @@ impl Link {
         self.last.map(|_| self.clock.heard.plus_us(SILENCE_MAX_US))
     }
 
-    /// Forgets the running sequence: whatever comes next begins anew. Half a frame is forgotten too.
-    pub fn lose(&mut self, now: HostInstant) {
+    /// The pad fell silent. Half a frame is forgotten. What comes next is of the same pad, which may have begun anew.
+    pub fn fall_silent(&mut self, now: HostInstant) {
+        let heard = self.clock.heard;
+        self.before_silence = self.last.take().map(|last| (last, heard)).or(self.before_silence);
         self.clock.advance(now);
-        self.last = None;
         self.receiver = MessageReceiver::new();
+    }
+
+    /// The pad was unplugged: whatever comes next begins anew.
+    pub fn unplug(&mut self, now: HostInstant) {
+        self.fall_silent(now);
+        self.before_silence = None;
     }
 
     /// Takes a frame of a newer version; whether the line has brought nothing but such for long.
@@ -144,14 +162,21 @@ impl Link {
         now.us_since(first) >= NEWER_US
     }
 
+    /// Whether the pad whose first sample this is, after a silence, was switched off meanwhile.
+    fn has_begun_anew(&mut self, now: HostInstant, sample: &Sample) -> bool {
+        let goes_on = self.before_silence.take().is_none_or(|(last, heard)| {
+            sample.sequence != last.sequence && goes_on_after_gap(&last, sample, now.us_since(heard))
+        });
+        self.clock.set && (!goes_on || sample.status.restarted())
+    }
+
     fn order(&mut self, now: HostInstant, sample: Sample, health: &mut Health) -> LinkEvent {
         let fault = match self.last {
-            None if self.clock.set && sample.status.restarted() => {
+            None => self.has_begun_anew(now, &sample).then(|| {
                 health.restarts += 1;
-                Some(Fault::Restarted)
-            }
-            None => None,
-            Some(last) => match step_between(&last, &sample) {
+                Fault::Restarted
+            }),
+            Some(last) => match step_between(&last, &sample, now.us_since(self.clock.heard)) {
                 SequenceStep::Next => None,
                 SequenceStep::Again => {
                     health.frames_repeated += 1;
@@ -183,17 +208,30 @@ enum SequenceStep {
     Anew,
 }
 
-fn step_between(last: &Sample, next: &Sample) -> SequenceStep {
+/// The step from `last` to `next`, which came `passed_us` of host time later.
+fn step_between(last: &Sample, next: &Sample, passed_us: u64) -> SequenceStep {
     if next.status.restarted() {
         return if next == last { SequenceStep::Again } else { SequenceStep::Anew };
     }
     match next.sequence.wrapping_sub(last.sequence) {
         0 => SequenceStep::Again,
         1 => SequenceStep::Next,
-        ahead if ahead <= u32::MAX / 2 => SequenceStep::Skipped(ahead - 1),
         behind if behind.wrapping_neg() <= REORDER_MAX && next.time_us <= last.time_us => SequenceStep::Again,
+        ahead if ahead <= REORDER_MAX => SequenceStep::Skipped(ahead - 1),
+        ahead if goes_on_after_gap(last, next, passed_us) => SequenceStep::Skipped(ahead - 1),
         _ => SequenceStep::Anew,
     }
+}
+
+/// Whether `next` can be of the run of `last` after a gap of `passed_us` of host time. A run that began anew shows another time
+/// than has passed, or a number that is behind, or farther ahead than samples fit into that time. So does a pad that ran while
+/// the host slept, whose zero is as old as that.
+fn goes_on_after_gap(last: &Sample, next: &Sample, passed_us: u64) -> bool {
+    let ahead = next.sequence.wrapping_sub(last.sequence);
+    next.time_us.checked_sub(last.time_us).is_some_and(|shown_us| {
+        (passed_us / 2..=2 * passed_us + GAP_MAX_US).contains(&shown_us)
+            && u64::from(ahead) <= (shown_us / PERIOD_MIN_US).max(REORDER_MAX.into())
+    })
 }
 
 /// A jump of the clock is told unless a graver fault explains it.
@@ -228,8 +266,10 @@ impl StreamClock {
         }
     }
 
+    /// Stream time at `now`. It begins with the first sample: what happens before it happens at the origin, so that stream time
+    /// never has to go back to where the pad's clock begins.
     fn at(&self, now: HostInstant) -> StreamInstant {
-        self.last.plus_us(now.us_since(self.heard))
+        if self.set { self.last.plus_us(now.us_since(self.heard)) } else { self.last }
     }
 
     /// Lets stream time pass to `now` without a sample.
@@ -384,10 +424,29 @@ mod tests {
     fn a_restart_after_silence_is_told() {
         let mut rig = Rig::new();
         rig.hear(0, sample(500, 500_000));
-        rig.link.lose(HostInstant::default().plus_us(90_000));
+        rig.link.fall_silent(HostInstant::default().plus_us(90_000));
         let mut first = sample(0, 10);
         first.status = Status::OK.with_restarted();
         assert_eq!(rig.hear(150_000, first), (Some(650_000), Some(Fault::Restarted)));
+    }
+
+    #[test]
+    fn a_restart_that_is_not_flagged_shows_after_silence_by_number_or_clock() {
+        // The pad's number and clock (ms) after a silence of ten seconds.
+        for (sequence, time_ms, fault) in [
+            (10_600, 10_600, None),
+            (501, 10_600, None),
+            (40_000, 40_000, Some(Fault::Restarted)),
+            (0, 10_600, Some(Fault::Restarted)),
+            (9_000, 400, Some(Fault::Restarted)),
+            (3_000, 3_000, Some(Fault::Restarted)),
+        ] {
+            let mut rig = Rig::new();
+            rig.hear(0, sample(500, 500_000));
+            rig.link.fall_silent(HostInstant::default().plus_us(90_000));
+            let (_, told) = rig.hear(10_000_000, sample(sequence, 1_000 * time_ms));
+            assert_eq!((told, rig.health.restarts), (fault, u64::from(fault.is_some())), "{sequence} {time_ms}");
+        }
     }
 
     #[test]
@@ -406,7 +465,7 @@ mod tests {
         assert_eq!(rig.link.silent_at(), None);
         rig.hear(10_000, sample(0, 0));
         assert_eq!(rig.link.silent_at(), Some(HostInstant::default().plus_us(10_000 + SILENCE_MAX_US)));
-        rig.link.lose(HostInstant::default().plus_us(90_000));
+        rig.link.fall_silent(HostInstant::default().plus_us(90_000));
         assert_eq!(rig.link.silent_at(), None);
     }
 

@@ -160,6 +160,7 @@ impl Pipeline {
     /// The pad was unplugged. Whatever comes next may be another pad: it identifies itself and is tared anew.
     pub fn handle_unplugged(&mut self, now: HostInstant) {
         self.begin();
+        self.link.unplug(now);
         self.lose(now, Cause::Unplugged);
         (self.identity, self.pad, self.refusal) = (None, None, None);
     }
@@ -367,13 +368,13 @@ impl Pipeline {
 
     fn check_silence(&mut self, now: HostInstant) {
         if self.link.silent_at().is_some_and(|silent_at| silent_at <= now) {
+            self.link.fall_silent(now);
             self.lose(now, Cause::Lost);
         }
     }
 
     fn lose(&mut self, now: HostInstant, cause: Cause) {
         self.health.links_lost += 1;
-        self.link.lose(now);
         self.advance(self.link.stream_at(now));
         self.phase = Phase::Waiting;
         self.interrupt(cause);

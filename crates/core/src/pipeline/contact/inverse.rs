@@ -243,6 +243,12 @@ impl Inverse {
     }
 
     /// About Fz, x Fz and y Fz.
+    /// The normal force of any sum or difference of contacts, to some percent: a linear function of the channels.
+    pub fn load_n(&self, strain: &Strain) -> f32 {
+        let [fz_n, ..] = self.started(&strain.uv.map(f64::from));
+        fz_n as f32
+    }
+
     fn started(&self, uv: &[f64; CHANNELS]) -> [f64; 3] {
         self.start.map(|row| row.iter().zip(uv).map(|(a, uv)| a * uv).sum())
     }

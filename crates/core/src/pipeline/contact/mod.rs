@@ -175,8 +175,11 @@ impl Decoder {
         }
     }
 
-    /// The normal force of a difference of strains, which may be a pull.
+    /// The normal force of a difference of strains, which may be a pull, or a press here less one there.
     pub fn load_n(&self, strain: &Strain) -> f32 {
+        if let Method::Inverse(inverse) = &self.method {
+            return inverse.load_n(strain);
+        }
         // A network has learnt presses only, but a pull is a press the other way round.
         let pulled = Strain { uv: strain.uv.map(|uv| -uv) };
         let (push_n, pull_n) = (self.decode(strain).fz_n, self.decode(&pulled).fz_n);

@@ -1,0 +1,169 @@
+//! After whatever happened, a pad plays. Histories are drawn at random, in any order and with any waits.
+
+use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop, prop_assert, prop_oneof, proptest};
+
+use firmware_proto::frame::Message;
+use firmware_proto::identity::{Identity, SerialNumber};
+use firmware_proto::sample::Status;
+
+use super::virtual_time::Play;
+use super::*;
+use tactpad_core::pad::weight::Weight;
+use tactpad_core::quantity::Contact;
+
+/// Something that happens to a bridge or to its pad.
+#[derive(Clone, Debug)]
+enum Happening {
+    /// The pad is silent, or there is none, for so many milliseconds.
+    Wait(u64),
+    /// Somebody asks the bridge for something.
+    Ask(Request),
+    /// The pad is plugged in, or pulled out.
+    Plug(bool),
+    /// The pad begins anew, with this clock (µs) and these offsets (counts), after a text of its boot loader.
+    Restart { time_us: u64, is_flagged: bool, offset: i32, text: String },
+    /// Bytes that are no frame.
+    Rubbish(Vec<u8>),
+    /// A contact for so many milliseconds.
+    Touch(Contact, u64),
+    /// Frames are lost.
+    Lose(u32),
+    /// A frame comes again, or an old one.
+    Repeat(u32),
+    /// The pad's clock jumps by so many microseconds, either way.
+    Jump(u64),
+    /// For so many milliseconds this channel is at the end of its range.
+    Saturate(usize, u64),
+    /// The pad says who it is: one of two.
+    Identify(bool),
+}
+
+const RIGHT: Contact = Contact { x_mm: 20.0, y_mm: 0.0, fx_n: 0.0, fy_n: 0.0, fz_n: 2.0 };
+
+const AWAY: Contact = Contact { x_mm: 0.0, y_mm: 0.0, fx_n: 0.0, fy_n: 0.0, fz_n: 0.0 };
+
+fn times_us() -> impl Strategy<Value = u64> {
+    prop_oneof![Just(0), 0..60_000_000_u64, any::<u64>()]
+}
+
+fn waits_ms() -> impl Strategy<Value = u64> {
+    prop_oneof![0..200_u64, 0..3_000_u64, 0..30_000_u64]
+}
+
+fn contacts() -> impl Strategy<Value = Contact> {
+    (-28.0..28.0_f32, -28.0..28.0_f32, 0.0..6.0_f32).prop_map(|(x_mm, y_mm, fz_n)| Contact {
+        x_mm,
+        y_mm,
+        fz_n,
+        ..AWAY
+    })
+}
+
+fn requests() -> impl Strategy<Value = Request> {
+    prop_oneof![
+        Just(Request::ReleaseAll),
+        Just(Request::Pause),
+        Just(Request::Resume),
+        Just(Request::TogglePause),
+        Just(Request::Retare),
+        Just(Request::Profile(Some("tetris".into()))),
+        Just(Request::Profile(Some("super-mario".into()))),
+        Just(Request::Profile(None)),
+        Just(Request::NextProfile),
+        Just(Request::Status),
+        Just(Request::Weigh(Weight::of_g(200.0).unwrap())),
+    ]
+}
+
+fn happenings() -> impl Strategy<Value = Happening> {
+    let restart = (times_us(), any::<bool>(), -400_000..400_000_i32, "[ -~\r\n]{0,80}");
+    prop_oneof![
+        3 => waits_ms().prop_map(Happening::Wait),
+        3 => requests().prop_map(Happening::Ask),
+        2 => any::<bool>().prop_map(Happening::Plug),
+        2 => restart.prop_map(|(time_us, is_flagged, offset, text)| {
+            Happening::Restart { time_us, is_flagged, offset, text }
+        }),
+        1 => prop::collection::vec(any::<u8>(), 1..100).prop_map(Happening::Rubbish),
+        3 => (contacts(), 0..800_u64).prop_map(|(contact, ms)| Happening::Touch(contact, ms)),
+        2 => (0..800_u64).prop_map(|ms| Happening::Touch(AWAY, ms)),
+        1 => prop_oneof![1..3_u32, any::<u32>()].prop_map(Happening::Lose),
+        1 => (0..100_u32).prop_map(Happening::Repeat),
+        1 => times_us().prop_map(Happening::Jump),
+        1 => (0..9_usize, 1..100_u64).prop_map(|(channel, ms)| Happening::Saturate(channel, ms)),
+        1 => any::<bool>().prop_map(Happening::Identify),
+    ]
+}
+
+impl Happening {
+    fn befall(&self, play: &mut Play) {
+        let begin = play.now;
+        match self {
+            Self::Wait(ms) => drop(play.wait(*ms)),
+            Self::Ask(request) => drop(play.ask(request.clone())),
+            Self::Plug(true) => play.plug_in(),
+            Self::Plug(false) => drop(play.pull_out()),
+            Self::Restart { time_us, is_flagged, offset, text } => {
+                play.send_bytes(begin, text.as_bytes());
+                (play.time_us, play.sequence, play.offset) = (*time_us, 0, [*offset; 9]);
+                play.status = if *is_flagged { Status::OK.with_restarted() } else { Status::OK };
+            }
+            Self::Rubbish(bytes) => drop(play.send_bytes(begin, bytes)),
+            Self::Touch(contact, ms) => drop(play.touch(contact, *ms)),
+            Self::Lose(frames) => play.sequence = play.sequence.wrapping_add(*frames),
+            Self::Repeat(age) => {
+                let (sequence, time_us) = (play.sequence, play.time_us);
+                play.sequence = sequence.wrapping_sub(*age);
+                play.time_us = time_us.saturating_sub(1_000 * u64::from(*age));
+                let sample = play.sample(&AWAY);
+                play.send(begin, &Message::Sample(sample));
+                (play.sequence, play.time_us) = (sequence, time_us);
+            }
+            Self::Jump(by_us) => play.time_us = play.time_us.wrapping_add(*by_us),
+            Self::Saturate(channel, ms) => {
+                let offset = play.offset[*channel];
+                play.offset[*channel] = (1 << 23) - 1;
+                play.touch(&AWAY, *ms);
+                play.offset[*channel] = offset;
+            }
+            Self::Identify(is_first) => {
+                let name = if *is_first { "PAD-1" } else { "PAD-2" };
+                let identity = Identity {
+                    serial_number: SerialNumber::from_ascii(name).unwrap(),
+                    channels: 9,
+                    count_bits: 24,
+                    rate_hz: 1_000,
+                    picovolts_per_count: 10_000,
+                };
+                play.send(begin, &Message::Identity(identity));
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn after_any_history_a_sound_pad_plays_within_half_a_second(
+        history in prop::collection::vec(happenings(), 0..30),
+    ) {
+        let mut play = Play::waiting();
+        for happening in &history {
+            happening.befall(&mut play);
+        }
+        // A player's own wishes come to their end; the bridge looks for a pad four times a second.
+        play.plug_in();
+        play.ask(Request::Resume);
+        play.wait(300);
+        while play.bridge.driver.pipeline.phase() == Phase::Weighing {
+            play.touch(&AWAY, 1_000);
+        }
+        play.touch(&AWAY, 500);
+        let pressed = play.touch(&RIGHT, 100);
+        let state = state(&play.bridge.driver, &play.bridge.connection).word();
+        prop_assert!(pressed.iter().any(|(_, value, _)| *value != 0), "{state}: {pressed:?}");
+        play.touch(&AWAY, 200);
+        prop_assert!(play.bridge.driver.pipeline.held().next().is_none(), "something stays down");
+    }
+}

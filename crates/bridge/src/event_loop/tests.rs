@@ -1,0 +1,120 @@
+//! The loop by hand, in virtual time.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::virtual_time::{ASLEEP, Edge, MessageLog, Play, bridge};
+use super::*;
+use crate::opening::OpenedPad;
+use crate::sink::null::NullSink;
+use crate::transport::pads::PadError;
+
+/// A bridge whose pad never comes, what it tells, and how often it looked for the pad.
+fn without_pad() -> (Bridge, MessageLog, Arc<AtomicUsize>) {
+    let (messages, looked) = (MessageLog::default(), Arc::new(AtomicUsize::new(0)));
+    let looking = Arc::clone(&looked);
+    let pad = OpenedPad::absent(Box::new(move || {
+        looking.fetch_add(1, Ordering::Relaxed);
+        Err(PadError::NotThere("no".into()))
+    }));
+    (bridge(pad, Box::new(NullSink), &messages), messages, looked)
+}
+
+/// Lets the bridge wake when it wants to until `end`; how often it did.
+fn wake_ups(bridge: &mut Bridge, end: HostInstant) -> usize {
+    let mut count = 0;
+    while let Some(now) = bridge.next_deadline().filter(|now| *now < end) {
+        assert_eq!(bridge.turn(now, ASLEEP).unwrap(), None);
+        count += 1;
+    }
+    count
+}
+
+#[test]
+fn without_a_pad_it_wakes_at_most_five_times_a_second_and_still_looks_and_tells() {
+    let (mut bridge, messages, looked) = without_pad();
+    let snapshot = bridge.snapshot();
+    let begin = bridge.snapshot_at;
+    let count = wake_ups(&mut bridge, begin.plus_us(10_000_000));
+    assert!(count <= 50, "{count} times in ten seconds");
+    let looked = looked.load(Ordering::Relaxed);
+    assert!(looked >= 35, "it looked {looked} times");
+    assert_eq!(*messages.0.lock().unwrap(), ["waiting for the pad: plug it in"]);
+    assert!(snapshot.lock().unwrap().at >= begin.plus_us(9_000_000), "the picture is old");
+}
+
+#[test]
+fn another_profile_is_taken_and_one_that_cannot_be_read_is_told() {
+    let (mut bridge, messages, _) = without_pad();
+    let now = bridge.snapshot_at;
+    let read = bridge.host.read_profile(Some("tetris"));
+    assert_eq!(bridge.change_profile(now, read, true).unwrap(), done());
+    assert_eq!(bridge.take_snapshot(now).status.profile, "Tetris");
+    let read = bridge.host.read_profile(None);
+    let answer = bridge.change_profile(now, read, false).unwrap();
+    assert_eq!(answer, r#"{"error":"there is none","ok":false}"#);
+    assert_eq!(
+        *messages.0.lock().unwrap(),
+        ["profile Tetris", "there is none\nthe profile in use stays"]
+    );
+}
+
+#[test]
+fn what_a_press_asks_for_is_done() {
+    let (mut bridge, messages, _) = without_pad();
+    let now = bridge.snapshot_at;
+    let mut ask = |command| {
+        bridge.driver.commands.push(command);
+        bridge.run_commands(now).unwrap();
+        (bridge.driver.pipeline.phase(), bridge.take_snapshot(now).status.profile)
+    };
+    assert_eq!(ask(Command::TogglePause).0, Phase::Paused);
+    assert_eq!(ask(Command::TogglePause).0, Phase::Waiting);
+    assert_eq!(ask(Command::Profile("tetris".try_into().unwrap())).1, "Tetris");
+    assert_eq!(ask(Command::NextProfile).1, "Tetris");
+    let told = messages.0.lock().unwrap();
+    assert_eq!(*told, ["profile Tetris", "there is no next one\nthe profile in use stays"]);
+}
+
+/// From where the finger comes or goes: the filter's six samples.
+const EDGE_MAX_US: u64 = 6_000;
+
+/// What a press must come to, and when at the latest.
+fn is_edge(edges: &[Edge], value: i32, after_max_us: u64) -> bool {
+    matches!(edges, [(code, is, after_us)] if code == "BTN_SOUTH" && *is == value && *after_us <= after_max_us)
+}
+
+#[test]
+fn every_press_goes_out_and_comes_back_in_time() {
+    let mut play = Play::start();
+    for number in 0..200 {
+        let down = play.press(3.0, 50 + number % 7);
+        let up = play.press(0.0, 60 + number % 11);
+        assert!(
+            is_edge(&down, 1, EDGE_MAX_US) && is_edge(&up, 0, EDGE_MAX_US),
+            "{number}: {down:?} {up:?}"
+        );
+    }
+}
+
+#[test]
+fn silence_releases_after_80_ms_and_not_before() {
+    let mut play = Play::start();
+    assert!(is_edge(&play.press(3.0, 100), 1, EDGE_MAX_US));
+    // The last frame is a millisecond old.
+    assert_eq!(play.wait(79), []);
+    assert!(is_edge(&play.wait(100), 0, 0), "as soon as 80 ms are over");
+}
+
+#[test]
+fn a_pad_that_is_pulled_out_holds_nothing_any_more() {
+    let mut play = Play::start();
+    assert!(is_edge(&play.press(3.0, 100), 1, EDGE_MAX_US));
+    assert!(is_edge(&play.pull_out(), 0, 0), "at once");
+}
+
+#[test]
+fn a_program_ends_its_own_bridge_without_signals() {
+    let (mut bridge, ..) = without_pad();
+    bridge.requests.sender().unwrap().send(Request::End).unwrap();
+    assert_eq!(bridge.run().unwrap(), Ending::Requested);
+}

@@ -358,6 +358,7 @@ fn with_open_frame() -> Device {
 }
 
 #[test]
+#[ignore = "proof: 20 s: four solutions on a coarse mesh; that channels which leak are no open frame stays a test"]
 fn a_module_whose_frame_is_open_is_told_from_one_whose_channels_leak() {
     let nominal = Device::nominal();
     let mut simulator = COARSE.lock().unwrap();

@@ -227,7 +227,7 @@ fn rates(kind: Kind, since: Since, seconds: u64, seeds: std::ops::Range<u64>) ->
 }
 
 #[test]
-fn what_changed_is_named_and_what_did_not_is_not() {
+fn what_did_not_change_is_not_named() {
     let asked = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     if let Some(pads) = asked("TACTPAD_CHANGES") {
         let from = asked("TACTPAD_CHANGES_FROM").unwrap_or(1);
@@ -240,8 +240,7 @@ fn what_changed_is_named_and_what_did_not_is_not() {
         }
         return;
     }
-    is_named(Since::Play, &[Kind::ModuleGain, Kind::OtherHand]);
-    is_named(Since::Rig, &[Kind::ModuleGain]);
+    is_named(Since::Play, &[Kind::OtherHand]);
 }
 
 /// What changed, and nothing else.
@@ -254,7 +253,7 @@ fn is_named(since: Since, kinds: &[Kind]) {
 }
 
 #[test]
-#[ignore = "proof: 100 s: all kinds of changes since a play, a calibration at home and one by a rig, instead of three of ten"]
+#[ignore = "proof: 100 s: all kinds of changes since a play, a calibration at home and one by a rig, instead of another hand alone; the program's own tests have a module that lost gain since a play, and since a rig"]
 fn whatever_changed_is_named_and_what_did_not_is_not() {
     is_named(Since::Play, &Kind::ALL);
     is_named(Since::Home, &Kind::ALL);

@@ -356,6 +356,7 @@ const FEW: Goals = Goals { pads: 3, rms: [0.5, 1.5], inside: [0.86, 1.0], open: 
 const MANY: Goals = Goals { pads: 200, rms: [0.85, 1.15], inside: [0.92, 0.98], open: &[] };
 
 #[test]
+#[ignore = "proof: 10 s: three pads and rigs drawn; a pad whose posterior is looked at stays a test"]
 fn the_truth_lies_in_the_posterior_as_a_draw_from_it_would() {
     are_held(&FEW);
 }

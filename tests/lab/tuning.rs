@@ -278,6 +278,7 @@ fn tuned(name: &str, player: Player) -> [f64; 2] {
 }
 
 #[test]
+#[ignore = "proof: 15 s: six hundred presses; that a profile is fitted to a hand stays a test of the program and of the range of force"]
 fn a_weak_hand() {
     let [before, after] = tuned("weak", Player { force_n: [0.6, 0.15], ..STEADY });
     assert!(before <= 0.8 && after >= 0.99, "{before} {after}");

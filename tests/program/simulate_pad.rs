@@ -176,6 +176,7 @@ fn calibrates_as_the_field_that_is_kept(are_changes_kept: bool) {
 }
 
 #[test]
+#[ignore = "proof: 12 s: another solution of a module; that a damaged field is computed anew stays a test"]
 fn a_field_that_was_just_computed_calibrates_as_the_one_that_is_kept() {
     calibrates_as_the_field_that_is_kept(true);
 }

@@ -52,10 +52,7 @@ fn another_profile_is_taken_and_one_that_cannot_be_read_is_told() {
     let read = bridge.host.read_profile(None);
     let answer = bridge.change_profile(now, read, false).unwrap();
     assert_eq!(answer, r#"{"error":"there is none","ok":false}"#);
-    assert_eq!(
-        *messages.0.lock().unwrap(),
-        ["profile Tetris", "there is none\nthe profile in use stays"]
-    );
+    assert_eq!(*messages.0.lock().unwrap(), ["profile Tetris", "there is none\nthe profile in use stays"]);
 }
 
 #[test]
@@ -89,10 +86,7 @@ fn every_press_goes_out_and_comes_back_in_time() {
     for number in 0..200 {
         let down = play.press(3.0, 50 + number % 7);
         let up = play.press(0.0, 60 + number % 11);
-        assert!(
-            is_edge(&down, 1, EDGE_MAX_US) && is_edge(&up, 0, EDGE_MAX_US),
-            "{number}: {down:?} {up:?}"
-        );
+        assert!(is_edge(&down, 1, EDGE_MAX_US) && is_edge(&up, 0, EDGE_MAX_US), "{number}: {down:?} {up:?}");
     }
 }
 

@@ -445,7 +445,11 @@ mod tests {
             rig.hear(0, sample(500, 500_000));
             rig.link.fall_silent(HostInstant::default().plus_us(90_000));
             let (_, told) = rig.hear(10_000_000, sample(sequence, 1_000 * time_ms));
-            assert_eq!((told, rig.health.restarts), (fault, u64::from(fault.is_some())), "{sequence} {time_ms}");
+            assert_eq!(
+                (told, rig.health.restarts),
+                (fault, u64::from(fault.is_some())),
+                "{sequence} {time_ms}"
+            );
         }
     }
 

@@ -168,6 +168,7 @@ fn resolved(case: &Case) {
 
 /// In a room that only gets warmer, drift in time and a zero that follows the temperature are the same.
 #[test]
+#[ignore = "proof: 8 s: two causes beside those of each kind, which stay a test"]
 fn drift_and_warmth_are_told_apart_by_a_room_that_cools_again() {
     let mut case = Case::new("warming", 1, Plan::Recommended, vec![truth("thermal_zero", 1)]);
     case.room = Room::Warming;

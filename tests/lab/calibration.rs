@@ -254,6 +254,7 @@ fn needs_twenty_contacts(many: usize) {
 }
 
 #[test]
+#[ignore = "proof: 7 s: what pads share is taken over, which stays a test"]
 fn another_pad_of_the_kind_needs_twenty_contacts() {
     needs_twenty_contacts(MANY);
 }

@@ -324,6 +324,7 @@ fn two_minutes_of_play_and_a_weight_are_worth_twenty_labels_on_twenty_pads() {
 }
 
 #[test]
+#[ignore = "proof: 12 s: another play of two minutes; a calibration by play stays a test of the program"]
 fn presses_near_the_middle_leave_the_rim_open() {
     let (windows, placements) = recorded(&Pad::drawn(1), 60.0, 8.0);
     let found = at_home(&windows, &placements);

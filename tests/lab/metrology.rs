@@ -184,6 +184,7 @@ fn a_network_from_a_file_is_tried_raw_and_a_raw_one_is_no_decoder() {
 }
 
 #[test]
+#[ignore = "proof: 10 s: another pad whose natural motions are computed"]
 fn an_ideal_pad_has_no_faults() {
     let folder = tempfile::tempdir().unwrap();
     let device = concat!(env!("CARGO_MANIFEST_DIR"), "/models/sstid.toml");

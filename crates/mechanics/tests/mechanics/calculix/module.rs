@@ -29,6 +29,7 @@ const STRAIN_DEVIATION_MAX: f64 = 1e-4;
 const FAINT: f64 = 1e-3;
 
 #[test]
+#[ignore = "proof: 8 s: an ordinary module; one with an open frame and other moduli stays a test"]
 fn module_as_drawn() {
     compare("as drawn", Module::NOMINAL, COARSER);
 }
@@ -52,6 +53,7 @@ fn module_with_an_open_frame_and_other_moduli() {
 }
 
 #[test]
+#[ignore = "proof: 10 s: another flaw; an open frame stays a test"]
 fn module_that_has_come_off_the_plate_on_a_side() {
     let module = Module { debonded_side: Some(Side::MinusY), debonded_share: 0.35, ..Module::NOMINAL };
     compare("debonded from -y", module, COARSER);

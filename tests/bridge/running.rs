@@ -69,13 +69,18 @@ impl Running {
     }
 
     /// Starts `command` in `folder`.
-    pub(crate) fn start(folder: tempfile::TempDir, mut command: Command) -> Self {
+    pub(crate) fn start(folder: tempfile::TempDir, command: Command) -> Self {
         let told = fs::File::create(folder.path().join("told")).unwrap();
-        Self { child: command.stderr(told).spawn().unwrap(), folder }
+        Self::start_telling(folder, command, told)
+    }
+
+    /// The same; what it tells goes elsewhere.
+    pub(crate) fn start_telling(folder: tempfile::TempDir, mut command: Command, stderr: fs::File) -> Self {
+        Self { child: command.stderr(stderr).spawn().unwrap(), folder }
     }
 
     pub(crate) fn told(&self) -> String {
-        fs::read_to_string(self.folder.path().join("told")).unwrap()
+        fs::read_to_string(self.folder.path().join("told")).unwrap_or_default()
     }
 
     pub(crate) fn ctl(&self, request: &str) -> Output {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
-use std::io::Read;
+use std::io::{Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
@@ -17,6 +17,9 @@ use serde_json::Value;
 use crate::clock::monotonic_ns;
 use crate::guest::in_guest;
 use crate::running::{Running, comes_true};
+use crate::support::require;
+use crate::x11::Server;
+use tactpad::pipeline::mapping::read::shipped;
 
 const TACTPAD: &str = env!("CARGO_BIN_EXE_tactpad");
 
@@ -161,4 +164,76 @@ fn pipe_without_reader() {
         assert!(bridge.told().contains("nobody reads the pipe"), "{verb}: {}", bridge.told());
         ended(&mut bridge);
     }
+}
+
+/// Contra with a line that is doubted whenever it is read: two buttons on one force.
+fn doubtful_profile(folder: &Path) -> PathBuf {
+    let path = folder.join("doubtful.toml");
+    let button = "[[button]]\nforce = \"fz\"\npress_n = 4.0\nrelease_n = 3.0\nout = { gamepad = \"BTN_SOUTH\", keyboard = \"KEY_Z\" }\n";
+    std::fs::write(&path, format!("{}\n{button}", shipped::text("contra").unwrap())).unwrap();
+    path
+}
+
+/// What is held at the end of an event log.
+fn held(log: &Path) -> Vec<String> {
+    let mut read = Log::default();
+    read.read(&mut File::open(log).unwrap());
+    read.held.into_iter().filter(|(_, value)| *value != 0).map(|(code, _)| code).collect()
+}
+
+/// Fills a pipe to the brim.
+fn fill(pipe: &mut File) {
+    while pipe.write(&[b'x'; 4_096]).is_ok() || pipe.write(b"x").is_ok() {}
+}
+
+#[test]
+fn standard_error_that_nobody_reads_holds_nothing_up() {
+    in_guest("stalled::standard_error_that_nobody_reads_holds_nothing_up", standard_error_not_read);
+}
+
+fn standard_error_not_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let (profile, pipe, log) =
+        (doubtful_profile(folder.path()), make_pipe(folder.path()), folder.path().join("log"));
+    let _reader = open_reader(&pipe);
+    let mut program = Running::program(TACTPAD, folder.path());
+    program.args(["run", "--pad", "virtual", "--profile"]).arg(&profile);
+    program.arg("--output").arg(format!("log:{}", log.display()));
+    let stderr = OpenOptions::new().write(true).open(&pipe).unwrap();
+    let mut bridge = Running::start_telling(folder, program, stderr);
+    assert!(comes_true(|| held(&log) != Vec::<String>::new()));
+    let nonblocking = OFlags::NONBLOCK.bits().cast_signed();
+    fill(&mut OpenOptions::new().write(true).custom_flags(nonblocking).open(&pipe).unwrap());
+    assert!(bridge.ctl("reload").status.success());
+    assert!(bridge.ctl("next-profile").status.success() || bridge.status()["state"] == "playing");
+    assert!(comes_true(|| held(&log) != Vec::<String>::new()), "it plays on");
+    assert!(bridge.ctl("pause").status.success());
+    assert!(comes_true(|| held(&log).is_empty()), "{:?}", held(&log));
+    assert!(bridge.ctl("panic").status.success());
+    assert_eq!(ended(&mut bridge).code(), Some(0));
+}
+
+#[test]
+fn an_x_server_that_stands_still_is_not_waited_for_and_has_no_key_down_when_it_goes_on() {
+    if !require("Xvfb", "apt-get install xvfb") {
+        return;
+    }
+    let server = Server::start();
+    let folder = tempfile::tempdir().unwrap();
+    let mut program = Running::program(TACTPAD, folder.path());
+    program.args(["run", "--pad", "virtual", "--profile", "contra", "--output", "x11"]);
+    program.env("DISPLAY", &server.display);
+    let mut bridge = Running::start(folder, program);
+    assert!(comes_true(|| bridge.status()["held"].as_array().is_some_and(|held| !held.is_empty())));
+    server.stop();
+    let presses = bridge.status()["health"]["contacts"].as_u64();
+    assert!(comes_true(|| bridge.status()["health"]["contacts"].as_u64() > presses), "it plays on");
+    assert!(comes_true(|| bridge.status()["held"].as_array().is_some_and(|held| !held.is_empty())));
+    assert!(bridge.ctl("pause").status.success() && bridge.ctl("panic").status.success());
+    server.go_on();
+    assert!(comes_true(|| server.keys_down() == 0), "{} keys are down", server.keys_down());
+    server.stop();
+    bridge.signal(Signal::TERM);
+    assert!(bridge.ends().is_some(), "{}", bridge.told());
+    server.go_on();
 }

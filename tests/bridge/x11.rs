@@ -3,7 +3,9 @@
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::channel;
 
+use rustix::process::{Pid, Signal, kill_process};
 use tactpad::bridge::clock::Clock;
 use tactpad::bridge::latency::{Durations, Percentiles};
 use tactpad::bridge::sink::Sink;
@@ -45,6 +47,22 @@ impl Server {
         BufReader::new(process.stdout.as_mut().unwrap()).read_line(&mut number).unwrap();
         assert!(!number.trim().is_empty(), "Xvfb did not start");
         Self { process, display: format!(":{}", number.trim()) }
+    }
+
+    /// Lets it stand still.
+    pub(crate) fn stop(&self) {
+        kill_process(Pid::from_child(&self.process), Signal::STOP).unwrap();
+    }
+
+    /// Lets it go on.
+    pub(crate) fn go_on(&self) {
+        kill_process(Pid::from_child(&self.process), Signal::CONT).unwrap();
+    }
+
+    /// How many of its keys are down.
+    pub(crate) fn keys_down(&self) -> u32 {
+        let (connection, _) = x11rb::connect(Some(&self.display)).unwrap();
+        connection.query_keymap().unwrap().reply().unwrap().keys.iter().map(|keys| keys.count_ones()).sum()
     }
 }
 
@@ -161,6 +179,12 @@ fn pointer(code: Code, value: i32) -> OutputEvent {
 const SYMBOL_UP: u32 = 0xff52;
 const SYMBOL_LEFT: u32 = 0xff51;
 
+/// Writes a group, and waits until it is out.
+fn put(sink: &mut X11Sink, group: &[OutputEvent]) {
+    sink.write(group).unwrap();
+    sink.settle().unwrap();
+}
+
 #[test]
 fn keys_reach_a_window_in_order() {
     if !require("Xvfb", "apt-get install xvfb") {
@@ -170,10 +194,10 @@ fn keys_reach_a_window_in_order() {
     let client = Client::open(&server.display);
     let mut sink = X11Sink::open(Some(&server.display)).unwrap();
     sink.prepare(OutputDevice::Keyboard).unwrap();
-    sink.write(&[event(UP, 1)]).unwrap();
-    sink.write(&[event(LEFT, 1), event(Z, 1)]).unwrap();
-    sink.write(&[event(UP, 0), event(Z, 0), event(X, 1)]).unwrap();
-    sink.write(&[event(X, 0), event(LEFT, 0)]).unwrap();
+    put(&mut sink, &[event(UP, 1)]);
+    put(&mut sink, &[event(LEFT, 1), event(Z, 1)]);
+    put(&mut sink, &[event(UP, 0), event(Z, 0), event(X, 1)]);
+    put(&mut sink, &[event(X, 0), event(LEFT, 0)]);
     let (z, x) = (u32::from(b'z'), u32::from(b'x'));
     let expected = [
         (SYMBOL_UP, true),
@@ -186,9 +210,9 @@ fn keys_reach_a_window_in_order() {
         (SYMBOL_LEFT, false),
     ];
     assert_eq!(client.seen(), expected);
-    sink.write(&[event(LEFT_SHIFT, 1)]).unwrap();
+    put(&mut sink, &[event(LEFT_SHIFT, 1)]);
     client.seen();
-    sink.write(&[event(Z, 1), event(Z, 0)]).unwrap();
+    put(&mut sink, &[event(Z, 1), event(Z, 0)]);
     assert_eq!(client.seen(), [(u32::from(b'Z'), true), (u32::from(b'Z'), false)]);
 }
 
@@ -200,8 +224,8 @@ fn dropping_the_sink_releases_what_it_holds() {
     let server = Server::start();
     let client = Client::open(&server.display);
     let mut sink = X11Sink::open(Some(&server.display)).unwrap();
-    sink.write(&[event(UP, 1), event(Z, 1), event(X, 1)]).unwrap();
-    sink.write(&[event(X, 0)]).unwrap();
+    put(&mut sink, &[event(UP, 1), event(Z, 1), event(X, 1)]);
+    put(&mut sink, &[event(X, 0)]);
     client.seen();
     drop(sink);
     let mut released = client.seen();
@@ -222,13 +246,13 @@ fn the_pointer_moves_and_clicks_where_it_is() {
     let mut sink = X11Sink::open(Some(&server.display)).unwrap();
     sink.prepare(OutputDevice::Pointer).unwrap();
     let (x, y, left) = (Code::Relative(0), Code::Relative(1), Code::Key(0x110));
-    sink.write(&[pointer(x, 7), pointer(y, -3), pointer(left, 1)]).unwrap();
-    sink.write(&[pointer(x, -20), pointer(left, 0), pointer(Code::Key(0x111), 1)]).unwrap();
+    put(&mut sink, &[pointer(x, 7), pointer(y, -3), pointer(left, 1)]);
+    put(&mut sink, &[pointer(x, -20), pointer(left, 0), pointer(Code::Key(0x111), 1)]);
     use Pointed::{At, Down, Up};
     assert_eq!(client.pointed(), [At(57, 40), At(57, 37), Down(1), At(37, 37), Up(1), Down(3)]);
     let wheel = Code::Relative(8);
-    sink.write(&[pointer(wheel, 1)]).unwrap();
-    sink.write(&[pointer(wheel, -1)]).unwrap();
+    put(&mut sink, &[pointer(wheel, 1)]);
+    put(&mut sink, &[pointer(wheel, -1)]);
     assert_eq!(client.pointed(), [Down(4), Up(4), Down(5), Up(5)]);
     drop(sink);
     assert_eq!(client.pointed(), [Up(3)], "what was held is released");
@@ -251,11 +275,11 @@ fn the_pointer_goes_to_places_of_the_screen() {
     sink.prepare(OutputDevice::Tablet).unwrap();
     let place =
         |axis, value| OutputEvent { device: OutputDevice::Tablet, ..pointer(Code::Axis(axis), value) };
-    sink.write(&[place(0, 1), place(1, 1)]).unwrap();
+    put(&mut sink, &[place(0, 1), place(1, 1)]);
     assert_eq!(at(), (0, 0));
-    sink.write(&[place(0, 32_767), place(1, 32_767)]).unwrap();
+    put(&mut sink, &[place(0, 32_767), place(1, 32_767)]);
     assert_eq!(at(), (right, bottom));
-    sink.write(&[place(0, 16_384)]).unwrap();
+    put(&mut sink, &[place(0, 16_384)]);
     assert_eq!(at(), (right / 2, bottom), "along the other side it stays");
 }
 
@@ -320,11 +344,13 @@ fn two_thousand_presses_arrive_in_order_and_are_quick() {
     let [mut calls, mut round_trips] = [Durations::new(), Durations::new()];
     for press in presses(2_000) {
         let before = clock.now();
-        sink.write(&[press]).unwrap();
+        let (tell, written) = channel();
+        sink.write_then(&[press], Box::new(move || tell.send(clock.now()).unwrap())).unwrap();
+        let out = written.recv().unwrap();
         let between = clock.now();
         // Whatever the machine does meanwhile happens to both.
         client.connection.sync().unwrap();
-        calls.record_ns(between.as_ns() - before.as_ns());
+        calls.record_ns(out.as_ns() - before.as_ns());
         round_trips.record_ns(clock.now().as_ns() - between.as_ns());
     }
     let symbol = |event: &OutputEvent| match event.code {

@@ -7,7 +7,9 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
 use rustix::net::sockopt::socket_peercred;
+use rustix::net::{self, AddressFamily, SocketAddrUnix, SocketFlags, SocketType, socket_with};
 use rustix::process::getuid;
 
 use crate::clock::Clock;
@@ -81,7 +83,7 @@ impl Server {
         fds.extend(self.clients.iter().map(|client| PollFd::new(&client.stream, PollFlags::IN)));
         let limit = (!self.clients.is_empty()).then_some(&LOOK);
         match poll(&mut fds, limit) {
-            Ok(_) | Err(rustix::io::Errno::INTR) => Ok(()),
+            Ok(_) | Err(Errno::INTR) => Ok(()),
             Err(error) => Err(error.into()),
         }
     }
@@ -169,10 +171,27 @@ fn is_own(stream: &UnixStream) -> bool {
     socket_peercred(stream).is_ok_and(|peer| peer.uid == getuid())
 }
 
-/// A connection to the bridge that listens at `path`, which must be the same user's: the folder of temporary files is everybody's.
+/// A connection to the bridge that listens at `path`, which must be the same user's.
 fn connect(path: &Path) -> io::Result<UnixStream> {
-    let stream = UnixStream::connect(path)?;
+    let stream = connect_at_once(path)?;
     if is_own(&stream) { Ok(stream) } else { Err(io::ErrorKind::PermissionDenied.into()) }
+}
+
+/// A connection to whoever listens at `path`.
+///
+/// # Errors
+/// Nobody listens, or who listens lets nobody in: then the kind is `TimedOut`, though nobody is waited for.
+pub(super) fn connect_at_once(path: &Path) -> io::Result<UnixStream> {
+    let flags = SocketFlags::CLOEXEC | SocketFlags::NONBLOCK;
+    let socket = socket_with(AddressFamily::UNIX, SocketType::STREAM, flags, None)?;
+    match net::connect(&socket, &SocketAddrUnix::new(path)?) {
+        Ok(()) => {}
+        Err(Errno::AGAIN) => return Err(io::ErrorKind::TimedOut.into()),
+        Err(error) => return Err(error.into()),
+    }
+    let stream = UnixStream::from(socket);
+    stream.set_nonblocking(false)?;
+    Ok(stream)
 }
 
 /// Asks the bridge that listens at `path`; gives its line of JSON.
@@ -239,6 +258,22 @@ mod tests {
     fn answer(mut client: &UnixStream) -> Option<String> {
         let mut answer = String::new();
         client.read_to_string(&mut answer).ok().filter(|read| *read > 0).map(|_| answer)
+    }
+
+    #[test]
+    fn a_listener_that_lets_nobody_in_is_not_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("socket");
+        let _listener = UnixListener::bind(&path).unwrap();
+        let mut waiting = Vec::new();
+        let error = loop {
+            match connect_at_once(&path) {
+                Ok(stream) => waiting.push(stream),
+                Err(error) => break error,
+            }
+        };
+        assert_eq!(error.kind(), io::ErrorKind::TimedOut, "after {}", waiting.len());
+        assert_eq!(ask(&path, "status").unwrap_err().kind(), io::ErrorKind::TimedOut);
     }
 
     #[test]

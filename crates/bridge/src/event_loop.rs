@@ -11,7 +11,7 @@ use crate::bridge_parts::BridgeParts;
 use crate::clock::Clock;
 use crate::driver::{Driver, prepare};
 use crate::error::BridgeError;
-use crate::host::Host;
+use crate::host::{Host, ProfileReply, ProfileRequest};
 use crate::latency::Durations;
 use crate::notifier::Notifier;
 use crate::pad_connection::PadConnection;
@@ -279,14 +279,12 @@ impl Bridge {
             Request::Status => self.status(now),
             Request::Page => page(self.host.page()),
             Request::Preview(read) => self.preview(now, read)?,
-            Request::Profile(name) => {
-                let read = self.host.read_profile(name.as_deref());
-                self.change_profile(now, read, name.is_some())?
+            Request::Profile(None) => return self.read_profile(ProfileRequest::Same, pending),
+            Request::Profile(Some(name)) => {
+                return self.read_profile(ProfileRequest::Named(name.clone()), pending);
             }
-            Request::NextProfile => {
-                let read = self.host.next_profile();
-                self.change_profile(now, read, true)?
-            }
+            Request::NextProfile => return self.read_profile(ProfileRequest::Next, pending),
+            Request::Play(read, is_named) => self.change_profile(now, (**read).clone(), *is_named)?,
             Request::UpdateProfile(update) => self.update_profile(now, update)?,
             Request::Weigh(weight) => {
                 self.driver.call(now, Call::Weigh(*weight))?;
@@ -305,6 +303,15 @@ impl Bridge {
             }
         };
         pending.reply(answer);
+        Ok(())
+    }
+
+    /// Has the host read a profile; who asked gets the answer when it is in play.
+    fn read_profile(&mut self, request: ProfileRequest, pending: &PendingRequest) -> Result<(), BridgeError> {
+        let sender = self.requests.sender().map_err(BridgeError::Io)?;
+        let is_named = request != ProfileRequest::Same;
+        let reply = ProfileReply { sender, reply_to: pending.reply_to.clone(), is_named };
+        self.host.read_profile(request, reply);
         Ok(())
     }
 

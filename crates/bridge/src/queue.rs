@@ -1,4 +1,4 @@
-//! A file or stream behind a bounded queue, so that one that takes nothing never keeps the bridge waiting.
+//! A file, a stream or a server behind a bounded queue, so that one that takes nothing never keeps the bridge waiting.
 //!
 //! A thread of its own writes whole groups, one after the other. A group that finds no room is refused whole. Behind the
 //! queue is one more place, the last: what is put there goes out when all before it is out, and until then it can be
@@ -16,34 +16,39 @@ pub type OnWritten = Box<dyn FnOnce() + Send>;
 /// The end of a run waits this long for what is still to be written.
 const SETTLE_LIMIT: Duration = Duration::from_millis(400);
 
-/// Bytes that belong together.
-#[derive(Default)]
-pub struct WriteGroup {
-    /// The bytes to write.
-    pub bytes: Vec<u8>,
+/// Bytes, or other items, that belong together.
+pub struct WriteGroup<T = u8> {
+    /// What to write.
+    pub items: Vec<T>,
     /// How many things it holds, for whoever counts those that were not written.
     pub count: u64,
-    /// Called by the writing thread once the bytes are out.
+    /// Called by the writing thread once the items are out.
     pub written: Option<OnWritten>,
 }
 
-/// A queue with a thread that writes. Dropping it waits a little for what is still to be written.
-pub struct WriteQueue {
-    shared: Arc<Shared>,
-    bytes_max: usize,
+impl<T> From<Vec<T>> for WriteGroup<T> {
+    /// A group that nobody counts or waits for.
+    fn from(items: Vec<T>) -> Self {
+        Self { items, count: 0, written: None }
+    }
 }
 
-struct Shared {
-    state: Mutex<QueueState>,
+/// A queue with a thread that writes. Dropping it waits a little for what is still to be written.
+pub struct WriteQueue<T = u8> {
+    shared: Arc<Shared<T>>,
+    items_max: usize,
+}
+
+struct Shared<T> {
+    state: Mutex<QueueState<T>>,
     changed: Condvar,
 }
 
-#[derive(Default)]
-struct QueueState {
-    groups: VecDeque<WriteGroup>,
-    last: Option<WriteGroup>,
-    /// Bytes in `groups`.
-    bytes: usize,
+struct QueueState<T> {
+    groups: VecDeque<WriteGroup<T>>,
+    last: Option<WriteGroup<T>>,
+    /// Items in `groups`.
+    items: usize,
     /// The count of the group that is being written.
     writing: Option<u64>,
     is_closed: bool,
@@ -53,46 +58,76 @@ struct QueueState {
     failed: Option<(io::ErrorKind, String)>,
 }
 
+impl<T> Default for QueueState<T> {
+    fn default() -> Self {
+        Self {
+            groups: VecDeque::new(),
+            last: None,
+            items: 0,
+            writing: None,
+            is_closed: false,
+            is_stalled: false,
+            failed: None,
+        }
+    }
+}
+
 impl WriteQueue {
     /// Writes to `to` from a thread called `name`; at most `bytes_max` wait, and one group however long it is.
     ///
     /// # Errors
     /// The system has no thread to give.
-    pub fn start(name: &str, to: impl Write + Send + 'static, bytes_max: usize) -> io::Result<Self> {
+    pub fn to_stream(name: &str, mut to: impl Write + Send + 'static, bytes_max: usize) -> io::Result<Self> {
+        Self::start(name, bytes_max, move |bytes| to.write_all(bytes).and_then(|()| to.flush()))
+    }
+}
+
+impl<T: Send + 'static> WriteQueue<T> {
+    /// Calls `write` for each group, from a thread called `name`; at most `items_max` wait, and one group however long it is.
+    ///
+    /// # Errors
+    /// The system has no thread to give.
+    pub fn start(
+        name: &str,
+        items_max: usize,
+        write: impl FnMut(&[T]) -> io::Result<()> + Send + 'static,
+    ) -> io::Result<Self> {
         let shared = Arc::new(Shared { state: Mutex::default(), changed: Condvar::new() });
         let writer = Arc::clone(&shared);
-        thread::Builder::new().name(name.into()).spawn(move || writer.write_to(to))?;
-        Ok(Self { shared, bytes_max })
+        thread::Builder::new().name(name.into()).spawn(move || writer.write_by(write))?;
+        Ok(Self { shared, items_max })
     }
+}
 
+impl<T> WriteQueue<T> {
     /// Takes a group to be written. False if there is no room: then it is gone.
     ///
     /// # Errors
     /// An earlier group could not be written.
-    pub fn push(&self, group: WriteGroup) -> io::Result<bool> {
+    pub fn push(&self, group: WriteGroup<T>) -> io::Result<bool> {
         let mut state = self.shared.sound()?;
-        if !state.has_room(group.bytes.len(), self.bytes_max) {
+        if !state.has_room(group.items.len(), self.items_max) {
             return Ok(false);
         }
-        state.bytes += group.bytes.len();
+        state.items += group.items.len();
         state.groups.push_back(group);
         self.shared.changed.notify_all();
         Ok(true)
     }
 
-    /// Whether a group of so many bytes would be taken now.
+    /// Whether a group of so many items would be taken now.
     ///
     /// # Errors
     /// An earlier group could not be written.
-    pub fn has_room(&self, bytes: usize) -> io::Result<bool> {
-        Ok(self.shared.sound()?.has_room(bytes, self.bytes_max))
+    pub fn has_room(&self, items: usize) -> io::Result<bool> {
+        Ok(self.shared.sound()?.has_room(items, self.items_max))
     }
 
     /// Puts a group in the last place, behind everything else. Until it is out no other group is taken.
     ///
     /// # Errors
     /// An earlier group could not be written.
-    pub fn put_last(&self, group: WriteGroup) -> io::Result<()> {
+    pub fn put_last(&self, group: WriteGroup<T>) -> io::Result<()> {
         self.shared.sound()?.last = Some(group);
         self.shared.changed.notify_all();
         Ok(())
@@ -102,7 +137,7 @@ impl WriteQueue {
     ///
     /// # Errors
     /// An earlier group could not be written.
-    pub fn replace_last(&self, group: WriteGroup) -> io::Result<bool> {
+    pub fn replace_last(&self, group: WriteGroup<T>) -> io::Result<bool> {
         let mut state = self.shared.sound()?;
         Ok(state.last.as_mut().map(|last| *last = group).is_some())
     }
@@ -113,7 +148,7 @@ impl WriteQueue {
     /// A group could not be written.
     pub fn settle(&self) -> io::Result<()> {
         let state = self.shared.sound()?;
-        let is_left = |state: &mut QueueState| state.is_busy() && state.failed.is_none();
+        let is_left = |state: &mut QueueState<T>| state.is_busy() && state.failed.is_none();
         let waited = self.shared.changed.wait_timeout_while(state, SETTLE_LIMIT, is_left);
         let (mut state, limit) = waited.unwrap_or_else(PoisonError::into_inner);
         state.is_stalled = limit.timed_out();
@@ -126,7 +161,7 @@ impl WriteQueue {
     }
 }
 
-impl Drop for WriteQueue {
+impl<T> Drop for WriteQueue<T> {
     fn drop(&mut self) {
         if !self.shared.lock().is_stalled {
             // Whoever wants to know of errors has settled before.
@@ -137,9 +172,9 @@ impl Drop for WriteQueue {
     }
 }
 
-impl QueueState {
-    fn has_room(&self, bytes: usize, bytes_max: usize) -> bool {
-        self.last.is_none() && (self.groups.is_empty() || self.bytes + bytes <= bytes_max)
+impl<T> QueueState<T> {
+    fn has_room(&self, items: usize, items_max: usize) -> bool {
+        self.last.is_none() && (self.groups.is_empty() || self.items + items <= items_max)
     }
 
     fn waiting(&self) -> u64 {
@@ -157,30 +192,30 @@ impl QueueState {
         }
     }
 
-    fn next(&mut self) -> Option<WriteGroup> {
+    fn next(&mut self) -> Option<WriteGroup<T>> {
         let group = self.groups.pop_front().or_else(|| self.last.take())?;
-        self.bytes = self.groups.iter().map(|group| group.bytes.len()).sum();
+        self.items = self.groups.iter().map(|group| group.items.len()).sum();
         self.writing = Some(group.count);
         Some(group)
     }
 }
 
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, QueueState> {
+impl<T> Shared<T> {
+    fn lock(&self) -> MutexGuard<'_, QueueState<T>> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The state, if nothing failed.
-    fn sound(&self) -> io::Result<MutexGuard<'_, QueueState>> {
+    fn sound(&self) -> io::Result<MutexGuard<'_, QueueState<T>>> {
         let state = self.lock();
         state.check()?;
         Ok(state)
     }
 
     /// Writes groups until the queue is dropped or one cannot be written.
-    fn write_to(&self, mut to: impl Write) {
-        while let Some(WriteGroup { bytes, written, .. }) = self.next() {
-            let done = to.write_all(&bytes).and_then(|()| to.flush());
+    fn write_by(&self, mut write: impl FnMut(&[T]) -> io::Result<()>) {
+        while let Some(WriteGroup { items, written, .. }) = self.next() {
+            let done = write(&items);
             if let (Ok(()), Some(written)) = (&done, written) {
                 written();
             }
@@ -195,7 +230,7 @@ impl Shared {
     }
 
     /// Waits for the next group; `None` once the queue is dropped.
-    fn next(&self) -> Option<WriteGroup> {
+    fn next(&self) -> Option<WriteGroup<T>> {
         let mut state = self.lock();
         loop {
             if let Some(group) = state.next() {
@@ -235,11 +270,11 @@ mod tests {
 
     fn gated() -> (WriteQueue, Sender<()>, Receiver<Vec<u8>>) {
         let ((open, may), (out, seen)) = (channel(), channel());
-        (WriteQueue::start("test", Gate { may, out }, 8).unwrap(), open, seen)
+        (WriteQueue::to_stream("test", Gate { may, out }, 8).unwrap(), open, seen)
     }
 
     fn group(bytes: &[u8]) -> WriteGroup {
-        WriteGroup { bytes: bytes.to_vec(), count: 1, written: None }
+        WriteGroup { items: bytes.to_vec(), count: 1, written: None }
     }
 
     /// Waits until everything is out, however late the writing thread has its turn.

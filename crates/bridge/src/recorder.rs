@@ -32,7 +32,7 @@ impl Recorder {
     /// # Errors
     /// The system has no thread to give, or the head is longer than a capture can hold.
     pub(super) fn begin(to: Box<dyn Write + Send>, now: HostInstant, head: &Head) -> io::Result<Self> {
-        let queue = WriteQueue::start("recorder", to, QUEUE_BYTES_MAX)?;
+        let queue = WriteQueue::to_stream("recorder", to, QUEUE_BYTES_MAX)?;
         let capture = CaptureWriter::begin(Vec::new(), now, head)?;
         Ok(Self { capture, in_batch: 0, queue, is_over: false, missed: 0 })
     }
@@ -62,7 +62,7 @@ impl Recorder {
     /// Hands the batch on.
     fn hand_on(&mut self) -> io::Result<()> {
         let bytes = std::mem::take(self.capture.get_mut());
-        let group = WriteGroup { bytes, count: std::mem::take(&mut self.in_batch), written: None };
+        let group = WriteGroup { items: bytes, count: std::mem::take(&mut self.in_batch), written: None };
         if self.is_over { self.queue.put_last(group) } else { self.queue.push(group).map(|_| ()) }
     }
 

@@ -35,6 +35,8 @@ pub enum Request {
     Profile(Option<String>),
     /// Go over to the next profile that a press can leave again.
     NextProfile,
+    /// Play a profile that was asked for and is read by now, or say why it cannot be used; and whether it was asked for by its name.
+    Play(Box<Result<ReadProfile, String>>, bool),
     /// Play a profile that was read on another thread, if nobody has asked for another one meanwhile.
     UpdateProfile(Box<ProfileUpdate>),
     /// Play a profile that is not kept yet, until another one is asked for or offered, or this one is read again.

@@ -83,8 +83,8 @@ impl Watchers {
             return Ok(false);
         }
         stream.set_nonblocking(false)?;
-        let lines = WriteQueue::start("watch", stream.try_clone()?, QUEUE_BYTES_MAX)?;
-        lines.push(WriteGroup { bytes: b"{\"ok\":true}\n".to_vec(), ..WriteGroup::default() })?;
+        let lines = WriteQueue::to_stream("watch", stream.try_clone()?, QUEUE_BYTES_MAX)?;
+        lines.push(b"{\"ok\":true}\n".to_vec().into())?;
         all.push(Watcher { stream: stream.try_clone()?, lines, lost: 0 });
         self.count.store(all.len(), Ordering::Release);
         Ok(true)
@@ -115,7 +115,7 @@ impl Watcher {
     fn tell(&mut self, verdict: &Verdict) -> io::Result<()> {
         let line = PressLine::of(verdict, self.lost);
         let bytes = (serde_json::to_string(&line).map_err(io::Error::other)? + "\n").into_bytes();
-        let is_taken = self.lines.push(WriteGroup { bytes, count: 1, written: None })?;
+        let is_taken = self.lines.push(WriteGroup { items: bytes, count: 1, written: None })?;
         self.lost = if is_taken { 0 } else { self.lost + 1 };
         Ok(())
     }

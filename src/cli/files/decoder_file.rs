@@ -1,6 +1,6 @@
 //! Decoders as files, or by the names of those that are inside the program.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
 
@@ -59,7 +59,7 @@ pub(crate) fn is_meant(path: &Path) -> bool {
         return true;
     }
     // Asked before it is opened: opening a pipe would wait for its other end.
-    let file = std::fs::metadata(path).is_ok_and(|it| it.is_file()).then(|| File::open(path).ok());
+    let file = fs::metadata(path).is_ok_and(|it| it.is_file()).then(|| File::open(path).ok());
     let mut first = [0; KIND.len()];
     file.flatten().is_some_and(|mut file| file.read_exact(&mut first).is_ok() && first == *KIND)
 }
@@ -99,10 +99,11 @@ fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     if let Some(bytes) = path.to_str().and_then(shipped::bytes) {
         return Ok(bytes.into_owned());
     }
-    let file = File::open(path).map_err(|error| reason(&error))?;
-    if !file.metadata().is_ok_and(|file| file.is_file()) {
+    // Asked before it is opened: opening a pipe would wait for its other end.
+    if !fs::metadata(path).map_err(|error| reason(&error))?.is_file() {
         return Err("it is no file; name one that train or adapt wrote".into());
     }
+    let file = File::open(path).map_err(|error| reason(&error))?;
     let mut bytes = Vec::new();
     file.take(BYTES_MAX + 1).read_to_end(&mut bytes).map_err(|error| reason(&error))?;
     if bytes.len() as u64 > BYTES_MAX {

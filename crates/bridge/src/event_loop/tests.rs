@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::virtual_time::{ASLEEP, Edge, MessageLog, Play, bridge};
+use super::virtual_time::{ASKED, ASLEEP, Edge, MessageLog, Play, bridge};
 use super::*;
 use crate::opening::OpenedPad;
 use crate::sink::null::NullSink;
@@ -46,12 +46,15 @@ fn without_a_pad_it_wakes_at_most_five_times_a_second_and_still_looks_and_tells(
 fn another_profile_is_taken_and_one_that_cannot_be_read_is_told() {
     let (mut bridge, messages, _) = without_pad();
     let now = bridge.snapshot_at;
-    let read = bridge.host.read_profile(Some("tetris"));
-    assert_eq!(bridge.change_profile(now, read, true).unwrap(), done());
-    assert_eq!(bridge.take_snapshot(now).status.profile, "Tetris");
-    let read = bridge.host.read_profile(None);
-    let answer = bridge.change_profile(now, read, false).unwrap();
-    assert_eq!(answer, r#"{"error":"there is none","ok":false}"#);
+    let sender = bridge.requests.sender().unwrap();
+    let mut ask = |name: Option<&str>| {
+        let answer = sender.send_for_reply(Request::Profile(name.map(str::to_owned))).unwrap();
+        bridge.turn(now, ASKED).unwrap();
+        let profile = bridge.take_snapshot(now).status.profile.clone();
+        (answer.try_recv().unwrap(), profile)
+    };
+    assert_eq!(ask(Some("tetris")), (done(), "Tetris".into()));
+    assert_eq!(ask(None), (r#"{"error":"there is none","ok":false}"#.into(), "Tetris".into()));
     assert_eq!(*messages.0.lock().unwrap(), ["profile Tetris", "there is none\nthe profile in use stays"]);
 }
 
@@ -62,6 +65,7 @@ fn what_a_press_asks_for_is_done() {
     let mut ask = |command| {
         bridge.driver.commands.push(command);
         bridge.run_commands(now).unwrap();
+        bridge.turn(now, ASKED).unwrap();
         (bridge.driver.pipeline.phase(), bridge.take_snapshot(now).status.profile)
     };
     assert_eq!(ask(Command::TogglePause).0, Phase::Paused);

@@ -27,18 +27,22 @@ use tactpad_core::quantity::Contact;
 pub(super) struct MessageLog(pub(super) Arc<Mutex<Vec<String>>>);
 
 impl Host for MessageLog {
-    fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
-        let text = name.and_then(profiles::text).ok_or("there is none")?;
-        ReadProfile::read(text, OutputChoice::AsWritten).0.ok_or("it has errors".into())
-    }
-
-    fn next_profile(&mut self) -> Result<ReadProfile, String> {
-        Err("there is no next one".into())
+    fn read_profile(&mut self, request: ProfileRequest, reply: ProfileReply) {
+        reply.hand_in(match request {
+            ProfileRequest::Named(name) => profile(&name),
+            ProfileRequest::Same => Err("there is none".into()),
+            ProfileRequest::Next => Err("there is no next one".into()),
+        });
     }
 
     fn tell(&mut self, line: &str) {
         self.0.lock().unwrap().push(line.into());
     }
+}
+
+fn profile(name: &str) -> Result<ReadProfile, String> {
+    let text = profiles::text(name).ok_or("there is none")?;
+    ReadProfile::read(text, OutputChoice::AsWritten).0.ok_or("it has errors".into())
 }
 
 /// A bridge that plays Contra on this pad.
@@ -52,7 +56,7 @@ pub(super) fn bridge(pad: OpenedPad, sink: Box<dyn Sink>, messages: &MessageLog)
             place: None,
             file: None,
         },
-        profile: messages.clone().read_profile(Some("contra")).unwrap(),
+        profile: profile("contra").unwrap(),
         sink,
         requests: Requests::new().unwrap(),
         host: Box::new(messages.clone()),
@@ -66,6 +70,9 @@ pub(super) fn bridge(pad: OpenedPad, sink: Box<dyn Sink>, messages: &MessageLog)
 
 /// Nothing woke the loop but its own deadline.
 pub(super) const ASLEEP: Woken = Woken { pad: false, request: false };
+
+/// Somebody asked for something.
+pub(super) const ASKED: Woken = Woken { pad: false, request: true };
 
 /// What a pad has sent and nobody has read; nothing when it is pulled out.
 type Line = Arc<Mutex<Option<Vec<u8>>>>;
@@ -256,7 +263,7 @@ impl Play {
     /// Somebody asks the bridge for something now.
     pub(super) fn ask(&mut self, request: Request) -> Vec<Edge> {
         self.bridge.requests.sender().unwrap().send(request).unwrap();
-        assert_eq!(self.bridge.turn(self.now, Woken { pad: false, request: true }).unwrap(), None);
+        assert_eq!(self.bridge.turn(self.now, ASKED).unwrap(), None);
         self.take(self.now)
     }
 

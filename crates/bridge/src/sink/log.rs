@@ -3,32 +3,23 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::held_controls::HeldControls;
+use super::queued::QueuedGroups;
 use super::{Sink, SinkError};
 use crate::destination::Destination;
-use crate::queue::{OnWritten, WriteGroup, WriteQueue};
+use crate::queue::{OnWritten, WriteQueue};
 use tactpad_core::pipeline::control::{OutputDevice, OutputEvent};
 use tactpad_core::pipeline::output::event_log;
 
 /// So much may wait to be written: some thousand groups.
 const QUEUE_BYTES_MAX: usize = 128 << 10;
 
-/// Writes the event log, each group in one piece, behind a queue.
-///
-/// Groups that find no room are dropped. In their place the log says, as soon as there is room, what led from what its
-/// readers know to what is held then: so whatever they see go down they see come up.
+/// Writes the event log, each group in one piece, behind a queue. Where groups were dropped, the log goes on with what leads from
+/// what its readers know to what is held.
 pub struct LogSink {
-    queue: WriteQueue,
+    groups: QueuedGroups<u8>,
     place: String,
     /// Whether the log waits for somebody to read it.
     waits_for_reader: bool,
-    /// The controls that are held now.
-    held: HeldControls,
-    /// The controls that are held after everything in the queue.
-    logged: HeldControls,
-    /// The controls that are held after the group in the queue's last place.
-    caught_up: Option<HeldControls>,
-    dropped: u64,
 }
 
 impl LogSink {
@@ -49,38 +40,13 @@ impl LogSink {
     /// The system has no thread to give.
     pub fn new(out: impl Write + Send + 'static, place: String) -> Result<Self, SinkError> {
         let queue =
-            WriteQueue::start("log", out, QUEUE_BYTES_MAX).map_err(|error| refused(&place, &error))?;
-        let [held, logged] = [HeldControls::default(), HeldControls::default()];
-        Ok(Self { queue, place, waits_for_reader: false, held, logged, caught_up: None, dropped: 0 })
+            WriteQueue::to_stream("log", out, QUEUE_BYTES_MAX).map_err(|error| refused(&place, &error))?;
+        Ok(Self { groups: QueuedGroups::new(queue), place, waits_for_reader: false })
     }
 
     /// Whether the log is a pipe that nobody read when it was opened.
     pub const fn waits_for_reader(&self) -> bool {
         self.waits_for_reader
-    }
-
-    /// Queues a group, or what is true instead of it. False if the group was dropped.
-    fn queue(&mut self, group: &[OutputEvent], written: OnWritten) -> io::Result<bool> {
-        self.held.apply(group);
-        if let Some(caught_up) = self.caught_up.take() {
-            if self.queue.replace_last(self.catch_up()?)? {
-                return Ok(false);
-            }
-            // That is out by now.
-            self.logged = caught_up;
-        }
-        let group = WriteGroup { bytes: lines(group)?, count: 1, written: Some(written) };
-        if self.queue.push(group)? {
-            self.logged.clone_from(&self.held);
-            return Ok(true);
-        }
-        self.queue.put_last(self.catch_up()?)?;
-        Ok(false)
-    }
-
-    /// The events that lead from the logged controls to the held ones.
-    fn catch_up(&self) -> io::Result<WriteGroup> {
-        Ok(WriteGroup { bytes: lines(&self.logged.events_to(&self.held))?, ..WriteGroup::default() })
     }
 }
 
@@ -104,24 +70,19 @@ impl Sink for LogSink {
     }
 
     fn write_then(&mut self, group: &[OutputEvent], written: OnWritten) -> Result<(), SinkError> {
-        let is_queued = self.queue(group, written).map_err(|error| refused(&self.place, &error))?;
-        if !is_queued {
-            self.caught_up = Some(self.held.clone());
-            self.dropped += 1;
-        }
-        Ok(())
+        self.groups.write(group, written, lines).map_err(|error| refused(&self.place, &error))
     }
 
     fn settle(&mut self) -> Result<(), SinkError> {
-        self.queue.settle().map_err(|error| refused(&self.place, &error))
+        self.groups.settle().map_err(|error| refused(&self.place, &error))
     }
 
     fn dropped(&self) -> u64 {
-        self.dropped
+        self.groups.dropped()
     }
 
     fn waiting(&self) -> u64 {
-        self.queue.waiting()
+        self.groups.waiting()
     }
 
     fn describe(&self) -> String {
@@ -213,7 +174,7 @@ mod tests {
             let mut keys =
                 (0..).map(|press| event(press, 44 + (press / 2 % 2) as u16, 1 - (press % 2) as i32));
             // Until a group is dropped that a key went down in; then some that are dropped, too.
-            while sink.dropped() == 0 || sink.held.events_to(&HeldControls::default()).is_empty() {
+            while sink.dropped() == 0 || sink.groups.releases().is_empty() {
                 sink.write(&[keys.next().unwrap()]).unwrap();
                 written += 1;
             }

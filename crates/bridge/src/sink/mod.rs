@@ -4,6 +4,7 @@ mod held_controls;
 pub mod identity;
 pub mod log;
 pub mod null;
+mod queued;
 pub mod recording;
 pub mod uinput;
 pub mod x11;

@@ -1,7 +1,7 @@
 //! Key presses and the pointer through the X server, for machines where no virtual device may be made.
 //!
 //! They reach X11 programs only, and nothing releases them when the program is killed; dropping the sink
-//! does. Keys go out by number, not by symbol: the X server numbers a key 8 higher than the kernel, so a
+//! does. A thread of its own writes to the server: one that stands still keeps nobody waiting. Keys go out by number, not by symbol: the X server numbers a key 8 higher than the kernel, so a
 //! profile means the same key here as with the virtual keyboard.
 //!
 //! The pointer goes through enigo. Keys do not: for each, enigo asks the server for all its devices before it
@@ -10,15 +10,20 @@
 
 use std::collections::BTreeSet;
 use std::fmt;
+use std::io;
 
 use enigo::{Axis, Button, Coordinate, Direction, Enigo, InputResult, Mouse, NewConError, Settings};
 use x11rb::connection::Connection;
 use x11rb::errors::{ConnectError, ReplyError};
+use x11rb::protocol::Event;
 use x11rb::protocol::xproto::{ConnectionExt as _, KEY_PRESS_EVENT, KEY_RELEASE_EVENT};
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
+use x11rb::wrapper::ConnectionExt as _;
 
+use super::queued::QueuedGroups;
 use super::{Sink, SinkError};
+use crate::queue::{OnWritten, WriteQueue};
 use tactpad_core::pipeline::control::names::{POINTER_PLACE_MAX, POINTER_WHEEL};
 use tactpad_core::pipeline::control::{Code, OutputDevice, OutputEvent};
 use tactpad_core::pipeline::mapping::profile::Binding;
@@ -29,15 +34,30 @@ const OFFSET: u16 = 8;
 /// A key that every layout has in the same place: up, with its symbol `XK_Up`.
 const UP: (u8, u32) = (111, 0xff52);
 
+/// So many actions may wait for a server that stands still.
+const QUEUE_ACTIONS_MAX: usize = 2_048;
+
 /// Key presses and the pointer on one X display. Dropping it releases what it holds.
 pub struct X11Sink {
-    connection: RustConnection,
-    /// Moves the pointer; made when the pointer is first prepared.
-    enigo: Option<Enigo>,
+    groups: QueuedGroups<X11Action>,
+    /// Why the pointer cannot be moved, if so.
+    pointer_error: Option<String>,
+    keyboard: KeyboardLayout,
+}
+
+/// The keys of an X display.
+struct KeyboardLayout {
     display: String,
     /// Whether the layout gives the key of this number a symbol.
     has_symbol: Vec<bool>,
-    held: Vec<X11Action>,
+}
+
+/// The thread that writes to the server.
+struct X11Writer {
+    connection: RustConnection,
+    /// Moves the pointer.
+    enigo: Option<Enigo>,
+    display: String,
 }
 
 /// One thing for the X server to do.
@@ -55,6 +75,8 @@ enum X11Action {
     Down(i32),
     /// The wheel by so many notches towards the hand.
     Scroll(i32),
+    /// Nothing, once all before it is done: a server forgets what it has not read of a client that is gone.
+    Sync,
 }
 
 impl X11Sink {
@@ -67,7 +89,25 @@ impl X11Sink {
         let place = display.map_or_else(environment, str::to_owned);
         let (connection, _) = x11rb::connect(display).map_err(|error| no_server(&place, &error))?;
         let has_symbol = read_layout(&connection, &place)?;
-        Ok(Self { connection, enigo: None, display: place, has_symbol, held: Vec::new() })
+        // Its delay is for buttons: each would come that much later.
+        let x11_display = Some(place.clone()).filter(|place| !place.is_empty());
+        let settings = Settings { linux_delay: 0, x11_display, ..Settings::default() };
+        let (enigo, pointer_error) = match Enigo::new(&settings) {
+            Ok(enigo) => (Some(enigo), None),
+            Err(error) => (None, Some(no_injection(&place, &error).message)),
+        };
+        let mut writer = X11Writer { connection, enigo, display: place.clone() };
+        let queue = WriteQueue::start("x11", QUEUE_ACTIONS_MAX, move |actions| writer.write(actions))
+            .map_err(|error| failed(&error))?;
+        let keyboard = KeyboardLayout { display: place, has_symbol };
+        Ok(Self { groups: QueuedGroups::new(queue), pointer_error, keyboard })
+    }
+}
+
+impl KeyboardLayout {
+    /// The server's actions for these events.
+    fn actions(&self, events: &[OutputEvent]) -> Result<Vec<X11Action>, SinkError> {
+        events.iter().map(|event| self.act(event)).collect()
     }
 
     fn act(&self, event: &OutputEvent) -> Result<X11Action, SinkError> {
@@ -94,65 +134,6 @@ impl X11Sink {
         key.filter(has_symbol).ok_or_else(|| self.no_key(code))
     }
 
-    /// Has it done, and waits until it is.
-    fn perform(&mut self, act: X11Action) -> Result<(), SinkError> {
-        match act {
-            X11Action::Key(key, direction) => self.send_key(key, direction)?,
-            X11Action::Button(button, direction) => {
-                let done = self.enigo()?.button(button, direction);
-                done.map_err(|error| lost(&self.display, &error))?;
-            }
-            X11Action::Across(share) | X11Action::Down(share) => {
-                let is_across = matches!(act, X11Action::Across(_));
-                let done = go_to(self.enigo()?, share, is_across);
-                done.map_err(|error| lost(&self.display, &error))?;
-            }
-            X11Action::Move(right, down) => {
-                let done = self.enigo()?.move_mouse(right, down, Coordinate::Rel);
-                done.map_err(|error| lost(&self.display, &error))?;
-            }
-            X11Action::Scroll(notches) => {
-                let done = self.enigo()?.scroll(notches, Axis::Vertical);
-                done.map_err(|error| lost(&self.display, &error))?;
-            }
-        }
-        self.remember(act);
-        Ok(())
-    }
-
-    fn send_key(&self, key: u8, direction: Direction) -> Result<(), SinkError> {
-        let kind = if direction == Direction::Press { KEY_PRESS_EVENT } else { KEY_RELEASE_EVENT };
-        let sent = self.connection.xtest_fake_input(kind, key, x11rb::CURRENT_TIME, x11rb::NONE, 0, 0, 0);
-        let done = sent.map_err(ReplyError::from).and_then(|sent| sent.check());
-        done.map_err(|error| lost(&self.display, &error))
-    }
-
-    /// Keeps the acts that release what is down.
-    fn remember(&mut self, act: X11Action) {
-        let release = match act {
-            X11Action::Key(key, _) => X11Action::Key(key, Direction::Release),
-            X11Action::Button(button, _) => X11Action::Button(button, Direction::Release),
-            X11Action::Move(..) | X11Action::Across(_) | X11Action::Down(_) | X11Action::Scroll(_) => return,
-        };
-        self.held.retain(|held| *held != release);
-        if act != release {
-            self.held.push(release);
-        }
-    }
-
-    fn enigo(&mut self) -> Result<&mut Enigo, SinkError> {
-        match &mut self.enigo {
-            Some(enigo) => Ok(enigo),
-            place => {
-                // Its delay is for buttons: each would come that much later.
-                let display = Some(self.display.clone()).filter(|display| !display.is_empty());
-                let settings = Settings { linux_delay: 0, x11_display: display, ..Settings::default() };
-                let made = Enigo::new(&settings).map_err(|error| no_injection(&self.display, &error))?;
-                Ok(place.insert(made))
-            }
-        }
-    }
-
     fn no_key(&self, code: Code) -> SinkError {
         self.no_keys(&code.to_string())
     }
@@ -163,6 +144,56 @@ impl X11Sink {
             self.display
         );
         SinkError { message }
+    }
+}
+
+impl X11Writer {
+    /// Writes one action after the other: the X server knows no groups. Keys are out when they are on their way: a server that is
+    /// busy takes them in their order.
+    fn write(&mut self, actions: &[X11Action]) -> io::Result<()> {
+        actions.iter().try_for_each(|action| self.perform(*action))?;
+        self.connection.flush().map_err(|error| lost(&self.display, &error))?;
+        while let Some(event) =
+            self.connection.poll_for_event().map_err(|error| lost(&self.display, &error))?
+        {
+            if let Event::Error(error) = event {
+                return Err(lost(&self.display, &ReplyError::X11Error(error)));
+            }
+        }
+        Ok(())
+    }
+
+    fn perform(&mut self, action: X11Action) -> io::Result<()> {
+        if let X11Action::Key(key, direction) = action {
+            let kind = if direction == Direction::Press { KEY_PRESS_EVENT } else { KEY_RELEASE_EVENT };
+            // Its errors come as events.
+            return match self.connection.xtest_fake_input(
+                kind,
+                key,
+                x11rb::CURRENT_TIME,
+                x11rb::NONE,
+                0,
+                0,
+                0,
+            ) {
+                Ok(_) => Ok(()),
+                Err(error) => Err(lost(&self.display, &error)),
+            };
+        }
+        if action == X11Action::Sync {
+            return self.connection.sync().map_err(|error| lost(&self.display, &error));
+        }
+        // Who has no pointer was refused before.
+        let Some(enigo) = &mut self.enigo else { return Ok(()) };
+        let done = match action {
+            X11Action::Button(button, direction) => enigo.button(button, direction),
+            X11Action::Across(share) => go_to(enigo, share, true),
+            X11Action::Down(share) => go_to(enigo, share, false),
+            X11Action::Move(right, down) => enigo.move_mouse(right, down, Coordinate::Rel),
+            X11Action::Scroll(notches) => enigo.scroll(notches, Axis::Vertical),
+            X11Action::Key(..) | X11Action::Sync => Ok(()),
+        };
+        done.map_err(|error| lost(&self.display, &error))
     }
 }
 
@@ -204,41 +235,54 @@ impl Sink for X11Sink {
         match device {
             OutputDevice::Keyboard => Ok(()),
             OutputDevice::Gamepad => Err(no_gamepad()),
-            OutputDevice::Pointer | OutputDevice::Tablet => self.enigo().map(|_| ()),
+            OutputDevice::Pointer | OutputDevice::Tablet => match &self.pointer_error {
+                Some(error) => Err(SinkError { message: error.clone() }),
+                None => Ok(()),
+            },
         }
     }
 
     fn accepts(&self, bindings: &[Binding]) -> Result<(), SinkError> {
         let keys = bindings.iter().filter(|binding| binding.device == OutputDevice::Keyboard);
         let lacking: BTreeSet<Code> =
-            keys.map(|binding| binding.code).filter(|code| self.key(*code).is_err()).collect();
+            keys.map(|binding| binding.code).filter(|code| self.keyboard.key(*code).is_err()).collect();
         let lacking: Vec<String> = lacking.iter().map(Code::to_string).collect();
-        if lacking.is_empty() { Ok(()) } else { Err(self.no_keys(&lacking.join(", "))) }
+        if lacking.is_empty() { Ok(()) } else { Err(self.keyboard.no_keys(&lacking.join(", "))) }
     }
 
-    /// Sends one event after the other: the X server knows no groups.
     fn write(&mut self, group: &[OutputEvent]) -> Result<(), SinkError> {
-        for event in group {
-            self.act(event)?;
-        }
-        for event in group {
-            let act = self.act(event)?;
-            self.perform(act)?;
-        }
-        Ok(())
+        self.write_then(group, Box::new(|| ()))
+    }
+
+    fn write_then(&mut self, group: &[OutputEvent], written: OnWritten) -> Result<(), SinkError> {
+        let actions = |events: &[OutputEvent]| self.keyboard.actions(events).map_err(io::Error::other);
+        self.groups.write(group, written, actions).map_err(|error| failed(&error))
+    }
+
+    fn settle(&mut self) -> Result<(), SinkError> {
+        self.groups
+            .push(vec![X11Action::Sync])
+            .and_then(|()| self.groups.settle())
+            .map_err(|error| failed(&error))
+    }
+
+    fn dropped(&self) -> u64 {
+        self.groups.dropped()
+    }
+
+    fn waiting(&self) -> u64 {
+        self.groups.waiting()
     }
 
     fn describe(&self) -> String {
-        format!("keys and pointer of X display {} (X11 programs only)", self.display)
+        format!("keys and pointer of X display {} (X11 programs only)", self.keyboard.display)
     }
 }
 
 impl Drop for X11Sink {
     fn drop(&mut self) {
-        for release in std::mem::take(&mut self.held) {
-            // Where this fails the server is gone, and with it what it held.
-            let _ = self.perform(release);
-        }
+        // Where this fails the server is gone, and with it what it held. The queue waits a little for it.
+        let _ = self.write(&self.groups.releases()).and_then(|()| self.settle());
     }
 }
 
@@ -289,6 +333,11 @@ fn other_numbers(place: &str) -> SinkError {
     SinkError { message }
 }
 
-fn lost(place: &str, error: &impl fmt::Display) -> SinkError {
-    SinkError { message: format!("X display {place} takes no events any more ({error}): start again") }
+fn lost(place: &str, error: &impl fmt::Display) -> io::Error {
+    io::Error::other(format!("X display {place} takes no events any more ({error}): start again"))
+}
+
+/// The error of the thread that writes, which says it all.
+fn failed(error: &io::Error) -> SinkError {
+    SinkError { message: error.to_string() }
 }

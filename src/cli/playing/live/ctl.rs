@@ -4,10 +4,13 @@ pub(super) mod answer;
 mod weigh;
 
 use std::env;
+use std::fs::{self, DirBuilder};
 use std::io::{self, Write};
+use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use rustix::process::getuid;
 use serde_json::Value;
 
 use self::answer::{answered, no_answer};
@@ -83,16 +86,36 @@ enum Action {
     Quit,
 }
 
-/// Where a bridge listens: in the user's runtime folder, else in the folder for temporary files.
-pub(super) fn socket_path() -> PathBuf {
-    match env::var_os("XDG_RUNTIME_DIR").filter(|folder| Path::new(folder).is_dir()) {
-        Some(folder) => PathBuf::from(folder).join("tactpad.sock"),
-        None => env::temp_dir().join(format!("tactpad-{}.sock", rustix::process::getuid().as_raw())),
+/// Where a bridge listens: in the user's runtime folder, else in a folder of the user's own among the temporary files.
+///
+/// # Errors
+/// Somebody else has that folder, who could listen there instead.
+pub(super) fn socket_path() -> Result<PathBuf, Failure> {
+    let runtime = env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from).filter(|folder| is_own(folder));
+    let folder = runtime.unwrap_or_else(|| {
+        let folder = env::temp_dir().join(format!("tactpad-{}", getuid().as_raw()));
+        // It may be there already, whosever it is.
+        let _ = DirBuilder::new().mode(0o700).create(&folder);
+        folder
+    });
+    if is_own(&folder) {
+        Ok(folder.join("tactpad.sock"))
+    } else {
+        Err(Failure::Failed(format!(
+            "{} is not yours alone, so anybody could answer there: set XDG_RUNTIME_DIR to a folder that is",
+            folder.display()
+        )))
     }
 }
 
+/// Whether it is a folder that nobody else can write to.
+fn is_own(folder: &Path) -> bool {
+    fs::symlink_metadata(folder)
+        .is_ok_and(|it| it.is_dir() && it.uid() == getuid().as_raw() && it.mode() & 0o022 == 0)
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let path = socket_path();
+    let path = socket_path()?;
     let request = match &arguments.action {
         Action::Watch { sound } => return watch_presses(&path, *sound),
         Action::Weigh { grams } => return weigh::run(&path, *grams, arguments.json),

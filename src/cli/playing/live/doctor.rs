@@ -96,7 +96,10 @@ pub(super) fn examine() -> DoctorReport {
     let root = Path::new("/");
     let mut checks = vec![check_uinput(), check_rules(root)];
     checks.extend(check_pads(&pads::attached()));
-    let bridge = ask(&ctl::socket_path(), "status");
+    let bridge = match ctl::socket_path() {
+        Ok(path) => ask(&path, "status"),
+        Err(failure) => Err(io::Error::new(io::ErrorKind::PermissionDenied, failure.sentence())),
+    };
     let own = bridge.as_deref().map(own_nodes).unwrap_or_default();
     checks.extend(check_other_gamepads(&read(root, "proc/bus/input/devices"), &own));
     checks.push(check_joydev(root));
@@ -273,6 +276,9 @@ fn check_bridge(answer: &io::Result<String>) -> Check {
             "bridge",
             "one is there and does not answer: if it was stopped, continue it with `fg`",
         ),
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
+            Check::note("bridge", format!("none can be asked: {error}"))
+        }
         Err(_) => Check::note("bridge", "none is running"),
     }
 }

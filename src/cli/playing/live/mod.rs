@@ -23,6 +23,7 @@ mod output;
 #[cfg(feature = "dashboard")]
 mod page;
 mod playing;
+mod profile_reader;
 mod profile_selection;
 pub(super) mod record;
 #[cfg(feature = "dashboard")]

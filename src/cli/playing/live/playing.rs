@@ -1,27 +1,26 @@
 //! Shared parts of the live verbs: opening the pad, messages to people, and the end of a run.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::profile_reader::ProfileReader;
 use super::profile_selection::ProfileSelection;
 use crate::cli::failure::Failure;
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
-use crate::cli::playing::profile;
 use crate::cli::printing::written::{is_stdout, reason, say};
 use tactpad::bridge::destination::Destination;
 use tactpad::bridge::error::BridgeError;
 use tactpad::bridge::event_loop::{Bridge, Ending};
-use tactpad::bridge::host::Host;
+use tactpad::bridge::host::{Host, ProfileReply, ProfileRequest};
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
 use tactpad::bridge::profile_update::ProfileUpdate;
-use tactpad::bridge::queue::{WriteGroup, WriteQueue};
+use tactpad::bridge::queue::WriteQueue;
 use tactpad::bridge::requests::Requests;
 use tactpad::bridge::snapshot::Drops;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::pipeline::mapping::profile::Profile;
-use tactpad::pipeline::mapping::read::ReadProfile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::virtual_pad::firmware::VirtualPad;
 use tactpad::virtual_pad::script::Script;
@@ -120,30 +119,48 @@ pub(super) fn tell_of_waiting(path: &Path, waits: bool) {
 /// Largest size of the messages that wait to be read, in bytes.
 const MESSAGE_BYTES_MAX: usize = 16 << 10;
 
+/// Stderr behind a queue: a terminal that is held with Ctrl-S, or a pipe that nobody reads, keeps nobody waiting.
+#[derive(Clone)]
+pub(super) struct MessageQueue(Arc<WriteQueue>);
+
+impl MessageQueue {
+    fn start() -> io::Result<Self> {
+        Ok(Self(Arc::new(WriteQueue::to_stream("messages", io::stderr(), MESSAGE_BYTES_MAX)?)))
+    }
+
+    /// Tells people a line, or some. Where nobody reads, they are lost.
+    pub(super) fn tell(&self, lines: &str) {
+        let _ = self.0.push(format!("{lines}\n").into_bytes().into());
+    }
+}
+
+impl Drop for MessageQueue {
+    fn drop(&mut self) {
+        // The last messages get out, if somebody reads.
+        let _ = self.0.settle();
+    }
+}
+
 /// The host of a bridge that was started from a command line.
 pub(super) struct TerminalHost {
     /// The profile that is read again when nobody names another one.
     selection: Arc<Mutex<ProfileSelection>>,
-    output: OutputChoice,
+    profiles: ProfileReader,
     /// Address of the bridge's page.
     page: Option<String>,
-    /// Stderr, if somebody reads it. A terminal that is held with Ctrl-S must not keep the bridge waiting.
-    messages: Option<WriteQueue>,
+    messages: Option<MessageQueue>,
 }
 
 impl TerminalHost {
     /// A bridge that plays `profile` for an output of this kind.
     pub(super) fn new(profile: &str, output: OutputChoice, audience: Audience) -> io::Result<Self> {
         let messages = match audience {
-            Audience::Stderr => Some(WriteQueue::start("told", io::stderr(), MESSAGE_BYTES_MAX)?),
+            Audience::Stderr => Some(MessageQueue::start()?),
             Audience::Nobody => None,
         };
-        Ok(Self {
-            selection: Arc::new(Mutex::new(ProfileSelection::of(profile))),
-            output,
-            page: None,
-            messages,
-        })
+        let selection = Arc::new(Mutex::new(ProfileSelection::of(profile)));
+        let profiles = ProfileReader::start(Arc::clone(&selection), output, messages.clone())?;
+        Ok(Self { selection, profiles, page: None, messages })
     }
 
     /// The same, of a bridge that is shown at this address.
@@ -158,22 +175,8 @@ impl TerminalHost {
 }
 
 impl Host for TerminalHost {
-    fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
-        let mut selection = self.selection.lock().unwrap_or_else(PoisonError::into_inner);
-        let requested = selection.requested(name);
-        let read = profile::read(&requested.name, self.output).map_err(Failure::sentence)?;
-        // A profile that was chosen and can be used is the one to be read again.
-        *selection = requested;
-        Ok(read)
-    }
-
-    fn next_profile(&mut self) -> Result<ReadProfile, String> {
-        let mut selection = self.selection.lock().unwrap_or_else(PoisonError::into_inner);
-        let (chosen, read) = profile::next(&selection.name, self.output).ok_or(
-            "there is no other profile from which a press leads on: add one with bridge = \"next-profile\"",
-        )?;
-        *selection = selection.requested(Some(&chosen));
-        Ok(read)
+    fn read_profile(&mut self, request: ProfileRequest, reply: ProfileReply) {
+        self.profiles.read(request, reply);
     }
 
     fn page(&self) -> Option<String> {
@@ -186,8 +189,7 @@ impl Host for TerminalHost {
 
     fn tell(&mut self, line: &str) {
         if let Some(messages) = &self.messages {
-            // Where nobody reads, the bridge plays on.
-            let _ = messages.push(WriteGroup { bytes: format!("{line}\n").into(), ..WriteGroup::default() });
+            messages.tell(line);
         }
     }
 }
@@ -211,17 +213,18 @@ impl Audience {
 }
 
 /// Requests by signals and, where `socket` is given, through it. A second bridge plays without one.
-pub(super) fn requests(socket: Option<&Path>, audience: Audience) -> Result<Requests, Failure> {
+pub(super) fn requests(
+    socket: Option<Result<PathBuf, Failure>>,
+    audience: Audience,
+) -> Result<Requests, Failure> {
     let mut requests = Requests::new()?;
     requests.catch_signals()?;
-    if let Some(path) = socket
-        && let Err(error) = requests.listen(path)
-    {
-        audience.tell(&format!(
-            "`tactpad ctl` does not reach this bridge: {} ({})",
-            path.display(),
-            reason(&error)
-        ));
+    let listens = socket.map_or(Ok(()), |path| {
+        let path = path.map_err(Failure::sentence)?;
+        requests.listen(&path).map_err(|error| format!("{} ({})", path.display(), reason(&error)))
+    });
+    if let Err(why) = listens {
+        audience.tell(&format!("`tactpad ctl` does not reach this bridge: {why}"));
     }
     Ok(requests)
 }

@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         decoder,
         profile,
         sink,
-        requests: requests(Some(&ctl::socket_path()), audience)?,
+        requests: requests(Some(ctl::socket_path()), audience)?,
         host: Box::new(host),
         record: Some(Box::new(capture)),
         observers: Vec::new(),

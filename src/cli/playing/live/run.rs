@@ -89,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         say(missing);
     }
     audience.tell(&title);
-    let requests = requests(Some(&ctl::socket_path()), audience)?;
+    let requests = requests(Some(ctl::socket_path()), audience)?;
     let mut prepared = arguments.shown.prepare(&requests, &selection, output.choice())?;
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));

@@ -8,11 +8,10 @@ use crate::cli::playing::live::playing::TerminalHost;
 use crate::cli::playing::live::screen::{Picture, Size};
 use crate::cli::printing::terminal;
 use crate::cli::printing::written::say;
-use tactpad::bridge::host::Host;
+use tactpad::bridge::host::{Host, ProfileReply, ProfileRequest};
 use tactpad::bridge::profile_update::ProfileUpdate;
 use tactpad::lab::play::guide::Guide;
 use tactpad::lab::play::words::wrong;
-use tactpad::pipeline::mapping::read::ReadProfile;
 
 /// Hands on what the bridge tells of the pad, so that it stands among the session's lines.
 pub(super) struct SessionHost {
@@ -27,12 +26,8 @@ impl SessionHost {
 }
 
 impl Host for SessionHost {
-    fn read_profile(&mut self, name: Option<&str>) -> Result<ReadProfile, String> {
-        self.terminal.read_profile(name)
-    }
-
-    fn next_profile(&mut self) -> Result<ReadProfile, String> {
-        self.terminal.next_profile()
+    fn read_profile(&mut self, request: ProfileRequest, reply: ProfileReply) {
+        self.terminal.read_profile(request, reply);
     }
 
     fn wants(&self, update: &ProfileUpdate) -> bool {

@@ -170,6 +170,26 @@ fn undo_and_redo_go_through_all_changes_of_text_and_picture() {
 }
 
 #[test]
+fn a_decimal_comma_is_a_decimal_point_typed_and_pasted() {
+    let finger = Finger::start();
+    let Some((_shown, browser)) = editor(&finger, Browser::open) else { return };
+    let field = "document.querySelector('input[type=number][data-field=\"button.0.press_n\"]')";
+    browser.run(&format!("{field}.closest('details').open = true; {field}.focus(); {field}.select();"));
+    browser.keys(&[], &["1", ",", "5"]);
+    assert!(comes_true(|| press_n(&text(&browser)) == 1.5), "{}", text(&browser));
+    let paste = |text: &str| {
+        browser.run(&format!(
+            "{field}.select(); const data = new DataTransfer(); data.setData('text', '{text}'); \
+             {field}.dispatchEvent(new ClipboardEvent('paste', {{ clipboardData: data, cancelable: true }}));"
+        ));
+    };
+    paste("2,5");
+    assert!(comes_true(|| press_n(&text(&browser)) == 2.5), "{}", text(&browser));
+    paste("1.234,5");
+    assert_eq!(browser.run(&format!("return {field}.value")), "2.5", "nobody knows which one is meant");
+}
+
+#[test]
 fn a_preview_ends_with_its_page() {
     let finger = Finger::start();
     let Some((shown, browser)) = editor(&finger, Browser::open) else { return };

@@ -305,6 +305,38 @@ proptest! {
     }
 
     #[test]
+    fn what_is_held_long_enough_counts(
+        (slow_ms, bounce_ms) in (0..400_u64, 0..400_u64),
+        // Times in milliseconds, and what the finger does meanwhile: right, the middle, pressing there, off the pad.
+        history in prop::collection::vec((1..500_u64, 0..4_usize), 0..12),
+        is_pressed in any::<bool>(),
+    ) {
+        let text = format!(
+            "schema = 1\nname = \"Held\"\noutput = \"gamepad\"\nfilter_samples = 1\nmin_press_ms = 10\n[access]\n\
+             slow_ms = {slow_ms}\nbounce_ms = {bounce_ms}\n[dpad]\n[[button]]\nforce = \"fz\"\npress_n = 2\nout = \
+             {{ gamepad = \"BTN_SOUTH\", keyboard = \"KEY_Z\" }}\n"
+        );
+        let mut engine = Engine::new(read(&text, OutputChoice::AsWritten).0.unwrap());
+        let contact = |x_mm, fz_n| Some(Contact { x_mm, fz_n, ..Contact::default() });
+        let does = [contact(20.0, 1.0), contact(0.0, 1.0), contact(0.0, 3.0), None];
+        let held = if is_pressed { does[2] } else { does[0] };
+        let mut ms = 0;
+        let mut step = |finger: Option<Contact>| {
+            ms += 1;
+            !engine.step(StreamInstant::from_us(1_000 * ms), finger.as_ref()).is_empty()
+        };
+        for (during_ms, what) in history {
+            for _ in 0..during_ms {
+                step(does[what]);
+            }
+        }
+        (0..slow_ms.max(bounce_ms)).for_each(|_| {
+            step(held);
+        });
+        prop_assert!(step(held), "held for {} ms", slow_ms.max(bounce_ms));
+    }
+
+    #[test]
     fn the_same_calls_give_the_same_levels(profile in profiles(), calls in calls()) {
         let run = || {
             let mut engine = Engine::new(profile.clone());

@@ -108,6 +108,13 @@ impl Rig {
         }
     }
 
+    /// Frames are lost for longer than a finger needs to lift and press again.
+    pub(crate) fn lose(&mut self) {
+        (0..25).for_each(|_| {
+            self.sample(&Contact::default());
+        });
+    }
+
     pub(crate) fn send(&mut self, sample: &Sample) {
         self.bytes(&frame(sample));
     }

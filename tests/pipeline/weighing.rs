@@ -251,8 +251,7 @@ fn one_fault_begins_anew_and_two_end_it() {
         weigh(rig);
         rig.hold(WEIGHT, 1_000);
         for _ in 0..times {
-            // A frame is missing.
-            rig.sequence += 1;
+            rig.lose();
             rig.hold(WEIGHT, 200);
         }
         rig.hold(WEIGHT, 2_000);

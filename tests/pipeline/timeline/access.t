@@ -57,7 +57,7 @@ add bounce_ms = 300
 310ms BTN_SOUTH 1
 311ms BTN_SOUTH 0
 
-case Bounce Keys: who keeps pressing too soon has to let go first
+case Bounce Keys: who presses too soon and keeps pressing is heard when the time is over
 profile contra
 add [access]
 add bounce_ms = 300
@@ -68,10 +68,48 @@ add bounce_ms = 300
 400ms fz=2.5
 401ms lift
 402ms fz=2.5
+403ms lift
 
 0ms BTN_SOUTH 1
 10ms BTN_SOUTH 0
-402ms BTN_SOUTH 1
+400ms BTN_SOUTH 1
+401ms BTN_SOUTH 0
+
+case Bounce Keys: a thumb that crosses the centre goes on with its hold
+profile super-mario
+remove button.1
+add [access]
+add bounce_ms = 300
+
+0ms..500ms x=20 fz=1
+501ms..550ms x=0 fz=1
+551ms..1200ms x=20 fz=1
+1201ms lift
+
+0ms ABS_HAT0X 1
+501ms ABS_HAT0X 0
+801ms ABS_HAT0X 1
+1201ms ABS_HAT0X 0
+
+case Slow Keys: a thumb that strays and stays on the pad waits as long as it was away
+profile super-mario
+remove button.1
+add [access]
+add slow_ms = 300
+
+0ms..500ms x=20 fz=1
+501ms..600ms x=0 fz=1
+601ms..1200ms x=20 fz=1
+1201ms lift
+1300ms..1700ms x=20 fz=1
+1701ms lift
+
+300ms ABS_HAT0X 1
+501ms ABS_HAT0X 0
+701ms ABS_HAT0X 1
+1201ms ABS_HAT0X 0
+1600ms ABS_HAT0X 1
+1701ms ABS_HAT0X 0
 
 case Bounce Keys: another button may follow at once
 profile contra

@@ -41,7 +41,7 @@ watch presses
 599ms rejected up slow
 700ms ABS_HAT0X 0
 
-case directions that Bounce Keys reject
+case directions that Bounce Keys reject, and one that lasts
 profile super-mario
 remove button.1
 add [access]
@@ -50,14 +50,19 @@ watch presses
 
 0ms x=20 fz=1
 100ms lift
-399ms..800ms x=20 fz=1
+300ms..350ms x=20 fz=1
+351ms lift
+380ms..800ms x=20 fz=1
 801ms lift
 802ms x=0 y=20 fz=1
 
 0ms ABS_HAT0X 1
 0ms accepted right
 100ms ABS_HAT0X 0
-399ms rejected right bounce
+351ms rejected right bounce
+400ms ABS_HAT0X 1
+400ms accepted right
+801ms ABS_HAT0X 0
 802ms ABS_HAT0Y -1
 802ms accepted up
 

@@ -22,8 +22,8 @@ pub enum Cause {
     Unsuitable,
     /// The pad speaks a newer version of the protocol.
     NewerVersion,
-    /// A frame was damaged, lost or repeated, or the pad's clock jumped.
-    Damaged,
+    /// Frames were lost, or one repeated, or the pad's clock jumped.
+    Discontinuity,
     /// A channel of this sample cannot be trusted.
     Faulty,
     /// The zero is being measured: this sample has none.
@@ -95,7 +95,7 @@ impl Cause {
             Self::Exchanged    => [Keep,   Forget, Forget,  Forget, Forget, Forget, Forget, Forget, Forget, Forget,  Doubt],
             Self::Unsuitable   => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Forget, Doubt,  Forget,  Doubt],
             Self::NewerVersion => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Forget,  Doubt],
-            Self::Damaged      => [Keep,   Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt,   Doubt],
+            Self::Discontinuity => [Keep,   Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt,   Doubt],
             Self::Faulty       => [Keep,   Keep,   Keep,    Forget, Keep,   Keep,   Keep,   Keep,   Doubt,  Doubt,   Doubt],
             // There is no contact, which is certain: it is mapped as a lift.
             Self::Taring       => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep,    Keep],
@@ -114,7 +114,7 @@ impl Cause {
 
 impl From<Fault> for Cause {
     fn from(fault: Fault) -> Self {
-        if fault == Fault::Restarted { Self::Restarted } else { Self::Damaged }
+        if fault == Fault::Restarted { Self::Restarted } else { Self::Discontinuity }
     }
 }
 
@@ -131,7 +131,7 @@ mod tests {
         Cause::Exchanged,
         Cause::Unsuitable,
         Cause::NewerVersion,
-        Cause::Damaged,
+        Cause::Discontinuity,
         Cause::Faulty,
         Cause::Taring,
         Cause::Drifted,

@@ -18,6 +18,7 @@ mod kept_play;
 #[cfg(feature = "tray")]
 mod last_profile;
 pub(super) mod latency;
+mod message_queue;
 mod newest;
 mod output;
 #[cfg(feature = "dashboard")]

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::message_queue::MessageQueue;
 use super::profile_reader::ProfileReader;
 use super::profile_selection::ProfileSelection;
 use crate::cli::failure::Failure;
@@ -16,7 +17,6 @@ use tactpad::bridge::event_loop::{Bridge, Ending};
 use tactpad::bridge::host::{Host, ProfileReply, ProfileRequest};
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
 use tactpad::bridge::profile_update::ProfileUpdate;
-use tactpad::bridge::queue::WriteQueue;
 use tactpad::bridge::requests::Requests;
 use tactpad::bridge::snapshot::Drops;
 use tactpad::bridge::transport::address::PadAddress;
@@ -113,31 +113,6 @@ pub(super) fn create_capture(path: &Path) -> Result<Box<dyn Write + Send>, Failu
 pub(super) fn tell_of_waiting(path: &Path, waits: bool) {
     if waits {
         say(format_args!("nobody reads the pipe {} yet: start its reader", path.display()));
-    }
-}
-
-/// Largest size of the messages that wait to be read, in bytes.
-const MESSAGE_BYTES_MAX: usize = 16 << 10;
-
-/// Stderr behind a queue: a terminal that is held with Ctrl-S, or a pipe that nobody reads, keeps nobody waiting.
-#[derive(Clone)]
-pub(super) struct MessageQueue(Arc<WriteQueue>);
-
-impl MessageQueue {
-    fn start() -> io::Result<Self> {
-        Ok(Self(Arc::new(WriteQueue::to_stream("messages", io::stderr(), MESSAGE_BYTES_MAX)?)))
-    }
-
-    /// Tells people a line, or some. Where nobody reads, they are lost.
-    pub(super) fn tell(&self, lines: &str) {
-        let _ = self.0.push(format!("{lines}\n").into_bytes().into());
-    }
-}
-
-impl Drop for MessageQueue {
-    fn drop(&mut self) {
-        // The last messages get out, if somebody reads.
-        let _ = self.0.settle();
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
-use super::playing::MessageQueue;
+use super::message_queue::MessageQueue;
 use super::profile_selection::ProfileSelection;
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;

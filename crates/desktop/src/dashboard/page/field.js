@@ -1,7 +1,7 @@
 // One key of a profile as a field: label, control, explanation, and a way back to what holds without it.
 
 import { captureButton } from "./capture.js";
-import { el, say, set } from "./dom.js";
+import { el, numberField, say, set } from "./dom.js";
 import { nameOf, stepOf, tidy, unitOf } from "./schema.js";
 
 const CHOICES_WITH_OWN_WORDS = new Set(["gamepad", "pointer"]);
@@ -62,8 +62,9 @@ export class Field {
 
   #number(type) {
     const { kind, min, max } = this.about;
-    const node = el("input", { type, min, max, step: kind === "integer" ? 1 : "any", inputmode: type === "number" ? "decimal" : null,
-      oninput: () => this.#typed(node), onblur: () => { this.#gesture = null; }, onkeydown: (event) => this.#stepped(event, node) });
+    const make = type === "number" ? numberField : (attributes) => el("input", { type, ...attributes });
+    const node = make({ min, max, step: kind === "integer" ? 1 : "any", oninput: () => this.#typed(node),
+      onblur: () => { this.#gesture = null; }, onkeydown: (event) => this.#stepped(event, node) });
     return node;
   }
 

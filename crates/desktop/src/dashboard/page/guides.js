@@ -3,7 +3,7 @@
 import { announce } from "./announce.js";
 import { get, post, withToken } from "./api.js";
 import { commandLine } from "./command.js";
-import { button, el, number, row, say, scroller, table } from "./dom.js";
+import { button, el, number, numberField, row, say, scroller, table } from "./dom.js";
 
 const STEPS = {
   todo: { sign: "○", word: "to do" },
@@ -110,7 +110,7 @@ class GuideCard {
   /** A button; where the action takes a number, the field stands before it. */
   #action({ do: name, label, number: asked }) {
     if (asked === null) return button(label, () => this.view.act(this.id, name));
-    const field = el("input", { type: "number", min: asked.least, max: asked.largest, step: "any", inputmode: "decimal" });
+    const field = numberField({ min: asked.least, max: asked.largest, step: "any" });
     const choose = () => this.view.act(this.id, name, field.value === "" ? null : field.valueAsNumber);
     field.addEventListener("keydown", ({ key }) => key === "Enter" && choose());
     return el("div", { class: "commands" }, el("label", { class: "chooser" }, `${asked.label} (${asked.least} to ${asked.largest})`, field), button(label, choose));

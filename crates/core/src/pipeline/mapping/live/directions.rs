@@ -24,7 +24,7 @@ pub(crate) struct Directions([bool; DIRECTIONS.len()]);
 impl DirectionGates {
     /// None was ever on.
     pub(crate) const fn fresh() -> Self {
-        Self { accepts: [Accept::Off { since: None }; DIRECTIONS.len()] }
+        Self { accepts: [Accept::NEVER; DIRECTIONS.len()] }
     }
 
     /// Goes on to `t`, where the contact is in `sector`; the directions that count. Of those that could be rejected it is told what became
@@ -38,7 +38,7 @@ impl DirectionGates {
         presses: &mut Presses,
         verdicts: &mut Verdicts,
     ) -> Directions {
-        let conditions = Conditions { access, dwell: None };
+        let conditions = Conditions { access, dwell: None, resumes: true };
         let may_reject = [access.slow_us, access.bounce_us] != [0, 0];
         let mut on = Directions::default();
         for ((direction, accept), is_on) in DIRECTIONS.into_iter().zip(&mut self.accepts).zip(&mut on.0) {
@@ -47,7 +47,7 @@ impl DirectionGates {
             let before = *presses;
             *is_on = accept.step(conditions, t, touch, contact, presses);
             if let Some(is_rejected) = presses.since(before).filter(|_| may_reject) {
-                let rejected = is_rejected.then(|| accept.why_rejected(conditions));
+                let rejected = is_rejected.then(|| accept.why_rejected(conditions, t));
                 verdicts.keep(Verdict { t, told: VerdictEvent::Direction { direction, rejected } });
             }
         }

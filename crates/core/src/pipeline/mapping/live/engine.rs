@@ -173,7 +173,7 @@ impl Engine {
                 .step(button, t, contact, is_in_place, access, &mut self.presses)
                 .for_each(|playing| stated.take(playing));
             if let Some(is_rejected) = self.presses.since(before) {
-                let rejected = is_rejected.then(|| state.why_rejected(button, access));
+                let rejected = is_rejected.then(|| state.why_rejected(button, access, t));
                 self.verdicts.keep(Verdict { t, told: VerdictEvent::Button { number, rejected } });
             }
         }

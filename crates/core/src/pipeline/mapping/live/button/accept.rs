@@ -27,14 +27,12 @@ impl Presses {
 /// Where a force stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Accept {
-    /// Off since a press ended then, if ever one did.
-    Off { since: Option<StreamInstant> },
-    /// On since then, and near this place in millimetres; it does not count yet.
-    Waiting { since: StreamInstant, place_mm: [f32; 2], ended: Option<StreamInstant> },
+    /// Off since a press ended then, if ever one did; `stays` while the finger has been on the pad ever since.
+    Off { ended: Option<StreamInstant>, stays: bool },
+    /// On, and near this place in millimetres; it counts from `due` on.
+    Waiting { due: StreamInstant, place_mm: [f32; 2], ended: Option<StreamInstant> },
     /// It counts.
     Accepted,
-    /// It came too soon after the last one, which ended then.
-    Rejected { ended: Option<StreamInstant> },
 }
 
 /// What a press is asked for before it counts.
@@ -42,10 +40,16 @@ pub(crate) enum Accept {
 pub(crate) struct Conditions {
     pub(crate) access: Access,
     pub(crate) dwell: Option<Dwell>,
+    /// Whether a finger that strayed and stays on the pad goes on with its press: it waits as long as it was away, no longer.
+    pub(crate) resumes: bool,
 }
 
 impl Accept {
-    /// Whether what is on counts at `t`. Who has left the button's place, or lets go, has to begin anew.
+    /// Nothing was ever on.
+    pub(crate) const NEVER: Self = Self::Off { ended: None, stays: false };
+
+    /// Whether what is on counts at `t`. Who has left the button's place, or lets go, has to begin anew. A press that came too soon
+    /// and lasts counts when it would not have come too soon.
     pub(crate) fn step(
         &mut self,
         conditions: Conditions,
@@ -58,31 +62,36 @@ impl Accept {
         let place_mm = contact.map_or([0.0; 2], |contact| [contact.x_mm, contact.y_mm]);
         let before = *self;
         *self = match before {
-            Self::Off { since: ended } if is_on => begun(conditions, t, place_mm, ended),
-            Self::Waiting { since, place_mm: from_mm, ended } if is_on => {
-                let is_still =
-                    conditions.dwell.is_none_or(|dwell| is_near(from_mm, place_mm, dwell.radius_mm));
-                match (is_still, t.us_since(since) >= wait_us(conditions)) {
-                    (false, _) => Self::Waiting { since: t, place_mm, ended },
-                    (true, true) => Self::Accepted,
-                    (true, false) => before,
+            Self::Off { ended, stays } if is_on => {
+                let due = conditions.due(t, ended, stays);
+                if due <= t { Self::Accepted } else { Self::Waiting { due, place_mm, ended } }
+            }
+            Self::Off { ended, stays } => Self::Off { ended, stays: stays && contact.is_some() },
+            Self::Waiting { ended, .. } if !is_on => Self::Off { ended, stays: false },
+            Self::Waiting { due, place_mm: from_mm, ended } => {
+                let moved =
+                    conditions.dwell.is_some_and(|dwell| !is_near(from_mm, place_mm, dwell.radius_mm));
+                match (moved, due <= t) {
+                    (true, _) => Self::Waiting { due: conditions.due(t, ended, false), place_mm, ended },
+                    (false, true) => Self::Accepted,
+                    (false, false) => before,
                 }
             }
-            Self::Accepted if !touch.is_on || !touch.is_in_place => Self::Off { since: Some(t) },
-            Self::Waiting { ended, .. } | Self::Rejected { ended } if !is_on => Self::Off { since: ended },
-            other => other,
+            Self::Accepted if !is_on => Self::Off { ended: Some(t), stays: contact.is_some() },
+            Self::Accepted => Self::Accepted,
         };
         presses.accepted += u64::from(*self == Self::Accepted && before != Self::Accepted);
-        let is_refused = matches!(*self, Self::Rejected { .. }) && before != *self
-            || matches!((before, *self), (Self::Waiting { .. }, Self::Off { .. }));
-        presses.rejected += u64::from(is_refused);
+        presses.rejected += u64::from(matches!((before, *self), (Self::Waiting { .. }, Self::Off { .. })));
         *self == Self::Accepted
     }
 
-    /// Why what it stands for does not count, if it was rejected just now.
-    pub(crate) const fn why_rejected(self, Conditions { access, dwell }: Conditions) -> Reason {
+    /// Why what was on until `t` does not count, if it was rejected just now.
+    pub(crate) fn why_rejected(self, conditions: Conditions, t: StreamInstant) -> Reason {
+        let Conditions { access, dwell, .. } = conditions;
         match (self, dwell) {
-            (Self::Rejected { .. }, _) => Reason::Bounce,
+            (Self::Off { ended: Some(ended), .. }, _) if t.us_since(ended) < access.bounce_us => {
+                Reason::Bounce
+            }
             (_, Some(dwell)) if dwell.us > access.slow_us => Reason::Dwell,
             _ => Reason::Slow,
         }
@@ -90,31 +99,21 @@ impl Accept {
 
     /// Forgets what waits.
     pub(crate) const fn forget(&mut self) {
-        *self = Self::Off { since: None };
+        *self = Self::NEVER;
     }
 }
 
-/// How long a force must be on before it counts.
-const fn wait_us(Conditions { access, dwell }: Conditions) -> u64 {
-    match dwell {
-        Some(dwell) if dwell.us > access.slow_us => dwell.us,
-        _ => access.slow_us,
-    }
-}
-
-/// A force that comes on.
-fn begun(
-    conditions: Conditions,
-    t: StreamInstant,
-    place_mm: [f32; 2],
-    ended: Option<StreamInstant>,
-) -> Accept {
-    match ended {
-        Some(ended) if t.us_since(ended) < conditions.access.bounce_us => {
-            Accept::Rejected { ended: Some(ended) }
-        }
-        _ if wait_us(conditions) == 0 => Accept::Accepted,
-        _ => Accept::Waiting { since: t, place_mm, ended },
+impl Conditions {
+    /// When a force that comes on at `t` counts, if it lasts.
+    fn due(self, t: StreamInstant, ended: Option<StreamInstant>, stays: bool) -> StreamInstant {
+        let Self { access, dwell, resumes } = self;
+        let wait_us = match (dwell, ended) {
+            (Some(dwell), _) if dwell.us > access.slow_us => dwell.us,
+            (_, Some(ended)) if resumes && stays => access.slow_us.min(t.us_since(ended)),
+            _ => access.slow_us,
+        };
+        let no_bounce = ended.map_or(t, |ended| ended.plus_us(access.bounce_us));
+        t.plus_us(wait_us).max(no_bounce)
     }
 }
 

@@ -33,7 +33,7 @@ impl ButtonState {
         Self {
             gate: Gate::Off,
             hard: Gate::Off,
-            accept: Accept::Off { since: None },
+            accept: Accept::NEVER,
             press: TimedPress::Up,
             stage: TwoStagePress::Up,
             follower: EffectState::nothing(),
@@ -64,7 +64,7 @@ impl ButtonState {
         let Button { press_n, release_n, hair_n, .. } = *button;
         let is_on = self.gate.step(Thresholds { press_n, release_n, hair_n }, force_n);
         let mut touch = Touch { is_on, is_hard: false, is_in_place };
-        let conditions = Conditions { access, dwell: button.dwell };
+        let conditions = Conditions { access, dwell: button.dwell, resumes: false };
         // A forgotten press is over when its force is, whether it would count or not.
         let is_spent = match button.action {
             Action::ByForce { .. } => self.stage == TwoStagePress::Spent,
@@ -102,9 +102,9 @@ impl ButtonState {
         self.follower.step(button, t, Roles::NONE)
     }
 
-    /// Why its press does not count, if it was rejected just now.
-    pub(crate) fn why_rejected(&self, button: &Button, access: Access) -> Reason {
-        self.accept.why_rejected(Conditions { access, dwell: button.dwell })
+    /// Why its press until `t` does not count, if it was rejected just now.
+    pub(crate) fn why_rejected(&self, button: &Button, access: Access, t: StreamInstant) -> Reason {
+        self.accept.why_rejected(Conditions { access, dwell: button.dwell, resumes: false }, t)
     }
 
     /// Forgets what is under way and what was toggled. A force that is on does nothing until it was released once.

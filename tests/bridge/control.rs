@@ -170,7 +170,7 @@ fn a_bridge_that_does_not_answer_is_one_sentence() {
 fn start_with_presses() -> Running {
     let folder = tempfile::tempdir().unwrap();
     let capture = format!("capture:{}", presses::write_capture(folder.path()).display());
-    let text = "schema = 1\nname = \"Mine\"\noutput = \"gamepad\"\n[access]\nbounce_ms = 1000\n\
+    let text = "schema = 1\nname = \"Mine\"\noutput = \"gamepad\"\n[access]\nbounce_ms = 4000\n\
                 [[button]]\nforce = \"fy\"\npress_n = 1\nout = { gamepad = \"BTN_EAST\", keyboard = \"KEY_X\" }\n\
                 [[button]]\nforce = \"fz\"\npress_n = 1\nout = { gamepad = \"BTN_SOUTH\", keyboard = \"KEY_Z\" }\n\
                 [[button]]\nforce = \"fz\"\npress_n = 1\ndwell_ms = 9000\nout = { gamepad = \"BTN_TL\", keyboard = \"KEY_A\" }\n";

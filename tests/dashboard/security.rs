@@ -1,11 +1,14 @@
 //! Who may ask, and what nobody may.
 
 use std::fs;
+use std::io::{Read, Write};
 use std::net::TcpStream;
+use std::process::Command;
 
 use tactpad::pipeline::mapping::read::shipped;
 
 use crate::http::ask;
+use crate::running::comes_true;
 use crate::shown::Shown;
 
 fn shown() -> Shown {
@@ -132,6 +135,53 @@ fn each_answer_says_what_the_browser_may_do() {
         assert!(told("cache-control").contains("no-store"), "{request}");
         assert!(!answer.head.iter().any(|line| line.starts_with("access-control-allow")), "{request}");
     }
+}
+
+/// The first line of what another user is answered.
+fn asked_by_another_user(host: &str, path: &str) -> Option<String> {
+    let (address, port) = host.split_once(':').unwrap();
+    let script = format!(
+        "exec 3<>/dev/tcp/{address}/{port}; \
+         printf 'GET {path} HTTP/1.1\\r\\nHost: {host}\\r\\nConnection: close\\r\\n\\r\\n' >&3; head -1 <&3"
+    );
+    let mut other = Command::new("setpriv");
+    other.args(["--reuid=65534", "--clear-groups", "bash", "-c", &script]);
+    let output = other.output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8_lossy(&output.stdout).trim_end().to_owned())
+}
+
+#[test]
+fn the_page_opens_for_this_user_without_a_token_and_for_no_other() {
+    let shown = shown();
+    let opened = ask(&shown.host, "GET /open", &[], b"");
+    assert_eq!(opened.status, 303);
+    let location = opened.head.iter().find(|line| line.to_lowercase().starts_with("location:")).unwrap();
+    assert!(location.contains(&shown.token), "{location}");
+    assert_eq!(ask(&shown.host, "GET /open", &["Sec-Fetch-Site: cross-site"], b"").status, 401);
+    // Only root can be another user, too.
+    for _ in 0..20 {
+        match asked_by_another_user(&shown.host, "/open") {
+            Some(line) => assert_eq!(line, "HTTP/1.1 403 Forbidden"),
+            None => assert!(!rustix::process::getuid().is_root(), "setpriv"),
+        }
+    }
+}
+
+#[test]
+fn connections_that_ask_for_nothing_keep_nobody_out() {
+    let shown = shown();
+    let idle: Vec<_> = (0..1_100).filter_map(|_| TcpStream::connect(shown.host.as_str()).ok()).collect();
+    assert!(idle.len() > 500, "{}", idle.len());
+    assert!(shown.running.ctl("status").status.success());
+    assert!(comes_true(|| {
+        let mut stream = TcpStream::connect(shown.host.as_str()).unwrap();
+        let request = format!("GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", shown.host);
+        let mut answer = String::new();
+        let _ =
+            stream.write_all(request.as_bytes()).and_then(|()| stream.read_to_string(&mut answer).map(drop));
+        answer.starts_with("HTTP/1.1 200")
+    }));
+    drop(idle);
 }
 
 #[test]

@@ -1,9 +1,12 @@
 //! The notifier: decides which states, warnings and losses of the bridge are reported to people, and when.
 
+use std::mem::{Discriminant, discriminant};
+
 use crate::snapshot::Drops;
 use crate::state::State;
 use crate::weighing::gain_sentence;
 use tactpad_core::pipeline::contact::watch::Warning;
+use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::pipeline::weighing::{Progress, WeighingReport};
 use tactpad_core::time::HostInstant;
 
@@ -23,6 +26,10 @@ pub(super) struct Notifier {
     reported_calls: bool,
     /// The number of the weighing whose end was reported last.
     reported_weighing: u64,
+    /// What was reported to be wrong with the pad's stream, if that is still so, …
+    reported_line: Option<Discriminant<LineFinding>>,
+    /// … and since when, if it was ever reported.
+    line_since: Option<HostInstant>,
 }
 
 /// A state that lasts this long is reported, in microseconds.
@@ -39,6 +46,8 @@ impl Notifier {
             reported_groups: false,
             reported_calls: false,
             reported_weighing: 0,
+            reported_line: None,
+            line_since: None,
         }
     }
 
@@ -60,6 +69,27 @@ impl Notifier {
         let lasting = warning.filter(|warning| warning.lasts() && self.reported_warning != Some(*warning));
         self.reported_warning = lasting.or(self.reported_warning);
         lasting
+    }
+
+    /// What to report of the pad's stream at `now`: what is wrong with it, or that nothing is any more and for how long it was.
+    pub(super) fn line_to_report(
+        &mut self,
+        now: HostInstant,
+        finding: Option<&LineFinding>,
+    ) -> Option<String> {
+        let kind = finding.map(discriminant);
+        if std::mem::replace(&mut self.reported_line, kind) == kind {
+            return None;
+        }
+        let since = self.line_since.replace(now);
+        match (finding, since) {
+            (Some(finding), _) => Some(finding.to_string()),
+            (None, Some(since)) => Some(format!(
+                "the pad's stream is in order again, after {} s",
+                now.us_since(since) / 1_000_000
+            )),
+            (None, None) => None,
+        }
     }
 
     /// The result of a weighing to report, once it has ended.
@@ -105,6 +135,20 @@ mod tests {
             notifier.drops_to_report(Drops { groups_dropped, calls_unrecorded }).map(|line| line.is_some())
         });
         assert_eq!(reported, [[false, false], [true, false], [false, false], [false, true], [false, false]]);
+    }
+
+    #[test]
+    fn a_bad_line_is_told_once_and_taken_back() {
+        let at = |s: u64| HostInstant::default().plus_us(s * 1_000_000);
+        let mut notifier = Notifier::new(at(0));
+        let loss = |percent| LineFinding::Loss { percent };
+        assert_eq!(notifier.line_to_report(at(1), None), None);
+        let told = notifier.line_to_report(at(2), Some(&loss(2.5))).unwrap();
+        assert!(told.starts_with("2.5 % of the pad's frames are lost or damaged"), "{told}");
+        assert_eq!(notifier.line_to_report(at(3), Some(&loss(3.5))), None);
+        let told = notifier.line_to_report(at(14), None).unwrap();
+        assert_eq!(told, "the pad's stream is in order again, after 12 s");
+        assert_eq!(notifier.line_to_report(at(15), None), None);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::weighing::WeighingStatus;
 use tactpad_core::pipeline::contact::uncertainty::Estimate;
 use tactpad_core::pipeline::contact::watch::Warning;
 use tactpad_core::pipeline::health::Health;
+use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::pipeline::mapping::live::Presses;
 use tactpad_core::pipeline::mapping::live::intent::Level;
 use tactpad_core::quantity::{CHANNELS, Contact};
@@ -74,6 +75,25 @@ pub struct Status {
     pub weighing: Option<WeighingStatus>,
     /// Changes in the pad that play shows since its decoder was made; `None` before enough was played.
     pub changes: Option<PadChanges>,
+    /// What is wrong with the pad's stream as a whole.
+    pub line: Option<LineStatus>,
+}
+
+/// What is wrong with the pad's stream as a whole.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LineStatus {
+    /// With its numbers.
+    #[serde(flatten)]
+    pub finding: LineFinding,
+    /// In one sentence.
+    pub sentence: String,
+}
+
+impl LineStatus {
+    /// The status of a finding.
+    pub fn of(finding: &LineFinding) -> Self {
+        Self { finding: *finding, sentence: finding.to_string() }
+    }
 }
 
 /// Everything that went wrong, on the way from the pad and on the way out.
@@ -152,6 +172,7 @@ mod tests {
             contact: Some(Contact { x_mm: 0.1, fz_n: 2.0, ..Contact::default() }),
             held: vec![held],
             warning: None,
+            line: None,
             presses: Presses { accepted: 4, rejected: 1 },
             health: BridgeHealth {
                 pipeline: Health { samples: 7, ..Health::default() },
@@ -181,7 +202,7 @@ mod tests {
         assert!(text.contains(r#","groups_dropped":3,"calls_unrecorded":0},"latency_us""#), "{text}");
         let end = concat!(
             r#""latency_us":{"p50":12.5,"p95":0.0,"p99":0.0,"max":0.0},"#,
-            r#""decoder_file":"/pads/my.decoder","gain":1.0,"weighing":null,"changes":null}"#
+            r#""decoder_file":"/pads/my.decoder","gain":1.0,"weighing":null,"changes":null,"line":null}"#
         );
         assert!(text.ends_with(end), "{text}");
     }

@@ -4,7 +4,7 @@ use crate::changes::ChangesSlot;
 use crate::driver::Driver;
 use crate::pad_connection::PadConnection;
 use crate::profile_update::ProfileStatus;
-use crate::snapshot::{BridgeHealth, Snapshot, Status, Uncertainty};
+use crate::snapshot::{BridgeHealth, LineStatus, Snapshot, Status, Uncertainty};
 use crate::state::State;
 use crate::weighing::WeighingStatus;
 use tactpad_core::time::HostInstant;
@@ -47,6 +47,7 @@ pub(super) fn snapshot(
         contact: pipeline.contact().copied(),
         held: pipeline.held().collect(),
         warning: pipeline.warning(),
+        line: pipeline.line_finding().map(LineStatus::of),
         presses: pipeline.presses(),
         health: BridgeHealth { pipeline: *pipeline.health(), drops: driver.drops() },
         latency_us: driver.latency().percentiles(),

@@ -53,6 +53,11 @@ impl State {
         }
     }
 
+    /// Whether a stream that is not as it should be may be why.
+    pub(super) const fn may_come_of_line(self) -> bool {
+        matches!(self, Self::Taring | Self::Silent | Self::Doubtful | Self::Faulty)
+    }
+
     /// One word.
     pub const fn word(self) -> &'static str {
         match self {

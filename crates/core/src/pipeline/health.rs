@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-/// Counts since the pipeline was made. Every count but `samples`, `contacts`, `frames_newer`, `frames_unknown`,
-/// `second_fingers` and `channels_silent` ends a contact.
+/// Counts since the pipeline was made. Every count but `samples`, `contacts`, `frames_damaged`, `frames_newer`, `frames_unknown`,
+/// `second_fingers` and `channels_silent` ends a contact; `frames_lost` does if a finger could have come or gone meanwhile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Health {
     /// Samples decoded.

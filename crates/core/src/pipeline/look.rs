@@ -6,6 +6,7 @@ use super::Pipeline;
 use super::contact::uncertainty::Estimate;
 use super::contact::watch::Warning;
 use super::health::Health;
+use super::line_check::LineFinding;
 use super::mapping::profile::Profile;
 use super::phase::Phase;
 use super::refusal::Refusal;
@@ -95,6 +96,11 @@ impl Pipeline {
     /// Everything that went wrong so far.
     pub const fn health(&self) -> &Health {
         &self.health
+    }
+
+    /// What is wrong with the pad's stream as a whole, if anything is.
+    pub const fn line_finding(&self) -> Option<&LineFinding> {
+        self.link.finding()
     }
 
     /// What the pad told of itself, if it did.

@@ -16,6 +16,7 @@ pub mod contact;
 pub mod control;
 pub mod health;
 pub mod interruption;
+pub mod line_check;
 pub mod link;
 mod look;
 pub mod mapping;

@@ -90,7 +90,11 @@ impl<'t> Findings<'t> {
         self.broken_lines.push(position(self.text, at).0);
         // A bare word is the usual slip, and the parser names what it took the word for.
         let is_word = message.contains("boolean") || message.contains("must be quoted");
-        let help = if is_word {
+        let rest = self.text.get(at..).unwrap_or_default();
+        let word = rest.split(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or_default();
+        let help = if ["true", "false"].iter().any(|small| word.eq_ignore_ascii_case(small)) {
+            Some(format!("write it in small letters: {}", word.to_ascii_lowercase()))
+        } else if is_word {
             Some("text stands in quotation marks".to_owned())
         } else {
             decimal_comma(self.text, at).map(|number| format!("write a decimal point: {number}"))

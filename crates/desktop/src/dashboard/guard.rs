@@ -8,12 +8,14 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::sync::Arc;
 
-use axum::extract::{Request, State};
+use axum::Extension;
+use axum::extract::{ConnectInfo, Request, State};
 use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
 use axum::http::{Method, StatusCode, Uri};
 use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
+use axum::response::{IntoResponse, Redirect, Response};
 
+use super::listener::Peer;
 use super::refusal::Refusal;
 
 /// A body may be this long.
@@ -24,6 +26,10 @@ const TOKEN_BYTES: usize = 16;
 
 /// Paths that are served to everybody on this machine: the page's own files, which hold no secret.
 const OPEN: [&str; 2] = ["/", "/page/"];
+
+/// Leads this user's programs to the page, token and all: an address with the token would stand in the arguments of the program
+/// that opens it, which every user of the machine can read.
+pub(super) const OPEN_PATH: &str = "/open";
 
 /// Nothing is loaded from elsewhere, no other page shows this one, and no text of the page runs as a program.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; \
@@ -80,7 +86,9 @@ impl Guard {
         {
             return Err(Refusal::new(StatusCode::FORBIDDEN, "another page may not ask here"));
         }
-        let is_open = uri.path() == OPEN[0] || uri.path().starts_with(OPEN[1]);
+        let is_navigation =
+            uri.path() == OPEN_PATH && site.is_none_or(|site| matches!(site, b"same-origin" | b"none"));
+        let is_open = uri.path() == OPEN[0] || uri.path().starts_with(OPEN[1]) || is_navigation;
         if !is_open && !self.has_token(uri, headers) {
             let error = "this needs the token of the address: open the page from the tray, or with `tactpad ctl dashboard`";
             return Err(Refusal::new(StatusCode::UNAUTHORIZED, error));
@@ -118,6 +126,19 @@ fn text(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
 fn is_same(given: &[u8], own: &[u8]) -> bool {
     given.len() == own.len()
         && given.iter().zip(own).fold(0, |other, (given, own)| other | (given ^ own)) == 0
+}
+
+/// Leads to the page, if this user asks.
+pub(super) async fn open(
+    ConnectInfo(peer): ConnectInfo<Peer>,
+    Extension(guard): Extension<Arc<Guard>>,
+) -> Result<Redirect, Refusal> {
+    if peer.is_own {
+        Ok(Redirect::to(&guard.url()))
+    } else {
+        let error = "another user's program asks: use the address that `tactpad ctl dashboard` prints";
+        Err(Refusal::new(StatusCode::FORBIDDEN, error))
+    }
 }
 
 /// Lets a request through, or refuses it; and tells the browser what the answer may do.

@@ -21,6 +21,7 @@ mod frame;
 mod guard;
 mod guides;
 pub mod host;
+mod listener;
 mod refusal;
 mod replay_buffer;
 mod rewind;

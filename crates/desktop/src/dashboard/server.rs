@@ -8,12 +8,13 @@ use std::thread;
 
 use axum::extract::DefaultBodyLimit;
 use axum::routing::{get, post};
-use axum::{Router, middleware};
+use axum::{Extension, Router, middleware};
 
 use super::app_state::{AppState, BridgeHandles};
 use super::feed::Feed;
-use super::guard::{BODY_BYTES_MAX, Guard, watch};
+use super::guard::{BODY_BYTES_MAX, Guard, OPEN_PATH, open, watch};
 use super::host::DashboardHost;
+use super::listener::{LimitedListener, Peer};
 use super::shadow::{self, ShadowState};
 use super::{api, assets, websocket};
 use tactpad_bridge::event_loop::Bridge;
@@ -68,7 +69,8 @@ impl Dashboard {
         thread::Builder::new().name("dashboard".into()).spawn(move || {
             // It serves until the process ends; a port that fails has no one to tell.
             let _ = runtime.block_on(async move {
-                axum::serve(tokio::net::TcpListener::from_std(listener)?, router).await
+                let listener = LimitedListener::new(tokio::net::TcpListener::from_std(listener)?);
+                axum::serve(listener, router.into_make_service_with_connect_info::<Peer>()).await
             });
         })?;
         Ok(())
@@ -78,6 +80,7 @@ impl Dashboard {
 fn router(app: Arc<AppState>, guard: Arc<Guard>) -> Router {
     Router::new()
         .route("/", get(assets::index))
+        .route(OPEN_PATH, get(open))
         .route("/page/{name}", get(assets::file))
         .route("/report/{id}", get(api::report))
         .route("/sheet/{name}", get(api::sheet))
@@ -97,5 +100,6 @@ fn router(app: Arc<AppState>, guard: Arc<Guard>) -> Router {
         .route("/api/{action}", post(api::act))
         .with_state(app)
         .layer(DefaultBodyLimit::max(BODY_BYTES_MAX))
-        .layer(middleware::from_fn_with_state(guard, watch))
+        .layer(middleware::from_fn_with_state(Arc::clone(&guard), watch))
+        .layer(Extension(guard))
 }

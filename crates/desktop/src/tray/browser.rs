@@ -13,13 +13,13 @@ pub struct Opening {
     url: String,
 }
 
-/// Begins to open the page at `url`. No shell reads it.
+/// Begins to open the page at `url`. No shell reads it, and its token is in no program's arguments.
 ///
 /// # Errors
 /// The desktop's program cannot be started; the text is for people.
 pub fn open(url: &str) -> Result<Opening, String> {
     let mut command = Command::new(OPENER);
-    command.arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.arg(without_token(url)).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     match command.spawn() {
         Ok(opener) => Ok(Opening { opener, url: url.to_owned() }),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
@@ -27,6 +27,13 @@ pub fn open(url: &str) -> Result<Opening, String> {
         }
         Err(error) => Err(format!("{OPENER} cannot be started ({error}): open {url} in a browser")),
     }
+}
+
+/// The address that leads this user's programs to the page at `url`; another address is as it was.
+fn without_token(url: &str) -> String {
+    let Some((server, rest)) = url.split_once("/?token=") else { return url.to_owned() };
+    let part = rest.find('#').and_then(|at| rest.get(at..)).unwrap_or_default();
+    format!("{server}/open{part}")
 }
 
 impl Opening {
@@ -52,6 +59,22 @@ impl Opening {
         match is_open {
             true => Ok(()),
             false => Err(format!("{OPENER} found no browser: open {} in one", self.url)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_token_is_in_the_arguments() {
+        for (url, opened) in [
+            ("http://127.0.0.1:8080/?token=abc", "http://127.0.0.1:8080/open"),
+            ("http://127.0.0.1:8080/?token=abc#profile", "http://127.0.0.1:8080/open#profile"),
+            ("http://127.0.0.1:8080/", "http://127.0.0.1:8080/"),
+        ] {
+            assert_eq!(without_token(url), opened);
         }
     }
 }

@@ -79,7 +79,7 @@ enum Action {
     #[command(after_help = "Example: tactpad ctl reload")]
     Reload,
     /// Print the address of the page that shows the bridge; whoever has it can use the bridge.
-    #[command(after_help = "Example: xdg-open $(tactpad ctl dashboard)")]
+    #[command(after_help = "Example: tactpad ctl dashboard")]
     Dashboard,
     /// End the bridge.
     #[command(after_help = "Example: tactpad ctl quit")]
@@ -200,6 +200,9 @@ fn print_status(status: &Value) -> io::Result<()> {
     writeln!(out, "held     {}", held.filter_map(Value::as_str).collect::<Vec<_>>().join(" "))?;
     if let Some(warning) = warning(status) {
         writeln!(out, "warning  {warning}")?;
+    }
+    if let Some(sentence) = status.pointer("/line/sentence").and_then(Value::as_str) {
+        writeln!(out, "line     {}", printable(sentence))?;
     }
     if let Some(sentence) = status.get("gain").and_then(Value::as_f64).and_then(gain_sentence) {
         writeln!(out, "gain     {sentence}")?;

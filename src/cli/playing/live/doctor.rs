@@ -101,6 +101,7 @@ pub(super) fn examine() -> DoctorReport {
         Err(failure) => Err(io::Error::new(io::ErrorKind::PermissionDenied, failure.sentence())),
     };
     let own = bridge.as_deref().map(own_nodes).unwrap_or_default();
+    checks.extend(check_port_users(root));
     checks.extend(check_other_gamepads(&read(root, "proc/bus/input/devices"), &own));
     checks.push(check_joydev(root));
     checks.extend(check_sdl(|name| env::var(name).ok()));
@@ -187,6 +188,32 @@ fn check_pads(pads: &[FoundPad]) -> Vec<Check> {
         }
     };
     pads.iter().map(check).collect()
+}
+
+/// Programs that open serial ports of their own accord.
+fn check_port_users(root: &Path) -> Vec<Check> {
+    let processes = fs::read_dir(root.join("proc")).into_iter().flatten().flatten();
+    let names: Vec<String> = processes
+        .filter_map(|process| fs::read_to_string(process.path().join("comm")).ok())
+        .map(|name| name.trim_end().to_owned())
+        .collect();
+    let is_running = |name: &str| names.iter().any(|it| it == name);
+    let mut checks = Vec::new();
+    if is_running("ModemManager") {
+        checks.push(Check::note(
+            "serial ports",
+            "ModemManager opens new ones for some seconds; the udev rules keep it from tactpad's pads. For another board add \
+             a line with its numbers and ENV{ID_MM_DEVICE_IGNORE}=\"1\"",
+        ));
+    }
+    if is_running("brltty") {
+        checks.push(Check::note(
+            "serial ports",
+            "brltty takes adapters of some chips (CH340, CP210x) for Braille displays: if a pad's port goes away at once, \
+             and nobody here needs brltty, remove it",
+        ));
+    }
+    checks
 }
 
 /// Xbox 360 pads that are there already, but for those of a running bridge, which has these nodes. One of version 1 is a trap: SDL's database turns its D-pad upside
@@ -295,6 +322,18 @@ fn bridge_message(status: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn programs_that_open_ports_are_named() {
+        let root = tempfile::tempdir().unwrap();
+        for (process, name) in [("1", "systemd"), ("42", "ModemManager"), ("77", "brltty")] {
+            fs::create_dir_all(root.path().join("proc").join(process)).unwrap();
+            fs::write(root.path().join("proc").join(process).join("comm"), format!("{name}\n")).unwrap();
+        }
+        let checks = check_port_users(root.path());
+        assert!(checks[0].message.contains("ModemManager") && checks[1].message.contains("brltty"));
+        assert_eq!(check_port_users(Path::new("/nowhere")).len(), 0);
+    }
 
     #[test]
     fn the_shipped_rules_come_before_the_seats() {

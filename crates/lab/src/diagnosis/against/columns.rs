@@ -97,7 +97,10 @@ impl Columns {
         both.iter().copied().filter(is_other).for_each(|name| columns.add([name].into_iter(), false));
         columns.circumstances = CIRCUMSTANCES.into_iter().filter(|name| is_label(name)).collect();
         if !both.iter().any(|name| is_label(name) && !CIRCUMSTANCES.contains(name)) {
-            return Err(ComparisonError::Labels);
+            return Err(match asked.labels {
+                [] => ComparisonError::Labels,
+                labels => ComparisonError::Circumstances(labels.join(", ")),
+            });
         }
         if columns.inputs.is_empty() { Err(ComparisonError::Constant) } else { Ok(columns) }
     }

@@ -38,6 +38,8 @@ pub enum ComparisonError {
         /// In which table.
         which: &'static str,
     },
+    /// Of the labels that were named, none is a place or a load.
+    Circumstances(String),
     /// Too few rows within the labels of the earlier recording.
     Apart(usize),
     /// Too few places or presses.
@@ -60,6 +62,10 @@ impl fmt::Display for ComparisonError {
             Self::Labels => f.write_str(
                 "the two tables have no place and no load in common (x_mm, y_mm, z_mm, fx_n, fy_n, fz_n, scale_g); name labels with \
                  --labels",
+            ),
+            Self::Circumstances(labels) => write!(
+                f,
+                "--labels {labels} says when and how, and neither where nor how hard: name a column of places or of loads, too"
             ),
             Self::Constant => f.write_str(
                 "all labels stay the same in the earlier recording: what the channels should read under others is not known",

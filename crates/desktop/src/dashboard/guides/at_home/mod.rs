@@ -311,6 +311,7 @@ mod tests {
             contact: None,
             held: Vec::new(),
             warning: None,
+            line: None,
             presses: Presses::default(),
             health: BridgeHealth::default(),
             latency_us: Percentiles::default(),

@@ -1,0 +1,378 @@
+//! What is wrong with a pad's stream as a whole, with numbers: a maker's first firmware, or a bad line.
+//!
+//! Counts tell that something was wrong; this tells what. It looks at one stretch of the host's time after the other.
+
+use std::fmt;
+use std::mem::discriminant;
+
+use firmware_proto::sample::Sample;
+use serde::Serialize;
+
+use crate::pipeline::link::GAP_MAX_US;
+use crate::quantity::{CHANNEL_NAMES, CHANNELS};
+use crate::time::HostInstant;
+
+/// Each look takes so long: a little less than what people are told only if it lasts for a second.
+const LOOK_US: u64 = 900_000;
+
+/// What was found is taken back after so many looks without it.
+const CLEAN_LOOKS: u8 = 5;
+
+/// A slower pad is none: firmware-proto/README.md asks for 100 samples a second.
+const SAMPLES_PER_S_MIN: f32 = 90.0;
+
+/// Fewer samples in a look say nothing of how a pad counts.
+const SAMPLES_MIN: u32 = 5;
+
+/// Samples that come evenly are no farther apart than so many times their mean distance.
+const EVEN: f32 = 3.0;
+
+/// A clock counts microseconds if it shows between half and twice the time that has passed.
+const CLOCK_OFF: u64 = 2;
+
+/// Bytes that waited for a host that was busy arrive at once: so much more time may be shown than has passed.
+const BURST_US: u64 = 1_000_000;
+
+/// A smaller share of frames that do not arrive, in percent, is not worth a word; nor are fewer frames in a look.
+const LOSS_PERCENT_MIN: f32 = 1.0;
+const LOSS_FRAMES_MIN: u32 = 3;
+
+/// Most channels must change before one that does not means anything.
+const LIVELY_MIN: usize = 5;
+
+/// What is wrong with the stream. As text: one sentence.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum LineFinding {
+    /// Most samples say that they are the first after a restart.
+    RestartFlagStays,
+    /// The sequence number stands.
+    SequenceStands {
+        /// Its value.
+        sequence: u32,
+    },
+    /// The sequence number begins again and again: it has too few bits.
+    SequenceWraps {
+        /// Its largest value.
+        largest: u32,
+    },
+    /// The pad's clock does not count microseconds.
+    Clock {
+        /// What it shows, µs by its own account.
+        shown_us: u64,
+        /// The host's time meanwhile, µs.
+        passed_us: u64,
+    },
+    /// Samples come evenly, and too seldom.
+    Rate {
+        /// So many a second.
+        samples_per_s: f32,
+    },
+    /// A channel reads the same all the time while others do not.
+    ChannelStands {
+        /// Its index.
+        channel: usize,
+        /// What it reads.
+        counts: i32,
+    },
+    /// Frames do not arrive.
+    Loss {
+        /// The share that is lost or damaged.
+        percent: f32,
+    },
+}
+
+impl fmt::Display for LineFinding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::RestartFlagStays => write!(
+                f,
+                "each sample says that the pad has just restarted (status bit 10): set it in the first one only"
+            )?,
+            Self::SequenceStands { sequence } => {
+                write!(f, "the sequence number stays {sequence}: it has to count the samples")?;
+            }
+            Self::SequenceWraps { largest } => {
+                write!(
+                    f,
+                    "after sequence number {largest} comes a smaller one: it has to count on in 32 bits"
+                )?;
+            }
+            Self::Clock { shown_us, passed_us } => write!(
+                f,
+                "the pad's clock went on by {shown_us} in {passed_us} µs: it has to count microseconds"
+            )?,
+            Self::Rate { samples_per_s } => {
+                write!(f, "the pad sends {samples_per_s:.0} samples a second: it needs 100 at least")?;
+            }
+            Self::ChannelStands { channel, counts } => {
+                let name = CHANNEL_NAMES.get(*channel).copied().unwrap_or("unknown");
+                write!(
+                    f,
+                    "channel {name} reads {counts} all the time while others change: is it connected?"
+                )?;
+            }
+            Self::Loss { percent } => {
+                return write!(
+                    f,
+                    "{percent:.1} % of the pad's frames are lost or damaged: check the cable and the baud rate, and \
+                     that no other program reads this port"
+                );
+            }
+        }
+        write!(f, " (firmware-proto/README.md)")
+    }
+}
+
+impl LineFinding {
+    /// Whether one look is enough: most samples show it.
+    const fn is_certain(&self) -> bool {
+        matches!(
+            self,
+            Self::RestartFlagStays | Self::SequenceStands { .. } | Self::Clock { .. } | Self::Rate { .. }
+        )
+    }
+}
+
+/// Looks at the samples of one stretch of time after the other.
+#[derive(Clone, Debug)]
+pub struct LineCheck {
+    look: Option<Look>,
+    /// What a look found, and where chance may have a part in it the next one, too; it stays for a while.
+    finding: Option<LineFinding>,
+    candidate: Option<LineFinding>,
+    clean: u8,
+}
+
+/// One stretch of time.
+#[derive(Clone, Debug)]
+struct Look {
+    begun: HostInstant,
+    heard: HostInstant,
+    first: Sample,
+    last: Sample,
+    samples: u32,
+    widest_us: u64,
+    restart_flags: u32,
+    sequence_stands: u32,
+    sequence_falls: u32,
+    sequence_largest: u32,
+    /// Steps of the pad's clock that are none of a running one.
+    clock_jumps: u32,
+    lost: u32,
+    has_changed: [bool; CHANNELS],
+}
+
+impl Default for LineCheck {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl LineCheck {
+    /// Has seen nothing.
+    pub const fn new() -> Self {
+        Self { look: None, finding: None, candidate: None, clean: 0 }
+    }
+
+    /// What is wrong, if anything is.
+    pub const fn finding(&self) -> Option<&LineFinding> {
+        self.finding.as_ref()
+    }
+
+    /// Takes a sample, as it came, before which `lost` frames are missing. Of a frame that was damaged the number is missing.
+    pub fn sample(&mut self, now: HostInstant, sample: &Sample, lost: u32) {
+        if self.look.as_ref().is_some_and(|look| now.us_since(look.begun) >= LOOK_US) {
+            self.close();
+        }
+        let look = self.look.get_or_insert_with(|| Look::begin(now, sample));
+        look.sample(now, sample);
+        look.lost = look.lost.saturating_add(lost);
+    }
+
+    /// Another pad may come.
+    pub fn forget(&mut self) {
+        *self = Self::new();
+    }
+
+    fn close(&mut self) {
+        let found = self.look.take().and_then(|look| look.found());
+        let is_again = match (&self.candidate, &found) {
+            (_, None) => false,
+            (Some(before), Some(now)) if discriminant(before) == discriminant(now) => true,
+            (_, Some(now)) => now.is_certain(),
+        };
+        self.clean = if found.is_some() { 0 } else { self.clean.saturating_add(1) };
+        if is_again {
+            self.finding = found;
+        } else if self.clean >= CLEAN_LOOKS {
+            self.finding = None;
+        }
+        self.candidate = found;
+    }
+}
+
+impl Look {
+    const fn begin(now: HostInstant, sample: &Sample) -> Self {
+        Self {
+            begun: now,
+            heard: now,
+            first: *sample,
+            last: *sample,
+            samples: 0,
+            widest_us: 0,
+            restart_flags: 0,
+            sequence_stands: 0,
+            sequence_falls: 0,
+            sequence_largest: 0,
+            clock_jumps: 0,
+            lost: 0,
+            has_changed: [false; CHANNELS],
+        }
+    }
+
+    fn sample(&mut self, now: HostInstant, sample: &Sample) {
+        let is_first = self.samples == 0;
+        self.samples += 1;
+        self.restart_flags += u32::from(sample.status.restarted());
+        self.sequence_stands += u32::from(!is_first && sample.sequence == self.last.sequence);
+        self.sequence_falls += u32::from(!sample.status.restarted() && sample.sequence < self.last.sequence);
+        self.sequence_largest = self.sequence_largest.max(sample.sequence);
+        let step_us = sample.time_us.wrapping_sub(self.last.time_us);
+        self.clock_jumps += u32::from(!is_first && step_us > GAP_MAX_US);
+        self.widest_us = self.widest_us.max(now.us_since(self.heard));
+        for (k, has_changed) in self.has_changed.iter_mut().enumerate() {
+            *has_changed |= sample.counts.get(k) != self.first.counts.get(k);
+        }
+        (self.heard, self.last) = (now, *sample);
+    }
+
+    /// The gravest that it shows.
+    fn found(&self) -> Option<LineFinding> {
+        if self.samples < SAMPLES_MIN {
+            return None;
+        }
+        let most = |count: u32| 2 * count > self.samples;
+        let passed_us = self.heard.us_since(self.begun);
+        let shown_us = self.last.time_us.wrapping_sub(self.first.time_us);
+        // A clock that jumped once was set anew.
+        let is_clock_off = (self.clock_jumps == 0 || most(self.clock_jumps))
+            && (shown_us.saturating_mul(CLOCK_OFF) < passed_us
+                || shown_us > CLOCK_OFF * passed_us + BURST_US);
+        let mean_us = passed_us as f32 / (self.samples - 1) as f32;
+        let is_slow = 1e6 / mean_us < SAMPLES_PER_S_MIN && (self.widest_us as f32) < EVEN * mean_us;
+        let percent = 100.0 * self.lost as f32 / (self.lost + self.samples) as f32;
+        let still = self.has_changed.iter().position(|has_changed| !has_changed);
+        let lively = self.has_changed.iter().filter(|has_changed| **has_changed).count();
+        if most(self.restart_flags) {
+            Some(LineFinding::RestartFlagStays)
+        } else if most(self.sequence_stands) {
+            Some(LineFinding::SequenceStands { sequence: self.last.sequence })
+        } else if self.sequence_falls > 0 && self.sequence_largest <= u16::MAX.into() && !is_clock_off {
+            Some(LineFinding::SequenceWraps { largest: self.sequence_largest })
+        } else if is_clock_off {
+            Some(LineFinding::Clock { shown_us, passed_us })
+        } else if is_slow {
+            Some(LineFinding::Rate { samples_per_s: 1e6 / mean_us })
+        } else if self.lost >= LOSS_FRAMES_MIN && percent >= LOSS_PERCENT_MIN {
+            Some(LineFinding::Loss { percent })
+        } else {
+            still.filter(|_| lively >= LIVELY_MIN).map(|channel| LineFinding::ChannelStands {
+                channel,
+                counts: self.last.counts.get(channel).copied().unwrap_or_default(),
+            })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use firmware_proto::sample::Status;
+
+    use super::*;
+
+    /// Sample `i` of a sound pad at 1 kHz.
+    fn sound(i: u32) -> Sample {
+        Sample {
+            sequence: i,
+            time_us: 1_000 * u64::from(i),
+            counts: std::array::from_fn(|k| ((i * 7 + k as u32 * 3) % 11) as i32),
+            temperature_centi_c: 2_500,
+            status: Status::OK,
+        }
+    }
+
+    /// What is found by the end of so many milliseconds of a pad with this period, of which each sample is made from a sound one.
+    fn found(ms: u32, period_ms: u32, make: impl Fn(Sample, u32) -> Sample) -> Option<LineFinding> {
+        let mut check = LineCheck::new();
+        for (number, at_ms) in (0..ms).step_by(period_ms as usize).enumerate() {
+            let sample = Sample { sequence: number as u32, ..sound(at_ms) };
+            let now = HostInstant::default().plus_us(1_000 * u64::from(at_ms));
+            check.sample(now, &make(sample, number as u32), 0);
+        }
+        check.finding().copied()
+    }
+
+    #[test]
+    fn a_sound_pad_has_no_finding_at_any_rate() {
+        for period_ms in [1, 2, 5, 10] {
+            assert_eq!(found(20_000, period_ms, |sample, _| sample), None, "{period_ms} ms");
+        }
+    }
+
+    #[test]
+    fn mistakes_of_a_first_firmware_are_found_within_a_second_or_two() {
+        use LineFinding::{ChannelStands, Clock, Rate, RestartFlagStays, SequenceStands, SequenceWraps};
+        let timed = |us_per_ms: u64| {
+            found(1_000, 1, move |sample, _| Sample { time_us: sample.time_us * us_per_ms / 1_000, ..sample })
+        };
+        assert!(matches!(timed(1), Some(Clock { .. })), "milliseconds");
+        assert!(matches!(timed(1_000_000), Some(Clock { .. })), "nanoseconds");
+        assert!(matches!(timed(10_000), Some(Clock { .. })), "ten times too fast");
+        let flagged = |sample, _| Sample { status: Status::OK.with_restarted(), ..sample };
+        assert_eq!(found(1_000, 1, flagged), Some(RestartFlagStays));
+        let constant = |sample, _| Sample { sequence: 7, ..sample };
+        assert_eq!(found(1_000, 1, constant), Some(SequenceStands { sequence: 7 }));
+        let short = |sample: Sample, number| Sample { sequence: number & 255, ..sample };
+        assert_eq!(found(2_000, 2, short), Some(SequenceWraps { largest: 255 }));
+        for period_ms in [71, 100] {
+            let slow = found(1_100, period_ms, |sample, _| sample);
+            assert!(matches!(slow, Some(Rate { samples_per_s }) if samples_per_s < 15.0), "{slow:?}");
+        }
+        let standing = |mut sample: Sample, _| {
+            sample.counts[4] = 1_234;
+            sample
+        };
+        assert_eq!(found(2_000, 1, standing), Some(ChannelStands { channel: 4, counts: 1_234 }));
+    }
+
+    #[test]
+    fn a_clock_that_is_set_once_and_a_restart_are_no_mistakes() {
+        for at in [300, 899, 900, 1_500] {
+            let set = move |sample: Sample, number| {
+                let ahead_us = if number >= at { 3_600_000_000 } else { 0 };
+                Sample { time_us: sample.time_us + ahead_us, ..sample }
+            };
+            assert_eq!(found(4_000, 1, set), None, "{at}");
+            let restarted = move |sample: Sample, number: u32| match number.checked_sub(at) {
+                Some(since) => Sample { sequence: since, time_us: 1_000 * u64::from(since), ..sample },
+                None => sample,
+            };
+            assert_eq!(found(4_000, 1, restarted), None, "{at}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_loses_frames_is_found_and_taken_back() {
+        let mut check = LineCheck::new();
+        let mut at = |check: &mut LineCheck, ms: u32, lost: u32| {
+            check.sample(HostInstant::default().plus_us(1_000 * u64::from(ms)), &sound(ms), lost);
+        };
+        (0..3_000).for_each(|ms| at(&mut check, ms, u32::from(ms % 40 == 0)));
+        let Some(LineFinding::Loss { percent }) = check.finding() else { panic!("{:?}", check.finding()) };
+        assert!((percent - 2.5).abs() < 0.2, "{percent} %");
+        (3_000..10_000).for_each(|ms| at(&mut check, ms, 0));
+        assert_eq!(check.finding(), None);
+    }
+}

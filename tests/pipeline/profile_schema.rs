@@ -160,7 +160,9 @@ fn words(list: &Value) -> BTreeSet<String> {
 
 #[test]
 fn the_schema_and_the_reader_know_the_same_keys() {
-    assert_eq!(asked(&base()).1, Vec::<String>::new());
+    // Its layer and its macro are there for their keys alone.
+    let told = asked(&base()).1;
+    assert!(told.iter().all(|told| told.starts_with("nothing ")), "{told:?}");
     let mut wrong = String::new();
     for (place, table) in tables() {
         let told = asked(&with(&below(&place, STRANGER), json!(1))).1;

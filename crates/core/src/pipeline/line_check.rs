@@ -366,7 +366,7 @@ mod tests {
     #[test]
     fn a_line_that_loses_frames_is_found_and_taken_back() {
         let mut check = LineCheck::new();
-        let mut at = |check: &mut LineCheck, ms: u32, lost: u32| {
+        let at = |check: &mut LineCheck, ms: u32, lost: u32| {
             check.sample(HostInstant::default().plus_us(1_000 * u64::from(ms)), &sound(ms), lost);
         };
         (0..3_000).for_each(|ms| at(&mut check, ms, u32::from(ms % 40 == 0)));

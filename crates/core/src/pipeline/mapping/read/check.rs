@@ -23,6 +23,7 @@ use crate::pipeline::mapping::read::section::layers::LayerDraft;
 use crate::pipeline::mapping::read::section::macros::MacroDraft;
 use crate::pipeline::mapping::read::section::plate;
 use crate::pipeline::mapping::read::section::programs::{self, PROGRAM_KEYS, PROGRAMS_MAX};
+use crate::pipeline::mapping::read::section::reach::{self, Places};
 use crate::toml_text;
 use crate::toml_text::diag::{Diagnostic, Findings};
 use crate::toml_text::section::{Bounds, Section};
@@ -85,7 +86,14 @@ pub fn read(text: &str, output: OutputChoice) -> (Option<Profile>, Vec<Diagnosti
     let root = Section::root(&tree, "the profile", &ROOT_KEYS, &mut findings);
     let draft = ProfileDraft::read(&root, &mut findings);
     draft.check_conflicts(&mut findings);
+    let places = Places {
+        layers: draft.layers.iter().map(|it| it.at).collect(),
+        macros: draft.macros.iter().map(|it| it.at).collect(),
+    };
     let profile = if findings.failed() { None } else { draft.settle(output) };
+    if let Some(profile) = &profile {
+        reach::check(profile, &places, &mut findings);
+    }
     (profile, findings.finish())
 }
 

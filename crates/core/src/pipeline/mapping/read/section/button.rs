@@ -80,6 +80,7 @@ impl ButtonDraft {
         let release = table.number("release_n", Bounds { low: 0.0, default: share, ..FORCE_N }, findings);
         table.require_less(("release_n", release), ("press_n", press), findings);
         let hair_n = table.place_of("hair_n").and_then(|_| table.number("hair_n", HAIR_N, findings));
+        check_forces(table, [press, release, hair_n], findings);
         let name = table.text("zone", findings);
         let place = name.and_then(|name| plate::find(name, around.zones, around.has_dpad, findings));
         let action = ActionDraft::read(table, around.effects, press, findings);
@@ -115,6 +116,43 @@ impl ButtonDraft {
         let (dwell, when) = (self.dwell?, self.when?);
         let (press_n, release_n) = (self.press_n?, self.release_n?);
         Some(Button { force: self.force?, press_n, release_n, hair_n, dwell, place, when, action })
+    }
+}
+
+/// Less between a press and its release than this is the noise of a pad and the trembling of a finger: some 20 mN, several times.
+const HYSTERESIS_MIN_N: f32 = 0.05;
+
+/// What a hair trigger falls by has to stand out from a trembling finger, too.
+const HAIR_MIN_N: f32 = 0.1;
+
+/// Nobody plays with more; the pad is calibrated to 5 N.
+const FINGER_MAX_N: f32 = 15.0;
+
+/// Warns of forces with which a button presses by itself, or never.
+fn check_forces(
+    table: &Section<'_>,
+    [press, release, hair]: [Option<Placed<f32>>; 3],
+    findings: &mut Findings<'_>,
+) {
+    let place = |key: &str| table.place_of(key).unwrap_or(table.at);
+    let Some(press) = press.map(|press| press.value) else { return };
+    if press > FINGER_MAX_N {
+        let message = format!("nobody presses {press} N with a finger: this button is never pressed");
+        findings.warning(place("press_n"), message, "write 1 to 5");
+    }
+    if let Some(release) = release.map(|release| release.value)
+        && release < press
+        && press - release < HYSTERESIS_MIN_N
+    {
+        let message = format!(
+            "between press_n = {press} and release_n = {release} a resting finger presses many times a second"
+        );
+        let help = format!("write release_n = {:.2}, or leave it out", 0.7 * press);
+        findings.warning(place("release_n"), message, help);
+    }
+    if let Some(hair) = hair.map(|hair| hair.value).filter(|hair| *hair < HAIR_MIN_N) {
+        let message = format!("with hair_n = {hair} a resting finger presses many times a second");
+        findings.warning(place("hair_n"), message, format!("write hair_n = {HAIR_MIN_N} or more"));
     }
 }
 

@@ -16,6 +16,8 @@ pub(crate) const BASE: &str = "base";
 /// A layer while it is read.
 pub(crate) struct LayerDraft {
     pub(crate) name: String,
+    /// Byte offset of its header.
+    pub(crate) at: usize,
     /// In the order of [`Direction::ALL`].
     directions: [Option<Outputs>; Direction::NAMES.len()],
 }
@@ -34,7 +36,7 @@ impl LayerDraft {
                 findings.error(at, message, "give the layer another name");
             }
             let directions = read_directions(table, has_dpad, findings);
-            layers.extend(name.map(|name| Self { name, directions }));
+            layers.extend(name.map(|name| Self { name, at: table.at, directions }));
         }
         layers
     }

@@ -14,6 +14,8 @@ const MACRO_KEYS: [&str; 2] = ["name", "steps"];
 /// A macro while it is read.
 pub(crate) struct MacroDraft {
     pub(crate) name: String,
+    /// Byte offset of its header.
+    pub(crate) at: usize,
     steps: Vec<StepDraft>,
 }
 
@@ -38,7 +40,7 @@ impl MacroDraft {
             let is_taken = |name: &str| macros.iter().any(|it| it.name == name);
             let name = named::read(table, "macro", is_taken, findings);
             let steps = read_steps(table, min_press_ms, findings);
-            macros.extend(name.map(|name| Self { name, steps }));
+            macros.extend(name.map(|name| Self { name, at: table.at, steps }));
         }
         macros
     }

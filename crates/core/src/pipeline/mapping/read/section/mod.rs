@@ -9,4 +9,5 @@ pub(crate) mod layers;
 pub(crate) mod macros;
 pub(crate) mod plate;
 pub(crate) mod programs;
+pub(crate) mod reach;
 pub(crate) mod stages;

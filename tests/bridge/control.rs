@@ -246,14 +246,16 @@ fn presses_sound() {
     let mut told = BufReader::new(watching.stdout.take().unwrap()).lines().map(Result::unwrap);
     let mut press = || -> Value { serde_json::from_str(&told.next().unwrap()).unwrap() };
     let [played, numbers] = ["played", "numbers"].map(|name| folder.join(name));
-    // While the first sound stands still, two more presses are told.
-    for count in 1..=2 {
+    // While a sound stands still, more presses are told.
+    for (count, others) in [(1, 1), (2, 2)] {
         let heard = press()["press"].as_str().unwrap().to_owned();
         assert!(comes_true(|| lines(&numbers).len() == count), "{:?}", lines(&played));
         let wanted = folder.join(format!("tactpad-{heard}.wav"));
         assert_eq!(lines(&played)[count - 1], wanted.display().to_string());
         assert_eq!(fs::read(wanted).unwrap()[..4], *b"RIFF");
-        let _others = [press(), press()];
+        (0..others).for_each(|_| {
+            press();
+        });
         assert_eq!(lines(&played).len(), count);
         if count == 2 {
             // So that none is left standing at the end.

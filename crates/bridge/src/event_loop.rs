@@ -409,10 +409,11 @@ impl Bridge {
         if let Some(line) = self.notifier.line_to_report(now, finding) {
             self.host.tell(&line);
         }
-        let is_explained = finding.is_some();
-        let state = self.notifier.state_to_report(now, state(&self.driver, &self.connection));
+        let state = state(&self.driver, &self.connection);
         // What is wrong with the stream says more than what comes of it.
-        if let Some(state) = state.filter(|state| !(is_explained && state.may_come_of_line())) {
+        if !finding.is_some_and(|finding| state.may_come_of(finding))
+            && let Some(state) = self.notifier.state_to_report(now, state)
+        {
             self.host.tell(state.sentence());
         }
         if let Some(warning) = self.notifier.warning_to_report(self.driver.pipeline.warning()) {

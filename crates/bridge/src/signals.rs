@@ -5,7 +5,9 @@ use std::io;
 use std::thread;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGSTOP, SIGTERM, SIGTSTP, SIGUSR1, SIGUSR2};
+use signal_hook::consts::{
+    SIGABRT, SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGSTOP, SIGTERM, SIGTSTP, SIGUSR1, SIGUSR2, SIGXCPU,
+};
 use signal_hook::low_level;
 
 use crate::request::{Request, RequestSender};
@@ -52,6 +54,10 @@ impl StartConditions {
             (SIGINT,  Request::End,          WhenIgnored::Counts),
             (SIGTERM, Request::End,          WhenIgnored::Counts),
             (SIGQUIT, Request::End,          WhenIgnored::Counts),
+            // Limits of time, and watchdogs that ask for a core file.
+            (SIGALRM, Request::End,          WhenIgnored::Counts),
+            (SIGXCPU, Request::End,          WhenIgnored::Counts),
+            (SIGABRT, Request::End,          WhenIgnored::Counts),
             (SIGHUP,  hang_up,               WhenIgnored::Stays),
             (SIGTSTP, Request::Stop,         WhenIgnored::Stays),
             (SIGUSR1, Request::ReleaseAll,   WhenIgnored::Counts),
@@ -130,7 +136,7 @@ mod tests {
     #[test]
     fn what_ends_a_bridge_ends_it_also_where_a_shell_ignores_it() {
         let in_background = StartConditions { ignored: 0b110, ..FOREGROUND };
-        for signal in [SIGINT, SIGQUIT, SIGTERM] {
+        for signal in [SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGXCPU, SIGABRT] {
             assert_eq!(asked_by(signal, in_background), Some(Request::End));
         }
     }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::pad_connection::NoPadReason;
+use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::pipeline::{Phase, Pipeline};
 
 /// The state of the bridge.
@@ -53,9 +54,12 @@ impl State {
         }
     }
 
-    /// Whether a stream that is not as it should be may be why.
-    pub(super) const fn may_come_of_line(self) -> bool {
-        matches!(self, Self::Taring | Self::Silent | Self::Doubtful | Self::Faulty)
+    /// Whether this may be why. Frames that are lost do not keep a zero from being measured.
+    pub(super) const fn may_come_of(self, finding: &LineFinding) -> bool {
+        match finding {
+            LineFinding::Loss { .. } => matches!(self, Self::Silent | Self::Doubtful),
+            _ => matches!(self, Self::Taring | Self::Loaded | Self::Silent | Self::Doubtful | Self::Faulty),
+        }
     }
 
     /// One word.

@@ -8,7 +8,6 @@ use std::mem::discriminant;
 use firmware_proto::sample::Sample;
 use serde::Serialize;
 
-use crate::pipeline::link::GAP_MAX_US;
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
 use crate::time::HostInstant;
 
@@ -158,8 +157,8 @@ struct Look {
     sequence_stands: u32,
     sequence_falls: u32,
     sequence_largest: u32,
-    /// Steps of the pad's clock that are none of a running one.
-    clock_jumps: u32,
+    /// Samples at which the pad's clock did not go on.
+    clock_breaks: u32,
     lost: u32,
     has_changed: [bool; CHANNELS],
 }
@@ -181,14 +180,16 @@ impl LineCheck {
         self.finding.as_ref()
     }
 
-    /// Takes a sample, as it came, before which `lost` frames are missing. Of a frame that was damaged the number is missing.
-    pub fn sample(&mut self, now: HostInstant, sample: &Sample, lost: u32) {
+    /// Takes a sample, as it came, before which `lost` frames are missing, and where `breaks` says that the pad's clock does not go
+    /// on. Of a frame that was damaged the number is missing.
+    pub fn sample(&mut self, now: HostInstant, sample: &Sample, lost: u32, breaks: bool) {
         if self.look.as_ref().is_some_and(|look| now.us_since(look.begun) >= LOOK_US) {
             self.close();
         }
         let look = self.look.get_or_insert_with(|| Look::begin(now, sample));
         look.sample(now, sample);
         look.lost = look.lost.saturating_add(lost);
+        look.clock_breaks += u32::from(breaks);
     }
 
     /// Another pad may come.
@@ -226,7 +227,7 @@ impl Look {
             sequence_stands: 0,
             sequence_falls: 0,
             sequence_largest: 0,
-            clock_jumps: 0,
+            clock_breaks: 0,
             lost: 0,
             has_changed: [false; CHANNELS],
         }
@@ -239,8 +240,6 @@ impl Look {
         self.sequence_stands += u32::from(!is_first && sample.sequence == self.last.sequence);
         self.sequence_falls += u32::from(!sample.status.restarted() && sample.sequence < self.last.sequence);
         self.sequence_largest = self.sequence_largest.max(sample.sequence);
-        let step_us = sample.time_us.wrapping_sub(self.last.time_us);
-        self.clock_jumps += u32::from(!is_first && step_us > GAP_MAX_US);
         self.widest_us = self.widest_us.max(now.us_since(self.heard));
         for (k, has_changed) in self.has_changed.iter_mut().enumerate() {
             *has_changed |= sample.counts.get(k) != self.first.counts.get(k);
@@ -257,7 +256,7 @@ impl Look {
         let passed_us = self.heard.us_since(self.begun);
         let shown_us = self.last.time_us.wrapping_sub(self.first.time_us);
         // A clock that jumped once was set anew.
-        let is_clock_off = (self.clock_jumps == 0 || most(self.clock_jumps))
+        let is_clock_off = (self.clock_breaks == 0 || most(self.clock_breaks))
             && (shown_us.saturating_mul(CLOCK_OFF) < passed_us
                 || shown_us > CLOCK_OFF * passed_us + BURST_US);
         let mean_us = passed_us as f32 / (self.samples - 1) as f32;
@@ -306,10 +305,16 @@ mod tests {
     /// What is found by the end of so many milliseconds of a pad with this period, of which each sample is made from a sound one.
     fn found(ms: u32, period_ms: u32, make: impl Fn(Sample, u32) -> Sample) -> Option<LineFinding> {
         let mut check = LineCheck::new();
+        let mut last_us = 0;
+        let mut breaks = |sample: &Sample, number: u32| {
+            let step_us = sample.time_us.wrapping_sub(std::mem::replace(&mut last_us, sample.time_us));
+            number > 0 && step_us > 100_000
+        };
         for (number, at_ms) in (0..ms).step_by(period_ms as usize).enumerate() {
-            let sample = Sample { sequence: number as u32, ..sound(at_ms) };
+            let sample = make(Sample { sequence: number as u32, ..sound(at_ms) }, number as u32);
             let now = HostInstant::default().plus_us(1_000 * u64::from(at_ms));
-            check.sample(now, &make(sample, number as u32), 0);
+            let is_break = breaks(&sample, number as u32);
+            check.sample(now, &sample, 0, is_break);
         }
         check.finding().copied()
     }
@@ -367,7 +372,7 @@ mod tests {
     fn a_line_that_loses_frames_is_found_and_taken_back() {
         let mut check = LineCheck::new();
         let at = |check: &mut LineCheck, ms: u32, lost: u32| {
-            check.sample(HostInstant::default().plus_us(1_000 * u64::from(ms)), &sound(ms), lost);
+            check.sample(HostInstant::default().plus_us(1_000 * u64::from(ms)), &sound(ms), lost, false);
         };
         (0..3_000).for_each(|ms| at(&mut check, ms, u32::from(ms % 40 == 0)));
         let Some(LineFinding::Loss { percent }) = check.finding() else { panic!("{:?}", check.finding()) };

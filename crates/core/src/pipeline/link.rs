@@ -190,7 +190,9 @@ impl Link {
         let lost_before = health.frames_lost;
         let event = self.ordered(now, sample, health);
         let lost = u32::try_from(health.frames_lost - lost_before).unwrap_or(u32::MAX);
-        self.check.sample(now, &sample, lost);
+        let breaks =
+            matches!(event, LinkEvent::Sample { fault: Some(Fault::TimeJump | Fault::Restarted), .. });
+        self.check.sample(now, &sample, lost, breaks);
         event
     }
 

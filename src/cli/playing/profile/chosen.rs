@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::own;
 use crate::cli::failure::Failure;
 use crate::cli::files::text_file;
+use crate::cli::printing::written::printable;
 use tactpad::pipeline::mapping::read::ReadProfile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
 use tactpad::pipeline::mapping::read::shipped;
@@ -52,7 +53,7 @@ pub(super) fn find(name: &str) -> Result<ProfileSource, Failure> {
     if path == Path::new(name) && !name.contains(['.', '/']) && !path.exists() {
         return Err(unknown(name));
     }
-    let place = path.display().to_string();
+    let place = printable(&path.display().to_string());
     let text = text_file::read(&path).map_err(|why| {
         let known = known().join(", ");
         Failure::Unusable(format!(

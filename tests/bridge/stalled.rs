@@ -104,7 +104,7 @@ fn log_not_read() {
     let dropped = |bridge: &Running| bridge.status()["health"]["groups_dropped"].as_u64();
     assert!(comes_true(|| dropped(&bridge) > Some(0)), "{}", bridge.status());
     assert_eq!(bridge.status()["state"], "playing");
-    let told = |bridge: &Running| bridge.told().matches("the event log is not read in time").count();
+    let told = |bridge: &Running| bridge.told().matches("events are not taken in time").count();
     assert!(comes_true(|| told(&bridge) == 1), "{}", bridge.told());
 
     let mut log = Log::default();

@@ -170,8 +170,9 @@ fn the_page_opens_for_this_user_without_a_token_and_for_no_other() {
 #[test]
 fn connections_that_ask_for_nothing_keep_nobody_out() {
     let shown = shown();
-    let idle: Vec<_> = (0..1_100).filter_map(|_| TcpStream::connect(shown.host.as_str()).ok()).collect();
-    assert!(idle.len() > 500, "{}", idle.len());
+    // More than are let in, and no more than other tests of this process can spare.
+    let idle: Vec<_> = (0..300).filter_map(|_| TcpStream::connect(shown.host.as_str()).ok()).collect();
+    assert!(idle.len() > 200, "{}", idle.len());
     assert!(shown.running.ctl("status").status.success());
     assert!(comes_true(|| {
         let mut stream = TcpStream::connect(shown.host.as_str()).unwrap();

@@ -17,7 +17,7 @@ use crate::notifier::Notifier;
 use crate::pad_connection::PadConnection;
 use crate::profile_update::{ProfileStatus, ProfileUpdate, unchanged_message};
 use crate::recorder::Recorder;
-use crate::request::{PendingRequest, Request};
+use crate::request::{PendingRequest, Request, RequestSender};
 use crate::requests::Requests;
 use crate::signals;
 use crate::snapshot::{Drops, Snapshot};
@@ -52,6 +52,8 @@ pub struct Bridge {
     profile_status: ProfileStatus,
     connection: PadConnection,
     requests: Requests,
+    /// Hands in profiles that were read: made at the start, when there are descriptors.
+    sender: Arc<RequestSender>,
     host: Box<dyn Host>,
     end_at: Option<HostInstant>,
     notifier: Notifier,
@@ -74,7 +76,7 @@ impl Bridge {
     /// A bridge that is ready to run. Its clock, and its capture if it records one, begin now.
     ///
     /// # Errors
-    /// The beginning of the capture cannot be written.
+    /// The beginning of the capture cannot be written, or the system has no descriptor to give.
     pub fn new(parts: BridgeParts) -> io::Result<Self> {
         let clock = Clock::start();
         let now = clock.now();
@@ -100,6 +102,7 @@ impl Bridge {
         observers.iter_mut().for_each(|observer| observer.begin(clock, now, &pipeline));
         let driver = Driver { pipeline, sink, recorder, clock, latency, commands, watchers, observers };
         let connection = PadConnection::new(pad, patience, now);
+        let sender = Arc::new(requests.sender()?);
         let profile_status = ProfileStatus::new();
         let first_snapshot =
             Arc::new(Mutex::new(snapshot(now, &driver, &connection, &decoder, &profile_status)));
@@ -109,6 +112,7 @@ impl Bridge {
             profile_status,
             connection,
             requests,
+            sender,
             host,
             end_at: duration_us.map(|duration_us| now.plus_us(duration_us)),
             notifier: Notifier::new(now),
@@ -275,15 +279,20 @@ impl Bridge {
     }
 
     fn answer(&mut self, now: HostInstant, pending: &PendingRequest) -> Result<(), BridgeError> {
+        let asked = match &pending.request {
+            Request::Profile(None) => Some(ProfileRequest::Same),
+            Request::Profile(Some(name)) => Some(ProfileRequest::Named(name.clone())),
+            Request::NextProfile => Some(ProfileRequest::Next),
+            _ => None,
+        };
+        if let Some(request) = asked {
+            self.read_profile(request, pending);
+            return Ok(());
+        }
         let answer = match &pending.request {
             Request::Status => self.status(now),
             Request::Page => page(self.host.page()),
             Request::Preview(read) => self.preview(now, read)?,
-            Request::Profile(None) => return self.read_profile(ProfileRequest::Same, pending),
-            Request::Profile(Some(name)) => {
-                return self.read_profile(ProfileRequest::Named(name.clone()), pending);
-            }
-            Request::NextProfile => return self.read_profile(ProfileRequest::Next, pending),
             Request::Play(read, is_named) => self.change_profile(now, (**read).clone(), *is_named)?,
             Request::UpdateProfile(update) => self.update_profile(now, update)?,
             Request::Weigh(weight) => {
@@ -307,12 +316,11 @@ impl Bridge {
     }
 
     /// Has the host read a profile; who asked gets the answer when it is in play.
-    fn read_profile(&mut self, request: ProfileRequest, pending: &PendingRequest) -> Result<(), BridgeError> {
-        let sender = self.requests.sender().map_err(BridgeError::Io)?;
+    fn read_profile(&mut self, request: ProfileRequest, pending: &PendingRequest) {
         let is_named = request != ProfileRequest::Same;
-        let reply = ProfileReply { sender, reply_to: pending.reply_to.clone(), is_named };
+        let reply =
+            ProfileReply { sender: Arc::clone(&self.sender), reply_to: pending.reply_to.clone(), is_named };
         self.host.read_profile(request, reply);
-        Ok(())
     }
 
     /// Runs the commands that presses have triggered.

@@ -1,5 +1,6 @@
 //! The host: the interface of the program that a bridge runs in.
 
+use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
 use crate::profile_update::ProfileUpdate;
@@ -21,7 +22,7 @@ pub enum ProfileRequest {
 /// Where a profile that was asked for is handed in once it is read.
 #[derive(Debug)]
 pub struct ProfileReply {
-    pub(super) sender: RequestSender,
+    pub(super) sender: Arc<RequestSender>,
     pub(super) reply_to: Option<SyncSender<String>>,
     pub(super) is_named: bool,
 }

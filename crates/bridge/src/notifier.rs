@@ -118,7 +118,7 @@ impl Notifier {
 const UNCHANGED: &str = "the pad reads what it read when it was calibrated";
 
 const GROUPS_DROPPED: &str =
-    "the event log is not read in time: groups of events are dropped and counted until it is";
+    "events are not taken in time: groups of them are dropped and counted until they are";
 
 const CALLS_UNRECORDED: &str =
     "the capture ends here and says so: its file takes no more; playing goes on, and calls are counted";

@@ -110,7 +110,7 @@ pub struct BridgeHealth {
 /// Counts of groups and calls that were not taken in time. The bridge waits for no log and for no capture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Drops {
-    /// Groups of events that are missing in the event log.
+    /// Groups of events that were not taken in time, by an event log or an X server.
     pub groups_dropped: u64,
     /// Calls that are missing at the end of the capture.
     pub calls_unrecorded: u64,

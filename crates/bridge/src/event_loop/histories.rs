@@ -36,6 +36,8 @@ enum Happening {
     Saturate(usize, u64),
     /// The pad says who it is: one of two.
     Identify(bool),
+    /// From now on its clock goes on by so many microseconds in a millisecond, for so many milliseconds.
+    Pace(u64, u64),
 }
 
 const RIGHT: Contact = Contact { x_mm: 20.0, y_mm: 0.0, fx_n: 0.0, fy_n: 0.0, fz_n: 2.0 };
@@ -92,11 +94,12 @@ fn happenings() -> impl Strategy<Value = Happening> {
         1 => times_us().prop_map(Happening::Jump),
         1 => (0..9_usize, 1..100_u64).prop_map(|(channel, ms)| Happening::Saturate(channel, ms)),
         1 => any::<bool>().prop_map(Happening::Identify),
+        1 => (0..20_000_u64, 0..3_000_u64).prop_map(|(us_per_ms, ms)| Happening::Pace(us_per_ms, ms)),
     ]
 }
 
 impl Happening {
-    fn befall(&self, play: &mut Play) {
+    fn apply_to(&self, play: &mut Play) {
         let begin = play.now;
         match self {
             Self::Wait(ms) => drop(play.wait(*ms)),
@@ -126,6 +129,11 @@ impl Happening {
                 play.touch(&AWAY, *ms);
                 play.offset[*channel] = offset;
             }
+            Self::Pace(us_per_ms, ms) => {
+                play.us_per_ms = *us_per_ms;
+                play.touch(&AWAY, *ms);
+                play.us_per_ms = 1_000;
+            }
             Self::Identify(is_first) => {
                 let name = if *is_first { "PAD-1" } else { "PAD-2" };
                 let identity = Identity {
@@ -150,7 +158,7 @@ proptest! {
     ) {
         let mut play = Play::waiting();
         for happening in &history {
-            happening.befall(&mut play);
+            happening.apply_to(&mut play);
         }
         // A player's own wishes come to their end; the bridge looks for a pad four times a second.
         play.plug_in();
@@ -159,7 +167,9 @@ proptest! {
         while play.bridge.driver.pipeline.phase() == Phase::Weighing {
             play.touch(&AWAY, 1_000);
         }
-        play.touch(&AWAY, 500);
+        // A clock that was not believed is looked at for a second first.
+        let was_off_pace = history.iter().any(|it| matches!(it, Happening::Pace(..)));
+        play.touch(&AWAY, if was_off_pace { 1_500 } else { 500 });
         let pressed = play.touch(&RIGHT, 100);
         let state = state(&play.bridge.driver, &play.bridge.connection).word();
         prop_assert!(pressed.iter().any(|(_, value, _)| *value != 0), "{state}: {pressed:?}");

@@ -130,6 +130,8 @@ pub(super) struct Play {
     /// The number and the time (µs) that the pad's next sample has.
     pub(super) sequence: u32,
     pub(super) time_us: u64,
+    /// By so much its clock goes on in a millisecond, µs.
+    pub(super) us_per_ms: u64,
     /// Status of the next sample.
     pub(super) status: Status,
     /// Added to each channel, in counts.
@@ -161,6 +163,7 @@ impl Play {
             now,
             sequence: 1,
             time_us: 0,
+            us_per_ms: 1_000,
             status: Status::OK,
             offset: [0; 9],
             field: PadField::nominal().signals,
@@ -196,7 +199,7 @@ impl Play {
             edges.extend(self.take(begin));
         }
         self.now = end;
-        self.time_us = self.time_us.wrapping_add(1_000 * ms);
+        self.time_us = self.time_us.wrapping_add(self.us_per_ms * ms);
         edges
     }
 

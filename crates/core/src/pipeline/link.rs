@@ -16,8 +16,8 @@ use crate::time::{HostInstant, StreamInstant};
 pub const SILENCE_MAX_US: u64 = 80_000;
 
 /// Frames may be missing between two samples this close: nobody lifts a finger and presses again in so short a time, and what is
-/// pressed meanwhile shows in the next sample. With one frame in 40 damaged, 15 presses stay 15 where each such gap ended a contact
-/// and made 40 of them; 20 is the period of 50 Hz, and twice that of the slowest pad.
+/// pressed meanwhile shows in the next sample. With one frame in 40 damaged, 15 presses stay 15; where each gap ended a contact they
+/// became 40. It is two periods of the slowest pad: one frame may be missing there, too.
 pub const BRIDGED_GAP_US: u64 = 20_000;
 
 /// The longest step of the pad's clock between two samples that is not a jump: 10 periods of the slowest pad.

@@ -214,9 +214,7 @@ pub(super) fn play(bridge: &mut Bridge, address: &PadAddress) -> Result<Ending, 
     let ending = bridge.run();
     let Drops { groups_dropped, .. } = bridge.drops();
     if groups_dropped > 0 {
-        say(format_args!(
-            "{groups_dropped} groups of events are missing in the event log: it was not read in time"
-        ));
+        say(format_args!("{groups_dropped} groups of events are missing: they were not taken in time"));
     }
     ending.map_err(|error| match error {
         BridgeError::NotAPad(_) | BridgeError::Refused(_) => Failure::Unusable(format!("{address} {error}")),

@@ -128,6 +128,14 @@ impl Browser {
         self.post(&format!("element/{element}/click"), &json!({}));
     }
 
+    /// Clicks the button of an element that reads so, once the page shows it: the page follows the bridge a little behind.
+    pub(crate) fn click_button(&self, within: &str, label: &str) {
+        let buttons = format!("[...document.querySelectorAll({:?})]", format!("{within} button"));
+        let is_it = format!("(it) => it.textContent.trim() === {label:?}");
+        self.wait(&format!("{buttons}.some({is_it})"));
+        self.run(&format!("{buttons}.find({is_it}).click()"));
+    }
+
     /// Presses keys one after the other, each up again before the next; those of `held` are down meanwhile.
     pub(crate) fn keys(&self, held: &[&str], keys: &[&str]) {
         let key = |kind: &str, key: &str| json!({"type": kind, "value": key});

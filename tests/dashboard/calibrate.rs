@@ -55,9 +55,7 @@ fn press(finger: &Finger, [x_mm, y_mm]: [f32; 2], fz_n: f32, for_ms: u64) {
 
 /// Presses a button of the guide's card.
 fn choose(browser: &Browser, label: &str) {
-    let buttons = "[...document.querySelectorAll('[aria-labelledby=guide-at-home] button')]";
-    browser.wait(&format!("{buttons}.some((it) => it.textContent === '{label}')"));
-    browser.run(&format!("{buttons}.find((it) => it.textContent === '{label}').click()"));
+    browser.click_button("[aria-labelledby=guide-at-home]", label);
 }
 
 #[test]

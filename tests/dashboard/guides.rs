@@ -80,7 +80,7 @@ fn half_a_minute_of_presses_gives_a_draft_with_the_forces_of_the_hand() {
     assert!(draft.contains("# ") && !draft.contains("press_n = 2.0"), "{draft}");
     assert_eq!(result["draft"]["profile"], "contra");
     assert!(!shown.profile("contra").exists(), "nothing is kept before people say so");
-    browser.run("[...document.querySelectorAll('#guides button')].find((it) => it.textContent.includes('in the editor')).click()");
+    browser.click_button("#guides", "Open contra with it in the editor");
     browser.wait("document.getElementById('profile-text')?.value.length > 0");
     let text = browser.run("return document.getElementById('profile-text').value");
     assert_eq!(text.as_str(), Some(draft));

@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use crate::changes::ChangesSlot;
+use crate::clock::Clock;
 use crate::host::Host;
 use crate::observer::Observer;
 use crate::opening::{OpenedPad, Patience};
@@ -26,6 +27,8 @@ pub struct PlayingDecoder {
 
 /// The parts of which a bridge is made.
 pub struct BridgeParts {
+    /// The clock of the run.
+    pub clock: Clock,
     /// The pad, opened once already so that errors were told.
     pub pad: OpenedPad,
     /// Whether to go on waiting for a pad that sends no sound frame.

@@ -8,7 +8,6 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::answer::{done, page, refused, weighing};
 use crate::bridge_parts::BridgeParts;
-use crate::clock::Clock;
 use crate::driver::{Driver, prepare};
 use crate::error::BridgeError;
 use crate::host::{Host, ProfileReply, ProfileRequest};
@@ -73,14 +72,13 @@ struct Woken {
 }
 
 impl Bridge {
-    /// A bridge that is ready to run. Its clock, and its capture if it records one, begin now.
+    /// A bridge that is ready to run. Its run, and its capture if it records one, begin now.
     ///
     /// # Errors
     /// The beginning of the capture cannot be written, or the system has no descriptor to give.
     pub fn new(parts: BridgeParts) -> io::Result<Self> {
-        let clock = Clock::start();
-        let now = clock.now();
         let BridgeParts {
+            clock,
             pad,
             patience,
             decoder,
@@ -93,6 +91,7 @@ impl Bridge {
             changes,
             duration_us,
         } = parts;
+        let now = clock.now();
         let pipeline = Pipeline::new(decoder.decoder, profile.profile().clone());
         let head = Head { decoder: decoder.file, profile: Some(profile) };
         let decoder = DecoderInfo { name: decoder.name, place: decoder.place, changes };

@@ -16,7 +16,8 @@ fn without_pad() -> (Bridge, MessageLog, Arc<AtomicUsize>) {
         looking.fetch_add(1, Ordering::Relaxed);
         Err(PadError::NotThere("no".into()))
     }));
-    (bridge(pad, Box::new(NullSink), &messages), messages, looked)
+    let now_ns = Box::leak(Box::default());
+    (bridge(now_ns, pad, Box::new(NullSink), &messages), messages, looked)
 }
 
 /// Lets the bridge wake when it wants to until `end`; how often it did.

@@ -1,6 +1,7 @@
 //! A bridge and its pad in virtual time: what is due happens at the moment when it is due.
 
 use std::os::fd::{AsFd, BorrowedFd};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use firmware_proto::ENCODED_MAX;
 use firmware_proto::frame::Message;
@@ -10,6 +11,7 @@ use firmware_proto::sample::{Sample, Status};
 use super::*;
 use crate::bridge_parts::PlayingDecoder;
 use crate::changes::ChangesSlot;
+use crate::clock::Clock;
 use crate::opening::{OpenedPad, Patience};
 use crate::sink::{Sink, SinkError};
 use crate::transport::Transport;
@@ -45,9 +47,15 @@ fn profile(name: &str) -> Result<ReadProfile, String> {
     ReadProfile::read(text, OutputChoice::AsWritten).0.ok_or("it has errors".into())
 }
 
-/// A bridge that plays Contra on this pad.
-pub(super) fn bridge(pad: OpenedPad, sink: Box<dyn Sink>, messages: &MessageLog) -> Bridge {
+/// A bridge that plays Contra on this pad, by the clock of these nanoseconds.
+pub(super) fn bridge(
+    now_ns: &'static AtomicU64,
+    pad: OpenedPad,
+    sink: Box<dyn Sink>,
+    messages: &MessageLog,
+) -> Bridge {
     let bridge = Bridge::new(BridgeParts {
+        clock: Clock::virtual_time(now_ns),
         pad,
         patience: Patience::Endless,
         decoder: PlayingDecoder {
@@ -127,6 +135,8 @@ pub(super) struct Play {
     line: Line,
     written: Written,
     pub(super) now: HostInstant,
+    /// The bridge's clock.
+    now_ns: &'static AtomicU64,
     /// The number and the time (µs) that the pad's next sample has.
     pub(super) sequence: u32,
     pub(super) time_us: u64,
@@ -154,13 +164,14 @@ impl Play {
             let nothing = std::fs::File::open("/dev/null").unwrap();
             Ok(Box::new(Port { line: Arc::clone(&plug), nothing }))
         }));
-        let bridge = bridge(pad, Box::new(written.clone()), &MessageLog::default());
-        let now = bridge.snapshot_at;
+        let now_ns: &AtomicU64 = Box::leak(Box::default());
+        let bridge = bridge(now_ns, pad, Box::new(written.clone()), &MessageLog::default());
         Self {
             bridge,
             line,
             written,
-            now,
+            now: HostInstant::default(),
+            now_ns,
             sequence: 1,
             time_us: 0,
             us_per_ms: 1_000,
@@ -195,7 +206,7 @@ impl Play {
         let mut edges = Vec::new();
         while let Some(due) = self.bridge.next_deadline().filter(|due| *due < end) {
             self.now = due.max(self.now);
-            assert_eq!(self.bridge.turn(self.now, ASLEEP).unwrap(), None);
+            self.turn(ASLEEP);
             edges.extend(self.take(begin));
         }
         self.now = end;
@@ -256,17 +267,23 @@ impl Play {
         self.read(begin)
     }
 
+    /// The bridge wakes now.
+    fn turn(&mut self, woken: Woken) {
+        self.now_ns.store(self.now.as_ns(), Ordering::Relaxed);
+        assert_eq!(self.bridge.turn(self.now, woken).unwrap(), None);
+    }
+
     /// The bridge hears its pad now.
     fn read(&mut self, begin: HostInstant) -> Vec<Edge> {
         let woken = Woken { pad: self.bridge.connection.pad().is_some(), request: false };
-        assert_eq!(self.bridge.turn(self.now, woken).unwrap(), None);
+        self.turn(woken);
         self.take(begin)
     }
 
     /// Somebody asks the bridge for something now.
     pub(super) fn ask(&mut self, request: Request) -> Vec<Edge> {
         self.bridge.requests.sender().unwrap().send(request).unwrap();
-        assert_eq!(self.bridge.turn(self.now, ASKED).unwrap(), None);
+        self.turn(ASKED);
         self.take(self.now)
     }
 

@@ -22,6 +22,7 @@ use crate::cli::printing::terminal;
 use crate::cli::printing::written::{print_json, say, stdout};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
+use tactpad::bridge::clock::Clock;
 use tactpad::bridge::event_loop::{Bridge, Ending};
 use tactpad::bridge::latency::Percentiles;
 use tactpad::bridge::opening::Patience;
@@ -99,6 +100,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         if_read(tell(arguments, &format!("Dashboard: {url}")))?;
     }
     let mut bridge = Bridge::new(BridgeParts {
+        clock: Clock::start(),
         pad: prepared.pad(open_virtual(&arguments.device, script)?),
         patience: Patience::Limited,
         decoder,

@@ -17,6 +17,7 @@ use crate::cli::printing::seconds;
 use crate::cli::printing::written::{print_json, say, stdout};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
+use tactpad::bridge::clock::Clock;
 use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::latency::Percentiles;
 use tactpad::bridge::opening::Patience;
@@ -77,6 +78,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let audience = Audience::Nobody;
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let mut bridge = Bridge::new(BridgeParts {
+        clock: Clock::start(),
         pad: timing.pad(opened),
         patience: Patience::Limited,
         decoder,

@@ -22,6 +22,7 @@ use crate::cli::printing::seconds;
 use crate::cli::printing::written::{Named, say};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
+use tactpad::bridge::clock::Clock;
 use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::bridge::transport::fault::FaultPlan;
@@ -91,6 +92,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let seconds = arguments.seconds.or(arguments.force_range.then_some(FORCE_RANGE_S));
     let mut bridge = Bridge::new(BridgeParts {
+        clock: Clock::start(),
         pad: opened,
         patience,
         decoder,

@@ -23,6 +23,7 @@ use crate::cli::printing::seconds;
 use crate::cli::printing::terminal;
 use crate::cli::printing::written::{printable, say};
 use tactpad::bridge::bridge_parts::BridgeParts;
+use tactpad::bridge::clock::Clock;
 use tactpad::bridge::event_loop::{Bridge, Ending};
 use tactpad::bridge::transport::address::PadAddress;
 use tactpad::bridge::transport::fault::FaultPlan;
@@ -97,6 +98,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     follower::start(selection, output.choice(), requests.sender()?)?;
     let mut keeping = PlayKeeping::begin(arguments.keep_play, pad, &decoder)?;
     let mut bridge = Bridge::new(BridgeParts {
+        clock: Clock::start(),
         pad: prepared.pad(opened),
         patience,
         decoder,

@@ -29,6 +29,7 @@ use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{is_same, is_stdout, say, stdout, written_over};
 use tactpad::bridge::bridge_parts::{BridgeParts, PlayingDecoder};
 use tactpad::bridge::changes::ChangesSlot;
+use tactpad::bridge::clock::Clock;
 use tactpad::bridge::event_loop::Bridge;
 use tactpad::bridge::observer::observe;
 use tactpad::bridge::opening::OpenedPad;
@@ -210,6 +211,7 @@ fn lead(arguments: &Arguments, parts: SessionParts) -> Result<Guide, Failure> {
     let terminal = TerminalHost::new("super-mario", OutputChoice::AsWritten, Audience::Nobody)?;
     let session = Session::new(guide, files, hands, requests.sender()?, SessionScreen::new(said));
     let mut bridge = Bridge::new(BridgeParts {
+        clock: Clock::start(),
         pad,
         patience: patience(&arguments.pad, WaitOption::NotGiven),
         decoder,

@@ -94,6 +94,7 @@ fn many_pads_without_a_fault_seldom_alarm() {
 }
 
 #[test]
+#[ignore = "proof: 10 s: two causes beside those of each kind, which stay a test"]
 fn two_effects_at_once_are_both_found() {
     for (seed, pair) in
         [["channel_gain", "stage_offset"], ["module_rotated", "channel_crosstalk"]].iter().enumerate()
@@ -123,6 +124,7 @@ fn two_effects_at_once_are_both_found() {
 
 /// No pad creeps by a third. Where all loads are held equally long a common gain looks like creep, but not one that large.
 #[test]
+#[ignore = "proof: 5 s: a cause beside those of each kind, which stay a test"]
 fn gains_beyond_what_creep_can_be_are_found() {
     let gain = |effect: &str, target: &str, value: f64| Truth::new(effect, target, &[("gain", value)]);
     let truths = vec![

@@ -323,6 +323,7 @@ fn is_calibrated_about_its_own_field(solve: Solve<'_>, field: &PadField, is_comp
 }
 
 #[test]
+#[ignore = "proof: 15 s: a pad of another program's field is calibrated about it, which stays a test"]
 fn a_pad_that_the_tangent_does_not_reach_is_calibrated_about_its_own_field() {
     is_calibrated_about_its_own_field(&coarse, &COARSE_NOMINAL, false);
 }

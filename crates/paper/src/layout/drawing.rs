@@ -4,7 +4,7 @@ use super::module_count::{ModuleCounts, Ringed, Wiring, load_sharing};
 use super::placement::{Candidate, Placement};
 use super::precision::Precision;
 use super::spacing::Radii;
-use super::study::{Simulated, SpacingAnswers, StudyError};
+use super::study::{Simulated, SpacingAnswers};
 use super::swarm;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::device::pose::Pose;
@@ -53,47 +53,44 @@ const SWARMS: u64 = 6;
 /// The paper's Figure 1b: the best cost of swarms after each iteration. On the left they
 /// look for the distances, with a penalty for what breaks the rule; on the right for layouts that keep it, as the study
 /// does. The seeds are `first_seed` and the next ones.
-///
-/// # Errors
-/// A swarm fails.
-pub fn swarms(radii: &Radii, first_seed: u64) -> Result<Figure, StudyError> {
+pub fn swarms(radii: &Radii, first_seed: u64) -> Figure {
     let optimum_mm2 = radii.widest().area_mm2;
     let [r1, r2, r3] = radii.mm();
     let penalised = Chart {
         title: format!("Swarms over the distances, radii {r1:.1}, {r2:.1}, {r3:.1} mm"),
-        ..costs(radii, first_seed, swarm::penalised_costs)?
+        ..costs(radii, first_seed, swarm::penalised_costs)
     };
     let ruled = Chart {
         title: "Swarms over layouts that keep the rule".to_owned(),
         guides: vec![GuideLine { at: GuidePlace::Y(-optimum_mm2), label: "closed form".to_owned() }],
-        ..costs(radii, first_seed, swarm::costs)?
+        ..costs(radii, first_seed, swarm::costs)
     };
     let mut both = Figure::new(2.0 * WIDTH, HEIGHT, "Best cost of the particle swarm by iteration");
     both.place(Chart { guides: ruled.guides.clone(), ..penalised }.figure(), [0.0, 0.0]);
     both.place(ruled.figure(), [WIDTH, 0.0]);
-    Ok(both)
+    both
 }
 
 /// The best cost of each of a swarm's rounds, for a seed.
-type SwarmCosts = fn(&Radii, u64) -> Result<Vec<f64>, argmin::core::Error>;
+type SwarmCosts = fn(&Radii, u64) -> Vec<f64>;
 
 /// The best costs of one kind of swarms by iteration, a curve for each seed.
-fn costs(radii: &Radii, first_seed: u64, of: SwarmCosts) -> Result<Chart, StudyError> {
+fn costs(radii: &Radii, first_seed: u64, of: SwarmCosts) -> Chart {
     let curve = |seed: u64| {
-        let costs_mm2 = of(radii, seed).map_err(|error| StudyError::Swarm(error.to_string()))?;
+        let costs_mm2 = of(radii, seed);
         let values = (1_u32..).zip(costs_mm2).map(|(round, cost)| Value::new(f64::from(round), cost));
-        Ok(Series { name: format!("seed {seed}"), values: values.collect(), look: SeriesLook::Line })
+        Series { name: format!("seed {seed}"), values: values.collect(), look: SeriesLook::Line }
     };
     let seeds = (0..SWARMS).map(|number| first_seed.saturating_add(number));
-    Ok(Chart {
+    Chart {
         title: String::new(),
         width: WIDTH,
         height: HEIGHT,
         x: Side { scale: Scale::Log10, ..side("Iteration") },
         y: side("Best cost: −area, mm²"),
-        series: seeds.map(curve).collect::<Result<_, StudyError>>()?,
+        series: seeds.map(curve).collect(),
         guides: vec![],
-    })
+    }
 }
 
 /// One figure of merit over the modules' radius: a curve for the least and the greatest turn.

@@ -42,7 +42,7 @@ impl Simulated {
         let mut scan = Scan::of(device, noise_uv, progress).map_err(StudyError::Unsolved)?;
         let regions = scan.regions(threshold);
         let isolines = regions.each_ref().map(|(isoline, _)| *isoline);
-        let spacing = SpacingAnswers::of(&radii(&isolines, threshold)?, seed)?;
+        let spacing = SpacingAnswers::of(&radii(&isolines, threshold)?, seed);
         let placed = [Placement::of(device), Placement::by_rule(&spacing.closed_form)];
         let [as_built, by_rule] = placed.map(|placement| scan.candidate(placement));
         let simulated = Self {

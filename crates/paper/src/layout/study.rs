@@ -71,8 +71,6 @@ pub enum StudyError {
     },
     /// A region's radius is no length that the rule takes.
     Radius(RadiusError),
-    /// The particle swarm failed: what it says.
-    Swarm(String),
 }
 
 impl fmt::Display for StudyError {
@@ -89,7 +87,6 @@ impl fmt::Display for StudyError {
                  device whose modules stand farther out"
             ),
             Self::Radius(error) => error.fmt(f),
-            Self::Swarm(error) => write!(f, "particle swarm: {error}"),
         }
     }
 }
@@ -104,17 +101,14 @@ impl From<SolveError> for StudyError {
 
 impl SpacingAnswers {
     /// Solves the layout problem for these radii; `seed` draws the swarm.
-    ///
-    /// # Errors
-    /// The swarm fails.
-    pub fn of(radii: &Radii, seed: u64) -> Result<Self, StudyError> {
-        Ok(Self {
+    pub fn of(radii: &Radii, seed: u64) -> Self {
+        Self {
             radii_mm: radii.mm(),
             limits_mm: radii.limits_mm(),
-            swarm: swarm::solve(radii, seed).map_err(|error| StudyError::Swarm(error.to_string()))?,
+            swarm: swarm::solve(radii, seed),
             grid: grid::search(radii),
             closed_form: radii.widest(),
             optimal_ranges_mm: radii.optimal_ranges_mm(),
-        })
+        }
     }
 }

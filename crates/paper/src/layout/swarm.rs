@@ -1,17 +1,21 @@
 //! The paper's layout problem, solved as the paper solves it: by a particle swarm.
 
-use std::sync::{Arc, Mutex, PoisonError};
-
-use argmin::core::observers::{Observe, ObserverMode};
-use argmin::core::{CostFunction, Error, Executor, KV, State};
-use argmin::solver::particleswarm::ParticleSwarm;
-use rand_xoshiro::Xoshiro256PlusPlus;
-use rand_xoshiro::rand_core::SeedableRng;
+use std::array;
+use std::f64::consts::LN_2;
 
 use super::spacing::{PAIRS, Radii, Spacing};
+use tactpad_core::numeric::random::SplitMix64;
 
 const PARTICLES: usize = 40;
-const ROUNDS: u64 = 100;
+const ROUNDS: usize = 100;
+
+/// ω: so much of its speed a particle keeps.
+///
+/// Source: M. Clerc, "Standard particle swarm optimisation", 2012, for the variants of 2006 and 2007.
+const INERTIA: f64 = 0.5 / LN_2;
+
+/// c: a particle is pulled towards a best place by up to so many times its distance from it. Source: as for [`INERTIA`].
+const PULL: f64 = 0.5 + LN_2;
 
 /// The layout that a swarm of 40 particles finds in 100 rounds. The same seed gives the same layout.
 ///
@@ -21,65 +25,78 @@ const ROUNDS: u64 = 100;
 /// lies between the shortest and the longest distance that the other two and its own limit leave. That interval
 /// is never empty: |d(ab) − d(ac)| ≤ a ≤ b. Its ends are the flat triangles.
 ///
-/// Source: the paper, section 2.1; argmin's solver, with its own weights.
-///
-/// # Errors
-/// What the solver reports. Layouts always have an area, so nothing is known to make it fail.
-pub fn solve(radii: &Radii, seed: u64) -> Result<Spacing, Error> {
+/// Source: the paper, section 2.1.
+pub fn solve(radii: &Radii, seed: u64) -> Spacing {
     let layouts = Layouts::of(radii);
-    let (best, _) = swarmed(layouts.clone(), [0.0, 1.0].map(|end| [end; PAIRS]), seed)?;
-    Ok(layouts.at(&best))
+    layouts.at(&layouts.course(seed).best)
 }
 
 /// The swarm's best cost after each of its rounds, in mm²: the negative of the largest area that it has found.
-///
-/// # Errors
-/// As for [`solve`].
-pub fn costs(radii: &Radii, seed: u64) -> Result<Vec<f64>, Error> {
-    Ok(swarmed(Layouts::of(radii), [0.0, 1.0].map(|end| [end; PAIRS]), seed)?.1)
+pub fn costs(radii: &Radii, seed: u64) -> Vec<f64> {
+    Layouts::of(radii).course(seed).costs
 }
 
 /// The same of a swarm that looks for the distances themselves, from 0 to twice their limits, where a penalty keeps the
 /// rule: the problem as the paper writes it.
-///
-/// # Errors
-/// As for [`solve`].
-pub fn penalised_costs(radii: &Radii, seed: u64) -> Result<Vec<f64>, Error> {
+pub fn penalised_costs(radii: &Radii, seed: u64) -> Vec<f64> {
     let farthest_mm = radii.limits_mm().map(|limit_mm| 2.0 * limit_mm);
-    Ok(swarmed(Penalised { radii: *radii }, [[0.0; PAIRS], farthest_mm], seed)?.1)
+    swarmed([[0.0; PAIRS], farthest_mm], seed, |wanted_mm| penalised_mm2(radii, wanted_mm)).costs
 }
 
-/// The best point of a box that a swarm finds, and its best cost after each round.
-fn swarmed<C>(problem: C, [low, high]: [[f64; PAIRS]; 2], seed: u64) -> Result<(Vec<f64>, Vec<f64>), Error>
-where
-    C: CostFunction<Param = Vec<f64>, Output = f64>,
-{
-    let course = CostObserver::default();
-    let swarm = ParticleSwarm::new((low.to_vec(), high.to_vec()), PARTICLES)
-        .with_rng_generator(Xoshiro256PlusPlus::seed_from_u64(seed));
-    let run = Executor::new(problem, swarm).configure(|state| state.max_iters(ROUNDS));
-    let mut outcome = run.add_observer(course.clone(), ObserverMode::Always).timer(false).run()?;
-    let best = outcome.state.take_individual().map(|particle| particle.position);
-    let costs_mm2 = course.costs_mm2.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    Ok((best.unwrap_or_default(), costs_mm2))
+/// What a swarm has found.
+struct Course {
+    best: [f64; PAIRS],
+    /// Best cost after each round.
+    costs: Vec<f64>,
 }
 
-/// Writes down the best cost of each round. The solver keeps its observers, so the list is shared.
-#[derive(Clone, Default)]
-struct CostObserver {
-    costs_mm2: Arc<Mutex<Vec<f64>>>,
-}
-
-impl<S: State<Float = f64>> Observe<S> for CostObserver {
-    fn observe_iter(&mut self, state: &S, _: &KV) -> Result<(), Error> {
-        let mut costs_mm2 = self.costs_mm2.lock().unwrap_or_else(PoisonError::into_inner);
-        costs_mm2.push(state.get_best_cost());
-        Ok(())
+/// Looks for the least cost in a box: v ← ω v + c u₁ (p − x) + c u₂ (g − x), x ← x + v, with a particle's best place p, the
+/// swarm's best g and u₁, u₂ evenly distributed in 0..1. A particle that is thrown beyond a side stays at it.
+fn swarmed([low, high]: [[f64; PAIRS]; 2], seed: u64, cost: impl Fn(&[f64; PAIRS]) -> f64) -> Course {
+    let mut random = SplitMix64::new(seed);
+    let mut place =
+        || array::from_fn(|axis| low[axis] + f64::from(random.fraction()) * (high[axis] - low[axis]));
+    let mut particles: Vec<Particle> = (0..PARTICLES)
+        .map(|_| {
+            let (at, other): ([f64; PAIRS], [f64; PAIRS]) = (place(), place());
+            let speed = array::from_fn(|axis| 0.5 * (other[axis] - at[axis]));
+            Particle { at, speed, best: at, least: cost(&at) }
+        })
+        .collect();
+    let of_all = |particles: &[Particle]| {
+        let least = particles.iter().min_by(|a, b| a.least.total_cmp(&b.least));
+        least.map_or((low, f64::INFINITY), |particle| (particle.best, particle.least))
+    };
+    let (mut best, mut costs) = (of_all(&particles).0, Vec::with_capacity(ROUNDS));
+    for _ in 0..ROUNDS {
+        for Particle { at, speed, best: own, least } in &mut particles {
+            for axis in 0..PAIRS {
+                let mut pull = |to: f64| PULL * f64::from(random.fraction()) * (to - at[axis]);
+                speed[axis] = INERTIA * speed[axis] + pull(own[axis]) + pull(best[axis]);
+                at[axis] = (at[axis] + speed[axis]).clamp(low[axis], high[axis]);
+            }
+            let here = cost(at);
+            if here < *least {
+                (*own, *least) = (*at, here);
+            }
+        }
+        let least;
+        (best, least) = of_all(&particles);
+        costs.push(least);
     }
+    Course { best, costs }
+}
+
+/// One of a swarm.
+struct Particle {
+    at: [f64; PAIRS],
+    speed: [f64; PAIRS],
+    /// Where its cost was the least.
+    best: [f64; PAIRS],
+    least: f64,
 }
 
 /// The layouts that keep the rule, as points of the unit cube.
-#[derive(Clone)]
 struct Layouts {
     radii: Radii,
     /// The discs from the smallest to the largest.
@@ -93,16 +110,20 @@ impl Layouts {
         Self { radii: *radii, order }
     }
 
-    fn at(&self, point: &[f64]) -> Spacing {
+    /// The course of a swarm that looks for the largest area.
+    fn course(&self, seed: u64) -> Course {
+        swarmed([0.0, 1.0].map(|end| [end; PAIRS]), seed, |point| -self.at(point).area_mm2)
+    }
+
+    fn at(&self, point: &[f64; PAIRS]) -> Spacing {
         let [a, b, c] = self.order;
-        let share = |axis: usize| point.get(axis).copied().unwrap_or(1.0);
         let (smallest, middle) = (self.radii.mm()[a], self.radii.mm()[b]);
-        let (ab, ac) = (share(0) * smallest, share(1) * smallest);
+        let (ab, ac) = (point[0] * smallest, point[1] * smallest);
         let (nearest, farthest) = ((ab - ac).abs(), middle.min(ab + ac));
         let mut distances_mm = [0.0; PAIRS];
         distances_mm[opposite(c)] = ab;
         distances_mm[opposite(b)] = ac;
-        distances_mm[opposite(a)] = nearest + share(2) * (farthest - nearest);
+        distances_mm[opposite(a)] = nearest + point[2] * (farthest - nearest);
         self.radii.spacing(distances_mm)
     }
 }
@@ -112,39 +133,18 @@ const fn opposite(disc: usize) -> usize {
     (disc + 1) % PAIRS
 }
 
-impl CostFunction for Layouts {
-    type Param = Vec<f64>;
-    type Output = f64;
-
-    /// The solver looks for the smallest cost: less area costs more.
-    fn cost(&self, point: &Vec<f64>) -> Result<f64, Error> {
-        Ok(-self.at(point).area_mm2)
-    }
-}
-
-/// Any three distances, with a penalty for what they break.
-struct Penalised {
-    radii: Radii,
-}
-
-impl CostFunction for Penalised {
-    type Param = Vec<f64>;
-    type Output = f64;
-
-    /// −A(d′) + λ Σ (d − d′), with the area A and λ the sum of the radii. d′ are the distances cut to their limits, the
-    /// longest also to what the other two leave it, so that they make a triangle. Where the rule holds d′ = d; nowhere is
-    /// the cost below that of the layout d′.
-    fn cost(&self, wanted_mm: &Vec<f64>) -> Result<f64, Error> {
-        let limits_mm = self.radii.limits_mm();
-        let wanted_mm: [f64; PAIRS] = std::array::from_fn(|pair| wanted_mm.get(pair).copied().unwrap_or(0.0));
-        let mut kept_mm: [f64; PAIRS] = std::array::from_fn(|pair| wanted_mm[pair].min(limits_mm[pair]));
-        let longest = (0..PAIRS).max_by(|a, b| kept_mm[*a].total_cmp(&kept_mm[*b])).unwrap_or(0);
-        let others_mm: f64 = kept_mm.iter().sum::<f64>() - kept_mm[longest];
-        kept_mm[longest] = kept_mm[longest].min(others_mm);
-        let broken_mm: f64 = wanted_mm.iter().zip(kept_mm).map(|(wanted, kept)| wanted - kept).sum();
-        let dearness_mm: f64 = self.radii.mm().iter().sum();
-        Ok(dearness_mm * broken_mm - self.radii.spacing(kept_mm).area_mm2)
-    }
+/// Cost of any three distances, mm²: −A(d′) + λ Σ (d − d′), with the area A and λ the sum of the radii. d′ are the distances
+/// cut to their limits, the longest also to what the other two leave it, so that they make a triangle. Where the rule holds
+/// d′ = d; nowhere is the cost below that of the layout d′.
+fn penalised_mm2(radii: &Radii, wanted_mm: &[f64; PAIRS]) -> f64 {
+    let limits_mm = radii.limits_mm();
+    let mut kept_mm: [f64; PAIRS] = array::from_fn(|pair| wanted_mm[pair].min(limits_mm[pair]));
+    let longest = (0..PAIRS).max_by(|a, b| kept_mm[*a].total_cmp(&kept_mm[*b])).unwrap_or(0);
+    let others_mm: f64 = kept_mm.iter().sum::<f64>() - kept_mm[longest];
+    kept_mm[longest] = kept_mm[longest].min(others_mm);
+    let broken_mm: f64 = wanted_mm.iter().zip(kept_mm).map(|(wanted, kept)| wanted - kept).sum();
+    let dearness_mm: f64 = radii.mm().iter().sum();
+    dearness_mm * broken_mm - radii.spacing(kept_mm).area_mm2
 }
 
 #[cfg(test)]
@@ -158,7 +158,7 @@ mod tests {
 
     /// Sees that the swarm finds the optimal area, with distances that an optimal layout can have.
     fn assert_optimal(radii: &Radii, seed: u64) {
-        let (found, best) = (solve(radii, seed).unwrap(), radii.widest());
+        let (found, best) = (solve(radii, seed), radii.widest());
         let scene = format!("{radii:?}, seed {seed}: {found:?} for {best:?}");
         assert!((found.area_mm2 / best.area_mm2 - 1.0).abs() < 1e-12, "{scene}");
         for (distance, [low, high]) in found.distances_mm.iter().zip(radii.optimal_ranges_mm()) {
@@ -170,7 +170,7 @@ mod tests {
     fn every_seed_finds_the_papers_triangle() {
         let equal = radii([33.0; 3]);
         for seed in 0..300 {
-            let found = solve(&equal, seed).unwrap();
+            let found = solve(&equal, seed);
             assert!(found.distances_mm.iter().all(|d| (d - 33.0).abs() < 1e-9), "{seed}: {found:?}");
         }
     }
@@ -198,8 +198,8 @@ mod tests {
     #[test]
     fn a_seed_repeats_itself() {
         let free = radii([1.0, 1.2, 3.0]);
-        assert_eq!(solve(&free, 7).unwrap(), solve(&free, 7).unwrap());
-        assert_ne!(solve(&free, 7).unwrap(), solve(&free, 8).unwrap(), "a free layout shows the seed");
+        assert_eq!(solve(&free, 7), solve(&free, 7));
+        assert_ne!(solve(&free, 7), solve(&free, 8), "a free layout shows the seed");
     }
 
     #[test]
@@ -207,14 +207,14 @@ mod tests {
         for radii in [radii([33.0; 3]), radii([3.0, 4.0, 5.0])] {
             let optimum_mm2 = radii.widest().area_mm2;
             for seed in 1..5 {
-                let costs_mm2 = [costs(&radii, seed).unwrap(), penalised_costs(&radii, seed).unwrap()];
+                let costs_mm2 = [costs(&radii, seed), penalised_costs(&radii, seed)];
                 for costs_mm2 in &costs_mm2 {
-                    assert_eq!(costs_mm2.len(), ROUNDS as usize);
+                    assert_eq!(costs_mm2.len(), ROUNDS);
                     assert!(costs_mm2.windows(2).all(|pair| pair[1] <= pair[0]), "{costs_mm2:?}");
                     assert!(costs_mm2.iter().all(|cost| -cost <= optimum_mm2 * (1.0 + 1e-12)));
                 }
                 let [cube, penalised] = costs_mm2.map(|costs_mm2| -costs_mm2[99]);
-                assert_eq!(cube, solve(&radii, seed).unwrap().area_mm2);
+                assert_eq!(cube, solve(&radii, seed).area_mm2);
                 assert!(
                     (penalised / optimum_mm2 - 1.0).abs() < 1e-3,
                     "seed {seed}: {penalised} {optimum_mm2}"
@@ -225,10 +225,10 @@ mod tests {
 
     #[test]
     fn a_penalty_is_zero_exactly_where_the_rule_holds() {
-        let problem = Penalised { radii: radii([3.0, 4.0, 5.0]) };
-        let cost = |distances: [f64; 3]| problem.cost(&distances.to_vec()).unwrap();
+        let radii = radii([3.0, 4.0, 5.0]);
+        let cost = |distances_mm: [f64; 3]| penalised_mm2(&radii, &distances_mm);
         let kept = [2.5, 3.5, 2.0];
-        assert_eq!(cost(kept), -problem.radii.spacing(kept).area_mm2);
+        assert_eq!(cost(kept), -radii.spacing(kept).area_mm2);
         // A limit of 3 mm broken by 0.5: as the layout at the limit, and dearer.
         let at_limit = cost([3.0, 3.5, 2.0]);
         assert!((cost([3.5, 3.5, 2.0]) - at_limit - 0.5 * 12.0).abs() < 1e-9);

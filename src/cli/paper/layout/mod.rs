@@ -82,7 +82,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return sizes::run(&device, arguments.noise_uv, &options);
     }
     let (spacing, simulated) = match &arguments.radii {
-        Some(radii) => (SpacingAnswers::of(radii, arguments.seed)?, None),
+        Some(radii) => (SpacingAnswers::of(radii, arguments.seed), None),
         None => simulated(arguments, &device).map(|(spacing, pad)| (spacing, Some(pad)))?,
     };
     let at_best = simulated.as_ref().and_then(|pad| pad.as_built.precision);
@@ -102,7 +102,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn draw(folder: &Folder, report: &LayoutReport, device: &Device) -> Result<(), Failure> {
     let radii = Radii::new(report.spacing.radii_mm).map_err(StudyError::Radius)?;
-    pictures::write(folder, "layout-swarm", &drawing::swarms(&radii, report.seed)?)?;
+    pictures::write(folder, "layout-swarm", &drawing::swarms(&radii, report.seed))?;
     if let Some(pad) = &report.simulated {
         pictures::write(folder, "layout-scan", &drawing::scan(pad))?;
         pictures::write(folder, "layout-regions", &drawing::regions(pad, &report.spacing, device))?;

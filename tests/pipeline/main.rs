@@ -8,6 +8,7 @@ mod diagnostics;
 mod dither;
 mod hysteresis;
 mod loaded;
+mod macro_keys;
 mod mapping_properties;
 #[path = "../support/played.rs"]
 mod played;

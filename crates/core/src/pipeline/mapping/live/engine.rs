@@ -104,7 +104,7 @@ impl Engine {
             .and_then(|(pointer, contact)| pointer::follow(pointer, self.moving, contact));
         stated.state_motion(self.moving);
         self.steer(contact, &mut stated);
-        self.running.step(&self.profile.macros, t, &mut stated);
+        self.running.step(&self.profile, t, &mut stated);
         self.layer = stated.layer;
         self.commands = stated.commands;
         stated.levels
@@ -247,7 +247,8 @@ impl Engine {
     /// on.
     pub fn cancel(&mut self) {
         (self.held, self.zone, self.moving, self.calm, self.resting) = (None, None, None, None, None);
-        (self.layer, self.running, self.is_acting) = (None, MacroPlayback::default(), false);
+        (self.layer, self.is_acting) = (None, false);
+        self.running.forget();
         (self.directed, self.directions) = (DirectionGates::fresh(), Directions::default());
         self.sticks = [false; SIDES];
         self.commands.clear();
@@ -279,7 +280,7 @@ impl Engine {
             self.layer = None;
         }
         if self.profile.macros != profile.macros {
-            self.running = MacroPlayback::default();
+            self.running.forget();
         }
         (self.sticks, self.is_acting) = ([false; SIDES], false);
         self.profile = profile;

@@ -7,6 +7,7 @@ mod decoders;
 mod diagnostics;
 mod dither;
 mod hysteresis;
+mod interrupts;
 mod loaded;
 mod macro_keys;
 mod mapping_properties;

@@ -7,7 +7,9 @@ mod decoders;
 mod diagnostics;
 mod dither;
 mod hysteresis;
+mod interrupts;
 mod loaded;
+mod macro_keys;
 mod mapping_properties;
 #[path = "../support/played.rs"]
 mod played;

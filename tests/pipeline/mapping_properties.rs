@@ -37,6 +37,7 @@ press_n = 1
 tap = { gamepad = "BTN_SOUTH", keyboard = "KEY_Z" }
 hold = { gamepad = "BTN_EAST", keyboard = "KEY_X" }
 long_press_ms = 50
+hold_on_other_key_press = true
 [[button]]
 force = "-fx"
 press_n = 1
@@ -180,6 +181,7 @@ press_n = 1
 tap = { macro = "combo" }
 hold = { layer = "menu", toggle = true }
 long_press_ms = 60
+permissive_hold = true
 [[button]]
 force = "-fx"
 press_n = 1

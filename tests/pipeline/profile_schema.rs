@@ -344,6 +344,15 @@ fn profiles_that_are_in_order_fit_the_schema() {
     assert_eq!(faults(&schema(), &base()), Vec::<String>::new());
 }
 
+/// A button that asks for both ways of deciding a hold by another press.
+fn both_holds() -> Value {
+    let mut button = base()["button"][0].clone();
+    for key in ["permissive_hold", "hold_on_other_key_press"] {
+        button[key] = json!(true);
+    }
+    button
+}
+
 #[test]
 fn slips_do_not_fit_the_schema() {
     let place = |place: &str| place.split('.').map(str::to_owned).collect::<Place>();
@@ -358,6 +367,8 @@ fn slips_do_not_fit_the_schema() {
         ("button.[].tap.turbo_ms", json!(100), "button.0.tap.turbo_ms may not be there"),
         ("button.[].tap.pointer", json!("BTN_LEFT"), "button.0.tap fits"),
         ("button.[].tap", json!({ "gamepad": "BTN_SOUTH" }), "button.0.tap fits 0 of"),
+        ("button.[].permissive_hold", json!(1), "button.0.permissive_hold is no boolean"),
+        ("button.[]", both_holds(), "button.0 fits none"),
         ("button", json!([{ "force": "fz", "press_n": 1, "hold": { "pointer": "BTN_LEFT" } }]), "lacks tap"),
         ("button", json!([{ "force": "fz", "out": { "pointer": "BTN_LEFT" } }]), "button.0 lacks press_n"),
         ("button", json!(vec![base()["button"][1].clone(); 17]), "button has more than 16"),

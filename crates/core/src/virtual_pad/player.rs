@@ -229,7 +229,7 @@ impl<'p> Player<'p> {
         let (held, tapped, stay_us) = match button.action {
             Action::ByForce { .. } => return None,
             Action::Hold(effect) => (Some(plain(effect)?), None, self.pause_us),
-            Action::ByTime { tap, double, hold } => {
+            Action::ByTime { tap, double, hold, .. } => {
                 let after_us = double.map_or(0, |double| double.us);
                 let stay_us = hold.map_or(Some(self.pause_us), |hold| self.tap_us(hold.us))?;
                 (None, Some(Tap { keys: plain(tap)?, after_us }), stay_us)

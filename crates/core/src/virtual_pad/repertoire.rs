@@ -67,7 +67,7 @@ fn special(player: &Player<'_>, index: usize) -> Option<Vec<Gesture>> {
             let [once, eased] = [pressing.repeated(effect, None), pressing.eased(effect)];
             vec![once.filter(|_| !is_simple || effect.mode != Mode::Plain), eased, pressing.turned(effect)]
         }
-        Action::ByTime { tap, double, hold } => {
+        Action::ByTime { tap, double, hold, .. } => {
             let short_us = hold.map_or(Some(player.pause_us), |hold| player.tap_us(hold.us));
             let after_us = double.map_or(0, |double| double.us);
             let tapped = short_us.and_then(|short_us| pressing.repeated(tap, Some((short_us, after_us))));

@@ -48,6 +48,18 @@ pub const POINTER_WHEEL: Code = Code::Relative(0x08);
 /// The buttons of the virtual mouse: left, right, middle.
 pub const POINTER_BUTTONS: [Code; 3] = [Code::Key(0x110), Code::Key(0x111), Code::Key(0x112)];
 
+/// The keys that change what other keys and the mouse's buttons mean while they are down.
+const MODIFIER_KEYS: [Code; 8] = [
+    Code::Key(29),
+    Code::Key(42),
+    Code::Key(54),
+    Code::Key(56),
+    Code::Key(97),
+    Code::Key(100),
+    Code::Key(125),
+    Code::Key(126),
+];
+
 /// The first number that belongs to a button of a mouse, joystick or gamepad; below it are the keyboard's
 /// keys.
 const FIRST_BUTTON: u16 = 0x100;
@@ -120,6 +132,19 @@ const ALIASES: &[(&str, &str)] = &[
     ("KEY_BRIGHTNESS_ZERO", "KEY_BRIGHTNESS_AUTO"),
     ("KEY_WIMAX", "KEY_WWAN"),
 ];
+
+impl Code {
+    /// Whether it is Shift, Ctrl, Alt or Meta, left or right.
+    pub fn is_modifier(self) -> bool {
+        MODIFIER_KEYS.contains(&self)
+    }
+
+    /// Whether a modifier changes what it means: any other key, a button of the mouse, or its wheel.
+    pub fn takes_modifiers(self) -> bool {
+        let is_key = matches!(self, Self::Key(number) if number < FIRST_BUTTON) && !self.is_modifier();
+        is_key || POINTER_BUTTONS.contains(&self) || self == POINTER_WHEEL
+    }
+}
 
 /// The kernel's name of `code`, or `None` for a number outside the table.
 pub fn name(code: Code) -> Option<&'static str> {

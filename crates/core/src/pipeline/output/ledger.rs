@@ -66,15 +66,24 @@ impl Ledger {
     }
 
     /// Writes the edges that the minimum press held back until now.
+    ///
+    /// A key goes down with the modifiers that are wanted with it, and no others: modifiers go down before other keys, and one that
+    /// only the minimum press still holds goes up for the next key.
     pub fn settle(&mut self, at: StreamInstant, edges: &mut Edges) {
         let min_press_us = self.min_press_us;
         let due =
             |slot: &Slot| slot.held != slot.wanted && at.us_since(slot.since) >= slot.hold_us(min_press_us);
-        for slot in self.slots.iter_mut().filter(|slot| slot.held != 0 && slot.wanted == 0 && due(slot)) {
+        let goes_down = |slot: &Slot| slot.held == 0 && slot.wanted != 0;
+        let is_key_coming = self.slots.iter().any(|slot| goes_down(slot) && slot.code.takes_modifiers());
+        let goes_up = |slot: &Slot| {
+            slot.held != 0 && slot.wanted == 0 && (due(slot) || is_key_coming && slot.code.is_modifier())
+        };
+        for slot in self.slots.iter_mut().filter(|slot| goes_up(slot)) {
             slot.set(at, 0, edges);
         }
-        for slot in self.slots.iter_mut().filter(|slot| slot.wanted != 0 && (slot.held == 0 || due(slot))) {
-            if slot.held != slot.wanted {
+        for are_modifiers in [true, false] {
+            let of_kind = self.slots.iter_mut().filter(|slot| slot.code.is_modifier() == are_modifiers);
+            for slot in of_kind.filter(|slot| slot.wanted != 0 && (slot.held == 0 || due(slot))) {
                 slot.set(at, slot.wanted, edges);
             }
         }
@@ -296,6 +305,33 @@ mod tests {
             edges.iter().map(|e| (e.at.as_us() / 1_000, e.code.to_string(), e.value)).collect();
         assert_eq!(seen, [(0, "REL_WHEEL".to_owned(), 1), (60, "REL_WHEEL".to_owned(), -1)]);
         assert_eq!(ledger.held().count(), 0);
+    }
+
+    #[test]
+    fn a_key_goes_down_with_the_modifiers_that_are_wanted_with_it() {
+        let text = "schema = 1\nname = \"M\"\noutput = \"keyboard\"\n\
+                    [[button]]\nforce = \"fy\"\npress_n = 1\ntap = { gamepad = \"BTN_A\", keyboard = \"9\" }\n\
+                    [[button]]\nforce = \"fx\"\npress_n = 1\ntap = { gamepad = \"BTN_A\", keyboard = \"9+LEFTSHIFT\" }\n\
+                    [[button]]\nforce = \"fz\"\npress_n = 1\ntap = { gamepad = \"BTN_B\", keyboard = \"LEFTBRACE\" }\n";
+        let mut ledger = Ledger::new(&check::read(text, OutputChoice::AsWritten).0.unwrap());
+        let key = |code| Level { device: OutputDevice::Keyboard, code: Code::Key(code), value: 1 };
+        let (nine, shift, brace) = (key(10), key(42), key(26));
+        let mut edges = Edges::new();
+        for (ms, levels) in [(0, &[nine, shift][..]), (1, &[]), (20, &[brace]), (21, &[]), (60, &[])] {
+            let levels = levels.iter().copied().collect();
+            ledger.update(StreamInstant::from_us(ms * 1_000), &levels, &mut edges);
+        }
+        let seen: Vec<_> =
+            edges.iter().map(|e| (e.at.as_us() / 1_000, e.code.to_string(), e.value)).collect();
+        let expected = [
+            (0, "KEY_LEFTSHIFT", 1),
+            (0, "KEY_9", 1),
+            (20, "KEY_LEFTSHIFT", 0),
+            (20, "KEY_LEFTBRACE", 1),
+            (60, "KEY_9", 0),
+            (60, "KEY_LEFTBRACE", 0),
+        ];
+        assert_eq!(seen, expected.map(|(ms, code, value)| (ms, code.to_owned(), value)));
     }
 
     #[test]

@@ -10,7 +10,7 @@ import { tablesOf, written } from "./values.js";
 const IN_SIGHT = new Set(["release_n", "release_force_n", "min_force_n", "mode", "centre_radius_mm", "radius_hysteresis_mm", "rotation_deg",
   "diagonal_deg", "centre_x_mm", "centre_y_mm", "from_deg", "to_deg", "inner_radius_mm", "outer_radius_mm", "hysteresis_mm", "left_handed", "filter_samples",
   "min_press_ms", "slow_ms", "bounce_ms", "gamepad", "keyboard", "from_n", "full_n", "full_radius_mm", "speed_counts_per_s", "zone", "up", "down", "left", "right", "class", "executable", "from"]);
-const IN_SIGHT_BESIDE = { long_press_ms: "hold", double_press_ms: "double", hard_press_n: "hard", hard_release_n: "hard", skip: "hard", skip_ms: "skip", dwell_mm: "dwell_ms" };
+const IN_SIGHT_BESIDE = { long_press_ms: "hold", permissive_hold: "hold", hold_on_other_key_press: "hold", double_press_ms: "double", hard_press_n: "hard", hard_release_n: "hard", skip: "hard", skip_ms: "skip", dwell_mm: "dwell_ms" };
 const EFFECTS = ["out", "tap", "double", "hold", "light", "hard"];
 const TITLES = { access: "Help for hands (access)", gain: "Gains of the sides (gain)", dpad: "Directions (dpad)", pointer: "Mouse pointer (pointer)" };
 

@@ -9,7 +9,8 @@ use crate::quantity::Contact;
 use crate::time::StreamInstant;
 
 /// Horizontal ones first: that is the order of the output.
-const DIRECTIONS: [Direction; 4] = [Direction::Left, Direction::Right, Direction::Up, Direction::Down];
+pub(crate) const DIRECTIONS: [Direction; 4] =
+    [Direction::Left, Direction::Right, Direction::Up, Direction::Down];
 
 /// Where each direction stands.
 #[derive(Clone, Copy, Debug)]

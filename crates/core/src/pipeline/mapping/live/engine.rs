@@ -2,9 +2,10 @@
 
 use arrayvec::ArrayVec;
 
-use super::button::{ButtonState, force_of};
+use super::button::{ButtonState, Ruling, force_of};
 use super::directions::{DirectionGates, Directions};
 use super::intent::Intents;
+use super::interrupt::{Decision, Interrupts, PressSet, Undecided};
 use super::macros::MacroPlayback;
 use super::stated::{Commands, StepOutput};
 use super::verdict::{Verdict, VerdictEvent, Verdicts};
@@ -15,7 +16,9 @@ use crate::pipeline::mapping::live::contact::rest::{Load, RestDetector};
 use crate::pipeline::mapping::live::contact::tremor::TremorFilter;
 use crate::pipeline::mapping::live::contact::zone;
 use crate::pipeline::mapping::profile::sector::Sector;
-use crate::pipeline::mapping::profile::{BUTTONS_MAX, Button, ButtonPlace, Direction, Profile, SIDES};
+use crate::pipeline::mapping::profile::{
+    Action, BUTTONS_MAX, Button, ButtonPlace, Direction, HoldOn, Output, Profile, SIDES, TimedEffect, When,
+};
 use crate::quantity::Contact;
 use crate::time::StreamInstant;
 
@@ -30,6 +33,7 @@ pub struct Engine {
     zone: Option<usize>,
     moving: Option<PointerOutput>,
     buttons: ArrayVec<ButtonState, BUTTONS_MAX>,
+    interrupts: Interrupts,
     last: Option<Contact>,
     calm: Option<TremorFilter>,
     resting: Option<RestDetector>,
@@ -57,6 +61,7 @@ impl Engine {
             zone: None,
             moving: None,
             buttons,
+            interrupts: Interrupts::default(),
             last: None,
             calm: None,
             resting: None,
@@ -92,9 +97,10 @@ impl Engine {
         let meant = self.meant(t, contact);
         let contact = meant.as_ref();
         let mut stated = StepOutput::default();
-        self.direct(t, contact, &mut stated);
+        self.direct(t, contact);
         self.zone = contact.and_then(|contact| zone::follow(&self.profile.zones, self.zone, contact));
-        self.press(t, contact, &mut stated);
+        let decision = self.decide(t, contact);
+        self.press(t, decision, &mut stated);
         self.unlatch();
         self.moving = self
             .profile
@@ -104,14 +110,14 @@ impl Engine {
             .and_then(|(pointer, contact)| pointer::follow(pointer, self.moving, contact));
         stated.state_motion(self.moving);
         self.steer(contact, &mut stated);
-        self.running.step(&self.profile.macros, t, &mut stated);
+        self.running.step(&self.profile, t, &mut stated);
         self.layer = stated.layer;
         self.commands = stated.commands;
         stated.levels
     }
 
-    /// States the directions.
-    fn direct(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut StepOutput) {
+    /// Follows the directions to `t`.
+    fn direct(&mut self, t: StreamInstant, contact: Option<&Contact>) {
         let Some(dpad) = &self.profile.dpad else {
             // The profile before may have had directions.
             (self.held, self.directed, self.directions) =
@@ -127,8 +133,13 @@ impl Engine {
             &mut self.presses,
             &mut self.verdicts,
         );
+    }
+
+    /// States the directions.
+    fn state_directions(&self, decision: Decision, stated: &mut StepOutput) {
+        let Some(dpad) = &self.profile.dpad else { return };
         let layer = self.layer.and_then(|number| self.profile.layers.get(number));
-        for direction in self.directions.iter() {
+        for direction in decision.directions(self.directions) {
             let (own, in_layer) = match direction {
                 Direction::Left => (dpad.left, layer.and_then(|layer| layer.left)),
                 Direction::Right => (dpad.right, layer.and_then(|layer| layer.right)),
@@ -157,24 +168,67 @@ impl Engine {
         }
     }
 
-    /// States what the buttons do. A layer that one of them switches counts from the next sample on.
-    fn press(&mut self, t: StreamInstant, contact: Option<&Contact>, stated: &mut StepOutput) {
-        let (zone, directions) = (self.zone, self.directions);
+    /// Presses of which it is open at `t` whether they are taps or holds, where another press may decide it.
+    fn undecided(&self, t: StreamInstant) -> ArrayVec<Undecided, BUTTONS_MAX> {
+        let buttons = self.profile.buttons.iter().zip(&self.buttons).enumerate();
+        let counting = buttons.filter(|(_, (button, _))| button.when.is_met(self.layer));
+        let undecided = counting.filter_map(|(number, (button, state))| {
+            let (hold, hold_on) = interruptible(button)?;
+            let is_due = t.us_since(state.undecided()?) >= hold.us;
+            Some(Undecided { button: number, hold_on, is_due, layer: layer_of(hold) })
+        });
+        undecided.collect()
+    }
+
+    /// Follows the forces of all buttons to `t`, and says what their presses make of each other.
+    fn decide(&mut self, t: StreamInstant, contact: Option<&Contact>) -> Decision {
+        let (zone, directions, layer) = (self.zone, self.directions, self.layer);
+        let undecided = self.undecided(t);
+        // A press that comes meanwhile may turn out to be one of the layer that is then on.
+        let may_be_met = |when: When| {
+            let mut ahead = undecided.iter().filter_map(|it| it.layer);
+            when.is_met(layer) || ahead.any(|number| when == When::Layer(number))
+        };
         let access = self.profile.access;
-        for (number, (button, state)) in (1..).zip(self.profile.buttons.iter().zip(&mut self.buttons)) {
-            if !button.when.is_met(self.layer) {
-                state.sleep(button, t, contact).for_each(|playing| stated.take(playing));
+        let mut on = PressSet::directions(directions);
+        for (number, (button, state)) in self.profile.buttons.iter().zip(&mut self.buttons).enumerate() {
+            if !may_be_met(button.when) {
+                state.doze(button, contact);
                 continue;
             }
             // A lifted contact was where it was.
             let is_in_place = contact.is_none() || is_in(zone, directions, button.place);
             let before = self.presses;
-            state
-                .step(button, t, contact, is_in_place, access, &mut self.presses)
-                .for_each(|playing| stated.take(playing));
+            state.feel(button, t, contact, is_in_place, access, &mut self.presses);
             if let Some(is_rejected) = self.presses.since(before) {
                 let rejected = is_rejected.then(|| state.why_rejected(button, access, t));
-                self.verdicts.keep(Verdict { t, told: VerdictEvent::Button { number, rejected } });
+                self.verdicts
+                    .keep(Verdict { t, told: VerdictEvent::Button { number: number + 1, rejected } });
+            }
+            if state.is_pressed(button) {
+                on = on | PressSet::button(number);
+            }
+        }
+        self.interrupts.step(on, &undecided)
+    }
+
+    /// States what the directions and the buttons do. A layer that one of them switches counts from the next sample on; that of a hold
+    /// that another press decided is on at once, so that the other press is in it.
+    fn press(&mut self, t: StreamInstant, decision: Decision, stated: &mut StepOutput) {
+        let before = self.layer;
+        let holds = |number| decision.of(number) == Ruling::Hold;
+        for (_, button) in self.profile.buttons.iter().enumerate().filter(|(number, _)| holds(*number)) {
+            self.layer = interruptible(button).and_then(|(hold, _)| layer_of(hold)).or(self.layer);
+        }
+        self.is_acting |= decision.replayed != PressSet::NONE;
+        self.state_directions(decision, stated);
+        let layer = self.layer;
+        for (number, (button, state)) in self.profile.buttons.iter().zip(&mut self.buttons).enumerate() {
+            let counts = if holds(number) { before } else { layer };
+            if button.when.is_met(counts) {
+                state.play(button, t, decision.of(number)).for_each(|playing| stated.take(playing));
+            } else {
+                state.sleep(button, t).for_each(|playing| stated.take(playing));
             }
         }
     }
@@ -247,10 +301,12 @@ impl Engine {
     /// on.
     pub fn cancel(&mut self) {
         (self.held, self.zone, self.moving, self.calm, self.resting) = (None, None, None, None, None);
-        (self.layer, self.running, self.is_acting) = (None, MacroPlayback::default(), false);
+        (self.layer, self.is_acting) = (None, false);
+        self.running.forget();
         (self.directed, self.directions) = (DirectionGates::fresh(), Directions::default());
         self.sticks = [false; SIDES];
         self.commands.clear();
+        self.interrupts = Interrupts::default();
         self.buttons.iter_mut().for_each(ButtonState::forget);
     }
 
@@ -279,9 +335,10 @@ impl Engine {
             self.layer = None;
         }
         if self.profile.macros != profile.macros {
-            self.running = MacroPlayback::default();
+            self.running.forget();
         }
         (self.sticks, self.is_acting) = ([false; SIDES], false);
+        self.interrupts = Interrupts::taken_over();
         self.profile = profile;
     }
 
@@ -303,6 +360,19 @@ impl Engine {
             ButtonState::fresh()
         }
     }
+}
+
+/// The long press of a button, if other presses can make one of its presses that.
+fn interruptible(button: &Button) -> Option<(TimedEffect, HoldOn)> {
+    match button.action {
+        Action::ByTime { hold: Some(hold), hold_on, .. } if hold_on != HoldOn::Time => Some((hold, hold_on)),
+        _ => None,
+    }
+}
+
+/// The layer that a long press switches on.
+const fn layer_of(hold: TimedEffect) -> Option<usize> {
+    if let Output::Layer(number) = hold.effect.output { Some(number) } else { None }
 }
 
 /// Whether the contact is there, being in this zone and having these directions.

@@ -145,6 +145,8 @@ pub enum Action {
         double: Option<TimedEffect>,
         /// A press from this duration on, until it ends; without it none is long.
         hold: Option<TimedEffect>,
+        /// What makes it long sooner.
+        hold_on: HoldOn,
     },
     /// By how hard a press is.
     ByForce {
@@ -159,6 +161,17 @@ pub enum Action {
         /// Fate of the light one on the way to a hard one.
         skip: Skip,
     },
+}
+
+/// What makes a press a long one before its time. A direction is a press here, too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HoldOn {
+    /// Nothing.
+    Time,
+    /// Another press that begins meanwhile.
+    OtherPress,
+    /// Another press that begins and ends meanwhile. Until it is clear, other presses wait.
+    NestedPress,
 }
 
 /// Fate of a light press on the way to a hard one.

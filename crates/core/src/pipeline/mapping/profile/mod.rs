@@ -16,8 +16,8 @@ pub(crate) mod words;
 use arrayvec::ArrayVec;
 
 pub use self::action::{
-    Action, Command, Effect, Layer, Macro, MacroStep, Mode, Output, PROFILE_NAME_MAX, Role, Roles, Skip,
-    TimedEffect, When,
+    Action, Command, Effect, HoldOn, Layer, Macro, MacroStep, Mode, Output, PROFILE_NAME_MAX, Role, Roles,
+    Skip, TimedEffect, When,
 };
 use self::angle::wrapped;
 pub use self::axes::{SIDES, Side, Source, Stick, Trigger};
@@ -247,7 +247,7 @@ impl Button {
     pub fn effects(&self) -> [Option<Effect>; Role::ALL.len()] {
         match self.action {
             Action::Hold(effect) => [Some(effect), None, None, None, None, None],
-            Action::ByTime { tap, double, hold } => {
+            Action::ByTime { tap, double, hold, .. } => {
                 [None, Some(tap), double.map(|it| it.effect), hold.map(|it| it.effect), None, None]
             }
             Action::ByForce { light, hard, .. } => [None, None, None, None, Some(light), Some(hard)],

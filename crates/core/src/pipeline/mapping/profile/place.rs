@@ -1,5 +1,6 @@
 //! Meaning of the contact's place in a profile: directions, the pointer's way, zones, and how far each side counts.
 
+use super::angle::wrapped;
 use super::keys::Keys;
 use crate::quantity::Contact;
 
@@ -129,6 +130,15 @@ pub struct Zone {
     pub hysteresis_max_deg: f32,
     /// While it is held it reaches so far inwards and outwards.
     pub radius_hysteresis_mm: f32,
+}
+
+impl Zone {
+    /// Whether it holds a place when it reaches so much farther in and out, and to both sides.
+    pub(crate) fn holds(&self, radius_mm: f32, slack_mm: f32, angle_deg: f32, slack_deg: f32) -> bool {
+        let is_in_ring =
+            radius_mm >= self.inner_radius_mm - slack_mm && radius_mm < self.outer_radius_mm + slack_mm;
+        is_in_ring && wrapped(angle_deg - self.middle_deg).abs() <= self.half_width_deg + slack_deg
+    }
 }
 
 /// Where a button counts.

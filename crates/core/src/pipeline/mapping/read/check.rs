@@ -87,6 +87,7 @@ pub fn read(text: &str, output: OutputChoice) -> (Option<Profile>, Vec<Diagnosti
     let draft = ProfileDraft::read(&root, &mut findings);
     draft.check_conflicts(&mut findings);
     let places = Places {
+        zones: draft.zone_places.clone(),
         layers: draft.layers.iter().map(|it| it.at).collect(),
         macros: draft.macros.iter().map(|it| it.at).collect(),
     };
@@ -109,6 +110,8 @@ struct ProfileDraft {
     centre_mm: Option<[f32; 2]>,
     gain: Option<Gain>,
     zones: Vec<Zone>,
+    /// Byte offsets of their headers.
+    zone_places: Vec<usize>,
     layers: Vec<LayerDraft>,
     macros: Vec<MacroDraft>,
     dpad: Option<DpadDraft>,
@@ -130,7 +133,7 @@ impl ProfileDraft {
         let access = root.table("access", "[access]".to_owned(), &ACCESS_KEYS, findings);
         let gain = root.table("gain", "[gain]".to_owned(), &Direction::NAMES, findings);
         let has_dpad = root.place_of("dpad").is_some();
-        let zones = plate::read_zones(root, has_dpad, findings);
+        let (zones, zone_places) = plate::read_zones(root, has_dpad, findings);
         let layers = LayerDraft::read_all(root, has_dpad, findings);
         let macros = MacroDraft::read_all(root, min_press_ms, findings);
         let layer_names: Vec<&str> = layers.iter().map(|it| it.name.as_str()).collect();
@@ -161,6 +164,7 @@ impl ProfileDraft {
             triggers: axes::read_triggers(root, &zones, has_dpad, findings),
             buttons: buttons.iter().map(|button| ButtonDraft::read(button, around, findings)).collect(),
             zones,
+            zone_places,
             layers,
             macros,
         }

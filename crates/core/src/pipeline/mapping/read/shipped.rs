@@ -37,7 +37,7 @@ mod tests {
     use super::*;
     use crate::pipeline::control::{Code, OutputDevice};
     use crate::pipeline::mapping::profile::{
-        Action, Binding, DpadMode, Effect, Force, Keys, Mode, Output, Profile, TimedEffect,
+        Action, Binding, DpadMode, Effect, Force, HoldOn, Keys, Mode, Output, Profile, TimedEffect,
     };
     use crate::pipeline::mapping::read::check::{OutputChoice, read};
 
@@ -73,7 +73,10 @@ mod tests {
                 assert_eq!(profile.dpad.map(|dpad| dpad.mode), Some(mode));
                 assert_eq!(forces(&profile), [(Force::Fz, 2.0, 1.4)]);
                 let hold = Some(TimedEffect { effect: plain(hold), us: 400_000 });
-                assert_eq!(profile.buttons[0].action, Action::ByTime { tap: plain(tap), double: None, hold });
+                assert_eq!(
+                    profile.buttons[0].action,
+                    Action::ByTime { tap: plain(tap), double: None, hold, hold_on: HoldOn::Time }
+                );
             }
         }
     }

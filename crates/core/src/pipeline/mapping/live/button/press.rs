@@ -20,13 +20,19 @@ pub(crate) enum TimedPress {
 }
 
 impl TimedPress {
-    /// The kind of press that is on at `t`.
-    pub(crate) fn step(&mut self, action: &Action, t: StreamInstant, touch: Touch) -> Option<Role> {
+    /// The kind of press that is on at `t`. One that `is_hold` is a long one by now, whatever its time.
+    pub(crate) fn step(
+        &mut self,
+        action: &Action,
+        t: StreamInstant,
+        touch: Touch,
+        is_hold: bool,
+    ) -> Option<Role> {
         let Touch { is_on, is_in_place, .. } = touch;
         match *self {
             Self::Up if is_on && is_in_place => {
                 *self = Self::Down { since: t, long: false };
-                self.on(action, t)
+                self.on(action, t, false)
             }
             Self::Between { since } => self.wait(action, since, t, is_on && is_in_place),
             // Who slides off a button has changed their mind: nothing is tapped.
@@ -34,12 +40,27 @@ impl TimedPress {
                 *self = Self::Up;
                 None
             }
-            Self::Down { since, long } if !is_on => self.end(action, since, t, long),
+            Self::Down { since, long } if !is_on => {
+                *self = Self::Up;
+                match action {
+                    // One between whose long moment and its end no sample came is stated here, or it would be lost.
+                    Action::ByTime { hold: Some(hold), .. } if is_hold || t.us_since(since) >= hold.us => {
+                        (!long).then_some(Role::Hold)
+                    }
+                    _ if long => None,
+                    Action::ByTime { double: Some(_), .. } => {
+                        *self = Self::Between { since: t };
+                        None
+                    }
+                    Action::ByTime { .. } => Some(Role::Tap),
+                    Action::Hold(_) | Action::ByForce { .. } => None,
+                }
+            }
             Self::Twice | Self::Spent if !is_on => {
                 *self = Self::Up;
                 None
             }
-            _ => self.on(action, t),
+            _ => self.on(action, t, is_hold),
         }
     }
 
@@ -48,32 +69,25 @@ impl TimedPress {
         *self = if is_on { Self::Spent } else { Self::Up };
     }
 
+    /// Since when it is pressed, if it is open whether that is a short press or a long one.
+    pub(crate) const fn undecided(&self) -> Option<StreamInstant> {
+        match *self {
+            Self::Down { since, long: false } => Some(since),
+            _ => None,
+        }
+    }
+
     /// What a press under way is.
-    fn on(&mut self, action: &Action, t: StreamInstant) -> Option<Role> {
+    fn on(&mut self, action: &Action, t: StreamInstant, is_hold: bool) -> Option<Role> {
         match (&mut *self, action) {
             (Self::Down { .. }, Action::Hold(_)) => Some(Role::Out),
             (Self::Down { since, long }, Action::ByTime { hold: Some(hold), .. }) => {
-                *long |= t.us_since(*since) >= hold.us;
+                *long |= is_hold || t.us_since(*since) >= hold.us;
                 long.then_some(Role::Hold)
             }
             (Self::Twice, _) => Some(Role::Double),
             _ => None,
         }
-    }
-
-    /// What a press that ends is. A long one between whose long moment and its end no sample came is stated here, or it would be
-    /// lost.
-    fn end(&mut self, action: &Action, since: StreamInstant, t: StreamInstant, long: bool) -> Option<Role> {
-        *self = Self::Up;
-        let Action::ByTime { double, hold, .. } = action else { return None };
-        if hold.is_some_and(|hold| t.us_since(since) >= hold.us) {
-            return (!long).then_some(Role::Hold);
-        }
-        if double.is_some() {
-            *self = Self::Between { since: t };
-            return None;
-        }
-        Some(Role::Tap)
     }
 
     /// What comes of a short press that a second one may follow.
@@ -107,7 +121,7 @@ impl TimedPress {
 mod tests {
     use super::*;
     use crate::pipeline::mapping::live::button::gate::{Gate, Thresholds};
-    use crate::pipeline::mapping::profile::{Effect, Keys, Mode, Output, TimedEffect};
+    use crate::pipeline::mapping::profile::{Effect, HoldOn, Keys, Mode, Output, TimedEffect};
 
     const OUT: Option<Role> = Some(Role::Out);
     const TAP: Option<Role> = Some(Role::Tap);
@@ -121,7 +135,7 @@ mod tests {
         let effect = Effect { output: Output::Keys(Keys::new([])), mode: Mode::Plain };
         let [double, hold] =
             [double_ms, hold_ms].map(|ms| ms.map(|ms| TimedEffect { effect, us: 1_000 * ms }));
-        Action::ByTime { tap: effect, double, hold }
+        Action::ByTime { tap: effect, double, hold, hold_on: HoldOn::Time }
     }
 
     /// Steps a fresh press through (milliseconds, force) and returns what was on at each step.
@@ -140,6 +154,7 @@ mod tests {
             action,
             StreamInstant::from_us(ms * 1_000),
             Touch { is_on, is_hard: false, is_in_place: true },
+            false,
         )
     }
 
@@ -220,9 +235,9 @@ mod tests {
         let button = by_time(None, None);
         let mut press = TimedPress::Down { since: StreamInstant::from_us(0), long: false };
         let touch = |is_in_place| Touch { is_on: true, is_hard: false, is_in_place };
-        assert_eq!(press.step(&button, StreamInstant::from_us(1_000), touch(false)), None);
+        assert_eq!(press.step(&button, StreamInstant::from_us(1_000), touch(false), false), None);
         assert_eq!(press, TimedPress::Up);
-        assert_eq!(press.step(&button, StreamInstant::from_us(2_000), touch(true)), None);
+        assert_eq!(press.step(&button, StreamInstant::from_us(2_000), touch(true), false), None);
         assert!(matches!(press, TimedPress::Down { .. }), "who slides back presses anew");
     }
 }

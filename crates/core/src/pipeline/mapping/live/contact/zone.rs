@@ -1,7 +1,7 @@
 //! In which zone of the plate a contact is.
 
 use crate::pipeline::mapping::profile::Zone;
-use crate::pipeline::mapping::profile::angle::{along_deg, wrapped};
+use crate::pipeline::mapping::profile::angle::along_deg;
 use crate::quantity::Contact;
 
 /// The number of the zone of a finite contact, given the one that was held before it. A held one goes on up to its hysteresis; of
@@ -11,20 +11,13 @@ pub(crate) fn follow(zones: &[Zone], held: Option<usize>, contact: &Contact) -> 
     let angle_deg = libm::atan2f(contact.y_mm, contact.x_mm).to_degrees();
     let still =
         held.filter(|held| zones.get(*held).is_some_and(|zone| still_holds(zone, radius_mm, angle_deg)));
-    still.or_else(|| zones.iter().position(|zone| reaches(zone, radius_mm, 0.0, angle_deg, 0.0)))
+    still.or_else(|| zones.iter().position(|zone| zone.holds(radius_mm, 0.0, angle_deg, 0.0)))
 }
 
 fn still_holds(zone: &Zone, radius_mm: f32, angle_deg: f32) -> bool {
     let slack_deg =
         along_deg(zone.hysteresis_mm, radius_mm).max(zone.hysteresis_deg).min(zone.hysteresis_max_deg);
-    reaches(zone, radius_mm, zone.radius_hysteresis_mm, angle_deg, slack_deg)
-}
-
-/// Whether a zone that is so much larger holds a place.
-fn reaches(zone: &Zone, radius_mm: f32, slack_mm: f32, angle_deg: f32, slack_deg: f32) -> bool {
-    let is_in_ring =
-        radius_mm >= zone.inner_radius_mm - slack_mm && radius_mm < zone.outer_radius_mm + slack_mm;
-    is_in_ring && wrapped(angle_deg - zone.middle_deg).abs() <= zone.half_width_deg + slack_deg
+    zone.holds(radius_mm, zone.radius_hysteresis_mm, angle_deg, slack_deg)
 }
 
 #[cfg(test)]

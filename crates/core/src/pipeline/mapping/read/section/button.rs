@@ -8,7 +8,7 @@ use super::stages::{self, Stages};
 use crate::pipeline::control::OutputDevice;
 use crate::pipeline::mapping::profile::words::FORCES;
 use crate::pipeline::mapping::profile::{
-    Action, Button, ButtonPlace, Dwell, Effect, Force, Role, TimedEffect, When, Zone,
+    Action, Button, ButtonPlace, Dwell, Effect, Force, HoldOn, Role, TimedEffect, When, Zone,
 };
 use crate::pipeline::mapping::read::common::conflict::{Owner, Use};
 use crate::pipeline::mapping::read::common::limits::{
@@ -18,7 +18,7 @@ use crate::pipeline::mapping::read::common::named;
 use crate::toml_text::diag::Findings;
 use crate::toml_text::section::{Bounds, Placed, Section};
 
-pub(crate) const BUTTON_KEYS: [&str; 20] = [
+pub(crate) const BUTTON_KEYS: [&str; 22] = [
     "force",
     "press_n",
     "release_n",
@@ -33,6 +33,8 @@ pub(crate) const BUTTON_KEYS: [&str; 20] = [
     "hold",
     "double_press_ms",
     "long_press_ms",
+    "permissive_hold",
+    "hold_on_other_key_press",
     "light",
     "hard",
     "hard_press_n",
@@ -58,6 +60,7 @@ struct ActionDraft {
     effects: [Option<EffectDraft>; Role::ALL.len()],
     double_press_ms: Option<u32>,
     long_press_ms: Option<u32>,
+    hold_on: Option<HoldOn>,
     stages: Option<Stages>,
 }
 
@@ -177,11 +180,12 @@ impl ActionDraft {
         let effects = Role::ALL.map(|role| EffectDraft::read(table, role, around, findings));
         let double = read_time(table, Role::Double, "double_press_ms", DOUBLE_PRESS_MS, findings);
         let long = read_time(table, Role::Hold, "long_press_ms", LONG_PRESS_MS, findings);
+        let hold_on = read_hold_on(table, findings);
         let stages = stages::read(table, press, findings);
         check_roles(table, findings)?;
         check_times(table, [double, long], around.min_press_ms, findings);
         let ms = |time: Option<Placed<u32>>| time.map(|time| time.value);
-        Some(Self { effects, double_press_ms: ms(double), long_press_ms: ms(long), stages })
+        Some(Self { effects, double_press_ms: ms(double), long_press_ms: ms(long), hold_on, stages })
     }
 
     fn settle(self, device: OutputDevice) -> Option<Action> {
@@ -191,7 +195,7 @@ impl ActionDraft {
             effect.zip(ms).map(|(effect, ms)| TimedEffect { effect, us: u64::from(ms) * 1_000 })
         };
         let (double, hold) = (timed(double, self.double_press_ms), timed(hold, self.long_press_ms));
-        let by_time = || tap.map(|tap| Action::ByTime { tap, double, hold });
+        let by_time = || Some(Action::ByTime { tap: tap?, double, hold, hold_on: self.hold_on? });
         let by_force = || {
             let Stages { press_n: hard_press_n, release_n: hard_release_n, skip } = self.stages?;
             Some(Action::ByForce { light: light?, hard: hard?, hard_press_n, hard_release_n, skip })
@@ -244,6 +248,23 @@ fn read_time(
         findings.error(at, message, format!("remove it, or write \"{}\"", role.name()));
     }
     None
+}
+
+/// What makes a press long before its time; `None` where that is unusable.
+fn read_hold_on(table: &Section<'_>, findings: &mut Findings<'_>) -> Option<HoldOn> {
+    let keys = [("permissive_hold", HoldOn::NestedPress), ("hold_on_other_key_press", HoldOn::OtherPress)];
+    let mut written = keys.iter().filter_map(|(key, it)| Some((*key, *it, table.place_of(key)?)));
+    let Some((key, hold_on, at)) = written.next() else { return Some(HoldOn::Time) };
+    if let Some((other, _, at)) = written.next() {
+        let message = format!("{} has both \"{key}\" and \"{other}\"", table.title);
+        findings.error(at, message, "write one of them");
+        return None;
+    }
+    if table.place_of(Role::Hold.name()).is_none() {
+        let message = format!("\"{key}\" does nothing without \"hold\"");
+        findings.error(at, message, "remove it, or write \"hold\"");
+    }
+    Some(if table.flag(key, findings)? { hold_on } else { HoldOn::Time })
 }
 
 /// A button that does something by time has at least a tap.

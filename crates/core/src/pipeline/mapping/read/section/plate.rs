@@ -34,12 +34,16 @@ pub(crate) fn read_gain(table: &Section<'_>, findings: &mut Findings<'_>) -> Opt
     Some(Gain { right: right?, left: left?, up: up?, down: down? })
 }
 
-/// Reads all `[[zone]]`s; what is unusable is left out and reported.
-pub(crate) fn read_zones(root: &Section<'_>, has_dpad: bool, findings: &mut Findings<'_>) -> Vec<Zone> {
+/// Reads all `[[zone]]`s; what is unusable is left out and reported. With each the byte offset of its header.
+pub(crate) fn read_zones(
+    root: &Section<'_>,
+    has_dpad: bool,
+    findings: &mut Findings<'_>,
+) -> (Vec<Zone>, Vec<usize>) {
     // One more than there can be, so that the first one too many is known by its place.
     let tables = root.tables("zone", &ZONE_KEYS, ZONES_MAX + 1, findings);
     named::check_count(&tables, "zone", ZONES_MAX, findings);
-    let mut zones: Vec<Zone> = Vec::new();
+    let (mut zones, mut places) = (Vec::<Zone>::new(), Vec::new());
     for table in &tables {
         let is_taken = |name: &str| zones.iter().any(|zone| zone.name == name);
         let name = named::read(table, "zone", is_taken, findings);
@@ -48,10 +52,11 @@ pub(crate) fn read_zones(root: &Section<'_>, has_dpad: bool, findings: &mut Find
         }
         // A broken one keeps its name, so that no button misses it.
         let shape = read_shape(table, findings).unwrap_or_else(whole_plate);
+        places.extend(name.is_some().then_some(table.at));
         zones.extend(name.map(|name| Zone { name, ..shape }));
     }
     limit_hysteresis(&mut zones);
-    zones
+    (zones, places)
 }
 
 /// Reports a name that the D-pad has.

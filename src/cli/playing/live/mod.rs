@@ -18,6 +18,7 @@ mod kept_play;
 #[cfg(feature = "tray")]
 mod last_profile;
 pub(super) mod latency;
+mod left_keys;
 mod message_queue;
 mod newest;
 mod output;
@@ -30,6 +31,7 @@ pub(super) mod record;
 #[cfg(feature = "dashboard")]
 mod reported;
 pub(super) mod run;
+mod runtime;
 mod screen;
 mod sound;
 #[cfg(feature = "tray")]

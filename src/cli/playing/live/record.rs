@@ -13,7 +13,7 @@ use super::output::Output;
 use super::playing::{
     Audience, TerminalHost, WaitOption, create_capture, microseconds, open_pad, patience, play, requests,
 };
-use super::{chosen, ctl};
+use super::{chosen, runtime};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;
@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         decoder,
         profile,
         sink,
-        requests: requests(Some(ctl::socket_path()), audience)?,
+        requests: requests(Some(runtime::socket_path()), audience)?,
         host: Box::new(host),
         record: Some(Box::new(capture)),
         observers: Vec::new(),

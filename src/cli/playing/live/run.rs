@@ -14,7 +14,7 @@ use super::output::Output;
 use super::playing::{Audience, TerminalHost, WaitOption, microseconds, open_pad, patience, play, requests};
 use super::profile_selection;
 use super::screen::Screen;
-use super::{chosen, ctl};
+use super::{chosen, runtime};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;
@@ -89,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         say(missing);
     }
     audience.tell(&title);
-    let requests = requests(Some(ctl::socket_path()), audience)?;
+    let requests = requests(Some(runtime::socket_path()), audience)?;
     let mut prepared = arguments.shown.prepare(&requests, &selection, output.choice())?;
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));

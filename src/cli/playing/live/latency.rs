@@ -34,7 +34,7 @@ pub(crate) struct Arguments {
     /// How long to measure.
     #[arg(long, default_value = "10", value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: f64,
-    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], capture:FILE.
+    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]

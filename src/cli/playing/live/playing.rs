@@ -47,9 +47,10 @@ pub(super) fn open_pad(
             ));
         }
         PadAddress::Capture { file } => OpenedPad::capture(file),
-        PadAddress::Auto { .. } | PadAddress::Hid { .. } | PadAddress::Serial { .. } => {
-            OpenedPad::device(address.clone(), patience)
-        }
+        PadAddress::Auto { .. }
+        | PadAddress::Hid { .. }
+        | PadAddress::Serial { .. }
+        | PadAddress::Usb { .. } => OpenedPad::device(address.clone(), patience),
     };
     opened.map_err(not_opened)
 }

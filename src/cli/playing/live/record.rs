@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     /// Write over a file that is there already.
     #[arg(long)]
     force: bool,
-    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], capture:FILE.
+    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]

@@ -33,7 +33,7 @@ use tactpad::bridge::transport::fault::FaultPlan;
     `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on. It ends with its \
     terminal, unless it was started with nohup; where it has none, SIGHUP reads the profile again.")]
 pub(crate) struct Arguments {
-    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], virtual, capture:FILE.
+    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], virtual, capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
     /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.

@@ -14,7 +14,7 @@ use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
-use crate::cli::printing::written::{print_json, say, stdout};
+use crate::cli::printing::written::{print_json, say, stdout, wait_for_no_reader};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
 use tactpad::bridge::event_loop::Bridge;
@@ -62,6 +62,7 @@ struct LatencyReport {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    wait_for_no_reader()?;
     let Arguments { pad, profile, output, decoder, json, .. } = arguments;
     output.leaves_stdout(*json)?;
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;

@@ -19,7 +19,6 @@ mod kept_play;
 mod last_profile;
 pub(super) mod latency;
 mod left_keys;
-mod message_queue;
 mod newest;
 mod output;
 #[cfg(feature = "dashboard")]

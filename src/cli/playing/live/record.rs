@@ -19,7 +19,7 @@ use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
-use crate::cli::printing::written::{Named, say};
+use crate::cli::printing::written::{Named, say, wait_for_no_reader};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
 use tactpad::bridge::event_loop::Bridge;
@@ -70,6 +70,7 @@ const FORCE_RANGE_CUES: [&str; 2] = [
 ];
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    wait_for_no_reader()?;
     let Arguments { capture, pad, profile, output, decoder, .. } = arguments;
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: Some(capture) }.check()?;
     if !arguments.force {

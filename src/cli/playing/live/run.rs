@@ -21,7 +21,7 @@ use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
 use crate::cli::printing::terminal;
-use crate::cli::printing::written::{printable, say};
+use crate::cli::printing::written::{printable, say, wait_for_no_reader};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::event_loop::{Bridge, Ending};
 use tactpad::bridge::transport::address::PadAddress;
@@ -66,6 +66,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    wait_for_no_reader()?;
     let Arguments { pad, profile, output, decoder, .. } = arguments;
     let profile = profile_selection::first(profile);
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;

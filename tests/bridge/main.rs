@@ -16,6 +16,7 @@ mod firmware;
 #[path = "../kernel/guest.rs"]
 mod guest;
 mod kept_play;
+mod killed;
 mod nostd;
 mod presses;
 mod programs;

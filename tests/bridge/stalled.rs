@@ -214,6 +214,28 @@ fn standard_error_not_read() {
 }
 
 #[test]
+fn the_first_and_the_last_word_of_a_run_wait_for_no_reader() {
+    for (verb, code) in
+        [("run --pad virtual --output none", 0), ("record game.cap", 0), ("run --pad serial:nowhere", 2)]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = make_pipe(folder.path());
+        let _reader = open_reader(&pipe);
+        let nonblocking = OFlags::NONBLOCK.bits().cast_signed();
+        fill(&mut OpenOptions::new().write(true).custom_flags(nonblocking).open(&pipe).unwrap());
+        let mut program = Running::program(TACTPAD, folder.path());
+        program.args(verb.split(' '));
+        let stderr = OpenOptions::new().write(true).open(&pipe).unwrap();
+        let mut bridge = Running::start_telling(folder, program, stderr);
+        if code == 0 {
+            assert!(comes_true(|| bridge.status()["state"] == "playing"), "{verb}");
+            bridge.signal(Signal::TERM);
+        }
+        assert_eq!(bridge.ends().and_then(|status| status.code()), Some(code), "{verb}");
+    }
+}
+
+#[test]
 fn an_x_server_that_stands_still_is_not_waited_for_and_has_no_key_down_when_it_goes_on() {
     if !require("Xvfb", "apt-get install xvfb") {
         return;

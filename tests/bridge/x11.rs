@@ -28,8 +28,8 @@ use crate::support::require;
 const UP: u16 = 103;
 const LEFT: u16 = 105;
 const LEFT_SHIFT: u16 = 42;
-const Z: u16 = 44;
-const X: u16 = 45;
+pub(crate) const Z: u16 = 44;
+pub(crate) const X: u16 = 45;
 
 /// An X server of this test alone, on a display that nobody else uses.
 pub(crate) struct Server {
@@ -61,8 +61,18 @@ impl Server {
 
     /// How many of its keys are down.
     pub(crate) fn keys_down(&self) -> u32 {
+        self.keymap().iter().map(|keys| keys.count_ones()).sum()
+    }
+
+    fn keymap(&self) -> [u8; 32] {
         let (connection, _) = x11rb::connect(Some(&self.display)).unwrap();
-        connection.query_keymap().unwrap().reply().unwrap().keys.iter().map(|keys| keys.count_ones()).sum()
+        connection.query_keymap().unwrap().reply().unwrap().keys
+    }
+
+    /// Whether its key of the kernel's number is down.
+    pub(crate) fn is_down(&self, key: u16) -> bool {
+        let number = usize::from(key + 8);
+        self.keymap()[number / 8] >> (number % 8) & 1 == 1
     }
 }
 
@@ -168,7 +178,7 @@ impl Client {
     }
 }
 
-fn event(key: u16, value: i32) -> OutputEvent {
+pub(crate) fn event(key: u16, value: i32) -> OutputEvent {
     OutputEvent { at: StreamInstant::from_us(0), device: OutputDevice::Keyboard, code: Code::Key(key), value }
 }
 
@@ -180,7 +190,7 @@ const SYMBOL_UP: u32 = 0xff52;
 const SYMBOL_LEFT: u32 = 0xff51;
 
 /// Writes a group, and waits until it is out.
-fn put(sink: &mut X11Sink, group: &[OutputEvent]) {
+pub(crate) fn put(sink: &mut X11Sink, group: &[OutputEvent]) {
     sink.write(group).unwrap();
     sink.settle().unwrap();
 }
@@ -192,7 +202,7 @@ fn keys_reach_a_window_in_order() {
     }
     let server = Server::start();
     let client = Client::open(&server.display);
-    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    let mut sink = X11Sink::open(Some(&server.display), None).unwrap();
     sink.prepare(OutputDevice::Keyboard).unwrap();
     put(&mut sink, &[event(UP, 1)]);
     put(&mut sink, &[event(LEFT, 1), event(Z, 1)]);
@@ -223,7 +233,7 @@ fn dropping_the_sink_releases_what_it_holds() {
     }
     let server = Server::start();
     let client = Client::open(&server.display);
-    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    let mut sink = X11Sink::open(Some(&server.display), None).unwrap();
     put(&mut sink, &[event(UP, 1), event(Z, 1), event(X, 1)]);
     put(&mut sink, &[event(X, 0)]);
     client.seen();
@@ -243,7 +253,7 @@ fn the_pointer_moves_and_clicks_where_it_is() {
     let root = client.connection.setup().roots[0].root;
     client.connection.warp_pointer(x11rb::NONE, root, 0, 0, 0, 0, 50, 40).unwrap();
     client.pointed();
-    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    let mut sink = X11Sink::open(Some(&server.display), None).unwrap();
     sink.prepare(OutputDevice::Pointer).unwrap();
     let (x, y, left) = (Code::Relative(0), Code::Relative(1), Code::Key(0x110));
     put(&mut sink, &[pointer(x, 7), pointer(y, -3), pointer(left, 1)]);
@@ -271,7 +281,7 @@ fn the_pointer_goes_to_places_of_the_screen() {
         let pointer = client.connection.query_pointer(screen.root).unwrap().reply().unwrap();
         (pointer.root_x, pointer.root_y)
     };
-    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    let mut sink = X11Sink::open(Some(&server.display), None).unwrap();
     sink.prepare(OutputDevice::Tablet).unwrap();
     let place =
         |axis, value| OutputEvent { device: OutputDevice::Tablet, ..pointer(Code::Axis(axis), value) };
@@ -290,7 +300,7 @@ fn what_x_cannot_do_is_refused_before_a_key_goes_out() {
     }
     let server = Server::start();
     let client = Client::open(&server.display);
-    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    let mut sink = X11Sink::open(Some(&server.display), None).unwrap();
     assert!(sink.prepare(OutputDevice::Gamepad).unwrap_err().message.contains("output = \"keyboard\""));
     let hat = OutputEvent { device: OutputDevice::Gamepad, code: Code::Axis(0x11), ..event(0, -1) };
     let bare = client.symbols.iter().position(|symbols| symbols.iter().all(|symbol| *symbol == 0)).unwrap();
@@ -315,7 +325,7 @@ fn what_x_cannot_do_is_refused_before_a_key_goes_out() {
 
 #[test]
 fn missing_server_is_one_sentence() {
-    let error = X11Sink::open(Some(":65000")).err().unwrap();
+    let error = X11Sink::open(Some(":65000"), None).err().unwrap();
     assert!(error.message.contains(":65000") && error.message.contains("--output uinput"), "{error}");
 }
 
@@ -339,7 +349,8 @@ fn two_thousand_presses_arrive_in_order_and_are_quick() {
     }
     let server = Server::start();
     let client = Client::open(&server.display);
-    let mut sink = X11Sink::open(Some(&server.display)).unwrap();
+    let records = tempfile::tempdir().unwrap();
+    let mut sink = X11Sink::open(Some(&server.display), Some(records.path())).unwrap();
     let clock = Clock::start();
     let [mut calls, mut round_trips] = [Durations::new(), Durations::new()];
     for press in presses(2_000) {

@@ -96,7 +96,7 @@ impl Desk {
 
     /// Presses a key and lets it up again.
     pub(crate) fn press(&self, key: u16) {
-        let mut sink = X11Sink::open(Some(&self.display)).unwrap();
+        let mut sink = X11Sink::open(Some(&self.display), None).unwrap();
         for value in [1, 0] {
             let (at, device) = (StreamInstant::from_us(0), OutputDevice::Keyboard);
             sink.write(&[OutputEvent { at, device, code: Code::Key(key), value }]).unwrap();

@@ -100,7 +100,7 @@ pub(crate) struct Times {
 pub(crate) fn times(game: &dyn Jumper, profile: &str, count: usize) -> Times {
     let Jump { key, around, .. } = game.jump();
     let mut watch = Watch::new(game.desk(), around);
-    let mut keys = X11Sink::open(Some(&game.desk().display)).unwrap();
+    let mut keys = X11Sink::open(Some(&game.desk().display), None).unwrap();
     let presser = Presser::new(game, profile);
     let mut times = Times::default();
     for _ in 0..count {

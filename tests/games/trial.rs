@@ -99,7 +99,7 @@ pub(crate) fn play(game: &mut dyn Game, segment: &Segment, way: Way<'_>) -> Outc
             Outcome { reached_s, mispresses }
         }
         Way::Plain { profile } => {
-            let mut sink = X11Sink::open(Some(&game.desk().display)).unwrap();
+            let mut sink = X11Sink::open(Some(&game.desk().display), None).unwrap();
             let commands = segment.commands(&profile_of(profile));
             let mut next = commands.iter().peekable();
             let reached_s = watch(game, segment, |at_us| {

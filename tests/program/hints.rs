@@ -154,8 +154,14 @@ fn the_help_of_record_and_latency_names_all_pads() {
     for verb in ["run", "record", "latency"] {
         let help = tactpad(folder.path(), &format!("{verb} --help")).stdout;
         let help = String::from_utf8(help).unwrap();
-        for pad in ["auto[:SERIAL]", "hid:VID:PID[:SERIAL]", "serial:PATH[@BAUD]", "virtual", "capture:FILE"]
-        {
+        for pad in [
+            "auto[:SERIAL]",
+            "hid:VID:PID[:SERIAL]",
+            "serial:PATH[@BAUD]",
+            "usb:PORT[@BAUD]",
+            "virtual",
+            "capture:FILE",
+        ] {
             assert!(help.contains(pad), "{verb}: {pad}");
         }
     }

@@ -23,6 +23,8 @@ mod protocol;
 mod ran;
 #[cfg(target_os = "linux")]
 mod recorded;
+#[cfg(target_os = "linux")]
+mod service;
 mod simulate;
 mod simulate_figures;
 mod simulate_pad;

@@ -10,7 +10,7 @@ use rustix::event::{Timespec, poll};
 use crate::transport::Transport;
 use crate::transport::address::PadAddress;
 use crate::transport::fault::{FaultPlan, FaultyLine};
-use crate::transport::pads::{Opener, PadError};
+use crate::transport::opener::{Opener, PadError};
 use crate::transport::playback::Playback;
 use crate::transport::virtual_pad::{PadFirmware, VirtualPadPort};
 use tactpad_core::pipeline::call::Call;

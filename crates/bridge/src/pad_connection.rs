@@ -7,7 +7,7 @@ use firmware_proto::command::Command;
 use crate::error::BridgeError;
 use crate::opening::{OpenedPad, Patience};
 use crate::transport::Transport;
-use crate::transport::pads::PadError;
+use crate::transport::opener::PadError;
 use tactpad_core::pipeline::Pipeline;
 use tactpad_core::time::HostInstant;
 

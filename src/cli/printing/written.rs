@@ -4,8 +4,12 @@ use std::fmt;
 use std::fs;
 use std::io::{self, Stdout, Write};
 use std::path::{self, Path};
+#[cfg(target_os = "linux")]
+use std::sync::OnceLock;
 
 use crate::cli::failure::Failure;
+#[cfg(target_os = "linux")]
+use tactpad::bridge::queue::WriteQueue;
 
 /// Writes to `to`, which people call `place`.
 pub(crate) struct Named<W> {
@@ -28,9 +32,44 @@ pub(crate) fn json_text(document: &impl serde::Serialize) -> Result<String, Fail
     serde_json::to_string(document).map_err(|error| Failure::Failed(error.to_string()))
 }
 
+/// Stderr behind a queue, in verbs that must not wait for whoever reads it.
+#[cfg(target_os = "linux")]
+static MESSAGES: OnceLock<WriteQueue> = OnceLock::new();
+
+/// Largest size of the messages that wait to be read, in bytes.
+#[cfg(target_os = "linux")]
+const MESSAGE_BYTES_MAX: usize = 16 << 10;
+
+/// From now on a terminal that is held with Ctrl-S, or a pipe that nobody reads, keeps the verb from nothing: what is said waits half a
+/// second at most, and is lost then.
+///
+/// # Errors
+/// The system has no thread to give.
+#[cfg(target_os = "linux")]
+pub(crate) fn wait_for_no_reader() -> io::Result<()> {
+    // Once is enough.
+    let _ = MESSAGES.set(WriteQueue::to_stream("messages", io::stderr(), MESSAGE_BYTES_MAX)?);
+    Ok(())
+}
+
+/// Tells people a line, or some, without waiting: they are lost where nobody reads, and before [`wait_for_no_reader`].
+#[cfg(target_os = "linux")]
+pub(crate) fn tell_in_passing(lines: &str) {
+    if let Some(messages) = MESSAGES.get() {
+        let _ = messages.push(format!("{}\n", printable(lines)).into_bytes().into());
+    }
+}
+
 /// Says something to people beside the verb's output. What does not get out must not stop the verb.
 pub(crate) fn say(line: impl fmt::Display) {
-    let _ = writeln!(io::stderr(), "{}", printable(&line.to_string()));
+    let line = line.to_string();
+    #[cfg(target_os = "linux")]
+    if let Some(messages) = MESSAGES.get() {
+        tell_in_passing(&line);
+        let _ = messages.settle();
+        return;
+    }
+    let _ = writeln!(io::stderr(), "{}", printable(&line));
 }
 
 /// Tells what came of a verb that has written `out`: as a document, to people, or beside the output that it is in.

@@ -6,7 +6,7 @@ use super::virtual_time::{ASKED, ASLEEP, Edge, MessageLog, Play, bridge};
 use super::*;
 use crate::opening::OpenedPad;
 use crate::sink::null::NullSink;
-use crate::transport::pads::PadError;
+use crate::transport::opener::PadError;
 
 /// A bridge whose pad never comes, what it tells, and how often it looked for the pad.
 fn without_pad() -> (Bridge, MessageLog, Arc<AtomicUsize>) {

@@ -15,7 +15,7 @@ use crate::clock::Clock;
 use crate::opening::{OpenedPad, Patience};
 use crate::sink::{Sink, SinkError};
 use crate::transport::Transport;
-use crate::transport::pads::PadError;
+use crate::transport::opener::PadError;
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pad::influence::InfluenceField;
 use tactpad_core::pipeline::control::{OutputDevice, OutputEvent};

@@ -1,30 +1,34 @@
 //! Key presses and the pointer through the X server, for machines where no virtual device may be made.
 //!
-//! They reach X11 programs only, and nothing releases them when the program is killed; dropping the sink
-//! does. A thread of its own writes to the server: one that stands still keeps nobody waiting. Keys go out by number, not by symbol: the X server numbers a key 8 higher than the kernel, so a
+//! They reach X11 programs only. Dropping the sink releases them. Nothing does when the program is killed, so what is held stands in
+//! a record, by which the next start lifts it (`x11/left_down.rs`). A thread of its own writes to the server: one that stands still keeps nobody waiting. Keys go out by number, not by symbol: the X server numbers a key 8 higher than the kernel, so a
 //! profile means the same key here as with the virtual keyboard.
 //!
 //! The pointer goes through enigo. Keys do not: for each, enigo asks the server for all its devices before it
 //! sends the key, which takes more than twice as long; and a symbol that the layout has only with Shift it
 //! moves to a spare key, after which each press comes 12 ms late (enigo-rs/enigo#489).
 
-use std::collections::BTreeSet;
-use std::fmt;
-use std::io;
+mod held_record;
+mod left_down;
+mod writer;
 
-use enigo::{Axis, Button, Coordinate, Direction, Enigo, InputResult, Mouse, NewConError, Settings};
+use std::collections::BTreeSet;
+use std::io;
+use std::path::Path;
+
+use enigo::{Button, Direction, Enigo, NewConError, Settings};
 use x11rb::connection::Connection;
 use x11rb::errors::{ConnectError, ReplyError};
-use x11rb::protocol::Event;
-use x11rb::protocol::xproto::{ConnectionExt as _, KEY_PRESS_EVENT, KEY_RELEASE_EVENT};
-use x11rb::protocol::xtest::ConnectionExt as _;
-use x11rb::rust_connection::RustConnection;
-use x11rb::wrapper::ConnectionExt as _;
+use x11rb::protocol::xproto::ConnectionExt as _;
+use x11rb::protocol::{xinput, xtest};
 
+use self::held_record::HeldRecord;
+pub use self::left_down::{LeftDown, Treatment, left_down};
+use self::writer::{X11Action, X11Writer};
 use super::queued::QueuedGroups;
 use super::{Sink, SinkError};
 use crate::queue::{OnWritten, WriteQueue};
-use tactpad_core::pipeline::control::names::{POINTER_PLACE_MAX, POINTER_WHEEL};
+use tactpad_core::pipeline::control::names::POINTER_WHEEL;
 use tactpad_core::pipeline::control::{Code, OutputDevice, OutputEvent};
 use tactpad_core::pipeline::mapping::profile::Binding;
 
@@ -52,39 +56,14 @@ struct KeyboardLayout {
     has_symbol: Vec<bool>,
 }
 
-/// The thread that writes to the server.
-struct X11Writer {
-    connection: RustConnection,
-    /// Moves the pointer.
-    enigo: Option<Enigo>,
-    display: String,
-}
-
-/// One thing for the X server to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum X11Action {
-    /// The key of this number, on its way down or up.
-    Key(u8, Direction),
-    /// A button of the pointer, on its way down or up.
-    Button(Button, Direction),
-    /// The pointer by so many counts to the right and down.
-    Move(i32, i32),
-    /// The pointer to this share of the screen's width.
-    Across(i32),
-    /// The pointer to this share of the screen's height.
-    Down(i32),
-    /// The wheel by so many notches towards the hand.
-    Scroll(i32),
-    /// Nothing, once all before it is done: a server forgets what it has not read of a client that is gone.
-    Sync,
-}
-
 impl X11Sink {
-    /// Connects to `display`, for example `:0`, or to the one of the environment.
+    /// Connects to `display`, for example `:0`, or to the one of the environment. In the folder `records`, if there is one, stands what
+    /// is held as long as it plays.
     ///
     /// # Errors
-    /// No X server answers, or it takes no key presses from programs, or it numbers its keys in another way.
-    pub fn open(display: Option<&str>) -> Result<Self, SinkError> {
+    /// No X server answers, or it takes no key presses from programs, or it numbers its keys in another way; or the folder takes no
+    /// file.
+    pub fn open(display: Option<&str>, records: Option<&Path>) -> Result<Self, SinkError> {
         let environment = || std::env::var("DISPLAY").unwrap_or_default();
         let place = display.map_or_else(environment, str::to_owned);
         let (connection, _) = x11rb::connect(display).map_err(|error| no_server(&place, &error))?;
@@ -96,7 +75,9 @@ impl X11Sink {
             Ok(enigo) => (Some(enigo), None),
             Err(error) => (None, Some(no_injection(&place, &error).message)),
         };
-        let mut writer = X11Writer { connection, enigo, display: place.clone() };
+        let record = records
+            .map(|folder| HeldRecord::create(folder, &place).map_err(|error| no_record(folder, &error)));
+        let mut writer = X11Writer::new(connection, enigo, place.clone(), record.transpose()?);
         let queue = WriteQueue::start("x11", QUEUE_ACTIONS_MAX, move |actions| writer.write(actions))
             .map_err(|error| failed(&error))?;
         let keyboard = KeyboardLayout { display: place, has_symbol };
@@ -147,74 +128,16 @@ impl KeyboardLayout {
     }
 }
 
-impl X11Writer {
-    /// Writes one action after the other: the X server knows no groups. Keys are out when they are on their way: a server that is
-    /// busy takes them in their order.
-    fn write(&mut self, actions: &[X11Action]) -> io::Result<()> {
-        actions.iter().try_for_each(|action| self.perform(*action))?;
-        self.connection.flush().map_err(|error| lost(&self.display, &error))?;
-        while let Some(event) =
-            self.connection.poll_for_event().map_err(|error| lost(&self.display, &error))?
-        {
-            if let Event::Error(error) = event {
-                return Err(lost(&self.display, &ReplyError::X11Error(error)));
-            }
-        }
-        Ok(())
-    }
-
-    fn perform(&mut self, action: X11Action) -> io::Result<()> {
-        if let X11Action::Key(key, direction) = action {
-            let kind = if direction == Direction::Press { KEY_PRESS_EVENT } else { KEY_RELEASE_EVENT };
-            // Its errors come as events.
-            return match self.connection.xtest_fake_input(
-                kind,
-                key,
-                x11rb::CURRENT_TIME,
-                x11rb::NONE,
-                0,
-                0,
-                0,
-            ) {
-                Ok(_) => Ok(()),
-                Err(error) => Err(lost(&self.display, &error)),
-            };
-        }
-        if action == X11Action::Sync {
-            return self.connection.sync().map_err(|error| lost(&self.display, &error));
-        }
-        // Who has no pointer was refused before.
-        let Some(enigo) = &mut self.enigo else { return Ok(()) };
-        let done = match action {
-            X11Action::Button(button, direction) => enigo.button(button, direction),
-            X11Action::Across(share) => go_to(enigo, share, true),
-            X11Action::Down(share) => go_to(enigo, share, false),
-            X11Action::Move(right, down) => enigo.move_mouse(right, down, Coordinate::Rel),
-            X11Action::Scroll(notches) => enigo.scroll(notches, Axis::Vertical),
-            X11Action::Key(..) | X11Action::Sync => Ok(()),
-        };
-        done.map_err(|error| lost(&self.display, &error))
-    }
-}
-
-/// Puts the pointer to a share of the screen, across it or down; along the other side it stays where it is.
-fn go_to(enigo: &mut Enigo, share: i32, is_across: bool) -> InputResult<()> {
-    let ((width, height), (x, y)) = (enigo.main_display()?, enigo.location()?);
-    // Share 1 is the first pixel, the last share is the last one.
-    let pixel = |size: i32| {
-        let way = i64::from(share - 1) * i64::from(size - 1) / i64::from(POINTER_PLACE_MAX - 1);
-        i32::try_from(way).unwrap_or(0)
-    };
-    let (x, y) = if is_across { (pixel(width), y) } else { (x, pixel(height)) };
-    enigo.move_mouse(x, y, Coordinate::Abs)
-}
-
 /// For each key number of the server, whether it has a symbol; checks on the way that key presses can be
 /// sent.
 fn read_layout(connection: &impl Connection, place: &str) -> Result<Vec<bool>, SinkError> {
     let failed = |error: ReplyError| no_answer(place, &error);
-    let present = |name: &[u8]| connection.query_extension(name)?.reply().map(|reply| reply.present);
-    if !present(b"XTEST").map_err(failed)? || !present(b"XInputExtension").map_err(failed)? {
+    // The connection keeps what it learns, so that the first key asks for nothing.
+    let present = |name| {
+        let found = connection.extension_information(name).map_err(|error| failed(error.into()))?;
+        Ok(found.is_some())
+    };
+    if !present(xtest::X11_EXTENSION_NAME)? || !present(xinput::X11_EXTENSION_NAME)? {
         return Err(no_extension(place));
     }
     let (first, last) = (connection.setup().min_keycode, connection.setup().max_keycode);
@@ -282,7 +205,8 @@ impl Sink for X11Sink {
 impl Drop for X11Sink {
     fn drop(&mut self) {
         // Where this fails the server is gone, and with it what it held. The queue waits a little for it.
-        let _ = self.write(&self.groups.releases()).and_then(|()| self.settle());
+        let _ = self.write(&self.groups.releases());
+        let _ = self.groups.push(vec![X11Action::End]).and_then(|()| self.groups.settle());
     }
 }
 
@@ -325,16 +249,21 @@ fn no_injection(place: &str, error: &NewConError) -> SinkError {
     }
 }
 
+fn no_record(folder: &Path, error: &io::Error) -> SinkError {
+    let message = format!(
+        "{} takes no file that says which keys are held ({error}), by which they come up after a crash: make room there or use \
+         `--output uinput`",
+        folder.display()
+    );
+    SinkError { message }
+}
+
 fn other_numbers(place: &str) -> SinkError {
     let message = format!(
         "X display {place} does not number its keys as Linux does, so wrong ones would be pressed: use \
          `--output uinput`"
     );
     SinkError { message }
-}
-
-fn lost(place: &str, error: &impl fmt::Display) -> io::Error {
-    io::Error::other(format!("X display {place} takes no events any more ({error}): start again"))
 }
 
 /// The error of the thread that writes, which says it all.

@@ -32,6 +32,13 @@ pub enum PadAddress {
         /// The serial number, where one is asked for.
         serial_number: Option<String>,
     },
+    /// What is plugged in at a place: a pad, or a serial port.
+    Usb {
+        /// The kernel's name of the USB port, such as `1-1.2`, or of an interface there, such as `1-1.2:1.0`.
+        place: String,
+        /// Bits per second of a serial port, not 0.
+        baud: u32,
+    },
     /// A recording in place of a pad.
     Capture {
         /// The recording's file.
@@ -57,6 +64,8 @@ pub enum AddressError {
     },
     /// The text after `@` is no rate.
     BadBaud {
+        /// The word before the colon.
+        kind: &'static str,
         /// The text before `@`.
         path: String,
         /// The text behind it.
@@ -81,7 +90,14 @@ impl FromStr for PadAddress {
             }
             ("virtual", None) => Ok(Self::Virtual),
             ("serial", rest) => {
-                serial(wanted("serial", "the port's path, as in serial:/dev/ttyACM0", rest.unwrap_or(""))?)
+                let (path, baud) =
+                    with_baud("serial", wanted("serial", PORT_WANTED, rest.unwrap_or(""))?, PORT_WANTED)?;
+                Ok(Self::Serial { path, baud })
+            }
+            ("usb", rest) => {
+                let (place, baud) =
+                    with_baud("usb", wanted("usb", PLACE_WANTED, rest.unwrap_or(""))?, PLACE_WANTED)?;
+                Ok(Self::Usb { place, baud })
             }
             ("hid", rest) => {
                 hid(wanted("hid", "vendor and product, as in hid:1209:0001", rest.unwrap_or(""))?)
@@ -95,21 +111,24 @@ impl FromStr for PadAddress {
     }
 }
 
+const PORT_WANTED: &str = "the port's path, as in serial:/dev/ttyACM0";
+const PLACE_WANTED: &str = "the USB port, as in usb:1-1.2; `tactpad devices` lists them";
+
 fn wanted<'a>(kind: &'static str, wanted: &'static str, rest: &'a str) -> Result<&'a str, AddressError> {
     if rest.is_empty() { Err(AddressError::Incomplete { kind, wanted }) } else { Ok(rest) }
 }
 
-/// A rate is what follows the last `@` of the last part of the path.
-fn serial(rest: &str) -> Result<PadAddress, AddressError> {
+/// A path or place, and the rate that follows the last `@` of its last part.
+fn with_baud(kind: &'static str, rest: &str, what: &'static str) -> Result<(String, u32), AddressError> {
     let Some((path, baud)) = rest.rsplit_once('@').filter(|(_, baud)| !baud.contains('/')) else {
-        return Ok(PadAddress::Serial { path: rest.into(), baud: DEFAULT_BAUD });
+        return Ok((rest.into(), DEFAULT_BAUD));
     };
-    let path = wanted("serial", "the port's path, as in serial:/dev/ttyACM0", path)?;
+    let path = wanted(kind, what, path)?;
     // Digits only: `parse` would also take a sign.
     let digits = baud.bytes().all(|byte| byte.is_ascii_digit());
     match baud.parse() {
-        Ok(baud) if digits && baud != 0 => Ok(PadAddress::Serial { path: path.into(), baud }),
-        _ => Err(AddressError::BadBaud { path: path.into(), baud: baud.into() }),
+        Ok(number) if digits && number != 0 => Ok((path.into(), number)),
+        _ => Err(AddressError::BadBaud { kind, path: path.into(), baud: baud.into() }),
     }
 }
 
@@ -134,6 +153,7 @@ impl fmt::Display for PadAddress {
             Self::Auto { serial_number: Some(number) } => write!(f, "auto:{number}"),
             Self::Virtual => f.write_str("virtual"),
             Self::Serial { path, baud } => write!(f, "serial:{path}@{baud}"),
+            Self::Usb { place, baud } => write!(f, "usb:{place}@{baud}"),
             Self::Hid { vendor, product, serial_number: None } => write!(f, "hid:{vendor:04x}:{product:04x}"),
             Self::Hid { vendor, product, serial_number: Some(number) } => {
                 write!(f, "hid:{vendor:04x}:{product:04x}:{number}")
@@ -149,13 +169,13 @@ impl fmt::Display for AddressError {
             Self::UnknownKind { text } => write!(
                 f,
                 "`{text}` names no pad: write auto[:SERIAL], virtual, serial:PATH[@BAUD], \
-                 hid:VID:PID[:SERIAL] or capture:FILE"
+                 hid:VID:PID[:SERIAL], usb:PORT[@BAUD] or capture:FILE"
             ),
             Self::Incomplete { kind, wanted } => write!(f, "`{kind}:` lacks {wanted}"),
-            Self::BadBaud { path, baud } => write!(
+            Self::BadBaud { kind, path, baud } => write!(
                 f,
                 "`{baud}` is not a rate in bits per second: write a positive whole number, as in \
-                 serial:{path}@{DEFAULT_BAUD}, also where the path itself contains `@`"
+                 {kind}:{path}@{DEFAULT_BAUD}, also where the path itself contains `@`"
             ),
             Self::BadUsbNumber { number } => write!(
                 f,
@@ -189,6 +209,8 @@ mod tests {
             ("serial:a:b@9600", "serial:a:b@9600"),
             ("hid:1209:0001", "hid:1209:0001"),
             ("hid:ABCD:ffff:a:b", "hid:abcd:ffff:a:b"),
+            ("usb:1-1.2@9600", "usb:1-1.2@9600"),
+            ("usb:1-1.2:1.0@9600", "usb:1-1.2:1.0@9600"),
             ("capture:run:1.tpc", "capture:run:1.tpc"),
         ] {
             let address = parse(text).unwrap();
@@ -206,7 +228,7 @@ mod tests {
     #[test]
     fn rates_that_are_none_are_refused() {
         for baud in ["", "0", "-1", "+9600", "4294967296", "fast", "1e6"] {
-            let error = AddressError::BadBaud { path: "/dev/x".into(), baud: baud.into() };
+            let error = AddressError::BadBaud { kind: "serial", path: "/dev/x".into(), baud: baud.into() };
             assert_eq!(parse(&format!("serial:/dev/x@{baud}")).unwrap_err(), error);
         }
     }
@@ -220,6 +242,8 @@ mod tests {
             ("hid", "vendor"),
             ("hid:", "vendor"),
             ("hid:1209:0001:", "serial number"),
+            ("usb:", "USB port"),
+            ("usb:@9600", "USB port"),
             ("capture", "file"),
             ("auto:", "serial number"),
         ] {
@@ -240,9 +264,9 @@ mod tests {
 
     #[test]
     fn other_words_are_answered_with_all_forms() {
-        for text in ["", "usb", "Auto", "virtual:", "/dev/ttyACM0", "serial /dev/x"] {
+        for text in ["", "plug", "Auto", "virtual:", "/dev/ttyACM0", "serial /dev/x"] {
             let message = parse(text).unwrap_err().to_string();
-            for form in ["auto", "virtual", "serial:PATH", "hid:", "capture:FILE"] {
+            for form in ["auto", "virtual", "serial:PATH", "hid:", "usb:PORT", "capture:FILE"] {
                 assert!(message.contains(form), "{text}: {message}");
             }
         }

@@ -3,10 +3,12 @@
 pub mod address;
 pub mod fault;
 pub mod hid;
+pub mod opener;
 mod pacing;
 pub mod pads;
 pub mod playback;
 pub mod serial;
+mod usb;
 pub mod virtual_pad;
 
 use std::io;

@@ -1,10 +1,14 @@
 //! Opens a page with the program that the desktop has for it.
 
+use std::env;
 use std::io;
 use std::process::{Child, Command, Stdio};
 
 /// The desktop's program that opens addresses.
 const OPENER: &str = "xdg-open";
+
+/// Has a program started by the user's manager. What a service starts itself has the service's limits, under which no browser runs.
+const BY_MANAGER: [&str; 5] = ["systemd-run", "--user", "--quiet", "--collect", "--wait"];
 
 /// A page that is being opened.
 #[derive(Debug)]
@@ -18,15 +22,31 @@ pub struct Opening {
 /// # Errors
 /// The desktop's program cannot be started; the text is for people.
 pub fn open(url: &str) -> Result<Opening, String> {
-    let mut command = Command::new(OPENER);
-    command.arg(without_token(url)).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    match command.spawn() {
+    // The manager's sign that this is a service.
+    let is_service = env::var_os("INVOCATION_ID").is_some();
+    let spawned = match start(&words(url, is_service)) {
+        Err(error) if is_service && error.kind() == io::ErrorKind::NotFound => start(&words(url, false)),
+        spawned => spawned,
+    };
+    match spawned {
         Ok(opener) => Ok(Opening { opener, url: url.to_owned() }),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             Err(format!("{OPENER} is missing (package xdg-utils): open {url} in a browser"))
         }
         Err(error) => Err(format!("{OPENER} cannot be started ({error}): open {url} in a browser")),
     }
+}
+
+/// The program and its arguments.
+fn words(url: &str, is_service: bool) -> Vec<String> {
+    let before: &[&str] = if is_service { &BY_MANAGER } else { &[] };
+    before.iter().copied().chain([OPENER]).map(str::to_owned).chain([without_token(url)]).collect()
+}
+
+fn start(words: &[String]) -> io::Result<Child> {
+    let Some((program, arguments)) = words.split_first() else { return Err(io::ErrorKind::NotFound.into()) };
+    let mut command = Command::new(program);
+    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()
 }
 
 /// The address that leads this user's programs to the page at `url`; another address is as it was.
@@ -66,6 +86,14 @@ impl Opening {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_service_has_the_browser_started_by_the_manager() {
+        let url = "http://127.0.0.1:8080/?token=abc";
+        assert_eq!(words(url, false), ["xdg-open", "http://127.0.0.1:8080/open"]);
+        let by_manager = words(url, true);
+        assert_eq!((by_manager[0].as_str(), &by_manager[5..]), ("systemd-run", &words(url, false)[..]));
+    }
 
     #[test]
     fn no_token_is_in_the_arguments() {

@@ -5,7 +5,7 @@ use std::io;
 
 use serde_json::Value;
 
-use super::{ctl, last_profile, profile_selection};
+use super::{ctl, last_profile, profile_selection, runtime};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
 use crate::cli::printing::written::say;
@@ -22,7 +22,7 @@ pub(crate) fn is_on_desktop() -> bool {
 /// The command line that is meant; `None` if the running bridge's page was opened instead.
 pub(crate) fn command_line() -> Result<Option<Vec<String>>, Failure> {
     use io::ErrorKind::{ConnectionRefused, NotFound};
-    let path = ctl::socket_path()?;
+    let path = runtime::socket_path()?;
     match ask(&path, "dashboard") {
         Ok(answer) => open_page(&answer).map(|()| None),
         Err(error) if matches!(error.kind(), NotFound | ConnectionRefused) => {

@@ -3,17 +3,15 @@
 pub(super) mod answer;
 mod weigh;
 
-use std::env;
-use std::fs::{self, DirBuilder};
 use std::io::{self, Write};
-use std::os::unix::fs::{DirBuilderExt, MetadataExt};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::{Args, Subcommand};
-use rustix::process::getuid;
 use serde_json::Value;
 
 use self::answer::{answered, no_answer};
+use super::left_keys;
+use super::runtime::socket_path;
 use super::sound::{Sounds, Which};
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
@@ -50,7 +48,7 @@ enum Action {
     /// Go on after a pause.
     #[command(after_help = "Example: tactpad ctl resume")]
     Resume,
-    /// Release everything at once, and go on.
+    /// Release everything at once, and go on; also keys that a killed bridge left down on an X server.
     #[command(after_help = "Example: tactpad ctl panic")]
     Panic,
     /// Measure the zero again; leave the pad untouched.
@@ -86,34 +84,6 @@ enum Action {
     Quit,
 }
 
-/// Where a bridge listens: in the user's runtime folder, else in a folder of the user's own among the temporary files.
-///
-/// # Errors
-/// Somebody else has that folder, who could listen there instead.
-pub(super) fn socket_path() -> Result<PathBuf, Failure> {
-    let runtime = env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from).filter(|folder| is_own(folder));
-    let folder = runtime.unwrap_or_else(|| {
-        let folder = env::temp_dir().join(format!("tactpad-{}", getuid().as_raw()));
-        // It may be there already, whosever it is.
-        let _ = DirBuilder::new().mode(0o700).create(&folder);
-        folder
-    });
-    if is_own(&folder) {
-        Ok(folder.join("tactpad.sock"))
-    } else {
-        Err(Failure::Failed(format!(
-            "{} is not yours alone, so anybody could answer there: set XDG_RUNTIME_DIR to a folder that is",
-            folder.display()
-        )))
-    }
-}
-
-/// Whether it is a folder that nobody else can write to.
-fn is_own(folder: &Path) -> bool {
-    fs::symlink_metadata(folder)
-        .is_ok_and(|it| it.is_dir() && it.uid() == getuid().as_raw() && it.mode() & 0o022 == 0)
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = socket_path()?;
     let request = match &arguments.action {
@@ -130,6 +100,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Action::Quit => "quit".to_owned(),
         Action::Profile { name } => format!("profile {}", absolute(name)?),
     };
+    let is_lifted = matches!(arguments.action, Action::Panic) && left_keys::lift();
+    if is_lifted && !arguments.json && !answer::is_there(&path) {
+        // What was to be released is released.
+        return Ok(());
+    }
     let (answer, document) = answered(&path, &request)?;
     match arguments.action {
         _ if arguments.json => Ok(writeln!(stdout(), "{answer}")?),

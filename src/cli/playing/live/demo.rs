@@ -19,7 +19,7 @@ use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
 use crate::cli::printing::terminal;
-use crate::cli::printing::written::{print_json, say, stdout};
+use crate::cli::printing::written::{print_json, say, stdout, wait_for_no_reader};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
 use tactpad::bridge::clock::Clock;
@@ -78,6 +78,7 @@ struct Summary {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    wait_for_no_reader()?;
     let Arguments { profile, output, decoder, json, .. } = arguments;
     output.leaves_stdout(*json)?;
     Files { pad: &PadAddress::Virtual, profile, output, decoder: chosen::file(decoder), capture: None }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::cli::failure::Failure;
 use crate::cli::printing::written::{print_json, printable, stdout};
-use tactpad::bridge::transport::pads::{Attachment, FoundPad, attached};
+use tactpad::bridge::transport::pads::{Attachment, FoundPad, attached, usb_serial_ports};
 
 /// Arguments of `tactpad devices`.
 #[derive(Debug, Args)]
@@ -18,11 +18,13 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, PartialEq, Eq, Serialize)]
 struct Listed {
     address: String,
     path: String,
     serial_number: Option<String>,
+    /// The address by its place, which stays when names and serial numbers do not tell pads apart.
+    place: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -30,26 +32,41 @@ struct DevicesReport {
     pads: Vec<Listed>,
     /// Serial ports that do not say that they are a pad, but may be one.
     serial_ports: Vec<String>,
+    /// Those of them that are on the USB.
+    usb_ports: Vec<Listed>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let pads: Vec<Listed> = attached().iter().map(listed).collect();
+    let pads = listed(&attached());
     let ports = serialport::available_ports().unwrap_or_default();
     let is_pad = |name: &String| pads.iter().any(|pad| pad.path == *name);
-    let serial_ports = ports.into_iter().map(|port| port.port_name).filter(|name| !is_pad(name)).collect();
-    let report = DevicesReport { pads, serial_ports };
+    let serial_ports: Vec<_> =
+        ports.into_iter().map(|port| port.port_name).filter(|name| !is_pad(name)).collect();
+    let mut usb_ports = listed(&usb_serial_ports());
+    usb_ports.retain(|port| serial_ports.contains(&port.path));
+    let report = DevicesReport { pads, serial_ports, usb_ports };
     if arguments.json { print_json(&report) } else { Ok(print(&report)?) }
 }
 
-fn listed(pad: &FoundPad) -> Listed {
+fn listed(found: &[FoundPad]) -> Vec<Listed> {
+    found.iter().map(|pad| listed_among(pad, found)).collect()
+}
+
+/// A pad as it is listed beside the others: its address is one that means no other.
+fn listed_among(pad: &FoundPad, all: &[FoundPad]) -> Listed {
     let (vendor, product) = pad.ids;
     let path = pad.path.display().to_string();
     let number = pad.serial_number.as_ref().map(|number| format!(":{number}")).unwrap_or_default();
-    let address = match pad.attachment {
-        Attachment::Hid => format!("hid:{vendor:04x}:{product:04x}{number}"),
-        Attachment::Serial => format!("serial:{path}"),
+    let is_alone_at = |port: &&str| all.iter().filter(|other| other.usb_port() == Some(port)).count() == 1;
+    let place = pad.usb_port().filter(is_alone_at).or(pad.usb_interface.as_deref());
+    let place = place.map(|place| format!("usb:{place}"));
+    let is_alike = |other: &&FoundPad| (other.ids, &other.serial_number) == (pad.ids, &pad.serial_number);
+    let address = match (pad.attachment, &place) {
+        (Attachment::Serial, _) => format!("serial:{path}"),
+        (Attachment::Hid, Some(place)) if all.iter().filter(is_alike).count() > 1 => place.clone(),
+        (Attachment::Hid, _) => format!("hid:{vendor:04x}:{product:04x}{number}"),
     };
-    Listed { address, path, serial_number: pad.serial_number.clone() }
+    Listed { address, path, serial_number: pad.serial_number.clone(), place }
 }
 
 fn print(report: &DevicesReport) -> io::Result<()> {
@@ -58,12 +75,45 @@ fn print(report: &DevicesReport) -> io::Result<()> {
         [] => writeln!(out, "no pad is attached; play without one: tactpad demo")?,
         pads => {
             for pad in pads {
-                writeln!(out, "pad   --pad {}   ({})", printable(&pad.address), pad.path)?;
+                writeln!(out, "pad   --pad {}   ({}{})", printable(&pad.address), pad.path, at(pad))?;
             }
         }
     }
     for port in &report.serial_ports {
-        writeln!(out, "port  --pad serial:{port}   (does not say what it is)")?;
+        let place = report.usb_ports.iter().find(|usb| usb.path == *port).map(at).unwrap_or_default();
+        writeln!(out, "port  --pad serial:{port}   (does not say what it is{place})")?;
     }
     Ok(())
+}
+
+/// The place, behind other facts.
+fn at(listed: &Listed) -> String {
+    listed.place.as_ref().map(|place| format!("; by its place: --pad {place}")).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pad(interface: &str, number: &str) -> FoundPad {
+        FoundPad {
+            attachment: Attachment::Hid,
+            path: "/dev/hidraw0".into(),
+            ids: (0x1209, 0x0001),
+            serial_number: Some(number.into()),
+            usb_interface: Some(interface.into()),
+        }
+    }
+
+    fn addresses(pads: &[FoundPad]) -> Vec<String> {
+        listed(pads).into_iter().map(|pad| pad.address).collect()
+    }
+
+    #[test]
+    fn pads_of_one_serial_number_are_listed_by_their_place() {
+        let [one, other] = [pad("1-1:1.0", "A"), pad("1-2:1.0", "B")];
+        assert_eq!(addresses(&[one, other.clone()]), ["hid:1209:0001:A", "hid:1209:0001:B"]);
+        assert_eq!(addresses(&[pad("1-1:1.0", "B"), other.clone()]), ["usb:1-1", "usb:1-2"]);
+        assert_eq!(addresses(&[pad("1-2:1.1", "B"), other]), ["usb:1-2:1.1", "usb:1-2:1.0"]);
+    }
 }

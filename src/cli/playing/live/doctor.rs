@@ -10,11 +10,12 @@ use rustix::fs::{Access, access};
 use serde::Serialize;
 use serde_json::Value;
 
-use super::ctl;
+use super::{ctl, left_keys, runtime};
 use crate::cli::failure::{Failure, if_read};
 use crate::cli::printing::written::{print_json, stdout};
 use tactpad::bridge::control::ask;
 use tactpad::bridge::sink::uinput;
+use tactpad::bridge::sink::x11::LeftDown;
 use tactpad::bridge::transport::pads::{self, FoundPad};
 
 /// The rules that give the player access; a test holds their number below that of the seat's.
@@ -96,7 +97,7 @@ pub(super) fn examine() -> DoctorReport {
     let root = Path::new("/");
     let mut checks = vec![check_uinput(), check_rules(root)];
     checks.extend(check_pads(&pads::attached()));
-    let bridge = match ctl::socket_path() {
+    let bridge = match runtime::socket_path() {
         Ok(path) => ask(&path, "status"),
         Err(failure) => Err(io::Error::new(io::ErrorKind::PermissionDenied, failure.sentence())),
     };
@@ -107,6 +108,7 @@ pub(super) fn examine() -> DoctorReport {
     checks.extend(check_sdl(|name| env::var(name).ok()));
     checks.extend(check_session(|name| env::var(name).ok()));
     checks.push(check_bridge(&bridge));
+    checks.extend(left_keys::found().iter().map(check_left_down));
     DoctorReport { ok: checks.iter().all(|check| check.finding != Finding::Bad), checks }
 }
 
@@ -307,6 +309,15 @@ fn check_bridge(answer: &io::Result<String>) -> Check {
             Check::note("bridge", format!("none can be asked: {error}"))
         }
         Err(_) => Check::note("bridge", "none is running"),
+    }
+}
+
+/// What a killed bridge left down. The next start lifts it, too.
+fn check_left_down(left: &LeftDown) -> Check {
+    let name = "X11 keys";
+    match left {
+        LeftDown::Held { .. } => Check::bad(name, left.to_string(), "tactpad ctl panic"),
+        LeftDown::Unanswered { .. } | LeftDown::Damaged { .. } => Check::note(name, left.to_string()),
     }
 }
 

@@ -14,7 +14,7 @@ use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
-use crate::cli::printing::written::{print_json, say, stdout};
+use crate::cli::printing::written::{print_json, say, stdout, wait_for_no_reader};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
 use tactpad::bridge::clock::Clock;
@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     /// How long to measure.
     #[arg(long, default_value = "10", value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: f64,
-    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], capture:FILE.
+    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]
@@ -63,6 +63,7 @@ struct LatencyReport {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    wait_for_no_reader()?;
     let Arguments { pad, profile, output, decoder, json, .. } = arguments;
     output.leaves_stdout(*json)?;
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;

@@ -18,7 +18,7 @@ mod kept_play;
 #[cfg(feature = "tray")]
 mod last_profile;
 pub(super) mod latency;
-mod message_queue;
+mod left_keys;
 mod newest;
 mod output;
 #[cfg(feature = "dashboard")]
@@ -30,6 +30,7 @@ pub(super) mod record;
 #[cfg(feature = "dashboard")]
 mod reported;
 pub(super) mod run;
+mod runtime;
 mod screen;
 mod sound;
 #[cfg(feature = "tray")]

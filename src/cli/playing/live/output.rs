@@ -6,8 +6,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use super::playing::tell_of_waiting;
+use super::{left_keys, runtime};
 use crate::cli::failure::Failure;
-use crate::cli::printing::written::both_print;
+use crate::cli::printing::written::{both_print, say};
 use tactpad::bridge::sink::uinput::{self, UinputSink};
 use tactpad::bridge::sink::{Sink, SinkError, log::LogSink, null::NullSink, x11::X11Sink};
 use tactpad::pipeline::mapping::read::check::OutputChoice;
@@ -56,14 +57,16 @@ impl Output {
         if json && *self == Self::Stdout { Err(both_print("--output log:-")) } else { Ok(()) }
     }
 
-    /// Opens the sink. `Auto` means the kernel's virtual devices; what else would do is said in the error.
+    /// Opens the sink. `Auto` means the kernel's virtual devices; what else would do is said in the error. What killed bridges left down
+    /// is lifted first, wherever events go now.
     pub(super) fn open(&self) -> Result<Box<dyn Sink>, Failure> {
+        left_keys::lift();
         match self {
             Self::Auto | Self::Uinput => {
                 let sink = UinputSink::open();
                 Ok(Box::new(sink.map_err(|error| Failure::Unusable(with_alternatives(&error.message)))?))
             }
-            Self::X11 => Ok(Box::new(X11Sink::open(None).map_err(|error| Failure::Unusable(error.message))?)),
+            Self::X11 => open_x11(),
             Self::Log(path) => {
                 let sink = LogSink::create(path).map_err(|error| Failure::Unusable(error.message))?;
                 tell_of_waiting(path, sink.waits_for_reader());
@@ -81,10 +84,23 @@ impl Output {
         here: impl FnOnce() -> Result<Box<dyn Sink>, Failure>,
     ) -> Result<(Box<dyn Sink>, Option<String>), Failure> {
         match (self, uinput::available()) {
-            (Self::Auto, Err(error)) => Ok((here()?, Some(missing(&error)))),
+            (Self::Auto, Err(error)) => {
+                left_keys::lift();
+                Ok((here()?, Some(missing(&error))))
+            }
             _ => Ok((self.open()?, None)),
         }
     }
+}
+
+/// Keys of the X server. What is held is recorded; without a folder for that it plays all the same.
+fn open_x11() -> Result<Box<dyn Sink>, Failure> {
+    let records = runtime::folder();
+    if let Err(Failure::Failed(why)) = &records {
+        say(format_args!("keys that are held stay down if this bridge is killed: {why}"));
+    }
+    let sink = X11Sink::open(None, records.ok().as_deref());
+    Ok(Box::new(sink.map_err(|error| Failure::Unusable(error.message))?))
 }
 
 /// An event log on standard output, or on what stands for it.

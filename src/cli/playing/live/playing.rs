@@ -4,13 +4,12 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::message_queue::MessageQueue;
 use super::profile_reader::ProfileReader;
 use super::profile_selection::ProfileSelection;
 use crate::cli::failure::Failure;
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::field_of;
-use crate::cli::printing::written::{is_stdout, reason, say};
+use crate::cli::printing::written::{is_stdout, reason, say, tell_in_passing};
 use tactpad::bridge::destination::Destination;
 use tactpad::bridge::error::BridgeError;
 use tactpad::bridge::event_loop::{Bridge, Ending};
@@ -47,9 +46,10 @@ pub(super) fn open_pad(
             ));
         }
         PadAddress::Capture { file } => OpenedPad::capture(file),
-        PadAddress::Auto { .. } | PadAddress::Hid { .. } | PadAddress::Serial { .. } => {
-            OpenedPad::device(address.clone(), patience)
-        }
+        PadAddress::Auto { .. }
+        | PadAddress::Hid { .. }
+        | PadAddress::Serial { .. }
+        | PadAddress::Usb { .. } => OpenedPad::device(address.clone(), patience),
     };
     opened.map_err(not_opened)
 }
@@ -123,19 +123,15 @@ pub(super) struct TerminalHost {
     profiles: ProfileReader,
     /// Address of the bridge's page.
     page: Option<String>,
-    messages: Option<MessageQueue>,
+    audience: Audience,
 }
 
 impl TerminalHost {
     /// A bridge that plays `profile` for an output of this kind.
     pub(super) fn new(profile: &str, output: OutputChoice, audience: Audience) -> io::Result<Self> {
-        let messages = match audience {
-            Audience::Stderr => Some(MessageQueue::start()?),
-            Audience::Nobody => None,
-        };
         let selection = Arc::new(Mutex::new(ProfileSelection::of(profile)));
-        let profiles = ProfileReader::start(Arc::clone(&selection), output, messages.clone())?;
-        Ok(Self { selection, profiles, page: None, messages })
+        let profiles = ProfileReader::start(Arc::clone(&selection), output, audience == Audience::Stderr)?;
+        Ok(Self { selection, profiles, page: None, audience })
     }
 
     /// The same, of a bridge that is shown at this address.
@@ -163,8 +159,8 @@ impl Host for TerminalHost {
     }
 
     fn tell(&mut self, line: &str) {
-        if let Some(messages) = &self.messages {
-            messages.tell(line);
+        if self.audience == Audience::Stderr {
+            tell_in_passing(line);
         }
     }
 }

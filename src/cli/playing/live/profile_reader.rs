@@ -5,10 +5,10 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
-use super::message_queue::MessageQueue;
 use super::profile_selection::ProfileSelection;
 use crate::cli::failure::Failure;
 use crate::cli::playing::profile;
+use crate::cli::printing::written::tell_in_passing;
 use tactpad::bridge::host::{ProfileReply, ProfileRequest};
 use tactpad::pipeline::mapping::read::ReadProfile;
 use tactpad::pipeline::mapping::read::check::OutputChoice;
@@ -17,18 +17,18 @@ use tactpad::pipeline::mapping::read::check::OutputChoice;
 pub(super) struct ProfileReader(Sender<(ProfileRequest, ProfileReply)>);
 
 impl ProfileReader {
-    /// Starts the thread. What is wrong with a profile that is played all the same goes to `messages`.
+    /// Starts the thread. What is wrong with a profile that is played all the same is told if somebody reads it.
     pub(super) fn start(
         selection: Arc<Mutex<ProfileSelection>>,
         output: OutputChoice,
-        messages: Option<MessageQueue>,
+        is_read: bool,
     ) -> io::Result<Self> {
         let (requests, asked) = channel::<(ProfileRequest, ProfileReply)>();
         thread::Builder::new().name("profile reader".into()).spawn(move || {
             for (request, reply) in asked {
                 let read = read(&selection, &request, output).map(|(read, warnings)| {
-                    if let Some(messages) = messages.as_ref().filter(|_| !warnings.is_empty()) {
-                        messages.tell(warnings.trim_end());
+                    if is_read && !warnings.is_empty() {
+                        tell_in_passing(warnings.trim_end());
                     }
                     read
                 });

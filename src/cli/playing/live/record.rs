@@ -13,13 +13,13 @@ use super::output::Output;
 use super::playing::{
     Audience, TerminalHost, WaitOption, create_capture, microseconds, open_pad, patience, play, requests,
 };
-use super::{chosen, ctl};
+use super::{chosen, runtime};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
-use crate::cli::printing::written::{Named, say};
+use crate::cli::printing::written::{Named, say, wait_for_no_reader};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::changes::ChangesSlot;
 use tactpad::bridge::clock::Clock;
@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
     /// Write over a file that is there already.
     #[arg(long)]
     force: bool,
-    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], capture:FILE.
+    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]
@@ -71,6 +71,7 @@ const FORCE_RANGE_CUES: [&str; 2] = [
 ];
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    wait_for_no_reader()?;
     let Arguments { capture, pad, profile, output, decoder, .. } = arguments;
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: Some(capture) }.check()?;
     if !arguments.force {
@@ -98,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         decoder,
         profile,
         sink,
-        requests: requests(Some(ctl::socket_path()), audience)?,
+        requests: requests(Some(runtime::socket_path()), audience)?,
         host: Box::new(host),
         record: Some(Box::new(capture)),
         observers: Vec::new(),

@@ -14,14 +14,14 @@ use super::output::Output;
 use super::playing::{Audience, TerminalHost, WaitOption, microseconds, open_pad, patience, play, requests};
 use super::profile_selection;
 use super::screen::Screen;
-use super::{chosen, ctl};
+use super::{chosen, runtime};
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::files::device::PadOptions;
 use crate::cli::playing::profile;
 use crate::cli::printing::seconds;
 use crate::cli::printing::terminal;
-use crate::cli::printing::written::{printable, say};
+use crate::cli::printing::written::{printable, say, wait_for_no_reader};
 use tactpad::bridge::bridge_parts::BridgeParts;
 use tactpad::bridge::clock::Clock;
 use tactpad::bridge::event_loop::{Bridge, Ending};
@@ -34,7 +34,7 @@ use tactpad::bridge::transport::fault::FaultPlan;
     `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on. It ends with its \
     terminal, unless it was started with nohup; where it has none, SIGHUP reads the profile again.")]
 pub(crate) struct Arguments {
-    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], virtual, capture:FILE.
+    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], virtual, capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
     /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.
@@ -67,6 +67,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    wait_for_no_reader()?;
     let Arguments { pad, profile, output, decoder, .. } = arguments;
     let profile = profile_selection::first(profile);
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
@@ -90,7 +91,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         say(missing);
     }
     audience.tell(&title);
-    let requests = requests(Some(ctl::socket_path()), audience)?;
+    let requests = requests(Some(runtime::socket_path()), audience)?;
     let mut prepared = arguments.shown.prepare(&requests, &selection, output.choice())?;
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));

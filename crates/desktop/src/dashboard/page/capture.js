@@ -5,7 +5,8 @@ import { button } from "./dom.js";
 import { isModifier, keyName, padNames } from "./keys.js";
 
 const LABELS = { keyboard: "Press a key …", gamepad: "Press a button …" };
-const ASKS = { keyboard: "Press a key now. Escape leaves it as it is.", gamepad: "Press a button of a gamepad now. Escape leaves it as it is." };
+const HINTS = { keyboard: "A key is a place: its name is that of a US keyboard, whatever it types in your layout" };
+const ASKS = { keyboard: "Press a key now: its place counts. Escape leaves it as it is.", gamepad: "Press a button of a gamepad now. Escape leaves it as it is." };
 
 /**
  * A button that asks for a key or a gamepad's button.
@@ -14,7 +15,7 @@ const ASKS = { keyboard: "Press a key now. Escape leaves it as it is.", gamepad:
  * @param {(names: string) => void} take
  */
 export function captureButton(device, of, take) {
-  const node = button(LABELS[device], () => new Capture(node, device, take), { class: "capture", "aria-label": `${LABELS[device]} for ${of}` });
+  const node = button(LABELS[device], () => new Capture(node, device, take), { class: "capture", "aria-label": `${LABELS[device]} for ${of}`, title: HINTS[device] ?? null });
   return node;
 }
 

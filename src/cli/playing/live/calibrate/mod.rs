@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     /// Write a sheet with the five marks in true size, for A4 paper; alone, nothing else is done.
     #[arg(long, value_name = "OUT.svg|OUT.pdf")]
     sheet: Option<PathBuf>,
-    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], or virtual, which does what is asked.
+    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], or virtual, which does what is asked.
     #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
     #[command(flatten)]

@@ -20,13 +20,21 @@ pub(super) fn answered(path: &Path, request: &str) -> Result<(String, Value), Fa
     }
 }
 
+/// Whether somebody listens, be it somebody who does not answer.
+pub(super) fn is_there(path: &Path) -> bool {
+    !matches!(ask(path, "status"), Err(error) if is_nobody(error.kind()))
+}
+
+const fn is_nobody(kind: io::ErrorKind) -> bool {
+    matches!(kind, io::ErrorKind::ConnectionRefused | io::ErrorKind::NotFound)
+}
+
 /// Why no bridge answers, and what to do about it.
 pub(crate) fn no_answer(path: &Path, error: &io::Error) -> String {
-    use io::ErrorKind::{ConnectionRefused, NotFound, TimedOut};
     let path = path.display();
     match error.kind() {
-        NotFound | ConnectionRefused => format!("no bridge answers at {path}: start one with `tactpad run`"),
-        TimedOut => format!(
+        kind if is_nobody(kind) => format!("no bridge answers at {path}: start one with `tactpad run`"),
+        io::ErrorKind::TimedOut => format!(
             "the bridge at {path} does not answer: if it was stopped (Ctrl-Z), continue it with `fg`; else end it and \
              start one with `tactpad run`"
         ),

@@ -1,0 +1,46 @@
+//! The folder for what lives as long as a bridge does: its control socket, and what it holds on an X server.
+
+use std::env;
+use std::fs::{self, DirBuilder};
+use std::os::unix::fs::{DirBuilderExt, MetadataExt};
+use std::path::{Path, PathBuf};
+
+use rustix::process::getuid;
+
+use crate::cli::failure::Failure;
+
+/// Where a bridge listens.
+///
+/// # Errors
+/// See [`folder`].
+pub(super) fn socket_path() -> Result<PathBuf, Failure> {
+    folder().map(|folder| folder.join("tactpad.sock"))
+}
+
+/// The user's runtime folder, else a folder of the user's own among the temporary files.
+///
+/// # Errors
+/// Somebody else has that folder, who could put there what is not ours.
+pub(super) fn folder() -> Result<PathBuf, Failure> {
+    let runtime = env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from).filter(|folder| is_own(folder));
+    let folder = runtime.unwrap_or_else(|| {
+        let folder = env::temp_dir().join(format!("tactpad-{}", getuid().as_raw()));
+        // It may be there already, whosever it is.
+        let _ = DirBuilder::new().mode(0o700).create(&folder);
+        folder
+    });
+    if is_own(&folder) {
+        Ok(folder)
+    } else {
+        Err(Failure::Failed(format!(
+            "{} is not yours alone, so anybody could answer there: set XDG_RUNTIME_DIR to a folder that is",
+            folder.display()
+        )))
+    }
+}
+
+/// Whether it is a folder that nobody else can write to.
+fn is_own(folder: &Path) -> bool {
+    fs::symlink_metadata(folder)
+        .is_ok_and(|it| it.is_dir() && it.uid() == getuid().as_raw() && it.mode() & 0o022 == 0)
+}

@@ -3,13 +3,18 @@
 use std::fmt;
 use std::fs;
 use std::io::{self, Stdout, Write};
+#[cfg(target_os = "linux")]
+use std::os::fd::AsFd;
 use std::path::{self, Path};
 #[cfg(target_os = "linux")]
 use std::sync::OnceLock;
 
+#[cfg(target_os = "linux")]
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
 use crate::cli::failure::Failure;
 #[cfg(target_os = "linux")]
-use tactpad::bridge::queue::WriteQueue;
+use tactpad::bridge::queue::{WriteGroup, WriteQueue};
 
 /// Writes to `to`, which people call `place`.
 pub(crate) struct Named<W> {
@@ -41,7 +46,7 @@ static MESSAGES: OnceLock<WriteQueue> = OnceLock::new();
 const MESSAGE_BYTES_MAX: usize = 16 << 10;
 
 /// From now on a terminal that is held with Ctrl-S, or a pipe that nobody reads, keeps the verb from nothing: what is said waits half a
-/// second at most, and is lost then.
+/// second for room there, and is lost then.
 ///
 /// # Errors
 /// The system has no thread to give.
@@ -56,7 +61,8 @@ pub(crate) fn wait_for_no_reader() -> io::Result<()> {
 #[cfg(target_os = "linux")]
 pub(crate) fn tell_in_passing(lines: &str) {
     if let Some(messages) = MESSAGES.get() {
-        let _ = messages.push(format!("{}\n", printable(lines)).into_bytes().into());
+        let items = format!("{}\n", printable(lines)).into_bytes();
+        let _ = messages.push(WriteGroup { items, count: 1, written: None });
     }
 }
 
@@ -66,10 +72,19 @@ pub(crate) fn say(line: impl fmt::Display) {
     #[cfg(target_os = "linux")]
     if let Some(messages) = MESSAGES.get() {
         tell_in_passing(&line);
-        let _ = messages.settle();
+        // Where there is room the thread that writes is only late.
+        while messages.settle().is_ok() && messages.waiting() > 0 && has_room(&io::stderr()) {}
         return;
     }
     let _ = writeln!(io::stderr(), "{}", printable(&line));
+}
+
+/// Whether a write would not wait.
+#[cfg(target_os = "linux")]
+fn has_room(to: &impl AsFd) -> bool {
+    let mut asked = [PollFd::new(to, PollFlags::OUT)];
+    let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
+    poll(&mut asked, Some(&at_once)).is_ok() && asked.iter().any(|it| it.revents().contains(PollFlags::OUT))
 }
 
 /// Tells what came of a verb that has written `out`: as a document, to people, or beside the output that it is in.

@@ -328,7 +328,7 @@ mod tests {
         assert!(message.contains("usb:1-2)") && message.contains("usb:1-3)"), "{message}");
         let [_, second] = twins;
         assert_eq!(
-            found(&[second, pad("/dev/ttyACM3", Some("A"))]),
+            found(&[second, at("1-9:1.0", "/dev/ttyACM3", Some("A"))]),
             Ok("/dev/ttyACM3".into()),
             "where it was"
         );

@@ -6,10 +6,11 @@ use std::path::Path;
 
 use super::destination::Destination;
 use crate::cli::failure::Failure;
-use crate::cli::printing::written::reason;
+use crate::cli::printing::written::{reason, say};
 use tactpad::pad::device::{Device, Patch};
 use tactpad::tables::measured::Table;
 use tactpad::tables::measured::columns::TableKind;
+use tactpad::tables::measured::ending::OpenEnd;
 use tactpad::tables::measured::error::{Fault, ReadError};
 use tactpad::tables::measured::{read, write};
 
@@ -46,7 +47,16 @@ pub(crate) fn within_the_rim([x_mm, y_mm]: [f64; 2], patch: &Patch) -> Result<()
 pub(crate) fn read(path: &Path, kind: TableKind, place_max_mm: f64) -> Result<Table, Failure> {
     let refused = |error| refusal(path, kind, error);
     let file = File::open(path).map_err(|error| refused(ReadError { line: 1, fault: Fault::Io(error) }))?;
-    read::table(BufReader::new(file), kind, place_max_mm).map_err(refused)
+    let table = read::table(BufReader::new(file), kind, place_max_mm).map_err(refused)?;
+    warn(path, table.open_end.as_ref());
+    Ok(table)
+}
+
+/// Says that a table's last line may be cut off.
+pub(crate) fn warn(path: &Path, open_end: Option<&OpenEnd>) {
+    if let Some(end) = open_end {
+        say(format_args!("warning: {}:{}: {end}", path.display(), end.line));
+    }
 }
 
 /// Writes a table.

@@ -10,6 +10,7 @@ use super::document::DiagnosisDocument;
 use super::files::{file_name, write_report};
 use super::{report, text};
 use crate::cli::failure::Failure;
+use crate::cli::files::tables;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{print_json, reason, stdout};
 use tactpad::lab::diagnosis::against::{ColumnSelection, compare};
@@ -96,5 +97,7 @@ fn read(path: &Path) -> Result<Sheet, Failure> {
         })
     };
     let file = File::open(path).map_err(|error| refused(ReadError { line: 1, fault: Fault::Io(error) }))?;
-    sheet(BufReader::new(file)).map_err(refused)
+    let sheet = sheet(BufReader::new(file)).map_err(refused)?;
+    tables::warn(path, sheet.open_end());
+    Ok(sheet)
 }

@@ -6,8 +6,9 @@
 use std::borrow::Cow;
 use std::io::BufRead;
 
+use super::ending::OpenEnd;
 use super::error::{Fault, ReadError};
-use super::lines::{Lines, cells};
+use super::rows::Rows;
 
 /// Of a column's cells that are not empty, so many are numbers at least.
 const NUMBERS_MIN: f64 = 0.5;
@@ -17,6 +18,7 @@ const NUMBERS_MIN: f64 = 0.5;
 pub struct Sheet {
     columns: Vec<Column>,
     rows: usize,
+    open_end: Option<OpenEnd>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +35,11 @@ impl Sheet {
     /// How many rows there are.
     pub const fn rows(&self) -> usize {
         self.rows
+    }
+
+    /// The last line, if it may be cut off.
+    pub const fn open_end(&self) -> Option<&OpenEnd> {
+        self.open_end.as_ref()
     }
 
     /// The names of the columns of numbers, in the file's order.
@@ -65,17 +72,15 @@ impl Sheet {
 /// # Errors
 /// The text is no table: where, and why.
 pub fn sheet(from: impl BufRead) -> Result<Sheet, ReadError> {
-    let mut lines = Lines::new(from);
-    let mut sheet = match lines.next_line()? {
-        Some((line, header)) => headed(&header).map_err(|fault| ReadError { line, fault })?,
-        None => return Err(lines.error(Fault::NoHeader)),
-    };
-    while let Some((line, text)) = lines.next_line()? {
-        let read = cells(&text).ok_or(Fault::Quotation).and_then(|cells| sheet.push(&cells));
-        read.map_err(|fault| ReadError { line, fault })?;
-    }
+    let begun = Rows::begin(from)?;
+    let mut rows = begun.ok_or(ReadError { line: 1, fault: Fault::NoHeader })?;
+    let mut sheet = headed(rows.names()).map_err(|fault| rows.error(fault))?;
+    sheet.open_end = rows.each(|_, cells| {
+        sheet.push(cells);
+        Ok(())
+    })?;
     if sheet.rows == 0 {
-        return Err(lines.error(Fault::NoRows));
+        return Err(rows.error(Fault::NoRows));
     }
     for column in &mut sheet.columns {
         let written = column.texts.iter().filter(|text| !text.is_empty()).count() as f64;
@@ -85,27 +90,25 @@ pub fn sheet(from: impl BufRead) -> Result<Sheet, ReadError> {
     Ok(sheet)
 }
 
-fn headed(header: &str) -> Result<Sheet, Fault> {
-    let names = cells(header).ok_or(Fault::Quotation)?;
+fn headed(names: &[String]) -> Result<Sheet, Fault> {
     let mut sheet = Sheet::default();
     for name in names {
-        let name = name.trim().to_owned();
-        if sheet.has(&name) {
-            return Err(Fault::DoubledColumn(name));
+        if sheet.has(name) {
+            return Err(Fault::DoubledColumn(name.clone()));
         }
-        sheet.columns.push(Column { name, numbers: Vec::new(), texts: Vec::new(), is_number: true });
+        let (numbers, texts) = (Vec::new(), Vec::new());
+        sheet.columns.push(Column { name: name.clone(), numbers, texts, is_number: true });
     }
-    if sheet.columns.len() == 1 && header.contains([';', '\t']) {
+    if let [one] = names
+        && one.contains([';', '\t'])
+    {
         return Err(Fault::Separator);
     }
     Ok(sheet)
 }
 
 impl Sheet {
-    fn push(&mut self, cells: &[Cow<'_, str>]) -> Result<(), Fault> {
-        if cells.len() != self.columns.len() {
-            return Err(Fault::Width { found: cells.len(), named: self.columns.len() });
-        }
+    fn push(&mut self, cells: &[Cow<'_, str>]) {
         for (column, cell) in self.columns.iter_mut().zip(cells) {
             let text = cell.trim();
             let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
@@ -113,7 +116,6 @@ impl Sheet {
             column.texts.push(text.to_owned());
         }
         self.rows += 1;
-        Ok(())
     }
 }
 

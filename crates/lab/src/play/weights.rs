@@ -132,9 +132,8 @@ pub fn written(placements: &[Placement]) -> String {
 /// The first line that is none, with what to write.
 pub fn read(text: &str, reach_mm: f64) -> Result<Placements, PlacementError> {
     let refused = |error: ReadError| PlacementError { line: Some(error.line), why: error.fault.to_string() };
-    let nothing = |why: String| PlacementError { line: None, why };
-    let begun = Rows::begin(text.as_bytes()).map_err(refused)?;
-    let mut rows = begun.ok_or_else(|| nothing(format!("it is empty; its first line must be {HEADER}")))?;
+    let empty = Fault::Row(format!("it is empty; its first line must be {HEADER}"));
+    let mut rows = Rows::begin(text.as_bytes(), empty).map_err(refused)?;
     if rows.names().join(",") != HEADER {
         return Err(refused(rows.error(Fault::Row(format!("the first line must be {HEADER}")))));
     }
@@ -145,7 +144,10 @@ pub fn read(text: &str, reach_mm: f64) -> Result<Placements, PlacementError> {
     });
     let open_end = read.map_err(refused)?;
     if all.is_empty() {
-        return Err(nothing("it has no placement; write one line for each".into()));
+        return Err(PlacementError {
+            line: None,
+            why: "it has no placement; write one line for each".into(),
+        });
     }
     Ok(Placements { all, open_end })
 }
@@ -199,7 +201,7 @@ mod tests {
         assert_eq!(read_one, [Placement { line: 3, at_s: 12.5, place_mm: [15.0, -0.0], weight_g: 200.0 }]);
         assert!((read_one[0].label().fz_n - 1.96133).abs() < 1e-9);
         for (text, line, word) in [
-            ("", None, "empty"),
+            ("", Some(1), "empty"),
             ("t_s,x_mm,y_mm,weight_g\n", None, "no placement"),
             ("t,x,y,g\n1,0,0,200", Some(1), "first line"),
             ("t_s,x_mm,y_mm,weight_g\n1,0,0", Some(2), "3 values where"),

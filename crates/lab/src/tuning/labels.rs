@@ -67,12 +67,13 @@ impl Labels {
     pub fn read(text: &str, profile: &Profile) -> Result<Self, LabelsError> {
         let vocabulary = Vocabulary::of(profile);
         let refused = |error: ReadError| LabelsError { line: error.line, what: error.fault.to_string() };
-        let begun = Rows::begin(text.as_bytes()).map_err(refused)?;
-        let Some(mut rows) = begun.filter(|rows| rows.names().join(",") == HEADER) else {
-            let header = text.trim_start_matches('\u{feff}').lines().next().unwrap_or_default();
-            let what = format!("the first line must be {HEADER}, not {}", quoted(header.trim()));
-            return Err(LabelsError { line: 1, what });
-        };
+        let other_header =
+            |header: &str| Fault::Row(format!("the first line must be {HEADER}, not {}", quoted(header)));
+        let mut rows = Rows::begin(text.as_bytes(), other_header("")).map_err(refused)?;
+        let header = rows.names().join(",");
+        if header != HEADER {
+            return Err(refused(rows.error(other_header(&header))));
+        }
         let mut meant: Vec<(usize, [u64; 2], Vec<Binding>)> = Vec::new();
         let read = rows.each(|line, cells| {
             let (times_us, controls) = read_row(cells, &vocabulary).map_err(Fault::Row)?;

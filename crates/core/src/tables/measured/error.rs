@@ -70,6 +70,8 @@ pub enum Fault {
     DoubledColumn(String),
     /// Nothing follows the first line.
     NoRows,
+    /// More rows than fit into a gigabyte: so many do.
+    TooManyRows(usize),
     /// A row with too few or too many cells.
     Width {
         /// Cells of the row.
@@ -160,6 +162,10 @@ impl fmt::Display for Fault {
             }
             Self::DoubledColumn(name) => write!(f, "two columns are named {name}; rename one of them"),
             Self::NoRows => f.write_str("no contact follows the names of the columns"),
+            Self::TooManyRows(most) => write!(
+                f,
+                "the table goes on after {most} rows, which take a gigabyte of memory; leave out what is not needed, or take every tenth row"
+            ),
             Self::Width { found, named } => {
                 write!(f, "{found} values where the header names {named} columns")
             }

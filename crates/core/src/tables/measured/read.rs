@@ -13,6 +13,9 @@ use super::write::push_text;
 use super::{Approach, Label, Row, Table};
 use crate::quantity::CHANNELS;
 
+/// As many rows as a gigabyte holds.
+pub const ROWS_MAX: usize = (1 << 30) / size_of::<Row>();
+
 const FORCES_N: RangeInclusive<f64> = -100.0..=100.0;
 /// Eleven days: what plays in a game, or streams from a pad, counts from its beginning.
 const CONTACT_TIMES_S: RangeInclusive<f64> = 0.0..=1e6;
@@ -30,8 +33,7 @@ const CHANNELS_UV: RangeInclusive<f64> = -1e8..=1e8;
 /// Columns whose names are not known are carried along as texts, but for [`TableKind::Contacts`]. An empty cell of an
 /// optional column says that this row has none; a table of contacts has all times or no column of them.
 pub fn table(from: impl BufRead, kind: TableKind, place_max_mm: f64) -> Result<Table, ReadError> {
-    let begun = Rows::begin(from)?;
-    let mut rows = begun.ok_or(ReadError { line: 1, fault: Fault::Empty(kind) })?;
+    let mut rows = Rows::begin(from, Fault::Empty(kind))?;
     let names: Vec<_> = rows.names().iter().map(String::as_str).collect();
     let layout = Layout::of(&names, kind).map_err(|fault| rows.error(fault))?;
     let mut reader = Reader::new(layout, kind, place_max_mm);
@@ -72,6 +74,9 @@ impl Reader {
 
     /// Takes one line.
     fn row(&mut self, line: usize, cells: &[Cow<'_, str>]) -> Result<(), Fault> {
+        if self.table.rows.len() == ROWS_MAX {
+            return Err(Fault::TooManyRows(ROWS_MAX));
+        }
         let trial = self.trial(cells)?;
         let row = Row {
             line,

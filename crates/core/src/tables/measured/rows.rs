@@ -14,20 +14,20 @@ pub struct Rows<R> {
 }
 
 impl<R: BufRead> Rows<R> {
-    /// Reads the first line that is not empty; none, if there is none.
+    /// Reads the first line that is not empty; `empty` is what is wrong if there is none.
     ///
     /// # Errors
-    /// The line is none of a table.
-    pub fn begin(from: R) -> Result<Option<Self>, ReadError> {
+    /// There is no line, or it is none of a table.
+    pub fn begin(from: R, empty: Fault) -> Result<Self, ReadError> {
         let mut lines = Lines::new(from);
         let names = match lines.next_line()? {
             Some((line, header)) => {
                 let names = cells(&header).ok_or(ReadError { line, fault: Fault::Quotation })?;
                 names.iter().map(|name| name.trim().to_owned()).collect()
             }
-            None => return Ok(None),
+            None => return Err(lines.error(empty)),
         };
-        Ok(Some(Self { lines, names }))
+        Ok(Self { lines, names })
     }
 
     /// The columns' names.
@@ -87,7 +87,7 @@ mod tests {
     /// The cells of all rows, and what may be cut off; or what is wrong, with its line.
     fn read(text: impl AsRef<[u8]>) -> Result<(Vec<Vec<String>>, Option<OpenEnd>), String> {
         let told = |error: ReadError| format!("{}: {}", error.line, error.fault);
-        let mut rows = Rows::begin(text.as_ref()).map_err(told)?.unwrap();
+        let mut rows = Rows::begin(text.as_ref(), Fault::NoHeader).map_err(told)?;
         let mut all = Vec::new();
         let read = rows.each(|_, cells| {
             all.push(cells.iter().map(|cell| cell.as_ref().to_owned()).collect());

@@ -15,6 +15,7 @@ mod decoders;
 mod firmware;
 #[path = "../kernel/guest.rs"]
 mod guest;
+mod hanging_folder;
 mod kept_play;
 mod killed;
 mod nostd;

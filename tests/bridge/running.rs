@@ -84,8 +84,18 @@ impl Running {
     }
 
     pub(crate) fn ctl(&self, request: &str) -> Output {
+        self.ctl_command(request).output().unwrap()
+    }
+
+    /// The same for a request whose answer may not come.
+    pub(crate) fn ctl_begun(&self, request: &str) -> Child {
+        self.ctl_command(request).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+    }
+
+    fn ctl_command(&self, request: &str) -> Command {
         let mut ctl = Command::new(env!("CARGO_BIN_EXE_tactpad"));
-        ctl.env("XDG_RUNTIME_DIR", self.folder.path()).arg("ctl").args(request.split(' ')).output().unwrap()
+        ctl.env("XDG_RUNTIME_DIR", self.folder.path()).arg("ctl").args(request.split(' '));
+        ctl
     }
 
     pub(crate) fn status(&self) -> Value {

@@ -175,7 +175,7 @@ fn doubtful_profile(folder: &Path) -> PathBuf {
 }
 
 /// What is held at the end of an event log.
-fn held(log: &Path) -> Vec<String> {
+pub(crate) fn held(log: &Path) -> Vec<String> {
     let mut read = Log::default();
     read.read(&mut File::open(log).unwrap());
     read.held.into_iter().filter(|(_, value)| *value != 0).map(|(code, _)| code).collect()

@@ -13,6 +13,7 @@ mod finger;
 mod guides;
 mod http;
 mod live;
+mod openings;
 mod pictures;
 mod reports;
 #[path = "../bridge/running.rs"]

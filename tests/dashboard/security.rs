@@ -138,7 +138,7 @@ fn each_answer_says_what_the_browser_may_do() {
 }
 
 /// The first line of what another user is answered.
-fn asked_by_another_user(host: &str, path: &str) -> Option<String> {
+pub(crate) fn asked_by_another_user(host: &str, path: &str) -> Option<String> {
     let (address, port) = host.split_once(':').unwrap();
     let script = format!(
         "exec 3<>/dev/tcp/{address}/{port}; \

@@ -76,6 +76,27 @@ fn a_million_rows_are_judged_within_300_mb() {
 }
 
 #[test]
+fn a_table_for_which_a_verb_would_take_gigabytes_is_refused_with_rows_memory_and_the_way_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = format!("x_mm,y_mm,fx_n,fy_n,fz_n,{}_uv\n", CHANNEL_NAMES.join("_uv,"));
+    let rows = ["0,0,0,0,0,0,0,0,0,0,0,0,0,0\n", "0,0,0,0,1,1,2,3,4,5,6,7,8,9\n"].concat();
+    fs::write(folder.path().join("m.csv"), header + &rows.repeat(260_000)).unwrap();
+    for (line, words) in [
+        ("diagnose --measured m.csv", ["m.csv: 520000 rows would take", "leave rows out"]),
+        ("diagnose --measured m.csv --against m.csv", ["1040000 rows would take", "leave rows out"]),
+        (
+            "adapt --method inverse --measured m.csv --out pad.decoder",
+            ["m.csv: 260000 rows would take", "with --rows"],
+        ),
+    ] {
+        let output = within(800_000, folder.path(), line);
+        assert_eq!(output.status.code(), Some(2), "{line}: {}", said(&output));
+        assert!(words.iter().all(|word| said(&output).contains(word)), "{line}: {}", said(&output));
+        assert!(said(&output).contains("GB of memory"), "{}", said(&output));
+    }
+}
+
+#[test]
 #[ignore = "proof: 20 s: figures of merit, a decoder with memory and neighbours, too"]
 fn a_million_rows_are_judged_within_300_mb_and_are_too_many_neighbours() {
     let folder = tempfile::tempdir().unwrap();

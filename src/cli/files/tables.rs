@@ -6,15 +6,19 @@ use std::path::Path;
 
 use super::destination::Destination;
 use crate::cli::failure::Failure;
-use crate::cli::printing::written::reason;
+use crate::cli::printing::written::{reason, say};
 use tactpad::pad::device::{Device, Patch};
 use tactpad::tables::measured::Table;
 use tactpad::tables::measured::columns::TableKind;
+use tactpad::tables::measured::ending::OpenEnd;
 use tactpad::tables::measured::error::{Fault, ReadError};
 use tactpad::tables::measured::{read, write};
 
 /// Places are often written to two decimals; so rounded, one on the rim may lie this far beyond it.
 const RIM_TOLERANCE_MM: f64 = 0.01;
+
+/// A verb takes this much memory for tables at most: half of what a small machine has.
+const MEMORY_BYTES_MAX: usize = 4_000_000_000;
 
 /// Reads a table of contacts, all of which must be on the plate.
 pub(crate) fn on_the_plate(path: &Path, kind: TableKind, device: &Device) -> Result<Table, Failure> {
@@ -46,7 +50,35 @@ pub(crate) fn within_the_rim([x_mm, y_mm]: [f64; 2], patch: &Patch) -> Result<()
 pub(crate) fn read(path: &Path, kind: TableKind, place_max_mm: f64) -> Result<Table, Failure> {
     let refused = |error| refusal(path, kind, error);
     let file = File::open(path).map_err(|error| refused(ReadError { line: 1, fault: Fault::Io(error) }))?;
-    read::table(BufReader::new(file), kind, place_max_mm).map_err(refused)
+    let table = read::table(BufReader::new(file), kind, place_max_mm).map_err(refused)?;
+    warn(path, table.open_end.as_ref());
+    Ok(table)
+}
+
+/// Refuses rows for which a verb would take more memory than it may, at so many bytes each; `way_out` gets how many it takes.
+pub(crate) fn within_memory(
+    names: &str,
+    rows: usize,
+    row_bytes: usize,
+    way_out: impl FnOnce(usize) -> String,
+) -> Result<(), Failure> {
+    let most = MEMORY_BYTES_MAX / row_bytes;
+    if rows <= most {
+        return Ok(());
+    }
+    let gigabytes = |bytes: usize| bytes as f64 / 1e9;
+    let (needed, taken) = (gigabytes(rows * row_bytes), gigabytes(MEMORY_BYTES_MAX));
+    let way_out = way_out(most);
+    Err(Failure::Unusable(format!(
+        "{names}: {rows} rows would take {needed:.1} GB of memory, and {taken:.0} GB are the most that is taken; {way_out}"
+    )))
+}
+
+/// Says that a table's last line may be cut off.
+pub(crate) fn warn(path: &Path, open_end: Option<&OpenEnd>) {
+    if let Some(end) = open_end {
+        say(format_args!("warning: {}:{}: {end}", path.display(), end.line));
+    }
 }
 
 /// Writes a table.
@@ -72,6 +104,17 @@ fn refusal(path: &Path, kind: TableKind, error: ReadError) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_for_which_memory_would_not_do_are_refused_with_the_figures_and_the_way_out() {
+        let judged = |rows| within_memory("m.csv", rows, 5_000, |most| format!("take {most}"));
+        assert!(judged(800_000).is_ok());
+        let Err(Failure::Unusable(why)) = judged(1_500_000) else { panic!("it is too large") };
+        assert_eq!(
+            why,
+            "m.csv: 1500000 rows would take 7.5 GB of memory, and 4 GB are the most that is taken; take 800000"
+        );
+    }
 
     #[test]
     fn contacts_end_where_the_patch_would_leave_the_plate() {

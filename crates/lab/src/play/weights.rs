@@ -1,11 +1,15 @@
 //! A known weight that was put on marked places.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use crate::calibration::data::contacts::Knowledge;
 use crate::play::windows::Window;
 use tactpad_core::pad::weight::{WEIGHT_SHARE, check_weight, weight_n};
 use tactpad_core::tables::measured::Label;
+use tactpad_core::tables::measured::ending::OpenEnd;
+use tactpad_core::tables::measured::error::{Fault, ReadError};
+use tactpad_core::tables::measured::rows::Rows;
 
 /// Standard deviation of the place of a placement by hand, along each axis.
 const PLACE_MM: f64 = 0.4;
@@ -26,6 +30,15 @@ pub struct Placement {
     pub place_mm: [f64; 2],
     /// The weight.
     pub weight_g: f64,
+}
+
+/// A table of placements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placements {
+    /// In the file's order; at least one.
+    pub all: Vec<Placement>,
+    /// The table's last line, if it may be cut off.
+    pub open_end: Option<OpenEnd>,
 }
 
 /// Why placements are of no use.
@@ -117,37 +130,31 @@ pub fn written(placements: &[Placement]) -> String {
 ///
 /// # Errors
 /// The first line that is none, with what to write.
-pub fn read(text: &str, reach_mm: f64) -> Result<Vec<Placement>, PlacementError> {
-    let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
-    let at = |line: usize, why: String| PlacementError { line: Some(line), why };
-    let is_header =
-        |text: &str| text.trim_start_matches('\u{feff}').split(',').map(str::trim).eq(HEADER.split(','));
-    match lines.next() {
-        Some((_, header)) if is_header(header) => {}
-        Some((line, _)) => return Err(at(line, format!("the first line must be {HEADER}"))),
-        None => {
-            return Err(PlacementError {
-                line: None,
-                why: format!("it is empty; its first line must be {HEADER}"),
-            });
-        }
+pub fn read(text: &str, reach_mm: f64) -> Result<Placements, PlacementError> {
+    let refused = |error: ReadError| PlacementError { line: Some(error.line), why: error.fault.to_string() };
+    let empty = Fault::Row(format!("it is empty; its first line must be {HEADER}"));
+    let mut rows = Rows::begin(text.as_bytes(), empty).map_err(refused)?;
+    if rows.names().join(",") != HEADER {
+        return Err(refused(rows.error(Fault::Row(format!("the first line must be {HEADER}")))));
     }
-    let read = |(line, text): (usize, &str)| placement(line, text, reach_mm).map_err(|why| at(line, why));
-    let placements: Vec<Placement> = lines.map(read).collect::<Result<_, _>>()?;
-    if placements.is_empty() {
+    let mut all = Vec::new();
+    let read = rows.each(|line, cells| {
+        all.push(placement(line, cells, reach_mm).map_err(Fault::Row)?);
+        Ok(())
+    });
+    let open_end = read.map_err(refused)?;
+    if all.is_empty() {
         return Err(PlacementError {
             line: None,
             why: "it has no placement; write one line for each".into(),
         });
     }
-    Ok(placements)
+    Ok(Placements { all, open_end })
 }
 
-fn placement(line: usize, text: &str, reach_mm: f64) -> Result<Placement, String> {
-    let numbers: Option<Vec<f64>> = text
-        .split(',')
-        .map(|cell| cell.trim().parse().ok().filter(|number: &f64| number.is_finite()))
-        .collect();
+fn placement(line: usize, cells: &[Cow<'_, str>], reach_mm: f64) -> Result<Placement, String> {
+    let numbers: Option<Vec<f64>> =
+        cells.iter().map(|cell| cell.trim().parse().ok().filter(|number: &f64| number.is_finite())).collect();
     let Some([at_s, x_mm, y_mm, weight_g]) = numbers.as_deref() else {
         return Err(format!("write four numbers, {HEADER}"));
     };
@@ -190,14 +197,14 @@ mod tests {
 
     #[test]
     fn placements_are_read() {
-        let read_one = read("t_s, x_mm,y_mm,weight_g\n\n12.5,15,-0,200\n", REACH_MM).unwrap();
+        let read_one = read("t_s, x_mm,y_mm,weight_g\n\n12.5,15,-0,200\n", REACH_MM).unwrap().all;
         assert_eq!(read_one, [Placement { line: 3, at_s: 12.5, place_mm: [15.0, -0.0], weight_g: 200.0 }]);
         assert!((read_one[0].label().fz_n - 1.96133).abs() < 1e-9);
         for (text, line, word) in [
-            ("", None, "empty"),
+            ("", Some(1), "empty"),
             ("t_s,x_mm,y_mm,weight_g\n", None, "no placement"),
             ("t,x,y,g\n1,0,0,200", Some(1), "first line"),
-            ("t_s,x_mm,y_mm,weight_g\n1,0,0", Some(2), "four numbers"),
+            ("t_s,x_mm,y_mm,weight_g\n1,0,0", Some(2), "3 values where"),
             ("t_s,x_mm,y_mm,weight_g\n1,0,nan,200", Some(2), "four numbers"),
             ("t_s,x_mm,y_mm,weight_g\n1,40,0,200", Some(2), "beyond the plate"),
             ("t_s,x_mm,y_mm,weight_g\n1,0,0,2", Some(2), "no weight"),

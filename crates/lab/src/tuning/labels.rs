@@ -1,9 +1,13 @@
 //! What was meant when: a table `begin_s,end_s,meant` that people write.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use super::vocabulary::{NONE, Vocabulary};
 use tactpad_core::pipeline::mapping::profile::{Binding, Profile};
+use tactpad_core::tables::measured::ending::OpenEnd;
+use tactpad_core::tables::measured::error::{Fault, ReadError};
+use tactpad_core::tables::measured::rows::Rows;
 use tactpad_core::toml_text::diag::quoted;
 
 /// The table's first line.
@@ -37,6 +41,7 @@ pub struct Class {
 pub struct Labels {
     labels: Vec<Label>,
     classes: Vec<Class>,
+    open_end: Option<OpenEnd>,
 }
 
 /// Why a table of labels cannot be used.
@@ -61,21 +66,21 @@ impl Labels {
     /// Says what is wrong with the first line that cannot be used.
     pub fn read(text: &str, profile: &Profile) -> Result<Self, LabelsError> {
         let vocabulary = Vocabulary::of(profile);
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let mut lines = (1..).zip(text.lines());
-        let header = lines.next().map_or(String::new(), |(_, line)| cells(line).join(","));
+        let refused = |error: ReadError| LabelsError { line: error.line, what: error.fault.to_string() };
+        let other_header =
+            |header: &str| Fault::Row(format!("the first line must be {HEADER}, not {}", quoted(header)));
+        let mut rows = Rows::begin(text.as_bytes(), other_header("")).map_err(refused)?;
+        let header = rows.names().join(",");
         if header != HEADER {
-            return Err(LabelsError {
-                line: 1,
-                what: format!("the first line must be {HEADER}, not {}", quoted(&header)),
-            });
+            return Err(refused(rows.error(other_header(&header))));
         }
         let mut meant: Vec<(usize, [u64; 2], Vec<Binding>)> = Vec::new();
-        for (line, text) in lines.filter(|(_, text)| !text.trim().is_empty()) {
-            let (times_us, controls) =
-                read_line(text, &vocabulary).map_err(|what| LabelsError { line, what })?;
+        let read = rows.each(|line, cells| {
+            let (times_us, controls) = read_row(cells, &vocabulary).map_err(Fault::Row)?;
             meant.push((line, times_us, controls));
-        }
+            Ok(())
+        });
+        let open_end = read.map_err(refused)?;
         if meant.is_empty() {
             return Err(LabelsError {
                 line: 2,
@@ -91,10 +96,8 @@ impl Labels {
                 return Err(LabelsError { line: *line, what });
             }
         }
-        Ok(Self::new(
-            &vocabulary,
-            meant.into_iter().map(|(_, times_us, controls)| (times_us, controls)).collect(),
-        ))
+        let meant = meant.into_iter().map(|(_, times_us, controls)| (times_us, controls)).collect();
+        Ok(Self { open_end, ..Self::new(&vocabulary, meant) })
     }
 
     fn new(vocabulary: &Vocabulary, meant: Vec<([u64; 2], Vec<Binding>)>) -> Self {
@@ -121,6 +124,7 @@ impl Labels {
                 .into_iter()
                 .map(|controls| Class { name: vocabulary.name(&controls), controls })
                 .collect(),
+            open_end: None,
         }
     }
 
@@ -134,25 +138,26 @@ impl Labels {
         &self.classes
     }
 
+    /// The table's last line, if it may be cut off.
+    pub const fn open_end(&self) -> Option<&OpenEnd> {
+        self.open_end.as_ref()
+    }
+
     /// Those that begin from one time on and before another.
     #[must_use]
     pub fn between(&self, from_us: u64, to_us: u64) -> Self {
         let is_in = |label: &&Label| (from_us..to_us).contains(&label.begin_us);
-        Self { labels: self.labels.iter().filter(is_in).copied().collect(), classes: self.classes.clone() }
+        let labels = self.labels.iter().filter(is_in).copied().collect();
+        Self { labels, classes: self.classes.clone(), open_end: None }
     }
 }
 
-/// A line's cells, without blanks and quotation marks.
-fn cells(line: &str) -> Vec<&str> {
-    line.split(',').map(|cell| cell.trim().trim_matches('"').trim()).collect()
-}
-
-fn read_line(text: &str, vocabulary: &Vocabulary) -> Result<([u64; 2], Vec<Binding>), String> {
-    let cells = cells(text);
-    let [begin, end, meant] = cells[..] else {
-        return Err(format!("it has {} cells; write {HEADER}, as 12.5,13.2,left", cells.len()));
+fn read_row(cells: &[Cow<'_, str>], vocabulary: &Vocabulary) -> Result<([u64; 2], Vec<Binding>), String> {
+    let [begin, end, meant] = cells else {
+        return Err(format!("write {HEADER}, as 12.5,13.2,left"));
     };
-    let (begin_us, end_us) = (microseconds("begin_s", begin)?, microseconds("end_s", end)?);
+    let meant = meant.trim();
+    let (begin_us, end_us) = (microseconds("begin_s", begin.trim())?, microseconds("end_s", end.trim())?);
     if begin_us >= end_us {
         return Err(format!("it ends at {end} s, which is not after its begin at {begin} s"));
     }
@@ -200,7 +205,7 @@ mod tests {
             ("", "1: the first line must be begin_s,end_s,meant"),
             ("begin,end,meant\n", "1: the first line must be begin_s,end_s,meant"),
             ("begin_s,end_s,meant\n", "2: the table has no labels"),
-            ("begin_s,end_s,meant\n1,2\n", "2: it has 2 cells; write begin_s,end_s,meant"),
+            ("begin_s,end_s,meant\n1,2\n", "2: 2 values where the header names 3 columns"),
             ("begin_s,end_s,meant\n1,2,up\n2,1,up\n", "3: it ends at 1 s, which is not after"),
             ("begin_s,end_s,meant\nx,2,up\n", "2: begin_s is \"x\"; write seconds"),
             ("begin_s,end_s,meant\n1,inf,up\n", "2: end_s is \"inf\"; write seconds"),

@@ -39,6 +39,9 @@ impl Measured {
         let recordings = tables.into_iter().map(|table| Recording::tared_or_raw(table, full_scale_n));
         let contacts = Contacts::of(recordings.collect(), rows, seed);
         let contacts = contacts.map_err(|error| Failure::Unusable(format!("{names}: {error}")))?;
+        tables::within_memory(&names, contacts.count(), method.row_bytes(), |most| {
+            format!("take some of them with --rows {most}")
+        })?;
         let kept = if rows.is_some() { drawn(kept, &contacts) } else { kept };
         Ok(Self { contacts, names, tables: each.into_iter().zip(kept).collect() })
     }

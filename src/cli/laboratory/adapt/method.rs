@@ -18,3 +18,14 @@ pub(super) enum Method {
     /// The mean of the five nearest contacts: a baseline.
     Knn,
 }
+
+impl Method {
+    /// Memory that a fit takes for each contact.
+    pub(super) const fn row_bytes(self) -> usize {
+        match self {
+            Self::Inverse => 170_000,
+            Self::Scdf => 2_000,
+            Self::Wrench | Self::Linear | Self::Knn => 1_000,
+        }
+    }
+}

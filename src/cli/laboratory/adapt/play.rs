@@ -9,6 +9,7 @@ use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
 use crate::cli::files::field::field_of;
 use crate::cli::files::played;
+use crate::cli::files::tables;
 use crate::cli::files::text_file;
 use tactpad::lab::play::home::HomeError;
 use tactpad::lab::play::weights::{self, Placement};
@@ -53,5 +54,7 @@ pub(super) fn run(options: &PlayOptions<'_>, device: &Device) -> Result<(), Fail
 pub(crate) fn read_weights(path: &Path, reach_mm: f64) -> Result<Vec<Placement>, Failure> {
     let unusable = |why: String| Failure::Unusable(format!("{}: {why}", path.display()));
     let text = text_file::read(path).map_err(unusable)?;
-    weights::read(&text, reach_mm).map_err(|why| unusable(why.to_string()))
+    let read = weights::read(&text, reach_mm).map_err(|why| unusable(why.to_string()))?;
+    tables::warn(path, read.open_end.as_ref());
+    Ok(read.all)
 }

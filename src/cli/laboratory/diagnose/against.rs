@@ -10,9 +10,10 @@ use super::document::DiagnosisDocument;
 use super::files::{file_name, write_report};
 use super::{report, text};
 use crate::cli::failure::Failure;
+use crate::cli::files::tables;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{print_json, reason, stdout};
-use tactpad::lab::diagnosis::against::{ColumnSelection, compare};
+use tactpad::lab::diagnosis::against::{ColumnSelection, TEXTS, compare};
 use tactpad::lab::diagnosis::report::Diagnosis;
 use tactpad::tables::measured::error::{Fault, ReadError};
 use tactpad::tables::measured::sheet::{Sheet, sheet};
@@ -28,6 +29,9 @@ const UNITS: [(&str, &str); 8] = [
     ("_n", "N"),
     ("_kpa", "kPa"),
 ];
+
+/// Memory that a comparison takes for each row of both tables, with what it repeats of it.
+const ROW_BYTES: usize = 4_000;
 
 pub(super) fn run(arguments: &Arguments, measured: &Path, earlier: &Path) -> Result<(), Failure> {
     let Arguments { save_device, report, labels, channels, without, json, pad, .. } = arguments;
@@ -45,12 +49,12 @@ pub(super) fn run(arguments: &Arguments, measured: &Path, earlier: &Path) -> Res
     }
     let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;
     let [before, after] = [read(earlier)?, read(measured)?];
+    let names = format!("{} against {}", measured.display(), earlier.display());
+    tables::within_memory(&names, before.rows() + after.rows(), ROW_BYTES, super::fewer_rows)?;
     let diagnosis = {
         let _progress = Progress::begin("looking for changes");
         let asked = ColumnSelection { labels, channels, without };
-        compare(&before, &after, &asked).map_err(|why| {
-            Failure::Unusable(format!("{} against {}: {why}", measured.display(), earlier.display()))
-        })?
+        compare(&before, &after, &asked).map_err(|why| Failure::Unusable(format!("{names}: {why}")))?
     };
     let unit = unit(&diagnosis);
     if let Some(folder) = folder {
@@ -96,5 +100,7 @@ fn read(path: &Path) -> Result<Sheet, Failure> {
         })
     };
     let file = File::open(path).map_err(|error| refused(ReadError { line: 1, fault: Fault::Io(error) }))?;
-    sheet(BufReader::new(file)).map_err(refused)
+    let sheet = sheet(BufReader::new(file), &TEXTS).map_err(refused)?;
+    tables::warn(path, sheet.open_end());
+    Ok(sheet)
 }

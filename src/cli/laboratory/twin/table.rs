@@ -20,6 +20,9 @@ use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::{Row, Table};
 use tactpad::tables::plans;
 
+/// Memory that a row takes: the plan's, the measured one, the true contact and its cycles.
+const ROW_BYTES: usize = 600;
+
 /// The report of a table.
 #[derive(Serialize)]
 struct TableReport {
@@ -37,6 +40,9 @@ pub(super) fn make(arguments: &Arguments, prints_table: bool) -> Result<(), Fail
     let Arguments { plan: path, seed, cycles, .. } = arguments;
     let device = arguments.pad.read_imperfect()?;
     let plan = planned(path, &device, *seed)?;
+    tables::within_memory(&path.display().to_string(), plan.rows.len(), ROW_BYTES, |most| {
+        format!("cut the plan into parts of {most} rows, and let --state keep the pad between them")
+    })?;
     let to = Destination::of(&arguments.out)?;
     let truth_to = arguments.truth.as_deref().map(Destination::of).transpose()?;
     let kept = arguments.state.as_deref().map(LifeFile::of).transpose()?;

@@ -11,6 +11,7 @@ pub(super) use self::arguments::Arguments;
 use self::report::{HeldOut, Pair, TuneReport};
 use super::profile;
 use crate::cli::failure::Failure;
+use crate::cli::files::tables;
 use crate::cli::files::text_file;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{print_json, stdout};
@@ -85,5 +86,8 @@ fn read_labels(path: &Path, profile: &Profile) -> Result<Labels, Failure> {
             path.display()
         ))
     })?;
-    Labels::read(&text, profile).map_err(|error| Failure::Unusable(format!("{}:{error}", path.display())))
+    let labels = Labels::read(&text, profile);
+    let labels = labels.map_err(|error| Failure::Unusable(format!("{}:{error}", path.display())))?;
+    tables::warn(path, labels.open_end());
+    Ok(labels)
 }

@@ -38,6 +38,21 @@ pub enum Fault {
     LongLine,
     /// A quotation mark opens and does not close, or something follows the closing one.
     Quotation,
+    /// The file is compressed, or a workbook, which is a ZIP archive.
+    Packed,
+    /// The line holds bytes that are zero, as files do that a machine wrote when its power failed.
+    Zeros,
+    /// A fault in a last line that has no line end.
+    InOpenLine(Box<Self>),
+    /// A last line without a line end whose last cell is shorter than those above it.
+    CutOff {
+        /// The column.
+        name: String,
+        /// What it holds; its beginning, if that is long.
+        text: String,
+    },
+    /// What the reader of a certain table says of a row.
+    Row(String),
     /// The columns are not separated by commas.
     Separator,
     /// Columns that the table must have.
@@ -55,6 +70,8 @@ pub enum Fault {
     DoubledColumn(String),
     /// Nothing follows the first line.
     NoRows,
+    /// More rows than fit into a gigabyte: so many do.
+    TooManyRows(usize),
     /// A row with too few or too many cells.
     Width {
         /// Cells of the row.
@@ -115,6 +132,22 @@ impl fmt::Display for Fault {
                 "a quotation mark does not close, or does not close the cell; write \"\" for one inside a text, and \
                  no line breaks",
             ),
+            Self::Packed => f.write_str(
+                "the file is compressed, or a workbook; unpack it, or save the table as CSV",
+            ),
+            Self::Zeros => f.write_str(
+                "the line holds bytes that are zero: the file was not written to its end; leave out what begins here",
+            ),
+            Self::InOpenLine(fault) => write!(
+                f,
+                "{fault}; the file ends in this line without a line end: if it was cut off, copy it anew or leave the line out"
+            ),
+            Self::CutOff { name, text } => write!(
+                f,
+                "the file ends in this line, and its last {name}, {text:?}, is cut off or has fewer digits than those \
+                 above; copy the file anew, leave the line out, or end it if it is whole"
+            ),
+            Self::Row(why) => f.write_str(why),
             Self::Separator => f.write_str(
                 "the columns are not separated by commas; save the table as CSV with commas, and points in numbers",
             ),
@@ -129,6 +162,10 @@ impl fmt::Display for Fault {
             }
             Self::DoubledColumn(name) => write!(f, "two columns are named {name}; rename one of them"),
             Self::NoRows => f.write_str("no contact follows the names of the columns"),
+            Self::TooManyRows(most) => write!(
+                f,
+                "the table goes on after {most} rows, which take a gigabyte of memory; leave out what is not needed, or take every tenth row"
+            ),
             Self::Width { found, named } => {
                 write!(f, "{found} values where the header names {named} columns")
             }
@@ -166,6 +203,11 @@ impl Fault {
             _ => Ok(()),
         }
     }
+}
+
+/// As much of a cell as a message bears.
+pub(super) fn short(cell: &str) -> String {
+    cell.chars().take(40).collect()
 }
 
 const fn gap(unit: &str) -> &str {

@@ -7,8 +7,6 @@ use crate::quantity::CHANNELS;
 /// Where the columns of a file stand, from 0.
 #[derive(Debug)]
 pub(super) struct Layout {
-    /// How many there are.
-    pub(super) width: usize,
     /// The label's.
     pub(super) label: [usize; LABEL.len()],
     /// The channels'.
@@ -48,7 +46,6 @@ impl Layout {
         let is_other = |name: &str| kind.reads(Column::Others) && !known(name) && !is_channel(name);
         let others = names.iter().enumerate().filter(|(_, name)| is_other(name));
         Ok(Self {
-            width: names.len(),
             // None is missing.
             label: LABEL.map(|name| place(name).unwrap_or_default()),
             channels,

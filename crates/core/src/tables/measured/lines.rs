@@ -9,6 +9,9 @@ use crate::toml_text::is_utf16;
 /// A longer line is no row of a table; without a limit `/dev/zero` would be one endless line.
 pub(super) const LINE_BYTES_MAX: usize = 1 << 20;
 
+/// What files begin with that gzip, ZIP, xz, bzip2 and Zstandard have written.
+const PACKED: [&[u8]; 5] = [b"\x1f\x8b", b"PK\x03\x04", b"\xfd7zXZ", b"BZh", b"\x28\xb5\x2f\xfd"];
+
 /// Lines, counted from 1.
 pub(super) struct Lines<R> {
     from: R,
@@ -33,11 +36,17 @@ impl<R: BufRead> Lines<R> {
                 return Ok(None);
             }
             self.number += 1;
-            if self.line.len() > LINE_BYTES_MAX {
-                return Err(self.error(Fault::LongLine));
+            if self.number == 1 && PACKED.iter().any(|begin| self.line.starts_with(begin)) {
+                return Err(self.error(Fault::Packed));
             }
             if self.number == 1 && is_utf16(&self.line) {
                 return Err(self.error(Fault::Utf16));
+            }
+            if self.line.contains(&0) {
+                return Err(self.error(Fault::Zeros));
+            }
+            if self.line.len() > LINE_BYTES_MAX {
+                return Err(self.error(Fault::LongLine));
             }
             if self.number == 1 && self.line.starts_with("\u{feff}".as_bytes()) {
                 self.line.drain(.."\u{feff}".len());

@@ -8,15 +8,18 @@
 
 pub mod alike;
 pub mod columns;
+pub mod ending;
 pub mod error;
 mod layout;
 mod lines;
 pub mod read;
+pub mod rows;
 pub mod sheet;
 pub mod write;
 pub mod zero;
 
 use self::columns::Column;
+use self::ending::OpenEnd;
 use crate::quantity::{CHANNELS, Contact};
 
 /// Dwell of a static load before it is read, where a row does not say.
@@ -143,6 +146,8 @@ pub struct Table {
     pub sessions: Vec<String>,
     /// Columns that nobody knows.
     pub others: ExtraColumns,
+    /// Its last line in the file, if that may be cut off.
+    pub open_end: Option<OpenEnd>,
 }
 
 /// Columns that are carried along: they belong to the lines of the file that they were read from.

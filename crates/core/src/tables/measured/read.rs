@@ -6,12 +6,15 @@ use std::io::BufRead;
 use std::ops::RangeInclusive;
 
 use super::columns::{Column, LABEL, TableKind, channel_columns};
-use super::error::{Fault, ReadError};
+use super::error::{Fault, ReadError, short};
 use super::layout::Layout;
-use super::lines::{Lines, cells};
+use super::rows::Rows;
 use super::write::push_text;
 use super::{Approach, Label, Row, Table};
 use crate::quantity::CHANNELS;
+
+/// As many rows as a gigabyte holds.
+pub const ROWS_MAX: usize = (1 << 30) / size_of::<Row>();
 
 const FORCES_N: RangeInclusive<f64> = -100.0..=100.0;
 /// Eleven days: what plays in a game, or streams from a pad, counts from its beginning.
@@ -30,27 +33,17 @@ const CHANNELS_UV: RangeInclusive<f64> = -1e8..=1e8;
 /// Columns whose names are not known are carried along as texts, but for [`TableKind::Contacts`]. An empty cell of an
 /// optional column says that this row has none; a table of contacts has all times or no column of them.
 pub fn table(from: impl BufRead, kind: TableKind, place_max_mm: f64) -> Result<Table, ReadError> {
-    let mut lines = Lines::new(from);
-    let header = match lines.next_line()? {
-        Some((line, header)) => layout(&header, kind).map_err(|fault| ReadError { line, fault })?,
-        None => return Err(lines.error(Fault::Empty(kind))),
-    };
-    let mut reader = Reader::new(header, kind, place_max_mm);
-    while let Some((line, text)) = lines.next_line()? {
-        reader.row(line, &text).map_err(|fault| ReadError { line, fault })?;
-    }
+    let mut rows = Rows::begin(from, Fault::Empty(kind))?;
+    let names: Vec<_> = rows.names().iter().map(String::as_str).collect();
+    let layout = Layout::of(&names, kind).map_err(|fault| rows.error(fault))?;
+    let mut reader = Reader::new(layout, kind, place_max_mm);
+    reader.table.open_end = rows.each(|line, cells| reader.row(line, cells))?;
     if reader.table.rows.is_empty() {
-        return Err(lines.error(Fault::NoRows));
+        return Err(rows.error(Fault::NoRows));
     }
     // Half of what it grew to may be empty.
     reader.table.rows.shrink_to_fit();
     Ok(reader.table)
-}
-
-fn layout(header: &str, kind: TableKind) -> Result<Layout, Fault> {
-    let names = cells(header).ok_or(Fault::Quotation)?;
-    let names: Vec<_> = names.iter().map(|name| name.trim()).collect();
-    Layout::of(&names, kind)
 }
 
 /// A table as far as it is read.
@@ -80,28 +73,27 @@ impl Reader {
     }
 
     /// Takes one line.
-    fn row(&mut self, line: usize, text: &str) -> Result<(), Fault> {
-        let cells = cells(text).ok_or(Fault::Quotation)?;
-        if cells.len() != self.layout.width {
-            return Err(Fault::Width { found: cells.len(), named: self.layout.width });
+    fn row(&mut self, line: usize, cells: &[Cow<'_, str>]) -> Result<(), Fault> {
+        if self.table.rows.len() == ROWS_MAX {
+            return Err(Fault::TooManyRows(ROWS_MAX));
         }
-        let trial = self.trial(&cells)?;
+        let trial = self.trial(cells)?;
         let row = Row {
             line,
             trial,
-            session: self.session(&cells)?,
-            t_s: self.time(&cells, trial)?,
-            temp_c: self.optional(&cells, Column::Temperature, &TEMPERATURES_C, "°C")?,
-            cycle: self.optional(&cells, Column::Cycle, &CYCLES, "")?,
-            dwell_s: self.optional(&cells, Column::Dwell, &DWELLS_S, "s")?,
-            approach: self.approach(&cells)?,
-            turned_deg: self.optional(&cells, Column::Turned, &TURNS_DEG, "°")?,
-            label: self.label(&cells)?,
-            uv: self.channels(&cells)?,
+            session: self.session(cells)?,
+            t_s: self.time(cells, trial)?,
+            temp_c: self.optional(cells, Column::Temperature, &TEMPERATURES_C, "°C")?,
+            cycle: self.optional(cells, Column::Cycle, &CYCLES, "")?,
+            dwell_s: self.optional(cells, Column::Dwell, &DWELLS_S, "s")?,
+            approach: self.approach(cells)?,
+            turned_deg: self.optional(cells, Column::Turned, &TURNS_DEG, "°")?,
+            label: self.label(cells)?,
+            uv: self.channels(cells)?,
         };
         self.table.rows.push(row);
         if !self.layout.others.is_empty() {
-            self.table.others.texts.push((line, self.others(&cells)));
+            self.table.others.texts.push((line, self.others(cells)));
         }
         Ok(())
     }
@@ -239,11 +231,6 @@ fn number(name: &str, cell: &str, allowed: &RangeInclusive<f64>, unit: &'static 
         None if cell.is_empty() => Err(Fault::EmptyCell(name())),
         None => Err(Fault::NotANumber { name: name(), text: short(cell) }),
     }
-}
-
-/// As much of a cell as a message bears.
-fn short(cell: &str) -> String {
-    cell.chars().take(40).collect()
 }
 
 #[cfg(test)]

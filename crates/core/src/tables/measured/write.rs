@@ -203,11 +203,11 @@ mod tests {
         let table = Table {
             rows: vec![row(2, 0), row(0, 1)],
             trials: vec!["a, \"b\"".into(), " c".into()],
-            sessions: vec![],
             others: ExtraColumns {
                 names: vec!["note".into(), "x,y".into()],
                 texts: vec![(2, "free,\"1,2\"".into())],
             },
+            ..Table::default()
         };
         let wanted = [
             "trial,x_mm,y_mm,fx_n,fy_n,fz_n,note,\"x,y\"",

@@ -41,6 +41,9 @@ pub fn effects() -> impl Iterator<Item = &'static str> {
     EFFECTS.into_iter().chain([ZERO]).chain(gatekeepers::EFFECTS)
 }
 
+/// Columns whose texts are needed.
+pub const TEXTS: [&str; 2] = ["trial", "session"];
+
 /// Holds a table against an earlier one of the same sensor.
 ///
 /// # Errors

@@ -423,7 +423,7 @@ impl Bridge {
         {
             self.host.tell(state.sentence());
         }
-        if let Some(warning) = self.notifier.warning_to_report(self.driver.pipeline.warning()) {
+        if let Some(warning) = self.notifier.warning_to_report(now, self.driver.pipeline.warning()) {
             self.host.tell(&warning.to_string());
         }
         if let Some(line) = self.notifier.weighing_to_report(self.driver.pipeline.weighing()) {
@@ -456,6 +456,8 @@ fn poll_once(fds: &mut [PollFd<'_>], timeout: Option<&Timespec>) -> io::Result<(
     }
 }
 
+#[cfg(test)]
+mod doubt;
 #[cfg(test)]
 mod histories;
 #[cfg(test)]

@@ -11,14 +11,15 @@ use tactpad_core::pipeline::weighing::{Progress, WeighingReport};
 use tactpad_core::time::HostInstant;
 
 /// Debounces reports: a state is reported once it has lasted for a second. A state in which the player must act is reported at once.
-#[derive(Clone, Copy, Debug)]
+/// What comes and goes is not reported each time, see [`RateLimit`].
+#[derive(Clone, Debug)]
 pub(super) struct Notifier {
     /// The state that was reported last.
     reported: State,
     /// The current state, and since when it lasts.
     candidate: State,
     since: HostInstant,
-    /// The lasting warning that was reported last.
+    /// The lasting warning that was reported, if it is still so.
     reported_warning: Option<Warning>,
     /// Whether it was reported that groups of events were dropped.
     reported_groups: bool,
@@ -26,18 +27,54 @@ pub(super) struct Notifier {
     reported_calls: bool,
     /// The number of the weighing whose end was reported last.
     reported_weighing: u64,
-    /// What was reported to be wrong with the pad's stream, if that is still so, …
-    reported_line: Option<Discriminant<LineFinding>>,
-    /// … and since when, if it was ever reported.
-    line_since: Option<HostInstant>,
+    /// What was reported to be wrong with the pad's stream, and when, if that is still so.
+    reported_line: Option<(Discriminant<LineFinding>, HostInstant)>,
+    limit: RateLimit,
 }
+
+/// What can be wrong again and again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Topic {
+    State(State),
+    Warning(Discriminant<Warning>),
+    Line(Discriminant<LineFinding>),
+}
+
+impl Topic {
+    /// How often it is reported in a minute: people bring about states, as by a plug, and look for the answer.
+    const fn reports_max(self) -> usize {
+        if matches!(self, Self::State(_)) { 3 } else { 1 }
+    }
+}
+
+/// What was reported within the last minute. A fault that comes and goes would fill the screen.
+#[derive(Clone, Debug, Default)]
+struct RateLimit {
+    reported: Vec<(Topic, HostInstant)>,
+}
+
+impl RateLimit {
+    /// Whether this may be reported at `now`; then it counts as reported.
+    fn allows(&mut self, now: HostInstant, topic: Topic) -> bool {
+        self.reported.retain(|(_, at)| now.us_since(*at) < REPEAT_US);
+        let reports = self.reported.iter().filter(|(reported, _)| *reported == topic).count();
+        let is_allowed = reports < topic.reports_max();
+        if is_allowed {
+            self.reported.push((topic, now));
+        }
+        is_allowed
+    }
+}
+
+/// After so long a thing is reported again, in microseconds.
+const REPEAT_US: u64 = 60_000_000;
 
 /// A state that lasts this long is reported, in microseconds.
 const LASTING_US: u64 = 1_000_000;
 
 impl Notifier {
     /// A notifier that reports nothing as long as the bridge plays.
-    pub(super) const fn new(now: HostInstant) -> Self {
+    pub(super) fn new(now: HostInstant) -> Self {
         Self {
             reported: State::Playing,
             candidate: State::Playing,
@@ -47,7 +84,7 @@ impl Notifier {
             reported_calls: false,
             reported_weighing: 0,
             reported_line: None,
-            line_since: None,
+            limit: RateLimit::default(),
         }
     }
 
@@ -58,17 +95,29 @@ impl Notifier {
         }
         // A lift may be all that there is of it, and a press that is not heard must not go without a word.
         let lasts = state == State::Loaded || now.us_since(self.since) >= LASTING_US;
-        (lasts && state != self.reported).then(|| {
+        let is_reported = lasts && state != self.reported && self.limit.allows(now, Topic::State(state));
+        is_reported.then(|| {
             self.reported = state;
             state
         })
     }
 
-    /// The warning to report now, if there is one: each that lasts is reported once.
-    pub(super) fn warning_to_report(&mut self, warning: Option<Warning>) -> Option<Warning> {
-        let lasting = warning.filter(|warning| warning.lasts() && self.reported_warning != Some(*warning));
-        self.reported_warning = lasting.or(self.reported_warning);
-        lasting
+    /// The warning to report at `now`, if there is one: one that lasts is reported once, and not again at once if it comes again.
+    pub(super) fn warning_to_report(
+        &mut self,
+        now: HostInstant,
+        warning: Option<Warning>,
+    ) -> Option<Warning> {
+        let lasting = warning.filter(|warning| warning.lasts());
+        if lasting.is_none() {
+            self.reported_warning = None;
+        }
+        let new = lasting.filter(|warning| {
+            self.reported_warning != Some(*warning)
+                && self.limit.allows(now, Topic::Warning(discriminant(warning)))
+        });
+        self.reported_warning = new.or(self.reported_warning);
+        new
     }
 
     /// What to report of the pad's stream at `now`: what is wrong with it, or that nothing is any more and for how long it was.
@@ -77,19 +126,18 @@ impl Notifier {
         now: HostInstant,
         finding: Option<&LineFinding>,
     ) -> Option<String> {
-        let kind = finding.map(discriminant);
-        if std::mem::replace(&mut self.reported_line, kind) == kind {
+        let Some(finding) = finding else {
+            let (_, since) = self.reported_line.take()?;
+            let seconds = now.us_since(since) / 1_000_000;
+            return Some(format!("the pad's stream is in order again, after {seconds} s"));
+        };
+        let kind = discriminant(finding);
+        let is_new = self.reported_line.is_none_or(|(reported, _)| reported != kind);
+        if !is_new || !self.limit.allows(now, Topic::Line(kind)) {
             return None;
         }
-        let since = self.line_since.replace(now);
-        match (finding, since) {
-            (Some(finding), _) => Some(finding.to_string()),
-            (None, Some(since)) => Some(format!(
-                "the pad's stream is in order again, after {} s",
-                now.us_since(since) / 1_000_000
-            )),
-            (None, None) => None,
-        }
+        self.reported_line = Some((kind, now));
+        Some(finding.to_string())
     }
 
     /// The result of a weighing to report, once it has ended.
@@ -149,6 +197,46 @@ mod tests {
         let told = notifier.line_to_report(at(14), None).unwrap();
         assert_eq!(told, "the pad's stream is in order again, after 12 s");
         assert_eq!(notifier.line_to_report(at(15), None), None);
+    }
+
+    /// At which milliseconds of three minutes something is told, looked at every 40 ms.
+    fn told_ms(mut told: impl FnMut(HostInstant, u64) -> bool) -> Vec<u64> {
+        (0..180_000).step_by(40).filter(|ms| told(HostInstant::default().plus_us(ms * 1_000), *ms)).collect()
+    }
+
+    #[test]
+    fn what_comes_and_goes_is_told_once_a_minute() {
+        let mut notifier = Notifier::new(HostInstant::default());
+        // A fast drift accuses one channel after the other, and sometimes none.
+        let warnings = told_ms(|now, ms| {
+            let channel = (ms / 480 % 9) as usize;
+            let warning = (channel != 4).then_some(Warning::SilentChannel { channel });
+            notifier.warning_to_report(now, warning).is_some()
+        });
+        assert_eq!(warnings, [0, 60_000, 120_000]);
+        let mut notifier = Notifier::new(HostInstant::default());
+        let lines = told_ms(|now, ms| {
+            let finding = (ms / 6_000 % 2 == 0).then_some(LineFinding::Loss { percent: 2.0 });
+            notifier.line_to_report(now, finding.as_ref()).is_some()
+        });
+        assert_eq!(lines, [0, 6_000, 60_000, 66_000, 120_000, 126_000], "and that it is over");
+        let mut notifier = Notifier::new(HostInstant::default());
+        let states = told_ms(|now, ms| {
+            let state = if ms / 1_200 % 2 == 0 { State::Faulty } else { State::Playing };
+            notifier.state_to_report(now, state).is_some()
+        });
+        assert!(states.len() <= 18 && states.len() >= 12, "{states:?}");
+    }
+
+    #[test]
+    fn another_thing_is_told_at_once() {
+        let at = |s: u64| HostInstant::default().plus_us(s * 1_000_000);
+        let mut notifier = Notifier::new(at(0));
+        assert!(notifier.warning_to_report(at(1), Some(Warning::OtherPad)).is_some());
+        assert!(notifier.warning_to_report(at(2), Some(Warning::SilentChannel { channel: 1 })).is_some());
+        let stands = LineFinding::SequenceStands { sequence: 3 };
+        assert!(notifier.line_to_report(at(3), Some(&stands)).is_some());
+        assert!(notifier.line_to_report(at(4), Some(&LineFinding::RestartFlagStays)).is_some());
     }
 
     #[test]

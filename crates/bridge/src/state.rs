@@ -99,7 +99,7 @@ impl State {
             }
             Self::Doubtful => "frames are lost, repeated or damaged, nothing is pressed: check the line",
             Self::Faulty => {
-                "a channel is saturated, stuck or without supply, nothing is pressed: check the pad"
+                "a channel is saturated, stuck, without supply or unlike the others, nothing is pressed: check the pad"
             }
             Self::Paused => "paused",
             Self::Refused => "this pad cannot be played with: update tactpad, or check the pad's firmware",

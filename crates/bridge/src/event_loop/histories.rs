@@ -28,8 +28,8 @@ enum Happening {
     Touch(Contact, u64),
     /// Frames are lost.
     Lose(u32),
-    /// A frame comes again, or an old one.
-    Repeat(u32),
+    /// So many frames come again, from a time so many frames ago.
+    Repeat { age: u32, frames: u32 },
     /// The pad's clock jumps by so many microseconds, either way.
     Jump(u64),
     /// For so many milliseconds this channel is at the end of its range.
@@ -77,6 +77,11 @@ fn requests() -> impl Strategy<Value = Request> {
     ]
 }
 
+/// How old a frame from the past is, in frames.
+fn ages() -> impl Strategy<Value = u32> {
+    prop_oneof![0..4_u32, 60..70_u32, 0..2_000_u32, 0..=u32::MAX / 2]
+}
+
 fn happenings() -> impl Strategy<Value = Happening> {
     let restart = (times_us(), any::<bool>(), -400_000..400_000_i32, "[ -~\r\n]{0,80}");
     prop_oneof![
@@ -90,12 +95,25 @@ fn happenings() -> impl Strategy<Value = Happening> {
         3 => (contacts(), 0..800_u64).prop_map(|(contact, ms)| Happening::Touch(contact, ms)),
         2 => (0..800_u64).prop_map(|ms| Happening::Touch(AWAY, ms)),
         1 => prop_oneof![1..3_u32, any::<u32>()].prop_map(Happening::Lose),
-        1 => (0..100_u32).prop_map(Happening::Repeat),
+        1 => (ages(), 1..5_u32).prop_map(|(age, frames)| Happening::Repeat { age, frames }),
         1 => times_us().prop_map(Happening::Jump),
         1 => (0..9_usize, 1..100_u64).prop_map(|(channel, ms)| Happening::Saturate(channel, ms)),
         1 => any::<bool>().prop_map(Happening::Identify),
         1 => (0..20_000_u64, 0..3_000_u64).prop_map(|(us_per_ms, ms)| Happening::Pace(us_per_ms, ms)),
     ]
+}
+
+/// Sends frames again that are so old.
+fn repeat(play: &mut Play, age: u32, frames: u32) {
+    let (sequence, time_us) = (play.sequence, play.time_us);
+    play.sequence = sequence.wrapping_sub(age);
+    play.time_us = time_us.saturating_sub(1_000 * u64::from(age));
+    for _ in 0..frames {
+        let sample = play.sample(&AWAY);
+        play.send(play.now, &Message::Sample(sample));
+        play.time_us += 1_000;
+    }
+    (play.sequence, play.time_us) = (sequence, time_us);
 }
 
 impl Happening {
@@ -114,14 +132,7 @@ impl Happening {
             Self::Rubbish(bytes) => drop(play.send_bytes(begin, bytes)),
             Self::Touch(contact, ms) => drop(play.touch(contact, *ms)),
             Self::Lose(frames) => play.sequence = play.sequence.wrapping_add(*frames),
-            Self::Repeat(age) => {
-                let (sequence, time_us) = (play.sequence, play.time_us);
-                play.sequence = sequence.wrapping_sub(*age);
-                play.time_us = time_us.saturating_sub(1_000 * u64::from(*age));
-                let sample = play.sample(&AWAY);
-                play.send(begin, &Message::Sample(sample));
-                (play.sequence, play.time_us) = (sequence, time_us);
-            }
+            Self::Repeat { age, frames } => repeat(play, *age, *frames),
             Self::Jump(by_us) => play.time_us = play.time_us.wrapping_add(*by_us),
             Self::Saturate(channel, ms) => {
                 let offset = play.offset[*channel];
@@ -175,5 +186,31 @@ proptest! {
         prop_assert!(pressed.iter().any(|(_, value, _)| *value != 0), "{state}: {pressed:?}");
         play.touch(&AWAY, 200);
         prop_assert!(play.bridge.driver.pipeline.held().next().is_none(), "something stays down");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn frames_from_the_past_lose_no_press(
+        past in prop::collection::vec((ages(), 1..3_u32, 0..100_u64), 1..8),
+        is_begun in any::<bool>(),
+    ) {
+        let mut play = Play::start();
+        // Numbers that have begun at zero again, or not.
+        play.sequence = if is_begun { play.sequence } else { 3_000_000_000 };
+        play.touch(&AWAY, 1_000);
+        let restarts = play.bridge.driver.pipeline.health().restarts;
+        for (age, frames, wait_ms) in past {
+            play.touch(&AWAY, wait_ms);
+            // The frame that is sent next is none from the past.
+            repeat(&mut play, age.max(frames), frames);
+            // In doubt for 50 ms.
+            play.touch(&AWAY, 60);
+            let pressed = play.touch(&RIGHT, 100);
+            prop_assert!(pressed.iter().any(|(_, value, _)| *value != 0), "{age} {frames}: {pressed:?}");
+        }
+        prop_assert!(play.bridge.driver.pipeline.health().restarts == restarts, "a restart");
     }
 }

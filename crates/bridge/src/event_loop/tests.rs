@@ -112,6 +112,21 @@ fn a_pad_that_is_pulled_out_holds_nothing_any_more() {
 }
 
 #[test]
+fn a_sequence_number_of_eight_bits_is_told_before_what_comes_of_it() {
+    let mut play = Play::waiting();
+    play.plug_in();
+    play.wait(300);
+    for ms in 0..6_000_u64 {
+        let fz_n = if ms > 1_000 && ms % 500 < 300 { 2.0 } else { 0.0 };
+        play.press(fz_n, 1);
+        play.sequence &= 255;
+    }
+    let told = play.messages.0.lock().unwrap();
+    assert!(told.iter().any(|line| line.starts_with("after sequence number 255")), "{told:?}");
+    assert!(!told.iter().any(|line| line.contains("lift the finger")), "{told:?}");
+}
+
+#[test]
 fn a_program_ends_its_own_bridge_without_signals() {
     let (mut bridge, ..) = without_pad();
     bridge.requests.sender().unwrap().send(Request::End).unwrap();

@@ -134,6 +134,7 @@ pub(super) struct Play {
     pub(super) bridge: Bridge,
     line: Line,
     written: Written,
+    pub(super) messages: MessageLog,
     pub(super) now: HostInstant,
     /// The bridge's clock.
     now_ns: &'static AtomicU64,
@@ -146,6 +147,8 @@ pub(super) struct Play {
     pub(super) status: Status,
     /// Added to each channel, in counts.
     pub(super) offset: [i32; 9],
+    /// What becomes of the channels of a sample with this number, in counts.
+    pub(super) wiring: Box<dyn Fn(u32, &mut [i32; 9])>,
     field: InfluenceField,
 }
 
@@ -164,12 +167,14 @@ impl Play {
             let nothing = std::fs::File::open("/dev/null").unwrap();
             Ok(Box::new(Port { line: Arc::clone(&plug), nothing }))
         }));
+        let messages = MessageLog::default();
         let now_ns: &AtomicU64 = Box::leak(Box::default());
-        let bridge = bridge(now_ns, pad, Box::new(written.clone()), &MessageLog::default());
+        let bridge = bridge(now_ns, pad, Box::new(written.clone()), &messages);
         Self {
             bridge,
             line,
             written,
+            messages,
             now: HostInstant::default(),
             now_ns,
             sequence: 1,
@@ -177,6 +182,7 @@ impl Play {
             us_per_ms: 1_000,
             status: Status::OK,
             offset: [0; 9],
+            wiring: Box::new(|_, _| ()),
             field: PadField::nominal().signals,
         }
     }
@@ -238,10 +244,12 @@ impl Play {
         // A channel that stands still for long is a fault: the last digit moves.
         let jitter = (self.sequence % 2) as i32;
         let uv = self.field.strain_uv(contact).uv;
+        let mut counts = std::array::from_fn(|k| (100.0 * uv[k]) as i32 + self.offset[k] + jitter);
+        (self.wiring)(self.sequence, &mut counts);
         let sample = Sample {
             sequence: self.sequence,
             time_us: self.time_us,
-            counts: std::array::from_fn(|k| (100.0 * uv[k]) as i32 + self.offset[k] + jitter),
+            counts,
             temperature_centi_c: 2_500,
             status: std::mem::replace(&mut self.status, Status::OK),
         };

@@ -14,15 +14,15 @@ pub struct Health {
     pub frames_damaged: u64,
     /// Frames missing by sequence number.
     pub frames_lost: u64,
-    /// Frames that came again or too late; dropped.
+    /// Frames that came again, too late, or from another time; dropped.
     pub frames_repeated: u64,
     /// Sound frames of a newer protocol version; skipped, and the pad is refused if it sends nothing else.
     pub frames_newer: u64,
     /// Sound frames of a kind this version does not know; skipped.
     pub frames_unknown: u64,
-    /// Pad clock steps backwards or by more than [`crate::pipeline::link::GAP_MAX_US`].
+    /// Pad clock steps backwards or by more than 100 ms.
     pub time_jumps: u64,
-    /// Pad restarts: a restart flag, or a sequence that began anew.
+    /// Pad restarts: a restart flag, or several frames that go on from one another and not from what was before.
     pub restarts: u64,
     /// Times the link fell silent or the pad was unplugged.
     pub links_lost: u64,
@@ -34,8 +34,10 @@ pub struct Health {
     pub supply_faults: u64,
     /// Times the zero turned out to have been measured with something on the pad.
     pub zeros_loaded: u64,
-    /// Touches that are not one finger on the calibrated pad; they are played all the same.
+    /// Touches that are not one finger on the calibrated pad; they are played all the same, for 10 s at most.
     pub second_fingers: u64,
     /// Times a channel did not answer to the load.
     pub channels_silent: u64,
+    /// Times a channel began to read what no finger makes it read.
+    pub channels_stray: u64,
 }

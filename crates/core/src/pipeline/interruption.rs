@@ -30,6 +30,10 @@ pub enum Cause {
     Taring,
     /// What looks like a touch is a wrong zero.
     Drifted,
+    /// A channel read by itself, which is no load; its zero is known anew.
+    Stray,
+    /// A channel of this touch cannot be believed.
+    Doubted,
     /// The zero was measured with something on the pad.
     Loaded,
     /// The player has the zero measured again.
@@ -101,6 +105,9 @@ impl Cause {
             Self::Taring       => [Keep,   Keep,   Keep,    Keep,   Keep,   Keep,   Keep,   Keep,   Doubt,  Keep,    Keep],
             // Memory that was followed from a wrong zero is wrong, too. The touch has begun anew by itself, and is lifted.
             Self::Drifted      => [Keep,   Keep,   Doubt,   Keep,   Forget, Forget, Keep,   Keep,   Keep,   Keep,    Keep],
+            Self::Stray        => [Keep,   Keep,   Keep,    Forget, Keep,   Forget, Keep,   Forget, Doubt,  Doubt,   Doubt],
+            // What memory followed is wrong. The touch is looked at as long as it lasts.
+            Self::Doubted      => [Keep,   Keep,   Keep,    Keep,   Keep,   Forget, Keep,   Keep,   Doubt,  Doubt,   Doubt],
             Self::Loaded       => [Keep,   Keep,   Doubt,   Keep,   Doubt,  Forget, Keep,   Keep,   Doubt,  Keep,    Keep],
             // A weight that lies there would be the new zero.
             Self::Retared      => [Keep,   Keep,   Doubt,   Keep,   Forget, Keep,   Keep,   Forget, Doubt,  Forget,  Doubt],
@@ -122,7 +129,7 @@ impl From<Fault> for Cause {
 mod tests {
     use super::*;
 
-    const ALL: [Cause; 16] = [
+    const ALL: [Cause; 18] = [
         Cause::Unplugged,
         Cause::Lost,
         Cause::Restarted,
@@ -135,6 +142,8 @@ mod tests {
         Cause::Faulty,
         Cause::Taring,
         Cause::Drifted,
+        Cause::Stray,
+        Cause::Doubted,
         Cause::Loaded,
         Cause::Retared,
         Cause::Released,

@@ -187,6 +187,10 @@ impl LineCheck {
             self.close();
         }
         let look = self.look.get_or_insert_with(|| Look::begin(now, sample));
+        if let Some(largest) = look.wrapped(sample) {
+            // At once: what comes of it must not be told first.
+            self.finding = Some(LineFinding::SequenceWraps { largest });
+        }
         look.sample(now, sample);
         look.lost = look.lost.saturating_add(lost);
         look.clock_breaks += u32::from(breaks);
@@ -198,16 +202,21 @@ impl LineCheck {
     }
 
     fn close(&mut self) {
-        let found = self.look.take().and_then(|look| look.found());
+        let look = self.look.take();
+        let found = look.as_ref().and_then(Look::found);
         let is_again = match (&self.candidate, &found) {
             (_, None) => false,
             (Some(before), Some(now)) if discriminant(before) == discriminant(now) => true,
             (_, Some(now)) => now.is_certain(),
         };
         self.clean = if found.is_some() { 0 } else { self.clean.saturating_add(1) };
+        let largest = look.map_or(0, |look| look.sequence_largest);
+        // A number of 16 bits begins again once a minute.
+        let may_wrap_again =
+            matches!(self.finding, Some(LineFinding::SequenceWraps { largest: last }) if largest <= last);
         if is_again {
             self.finding = found;
-        } else if self.clean >= CLEAN_LOOKS {
+        } else if self.clean >= CLEAN_LOOKS && !may_wrap_again {
             self.finding = None;
         }
         self.candidate = found;
@@ -238,13 +247,27 @@ impl Look {
         self.samples += 1;
         self.restart_flags += u32::from(sample.status.restarted());
         self.sequence_stands += u32::from(!is_first && sample.sequence == self.last.sequence);
-        self.sequence_falls += u32::from(!sample.status.restarted() && sample.sequence < self.last.sequence);
+        self.sequence_falls += u32::from(self.falls(sample));
         self.sequence_largest = self.sequence_largest.max(sample.sequence);
         self.widest_us = self.widest_us.max(now.us_since(self.heard));
         for (k, has_changed) in self.has_changed.iter_mut().enumerate() {
             *has_changed |= sample.counts.get(k) != self.first.counts.get(k);
         }
         (self.heard, self.last) = (now, *sample);
+    }
+
+    /// Whether the number falls though time goes on: neither an old frame nor a pad that began anew.
+    const fn falls(&self, sample: &Sample) -> bool {
+        !sample.status.restarted()
+            && sample.sequence < self.last.sequence
+            && sample.time_us > self.last.time_us
+    }
+
+    /// The largest number, where the next one is zero and it is all that eight bits or more can count.
+    fn wrapped(&self, sample: &Sample) -> Option<u32> {
+        let largest = self.last.sequence;
+        let is_full = largest >= u8::MAX.into() && largest & largest.wrapping_add(1) == 0;
+        (is_full && sample.sequence == 0 && self.falls(sample)).then_some(largest)
     }
 
     /// The gravest that it shows.
@@ -350,6 +373,24 @@ mod tests {
             sample
         };
         assert_eq!(found(2_000, 1, standing), Some(ChannelStands { channel: 4, counts: 1_234 }));
+    }
+
+    #[test]
+    fn a_number_of_few_bits_is_found_when_it_begins_again_and_is_not_taken_back() {
+        for (largest, ms) in [(255, 260), (255, 9_000), (4_095, 4_100), (65_535, 65_540), (65_535, 80_000)] {
+            let short = move |sample: Sample, number| Sample { sequence: number & largest, ..sample };
+            assert_eq!(found(ms, 1, short), Some(LineFinding::SequenceWraps { largest }), "{ms} ms");
+        }
+    }
+
+    #[test]
+    fn old_frames_are_no_number_that_begins_again() {
+        let old = |sample: Sample, number: u32| {
+            let behind = if number > 700 && number.is_multiple_of(300) { 200 + number / 7 } else { 0 };
+            let time_us = sample.time_us - 1_000 * u64::from(behind);
+            Sample { sequence: sample.sequence - behind, time_us, ..sample }
+        };
+        assert_eq!(found(9_000, 1, old), None);
     }
 
     #[test]

@@ -279,6 +279,12 @@ impl Pipeline {
                 self.phase = Phase::Faulty;
                 self.interrupt(Cause::Faulty);
             }
+            DecodedSample::Doubtful => {
+                if self.phase != Phase::Faulty {
+                    self.interrupt(Cause::Doubted);
+                }
+                self.phase = Phase::Faulty;
+            }
         }
     }
 
@@ -288,7 +294,7 @@ impl Pipeline {
                 contact.and(self.stage.strain()).map_or(WeighingSample::Nothing, WeighingSample::Load)
             }
             DecodedSample::Taring | DecodedSample::Loaded => WeighingSample::NoZero,
-            DecodedSample::Faulty => WeighingSample::Faulty,
+            DecodedSample::Faulty | DecodedSample::Doubtful => WeighingSample::Faulty,
         };
         let ratio = self.weighing.see(self.at, seen, self.stage.gain().factor(), self.stage.decoder());
         if let Some(ratio) = ratio {

@@ -202,8 +202,11 @@ pub(super) fn warning(status: &Value) -> Option<String> {
     let text = |key: &str| warning.get(key).and_then(Value::as_str);
     Some(match (text("kind")?, text("channel")) {
         ("silent_channel", Some(channel)) => format!("channel {channel} does not answer to the load"),
+        ("stray_channel", Some(channel)) => {
+            format!("channel {channel} reads what no finger makes it read: it drifts, or its wires are loose")
+        }
         ("other_pad", _) => "most touches do not fit the decoder: it may be another pad's".into(),
-        ("second_finger", _) => "the last touch was not one finger".into(),
+        ("second_finger", _) => "the last touch was not one finger, or a channel is off".into(),
         (kind, _) => kind.to_owned(),
     })
 }

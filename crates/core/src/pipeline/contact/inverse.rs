@@ -84,6 +84,17 @@ pub struct ContactFit {
     pub left_uv: [f64; CHANNELS],
 }
 
+/// A contact that was fitted without one channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct FitWithout {
+    /// Sum of the squares of what it leaves over of the other channels, by their weights.
+    pub misfit: f64,
+    /// What the channel should read then, µV.
+    pub expected_uv: f64,
+    /// The force's magnitude, N.
+    pub force_n: f64,
+}
+
 /// Expected error of the estimate of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
@@ -159,9 +170,18 @@ impl Inverse {
         Some(ContactFit { contact, left_uv: trial.left_uv })
     }
 
-    /// Sum of the squares of what the best contact leaves over of these channels, where each counts by its weight.
-    pub(super) fn least_misfit(&self, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> Option<f64> {
-        self.best(uv, weights).map(|trial| trial.misfit)
+    /// The contact that explains the other channels best, where each counts by its weight.
+    pub(super) fn without(
+        &self,
+        channel: usize,
+        uv: &[f64; CHANNELS],
+        weights: &[f64; CHANNELS],
+    ) -> Option<FitWithout> {
+        let (mut others_uv, mut weights) = (*uv, *weights);
+        (others_uv[channel], weights[channel]) = (0.0, 0.0);
+        let trial = self.best(&others_uv, &weights)?;
+        let force_n = libm::sqrt(dot(&trial.force_n, &trial.force_n));
+        Some(FitWithout { misfit: trial.misfit, expected_uv: -trial.left_uv[channel], force_n })
     }
 
     /// The same with its uncertainty; `None` for strain that is not finite, or beyond anything that a pad can read.

@@ -5,7 +5,7 @@ use firmware_proto::sample::Sample;
 use super::Decoder;
 use super::touch::{Touch, TouchState};
 use super::uncertainty::Estimate;
-use super::watch::{Warning, Watch};
+use super::watch::{Doubt, Warning, Watch};
 use crate::pipeline::compensation::gain::CommonGain;
 use crate::pipeline::compensation::memory::Memory;
 use crate::pipeline::compensation::thermometer::Thermometer;
@@ -27,6 +27,8 @@ pub enum DecodedSample {
     Loaded,
     /// Nothing can be said: a channel cannot be trusted.
     Faulty,
+    /// Nothing can be said: what the channels read together is no finger.
+    Doubtful,
 }
 
 /// Signal, compensation, decoder, touch and watch:
@@ -135,12 +137,17 @@ impl ContactStage {
             Conditioned::Strain(strain) => {
                 let strain = self.memory.freed(&self.thermometer.at_reference(&gain.calibrated(&strain)));
                 self.strain = Some(strain);
-                DecodedSample::Contact(self.contact(at, &strain, health, probe))
+                self.contact(at, &strain, health, probe)
             }
             Conditioned::Pulled => {
                 health.zeros_loaded += 1;
                 self.interrupt(Cause::Loaded);
                 self.wait(at, DecodedSample::Loaded)
+            }
+            Conditioned::Stray { channel } => {
+                self.watch.name_stray(channel, health);
+                self.interrupt(Cause::Stray);
+                self.wait(at, DecodedSample::Doubtful)
             }
             Conditioned::Taring => self.wait(at, DecodedSample::Taring),
             Conditioned::Loaded => self.wait(at, DecodedSample::Loaded),
@@ -160,7 +167,7 @@ impl ContactStage {
         strain: &Strain,
         health: &mut Health,
         probe: &mut P,
-    ) -> Option<Contact> {
+    ) -> DecodedSample {
         let (contact, explained) = self.decoder.explain(strain);
         probe.mark(PipelineStage::Contact);
         let touch = self.touch.update(at, &contact);
@@ -168,11 +175,22 @@ impl ContactStage {
             self.interrupt(Cause::Drifted);
         }
         let touched = touch == TouchState::Touched;
-        self.memory.follow(at, touched.then_some(strain));
-        if let Some((explained, inverse)) = explained.zip(self.decoder.inverse()) {
-            self.watch.see(at, strain, &explained, touched, inverse, health);
+        if self.watch.is_doubted() {
+            self.memory.wait(at);
+        } else {
+            self.memory.follow(at, touched.then_some(strain));
         }
-        touched.then_some(contact)
+        let doubt = explained.zip(self.decoder.inverse()).and_then(|(explained, inverse)| {
+            self.watch.see(at, strain, &explained, touched, inverse, health)
+        });
+        if doubt == Some(Doubt::Zero) {
+            self.interrupt(Cause::Drifted);
+        }
+        if doubt.is_some() {
+            DecodedSample::Doubtful
+        } else {
+            DecodedSample::Contact(touched.then_some(contact))
+        }
     }
 
     /// Does to each part what [`Cause::effects`] says.

@@ -5,6 +5,7 @@
 
 pub mod fault;
 pub mod filter;
+pub mod lone;
 pub mod stillness;
 pub mod tare;
 
@@ -59,6 +60,11 @@ pub enum Conditioned {
     Loaded,
     /// The zero turned out to be a load: it is to be measured anew.
     Pulled,
+    /// A channel reads a load of which the others know nothing: it is none, and was taken for the channel's zero.
+    Stray {
+        /// Its index.
+        channel: usize,
+    },
     /// A channel is at its limit, stuck, or without supply; nothing can be said about the contact.
     Faulty,
 }
@@ -150,6 +156,9 @@ impl Signal {
         let mean = self.filter.push(&sample.counts);
         let block_uv = self.tare.watch(at, &raw_uv(sample.counts.map(f64::from)));
         if self.tare.is_known() {
+            if let Some(channel) = block_uv.and_then(|uv| self.tare.lone(&uv, &pad.rest)) {
+                return Conditioned::Stray { channel };
+            }
             if block_uv.is_some_and(|uv| self.tare.is_pulled(&uv, pad.touched, &pad.rest, &load_n)) {
                 return Conditioned::Pulled;
             }

@@ -4,6 +4,7 @@
 //! pull at the plate: of two readings the lower load is nearer to the zero. So a press is never the zero once a lower load
 //! has been seen, and a zero that turns out to be a load is measured anew.
 
+use super::lone::lone_channel;
 use super::stillness::{STILL_UV, Stillness};
 use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
@@ -13,6 +14,12 @@ const SAME_N: f32 = 0.10;
 
 /// So many blocks in a row below the zero are no slip of a sample: what was taken for the zero was a load.
 const PULL_BLOCKS: u32 = 2;
+
+/// So many blocks in a row with a channel that reads alone are no slip of a sample either.
+const LONE_BLOCKS: u32 = 2;
+
+/// A channel that reads less by itself does not matter: a finger on its module would not yet be a touch.
+const LONE_UV: f64 = 250.0;
 
 /// The lowest reading counts so long, unless the pad reads it again: a pad that jumps once when it is switched on must be
 /// tared some time.
@@ -69,6 +76,8 @@ pub struct Tare {
     loaded: bool,
     /// Blocks in a row below the zero.
     pulls: u32,
+    /// Blocks in a row in which a channel reads alone.
+    lones: u32,
 }
 
 impl Default for Tare {
@@ -89,6 +98,7 @@ impl Tare {
             floor: None,
             loaded: false,
             pulls: 0,
+            lones: 0,
         }
     }
 
@@ -115,6 +125,18 @@ impl Tare {
     /// block of samples that it closes, if it closes one.
     pub fn watch(&mut self, at: StreamInstant, raw_uv: &[f64; CHANNELS]) -> Option<[f64; CHANNELS]> {
         self.stillness.push(at, raw_uv)
+    }
+
+    /// The channel that reads alone in the blocks up to this one. That is no load, so it is this channel's zero from now on.
+    pub fn lone(&mut self, block_uv: &[f64; CHANNELS], rest: &UntouchedOffset) -> Option<usize> {
+        let zero_uv = self.zero_uv.as_mut()?;
+        let read_uv = std::array::from_fn(|k| block_uv[k] - zero_uv[k] - rest.uv[k]);
+        let lone = lone_channel(&read_uv).filter(|channel| read_uv[*channel].abs() > LONE_UV);
+        self.lones = if lone.is_some() { self.lones + 1 } else { 0 };
+        let channel = lone.filter(|_| self.lones >= LONE_BLOCKS)?;
+        zero_uv[channel] += read_uv[channel];
+        self.lones = 0;
+        Some(channel)
     }
 
     /// Whether the blocks up to this one show that the zero was a load: nothing can pull at the plate. One with a touch in it
@@ -144,6 +166,14 @@ impl Tare {
         rest: &UntouchedOffset,
         load_n: impl Fn(&Strain) -> f32,
     ) -> bool {
+        let is_lone = |from_uv: &[f64; CHANNELS]| {
+            let moved_uv = std::array::from_fn(|k| block_uv[k] - from_uv[k]);
+            lone_channel(&moved_uv).is_some_and(|channel| moved_uv[channel].abs() > LONE_UV)
+        };
+        if self.reference_uv.as_ref().is_some_and(is_lone) {
+            // No load is added or taken away: a channel has moved, and loads cannot be compared with those before.
+            (self.reference_uv, self.floor) = (None, None);
+        }
         let reference_uv = *self.reference_uv.get_or_insert(*block_uv);
         let load_n = |uv: &[f64; CHANNELS]| load_n(&relative(uv, &reference_uv));
         let floor_n = self.lower_floor(at, load_n(block_uv));

@@ -1,41 +1,32 @@
 //! Whether what the channels read is one finger on the pad that the decoder knows.
 //!
 //! Nine channels tell five numbers, so four equations are left over. Their misfit warns of a second finger, a channel that
-//! does not answer, and a pad that is not the calibrated one. A warning warns: it changes no contact.
+//! does not answer or reads what no finger makes it read, and a pad that is not the calibrated one. A warning warns. But what a
+//! channel shows that cannot be believed is no contact, see [`Doubt`].
 //!
 //! What the channels leave over is averaged over 100 ms, whole periods of the mains. What is left of the noise of single
 //! readings is measured while nothing touches the pad. The relative noise lasts for seconds, so a press has one draw of it,
 //! and however long it is held the misfit of one finger stays one draw of chi-square with four degrees of freedom.
 
-use std::fmt;
-
-use serde::{Serialize, Serializer};
+#[cfg(test)]
+mod drift;
+mod finding;
+mod warning;
 
 use super::inverse::{ContactFit, Inverse};
-use super::uncertainty::Noise;
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::Effect;
-use crate::quantity::{CHANNEL_NAMES, CHANNELS, Contact, Strain};
+use crate::pipeline::signal::lone::lone_channel;
+use crate::quantity::{CHANNELS, Contact, Strain};
 use crate::time::StreamInstant;
+use finding::{ANSWERS, Finding, Mean, judge, reads, weights};
+pub use warning::Warning;
 
 /// Block over which is averaged: five periods of 50 Hz mains, six of 60 Hz.
 const BLOCK_US: u64 = 100_000;
 
 /// As a finger comes, filter and skew make channels of different moments one reading; it takes about so long.
 const SETTLING_US: u64 = 30_000;
-
-/// Chi-square of four numbers that a ten-thousandth exceeds. Ten minutes of play are about 600 presses, and noise that is
-/// forgotten after 3 s is drawn anew a few hundred times in them: one false warning in ten such plays.
-const MISFIT_MAX: f64 = 23.51;
-
-/// Chi-square of three numbers that a hundredth exceeds: what is left without a channel explains the rest.
-const REST_MAX: f64 = 11.34;
-
-/// A silent channel reads less than so many standard deviations.
-const SILENT: f64 = 3.0;
-
-/// One that was thought to be silent and reads more than so many is not: what leaks from other channels is less.
-const ANSWERS: f64 = 10.0;
 
 /// The decoder's own noise counts as so many blocks before the first.
 const SCATTER_KNOWN: f64 = 4.0;
@@ -47,71 +38,17 @@ const SCATTER_BLOCKS: f64 = 100.0;
 const TOUCHES: u32 = 8;
 const OTHER_TOUCHES: u32 = 6;
 
-/// Warning to the player.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case", tag = "kind")]
-#[non_exhaustive]
-pub enum Warning {
-    /// It is not one finger: a second one, or something else on the pad.
-    SecondFinger,
-    /// A channel does not answer to the load.
-    SilentChannel {
-        /// Its index.
-        #[serde(serialize_with = "by_name")]
-        channel: usize,
-    },
-    /// Most touches are not one finger on the calibrated pad.
-    OtherPad,
-}
+/// What is not one finger all the time for so long is none: nobody plays so, and a fault does. It is the time after which a faint
+/// touch is drift.
+const UNEXPLAINED_US: u64 = 10_000_000;
 
-fn by_name<S: Serializer>(channel: &usize, to: S) -> Result<S::Ok, S::Error> {
-    to.serialize_str(name(*channel))
-}
-
-fn name(channel: usize) -> &'static str {
-    CHANNEL_NAMES.get(channel).copied().unwrap_or("unknown")
-}
-
-impl Warning {
-    /// Whether it is of the pad, not of a touch.
-    pub const fn lasts(self) -> bool {
-        !matches!(self, Self::SecondFinger)
-    }
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::SecondFinger => {
-                f.write_str("this is not one finger: lift the others, and what lies on the pad")
-            }
-            Self::SilentChannel { channel } => {
-                write!(f, "channel {} does not answer to the load: check its wires", name(*channel))
-            }
-            Self::OtherPad => f.write_str(
-                "most touches do not fit the decoder: is it this pad's? `tactpad adapt` makes one from measured contacts",
-            ),
-        }
-    }
-}
-
-/// Means over a stretch of time.
-#[derive(Clone, Copy, Debug, Default)]
-struct Mean {
-    /// The channels as they were decoded: compensated.
-    uv: [f64; CHANNELS],
-    /// Residual of the contact, µV.
-    left_uv: [f64; CHANNELS],
-    /// The force's magnitude.
-    force_n: f64,
-}
-
-/// Finding about a stretch of a touch by itself.
+/// Why a touch is no contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Finding {
-    Fine,
-    Silent(usize),
-    Unexplained,
+pub enum Doubt {
+    /// A channel cannot be believed, and a finger may be there.
+    Channel,
+    /// It lasts too long for fingers: the zero is wrong.
+    Zero,
 }
 
 /// Looks at samples, one by one.
@@ -130,6 +67,12 @@ pub struct Watch {
     touches: u32,
     /// A channel that did not answer, until it does.
     silent: Option<usize>,
+    /// A channel that read what no finger makes it read, until a touch is one finger.
+    stray: Option<usize>,
+    /// Whether this touch is no contact, as that channel is in it.
+    is_doubted: bool,
+    /// Since when this touch is not one finger.
+    unexplained: Option<StreamInstant>,
 }
 
 /// The samples of one stretch of time.
@@ -177,6 +120,9 @@ impl Watch {
             judged: false,
             touches: 0,
             silent: None,
+            stray: None,
+            is_doubted: false,
+            unexplained: None,
         }
     }
 
@@ -184,12 +130,18 @@ impl Watch {
     /// enough to be judged.
     pub const fn warning(&self) -> Option<Warning> {
         let other_fingers = (self.touches & ((1 << TOUCHES) - 1)).count_ones();
-        match self.silent {
-            Some(channel) => Some(Warning::SilentChannel { channel }),
-            None if other_fingers >= OTHER_TOUCHES => Some(Warning::OtherPad),
-            None if self.touches & 1 == 1 => Some(Warning::SecondFinger),
-            None => None,
+        match (self.stray, self.silent) {
+            (Some(channel), _) => Some(Warning::StrayChannel { channel }),
+            (None, Some(channel)) => Some(Warning::SilentChannel { channel }),
+            (None, None) if other_fingers >= OTHER_TOUCHES => Some(Warning::OtherPad),
+            (None, None) if self.touches & 1 == 1 => Some(Warning::SecondFinger),
+            (None, None) => None,
         }
+    }
+
+    /// Whether the touch at hand is no contact.
+    pub const fn is_doubted(&self) -> bool {
+        self.is_doubted
     }
 
     /// In doubt, the block that was begun is not gone on with.
@@ -201,7 +153,7 @@ impl Watch {
         }
     }
 
-    /// Takes the sample at `at`: compensated channels, and what the decoder made of them.
+    /// Takes the sample at `at`: compensated channels, and what the decoder made of them. Whether what they show is no contact.
     pub fn see(
         &mut self,
         at: StreamInstant,
@@ -210,22 +162,25 @@ impl Watch {
         touched: bool,
         inverse: &Inverse,
         health: &mut Health,
-    ) {
+    ) -> Option<Doubt> {
         if touched != self.touched {
             self.turn(at, touched);
         }
         if self.block.samples == 0 {
             self.block = Block::from(self.block.begins.max(at));
         }
-        if at < self.block.begins {
-            return;
+        if at >= self.block.begins {
+            self.block.add(strain, explained);
         }
-        self.block.add(strain, explained);
-        if at.us_since(self.block.begins) >= BLOCK_US {
+        if self.block.samples > 0 && at.us_since(self.block.begins) >= BLOCK_US {
             let mean = self.block.mean();
             self.block = Block::from(at);
-            if touched { self.judge(inverse, &mean, health) } else { self.learn(&mean.uv) }
+            if touched {
+                return self.judge(at, inverse, &mean, health);
+            }
+            self.learn(inverse, &mean.uv, health);
         }
+        self.is_doubted.then_some(Doubt::Channel)
     }
 
     /// A finger comes or leaves.
@@ -233,12 +188,12 @@ impl Watch {
         self.touched = touched;
         self.before = [None; 2];
         self.block = Block::from(at.plus_us(SETTLING_US));
-        self.judged = false;
+        (self.judged, self.is_doubted, self.unexplained) = (false, false, None);
     }
 
     /// The pad was untouched for another block. A finger that comes moves the channels before it is known as one, so the
     /// newest block does not count yet.
-    fn learn(&mut self, uv: &[f64; CHANNELS]) {
+    fn learn(&mut self, inverse: &Inverse, uv: &[f64; CHANNELS], health: &mut Health) {
         if let [Some(first), Some(second)] = &self.before {
             self.scatter_blocks = (self.scatter_blocks + 1.0).min(SCATTER_BLOCKS);
             for (k, variance) in self.scatter_uv2.iter_mut().enumerate() {
@@ -246,29 +201,65 @@ impl Watch {
                 let off = second[k] - first[k];
                 *variance += (off * off / 2.0 - *variance) / self.scatter_blocks;
             }
+            // The zero follows slowly, so a channel that drifts is ahead of it.
+            let at_rest = weights(inverse, &Mean::default(), &self.scatter_uv2);
+            if let Some(channel) =
+                lone_channel(second).filter(|channel| reads(*channel, second, &at_rest) > ANSWERS)
+            {
+                self.name_stray(channel, health);
+            }
         }
         self.before = [self.before[1], Some(*uv)];
     }
 
-    fn judge(&mut self, inverse: &Inverse, mean: &Mean, health: &mut Health) {
+    /// A channel reads what no finger makes it read.
+    pub fn name_stray(&mut self, channel: usize, health: &mut Health) {
+        health.channels_stray += u64::from(self.stray != Some(channel));
+        self.stray = Some(channel);
+    }
+
+    fn judge(
+        &mut self,
+        at: StreamInstant,
+        inverse: &Inverse,
+        mean: &Mean,
+        health: &mut Health,
+    ) -> Option<Doubt> {
         if !self.judged {
             (self.judged, self.touches) = (true, self.touches << 1);
         }
         let weights = weights(inverse, mean, &self.scatter_uv2);
         self.silent = self.silent.filter(|&channel| reads(channel, &mean.uv, &weights) < ANSWERS);
-        match judge(inverse, mean, &weights) {
-            Finding::Fine => {}
+        let finding = judge(inverse, mean, &weights);
+        if finding != Finding::Unexplained {
+            self.unexplained = None;
+        }
+        self.is_doubted = match finding {
+            Finding::Stray(_) => true,
+            Finding::Unexplained => self.is_doubted,
+            Finding::Fine | Finding::Silent(_) => false,
+        };
+        match finding {
+            Finding::Fine => self.stray = None,
             Finding::Silent(channel) => {
                 health.channels_silent += u64::from(self.silent != Some(channel));
-                self.silent = Some(channel);
+                (self.silent, self.stray) = (Some(channel), None);
             }
-            // While a channel is silent, nothing is known of a second finger.
-            Finding::Unexplained if self.silent.is_none() => {
-                health.second_fingers += u64::from(self.touches & 1 == 0);
-                self.touches |= 1;
+            Finding::Stray(channel) => self.name_stray(channel, health),
+            Finding::Unexplained => {
+                // While a channel is known not to be sound, nothing is known of a second finger.
+                if self.silent.or(self.stray).is_none() {
+                    health.second_fingers += u64::from(self.touches & 1 == 0);
+                    self.touches |= 1;
+                }
+                let since = *self.unexplained.get_or_insert(at);
+                if at.us_since(since) >= UNEXPLAINED_US {
+                    self.unexplained = None;
+                    return Some(Doubt::Zero);
+                }
             }
-            Finding::Unexplained => {}
         }
+        self.is_doubted.then_some(Doubt::Channel)
     }
 }
 
@@ -282,49 +273,11 @@ pub fn warns(inverse: &Inverse, strain: &Strain) -> Option<bool> {
     Some(judge(inverse, &mean, &weights) != Finding::Fine)
 }
 
-/// One over each channel's variance, if the untouched pad scatters by `scatter_uv2`. What the calibration found at rest holds
-/// the scatter of its own readings, so the larger of the two counts.
-fn weights(inverse: &Inverse, mean: &Mean, scatter_uv2: &[f64; CHANNELS]) -> [f64; CHANNELS] {
-    // a ← max(a, √v) in the noise σ² = a² + (b u)² + (c F)² of a channel
-    let Noise { additive_uv, .. } = inverse.noise();
-    let additive_uv = std::array::from_fn(|k| additive_uv[k].max(libm::sqrt(scatter_uv2[k])));
-    Noise { additive_uv, ..*inverse.noise() }.variances(&mean.uv, mean.force_n).weights()
-}
-
-fn judge(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -> Finding {
-    // χ² = Σₖ rₖ² / σₖ²
-    let misfit: f64 = mean.left_uv.iter().zip(weights).map(|(uv, weight)| weight * uv * uv).sum();
-    if misfit > MISFIT_MAX {
-        silent(inverse, &mean.uv, weights).map_or(Finding::Unexplained, Finding::Silent)
-    } else {
-        Finding::Fine
-    }
-}
-
-/// The channel that reads nothing, and without which one finger explains the others.
-fn silent(inverse: &Inverse, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> Option<usize> {
-    // χ² of the others at their own best contact, which has one degree of freedom less.
-    let mut best = (REST_MAX, None);
-    for channel in (0..CHANNELS).filter(|&channel| reads(channel, uv, weights) < SILENT) {
-        let mut others = *weights;
-        others[channel] = 0.0;
-        if let Some(misfit) = inverse.least_misfit(uv, &others).filter(|misfit| *misfit < best.0) {
-            best = (misfit, Some(channel));
-        }
-    }
-    best.1
-}
-
-/// How far a channel is from reading nothing, in standard deviations.
-fn reads(channel: usize, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> f64 {
-    // |u| / σ
-    uv[channel].abs() * libm::sqrt(weights[channel])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::pad::field::PadField;
+    use crate::pipeline::contact::uncertainty::Noise;
 
     const NOISE: Noise = Noise::of_channels([5.0; CHANNELS], [0.02; CHANNELS]);
 

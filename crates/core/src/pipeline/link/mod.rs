@@ -3,6 +3,9 @@
 //! Frames are unpacked by `firmware_proto`; here their sequence numbers and timestamps are checked, and the pad's
 //! clock becomes stream time. Nothing is repaired: what is missing or doubtful is told as a [`Fault`].
 
+mod clock;
+mod order;
+
 use firmware_proto::frame::{Message, WireError};
 use firmware_proto::identity::Identity;
 use firmware_proto::link::MessageReceiver;
@@ -11,6 +14,8 @@ use firmware_proto::sample::Sample;
 use crate::pipeline::health::Health;
 use crate::pipeline::line_check::{LineCheck, LineFinding};
 use crate::time::{HostInstant, StreamInstant};
+use clock::StreamClock;
+use order::{OtherRun, SequenceStep, step_between, step_over_silence};
 
 /// Without a sample for this long the link counts as lost. Everything is released then, well inside 100 ms.
 pub const SILENCE_MAX_US: u64 = 80_000;
@@ -20,27 +25,9 @@ pub const SILENCE_MAX_US: u64 = 80_000;
 /// became 40. It is two periods of the slowest pad: one frame may be missing there, too.
 pub const BRIDGED_GAP_US: u64 = 20_000;
 
-/// The longest step of the pad's clock between two samples that is not a jump: 10 periods of the slowest pad.
-pub const GAP_MAX_US: u64 = 100_000;
-
-/// The pace of the pad's clock is judged over this time.
-const PACE_US: u64 = 1_000_000;
-
-/// Bytes that waited for a host that was busy arrive at once: so much more may be shown than has passed.
-const PACE_BURST_US: u64 = 1_000_000;
-
 /// A line that brings sound frames of a newer version and, for so long, nothing that is understood is a newer pad's. A single
 /// such frame is not: one damaged frame in 65,536 has a checksum that is right.
 pub const NEWER_US: u64 = 2_000_000;
-
-/// No pad samples faster than once in so many microseconds.
-const PERIOD_MIN_US: u64 = 50;
-
-/// A frame this little behind the newest is an old one that came again; farther behind, the pad began anew.
-const REORDER_MAX: u32 = 64;
-
-/// Pad clocks beyond this are moved to zero, so that no sum of times overflows.
-const DEVICE_TIME_MAX_US: u64 = 1 << 62;
 
 /// Something about the link that makes the present contact untrustworthy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,11 +35,12 @@ const DEVICE_TIME_MAX_US: u64 = 1 << 62;
 pub enum Fault {
     /// So many frames are missing before this one that a finger could have come or gone.
     Lost,
-    /// A frame came again; it was dropped.
+    /// A frame came again, or is of another time; it was dropped.
     Repeated,
     /// The pad's clock jumped.
     TimeJump,
-    /// The pad began anew: its offsets may be different.
+    /// The pad began anew: its offsets may be different. It says so, or several frames go on from one another and not from the last
+    /// sample.
     Restarted,
 }
 
@@ -83,6 +71,8 @@ pub struct Link {
     last: Option<Sample>,
     /// The last sample before the silence that lasts, and when it was heard.
     before_silence: Option<(Sample, HostInstant)>,
+    /// Frames that came since the last sample and do not go on from it.
+    other: Option<OtherRun>,
     clock: StreamClock,
     check: LineCheck,
     /// The first and the last of the frames of a newer version since something was understood.
@@ -102,6 +92,7 @@ impl Link {
             receiver: MessageReceiver::new(),
             last: None,
             before_silence: None,
+            other: None,
             clock: StreamClock::new(),
             check: LineCheck::new(),
             newer: None,
@@ -153,6 +144,7 @@ impl Link {
     pub fn fall_silent(&mut self, now: HostInstant) {
         let heard = self.clock.heard;
         self.before_silence = self.last.take().map(|last| (last, heard)).or(self.before_silence);
+        self.other = None;
         self.clock.advance(now);
         self.receiver = MessageReceiver::new();
     }
@@ -173,14 +165,6 @@ impl Link {
         now.us_since(first) >= NEWER_US
     }
 
-    /// Whether the pad whose first sample this is, after a silence, was switched off meanwhile.
-    fn has_begun_anew(&mut self, now: HostInstant, sample: &Sample) -> bool {
-        let goes_on = self.before_silence.take().is_none_or(|(last, heard)| {
-            sample.sequence != last.sequence && goes_on_after_gap(&last, sample, now.us_since(heard))
-        });
-        self.clock.set && (!goes_on || sample.status.restarted())
-    }
-
     /// What is wrong with the stream as a whole, if anything is.
     pub const fn finding(&self) -> Option<&LineFinding> {
         self.check.finding()
@@ -197,69 +181,51 @@ impl Link {
     }
 
     fn ordered(&mut self, now: HostInstant, sample: Sample, health: &mut Health) -> LinkEvent {
-        let fault = match self.last {
-            None => self.has_begun_anew(now, &sample).then(|| {
-                health.restarts += 1;
-                Fault::Restarted
-            }),
-            Some(last) => match step_between(&last, &sample, now.us_since(self.clock.heard)) {
-                SequenceStep::Next => None,
-                SequenceStep::Again => {
+        let fault = match self.step(now, &sample) {
+            SequenceStep::Next => None,
+            SequenceStep::Again => {
+                health.frames_repeated += 1;
+                return LinkEvent::Fault(Fault::Repeated);
+            }
+            SequenceStep::Skipped(frames) => {
+                health.frames_lost += u64::from(frames);
+                let gap_us = self.last.map_or(u64::MAX, |last| sample.time_us.wrapping_sub(last.time_us));
+                (gap_us > BRIDGED_GAP_US || now.us_since(self.clock.heard) > BRIDGED_GAP_US)
+                    .then_some(Fault::Lost)
+            }
+            SequenceStep::Apart => {
+                let run = OtherRun::with(self.other, &sample);
+                if !run.is_believed() {
+                    self.other = Some(run);
                     health.frames_repeated += 1;
                     return LinkEvent::Fault(Fault::Repeated);
                 }
-                SequenceStep::Skipped(frames) => {
-                    health.frames_lost += u64::from(frames);
-                    let gap_us = sample.time_us.wrapping_sub(last.time_us);
-                    (gap_us > BRIDGED_GAP_US || now.us_since(self.clock.heard) > BRIDGED_GAP_US)
-                        .then_some(Fault::Lost)
-                }
-                SequenceStep::Anew => {
-                    health.restarts += 1;
-                    Some(Fault::Restarted)
-                }
-            },
+                // They were none that came again.
+                health.frames_repeated -= u64::from(run.frames - 1);
+                health.restarts += 1;
+                Some(Fault::Restarted)
+            }
+            SequenceStep::Anew => {
+                health.restarts += 1;
+                Some(Fault::Restarted)
+            }
         };
         let smooth =
             self.clock.accept(now, sample.time_us, self.last.is_some() && fault != Some(Fault::Restarted));
-        self.last = Some(sample);
+        (self.last, self.before_silence, self.other) = (Some(sample), None, None);
         let fault = if smooth { fault } else { jumped(fault, health) };
         LinkEvent::Sample { at: self.clock.last, sample, fault }
     }
-}
 
-/// How one sample follows another by sequence number.
-enum SequenceStep {
-    Next,
-    Again,
-    Skipped(u32),
-    Anew,
-}
-
-/// The step from `last` to `next`, which came `passed_us` of host time later.
-fn step_between(last: &Sample, next: &Sample, passed_us: u64) -> SequenceStep {
-    if next.status.restarted() {
-        return if next == last { SequenceStep::Again } else { SequenceStep::Anew };
+    /// How this sample follows what was heard last.
+    fn step(&self, now: HostInstant, sample: &Sample) -> SequenceStep {
+        match (self.last, self.before_silence) {
+            (Some(last), _) => step_between(&last, sample, now.us_since(self.clock.heard)),
+            (None, Some((last, heard))) => step_over_silence(&last, sample, now.us_since(heard)),
+            (None, None) if self.clock.set && sample.status.restarted() => SequenceStep::Anew,
+            (None, None) => SequenceStep::Next,
+        }
     }
-    match next.sequence.wrapping_sub(last.sequence) {
-        0 => SequenceStep::Again,
-        1 => SequenceStep::Next,
-        behind if behind.wrapping_neg() <= REORDER_MAX && next.time_us <= last.time_us => SequenceStep::Again,
-        ahead if ahead <= REORDER_MAX => SequenceStep::Skipped(ahead - 1),
-        ahead if goes_on_after_gap(last, next, passed_us) => SequenceStep::Skipped(ahead - 1),
-        _ => SequenceStep::Anew,
-    }
-}
-
-/// Whether `next` can be of the run of `last` after a gap of `passed_us` of host time. A run that began anew shows another time
-/// than has passed, or a number that is behind, or farther ahead than samples fit into that time. So does a pad that ran while
-/// the host slept, whose zero is as old as that.
-fn goes_on_after_gap(last: &Sample, next: &Sample, passed_us: u64) -> bool {
-    let ahead = next.sequence.wrapping_sub(last.sequence);
-    next.time_us.checked_sub(last.time_us).is_some_and(|shown_us| {
-        (passed_us / 2..=2 * passed_us + GAP_MAX_US).contains(&shown_us)
-            && u64::from(ahead) <= (shown_us / PERIOD_MIN_US).max(REORDER_MAX.into())
-    })
 }
 
 /// A jump of the clock is told unless a graver fault explains it.
@@ -268,87 +234,13 @@ fn jumped(fault: Option<Fault>, health: &mut Health) -> Option<Fault> {
     fault.or(Some(Fault::TimeJump))
 }
 
-/// The pad's clock made monotonic and carried on by the host's clock while the pad is silent.
-#[derive(Clone, Copy, Debug)]
-struct StreamClock {
-    /// Added to device time, modulo 2^64, to give stream time.
-    offset_us: u64,
-    /// Stream time of the newest sample.
-    last: StreamInstant,
-    /// Host time at which it was heard.
-    heard: HostInstant,
-    /// False until the first sample, which sets the clock.
-    set: bool,
-    /// Where the present look at the pace began: host time and the pad's.
-    pace_from: (HostInstant, u64),
-    /// Whether the last look found that the pad's clock counts microseconds.
-    is_on_pace: bool,
-}
-
-impl StreamClock {
-    const fn new() -> Self {
-        Self {
-            offset_us: 0,
-            last: StreamInstant::from_us(0),
-            heard: HostInstant::from_ns(0),
-            set: false,
-            pace_from: (HostInstant::from_ns(0), 0),
-            is_on_pace: true,
-        }
-    }
-
-    /// Stream time at `now`. It begins with the first sample: what happens before it happens at the origin, so that stream time
-    /// never has to go back to where the pad's clock begins.
-    fn at(&self, now: HostInstant) -> StreamInstant {
-        if self.set { self.last.plus_us(now.us_since(self.heard)) } else { self.last }
-    }
-
-    /// Lets stream time pass to `now` without a sample.
-    fn advance(&mut self, now: HostInstant) {
-        self.last = self.at(now);
-        self.heard = now;
-    }
-
-    /// Whether the pad's clock goes half to twice as fast as the host's, by the last look that is over. Times in a profile mean
-    /// nothing on a clock that counts milliseconds for microseconds, say.
-    fn keeps_pace(&mut self, now: HostInstant, device_us: u64) -> bool {
-        let (host, from_us) = self.pace_from;
-        let passed_us = now.us_since(host);
-        if passed_us >= PACE_US {
-            let shown_us = device_us.wrapping_sub(from_us);
-            self.is_on_pace = (passed_us / 2..=2 * passed_us + PACE_BURST_US).contains(&shown_us);
-            self.pace_from = (now, device_us);
-        }
-        self.is_on_pace
-    }
-
-    /// Takes a sample's device time. Returns false if the clock jumped and was joined anew; `continues` says whether
-    /// a running sequence gives something to jump from.
-    fn accept(&mut self, now: HostInstant, device_us: u64, continues: bool) -> bool {
-        let stream_us = device_us.wrapping_add(self.offset_us);
-        let smooth = stream_us > self.last.as_us() && stream_us - self.last.as_us() <= GAP_MAX_US;
-        if !continues || !smooth {
-            self.pace_from = (now, device_us);
-            self.is_on_pace |= !continues;
-        } else if self.keeps_pace(now, device_us) {
-            self.last = StreamInstant::from_us(stream_us);
-            self.heard = now;
-            return true;
-        }
-        let joined_us = if self.set { self.at(now).as_us() } else { device_us.min(DEVICE_TIME_MAX_US) };
-        self.offset_us = joined_us.wrapping_sub(device_us);
-        self.last = StreamInstant::from_us(joined_us);
-        (self.heard, self.set) = (now, true);
-        !continues
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use firmware_proto::link::encode_message;
     use firmware_proto::sample::Status;
     use firmware_proto::{CHANNELS, ENCODED_MAX};
 
+    use super::clock::DEVICE_TIME_MAX_US;
     use super::*;
 
     fn sample(sequence: u32, time_us: u64) -> Sample {
@@ -418,9 +310,63 @@ mod tests {
     fn a_pad_that_begins_anew_goes_on_in_stream_time() {
         let mut rig = Rig::new();
         rig.hear(0, sample(50_000, 9_000_000));
-        assert_eq!(rig.hear(30_000, sample(0, 12)), (Some(9_030_000), Some(Fault::Restarted)));
-        assert_eq!(rig.hear(31_000, sample(1, 1_012)), (Some(9_031_000), None));
-        assert_eq!((rig.health.restarts, rig.health.time_jumps), (1, 0));
+        for (host_us, sequence) in [(28_000, 0), (29_000, 1)] {
+            let begun = sample(sequence, 12 + 1_000 * u64::from(sequence));
+            assert_eq!(rig.hear(host_us, begun), (None, Some(Fault::Repeated)), "it may be an old one");
+        }
+        assert_eq!(rig.hear(30_000, sample(2, 2_012)), (Some(9_030_000), Some(Fault::Restarted)));
+        assert_eq!(rig.hear(31_000, sample(3, 3_012)), (Some(9_031_000), None));
+        let Health { restarts, time_jumps, frames_repeated, .. } = rig.health;
+        assert_eq!((restarts, time_jumps, frames_repeated), (1, 0, 0));
+    }
+
+    /// What a run of frames makes of others among it: how many restarts, and how many frames of the run are at fault.
+    fn among(run: impl Iterator<Item = Sample>, after: usize, others: &[Sample]) -> (u64, usize) {
+        let mut rig = Rig::new();
+        let mut faults = 0;
+        for (number, next) in run.enumerate() {
+            let host_us = 1_000 * number as u64;
+            faults += usize::from(rig.hear(host_us, next).1.is_some());
+            // Two at a time, so that they are among the frames, too.
+            if let Some(others) = number.checked_sub(after).and_then(|at| others.chunks(2).nth(at)) {
+                others.iter().for_each(|other| assert_eq!(rig.hear(host_us, *other).0, None, "{other:?}"));
+            }
+        }
+        (rig.health.restarts, faults)
+    }
+
+    #[test]
+    fn frames_of_another_time_are_no_restart() {
+        let at = |number: u32| sample(number, 1_000_000 + 1_000 * u64::from(number));
+        for behind in [1, 2, 63, 64, 65, 66, 1_000, 49_000] {
+            let (one, two) = ([at(50_000 - behind)], [at(50_000 - behind), at(50_001 - behind)]);
+            assert_eq!(among((50_000..50_100).map(at), 0, &one), (0, 0), "{behind}");
+            assert_eq!(
+                among((50_000..50_100).map(at), 0, &two[..behind.min(2) as usize]),
+                (0, 0),
+                "{behind}"
+            );
+            let many: Vec<Sample> = (0..20).map(|k| at(50_000 - behind - 30 * k)).collect();
+            let many = if behind < 49_000 { &many[..] } else { &one };
+            assert_eq!(among((50_000..50_100).map(at), 0, many), (0, 0), "{behind}");
+        }
+        // The number begins at zero again in between.
+        let wrapped = |number: u32| sample(number.wrapping_sub(70), 1_000_000 + 1_000 * u64::from(number));
+        assert_eq!(among((80..180).map(wrapped), 0, &[wrapped(5), wrapped(14)]), (0, 0));
+        // Of the run before the pad began anew, which was ahead; and the first one of the run itself.
+        let first = Sample { status: Status::OK.with_restarted(), ..at(0) };
+        let run = || (0..100).map(|number| if number == 0 { first } else { at(number) });
+        assert_eq!(among(run(), 40, &[at(7_000), first, sample(9, 77)]), (0, 0));
+    }
+
+    #[test]
+    fn an_old_frame_after_silence_is_no_restart() {
+        let mut rig = Rig::new();
+        rig.hear(0, sample(500, 500_000));
+        rig.link.fall_silent(HostInstant::default().plus_us(90_000));
+        assert_eq!(rig.hear(200_000, sample(400, 400_000)), (None, Some(Fault::Repeated)));
+        assert_eq!(rig.hear(201_000, sample(701, 701_000)).1, None);
+        assert_eq!(rig.health.restarts, 0);
     }
 
     #[test]
@@ -483,7 +429,12 @@ mod tests {
             let mut rig = Rig::new();
             rig.hear(0, sample(500, 500_000));
             rig.link.fall_silent(HostInstant::default().plus_us(90_000));
-            let (_, told) = rig.hear(10_000_000, sample(sequence, 1_000 * time_ms));
+            let mut told = None;
+            for number in 0..3 {
+                let next = sample(sequence + number, 1_000 * (time_ms + u64::from(number)));
+                let (at, said) = rig.hear(10_000_000 + 1_000 * u64::from(number), next);
+                told = told.or(at.and(said));
+            }
             assert_eq!(
                 (told, rig.health.restarts),
                 (fault, u64::from(fault.is_some())),

@@ -1,0 +1,190 @@
+//! What a stretch of a touch shows by itself: one finger, a channel that cannot be believed, or neither.
+
+use super::super::inverse::{FitWithout, Inverse};
+use super::super::uncertainty::Noise;
+use crate::quantity::CHANNELS;
+
+/// Chi-square of four numbers that a ten-thousandth exceeds. Ten minutes of play are about 600 presses, and noise that is
+/// forgotten after 3 s is drawn anew a few hundred times in them: one false warning in ten such plays.
+const MISFIT_MAX: f64 = 23.51;
+
+/// Chi-square of three numbers that a hundredth exceeds: what is left without a channel explains the rest.
+const REST_MAX: f64 = 11.34;
+
+/// A channel is named if without it the rest is a hundred times as likely as without any other: χ² is lower by 2 ln 100.
+const NAMED: f64 = 9.21;
+
+/// A silent channel reads less than so many standard deviations.
+const SILENT: f64 = 3.0;
+
+/// One that was thought to be silent and reads more than so many is not: what leaks from other channels is less.
+pub(super) const ANSWERS: f64 = 10.0;
+
+/// A channel that is off by more standard deviations than this reads no finger: of two fingers, which at times look like one and a
+/// channel that is off, at most a hundredth do by so much.
+const STRAY: f64 = 30.0;
+
+/// Means over a stretch of time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Mean {
+    /// The channels as they were decoded: compensated.
+    pub(super) uv: [f64; CHANNELS],
+    /// Residual of the contact, µV.
+    pub(super) left_uv: [f64; CHANNELS],
+    /// The force's magnitude.
+    pub(super) force_n: f64,
+}
+
+/// Finding about a stretch of a touch by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Finding {
+    /// One finger.
+    Fine,
+    /// One finger by the other channels, of which this one reads nothing.
+    Silent(usize),
+    /// One finger by the other channels, and this one is far from what that makes it read.
+    Stray(usize),
+    /// Not one finger. No channel is the reason, or it does not show which.
+    Unexplained,
+}
+
+/// One over each channel's variance, if the untouched pad scatters by `scatter_uv2`. What the calibration found at rest holds
+/// the scatter of its own readings, so the larger of the two counts.
+pub(super) fn weights(inverse: &Inverse, mean: &Mean, scatter_uv2: &[f64; CHANNELS]) -> [f64; CHANNELS] {
+    // a ← max(a, √v) in the noise σ² = a² + (b u)² + (c F)² of a channel
+    let Noise { additive_uv, .. } = inverse.noise();
+    let additive_uv = std::array::from_fn(|k| additive_uv[k].max(libm::sqrt(scatter_uv2[k])));
+    Noise { additive_uv, ..*inverse.noise() }.variances(&mean.uv, mean.force_n).weights()
+}
+
+/// What the means over a stretch show, with one over each channel's variance.
+pub(super) fn judge(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -> Finding {
+    // χ² = Σₖ rₖ² / σₖ²
+    let misfit: f64 = mean.left_uv.iter().zip(weights).map(|(uv, weight)| weight * uv * uv).sum();
+    if misfit <= MISFIT_MAX {
+        return Finding::Fine;
+    }
+    let Some((channel, fit)) = odd_one_out(inverse, &mean.uv, weights) else { return Finding::Unexplained };
+    if reads(channel, &mean.uv, weights) < SILENT {
+        Finding::Silent(channel)
+    } else if is_far_off(inverse, channel, mean, &fit) {
+        Finding::Stray(channel)
+    } else {
+        Finding::Unexplained
+    }
+}
+
+/// The channel without which one finger explains the others, and what that is, if there is only one such channel.
+fn odd_one_out(
+    inverse: &Inverse,
+    uv: &[f64; CHANNELS],
+    weights: &[f64; CHANNELS],
+) -> Option<(usize, FitWithout)> {
+    // χ² of the others at their own best contact, which has one degree of freedom less.
+    let mut best: Option<(usize, FitWithout)> = None;
+    let mut next_misfit = f64::INFINITY;
+    for channel in 0..CHANNELS {
+        let Some(fit) = inverse.without(channel, uv, weights) else { continue };
+        let best_misfit = best.map_or(f64::INFINITY, |(_, fit)| fit.misfit);
+        next_misfit = next_misfit.min(fit.misfit.max(best_misfit));
+        if fit.misfit < best_misfit {
+            best = Some((channel, fit));
+        }
+    }
+    best.filter(|(_, fit)| fit.misfit < REST_MAX && next_misfit - fit.misfit > NAMED)
+}
+
+/// Whether the channel is far from what the others' contact makes it read.
+fn is_far_off(inverse: &Inverse, channel: usize, mean: &Mean, fit: &FitWithout) -> bool {
+    // By the variance that it would have: its own share would hide how far off it is.
+    let mut expected_uv = mean.uv;
+    expected_uv[channel] = fit.expected_uv;
+    let weights = inverse.noise().variances(&expected_uv, fit.force_n).weights();
+    (mean.uv[channel] - fit.expected_uv).abs() * libm::sqrt(weights[channel]) > STRAY
+}
+
+/// How far a channel is from reading nothing, in standard deviations.
+pub(super) fn reads(channel: usize, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> f64 {
+    // |u| / σ
+    uv[channel].abs() * libm::sqrt(weights[channel])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::random::SplitMix64;
+    use crate::pad::field::PadField;
+    use crate::pad::influence::InfluenceField;
+    use crate::pipeline::shipped;
+    use crate::quantity::{Contact, Strain};
+
+    /// Contacts of so many fingers anywhere, as the channels read them.
+    fn pressed(field: &InfluenceField, random: &mut SplitMix64, fingers: usize) -> [f64; CHANNELS] {
+        let mut between = |low: f32, high: f32| low + (high - low) * random.fraction();
+        let mut uv = [0.0; CHANNELS];
+        for _ in 0..fingers {
+            let (radius_mm, turn) = (25.0 * between(0.0, 1.0).sqrt(), between(0.0, std::f32::consts::TAU));
+            let fz_n = between(0.5, 3.0);
+            let contact = Contact {
+                x_mm: radius_mm * libm::cosf(turn),
+                y_mm: radius_mm * libm::sinf(turn),
+                fx_n: fz_n * between(-0.3, 0.3),
+                fy_n: fz_n * between(-0.3, 0.3),
+                fz_n,
+            };
+            uv.iter_mut().zip(field.strain_uv(&contact).uv).for_each(|(sum, uv)| *sum += f64::from(uv));
+        }
+        uv
+    }
+
+    fn found(inverse: &Inverse, uv: &[f64; CHANNELS]) -> Finding {
+        let explained = inverse.explain(&Strain { uv: uv.map(|uv| uv as f32) }).unwrap();
+        let Contact { fx_n, fy_n, fz_n, .. } = explained.contact;
+        let force_n = f64::from(libm::hypotf(libm::hypotf(fx_n, fy_n), fz_n));
+        let mean = Mean { uv: *uv, left_uv: explained.left_uv, force_n };
+        judge(inverse, &mean, &weights(inverse, &mean, &[0.0; CHANNELS]))
+    }
+
+    fn decoders() -> [Inverse; 2] {
+        let noise = Noise::of_channels([5.0; CHANNELS], [0.02; CHANNELS]);
+        let calibrated = Inverse::new(PadField::nominal().signals, noise);
+        [calibrated, shipped::decoder().inverse().unwrap().clone()]
+    }
+
+    /// How many of so many contacts of `fingers`, changed so, are found to be `is_it`.
+    fn share(
+        inverse: &Inverse,
+        fingers: usize,
+        change: impl Fn(&mut [f64; CHANNELS], usize),
+        is_it: impl Fn(Finding, usize) -> bool,
+    ) -> f64 {
+        let (mut random, count) = (SplitMix64::new(77), 450);
+        let found = (0..count).filter(|number| {
+            let mut uv = pressed(inverse.field(), &mut random, fingers);
+            change(&mut uv, number % CHANNELS);
+            is_it(found(inverse, &uv), number % CHANNELS)
+        });
+        found.count() as f64 / f64::from(count as u32)
+    }
+
+    #[test]
+    fn two_fingers_seldom_pass_for_a_channel_that_is_off() {
+        for inverse in decoders() {
+            let is_off = |finding, _| matches!(finding, Finding::Stray(_) | Finding::Silent(_));
+            let lost = share(&inverse, 2, |_, _| (), |finding, _| matches!(finding, Finding::Stray(_)));
+            let named = share(&inverse, 2, |_, _| (), is_off);
+            assert!(lost <= 0.02 && named <= 0.03, "{lost} {named}");
+        }
+    }
+
+    #[test]
+    fn a_channel_at_a_rail_is_found_under_a_finger() {
+        for inverse in decoders() {
+            for rail_uv in [15_000.0, -15_000.0] {
+                let rail = |uv: &mut [f64; CHANNELS], channel: usize| uv[channel] = rail_uv;
+                let pressed = share(&inverse, 1, rail, |finding, channel| finding == Finding::Stray(channel));
+                assert!(pressed > 0.95, "{pressed}");
+            }
+        }
+    }
+}

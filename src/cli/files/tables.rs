@@ -74,6 +74,11 @@ pub(crate) fn within_memory(
     )))
 }
 
+/// The way out where a verb draws no rows itself.
+pub(crate) fn fewer_rows(most: usize) -> String {
+    format!("leave rows out, evenly over the measurement, down to {most}")
+}
+
 /// Says that a table's last line may be cut off.
 pub(crate) fn warn(path: &Path, open_end: Option<&OpenEnd>) {
     if let Some(end) = open_end {

@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &Arguments, measured: &Path, earlier: &Path) -> Res
     let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;
     let [before, after] = [read(earlier)?, read(measured)?];
     let names = format!("{} against {}", measured.display(), earlier.display());
-    tables::within_memory(&names, before.rows() + after.rows(), ROW_BYTES, super::fewer_rows)?;
+    tables::within_memory(&names, before.rows() + after.rows(), ROW_BYTES, tables::fewer_rows)?;
     let diagnosis = {
         let _progress = Progress::begin("looking for changes");
         let asked = ColumnSelection { labels, channels, without };

@@ -34,11 +34,6 @@ use tactpad::tables::measured::columns::TableKind;
 /// Memory that the search for causes takes for each row, with what it repeats of it.
 const ROW_BYTES: usize = 32_000;
 
-/// The way out where a diagnosis takes so many rows at most.
-fn fewer_rows(most: usize) -> String {
-    format!("leave rows out, evenly over the measurement, down to {most}")
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     match (&arguments.play, &arguments.measured, &arguments.against) {
         (Some(later), _, Some(earlier)) => play::run(arguments, [earlier, later]),
@@ -58,7 +53,7 @@ fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
     let device = pad.read()?;
     let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;
     let table = tables::read(measured, TableKind::Measured, device.plate.radius_mm())?;
-    tables::within_memory(&measured.display().to_string(), table.rows.len(), ROW_BYTES, fewer_rows)?;
+    tables::within_memory(&measured.display().to_string(), table.rows.len(), ROW_BYTES, tables::fewer_rows)?;
     // It takes a while until the engine itself could say so.
     diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
     let field = field_of(&device)?;

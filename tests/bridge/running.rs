@@ -60,6 +60,8 @@ impl Running {
             .arg("--default-signal")
             .arg(name)
             .current_dir(folder)
+            // This test may itself run in a service.
+            .env_remove("INVOCATION_ID")
             .env("XDG_RUNTIME_DIR", folder)
             .env("XDG_CONFIG_HOME", folder)
             .env("XDG_STATE_HOME", folder)

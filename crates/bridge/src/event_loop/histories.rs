@@ -6,6 +6,7 @@ use firmware_proto::frame::Message;
 use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::sample::Status;
 
+use super::doubt::rail;
 use super::virtual_time::Play;
 use super::*;
 use tactpad_core::pad::weight::Weight;
@@ -34,6 +35,9 @@ enum Happening {
     Jump(u64),
     /// For so many milliseconds this channel is at the end of its range.
     Saturate(usize, u64),
+    /// For so many milliseconds this channel stands at so many millivolts inside its range, with noise of so many microvolts, while
+    /// a contact is kept or none.
+    Rail { channel: usize, mv: i32, noise_uv: i32, contact: Contact, ms: u64 },
     /// The pad says who it is: one of two.
     Identify(bool),
     /// From now on its clock goes on by so many microseconds in a millisecond, for so many milliseconds.
@@ -83,6 +87,7 @@ fn ages() -> impl Strategy<Value = u32> {
 }
 
 fn happenings() -> impl Strategy<Value = Happening> {
+    let rail = (0..9_usize, -20..20_i32, 1..2_000_i32, prop_oneof![contacts(), Just(AWAY)], 1..3_000_u64);
     let restart = (times_us(), any::<bool>(), -400_000..400_000_i32, "[ -~\r\n]{0,80}");
     prop_oneof![
         3 => waits_ms().prop_map(Happening::Wait),
@@ -98,6 +103,9 @@ fn happenings() -> impl Strategy<Value = Happening> {
         1 => (ages(), 1..5_u32).prop_map(|(age, frames)| Happening::Repeat { age, frames }),
         1 => times_us().prop_map(Happening::Jump),
         1 => (0..9_usize, 1..100_u64).prop_map(|(channel, ms)| Happening::Saturate(channel, ms)),
+        1 => rail.prop_map(|(channel, mv, noise_uv, contact, ms)| {
+            Happening::Rail { channel, mv, noise_uv, contact, ms }
+        }),
         1 => any::<bool>().prop_map(Happening::Identify),
         1 => (0..20_000_u64, 0..3_000_u64).prop_map(|(us_per_ms, ms)| Happening::Pace(us_per_ms, ms)),
     ]
@@ -139,6 +147,11 @@ impl Happening {
                 play.offset[*channel] = (1 << 23) - 1;
                 play.touch(&AWAY, *ms);
                 play.offset[*channel] = offset;
+            }
+            Self::Rail { channel, mv, noise_uv, contact, ms } => {
+                play.wiring = Box::new(rail(*channel, *mv, *noise_uv));
+                play.touch(contact, *ms);
+                play.wiring = Box::new(|_, _| ());
             }
             Self::Pace(us_per_ms, ms) => {
                 play.us_per_ms = *us_per_ms;

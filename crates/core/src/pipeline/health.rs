@@ -34,7 +34,8 @@ pub struct Health {
     pub supply_faults: u64,
     /// Times the zero turned out to have been measured with something on the pad.
     pub zeros_loaded: u64,
-    /// Touches that are not one finger on the calibrated pad; they are played all the same, for 10 s at most.
+    /// Touches that are not one finger on the calibrated pad; they are played all the same, those that are far from it for 10 s
+    /// at most.
     pub second_fingers: u64,
     /// Times a channel did not answer to the load.
     pub channels_silent: u64,

@@ -20,9 +20,13 @@ const SILENT: f64 = 3.0;
 /// One that was thought to be silent and reads more than so many is not: what leaks from other channels is less.
 pub(super) const ANSWERS: f64 = 10.0;
 
-/// A channel that is off by more standard deviations than this reads no finger: of two fingers, which at times look like one and a
-/// channel that is off, at most a hundredth do by so much.
+/// A channel that is off by more standard deviations than this, …
 const STRAY: f64 = 30.0;
+
+/// … and by more than this share of what the others read at the most, reads no finger. Hysteresis, creep and a field that is not quite
+/// the pad's are smaller shares of the load; of two fingers, which at times look like one and a channel that is off, less than a
+/// hundredth are so far from one.
+const STRAY_SHARE: f64 = 0.25;
 
 /// Means over a stretch of time.
 #[derive(Clone, Copy, Debug, Default)]
@@ -74,6 +78,12 @@ pub(super) fn judge(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -
     }
 }
 
+/// Whether so much of the load is left over that it is no finger on a pad that is only not quite as it was calibrated.
+pub(super) fn is_far_from_a_finger(mean: &Mean) -> bool {
+    let most = |uv: &[f64; CHANNELS]| uv.iter().fold(0.0, |most: f64, uv| most.max(uv.abs()));
+    most(&mean.left_uv) > STRAY_SHARE * most(&mean.uv)
+}
+
 /// The channel without which one finger explains the others, and what that is, if there is only one such channel.
 fn odd_one_out(
     inverse: &Inverse,
@@ -100,7 +110,9 @@ fn is_far_off(inverse: &Inverse, channel: usize, mean: &Mean, fit: &FitWithout) 
     let mut expected_uv = mean.uv;
     expected_uv[channel] = fit.expected_uv;
     let weights = inverse.noise().variances(&expected_uv, fit.force_n).weights();
-    (mean.uv[channel] - fit.expected_uv).abs() * libm::sqrt(weights[channel]) > STRAY
+    let most_uv = expected_uv.iter().fold(0.0, |most: f64, uv| most.max(uv.abs()));
+    let off_uv = (mean.uv[channel] - fit.expected_uv).abs();
+    off_uv * libm::sqrt(weights[channel]) > STRAY && off_uv > STRAY_SHARE * most_uv
 }
 
 /// How far a channel is from reading nothing, in standard deviations.

@@ -8,8 +8,6 @@
 //! readings is measured while nothing touches the pad. The relative noise lasts for seconds, so a press has one draw of it,
 //! and however long it is held the misfit of one finger stays one draw of chi-square with four degrees of freedom.
 
-#[cfg(test)]
-mod drift;
 mod finding;
 mod warning;
 
@@ -19,7 +17,7 @@ use crate::pipeline::interruption::Effect;
 use crate::pipeline::signal::lone::lone_channel;
 use crate::quantity::{CHANNELS, Contact, Strain};
 use crate::time::StreamInstant;
-use finding::{ANSWERS, Finding, Mean, judge, reads, weights};
+use finding::{ANSWERS, Finding, Mean, is_far_from_a_finger, judge, reads, weights};
 pub use warning::Warning;
 
 /// Block over which is averaged: five periods of 50 Hz mains, six of 60 Hz.
@@ -38,8 +36,8 @@ const SCATTER_BLOCKS: f64 = 100.0;
 const TOUCHES: u32 = 8;
 const OTHER_TOUCHES: u32 = 6;
 
-/// What is not one finger all the time for so long is none: nobody plays so, and a fault does. It is the time after which a faint
-/// touch is drift.
+/// What is far from one finger all the time for so long is none: nobody plays so, and a fault does. It is the time after which a
+/// faint touch is drift.
 const UNEXPLAINED_US: u64 = 10_000_000;
 
 /// Why a touch is no contact.
@@ -71,7 +69,7 @@ pub struct Watch {
     stray: Option<usize>,
     /// Whether this touch is no contact, as that channel is in it.
     is_doubted: bool,
-    /// Since when this touch is not one finger.
+    /// Since when this touch is far from one finger.
     unexplained: Option<StreamInstant>,
 }
 
@@ -231,7 +229,7 @@ impl Watch {
         let weights = weights(inverse, mean, &self.scatter_uv2);
         self.silent = self.silent.filter(|&channel| reads(channel, &mean.uv, &weights) < ANSWERS);
         let finding = judge(inverse, mean, &weights);
-        if finding != Finding::Unexplained {
+        if finding != Finding::Unexplained || !is_far_from_a_finger(mean) {
             self.unexplained = None;
         }
         self.is_doubted = match finding {
@@ -247,15 +245,17 @@ impl Watch {
             }
             Finding::Stray(channel) => self.name_stray(channel, health),
             Finding::Unexplained => {
-                // While a channel is known not to be sound, nothing is known of a second finger.
-                if self.silent.or(self.stray).is_none() {
+                // While a channel is known to be silent, or off in this touch, nothing is known of a second finger.
+                if self.silent.is_none() && !self.is_doubted {
                     health.second_fingers += u64::from(self.touches & 1 == 0);
                     self.touches |= 1;
                 }
-                let since = *self.unexplained.get_or_insert(at);
-                if at.us_since(since) >= UNEXPLAINED_US {
-                    self.unexplained = None;
-                    return Some(Doubt::Zero);
+                if is_far_from_a_finger(mean) {
+                    let since = *self.unexplained.get_or_insert(at);
+                    if at.us_since(since) >= UNEXPLAINED_US {
+                        self.unexplained = None;
+                        return Some(Doubt::Zero);
+                    }
                 }
             }
         }

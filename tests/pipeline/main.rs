@@ -6,6 +6,7 @@ mod calls;
 mod decoders;
 mod diagnostics;
 mod dither;
+mod drift;
 mod hysteresis;
 mod interrupts;
 mod loaded;

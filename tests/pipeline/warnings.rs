@@ -98,7 +98,7 @@ fn script(seed: u64, seconds: u64) -> Script {
 
 fn warnings(played: &Played) -> u64 {
     let health = played.pipeline.health();
-    health.second_fingers + health.channels_silent
+    health.second_fingers + health.channels_silent + health.channels_stray
 }
 
 /// Even numbers in 0 to 1: multiples of irrational steps.
@@ -162,16 +162,24 @@ fn two_fingers_are_told(extent: Extent) {
     for (name, force) in [("0.5 N each", Some(LEAST_N)), ("0.5 to 2.5 N", None)] {
         let mut played = played(&pad().device, 3);
         let pairs = pairs(extent.count(60, 200, 2000), force);
-        let (mut warned, mut by_ratio) = (0, 0);
+        let (mut warned, mut by_ratio, mut released) = (0, 0, 0);
         for (index, pair) in pairs.iter().enumerate() {
             let before = warnings(&played);
+            let stray = played.pipeline.health().channels_stray;
             played.press(pair, 300);
             played.rest(250);
             warned += usize::from(warnings(&played) > before);
+            released += usize::from(played.pipeline.health().channels_stray > stray);
             by_ratio += usize::from(ratio.warns(pair, index as u64));
         }
         let share = |count: usize| count as f64 / pairs.len() as f64;
-        println!("{name}: warned {:.4}, likelihood ratio {:.4}", share(warned), share(by_ratio));
+        println!(
+            "{name}: warned {:.4}, likelihood ratio {:.4}, released {:.4}",
+            share(warned),
+            share(by_ratio),
+            share(released)
+        );
+        assert!(share(released) <= 0.02, "{name}: two fingers are played");
         assert!(share(warned) >= 0.9_f64.min(0.9 * share(by_ratio)), "{name}");
     }
     if let Some(folder) = study() {

@@ -148,6 +148,8 @@ impl Happening {
                 play.touch(&AWAY, *ms);
                 play.offset[*channel] = offset;
             }
+            // A load that is seen while the zero is measured counts for 5 s, also if it was a channel that is off.
+            Self::Rail { .. } if play.bridge.driver.pipeline.phase() != Phase::Playing => {}
             Self::Rail { channel, mv, noise_uv, contact, ms } => {
                 play.wiring = Box::new(rail(*channel, *mv, *noise_uv));
                 play.touch(contact, *ms);

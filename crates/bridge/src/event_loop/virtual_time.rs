@@ -129,6 +129,9 @@ impl Sink for Written {
     }
 }
 
+/// Changes the channels (counts) of the sample with this number.
+pub(super) type Wiring = Box<dyn Fn(u32, &mut [i32; 9])>;
+
 /// A bridge and its pad, which sends 1,000 samples a second.
 pub(super) struct Play {
     pub(super) bridge: Bridge,
@@ -148,7 +151,7 @@ pub(super) struct Play {
     /// Added to each channel, in counts.
     pub(super) offset: [i32; 9],
     /// What becomes of the channels of a sample with this number, in counts.
-    pub(super) wiring: Box<dyn Fn(u32, &mut [i32; 9])>,
+    pub(super) wiring: Wiring,
     field: InfluenceField,
 }
 

@@ -14,6 +14,10 @@ const REST_MAX: f64 = 11.34;
 /// A channel is named if without it the rest is a hundred times as likely as without any other: χ² is lower by 2 ln 100.
 const NAMED: f64 = 9.21;
 
+/// A silent channel is named even so, if without another one χ² is lower by less than this: that other one would be off by any amount,
+/// which is one number more to choose. (Akaike's 2 for each.)
+const SILENCE: f64 = 2.0;
+
 /// A silent channel reads less than so many standard deviations.
 const SILENT: f64 = 3.0;
 
@@ -84,24 +88,25 @@ pub(super) fn is_far_from_a_finger(mean: &Mean) -> bool {
     most(&mean.left_uv) > STRAY_SHARE * most(&mean.uv)
 }
 
-/// The channel without which one finger explains the others, and what that is, if there is only one such channel.
+/// The channel without which one finger explains the others, and what that is, if it shows which channel that is.
 fn odd_one_out(
     inverse: &Inverse,
     uv: &[f64; CHANNELS],
     weights: &[f64; CHANNELS],
 ) -> Option<(usize, FitWithout)> {
     // χ² of the others at their own best contact, which has one degree of freedom less.
-    let mut best: Option<(usize, FitWithout)> = None;
-    let mut next_misfit = f64::INFINITY;
-    for channel in 0..CHANNELS {
-        let Some(fit) = inverse.without(channel, uv, weights) else { continue };
-        let best_misfit = best.map_or(f64::INFINITY, |(_, fit)| fit.misfit);
-        next_misfit = next_misfit.min(fit.misfit.max(best_misfit));
-        if fit.misfit < best_misfit {
-            best = Some((channel, fit));
-        }
-    }
-    best.filter(|(_, fit)| fit.misfit < REST_MAX && next_misfit - fit.misfit > NAMED)
+    let fits: [_; CHANNELS] = std::array::from_fn(|channel| inverse.without(channel, uv, weights));
+    let misfit = |channel: usize| fits[channel].map_or(f64::INFINITY, |fit| fit.misfit);
+    let least = |is_asked: &dyn Fn(usize) -> bool| {
+        let channels = (0..CHANNELS).filter(|channel| is_asked(*channel));
+        channels.min_by(|one, other| misfit(*one).total_cmp(&misfit(*other)))
+    };
+    let best = least(&|_| true).filter(|channel| misfit(*channel) < REST_MAX)?;
+    let silent = least(&|channel| reads(channel, uv, weights) < SILENT)
+        .filter(|channel| misfit(*channel) < REST_MAX.min(misfit(best) + SILENCE));
+    let next = least(&|channel| channel != best)?;
+    let named = silent.or((misfit(next) - misfit(best) > NAMED).then_some(best))?;
+    Some((named, fits[named]?))
 }
 
 /// Whether the channel is far from what the others' contact makes it read.

@@ -38,7 +38,7 @@ const OTHER_TOUCHES: u32 = 6;
 
 /// What is far from one finger all the time for so long is none: nobody plays so, and a fault does. It is the time after which a
 /// faint touch is drift.
-const UNEXPLAINED_US: u64 = 10_000_000;
+const FAR_US: u64 = 10_000_000;
 
 /// Why a touch is no contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +70,7 @@ pub struct Watch {
     /// Whether this touch is no contact, as that channel is in it.
     is_doubted: bool,
     /// Since when this touch is far from one finger.
-    unexplained: Option<StreamInstant>,
+    far_since: Option<StreamInstant>,
 }
 
 /// The samples of one stretch of time.
@@ -120,7 +120,7 @@ impl Watch {
             silent: None,
             stray: None,
             is_doubted: false,
-            unexplained: None,
+            far_since: None,
         }
     }
 
@@ -186,7 +186,7 @@ impl Watch {
         self.touched = touched;
         self.before = [None; 2];
         self.block = Block::from(at.plus_us(SETTLING_US));
-        (self.judged, self.is_doubted, self.unexplained) = (false, false, None);
+        (self.judged, self.is_doubted, self.far_since) = (false, false, None);
     }
 
     /// The pad was untouched for another block. A finger that comes moves the channels before it is known as one, so the
@@ -229,9 +229,6 @@ impl Watch {
         let weights = weights(inverse, mean, &self.scatter_uv2);
         self.silent = self.silent.filter(|&channel| reads(channel, &mean.uv, &weights) < ANSWERS);
         let finding = judge(inverse, mean, &weights);
-        if finding != Finding::Unexplained || !is_far_from_a_finger(mean) {
-            self.unexplained = None;
-        }
         self.is_doubted = match finding {
             Finding::Stray(_) => true,
             Finding::Unexplained => self.is_doubted,
@@ -250,14 +247,17 @@ impl Watch {
                     health.second_fingers += u64::from(self.touches & 1 == 0);
                     self.touches |= 1;
                 }
-                if is_far_from_a_finger(mean) {
-                    let since = *self.unexplained.get_or_insert(at);
-                    if at.us_since(since) >= UNEXPLAINED_US {
-                        self.unexplained = None;
-                        return Some(Doubt::Zero);
-                    }
-                }
             }
+        }
+        let is_far = match finding {
+            Finding::Fine | Finding::Silent(_) => false,
+            Finding::Stray(_) => true,
+            Finding::Unexplained => is_far_from_a_finger(mean),
+        };
+        self.far_since = is_far.then(|| self.far_since.unwrap_or(at));
+        if self.far_since.is_some_and(|since| at.us_since(since) >= FAR_US) {
+            self.far_since = None;
+            return Some(Doubt::Zero);
         }
         self.is_doubted.then_some(Doubt::Channel)
     }

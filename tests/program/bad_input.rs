@@ -83,7 +83,7 @@ fn a_port_that_is_no_pad_is_refused() {
 #[test]
 fn a_pad_that_names_nothing_is_refused() {
     for (pad, words) in [
-        ("usb:1", ["names no pad", "serial:PATH"]),
+        ("tcp:1", ["names no pad", "serial:PATH"]),
         ("serial:", ["lacks the port's path", "/dev/ttyACM0"]),
         ("serial:/dev/null@abc", ["abc", "bits per second"]),
         ("serial:/dev/null@0", ["`0`", "bits per second"]),

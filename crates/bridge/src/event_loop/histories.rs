@@ -1,5 +1,7 @@
 //! After whatever happened, a pad plays. Histories are drawn at random, in any order and with any waits.
 
+use std::f32::consts::TAU;
+
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop, prop_assert, prop_oneof, proptest};
 
 use firmware_proto::frame::Message;
@@ -35,9 +37,8 @@ enum Happening {
     Jump(u64),
     /// For so many milliseconds this channel is at the end of its range.
     Saturate(usize, u64),
-    /// For so many milliseconds this channel of an untouched pad stands at so many millivolts inside its range, with noise of so many
-    /// microvolts.
-    Rail { channel: usize, mv: i32, noise_uv: i32, ms: u64 },
+    /// For so many milliseconds this channel stands at so many millivolts inside its range, with noise of so many microvolts.
+    Rail { channel: usize, mv: i32, noise_uv: i32, contact: Contact, ms: u64 },
     /// The pad says who it is: one of two.
     Identify(bool),
     /// From now on its clock goes on by so many microseconds in a millisecond, for so many milliseconds.
@@ -56,12 +57,11 @@ fn waits_ms() -> impl Strategy<Value = u64> {
     prop_oneof![0..200_u64, 0..3_000_u64, 0..30_000_u64]
 }
 
+/// Anywhere on the plate.
 fn contacts() -> impl Strategy<Value = Contact> {
-    (-28.0..28.0_f32, -28.0..28.0_f32, 0.0..6.0_f32).prop_map(|(x_mm, y_mm, fz_n)| Contact {
-        x_mm,
-        y_mm,
-        fz_n,
-        ..AWAY
+    (0.0..1.0_f32, 0.0..TAU, 0.0..6.0_f32).prop_map(|(share, turn, fz_n)| {
+        let radius_mm = 28.0 * share.sqrt();
+        Contact { x_mm: radius_mm * turn.cos(), y_mm: radius_mm * turn.sin(), fz_n, ..AWAY }
     })
 }
 
@@ -87,7 +87,8 @@ fn ages() -> impl Strategy<Value = u32> {
 }
 
 fn happenings() -> impl Strategy<Value = Happening> {
-    let rail = (0..9_usize, -20..20_i32, 1..2_000_i32, 1..3_000_u64);
+    let rail_contacts = prop_oneof![Just(AWAY), contacts()];
+    let rail = (0..9_usize, -20..20_i32, 1..2_000_i32, rail_contacts, 1..3_000_u64);
     let restart = (times_us(), any::<bool>(), -400_000..400_000_i32, "[ -~\r\n]{0,80}");
     prop_oneof![
         3 => waits_ms().prop_map(Happening::Wait),
@@ -103,7 +104,9 @@ fn happenings() -> impl Strategy<Value = Happening> {
         1 => (ages(), 1..5_u32).prop_map(|(age, frames)| Happening::Repeat { age, frames }),
         1 => times_us().prop_map(Happening::Jump),
         1 => (0..9_usize, 1..100_u64).prop_map(|(channel, ms)| Happening::Saturate(channel, ms)),
-        1 => rail.prop_map(|(channel, mv, noise_uv, ms)| Happening::Rail { channel, mv, noise_uv, ms }),
+        1 => rail.prop_map(|(channel, mv, noise_uv, contact, ms)| {
+            Happening::Rail { channel, mv, noise_uv, contact, ms }
+        }),
         1 => any::<bool>().prop_map(Happening::Identify),
         1 => (0..20_000_u64, 0..3_000_u64).prop_map(|(us_per_ms, ms)| Happening::Pace(us_per_ms, ms)),
     ]
@@ -146,12 +149,9 @@ impl Happening {
                 play.touch(&AWAY, *ms);
                 play.offset[*channel] = offset;
             }
-            // While the zero is measured, and under a finger, a channel that is off can look like less load than none: that is
-            // believed for 5 s, and is not drawn.
-            Self::Rail { .. } if play.bridge.driver.pipeline.phase() != Phase::Playing => {}
-            Self::Rail { channel, mv, noise_uv, ms } => {
+            Self::Rail { channel, mv, noise_uv, contact, ms } => {
                 play.wiring = Box::new(rail(*channel, *mv, *noise_uv));
-                play.touch(&AWAY, *ms);
+                play.touch(contact, *ms);
                 play.wiring = Box::new(|_, _| ());
             }
             Self::Pace(us_per_ms, ms) => {

@@ -91,8 +91,8 @@ pub(super) struct FitWithout {
     pub misfit: f64,
     /// What the channel should read then, µV.
     pub expected_uv: f64,
-    /// The force's magnitude, N.
-    pub force_n: f64,
+    /// The force Fx, Fy, Fz, N.
+    pub force_n: [f64; 3],
 }
 
 /// Expected error of the estimate of a contact.
@@ -180,8 +180,11 @@ impl Inverse {
         let (mut others_uv, mut weights) = (*uv, *weights);
         (others_uv[channel], weights[channel]) = (0.0, 0.0);
         let trial = self.best(&others_uv, &weights)?;
-        let force_n = libm::sqrt(dot(&trial.force_n, &trial.force_n));
-        Some(FitWithout { misfit: trial.misfit, expected_uv: -trial.left_uv[channel], force_n })
+        Some(FitWithout {
+            misfit: trial.misfit,
+            expected_uv: -trial.left_uv[channel],
+            force_n: trial.force_n,
+        })
     }
 
     /// The same with its uncertainty; `None` for strain that is not finite, or beyond anything that a pad can read.

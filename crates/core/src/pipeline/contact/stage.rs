@@ -5,7 +5,7 @@ use firmware_proto::sample::Sample;
 use super::Decoder;
 use super::touch::{Touch, TouchState};
 use super::uncertainty::Estimate;
-use super::watch::{Doubt, Warning, Watch};
+use super::watch::{Doubt, Warning, Watch, load_without_stray_n};
 use crate::pipeline::compensation::gain::CommonGain;
 use crate::pipeline::compensation::memory::Memory;
 use crate::pipeline::compensation::thermometer::Thermometer;
@@ -132,7 +132,7 @@ impl ContactStage {
         let pad = PadState { touched, rest, added_uv: self.thermometer.added_uv() };
         self.strain = None;
         self.raw_uv = self.signal.raw_uv(sample);
-        let load_n = |strain: &Strain| self.decoder.load_n(&gain.calibrated(strain));
+        let load_n = |strain: &Strain| load_without_stray_n(&self.decoder, &gain.calibrated(strain));
         match self.signal.condition(at, sample, &pad, load_n, health) {
             Conditioned::Strain(strain) => {
                 let strain = self.memory.freed(&self.thermometer.at_reference(&gain.calibrated(&strain)));

@@ -159,7 +159,7 @@ impl Signal {
             if let Some(channel) = block_uv.and_then(|uv| self.tare.lone(&uv, &pad.rest)) {
                 return Conditioned::Stray { channel };
             }
-            if block_uv.is_some_and(|uv| self.tare.is_pulled(&uv, pad.touched, &pad.rest, &load_n)) {
+            if block_uv.is_some_and(|uv| self.tare.is_pulled(&uv, &pad.rest, &load_n)) {
                 return Conditioned::Pulled;
             }
             return Conditioned::Strain(self.tare.apply(at, &raw_uv(mean), pad.touched, &pad.rest));

@@ -53,12 +53,12 @@ impl UntouchedOffset {
     pub const NONE: Self = Self { uv: [0.0; CHANNELS], doubt_uv: [0.0; CHANNELS] };
 }
 
-/// The lowest load that was seen since the zero is being measured. Nothing can pull at the plate, so the untouched pad is
-/// there or lower.
+/// The reading of the lowest load that was seen since the zero is being measured. Nothing can pull at the plate, so the untouched
+/// pad is there or lower.
 #[derive(Clone, Copy, Debug)]
 struct Floor {
-    load_n: f32,
-    /// When it was read last.
+    uv: [f64; CHANNELS],
+    /// When as little load was read last.
     at: StreamInstant,
 }
 
@@ -70,8 +70,6 @@ pub struct Tare {
     doubt_uv: [f64; CHANNELS],
     followed_at: StreamInstant,
     stillness: Stillness,
-    /// Reference of loads while there is no zero, µV: the first reading, or a zero that turned out to be a load.
-    reference_uv: Option<[f64; CHANNELS]>,
     floor: Option<Floor>,
     loaded: bool,
     /// Blocks in a row below the zero.
@@ -94,7 +92,6 @@ impl Tare {
             doubt_uv: [0.0; CHANNELS],
             followed_at: StreamInstant::from_us(0),
             stillness: Stillness::new(),
-            reference_uv: None,
             floor: None,
             loaded: false,
             pulls: 0,
@@ -112,10 +109,9 @@ impl Tare {
         self.loaded
     }
 
-    /// The zero turned out to be a load. It is measured anew; the old one tells what is less load than that.
+    /// The zero turned out to be a load. It is measured anew.
     pub const fn doubt(&mut self) {
-        if let Some(zero_uv) = self.zero_uv.take() {
-            self.reference_uv = Some(zero_uv);
+        if self.zero_uv.take().is_some() {
             self.floor = None;
         }
         (self.loaded, self.pulls) = (true, 0);
@@ -139,12 +135,10 @@ impl Tare {
         Some(channel)
     }
 
-    /// Whether the blocks up to this one show that the zero was a load: nothing can pull at the plate. One with a touch in it
-    /// does not.
+    /// Whether the blocks up to this one show that the zero was a load: nothing can pull at the plate.
     pub fn is_pulled(
         &mut self,
         block_uv: &[f64; CHANNELS],
-        touched: bool,
         rest: &UntouchedOffset,
         load_n: impl Fn(&Strain) -> f32,
     ) -> bool {
@@ -152,7 +146,7 @@ impl Tare {
         let strain = relative(block_uv, &std::array::from_fn(|k| zero_uv[k] + rest.uv[k]));
         // At rest nothing needs to be decoded.
         let stands = strain.uv.iter().all(|uv| f64::from(uv.abs()) <= STILL_UV);
-        let is_below = !touched && !stands && load_n(&strain) < -SAME_N;
+        let is_below = !stands && load_n(&strain) < -SAME_N;
         self.pulls = if is_below { self.pulls + 1 } else { 0 };
         self.pulls >= PULL_BLOCKS
     }
@@ -166,38 +160,35 @@ impl Tare {
         rest: &UntouchedOffset,
         load_n: impl Fn(&Strain) -> f32,
     ) -> bool {
-        let is_lone = |from_uv: &[f64; CHANNELS]| {
-            let moved_uv = std::array::from_fn(|k| block_uv[k] - from_uv[k]);
-            lone_channel(&moved_uv).is_some_and(|channel| moved_uv[channel].abs() > LONE_UV)
-        };
-        if self.reference_uv.as_ref().is_some_and(is_lone) {
-            // No load is added or taken away: a channel has moved, and loads cannot be compared with those before.
-            (self.reference_uv, self.floor) = (None, None);
-        }
-        let reference_uv = *self.reference_uv.get_or_insert(*block_uv);
-        let load_n = |uv: &[f64; CHANNELS]| load_n(&relative(uv, &reference_uv));
-        let floor_n = self.lower_floor(at, load_n(block_uv));
+        let floor_uv = self.lower_floor(at, block_uv, &load_n);
         let mean_uv = self.stillness.mean_uv();
-        if let Some(mean_uv) = mean_uv.filter(|uv| load_n(uv) <= floor_n + SAME_N) {
+        if let Some(mean_uv) = mean_uv.filter(|uv| load_n(&relative(uv, &floor_uv)) <= SAME_N) {
             self.zero_uv = Some(std::array::from_fn(|k| mean_uv[k] - rest.uv[k]));
             self.doubt_uv = rest.doubt_uv;
             self.followed_at = at;
-            (self.reference_uv, self.floor, self.loaded) = (None, None, false);
+            (self.floor, self.loaded) = (None, false);
         } else if self.stillness.is_full() {
             self.loaded = true;
         }
         self.stillness.has_just_moved()
     }
 
-    fn lower_floor(&mut self, at: StreamInstant, load_n: f32) -> f32 {
+    /// Takes a block's load into account; the reading of the lowest.
+    fn lower_floor(
+        &mut self,
+        at: StreamInstant,
+        block_uv: &[f64; CHANNELS],
+        load_n: impl Fn(&Strain) -> f32,
+    ) -> [f64; CHANNELS] {
+        let block = Floor { uv: *block_uv, at };
         let standing = self.floor.filter(|floor| at.us_since(floor.at) <= FLOOR_US);
-        let floor = match standing {
-            Some(floor) if load_n > floor.load_n + SAME_N => floor,
-            Some(floor) => Floor { load_n: floor.load_n.min(load_n), at },
-            None => Floor { load_n, at },
-        };
+        let floor = standing.map_or(block, |floor| match load_n(&relative(block_uv, &floor.uv)) {
+            above_n if above_n > SAME_N => floor,
+            above_n if above_n >= 0.0 => Floor { at, ..floor },
+            _ => block,
+        });
         self.floor = Some(floor);
-        floor.load_n
+        floor.uv
     }
 
     /// Raw microvolts relative to the zero. Follows the zero if nothing touches the pad, which then reads `rest`.
@@ -308,15 +299,12 @@ mod tests {
     }
 
     #[test]
-    fn blocks_below_the_zero_with_a_touch_between_are_not_in_a_row() {
+    fn one_block_below_the_zero_is_no_pull() {
         let mut tare = Tare::new();
         assert!(known_at_ms(&mut tare, |_| 0.0).is_some());
-        let mut pulled = |touched| {
-            tare.is_pulled(&[-500.0; CHANNELS], touched, &UntouchedOffset::NONE, |strain| {
-                strain.uv[0] / UV_PER_N
-            })
-        };
-        assert_eq!([false, true, false, false].map(&mut pulled), [false, false, false, true]);
+        let mut pulled =
+            |uv| tare.is_pulled(&[uv; CHANNELS], &UntouchedOffset::NONE, |strain| strain.uv[0] / UV_PER_N);
+        assert_eq!([-500.0, 0.0, -500.0, -500.0].map(&mut pulled), [false, false, false, true]);
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! What a stretch of a touch shows by itself: one finger, a channel that cannot be believed, or neither.
 
-use super::super::inverse::{FitWithout, Inverse};
+use super::super::Decoder;
+use super::super::inverse::{ContactFit, FitWithout, Inverse};
 use super::super::uncertainty::Noise;
-use crate::quantity::CHANNELS;
+use crate::pipeline::signal::lone::lone_channel;
+use crate::quantity::{CHANNELS, Contact, Strain};
 
 /// Chi-square of four numbers that a ten-thousandth exceeds. Ten minutes of play are about 600 presses, and noise that is
 /// forgotten after 3 s is drawn anew a few hundred times in them: one false warning in ten such plays.
@@ -43,6 +45,18 @@ pub(super) struct Mean {
     pub(super) force_n: f64,
 }
 
+impl Mean {
+    /// That of one reading and what was made of it.
+    pub(super) fn of(strain: &Strain, fit: &ContactFit) -> Self {
+        let Contact { fx_n, fy_n, fz_n, .. } = fit.contact;
+        Self {
+            uv: strain.uv.map(f64::from),
+            left_uv: fit.left_uv,
+            force_n: f64::from(libm::hypotf(libm::hypotf(fx_n, fy_n), fz_n)),
+        }
+    }
+}
+
 /// Finding about a stretch of a touch by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Finding {
@@ -65,11 +79,14 @@ pub(super) fn weights(inverse: &Inverse, mean: &Mean, scatter_uv2: &[f64; CHANNE
     Noise { additive_uv, ..*inverse.noise() }.variances(&mean.uv, mean.force_n).weights()
 }
 
+/// χ² = Σₖ rₖ² / σₖ²
+fn chi_square(left_uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> f64 {
+    left_uv.iter().zip(weights).map(|(uv, weight)| weight * uv * uv).sum()
+}
+
 /// What the means over a stretch show, with one over each channel's variance.
 pub(super) fn judge(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -> Finding {
-    // χ² = Σₖ rₖ² / σₖ²
-    let misfit: f64 = mean.left_uv.iter().zip(weights).map(|(uv, weight)| weight * uv * uv).sum();
-    if misfit <= MISFIT_MAX {
+    if chi_square(&mean.left_uv, weights) <= MISFIT_MAX {
         return Finding::Fine;
     }
     let Some((channel, fit)) = odd_one_out(inverse, &mean.uv, weights) else { return Finding::Unexplained };
@@ -80,6 +97,22 @@ pub(super) fn judge(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -
     } else {
         Finding::Unexplained
     }
+}
+
+/// The normal force of a difference of two readings, N, of which one channel may have moved by itself. If it is one finger's but
+/// for that channel, then that finger's; else that of all channels. Decoders that explain nothing know only a channel that moved alone.
+pub fn load_without_stray_n(decoder: &Decoder, strain: &Strain) -> f32 {
+    let Some(inverse) = decoder.inverse() else {
+        let is_lone = lone_channel(&strain.uv.map(f64::from)).is_some();
+        return if is_lone { 0.0 } else { decoder.load_n(strain) };
+    };
+    let fit_without_stray = || {
+        let mean = Mean::of(strain, &inverse.explain(strain)?);
+        let weights = weights(inverse, &mean, &[0.0; CHANNELS]);
+        let is_one_finger = chi_square(&mean.left_uv, &weights) <= MISFIT_MAX;
+        odd_one_out(inverse, &mean.uv, &weights).filter(|_| !is_one_finger)
+    };
+    fit_without_stray().map_or_else(|| decoder.load_n(strain), |(_, fit)| fit.force_n[2] as f32)
 }
 
 /// Whether so much of the load is left over that it is no finger on a pad that is only not quite as it was calibrated.
@@ -114,7 +147,9 @@ fn is_far_off(inverse: &Inverse, channel: usize, mean: &Mean, fit: &FitWithout) 
     // By the variance that it would have: its own share would hide how far off it is.
     let mut expected_uv = mean.uv;
     expected_uv[channel] = fit.expected_uv;
-    let weights = inverse.noise().variances(&expected_uv, fit.force_n).weights();
+    let [fx_n, fy_n, fz_n] = fit.force_n;
+    let force_n = libm::hypot(libm::hypot(fx_n, fy_n), fz_n);
+    let weights = inverse.noise().variances(&expected_uv, force_n).weights();
     let most_uv = expected_uv.iter().fold(0.0, |most: f64, uv| most.max(uv.abs()));
     let off_uv = (mean.uv[channel] - fit.expected_uv).abs();
     off_uv * libm::sqrt(weights[channel]) > STRAY && off_uv > STRAY_SHARE * most_uv
@@ -133,7 +168,6 @@ mod tests {
     use crate::pad::field::PadField;
     use crate::pad::influence::InfluenceField;
     use crate::pipeline::shipped;
-    use crate::quantity::{Contact, Strain};
 
     /// Contacts of so many fingers anywhere, as the channels read them.
     fn pressed(field: &InfluenceField, random: &mut SplitMix64, fingers: usize) -> [f64; CHANNELS] {
@@ -155,10 +189,8 @@ mod tests {
     }
 
     fn found(inverse: &Inverse, uv: &[f64; CHANNELS]) -> Finding {
-        let explained = inverse.explain(&Strain { uv: uv.map(|uv| uv as f32) }).unwrap();
-        let Contact { fx_n, fy_n, fz_n, .. } = explained.contact;
-        let force_n = f64::from(libm::hypotf(libm::hypotf(fx_n, fy_n), fz_n));
-        let mean = Mean { uv: *uv, left_uv: explained.left_uv, force_n };
+        let strain = Strain { uv: uv.map(|uv| uv as f32) };
+        let mean = Mean::of(&strain, &inverse.explain(&strain).unwrap());
         judge(inverse, &mean, &weights(inverse, &mean, &[0.0; CHANNELS]))
     }
 
@@ -191,6 +223,36 @@ mod tests {
             let lost = share(&inverse, 2, |_, _| (), |finding, _| matches!(finding, Finding::Stray(_)));
             let named = share(&inverse, 2, |_, _| (), is_off);
             assert!(lost <= 0.02 && named <= 0.03, "{lost} {named}");
+        }
+    }
+
+    #[test]
+    fn fingers_are_no_pull_even_on_channels_of_other_gains() {
+        for inverse in decoders() {
+            let (decoder, mut random) = (Decoder::from(inverse.clone()), SplitMix64::new(9));
+            for number in 0..3_000 {
+                let uv = pressed(inverse.field(), &mut random, 1 + number % 3);
+                let strain = Strain { uv: uv.map(|uv| uv as f32 * (1.0 + 0.5 * random.uniform())) };
+                let load_n = load_without_stray_n(&decoder, &strain);
+                assert!(load_n > -0.1, "{load_n} N by {strain:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_load_is_known_whatever_one_channel_reads() {
+        for inverse in decoders() {
+            let (decoder, mut random) = (Decoder::from(inverse.clone()), SplitMix64::new(3));
+            let (count, sign) = (1_000, |number: usize| if number.is_multiple_of(2) { 1.0 } else { -1.0 });
+            let known = (0..count).filter(|&number| {
+                let uv = pressed(inverse.field(), &mut random, 1);
+                let mut strain = Strain { uv: uv.map(|uv| sign(number) * uv as f32) };
+                let load_n = decoder.load_n(&strain);
+                strain.uv[number % CHANNELS] = 20_000.0 * random.uniform();
+                (load_without_stray_n(&decoder, &strain) - load_n).abs() < 0.3 * load_n.abs()
+            });
+            let known = known.count();
+            assert!(known > count * 95 / 100, "{known} of {count}");
         }
     }
 

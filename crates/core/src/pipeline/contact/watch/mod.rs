@@ -15,8 +15,9 @@ use super::inverse::{ContactFit, Inverse};
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::Effect;
 use crate::pipeline::signal::lone::lone_channel;
-use crate::quantity::{CHANNELS, Contact, Strain};
+use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
+pub use finding::load_without_stray_n;
 use finding::{ANSWERS, Finding, Mean, is_far_from_a_finger, judge, reads, weights};
 pub use warning::Warning;
 
@@ -87,11 +88,11 @@ impl Block {
     }
 
     fn add(&mut self, strain: &Strain, explained: &ContactFit) {
-        let Contact { fx_n, fy_n, fz_n, .. } = explained.contact;
+        let Mean { uv, left_uv, force_n } = Mean::of(strain, explained);
         self.samples += 1;
-        self.sum.uv.iter_mut().zip(strain.uv).for_each(|(sum, uv)| *sum += f64::from(uv));
-        self.sum.left_uv.iter_mut().zip(explained.left_uv).for_each(|(sum, uv)| *sum += uv);
-        self.sum.force_n += f64::from(libm::hypotf(libm::hypotf(fx_n, fy_n), fz_n));
+        self.sum.uv.iter_mut().zip(uv).for_each(|(sum, uv)| *sum += uv);
+        self.sum.left_uv.iter_mut().zip(left_uv).for_each(|(sum, uv)| *sum += uv);
+        self.sum.force_n += force_n;
     }
 
     fn mean(&self) -> Mean {
@@ -278,6 +279,7 @@ mod tests {
     use super::*;
     use crate::pad::field::PadField;
     use crate::pipeline::contact::uncertainty::Noise;
+    use crate::quantity::Contact;
 
     const NOISE: Noise = Noise::of_channels([5.0; CHANNELS], [0.02; CHANNELS]);
 

@@ -6,6 +6,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use firmware_proto::identity::SerialNumber;
 use tactpad::lab::play::kept::KeptPlay;
 use tactpad::lab::play::reader::Reader;
 use tactpad::pad::field::PadField;
@@ -132,9 +133,8 @@ fn nothing_is_kept_where_nobody_wants_it_or_nothing_is_known_of_the_pad() {
 
 #[test]
 fn kept_play_that_is_damaged_is_refused_in_one_sentence() {
-    let folder = played(folder(), "");
-    let file = kept_file(folder.path()).unwrap();
-    let bytes = fs::read(&file).unwrap();
+    let folder = folder();
+    let bytes = KeptPlay::new(SerialNumber::from_ascii("PAD-1").unwrap(), 7).to_bytes();
     let cut = folder.path().join("cut.play");
     for (length, wanted) in [(bytes.len() - 1, "is damaged"), (20, "is damaged")] {
         fs::write(&cut, &bytes[..length]).unwrap();

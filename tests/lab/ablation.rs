@@ -161,6 +161,7 @@ fn assert_same(found: &Value, wanted: &Value, what: &str) {
 }
 
 #[test]
+#[ignore = "proof: 40 s: every decoder of the table is fitted"]
 fn rows_are_what_twin_adapt_and_evaluate_give() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -473,13 +473,14 @@ fn faults_that_it_has_no_number_for_do_not_make_it_worse_than_a_wrench_with_all_
     is_no_worse_than_a_wrench(2, ALL);
 }
 
-/// By an earlier pad that was calibrated with so many contacts.
-fn what_pads_share_is_taken_over(many: usize) {
+#[test]
+#[ignore = "proof: 10 s: two pads are calibrated, one with all contacts of the plan"]
+fn what_pads_share_beyond_the_simulation_is_taken_over() {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
     let field = faulty(3);
     let plan = plans::paper::plan(&device.contact);
-    let earlier = inverse(&Measured::on(&field, &on_a_wrong_stage(&device), &plan, 1), many);
+    let earlier = inverse(&Measured::on(&field, &on_a_wrong_stage(&device), &plan, 1), ALL);
     device.modules[1].gain = [1.1, 0.9, 1.2];
     let measured = Measured::on(&field, &on_a_wrong_stage(&device), &plan, 3);
     let unseen = Measured::on(&field, &device, &plans::recommended::plan(&device.contact, 9), 2);
@@ -488,17 +489,6 @@ fn what_pads_share_is_taken_over(many: usize) {
     println!("with {with:?}\nwithout {without:?}");
     assert!(with.position_mae_mm < 0.7 * without.position_mae_mm);
     assert!(with.force_mae_n < 0.7 * without.force_mae_n);
-}
-
-#[test]
-fn what_pads_share_beyond_the_simulation_is_taken_over() {
-    what_pads_share_is_taken_over(MANY);
-}
-
-#[test]
-#[ignore = "proof: 10 s: the earlier pad has all contacts of the plan instead of a third"]
-fn what_pads_share_beyond_the_simulation_is_taken_over_with_all_contacts() {
-    what_pads_share_is_taken_over(ALL);
 }
 
 fn zeros_that_nobody_read_are_found(counts: [(usize, f64); 2]) {

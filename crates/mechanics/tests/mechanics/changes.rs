@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use tactpad_core::pad::changes::{FieldChange, FieldChanges, Flaw};
-use tactpad_core::pad::device::{Device, Side};
+use tactpad_core::pad::device::Device;
 
 use crate::standard::SIMULATOR;
 

@@ -1,6 +1,6 @@
 //! The device that a diagnosis makes of another: with the named causes in it.
 
-use super::causes::material::{creep, hysteresis};
+use super::causes::memory::{plays, terms};
 use super::report::Diagnosis;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::mechanics::side_share;
@@ -191,7 +191,7 @@ fn remember(
         let own = std::array::from_fn(|other| other == channel);
         if effect == "creep" {
             let term = |[time_s, share]: [f64; 2]| Prony { channels: own, time_s, share };
-            device.behaviour.creep.extend(creep::terms(&values).map(term));
+            device.behaviour.creep.extend(terms(&values).map(term));
         } else {
             let full_scale_uv = circumstances.full_scale.get(channel)?;
             let play = |[threshold, share]: [f64; 2]| PlayOperator {
@@ -199,7 +199,7 @@ fn remember(
                 threshold_uv: threshold * full_scale_uv,
                 share,
             };
-            device.behaviour.hysteresis.extend(hysteresis::plays(&values).map(play));
+            device.behaviour.hysteresis.extend(plays(&values).map(play));
         }
     }
     Some(())

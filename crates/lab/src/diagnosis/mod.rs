@@ -41,7 +41,6 @@ use std::fmt;
 use self::attribution::atlas::{Atlas, attributed};
 use self::attribution::{Applied, Attribution, AttributionFit, Search};
 use self::causes::CATALOGUE;
-use self::causes::cause::Cause;
 use self::data::observations::Observations;
 use self::gatekeepers::checks::excess::{EFFECT, Excess, excess};
 use self::gatekeepers::{Gate, guarded};
@@ -160,7 +159,7 @@ fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Dia
 
 /// The names of all effects that can be found.
 pub fn effects() -> impl Iterator<Item = &'static str> {
-    CATALOGUE.into_iter().map(Cause::effect).chain(gatekeepers::EFFECTS)
+    CATALOGUE.iter().map(|cause| cause.effect).chain(gatekeepers::EFFECTS)
 }
 
 /// Whether there is enough in a table; quick, where [`diagnose`] takes seconds.

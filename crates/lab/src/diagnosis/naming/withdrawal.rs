@@ -6,8 +6,7 @@
 //! stay in the report as a set with `unlisted_cause`.
 
 use crate::diagnosis::attribution::{Attribution, Search};
-use crate::diagnosis::causes::CATALOGUE;
-use crate::diagnosis::causes::cause::Cause;
+use crate::diagnosis::causes::{CATALOGUE, Cause};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Finding, INSEPARABLE, UNLISTED};
 
@@ -84,8 +83,8 @@ fn is_told(squares: &[f64], left: &[f64]) -> bool {
     square > OVER_NEAR * near && is_over(square, left)
 }
 
-fn of_catalogue(effect: &str) -> Option<&'static dyn Cause> {
-    CATALOGUE.into_iter().find(|it| it.effect() == effect)
+fn of_catalogue(effect: &str) -> Option<&'static Cause> {
+    CATALOGUE.iter().find(|it| it.effect == effect)
 }
 
 /// Whether the weighted squares that a cause explains are far more than those that are left in all channels.
@@ -97,7 +96,7 @@ pub(crate) fn is_over(square: f64, unnamed_by_channel: &[f64]) -> bool {
 /// targets, beside three or more of any effects, and then also beside what each target has of its own, as that may be a part of it.
 /// What the checks of the recording found does not count: it is seen in the readings themselves.
 pub(crate) fn in_common(findings: Vec<Finding>) -> Vec<Finding> {
-    let asks = |effect: &str| of_catalogue(effect).is_some_and(|it| !it.is_individual());
+    let asks = |effect: &str| of_catalogue(effect).is_some_and(|it| !it.is_individual);
     let effects: Vec<&str> = findings.iter().map(|it| it.effect).filter(|effect| asks(effect)).collect();
     let alike = |effect: &str| effects.iter().filter(|it| **it == effect).count();
     let is_doubted = |effect: &str| alike(effect) > ALIKE_MAX || effects.len() > CAUSES_MAX;

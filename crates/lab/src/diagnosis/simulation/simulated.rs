@@ -6,8 +6,7 @@ use rayon::prelude::*;
 
 use super::own::own_chain;
 use super::row::{Row, continued, response};
-use crate::diagnosis::causes::CATALOGUE;
-use crate::diagnosis::causes::cause::{Cause, ChainStage};
+use crate::diagnosis::causes::{CATALOGUE, Cause, ChainStage};
 use crate::diagnosis::data::observations::{Observations, Sample};
 use crate::diagnosis::model::chain::{Chain, Reference};
 use crate::diagnosis::model::mechanics::{Maps, Pad, at_places, changes, side_share};
@@ -44,7 +43,7 @@ pub(crate) struct Simulated<'f> {
     setting: Setting,
     reference: Reference,
     hypotheses: Vec<Hypothesis>,
-    causes: Vec<&'static dyn Cause>,
+    causes: Vec<&'static Cause>,
     /// The device's own imperfections.
     own: Chain,
     /// For each row, the changes of the maps, in the order of the setting's.
@@ -77,19 +76,15 @@ impl<'f> Simulated<'f> {
             |of: &Observations| RowSequence::of(&of.samples, &of.follows(), pad.device.contact.full_scale_n);
         let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all, &course(all));
         let mut hypotheses = Vec::new();
-        let mut causes: Vec<&'static dyn Cause> = Vec::new();
-        let is_asked = |cause: &&dyn Cause| pad.asks_for(cause.effect()) && cause.missing(&setting).is_none();
-        for cause in CATALOGUE.into_iter().filter(is_asked) {
+        let mut causes: Vec<&'static Cause> = Vec::new();
+        let is_asked = |cause: &&Cause| pad.asks_for(cause.effect) && cause.missing(&setting).is_none();
+        for cause in CATALOGUE.iter().filter(is_asked) {
             for target in cause.targets(&setting) {
                 hypotheses.push(Hypothesis {
-                    effect: cause.effect(),
+                    effect: cause.effect,
                     target,
                     parameters: cause.parameters(&setting),
-                    signature_error: if cause.stage() == ChainStage::Channels {
-                        0.0
-                    } else {
-                        SIGNATURE_ERROR
-                    },
+                    signature_error: if cause.stage == ChainStage::Channels { 0.0 } else { SIGNATURE_ERROR },
                 });
                 causes.push(cause);
             }
@@ -120,7 +115,7 @@ impl<'f> Simulated<'f> {
     /// The causes that cannot be asked for, and what is missing.
     pub(crate) fn missing(&self) -> Vec<NotTestable> {
         let missing =
-            CATALOGUE.iter().filter_map(|cause| Some((cause.effect(), cause.missing(&self.setting)?)));
+            CATALOGUE.iter().filter_map(|cause| Some((cause.effect, cause.missing(&self.setting)?)));
         missing.map(|(effect, needs)| NotTestable { effect, needs }).collect()
     }
 
@@ -303,7 +298,7 @@ impl<'f> Simulated<'f> {
                 }
             };
             applied[own].1[parameter] += by;
-            self.perturbed(point, self.causes[at].stage(), &self.chain(&applied))
+            self.perturbed(point, self.causes[at].stage, &self.chain(&applied))
         };
         // A number that cannot be below none is changed upwards only.
         let is_one_sided = hypothesis.parameters[parameter].is_one_sided();

@@ -12,6 +12,7 @@ use std::sync::LazyLock;
 
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::Finding;
+use tactpad::lab::effect::Effect;
 use tactpad::lab::play::change::{Before, DetectedChanges, changed};
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::windows::Window;
@@ -67,10 +68,10 @@ impl Kind {
     const ALL: [Self; 4] = [Self::ModuleGain, Self::Debonded, Self::Nothing, Self::OtherHand];
 
     /// The cause that should be named.
-    fn cause(self) -> Option<(&'static str, Target)> {
+    fn cause(self) -> Option<(Effect, Target)> {
         match self {
-            Self::ModuleGain => Some(("module_gain", Target::Module(1))),
-            Self::Debonded => Some(("module_debonded", Target::ModuleSide(0, Side::PlusX))),
+            Self::ModuleGain => Some((Effect::ModuleGain, Target::Module(1))),
+            Self::Debonded => Some((Effect::ModuleDebonded, Target::ModuleSide(0, Side::PlusX))),
             Self::Nothing | Self::OtherHand => None,
         }
     }

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use tactpad::lab::calibration::fit::{Calibration, fit};
 use tactpad::lab::calibration::result::numbers::{Number, Quantity};
 use tactpad::lab::diagnosis::data::target::Target;
+use tactpad::lab::effect::Effect;
 use tactpad::lab::evaluation::strain;
 use tactpad::lab::rig::measurement::carry_out;
 use tactpad::numeric::chi_square::exceeded;
@@ -234,7 +235,7 @@ fn kind(number: &Number) -> Option<&'static str> {
         Quantity::Blur => "blur",
         Quantity::Ageing => "ageing",
         // Static samples tell nothing of it.
-        Quantity::Rig(it) if it.effect == "time_lag" => return None,
+        Quantity::Rig(it) if it.effect == Effect::TimeLag => return None,
         Quantity::Rig(_) => "rig",
         Quantity::Physical(it) if it.parameter.name().ends_with("_deg") => "turns and tilts",
         Quantity::Physical(it)

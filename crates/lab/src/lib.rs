@@ -5,6 +5,7 @@ pub mod ageing;
 pub mod calibration;
 pub mod contacts;
 pub mod diagnosis;
+pub mod effect;
 pub mod evaluation;
 pub mod play;
 pub mod rig;

@@ -1,7 +1,5 @@
 //! After whatever happened, a pad plays. Histories are drawn at random, in any order and with any waits.
 
-use std::f32::consts::TAU;
-
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop, prop_assert, prop_oneof, proptest};
 
 use firmware_proto::frame::Message;
@@ -59,9 +57,11 @@ fn waits_ms() -> impl Strategy<Value = u64> {
 
 /// Anywhere on the plate.
 fn contacts() -> impl Strategy<Value = Contact> {
-    (0.0..1.0_f32, 0.0..TAU, 0.0..6.0_f32).prop_map(|(share, turn, fz_n)| {
-        let radius_mm = 28.0 * share.sqrt();
-        Contact { x_mm: radius_mm * turn.cos(), y_mm: radius_mm * turn.sin(), fz_n, ..AWAY }
+    (-28.0..28.0_f32, -1.0..1.0_f32, 0.0..6.0_f32).prop_map(|(x_mm, share, fz_n)| Contact {
+        x_mm,
+        y_mm: share * (28.0_f32.powi(2) - x_mm.powi(2)).sqrt(),
+        fz_n,
+        ..AWAY
     })
 }
 

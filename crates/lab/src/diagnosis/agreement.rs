@@ -41,10 +41,11 @@ mod tests {
     use super::super::report::Estimate;
     use super::*;
     use crate::diagnosis::data::target::Target;
+    use crate::effect::Effect;
 
     fn finding(channel: usize, gain: f64) -> Finding {
         Finding {
-            effect: "channel_gain",
+            effect: Effect::ChannelGain,
             target: Target::Channel(channel),
             parameters: vec![Estimate { name: "gain", value: gain, interval95: [gain - 0.01, gain + 0.01] }],
             shapes: Vec::new(),
@@ -62,7 +63,7 @@ mod tests {
     #[test]
     fn a_name_is_given_by_all_recordings_and_alike() {
         let confounded =
-            Finding { confounded_with: vec![("excitation_gain", Target::Pad)], ..finding(4, 1.1) };
+            Finding { confounded_with: vec![(Effect::ExcitationGain, Target::Pad)], ..finding(4, 1.1) };
         let one = diagnosis(vec![finding(2, 1.1), finding(3, 1.2), finding(4, 1.1), finding(5, 0.9)]);
         let other = diagnosis(vec![finding(3, 1.21), confounded, finding(5, 0.95)]);
         // The second channel stands in one only, the fourth is no name in the other, the fifth is another size.

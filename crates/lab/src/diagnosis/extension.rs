@@ -4,6 +4,7 @@ use super::causes::memory::{plays, terms};
 use super::report::Diagnosis;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::mechanics::side_share;
+use crate::effect::{DeviceChange, Effect};
 use tactpad_core::pad::device::behaviour::{Crosstalk, ModuleCrosstalk, PlayOperator, Prony};
 use tactpad_core::pad::device::parameter::Parameter;
 use tactpad_core::pad::device::{Device, Module, Side};
@@ -12,55 +13,10 @@ use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS};
 /// A device file opens the side of a frame or does not: from this part of the side on, open is nearer.
 const NEARER_OPEN: f64 = 0.5;
 
-/// Change of a device's number by a finding's value.
-#[derive(Clone, Copy, Debug)]
-enum Change {
-    Add,
-    Multiply,
-    Replace,
-}
-
-use Change::{Add, Multiply, Replace};
-
-/// Effect, the finding's number, the device's number (by [`Parameter`]'s names), and what becomes of it.
-const NUMBERS: [(&str, &str, &str, Change); 27] = [
-    ("channel_gain", "gain", "module.{module}.gain.{axis}", Multiply),
-    ("excitation_gain", "gain", "module.{module}.gain.{axis}", Multiply),
-    ("channel_offset", "offset_uv", "module.{module}.offset_uv.{axis}", Add),
-    ("module_displaced", "radial_mm", "module.{module}.radial_mm", Add),
-    ("module_displaced", "tangential_mm", "module.{module}.tangential_mm", Add),
-    ("module_rotated", "deg", "module.{module}.rotation_deg", Add),
-    ("module_tilted", "tangential_deg", "module.{module}.tilt_tangential_deg", Add),
-    ("module_tilted", "radial_deg", "module.{module}.tilt_radial_deg", Add),
-    ("module_stiffness", "factor", "module.{module}.frame_e_factor", Multiply),
-    ("plate_stiffness", "factor", "material.plate.e_mpa", Multiply),
-    ("thermal_zero", "uv_per_c", "thermal.zero_uv_per_c.{channel}", Add),
-    ("thermal_gain", "per_c", "thermal.gain_per_c.{channel}", Add),
-    ("zero_drift", "uv_per_h", "noise.drift_uv_per_h.{channel}", Add),
-    ("ageing", "share_at_end", "ageing.share.{channel}", Add),
-    ("reference_tilt", "x_deg", "rig.reference_tilt_x_deg", Add),
-    ("reference_tilt", "y_deg", "rig.reference_tilt_y_deg", Add),
-    ("reference_gain", "gain", "rig.reference_gain", Multiply),
-    ("reference_zero", "fx_n", "rig.reference_zero_n.x", Add),
-    ("reference_zero", "fy_n", "rig.reference_zero_n.y", Add),
-    ("reference_zero", "fz_n", "rig.reference_zero_n.z", Add),
-    ("stage_offset", "x_mm", "rig.stage_x_mm", Add),
-    ("stage_offset", "y_mm", "rig.stage_y_mm", Add),
-    ("stage_rotation", "deg", "rig.stage_rotation_deg", Add),
-    ("stage_scale", "scale", "rig.stage_scale", Multiply),
-    ("channel_skew", "skew_us", "sampling.skew_us.{channel}", Add),
-    ("time_lag", "ms", "rig.label_lag_ms", Add),
-    ("contact_size", "radius_mm", "contact.patch_radius_mm", Replace),
-];
-
 /// `device` with the named findings, and the effects among them that a device file cannot hold. Confounded ones are left out.
 ///
 /// `last_cycle` is the measurement's last: what `ageing` says of the end is said of that.
-pub fn extended(
-    device: &Device,
-    diagnosis: &Diagnosis,
-    last_cycle: Option<f64>,
-) -> (Device, Vec<&'static str>) {
+pub fn extended(device: &Device, diagnosis: &Diagnosis, last_cycle: Option<f64>) -> (Device, Vec<Effect>) {
     let (mut device, mut left_out) = (device.clone(), Vec::new());
     let circumstances = Circumstances { last_cycle, full_scale: &diagnosis.full_scale };
     for finding in diagnosis.findings.iter().filter(|finding| finding.confounded_with.is_empty()) {
@@ -71,7 +27,7 @@ pub fn extended(
             None => left_out.push(finding.effect),
         }
     }
-    left_out.sort_unstable();
+    left_out.sort_unstable_by_key(|effect: &Effect| effect.name());
     left_out.dedup();
     (device, left_out)
 }
@@ -93,7 +49,7 @@ fn reads_back(device: &Device) -> bool {
 /// The device with one cause more, of these numbers; none where it has no number for it, or none within its range.
 pub(super) fn with(
     device: &Device,
-    effect: &'static str,
+    effect: Effect,
     target: Target,
     numbers: &[(&str, f64)],
     circumstances: &Circumstances<'_>,
@@ -101,21 +57,27 @@ pub(super) fn with(
     let mut device = device.clone();
     let (_, first) = *numbers.first()?;
     match (effect, target) {
-        ("channel_crosstalk", Target::Channels { into, from }) => {
+        (Effect::ChannelCrosstalk, Target::Channels { into, from }) => {
             leak(&mut device.behaviour.crosstalk, Crosstalk { channel: into, with: from, share: first });
         }
-        ("module_crosstalk", Target::Modules { into, from }) => {
+        (Effect::ModuleCrosstalk, Target::Modules { into, from }) => {
             leak(
                 &mut device.behaviour.module_crosstalk,
                 ModuleCrosstalk { module: into, with: from, share: first },
             );
         }
-        ("module_frame_open", Target::ModuleSide(module, side)) => open(&mut device, module, side, first)?,
-        ("module_debonded", Target::ModuleSide(module, side)) => debond(&mut device, module, side, first)?,
-        ("hysteresis" | "creep", _) => remember(&mut device, effect, target, numbers, circumstances)?,
+        (Effect::ModuleFrameOpen, Target::ModuleSide(module, side)) => {
+            open(&mut device, module, side, first)?;
+        }
+        (Effect::ModuleDebonded, Target::ModuleSide(module, side)) => {
+            debond(&mut device, module, side, first)?;
+        }
+        (Effect::Hysteresis | Effect::Creep, _) => {
+            remember(&mut device, effect, target, numbers, circumstances)?;
+        }
         _ => set_numbers(&mut device, effect, target, numbers, circumstances.last_cycle)?,
     }
-    if effect == "contact_size" {
+    if effect == Effect::ContactSize {
         // A wider finger leaves the plate earlier.
         let contact = &mut device.contact;
         let centre_mm = device.plate.radius_mm() - contact.patch_radius_mm;
@@ -177,7 +139,7 @@ fn debond(device: &mut Device, module: usize, side: Side, share: f64) -> Option<
 /// Adds play operators, or terms of creep, in each channel of the target.
 fn remember(
     device: &mut Device,
-    effect: &str,
+    effect: Effect,
     target: Target,
     numbers: &[(&str, f64)],
     circumstances: &Circumstances<'_>,
@@ -189,7 +151,7 @@ fn remember(
     };
     for channel in channels {
         let own = std::array::from_fn(|other| other == channel);
-        if effect == "creep" {
+        if effect == Effect::Creep {
             let term = |[time_s, share]: [f64; 2]| Prony { channels: own, time_s, share };
             device.behaviour.creep.extend(terms(&values).map(term));
         } else {
@@ -207,16 +169,15 @@ fn remember(
 
 fn set_numbers(
     device: &mut Device,
-    effect: &'static str,
+    effect: Effect,
     target: Target,
     numbers: &[(&str, f64)],
     last_cycle: Option<f64>,
 ) -> Option<()> {
     for (name, value) in numbers {
-        let known = |(of, number, ..): &&(&str, &str, &str, Change)| *of == effect && number == name;
-        let (_, _, number, change) = NUMBERS.iter().find(known)?;
+        let (_, number, change) = effect.device_numbers().iter().find(|(number, ..)| number == name)?;
         let mut value = *value;
-        if effect == "ageing" {
+        if effect == Effect::Ageing {
             // The device file says what is lost after its own number of cycles.
             value /= Some(device.behaviour.ageing.part(last_cycle?)).filter(|part| *part > 0.0)?;
         }
@@ -224,9 +185,9 @@ fn set_numbers(
             let parameter: Parameter = name.parse().ok()?;
             let own = parameter.get(device);
             let changed = match change {
-                Add => own + value,
-                Multiply => own * value,
-                Replace => value,
+                DeviceChange::Add => own + value,
+                DeviceChange::Multiply => own * value,
+                DeviceChange::Replace => value,
             };
             parameter.set(device, changed);
         }
@@ -255,7 +216,7 @@ mod tests {
     use super::*;
     use tactpad_core::pad::device::behaviour::Behaviour;
 
-    fn finding(effect: &'static str, target: Target, parameters: &[(&'static str, f64)]) -> Finding {
+    fn finding(effect: Effect, target: Target, parameters: &[(&'static str, f64)]) -> Finding {
         let estimate = |(name, value): &(&'static str, f64)| Estimate {
             name,
             value: *value,
@@ -283,14 +244,22 @@ mod tests {
 
     fn mechanical() -> Vec<Finding> {
         vec![
-            finding("module_displaced", Target::Module(0), &[("radial_mm", -0.7), ("tangential_mm", 0.9)]),
-            finding("module_rotated", Target::Module(1), &[("deg", -5.0)]),
-            finding("module_tilted", Target::Module(1), &[("tangential_deg", 0.2), ("radial_deg", -0.3)]),
-            finding("module_stiffness", Target::Module(2), &[("factor", 0.6)]),
-            finding("module_frame_open", Target::ModuleSide(0, Side::MinusX), &[("area_share", 0.18)]),
-            finding("module_debonded", Target::ModuleSide(2, Side::PlusY), &[("area_share", 0.3)]),
-            finding("plate_stiffness", Target::Pad, &[("factor", 1.5)]),
-            finding("contact_size", Target::Rig, &[("radius_mm", 2.5)]),
+            finding(
+                Effect::ModuleDisplaced,
+                Target::Module(0),
+                &[("radial_mm", -0.7), ("tangential_mm", 0.9)],
+            ),
+            finding(Effect::ModuleRotated, Target::Module(1), &[("deg", -5.0)]),
+            finding(
+                Effect::ModuleTilted,
+                Target::Module(1),
+                &[("tangential_deg", 0.2), ("radial_deg", -0.3)],
+            ),
+            finding(Effect::ModuleStiffness, Target::Module(2), &[("factor", 0.6)]),
+            finding(Effect::ModuleFrameOpen, Target::ModuleSide(0, Side::MinusX), &[("area_share", 0.18)]),
+            finding(Effect::ModuleDebonded, Target::ModuleSide(2, Side::PlusY), &[("area_share", 0.3)]),
+            finding(Effect::PlateStiffness, Target::Pad, &[("factor", 1.5)]),
+            finding(Effect::ContactSize, Target::Rig, &[("radius_mm", 2.5)]),
         ]
     }
 
@@ -298,7 +267,7 @@ mod tests {
     fn mechanics_read_back() {
         let nominal = Device::nominal();
         let (device, left_out) = extended(&nominal, &diagnosis(mechanical()), None);
-        assert_eq!(left_out, [""; 0]);
+        assert_eq!(left_out, []);
         assert_eq!(Device::from_toml(&device.to_toml()), (Some(device.clone()), vec![]));
         let wanted = [
             Module { radial_mm: -0.7, tangential_mm: 0.9, frame_open: Some(Side::MinusX), ..Module::NOMINAL },
@@ -321,21 +290,21 @@ mod tests {
         device.modules[1].gain = [1.0, 1.0, 1.1];
         device.behaviour.crosstalk.push(Crosstalk { channel: 0, with: 4, share: 0.02 });
         let findings = vec![
-            finding("channel_gain", Target::Channel(5), &[("gain", 1.2)]),
-            finding("excitation_gain", Target::Pad, &[("gain", 0.9)]),
-            finding("channel_offset", Target::Channel(0), &[("offset_uv", 120.0)]),
-            finding("channel_crosstalk", Target::Channels { into: 0, from: 4 }, &[("share", 0.05)]),
-            finding("module_crosstalk", Target::Modules { into: 2, from: 1 }, &[("share", 0.04)]),
-            finding("thermal_zero", Target::Pad, &[("uv_per_c", 3.0)]),
-            finding("zero_drift", Target::Channel(8), &[("uv_per_h", 40.0)]),
-            finding("ageing", Target::Channel(3), &[("share_at_end", 0.02)]),
-            finding("reference_zero", Target::Rig, &[("fx_n", 0.1), ("fy_n", 0.2), ("fz_n", -0.1)]),
-            finding("stage_scale", Target::Rig, &[("scale", 1.02)]),
-            finding("channel_skew", Target::Channel(1), &[("skew_us", 900.0)]),
-            finding("time_lag", Target::Rig, &[("ms", -40.0)]),
+            finding(Effect::ChannelGain, Target::Channel(5), &[("gain", 1.2)]),
+            finding(Effect::ExcitationGain, Target::Pad, &[("gain", 0.9)]),
+            finding(Effect::ChannelOffset, Target::Channel(0), &[("offset_uv", 120.0)]),
+            finding(Effect::ChannelCrosstalk, Target::Channels { into: 0, from: 4 }, &[("share", 0.05)]),
+            finding(Effect::ModuleCrosstalk, Target::Modules { into: 2, from: 1 }, &[("share", 0.04)]),
+            finding(Effect::ThermalZero, Target::Pad, &[("uv_per_c", 3.0)]),
+            finding(Effect::ZeroDrift, Target::Channel(8), &[("uv_per_h", 40.0)]),
+            finding(Effect::Ageing, Target::Channel(3), &[("share_at_end", 0.02)]),
+            finding(Effect::ReferenceZero, Target::Rig, &[("fx_n", 0.1), ("fy_n", 0.2), ("fz_n", -0.1)]),
+            finding(Effect::StageScale, Target::Rig, &[("scale", 1.02)]),
+            finding(Effect::ChannelSkew, Target::Channel(1), &[("skew_us", 900.0)]),
+            finding(Effect::TimeLag, Target::Rig, &[("ms", -40.0)]),
         ];
         let (extended, left_out) = extended(&device, &diagnosis(findings), Some(500.0));
-        assert_eq!(left_out, [""; 0]);
+        assert_eq!(left_out, []);
         assert_eq!(Device::from_toml(&extended.to_toml()).0.as_ref(), Some(&extended));
         near(extended.modules[1].gain[2], 1.1 * 1.2 * 0.9);
         near(extended.modules[2].gain[0], 0.9);
@@ -356,12 +325,12 @@ mod tests {
     #[test]
     fn what_a_pad_remembers_is_as_high_and_as_slow_as_found() {
         let parts = ["part_0", "part_1", "part_2", "part_3", "part_4"].map(|name| (name, 1.0));
-        let mut hysteresis = finding("hysteresis", Target::Pad, &[("share_of_full_scale", 0.04)]);
+        let mut hysteresis = finding(Effect::Hysteresis, Target::Pad, &[("share_of_full_scale", 0.04)]);
         hysteresis.shapes = parts.into_iter().chain([("above", 1.0), ("full_scale", 1.0)]).collect();
-        let mut creep = finding("creep", Target::Channel(2), &[("share_at_20s", 0.03)]);
+        let mut creep = finding(Effect::Creep, Target::Channel(2), &[("share_at_20s", 0.03)]);
         creep.shapes = parts.to_vec();
         let (device, left_out) = extended(&Device::nominal(), &diagnosis(vec![hysteresis, creep]), None);
-        assert_eq!(left_out, [""; 0]);
+        assert_eq!(left_out, []);
         let Behaviour { hysteresis, creep, .. } = device.behaviour;
         // Σ 2 w r, and Σ c (1 − exp(−20 s/τ)).
         let height = |channel: usize| -> f64 {
@@ -376,26 +345,30 @@ mod tests {
     #[test]
     fn what_no_file_holds_is_left_out_and_told() {
         let nominal = Device::nominal();
-        let mut confounded = finding("channel_gain", Target::Channel(0), &[("gain", 1.2)]);
-        confounded.confounded_with.push(("reference_gain", Target::Rig));
+        let mut confounded = finding(Effect::ChannelGain, Target::Channel(0), &[("gain", 1.2)]);
+        confounded.confounded_with.push((Effect::ReferenceGain, Target::Rig));
         let findings = vec![
-            finding("gauge_nonlinearity", Target::Channel(0), &[("second_order_percent_fs", 2.0)]),
-            finding("contact_height", Target::Rig, &[("mm", 1.0)]),
-            finding("module_frame_open", Target::ModuleSide(0, Side::PlusX), &[("area_share", 0.05)]),
-            finding("module_displaced", Target::Module(0), &[("radial_mm", 1e3), ("tangential_mm", 0.0)]),
-            finding("ageing", Target::Pad, &[("share_at_end", 0.02)]),
-            finding("channel_gain", Target::Channel(1), &[("gain", f64::NAN)]),
+            finding(Effect::GaugeNonlinearity, Target::Channel(0), &[("second_order_percent_fs", 2.0)]),
+            finding(Effect::ContactHeight, Target::Rig, &[("mm", 1.0)]),
+            finding(Effect::ModuleFrameOpen, Target::ModuleSide(0, Side::PlusX), &[("area_share", 0.05)]),
+            finding(
+                Effect::ModuleDisplaced,
+                Target::Module(0),
+                &[("radial_mm", 1e3), ("tangential_mm", 0.0)],
+            ),
+            finding(Effect::Ageing, Target::Pad, &[("share_at_end", 0.02)]),
+            finding(Effect::ChannelGain, Target::Channel(1), &[("gain", f64::NAN)]),
             confounded,
         ];
         let (device, left_out) = extended(&nominal, &diagnosis(findings), None);
         assert_eq!(device, nominal);
         let wanted = [
-            "ageing",
-            "channel_gain",
-            "contact_height",
-            "gauge_nonlinearity",
-            "module_displaced",
-            "module_frame_open",
+            Effect::Ageing,
+            Effect::ChannelGain,
+            Effect::ContactHeight,
+            Effect::GaugeNonlinearity,
+            Effect::ModuleDisplaced,
+            Effect::ModuleFrameOpen,
         ];
         assert_eq!(left_out, wanted);
     }

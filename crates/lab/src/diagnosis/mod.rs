@@ -42,7 +42,7 @@ use self::attribution::atlas::{Atlas, attributed};
 use self::attribution::{Applied, Attribution, AttributionFit, Search};
 use self::causes::CATALOGUE;
 use self::data::observations::Observations;
-use self::gatekeepers::checks::excess::{EFFECT, Excess, excess};
+use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};
 use self::model::Model;
 pub use self::model::mechanics::Pad;
@@ -53,6 +53,7 @@ use self::simulation::simulated::Simulated;
 use self::statistics::covariance::{REMAINDER_MAX, Remainder};
 use self::validation::ceiling::ceiling_share;
 use self::validation::gain::{Rows, rmse};
+use crate::effect::Effect;
 use tactpad_core::numeric::chi_square;
 use tactpad_core::numeric::statistics::{mean, rms};
 use tactpad_core::tables::measured::Table;
@@ -126,8 +127,9 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, DiagnosisErro
         Rows { model: &at_locked, observations: &locked, unrepaired: as_measured(1) },
     ];
     let diagnosis = summary(&search, &found, &rows, &model.missing()).ok_or(DiagnosisError::Singular)?;
-    let excess =
-        pad.asks_for(EFFECT).then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
+    let excess = pad
+        .asks_for(Effect::NoiseExcess)
+        .then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
     diagnosis.not_detected.retain(|it| pad.asks_for(it.effect));
     diagnosis.findings = in_common(diagnosis.findings);
@@ -158,7 +160,7 @@ fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Dia
 }
 
 /// The names of all effects that can be found.
-pub fn effects() -> impl Iterator<Item = &'static str> {
+pub fn effects() -> impl Iterator<Item = Effect> {
     CATALOGUE.iter().map(|cause| cause.effect).chain(gatekeepers::EFFECTS)
 }
 

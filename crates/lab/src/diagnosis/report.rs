@@ -2,10 +2,7 @@
 
 use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::data::target::Target;
-
-/// As what it stands among the rivals that a finding may be a part of something that is not in the catalogue: of what is left
-/// unexplained, or of one reason that several findings have in common.
-pub const UNLISTED: &str = "unlisted_cause";
+use crate::effect::Effect;
 
 /// Sentence where nothing tells confounded causes apart.
 pub(super) const INSEPARABLE: &str = "no measurement in the catalogue separates these";
@@ -116,7 +113,7 @@ pub enum Verdict {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// The cause.
-    pub effect: &'static str,
+    pub effect: Effect,
     /// Where.
     pub target: Target,
     /// Its numbers.
@@ -128,7 +125,7 @@ pub struct Finding {
     /// Part of the weighted squared residual above noise and background that it removes.
     pub share: f64,
     /// Other causes that explain it as well. Empty: the cause is named.
-    pub confounded_with: Vec<(&'static str, Target)>,
+    pub confounded_with: Vec<(Effect, Target)>,
     /// The measurement that would tell them apart.
     pub separate_by: Option<String>,
 }
@@ -136,7 +133,7 @@ pub struct Finding {
 impl Finding {
     /// Whether it may be a part of something that is not in the catalogue.
     pub fn is_doubted(&self) -> bool {
-        self.confounded_with.iter().any(|(effect, _)| *effect == UNLISTED)
+        self.confounded_with.iter().any(|(effect, _)| *effect == Effect::Unlisted)
     }
 }
 
@@ -155,7 +152,7 @@ pub struct Estimate {
 #[derive(Clone, Debug, PartialEq)]
 pub struct NotDetected {
     /// The cause.
-    pub effect: &'static str,
+    pub effect: Effect,
     /// Where.
     pub target: Target,
     /// For each number: the deviation from none that is found in nine of ten measurements like this one.
@@ -168,7 +165,7 @@ pub struct NotDetected {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NotTestable {
     /// The cause.
-    pub effect: &'static str,
+    pub effect: Effect,
     /// The column that is missing, or stays the same.
     pub needs: &'static str,
 }
@@ -205,7 +202,7 @@ pub struct Decoded {
 #[derive(Clone, Debug, PartialEq)]
 pub struct WithoutFinding {
     /// The one.
-    pub effect: &'static str,
+    pub effect: Effect,
     /// Where.
     pub target: Target,
     /// The residual without it over the nominal one.

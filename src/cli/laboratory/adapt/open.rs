@@ -3,11 +3,12 @@
 use serde::Serialize;
 
 use tactpad::lab::calibration::result::open::{Blurred, OpenByRig};
+use tactpad::lab::effect::Effect;
 
 /// An error of the rig that the contacts do not tell from the pad's.
 #[derive(Serialize)]
 pub(super) struct OpenNumber {
-    effect: &'static str,
+    effect: Effect,
     /// `place` or `force`.
     of: &'static str,
     /// mm of the place, or a share of the force.
@@ -30,11 +31,11 @@ impl OpenNumber {
 
     pub(super) fn words(&self) -> String {
         let Self { effect, of, deviation, share, next } = self;
-        let what = match *effect {
-            "stage_offset" => "stands beside the middle of the pad",
-            "stage_rotation" => "is turned against the pad",
-            "stage_scale" => "has a scale of its own",
-            "reference_tilt" => "is tilted",
+        let what = match effect {
+            Effect::StageOffset => "stands beside the middle of the pad",
+            Effect::StageRotation => "is turned against the pad",
+            Effect::StageScale => "has a scale of its own",
+            Effect::ReferenceTilt => "is tilted",
             _ => "has a gain of its own",
         };
         let part = if *of == "place" { "stage" } else { "reference" };
@@ -51,13 +52,13 @@ impl OpenNumber {
 }
 
 /// The measurement that tells an error of the rig from the pad's own.
-fn next(effect: &str) -> &'static str {
+fn next(effect: Effect) -> &'static str {
     match effect {
-        "stage_offset" | "reference_tilt" => {
+        Effect::StageOffset | Effect::ReferenceTilt => {
             "A second session would tell: clamp the pad anew, turned by 120 degrees, repeat a third of the contacts and write 120 \
              under turned_deg"
         }
-        "reference_gain" => "A known weight tells: tactpad weigh",
+        Effect::ReferenceGain => "A known weight tells: tactpad weigh",
         _ => "Measure the stage itself, with a rule or a second pad",
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::{Destination, Folder};
@@ -11,6 +11,7 @@ use crate::cli::files::device::PadOptions;
 use crate::cli::printing::reports;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, written_over};
 use tactpad::lab::diagnosis;
+use tactpad::lab::effect::Effect;
 
 /// Arguments of `tactpad diagnose`.
 #[derive(Debug, Args)]
@@ -53,8 +54,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     pub(super) report: Option<PathBuf>,
     /// Leave an effect out of what is asked for; may stand more than once.
-    #[arg(long, value_name = "EFFECT", hide_possible_values = true, value_parser = PossibleValuesParser::new(effects()))]
-    pub(super) without: Vec<String>,
+    #[arg(long, value_name = "EFFECT", hide_possible_values = true, value_parser = effects_parser())]
+    pub(super) without: Vec<Effect>,
     /// Print one JSON document.
     #[arg(long)]
     pub(super) json: bool,
@@ -95,9 +96,10 @@ pub(super) fn folder(path: &Path, arguments: &Arguments) -> Result<Folder, Failu
     Folder::of(path)
 }
 
-/// All effects that can be left out.
-fn effects() -> Vec<&'static str> {
-    let mut effects: Vec<&str> = diagnosis::effects().collect();
+/// Takes the name of any effect that can be left out.
+fn effects_parser() -> impl TypedValueParser<Value = Effect> {
+    let mut effects: Vec<Effect> = diagnosis::effects().collect();
     effects.extend(diagnosis::against::effects().filter(|it| diagnosis::effects().all(|other| other != *it)));
-    effects
+    PossibleValuesParser::new(effects.into_iter().map(Effect::name))
+        .try_map(|name| Effect::from_name(&name).ok_or("there is no such effect"))
 }

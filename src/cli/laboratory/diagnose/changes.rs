@@ -11,6 +11,7 @@ use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::quoted;
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report;
+use tactpad::lab::effect::Effect;
 use tactpad::lab::play::change::DetectedChanges;
 use tactpad::quantity::{CHANNEL_NAMES, MODULES};
 
@@ -38,7 +39,7 @@ pub(crate) struct ChangesDocument<'c> {
 /// A module whose gain was not found to have changed, and from which change on it would have been.
 #[derive(Serialize)]
 struct NotDetected {
-    effect: &'static str,
+    effect: Effect,
     target: String,
     minimum_detectable: MinimumDetectable,
 }
@@ -50,21 +51,21 @@ struct MinimumDetectable {
 
 #[derive(Serialize)]
 struct NotTestable {
-    effect: &'static str,
+    effect: Effect,
     target: &'static str,
     needs: &'static str,
 }
 
 /// Changes that no press shows.
 const NOT_TESTABLE: [NotTestable; 3] = [
-    NotTestable { effect: "excitation_gain", target: "pad", needs: "a known weight: tactpad weigh" },
+    NotTestable { effect: Effect::ExcitationGain, target: "pad", needs: "a known weight: tactpad weigh" },
     NotTestable {
-        effect: "module_displaced",
+        effect: Effect::ModuleDisplaced,
         target: "all",
         needs: "a weight on marked places: tactpad calibrate",
     },
     NotTestable {
-        effect: "module_rotated",
+        effect: Effect::ModuleRotated,
         target: "all",
         needs: "a weight on marked places: tactpad calibrate",
     },
@@ -116,7 +117,7 @@ fn not_detected(found: &DetectedChanges) -> Vec<NotDetected> {
     let modules = (0..MODULES).map(Target::Module).filter(|target| !is_found(target));
     let gain = found.least_module_gain;
     let one = |target: Target| NotDetected {
-        effect: "module_gain",
+        effect: Effect::ModuleGain,
         target: target.name(&names()),
         minimum_detectable: MinimumDetectable { gain },
     };
@@ -138,7 +139,7 @@ fn said(finding: &report::Finding) -> String {
         Target::Module(module) => format!("module {module}"),
         target => target.name(&names()),
     };
-    let gain = finding.parameters.iter().find(|it| finding.effect.ends_with("_gain") && it.name == "gain");
+    let gain = finding.parameters.iter().find(|it| it.name == "gain");
     match gain {
         Some(gain) if gain.value < 1.0 => format!("{whose} has lost {:.1} %", 100.0 * (1.0 - gain.value)),
         Some(gain) => format!("{whose} has gained {:.1} %", 100.0 * (gain.value - 1.0)),
@@ -163,7 +164,7 @@ fn told(finding: &report::Finding) -> String {
     let (said, sized) = (said(finding), sized(finding, &names()));
     let first = if said == sized { sized } else { format!("{said}: {sized}") };
     let text = format!("{first}; p {:.0e}", finding.p_value);
-    let others = finding.confounded_with.iter().map(|(effect, target)| cause(effect, target, &names()));
+    let others = finding.confounded_with.iter().map(|(effect, target)| cause(*effect, target, &names()));
     let others: Vec<String> = others.collect();
     if others.is_empty() {
         text + "."
@@ -225,7 +226,7 @@ mod tests {
     use super::*;
     use tactpad::lab::diagnosis::report::Estimate;
 
-    fn finding(effect: &'static str, target: Target, name: &'static str, value: f64) -> report::Finding {
+    fn finding(effect: Effect, target: Target, name: &'static str, value: f64) -> report::Finding {
         let interval95 = [value - 0.01, value + 0.01];
         report::Finding {
             effect,
@@ -246,9 +247,9 @@ mod tests {
     #[test]
     fn a_loss_is_said_as_people_say_it() {
         let found = changed(vec![
-            finding("module_gain", Target::Module(1), "gain", 0.919),
-            finding("channel_gain", Target::Channel(2), "gain", 1.052),
-            finding("module_rotated", Target::Module(0), "deg", 1.5),
+            finding(Effect::ModuleGain, Target::Module(1), "gain", 0.919),
+            finding(Effect::ChannelGain, Target::Channel(2), "gain", 1.052),
+            finding(Effect::ModuleRotated, Target::Module(0), "deg", 1.5),
         ]);
         let said = "module 1 has lost 8.1 %, m0z has gained 5.2 %, module_rotated of module0: 1.500° (1.490 to 1.510)";
         assert_eq!(line(&found), said);
@@ -257,7 +258,7 @@ mod tests {
 
     #[test]
     fn a_new_decoder_is_offered_where_a_decoder_is_old() {
-        let found = changed(vec![finding("module_gain", Target::Module(1), "gain", 0.919)]);
+        let found = changed(vec![finding(Effect::ModuleGain, Target::Module(1), "gain", 0.919)]);
         let text = |since| {
             ChangesText(&Comparison { found: &found, since, play: Path::new("my play.cap") }).to_string()
         };

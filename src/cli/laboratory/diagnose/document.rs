@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::numbers::word;
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::{self, Diagnosis};
+use tactpad::lab::effect::Effect;
 use tactpad::pad::device::Side;
 
 /// Version of the document's form.
@@ -44,7 +45,7 @@ struct Background {
 /// A cause and where it is.
 #[derive(Serialize)]
 struct Cause {
-    effect: &'static str,
+    effect: Effect,
     target: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     with: Option<String>,
@@ -82,7 +83,7 @@ struct NotDetected {
 
 #[derive(Serialize)]
 struct NotTestable {
-    effect: &'static str,
+    effect: Effect,
     needs: &'static str,
 }
 
@@ -148,7 +149,7 @@ impl<'d> DiagnosisDocument<'d> {
 }
 
 impl Cause {
-    fn of(effect: &'static str, target: &Target, channels: &[String]) -> Self {
+    fn of(effect: Effect, target: &Target, channels: &[String]) -> Self {
         Self {
             effect,
             target: target.name(channels),
@@ -171,7 +172,7 @@ impl<'d> Finding<'d> {
             parameters: finding.parameters.iter().map(estimate).collect(),
             p_value: finding.p_value,
             share: finding.share,
-            confounded_with: others.map(|(effect, target)| Cause::of(effect, target, channels)).collect(),
+            confounded_with: others.map(|(effect, target)| Cause::of(*effect, target, channels)).collect(),
             separate_by: finding.separate_by.as_deref(),
         }
     }

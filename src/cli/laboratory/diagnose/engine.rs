@@ -5,6 +5,7 @@ use crate::cli::files::field::{PadModel, changes_of, field_of};
 use crate::cli::printing::written::say;
 use tactpad::lab::diagnosis::report::Diagnosis;
 use tactpad::lab::diagnosis::{self, DiagnosisError};
+use tactpad::lab::effect::Effect;
 use tactpad::pad::changes::FieldChange;
 use tactpad::pad::device::Device;
 use tactpad::tables::measured::Table;
@@ -13,7 +14,7 @@ use tactpad::tables::measured::Table;
 pub(crate) fn diagnosed(
     table: &Table,
     model: PadModel<'_>,
-    without: &[String],
+    without: &[Effect],
 ) -> Result<Diagnosis, DiagnosisError> {
     let PadModel { device, field, flaws } = model;
     let solve = |device: &Device| field_of(device).ok();

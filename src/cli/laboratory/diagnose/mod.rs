@@ -27,6 +27,7 @@ use crate::cli::printing::written::{is_stdout, print_json, say, stdout};
 use tactpad::lab::diagnosis::extension::extended;
 use tactpad::lab::diagnosis::report::Diagnosis;
 use tactpad::lab::diagnosis::{self, DiagnosisError};
+use tactpad::lab::effect::Effect;
 use tactpad::pad::device::Device;
 use tactpad::tables::measured::Table;
 use tactpad::tables::measured::columns::TableKind;
@@ -96,10 +97,8 @@ fn save(to: &Destination, device: &Device, diagnosis: &Diagnosis, table: &Table)
     let (device, left_out) = extended(device, diagnosis, last_cycle);
     to.write(device.to_toml().as_bytes())?;
     if !left_out.is_empty() {
-        say(format_args!(
-            "named, but not in the saved device, which cannot hold it: {}",
-            left_out.join(", ")
-        ));
+        let names: Vec<&str> = left_out.into_iter().map(Effect::name).collect();
+        say(format_args!("named, but not in the saved device, which cannot hold it: {}", names.join(", ")));
     }
     if diagnosis.findings.iter().any(|finding| !finding.confounded_with.is_empty()) {
         say("confounded causes are not in the saved device");

@@ -5,7 +5,8 @@ use std::fmt;
 use super::numbers::{decoded, estimate, range};
 use crate::cli::printing::wrapped::hanging;
 use tactpad::lab::diagnosis::data::target::Target;
-use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, UNLISTED, Verdict};
+use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, Verdict};
+use tactpad::lab::effect::Effect;
 
 /// A diagnosis in lines of a terminal.
 pub(super) struct DiagnosisText<'d>(pub(super) &'d Diagnosis);
@@ -65,11 +66,11 @@ fn sizes(diagnosis: &Diagnosis) -> String {
 }
 
 /// A cause and where it is.
-pub(super) fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
-    if effect == UNLISTED {
-        return "a part of something that is not in the catalogue".to_owned();
+pub(super) fn cause(effect: Effect, target: &Target, channels: &[String]) -> String {
+    if effect == Effect::Unlisted {
+        return effect.title().to_owned();
     }
-    let joint = if effect == "channels_swapped" { "with" } else { "from" };
+    let joint = if effect == Effect::ChannelsSwapped { "with" } else { "from" };
     let with = target.with(channels).map(|with| format!(" {joint} {with}")).unwrap_or_default();
     let side = target.side().map(|it| format!(" on its {} side", it.name())).unwrap_or_default();
     format!("{effect} of {}{with}{side}", target.name(channels))
@@ -88,11 +89,11 @@ fn found(finding: &Finding, channels: &[String]) -> String {
     let first = sized(finding, channels);
     let mut text = format!("{first}; p {:.0e}, {share:.0} % of the residual", finding.p_value);
     if !finding.confounded_with.is_empty() {
-        let others = finding.confounded_with.iter().map(|(effect, target)| cause(effect, target, channels));
+        let others = finding.confounded_with.iter().map(|(effect, target)| cause(*effect, target, channels));
         let others: Vec<String> = others.collect();
         text += &format!(". These rows do not tell it from {}", others.join(", or from "));
     }
-    let is_alone = finding.confounded_with.iter().all(|(effect, _)| *effect == UNLISTED);
+    let is_alone = finding.confounded_with.iter().all(|(effect, _)| *effect == Effect::Unlisted);
     if let Some(measurement) = finding.separate_by.as_ref().filter(|_| !is_alone) {
         text += &format!(". To tell: {}", measurement.trim_end_matches('.'));
     }
@@ -129,7 +130,7 @@ fn untested(f: &mut fmt::Formatter<'_>, diagnosis: &Diagnosis) -> fmt::Result {
     needs.dedup();
     for (index, column) in needs.iter().enumerate() {
         let effects = diagnosis.not_testable.iter().filter(|it| it.needs == *column);
-        let effects: Vec<&str> = effects.map(|it| it.effect).collect();
+        let effects: Vec<&str> = effects.map(|it| it.effect.name()).collect();
         let text = format!("Not testable without {column} that varies: {}.", effects.join(", "));
         writeln!(f, "{}{}", if index == 0 { "\n" } else { "" }, hanging("", &text))?;
     }
@@ -138,7 +139,7 @@ fn untested(f: &mut fmt::Formatter<'_>, diagnosis: &Diagnosis) -> fmt::Result {
 
 /// Writes the detection limits, a line for each effect.
 fn undetected(f: &mut fmt::Formatter<'_>, all: &[NotDetected]) -> fmt::Result {
-    let mut effects: Vec<&str> = Vec::new();
+    let mut effects: Vec<Effect> = Vec::new();
     for it in all.iter().filter(|it| !it.minimum_detectable.is_empty()) {
         if !effects.contains(&it.effect) {
             effects.push(it.effect);

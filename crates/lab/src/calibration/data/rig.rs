@@ -9,6 +9,7 @@
 //! Source: T. P. Minka, Expectation propagation for approximate Bayesian inference, UAI 2001; for such mixtures D.
 //! Hernández-Lobato and others, Mach. Learn. 99 (2015) 437.
 
+use crate::effect::Effect;
 use crate::rig::errors::RigErrors;
 use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
 use tactpad_core::tables::measured::Row;
@@ -17,7 +18,7 @@ use tactpad_core::tables::measured::Row;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigNumber {
     /// The cause in a diagnosis.
-    pub effect: &'static str,
+    pub effect: Effect,
     /// The cause and its parameter there.
     pub name: &'static str,
     /// In words.
@@ -31,7 +32,7 @@ pub struct RigNumber {
 }
 
 impl RigNumber {
-    const fn of(effect: &'static str, name: &'static str, words: &'static str, deviation: f64) -> Self {
+    const fn of(effect: Effect, name: &'static str, words: &'static str, deviation: f64) -> Self {
         Self { effect, name, words, deviation, wide: WIDE, is_factor: false }
     }
 
@@ -40,7 +41,7 @@ impl RigNumber {
         Self { wide: WIDE_OF_STAGE, ..self }
     }
 
-    const fn factor(effect: &'static str, name: &'static str, words: &'static str, deviation: f64) -> Self {
+    const fn factor(effect: Effect, name: &'static str, words: &'static str, deviation: f64) -> Self {
         Self { is_factor: true, ..Self::of(effect, name, words, deviation) }
     }
 }
@@ -58,17 +59,17 @@ pub(crate) const RIG_NUMBERS: usize = 11;
 /// In the order of the parameters. Wide deviations are those of a laboratory that was not careful here: a pad is put against
 /// stops by eye, and a six-axis sensor is calibrated to one or two percent and screwed on by hand.
 pub(crate) static RIG: [RigNumber; RIG_NUMBERS] = [
-    RigNumber::of("stage_offset", "stage_offset.x_mm", "offset of the stage along x", 0.4).of_stage(),
-    RigNumber::of("stage_offset", "stage_offset.y_mm", "offset of the stage along y", 0.4).of_stage(),
-    RigNumber::of("stage_rotation", "stage_rotation.deg", "turn of the stage", 1.0).of_stage(),
-    RigNumber::factor("stage_scale", "stage_scale.scale", "scale of the stage", 4e-3).of_stage(),
-    RigNumber::of("reference_tilt", "reference_tilt.x_deg", "tilt of the reference about x", 1.5),
-    RigNumber::of("reference_tilt", "reference_tilt.y_deg", "tilt of the reference about y", 1.5),
-    RigNumber::factor("reference_gain", "reference_gain.gain", "gain of the reference", 0.015),
-    RigNumber::of("reference_zero", "reference_zero.fx_n", "zero of the reference along x", 0.02),
-    RigNumber::of("reference_zero", "reference_zero.fy_n", "zero of the reference along y", 0.02),
-    RigNumber::of("reference_zero", "reference_zero.fz_n", "zero of the reference along z", 0.02),
-    RigNumber::of("time_lag", "time_lag.ms", "lag of the labels", 10.0),
+    RigNumber::of(Effect::StageOffset, "stage_offset.x_mm", "offset of the stage along x", 0.4).of_stage(),
+    RigNumber::of(Effect::StageOffset, "stage_offset.y_mm", "offset of the stage along y", 0.4).of_stage(),
+    RigNumber::of(Effect::StageRotation, "stage_rotation.deg", "turn of the stage", 1.0).of_stage(),
+    RigNumber::factor(Effect::StageScale, "stage_scale.scale", "scale of the stage", 4e-3).of_stage(),
+    RigNumber::of(Effect::ReferenceTilt, "reference_tilt.x_deg", "tilt of the reference about x", 1.5),
+    RigNumber::of(Effect::ReferenceTilt, "reference_tilt.y_deg", "tilt of the reference about y", 1.5),
+    RigNumber::factor(Effect::ReferenceGain, "reference_gain.gain", "gain of the reference", 0.015),
+    RigNumber::of(Effect::ReferenceZero, "reference_zero.fx_n", "zero of the reference along x", 0.02),
+    RigNumber::of(Effect::ReferenceZero, "reference_zero.fy_n", "zero of the reference along y", 0.02),
+    RigNumber::of(Effect::ReferenceZero, "reference_zero.fz_n", "zero of the reference along z", 0.02),
+    RigNumber::of(Effect::TimeLag, "time_lag.ms", "lag of the labels", 10.0),
 ];
 /// The narrow part's deviation over the wide one's, for a laboratory that was careful.
 const NARROW: f64 = 0.1;
@@ -223,9 +224,12 @@ mod tests {
 
     #[test]
     fn each_number_is_one_of_a_cause_of_the_diagnosis() {
-        let known: Vec<&str> = crate::diagnosis::effects().collect();
+        let known: Vec<Effect> = crate::diagnosis::effects().collect();
         assert!(RIG.iter().all(|it| known.contains(&it.effect)));
-        assert!(RIG.iter().all(|it| it.name.split_once('.').is_some_and(|(effect, _)| effect == it.effect)));
+        assert!(
+            RIG.iter()
+                .all(|it| it.name.split_once('.').is_some_and(|(effect, _)| effect == it.effect.name()))
+        );
     }
 
     #[test]

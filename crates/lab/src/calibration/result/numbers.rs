@@ -7,6 +7,7 @@ use crate::calibration::model::ParameterLayout;
 use crate::calibration::model::physical::Physical;
 use crate::calibration::problem::PosteriorFit;
 use crate::diagnosis::data::target::Target;
+use crate::effect::Effect;
 use tactpad_core::numeric::products::dot;
 use tactpad_core::pipeline::compensation::hysteresis::PLAYS;
 use tactpad_core::quantity::CHANNELS;
@@ -113,23 +114,23 @@ impl Quantity {
     }
 
     /// The cause in a diagnosis that it is the number of; none, and nothing gives it a name.
-    pub fn effect(self) -> Option<&'static str> {
+    pub fn effect(self) -> Option<Effect> {
         match self {
-            Self::Gain => Some("channel_gain"),
-            Self::Crosstalk => Some("channel_crosstalk"),
-            Self::Friction { .. } => Some("hysteresis"),
-            Self::Creep => Some("creep"),
-            Self::Blur => Some("contact_size"),
-            Self::GainSlope => Some("thermal_gain"),
-            Self::Zero => Some("channel_offset"),
-            Self::Ageing => Some("ageing"),
+            Self::Gain => Some(Effect::ChannelGain),
+            Self::Crosstalk => Some(Effect::ChannelCrosstalk),
+            Self::Friction { .. } => Some(Effect::Hysteresis),
+            Self::Creep => Some(Effect::Creep),
+            Self::Blur => Some(Effect::ContactSize),
+            Self::GainSlope => Some(Effect::ThermalGain),
+            Self::Zero => Some(Effect::ChannelOffset),
+            Self::Ageing => Some(Effect::Ageing),
             Self::Rig(number) => Some(number.effect),
             Self::Physical(_) => match self.key() {
-                "radial_mm" | "tangential_mm" => Some("module_displaced"),
-                "rotation_deg" => Some("module_rotated"),
-                "tilt_tangential_deg" | "tilt_radial_deg" => Some("module_tilted"),
-                "frame_e_factor" => Some("module_stiffness"),
-                "thickness_mm" => Some("plate_stiffness"),
+                "radial_mm" | "tangential_mm" => Some(Effect::ModuleDisplaced),
+                "rotation_deg" => Some(Effect::ModuleRotated),
+                "tilt_tangential_deg" | "tilt_radial_deg" => Some(Effect::ModuleTilted),
+                "frame_e_factor" => Some(Effect::ModuleStiffness),
+                "thickness_mm" => Some(Effect::PlateStiffness),
                 _ => None,
             },
         }
@@ -394,12 +395,12 @@ mod tests {
         let parameter =
             |name: &str| Quantity::Physical(*physical.iter().find(|it| it.parameter.name() == name).unwrap());
         let effect = |name: &str| parameter(name).effect();
-        assert_eq!(effect("module.1.tangential_mm"), Some("module_displaced"));
-        assert_eq!(effect("module.2.frame_e_factor"), Some("module_stiffness"));
+        assert_eq!(effect("module.1.tangential_mm"), Some(Effect::ModuleDisplaced));
+        assert_eq!(effect("module.2.frame_e_factor"), Some(Effect::ModuleStiffness));
         // The glue's modulus is no cause of the catalogue, so nothing may name it.
         assert_eq!((effect("module.0.bond_e_factor"), effect("module.0.film_e_factor")), (None, None));
         assert_eq!(parameter("module.0.bond_e_factor").words(), "bond stiffness");
-        let known: Vec<&str> = crate::diagnosis::effects().collect();
+        let known: Vec<Effect> = crate::diagnosis::effects().collect();
         let all = [Quantity::Gain, Quantity::Crosstalk, Quantity::Creep, Quantity::Blur, Quantity::GainSlope];
         assert!(all.iter().all(|it| known.contains(&it.effect().unwrap())));
     }

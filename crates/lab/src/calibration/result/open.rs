@@ -2,6 +2,7 @@
 
 use super::known::PressPrecision;
 use super::numbers::Number;
+use crate::effect::Effect;
 
 /// An error of the rig is worth a word if it is at least this part of the variance of what it blurs.
 const SHARE_MIN: f64 = 0.25;
@@ -10,7 +11,7 @@ const SHARE_MIN: f64 = 0.25;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenByRig {
     /// The cause in a diagnosis.
-    pub effect: &'static str,
+    pub effect: Effect,
     /// Number that it blurs.
     pub of: Blurred,
     /// Its standard deviation: mm of the place along an axis, a share of the force along it, or across it.
@@ -38,7 +39,7 @@ pub(crate) fn by_rig(numbers: &[Number], map: &[PressPrecision]) -> Vec<OpenByRi
     let (place_mm2, force2) = (mean(&|it| it.deviation_mm.powi(2)), mean(&|it| it.force_share.powi(2)));
     let square_mm2 = mean(&|it| it.place_mm.iter().map(|mm| mm * mm).sum());
     // Σ σ² of the numbers of a cause.
-    let variance = |effect: &str| -> f64 {
+    let variance = |effect: Effect| -> f64 {
         let of_cause = numbers.iter().filter(|it| it.quantity.effect() == Some(effect));
         of_cause.map(|it| it.deviation.powi(2)).sum()
     };
@@ -47,11 +48,11 @@ pub(crate) fn by_rig(numbers: &[Number], map: &[PressPrecision]) -> Vec<OpenByRi
     let place = |effect, variance_mm2: f64| (effect, Blurred::Place, variance_mm2 / 2.0, place_mm2);
     let force = |effect, variance: f64| (effect, Blurred::Force, variance / 3.0, force2);
     let all = [
-        place("stage_offset", variance("stage_offset")),
-        place("stage_rotation", variance("stage_rotation") * radian.powi(2) * square_mm2),
-        place("stage_scale", variance("stage_scale") * square_mm2),
-        force("reference_tilt", variance("reference_tilt") * radian.powi(2)),
-        force("reference_gain", variance("reference_gain")),
+        place(Effect::StageOffset, variance(Effect::StageOffset)),
+        place(Effect::StageRotation, variance(Effect::StageRotation) * radian.powi(2) * square_mm2),
+        place(Effect::StageScale, variance(Effect::StageScale) * square_mm2),
+        force(Effect::ReferenceTilt, variance(Effect::ReferenceTilt) * radian.powi(2)),
+        force(Effect::ReferenceGain, variance(Effect::ReferenceGain)),
     ];
     let open = all.map(|(effect, of, variance, whole)| OpenByRig {
         effect,
@@ -88,9 +89,9 @@ mod tests {
         ];
         let open = by_rig(&numbers, &map);
         let [stage, gain] = open.as_slice() else { panic!("{open:?}") };
-        assert_eq!((stage.effect, stage.of), ("stage_offset", Blurred::Place));
+        assert_eq!((stage.effect, stage.of), (Effect::StageOffset, Blurred::Place));
         assert!((stage.deviation - 0.08).abs() < 1e-12 && (stage.share - 0.64).abs() < 1e-9, "{stage:?}");
-        assert_eq!((gain.effect, gain.of), ("reference_gain", Blurred::Force));
+        assert_eq!((gain.effect, gain.of), (Effect::ReferenceGain, Blurred::Force));
         assert!((gain.share - 0.75).abs() < 1e-9, "{gain:?}");
         assert!(by_rig(&numbers, &[]).iter().all(|it| it.share == 1.0));
     }

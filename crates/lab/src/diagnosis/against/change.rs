@@ -13,6 +13,7 @@ use super::columns::Columns;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::{Hypothesis, Parameter};
 use crate::diagnosis::report::NotTestable;
+use crate::effect::Effect;
 
 /// Kind of change of a hypothesis.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,15 +55,15 @@ pub(super) struct Changes {
 }
 
 /// Names of what can be found, those of the checks aside.
-pub(super) const EFFECTS: [&str; 8] = [
-    "channel_gain",
-    "excitation_gain",
-    "reference_gain",
-    "zero_drift",
-    "thermal_zero",
-    "stage_offset",
-    "stage_rotation",
-    "time_lag",
+pub(super) const EFFECTS: [Effect; 8] = [
+    Effect::ChannelGain,
+    Effect::ExcitationGain,
+    Effect::ReferenceGain,
+    Effect::ZeroDrift,
+    Effect::ThermalZero,
+    Effect::StageOffset,
+    Effect::StageRotation,
+    Effect::TimeLag,
 ];
 const AXES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
 
@@ -115,7 +116,7 @@ pub(super) fn hypotheses(
     columns: &Columns,
     extents: &[[f64; 2]],
     there: Circumstances,
-    asks_for: impl Fn(&str) -> bool,
+    asks_for: impl Fn(Effect) -> bool,
 ) -> Vec<(Hypothesis, ChangeKind)> {
     let channels = columns.channels.len();
     let gain = || vec![Parameter::factor("gain", [0.05, 20.0])];
@@ -127,28 +128,29 @@ pub(super) fn hypotheses(
         let half = 0.5 * (high - low);
         Parameter::additive(AXES[*axis], [-half, half], 1e-3 * half)
     };
-    let mut all: Vec<(&'static str, Target, Vec<Parameter>, ChangeKind)> = Vec::new();
-    all.push(("excitation_gain", Target::All, gain(), ChangeKind::Gain(None)));
-    all.push(("reference_gain", Target::All, gain(), ChangeKind::Load));
+    let mut all: Vec<(Effect, Target, Vec<Parameter>, ChangeKind)> = Vec::new();
+    all.push((Effect::ExcitationGain, Target::All, gain(), ChangeKind::Gain(None)));
+    all.push((Effect::ReferenceGain, Target::All, gain(), ChangeKind::Load));
     all.extend(
-        (0..channels).map(|k| ("channel_gain", Target::Channel(k), gain(), ChangeKind::Gain(Some(k)))),
+        (0..channels).map(|k| (Effect::ChannelGain, Target::Channel(k), gain(), ChangeKind::Gain(Some(k)))),
     );
     if there.has_time {
-        all.push(("zero_drift", Target::All, drift(), ChangeKind::Drift(None)));
+        all.push((Effect::ZeroDrift, Target::All, drift(), ChangeKind::Drift(None)));
         all.extend(
-            (0..channels).map(|k| ("zero_drift", Target::Channel(k), drift(), ChangeKind::Drift(Some(k)))),
+            (0..channels)
+                .map(|k| (Effect::ZeroDrift, Target::Channel(k), drift(), ChangeKind::Drift(Some(k)))),
         );
     }
     if there.has_temperature {
-        all.push(("thermal_zero", Target::All, thermal(), ChangeKind::Thermal(None)));
+        all.push((Effect::ThermalZero, Target::All, thermal(), ChangeKind::Thermal(None)));
         all.extend(
             (0..channels)
-                .map(|k| ("thermal_zero", Target::Channel(k), thermal(), ChangeKind::Thermal(Some(k)))),
+                .map(|k| (Effect::ThermalZero, Target::Channel(k), thermal(), ChangeKind::Thermal(Some(k)))),
         );
     }
     if !axes.is_empty() {
         all.push((
-            "stage_offset",
+            Effect::StageOffset,
             Target::All,
             axes.iter().map(mm).collect(),
             ChangeKind::Offset(axes.clone()),
@@ -156,17 +158,17 @@ pub(super) fn hypotheses(
     }
     if axes.starts_with(&[0, 1]) {
         let deg = vec![Parameter::additive("deg", [-180.0, 180.0], 1e-2)];
-        all.push(("stage_rotation", Target::All, deg, ChangeKind::Rotation));
+        all.push((Effect::StageRotation, Target::All, deg, ChangeKind::Rotation));
     }
     if there.has_series {
         all.push((
-            "time_lag",
+            Effect::TimeLag,
             Target::All,
             vec![Parameter::additive("ms", [-1e4, 1e4], 1.0)],
             ChangeKind::Lag,
         ));
     }
-    let all = all.into_iter().filter(|(effect, ..)| asks_for(effect));
+    let all = all.into_iter().filter(|(effect, ..)| asks_for(*effect));
     all.map(|(effect, target, parameters, act)| {
         (Hypothesis { effect, target, parameters, signature_error: 0.0 }, act)
     })
@@ -178,11 +180,11 @@ pub(super) fn missing(columns: &Columns, there: Circumstances) -> Vec<NotTestabl
     let has_place = AXES.iter().any(|name| columns.input(name).is_some());
     let turns = ["x_mm", "y_mm"].iter().all(|name| columns.input(name).is_some());
     [
-        ("zero_drift", "t_s", there.has_time),
-        ("thermal_zero", "temp_c", there.has_temperature),
-        ("time_lag", "trial", there.has_series),
-        ("stage_offset", "x_mm", has_place),
-        ("stage_rotation", "y_mm", turns),
+        (Effect::ZeroDrift, "t_s", there.has_time),
+        (Effect::ThermalZero, "temp_c", there.has_temperature),
+        (Effect::TimeLag, "trial", there.has_series),
+        (Effect::StageOffset, "x_mm", has_place),
+        (Effect::StageRotation, "y_mm", turns),
     ]
     .into_iter()
     .filter(|(.., is_there)| !is_there)

@@ -2,6 +2,7 @@
 
 use super::unfit::ComparisonError;
 use crate::diagnosis::statistics::regression::Group;
+use crate::effect::Effect;
 use tactpad_core::tables::measured::sheet::Sheet;
 
 /// Labels by which channels are predicted: those of a group share one length.
@@ -23,12 +24,12 @@ pub struct ColumnSelection<'a> {
     /// Names of the channels.
     pub channels: &'a [String],
     /// Effects that are not asked for.
-    pub without: &'a [String],
+    pub without: &'a [Effect],
 }
 
 impl ColumnSelection<'_> {
-    pub(super) fn asks_for(&self, effect: &str) -> bool {
-        self.without.iter().all(|other| other != effect)
+    pub(super) fn asks_for(&self, effect: Effect) -> bool {
+        self.without.iter().all(|other| *other != effect)
     }
 }
 

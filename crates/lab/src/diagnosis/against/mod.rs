@@ -22,14 +22,14 @@ use self::standing::standing;
 pub use self::unfit::ComparisonError;
 use self::unfit::{BLOCKS_MIN, ROWS_MIN};
 use crate::diagnosis::attribution::Search;
-use crate::diagnosis::attribution::columns::ZERO;
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::gatekeepers::checks::excess::{EFFECT, excess};
+use crate::diagnosis::gatekeepers::checks::excess::excess;
 use crate::diagnosis::gatekeepers::{self, Gate, guarded};
 use crate::diagnosis::model::Model;
 use crate::diagnosis::report::{Diagnosis, Finding, Notice};
 use crate::diagnosis::validation::gain::Rows;
 use crate::diagnosis::{summary, with_gatekeepers};
+use crate::effect::Effect;
 use tactpad_core::numeric::statistics::mean;
 use tactpad_core::tables::measured::sheet::Sheet;
 
@@ -37,8 +37,8 @@ use tactpad_core::tables::measured::sheet::Sheet;
 const SERIES_MIN: usize = 50;
 
 /// Names of all effects that can be found against an earlier recording.
-pub fn effects() -> impl Iterator<Item = &'static str> {
-    EFFECTS.into_iter().chain([ZERO]).chain(gatekeepers::EFFECTS)
+pub fn effects() -> impl Iterator<Item = Effect> {
+    EFFECTS.into_iter().chain([Effect::ChannelOffset]).chain(gatekeepers::EFFECTS)
 }
 
 /// Columns whose texts are needed.
@@ -150,16 +150,18 @@ fn told(
         summary(&search, &found, &rows, &missing(columns, there)).ok_or(ComparisonError::Singular)?;
     standing(&mut diagnosis, &search, &rows, &found);
     let signals = &found.fit.linearised.readings;
-    let excess =
-        asked.asks_for(EFFECT).then(|| excess(&open.observations, &found.fit.systems.noise, signals));
+    let excess = asked
+        .asks_for(Effect::NoiseExcess)
+        .then(|| excess(&open.observations, &found.fit.systems.noise, signals));
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
     let own = diagnosis.findings.clone();
     // Readings at a limit that was not seen look like noise.
-    let is_clipped = |target: Target| own.iter().any(|it| it.effect == "adc_clipping" && it.target == target);
-    diagnosis.findings.retain(|it| it.effect != EFFECT || !is_clipped(it.target));
-    diagnosis
-        .findings
-        .retain(|it| asked.asks_for(it.effect) && (it.effect != ZERO || is_known_zero(it, &own, columns)));
+    let is_clipped =
+        |target: Target| own.iter().any(|it| it.effect == Effect::AdcClipping && it.target == target);
+    diagnosis.findings.retain(|it| it.effect != Effect::NoiseExcess || !is_clipped(it.target));
+    diagnosis.findings.retain(|it| {
+        asked.asks_for(it.effect) && (it.effect != Effect::ChannelOffset || is_known_zero(it, &own, columns))
+    });
     diagnosis.not_detected.retain(|it| asked.asks_for(it.effect));
     unplaced(&mut diagnosis, columns);
     Ok(diagnosis)
@@ -169,9 +171,9 @@ fn told(
 /// nobody knows. A zero is told only beside a gain that stays.
 fn is_known_zero(zero: &Finding, findings: &[Finding], columns: &Columns) -> bool {
     let acts_on = |it: &Finding| match (it.effect, it.target) {
-        ("excitation_gain" | "reference_gain", _) => true,
-        ("channel_gain" | "channel_polarity", target) => target == zero.target,
-        ("channels_swapped", Target::Channels { into, from }) => {
+        (Effect::ExcitationGain | Effect::ReferenceGain, _) => true,
+        (Effect::ChannelGain | Effect::ChannelPolarity, target) => target == zero.target,
+        (Effect::ChannelsSwapped, Target::Channels { into, from }) => {
             [into, from].iter().any(|channel| Target::Channel(*channel) == zero.target)
         }
         _ => false,

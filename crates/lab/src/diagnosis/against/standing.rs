@@ -4,11 +4,11 @@
 //! smaller, each channel's in units of its noise, and by more than these gains scatter from cluster to cluster. What does not is no
 //! chance, as the tests have it, but no name either: it is unnamed.
 
-use crate::diagnosis::attribution::columns::ZERO;
 use crate::diagnosis::attribution::{Applied, Attribution, Search};
 use crate::diagnosis::report::{Diagnosis, Finding};
 use crate::diagnosis::validation::gain::{Rows, rmse};
 use crate::diagnosis::verdict;
+use crate::effect::Effect;
 
 /// So many standard errors of its mean a gain must be.
 const STANDS: f64 = 2.5;
@@ -37,7 +37,7 @@ pub(super) fn standing(
         };
         let with = squares(open, &told(None), &noise);
         let stands = |finding: &Finding| {
-            let Some(at) = place(finding) else { return finding.effect == ZERO };
+            let Some(at) = place(finding) else { return finding.effect == Effect::ChannelOffset };
             let gains = squares(open, &told(Some(at)), &noise).into_iter().zip(&with);
             is_sure(&gains.map(|(without, with)| without - with).collect::<Vec<f64>>())
         };

@@ -4,9 +4,7 @@ use crate::diagnosis::data::observations::Observations;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::{Column, CommonError, Hypothesis, Linearised, Parameter, Signature};
 use crate::diagnosis::statistics::covariance::{Fitted, Marginal};
-
-/// The cause whose column is the channel's zero itself, which is always fitted.
-pub(crate) const ZERO: &str = "channel_offset";
+use crate::effect::Effect;
 
 /// Which column means what.
 pub(crate) struct Columns {
@@ -36,7 +34,8 @@ impl Columns {
         let mut next = nuisance.len();
         let (mut of_hypothesis, mut shapes) = (Vec::new(), Vec::new());
         for hypothesis in hypotheses {
-            if let (Target::Channel(channel), ZERO) = (hypothesis.target, hypothesis.effect) {
+            if let (Target::Channel(channel), Effect::ChannelOffset) = (hypothesis.target, hypothesis.effect)
+            {
                 of_hypothesis.push(vec![channel]);
                 shapes.push(Vec::new());
                 continue;

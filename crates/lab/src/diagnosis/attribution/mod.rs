@@ -10,11 +10,12 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use self::bootstrap::{Bootstrap, Draw};
-use self::columns::{Columns, ZERO};
+use self::columns::Columns;
 use self::inference::{Projected, Test};
 use super::model::{Linearised, Model, Parameter, SIGNATURE_ERROR};
 use crate::diagnosis::data::observations::Observations;
 use crate::diagnosis::statistics::covariance::{Background, Marginal, Smooth, Systems};
+use crate::effect::Effect;
 use tactpad_core::numeric::dense::Matrix;
 use tactpad_core::numeric::products::dot;
 
@@ -136,7 +137,7 @@ impl<'m> Search<'m> {
     }
 
     pub(crate) fn is_zero(&self, hypothesis: usize) -> bool {
-        self.model.hypotheses()[hypothesis].effect == ZERO
+        self.model.hypotheses()[hypothesis].effect == Effect::ChannelOffset
     }
 
     /// The fit of these hypotheses by Gauss and Newton's method, with the covariance that goes with it. With `start`, a fit of nearly the

@@ -7,6 +7,7 @@ use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::memory::{ChannelFriction, Prony};
 use crate::diagnosis::model::setting::Setting;
 use crate::diagnosis::model::{Coordinate, Parameter, with_shapes};
+use crate::effect::Effect;
 
 /// Height of the loop of a full stroke, as a share of full scale, and its course. What a height is a share of is the model's full
 /// scale, which is no better known than to 0.8 %. Nobody writes from how far above a static load came, so that is fitted, too.
@@ -36,7 +37,7 @@ const RADIUS_MAX_MM: f64 = 15.0;
 pub(crate) static CATALOGUE: [Cause; 29] = [
     // A channel's sensitivity differs: gauge factor, glue, amplifier. Measured over modelled signal.
     Cause::new(
-        "channel_gain",
+        Effect::ChannelGain,
         ChainStage::Channels,
         Places::Channels,
         |_| vec![Parameter::factor("gain", [0.05, 20.0])],
@@ -49,7 +50,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     .individual(),
     // A channel's zero is not zero: the bridge is out of balance.
     Cause::new(
-        "channel_offset",
+        Effect::ChannelOffset,
         ChainStage::Channels,
         Places::Channels,
         |_| vec![Parameter::additive("offset_uv", [-1e6, 1e6], 1.0)],
@@ -57,7 +58,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // A part of one channel's signal, after its gain, appears in another: wires, multiplexer.
     Cause::new(
-        "channel_crosstalk",
+        Effect::ChannelCrosstalk,
         ChainStage::Channels,
         Places::ChannelPairs,
         |_| vec![Parameter::additive("share", [-0.9, 0.9], 1e-3)],
@@ -69,7 +70,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // A channel bends: at full scale, its largest modelled reading, it deviates by this share from what its slope at rest promises.
     Cause::new(
-        "gauge_nonlinearity",
+        Effect::GaugeNonlinearity,
         ChainStage::Channels,
         Places::Channels,
         |_| vec![Parameter::additive("second_order_percent_fs", [-50.0, 50.0], 0.1)],
@@ -77,7 +78,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // A channel is converted later than the others, or earlier.
     Cause::new(
-        "channel_skew",
+        Effect::ChannelSkew,
         ChainStage::Channels,
         Places::Channels,
         |_| vec![Parameter::additive("skew_us", [-1e6, 1e6], 500.0)],
@@ -86,7 +87,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     .with(Need::Series),
     // A module stands elsewhere under the plate.
     Cause::new(
-        "module_displaced",
+        Effect::ModuleDisplaced,
         ChainStage::Mechanics,
         Places::Modules,
         |_| {
@@ -99,7 +100,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // A module is turned about its own axis, counter-clockwise seen from above.
     Cause::new(
-        "module_rotated",
+        Effect::ModuleRotated,
         ChainStage::Mechanics,
         Places::Modules,
         |_| vec![Parameter::additive("deg", [-30.0, 30.0], 1e-2)],
@@ -109,7 +110,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // A module stands askew under the plate: turns about its tangential and its radial axis, right-handed.
     Cause::new(
-        "module_tilted",
+        Effect::ModuleTilted,
         ChainStage::Mechanics,
         Places::Modules,
         |_| {
@@ -122,7 +123,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // A module gives way more, or less: the modulus of its frame differs.
     Cause::new(
-        "module_stiffness",
+        Effect::ModuleStiffness,
         ChainStage::Mechanics,
         Places::Modules,
         |_| vec![Parameter::factor("factor", [0.02, 10.0])],
@@ -134,7 +135,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // The bond between a module's post and the plate has come off, from one side inwards, over a part of its area.
     Cause::new(
-        "module_debonded",
+        Effect::ModuleDebonded,
         ChainStage::Mechanics,
         Places::ModuleSides,
         |_| vec![Parameter::additive("area_share", [0.0, 0.8], 1e-3)],
@@ -146,7 +147,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // The frame of a module is missing on one side, over a part of its area.
     Cause::new(
-        "module_frame_open",
+        Effect::ModuleFrameOpen,
         ChainStage::Mechanics,
         Places::ModuleSides,
         |_| vec![Parameter::additive("area_share", [0.0, 0.5], 1e-3)],
@@ -158,7 +159,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // A module strains another one, axis by axis, by a share of its three strains: through the base, before the channels.
     Cause::new(
-        "module_crosstalk",
+        Effect::ModuleCrosstalk,
         ChainStage::Channels,
         Places::ModulePairs,
         |_| vec![Parameter::additive("share", [-0.9, 0.9], 1e-3)],
@@ -171,7 +172,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // The plate bends less, or more: another thickness, another modulus. Factor of its bending stiffness.
     Cause::new(
-        "plate_stiffness",
+        Effect::PlateStiffness,
         ChainStage::Mechanics,
         Places::PadWithField,
         |_| vec![Parameter::factor("factor", [0.05, 20.0])],
@@ -179,7 +180,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // All channels have one gain: the excitation, or the converter's reference, differs.
     Cause::new(
-        "excitation_gain",
+        Effect::ExcitationGain,
         ChainStage::Channels,
         Places::Pad,
         |_| vec![Parameter::factor("gain", [0.05, 20.0])],
@@ -187,7 +188,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // Zeros follow the temperature, of one channel or of all alike.
     Cause::new(
-        "thermal_zero",
+        Effect::ThermalZero,
         ChainStage::Channels,
         Places::PadAndChannels,
         |_| vec![Parameter::additive("uv_per_c", [-2e3, 2e3], 0.1)],
@@ -197,7 +198,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     .individual(),
     // Gains follow the temperature: moduli of polymers, gauge factor.
     Cause::new(
-        "thermal_gain",
+        Effect::ThermalGain,
         ChainStage::Channels,
         Places::PadAndChannels,
         |_| vec![Parameter::additive("per_c", [-0.05, 0.05], 1e-4)],
@@ -207,7 +208,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     .individual(),
     // Zeros drift evenly in time.
     Cause::new(
-        "zero_drift",
+        Effect::ZeroDrift,
         ChainStage::Channels,
         Places::PadAndChannels,
         |_| vec![Parameter::additive("uv_per_h", [-1e5, 1e5], 1.0)],
@@ -217,7 +218,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     .individual(),
     // Friction between the pad's parts: on the way down a channel reads more than on the way up.
     Cause::new(
-        "hysteresis",
+        Effect::Hysteresis,
         ChainStage::Mechanics,
         Places::PadAndChannelsBothWays,
         |_| HYSTERESIS.to_vec(),
@@ -233,7 +234,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     .individual(),
     // Glue and film give way slowly: a load that is held reads more and more, or less and less.
     Cause::new(
-        "creep",
+        Effect::Creep,
         ChainStage::Mechanics,
         Places::PadAndChannelsHeld,
         |_| CREEP.to_vec(),
@@ -248,7 +249,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     .individual(),
     // Strains become smaller with the cycles of load: glue and film tire. Loss at the end of the measurement.
     Cause::new(
-        "ageing",
+        Effect::Ageing,
         ChainStage::Channels,
         Places::PadAndChannels,
         |_| vec![Parameter::additive("share_at_end", [-0.9, 0.9], 1e-3)],
@@ -258,7 +259,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     .individual(),
     // The force sensor of the rig stands askew: turns about x and y, right-handed, from true to written force.
     Cause::new(
-        "reference_tilt",
+        Effect::ReferenceTilt,
         ChainStage::Contact,
         Places::Rig,
         |_| ["x_deg", "y_deg"].map(|name| Parameter::additive(name, [-45.0, 45.0], 0.01)).to_vec(),
@@ -266,7 +267,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // The force sensor of the rig has a wrong gain. Written over true force.
     Cause::new(
-        "reference_gain",
+        Effect::ReferenceGain,
         ChainStage::Contact,
         Places::Rig,
         |_| vec![Parameter::factor("gain", [0.1, 10.0])],
@@ -274,7 +275,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // The force sensor of the rig has a zero of its own. Written minus true force.
     Cause::new(
-        "reference_zero",
+        Effect::ReferenceZero,
         ChainStage::Contact,
         Places::Rig,
         |_| ["fx_n", "fy_n", "fz_n"].map(|name| Parameter::additive(name, [-20.0, 20.0], 1e-3)).to_vec(),
@@ -282,7 +283,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // The stage does not stand where it says: its zero is not the middle of the pad. True minus written place.
     Cause::new(
-        "stage_offset",
+        Effect::StageOffset,
         ChainStage::Contact,
         Places::Rig,
         |_| ["x_mm", "y_mm"].map(|name| Parameter::additive(name, [-15.0, 15.0], 1e-2)).to_vec(),
@@ -290,7 +291,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // The stage is turned against the pad. From written to true place, counter-clockwise.
     Cause::new(
-        "stage_rotation",
+        Effect::StageRotation,
         ChainStage::Contact,
         Places::Rig,
         |_| vec![Parameter::additive("deg", [-180.0, 180.0], 0.01)],
@@ -298,7 +299,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // The stage moves farther, or less far, than it says. True over written distance.
     Cause::new(
-        "stage_scale",
+        Effect::StageScale,
         ChainStage::Contact,
         Places::Rig,
         |_| vec![Parameter::factor("scale", [0.2, 5.0])],
@@ -306,7 +307,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // Forces act above, or below, the plate's surface: an indenter with a cap, a hinge in the reference.
     Cause::new(
-        "contact_height",
+        Effect::ContactHeight,
         ChainStage::Mechanics,
         Places::Rig,
         |_| vec![Parameter::additive("mm", [-20.0, 50.0], 1e-2)],
@@ -314,7 +315,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // The load lies evenly on a disc of another radius than the model's: an indenter of another size, a soft finger.
     Cause::new(
-        "contact_size",
+        Effect::ContactSize,
         ChainStage::Mechanics,
         Places::Rig,
         |setting| {
@@ -336,7 +337,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     ),
     // The clock of what was written down is behind that of the channels, or ahead of it: places and forces are written too late.
     Cause::new(
-        "time_lag",
+        Effect::TimeLag,
         ChainStage::Contact,
         Places::Rig,
         |_| vec![Parameter::additive("ms", [-2000.0, 2000.0], 1.0)],

@@ -10,6 +10,7 @@ use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::memory::Dwells;
 use crate::diagnosis::model::setting::Setting;
+use crate::effect::Effect;
 pub(crate) use catalogue::CATALOGUE;
 
 /// Where in the chain a cause acts first. What lies before it need not be computed anew.
@@ -122,7 +123,7 @@ type Apply = fn(&Target, &[f64], &Setting, &mut Chain);
 /// A cause of a difference between a pad and its model.
 pub(crate) struct Cause {
     /// Its name in reports.
-    pub(crate) effect: &'static str,
+    pub(crate) effect: Effect,
     /// Where it acts first.
     pub(crate) stage: ChainStage,
     places: Places,
@@ -135,7 +136,7 @@ pub(crate) struct Cause {
 
 impl Cause {
     const fn new(
-        effect: &'static str,
+        effect: Effect,
         stage: ChainStage,
         places: Places,
         parameters: fn(&Setting) -> Vec<Parameter>,

@@ -3,6 +3,7 @@
 use crate::diagnosis::data::observations::Observations;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Finding, NotDetected, NotTestable, Notice};
+use crate::effect::Effect;
 use tactpad_core::numeric::statistics::mean;
 
 /// Probability by which a check may find anything in a sound recording.
@@ -91,13 +92,7 @@ impl Gate {
         self.notices.push(Notice { check, channel, detail });
     }
 
-    pub(super) fn find(
-        &mut self,
-        effect: &'static str,
-        target: Target,
-        p_value: f64,
-        share: f64,
-    ) -> &mut Finding {
+    pub(super) fn find(&mut self, effect: Effect, target: Target, p_value: f64, share: f64) -> &mut Finding {
         let at = self.findings.len();
         self.findings.push(Finding {
             effect,

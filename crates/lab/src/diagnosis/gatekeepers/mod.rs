@@ -11,9 +11,10 @@ pub(crate) mod checks;
 pub(crate) mod gate;
 pub(crate) mod prediction;
 
-use self::checks::{clipping, clock, dead, excess, mains, missing, rates, steps, stuck, wiring};
+use self::checks::{clipping, clock, dead, mains, missing, rates, steps, stuck, wiring};
 pub(super) use self::gate::Gate;
 use crate::diagnosis::data::observations::Observations;
+use crate::effect::Effect;
 
 type Check = fn(&mut Gate);
 /// Checks of the table, in their order: times before series, codes before anything that calculates.
@@ -21,9 +22,15 @@ const OF_TABLE: [Check; 4] = [clock::check, missing::check, stuck::check, rates:
 /// Checks of channels and electronics: wires before whatever holds a channel against its own model.
 const OF_CHANNELS: [Check; 5] = [dead::check, wiring::check, clipping::check, steps::check, mains::check];
 
-/// Effects that the checks name, this one and [`excess`] among them.
-pub(super) const EFFECTS: [&str; 6] =
-    ["channel_dead", "channels_swapped", "channel_polarity", "adc_clipping", "mains_pickup", excess::EFFECT];
+/// Effects that the checks name, [`checks::excess`] among them.
+pub(super) const EFFECTS: [Effect; 6] = [
+    Effect::ChannelDead,
+    Effect::ChannelsSwapped,
+    Effect::ChannelPolarity,
+    Effect::AdcClipping,
+    Effect::MainsPickup,
+    Effect::NoiseExcess,
+];
 
 /// The observations after all checks, but those that find an effect that is not asked for. `expected` are each channel's readings by a model, row by row; `None`: there is no model.
 ///
@@ -31,7 +38,7 @@ pub(super) const EFFECTS: [&str; 6] =
 pub(super) fn guarded(
     observations: &Observations,
     expected: Option<&[Vec<f64>]>,
-    asks_for: impl Fn(&str) -> bool,
+    asks_for: impl Fn(Effect) -> bool,
 ) -> Gate {
     let mut gate = Gate {
         observations: observations.clone(),

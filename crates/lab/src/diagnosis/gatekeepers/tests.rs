@@ -3,6 +3,7 @@
 use super::*;
 use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::data::target::Target;
+use crate::effect::Effect;
 use tactpad_core::numeric::random::SplitMix64;
 
 /// Three channels under loads of three axes, static, and what they should read.
@@ -55,7 +56,7 @@ fn checks(gate: &Gate) -> Vec<(&'static str, Option<usize>)> {
     gate.notices.iter().map(|notice| (notice.check, notice.channel)).collect()
 }
 
-fn found(gate: &Gate) -> Vec<(&'static str, Target)> {
+fn found(gate: &Gate) -> Vec<(Effect, Target)> {
     gate.findings.iter().map(|finding| (finding.effect, finding.target)).collect()
 }
 
@@ -118,13 +119,13 @@ fn wires_are_found_and_put_back() {
     let mut swapped = table.clone();
     swapped.readings.swap(0, 2);
     let gate = guarded(&swapped, Some(&expected), |_| true);
-    assert_eq!(found(&gate), vec![("channels_swapped", Target::Channels { into: 0, from: 2 })]);
+    assert_eq!(found(&gate), vec![(Effect::ChannelsSwapped, Target::Channels { into: 0, from: 2 })]);
     assert_eq!(gate.observations.readings, table.readings);
     assert!(gate.findings[0].share > 0.9 && gate.findings[0].p_value < 1e-9);
     let mut turned = table.clone();
     turned.readings[1].iter_mut().for_each(|y| *y = -*y);
     let gate = guarded(&turned, Some(&expected), |_| true);
-    assert_eq!(found(&gate), vec![("channel_polarity", Target::Channel(1))]);
+    assert_eq!(found(&gate), vec![(Effect::ChannelPolarity, Target::Channel(1))]);
     assert_eq!(gate.observations.readings, table.readings);
 }
 
@@ -134,13 +135,13 @@ fn a_channel_that_follows_nothing_has_no_weight() {
     let mut random = SplitMix64::new(3);
     table.readings[1].iter_mut().for_each(|y| *y = -33.0 + 0.3 * f64::from(random.normal()));
     let gate = guarded(&table, Some(&expected), |_| true);
-    assert_eq!((found(&gate), masked(&gate, 1)), (vec![("channel_dead", Target::Channel(1))], 300));
+    assert_eq!((found(&gate), masked(&gate, 1)), (vec![(Effect::ChannelDead, Target::Channel(1))], 300));
     // A small gain is none: a tenth of the answer is an answer.
     let (mut table, expected) = pressed(300);
     table.readings[1].iter_mut().for_each(|y| *y *= 0.1);
     assert_eq!(found(&guarded(&table, Some(&expected), |_| true)), vec![]);
     table.readings[1].fill(4.0);
-    assert_eq!(found(&guarded(&table, None, |_| true)), vec![("channel_dead", Target::Channel(1))]);
+    assert_eq!(found(&guarded(&table, None, |_| true)), vec![(Effect::ChannelDead, Target::Channel(1))]);
 }
 
 #[test]
@@ -150,7 +151,10 @@ fn limits_are_found_with_and_without_a_model() {
     let clipped = table.readings[2].iter().filter(|y| **y == 480.0).count();
     for model in [Some(expected.as_slice()), None] {
         let gate = guarded(&table, model, |_| true);
-        assert_eq!((found(&gate), masked(&gate, 2)), (vec![("adc_clipping", Target::Channel(2))], clipped));
+        assert_eq!(
+            (found(&gate), masked(&gate, 2)),
+            (vec![(Effect::AdcClipping, Target::Channel(2))], clipped)
+        );
         let limit = gate.findings[0].parameters[0];
         assert!(limit.interval95[0] <= 480.0 && limit.interval95[1] >= 480.0, "{limit:?}");
     }
@@ -237,7 +241,7 @@ fn the_mains_are_found_where_they_fold_to_and_taken_out() {
         let wave = |t_s: &f64| 3.0 * libm::sin(std::f64::consts::TAU * line_hz * t_s + 1.0);
         table.readings[1].iter_mut().zip(times.iter().map(wave)).for_each(|(y, wave)| *y += wave);
         let gate = guarded(&table, None, |_| true);
-        assert_eq!(found(&gate), vec![("mains_pickup", Target::Channel(1))], "{rate_hz} {line_hz}");
+        assert_eq!(found(&gate), vec![(Effect::MainsPickup, Target::Channel(1))], "{rate_hz} {line_hz}");
         for (number, truth) in gate.findings[0].parameters.iter().zip([3.0, line_hz]) {
             let [low, high] = number.interval95;
             assert!(low < truth && truth < high && high - low < 0.6, "{number:?}");

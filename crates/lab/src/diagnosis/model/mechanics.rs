@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::setting::Change;
+use crate::effect::Effect;
 use crate::tangent::Solve;
 use tactpad_core::numeric::zernike::{Jet, Polynomial, count, jets};
 use tactpad_core::pad::changes::{FieldChange, Flaw};
@@ -24,13 +25,13 @@ pub struct Pad<'p> {
     /// The field of another pad, which may take seconds; none where it cannot be had.
     pub solve: Solve<'p>,
     /// Effects that are not asked for.
-    pub without: &'p [String],
+    pub without: &'p [Effect],
 }
 
 impl Pad<'_> {
     /// Whether an effect is asked for.
-    pub(crate) fn asks_for(&self, effect: &str) -> bool {
-        self.without.iter().all(|other| other != effect)
+    pub(crate) fn asks_for(&self, effect: Effect) -> bool {
+        self.without.iter().all(|other| *other != effect)
     }
 }
 

@@ -10,6 +10,7 @@ use self::inverse::Written;
 use crate::diagnosis::data::noise::Noise;
 use crate::diagnosis::data::observations::Observations;
 use crate::diagnosis::data::target::Target;
+use crate::effect::Effect;
 
 /// A number of a hypothesis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +101,7 @@ pub(crate) const fn with_shapes<const SHAPES: usize, const ALL: usize>(
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Hypothesis {
     /// The cause.
-    pub(crate) effect: &'static str,
+    pub(crate) effect: Effect,
     /// Where.
     pub(crate) target: Target,
     /// Its numbers.

@@ -4,6 +4,7 @@
 //! is measured by hand: that tells of a cause's numbers directly.
 
 use crate::diagnosis::data::observations::{Observations, Sample};
+use crate::effect::Effect;
 
 /// Seconds that a contact takes, to reach and to hold; the rows to repeat are those of one location in so many, and no more than this.
 const CONTACT_S: f64 = 6.0;
@@ -29,7 +30,7 @@ const WARMED_C: f64 = 8.0;
 const BY_HAND_MIN: f64 = 20.0;
 
 /// The causes of the force sensor.
-const REFERENCE: [&str; 3] = ["reference_gain", "reference_tilt", "reference_zero"];
+const REFERENCE: [Effect; 3] = [Effect::ReferenceGain, Effect::ReferenceTilt, Effect::ReferenceZero];
 
 /// A further measurement.
 pub(crate) struct Experiment {
@@ -42,9 +43,9 @@ pub(crate) struct Experiment {
     /// The rows that it gives.
     pub(crate) rows: Observations,
     /// Causes that do not act on these rows.
-    pub(crate) silent: Vec<&'static str>,
+    pub(crate) silent: Vec<Effect>,
     /// Causes whose numbers it tells, and with which standard deviation.
-    pub(crate) by_hand: Option<(&'static str, f64)>,
+    pub(crate) by_hand: Option<(Effect, f64)>,
 }
 
 /// The catalogue for a measurement of `rows`, the cheapest first.
@@ -103,8 +104,8 @@ fn again(rows: &Observations, repeated: &[Sample]) -> Vec<Experiment> {
     vec![
         of(format!("repeat {count} of the contacts"), "another draw of the noise is all that it takes", 0.0),
         turned,
-        Experiment { silent: vec!["contact_height"], ..cap },
-        Experiment { silent: vec!["contact_size"], ..indenter },
+        Experiment { silent: vec![Effect::ContactHeight], ..cap },
+        Experiment { silent: vec![Effect::ContactSize], ..indenter },
         plain(
             rows,
             dwells,
@@ -135,16 +136,21 @@ fn without_reference(rows: &Observations, repeated: &[Sample]) -> [Experiment; 2
 
 /// Dimensions that are measured by hand, with the standard deviation of that: 0.1 mm at the modules' edges, half a degree along an edge
 /// of 8 mm, a fifth of one along a mark over the plate, and 0.1 mm over 40 mm of the stage's way.
-const BY_HAND: [(&str, f64, &str, &str); 4] = [
-    ("module_displaced", 0.1, "measure the modules' places with a caliper", "the rig has no part in that"),
-    ("module_rotated", 0.5, "measure how the modules are turned", "the rig has no part in that"),
+const BY_HAND: [(Effect, f64, &str, &str); 4] = [
     (
-        "stage_rotation",
+        Effect::ModuleDisplaced,
+        0.1,
+        "measure the modules' places with a caliper",
+        "the rig has no part in that",
+    ),
+    (Effect::ModuleRotated, 0.5, "measure how the modules are turned", "the rig has no part in that"),
+    (
+        Effect::StageRotation,
         0.2,
         "put a mark on pad and stage and take the angle between them",
         "the pad's channels have no part in that",
     ),
-    ("stage_scale", 0.0025, "measure the stage's way with a caliper", "the pad has no part in that"),
+    (Effect::StageScale, 0.0025, "measure the stage's way with a caliper", "the pad has no part in that"),
 ];
 
 /// The contacts to repeat: static ones of one location in three, else rows of series.

@@ -14,9 +14,9 @@ pub(crate) mod withdrawal;
 use self::withdrawal::{OVER_NEAR, doubted, is_over};
 use super::attribution::{Attribution, AttributionFit, Search};
 use super::report::{Estimate, Finding, NotDetected};
-use crate::diagnosis::attribution::columns::ZERO;
 use crate::diagnosis::attribution::inference::{Projected, Test};
 use crate::diagnosis::data::target::Target;
+use crate::effect::Effect;
 use tactpad_core::numeric::chi_square;
 use tactpad_core::numeric::dense::Matrix;
 
@@ -220,7 +220,7 @@ impl Search<'_> {
                 && square > OVER_NEAR * left_by_channel[channel]
                 && self.zero_holds_throughout(&found.fit, channel, square).unwrap_or(false);
             let finding = Finding {
-                effect: ZERO,
+                effect: Effect::ChannelOffset,
                 target: Target::Channel(channel),
                 parameters: vec![Estimate {
                     name: "offset_uv",

@@ -28,6 +28,7 @@ use crate::diagnosis::report::INSEPARABLE;
 use crate::diagnosis::statistics::equations::NormalEquations;
 use crate::diagnosis::statistics::system::ChannelSystem;
 use crate::diagnosis::statistics::whitening::Whitening;
+use crate::effect::Effect;
 use tactpad_core::numeric::chi_square;
 use tactpad_core::numeric::dense::Matrix;
 
@@ -91,7 +92,7 @@ impl<'s, 'm> Separation<'s, 'm> {
     }
 
     /// The measurement that separates the fitted cause at this place from its rivals, as a sentence; none where the model cannot say.
-    pub(crate) fn told(&self, at: usize, rivals: &[(&'static str, Target)]) -> Option<String> {
+    pub(crate) fn told(&self, at: usize, rivals: &[(Effect, Target)]) -> Option<String> {
         let hypotheses = self.search.model.hypotheses();
         let is_rival = |number: &usize| {
             let it = &hypotheses[*number];
@@ -363,7 +364,7 @@ mod tests {
     }
 
     /// What is said where a cause holds and its rivals are these; and how often each experiment must be made, by its sentence.
-    fn told(cause: (&str, &[f64]), rivals: &[&str]) -> (String, Vec<(String, Option<usize>)>) {
+    fn told(cause: (Effect, &[f64]), rivals: &[Effect]) -> (String, Vec<(String, Option<usize>)>) {
         let (device, field) = (Device::nominal(), PadField::nominal());
         let pad = Pad { device: &device, field: &field, flaws: &[], solve: &|_| None, without: &[] };
         let unread = contacts();
@@ -381,7 +382,7 @@ mod tests {
         let search = Search::new(&model, &measured, &measured);
         let found = Attribution { fit: search.fitted(&applied, None).unwrap(), critical: 1e-4 };
         let of = |it: &&crate::diagnosis::model::Hypothesis| rivals.contains(&it.effect);
-        let rivals: Vec<(&str, Target)> =
+        let rivals: Vec<(Effect, Target)> =
             model.hypotheses().iter().filter(of).map(|it| (it.effect, it.target)).collect();
         let numbers: Vec<usize> =
             (0..model.hypotheses().len()).filter(|number| of(&&model.hypotheses()[*number])).collect();
@@ -394,7 +395,7 @@ mod tests {
 
     #[test]
     fn weights_tell_a_wrong_excitation_from_a_wrong_reference() {
-        let (sentence, each) = told(("excitation_gain", &[1.05]), &["reference_gain"]);
+        let (sentence, each) = told((Effect::ExcitationGain, &[1.05]), &[Effect::ReferenceGain]);
         assert!(sentence.starts_with("place a known weight of 3 N at 12 of the places, once"), "{sentence}");
         // Whatever has both in it tells nothing, however often it is made.
         let helps: Vec<&str> =
@@ -404,12 +405,12 @@ mod tests {
 
     #[test]
     fn what_is_clamped_anew_turns_with_the_pad() {
-        let (sentence, each) = told(("stage_offset", &[0.15, 0.05]), &["module_displaced"]);
+        let (sentence, each) = told((Effect::StageOffset, &[0.15, 0.05]), &[Effect::ModuleDisplaced]);
         let turned = each.iter().find(|(what, _)| what.contains("120 degrees")).unwrap();
         assert!(turned.1.is_some_and(|repeats| repeats <= 3), "{each:?}");
         assert_ne!(sentence, INSEPARABLE);
         // A small cause takes more repeats than a large one.
-        let repeats = |mm: f64| told(("stage_offset", &[mm, 0.0]), &["module_displaced"]).1;
+        let repeats = |mm: f64| told((Effect::StageOffset, &[mm, 0.0]), &[Effect::ModuleDisplaced]).1;
         for ((what, small), (_, large)) in repeats(0.02).into_iter().zip(repeats(0.3)) {
             assert!(large.unwrap_or(usize::MAX) <= small.unwrap_or(usize::MAX), "{what}");
         }

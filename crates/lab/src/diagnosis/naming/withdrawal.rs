@@ -8,7 +8,8 @@
 use crate::diagnosis::attribution::{Attribution, Search};
 use crate::diagnosis::causes::{CATALOGUE, Cause};
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::report::{Finding, INSEPARABLE, UNLISTED};
+use crate::diagnosis::report::{Finding, INSEPARABLE};
+use crate::effect::Effect;
 
 /// A cause is named where it explains so many times what is left unexplained in the channels that tell of it,
 pub(crate) const OVER_NEAR: f64 = 10.0;
@@ -83,7 +84,7 @@ fn is_told(squares: &[f64], left: &[f64]) -> bool {
     square > OVER_NEAR * near && is_over(square, left)
 }
 
-fn of_catalogue(effect: &str) -> Option<&'static Cause> {
+fn of_catalogue(effect: Effect) -> Option<&'static Cause> {
     CATALOGUE.iter().find(|it| it.effect == effect)
 }
 
@@ -96,11 +97,11 @@ pub(crate) fn is_over(square: f64, unnamed_by_channel: &[f64]) -> bool {
 /// targets, beside three or more of any effects, and then also beside what each target has of its own, as that may be a part of it.
 /// What the checks of the recording found does not count: it is seen in the readings themselves.
 pub(crate) fn in_common(findings: Vec<Finding>) -> Vec<Finding> {
-    let asks = |effect: &str| of_catalogue(effect).is_some_and(|it| !it.is_individual);
-    let effects: Vec<&str> = findings.iter().map(|it| it.effect).filter(|effect| asks(effect)).collect();
-    let alike = |effect: &str| effects.iter().filter(|it| **it == effect).count();
-    let is_doubted = |effect: &str| alike(effect) > ALIKE_MAX || effects.len() > CAUSES_MAX;
-    let is_any = effects.iter().any(|effect| is_doubted(effect));
+    let asks = |effect: Effect| of_catalogue(effect).is_some_and(|it| !it.is_individual);
+    let effects: Vec<Effect> = findings.iter().map(|it| it.effect).filter(|effect| asks(*effect)).collect();
+    let alike = |effect: Effect| effects.iter().filter(|it| **it == effect).count();
+    let is_doubted = |effect: Effect| alike(effect) > ALIKE_MAX || effects.len() > CAUSES_MAX;
+    let is_any = effects.iter().any(|effect| is_doubted(*effect));
     let is_common = |it: &Finding| is_doubted(it.effect) || is_any && !asks(it.effect);
     let set =
         |it: Finding| if of_catalogue(it.effect).is_some() && is_common(&it) { doubted(it) } else { it };
@@ -110,7 +111,7 @@ pub(crate) fn in_common(findings: Vec<Finding>) -> Vec<Finding> {
 /// The finding as one that may be a part of what is not in the catalogue.
 pub(crate) fn doubted(mut finding: Finding) -> Finding {
     if !finding.is_doubted() {
-        finding.confounded_with.push((UNLISTED, Target::Pad));
+        finding.confounded_with.push((Effect::Unlisted, Target::Pad));
         finding.separate_by.get_or_insert_with(|| INSEPARABLE.to_owned());
     }
     finding
@@ -120,7 +121,7 @@ pub(crate) fn doubted(mut finding: Finding) -> Finding {
 mod tests {
     use super::*;
 
-    fn finding((effect, target): (&'static str, Target)) -> Finding {
+    fn finding((effect, target): (Effect, Target)) -> Finding {
         Finding {
             effect,
             target,
@@ -133,9 +134,11 @@ mod tests {
         }
     }
 
-    fn doubted(causes: &[(&'static str, Target)]) -> Vec<usize> {
+    fn doubted(causes: &[(Effect, Target)]) -> Vec<usize> {
         let findings = in_common(causes.iter().copied().map(finding).collect());
-        (0..findings.len()).filter(|at| findings[*at].confounded_with == [(UNLISTED, Target::Pad)]).collect()
+        (0..findings.len())
+            .filter(|at| findings[*at].confounded_with == [(Effect::Unlisted, Target::Pad)])
+            .collect()
     }
 
     #[test]
@@ -145,12 +148,15 @@ mod tests {
         assert!(is_told(&[100.0, 0.0], &[0.0, 24.9]) && !is_told(&[100.0, 0.0], &[0.0, 25.1]));
         // Channels that have next to nothing of it are not its own.
         assert!(is_told(&[100.0, 0.9], &[0.0, 20.0]) && !is_told(&[100.0, 1.1], &[0.0, 20.0]));
-        assert_eq!(super::doubted(super::doubted(finding(("creep", Target::Pad)))).confounded_with.len(), 1);
+        assert_eq!(
+            super::doubted(super::doubted(finding((Effect::Creep, Target::Pad)))).confounded_with.len(),
+            1
+        );
     }
 
     #[test]
     fn several_of_one_kind_and_many_of_any_may_have_one_reason() {
-        let [displaced, rotated] = ["module_displaced", "module_rotated"];
+        let [displaced, rotated] = [Effect::ModuleDisplaced, Effect::ModuleRotated];
         let module = Target::Module;
         assert_eq!(doubted(&[(displaced, module(0)), (rotated, module(1))]), [0; 0]);
         assert_eq!(
@@ -162,7 +168,7 @@ mod tests {
             [0, 1, 2]
         );
         assert_eq!(
-            doubted(&[(displaced, module(0)), (rotated, module(0)), ("stage_offset", Target::Rig)]),
+            doubted(&[(displaced, module(0)), (rotated, module(0)), (Effect::StageOffset, Target::Rig)]),
             [0, 1, 2]
         );
         assert_eq!(doubted(&[(displaced, module(0)), (displaced, module(2))]), [0, 1]);
@@ -170,15 +176,18 @@ mod tests {
 
     #[test]
     fn what_each_target_has_of_its_own_and_what_checks_found_needs_no_reason() {
-        let of_channels =
-            |effect: &'static str| (0..4).map(move |channel| (effect, Target::Channel(channel)));
+        let of_channels = |effect: Effect| (0..4).map(move |channel| (effect, Target::Channel(channel)));
         let gains: Vec<_> =
-            of_channels("channel_gain").chain([("module_rotated", Target::Module(1))]).collect();
+            of_channels(Effect::ChannelGain).chain([(Effect::ModuleRotated, Target::Module(1))]).collect();
         assert_eq!(doubted(&gains), [0; 0]);
-        assert_eq!(doubted(&of_channels("channel_dead").collect::<Vec<_>>()), [0; 0]);
-        let leaks = [0, 1].map(|from| ("channel_crosstalk", Target::Channels { into: 4, from }));
-        let beside =
-            [("channel_gain", Target::Channel(4)), leaks[0], leaks[1], ("channel_dead", Target::Channel(8))];
+        assert_eq!(doubted(&of_channels(Effect::ChannelDead).collect::<Vec<_>>()), [0; 0]);
+        let leaks = [0, 1].map(|from| (Effect::ChannelCrosstalk, Target::Channels { into: 4, from }));
+        let beside = [
+            (Effect::ChannelGain, Target::Channel(4)),
+            leaks[0],
+            leaks[1],
+            (Effect::ChannelDead, Target::Channel(8)),
+        ];
         assert_eq!(doubted(&beside), [0, 1, 2]);
     }
 }

@@ -87,6 +87,7 @@ mod tests {
     use crate::diagnosis::data::observations::{Observations, Sample};
     use crate::diagnosis::model::{ChannelBaselines, Model};
     use crate::diagnosis::{Applied, Pad};
+    use crate::effect::Effect;
     use tactpad_core::numeric::random::SplitMix64;
     use tactpad_core::numeric::statistics::mean;
     use tactpad_core::pad::changes::FieldChanges;
@@ -115,12 +116,12 @@ mod tests {
 
     /// Mean magnitudes of the errors of places and loads, as contacts are decoded where the first causes hold and the others are
     /// known; noise is so many parts of what the decoder believes.
-    fn errors(holds: &[(&str, &[f64])], known: &[(&str, &[f64])], noise: f64) -> [f64; 2] {
+    fn errors(holds: &[(Effect, &[f64])], known: &[(Effect, &[f64])], noise: f64) -> [f64; 2] {
         let (device, field, flaws) = (Device::nominal(), PadField::nominal(), FieldChanges::nominal());
         let pad = Pad { device: &device, field: &field, flaws: &flaws.0, solve: &|_| None, without: &[] };
         let written = contacts(60);
-        let applied = |model: &Atlas<'_>, causes: &[(&str, &[f64])]| -> Applied {
-            let of = |(effect, values): &(&str, &[f64])| {
+        let applied = |model: &Atlas<'_>, causes: &[(Effect, &[f64])]| -> Applied {
+            let of = |(effect, values): &(Effect, &[f64])| {
                 let at = model.hypotheses().iter().position(|it| it.effect == *effect).unwrap();
                 let parameters = &model.hypotheses()[at].parameters;
                 (at, parameters.iter().zip(*values).map(|(it, value)| it.coordinate(*value)).collect())
@@ -168,15 +169,15 @@ mod tests {
 
     #[test]
     fn causes_of_every_kind_are_taken_back() {
-        let all: [(&str, &[f64]); 8] = [
-            ("module_displaced", &[0.8, -0.5]),
-            ("module_frame_open", &[0.01]),
-            ("stage_rotation", &[1.5]),
-            ("reference_tilt", &[1.0, -1.0]),
-            ("channel_crosstalk", &[0.06]),
-            ("gauge_nonlinearity", &[3.0]),
-            ("thermal_gain", &[-0.003]),
-            ("contact_height", &[0.5]),
+        let all: [(Effect, &[f64]); 8] = [
+            (Effect::ModuleDisplaced, &[0.8, -0.5]),
+            (Effect::ModuleFrameOpen, &[0.01]),
+            (Effect::StageRotation, &[1.5]),
+            (Effect::ReferenceTilt, &[1.0, -1.0]),
+            (Effect::ChannelCrosstalk, &[0.06]),
+            (Effect::GaugeNonlinearity, &[3.0]),
+            (Effect::ThermalGain, &[-0.003]),
+            (Effect::ContactHeight, &[0.5]),
         ];
         let known = errors(&all, &all, 0.0);
         let unknown = errors(&all, &[], 0.0);

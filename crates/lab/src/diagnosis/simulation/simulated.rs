@@ -16,6 +16,7 @@ use crate::diagnosis::model::{
     BACKGROUND_MAX, CommonError, Hypothesis, Linearised, Model, Parameter, SIGNATURE_ERROR, Signature,
 };
 use crate::diagnosis::report::NotTestable;
+use crate::effect::Effect;
 use tactpad_core::numeric::statistics::rms;
 use tactpad_core::pad::device::{Device, Side};
 use tactpad_core::pad::field::PadField;
@@ -28,7 +29,7 @@ use tactpad_core::quantity::{CHANNELS, MODULES};
 const COMMON_ERROR: f64 = 0.008;
 /// Standard deviations of the simulator's error that look like a cause, as coordinates of that cause: the plate's polynomials are
 /// stiffer than the plate, and its splines round the field off. Held against the same solution: 1.1 % and 0.64 mm².
-const ERRORS_LIKE: [(&str, f64); 2] = [("plate_stiffness", 0.015), ("contact_size", 0.65)];
+const ERRORS_LIKE: [(Effect, f64); 2] = [(Effect::PlateStiffness, 0.015), (Effect::ContactSize, 0.65)];
 /// Readings that change by less than this part of the largest reading do not change.
 const NOTHING: f64 = 1e-9;
 

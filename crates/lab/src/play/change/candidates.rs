@@ -3,6 +3,7 @@
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::mechanics::side_share;
 use crate::diagnosis::model::setting::Change;
+use crate::effect::Effect;
 use tactpad_core::numeric::linear::Reduced;
 use tactpad_core::pad::device::{Device, Side};
 use tactpad_core::quantity::{CHANNELS, MODULES};
@@ -50,7 +51,7 @@ pub(super) struct CandidateNumber {
 /// A way in which a pad may have changed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Candidate {
-    pub(super) effect: &'static str,
+    pub(super) effect: Effect,
     pub(super) target: Target,
     pub(super) numbers: Vec<CandidateNumber>,
     /// Of a bond: places and shares of the known changes.
@@ -84,7 +85,7 @@ impl CandidateNumber {
 }
 
 impl Candidate {
-    fn of(effect: &'static str, target: Target, numbers: Vec<CandidateNumber>) -> Self {
+    fn of(effect: Effect, target: Target, numbers: Vec<CandidateNumber>) -> Self {
         Self { effect, target, numbers, bond: Vec::new() }
     }
 
@@ -147,14 +148,16 @@ pub(super) fn candidates(device: &Device, changes: &[Change]) -> Vec<Candidate> 
         vec![CandidateNumber::of("gain", MultipleScale::Gain, [0.05, 20.0], unit(&entries))]
     };
     let mut all: Vec<Candidate> = (0..CHANNELS)
-        .map(|channel| Candidate::of("channel_gain", Target::Channel(channel), gain(channel..channel + 1)))
+        .map(|channel| {
+            Candidate::of(Effect::ChannelGain, Target::Channel(channel), gain(channel..channel + 1))
+        })
         .collect();
     all.extend((0..MODULES).map(|module| {
-        Candidate::of("module_gain", Target::Module(module), gain(3 * module..3 * module + 3))
+        Candidate::of(Effect::ModuleGain, Target::Module(module), gain(3 * module..3 * module + 3))
     }));
     let mechanics = Mechanics { device, changes, size };
     all.extend((0..MODULES).flat_map(|module| mechanics.of_module(module)));
-    all.extend(mechanics.factor("plate_stiffness", Target::Pad, "material.plate.e_mpa", [0.05, 20.0]));
+    all.extend(mechanics.factor(Effect::PlateStiffness, Target::Pad, "material.plate.e_mpa", [0.05, 20.0]));
     all
 }
 
@@ -169,7 +172,7 @@ impl Mechanics<'_> {
         let target = Target::Module(module);
         let key = |name: &str| format!("module.{module}.{name}");
         let mut all = Vec::new();
-        all.extend(self.factor("module_stiffness", target, &key("frame_e_factor"), [0.02, 10.0]));
+        all.extend(self.factor(Effect::ModuleStiffness, target, &key("frame_e_factor"), [0.02, 10.0]));
         let added = |effect, numbers: &[(&'static str, &str)], most: f64| {
             let number = |(name, of): &(&'static str, &str)| {
                 let column = self.column(&key(of), 1.0)?;
@@ -179,10 +182,10 @@ impl Mechanics<'_> {
             Some(Candidate::of(effect, target, numbers?))
         };
         let shifts = [("radial_mm", "radial_mm"), ("tangential_mm", "tangential_mm")];
-        all.extend(added("module_displaced", &shifts, 5.0));
-        all.extend(added("module_rotated", &[("deg", "rotation_deg")], 30.0));
+        all.extend(added(Effect::ModuleDisplaced, &shifts, 5.0));
+        all.extend(added(Effect::ModuleRotated, &[("deg", "rotation_deg")], 30.0));
         let tilts = [("tangential_deg", "tilt_tangential_deg"), ("radial_deg", "tilt_radial_deg")];
-        all.extend(added("module_tilted", &tilts, 10.0));
+        all.extend(added(Effect::ModuleTilted, &tilts, 10.0));
         for side in Side::ALL {
             all.extend(self.open(module, side));
             all.extend(self.debonded(module, side));
@@ -202,13 +205,7 @@ impl Mechanics<'_> {
     }
 
     /// A stiffness k: the field changes by k ∂G/∂k c with c = 1 − 1/factor.
-    fn factor(
-        &self,
-        effect: &'static str,
-        target: Target,
-        name: &str,
-        bounds: [f64; 2],
-    ) -> Option<Candidate> {
+    fn factor(&self, effect: Effect, target: Target, name: &str, bounds: [f64; 2]) -> Option<Candidate> {
         let own = self.changes.iter().find_map(|change| match change {
             Change::Number { name: of, own, .. } if *of == name => Some(*own),
             _ => None,
@@ -221,7 +218,7 @@ impl Mechanics<'_> {
         let whole = side_share(self.device, side);
         let column = self.at(|change| *change == Change::FrameOpen(module, side), 1.0)?;
         let number = CandidateNumber::of("area_share", MultipleScale::Times(whole), [0.0, whole], column);
-        Some(Candidate::of("module_frame_open", Target::ModuleSide(module, side), vec![number]))
+        Some(Candidate::of(Effect::ModuleFrameOpen, Target::ModuleSide(module, side), vec![number]))
     }
 
     fn debonded(&self, module: usize, side: Side) -> Option<Candidate> {
@@ -232,7 +229,7 @@ impl Mechanics<'_> {
         let bond: Vec<(usize, f64)> = known.collect();
         let number =
             CandidateNumber::of("area_share", MultipleScale::Times(1.0), [0.0, 0.8], vec![0.0; self.size]);
-        let of = Candidate::of("module_debonded", Target::ModuleSide(module, side), vec![number]);
+        let of = Candidate::of(Effect::ModuleDebonded, Target::ModuleSide(module, side), vec![number]);
         (!bond.is_empty()).then_some(Candidate { bond, ..of })
     }
 }
@@ -252,19 +249,19 @@ mod tests {
     #[test]
     fn each_part_of_the_pad_has_its_candidates_and_nothing_names_all_of_it() {
         let all = nominal();
-        let count = |effect: &str| all.iter().filter(|it| it.effect == effect).count();
+        let count = |effect: Effect| all.iter().filter(|it| it.effect == effect).count();
         let wanted = [
-            ("channel_gain", 9),
-            ("module_gain", 3),
-            ("module_stiffness", 3),
-            ("module_displaced", 3),
-            ("module_rotated", 3),
-            ("module_tilted", 3),
-            ("module_debonded", 12),
-            ("module_frame_open", 12),
-            ("plate_stiffness", 1),
+            (Effect::ChannelGain, 9),
+            (Effect::ModuleGain, 3),
+            (Effect::ModuleStiffness, 3),
+            (Effect::ModuleDisplaced, 3),
+            (Effect::ModuleRotated, 3),
+            (Effect::ModuleTilted, 3),
+            (Effect::ModuleDebonded, 12),
+            (Effect::ModuleFrameOpen, 12),
+            (Effect::PlateStiffness, 1),
         ];
-        assert!(wanted.iter().all(|(effect, wanted)| count(effect) == *wanted), "{}", all.len());
+        assert!(wanted.iter().all(|(effect, wanted)| count(*effect) == *wanted), "{}", all.len());
         assert_eq!(all.len(), wanted.iter().map(|(_, count)| count).sum::<usize>());
         // A gain of all channels would be a force.
         let is_common = |it: &Candidate| {
@@ -290,7 +287,7 @@ mod tests {
 
     #[test]
     fn a_bond_has_the_share_that_the_equations_tell() {
-        let candidate = nominal().into_iter().find(|it| it.effect == "module_debonded").unwrap();
+        let candidate = nominal().into_iter().find(|it| it.effect == Effect::ModuleDebonded).unwrap();
         let size = candidate.numbers[0].column.len();
         let information: Vec<Vec<f64>> =
             (0..size).map(|i| (0..size).map(|j| if i == j { 50.0 } else { 0.0 }).collect()).collect();

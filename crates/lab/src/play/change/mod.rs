@@ -20,6 +20,7 @@ use crate::calibration::fit::FitError;
 use crate::calibration::fit::search::Report;
 use crate::diagnosis::model::mechanics::{at_place, changes};
 use crate::diagnosis::report::Finding;
+use crate::effect::Effect;
 use crate::play::windows::{PlayWindows, Window};
 use tactpad_core::pad::changes::FieldChange;
 use tactpad_core::pad::device::Device;
@@ -184,7 +185,7 @@ impl DetectedChanges {
 
     fn of(candidates: &[Candidate], compared: &PlayEstimate) -> Self {
         let selection = Selection::of(candidates, compared);
-        let modules = candidates.iter().filter(|it| it.effect == "module_gain");
+        let modules = candidates.iter().filter(|it| it.effect == Effect::ModuleGain);
         let [earlier, later] = compared.contacts;
         Self {
             findings: selection.findings(),

@@ -6,6 +6,7 @@ use super::candidates::{Candidate, CandidateNumber, FittedCandidate};
 use crate::calibration::change::plays::PlayEstimate;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Estimate, Finding};
+use crate::effect::Effect;
 use tactpad_core::numeric::chi_square::{exceeded, noncentrality, quantile};
 use tactpad_core::numeric::linear::Reduced;
 
@@ -120,7 +121,7 @@ impl<'c> Selection<'c> {
     }
 
     /// The candidates beside which nothing significant of a finding is left.
-    fn rivals(&self, others: &[FittedCandidate], finding: &FittedCandidate) -> Vec<(&'static str, Target)> {
+    fn rivals(&self, others: &[FittedCandidate], finding: &FittedCandidate) -> Vec<(Effect, Target)> {
         let own = (finding.candidate.effect, finding.candidate.target);
         let is_rival = |candidate: &&Candidate| {
             if (candidate.effect, candidate.target) == own {
@@ -180,7 +181,7 @@ mod tests {
     fn a_modules_gain_is_named_and_no_channel_stands_for_it() {
         let module = std::array::from_fn(|k| if k / 3 == 1 { -0.1 } else { 0.0 });
         let findings = found(&module, 1.0);
-        assert_eq!((findings.len(), findings[0].effect), (1, "module_gain"));
+        assert_eq!((findings.len(), findings[0].effect), (1, Effect::ModuleGain));
         assert!(findings[0].confounded_with.is_empty(), "{findings:?}");
         let estimate = findings[0].parameters[0];
         assert!((estimate.value - 0.9).abs() < 1e-9);
@@ -196,6 +197,6 @@ mod tests {
         (changes[0], changes[5]) = (0.2, -0.1);
         let findings = found(&changes, 1.0);
         let targets: Vec<_> = findings.iter().map(|it| (it.effect, it.target)).collect();
-        assert_eq!(targets, [("channel_gain", Channel(0)), ("channel_gain", Channel(5))]);
+        assert_eq!(targets, [(Effect::ChannelGain, Channel(0)), (Effect::ChannelGain, Channel(5))]);
     }
 }

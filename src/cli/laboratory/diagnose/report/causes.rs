@@ -49,7 +49,7 @@ fn card(subject: &Subject<'_>, finding: &Finding) -> String {
     format!(
         "<li class=\"cause\"><h3>{}</h3><p>{status} <code>{} {place}</code></p>{table}{}</li>",
         escaped(&capital(&sentence(finding, channels))),
-        escaped(finding.effect),
+        escaped(finding.effect.name()),
         evidence(subject, finding)
     )
 }
@@ -156,7 +156,7 @@ fn set(finding: &Finding, channels: &[String]) -> String {
     let rivals: Vec<String> = finding
         .confounded_with
         .iter()
-        .map(|(effect, target)| format!("<li>{}</li>", escaped(&cause(effect, target, channels))))
+        .map(|(effect, target)| format!("<li>{}</li>", escaped(&cause(*effect, target, channels))))
         .collect();
     let (first, more) = rivals.split_at(rivals.len().min(RIVALS_MAX));
     let more = match more.len() {

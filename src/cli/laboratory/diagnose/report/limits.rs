@@ -3,8 +3,9 @@
 use super::super::numbers::{decimals, parts, rounded, with_unit};
 use super::drawing::escaped;
 use super::subject::Subject;
-use super::words::{capital, cause, title};
+use super::words::{capital, cause};
 use tactpad::lab::diagnosis::report::NotDetected;
+use tactpad::lab::effect::Effect;
 
 /// A cause that another one reproduces to this part would hardly have been named alone.
 const LIKE: f64 = 0.8;
@@ -28,7 +29,7 @@ pub(super) fn sizes(subject: &Subject<'_>) -> String {
 
 /// One number of a cause over all its targets.
 struct Group {
-    effect: &'static str,
+    effect: Effect,
     name: &'static str,
     /// Sizes that are any.
     sizes: Vec<f64>,
@@ -65,7 +66,7 @@ impl Group {
         format!(
             "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{worst}</td><td \
              class=\"number\">{places}</td></tr>",
-            escaped(&title(self.effect)),
+            escaped(self.effect.title()),
             escaped(&what(self.name)),
             size(self.name, least)
         )
@@ -130,8 +131,8 @@ pub(super) fn untested(subject: &Subject<'_>) -> String {
     needs.sort_unstable();
     needs.dedup();
     let row = |column: &&str| {
-        let effects = all.iter().filter(|it| it.needs == *column).map(|it| title(it.effect));
-        let effects: Vec<String> = effects.collect();
+        let effects = all.iter().filter(|it| it.needs == *column).map(|it| it.effect.title());
+        let effects: Vec<&str> = effects.collect();
         format!(
             "<li>Without <code>{}</code> that varies: {}.</li>",
             escaped(column),

@@ -86,6 +86,7 @@ mod tests {
     use tactpad::lab::diagnosis::data::observations::Sample;
     use tactpad::lab::diagnosis::data::target::Target;
     use tactpad::lab::diagnosis::report::{Estimate, Finding, Notice, Residuals, Verdict};
+    use tactpad::lab::effect::Effect;
 
     /// A sensor with so many channels, of which the first reads a tenth too much.
     fn diagnosis(channels: usize, rows: usize) -> Diagnosis {
@@ -108,13 +109,13 @@ mod tests {
             background_mm: 10.0,
             background_share: 0.0,
             findings: vec![Finding {
-                effect: "channel_gain",
+                effect: Effect::ChannelGain,
                 target: Target::Channel(0),
                 parameters: vec![Estimate { name: "gain", value: 1.1, interval95: [1.09, f64::INFINITY] }],
                 shapes: Vec::new(),
                 p_value: 0.0,
                 share: f64::NAN,
-                confounded_with: vec![("zero_drift", Target::Pad)],
+                confounded_with: vec![(Effect::ZeroDrift, Target::Pad)],
                 separate_by: Some("measure <again>".to_owned()),
             }],
             not_detected: Vec::new(),

@@ -1,9 +1,10 @@
 //! The whole answer in one sentence.
 
 use super::subject::Subject;
-use super::words::{capital, cause, listed, place, sentence, title};
+use super::words::{capital, cause, listed, place, sentence};
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Verdict};
+use tactpad::lab::effect::Effect;
 
 /// So many findings are told with their sizes; of more, what they are.
 const TOLD_MAX: usize = 2;
@@ -51,25 +52,25 @@ fn told(diagnosis: &Diagnosis) -> String {
 
 /// The names of the findings, those of one effect together.
 fn names(findings: &[Finding], channels: &[String]) -> Vec<String> {
-    let mut effects: Vec<&str> = Vec::new();
+    let mut effects: Vec<Effect> = Vec::new();
     for finding in findings.iter().filter(|it| !matches!(it.target, Target::Pad | Target::Rig | Target::All))
     {
         if !effects.contains(&finding.effect) {
             effects.push(finding.effect);
         }
     }
-    let of_effect = |effect: &&str| {
+    let of_effect = |effect: &Effect| {
         let places =
             findings.iter().filter(|it| it.effect == *effect).map(|it| place(&it.target.name(channels)));
         let mut places: Vec<String> = places.collect();
         places.sort();
         places.dedup();
-        format!("{} ({})", title(effect), places.join(", "))
+        format!("{} ({})", effect.title(), places.join(", "))
     };
     let whole = findings
         .iter()
         .filter(|it| matches!(it.target, Target::Pad | Target::Rig | Target::All))
-        .map(|it| title(it.effect));
+        .map(|it| it.effect.title().to_owned());
     whole.chain(effects.iter().map(of_effect)).collect()
 }
 
@@ -80,7 +81,7 @@ fn clause(finding: &Finding, channels: &[String]) -> String {
     if others.is_empty() {
         return first;
     }
-    let told = others.iter().take(RIVALS_MAX).map(|(effect, target)| cause(effect, target, channels));
+    let told = others.iter().take(RIVALS_MAX).map(|(effect, target)| cause(*effect, target, channels));
     let told: Vec<String> = told.collect();
     let more = match others.len().saturating_sub(RIVALS_MAX) {
         0 => String::new(),

@@ -1,115 +1,24 @@
 //! Causes in plain English.
 
-use super::super::numbers::{carried, decimals, estimate, parts, rounded, with_unit};
+use super::super::numbers::{carried, decimals, parts, rounded, with_unit};
 use tactpad::lab::diagnosis::data::target::Target;
-use tactpad::lab::diagnosis::report::{Estimate, Finding, UNLISTED};
-
-/// Each effect's name for people, and the sentence that a finding makes of it.
-///
-/// `{gain|too much|too little}` is how far the number lies from none, with the word of its sign; `{uv_per_c}` is the number
-/// with its own sign, `{x_mm|in x}` with a word behind it. Of numbers that `&` joins those are told that are not none within
-/// their intervals. Numbers without a unit are told in per cent.
-const EFFECTS: [(&str, &str, &str); 36] = [
-    ("channel_gain", "wrong gain", "{target} reads {gain|too much|too little}"),
-    ("channel_offset", "offset", "{target} reads {offset_uv} without load"),
-    ("noise_excess", "too much noise", "{target} is {factor|noisier|quieter} than it should be"),
-    ("channel_dead", "dead channel", "{target} is dead"),
-    ("channel_polarity", "reversed channel", "{target} has the wrong sign"),
-    ("channels_swapped", "swapped channels", "{target} and {with} have changed places"),
-    ("channel_crosstalk", "crosstalk between channels", "{target} takes up {share} of {with}"),
-    ("gauge_nonlinearity", "bent response", "the response of {target} is bent by {second_order_percent_fs}"),
-    ("adc_clipping", "clipping", "{target} is clipped at {limit_uv}"),
-    ("channel_skew", "channel out of step", "{target} is read {skew_us|late|early}"),
-    ("mains_pickup", "mains pickup", "{target} takes up {amplitude_uv} of the mains at {frequency_hz}"),
-    (
-        "module_displaced",
-        "module out of place",
-        "{target} stands {radial_mm|too far out|too far in&tangential_mm|too far counter-clockwise|too far clockwise}",
-    ),
-    ("module_rotated", "turned module", "{target} is turned {deg|counter-clockwise|clockwise}"),
-    (
-        "module_tilted",
-        "tilted module",
-        "{target} is tilted by {tangential_deg|along the tangent&radial_deg|along the radius}",
-    ),
-    (
-        "module_stiffness",
-        "wrong stiffness of a module",
-        "the frame of {target} is {factor|stiffer|softer} than in the model",
-    ),
-    ("module_debonded", "bond come off", "the bond of {target} is off over {area_share} of its area"),
-    (
-        "module_frame_open",
-        "open frame",
-        "the frame of {target} is open over {area_share} of its area, on its {side} side",
-    ),
-    ("module_crosstalk", "crosstalk between modules", "{target} takes up {share} of {with}"),
-    (
-        "plate_stiffness",
-        "wrong stiffness of the plate",
-        "the plate is {factor|stiffer|softer} than in the model",
-    ),
-    ("excitation_gain", "wrong excitation", "every channel reads {gain|too much|too little}"),
-    ("thermal_zero", "zero moving with temperature", "the zero of {target} moves by {uv_per_c}"),
-    ("thermal_gain", "gain changing with temperature", "the gain of {target} changes by {per_c}"),
-    ("zero_drift", "drifting zero", "the zero of {target} drifts by {uv_per_h}"),
-    ("hysteresis", "hysteresis", "{target} keeps {share_of_full_scale} of full scale after a load"),
-    ("creep", "creep", "{target} creeps by {share_at_20s} within 20 s"),
-    ("ageing", "ageing", "{target} has lost {share_at_end} of its signal by the last cycle"),
-    (
-        "reference_tilt",
-        "force reference askew",
-        "the force reference stands askew by {x_deg|about x&y_deg|about y}",
-    ),
-    (
-        "reference_gain",
-        "wrong gain of the force reference",
-        "the force reference writes {gain|too much|too little}",
-    ),
-    (
-        "reference_zero",
-        "offset of the force reference",
-        "the zero of the force reference is off by {fx_n|in x&fy_n|in y&fz_n|in z}",
-    ),
-    ("stage_offset", "stage out of place", "the stage is off by {x_mm|in x&y_mm|in y&z_mm|in z}"),
-    ("stage_rotation", "turned stage", "the stage is turned {deg|counter-clockwise|clockwise}"),
-    (
-        "stage_scale",
-        "wrong scale of the stage",
-        "true distances are {scale|longer|shorter} than the stage writes",
-    ),
-    ("contact_height", "height of the contact", "the forces act {mm|above|below} the plate’s surface"),
-    ("contact_size", "size of the contact", "the contact has a radius of {radius_mm}"),
-    ("time_lag", "labels out of step", "the labels are {ms|late|early}"),
-    (UNLISTED, "a part of something that is not in the catalogue", "something else is wrong"),
-];
-
-/// An effect's name for people.
-pub(super) fn title(effect: &str) -> String {
-    EFFECTS
-        .iter()
-        .find(|(name, ..)| *name == effect)
-        .map_or_else(|| effect.replace('_', " "), |(_, it, _)| (*it).to_owned())
-}
+use tactpad::lab::diagnosis::report::{Estimate, Finding};
+use tactpad::lab::effect::Effect;
 
 /// A cause and where it is: `turned module (module 1)`.
-pub(super) fn cause(effect: &str, target: &Target, channels: &[String]) -> String {
+pub(super) fn cause(effect: Effect, target: &Target, channels: &[String]) -> String {
     let with = target.with(channels).map(|with| format!(" from {}", place(&with))).unwrap_or_default();
     let side = target.side().map(|it| format!(", {} side", it.name())).unwrap_or_default();
     match target {
-        Target::Pad | Target::Rig | Target::All => title(effect),
-        _ => format!("{} ({}{with}{side})", title(effect), place(&target.name(channels))),
+        Target::Pad | Target::Rig | Target::All => effect.title().to_owned(),
+        _ => format!("{} ({}{with}{side})", effect.title(), place(&target.name(channels))),
     }
 }
 
 /// The sentence of a finding, without its full stop.
 pub(super) fn sentence(finding: &Finding, channels: &[String]) -> String {
-    let Some((.., template)) = EFFECTS.iter().find(|(name, ..)| *name == finding.effect) else {
-        let numbers: Vec<String> = finding.parameters.iter().map(estimate).collect();
-        return format!("{}: {}", cause(finding.effect, &finding.target, channels), numbers.join(", "));
-    };
     let mut told = String::new();
-    for part in template.split('{') {
+    for part in finding.effect.sentence().split('{') {
         match part.split_once('}') {
             Some((wanted, rest)) => told += &(filled(wanted, finding, channels) + rest),
             None => told += part,
@@ -248,7 +157,7 @@ pub(super) fn none(name: &str) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn finding(effect: &'static str, target: Target, parameters: &[(&'static str, f64, f64)]) -> Finding {
+    fn finding(effect: Effect, target: Target, parameters: &[(&'static str, f64, f64)]) -> Finding {
         let number = |(name, value, spread): &(&'static str, f64, f64)| Estimate {
             name,
             value: *value,
@@ -266,7 +175,7 @@ mod tests {
         }
     }
 
-    fn told(effect: &'static str, target: Target, parameters: &[(&'static str, f64, f64)]) -> String {
+    fn told(effect: Effect, target: Target, parameters: &[(&'static str, f64, f64)]) -> String {
         sentence(&finding(effect, target, parameters), &["m0x".to_owned(), "m0y".to_owned()])
     }
 
@@ -274,43 +183,42 @@ mod tests {
     fn findings_are_sentences() {
         let channel = Target::Channel(0);
         assert_eq!(
-            told("channel_gain", channel, &[("gain", 1.1203, 0.01)]),
+            told(Effect::ChannelGain, channel, &[("gain", 1.1203, 0.01)]),
             "channel m0x reads 12 % too much"
         );
         assert_eq!(
-            told("channel_gain", channel, &[("gain", 0.931, 0.002)]),
+            told(Effect::ChannelGain, channel, &[("gain", 0.931, 0.002)]),
             "channel m0x reads 6.9 % too little"
         );
         let crosstalk = Target::Channels { into: 1, from: 0 };
         assert_eq!(
-            told("channel_crosstalk", crosstalk, &[("share", 0.021, 0.002)]),
+            told(Effect::ChannelCrosstalk, crosstalk, &[("share", 0.021, 0.002)]),
             "channel m0y takes up 2.1 % of m0x"
         );
         assert_eq!(
-            told("module_rotated", Target::Module(2), &[("deg", -2.13, 0.3)]),
+            told(Effect::ModuleRotated, Target::Module(2), &[("deg", -2.13, 0.3)]),
             "module 2 is turned 2.1° clockwise"
         );
         assert_eq!(
-            told("thermal_zero", Target::Pad, &[("uv_per_c", -31.3, 2.0)]),
+            told(Effect::ThermalZero, Target::Pad, &[("uv_per_c", -31.3, 2.0)]),
             "the zero of every channel moves by −31 µV/°C"
         );
         let displaced = [("radial_mm", -0.71, 0.02), ("tangential_mm", 0.01, 0.02)];
         assert_eq!(
-            told("module_displaced", Target::Module(1), &displaced),
+            told(Effect::ModuleDisplaced, Target::Module(1), &displaced),
             "module 1 stands 0.71 mm too far in"
         );
         let askew = [("x_deg", 1.23, 0.2), ("y_deg", -0.8, 0.2)];
         assert_eq!(
-            told("reference_tilt", Target::Rig, &askew),
+            told(Effect::ReferenceTilt, Target::Rig, &askew),
             "the force reference stands askew by 1.2° about x and −0.8° about y"
         );
-        assert_eq!(told("new_thing", Target::Rig, &[("mm", 3.0, 1.0)]), "new thing: 3.0 mm (2.0 to 4.0)");
     }
 
     #[test]
     fn small_numbers_keep_a_digit() {
         assert_eq!(
-            told("channel_gain", Target::Channel(0), &[("gain", 1.004, 0.2)]),
+            told(Effect::ChannelGain, Target::Channel(0), &[("gain", 1.004, 0.2)]),
             "channel m0x reads 0.40 % too much"
         );
     }

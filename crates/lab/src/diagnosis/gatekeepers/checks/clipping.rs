@@ -9,6 +9,7 @@ use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text};
 use crate::diagnosis::gatekeepers::prediction::Fitted;
 use crate::diagnosis::report::Estimate;
+use crate::effect::Effect;
 use tactpad_core::numeric::statistics::{mean, population_deviation};
 
 /// Fewest rows at a limit.
@@ -36,7 +37,7 @@ pub(crate) fn check(gate: &mut Gate) {
         let estimate = Estimate { name: "limit_uv", value: limit, interval95: [limit - half, limit + half] };
         let p_value = fullest.p_value;
         let share = gate.mended(|gate| rails.iter().for_each(|rail| gate.mask(channel, &rail.rows)));
-        gate.find("adc_clipping", Target::Channel(channel), p_value, share).parameters = vec![estimate];
+        gate.find(Effect::AdcClipping, Target::Channel(channel), p_value, share).parameters = vec![estimate];
         for rail in rails {
             let larger = rail
                 .missing

@@ -9,6 +9,7 @@
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text, squares};
 use crate::diagnosis::gatekeepers::prediction::explained;
+use crate::effect::Effect;
 use tactpad_core::numeric::chi_square;
 
 /// No answer is smaller than this part of the signal.
@@ -29,7 +30,7 @@ pub(crate) fn check(gate: &mut Gate) {
         );
         let share = gate.mended(|gate| gate.mask(channel, &rows));
         gate.notice("dead", Some(channel), detail);
-        gate.find("channel_dead", Target::Channel(channel), p_value, share);
+        gate.find(Effect::ChannelDead, Target::Channel(channel), p_value, share);
     }
 }
 

@@ -9,6 +9,7 @@ use crate::diagnosis::data::noise::Noise;
 use crate::diagnosis::data::observations::Observations;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Estimate, Finding, NotDetected, Notice};
+use crate::effect::Effect;
 use tactpad_core::numeric::chi_square;
 use tactpad_core::numeric::statistics::{mean, rms};
 
@@ -26,9 +27,6 @@ const OTHERS_MIN: usize = 4;
 /// Normal quantiles: of 95 %, and of nine in ten.
 const WITHIN_95: f64 = 1.959_964;
 const POWER_90: f64 = 1.281_552;
-
-/// Its name in reports.
-pub(crate) const EFFECT: &str = "noise_excess";
 
 /// Excess noise of the channels.
 #[derive(Clone, Debug, Default)]
@@ -91,7 +89,7 @@ pub(crate) fn excess(observations: &Observations, noise: &[Noise], signals: &[Ve
             found.notices.push(notice(observations, channel, &own));
         } else {
             found.not_detected.push(NotDetected {
-                effect: EFFECT,
+                effect: Effect::NoiseExcess,
                 target: Target::Channel(channel),
                 minimum_detectable: vec![("factor", libm::exp((critical + POWER_90) * deviation) - 1.0)],
                 rival_share: 0.0,
@@ -166,7 +164,7 @@ fn predicted(others: &[Level], own: &Level) -> [f64; 2] {
 fn finding(channel: usize, excess: f64, deviation: f64) -> Finding {
     let within = WITHIN_95 * deviation;
     Finding {
-        effect: EFFECT,
+        effect: Effect::NoiseExcess,
         target: Target::Channel(channel),
         parameters: vec![Estimate {
             name: "factor",

@@ -10,6 +10,7 @@ use super::line::{RowRun, Waves};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text};
 use crate::diagnosis::report::{Estimate, NotDetected, NotTestable};
+use crate::effect::Effect;
 use tactpad_core::numeric::chi_square;
 use tactpad_core::numeric::statistics::mean;
 
@@ -69,7 +70,7 @@ pub(crate) fn check(gate: &mut Gate) {
     let stretches = stretches(gate);
     let combs: Vec<Comb> = GRIDS_HZ.iter().filter_map(|grid| Comb::of(*grid, &picked(&stretches))).collect();
     if combs.is_empty() {
-        gate.not_testable.push(NotTestable { effect: "mains_pickup", needs: "trial" });
+        gate.not_testable.push(NotTestable { effect: Effect::MainsPickup, needs: "trial" });
         return;
     }
     let asked = (gate.channels() * combs.iter().map(|comb| comb.searched).sum::<usize>()).max(1);
@@ -89,7 +90,7 @@ pub(crate) fn check(gate: &mut Gate) {
         } else {
             let least = peaks.iter().map(|peak| peak.least).fold(0.0, f64::max);
             gate.not_detected.push(NotDetected {
-                effect: "mains_pickup",
+                effect: Effect::MainsPickup,
                 target: Target::Channel(channel),
                 minimum_detectable: vec![("amplitude_uv", least)],
                 rival_share: 0.0,
@@ -298,5 +299,5 @@ fn take_out(gate: &mut Gate, channel: usize, stretches: &[RowRun], residual: &[f
         },
     ];
     gate.notice("mains", Some(channel), detail);
-    gate.find("mains_pickup", Target::Channel(channel), peak.p_value, share).parameters = estimates;
+    gate.find(Effect::MainsPickup, Target::Channel(channel), peak.p_value, share).parameters = estimates;
 }

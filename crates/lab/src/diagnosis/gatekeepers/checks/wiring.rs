@@ -6,6 +6,7 @@
 
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, correlation, squares};
+use crate::effect::Effect;
 use tactpad_core::numeric::chi_square;
 
 /// No less than this is left: what sound pads of a kind differ by is not told apart.
@@ -67,7 +68,7 @@ fn exchange(gate: &mut Gate, [one, other]: [usize; 2], log_odds: f64) {
     );
     gate.notice("swapped", Some(one), detail);
     let target = Target::Channels { into: one, from: other };
-    gate.find("channels_swapped", target, (-log_odds).exp().max(f64::MIN_POSITIVE), share);
+    gate.find(Effect::ChannelsSwapped, target, (-log_odds).exp().max(f64::MIN_POSITIVE), share);
 }
 
 /// Turns the sign of a channel that goes against its own.
@@ -86,5 +87,5 @@ fn turn(gate: &mut Gate, channel: usize) {
         gate.name(channel)
     );
     gate.notice("polarity", Some(channel), detail);
-    gate.find("channel_polarity", Target::Channel(channel), p_value, share);
+    gate.find(Effect::ChannelPolarity, Target::Channel(channel), p_value, share);
 }

@@ -1,0 +1,152 @@
+//! What a diagnosis can name: one row of a table for each effect.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+
+/// What becomes of a device's number by a finding's value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DeviceChange {
+    Add,
+    Multiply,
+    Replace,
+}
+
+use DeviceChange::{Add, Multiply, Replace};
+
+/// A finding's number, and the device's number that it changes, by the names of
+/// [`Parameter`](tactpad_core::pad::device::parameter::Parameter).
+pub(crate) type DeviceNumber = (&'static str, &'static str, DeviceChange);
+
+macro_rules! effects {
+    ($($effect:ident: $name:literal, $title:literal, $sentence:literal $(=> $($number:expr),+)?;)*) => {
+        /// A cause of a difference, a fault of a recording, or a change, by the name that reports give it.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Effect {
+            $(#[doc = $title] $effect,)*
+        }
+
+        impl Effect {
+            /// All of them, in the order of the table.
+            pub const ALL: &[Self] = &[$(Self::$effect,)*];
+
+            /// Its name in JSON and in arguments.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$effect => $name,)* }
+            }
+
+            /// Its name for people.
+            pub const fn title(self) -> &'static str {
+                match self { $(Self::$effect => $title,)* }
+            }
+
+            /// The sentence that a finding makes of it.
+            ///
+            /// `{gain|too much|too little}` is how far the number lies from none, with the word of its sign; `{uv_per_c}` is the number
+            /// with its own sign, `{x_mm|in x}` with a word behind it. Of numbers that `&` joins those are told that are not none within
+            /// their intervals. Numbers without a unit are told in per cent.
+            pub const fn sentence(self) -> &'static str {
+                match self { $(Self::$effect => $sentence,)* }
+            }
+
+            /// The device's numbers that hold it; none where it is no number of a device file, or not one by itself.
+            pub(crate) const fn device_numbers(self) -> &'static [DeviceNumber] {
+                match self { $(Self::$effect => &[$($($number),+)?],)* }
+            }
+        }
+    };
+}
+
+effects! {
+    ChannelGain: "channel_gain", "wrong gain", "{target} reads {gain|too much|too little}"
+        => ("gain", "module.{module}.gain.{axis}", Multiply);
+    ModuleGain: "module_gain", "module gain", "{target} reads {gain|too much|too little}";
+    ChannelOffset: "channel_offset", "offset", "{target} reads {offset_uv} without load"
+        => ("offset_uv", "module.{module}.offset_uv.{axis}", Add);
+    NoiseExcess: "noise_excess", "too much noise", "{target} is {factor|noisier|quieter} than it should be";
+    ChannelDead: "channel_dead", "dead channel", "{target} is dead";
+    ChannelPolarity: "channel_polarity", "reversed channel", "{target} has the wrong sign";
+    ChannelsSwapped: "channels_swapped", "swapped channels", "{target} and {with} have changed places";
+    ChannelCrosstalk: "channel_crosstalk", "crosstalk between channels", "{target} takes up {share} of {with}";
+    GaugeNonlinearity: "gauge_nonlinearity", "bent response", "the response of {target} is bent by {second_order_percent_fs}";
+    AdcClipping: "adc_clipping", "clipping", "{target} is clipped at {limit_uv}";
+    ChannelSkew: "channel_skew", "channel out of step", "{target} is read {skew_us|late|early}"
+        => ("skew_us", "sampling.skew_us.{channel}", Add);
+    MainsPickup: "mains_pickup", "mains pickup", "{target} takes up {amplitude_uv} of the mains at {frequency_hz}";
+    ModuleDisplaced: "module_displaced", "module out of place",
+        "{target} stands {radial_mm|too far out|too far in&tangential_mm|too far counter-clockwise|too far clockwise}"
+        => ("radial_mm", "module.{module}.radial_mm", Add),
+           ("tangential_mm", "module.{module}.tangential_mm", Add);
+    ModuleRotated: "module_rotated", "turned module", "{target} is turned {deg|counter-clockwise|clockwise}"
+        => ("deg", "module.{module}.rotation_deg", Add);
+    ModuleTilted: "module_tilted", "tilted module",
+        "{target} is tilted by {tangential_deg|along the tangent&radial_deg|along the radius}"
+        => ("tangential_deg", "module.{module}.tilt_tangential_deg", Add),
+           ("radial_deg", "module.{module}.tilt_radial_deg", Add);
+    ModuleStiffness: "module_stiffness", "wrong stiffness of a module",
+        "the frame of {target} is {factor|stiffer|softer} than in the model"
+        => ("factor", "module.{module}.frame_e_factor", Multiply);
+    ModuleDebonded: "module_debonded", "bond come off", "the bond of {target} is off over {area_share} of its area";
+    ModuleFrameOpen: "module_frame_open", "open frame",
+        "the frame of {target} is open over {area_share} of its area, on its {side} side";
+    ModuleCrosstalk: "module_crosstalk", "crosstalk between modules", "{target} takes up {share} of {with}";
+    PlateStiffness: "plate_stiffness", "wrong stiffness of the plate",
+        "the plate is {factor|stiffer|softer} than in the model"
+        => ("factor", "material.plate.e_mpa", Multiply);
+    ExcitationGain: "excitation_gain", "wrong excitation", "every channel reads {gain|too much|too little}"
+        => ("gain", "module.{module}.gain.{axis}", Multiply);
+    ThermalZero: "thermal_zero", "zero moving with temperature", "the zero of {target} moves by {uv_per_c}"
+        => ("uv_per_c", "thermal.zero_uv_per_c.{channel}", Add);
+    ThermalGain: "thermal_gain", "gain changing with temperature", "the gain of {target} changes by {per_c}"
+        => ("per_c", "thermal.gain_per_c.{channel}", Add);
+    ZeroDrift: "zero_drift", "drifting zero", "the zero of {target} drifts by {uv_per_h}"
+        => ("uv_per_h", "noise.drift_uv_per_h.{channel}", Add);
+    Hysteresis: "hysteresis", "hysteresis", "{target} keeps {share_of_full_scale} of full scale after a load";
+    Creep: "creep", "creep", "{target} creeps by {share_at_20s} within 20 s";
+    Ageing: "ageing", "ageing", "{target} has lost {share_at_end} of its signal by the last cycle"
+        => ("share_at_end", "ageing.share.{channel}", Add);
+    ReferenceTilt: "reference_tilt", "force reference askew",
+        "the force reference stands askew by {x_deg|about x&y_deg|about y}"
+        => ("x_deg", "rig.reference_tilt_x_deg", Add),
+           ("y_deg", "rig.reference_tilt_y_deg", Add);
+    ReferenceGain: "reference_gain", "wrong gain of the force reference",
+        "the force reference writes {gain|too much|too little}"
+        => ("gain", "rig.reference_gain", Multiply);
+    ReferenceZero: "reference_zero", "offset of the force reference",
+        "the zero of the force reference is off by {fx_n|in x&fy_n|in y&fz_n|in z}"
+        => ("fx_n", "rig.reference_zero_n.x", Add),
+           ("fy_n", "rig.reference_zero_n.y", Add),
+           ("fz_n", "rig.reference_zero_n.z", Add);
+    StageOffset: "stage_offset", "stage out of place", "the stage is off by {x_mm|in x&y_mm|in y&z_mm|in z}"
+        => ("x_mm", "rig.stage_x_mm", Add),
+           ("y_mm", "rig.stage_y_mm", Add);
+    StageRotation: "stage_rotation", "turned stage", "the stage is turned {deg|counter-clockwise|clockwise}"
+        => ("deg", "rig.stage_rotation_deg", Add);
+    StageScale: "stage_scale", "wrong scale of the stage", "true distances are {scale|longer|shorter} than the stage writes"
+        => ("scale", "rig.stage_scale", Multiply);
+    ContactHeight: "contact_height", "height of the contact", "the forces act {mm|above|below} the plate’s surface";
+    ContactSize: "contact_size", "size of the contact", "the contact has a radius of {radius_mm}"
+        => ("radius_mm", "contact.patch_radius_mm", Replace);
+    TimeLag: "time_lag", "labels out of step", "the labels are {ms|late|early}"
+        => ("ms", "rig.label_lag_ms", Add);
+    Unlisted: "unlisted_cause", "a part of something that is not in the catalogue", "something else is wrong";
+}
+
+impl Effect {
+    /// The effect of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|effect| effect.name() == name)
+    }
+}
+
+impl fmt::Display for Effect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl Serialize for Effect {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}

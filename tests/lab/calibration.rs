@@ -17,7 +17,7 @@ use tactpad::lab::field_cache::solve;
 use tactpad::lab::rig::bound::{Bound, ContactReading};
 use tactpad::lab::rig::measurement::{Measurement, carry_out};
 use tactpad::lab::scdf::adaptation::{adapt, examples};
-use tactpad::lab::tangent::{Simulated, Solve};
+use tactpad::lab::tangent::{SimulatedPad, Solve};
 use tactpad::mechanics::mesh::Fineness;
 use tactpad::mechanics::simulator::Simulator;
 use tactpad::network::Zero;
@@ -304,7 +304,7 @@ fn is_calibrated_about_its_own_field(solve: Solve<'_>, field: &PadField, is_comp
         solve(device)
     };
     let tried = |solve: Solve<'_>| {
-        let pad = Simulated { solve, flaws: &changes.0, ..Simulated::known(&nominal, field) };
+        let pad = SimulatedPad { solve, flaws: &changes.0, ..SimulatedPad::known(&nominal, field) };
         let found = fit_reported(&measured.recording, &measured.some(216), &pad, None, &|_, _| ()).unwrap();
         (stated(&found, &device), errors_of(&found.decoder(), &unseen), found.flaw)
     };
@@ -343,7 +343,7 @@ fn fitted_flaw(
 ) -> Option<(usize, Flaw)> {
     let nominal = Device::nominal();
     let measured = Measured::on(own, device, &plans::paper::plan(&device.contact), 1);
-    let pad = Simulated { flaws, ..Simulated::known(&nominal, known) };
+    let pad = SimulatedPad { flaws, ..SimulatedPad::known(&nominal, known) };
     fit_reported(&measured.recording, &measured.some(216), &pad, None, &|_, _| ()).unwrap().flaw
 }
 

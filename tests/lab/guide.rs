@@ -7,7 +7,7 @@ use tactpad::lab::play::guide::{Guide, GuideStep, LoadOnPad};
 use tactpad::lab::play::home::calibrated;
 use tactpad::lab::play::reader::Reader;
 use tactpad::lab::play::weights::Placement;
-use tactpad::lab::tangent::Simulated;
+use tactpad::lab::tangent::SimulatedPad;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::pad::marks::MARKS_MM;
@@ -115,7 +115,7 @@ fn it_goes_through_all_steps_and_its_decoder_knows_the_scale() {
     assert_eq!(placements.iter().map(|it| it.place_mm).collect::<Vec<_>>(), MARKS_MM);
     let (device, field) = (Device::nominal(), PadField::nominal());
     let found =
-        calibrated(&windows, &placements, &Simulated::known(&device, &field), None, &|_, _| {}).unwrap();
+        calibrated(&windows, &placements, &SimulatedPad::known(&device, &field), None, &|_, _| {}).unwrap();
     assert!(found.knows_scale() && found.placements == 5 && found.presses > 350);
     assert!(found.regions(&windows).iter().all(|region| region.presses > 0));
 }

@@ -16,7 +16,7 @@ use tactpad::lab::play::home::{AtHome, calibrated};
 use tactpad::lab::play::weights::Placement;
 use tactpad::lab::play::windows::{SampleContext, Window, WindowCollector};
 use tactpad::lab::rig::measurement::carry_out;
-use tactpad::lab::tangent::Simulated;
+use tactpad::lab::tangent::SimulatedPad;
 use tactpad::numeric::random::SplitMix64;
 use tactpad::numeric::zernike::jets;
 use tactpad::pad::device::Device;
@@ -223,7 +223,7 @@ fn recorded(pad: &Pad, seconds: f64, within_mm: f64) -> (Vec<Window>, Vec<Placem
 fn at_home(windows: &[Window], placements: &[Placement]) -> AtHome {
     let (device, nominal) = (Device::nominal(), PadField::nominal());
     // The pads' fields are bent along the tangent, so no other pad's is asked for.
-    let pad = Simulated::known(&device, &nominal);
+    let pad = SimulatedPad::known(&device, &nominal);
     calibrated(windows, placements, &pad, None, &|_, _| ()).unwrap()
 }
 

@@ -7,7 +7,7 @@ use crate::calibration::fit::search::Report;
 use crate::calibration::fit::{Calibration, FitError, fit_reported};
 use crate::calibration::regression::{neighbours, regression};
 use crate::calibration::screening::{Fault, TableMismatch, screened};
-use crate::tangent::Simulated;
+use crate::tangent::SimulatedPad;
 use tactpad_core::network::Zero;
 use tactpad_core::numeric::random::SplitMix64;
 use tactpad_core::pad::device::Device;
@@ -117,7 +117,7 @@ impl Contacts {
     /// The contacts give no calibration.
     pub fn calibration(
         &self,
-        pad: &Simulated<'_>,
+        pad: &SimulatedPad<'_>,
         earlier: Option<EarlierCalibration<'_>>,
         report: Report<'_>,
     ) -> Result<Calibration, FitError> {

@@ -9,7 +9,7 @@ pub type Solve<'s> = &'s (dyn Fn(&Device) -> Option<PadField> + Sync);
 
 /// A simulated pad.
 #[derive(Clone, Copy)]
-pub struct Simulated<'p> {
+pub struct SimulatedPad<'p> {
     /// Its device.
     pub device: &'p Device,
     /// Its field.
@@ -20,7 +20,7 @@ pub struct Simulated<'p> {
     pub solve: Solve<'p>,
 }
 
-impl<'p> Simulated<'p> {
+impl<'p> SimulatedPad<'p> {
     /// Without a simulator: all other pads are on the field's tangent, and none has a flaw.
     pub fn known(device: &'p Device, field: &'p PadField) -> Self {
         Self { device, field, flaws: &[], solve: &|_| None }

@@ -10,21 +10,30 @@ use tactpad::pad::changes::{FieldChange, FieldChanges};
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 
-/// The model of a pad that is not measured yet: the device, its field, and the flaws that its modules may have.
-#[derive(Clone, Copy)]
-pub(crate) struct PadModel<'p> {
-    pub(crate) device: &'p Device,
-    pub(crate) field: &'p PadField,
-    pub(crate) flaws: &'p [FieldChange],
-}
-
 /// The field of `device`, known or computed.
 pub(crate) fn field_of(device: &Device) -> Result<PadField, Failure> {
     obtained(|step| field_cache::field_of(device, step))
 }
 
+/// The same of a pad that a search comes to; none where it cannot be had.
+pub(crate) fn solve(device: &Device) -> Option<PadField> {
+    field_of(device).ok()
+}
+
+/// The changes of the field of `device` by flaws of a module; empty where they cannot be computed.
+pub(crate) fn flaws(device: &Device) -> Vec<FieldChange> {
+    match changes_of(device) {
+        Ok(changes) => changes.0,
+        Err(Failure::Failed(why) | Failure::Unusable(why)) => {
+            say(format_args!("open frames and loose bonds are not looked for: {why}"));
+            Vec::new()
+        }
+        Err(Failure::Unread) => Vec::new(),
+    }
+}
+
 /// The changes of the field of `device` by flaws, known or computed.
-pub(crate) fn changes_of(device: &Device) -> Result<FieldChanges, Failure> {
+fn changes_of(device: &Device) -> Result<FieldChanges, Failure> {
     obtained(|step| field_cache::changes_of(device, step))
 }
 

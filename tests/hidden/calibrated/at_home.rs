@@ -6,7 +6,7 @@ use tactpad::lab::field_cache;
 use tactpad::lab::play::home::{AtHome, calibrated};
 use tactpad::lab::play::weights::Placement;
 use tactpad::lab::play::windows::{SampleContext, Window, WindowCollector};
-use tactpad::lab::tangent::Simulated;
+use tactpad::lab::tangent::SimulatedPad;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::quantity;
@@ -87,7 +87,7 @@ fn tried(seed: u64) -> Summary {
     let (windows, placements) = played(&wiring, seed);
     let nominal = PadField::nominal();
     let device = Device::nominal();
-    let pad = Simulated { solve: &field_cache::solve, ..Simulated::known(&device, &nominal) };
+    let pad = SimulatedPad { solve: &field_cache::solve, ..SimulatedPad::known(&device, &nominal) };
     let found: AtHome = calibrated(&windows, &placements, &pad, None, &|_, _| ()).unwrap();
     let unseen = plan(UNSEEN, seed, "calibrated unseen");
     let full_scale = full_scale(&unseen);

@@ -45,7 +45,6 @@ use self::data::observations::Observations;
 use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};
 use self::model::Model;
-pub use self::model::mechanics::Pad;
 use self::naming::separation::Separation;
 use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
 use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
@@ -54,6 +53,7 @@ use self::statistics::covariance::{REMAINDER_MAX, Remainder};
 use self::validation::ceiling::ceiling_share;
 use self::validation::gain::{Rows, rmse};
 use crate::effect::Effect;
+use crate::tangent::SimulatedPad;
 use tactpad_core::numeric::chi_square;
 use tactpad_core::numeric::statistics::{mean, rms};
 use tactpad_core::tables::measured::Table;
@@ -104,12 +104,16 @@ impl std::error::Error for DiagnosisError {}
 ///
 /// # Errors
 /// The table has too little in it to tell causes apart.
-pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, DiagnosisError> {
+pub fn diagnose(
+    table: &Table,
+    pad: &SimulatedPad<'_>,
+    without: &[Effect],
+) -> Result<Diagnosis, DiagnosisError> {
     check(table)?;
-    let gate = checked(&Observations::of(table), pad)?;
+    let gate = checked(&Observations::of(table), pad, without)?;
     let all = &gate.observations;
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
-    let mut model = Atlas::new(pad, all, &open);
+    let mut model = Atlas::new(pad, without, all, &open);
     let found = attributed(&mut model).ok_or(DiagnosisError::Singular)?;
     let at_locked = model.at(&locked);
     let search = Search::new(&model, all, &open);
@@ -117,7 +121,7 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, DiagnosisErro
     let parts = measured.map(|whole| [&open, &locked].map(|part| (whole, whole.picked(&part.numbers))));
     let models = parts
         .as_ref()
-        .map(|parts| parts.each_ref().map(|(whole, part)| (Atlas::new(pad, whole, part), part)));
+        .map(|parts| parts.each_ref().map(|(whole, part)| (Atlas::new(pad, without, whole, part), part)));
     let unrepaired = models.as_ref().map(|models| {
         models.each_ref().map(|(model, observations)| Rows { model, observations, unrepaired: None })
     });
@@ -127,20 +131,24 @@ pub fn diagnose(table: &Table, pad: &Pad<'_>) -> Result<Diagnosis, DiagnosisErro
         Rows { model: &at_locked, observations: &locked, unrepaired: as_measured(1) },
     ];
     let diagnosis = summary(&search, &found, &rows, &model.missing()).ok_or(DiagnosisError::Singular)?;
-    let excess = pad
-        .asks_for(Effect::NoiseExcess)
+    let excess = (!without.contains(&Effect::NoiseExcess))
         .then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
-    diagnosis.not_detected.retain(|it| pad.asks_for(it.effect));
+    diagnosis.not_detected.retain(|it| !without.contains(&it.effect));
     diagnosis.findings = in_common(diagnosis.findings);
     Ok(diagnosis)
 }
 
 /// The observations after the checks of the recording.
-fn checked(observations: &Observations, pad: &Pad<'_>) -> Result<Gate, DiagnosisError> {
+fn checked(
+    observations: &Observations,
+    pad: &SimulatedPad<'_>,
+    without: &[Effect],
+) -> Result<Gate, DiagnosisError> {
     let expected =
-        Simulated::new(pad, pad.device, pad.field, observations, observations, observations).readings(&[]);
-    let gate = guarded(observations, Some(&expected), |effect| pad.asks_for(effect));
+        Simulated::new(pad, without, pad.device, pad.field, observations, observations, observations)
+            .readings(&[]);
+    let gate = guarded(observations, Some(&expected), |effect| !without.contains(&effect));
     let is_alive = |channel| gate.observations.is_alive(channel);
     if (0..gate.observations.channels.len()).any(is_alive) { Ok(gate) } else { Err(DiagnosisError::Silent) }
 }

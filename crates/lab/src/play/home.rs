@@ -10,7 +10,7 @@ use crate::calibration::fit::{Calibration, FitError, fit_known};
 use crate::calibration::result::known::PressPrecision;
 use crate::play::weights::{Placement, PlacementError};
 use crate::play::windows::{PlayWindows, Window};
-use crate::tangent::Simulated;
+use crate::tangent::SimulatedPad;
 
 /// Fewer presses are no play; so many placements of a weight do without.
 const PRESSES_MIN: usize = 20;
@@ -90,7 +90,7 @@ impl std::error::Error for HomeError {}
 pub fn calibrated(
     windows: &[Window],
     placements: &[Placement],
-    pad: &Simulated<'_>,
+    pad: &SimulatedPad<'_>,
     earlier: Option<EarlierCalibration<'_>>,
     report: Report<'_>,
 ) -> Result<AtHome, HomeError> {

@@ -10,7 +10,7 @@ use super::named::NamedCauses;
 use super::numbers::FoundPad;
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::Destination;
-use crate::cli::files::field::{PadModel, field_of};
+use crate::cli::files::field::solve;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::wrapped::hanging;
 use crate::cli::printing::written::tell;
@@ -19,7 +19,7 @@ use tactpad::lab::play::home::{AtHome, HomeError, calibrated};
 use tactpad::lab::play::summary::{HEADING, PlatePart, Summary};
 use tactpad::lab::play::weights::Placement;
 use tactpad::lab::play::windows::Window;
-use tactpad::lab::tangent::Simulated;
+use tactpad::lab::tangent::SimulatedPad;
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::contact::Decoder;
@@ -46,7 +46,7 @@ pub(crate) fn fitted(
 ) -> Result<AtHome, HomeError> {
     let progress = Progress::begin("fitting the pad's field");
     let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
-    let pad = Simulated { solve: &|device| field_of(device).ok(), ..Simulated::known(device, field) };
+    let pad = SimulatedPad { solve: &solve, ..SimulatedPad::known(device, field) };
     calibrated(windows, placements, &pad, earlier.and_then(EarlierCalibration::of), &report)
 }
 
@@ -68,13 +68,7 @@ impl AtHomeReport {
         Self {
             method: Method::Inverse,
             summary: Summary::of(&found, windows),
-            pad: FoundPad::of(
-                found.calibration,
-                NamedCauses::by(
-                    &[],
-                    PadModel { device: &Device::nominal(), field: &PadField::nominal(), flaws: &[] },
-                ),
-            ),
+            pad: FoundPad::of(found.calibration, NamedCauses::none()),
         }
     }
 }

@@ -26,10 +26,10 @@ use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::destination::{Destination, Folder};
 use crate::cli::files::device::PadOptions;
-use crate::cli::files::field::{PadModel, field_of};
-use crate::cli::laboratory::diagnose::engine::flaws;
+use crate::cli::files::field::{field_of, flaws, solve};
 use crate::cli::printing::pictures;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, say, tell, written_over};
+use tactpad::lab::tangent::SimulatedPad;
 
 /// Arguments of `tactpad adapt`.
 #[derive(Debug, Args)]
@@ -134,11 +134,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         FitReport::Network(fit)
     } else {
         let flaws = flaws(&device);
-        let model = PadModel { device: &device, field: &field, flaws: &flaws };
+        let model = SimulatedPad { device: &device, field: &field, flaws: &flaws, solve: &solve };
         // Neither waits for the other: what is named has no part in the fit.
         let (adapted, named) = rayon::join(
-            || own::adapt(*method, &measured, earlier.as_ref(), model),
-            || NamedCauses::by(&measured.tables, model),
+            || own::adapt(*method, &measured, earlier.as_ref(), &model),
+            || NamedCauses::by(&measured.tables, &model),
         );
         let (decoder, found) = adapted?;
         let note = format!("{} contacts of {}", measured.contacts.count(), measured.names);

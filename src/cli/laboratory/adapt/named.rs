@@ -4,15 +4,14 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::cli::files::field::PadModel;
 use crate::cli::laboratory::diagnose::document;
-use crate::cli::laboratory::diagnose::engine::diagnosed;
 use crate::cli::laboratory::diagnose::text::sized;
 use crate::cli::printing::wrapped::hanging;
 use tactpad::lab::calibration::result::numbers::Number;
 use tactpad::lab::diagnosis;
 use tactpad::lab::diagnosis::agreement::agreed;
 use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Verdict};
+use tactpad::lab::tangent::SimulatedPad;
 use tactpad::tables::measured::Table;
 
 /// Of more rows causes are looked for by `tactpad diagnose` alone: it would take longer than the fit.
@@ -38,11 +37,16 @@ pub(super) struct TableFinding<'d> {
 }
 
 impl NamedCauses {
+    /// Without a table.
+    pub(super) const fn none() -> Self {
+        Self { diagnoses: Vec::new(), unfit: Vec::new() }
+    }
+
     /// Diagnoses the tables.
-    pub(super) fn by(tables: &[(String, Table)], model: PadModel<'_>) -> Self {
-        let mut named = Self { diagnoses: Vec::new(), unfit: Vec::new() };
+    pub(super) fn by(tables: &[(String, Table)], pad: &SimulatedPad<'_>) -> Self {
+        let mut named = Self::none();
         for (name, table) in tables {
-            match of_table(table, model) {
+            match of_table(table, pad) {
                 Ok(diagnosis) => named.diagnoses.push((name.clone(), diagnosis)),
                 Err(why) => named.unfit.push(format!("{name}: {why}")),
             }
@@ -89,13 +93,13 @@ fn found_in<'d>(measured: &'d str, diagnosis: &'d Diagnosis, finding: &'d Findin
     TableFinding { measured, finding: document::Finding::of(finding, &diagnosis.channels) }
 }
 
-fn of_table(table: &Table, model: PadModel<'_>) -> Result<Diagnosis, String> {
+fn of_table(table: &Table, pad: &SimulatedPad<'_>) -> Result<Diagnosis, String> {
     diagnosis::check(table).map_err(|why| why.to_string())?;
     let rows = table.rows.len();
     if rows > ROWS_MAX {
         return Err(format!("causes are looked for in {ROWS_MAX} rows at most, and here are {rows}"));
     }
-    diagnosed(table, model, &[]).map_err(|why| why.to_string())
+    diagnosis::diagnose(table, pad, &[]).map_err(|why| why.to_string())
 }
 
 /// Why a table's diagnosis names nothing.

@@ -6,11 +6,10 @@ use super::measured::Measured;
 use super::method::Method;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
-use crate::cli::files::field::{PadModel, field_of};
 use crate::cli::printing::progress::Progress;
 use tactpad::lab::calibration::data::earlier::EarlierCalibration;
 use tactpad::lab::calibration::fit::Calibration;
-use tactpad::lab::tangent::Simulated;
+use tactpad::lab::tangent::SimulatedPad;
 use tactpad::pipeline::contact::Decoder;
 use tactpad::pipeline::contact::regression::Target;
 
@@ -31,11 +30,11 @@ pub(super) fn adapt(
     method: Method,
     measured: &Measured,
     earlier: Option<&Decoder>,
-    model: PadModel<'_>,
+    pad: &SimulatedPad<'_>,
 ) -> Result<(Decoder, Option<Calibration>), Failure> {
-    let (contacts, reach_mm) = (&measured.contacts, model.device.contact.max_centre_radius_mm);
+    let (contacts, reach_mm) = (&measured.contacts, pad.device.contact.max_centre_radius_mm);
     let fitted = match method {
-        Method::Inverse => return calibrated(measured, earlier, model),
+        Method::Inverse => return calibrated(measured, earlier, pad),
         Method::Knn => contacts.neighbours(),
         Method::Wrench => contacts.regression(Target::Wrench, reach_mm),
         Method::Linear | Method::Scdf => contacts.regression(Target::Contact, reach_mm),
@@ -46,14 +45,12 @@ pub(super) fn adapt(
 fn calibrated(
     measured: &Measured,
     earlier: Option<&Decoder>,
-    model: PadModel<'_>,
+    pad: &SimulatedPad<'_>,
 ) -> Result<(Decoder, Option<Calibration>), Failure> {
-    let PadModel { device, field, flaws } = model;
     let progress = Progress::begin("fitting the pad's field");
     let report = |done: usize, of: usize| progress.part(done, of, "fitting the pad's field");
     let earlier = earlier.and_then(EarlierCalibration::of);
-    let pad = Simulated { device, field, flaws, solve: &|device| field_of(device).ok() };
-    let calibration = measured.contacts.calibration(&pad, earlier, &report);
+    let calibration = measured.contacts.calibration(pad, earlier, &report);
     drop(progress);
     let calibration = calibration.map_err(|error| measured.refused(error))?;
     Ok((calibration.decoder(), Some(calibration)))

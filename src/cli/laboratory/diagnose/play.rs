@@ -5,10 +5,9 @@ use std::path::Path;
 
 use super::arguments::Arguments;
 use super::changes::{ChangesDocument, ChangesText, Comparison, Reference};
-use super::engine::flaws;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
-use crate::cli::files::field::field_of;
+use crate::cli::files::field::{field_of, flaws};
 use crate::cli::files::played::{self, Played};
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{print_json, stdout};

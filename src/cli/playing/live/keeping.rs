@@ -11,8 +11,8 @@ use rustix::event::{Timespec, poll};
 use rustix::process::nice;
 
 use super::kept_play;
+use crate::cli::files::field::flaws;
 use crate::cli::laboratory::diagnose::changes::{findings, line};
-use crate::cli::laboratory::diagnose::engine::flaws;
 use crate::cli::printing::written::{quoted, say};
 use firmware_proto::identity::SerialNumber;
 use tactpad::bridge::bridge_parts::PlayingDecoder;

@@ -9,14 +9,14 @@ use crate::calibration::model::ParameterLayout;
 use crate::calibration::model::prior::Prior;
 use crate::calibration::problem::{PosteriorFit, Problem};
 use crate::diagnosis::model::mechanics::flawed;
-use crate::tangent::Simulated;
+use crate::tangent::SimulatedPad;
 use tactpad_core::pad::changes::{FieldChange, Flaw};
 use tactpad_core::pad::device::{Device, Module};
 use tactpad_core::pad::field::PadField;
 use tactpad_core::quantity::MODULES;
 
 /// Whether flaws are looked for: channels of a module share more than they do on pads that are whole.
-pub(crate) fn are_asked(problem: &Problem<'_>, fit: &PosteriorFit, pad: &Simulated<'_>) -> bool {
+pub(crate) fn are_asked(problem: &Problem<'_>, fit: &PosteriorFit, pad: &SimulatedPad<'_>) -> bool {
     // Only labels tell crosstalk within a module from its pose. Of a pad that was solved for it was asked before.
     let is_asked = !problem.layout.is_play && problem.prior.solved.is_none() && of(pad.device).is_none();
     is_asked && fit.estimates.prior_deviations.is_shared_within()
@@ -27,7 +27,7 @@ pub(crate) fn are_asked(problem: &Problem<'_>, fit: &PosteriorFit, pad: &Simulat
 pub(crate) fn found(
     problem: &Problem<'_>,
     whole: &PosteriorFit,
-    pad: &Simulated<'_>,
+    pad: &SimulatedPad<'_>,
     fitted: impl Fn(&Prior) -> Option<PosteriorFit> + Sync,
 ) -> Option<(Device, PadField)> {
     let module = sharing_most(whole);

@@ -4,7 +4,7 @@
 use crate::calibration::model::ParameterLayout;
 use crate::calibration::model::physical::Physical;
 use crate::calibration::problem::{PosteriorFit, Problem};
-use crate::tangent::{Simulated, on_grid};
+use crate::tangent::{SimulatedPad, on_grid};
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
 
@@ -27,7 +27,7 @@ struct OutOfReach<'l> {
 pub(crate) fn solved(
     problem: &Problem<'_>,
     fit: &PosteriorFit,
-    pad: &Simulated<'_>,
+    pad: &SimulatedPad<'_>,
 ) -> Option<(Device, PadField)> {
     let beyond = beyond(problem, fit, pad.device);
     let square: f64 = beyond.iter().map(|it| it.error * it.error).sum();

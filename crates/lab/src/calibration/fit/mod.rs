@@ -24,7 +24,7 @@ use crate::calibration::result::known::PressPrecision;
 use crate::calibration::result::numbers::{Number, OptionalNumbers, Pair};
 use crate::calibration::result::open::{OpenByRig, by_rig};
 use crate::calibration::result::predictive::{PredictiveCheck, checks};
-use crate::tangent::Simulated;
+use crate::tangent::SimulatedPad;
 use tactpad_core::pad::changes::Flaw;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
@@ -193,7 +193,7 @@ pub fn fit(
     field: &PadField,
     earlier: Option<EarlierCalibration<'_>>,
 ) -> Result<Calibration, FitError> {
-    fit_reported(recording, rows, &Simulated::known(device, field), earlier, &|_, _| ())
+    fit_reported(recording, rows, &SimulatedPad::known(device, field), earlier, &|_, _| ())
 }
 
 /// [`fit`], and `report` hears how far it is. Where a pad is found that the tangent of `pad`'s field does not reach, that pad's field is
@@ -204,7 +204,7 @@ pub fn fit(
 pub fn fit_reported(
     recording: &Recording,
     rows: &[usize],
-    pad: &Simulated<'_>,
+    pad: &SimulatedPad<'_>,
     earlier: Option<EarlierCalibration<'_>>,
     report: Report<'_>,
 ) -> Result<Calibration, FitError> {
@@ -220,7 +220,7 @@ pub fn fit_reported(
 pub fn fit_known(
     recording: &Recording,
     fitted: &[Fitted],
-    pad: &Simulated<'_>,
+    pad: &SimulatedPad<'_>,
     earlier: Option<EarlierCalibration<'_>>,
     report: Report<'_>,
 ) -> Result<Calibration, FitError> {
@@ -246,7 +246,7 @@ pub fn fit_known(
 struct Contacts<'c> {
     prepared: &'c PreparedRecording,
     fitted: &'c [Fitted],
-    pad: &'c Simulated<'c>,
+    pad: &'c SimulatedPad<'c>,
     counted: &'c FitCount<'c>,
 }
 

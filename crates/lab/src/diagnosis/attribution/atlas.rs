@@ -4,13 +4,15 @@ use super::{Applied, Attribution, AttributionFit, Search};
 use crate::diagnosis::data::observations::Observations;
 use crate::diagnosis::extension::{Circumstances, with};
 use crate::diagnosis::model::inverse::Written;
-use crate::diagnosis::model::mechanics::{Pad, changed};
+use crate::diagnosis::model::mechanics::changed;
 use crate::diagnosis::model::{
     ChannelBaselines, CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter,
 };
 use crate::diagnosis::report::NotTestable;
 use crate::diagnosis::simulation::bench::contacts;
 use crate::diagnosis::simulation::simulated::Simulated;
+use crate::effect::Effect;
+use crate::tangent::SimulatedPad;
 use crate::tangent::{STIFFNESS_REACH, TURN_REACH_DEG, on_grid, shift_reach_mm};
 use tactpad_core::numeric::products::dot;
 use tactpad_core::pad::device::Device;
@@ -31,7 +33,9 @@ struct Solved {
 
 /// Nine channels, by the field that is nearest to what is asked for.
 pub(crate) struct Atlas<'f> {
-    pad: Pad<'f>,
+    pad: SimulatedPad<'f>,
+    /// Effects that are not asked for.
+    without: &'f [Effect],
     all: &'f Observations,
     /// The rows in whose order `observations` are remembered: all, or those of another measurement.
     sequence: &'f Observations,
@@ -59,17 +63,23 @@ pub(crate) fn attributed(atlas: &mut Atlas<'_>) -> Option<Attribution> {
 
 impl<'f> Atlas<'f> {
     /// The pad at some `observations` of `all`.
-    pub(crate) fn new(pad: &Pad<'f>, all: &'f Observations, observations: &'f Observations) -> Self {
-        Self::in_order(pad, all, all, observations)
+    pub(crate) fn new(
+        pad: &SimulatedPad<'f>,
+        without: &'f [Effect],
+        all: &'f Observations,
+        observations: &'f Observations,
+    ) -> Self {
+        Self::in_order(pad, without, all, all, observations)
     }
 
     fn in_order(
-        pad: &Pad<'f>,
+        pad: &SimulatedPad<'f>,
+        without: &'f [Effect],
         all: &'f Observations,
         sequence: &'f Observations,
         observations: &'f Observations,
     ) -> Self {
-        let first = Simulated::new(pad, pad.device, pad.field, all, sequence, observations);
+        let first = Simulated::new(pad, without, pad.device, pad.field, all, sequence, observations);
         let module_mm = shift_reach_mm(pad.device);
         let reaches = first.hypotheses().iter().enumerate().map(|(at, hypothesis)| {
             let reaches = hypothesis.parameters.iter().map(|it| reach(it, module_mm)).collect();
@@ -78,6 +88,7 @@ impl<'f> Atlas<'f> {
         let reaches = reaches.collect();
         Self {
             pad: *pad,
+            without,
             all,
             sequence,
             first,
@@ -90,7 +101,7 @@ impl<'f> Atlas<'f> {
 
     /// The same pads at other observations of all.
     pub(crate) fn at<'o>(&'o self, observations: &'o Observations) -> Atlas<'o> {
-        self.with(Atlas::new(&self.pad, self.all, observations))
+        self.with(Atlas::new(&self.pad, self.without, self.all, observations))
     }
 
     /// Another atlas with the same pads.
@@ -111,8 +122,17 @@ impl<'f> Atlas<'f> {
     }
 
     fn add(&mut self, solved: Solved) {
-        let own = (&solved.device, &solved.field);
-        self.others.push(Simulated::new(&self.pad, own.0, own.1, self.all, self.sequence, self.observations));
+        let Solved { device, field, .. } = &solved;
+        let about = Simulated::new(
+            &self.pad,
+            self.without,
+            device,
+            field,
+            self.all,
+            self.sequence,
+            self.observations,
+        );
+        self.others.push(about);
         self.solved.push(solved);
     }
 
@@ -218,7 +238,7 @@ impl Model for Atlas<'_> {
         rows: &Observations,
         applied: &[(usize, Vec<f64>)],
     ) -> Option<(Linearised, Vec<CommonError>)> {
-        let there = self.with(Atlas::in_order(&self.pad, self.all, rows, rows));
+        let there = self.with(Atlas::in_order(&self.pad, self.without, self.all, rows, rows));
         Some((there.linearised(applied), there.common_errors()))
     }
 }

@@ -401,9 +401,9 @@ fn fraction(last: f64, ratio: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::Pad;
     use crate::diagnosis::attribution::atlas::Atlas;
     use crate::diagnosis::data::observations::Sample;
+    use crate::tangent::SimulatedPad;
     use tactpad_core::numeric::random::SplitMix64;
     use tactpad_core::pad::device::Device;
     use tactpad_core::pad::field::PadField;
@@ -485,13 +485,13 @@ mod tests {
     #[test]
     fn without_the_background_sound_pads_raise_alarms() {
         let (device, field) = (Device::nominal(), PadField::nominal());
-        let pad = Pad { device: &device, field: &field, flaws: &[], solve: &|_| None, without: &[] };
+        let pad = SimulatedPad::known(&device, &field);
         let mut alarms = [0; 2];
         for seed in 41..45 {
             let random = &mut SplitMix64::new(seed);
             let unread = contacts(random);
-            let measured = sound(&Atlas::new(&pad, &unread, &unread), &unread, random);
-            let model = Atlas::new(&pad, &measured, &measured);
+            let measured = sound(&Atlas::new(&pad, &[], &unread, &unread), &unread, random);
+            let model = Atlas::new(&pad, &[], &measured, &measured);
             let mut search = Search::new(&model, &measured, &measured);
             alarms[0] += usize::from(is_alarm(&search));
             search.smooth = Arc::new(Smooth::of(&measured, &measured).without());

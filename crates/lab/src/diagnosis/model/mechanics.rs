@@ -3,8 +3,6 @@
 use std::sync::Arc;
 
 use super::setting::Change;
-use crate::effect::Effect;
-use crate::tangent::Solve;
 use tactpad_core::numeric::zernike::{Jet, Polynomial, count, jets};
 use tactpad_core::pad::changes::{FieldChange, Flaw};
 use tactpad_core::pad::device::unit::Unit;
@@ -12,28 +10,6 @@ use tactpad_core::pad::device::{Device, Side, Stack};
 use tactpad_core::pad::field::{ForceMaps, PadField, Sensitivity};
 use tactpad_core::pad::influence::{InfluenceField, MAPS};
 use tactpad_core::quantity::{CHANNELS, MODULES};
-
-/// The pad that is held to be right.
-#[derive(Clone, Copy)]
-pub struct Pad<'p> {
-    /// Its device.
-    pub device: &'p Device,
-    /// Its field.
-    pub field: &'p PadField,
-    /// What flaws of its module 0 change; none, and nobody asks for them.
-    pub flaws: &'p [FieldChange],
-    /// The field of another pad, which may take seconds; none where it cannot be had.
-    pub solve: Solve<'p>,
-    /// Effects that are not asked for.
-    pub without: &'p [Effect],
-}
-
-impl Pad<'_> {
-    /// Whether an effect is asked for.
-    pub(crate) fn asks_for(&self, effect: Effect) -> bool {
-        self.without.iter().all(|other| *other != effect)
-    }
-}
 
 /// Per channel, what a unit force along each axis gives.
 pub(crate) type Maps = [[f64; 3]; CHANNELS];

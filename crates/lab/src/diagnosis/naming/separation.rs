@@ -332,10 +332,10 @@ fn left(fisher: &Matrix, cause: &[usize], psi: &[f64], free: Vec<usize>) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::Pad;
     use crate::diagnosis::attribution::atlas::Atlas;
     use crate::diagnosis::data::observations::{Observations, Sample};
     use crate::diagnosis::model::Model;
+    use crate::tangent::SimulatedPad;
     use tactpad_core::numeric::random::SplitMix64;
     use tactpad_core::pad::device::Device;
     use tactpad_core::pad::field::PadField;
@@ -366,9 +366,9 @@ mod tests {
     /// What is said where a cause holds and its rivals are these; and how often each experiment must be made, by its sentence.
     fn told(cause: (Effect, &[f64]), rivals: &[Effect]) -> (String, Vec<(String, Option<usize>)>) {
         let (device, field) = (Device::nominal(), PadField::nominal());
-        let pad = Pad { device: &device, field: &field, flaws: &[], solve: &|_| None, without: &[] };
+        let pad = SimulatedPad::known(&device, &field);
         let unread = contacts();
-        let model = Atlas::new(&pad, &unread, &unread);
+        let model = Atlas::new(&pad, &[], &unread, &unread);
         let at = model.hypotheses().iter().position(|it| it.effect == cause.0).unwrap();
         let numbers = model.hypotheses()[at].parameters.iter().zip(cause.1);
         let applied = vec![(at, numbers.map(|(it, value)| it.coordinate(*value)).collect())];
@@ -378,7 +378,7 @@ mod tests {
             to.clone_from(&from);
             to.iter_mut().for_each(|uv| *uv += (5.0 + 0.005 * uv.abs()) * f64::from(random.normal()));
         }
-        let model = Atlas::new(&pad, &measured, &measured);
+        let model = Atlas::new(&pad, &[], &measured, &measured);
         let search = Search::new(&model, &measured, &measured);
         let found = Attribution { fit: search.fitted(&applied, None).unwrap(), critical: 1e-4 };
         let of = |it: &&crate::diagnosis::model::Hypothesis| rivals.contains(&it.effect);

@@ -82,12 +82,13 @@ impl Forward for Bench<'_, '_> {
 
 #[cfg(test)]
 mod tests {
+    use crate::diagnosis::Applied;
     use crate::diagnosis::attribution::atlas::Atlas;
     use crate::diagnosis::data::noise::Noise;
     use crate::diagnosis::data::observations::{Observations, Sample};
     use crate::diagnosis::model::{ChannelBaselines, Model};
-    use crate::diagnosis::{Applied, Pad};
     use crate::effect::Effect;
+    use crate::tangent::SimulatedPad;
     use tactpad_core::numeric::random::SplitMix64;
     use tactpad_core::numeric::statistics::mean;
     use tactpad_core::pad::changes::FieldChanges;
@@ -118,7 +119,7 @@ mod tests {
     /// known; noise is so many parts of what the decoder believes.
     fn errors(holds: &[(Effect, &[f64])], known: &[(Effect, &[f64])], noise: f64) -> [f64; 2] {
         let (device, field, flaws) = (Device::nominal(), PadField::nominal(), FieldChanges::nominal());
-        let pad = Pad { device: &device, field: &field, flaws: &flaws.0, solve: &|_| None, without: &[] };
+        let pad = SimulatedPad { flaws: &flaws.0, ..SimulatedPad::known(&device, &field) };
         let written = contacts(60);
         let applied = |model: &Atlas<'_>, causes: &[(Effect, &[f64])]| -> Applied {
             let of = |(effect, values): &(Effect, &[f64])| {
@@ -128,7 +129,7 @@ mod tests {
             };
             causes.iter().map(of).collect()
         };
-        let model = Atlas::new(&pad, &written, &written);
+        let model = Atlas::new(&pad, &[], &written, &written);
         let read = model.readings(&applied(&model, holds));
         let levels: Vec<Noise> = read.iter().map(|channel| Noise::first(channel)).collect();
         let mut random = SplitMix64::new(12);
@@ -142,7 +143,7 @@ mod tests {
         measured.readings[2][7] = 1e9;
         measured.is_told[2][7] = false;
         (0..5).for_each(|channel| measured.is_told[channel][8] = false);
-        let model = Atlas::new(&pad, &measured, &measured);
+        let model = Atlas::new(&pad, &[], &measured, &measured);
         let told = ChannelBaselines { zeros: &[0.0; CHANNELS], noise: &levels };
         let found = model.contacts(&applied(&model, known), &told).unwrap();
         assert!(found[8].is_none());

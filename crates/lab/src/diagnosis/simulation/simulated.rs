@@ -9,7 +9,7 @@ use super::row::{Row, continued, response};
 use crate::diagnosis::causes::{CATALOGUE, Cause, ChainStage};
 use crate::diagnosis::data::observations::{Observations, Sample};
 use crate::diagnosis::model::chain::{Chain, Reference};
-use crate::diagnosis::model::mechanics::{Maps, Pad, at_places, changes, side_share};
+use crate::diagnosis::model::mechanics::{Maps, at_places, changes, side_share};
 use crate::diagnosis::model::memory::{MemoryChain, RowSequence};
 use crate::diagnosis::model::setting::{Change, Setting};
 use crate::diagnosis::model::{
@@ -17,6 +17,7 @@ use crate::diagnosis::model::{
 };
 use crate::diagnosis::report::NotTestable;
 use crate::effect::Effect;
+use crate::tangent::SimulatedPad;
 use tactpad_core::numeric::statistics::rms;
 use tactpad_core::pad::device::{Device, Side};
 use tactpad_core::pad::field::PadField;
@@ -64,9 +65,10 @@ struct Point<'p> {
 
 impl<'f> Simulated<'f> {
     /// The pad at some `observations` of a `sequence`, about the `field` of its `own` device: hypotheses and references are those of
-    /// `all` rows and of the pad that is held to be right, so that any part, about any field, has the same.
+    /// `all` rows and of the pad that is held to be right, so that any part, about any field, has the same. Nobody asks for the effects in `without`.
     pub(crate) fn new(
-        pad: &Pad<'_>,
+        pad: &SimulatedPad<'_>,
+        without: &[Effect],
         own: &Device,
         field: &PadField,
         all: &Observations,
@@ -78,7 +80,7 @@ impl<'f> Simulated<'f> {
         let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all, &course(all));
         let mut hypotheses = Vec::new();
         let mut causes: Vec<&'static Cause> = Vec::new();
-        let is_asked = |cause: &&Cause| pad.asks_for(cause.effect) && cause.missing(&setting).is_none();
+        let is_asked = |cause: &&Cause| !without.contains(&cause.effect) && cause.missing(&setting).is_none();
         for cause in CATALOGUE.iter().filter(is_asked) {
             for target in cause.targets(&setting) {
                 hypotheses.push(Hypothesis {

@@ -21,7 +21,7 @@ use tactpad_core::time::HostInstant;
 use tactpad_lab::play::guide::Guide;
 use tactpad_lab::play::home::calibrated;
 use tactpad_lab::play::summary::{HEADING, PlatePart, Summary};
-use tactpad_lab::tangent::Simulated;
+use tactpad_lab::tangent::SimulatedPad;
 use tactpad_mechanics::field_cache;
 
 /// Whether it was stopped is looked at this often, although no call comes.
@@ -140,7 +140,7 @@ pub(super) fn fitted(guide: Guide, report: &(dyn Fn(f64) + Sync)) -> Result<(Vec
     let (device, field) = (Device::nominal(), PadField::nominal());
     report(0.0);
     let share = |done: usize, of: usize| report(done as f64 / of.max(1) as f64);
-    let pad = Simulated { solve: &field_cache::solve, ..Simulated::known(&device, &field) };
+    let pad = SimulatedPad { solve: &field_cache::solve, ..SimulatedPad::known(&device, &field) };
     let found = calibrated(&windows, &placements, &pad, None, &share);
     let found = found.map_err(|error| format!("there is no decoder yet: {error}"))?;
     Ok((found.file(), Summary::of(&found, &windows)))

@@ -40,7 +40,7 @@ use std::fmt;
 
 use self::attribution::atlas::{Atlas, attributed};
 use self::attribution::{Applied, Attribution, AttributionFit, Search};
-use self::causes::CATALOGUE;
+use self::causes::catalogue::CATALOGUE;
 use self::data::observations::Observations;
 use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};

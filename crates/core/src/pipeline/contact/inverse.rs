@@ -56,8 +56,13 @@ pub struct Inverse {
     field_error: FieldError,
     crosstalk: Crosstalk,
     /// Fz, x Fz and y Fz as linear functions of the channels.
-    start: [[f64; CHANNELS]; 3],
+    start: Moments,
+    /// The same of all channels but this one.
+    start_without: [Moments; CHANNELS],
 }
+
+/// Fz, x Fz and y Fz as linear functions of the channels, in 1/µV times N and mm.
+type Moments = [[f64; CHANNELS]; 3];
 
 /// A place with its best force.
 struct Trial {
@@ -109,8 +114,15 @@ pub struct Expected {
 impl Inverse {
     /// The decoder of a pad with this field, whose channels scatter so. Each channel must scatter.
     pub fn new(field: InfluenceField, noise: Noise) -> Self {
-        let start = start_of(&field);
-        Self { field, noise, field_error: FieldError::NONE, crosstalk: NO_CROSSTALK, start }
+        let equations = MomentEquations::of(&field);
+        Self {
+            field,
+            noise,
+            field_error: FieldError::NONE,
+            crosstalk: NO_CROSSTALK,
+            start: equations.solved(None),
+            start_without: std::array::from_fn(|channel| equations.solved(Some(channel))),
+        }
     }
 
     /// The same of a field that may be off so.
@@ -179,7 +191,7 @@ impl Inverse {
     ) -> Option<FitWithout> {
         let (mut others_uv, mut weights) = (*uv, *weights);
         (others_uv[channel], weights[channel]) = (0.0, 0.0);
-        let trial = self.best(&others_uv, &weights)?;
+        let trial = self.best(&others_uv, &weights, &self.start_without[channel])?;
         Some(FitWithout {
             misfit: trial.misfit,
             expected_uv: -trial.left_uv[channel],
@@ -238,15 +250,15 @@ impl Inverse {
     /// The place of the least cost with its force, and the variances of the channels.
     fn searched(&self, strain: &Strain) -> Option<(Trial, Variances)> {
         let uv = strain.uv.map(f64::from);
-        let [fz_n, ..] = self.started(&uv);
+        let [fz_n, ..] = started(&self.start, &uv);
         let variances = self.noise.variances(&uv, fz_n);
-        Some((self.best(&uv, &variances.weights())?, variances))
+        Some((self.best(&uv, &variances.weights(), &self.start)?, variances))
     }
 
-    fn best(&self, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS]) -> Option<Trial> {
+    fn best(&self, uv: &[f64; CHANNELS], weights: &[f64; CHANNELS], start: &Moments) -> Option<Trial> {
         // At each place the best force, then the place's part of Gauss and Newton's step H δ = JᵀW r − Λ (x, y). One that makes
         // it worse is taken back and tried at a quarter of its length.
-        let [fz_n, x_fz, y_fz] = self.started(uv);
+        let [fz_n, x_fz, y_fz] = started(start, uv);
         let mut best = self.trial(self.sensible([x_fz / fz_n, y_fz / fz_n]), uv, weights)?;
         let mut shorter = 1.0;
         for _ in 1..STEPS_MAX {
@@ -265,15 +277,10 @@ impl Inverse {
         Some(best)
     }
 
-    /// About Fz, x Fz and y Fz.
     /// The normal force of any sum or difference of contacts, to some percent: a linear function of the channels.
     pub fn load_n(&self, strain: &Strain) -> f32 {
-        let [fz_n, ..] = self.started(&strain.uv.map(f64::from));
+        let [fz_n, ..] = started(&self.start, &strain.uv.map(f64::from));
         fz_n as f32
-    }
-
-    fn started(&self, uv: &[f64; CHANNELS]) -> [f64; 3] {
-        self.start.map(|row| row.iter().zip(uv).map(|(a, uv)| a * uv).sum())
     }
 
     fn linear(&self, place_mm: [f64; 2], force_n: [f64; 3], variances: &Variances) -> Option<Linear> {
@@ -387,28 +394,52 @@ fn dot(left: &[f64; 3], right: &[f64; 3]) -> f64 {
     left[0] * right[0] + left[1] * right[1] + left[2] * right[2]
 }
 
-/// The linear functions of the channels that come closest to Fz, x Fz and y Fz over the plate.
-fn start_of(field: &InfluenceField) -> [[f64; CHANNELS]; 3] {
-    // Rows a that make Σ ω (aᵀu − t)² least over unit forces at places all over the plate, t being Fz, x Fz or y Fz and ω in
-    // proportion to the ring: (Σ ω u uᵀ + ε I) a = Σ ω u t. With ε there is an answer for any field.
-    let mut normal = [[0.0; CHANNELS]; CHANNELS];
-    let mut right = [[0.0; CHANNELS]; 3];
-    let rings = (field.radius_mm() / RING_MM as f32) as usize;
-    for ring in 0..=rings {
-        for place in 0..RING_PLACES {
-            let angle = std::f64::consts::TAU * place as f64 / RING_PLACES as f64;
-            let radius_mm = RING_MM * ring as f64;
-            let (x_mm, y_mm) = (radius_mm * libm::cos(angle), radius_mm * libm::sin(angle));
-            let gains = field.gains(x_mm as f32, y_mm as f32).value;
-            for (axis, wanted) in [[0.0; 3], [0.0; 3], [1.0, x_mm, y_mm]].iter().enumerate() {
-                let uv: [f64; CHANNELS] = std::array::from_fn(|k| gains[k][axis]);
-                add_products(&uv, radius_mm + 1.0, wanted, &mut normal, &mut right);
+/// About Fz, x Fz and y Fz.
+fn started(start: &Moments, uv: &[f64; CHANNELS]) -> [f64; 3] {
+    start.map(|row| row.iter().zip(uv).map(|(a, uv)| a * uv).sum())
+}
+
+/// Normal equations of the linear functions of the channels that come closest to Fz, x Fz and y Fz over the plate.
+struct MomentEquations {
+    normal: [[f64; CHANNELS]; CHANNELS],
+    right: [[f64; CHANNELS]; 3],
+}
+
+impl MomentEquations {
+    fn of(field: &InfluenceField) -> Self {
+        // Rows a that make Σ ω (aᵀu − t)² least over unit forces at places all over the plate, t being Fz, x Fz or y Fz and ω in
+        // proportion to the ring: (Σ ω u uᵀ + ε I) a = Σ ω u t. With ε there is an answer for any field.
+        let mut normal = [[0.0; CHANNELS]; CHANNELS];
+        let mut right = [[0.0; CHANNELS]; 3];
+        let rings = (field.radius_mm() / RING_MM as f32) as usize;
+        for ring in 0..=rings {
+            for place in 0..RING_PLACES {
+                let angle = std::f64::consts::TAU * place as f64 / RING_PLACES as f64;
+                let radius_mm = RING_MM * ring as f64;
+                let (x_mm, y_mm) = (radius_mm * libm::cos(angle), radius_mm * libm::sin(angle));
+                let gains = field.gains(x_mm as f32, y_mm as f32).value;
+                for (axis, wanted) in [[0.0; 3], [0.0; 3], [1.0, x_mm, y_mm]].iter().enumerate() {
+                    let uv: [f64; CHANNELS] = std::array::from_fn(|k| gains[k][axis]);
+                    add_products(&uv, radius_mm + 1.0, wanted, &mut normal, &mut right);
+                }
             }
         }
+        let trace: f64 = (0..CHANNELS).map(|k| normal[k][k]).sum();
+        (0..CHANNELS).for_each(|k| normal[k][k] += 1e-9 * trace);
+        Self { normal, right }
     }
-    let trace: f64 = (0..CHANNELS).map(|k| normal[k][k]).sum();
-    (0..CHANNELS).for_each(|k| normal[k][k] += 1e-9 * trace);
-    Factor::of(&normal).map_or([[0.0; CHANNELS]; 3], |factor| right.map(|right| factor.solve(&right)))
+
+    /// The functions of all channels, or of all but one.
+    fn solved(&self, without: Option<usize>) -> Moments {
+        let Self { mut normal, mut right } = *self;
+        if let Some(channel) = without {
+            normal[channel] = [0.0; CHANNELS];
+            normal.iter_mut().for_each(|row| row[channel] = 0.0);
+            normal[channel][channel] = 1.0;
+            right.iter_mut().for_each(|right| right[channel] = 0.0);
+        }
+        Factor::of(&normal).map_or([[0.0; CHANNELS]; 3], |factor| right.map(|right| factor.solve(&right)))
+    }
 }
 
 fn add_products(

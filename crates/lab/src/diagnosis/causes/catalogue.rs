@@ -1,7 +1,7 @@
 //! The table of causes. To add one, add its row.
 
+use super::cause::{Cause, ChainStage, Need, Places};
 use super::memory::{THRESHOLDS, TIMES_S, plays, terms};
-use super::{Cause, ChainStage, Need, Places};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::memory::{ChannelFriction, Prony};

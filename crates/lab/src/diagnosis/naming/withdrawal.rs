@@ -6,7 +6,8 @@
 //! stay in the report as a set with `unlisted_cause`.
 
 use crate::diagnosis::attribution::{Attribution, Search};
-use crate::diagnosis::causes::{CATALOGUE, Cause};
+use crate::diagnosis::causes::catalogue::CATALOGUE;
+use crate::diagnosis::causes::cause::Cause;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Finding, INSEPARABLE};
 use crate::effect::Effect;

@@ -6,7 +6,8 @@ use rayon::prelude::*;
 
 use super::own::own_chain;
 use super::row::{Row, continued, response};
-use crate::diagnosis::causes::{CATALOGUE, Cause, ChainStage};
+use crate::diagnosis::causes::catalogue::CATALOGUE;
+use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::data::observations::{Observations, Sample};
 use crate::diagnosis::model::chain::{Chain, Reference};
 use crate::diagnosis::model::mechanics::{Maps, at_places, changes, side_share};

@@ -129,7 +129,12 @@ impl ContactStage {
         let touched = self.touch.is_touched();
         self.thermometer.follow(at, sample, touched);
         let (gain, rest) = (self.gain, self.gain.read(&self.memory.rest()));
-        let pad = PadState { touched, rest, added_uv: self.thermometer.added_uv() };
+        let pad = PadState {
+            touched,
+            is_touch_believed: self.decoder.inverse().is_none(),
+            rest,
+            added_uv: self.thermometer.added_uv(),
+        };
         self.strain = None;
         self.raw_uv = self.signal.raw_uv(sample);
         let load_n = |strain: &Strain| load_without_stray_n(&self.decoder, &gain.calibrated(strain));

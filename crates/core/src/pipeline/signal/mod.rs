@@ -74,6 +74,8 @@ pub enum Conditioned {
 pub struct PadState {
     /// Whether a contact is under way: the zero is followed only while not.
     pub touched: bool,
+    /// Whether that is believed against a load below none: by decoders that do not explain what the channels read.
+    pub is_touch_believed: bool,
     /// What the pad reads while not.
     pub rest: UntouchedOffset,
     /// Offset of the channels at any time, µV: it is subtracted first.
@@ -159,7 +161,9 @@ impl Signal {
             if let Some(channel) = block_uv.and_then(|uv| self.tare.lone(&uv, &pad.rest)) {
                 return Conditioned::Stray { channel };
             }
-            if block_uv.is_some_and(|uv| self.tare.is_pulled(&uv, &pad.rest, &load_n)) {
+            if block_uv.is_some_and(|uv| {
+                self.tare.is_pulled(&uv, pad.touched && pad.is_touch_believed, &pad.rest, &load_n)
+            }) {
                 return Conditioned::Pulled;
             }
             return Conditioned::Strain(self.tare.apply(at, &raw_uv(mean), pad.touched, &pad.rest));

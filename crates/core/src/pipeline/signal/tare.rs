@@ -135,10 +135,12 @@ impl Tare {
         Some(channel)
     }
 
-    /// Whether the blocks up to this one show that the zero was a load: nothing can pull at the plate.
+    /// Whether the blocks up to this one show that the zero was a load: nothing can pull at the plate. One with a touch that is
+    /// believed does not.
     pub fn is_pulled(
         &mut self,
         block_uv: &[f64; CHANNELS],
+        is_touch: bool,
         rest: &UntouchedOffset,
         load_n: impl Fn(&Strain) -> f32,
     ) -> bool {
@@ -146,7 +148,7 @@ impl Tare {
         let strain = relative(block_uv, &std::array::from_fn(|k| zero_uv[k] + rest.uv[k]));
         // At rest nothing needs to be decoded.
         let stands = strain.uv.iter().all(|uv| f64::from(uv.abs()) <= STILL_UV);
-        let is_below = !stands && load_n(&strain) < -SAME_N;
+        let is_below = !is_touch && !stands && load_n(&strain) < -SAME_N;
         self.pulls = if is_below { self.pulls + 1 } else { 0 };
         self.pulls >= PULL_BLOCKS
     }
@@ -299,12 +301,15 @@ mod tests {
     }
 
     #[test]
-    fn one_block_below_the_zero_is_no_pull() {
+    fn blocks_below_the_zero_with_a_touch_between_are_not_in_a_row() {
         let mut tare = Tare::new();
         assert!(known_at_ms(&mut tare, |_| 0.0).is_some());
-        let mut pulled =
-            |uv| tare.is_pulled(&[uv; CHANNELS], &UntouchedOffset::NONE, |strain| strain.uv[0] / UV_PER_N);
-        assert_eq!([-500.0, 0.0, -500.0, -500.0].map(&mut pulled), [false, false, false, true]);
+        let mut pulled = |is_touch| {
+            tare.is_pulled(&[-500.0; CHANNELS], is_touch, &UntouchedOffset::NONE, |strain| {
+                strain.uv[0] / UV_PER_N
+            })
+        };
+        assert_eq!([false, true, false, false].map(&mut pulled), [false, false, false, true]);
     }
 
     #[test]

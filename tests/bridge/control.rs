@@ -1,6 +1,7 @@
 //! `tactpad ctl` and a bridge that plays on a virtual pad.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::os::unix::fs::PermissionsExt;
@@ -45,6 +46,16 @@ fn events(bridge: &Running) -> usize {
     fs::read_to_string(bridge.folder.path().join("events")).unwrap_or_default().lines().count()
 }
 
+/// Whether the log has something, and has let go of it.
+fn is_released(bridge: &Running) -> bool {
+    let text = fs::read_to_string(bridge.folder.path().join("events")).unwrap();
+    let mut last = BTreeMap::new();
+    for event in text.lines().map_while(|line| serde_json::from_str::<Value>(line).ok()) {
+        last.insert(event["code"].to_string(), event["value"].clone());
+    }
+    !last.is_empty() && last.values().all(|value| *value == 0)
+}
+
 #[test]
 fn a_bridge_is_asked_paused_changed_and_ended() {
     let mut bridge = start(&["--pad", "virtual"]);
@@ -58,6 +69,8 @@ fn a_bridge_is_asked_paused_changed_and_ended() {
     assert!(bridge.ctl("pause").status.success());
     let status = await_status(&bridge, "pauses", |status| status["state"] == "paused");
     assert_eq!(status["held"], Value::Array(vec![]));
+    // The log is written by a thread of its own.
+    assert!(comes_true(|| is_released(&bridge)));
     let before = events(&bridge);
     await_status(&bridge, "goes on hearing", |status| status["health"]["samples"].as_u64() > Some(3_000));
     assert_eq!(events(&bridge), before, "a paused bridge emits nothing");

@@ -252,7 +252,7 @@ mod tests {
                 (load_without_stray_n(&decoder, &strain) - load_n).abs() < 0.3 * load_n.abs()
             });
             let known = known.count();
-            assert!(known > count * 99 / 100, "{known} of {count}");
+            assert!(known > count * 95 / 100, "{known} of {count}");
         }
     }
 

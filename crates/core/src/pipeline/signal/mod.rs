@@ -19,6 +19,7 @@ use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
 use fault::ChannelFaults;
 use filter::MeanFilter;
+pub use tare::PadState;
 use tare::{Tare, UntouchedOffset};
 
 /// Scale of a count, µV: told by the pad's identity, or the protocol's default.
@@ -67,19 +68,6 @@ pub enum Conditioned {
     },
     /// A channel is at its limit, stuck, or without supply; nothing can be said about the contact.
     Faulty,
-}
-
-/// State of the pad before a sample comes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PadState {
-    /// Whether a contact is under way: the zero is followed only while not.
-    pub touched: bool,
-    /// Whether that is believed against a load below none: by decoders that do not explain what the channels read.
-    pub is_touch_believed: bool,
-    /// What the pad reads while not.
-    pub rest: UntouchedOffset,
-    /// Offset of the channels at any time, µV: it is subtracted first.
-    pub added_uv: [f64; CHANNELS],
 }
 
 /// The conditioning stage.
@@ -161,9 +149,7 @@ impl Signal {
             if let Some(channel) = block_uv.and_then(|uv| self.tare.lone(&uv, &pad.rest)) {
                 return Conditioned::Stray { channel };
             }
-            if block_uv.is_some_and(|uv| {
-                self.tare.is_pulled(&uv, pad.touched && pad.is_touch_believed, &pad.rest, &load_n)
-            }) {
+            if block_uv.is_some_and(|uv| self.tare.is_pulled(&uv, pad, &load_n)) {
                 return Conditioned::Pulled;
             }
             return Conditioned::Strain(self.tare.apply(at, &raw_uv(mean), pad.touched, &pad.rest));

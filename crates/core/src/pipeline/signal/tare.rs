@@ -15,6 +15,10 @@ const SAME_N: f32 = 0.10;
 /// So many blocks in a row below the zero are no slip of a sample: what was taken for the zero was a load.
 const PULL_BLOCKS: u32 = 2;
 
+/// Beside a touch, as a finger comes or leaves, channels of different moments can look so for as long as its way down or up takes:
+/// it takes so many.
+const PULL_BLOCKS_TOUCHED: u32 = 5;
+
 /// So many blocks in a row with a channel that reads alone are no slip of a sample either.
 const LONE_BLOCKS: u32 = 2;
 
@@ -51,6 +55,19 @@ pub struct UntouchedOffset {
 impl UntouchedOffset {
     /// Of a pad that remembers nothing.
     pub const NONE: Self = Self { uv: [0.0; CHANNELS], doubt_uv: [0.0; CHANNELS] };
+}
+
+/// State of the pad before a sample comes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PadState {
+    /// Whether a contact is under way: the zero is followed only while not.
+    pub touched: bool,
+    /// Whether that is believed against a load below none: by decoders that do not explain what the channels read.
+    pub is_touch_believed: bool,
+    /// What the pad reads while not.
+    pub rest: UntouchedOffset,
+    /// Offset of the channels at any time, µV: it is subtracted first.
+    pub added_uv: [f64; CHANNELS],
 }
 
 /// The reading of the lowest load that was seen since the zero is being measured. Nothing can pull at the plate, so the untouched
@@ -140,17 +157,18 @@ impl Tare {
     pub fn is_pulled(
         &mut self,
         block_uv: &[f64; CHANNELS],
-        is_touch: bool,
-        rest: &UntouchedOffset,
+        pad: &PadState,
         load_n: impl Fn(&Strain) -> f32,
     ) -> bool {
+        let PadState { touched, is_touch_believed, rest, .. } = pad;
         let Some(zero_uv) = &self.zero_uv else { return false };
         let strain = relative(block_uv, &std::array::from_fn(|k| zero_uv[k] + rest.uv[k]));
         // At rest nothing needs to be decoded.
         let stands = strain.uv.iter().all(|uv| f64::from(uv.abs()) <= STILL_UV);
-        let is_below = !is_touch && !stands && load_n(&strain) < -SAME_N;
+        let is_sound = stands || *touched && *is_touch_believed;
+        let is_below = !is_sound && load_n(&strain) < -SAME_N;
         self.pulls = if is_below { self.pulls + 1 } else { 0 };
-        self.pulls >= PULL_BLOCKS
+        self.pulls >= if *touched { PULL_BLOCKS_TOUCHED } else { PULL_BLOCKS }
     }
 
     /// Measures the zero when a block closes: the pad must lie still, at the lowest load that was seen. `load_n` is the
@@ -304,10 +322,10 @@ mod tests {
     fn blocks_below_the_zero_with_a_touch_between_are_not_in_a_row() {
         let mut tare = Tare::new();
         assert!(known_at_ms(&mut tare, |_| 0.0).is_some());
-        let mut pulled = |is_touch| {
-            tare.is_pulled(&[-500.0; CHANNELS], is_touch, &UntouchedOffset::NONE, |strain| {
-                strain.uv[0] / UV_PER_N
-            })
+        let mut pulled = |touched| {
+            let rest = UntouchedOffset::NONE;
+            let pad = PadState { touched, is_touch_believed: true, rest, added_uv: [0.0; CHANNELS] };
+            tare.is_pulled(&[-500.0; CHANNELS], &pad, |strain| strain.uv[0] / UV_PER_N)
         };
         assert_eq!([false, true, false, false].map(&mut pulled), [false, false, false, true]);
     }

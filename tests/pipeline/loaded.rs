@@ -213,7 +213,7 @@ fn a_thumb_at_the_start_costs_a_second_on_the_papers_pad() {
 }
 
 #[test]
-#[ignore = "proof: 20 s: misses one press of 2,108 on the paper's pad, which is taken for a channel that is off; two hundred plays instead of fifty"]
+#[ignore = "proof: 20 s: two hundred plays instead of fifty"]
 fn a_thumb_at_the_start_costs_a_second_in_many_plays() {
     a_thumb_costs_a_second_with_each_decoder(MANY);
     a_thumb_costs_a_second_on_the_papers_pad(MANY);

@@ -12,7 +12,7 @@ use crate::pipeline::compensation::thermometer::Thermometer;
 use crate::pipeline::health::Health;
 use crate::pipeline::interruption::{Cause, Effect, Effects};
 use crate::pipeline::probe::{PipelineStage, Probe};
-use crate::pipeline::signal::{Conditioned, PadState, Scale, Signal};
+use crate::pipeline::signal::{Conditioned, Loads, PadState, Scale, Signal};
 use crate::quantity::{CHANNELS, Contact, Strain};
 use crate::time::StreamInstant;
 
@@ -137,8 +137,11 @@ impl ContactStage {
         };
         self.strain = None;
         self.raw_uv = self.signal.raw_uv(sample);
-        let load_n = |strain: &Strain| load_without_stray_n(&self.decoder, &gain.calibrated(strain));
-        match self.signal.condition(at, sample, &pad, load_n, health) {
+        let loads = Loads {
+            plain_n: |strain: &Strain| self.decoder.load_n(&gain.calibrated(strain)),
+            without_stray_n: |strain: &Strain| load_without_stray_n(&self.decoder, &gain.calibrated(strain)),
+        };
+        match self.signal.condition(at, sample, &pad, &loads, health) {
             Conditioned::Strain(strain) => {
                 let strain = self.memory.freed(&self.thermometer.at_reference(&gain.calibrated(&strain)));
                 self.strain = Some(strain);

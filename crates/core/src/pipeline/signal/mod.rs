@@ -19,7 +19,7 @@ use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
 use fault::ChannelFaults;
 use filter::MeanFilter;
-pub use tare::PadState;
+pub use tare::{Loads, PadState};
 use tare::{Tare, UntouchedOffset};
 
 /// Scale of a count, µV: told by the pad's identity, or the protocol's default.
@@ -127,14 +127,13 @@ impl Signal {
         sample.counts.map(|count| f64::from(count) * self.scale.uv_per_count)
     }
 
-    /// Conditions one sample. `load_n` is the normal force of a strain. Where it gives no strain, the caller tells the
-    /// interruption.
+    /// Conditions one sample. Where it gives no strain, the caller tells the interruption.
     pub fn condition(
         &mut self,
         at: StreamInstant,
         sample: &Sample,
         pad: &PadState,
-        load_n: impl Fn(&Strain) -> f32,
+        loads: &Loads<impl Fn(&Strain) -> f32, impl Fn(&Strain) -> f32>,
         health: &mut Health,
     ) -> Conditioned {
         if self.faults.check(sample, self.scale.count_bits, health) {
@@ -149,13 +148,13 @@ impl Signal {
             if let Some(channel) = block_uv.and_then(|uv| self.tare.lone(&uv, &pad.rest)) {
                 return Conditioned::Stray { channel };
             }
-            if block_uv.is_some_and(|uv| self.tare.is_pulled(&uv, pad, &load_n)) {
+            if block_uv.is_some_and(|uv| self.tare.is_pulled(&uv, pad, loads)) {
                 return Conditioned::Pulled;
             }
             return Conditioned::Strain(self.tare.apply(at, &raw_uv(mean), pad.touched, &pad.rest));
         }
         if let Some(block_uv) = block_uv {
-            self.measure(at, &block_uv, &pad.rest, load_n);
+            self.measure(at, &block_uv, &pad.rest, &loads.without_stray_n);
         }
         if self.tare.is_loaded() { Conditioned::Loaded } else { Conditioned::Taring }
     }

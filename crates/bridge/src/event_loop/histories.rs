@@ -99,7 +99,7 @@ fn happenings() -> impl Strategy<Value = Happening> {
         }),
         1 => prop::collection::vec(any::<u8>(), 1..100).prop_map(Happening::Rubbish),
         3 => (contacts(), 0..800_u64).prop_map(|(contact, ms)| Happening::Touch(contact, ms)),
-        2 => (0..800_u64).prop_map(|ms| Happening::Touch(AWAY, ms)),
+        2 => prop_oneof![0..64_u64, 0..800_u64].prop_map(|ms| Happening::Touch(AWAY, ms)),
         1 => prop_oneof![1..3_u32, any::<u32>()].prop_map(Happening::Lose),
         1 => (ages(), 1..5_u32).prop_map(|(age, frames)| Happening::Repeat { age, frames }),
         1 => times_us().prop_map(Happening::Jump),

@@ -15,7 +15,7 @@ use crate::pipeline::health::Health;
 use crate::pipeline::line_check::{LineCheck, LineFinding};
 use crate::time::{HostInstant, StreamInstant};
 use clock::StreamClock;
-use order::{OtherRun, SequenceStep, step_between, step_over_silence};
+use order::{NewestFrames, OtherRun, SequenceStep, step_between, step_over_silence};
 
 /// Without a sample for this long the link counts as lost. Everything is released then, well inside 100 ms.
 pub const SILENCE_MAX_US: u64 = 80_000;
@@ -69,6 +69,7 @@ pub enum LinkEvent {
 pub struct Link {
     receiver: MessageReceiver,
     last: Option<Sample>,
+    newest: NewestFrames,
     /// The last sample before the silence that lasts, and when it was heard.
     before_silence: Option<(Sample, HostInstant)>,
     /// Frames that came since the last sample and do not go on from it.
@@ -91,6 +92,7 @@ impl Link {
         Self {
             receiver: MessageReceiver::new(),
             last: None,
+            newest: NewestFrames::new(),
             before_silence: None,
             other: None,
             clock: StreamClock::new(),
@@ -213,6 +215,7 @@ impl Link {
         let smooth =
             self.clock.accept(now, sample.time_us, self.last.is_some() && fault != Some(Fault::Restarted));
         (self.last, self.before_silence, self.other) = (Some(sample), None, None);
+        self.newest.keep(&sample);
         let fault = if smooth { fault } else { jumped(fault, health) };
         LinkEvent::Sample { at: self.clock.last, sample, fault }
     }
@@ -220,7 +223,7 @@ impl Link {
     /// How this sample follows what was heard last.
     fn step(&self, now: HostInstant, sample: &Sample) -> SequenceStep {
         match (self.last, self.before_silence) {
-            (Some(last), _) => step_between(&last, sample, now.us_since(self.clock.heard)),
+            (Some(last), _) => step_between(&self.newest, &last, sample, now.us_since(self.clock.heard)),
             (None, Some((last, heard))) => step_over_silence(&last, sample, now.us_since(heard)),
             (None, None) if self.clock.set && sample.status.restarted() => SequenceStep::Anew,
             (None, None) => SequenceStep::Next,
@@ -318,6 +321,37 @@ mod tests {
         assert_eq!(rig.hear(31_000, sample(3, 3_012)), (Some(9_031_000), None));
         let Health { restarts, time_jumps, frames_repeated, .. } = rig.health;
         assert_eq!((restarts, time_jumps, frames_repeated), (1, 0, 0));
+    }
+
+    #[test]
+    fn a_pad_that_begins_anew_after_a_moment_shows_by_what_it_reads() {
+        for life in [3, 10, 64, 200] {
+            let mut rig = Rig::new();
+            let run = |offset: i32, ms: u32| Sample {
+                counts: [offset + (ms % 3) as i32; CHANNELS],
+                ..sample(ms, 1_000 * u64::from(ms))
+            };
+            for ms in 0..life {
+                rig.hear(1_000 * u64::from(ms), run(0, ms));
+            }
+            let faults = (0..3).map(|ms| rig.hear(1_000 * u64::from(life + ms), run(6_000, ms)).1);
+            let fault = faults.last().unwrap();
+            assert_eq!((fault, rig.health.restarts), (Some(Fault::Restarted), 1), "{life}");
+        }
+    }
+
+    #[test]
+    fn a_stretch_of_frames_that_comes_again_is_no_restart() {
+        let mut rig = Rig::new();
+        let at = |number: u32| sample(number, 1_000 * u64::from(number));
+        for ms in 0..300 {
+            rig.hear(1_000 * u64::from(ms), at(ms));
+        }
+        for number in 240..300 {
+            assert_eq!(rig.hear(300_000, at(number)), (None, Some(Fault::Repeated)), "{number}");
+        }
+        assert_eq!(rig.hear(300_000, at(300)), (Some(300_000), None));
+        assert_eq!(rig.health.restarts, 0);
     }
 
     /// What a run of frames makes of others among it: how many restarts, and how many frames of the run are at fault.

@@ -7,8 +7,11 @@ use super::clock::GAP_MAX_US;
 /// No pad samples faster than once in so many microseconds.
 const PERIOD_MIN_US: u64 = 50;
 
-/// A frame this little behind the newest is an old one that came again; farther behind, the pad began anew.
-const REORDER_MAX: u32 = 64;
+/// So many frames may be missing between two that go on from one another, whatever time has passed.
+const SKIPPED_MAX: u32 = 64;
+
+/// So many of the newest frames are kept, to tell one that comes again from one of a run that began anew.
+const KEPT: usize = 64;
 
 /// So many frames that go on from one another are a run of the pad, which began anew. One that is late or came again goes on in
 /// nothing.
@@ -19,7 +22,7 @@ const RUN_FRAMES: u32 = 3;
 pub(super) enum SequenceStep {
     /// It is the next one.
     Next,
-    /// It came again, or too late.
+    /// It came again.
     Again,
     /// So many frames are missing before it.
     Skipped(u32),
@@ -29,21 +32,50 @@ pub(super) enum SequenceStep {
     Anew,
 }
 
-/// The step from `last` to `next`, which came `passed_us` of host time later.
-pub(super) fn step_between(last: &Sample, next: &Sample, passed_us: u64) -> SequenceStep {
-    let (ahead, is_behind) = (next.sequence.wrapping_sub(last.sequence), next.time_us <= last.time_us);
-    if next == last {
+/// The newest frames, each in the place of its number.
+#[derive(Clone, Debug)]
+pub(super) struct NewestFrames([Option<Sample>; KEPT]);
+
+impl NewestFrames {
+    /// None has come.
+    pub(super) const fn new() -> Self {
+        Self([None; KEPT])
+    }
+
+    const fn place(sample: &Sample) -> usize {
+        sample.sequence as usize % KEPT
+    }
+
+    /// Keeps a frame in place of an older one.
+    pub(super) fn keep(&mut self, sample: &Sample) {
+        self.0[Self::place(sample)] = Some(*sample);
+    }
+
+    /// Whether this very frame is among them. A pad that began anew a moment ago sends the same numbers with other contents.
+    fn contain(&self, sample: &Sample) -> bool {
+        self.0[Self::place(sample)] == Some(*sample)
+    }
+}
+
+/// The step from `last` to `next`, which came `passed_us` of host time later than the last of the newest frames.
+pub(super) fn step_between(
+    newest: &NewestFrames,
+    last: &Sample,
+    next: &Sample,
+    passed_us: u64,
+) -> SequenceStep {
+    if newest.contain(next) {
         return SequenceStep::Again;
     }
     if next.status.restarted() {
         // The first frame of a run may come again, too.
+        let is_behind = next.time_us <= last.time_us;
         return if is_behind { SequenceStep::Apart } else { SequenceStep::Anew };
     }
-    match ahead {
-        0 => SequenceStep::Again,
+    match next.sequence.wrapping_sub(last.sequence) {
+        0 => SequenceStep::Apart,
         1 => SequenceStep::Next,
-        _ if ahead.wrapping_neg() <= REORDER_MAX && is_behind => SequenceStep::Again,
-        _ if ahead <= REORDER_MAX || goes_on_after_gap(last, next, passed_us) => {
+        ahead if ahead <= SKIPPED_MAX || goes_on_after_gap(last, next, passed_us) => {
             SequenceStep::Skipped(ahead - 1)
         }
         _ => SequenceStep::Apart,
@@ -69,7 +101,7 @@ fn goes_on_after_gap(last: &Sample, next: &Sample, passed_us: u64) -> bool {
     let ahead = next.sequence.wrapping_sub(last.sequence);
     next.time_us.checked_sub(last.time_us).is_some_and(|shown_us| {
         (passed_us / 2..=2 * passed_us + GAP_MAX_US).contains(&shown_us)
-            && u64::from(ahead) <= (shown_us / PERIOD_MIN_US).max(REORDER_MAX.into())
+            && u64::from(ahead) <= (shown_us / PERIOD_MIN_US).max(SKIPPED_MAX.into())
     })
 }
 
@@ -86,7 +118,7 @@ impl OtherRun {
         let goes_on = |run: &Self| {
             let ahead = sample.sequence.wrapping_sub(run.newest.sequence);
             let shown_us = sample.time_us.wrapping_sub(run.newest.time_us);
-            (1..=REORDER_MAX).contains(&ahead) && (1..=GAP_MAX_US).contains(&shown_us)
+            (1..=SKIPPED_MAX).contains(&ahead) && (1..=GAP_MAX_US).contains(&shown_us)
         };
         let frames = run.filter(goes_on).map_or(0, |run| run.frames);
         Self { newest: *sample, frames: frames + 1 }

@@ -49,10 +49,11 @@
 //! `examples/` has whole programs. `ARCHITECTURE.md` says which rules hold between the crates.
 
 pub use tactpad_core::{
-    firmware_proto, network, numeric, pad, pipeline, quantity, tables, time, toml_text, virtual_pad,
+    firmware_proto, network, pad, pipeline, quantity, tables, time, toml_text, virtual_pad,
 };
 #[cfg(feature = "simulator")]
 pub use tactpad_mechanics as mechanics;
+pub use tactpad_numeric as numeric;
 #[cfg(feature = "simulator")]
 pub use tactpad_plot as plot;
 
@@ -66,6 +67,7 @@ pub use tactpad_desktop::tray;
 /// Studies: of what a pad has measured, and of the paper's pad.
 #[cfg(feature = "lab")]
 pub mod lab {
+    pub use tactpad_inference as inference;
     pub use tactpad_lab::*;
     #[cfg(feature = "simulator")]
     pub use tactpad_mechanics::field_cache;

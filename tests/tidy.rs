@@ -12,8 +12,10 @@ use std::process::Command;
 const SOURCES: &[&str] = &[
     "src",
     "crates/core/src",
+    "crates/numeric/src",
     "crates/plot/src",
     "crates/mechanics/src",
+    "crates/inference/src",
     "crates/lab/src",
     "crates/paper/src",
     "crates/bridge/src",
@@ -22,7 +24,14 @@ const SOURCES: &[&str] = &[
 ];
 
 /// Of them those that do no I/O and read no clock.
-const PURE: &[&str] = &["crates/core/src", "crates/plot/src", "crates/mechanics/src", "firmware-proto/src"];
+const PURE: &[&str] = &[
+    "crates/core/src",
+    "crates/inference/src",
+    "crates/mechanics/src",
+    "crates/numeric/src",
+    "crates/plot/src",
+    "firmware-proto/src",
+];
 
 /// The one file of them that keeps what it computed on the disk.
 const KEEPS_FIELDS: &str = "crates/mechanics/src/field_cache.rs";

@@ -6,7 +6,6 @@
 
 pub mod bytes;
 pub mod network;
-pub mod numeric;
 pub mod pad;
 pub mod pipeline;
 pub mod quantity;

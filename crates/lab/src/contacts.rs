@@ -9,13 +9,13 @@ use crate::calibration::regression::{neighbours, regression};
 use crate::calibration::screening::{Fault, TableMismatch, screened};
 use crate::tangent::SimulatedPad;
 use tactpad_core::network::Zero;
-use tactpad_core::numeric::random::SplitMix64;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pipeline::contact::Decoder;
 use tactpad_core::pipeline::contact::regression::Target;
 use tactpad_core::tables::measured::Row;
 use tactpad_core::tables::recording::Recording;
+use tactpad_numeric::random::SplitMix64;
 
 /// The contacts of tables that were measured one after the other.
 #[derive(Clone, Debug)]

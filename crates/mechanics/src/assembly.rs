@@ -13,9 +13,9 @@ use std::borrow::Borrow;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, MatRef};
 
-use tactpad_core::numeric::zernike::{Polynomial, count};
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::ForceMaps;
+use tactpad_numeric::zernike::{Polynomial, count};
 
 use super::foot::Foot;
 use super::plate::{FIELDS, Plate, Rigidity, held};

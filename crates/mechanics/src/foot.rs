@@ -2,9 +2,9 @@
 
 use faer::Mat;
 
-use tactpad_core::numeric::zernike::{count, jets};
 use tactpad_core::pad::device::pose::Pose;
 use tactpad_core::pad::device::{Device, Module, Stack};
+use tactpad_numeric::zernike::{count, jets};
 
 use super::plate::FIELDS;
 use super::superelement::{FOOT_SHAPES, MODES, foot_shapes};

@@ -6,9 +6,9 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 
-use tactpad_core::numeric::zernike::Polynomial;
 use tactpad_core::pad::device::{Device, GAUGES};
 use tactpad_core::pad::wiring::HALF_BRIDGES;
+use tactpad_numeric::zernike::Polynomial;
 
 use super::pad::Pad;
 use super::plate::FIELDS;
@@ -77,7 +77,7 @@ mod tests {
     use crate::mesh::Fineness;
     use crate::simulator::PLATE_DEGREE;
     use crate::simulator::Simulator;
-    use tactpad_core::numeric::zernike::jets;
+    use tactpad_numeric::zernike::jets;
 
     fn pad() -> Pad {
         Simulator::new(Fineness::STANDARD.scaled(3.0)).pad(&Device::nominal()).unwrap()

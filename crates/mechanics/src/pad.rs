@@ -10,10 +10,10 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use tactpad_core::numeric::zernike::Polynomial;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::ForceMaps;
 use tactpad_core::quantity::{CHANNELS, MODULES};
+use tactpad_numeric::zernike::Polynomial;
 
 use super::assembly::{Assembly, contact_map, couplings, lever, part};
 use super::foot::Foot;
@@ -69,7 +69,7 @@ impl Pad {
     /// u, v, w, R α, R β in millimetres.
     pub fn deflection(&self, place_mm: [f64; 2], axis: usize) -> [Polynomial; FIELDS] {
         let (radius, lever) = (self.device.plate.radius_mm(), lever(&self.device));
-        let jets = tactpad_core::numeric::zernike::jets(self.degree, place_mm.map(|mm| mm / radius));
+        let jets = tactpad_numeric::zernike::jets(self.degree, place_mm.map(|mm| mm / radius));
         let patch = self.device.contact.patch_radius_mm / radius;
         let mut load = Mat::zeros(self.assembly.plate.unknowns(), 1);
         let size = jets.len();

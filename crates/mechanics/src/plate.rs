@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Each field is a polynomial over the disc (Ritz's method), w and the rotations of one degree, so that thin plates
-//! do not lock. The edge is free by itself. The unknowns are coefficients of [`tactpad_core::numeric::zernike`] polynomials in the
+//! do not lock. The edge is free by itself. The unknowns are coefficients of [`tactpad_numeric::zernike`] polynomials in the
 //! place divided by the plate's radius R, in five blocks: u, v, w, R α, R β, all in millimetres.
 //!
 //! **Blocks.** The plate is round, so its stiffness couples only motions that turn alike. Write U = u + iv and
@@ -20,7 +20,7 @@
 //! u,x + v,y = 2 Re ∂U/∂z        (u,x − v,y) + i (u,y + v,x) = 2 ∂U/∂z*        w,x + i w,y = 2 ∂w/∂z*
 //! ```
 //!
-//! and the rule for ∂/∂z in [`tactpad_core::numeric::zernike`] shows that orders l = 1 + J and l = 1 − J meet only each other and the
+//! and the rule for ∂/∂z in [`tactpad_numeric::zernike`] shows that orders l = 1 + J and l = 1 − J meet only each other and the
 //! waves of order J in w, real multiples apart from imaginary ones. All integrals are closed sums.
 //! Source: R. D. Mindlin, J. Appl. Mech. 18 (1951) 31; E. Reissner, J. Appl. Mech. 12 (1945) A69 for κ.
 
@@ -29,8 +29,8 @@ use std::f64::consts::PI;
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, Side};
 
-use tactpad_core::numeric::zernike::{Wave, count, index, square_integrals};
 use tactpad_core::pad::device::Material;
+use tactpad_numeric::zernike::{Wave, count, index, square_integrals};
 
 use super::brick::TONNES_PER_MM3;
 use super::system::SolveError;
@@ -374,7 +374,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
-    use tactpad_core::numeric::zernike::{Polynomial, jets};
+    use tactpad_numeric::zernike::{Polynomial, jets};
 
     const DEGREE: usize = 40;
     const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.3, density_kg_m3: 7_850.0 };

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use tactpad_core::numeric::zernike::{Polynomial, jets};
 use tactpad_core::pad::device::{Device, Material};
 use tactpad_core::quantity::MODULES;
+use tactpad_numeric::zernike::{Polynomial, jets};
 
 use super::deformed::{Deformed, ModeShapes};
 use super::foot::Foot;

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use tactpad_core::numeric::zernike::jets;
 use tactpad_core::pad::device::{Device, GAUGES};
 use tactpad_core::pad::field::ForceMaps;
 use tactpad_core::pad::influence::Gains;
 use tactpad_core::quantity::MODULES;
+use tactpad_numeric::zernike::jets;
 
 use super::assembly::{Assembly, contact_map};
 use super::foot::Foot;

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use tactpad_core::numeric::zernike::jets;
 use tactpad_core::pad::changes::{FieldChange, Flaw};
 use tactpad_core::pad::device::{Device, Gauge, Material, Side, Stack};
 use tactpad_core::pad::field::{ForceMaps, PadField, Sensitivity};
 use tactpad_core::pad::influence::{InfluenceField, MAPS};
 use tactpad_core::quantity::{CHANNELS, MODULES};
+use tactpad_numeric::zernike::jets;
 
 use super::assembly::add;
 use super::deformed::ModeShapes;

@@ -19,8 +19,8 @@ use super::pad::Pad;
 use super::plate::{FIELDS, masses_t};
 use super::superelement::{FootMass, MODES};
 use super::system::SolveError;
-use tactpad_core::numeric::zernike::{Polynomial, count, jets};
 use tactpad_core::quantity::{CHANNELS, MODULES};
+use tactpad_numeric::zernike::{Polynomial, count, jets};
 
 /// The space begins with all motions of the plate up to this degree: rigid ones, and its slowest ways to bend and stretch.
 const START_DEGREE: usize = 4;

@@ -18,7 +18,7 @@ use rustix::time::{
 
 use super::Transport;
 use super::pacing::{limit, monotonic_us};
-use tactpad_core::numeric::random::SplitMix64;
+use tactpad_numeric::random::SplitMix64;
 
 /// A delayed frame, and whatever comes behind it, is late by this much: too little for the link to count as silent.
 pub const DELAY_US: u64 = 20_000;

@@ -13,8 +13,8 @@ pub mod onnx;
 pub mod training;
 mod transposed;
 
-use crate::numeric::random::SplitMix64;
 use crate::quantity::{CHANNELS, Contact};
+use tactpad_numeric::random::SplitMix64;
 
 /// Numbers of a contact: x, y, Fx, Fy, Fz.
 pub const OUTPUTS: usize = 5;

@@ -5,11 +5,11 @@
 use std::fmt;
 
 use crate::bytes::{FormatError, Reader, push_text, sealed, unsealed};
-use crate::numeric::zernike::{Polynomial, count, norms};
 use crate::pad::device::Device;
 use crate::pad::device::parameter::Parameter;
 use crate::pad::influence::{InfluenceField, MAPS};
 use crate::quantity::CHANNELS;
+use tactpad_numeric::zernike::{Polynomial, count, norms};
 
 /// Sensitivity of one channel, µV/N, along +x, along +y and pressing, as polynomials over the plate in the place
 /// divided by its radius.

@@ -205,9 +205,9 @@ mod tests {
     use firmware_proto::{DEFAULT_COUNT_BITS, DEFAULT_PICOVOLTS_PER_COUNT};
 
     use super::*;
-    use crate::numeric::random::SplitMix64;
     use crate::pad::device::behaviour::Crosstalk;
     use crate::pipeline::signal::Scale;
+    use tactpad_numeric::random::SplitMix64;
 
     const EXCITATION_V: f64 = 2.8;
 

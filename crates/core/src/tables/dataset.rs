@@ -6,9 +6,9 @@
 //! Places and forces do not depend on each other, nor one contact on another. No transcendental function is called, so
 //! that every machine draws the same numbers.
 
-use crate::numeric::random::SplitMix64;
 use crate::pad::device::Patch;
 use crate::quantity::Contact;
+use tactpad_numeric::random::SplitMix64;
 
 /// Contacts of the paper's dataset with a force along each axis; as many more are normal only.
 pub const PAPER_HALF: usize = 7_200;

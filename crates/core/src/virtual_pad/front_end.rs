@@ -2,10 +2,10 @@
 
 use firmware_proto::sample::Status;
 
-use crate::numeric::random::SplitMix64;
 use crate::pad::device::Device;
 use crate::pad::readout::Converter;
 use crate::quantity::CHANNELS;
+use tactpad_numeric::random::SplitMix64;
 
 /// Full scale is ±20 mV. Unlike the wire's default, so that a host which does not ask for the scale reads wrong
 /// forces.

@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
-use tactpad_core::numeric::statistics::{mean, population_deviation};
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, PlayOperator, Prony};
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pad::twin::life::{Life, LifeError};
 use tactpad_core::pad::twin::pad::{Circumstances, TwinPad};
 use tactpad_core::quantity::{CHANNELS, Contact};
+use tactpad_numeric::statistics::{mean, population_deviation};
 
 const PRESS: Contact = Contact { x_mm: 3.0, y_mm: -7.0, fx_n: 0.4, fy_n: -0.2, fz_n: 2.0 };
 const REST: Contact = Contact { x_mm: 0.0, y_mm: 0.0, fx_n: 0.0, fy_n: 0.0, fz_n: 0.0 };

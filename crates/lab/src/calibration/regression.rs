@@ -1,11 +1,11 @@
 //! Baselines from measured contacts: linear functions by least squares, and the contacts themselves as neighbours.
 
 use tactpad_core::network::Zero;
-use tactpad_core::numeric::linear::Factor;
 use tactpad_core::pipeline::contact::neighbours::{KNOWN_MAX, LabelledContact, NEIGHBOURS, Neighbours};
 use tactpad_core::pipeline::contact::regression::{Regression, TERMS, Target};
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::measured::Row;
+use tactpad_numeric::linear::Factor;
 
 use super::fit::FitError;
 

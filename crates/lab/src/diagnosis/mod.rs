@@ -4,59 +4,57 @@
 //!
 //! | folder | stage |
 //! |---|---|
-//! | [`data`] | rows of a table become observations, with the noise of each channel |
+//! | [`data`] | rows of a table become observations |
 //! | `gatekeepers` | the recording is checked before any physics |
-//! | `model` | the interface of a model of the channels: predicted readings, and their change with each hypothesis; the chain from contact to reading |
+//! | `model` | the chain from contact to reading |
 //! | `causes` | the catalogue of hypotheses |
-//! | `simulation` | the simulated pad, as such a model of nine channels |
-//! | `statistics` | the residual's covariance: noise, a smooth background that every simulator leaves, and known errors of the simulator |
-//! | `attribution` | group score tests with a cluster bootstrap choose causes, about the pad's own field or those of changed pads (`atlas`) |
-//! | `naming` | the encompassing rule says which of them may be named, if they hold in all parts of the measurement (`specification`) and do not look like parts of something else (`withdrawal`); models of further measurements (`experiments`) say which would tell the others apart (`separation`) |
+//! | `simulation` | the simulated pad as a model of nine channels, about its own field or those of changed pads (`atlas`); [`tactpad_inference`] says which hypotheses explain what it gets wrong |
+//! | `naming` | which of them may be named: not those that look like parts of something else (`withdrawal`); models of further measurements (`experiments`) say which would tell the others apart (`separation`) |
 //! | `validation` | the worth of the findings on rows that had no part in it, in readings and in contacts that the model decodes backwards |
 //!
 //! [`against`] holds two recordings of one sensor against each other, without a simulator; [`report`], [`extension`] and [`agreement`] are what
 //! comes of a diagnosis.
 //!
-//! Attribution and naming know nothing of nine channels: those are in `simulation` and what it is made of.
-//!
-//! Sources: M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (a discrepancy beside the parameters); J.
-//! Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014) 114007 (without it parameters are wrong and too sure).
+//! What is said of channels and places is in `naming`; how sure that is, in the inference, which knows of neither.
 
 pub mod against;
 pub mod agreement;
-mod attribution;
 mod causes;
 pub mod data;
 pub mod extension;
 mod gatekeepers;
+mod label;
 pub(crate) mod model;
 mod naming;
 pub mod report;
 mod simulation;
-mod statistics;
 mod validation;
 
 use std::fmt;
 
-use self::attribution::atlas::{Atlas, attributed};
-use self::attribution::{Applied, Attribution, AttributionFit, Search};
 use self::causes::catalogue::CATALOGUE;
-use self::data::observations::Observations;
+use self::data::observed::observed;
 use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};
-use self::model::Model;
+use self::label::Search;
 use self::naming::separation::Separation;
 use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
+use self::naming::{not_detected, offsets};
 use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
+use self::simulation::atlas::{Atlas, attributed};
 use self::simulation::simulated::Simulated;
-use self::statistics::covariance::{REMAINDER_MAX, Remainder};
 use self::validation::ceiling::ceiling_share;
-use self::validation::gain::{Rows, rmse};
+use self::validation::gain::{Rows, gain, rmse};
 use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
-use tactpad_core::numeric::chi_square;
-use tactpad_core::numeric::statistics::{mean, rms};
 use tactpad_core::tables::measured::Table;
+use tactpad_inference::covariance::Remainder;
+use tactpad_inference::model::Model;
+use tactpad_inference::observations::Observations;
+use tactpad_inference::policy::REMAINDER_MAX;
+use tactpad_inference::search::{Applied, Attribution, AttributionFit};
+use tactpad_numeric::chi_square;
+use tactpad_numeric::statistics::{mean, rms};
 
 /// Fewest rows, and fewest locations among them, by which causes can be told.
 const ROWS_MIN: usize = 60;
@@ -110,7 +108,7 @@ pub fn diagnose(
     without: &[Effect],
 ) -> Result<Diagnosis, DiagnosisError> {
     check(table)?;
-    let gate = checked(&Observations::of(table), pad, without)?;
+    let gate = checked(&observed(table), pad, without)?;
     let all = &gate.observations;
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
     let mut model = Atlas::new(pad, without, all, &open);
@@ -177,7 +175,7 @@ pub fn effects() -> impl Iterator<Item = Effect> {
 /// # Errors
 /// What is missing.
 pub fn check(table: &Table) -> Result<(), DiagnosisError> {
-    let all = Observations::of(table);
+    let all = observed(table);
     let locations = all.clusters().into_iter().max().map_or(0, |last| last + 1);
     match all {
         _ if all.rows() < ROWS_MIN => Err(DiagnosisError::Rows(all.rows())),
@@ -208,7 +206,7 @@ fn summary(
         if is_doubted { doubted(finding) } else { finding }
     };
     let mut findings: Vec<Finding> = candidates.into_iter().map(told).collect();
-    findings.extend(search.offsets(found, whole + search.offsets_square(found)?, &doubted_by_channel)?);
+    findings.extend(offsets(search, found, whole + search.offsets_square(found)?, &doubted_by_channel)?);
     let unnamed_share = if unnamed > 0.0 { unnamed / whole } else { 0.0 };
     let nothing = Vec::new();
     Some(Diagnosis {
@@ -222,8 +220,8 @@ fn summary(
         background_mm: fit.background.prior.length_mm,
         background_share: rms(fit.background.shares.iter().flatten().copied()),
         ceiling_share: ceiling_share([open, locked], &applied, &fit.systems.noise),
-        gain: search.gain(fit, [open, locked], &applied),
-        not_detected: search.not_detected(found)?,
+        gain: gain(search, fit, [open, locked], &applied),
+        not_detected: not_detected(search, found)?,
         not_testable: missing.to_vec(),
         unnamed_share,
         unnamed_by_channel,

@@ -1,8 +1,9 @@
 //! Report of a diagnosis.
 
-use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::data::target::Target;
 use crate::effect::Effect;
+use tactpad_inference::observations::Sample;
+pub use tactpad_inference::search::estimates::Estimate;
 
 /// Sentence where nothing tells confounded causes apart.
 pub(super) const INSEPARABLE: &str = "no measurement in the catalogue separates these";
@@ -135,17 +136,6 @@ impl Finding {
     pub fn is_doubted(&self) -> bool {
         self.confounded_with.iter().any(|(effect, _)| *effect == Effect::Unlisted)
     }
-}
-
-/// A number with its interval.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
-    /// Its name, the unit last.
-    pub name: &'static str,
-    /// The value.
-    pub value: f64,
-    /// Ends of the 95 % interval.
-    pub interval95: [f64; 2],
 }
 
 /// A cause that was not found, and the size at which it would have been.

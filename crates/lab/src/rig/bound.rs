@@ -15,13 +15,13 @@
 use std::f64::consts::FRAC_2_PI;
 
 use super::measurement::{RATE_HZ, READINGS};
-use tactpad_core::numeric::linear::Factor;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pad::readout::Readout;
 use tactpad_core::pad::twin::bridges;
 use tactpad_core::quantity::{CHANNELS, Contact};
 use tactpad_core::tables::measured::Label;
+use tactpad_numeric::linear::Factor;
 
 /// Half the span of the differences that make J: small against the field's features, large against its rounding.
 const HALF_SPAN: f32 = 0.05;

@@ -1,9 +1,9 @@
 //! The measuring rig: where the stage really puts a contact, and what the reference writes down.
 
 use super::errors::turned;
-use tactpad_core::numeric::random::SplitMix64;
 use tactpad_core::pad::device::behaviour::Rig;
 use tactpad_core::tables::measured::Label;
+use tactpad_numeric::random::SplitMix64;
 
 /// A stage with a force sensor under, or above, the pad.
 #[derive(Clone, Debug)]

@@ -9,7 +9,6 @@
 use std::f64::consts::TAU;
 use std::sync::{LazyLock, Mutex};
 
-use tactpad_core::numeric::zernike::{Polynomial, jets};
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::device::parameter::Parameter;
 use tactpad_core::pad::field::{ForceMaps, PadField};
@@ -17,6 +16,7 @@ use tactpad_core::quantity::{CHANNELS, MODULES};
 use tactpad_mechanics::mesh::Fineness;
 use tactpad_mechanics::pad::Pad;
 use tactpad_mechanics::simulator::{PLATE_DEGREE, Simulator};
+use tactpad_numeric::zernike::{Polynomial, jets};
 
 /// The laws hold on any mesh, so a coarse one will do. Solved modules are shared.
 static SIMULATOR: LazyLock<Mutex<Simulator>> =

@@ -5,12 +5,12 @@
 use std::fs;
 use std::path::Path;
 
-use tactpad_core::numeric::zernike::jets;
 use tactpad_core::pad::device::{Device, Side};
 use tactpad_core::pad::field::{ForceMaps, PadField};
 use tactpad_core::pad::influence::MAPS;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_mechanics::simulator::PLATE_DEGREE;
+use tactpad_numeric::zernike::jets;
 
 use crate::standard::SIMULATOR;
 

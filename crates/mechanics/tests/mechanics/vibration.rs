@@ -5,12 +5,12 @@ use std::f64::consts::{PI, TAU};
 use std::io::{Write as _, stderr};
 
 use faer::Mat;
-use tactpad_core::numeric::zernike::{count, jets};
 use tactpad_core::pad::device::{Device, Material};
 use tactpad_mechanics::mesh::Fineness;
 use tactpad_mechanics::plate::{FIELDS, Plate, Rigidity, masses_t};
 use tactpad_mechanics::simulator::{PLATE_DEGREE, Simulator};
 use tactpad_mechanics::vibration::{NaturalModes, NaturalMotion};
+use tactpad_numeric::zernike::{count, jets};
 
 /// Leissa's Poisson ratio.
 const STEEL: Material = Material { e_mpa: 200_000.0, nu: 0.33, density_kg_m3: 7_850.0 };

@@ -11,13 +11,13 @@ use super::{Pad, Subject};
 use crate::scdf::adaptation::{self, TooFew, adapt};
 use crate::scdf::simulation;
 use tactpad_core::network::{Example, Network, Zero};
-use tactpad_core::numeric::random::SplitMix64;
 use tactpad_core::pipeline::contact::Decoder;
 use tactpad_core::pipeline::contact::regression::Target;
 use tactpad_core::pipeline::shipped;
 use tactpad_core::tables::measured::{Label, Row};
 use tactpad_lab::calibration::fit::{FitError, fit};
 use tactpad_lab::calibration::regression::{neighbours, regression};
+use tactpad_numeric::random::SplitMix64;
 
 /// Why a decoder cannot be fitted.
 #[derive(Clone, Debug, PartialEq)]

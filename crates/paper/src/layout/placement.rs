@@ -2,10 +2,10 @@
 
 use super::precision::{Precision, Press, over_plate};
 use super::spacing::Spacing;
-use tactpad_core::numeric::statistics::mean;
 use tactpad_core::pad::device::{Device, Plate, Stack};
 use tactpad_core::pad::influence::Gains;
 use tactpad_core::quantity::MODULES;
+use tactpad_numeric::statistics::mean;
 
 /// The grid's steps are at most these.
 const RADIUS_STEP_MM: f64 = 2.0;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use tactpad_core::numeric::statistics::{mean, population_deviation};
+use tactpad_numeric::statistics::{mean, population_deviation};
 
 /// Smallest share of a press that counts as carried by a module, if nobody chooses another.
 ///

@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 use serde::Serialize;
 
 use super::precision::Precision;
-use tactpad_core::numeric::linear::Factor;
 use tactpad_core::pad::device::Device;
+use tactpad_numeric::linear::Factor;
 
 /// Diameters of the grid.
 pub const DIAMETERS_MM: [f64; 8] = [30.0, 40.0, 50.0, 60.0, 80.0, 100.0, 120.0, 150.0];

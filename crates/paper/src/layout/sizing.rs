@@ -8,8 +8,6 @@ use rayon::prelude::*;
 use super::precision::{Press, over_plate};
 use super::sizes::{CONVERTER_HZ, Size, SizeStudy, SizedPad};
 use crate::damping::DAMPING_RATIO;
-use tactpad_core::numeric::oscillator::Oscillator;
-use tactpad_core::numeric::zernike::{Jet, jets};
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::ForceMaps;
 use tactpad_core::pad::influence::InfluenceField;
@@ -20,6 +18,8 @@ use tactpad_mechanics::simulator::{PLATE_DEGREE, SIGNALS_PER_RADIUS, Simulator, 
 use tactpad_mechanics::superelement::{FootMass, Superelement};
 use tactpad_mechanics::system::SolveError;
 use tactpad_mechanics::vibration::natural_motions;
+use tactpad_numeric::oscillator::Oscillator;
+use tactpad_numeric::zernike::{Jet, jets};
 
 /// A newton, straight down.
 const PRESS_N: [f64; 3] = [0.0, 0.0, 1.0];

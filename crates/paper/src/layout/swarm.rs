@@ -4,7 +4,7 @@ use std::array;
 use std::f64::consts::LN_2;
 
 use super::spacing::{PAIRS, Radii, Spacing};
-use tactpad_core::numeric::random::SplitMix64;
+use tactpad_numeric::random::SplitMix64;
 
 const PARTICLES: usize = 40;
 const ROUNDS: usize = 100;

@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::Needs;
 use super::output::sum_uv;
 use super::rows::{StaticReading, Zeros, by_place, is_load, is_press, readings};
-use tactpad_core::numeric::statistics::mean;
 use tactpad_core::tables::measured::Table;
+use tactpad_numeric::statistics::mean;
 
 /// The load of the paper's test.
 const LOAD_N: f64 = 1.0;

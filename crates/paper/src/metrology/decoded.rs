@@ -8,10 +8,10 @@ use super::rows::{Zeros, by_place, is_ordinary, is_usual, less, loads, usual_tem
 use super::same::DistinctContacts;
 use super::thermal::STEP_C;
 use super::{Decode, Needs};
-use tactpad_core::numeric::statistics;
 use tactpad_core::quantity::{CHANNELS, Contact};
 use tactpad_core::tables::measured::zero::UntouchedRows;
 use tactpad_core::tables::measured::{Label, Row, Table};
+use tactpad_numeric::statistics;
 
 const NEEDED: &str = "static loads, with unloaded rows";
 const NEEDED_RAW: &str = "static loads";

@@ -8,10 +8,10 @@ use super::filter;
 use super::procedures::RATE_HZ;
 use super::response::crossing;
 use crate::damping::{DAMPING_RANGE, DAMPING_RATIO};
-use tactpad_core::numeric::oscillator::Oscillator;
-use tactpad_core::numeric::statistics::{mean, population_deviation};
 use tactpad_core::quantity::CHANNELS;
 use tactpad_mechanics::vibration::NaturalMotion;
+use tactpad_numeric::oscillator::Oscillator;
+use tactpad_numeric::statistics::{mean, population_deviation};
 
 /// Instants between two samples at which the step is tried.
 const PHASES: usize = 200;

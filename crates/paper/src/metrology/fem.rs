@@ -5,10 +5,10 @@ use serde::Serialize;
 use super::Needs;
 use super::output::is_z;
 use super::rows::{StaticReading, Zeros, by_place, is_load, is_ordinary, is_press, loads, readings};
-use tactpad_core::numeric::statistics::{Line, mean, mean_vector};
 use tactpad_core::pad::influence::InfluenceField;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::measured::{Label, Row, Table};
+use tactpad_numeric::statistics::{Line, mean, mean_vector};
 
 /// The load that is compared.
 const LOAD_N: f64 = 1.0;

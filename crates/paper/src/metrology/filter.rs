@@ -2,8 +2,8 @@
 //!
 //! Source: *Sensors* 2026, 26, 1378, section 3.1.
 
-use tactpad_core::numeric::statistics::mean_vector;
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::statistics::mean_vector;
 
 /// The paper's window W.
 pub(super) const WINDOW: usize = 6;

@@ -6,8 +6,8 @@ use super::output::sum_uv;
 use super::rows::{is_load, is_press};
 use super::series::{self, Sample, Trials, mean_fz_n, mean_sum_uv};
 use super::{FULL_SCALE_N, Needs, filter};
-use tactpad_core::numeric::statistics::{deviation, mean};
 use tactpad_core::tables::measured::Table;
+use tactpad_numeric::statistics::{deviation, mean};
 
 /// The loads of the task.
 pub const LOADS_N: [f64; 3] = [1.0, 3.0, FULL_SCALE_N];

@@ -6,8 +6,8 @@ use super::output::sum_uv;
 use super::rows::is_same_place;
 use super::series::{self, Sample, Trials};
 use super::{FULL_SCALE_N, Needs};
-use tactpad_core::numeric::statistics::{Line, mean};
 use tactpad_core::tables::measured::Table;
+use tactpad_numeric::statistics::{Line, mean};
 
 /// Where the branches are compared.
 const LEVELS_N: [f64; 4] = [1.0, 2.0, 3.0, 4.0];

@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::rows::{by_place, is_load, is_press};
 use super::series::{self, Sample, Trials, mean_label};
 use super::{Decode, Needs, filter};
-use tactpad_core::numeric::statistics::deviation;
 use tactpad_core::tables::measured::{Label, Table};
+use tactpad_numeric::statistics::deviation;
 
 /// The paper's loads.
 pub const LOADS_N: [f64; 4] = [0.5, 1.0, 3.0, 5.0];

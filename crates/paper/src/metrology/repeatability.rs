@@ -6,8 +6,8 @@ use super::output::sum_uv;
 use super::rows::{StaticReading, Zeros, by_place, is_load, is_ordinary, is_press, readings};
 use super::series::{Sample, Trials, mean_fz_n, mean_sum_uv};
 use super::{FULL_SCALE_N, Needs};
-use tactpad_core::numeric::statistics::{deviation, mean};
 use tactpad_core::tables::measured::{Label, Table};
+use tactpad_numeric::statistics::{deviation, mean};
 
 /// Least number of cycles.
 const CYCLES_MIN: usize = 10;

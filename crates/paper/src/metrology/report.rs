@@ -1,7 +1,7 @@
 //! The paper's published figures beside those that were found.
 
 use serde::{Deserialize, Serialize};
-use tactpad_core::numeric::statistics::{deviation, mean};
+use tactpad_numeric::statistics::{deviation, mean};
 
 use super::Needs;
 use super::figures::Figures;

@@ -6,8 +6,8 @@ use super::Needs;
 use super::output::sum_uv;
 use super::rows::is_unloaded;
 use super::series::{self, Sample, Trials, duration_s, mean_label, mean_sum_uv};
-use tactpad_core::numeric::statistics::{Line, deviation};
 use tactpad_core::tables::measured::Table;
+use tactpad_numeric::statistics::{Line, deviation};
 
 /// Least time for which a trial holds its load.
 const HELD_S: f64 = 30.0;
@@ -107,9 +107,9 @@ fn seconds(samples: &[Sample]) -> impl Iterator<Item = (f64, f64)> {
 mod tests {
     use super::super::fixture::{press, series, table};
     use super::*;
-    use tactpad_core::numeric::random::SplitMix64;
     use tactpad_core::quantity::CHANNELS;
     use tactpad_core::tables::measured::Row;
+    use tactpad_numeric::random::SplitMix64;
 
     const RATE_HZ: f64 = 45.0;
 

@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::output::sum_uv;
 use super::series::{self, Sample, Trials, duration_s, mean_fz_n};
 use super::{Needs, filter};
-use tactpad_core::numeric::statistics::{mean, median};
 use tactpad_core::tables::measured::Table;
+use tactpad_numeric::statistics::{mean, median};
 
 /// The least step.
 const STEP_N: f64 = 0.5;

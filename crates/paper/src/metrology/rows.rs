@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use tactpad_core::numeric::statistics::median;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::measured::alike::ZerosByTemperature;
 use tactpad_core::tables::measured::zero::{self, UNLOADED_N, UntouchedRows};
 use tactpad_core::tables::measured::{Label, Row, Table};
+use tactpad_numeric::statistics::median;
 
 /// Largest shear of a pure press: what a reference writes whose zero is off by the first and that is tilted
 /// by 3°.

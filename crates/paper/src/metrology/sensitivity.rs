@@ -5,9 +5,9 @@ use serde::Serialize;
 use super::Needs;
 use super::output::is_z;
 use super::rows::{StaticReading, Zeros, by_place, is_ordinary, is_press, readings};
-use tactpad_core::numeric::statistics::mean;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::measured::Table;
+use tactpad_numeric::statistics::mean;
 
 /// Largest distance of a place that counts as the centre.
 const CENTRE_MM: f64 = 1.0;

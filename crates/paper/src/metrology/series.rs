@@ -2,9 +2,9 @@
 
 use super::output::sum_uv;
 use super::rows::{Zeros, is_same_place, is_unloaded, less};
-use tactpad_core::numeric::statistics::{mean, mean_vector};
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::measured::{Label, Row, Table};
+use tactpad_numeric::statistics::{mean, mean_vector};
 
 /// A load is constant as long as each part of it stays so close to its mean, and as a share of its press:
 /// references are noisy, and fingers tremble in proportion.

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::Needs;
 use super::rows::is_unloaded;
-use tactpad_core::numeric::statistics::{Line, mean, mean_vector};
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::measured::{Row, Table};
+use tactpad_numeric::statistics::{Line, mean, mean_vector};
 
 /// Least range of temperatures.
 const RANGE_C: f64 = 5.0;

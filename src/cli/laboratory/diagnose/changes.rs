@@ -192,7 +192,7 @@ impl fmt::Display for ChangesText<'_> {
         let least = 100.0 * found.least_module_gain;
         let first = match found.findings.as_slice() {
             [] => format!(
-                "No change{when} ({held}). A module whose gain had changed by {least:.1} % would have been found in 95 of 100 such plays."
+                "No change{when} ({held}). A module whose gain had changed by {least:.1} % would have been found in nine of ten such plays."
             ),
             _ => format!("The pad has changed{when} ({held}):"),
         };

@@ -148,7 +148,7 @@ fn propagate_back(input: &mut [f32], delta: &[f32], weights: &[f32], place: &Lay
 mod tests {
     use super::*;
     use crate::network::{Network, Zero};
-    use crate::numeric::random::SplitMix64;
+    use tactpad_numeric::random::SplitMix64;
 
     #[test]
     fn gradients_are_the_differences_of_the_loss() {

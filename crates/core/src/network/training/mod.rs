@@ -13,8 +13,8 @@ use self::gradient::{Batch, Pass};
 use self::parameters::Shape;
 use self::score::Score;
 use super::{Example, Network, OUTPUTS};
-use crate::numeric::random::SplitMix64;
-use crate::numeric::statistics;
+use tactpad_numeric::random::SplitMix64;
+use tactpad_numeric::statistics;
 
 /// Hyperparameters of training.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Errors of predictions: mean squared, mean absolute, R².
 
 use crate::network::{Example, Network, OUTPUTS};
-use crate::numeric::statistics;
+use tactpad_numeric::statistics;
 
 /// Errors of one number over many examples, or of all five together.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]

@@ -1,9 +1,9 @@
 //! Finger or indenter that holds the contact, that does not stay quite where it was put.
 
 use super::noise::Lasting;
-use crate::numeric::random::SplitMix64;
 use crate::pad::device::behaviour::Finger;
 use crate::quantity::Contact;
+use tactpad_numeric::random::SplitMix64;
 
 /// A finger in time.
 #[derive(Clone, Debug)]

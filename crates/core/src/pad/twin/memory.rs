@@ -1,9 +1,9 @@
 //! Memory of the strains: hysteresis as play operators (Prandtl and Ishlinskii), creep as a Prony series.
 
 use crate::bytes::{Reader, push_doubles};
-use crate::numeric::memory::{low_passed, pulled};
 use crate::pad::device::behaviour::{Behaviour, PlayOperator, Prony};
 use crate::quantity::CHANNELS;
+use tactpad_numeric::memory::{low_passed, pulled};
 
 /// The state of all play operators and Prony terms of a pad.
 #[derive(Clone, Debug)]

@@ -5,11 +5,11 @@
 //! samples come from one model. It has no clock: the caller says how much time has passed. The same calls with the same
 //! seed give the same numbers. `docs/twin.md` has the equations.
 
-use crate::numeric::random::SplitMix64;
 use crate::pad::device::Device;
 use crate::pad::field::PadField;
 use crate::pad::readout::Bridges;
 use crate::quantity::{CHANNELS, Contact};
+use tactpad_numeric::random::SplitMix64;
 
 mod delay;
 pub mod hand;

@@ -1,7 +1,7 @@
 //! Random processes: Ornstein-Uhlenbeck processes, random walks, and white noise.
 
 use crate::bytes::{Reader, push_doubles};
-use crate::numeric::random::SplitMix64;
+use tactpad_numeric::random::SplitMix64;
 
 /// A random number of mean 0 that is forgotten with a time constant (Ornstein and Uhlenbeck's process), in units of its
 /// standard deviation. It begins drawn from its distribution.

@@ -4,9 +4,9 @@ use super::delay::Delay;
 use super::memory::Memory;
 use super::noise::{Lasting, Walk};
 use crate::bytes::{Reader, push_doubles};
-use crate::numeric::random::SplitMix64;
 use crate::pad::device::Device;
 use crate::quantity::CHANNELS;
+use tactpad_numeric::random::SplitMix64;
 
 /// Strain that is remembered, signals on their way, noise, and how old the pad is.
 #[derive(Clone, Debug)]

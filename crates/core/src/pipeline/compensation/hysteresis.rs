@@ -7,8 +7,8 @@
 //! Source: M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis (1989), section 2; the inverse is that of K.
 //! Kuhnen, Eur. J. Control 9 (2003) 407.
 
-use crate::numeric::memory::pulled;
 use crate::quantity::CHANNELS;
+use tactpad_numeric::memory::pulled;
 
 /// How many play operators a channel has.
 pub const PLAYS: usize = 2;
@@ -98,7 +98,7 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::random::SplitMix64;
+    use tactpad_numeric::random::SplitMix64;
 
     fn hysteresis() -> Hysteresis {
         let play = |threshold_uv: f64, share: f64| PlayOperators {

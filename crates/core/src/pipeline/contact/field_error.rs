@@ -17,9 +17,9 @@
 //! the field covers, for all that is smooth.
 
 use super::uncertainty::{Covariance, UNKNOWNS};
-use crate::numeric::zernike;
 use crate::pad::influence::MAPS;
 use crate::quantity::CHANNELS;
+use tactpad_numeric::zernike;
 
 /// Degree of the polynomials: that of the background of a calibration. With the mixture beside them it holds displaced modules, too.
 pub const DEGREE: usize = 5;

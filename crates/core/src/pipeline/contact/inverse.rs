@@ -9,9 +9,9 @@
 
 use super::field_error::{FieldError, FieldPoint};
 use super::uncertainty::{Covariance, Estimate, Linear, Noise, UNKNOWNS, Variances};
-use crate::numeric::linear::Factor;
 use crate::pad::influence::{Gains, InfluenceField};
 use crate::quantity::{CHANNELS, Contact, Strain};
+use tactpad_numeric::linear::Factor;
 
 /// Steps at most, the first one included.
 const STEPS_MAX: usize = 8;
@@ -460,8 +460,8 @@ mod tests {
     use std::sync::OnceLock;
 
     use super::*;
-    use crate::numeric::random::SplitMix64;
     use crate::pad::field::PadField;
+    use tactpad_numeric::random::SplitMix64;
 
     const NOISE: Noise = Noise::of_channels([6.0; CHANNELS], [0.01; CHANNELS]);
 

@@ -1,7 +1,7 @@
 //! How sure a decoded contact is: the channels' noise, and what a calibration does not know.
 
-use crate::numeric::linear::Factor;
 use crate::quantity::{CHANNELS, Contact};
+use tactpad_numeric::linear::Factor;
 
 /// The unknowns: x, y in mm; Fx, Fy, Fz in N.
 pub const UNKNOWNS: usize = 5;

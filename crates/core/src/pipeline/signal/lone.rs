@@ -17,9 +17,9 @@ pub fn lone_channel(uv: &[f64; CHANNELS]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::random::SplitMix64;
     use crate::pad::field::PadField;
     use crate::quantity::Contact;
+    use tactpad_numeric::random::SplitMix64;
 
     #[test]
     fn no_finger_reads_on_one_or_two_channels_alone() {

@@ -187,7 +187,7 @@ mod tests {
     use super::super::zero::ZERO;
     use super::super::{Label, Row};
     use super::*;
-    use crate::numeric::random::SplitMix64;
+    use tactpad_numeric::random::SplitMix64;
 
     fn row(fz_n: f64, uv: f64) -> Row {
         Row { uv: Some([uv; CHANNELS]), ..Row::of(Label { fz_n, ..Label::default() }) }

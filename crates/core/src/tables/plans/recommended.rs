@@ -3,9 +3,9 @@
 //! `docs/protocol.md` says which part tells which causes apart.
 
 use super::{Load, PlanDraft, label, polar_mm};
-use crate::numeric::random::SplitMix64;
 use crate::pad::device::Patch;
 use crate::tables::measured::{Approach, Label, Table};
+use tactpad_numeric::random::SplitMix64;
 
 /// The session of the contacts that are all different.
 pub const SPREAD: &str = "spread";

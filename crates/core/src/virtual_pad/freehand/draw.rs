@@ -1,7 +1,7 @@
 //! Random numbers as a hand needs them.
 
-use crate::numeric::random::SplitMix64;
 use crate::quantity::Contact;
+use tactpad_numeric::random::SplitMix64;
 
 /// Draws.
 #[derive(Clone, Debug)]

@@ -9,9 +9,9 @@ use crate::calibration::model::prior_deviations::ParameterKind;
 use crate::calibration::model::{CERTAIN, ParameterLayout};
 use crate::calibration::noise::normal_equations::NormalEquations;
 use crate::calibration::problem::Problem;
-use tactpad_core::numeric::linear::Reduced;
 use tactpad_core::pipeline::compensation::hysteresis::PLAYS;
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::linear::Reduced;
 
 /// Steps to where contacts are by known parameters.
 const RELOCATIONS: usize = 8;

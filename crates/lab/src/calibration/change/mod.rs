@@ -37,11 +37,11 @@ use crate::calibration::data::earlier::EarlierCalibration;
 use crate::calibration::fit::prepared::PreparedRecording;
 use crate::calibration::fit::search::{NOISE_TIMES_S, Report};
 use crate::calibration::model::prior::Prior;
-use tactpad_core::numeric::products::dot;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pipeline::contact::inverse::own_uv;
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::products::dot;
 
 /// Every so many contacts settle the settings of the fit, which is tried for many of them.
 const SETTLING_STRIDE: usize = 2;

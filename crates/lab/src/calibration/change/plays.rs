@@ -1,8 +1,8 @@
 //! Plays that are compared, the changes that are asked for, and what comes of it.
 
 use crate::calibration::data::contacts::{Fitted, Maps};
-use tactpad_core::numeric::linear::Reduced;
 use tactpad_core::tables::recording::Recording;
+use tactpad_numeric::linear::Reduced;
 
 /// Estimate of the changes before a play.
 #[derive(Clone, Debug)]

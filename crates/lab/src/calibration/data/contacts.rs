@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::rig::WrittenLabel;
-use tactpad_core::numeric::products::dot;
-use tactpad_core::numeric::zernike::{Jet, jets, norms};
 use tactpad_core::pad::field::{PadField, Sensitivity};
 use tactpad_core::pipeline::compensation::hysteresis::PLAYS;
 use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
 use tactpad_core::quantity::{CHANNELS, Contact};
 use tactpad_core::tables::measured::Row;
+use tactpad_numeric::products::dot;
+use tactpad_numeric::zernike::{Jet, jets, norms};
 
 /// Degree of the background's polynomials: features of some 10 mm.
 pub(crate) const BACKGROUND_DEGREE: usize = 5;

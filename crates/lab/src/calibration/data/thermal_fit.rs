@@ -3,11 +3,11 @@
 //! Those of the zeros are slopes of straight lines through the readings of the untouched pad, by least squares. Those of the
 //! gains are parameters of the fit.
 
-use tactpad_core::numeric::statistics::mean;
 use tactpad_core::pipeline::compensation::thermal::Thermal;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::measured::Row;
 use tactpad_core::tables::recording::Recording;
+use tactpad_numeric::statistics::mean;
 
 /// Least span of temperatures that tells a coefficient.
 const SPAN_MIN_C: f64 = 1.0;

@@ -3,12 +3,12 @@
 use crate::calibration::data::contacts::{FieldAtPlace, Knowledge, Measured};
 use crate::calibration::model::ParameterLayout;
 use crate::calibration::problem::{PosteriorFit, Problem};
-use tactpad_core::numeric::products::dot;
 use tactpad_core::pad::influence::{InfluenceField, MAPS};
 use tactpad_core::pipeline::compensation::creep::Creep;
 use tactpad_core::pipeline::compensation::hysteresis::Hysteresis;
 use tactpad_core::pipeline::compensation::thermal::Thermal;
 use tactpad_core::quantity::{CHANNELS, Strain};
+use tactpad_numeric::products::dot;
 
 impl PosteriorFit {
     /// Posterior standard deviation of a parameter.

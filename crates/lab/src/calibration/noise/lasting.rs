@@ -15,9 +15,9 @@
 
 use super::normal_equations::NormalEquations;
 use super::residual::{MarginalPrecision, Residual};
-use tactpad_core::numeric::linear::Factor;
-use tactpad_core::numeric::products::{combined, dot};
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::linear::Factor;
+use tactpad_numeric::products::{combined, dot};
 
 type Matrix = [[f64; CHANNELS]; CHANNELS];
 
@@ -232,9 +232,9 @@ mod tests {
     use crate::calibration::data::contacts::Knowledge;
     use crate::calibration::noise::NoisePrior;
     use crate::calibration::noise::model::NoiseModel;
-    use tactpad_core::numeric::linear::Symmetric;
-    use tactpad_core::numeric::random::SplitMix64;
     use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
+    use tactpad_numeric::linear::Symmetric;
+    use tactpad_numeric::random::SplitMix64;
 
     const CONTACTS: usize = 6;
     const WANDER: Wander = Wander { time_s: 2.0, deviation: [0.03; CHANNELS] };

@@ -8,13 +8,13 @@ pub(crate) mod model;
 pub(crate) mod normal_equations;
 pub(crate) mod residual;
 
-use tactpad_core::numeric::linear::Factor;
-use tactpad_core::numeric::simd::widest;
 use tactpad_core::pad::influence::InfluenceField;
 use tactpad_core::pipeline::compensation::hysteresis::Hysteresis;
 use tactpad_core::pipeline::contact::inverse::{Expected, Inverse};
 use tactpad_core::pipeline::contact::uncertainty::{Covariance, Noise, UNKNOWNS};
 use tactpad_core::quantity::{CHANNELS, Contact, Strain};
+use tactpad_numeric::linear::Factor;
+use tactpad_numeric::simd::widest;
 
 /// Readings with the standard deviations below that the prior of the noise counts as.
 const PSEUDO_READINGS: f64 = 10.0;
@@ -344,7 +344,7 @@ fn sum(terms: &[f64; PARTS], parts: &[f64; PARTS]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::numeric::random::SplitMix64;
+    use tactpad_numeric::random::SplitMix64;
 
     #[test]
     fn all_parts_are_found() {

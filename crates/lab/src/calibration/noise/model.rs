@@ -15,10 +15,10 @@ use super::lasting::{Smoothed, Wander};
 use super::residual::{MarginalPrecision, Residual};
 use super::{NoisePrior, SquaredResidual};
 use crate::calibration::data::contacts::Knowledge;
-use tactpad_core::numeric::linear::Factor;
-use tactpad_core::numeric::products::dot;
 use tactpad_core::pipeline::contact::uncertainty::{Noise, UNKNOWNS};
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::linear::Factor;
+use tactpad_numeric::products::dot;
 
 /// Contacts with the standard deviations below that the prior of the label errors counts as.
 const PSEUDO_CONTACTS: f64 = 6.0;
@@ -278,7 +278,7 @@ fn projected(residual: &Residual, weights: &[f64; CHANNELS]) -> [f64; UNKNOWNS] 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::numeric::random::SplitMix64;
+    use tactpad_numeric::random::SplitMix64;
 
     /// Residuals of channels with noise, and of labels with errors.
     fn residuals(place_mm: f64, force_n: f64) -> Vec<Residual> {

@@ -7,9 +7,9 @@
 //! P are the precisions of the prior and m its mean. The first sums are over contacts, with the residuals r of nine channels,
 //! their covariance V and A = ∂f/∂θ; the second ones over single numbers with a variance σ² and derivatives a.
 
-use tactpad_core::numeric::linear::{LargeFactor, Reduced, Symmetric};
-use tactpad_core::numeric::products::dot;
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::linear::{LargeFactor, Reduced, Symmetric};
+use tactpad_numeric::products::dot;
 
 /// So many products are collected before they go into H, which is larger than a processor's cache.
 const COLLECTED: usize = 72;

@@ -1,9 +1,9 @@
 //! A contact's residual, and the inverse covariance of it: what the fit sums over.
 
 use crate::calibration::data::contacts::Knowledge;
-use tactpad_core::numeric::products::dot;
 use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::products::dot;
 
 /// A contact's residual r = y − f(θ).
 #[derive(Clone, Debug)]

@@ -33,14 +33,14 @@ use crate::calibration::noise::lasting::Filter;
 use crate::calibration::noise::model::NoiseModel;
 use crate::calibration::noise::normal_equations::{GaussNewtonStep, NormalEquations};
 use crate::calibration::noise::residual::{MarginalPrecision, Residual};
-use tactpad_core::numeric::linear::LargeFactor;
-use tactpad_core::numeric::products::{combined, dot};
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::Sensitivity;
 use tactpad_core::pipeline::compensation::hysteresis::PLAYS;
 use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::recording::Recording;
+use tactpad_numeric::linear::LargeFactor;
+use tactpad_numeric::products::{combined, dot};
 
 /// Most Gauss-Newton steps of a fit; the channels are nearly linear in the parameters.
 const STEPS_MAX: usize = 12;

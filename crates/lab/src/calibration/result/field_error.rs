@@ -11,16 +11,16 @@ use crate::calibration::data::plate::{loads, places};
 use crate::calibration::model::ParameterLayout;
 use crate::calibration::noise::{self, FieldCovariance};
 use crate::calibration::problem::{PosteriorFit, Problem};
-use tactpad_core::numeric::dense::{Matrix, gram};
-use tactpad_core::numeric::linear::{Factor, LargeFactor};
-use tactpad_core::numeric::principal::{Principal, beside, principal_directions};
-use tactpad_core::numeric::products::dot;
-use tactpad_core::numeric::zernike;
 use tactpad_core::pad::influence::{InfluenceField, MAPS};
 use tactpad_core::pipeline::contact::field_error::{DEGREE, ErrorMode, FieldError, MODES_MAX, TERMS};
 use tactpad_core::pipeline::contact::inverse::Inverse;
 use tactpad_core::pipeline::contact::uncertainty::{Noise, UNKNOWNS};
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::dense::{Matrix, gram};
+use tactpad_numeric::linear::{Factor, LargeFactor};
+use tactpad_numeric::principal::{Principal, beside, principal_directions};
+use tactpad_numeric::products::dot;
+use tactpad_numeric::zernike;
 
 /// So much of a decoded contact's variance may be left out of the modes: it is then counted alike all over the plate.
 const LEFT_SHARE: f64 = 0.01;
@@ -339,7 +339,6 @@ mod tests {
     use crate::calibration::model::prior::Prior;
     use crate::calibration::problem::effort::Effort;
     use crate::calibration::problem::hyperparameters::Settings;
-    use tactpad_core::numeric::random::SplitMix64;
     use tactpad_core::pad::device::Device;
     use tactpad_core::pad::field::PadField;
     use tactpad_core::pipeline::compensation::hysteresis::PLAYS;
@@ -348,6 +347,7 @@ mod tests {
     use tactpad_core::quantity::{Contact, Strain};
     use tactpad_core::tables::measured::{Label, Row, Table};
     use tactpad_core::tables::recording::Recording;
+    use tactpad_numeric::random::SplitMix64;
 
     const NOISE_UV: f64 = 10.0;
     const SETTINGS: Settings = Settings {

@@ -8,9 +8,9 @@ use crate::calibration::model::physical::Physical;
 use crate::calibration::problem::PosteriorFit;
 use crate::diagnosis::data::target::Target;
 use crate::effect::Effect;
-use tactpad_core::numeric::products::dot;
 use tactpad_core::pipeline::compensation::hysteresis::PLAYS;
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::products::dot;
 
 /// The contacts tell a number whose posterior variance is at most this part of the prior's.
 ///

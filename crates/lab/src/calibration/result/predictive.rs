@@ -9,8 +9,8 @@
 
 use crate::calibration::data::contacts::Knowledge;
 use crate::calibration::problem::ExplainedContact;
-use tactpad_core::numeric::chi_square::exceeded;
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::chi_square::exceeded;
 
 /// Parts of each kind.
 pub const PARTS: usize = 3;
@@ -109,8 +109,8 @@ fn square(contact: &ExplainedContact) -> f64 {
 mod tests {
     use super::*;
     use crate::calibration::noise::residual::{MarginalPrecision, Residual};
-    use tactpad_core::numeric::random::SplitMix64;
     use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
+    use tactpad_numeric::random::SplitMix64;
 
     /// Contacts with noise of 1, and of `rim` beyond 20 mm.
     fn contacts(rim: f64, knowledge: Knowledge, seed: u64) -> Vec<ExplainedContact> {

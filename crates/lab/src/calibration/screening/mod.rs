@@ -24,11 +24,11 @@ use crate::calibration::data::contacts::{FieldAtPlace, Maps, response};
 use crate::calibration::data::plate::{PLACES, places};
 use crate::calibration::model::physical::free;
 use crate::calibration::model::prior_deviations::{GAIN_DEVIATION, ParameterKind, PriorDeviations};
-use tactpad_core::numeric::statistics::median;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
 use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS, Contact};
 use tactpad_core::tables::measured::Row;
+use tactpad_numeric::statistics::median;
 
 /// Normal quantile of one in a thousand.
 const QUANTILE: f64 = 3.09;

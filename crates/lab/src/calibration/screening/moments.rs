@@ -1,7 +1,7 @@
 //! Sums over contacts of what channels read, of the strains that they should have, and of all products.
 
-use tactpad_core::numeric::linear::Factor;
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::linear::Factor;
 
 /// Strains first, then readings.
 const VARIABLES: usize = 2 * CHANNELS;

@@ -11,9 +11,10 @@
 
 use super::columns::Columns;
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::model::{Hypothesis, Parameter};
+use crate::diagnosis::label::Hypothesis;
 use crate::diagnosis::report::NotTestable;
 use crate::effect::Effect;
+use tactpad_inference::hypothesis::Parameter;
 
 /// Kind of change of a hypothesis.
 #[derive(Clone, Debug, PartialEq)]
@@ -170,7 +171,7 @@ pub(super) fn hypotheses(
     }
     let all = all.into_iter().filter(|(effect, ..)| asks_for(*effect));
     all.map(|(effect, target, parameters, act)| {
-        (Hypothesis { effect, target, parameters, signature_error: 0.0 }, act)
+        (Hypothesis { label: (effect, target), parameters, signature_error: 0.0, zero_of: None }, act)
     })
     .collect()
 }

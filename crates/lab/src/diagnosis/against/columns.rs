@@ -1,9 +1,9 @@
 //! Which columns of two tables are labels and which are channels.
 
 use super::unfit::ComparisonError;
-use crate::diagnosis::statistics::regression::Group;
 use crate::effect::Effect;
 use tactpad_core::tables::measured::sheet::Sheet;
+use tactpad_inference::regression::Group;
 
 /// Labels by which channels are predicted: those of a group share one length.
 const PLACES: [&[&str]; 2] = [&["x_mm", "y_mm"], &["z_mm"]];

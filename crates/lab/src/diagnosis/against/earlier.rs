@@ -6,10 +6,10 @@
 use super::columns::{Columns, extent};
 use super::recording::Recording;
 use super::unfit::{ComparisonError, ROWS_MIN};
-use crate::diagnosis::data::observations::Sample;
-use crate::diagnosis::model::Signature;
-use crate::diagnosis::statistics::regression::{Labels, Regression, RegressionFit};
-use tactpad_core::numeric::statistics::{mean, population_deviation, rms};
+use tactpad_inference::model::Signature;
+use tactpad_inference::observations::Sample;
+use tactpad_inference::regression::{Labels, Regression, RegressionFit};
+use tactpad_numeric::statistics::{mean, population_deviation, rms};
 
 /// Parts that a recording is held against itself in.
 pub(super) const PARTS: usize = 6;
@@ -121,7 +121,7 @@ impl EarlierRecording {
                 } else {
                     0.0
                 };
-                tactpad_core::numeric::products::dot(&it.spread, &with) + warm
+                tactpad_numeric::products::dot(&it.spread, &with) + warm
             })
         };
         self.channels.iter().map(signal).collect()
@@ -324,7 +324,7 @@ fn centred(recording: &Recording, channel: usize) -> Vec<f64> {
 
 /// Fewer columns with the same products between rows, but for less than `least` in any row: pivoted factorisation.
 fn leading(rows: &[Vec<f64>], least: f64) -> Vec<Vec<f64>> {
-    use tactpad_core::numeric::products::dot;
+    use tactpad_numeric::products::dot;
     let mut left: Vec<f64> = rows.iter().map(|row| dot(row, row)).collect();
     let mut columns: Vec<Vec<f64>> = Vec::new();
     while columns.len() < ERRORS_MAX {

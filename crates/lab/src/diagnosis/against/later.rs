@@ -4,9 +4,10 @@ use super::change::{ChangeKind, Changes, Circumstances, hypotheses};
 use super::columns::{ColumnSelection, Columns};
 use super::earlier::{EarlierRecording, PARTS, counted};
 use super::recording::Recording;
-use crate::diagnosis::data::observations::Sample;
-use crate::diagnosis::model::{CommonError, Hypothesis, Linearised, Model, Signature};
-use tactpad_core::numeric::statistics::rms;
+use crate::diagnosis::label::{Hypothesis, Label};
+use tactpad_inference::model::{CommonError, Linearised, Model, Signature};
+use tactpad_inference::observations::Sample;
+use tactpad_numeric::statistics::rms;
 
 /// Readings that change by less than this part of the largest reading do not change.
 const NOTHING: f64 = 1e-9;
@@ -263,7 +264,7 @@ impl<'r> LaterRecording<'r> {
     }
 }
 
-impl Model for LaterRecording<'_> {
+impl Model<Label> for LaterRecording<'_> {
     fn hypotheses(&self) -> &[Hypothesis] {
         &self.hypotheses
     }

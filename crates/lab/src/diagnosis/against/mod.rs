@@ -21,17 +21,17 @@ use self::recording::Recording;
 use self::standing::standing;
 pub use self::unfit::ComparisonError;
 use self::unfit::{BLOCKS_MIN, ROWS_MIN};
-use crate::diagnosis::attribution::Search;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::checks::excess::excess;
 use crate::diagnosis::gatekeepers::{self, Gate, guarded};
-use crate::diagnosis::model::Model;
+use crate::diagnosis::label::{Label, Search};
 use crate::diagnosis::report::{Diagnosis, Finding, Notice};
 use crate::diagnosis::validation::gain::Rows;
 use crate::diagnosis::{summary, with_gatekeepers};
 use crate::effect::Effect;
-use tactpad_core::numeric::statistics::mean;
 use tactpad_core::tables::measured::sheet::Sheet;
+use tactpad_inference::model::Model;
+use tactpad_numeric::statistics::mean;
 
 /// Fewest rows of a time series in which the labels' clock shows.
 const SERIES_MIN: usize = 50;
@@ -142,7 +142,7 @@ fn told(
     let search = Search::new(&model, all, &open.observations);
     let found = search.run(&Vec::new()).ok_or(ComparisonError::Singular)?;
     let rows = [(&model, &open), (&at_locked, &locked)].map(|(model, part)| Rows {
-        model: model as &dyn Model,
+        model: model as &dyn Model<Label>,
         observations: &part.observations,
         unrepaired: None,
     });

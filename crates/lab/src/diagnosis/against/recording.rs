@@ -1,9 +1,9 @@
 //! A recording of any sensor as observations, and the labels that its channels are predicted by.
 
 use super::columns::Columns;
-use crate::diagnosis::data::observations::{Observations, Sample};
-use tactpad_core::numeric::statistics::median;
 use tactpad_core::tables::measured::sheet::Sheet;
+use tactpad_inference::observations::{Observations, Sample};
+use tactpad_numeric::statistics::median;
 
 /// Places nearer to each other than this are one location.
 const LOCATION_MM: f64 = 0.25;

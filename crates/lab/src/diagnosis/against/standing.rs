@@ -4,11 +4,12 @@
 //! smaller, each channel's in units of its noise, and by more than these gains scatter from cluster to cluster. What does not is no
 //! chance, as the tests have it, but no name either: it is unnamed.
 
-use crate::diagnosis::attribution::{Applied, Attribution, Search};
+use crate::diagnosis::label::Search;
 use crate::diagnosis::report::{Diagnosis, Finding};
-use crate::diagnosis::validation::gain::{Rows, rmse};
+use crate::diagnosis::validation::gain::{Rows, gain, rmse};
 use crate::diagnosis::verdict;
 use crate::effect::Effect;
+use tactpad_inference::search::{Applied, Attribution};
 
 /// So many standard errors of its mean a gain must be.
 const STANDS: f64 = 2.5;
@@ -23,9 +24,7 @@ pub(super) fn standing(
     let noise = diagnosis.residuals.noise.clone();
     let hypotheses = open.model.hypotheses();
     let place = |finding: &Finding| {
-        let is_it = |(at, _): &(usize, Vec<f64>)| {
-            hypotheses[*at].effect == finding.effect && hypotheses[*at].target == finding.target
-        };
+        let is_it = |(at, _): &(usize, Vec<f64>)| hypotheses[*at].label == (finding.effect, finding.target);
         found.fit.applied.iter().position(is_it)
     };
     let mut withdrawn: Vec<Finding> = Vec::new();
@@ -52,7 +51,7 @@ pub(super) fn standing(
     let told: Applied = places.map(|at| found.fit.applied[at].clone()).collect();
     diagnosis.rmse_extended = rmse(open, &told, &open.zeros(&told));
     diagnosis.residuals.extended = open.centred(&told);
-    diagnosis.gain = search.gain(&found.fit, [open, locked], &told);
+    diagnosis.gain = gain(search, &found.fit, [open, locked], &told);
     let unnamed: f64 = withdrawn.iter().map(|finding| finding.share).sum();
     diagnosis.unnamed_share = (diagnosis.unnamed_share + unnamed).min(1.0);
     diagnosis.verdict = verdict(&diagnosis.findings, diagnosis.unnamed_share);

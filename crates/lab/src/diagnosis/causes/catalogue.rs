@@ -6,8 +6,8 @@ use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::memory::{ChannelFriction, Prony};
 use crate::diagnosis::model::setting::Setting;
-use crate::diagnosis::model::{Coordinate, Parameter, with_shapes};
 use crate::effect::Effect;
+use tactpad_inference::hypothesis::{Coordinate, Parameter, with_shapes};
 
 /// Height of the loop of a full stroke, as a share of full scale, and its course. What a height is a share of is the model's full
 /// scale, which is no better known than to 0.8 %. Nobody writes from how far above a static load came, so that is fitted, too.

@@ -1,11 +1,11 @@
 //! What a row of the catalogue says of a cause.
 
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::model::Parameter;
 use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::memory::Dwells;
 use crate::diagnosis::model::setting::Setting;
 use crate::effect::Effect;
+use tactpad_inference::hypothesis::Parameter;
 
 /// Where in the chain a cause acts first. What lies before it need not be computed anew.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,4 @@
-//! Observations, and the rows, channels and quantities that they are about.
+//! Observations of the pad, and where on it causes act.
 
-pub(crate) mod noise;
-pub mod observations;
+pub(crate) mod observed;
 pub mod target;

@@ -1,10 +1,10 @@
 //! Observations on their way through the checks, and what checks do with them.
 
-use crate::diagnosis::data::observations::Observations;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Finding, NotDetected, NotTestable, Notice};
 use crate::effect::Effect;
-use tactpad_core::numeric::statistics::mean;
+use tactpad_inference::observations::Observations;
+use tactpad_numeric::statistics::mean;
 
 /// Probability by which a check may find anything in a sound recording.
 pub(super) const LEVEL: f64 = 1e-3;

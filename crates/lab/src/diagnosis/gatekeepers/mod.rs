@@ -13,8 +13,8 @@ pub(crate) mod prediction;
 
 use self::checks::{clipping, clock, dead, mains, missing, rates, steps, stuck, wiring};
 pub(super) use self::gate::Gate;
-use crate::diagnosis::data::observations::Observations;
 use crate::effect::Effect;
+use tactpad_inference::observations::Observations;
 
 type Check = fn(&mut Gate);
 /// Checks of the table, in their order: times before series, codes before anything that calculates.

@@ -1,10 +1,10 @@
 //! Recordings with faults of their own: three channels of a made-up sensor, none of them a pad's.
 
 use super::*;
-use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::data::target::Target;
 use crate::effect::Effect;
-use tactpad_core::numeric::random::SplitMix64;
+use tactpad_inference::observations::Sample;
+use tactpad_numeric::random::SplitMix64;
 
 /// Three channels under loads of three axes, static, and what they should read.
 fn pressed(rows: usize) -> (Observations, Vec<Vec<f64>>) {

@@ -17,9 +17,9 @@
 use super::memory::MemoryChain;
 use super::setting::Setting;
 use crate::ageing::aged;
-use crate::diagnosis::data::observations::Sample;
 use crate::rig::errors::RigErrors;
 use tactpad_core::pad::device::Side;
+use tactpad_inference::observations::Sample;
 
 /// Parameters of the chain in the contact and the mechanics.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,7 +10,8 @@
 //! load, and goes on from those that misfit least: nothing is known of what was written. (K. Levenberg, Quarterly of Applied
 //! Mathematics 2 (1944) 164, for the curvature that grows until a step makes it better.)
 
-use tactpad_core::numeric::linear::Factor;
+use tactpad_inference::model::Written;
+use tactpad_numeric::linear::Factor;
 
 /// A contact's numbers.
 pub(crate) const UNKNOWNS: usize = 5;
@@ -31,9 +32,6 @@ const BY_LOAD: f64 = 0.05;
 /// Damping factor: a failed step multiplies the added curvature by it, a good one divides.
 const DAMPING: f64 = 8.0;
 const DAMPING_FIRST: f64 = 1e-3;
-
-/// x, y, and the loads.
-pub(crate) type Written = [f64; UNKNOWNS];
 
 /// A model that can say what any contact reads.
 pub(crate) trait Forward {

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::setting::Change;
-use tactpad_core::numeric::zernike::{Jet, Polynomial, count, jets};
 use tactpad_core::pad::changes::{FieldChange, Flaw};
 use tactpad_core::pad::device::unit::Unit;
 use tactpad_core::pad::device::{Device, Side, Stack};
 use tactpad_core::pad::field::{ForceMaps, PadField, Sensitivity};
 use tactpad_core::pad::influence::{InfluenceField, MAPS};
 use tactpad_core::quantity::{CHANNELS, MODULES};
+use tactpad_numeric::zernike::{Jet, Polynomial, count, jets};
 
 /// Per channel, what a unit force along each axis gives.
 pub(crate) type Maps = [[f64; 3]; CHANNELS];

@@ -7,9 +7,9 @@
 //! with play operators p (Prandtl and Ishlinskii) and a Prony series, in the order of the rows. A static load comes from rest, or
 //! down from a higher one, and was held; a series begins at rest.
 
-use crate::diagnosis::data::observations::Sample;
-use tactpad_core::numeric::memory::{low_passed, pulled};
 use tactpad_core::tables::measured::Label;
+use tactpad_inference::observations::Sample;
+use tactpad_numeric::memory::{low_passed, pulled};
 
 /// Friction in one channel.
 #[derive(Clone, Copy, Debug, PartialEq)]

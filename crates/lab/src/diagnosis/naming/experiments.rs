@@ -3,8 +3,8 @@
 //! Each is a set of rows that nobody measured yet, what changes in how causes act on them, and what it costs. Or it is a dimension that
 //! is measured by hand: that tells of a cause's numbers directly.
 
-use crate::diagnosis::data::observations::{Observations, Sample};
 use crate::effect::Effect;
+use tactpad_inference::observations::{Observations, Sample};
 
 /// Seconds that a contact takes, to reach and to hold; the rows to repeat are those of one location in so many, and no more than this.
 const CONTACT_S: f64 = 6.0;

@@ -18,19 +18,20 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::POWER;
 use super::experiments::{Experiment, catalogue};
-use crate::diagnosis::attribution::{Attribution, Search};
-use crate::diagnosis::data::observations::Sample;
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::model::{CommonError, Linearised, Signature};
+use crate::diagnosis::label::Search;
 use crate::diagnosis::report::INSEPARABLE;
-use crate::diagnosis::statistics::equations::NormalEquations;
-use crate::diagnosis::statistics::system::ChannelSystem;
-use crate::diagnosis::statistics::whitening::Whitening;
 use crate::effect::Effect;
-use tactpad_core::numeric::chi_square;
-use tactpad_core::numeric::dense::Matrix;
+use tactpad_inference::covariance::equations::NormalEquations;
+use tactpad_inference::covariance::system::ChannelSystem;
+use tactpad_inference::covariance::whitening::Whitening;
+use tactpad_inference::model::{CommonError, Linearised, Signature};
+use tactpad_inference::observations::Sample;
+use tactpad_inference::policy::POWER;
+use tactpad_inference::search::Attribution;
+use tactpad_numeric::chi_square;
+use tactpad_numeric::dense::Matrix;
 
 /// No measurement is asked for more often than this.
 const REPEATS_MAX: usize = 30;
@@ -94,10 +95,7 @@ impl<'s, 'm> Separation<'s, 'm> {
     /// The measurement that separates the fitted cause at this place from its rivals, as a sentence; none where the model cannot say.
     pub(crate) fn told(&self, at: usize, rivals: &[(Effect, Target)]) -> Option<String> {
         let hypotheses = self.search.model.hypotheses();
-        let is_rival = |number: &usize| {
-            let it = &hypotheses[*number];
-            rivals.contains(&(it.effect, it.target))
-        };
+        let is_rival = |number: &usize| rivals.contains(&hypotheses[*number].label);
         let rivals: Vec<usize> = (0..hypotheses.len()).filter(is_rival).collect();
         if rivals.is_empty() {
             return None;
@@ -170,7 +168,7 @@ impl<'s, 'm> JointRows<'s, 'm> {
     /// A hypothesis' columns here and there.
     fn hypothesis(&self, number: usize) -> Vec<CausePair> {
         let Experiment { silent, by_hand, .. } = self.experiment;
-        let effect = self.search.model.hypotheses()[number].effect;
+        let (effect, _) = self.search.model.hypotheses()[number].label;
         let present = self.found.fit.linearised.signatures[number].clone();
         let mut further = self.further.signatures[number].clone();
         if silent.contains(&effect) {
@@ -332,14 +330,15 @@ fn left(fisher: &Matrix, cause: &[usize], psi: &[f64], free: Vec<usize>) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::attribution::atlas::Atlas;
-    use crate::diagnosis::data::observations::{Observations, Sample};
-    use crate::diagnosis::model::Model;
+    use crate::diagnosis::label::Hypothesis;
+    use crate::diagnosis::simulation::atlas::Atlas;
     use crate::tangent::SimulatedPad;
-    use tactpad_core::numeric::random::SplitMix64;
     use tactpad_core::pad::device::Device;
     use tactpad_core::pad::field::PadField;
     use tactpad_core::quantity::CHANNELS;
+    use tactpad_inference::model::Model;
+    use tactpad_inference::observations::{Observations, Sample};
+    use tactpad_numeric::random::SplitMix64;
 
     /// 72 places, three loads each.
     fn contacts() -> Observations {
@@ -369,7 +368,7 @@ mod tests {
         let pad = SimulatedPad::known(&device, &field);
         let unread = contacts();
         let model = Atlas::new(&pad, &[], &unread, &unread);
-        let at = model.hypotheses().iter().position(|it| it.effect == cause.0).unwrap();
+        let at = model.hypotheses().iter().position(|it| it.label.0 == cause.0).unwrap();
         let numbers = model.hypotheses()[at].parameters.iter().zip(cause.1);
         let applied = vec![(at, numbers.map(|(it, value)| it.coordinate(*value)).collect())];
         let mut random = SplitMix64::new(22);
@@ -381,9 +380,8 @@ mod tests {
         let model = Atlas::new(&pad, &[], &measured, &measured);
         let search = Search::new(&model, &measured, &measured);
         let found = Attribution { fit: search.fitted(&applied, None).unwrap(), critical: 1e-4 };
-        let of = |it: &&crate::diagnosis::model::Hypothesis| rivals.contains(&it.effect);
-        let rivals: Vec<(Effect, Target)> =
-            model.hypotheses().iter().filter(of).map(|it| (it.effect, it.target)).collect();
+        let of = |it: &&Hypothesis| rivals.contains(&it.label.0);
+        let rivals: Vec<(Effect, Target)> = model.hypotheses().iter().filter(of).map(|it| it.label).collect();
         let numbers: Vec<usize> =
             (0..model.hypotheses().len()).filter(|number| of(&&model.hypotheses()[*number])).collect();
         let separation = Separation::new(&search, &found);

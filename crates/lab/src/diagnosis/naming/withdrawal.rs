@@ -5,12 +5,14 @@
 //! name means little; and many findings at once, above all of one effect, for which one reason is likelier than as many. The latter two
 //! stay in the report as a set with `unlisted_cause`.
 
-use crate::diagnosis::attribution::{Attribution, Search};
+use super::findings;
 use crate::diagnosis::causes::catalogue::CATALOGUE;
 use crate::diagnosis::causes::cause::Cause;
 use crate::diagnosis::data::target::Target;
+use crate::diagnosis::label::Search;
 use crate::diagnosis::report::{Finding, INSEPARABLE};
 use crate::effect::Effect;
+use tactpad_inference::search::Attribution;
 
 /// A cause is named where it explains so many times what is left unexplained in the channels that tell of it,
 pub(crate) const OVER_NEAR: f64 = 10.0;
@@ -56,7 +58,7 @@ pub(crate) fn named(
         parts.into_iter().map(|part| part * finding.share * whole).collect()
     };
     let (mut candidates, mut unnamed_by_channel) = (Vec::new(), remainders);
-    for (place, finding) in search.findings(found, whole)? {
+    for (place, finding) in findings(search, found, whole)? {
         if finding.confounded_with.is_empty() && !search.holds_throughout(fit, place)? {
             add(&mut unnamed_by_channel, &squares(place, &finding));
         } else {

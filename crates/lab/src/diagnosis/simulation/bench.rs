@@ -4,12 +4,12 @@ use rayon::prelude::*;
 
 use super::row::response;
 use super::simulated::Simulated;
-use crate::diagnosis::model::ChannelBaselines;
 use crate::diagnosis::model::chain::Chain;
-use crate::diagnosis::model::inverse::{Forward, Inverse, UNKNOWNS, Weighted, Written};
+use crate::diagnosis::model::inverse::{Forward, Inverse, UNKNOWNS, Weighted};
 use crate::diagnosis::model::mechanics::Maps;
 use tactpad_core::pad::influence::InfluenceField;
 use tactpad_core::quantity::CHANNELS;
+use tactpad_inference::model::{ChannelBaselines, Written};
 
 /// A pad under a chain.
 struct Bench<'s, 'f> {
@@ -83,18 +83,18 @@ impl Forward for Bench<'_, '_> {
 #[cfg(test)]
 mod tests {
     use crate::diagnosis::Applied;
-    use crate::diagnosis::attribution::atlas::Atlas;
-    use crate::diagnosis::data::noise::Noise;
-    use crate::diagnosis::data::observations::{Observations, Sample};
-    use crate::diagnosis::model::{ChannelBaselines, Model};
+    use crate::diagnosis::simulation::atlas::Atlas;
     use crate::effect::Effect;
     use crate::tangent::SimulatedPad;
-    use tactpad_core::numeric::random::SplitMix64;
-    use tactpad_core::numeric::statistics::mean;
     use tactpad_core::pad::changes::FieldChanges;
     use tactpad_core::pad::device::Device;
     use tactpad_core::pad::field::PadField;
     use tactpad_core::quantity::CHANNELS;
+    use tactpad_inference::model::{ChannelBaselines, Model};
+    use tactpad_inference::noise::Noise;
+    use tactpad_inference::observations::{Observations, Sample};
+    use tactpad_numeric::random::SplitMix64;
+    use tactpad_numeric::statistics::mean;
 
     /// Contacts all over the plate.
     fn contacts(count: usize) -> Observations {
@@ -123,7 +123,7 @@ mod tests {
         let written = contacts(60);
         let applied = |model: &Atlas<'_>, causes: &[(Effect, &[f64])]| -> Applied {
             let of = |(effect, values): &(Effect, &[f64])| {
-                let at = model.hypotheses().iter().position(|it| it.effect == *effect).unwrap();
+                let at = model.hypotheses().iter().position(|it| it.label.0 == *effect).unwrap();
                 let parameters = &model.hypotheses()[at].parameters;
                 (at, parameters.iter().zip(*values).map(|(it, value)| it.coordinate(*value)).collect())
             };

@@ -8,22 +8,24 @@ use super::own::own_chain;
 use super::row::{Row, continued, response};
 use crate::diagnosis::causes::catalogue::CATALOGUE;
 use crate::diagnosis::causes::cause::{Cause, ChainStage};
-use crate::diagnosis::data::observations::{Observations, Sample};
+use crate::diagnosis::data::target::Target;
+use crate::diagnosis::label::{Hypothesis, Label};
 use crate::diagnosis::model::chain::{Chain, Reference};
 use crate::diagnosis::model::mechanics::{Maps, at_places, changes, side_share};
 use crate::diagnosis::model::memory::{MemoryChain, RowSequence};
 use crate::diagnosis::model::setting::{Change, Setting};
-use crate::diagnosis::model::{
-    BACKGROUND_MAX, CommonError, Hypothesis, Linearised, Model, Parameter, SIGNATURE_ERROR, Signature,
-};
 use crate::diagnosis::report::NotTestable;
 use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
-use tactpad_core::numeric::statistics::rms;
 use tactpad_core::pad::device::{Device, Side};
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pad::influence::InfluenceField;
 use tactpad_core::quantity::{CHANNELS, MODULES};
+use tactpad_inference::hypothesis::Parameter;
+use tactpad_inference::model::{CommonError, Linearised, Model, Signature};
+use tactpad_inference::observations::{Observations, Sample};
+use tactpad_inference::policy::{BACKGROUND_MAX, SIGNATURE_ERROR};
+use tactpad_numeric::statistics::rms;
 
 /// Standard deviation of a factor that all modules' x, y or z channels share, of their answer to shear or to normal loads: the
 /// simulator's discretisation. Held against an independent solution: −0.5, −1.2 and +0.7 % of shear, +0.3, −0.1, +0.6 % of normal
@@ -84,9 +86,13 @@ impl<'f> Simulated<'f> {
         let is_asked = |cause: &&Cause| !without.contains(&cause.effect) && cause.missing(&setting).is_none();
         for cause in CATALOGUE.iter().filter(is_asked) {
             for target in cause.targets(&setting) {
+                let zero_of = match (cause.effect, target) {
+                    (Effect::ChannelOffset, Target::Channel(channel)) => Some(channel),
+                    _ => None,
+                };
                 hypotheses.push(Hypothesis {
-                    effect: cause.effect,
-                    target,
+                    zero_of,
+                    label: (cause.effect, target),
                     parameters: cause.parameters(&setting),
                     signature_error: if cause.stage == ChainStage::Channels { 0.0 } else { SIGNATURE_ERROR },
                 });
@@ -130,7 +136,7 @@ impl<'f> Simulated<'f> {
             let hypothesis = &self.hypotheses[*at];
             let values: Vec<f64> =
                 hypothesis.parameters.iter().zip(coordinates).map(|(it, psi)| it.value(*psi)).collect();
-            self.causes[*at].apply(&hypothesis.target, &values, &self.setting, &mut chain);
+            self.causes[*at].apply(&hypothesis.label.1, &values, &self.setting, &mut chain);
         }
         chain
     }
@@ -320,7 +326,7 @@ impl<'f> Simulated<'f> {
     }
 }
 
-impl Model for Simulated<'_> {
+impl Model<Label> for Simulated<'_> {
     fn hypotheses(&self) -> &[Hypothesis] {
         &self.hypotheses
     }
@@ -367,7 +373,7 @@ impl Model for Simulated<'_> {
             errors.push(CommonError { deviation: COMMON_ERROR, signature: signature.collect() });
         }
         for (effect, deviation) in ERRORS_LIKE {
-            let like = self.hypotheses.iter().position(|it| it.effect == effect);
+            let like = self.hypotheses.iter().position(|it| it.label.0 == effect);
             errors
                 .extend(like.map(|at| CommonError { deviation, signature: self.signature(&point, [at, 0]) }));
         }

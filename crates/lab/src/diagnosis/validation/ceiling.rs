@@ -8,10 +8,10 @@
 //! Source: M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (the discrepancy as a process).
 
 use super::gain::Rows;
-use crate::diagnosis::attribution::Applied;
-use crate::diagnosis::data::noise::Noise;
-use crate::diagnosis::data::observations::{Observations, Sample};
-use crate::diagnosis::statistics::regression::{Group, Labels, Regression};
+use tactpad_inference::noise::Noise;
+use tactpad_inference::observations::{Observations, Sample};
+use tactpad_inference::regression::{Group, Labels, Regression};
+use tactpad_inference::search::Applied;
 
 /// What can be removed is more than chance where it is so many standard errors.
 const SURE: f64 = 2.0;

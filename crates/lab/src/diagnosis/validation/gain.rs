@@ -1,18 +1,19 @@
 //! Gain of the findings on rows that had no part in finding them.
 
 use super::mean_square::{Draw, Population, Squares};
-use crate::diagnosis::attribution::{Applied, AttributionFit, Search};
-use crate::diagnosis::data::noise::Noise;
-use crate::diagnosis::data::observations::{Observations, Sample};
-use crate::diagnosis::model::{ChannelBaselines, Hypothesis, Model};
+use crate::diagnosis::label::{Label, Search};
 use crate::diagnosis::report::{Decoded, Gain, WithoutFinding};
-use tactpad_core::numeric::statistics::mean;
 use tactpad_core::tables::measured::zero::UNLOADED_N;
+use tactpad_inference::model::{ChannelBaselines, Model};
+use tactpad_inference::noise::Noise;
+use tactpad_inference::observations::{Observations, Sample};
+use tactpad_inference::search::{Applied, AttributionFit};
+use tactpad_numeric::statistics::mean;
 
 /// A model at rows, and what the rows read.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'r> {
-    pub(crate) model: &'r dyn Model,
+    pub(crate) model: &'r dyn Model<Label>,
     pub(crate) observations: &'r Observations,
     /// The same rows before anything in them was repaired; none where nothing was.
     pub(crate) unrepaired: Option<&'r Self>,
@@ -150,67 +151,70 @@ fn is_asked([open, locked]: [&Rows<'_>; 2], applied: &Applied) -> bool {
     is_changed && locked.observations.rows() > 0
 }
 
-impl Search<'_> {
-    /// The gain of `applied` on the locked rows; none where nothing was found. Zeros are those of the open ones.
-    pub(crate) fn gain(&self, fit: &AttributionFit, rows: [&Rows<'_>; 2], applied: &Applied) -> Option<Gain> {
-        if !is_asked(rows, applied) {
-            return None;
-        }
-        let [open, locked] = rows;
-        let measured = [open.measured(), locked.measured()];
-        let noise = &fit.systems.noise;
-        let expected = rows.map(|rows| self.expected(fit, rows));
-        let expected = ExpectedGain { readings: &expected, noise };
-        let squares = |applied: &Applied| squares(rows, applied, Some(&expected));
-        let (nothing, extended) = (Applied::new(), squares(applied));
-        // Nobody expected what was repaired.
-        let nominal = match open.unrepaired {
-            Some(_) => self::squares(measured, &nothing, None),
-            None => squares(&nothing),
-        };
-        let noise_squares = [(locked, &expected.readings[1]), (open, &expected.readings[0])]
-            .map(|(rows, at)| rows.noise_squares(at, noise));
-        let population = Population::of([measured[1].observations, measured[0].observations], noise_squares);
-        let ratio = |extended: &Squares, draw: &Draw| {
-            (population.mean(extended, draw) / population.mean(&nominal, draw)).sqrt()
-        };
-        let as_measured = population.as_measured();
-        let without = |at: usize| {
-            let others: Applied =
-                applied.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, it)| it.clone()).collect();
-            let Hypothesis { effect, target, .. } = self.model.hypotheses()[applied[at].0];
-            WithoutFinding { effect, target, rmse_ratio: ratio(&squares(&others), &as_measured) }
-        };
-        let [position_mae, force_mae] = decoded(measured, rows, applied, noise, &population);
-        Some(Gain {
-            rows_locked: locked.observations.rows(),
-            rmse_ratio: ratio(&extended, &as_measured),
-            rmse_ratio_interval95: population.interval95(|draw| ratio(&extended, draw)),
-            position_mae,
-            force_mae,
-            per_cause: (0..applied.len()).map(without).collect(),
-        })
+/// The gain of `applied` on the locked rows; none where nothing was found. Zeros are those of the open ones.
+pub(crate) fn gain(
+    search: &Search<'_>,
+    fit: &AttributionFit,
+    rows: [&Rows<'_>; 2],
+    applied: &Applied,
+) -> Option<Gain> {
+    if !is_asked(rows, applied) {
+        return None;
     }
+    let [open, locked] = rows;
+    let measured = [open.measured(), locked.measured()];
+    let noise = &fit.systems.noise;
+    let expected = rows.map(|rows| expected(search, fit, rows));
+    let expected = ExpectedGain { readings: &expected, noise };
+    let squares = |applied: &Applied| squares(rows, applied, Some(&expected));
+    let (nothing, extended) = (Applied::new(), squares(applied));
+    // Nobody expected what was repaired.
+    let nominal = match open.unrepaired {
+        Some(_) => self::squares(measured, &nothing, None),
+        None => squares(&nothing),
+    };
+    let noise_squares = [(locked, &expected.readings[1]), (open, &expected.readings[0])]
+        .map(|(rows, at)| rows.noise_squares(at, noise));
+    let population = Population::of([measured[1].observations, measured[0].observations], noise_squares);
+    let ratio = |extended: &Squares, draw: &Draw| {
+        (population.mean(extended, draw) / population.mean(&nominal, draw)).sqrt()
+    };
+    let as_measured = population.as_measured();
+    let without = |at: usize| {
+        let others: Applied =
+            applied.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, it)| it.clone()).collect();
+        let (effect, target) = search.model.hypotheses()[applied[at].0].label;
+        WithoutFinding { effect, target, rmse_ratio: ratio(&squares(&others), &as_measured) }
+    };
+    let [position_mae, force_mae] = decoded(measured, rows, applied, noise, &population);
+    Some(Gain {
+        rows_locked: locked.observations.rows(),
+        rmse_ratio: ratio(&extended, &as_measured),
+        rmse_ratio_interval95: population.interval95(|draw| ratio(&extended, draw)),
+        position_mae,
+        force_mae,
+        per_cause: (0..applied.len()).map(without).collect(),
+    })
+}
 
-    /// The readings that the fit lets expect at rows, without noise: ŷ = f(ψ̂) + ẑero + Σ ê E + B ẑ.
-    fn expected(&self, fit: &AttributionFit, rows: &Rows<'_>) -> Vec<Vec<f64>> {
-        let mut readings = rows.model.readings(&fit.applied);
-        let channels = readings.len();
-        for (channel, of) in readings.iter_mut().enumerate() {
-            of.iter_mut().for_each(|value| *value += fit.coordinates[channel]);
-            let z = fit.systems.background_of(channel, &fit.marginal, &fit.coordinates);
-            let size = self.model.sizes()[channel];
-            for (z, function) in z.iter().zip(fit.systems.background_at(channel, size, rows.observations)) {
-                of.iter_mut().zip(function).for_each(|(value, function)| *value += z * function);
-            }
+/// The readings that the fit lets expect at rows, without noise: ŷ = f(ψ̂) + ẑero + Σ ê E + B ẑ.
+fn expected(search: &Search<'_>, fit: &AttributionFit, rows: &Rows<'_>) -> Vec<Vec<f64>> {
+    let mut readings = rows.model.readings(&fit.applied);
+    let channels = readings.len();
+    for (channel, of) in readings.iter_mut().enumerate() {
+        of.iter_mut().for_each(|value| *value += fit.coordinates[channel]);
+        let z = fit.systems.background_of(channel, &fit.marginal, &fit.coordinates);
+        let size = search.model.sizes()[channel];
+        for (z, function) in z.iter().zip(fit.systems.background_at(channel, size, rows.observations)) {
+            of.iter_mut().zip(function).for_each(|(value, function)| *value += z * function);
         }
-        for (error, by) in rows.model.common_errors().iter().zip(&fit.coordinates[channels..]) {
-            for (of, signature) in readings.iter_mut().zip(&error.signature) {
-                of.iter_mut().zip(signature.iter().flatten()).for_each(|(value, slope)| *value += by * slope);
-            }
-        }
-        readings
     }
+    for (error, by) in rows.model.common_errors().iter().zip(&fit.coordinates[channels..]) {
+        for (of, signature) in readings.iter_mut().zip(&error.signature) {
+            of.iter_mut().zip(signature.iter().flatten()).for_each(|(value, slope)| *value += by * slope);
+        }
+    }
+    readings
 }
 
 /// Gain that the fit lets expect.

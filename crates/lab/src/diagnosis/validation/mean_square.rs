@@ -15,9 +15,9 @@
 //! Source: A. N. Angelopoulos, S. Bates, C. Fannjiang, M. I. Jordan, T. Zrnic, Science 382 (2023) 669 (prediction-powered inference);
 //! H. Shimodaira, J. Stat. Plan. Inference 90 (2000) 227 (weights for another distribution of the same inputs).
 
-use crate::diagnosis::data::observations::{Observations, Sample};
-use tactpad_core::numeric::random::SplitMix64;
-use tactpad_core::numeric::statistics::{mean, rms};
+use tactpad_inference::observations::{Observations, Sample};
+use tactpad_numeric::random::SplitMix64;
+use tactpad_numeric::statistics::{mean, rms};
 
 /// Draws of the bootstrap over clusters and plans.
 const DRAWS: usize = 1000;

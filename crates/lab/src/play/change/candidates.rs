@@ -4,9 +4,10 @@ use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::mechanics::side_share;
 use crate::diagnosis::model::setting::Change;
 use crate::effect::Effect;
-use tactpad_core::numeric::linear::Reduced;
 use tactpad_core::pad::device::{Device, Side};
 use tactpad_core::quantity::{CHANNELS, MODULES};
+use tactpad_inference::policy::WITHIN_95;
+use tactpad_numeric::linear::Reduced;
 
 /// Shares of a bond's area that are tried: the diagnosis asks for no more than the last.
 const SHARES: std::ops::RangeInclusive<u32> = 1..=40;
@@ -74,7 +75,7 @@ impl CandidateNumber {
 
     /// Value and ends of its interval, by the multiple and its deviation.
     pub(super) fn estimate(&self, multiple: f64, deviation: f64) -> (f64, [f64; 2]) {
-        let ends = [-1.96, 1.96].map(|factor| self.told.value(multiple + factor * deviation));
+        let ends = [-WITHIN_95, WITHIN_95].map(|factor| self.told.value(multiple + factor * deviation));
         (self.told.value(multiple), ends)
     }
 

@@ -53,7 +53,7 @@ pub struct DetectedChanges {
     pub presses: (Option<usize>, usize),
     /// By how much the plays contradict themselves: variances are taken to be so much larger.
     pub inflation: f64,
-    /// The smallest change of any module's gain, as a share of it, that would have been found in 95 of 100 such plays.
+    /// The smallest change of any module's gain, as a share of it, that would have been found in nine of ten such plays.
     pub least_module_gain: f64,
 }
 

@@ -7,15 +7,12 @@ use crate::calibration::change::plays::PlayEstimate;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Estimate, Finding};
 use crate::effect::Effect;
-use tactpad_core::numeric::chi_square::{exceeded, noncentrality, quantile};
-use tactpad_core::numeric::linear::Reduced;
+use tactpad_inference::policy::{LEVEL, POWER};
+use tactpad_numeric::chi_square::{exceeded, noncentrality, quantile};
+use tactpad_numeric::linear::Reduced;
 
-/// Level of false alarms, for all candidates together: that of the diagnosis.
-const LEVEL: f64 = 0.03;
-/// So often what would have been found is found.
-const POWER: f64 = 0.95;
-/// No signature is known better than to a tenth of itself: what explains less than its square beside another change may be an
-/// error of that one.
+/// Without labels no signature is known better than to a tenth of itself, where those of a diagnosis are to three hundredths: what
+/// explains less than its square beside another change may be an error of that one.
 const SIGNATURE_PART: f64 = 0.1 * 0.1;
 /// More changes at once are described by nobody.
 const FINDINGS_MAX: usize = 4;
@@ -186,7 +183,7 @@ mod tests {
         let estimate = findings[0].parameters[0];
         assert!((estimate.value - 0.9).abs() < 1e-9);
         // σ² = 1/S of the module: 10⁴ (3 − 9/9).
-        assert!((estimate.interval95[1] - 0.9 - 1.96 * 0.01 / 2.0_f64.sqrt()).abs() < 1e-9);
+        assert!((estimate.interval95[1] - 0.9 - 1.959_964 * 0.01 / 2.0_f64.sqrt()).abs() < 1e-9);
         // χ² = 0.1² · 10⁴ · 2 is 200; of twelve candidates 9.1 is the critical one.
         assert!(found(&module, 30.0).is_empty(), "plays that contradict themselves by more tell nothing");
     }

@@ -69,7 +69,7 @@ fn quantile(values: &[f64], share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::numeric::random::SplitMix64;
+    use tactpad_numeric::random::SplitMix64;
 
     #[test]
     fn quantiles_are_between_the_values() {

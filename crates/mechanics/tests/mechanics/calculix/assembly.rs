@@ -8,7 +8,6 @@ use std::f64::consts::TAU;
 use std::io::{Write as _, stderr};
 
 use serde_json::{Value, json};
-use tactpad_core::numeric::zernike::jets;
 use tactpad_core::pad::device::pose::Pose;
 use tactpad_core::pad::device::{Device, GAUGES, Side};
 use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS, MODULES};
@@ -16,6 +15,7 @@ use tactpad_mechanics::grid::Sizing;
 use tactpad_mechanics::mesh::{Fineness, Layer, Mesh};
 use tactpad_mechanics::simulator::{PLATE_DEGREE, Simulator};
 use tactpad_mechanics::superelement::STRAINS;
+use tactpad_numeric::zernike::jets;
 
 use super::deck::{Deck, Print};
 use super::gauges::Gauges;

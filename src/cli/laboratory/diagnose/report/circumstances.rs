@@ -1,7 +1,7 @@
 //! The circumstances of the rows, as axes: load, its direction, time, temperature, cycles.
 
 use super::subject::Subject;
-use tactpad::lab::diagnosis::data::observations::Sample;
+use tactpad::lab::inference::observations::Sample;
 use tactpad::numeric::statistics::rms;
 
 /// A shear of less than this share of the loads has no direction worth drawing.

@@ -4,7 +4,7 @@ use super::dots::{Dot, DotScale, Place, level, places};
 use super::drawing::Drawing;
 use super::grid::Grid;
 use super::subject::{Plate, Subject};
-use tactpad::lab::diagnosis::data::observations::Sample;
+use tactpad::lab::inference::observations::Sample;
 
 /// Space around a plate or the places, as a share of it.
 const MARGIN: f64 = 0.05;

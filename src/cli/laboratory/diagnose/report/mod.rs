@@ -83,10 +83,10 @@ fn overview(subject: &Subject<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad::lab::diagnosis::data::observations::Sample;
     use tactpad::lab::diagnosis::data::target::Target;
     use tactpad::lab::diagnosis::report::{Estimate, Finding, Notice, Residuals, Verdict};
     use tactpad::lab::effect::Effect;
+    use tactpad::lab::inference::observations::Sample;
 
     /// A sensor with so many channels, of which the first reads a tenth too much.
     fn diagnosis(channels: usize, rows: usize) -> Diagnosis {

@@ -164,10 +164,10 @@ pub(super) fn reads(channel: usize, uv: &[f64; CHANNELS], weights: &[f64; CHANNE
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::random::SplitMix64;
     use crate::pad::field::PadField;
     use crate::pad::influence::InfluenceField;
     use crate::pipeline::shipped;
+    use tactpad_numeric::random::SplitMix64;
 
     /// Contacts of so many fingers anywhere, as the channels read them.
     fn pressed(field: &InfluenceField, random: &mut SplitMix64, fingers: usize) -> [f64; CHANNELS] {

@@ -10,7 +10,7 @@ use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text};
 use crate::diagnosis::gatekeepers::prediction::Fitted;
 use crate::diagnosis::report::Estimate;
 use crate::effect::Effect;
-use tactpad_core::numeric::statistics::{mean, population_deviation};
+use tactpad_numeric::statistics::{mean, population_deviation};
 
 /// Fewest rows at a limit.
 const ROWS_MIN: usize = 3;

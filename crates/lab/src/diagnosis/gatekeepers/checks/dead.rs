@@ -10,7 +10,7 @@ use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text, squares};
 use crate::diagnosis::gatekeepers::prediction::explained;
 use crate::effect::Effect;
-use tactpad_core::numeric::chi_square;
+use tactpad_numeric::chi_square;
 
 /// No answer is smaller than this part of the signal.
 const ANSWER_MIN: f64 = 0.01;

@@ -5,13 +5,14 @@
 //! r = a/b. They differ by the standard deviation [`NATURAL`] of e, or by what the others differ by where that is no chance. Static
 //! samples and series, where each has its own noise, are looked at apart; what counts is the kind that tells more.
 
-use crate::diagnosis::data::noise::Noise;
-use crate::diagnosis::data::observations::Observations;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Estimate, Finding, NotDetected, Notice};
 use crate::effect::Effect;
-use tactpad_core::numeric::chi_square;
-use tactpad_core::numeric::statistics::{mean, rms};
+use tactpad_inference::noise::Noise;
+use tactpad_inference::observations::Observations;
+use tactpad_inference::policy::{POWER_QUANTILE, WITHIN_95};
+use tactpad_numeric::chi_square;
+use tactpad_numeric::statistics::{mean, rms};
 
 /// Standard deviation by which the logarithms of sound channels' noise differ at least.
 const NATURAL: f64 = 0.3;
@@ -24,9 +25,6 @@ const RATIOS: usize = 40;
 const BEYOND: f64 = 2.3;
 /// Fewest others to hold a channel against.
 const OTHERS_MIN: usize = 4;
-/// Normal quantiles: of 95 %, and of nine in ten.
-const WITHIN_95: f64 = 1.959_964;
-const POWER_90: f64 = 1.281_552;
 
 /// Excess noise of the channels.
 #[derive(Clone, Debug, Default)]
@@ -91,7 +89,10 @@ pub(crate) fn excess(observations: &Observations, noise: &[Noise], signals: &[Ve
             found.not_detected.push(NotDetected {
                 effect: Effect::NoiseExcess,
                 target: Target::Channel(channel),
-                minimum_detectable: vec![("factor", libm::exp((critical + POWER_90) * deviation) - 1.0)],
+                minimum_detectable: vec![(
+                    "factor",
+                    libm::exp((critical + POWER_QUANTILE) * deviation) - 1.0,
+                )],
                 rival_share: 0.0,
             });
         }
@@ -194,8 +195,8 @@ fn notice(observations: &Observations, channel: usize, own: &NoiseExcess) -> Not
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::data::observations::Sample;
-    use tactpad_core::numeric::random::SplitMix64;
+    use tactpad_inference::observations::Sample;
+    use tactpad_numeric::random::SplitMix64;
 
     /// Nine channels of signals between 100 and 4,000, the fifth with so many times its noise of 0.2 to 0.8 % each; half of the rows
     /// are of series, whose noise is `of_series` times as large, and in which the first channel has ten times its signal.

@@ -9,7 +9,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use tactpad_core::numeric::products::dot;
+use tactpad_numeric::products::dot;
 
 /// Up to here a course counts as smooth.
 const SMOOTH_HZ: f64 = 2.0;

@@ -11,8 +11,9 @@ use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text};
 use crate::diagnosis::report::{Estimate, NotDetected, NotTestable};
 use crate::effect::Effect;
-use tactpad_core::numeric::chi_square;
-use tactpad_core::numeric::statistics::mean;
+use tactpad_inference::policy::{POWER, WITHIN_95};
+use tactpad_numeric::chi_square;
+use tactpad_numeric::statistics::mean;
 
 /// The grids' frequencies, and how far from them the mains are looked for.
 const GRIDS_HZ: [f64; 2] = [50.0, 60.0];
@@ -26,9 +27,6 @@ const SPAN_MAX_S: f64 = 10.0;
 const STRETCHES_MAX: usize = 48;
 /// Frequencies to look at within a stretch's resolution 1/T.
 const PER_RESOLUTION: f64 = 4.0;
-/// Share of such measurements in which a line of the stated size is found.
-const POWER: f64 = 0.9;
-const WITHIN_95: f64 = 1.959_964;
 /// Another grid that explains this part as well cannot be told apart.
 const ALIKE: f64 = 0.9;
 

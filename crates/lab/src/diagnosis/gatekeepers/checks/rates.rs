@@ -1,7 +1,7 @@
 //! Rates that do not match: channels that are held over several rows, and a label's clock that runs away from the channels'.
 
 use crate::diagnosis::gatekeepers::gate::{Gate, rows_text};
-use tactpad_core::numeric::statistics::{Line, deviation};
+use tactpad_numeric::statistics::{Line, deviation};
 
 /// Of a held channel's changes, so many come after one and the same number of rows.
 const REGULAR: f64 = 0.8;

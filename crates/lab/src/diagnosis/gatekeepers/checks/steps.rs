@@ -3,7 +3,7 @@
 //! The step is the least distance of two values, if all distances are whole multiples of it.
 
 use crate::diagnosis::gatekeepers::gate::{Gate, rows_text};
-use tactpad_core::numeric::statistics::median;
+use tactpad_numeric::statistics::median;
 
 /// Values in all for a step to be told, and distances from a multiple that digits of a file may leave.
 const VALUES_MIN: usize = 6;

@@ -4,7 +4,7 @@
 //! somewhere in n rows has at most the probability n pᵏ.
 
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text, squares};
-use tactpad_core::numeric::statistics::median;
+use tactpad_numeric::statistics::median;
 
 /// Others move if their mean square in the stretch is this part of that of all rows: a third of its deviation.
 const MOVES: f64 = 0.1;

@@ -7,7 +7,7 @@
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, correlation, squares};
 use crate::effect::Effect;
-use tactpad_core::numeric::chi_square;
+use tactpad_numeric::chi_square;
 
 /// No less than this is left: what sound pads of a kind differ by is not told apart.
 const LEFT_MIN: f64 = 0.05;

@@ -1,26 +1,26 @@
 //! All columns of the linear systems: each channel's zero, the model's own errors, and the hypotheses' signatures.
 
-use crate::diagnosis::data::observations::Observations;
-use crate::diagnosis::data::target::Target;
-use crate::diagnosis::model::{Column, CommonError, Hypothesis, Linearised, Parameter, Signature};
-use crate::diagnosis::statistics::covariance::{Fitted, Marginal};
-use crate::effect::Effect;
+use crate::covariance::{Fitted, Marginal};
+use crate::hypothesis::{Hypothesis, Parameter};
+use crate::model::{Column, CommonError, Linearised, Signature};
+use crate::observations::Observations;
 
 /// Which column means what.
-pub(crate) struct Columns {
+pub struct Columns {
     /// The zeros, and the model's own errors.
     nuisance: Vec<Signature>,
     /// For each hypothesis, the numbers of the columns that are asked for.
-    pub(crate) of_hypothesis: Vec<Vec<usize>>,
+    pub of_hypothesis: Vec<Vec<usize>>,
     /// For each hypothesis, the columns of its course: free wherever it holds.
-    pub(crate) shapes: Vec<Vec<usize>>,
+    pub shapes: Vec<Vec<usize>>,
     /// For each column, the precision of its prior; 0: none.
-    pub(crate) precisions: Vec<f64>,
+    pub precisions: Vec<f64>,
     channels: usize,
 }
 
 impl Columns {
-    pub(crate) fn of(hypotheses: &[Hypothesis], errors: &[CommonError], observations: &Observations) -> Self {
+    /// The columns of these hypotheses at these rows, beside the zeros and the model's own errors.
+    pub fn of<L>(hypotheses: &[Hypothesis<L>], errors: &[CommonError], observations: &Observations) -> Self {
         let (channels, rows) = (observations.channels.len(), observations.rows());
         let zero = |channel: usize| -> Signature {
             (0..channels).map(|k| (k == channel).then(|| vec![1.0; rows])).collect()
@@ -34,8 +34,7 @@ impl Columns {
         let mut next = nuisance.len();
         let (mut of_hypothesis, mut shapes) = (Vec::new(), Vec::new());
         for hypothesis in hypotheses {
-            if let (Target::Channel(channel), Effect::ChannelOffset) = (hypothesis.target, hypothesis.effect)
-            {
+            if let Some(channel) = hypothesis.zero_of {
                 of_hypothesis.push(vec![channel]);
                 shapes.push(Vec::new());
                 continue;
@@ -51,14 +50,14 @@ impl Columns {
     }
 
     /// The columns themselves, about the present point.
-    pub(crate) fn signatures<'c>(&'c self, linearised: &'c Linearised) -> Vec<Column<'c>> {
+    pub fn signatures<'c>(&'c self, linearised: &'c Linearised) -> Vec<Column<'c>> {
         let own = linearised.signatures.iter().zip(&self.of_hypothesis);
         let of_hypotheses = own.filter(|(_, columns)| columns[0] >= self.channels).flat_map(|(all, _)| all);
         self.nuisance.iter().chain(of_hypotheses).map(Vec::as_slice).collect()
     }
 
     /// Adds the pull of the priors where courses are other than expected: −P ψ.
-    pub(crate) fn pull(&self, marginal: &mut Marginal, applied: &[(usize, Vec<f64>)]) {
+    pub fn pull(&self, marginal: &mut Marginal, applied: &[(usize, Vec<f64>)]) {
         for (at, coordinates) in applied {
             let shapes = &self.shapes[*at];
             let own = &coordinates[coordinates.len() - shapes.len()..];
@@ -69,12 +68,12 @@ impl Columns {
     }
 
     /// All columns of a hypothesis, in the order of its numbers.
-    pub(crate) fn all_of(&self, hypothesis: usize) -> impl Iterator<Item = usize> {
+    pub fn all_of(&self, hypothesis: usize) -> impl Iterator<Item = usize> {
         self.of_hypothesis[hypothesis].iter().chain(&self.shapes[hypothesis]).copied()
     }
 
     /// The nuisances and these hypotheses, free.
-    pub(crate) fn fitted(&self, hypotheses: impl IntoIterator<Item = usize>) -> Fitted<'_> {
+    pub fn fitted(&self, hypotheses: impl IntoIterator<Item = usize>) -> Fitted<'_> {
         let mut columns: Vec<usize> = (0..self.nuisance.len()).collect();
         for hypothesis in hypotheses {
             let own = self.of_hypothesis[hypothesis].iter().filter(|column| **column >= self.nuisance.len());

@@ -1,8 +1,8 @@
 //! Least squares with priors, at one ratio of noise to signal.
 
-use tactpad_core::numeric::dense::{Matrix, gram};
-use tactpad_core::numeric::linear::LargeFactor;
-use tactpad_core::numeric::products::dot;
+use tactpad_numeric::dense::{Matrix, gram};
+use tactpad_numeric::linear::LargeFactor;
+use tactpad_numeric::products::dot;
 
 /// Precision that makes numbers without a prior unique.
 const FREE: f64 = 1e-6;

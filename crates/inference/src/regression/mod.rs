@@ -19,15 +19,15 @@ mod kernel;
 mod system;
 
 use self::choice::{KernelSelection, RATIOS};
-pub(crate) use self::kernel::{Group, Labels};
+pub use self::kernel::{Group, Labels};
 use self::kernel::{Kernel, pivots, scale, scaled};
 use self::system::{Solution, System};
-use super::whitening::Whitening;
-use crate::diagnosis::data::noise::NoiseLevel;
+use crate::covariance::whitening::Whitening;
+use crate::noise::NoiseLevel;
 
-use tactpad_core::numeric::linear::LargeFactor;
-use tactpad_core::numeric::products::dot;
-use tactpad_core::numeric::statistics::{population_deviation, rms};
+use tactpad_numeric::linear::LargeFactor;
+use tactpad_numeric::products::dot;
+use tactpad_numeric::statistics::{population_deviation, rms};
 
 /// Pivots at most.
 const PIVOTS_MAX: usize = 220;
@@ -39,7 +39,7 @@ const NOISE_ROUNDS: usize = 2;
 
 /// The functions of a regression.
 #[derive(Clone, Debug)]
-pub(crate) struct Regression {
+pub struct Regression {
     groups: Vec<Group>,
     /// For each group, its inputs' middles and their extent.
     scales: Vec<(Vec<f64>, f64)>,
@@ -51,23 +51,23 @@ pub(crate) struct Regression {
 
 /// A channel's regression.
 #[derive(Clone, Debug)]
-pub(crate) struct RegressionFit {
+pub struct RegressionFit {
     weights: Vec<f64>,
     /// Of the weights' precision.
     factor: LargeFactor,
     /// Standard deviation of what the precision's unit is.
     deviation: f64,
     /// Of a row.
-    pub(crate) noise: NoiseLevel,
+    pub noise: NoiseLevel,
     /// Of the noise, from row to row of a series.
-    pub(crate) memory: f64,
+    pub memory: f64,
     /// Effective degrees of freedom of the weights.
-    pub(crate) freedom: f64,
+    pub freedom: f64,
 }
 
 impl Regression {
     /// Chooses the kernel by the `readings` of all channels; `None` where these rows have no unique solution.
-    pub(crate) fn of(labels: &Labels, readings: &[Vec<f64>]) -> Option<Self> {
+    pub fn of(labels: &Labels, readings: &[Vec<f64>]) -> Option<Self> {
         let scales: Vec<(Vec<f64>, f64)> =
             labels.groups.iter().map(|group| scale(group, &labels.rows)).collect();
         let rows: Vec<Vec<f64>> =
@@ -80,7 +80,7 @@ impl Regression {
     }
 
     /// The functions at a row: 1, the linear ones, φ.
-    pub(crate) fn functions(&self, row: &[f64], others: &[f64]) -> Vec<f64> {
+    pub fn functions(&self, row: &[f64], others: &[f64]) -> Vec<f64> {
         let mut functions = vec![1.0];
         functions.extend((0..self.others).map(|at| others.get(at).copied().unwrap_or(0.0)));
         functions.extend(self.smooth(row).0);
@@ -88,12 +88,12 @@ impl Regression {
     }
 
     /// The functions at each row of these labels.
-    pub(crate) fn functions_at(&self, labels: &Labels) -> Vec<Vec<f64>> {
+    pub fn functions_at(&self, labels: &Labels) -> Vec<Vec<f64>> {
         labels.rows.iter().zip(&labels.others).map(|(row, others)| self.functions(row, others)).collect()
     }
 
     /// The part of the process' variance of which the functions know nothing at a row: how far that is from all that were seen.
-    pub(crate) fn unknown(&self, row: &[f64]) -> f64 {
+    pub fn unknown(&self, row: &[f64]) -> f64 {
         let (functions, whole) = self.smooth(row);
         // Under a small load nothing much can be unknown: loads have a mean square of 1.
         (whole - dot(&functions, &functions)).max(0.0) / whole.max(1.0)
@@ -106,19 +106,19 @@ impl Regression {
     }
 
     /// The covariances of a row with the pivots.
-    pub(crate) fn covariances(&self, row: &[f64]) -> Vec<f64> {
+    pub fn covariances(&self, row: &[f64]) -> Vec<f64> {
         let row = scaled(&self.groups, &self.scales, row);
         self.pivots.iter().map(|pivot| self.kernel.of(&self.groups, pivot, &row)).collect()
     }
 
     /// What a fit's smooth part is of these covariances: φᵀ w = kᵀ (L⁻ᵀ w), which costs no solution for each row.
-    pub(crate) fn spread(&self, fit: &RegressionFit) -> Vec<f64> {
+    pub fn spread(&self, fit: &RegressionFit) -> Vec<f64> {
         self.factor.solve_upper(&fit.weights[1 + self.others..])
     }
 
     /// The regression of a channel by the functions at its rows, row by row. `is_told` says which readings count, `follows` which rows
     /// go on with the row before.
-    pub(crate) fn fitted(
+    pub fn fitted(
         &self,
         functions: &[Vec<f64>],
         readings: &[f64],
@@ -209,33 +209,33 @@ impl Regression {
 
 impl RegressionFit {
     /// The reading that these functions let expect.
-    pub(crate) fn value(&self, functions: &[f64]) -> f64 {
+    pub fn value(&self, functions: &[f64]) -> f64 {
         dot(&self.weights, functions)
     }
 
     /// The same without the constant.
-    pub(crate) fn signal(&self, functions: &[f64]) -> f64 {
+    pub fn signal(&self, functions: &[f64]) -> f64 {
         self.value(functions) - self.zero()
     }
 
     /// The constant.
-    pub(crate) fn zero(&self) -> f64 {
+    pub fn zero(&self) -> f64 {
         self.weights.first().copied().unwrap_or(0.0)
     }
 
     /// One of the linear weights, and its standard deviation.
-    pub(crate) fn slope(&self, at: usize) -> [f64; 2] {
+    pub fn slope(&self, at: usize) -> [f64; 2] {
         let unit: Vec<f64> = (0..self.weights.len()).map(|k| f64::from(u8::from(k == 1 + at))).collect();
         [self.weights[1 + at], self.variance(&unit).sqrt()]
     }
 
     /// The error of [`Self::value`], as a sum of independent ones of deviation 1: the same ones for all rows.
-    pub(crate) fn errors(&self, functions: &[f64]) -> Vec<f64> {
+    pub fn errors(&self, functions: &[f64]) -> Vec<f64> {
         self.factor.solve_lower(functions).into_iter().map(|value| self.deviation * value).collect()
     }
 
     /// The variance of [`Self::value`].
-    pub(crate) fn variance(&self, functions: &[f64]) -> f64 {
+    pub fn variance(&self, functions: &[f64]) -> f64 {
         let errors = self.errors(functions);
         dot(&errors, &errors)
     }
@@ -244,8 +244,8 @@ impl RegressionFit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::numeric::random::SplitMix64;
-    use tactpad_core::numeric::statistics::rms;
+    use tactpad_numeric::random::SplitMix64;
+    use tactpad_numeric::statistics::rms;
 
     fn groups() -> Vec<Group> {
         vec![Group { inputs: vec![0, 1], is_load: false }, Group { inputs: vec![2, 3], is_load: true }]

@@ -1,9 +1,12 @@
 //! Which causes the residual calls for: forward selection with refits, backward removal.
 
-pub(crate) mod atlas;
-pub(crate) mod bootstrap;
-pub(crate) mod columns;
-pub(crate) mod inference;
+mod bootstrap;
+pub mod columns;
+mod constancy;
+pub mod estimates;
+mod rivals;
+pub mod score_test;
+mod zeros;
 
 use std::sync::Arc;
 
@@ -11,16 +14,15 @@ use rayon::prelude::*;
 
 use self::bootstrap::{Bootstrap, Draw};
 use self::columns::Columns;
-use self::inference::{Projected, Test};
-use super::model::{Linearised, Model, Parameter, SIGNATURE_ERROR};
-use crate::diagnosis::data::observations::Observations;
-use crate::diagnosis::statistics::covariance::{Background, Marginal, Smooth, Systems};
-use crate::effect::Effect;
-use tactpad_core::numeric::dense::Matrix;
-use tactpad_core::numeric::products::dot;
+use self::score_test::{Projected, Test};
+use crate::covariance::{Background, Marginal, Smooth, Systems};
+use crate::hypothesis::Parameter;
+use crate::model::{Linearised, Model};
+use crate::observations::Observations;
+use crate::policy::{LEVEL, SIGNATURE_ERROR};
+use tactpad_numeric::dense::Matrix;
+use tactpad_numeric::products::dot;
 
-/// How often anything may be found where nothing is wrong: the family-wise level.
-pub(crate) const LEVEL: f64 = 0.03;
 /// Draws of the bootstrap.
 const DRAWS: usize = 1000;
 /// By how much larger a candidate's p-value may be beside a background that takes its part than beside one that does not. Chosen on
@@ -36,18 +38,22 @@ const REFITS: usize = 12;
 const STANDS: f64 = 0.1;
 
 /// Hypotheses that hold, each with its coordinates.
-pub(crate) type Applied = Vec<(usize, Vec<f64>)>;
+pub type Applied = Vec<(usize, Vec<f64>)>;
 
 /// The measurement about a fitted point.
-pub(crate) struct AttributionFit {
+pub struct AttributionFit {
     /// Applied hypotheses, with the fitted coordinates.
-    pub(crate) applied: Applied,
-    pub(crate) systems: Systems,
-    pub(crate) background: Background,
-    pub(crate) marginal: Marginal,
-    pub(crate) linearised: Linearised,
+    pub applied: Applied,
+    /// The channels' systems about the point.
+    pub systems: Systems,
+    /// Sizes of the smooth background.
+    pub background: Background,
+    /// The systems with that background.
+    pub marginal: Marginal,
+    /// The model about the point.
+    pub linearised: Linearised,
     /// Coordinates of all columns beside the point: the nuisances, and what a last step would change.
-    pub(crate) coordinates: Vec<f64>,
+    pub coordinates: Vec<f64>,
 }
 
 /// A Gauss-Newton step in all columns, and how much of it is taken.
@@ -57,26 +63,29 @@ struct GaussNewtonStep {
 }
 
 /// Result of the search for causes.
-pub(crate) struct Attribution {
+pub struct Attribution {
     /// About the causes that hold.
-    pub(crate) fit: AttributionFit,
+    pub fit: AttributionFit,
     /// The p-value below which a cause is found: the family-wise level's quantile of the least of all.
-    pub(crate) critical: f64,
+    pub critical: f64,
 }
 
 /// Finds causes.
-pub(crate) struct Search<'m> {
-    pub(crate) model: &'m dyn Model,
-    pub(crate) observations: &'m Observations,
+pub struct Search<'m, L> {
+    /// The model that may be wrong.
+    pub model: &'m dyn Model<L>,
+    /// The rows by which causes are found.
+    pub observations: &'m Observations,
     /// The background's functions at their rows.
     smooth: Arc<Smooth>,
-    pub(crate) columns: Columns,
-    pub(crate) clusters: Vec<usize>,
+    /// Which column means what.
+    pub columns: Columns,
+    clusters: Vec<usize>,
 }
 
-impl<'m> Search<'m> {
+impl<'m, L> Search<'m, L> {
     /// `observations` are the open rows of `all`.
-    pub(crate) fn new(model: &'m dyn Model, all: &'m Observations, observations: &'m Observations) -> Self {
+    pub fn new(model: &'m dyn Model<L>, all: &'m Observations, observations: &'m Observations) -> Self {
         let columns = Columns::of(model.hypotheses(), &model.common_errors(), observations);
         let smooth = Arc::new(Smooth::of(all, observations));
         Self { model, observations, smooth, columns, clusters: observations.clusters() }
@@ -84,7 +93,7 @@ impl<'m> Search<'m> {
 
     /// Forward selection from causes that are held to be there: whatever is not significant is taken out; while the best
     /// candidate is, it is fitted.
-    pub(crate) fn run(&self, start: &Applied) -> Option<Attribution> {
+    pub fn run(&self, start: &Applied) -> Option<Attribution> {
         let mut fit = self.fitted(start, None)?;
         let mut critical = self.critical(&fit)?;
         while let Some(least) = self.superfluous(&fit, critical)? {
@@ -136,13 +145,14 @@ impl<'m> Search<'m> {
         Some(fit)
     }
 
+    /// Whether a hypothesis is a channel's zero.
     pub(crate) fn is_zero(&self, hypothesis: usize) -> bool {
-        self.model.hypotheses()[hypothesis].effect == Effect::ChannelOffset
+        self.model.hypotheses()[hypothesis].zero_of.is_some()
     }
 
     /// The fit of these hypotheses by Gauss and Newton's method, with the covariance that goes with it. With `start`, a fit of nearly the
     /// same ones, that is not sought from the beginning.
-    pub(crate) fn fitted(&self, applied: &Applied, start: Option<&AttributionFit>) -> Option<AttributionFit> {
+    pub fn fitted(&self, applied: &Applied, start: Option<&AttributionFit>) -> Option<AttributionFit> {
         let mut applied = applied.clone();
         let mut before: Option<(Systems, Background)> = None;
         let mut last: Option<GaussNewtonStep> = None;
@@ -252,7 +262,7 @@ impl<'m> Search<'m> {
     }
 
     /// The channels' parts in what is known of a hypothesis: they add up to 1.
-    pub(crate) fn parts(&self, fit: &AttributionFit, hypothesis: usize) -> Vec<f64> {
+    pub fn parts(&self, fit: &AttributionFit, hypothesis: usize) -> Vec<f64> {
         let columns = &self.columns.of_hypothesis[hypothesis];
         let of_channel = |at: usize| {
             let own = fit.systems.channels[at]
@@ -268,12 +278,13 @@ impl<'m> Search<'m> {
         parts.iter().map(|part| if whole > 0.0 { part / whole } else { 1.0 / parts.len() as f64 }).collect()
     }
 
+    /// Information and score beside what is fitted.
     pub(crate) fn projected(&self, fit: &AttributionFit) -> Option<Projected> {
         Projected::of(&fit.marginal, &self.columns.fitted(fit.applied.iter().map(|(at, _)| *at)))
     }
 
     /// The test of a hypothesis that is not fitted. One whose number cannot be negative is asked for positive ones only.
-    pub(crate) fn test(&self, projected: &Projected, at: usize, score: &[f64]) -> Test {
+    pub fn test(&self, projected: &Projected, at: usize, score: &[f64]) -> Test {
         let columns = &self.columns.of_hypothesis[at];
         let is_one_sided = self.model.hypotheses()[at].asked().iter().all(Parameter::is_one_sided);
         if is_one_sided && columns.iter().all(|column| score[*column] <= 0.0) {
@@ -349,7 +360,7 @@ impl<'m> Search<'m> {
     }
 
     /// The test of a fitted cause beside all others that are fitted.
-    pub(crate) fn test_within(&self, fit: &AttributionFit, at: usize) -> Option<Test> {
+    pub fn test_within(&self, fit: &AttributionFit, at: usize) -> Option<Test> {
         let (hypothesis, _) = fit.applied[at];
         let own = &self.columns.of_hypothesis[hypothesis];
         let (projected, score) = self.without(fit, at)?;
@@ -357,7 +368,7 @@ impl<'m> Search<'m> {
     }
 
     /// Everything but one fitted cause projected out, and the score of the residual without that cause.
-    pub(crate) fn without(&self, fit: &AttributionFit, at: usize) -> Option<(Projected, Vec<f64>)> {
+    pub fn without(&self, fit: &AttributionFit, at: usize) -> Option<(Projected, Vec<f64>)> {
         let others =
             fit.applied.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, (held, _))| *held);
         let projected = Projected::of(&fit.marginal, &self.columns.fitted(others))?;
@@ -374,7 +385,7 @@ impl<'m> Search<'m> {
     }
 
     /// Covariance of a fitted cause's coordinates.
-    pub(crate) fn covariance(&self, fit: &AttributionFit, at: usize) -> Option<Matrix> {
+    pub fn covariance(&self, fit: &AttributionFit, at: usize) -> Option<Matrix> {
         let (projected, _) = self.without(fit, at)?;
         let own: Vec<usize> = self.columns.all_of(fit.applied[at].0).collect();
         let mut inner = projected.fisher.picked(&own, &own);
@@ -399,104 +410,4 @@ fn fraction(last: f64, ratio: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::diagnosis::attribution::atlas::Atlas;
-    use crate::diagnosis::data::observations::Sample;
-    use crate::tangent::SimulatedPad;
-    use tactpad_core::numeric::random::SplitMix64;
-    use tactpad_core::pad::device::Device;
-    use tactpad_core::pad::field::PadField;
-    use tactpad_core::quantity::CHANNELS;
-
-    /// Where steps lead from 0, each a share of what it should be.
-    fn led(step: impl Fn(f64) -> f64, taken: impl Fn(f64, f64) -> f64) -> f64 {
-        let (mut at, mut last) = (0.0, None);
-        for _ in 0..REFITS {
-            let next: f64 = step(at);
-            let part = last.map_or(1.0, |(before, part)| taken(part, next / before));
-            at += part * next;
-            last = Some((next, part));
-        }
-        at
-    }
-
-    #[test]
-    fn steps_that_turn_back_as_far_as_they_went_lead_to_the_fit() {
-        // Twice as long as they should be a unit from the fit, which is at 1, and longer nearby: whole ones go from side to side for ever.
-        let too_long = |at: f64| 2.2 * (1.0 - at) / (1.0 + 0.1 * (1.0 - at).powi(2));
-        assert!((led(too_long, |_, _| 1.0) - 1.0).abs() > 0.3, "{}", led(too_long, |_, _| 1.0));
-        assert!((led(too_long, fraction) - 1.0).abs() < 1e-9, "{}", led(too_long, fraction));
-        // Too short: whole ones are right.
-        assert_eq!([fraction(1.0, 0.5), fraction(0.5, 1.5), fraction(1.0, f64::NAN)], [1.0; 3]);
-        assert_eq!([fraction(1.0, -1.0), fraction(0.5, -1.0)], [0.5, 0.25]);
-    }
-
-    /// Five loads at each of 72 places.
-    fn contacts(random: &mut SplitMix64) -> Observations {
-        let mut sample = |at: usize| {
-            let (angle, radius_mm) = (2.4 * (at % 72) as f64, 27.0 * ((at % 72) as f64 / 72.0).sqrt());
-            let fz = 1.0 + 4.0 * f64::from(random.fraction());
-            let [fx, fy] = [0; 2].map(|_| 0.4 * fz * f64::from(random.uniform()));
-            let place_mm = [radius_mm * libm::cos(angle), radius_mm * libm::sin(angle)];
-            Sample { place_mm, load: [fx, fy, fz], ..Sample::default() }
-        };
-        let samples: Vec<Sample> = (0..360).map(&mut sample).collect();
-        Observations {
-            channels: vec![String::new(); CHANNELS],
-            readings: vec![vec![0.0; samples.len()]; CHANNELS],
-            is_told: vec![vec![true; samples.len()]; CHANNELS],
-            numbers: (0..samples.len()).collect(),
-            samples,
-        }
-    }
-
-    /// A smooth map with a mean square of about 1: a few waves of some 60 mm.
-    fn smooth_map(random: &mut SplitMix64) -> impl Fn([f64; 2]) -> f64 + use<> {
-        let waves: Vec<[f64; 3]> =
-            (0..8).map(|_| [0.1, 0.1, 3.0].map(|size| size * f64::from(random.uniform()))).collect();
-        move |[x, y]| waves.iter().map(|[a, b, c]| 0.5 * libm::cos(a * x + b * y + c)).sum()
-    }
-
-    /// A sound pad's readings, but for noise of 0.4 % and a smooth error of 2 %.
-    fn sound(model: &Atlas<'_>, unread: &Observations, random: &mut SplitMix64) -> Observations {
-        let mut measured = unread.clone();
-        let load_rms = unread.load_rms();
-        for ((channel, modelled), size) in
-            measured.readings.iter_mut().zip(model.readings(&[])).zip(model.sizes())
-        {
-            let maps = [(); 3].map(|()| smooth_map(random));
-            for ((to, from), sample) in channel.iter_mut().zip(modelled).zip(&unread.samples) {
-                let error: f64 =
-                    maps.iter().zip(sample.load).map(|(map, n)| map(sample.place_mm) * n / load_rms).sum();
-                *to = from + 0.004 * (size + from.abs()) * f64::from(random.normal()) + 0.02 * size * error;
-            }
-        }
-        measured
-    }
-
-    /// Whether any cause is found.
-    fn is_alarm(search: &Search<'_>) -> bool {
-        let fit = search.fitted(&Vec::new(), None).unwrap();
-        let critical = search.critical(&fit).unwrap();
-        search.next(&fit, critical, &[]).unwrap().is_some()
-    }
-
-    #[test]
-    fn without_the_background_sound_pads_raise_alarms() {
-        let (device, field) = (Device::nominal(), PadField::nominal());
-        let pad = SimulatedPad::known(&device, &field);
-        let mut alarms = [0; 2];
-        for seed in 41..45 {
-            let random = &mut SplitMix64::new(seed);
-            let unread = contacts(random);
-            let measured = sound(&Atlas::new(&pad, &[], &unread, &unread), &unread, random);
-            let model = Atlas::new(&pad, &[], &measured, &measured);
-            let mut search = Search::new(&model, &measured, &measured);
-            alarms[0] += usize::from(is_alarm(&search));
-            search.smooth = Arc::new(Smooth::of(&measured, &measured).without());
-            alarms[1] += usize::from(is_alarm(&search));
-        }
-        assert!(alarms[0] <= 1 && alarms[1] == 4, "{alarms:?}");
-    }
-}
+mod tests;

@@ -4,7 +4,7 @@
 //! Source: H. Zhou, L. Hu, J. Zhou, K. Lange, J. Computational and Graphical Statistics 28 (2019) 350 (an ascent for variance
 //! components).
 
-use tactpad_core::numeric::statistics::{mean, rms};
+use tactpad_numeric::statistics::{mean, rms};
 
 /// Steps of the search; each costs one look at the rows.
 const STEPS: usize = 100;
@@ -17,21 +17,21 @@ const PRIOR_ROWS: usize = 10;
 
 /// Noise of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Noise {
+pub struct Noise {
     of_static: NoiseLevel,
     of_series: NoiseLevel,
 }
 
 impl Noise {
     /// Before anything is known.
-    pub(crate) fn first(signal: &[f64]) -> Self {
+    pub fn first(signal: &[f64]) -> Self {
         Self::alike(NoiseLevel::first(signal))
     }
 
     /// The levels with the greatest likelihood of these residuals, of which `freedom_ratio` are degrees of freedom; one level where
     /// there are too few rows of a kind. Series are often at few loads: how their noise grows with the signal is as in static
     /// samples unless they tell.
-    pub(crate) fn of(residual: &[f64], signal: &[f64], in_series: &[bool], freedom_ratio: f64) -> Self {
+    pub fn of(residual: &[f64], signal: &[f64], in_series: &[bool], freedom_ratio: f64) -> Self {
         let squares: Vec<f64> = residual.iter().map(|r| r * r / freedom_ratio).collect();
         let size = rms(signal.iter().copied());
         let mut kinds = [const { (Vec::new(), Vec::new()) }; 2];
@@ -58,49 +58,48 @@ impl Noise {
     }
 
     /// Additive part and share of static samples, and of series.
-    #[cfg(test)]
-    pub(crate) fn known(parts: [[f64; 2]; 2]) -> Self {
+    pub fn known(parts: [[f64; 2]; 2]) -> Self {
         let [of_static, of_series] =
             parts.map(|[additive, share]| NoiseLevel { additive, share, least: f64::MIN_POSITIVE });
         Self { of_static, of_series }
     }
 
     /// Whether each kind of row has its own.
-    pub(crate) fn is_by_kind(&self) -> bool {
+    pub fn is_by_kind(&self) -> bool {
         self.of_static != self.of_series
     }
 
     /// Mean variance of these readings.
-    pub(crate) fn mean_square(&self, signal: &[f64], in_series: &[bool]) -> f64 {
+    pub fn mean_square(&self, signal: &[f64], in_series: &[bool]) -> f64 {
         mean(signal.iter().zip(in_series).map(|(signal, in_series)| self.variance(*signal, *in_series)))
     }
 
     /// Variance of a reading.
-    pub(crate) fn variance(&self, signal: f64, in_series: bool) -> f64 {
+    pub fn variance(&self, signal: f64, in_series: bool) -> f64 {
         if in_series { self.of_series.variance(signal) } else { self.of_static.variance(signal) }
     }
 }
 
 /// Standard deviation of a reading s: √(additive² + share² s²).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct NoiseLevel {
+pub struct NoiseLevel {
     /// In the channel's unit.
-    pub(crate) additive: f64,
+    pub additive: f64,
     /// Of the signal.
-    pub(crate) share: f64,
+    pub share: f64,
     /// Where it ends.
     least: f64,
 }
 
 impl NoiseLevel {
     /// Before anything is known: a hundredth of the signal, and as much of its root mean square.
-    pub(crate) fn first(signal: &[f64]) -> Self {
+    pub fn first(signal: &[f64]) -> Self {
         let size = rms(signal.iter().copied());
         Self { additive: 0.01 * size, share: 0.01, least: least(size) }
     }
 
     /// The level with the greatest likelihood of these squared residuals; `size` is the root mean square of the channel's signal.
-    pub(crate) fn of(squares: &[f64], signal: &[f64], size: f64) -> Self {
+    pub fn of(squares: &[f64], signal: &[f64], size: f64) -> Self {
         let floor = least(size).powi(2);
         let mean_square = mean(squares);
         let (mut additive, mut share) = (0.5 * mean_square, 0.5 * mean_square / (size * size).max(floor));
@@ -119,7 +118,7 @@ impl NoiseLevel {
     }
 
     /// Variance of a reading.
-    pub(crate) fn variance(&self, signal: f64) -> f64 {
+    pub fn variance(&self, signal: f64) -> f64 {
         (self.additive * self.additive + (self.share * signal).powi(2)).max(self.least * self.least)
     }
 }
@@ -131,7 +130,7 @@ fn least(size: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::numeric::random::SplitMix64;
+    use tactpad_numeric::random::SplitMix64;
 
     #[test]
     fn both_parts_are_found() {

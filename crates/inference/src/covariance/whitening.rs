@@ -11,9 +11,9 @@ const PAIRS_MIN: usize = 20;
 
 /// Whitening of a channel's rows: weights, and the correlation ρ with the row before.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Whitening {
+pub struct Whitening {
     /// One over each row's standard deviation; 0 where it tells nothing.
-    pub(crate) weights: Vec<f64>,
+    pub weights: Vec<f64>,
     /// Whether a row goes on with the row before.
     follows: Vec<bool>,
     /// ρ.
@@ -22,7 +22,7 @@ pub(crate) struct Whitening {
 
 impl Whitening {
     /// `variances` are infinite where a row tells nothing; `follows` says which rows go on with the row before.
-    pub(crate) fn of(variances: &[f64], follows: &[bool], memory: f64) -> Self {
+    pub fn of(variances: &[f64], follows: &[bool], memory: f64) -> Self {
         let weights: Vec<f64> = variances.iter().map(|variance| 1.0 / variance.sqrt()).collect();
         let is_told = |at: usize| weights.get(at).is_some_and(|weight| *weight > 0.0);
         let goes_on = |(at, follows): (usize, &bool)| *follows && is_told(at) && is_told(at.wrapping_sub(1));
@@ -30,17 +30,17 @@ impl Whitening {
     }
 
     /// Of rows that are white.
-    pub(crate) fn none(rows: usize) -> Self {
+    pub fn none(rows: usize) -> Self {
         Self::of(&vec![1.0; rows], &vec![false; rows], 0.0)
     }
 
     /// ρ.
-    pub(crate) const fn memory(&self) -> f64 {
+    pub const fn memory(&self) -> f64 {
         self.memory
     }
 
     /// D⁻½ v.
-    pub(crate) fn whitened(&self, column: &[f64]) -> Vec<f64> {
+    pub fn whitened(&self, column: &[f64]) -> Vec<f64> {
         let fresh = (1.0 - self.memory * self.memory).sqrt();
         let mut before = 0.0;
         let rows = column.iter().zip(&self.weights).zip(&self.follows);
@@ -54,7 +54,7 @@ impl Whitening {
     }
 
     /// ln det D.
-    pub(crate) fn log_determinant(&self) -> f64 {
+    pub fn log_determinant(&self) -> f64 {
         let told = self.weights.iter().filter(|weight| **weight > 0.0);
         let following = self.follows.iter().filter(|follows| **follows).count() as f64;
         told.map(|weight| -2.0 * weight.ln()).sum::<f64>()
@@ -62,12 +62,12 @@ impl Whitening {
     }
 
     /// How many rows tell something.
-    pub(crate) fn told(&self) -> usize {
+    pub fn told(&self) -> usize {
         self.weights.iter().filter(|weight| **weight > 0.0).count()
     }
 
     /// ρ by what is left over, whitened: the correlation of rows with those before them.
-    pub(crate) fn memory_of(&self, left: &[f64]) -> f64 {
+    pub fn memory_of(&self, left: &[f64]) -> f64 {
         let fresh = (1.0 - self.memory * self.memory).sqrt();
         let (mut before, mut products, mut squares, mut pairs) = (0.0, 0.0, 0.0, 0);
         for (left, follows) in left.iter().zip(&self.follows) {
@@ -86,8 +86,8 @@ impl Whitening {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tactpad_core::numeric::random::SplitMix64;
-    use tactpad_core::numeric::statistics::rms;
+    use tactpad_numeric::random::SplitMix64;
+    use tactpad_numeric::statistics::rms;
 
     #[test]
     fn noise_that_remembers_becomes_white_and_tells_how_much_it_does() {

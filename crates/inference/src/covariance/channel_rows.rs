@@ -3,10 +3,11 @@
 use super::basis::Prior;
 use super::system::ChannelSystem;
 use super::whitening::Whitening;
-use crate::diagnosis::data::noise::Noise;
-use crate::diagnosis::data::observations::Observations;
-use crate::diagnosis::model::{BACKGROUND_MAX, Column};
-use tactpad_core::numeric::statistics::rms;
+use crate::model::Column;
+use crate::noise::Noise;
+use crate::observations::Observations;
+use crate::policy::BACKGROUND_MAX;
+use tactpad_numeric::statistics::rms;
 
 /// A column's prior while noise is estimated, as a share of the channel's root mean square.
 const SIGNATURE_PRIOR: f64 = 0.1;

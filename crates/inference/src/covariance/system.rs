@@ -7,30 +7,30 @@
 
 use super::equations::NormalEquations;
 use super::whitening::Whitening;
-use tactpad_core::numeric::dense::{Matrix, gram};
-use tactpad_core::numeric::linear::LargeFactor;
-use tactpad_core::numeric::products::dot;
+use tactpad_numeric::dense::{Matrix, gram};
+use tactpad_numeric::linear::LargeFactor;
+use tactpad_numeric::products::dot;
 
 /// One channel.
-pub(crate) struct ChannelSystem {
+pub struct ChannelSystem {
     /// Normal equations of its rows.
-    pub(crate) equations: NormalEquations,
+    pub equations: NormalEquations,
     /// Of each row.
-    pub(crate) whitening: Whitening,
+    pub whitening: Whitening,
     /// D⁻½ A, column by column.
-    pub(crate) signatures: Vec<Vec<f64>>,
+    pub signatures: Vec<Vec<f64>>,
     /// D⁻½ B, column by column.
-    pub(crate) background: Vec<Vec<f64>>,
+    pub background: Vec<Vec<f64>>,
     /// D⁻½ r.
-    pub(crate) residual: Vec<f64>,
+    pub residual: Vec<f64>,
     /// Stated errors of the model.
-    pub(crate) stated: StatedErrors,
+    pub stated: StatedErrors,
 }
 
 /// The model's stated errors E, and the other columns' products with them.
-pub(crate) struct StatedErrors {
+pub struct StatedErrors {
     /// D⁻½ E, column by column.
-    pub(crate) columns: Vec<Vec<f64>>,
+    pub columns: Vec<Vec<f64>>,
     /// L; none without errors.
     factor: Option<LargeFactor>,
     /// A_E, B_E and r_E.
@@ -72,7 +72,7 @@ impl StatedErrors {
     }
 
     /// The degrees of freedom that the rows tell of the errors: K − tr (1 + Eᵀ D⁻¹ E)⁻¹.
-    pub(crate) fn freedom(&self) -> f64 {
+    pub fn freedom(&self) -> f64 {
         let untold: f64 = self.factor.iter().flat_map(LargeFactor::inverse_diagonal).sum();
         self.columns.len() as f64 - untold
     }
@@ -80,7 +80,7 @@ impl StatedErrors {
 
 impl ChannelSystem {
     /// `signatures` are columns with their numbers, `errors` are those that the model states; `None` if they are not finite.
-    pub(crate) fn of(
+    pub fn of(
         signatures: &[(usize, &[f64])],
         background: &[Vec<f64>],
         errors: &[Vec<f64>],
@@ -118,7 +118,7 @@ impl ChannelSystem {
     }
 
     /// The normal equations of some of its columns, and of `further` ones with their numbers.
-    pub(crate) fn beside(&self, columns: &[usize], further: &[(usize, &[f64])]) -> Option<NormalEquations> {
+    pub fn beside(&self, columns: &[usize], further: &[(usize, &[f64])]) -> Option<NormalEquations> {
         let further: Vec<(usize, Vec<f64>)> =
             further.iter().map(|(number, values)| (*number, self.whitening.whitened(values))).collect();
         let own = self.equations.columns.iter().zip(&self.signatures);
@@ -131,7 +131,7 @@ impl ChannelSystem {
     }
 
     /// D⁻½ (r − A ψ − B z − E ê).
-    pub(crate) fn left_over(&self, coordinates: &[f64], background: &[f64]) -> Vec<f64> {
+    pub fn left_over(&self, coordinates: &[f64], background: &[f64]) -> Vec<f64> {
         let mut left = self.residual.clone();
         let mut own = self.stated.residual.clone();
         for (psi, column) in coordinates.iter().zip(&self.stated.signatures) {
@@ -144,7 +144,7 @@ impl ChannelSystem {
     }
 
     /// D½ V⁻¹ A of a signature, where `smooth` is what the background takes of it.
-    pub(crate) fn weighted(&self, signature: usize, smooth: &[f64]) -> Vec<f64> {
+    pub fn weighted(&self, signature: usize, smooth: &[f64]) -> Vec<f64> {
         let mut left = self.signatures[signature].clone();
         take(&mut left, smooth, &self.background);
         let stated = self.stated.estimate(self.stated.signatures[signature].clone(), smooth);

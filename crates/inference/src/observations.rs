@@ -1,9 +1,7 @@
 //! Observations of any number of channels: readings, and the labels beside them.
 
-use tactpad_core::numeric::random::SplitMix64;
-use tactpad_core::numeric::statistics::rms;
-use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS};
-use tactpad_core::tables::measured::{Approach, Row, Table};
+use tactpad_numeric::random::SplitMix64;
+use tactpad_numeric::statistics::rms;
 
 /// Places nearer to each other than this are one location.
 const LOCATION_MM: f64 = 0.25;
@@ -62,33 +60,6 @@ pub struct Observations {
 }
 
 impl Observations {
-    /// The rows of a table that have channels, in its order.
-    pub fn of(table: &Table) -> Self {
-        let rows: Vec<(&Row, [f64; CHANNELS])> =
-            table.rows.iter().filter_map(|row| Some((row, row.uv?))).collect();
-        let sample = |row: &Row| Sample {
-            place_mm: [row.label.x_mm, row.label.y_mm],
-            load: [row.label.fx_n, row.label.fy_n, row.label.fz_n],
-            session: row.session.unwrap_or(0),
-            trial: row.trial,
-            t_s: row.t_s,
-            label_t_s: None,
-            dwell_s: row.dwell_s,
-            is_unloading: row.approach == Some(Approach::Unloading),
-            temp_c: row.temp_c,
-            cycle: row.cycle,
-            turned_deg: row.turned_deg.unwrap_or(0.0),
-            block: None,
-        };
-        Self {
-            channels: CHANNEL_NAMES.map(str::to_owned).to_vec(),
-            readings: (0..CHANNELS).map(|channel| rows.iter().map(|(_, uv)| uv[channel]).collect()).collect(),
-            is_told: vec![vec![true; rows.len()]; CHANNELS],
-            samples: rows.iter().map(|(row, _)| sample(row)).collect(),
-            numbers: (0..rows.len()).collect(),
-        }
-    }
-
     /// How many rows there are.
     pub const fn rows(&self) -> usize {
         self.samples.len()

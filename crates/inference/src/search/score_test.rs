@@ -2,19 +2,19 @@
 
 use std::cmp::Ordering;
 
-use crate::diagnosis::statistics::covariance::{Fitted, Marginal};
-use tactpad_core::numeric::chi_square;
-use tactpad_core::numeric::dense::Matrix;
+use crate::covariance::{Fitted, Marginal};
+use tactpad_numeric::chi_square;
+use tactpad_numeric::dense::Matrix;
 
 /// A direction of which the fitted columns leave less than this part is theirs.
 const LEFT_MIN: f64 = 1e-6;
 
 /// Information and score with the fitted columns projected out.
-pub(crate) struct Projected {
+pub struct Projected {
     /// Whatever the fitted columns leave of Aᵀ V⁻¹ A.
-    pub(crate) fisher: Matrix,
+    pub fisher: Matrix,
     /// The same of Aᵀ V⁻¹ r.
-    pub(crate) score: Vec<f64>,
+    pub score: Vec<f64>,
     /// The diagonal before.
     whole: Vec<f64>,
     /// Iₐₐ⁻¹ Iₐ., a row for each fitted column.
@@ -24,24 +24,24 @@ pub(crate) struct Projected {
 
 /// A group's test.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Test {
+pub struct Test {
     /// Reduction of the weighted squares.
-    pub(crate) square: f64,
+    pub square: f64,
     /// In how many directions.
-    pub(crate) freedom: usize,
+    pub freedom: usize,
 }
 
 impl Test {
     /// Of what cannot be.
-    pub(crate) const NOTHING: Self = Self { square: 0.0, freedom: 1 };
+    pub const NOTHING: Self = Self { square: 0.0, freedom: 1 };
 
     /// The probability of as much by chance.
-    pub(crate) fn p_value(self) -> f64 {
+    pub fn p_value(self) -> f64 {
         chi_square::exceeded(self.square, self.freedom)
     }
 
     /// The order of p-values. Those that are too small for a number are told apart by what the test takes off beyond chance.
-    pub(crate) fn by_chance(&self, other: &Self) -> Ordering {
+    pub fn by_chance(&self, other: &Self) -> Ordering {
         let beyond = |test: &Self| test.square - test.freedom as f64;
         self.p_value().total_cmp(&other.p_value()).then(beyond(other).total_cmp(&beyond(self)))
     }
@@ -49,7 +49,7 @@ impl Test {
 
 impl Projected {
     /// `None` if the fitted columns are not independent.
-    pub(crate) fn of(marginal: &Marginal, fitted: &Fitted<'_>) -> Option<Self> {
+    pub fn of(marginal: &Marginal, fitted: &Fitted<'_>) -> Option<Self> {
         let all: Vec<usize> = (0..marginal.score.len()).collect();
         let factor = fitted.factorised(marginal)?;
         let across = marginal.fisher.picked(&fitted.columns, &all);
@@ -75,14 +75,14 @@ impl Projected {
     }
 
     /// A score with the fitted columns projected out.
-    pub(crate) fn projected(&self, score: &[f64]) -> Vec<f64> {
+    pub fn projected(&self, score: &[f64]) -> Vec<f64> {
         let of_fitted: Vec<f64> = self.fitted.iter().map(|column| score[*column]).collect();
         let shift = self.weights.transposed_times(&of_fitted);
         score.iter().zip(shift).map(|(score, shift)| score - shift).collect()
     }
 
     /// The test of these columns together, of the given score.
-    pub(crate) fn test(&self, columns: &[usize], score: &[f64]) -> Test {
+    pub fn test(&self, columns: &[usize], score: &[f64]) -> Test {
         // Modified Cholesky of the group's block: uᵀ I⁻¹ u = Σ (L⁻¹ u)², without directions that are another's.
         let mut rows: Vec<(Vec<f64>, f64)> = Vec::new();
         let mut test = Test { square: 0.0, freedom: 0 };
@@ -109,7 +109,7 @@ impl Projected {
     }
 
     /// The part of these columns' information that others have as well: the mean over the columns.
-    pub(crate) fn reproduced(&self, columns: &[usize], others: &[usize]) -> f64 {
+    pub fn reproduced(&self, columns: &[usize], others: &[usize]) -> f64 {
         let Some(factor) = self.fisher.picked(others, others).factorised() else { return 0.0 };
         let part = |column: &usize| {
             let across: Vec<f64> = others.iter().map(|other| self.fisher.at(*other, *column)).collect();
@@ -121,7 +121,7 @@ impl Projected {
     }
 
     /// Whether nothing is left of a column.
-    pub(crate) fn is_empty(&self, column: usize) -> bool {
+    pub fn is_empty(&self, column: usize) -> bool {
         self.fisher.at(column, column) <= LEFT_MIN * self.whole[column] || self.whole[column] <= 0.0
     }
 }

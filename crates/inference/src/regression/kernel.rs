@@ -1,40 +1,40 @@
 //! The process' covariance, and the rows that stand for all.
 
-use tactpad_core::numeric::dense::Matrix;
-use tactpad_core::numeric::linear::LargeFactor;
-use tactpad_core::numeric::statistics::rms;
+use tactpad_numeric::dense::Matrix;
+use tactpad_numeric::linear::LargeFactor;
+use tactpad_numeric::statistics::rms;
 
 const LEFT_MIN: f64 = 1e-6;
 
 /// Inputs of one kind: those that turn into each other when the axes turn have one length.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Group {
+pub struct Group {
     /// Which inputs.
-    pub(crate) inputs: Vec<usize>,
+    pub inputs: Vec<usize>,
     /// Whether they are loads: zero is nothing.
-    pub(crate) is_load: bool,
+    pub is_load: bool,
 }
 
 /// Labels of rows.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Labels {
+pub struct Labels {
     /// The inputs' groups.
-    pub(crate) groups: Vec<Group>,
+    pub groups: Vec<Group>,
     /// For each row, its inputs.
-    pub(crate) rows: Vec<Vec<f64>>,
+    pub rows: Vec<Vec<f64>>,
     /// For each row, what acts linearly and on its own: time, temperature.
-    pub(crate) others: Vec<Vec<f64>>,
+    pub others: Vec<Vec<f64>>,
 }
 
 /// The kernel, in units of the inputs' extent.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Kernel {
     /// β.
-    pub(crate) blend: f64,
+    pub blend: f64,
     /// For each group: λₚ.
-    pub(crate) linear: Vec<f64>,
+    pub linear: Vec<f64>,
     /// For each group: λₓ.
-    pub(crate) smooth: Vec<f64>,
+    pub smooth: Vec<f64>,
 }
 
 impl Kernel {

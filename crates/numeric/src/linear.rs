@@ -385,7 +385,7 @@ impl LargeFactor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numeric::random::SplitMix64;
+    use crate::random::SplitMix64;
 
     /// A random positive definite matrix.
     fn matrix<const N: usize>(seed: u64) -> [[f64; N]; N] {

@@ -1,25 +1,28 @@
 //! The covariance of what no cause explains: noise, a smooth background, and errors that the model is known to have.
 
+pub mod basis;
+mod channel_rows;
+pub mod equations;
+pub mod system;
+pub mod whitening;
+
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::basis::{Basis, LENGTHS_TRIED, Prior};
-use super::channel_rows::{ChannelRows, wide_precisions};
-use super::equations::{NormalEquations, Reduced};
-use super::system::ChannelSystem;
-use crate::diagnosis::data::noise::Noise;
-use crate::diagnosis::data::observations::Observations;
-use crate::diagnosis::model::{BACKGROUND_MAX, Column, Linearised, Model, Signature};
-use tactpad_core::numeric::dense::{Matrix, gram};
-use tactpad_core::numeric::linear::LargeFactor;
-use tactpad_core::numeric::products::dot;
-use tactpad_core::numeric::statistics::rms;
+use self::basis::{Basis, LENGTHS_TRIED, Prior};
+use self::channel_rows::{ChannelRows, wide_precisions};
+use self::equations::{NormalEquations, Reduced};
+use self::system::ChannelSystem;
+use crate::model::{Column, Linearised, Model, Signature};
+use crate::noise::Noise;
+use crate::observations::Observations;
+use crate::policy::REMAINDER_MAX;
+use tactpad_numeric::dense::{Matrix, gram};
+use tactpad_numeric::linear::LargeFactor;
+use tactpad_numeric::products::dot;
+use tactpad_numeric::statistics::rms;
 
-/// Root mean square of what the simulator itself gets wrong, smooth as well and the same way: 0.44 % against an independent solution.
-const MODEL_ERROR: f64 = 0.005;
-/// Largest smooth remainder that is not a finding.
-pub(crate) const REMAINDER_MAX: f64 = BACKGROUND_MAX + MODEL_ERROR;
 /// Where its search begins, and where it ends.
 const BACKGROUND_FIRST: f64 = 0.01;
 const BACKGROUND_MIN: f64 = 1e-4;
@@ -33,29 +36,31 @@ const LENGTHS_FIRST: [usize; 3] = [2, 5, 8];
 
 /// Sizes of the smooth background.
 #[derive(Clone, Debug)]
-pub(crate) struct Background {
+pub struct Background {
     /// The process, and the number of its length.
-    pub(crate) prior: Prior,
+    pub prior: Prior,
     length: usize,
     /// For each channel and load: standard deviation as a share of the channel's root mean square.
-    pub(crate) shares: Vec<[f64; 3]>,
+    pub shares: Vec<[f64; 3]>,
     /// For each channel: the degrees of freedom that its size is known by.
-    pub(crate) freedom: Vec<f64>,
+    pub freedom: Vec<f64>,
 }
 
 /// The rows of a measurement as systems of its channels.
-pub(crate) struct Systems {
-    pub(crate) channels: Vec<ChannelSystem>,
-    pub(crate) noise: Vec<Noise>,
+pub struct Systems {
+    /// Each channel's system.
+    pub channels: Vec<ChannelSystem>,
+    /// Each channel's noise, as its residual tells it.
+    pub noise: Vec<Noise>,
     smooth: Arc<Smooth>,
     /// For each channel, what makes that G: zᵀ G z is the mean square of B z over the channel's.
     extents: Vec<f64>,
     /// Number of all columns.
-    pub(crate) columns: usize,
+    pub columns: usize,
 }
 
 /// The background's functions at the rows.
-pub(crate) struct Smooth {
+pub struct Smooth {
     basis: Basis,
     /// Σ (load φ)(load φ)ᵀ/n over the rows of the whole measurement.
     mean_squares: Matrix,
@@ -65,50 +70,51 @@ pub(crate) struct Smooth {
 
 impl Smooth {
     /// `observations` are rows of `all`.
-    pub(crate) fn of(all: &Observations, observations: &Observations) -> Self {
+    pub fn of(all: &Observations, observations: &Observations) -> Self {
         let basis = Basis::of(observations);
         Self { mean_squares: mean_squares(all, &basis), basis, most: REMAINDER_MAX }
     }
 
     /// Without a background.
     #[cfg(test)]
-    pub(crate) fn without(self) -> Self {
+    pub fn without(self) -> Self {
         Self { most: 0.0, ..self }
     }
 }
 
 /// Smooth remainder of a channel's residual in the background's functions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Remainder {
+pub struct Remainder {
     /// Over the rows, as a share of the channel's mean square.
-    pub(crate) mean_square: f64,
+    pub mean_square: f64,
     /// Standard deviation of that.
-    pub(crate) deviation: f64,
+    pub deviation: f64,
     /// ẑᵀ T⁻¹ ẑ.
-    pub(crate) energy: f64,
+    pub energy: f64,
     /// The degrees of freedom that the rows tell: about the energy, unless the background is larger than it may be.
-    pub(crate) freedom: f64,
+    pub freedom: f64,
 }
 
 /// All channels' systems with one background.
-pub(crate) struct Marginal {
+pub struct Marginal {
     /// Aᵀ V⁻¹ A over all columns.
-    pub(crate) fisher: Matrix,
+    pub fisher: Matrix,
     /// Aᵀ V⁻¹ r.
-    pub(crate) score: Vec<f64>,
+    pub score: Vec<f64>,
     /// rᵀ V⁻¹ r.
-    pub(crate) square: f64,
+    pub square: f64,
     log_determinant: f64,
-    pub(crate) channels: Vec<Reduced>,
+    /// Each channel's part.
+    pub channels: Vec<Reduced>,
 }
 
 impl Systems {
     /// `columns` are the signatures about the present point, `linearised` that point. The `model` says what it knows of its channels.
     /// With `before`, the systems about another point, the noise is not sought from the beginning.
-    pub(crate) fn of(
+    pub fn of<L>(
         observations: &Observations,
         smooth: &Arc<Smooth>,
-        model: &dyn Model,
+        model: &dyn Model<L>,
         linearised: &Linearised,
         columns: &[Column<'_>],
         before: Option<&Self>,
@@ -154,7 +160,7 @@ impl Systems {
     }
 
     /// The background's functions of a channel at other rows, where `whole` is its root mean square over the measurement.
-    pub(crate) fn background_at(&self, channel: usize, whole: f64, rows: &Observations) -> Vec<Vec<f64>> {
+    pub fn background_at(&self, channel: usize, whole: f64, rows: &Observations) -> Vec<Vec<f64>> {
         let values: Vec<Vec<f64>> =
             rows.samples.iter().map(|sample| self.smooth.basis.at(sample.place_mm)).collect();
         let loads: Vec<[f64; 3]> = rows.samples.iter().map(|sample| sample.load).collect();
@@ -162,7 +168,7 @@ impl Systems {
     }
 
     /// ẑ of a channel, with these coordinates of the columns.
-    pub(crate) fn background_of(&self, channel: usize, fit: &Marginal, coordinates: &[f64]) -> Vec<f64> {
+    pub fn background_of(&self, channel: usize, fit: &Marginal, coordinates: &[f64]) -> Vec<f64> {
         smooth(&self.channels[channel].equations, &fit.channels[channel], coordinates)
     }
 
@@ -177,19 +183,19 @@ impl Systems {
     }
 
     /// With this background; `None` where a system is not positive definite.
-    pub(crate) fn marginal(&self, background: &Background) -> Option<Marginal> {
+    pub fn marginal(&self, background: &Background) -> Option<Marginal> {
         let all: Vec<&NormalEquations> = self.channels.iter().map(|it| &it.equations).collect();
         self.marginal_of(&all, self.columns, background)
     }
 
     /// The same with some of the columns only; the others count as nothing.
-    pub(crate) fn marginal_with(&self, columns: &[usize], background: &Background) -> Option<Marginal> {
+    pub fn marginal_with(&self, columns: &[usize], background: &Background) -> Option<Marginal> {
         let picked = self.picked(columns);
         self.marginal_of(&picked.iter().collect::<Vec<_>>(), self.columns, background)
     }
 
     /// The same with some of the columns and `further` ones, which are numbered after all others.
-    pub(crate) fn marginal_beside(
+    pub fn marginal_beside(
         &self,
         columns: &[usize],
         further: &[Signature],
@@ -240,7 +246,7 @@ impl Systems {
     }
 
     /// Coordinates of all columns, fitted at once with wide priors: beside them nothing is left that any cause explains.
-    pub(crate) fn explained(&self, marginal: &Marginal, linearised: &Linearised) -> Option<Vec<f64>> {
+    pub fn explained(&self, marginal: &Marginal, linearised: &Linearised) -> Option<Vec<f64>> {
         let mut precisions = vec![0.0; self.columns];
         for (system, modelled) in self.channels.iter().zip(&linearised.readings) {
             for (number, precision) in system.equations.columns.iter().zip(wide_precisions(system, modelled))
@@ -253,7 +259,7 @@ impl Systems {
     }
 
     /// The background with the greatest likelihood when the columns `fitted` are free. From a `start` its length is sought nearby.
-    pub(crate) fn background(&self, fitted: &Fitted<'_>, start: Option<&Background>) -> Option<Background> {
+    pub fn background(&self, fitted: &Fitted<'_>, start: Option<&Background>) -> Option<Background> {
         let first = match start {
             Some(start) => self.sized(fitted, start, STEPS)?,
             None => self.first(fitted)?,
@@ -275,7 +281,7 @@ impl Systems {
     }
 
     /// The same with the length of the `start`.
-    pub(crate) fn resized(&self, fitted: &Fitted<'_>, start: &Background) -> Option<Background> {
+    pub fn resized(&self, fitted: &Fitted<'_>, start: &Background) -> Option<Background> {
         Some(self.sized(fitted, start, STEPS_AGAIN)?.1)
     }
 
@@ -321,12 +327,7 @@ impl Systems {
     }
 
     /// Each channel's smooth remainder, with these coordinates of the columns.
-    pub(crate) fn remainders(
-        &self,
-        background: &Background,
-        fit: &Marginal,
-        coordinates: &[f64],
-    ) -> Vec<Remainder> {
+    pub fn remainders(&self, background: &Background, fit: &Marginal, coordinates: &[f64]) -> Vec<Remainder> {
         let remainder = |(at, (system, reduced)): (usize, (&ChannelSystem, &Reduced))| {
             let z = smooth(&system.equations, reduced, coordinates);
             let shares = background.shares[at];
@@ -383,29 +384,31 @@ impl Systems {
 }
 
 /// Columns that are free, and their prior precisions (0: none).
-pub(crate) struct Fitted<'p> {
-    pub(crate) columns: Vec<usize>,
-    pub(crate) precisions: &'p [f64],
+pub struct Fitted<'p> {
+    /// Numbers of the free columns.
+    pub columns: Vec<usize>,
+    /// Precision of each column's prior.
+    pub precisions: &'p [f64],
 }
 
 /// The least-squares solution for some columns.
-pub(crate) struct Solved {
+pub struct Solved {
     /// For all columns, zero where they are not free.
-    pub(crate) coordinates: Vec<f64>,
+    pub coordinates: Vec<f64>,
     /// Reduction of the square by the solution.
-    pub(crate) removed: f64,
+    pub removed: f64,
 }
 
 impl Marginal {
     /// ln det V.
-    pub(crate) const fn log_determinant(&self) -> f64 {
+    pub const fn log_determinant(&self) -> f64 {
         self.log_determinant
     }
 }
 
 impl Fitted<'_> {
     /// The factor of what the rows and the priors tell of the columns.
-    pub(crate) fn factorised(&self, marginal: &Marginal) -> Option<LargeFactor> {
+    pub fn factorised(&self, marginal: &Marginal) -> Option<LargeFactor> {
         let mut inner = marginal.fisher.picked(&self.columns, &self.columns);
         for (at, column) in self.columns.iter().enumerate() {
             inner.row_mut(at)[at] += self.precisions[*column];
@@ -414,7 +417,7 @@ impl Fitted<'_> {
     }
 
     /// The generalised least-squares solution.
-    pub(crate) fn solved(&self, marginal: &Marginal) -> Option<Solved> {
+    pub fn solved(&self, marginal: &Marginal) -> Option<Solved> {
         let score: Vec<f64> = self.columns.iter().map(|column| marginal.score[*column]).collect();
         let found = self.factorised(marginal)?.solve(&score);
         let removed = found.iter().zip(&score).map(|(psi, score)| psi * score).sum();

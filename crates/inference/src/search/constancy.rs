@@ -6,11 +6,11 @@
 //!
 //! Source: J. A. Hausman, Econometrica 46 (1978) 1251 (two estimates of one number that must agree if the model is right).
 
-use crate::diagnosis::attribution::inference::Projected;
-use crate::diagnosis::attribution::{AttributionFit, Search};
-use crate::diagnosis::data::observations::Sample;
-use crate::diagnosis::model::Signature;
-use tactpad_core::numeric::statistics::median;
+use super::score_test::Projected;
+use super::{AttributionFit, Search};
+use crate::model::Signature;
+use crate::observations::Sample;
+use tactpad_numeric::statistics::median;
 
 /// How often a right cause may be taken for a wrong one, over all partitions.
 const LEVEL: f64 = 0.01;
@@ -21,27 +21,22 @@ const AT_END: f64 = 1e-9;
 /// From this part of the load on shear tells its direction.
 const SHEAR_MIN: f64 = 0.2;
 
-impl Search<'_> {
+impl<L> Search<'_, L> {
     /// Whether a fitted cause is as large in all parts of the measurement, as far as they tell, and no number of it ended where it
     /// can go no further.
-    pub(crate) fn holds_throughout(&self, fit: &AttributionFit, at: usize) -> Option<bool> {
+    pub fn holds_throughout(&self, fit: &AttributionFit, at: usize) -> Option<bool> {
         let own = self.test_within(fit, at)?.square;
         Some(!self.is_at_an_end(fit, at) && self.is_alike(fit, &self.effect(fit, at), own)?)
     }
 
     /// The same of a channel's zero, whose square over its variance is `own`.
-    pub(crate) fn zero_holds_throughout(
-        &self,
-        fit: &AttributionFit,
-        channel: usize,
-        own: f64,
-    ) -> Option<bool> {
+    pub fn zero_holds_throughout(&self, fit: &AttributionFit, channel: usize, own: f64) -> Option<bool> {
         let is_own = |at: usize| (at == channel).then(|| vec![1.0; self.observations.rows()]);
         self.is_alike(fit, &(0..self.observations.channels.len()).map(is_own).collect(), own)
     }
 
     /// Whether a number that is asked for ended at an end of its range that is not its none.
-    pub(crate) fn is_at_an_end(&self, fit: &AttributionFit, at: usize) -> bool {
+    pub fn is_at_an_end(&self, fit: &AttributionFit, at: usize) -> bool {
         let (hypothesis, coordinates) = &fit.applied[at];
         self.model.hypotheses()[*hypothesis].asked().iter().zip(coordinates).any(|(it, psi)| {
             let is_there = |end: f64| end != it.none && (it.coordinate(end) - psi).abs() <= AT_END;

@@ -11,10 +11,10 @@
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-use crate::diagnosis::data::observations::Observations;
-use tactpad_core::numeric::dense::{Matrix, gram};
-use tactpad_core::numeric::linear::LargeFactor;
-use tactpad_core::numeric::products::dot;
+use crate::observations::Observations;
+use tactpad_numeric::dense::{Matrix, gram};
+use tactpad_numeric::linear::LargeFactor;
+use tactpad_numeric::products::dot;
 
 /// The rectangle reaches so far beyond the places, relative to them: the waves vanish at its border.
 const REACH: f64 = 1.4;
@@ -33,48 +33,49 @@ const HALF_SIDE_MIN_MM: f64 = 1.0;
 
 /// The functions of a measurement's places.
 #[derive(Debug)]
-pub(crate) struct Basis {
+pub struct Basis {
     /// Along x and y: the middle of the places, and half their extent.
     sides: [[f64; 2]; 2],
     /// Of each function: half waves along x and y.
     orders: Vec<[f64; 2]>,
     /// For each row, the functions' values.
-    pub(crate) values: Vec<Vec<f64>>,
+    pub values: Vec<Vec<f64>>,
     /// Of each length that is tried.
     priors: [OnceLock<Option<Prior>>; LENGTHS_TRIED],
 }
 
 /// z ~ N(0, T).
 #[derive(Clone, Debug)]
-pub(crate) struct Prior {
+pub struct Prior {
     /// l.
-    pub(crate) length_mm: f64,
+    pub length_mm: f64,
     /// Of T = L Lᵀ.
     factor: LargeFactor,
     /// T⁻¹.
-    pub(crate) precision: Matrix,
+    pub precision: Matrix,
 }
 
 impl Prior {
     /// L⁻¹ z.
-    pub(crate) fn whitened(&self, z: &[f64]) -> Vec<f64> {
+    pub fn whitened(&self, z: &[f64]) -> Vec<f64> {
         self.factor.solve_lower(z)
     }
 
     /// zᵀ T⁻¹ z.
-    pub(crate) fn energy(&self, z: &[f64]) -> f64 {
+    pub fn energy(&self, z: &[f64]) -> f64 {
         let whitened = self.whitened(z);
         dot(&whitened, &whitened)
     }
 
     /// ln det T.
-    pub(crate) fn log_determinant(&self) -> f64 {
+    pub fn log_determinant(&self) -> f64 {
         self.factor.log_determinant()
     }
 }
 
 impl Basis {
-    pub(crate) fn of(observations: &Observations) -> Self {
+    /// The functions of the places of these rows.
+    pub fn of(observations: &Observations) -> Self {
         let places = || observations.samples.iter().map(|sample| sample.place_mm);
         let sides = [0, 1].map(|axis| {
             let along = || places().map(|place| place[axis]);
@@ -90,7 +91,7 @@ impl Basis {
     }
 
     /// The functions at a place: φ(x, y) = sin(ωx (x + L)) sin(ωy (y + L)).
-    pub(crate) fn at(&self, place_mm: [f64; 2]) -> Vec<f64> {
+    pub fn at(&self, place_mm: [f64; 2]) -> Vec<f64> {
         let sine = |order: f64, axis: usize| {
             let [middle, half] = self.sides[axis];
             libm::sin(self.frequency(order, axis) * (place_mm[axis] - middle + REACH * half))
@@ -104,7 +105,7 @@ impl Basis {
     }
 
     /// How many functions there are.
-    pub(crate) const fn len(&self) -> usize {
+    pub const fn len(&self) -> usize {
         self.orders.len()
     }
 
@@ -117,7 +118,7 @@ impl Basis {
     }
 
     /// The process of one of the lengths that are tried; it is computed once.
-    pub(crate) fn prior(&self, at: usize) -> Option<&Prior> {
+    pub fn prior(&self, at: usize) -> Option<&Prior> {
         self.priors.get(at)?.get_or_init(|| self.process(self.length_mm(at))).as_ref()
     }
 
@@ -171,7 +172,7 @@ impl Basis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::data::observations::Sample;
+    use crate::observations::Sample;
 
     fn disc() -> Basis {
         let places = (0..72).map(|at| {

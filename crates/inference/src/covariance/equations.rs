@@ -9,49 +9,49 @@
 //! (M. A. Woodbury, Princeton Statistical Research Group 42 (1950)).
 
 use super::basis::Prior;
-use tactpad_core::numeric::dense::Matrix;
-use tactpad_core::numeric::linear::LargeFactor;
-use tactpad_core::numeric::products::dot;
+use tactpad_numeric::dense::Matrix;
+use tactpad_numeric::linear::LargeFactor;
+use tactpad_numeric::products::dot;
 
 /// Products of a channel's columns.
-pub(crate) struct NormalEquations {
+pub struct NormalEquations {
     /// The columns that this channel knows, by their number among all.
-    pub(crate) columns: Vec<usize>,
+    pub columns: Vec<usize>,
     /// Bᵀ D⁻¹ B.
-    pub(crate) background_gram: Matrix,
+    pub background_gram: Matrix,
     /// (Bᵀ D⁻¹ A)ᵀ, a row for each signature.
-    pub(crate) mixed: Matrix,
+    pub mixed: Matrix,
     /// Aᵀ D⁻¹ A.
-    pub(crate) signature_gram: Matrix,
+    pub signature_gram: Matrix,
     /// Bᵀ D⁻¹ r.
-    pub(crate) background_residual: Vec<f64>,
+    pub background_residual: Vec<f64>,
     /// Aᵀ D⁻¹ r.
-    pub(crate) signature_residual: Vec<f64>,
+    pub signature_residual: Vec<f64>,
     /// rᵀ D⁻¹ r.
-    pub(crate) square: f64,
+    pub square: f64,
     /// ln det D.
-    pub(crate) log_determinant: f64,
+    pub log_determinant: f64,
 }
 
 /// The channel with its background marginalised.
-pub(crate) struct Reduced {
+pub struct Reduced {
     /// Of H.
-    pub(crate) factor: LargeFactor,
+    pub factor: LargeFactor,
     /// L⁻¹ Bᵀ D⁻¹ A, a row for each signature, with H = L Lᵀ.
-    pub(crate) whitened_mixed: Vec<Vec<f64>>,
+    pub whitened_mixed: Vec<Vec<f64>>,
     /// Aᵀ V⁻¹ A.
-    pub(crate) fisher: Matrix,
+    pub fisher: Matrix,
     /// Aᵀ V⁻¹ r.
-    pub(crate) score: Vec<f64>,
+    pub score: Vec<f64>,
     /// rᵀ V⁻¹ r.
-    pub(crate) square: f64,
+    pub square: f64,
     /// ln det V.
-    pub(crate) log_determinant: f64,
+    pub log_determinant: f64,
 }
 
 impl Reduced {
     /// For each load, the degrees of freedom that the rows tell of the background: K − tr(T⁻¹ Var z).
-    pub(crate) fn freedom(&self, prior: &Prior, shares: &[f64]) -> Vec<f64> {
+    pub fn freedom(&self, prior: &Prior, shares: &[f64]) -> Vec<f64> {
         let width = prior.precision.columns();
         let blocks = self.factor.inverse_blocks(width);
         let untold = |(block, share): (&Vec<Vec<f64>>, &f64)| {
@@ -65,7 +65,7 @@ impl Reduced {
 
 impl NormalEquations {
     /// Those of some of all columns.
-    pub(crate) fn picked(&self, columns: &[usize]) -> Self {
+    pub fn picked(&self, columns: &[usize]) -> Self {
         let kept: Vec<usize> =
             (0..self.columns.len()).filter(|at| columns.contains(&self.columns[*at])).collect();
         let mixed: Vec<Vec<f64>> = kept.iter().map(|at| self.mixed.row(*at).to_vec()).collect();
@@ -82,7 +82,7 @@ impl NormalEquations {
     }
 
     /// Those of these rows and of `times` as many of other ones, for the same columns.
-    pub(crate) fn plus(&self, times: f64, other: &Self) -> Self {
+    pub fn plus(&self, times: f64, other: &Self) -> Self {
         let sums = |own: &[f64], others: &[f64]| -> Vec<f64> {
             own.iter().zip(others).map(|(own, other)| own + times * other).collect()
         };
@@ -99,7 +99,7 @@ impl NormalEquations {
     }
 
     /// With a background of T = diag(τ²) ⊗ the process' own, τ being its share for each load; `None` if H is not positive definite.
-    pub(crate) fn reduced(&self, prior: &Prior, shares: &[f64]) -> Option<Reduced> {
+    pub fn reduced(&self, prior: &Prior, shares: &[f64]) -> Option<Reduced> {
         let mut inner = self.background_gram.clone();
         let width = prior.precision.columns();
         for (load, share) in shares.iter().enumerate() {
@@ -140,7 +140,7 @@ impl NormalEquations {
     }
 
     /// Bᵀ D⁻¹ (r − A ψ), where ψ are the coordinates of the channel's own columns.
-    pub(crate) fn background_score(&self, coordinates: &[f64]) -> Vec<f64> {
+    pub fn background_score(&self, coordinates: &[f64]) -> Vec<f64> {
         let mut score = self.background_residual.clone();
         for (at, psi) in coordinates.iter().enumerate().filter(|(_, psi)| **psi != 0.0) {
             score.iter_mut().zip(self.mixed.row(at)).for_each(|(score, mixed)| *score -= psi * mixed);

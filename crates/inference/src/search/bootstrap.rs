@@ -8,10 +8,10 @@
 //! P. H. Westfall, S. S. Young, Resampling-Based Multiple Testing (1993) (the smallest p-value's distribution).
 
 use super::columns::Columns;
-use crate::diagnosis::statistics::covariance::{Background, Marginal, Systems};
-use tactpad_core::numeric::dense::Matrix;
-use tactpad_core::numeric::products::dot;
-use tactpad_core::numeric::random::SplitMix64;
+use crate::covariance::{Background, Marginal, Systems};
+use tactpad_numeric::dense::Matrix;
+use tactpad_numeric::products::dot;
+use tactpad_numeric::random::SplitMix64;
 
 /// A cause acts on some of the functions and loads by which a channel's background is known: half, say.
 const SIZED_BY: f64 = 0.5;

@@ -1,22 +1,21 @@
 //! The simulated pad about more than one field: its own, and those of changed pads that lie too far off for its tangent.
 
-use super::{Applied, Attribution, AttributionFit, Search};
-use crate::diagnosis::data::observations::Observations;
 use crate::diagnosis::extension::{Circumstances, with};
-use crate::diagnosis::model::inverse::Written;
+use crate::diagnosis::label::{Hypothesis, Label, Search};
 use crate::diagnosis::model::mechanics::changed;
-use crate::diagnosis::model::{
-    ChannelBaselines, CommonError, Coordinate, Hypothesis, Linearised, Model, Parameter,
-};
 use crate::diagnosis::report::NotTestable;
 use crate::diagnosis::simulation::bench::contacts;
 use crate::diagnosis::simulation::simulated::Simulated;
 use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
 use crate::tangent::{STIFFNESS_REACH, TURN_REACH_DEG, on_grid, shift_reach_mm};
-use tactpad_core::numeric::products::dot;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
+use tactpad_inference::hypothesis::{Coordinate, Parameter};
+use tactpad_inference::model::{ChannelBaselines, CommonError, Linearised, Model, Written};
+use tactpad_inference::observations::Observations;
+use tactpad_inference::search::{Applied, Attribution, AttributionFit};
+use tactpad_numeric::products::dot;
 
 /// No more fields than this are solved for one diagnosis.
 const SOLVED_MAX: usize = 3;
@@ -143,7 +142,8 @@ impl<'f> Atlas<'f> {
             let Some(reaches) = &self.reaches[*hypothesis] else { continue };
             let coordinates: Vec<f64> =
                 coordinates.iter().zip(reaches).map(|(psi, reach)| on_grid(*psi, *reach)).collect();
-            let Hypothesis { effect, target, ref parameters, .. } = self.first.hypotheses()[*hypothesis];
+            let Hypothesis { label: (effect, target), ref parameters, .. } =
+                self.first.hypotheses()[*hypothesis];
             let values = parameters.iter().zip(&coordinates);
             let numbers: Vec<_> = values.map(|(it, psi)| (it.name, it.value(*psi))).collect();
             if let Some(changed) = with(&device, effect, target, &numbers, &Circumstances::default()) {
@@ -195,7 +195,7 @@ impl<'f> Atlas<'f> {
     }
 }
 
-impl Model for Atlas<'_> {
+impl Model<Label> for Atlas<'_> {
     fn hypotheses(&self) -> &[Hypothesis] {
         self.first.hypotheses()
     }

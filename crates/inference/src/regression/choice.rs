@@ -2,9 +2,9 @@
 
 use super::kernel::{Group, Kernel, Labels, pivots};
 use super::system::System;
-use tactpad_core::numeric::dense::Matrix;
-use tactpad_core::numeric::products::dot;
-use tactpad_core::numeric::statistics::population_deviation;
+use tactpad_numeric::dense::Matrix;
+use tactpad_numeric::products::dot;
+use tactpad_numeric::statistics::population_deviation;
 
 /// Rows by which the kernel is chosen, and its pivots then.
 const ROWS_CHOICE: usize = 480;

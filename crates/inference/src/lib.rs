@@ -12,12 +12,13 @@
 //! | [`covariance`] | what no cause explains: noise, a smooth background, known errors of the model |
 //! | [`search`] | group score tests with a cluster bootstrap choose causes; rivals, constancy, zeros and intervals of those that are found |
 //! | [`regression`] | readings as a function of labels, where there is no model |
-//! | [`policy`] | how sure all studies are |
+//! | [`policy`], [`error`] | how sure all studies are; why one ends without an answer |
 //!
 //! Sources: M. C. Kennedy, A. O'Hagan, J. R. Statist. Soc. B 63 (2001) 425 (a discrepancy beside the parameters); J.
 //! Brynjarsdottir, A. O'Hagan, Inverse Problems 30 (2014) 114007 (without it parameters are wrong and too sure).
 
 pub mod covariance;
+pub mod error;
 pub mod hypothesis;
 pub mod model;
 pub mod noise;

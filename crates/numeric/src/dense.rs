@@ -79,6 +79,11 @@ impl Matrix {
         Self::from_rows(&picked)
     }
 
+    /// Whether all entries are numbers.
+    pub fn is_finite(&self) -> bool {
+        self.values.iter().all(|value| value.is_finite())
+    }
+
     /// Cholesky's factor of a symmetric matrix; `None` if it is not positive definite.
     pub fn factorised(&self) -> Option<LargeFactor> {
         Symmetric::of(self.columns, &self.values).factorised()

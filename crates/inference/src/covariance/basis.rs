@@ -11,6 +11,7 @@
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
+use crate::error::{InferenceError, Stage, factorised};
 use crate::observations::Observations;
 use tactpad_numeric::dense::{Matrix, gram};
 use tactpad_numeric::linear::LargeFactor;
@@ -41,7 +42,7 @@ pub struct Basis {
     /// For each row, the functions' values.
     pub values: Vec<Vec<f64>>,
     /// Of each length that is tried.
-    priors: [OnceLock<Option<Prior>>; LENGTHS_TRIED],
+    priors: [OnceLock<Result<Prior, InferenceError>>; LENGTHS_TRIED],
 }
 
 /// z ~ N(0, T).
@@ -117,13 +118,13 @@ impl Basis {
         share * half_mm
     }
 
-    /// The process of one of the lengths that are tried; it is computed once.
-    pub fn prior(&self, at: usize) -> Option<&Prior> {
-        self.priors.get(at)?.get_or_init(|| self.process(self.length_mm(at))).as_ref()
+    /// The process of one of the [`LENGTHS_TRIED`]; it is computed once.
+    pub(crate) fn prior(&self, at: usize) -> Result<&Prior, InferenceError> {
+        self.priors[at].get_or_init(|| self.process(self.length_mm(at))).as_ref().map_err(|error| *error)
     }
 
-    /// The process of this length with a mean square of 1; `None` if the numbers do not allow it.
-    fn process(&self, length_mm: f64) -> Option<Prior> {
+    /// The process of this length with a mean square of 1.
+    fn process(&self, length_mm: f64) -> Result<Prior, InferenceError> {
         let points = self.points();
         let values: Vec<Vec<f64>> = points.iter().map(|point| self.at(*point)).collect();
         let columns: Vec<Vec<f64>> =
@@ -131,7 +132,7 @@ impl Basis {
         let mut inner = gram(&columns.iter().map(Vec::as_slice).collect::<Vec<_>>());
         let mean_square = (0..self.len()).map(|at| inner.at(at, at)).sum::<f64>() / self.len() as f64;
         (0..self.len()).for_each(|at| inner.row_mut(at)[at] += RIDGE * mean_square);
-        let factor = inner.factorised()?;
+        let factor = factorised(&inner, Stage::Process)?;
         // P, a column for each point.
         let projection: Vec<Vec<f64>> = values.iter().map(|row| factor.solve(row)).collect();
         let projection = Matrix::from_rows(&projection);
@@ -150,10 +151,10 @@ impl Basis {
             covariance.row_mut(at).copy_from_slice(&spread.transposed_times(&projection.column(at)));
             covariance.row_mut(at)[at] += RIDGE;
         }
-        let factor = covariance.factorised()?;
+        let factor = factorised(&covariance, Stage::Process)?;
         let unit = |at: usize| (0..self.len()).map(|k| f64::from(u8::from(k == at))).collect::<Vec<_>>();
         let precision: Vec<Vec<f64>> = (0..self.len()).map(|at| factor.solve(&unit(at))).collect();
-        Some(Prior { length_mm, factor, precision: Matrix::from_rows(&precision) })
+        Ok(Prior { length_mm, factor, precision: Matrix::from_rows(&precision) })
     }
 
     /// Points that fill the ellipse of the places evenly: a sunflower.
@@ -209,6 +210,6 @@ mod tests {
     fn places_on_one_spot_are_no_fault() {
         let samples = vec![Sample::default(); 3];
         let basis = Basis::of(&Observations { samples, ..Observations::default() });
-        assert!((0..LENGTHS_TRIED).all(|at| basis.prior(at).is_some()));
+        assert!((0..LENGTHS_TRIED).all(|at| basis.prior(at).is_ok()));
     }
 }

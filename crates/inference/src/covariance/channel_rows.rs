@@ -3,6 +3,7 @@
 use super::basis::Prior;
 use super::system::ChannelSystem;
 use super::whitening::Whitening;
+use crate::error::{InferenceError, Stage, factorised};
 use crate::model::Column;
 use crate::noise::Noise;
 use crate::observations::Observations;
@@ -37,7 +38,7 @@ impl ChannelRows<'_> {
         &self,
         wide: &Prior,
         before: Option<(Noise, f64)>,
-    ) -> Option<(ChannelSystem, Noise)> {
+    ) -> Result<(ChannelSystem, Noise), InferenceError> {
         let readings = &self.observations.readings[self.channel];
         let residual: Vec<f64> = readings.iter().zip(self.modelled).map(|(y, f)| y - f).collect();
         let rounds = if before.is_some() { NOISE_ROUNDS_AGAIN } else { NOISE_ROUNDS };
@@ -46,11 +47,11 @@ impl ChannelRows<'_> {
             let system = self.with(&residual, &level, memory)?;
             (level, memory) = self.estimated_noise(&system, &level, wide)?;
         }
-        Some((self.with(&residual, &level, memory)?, level))
+        Ok((self.with(&residual, &level, memory)?, level))
     }
 
     /// The system with this noise.
-    fn with(&self, residual: &[f64], level: &Noise, memory: f64) -> Option<ChannelSystem> {
+    fn with(&self, residual: &[f64], level: &Noise, memory: f64) -> Result<ChannelSystem, InferenceError> {
         let is_told = &self.observations.is_told[self.channel];
         let variance = |(row, is_told): (usize, &bool)| {
             let doubt = self.doubts.get(row).copied().unwrap_or_default();
@@ -72,7 +73,12 @@ impl ChannelRows<'_> {
     }
 
     /// The noise and its memory, when all causes and a large background are fitted with wide priors: what nothing smooth explains.
-    fn estimated_noise(&self, system: &ChannelSystem, level: &Noise, wide: &Prior) -> Option<(Noise, f64)> {
+    fn estimated_noise(
+        &self,
+        system: &ChannelSystem,
+        level: &Noise,
+        wide: &Prior,
+    ) -> Result<(Noise, f64), InferenceError> {
         let shares = [2.0 * BACKGROUND_MAX; 3];
         let reduced = system.equations.reduced(wide, &shares)?;
         let mut inner = reduced.fisher.clone();
@@ -80,7 +86,7 @@ impl ChannelRows<'_> {
         let rows = system.whitening.told() as f64;
         let priors = wide_precisions(system, self.modelled);
         priors.iter().enumerate().for_each(|(at, precision)| inner.row_mut(at)[at] += precision);
-        let factor = inner.factorised()?;
+        let factor = factorised(&inner, Stage::Noise)?;
         let coordinates = factor.solve(&reduced.score);
         let z = reduced.factor.solve(&system.equations.background_score(&coordinates));
         let left = system.left_over(&coordinates, &z);
@@ -101,7 +107,7 @@ impl ChannelRows<'_> {
             + reduced.freedom(wide, &shares).iter().sum::<f64>()
             + system.stated.freedom();
         let freedom_ratio = (1.0 - effective / rows).max(FREEDOM_RATIO_MIN);
-        Some((Noise::of(&residual, &modelled, &in_series, freedom_ratio), system.whitening.memory_of(&left)))
+        Ok((Noise::of(&residual, &modelled, &in_series, freedom_ratio), system.whitening.memory_of(&left)))
     }
 }
 

@@ -9,6 +9,7 @@
 //! (M. A. Woodbury, Princeton Statistical Research Group 42 (1950)).
 
 use super::basis::Prior;
+use crate::error::{InferenceError, Stage, factorised};
 use tactpad_numeric::dense::Matrix;
 use tactpad_numeric::linear::LargeFactor;
 use tactpad_numeric::products::dot;
@@ -98,8 +99,11 @@ impl NormalEquations {
         }
     }
 
-    /// With a background of T = diag(τ²) ⊗ the process' own, τ being its share for each load; `None` if H is not positive definite.
-    pub fn reduced(&self, prior: &Prior, shares: &[f64]) -> Option<Reduced> {
+    /// With a background of T = diag(τ²) ⊗ the process' own, τ being its share for each load.
+    ///
+    /// # Errors
+    /// H is not positive definite.
+    pub fn reduced(&self, prior: &Prior, shares: &[f64]) -> Result<Reduced, InferenceError> {
         let mut inner = self.background_gram.clone();
         let width = prior.precision.columns();
         for (load, share) in shares.iter().enumerate() {
@@ -111,7 +115,7 @@ impl NormalEquations {
                     .for_each(|(entry, own)| *entry += own / (share * share));
             }
         }
-        let factor = inner.factorised()?;
+        let factor = factorised(&inner, Stage::Background)?;
         let whitened_mixed: Vec<Vec<f64>> =
             (0..self.columns.len()).map(|at| factor.solve_lower(self.mixed.row(at))).collect();
         let whitened_residual = factor.solve_lower(&self.background_residual);
@@ -124,7 +128,7 @@ impl NormalEquations {
             }
         }
         let score = self.signature_residual.iter().zip(&whitened_mixed);
-        Some(Reduced {
+        Ok(Reduced {
             fisher,
             score: score.map(|(own, mixed)| own - dot(mixed, &whitened_residual)).collect(),
             square: self.square - dot(&whitened_residual, &whitened_residual),

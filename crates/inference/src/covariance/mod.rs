@@ -14,6 +14,7 @@ use self::basis::{Basis, LENGTHS_TRIED, Prior};
 use self::channel_rows::{ChannelRows, wide_precisions};
 use self::equations::{NormalEquations, Reduced};
 use self::system::ChannelSystem;
+use crate::error::{InferenceError, Stage, factorised};
 use crate::model::{Column, Linearised, Model, Signature};
 use crate::noise::Noise;
 use crate::observations::Observations;
@@ -118,7 +119,7 @@ impl Systems {
         linearised: &Linearised,
         columns: &[Column<'_>],
         before: Option<&Self>,
-    ) -> Option<Self> {
+    ) -> Result<Self, InferenceError> {
         let basis = &smooth.basis;
         let load_rms = observations.load_rms();
         let (in_series, follows) = (observations.in_series(), observations.follows());
@@ -140,10 +141,11 @@ impl Systems {
                 follows: &follows,
             };
             let before = before.map(|it| (it.noise[channel], it.channels[channel].whitening.memory()));
-            let (system, level) = rows.system(wide, before)?;
-            Some((system, level, (size / sizes[channel]).powi(2)))
+            let (system, level) = rows.system(wide, before).map_err(|error| error.in_channel(channel))?;
+            Ok((system, level, (size / sizes[channel]).powi(2)))
         };
-        let channels: Option<Vec<_>> = (0..sizes.len()).into_par_iter().map(of_channel).collect();
+        let channels: Result<Vec<_>, InferenceError> =
+            (0..sizes.len()).into_par_iter().map(of_channel).collect();
         let mut systems = Self {
             channels: Vec::new(),
             noise: Vec::new(),
@@ -156,7 +158,7 @@ impl Systems {
             systems.noise.push(level);
             systems.extents.push(extent);
         }
-        Some(systems)
+        Ok(systems)
     }
 
     /// The background's functions of a channel at other rows, where `whole` is its root mean square over the measurement.
@@ -182,14 +184,21 @@ impl Systems {
         z.chunks(self.smooth.basis.len().max(1))
     }
 
-    /// With this background; `None` where a system is not positive definite.
-    pub fn marginal(&self, background: &Background) -> Option<Marginal> {
+    /// With this background.
+    ///
+    /// # Errors
+    /// A system is not positive definite.
+    pub fn marginal(&self, background: &Background) -> Result<Marginal, InferenceError> {
         let all: Vec<&NormalEquations> = self.channels.iter().map(|it| &it.equations).collect();
         self.marginal_of(&all, self.columns, background)
     }
 
     /// The same with some of the columns only; the others count as nothing.
-    pub fn marginal_with(&self, columns: &[usize], background: &Background) -> Option<Marginal> {
+    pub fn marginal_with(
+        &self,
+        columns: &[usize],
+        background: &Background,
+    ) -> Result<Marginal, InferenceError> {
         let picked = self.picked(columns);
         self.marginal_of(&picked.iter().collect::<Vec<_>>(), self.columns, background)
     }
@@ -200,15 +209,15 @@ impl Systems {
         columns: &[usize],
         further: &[Signature],
         background: &Background,
-    ) -> Option<Marginal> {
+    ) -> Result<Marginal, InferenceError> {
         let of_channel = |(channel, system): (usize, &ChannelSystem)| {
             let own = further.iter().enumerate().filter_map(|(at, it)| {
                 let values = it[channel].as_deref()?;
                 Some((self.columns + at, values))
             });
-            system.beside(columns, &own.collect::<Vec<_>>())
+            system.beside(columns, &own.collect::<Vec<_>>()).map_err(|error| error.in_channel(channel))
         };
-        let all: Option<Vec<NormalEquations>> =
+        let all: Result<Vec<NormalEquations>, InferenceError> =
             self.channels.par_iter().enumerate().map(of_channel).collect();
         self.marginal_of(&all?.iter().collect::<Vec<_>>(), self.columns + further.len(), background)
     }
@@ -223,13 +232,15 @@ impl Systems {
         equations: &[&NormalEquations],
         count: usize,
         background: &Background,
-    ) -> Option<Marginal> {
+    ) -> Result<Marginal, InferenceError> {
         let mut fisher = Matrix::zeros(count, count);
         let mut score = vec![0.0; count];
         let (mut square, mut log_determinant) = (0.0, 0.0);
-        let of_channel = |(it, shares): (&&NormalEquations, &[f64; 3])| it.reduced(&background.prior, shares);
-        let channels: Option<Vec<Reduced>> =
-            equations.par_iter().zip(&background.shares).map(of_channel).collect();
+        let of_channel = |(channel, (it, shares)): (usize, (&&NormalEquations, &[f64; 3]))| {
+            it.reduced(&background.prior, shares).map_err(|error| error.in_channel(channel))
+        };
+        let channels: Result<Vec<Reduced>, InferenceError> =
+            equations.par_iter().zip(&background.shares).enumerate().map(of_channel).collect();
         let channels = channels?;
         for (NormalEquations { columns, .. }, reduced) in equations.iter().zip(&channels) {
             for (row, number) in columns.iter().enumerate() {
@@ -242,11 +253,15 @@ impl Systems {
             square += reduced.square;
             log_determinant += reduced.log_determinant;
         }
-        Some(Marginal { fisher, score, square, log_determinant, channels })
+        Ok(Marginal { fisher, score, square, log_determinant, channels })
     }
 
     /// Coordinates of all columns, fitted at once with wide priors: beside them nothing is left that any cause explains.
-    pub fn explained(&self, marginal: &Marginal, linearised: &Linearised) -> Option<Vec<f64>> {
+    pub fn explained(
+        &self,
+        marginal: &Marginal,
+        linearised: &Linearised,
+    ) -> Result<Vec<f64>, InferenceError> {
         let mut precisions = vec![0.0; self.columns];
         for (system, modelled) in self.channels.iter().zip(&linearised.readings) {
             for (number, precision) in system.equations.columns.iter().zip(wide_precisions(system, modelled))
@@ -255,11 +270,15 @@ impl Systems {
             }
         }
         let known = (0..self.columns).filter(|column| precisions[*column] > 0.0).collect();
-        Some(Fitted { columns: known, precisions: &precisions }.solved(marginal)?.coordinates)
+        Ok(Fitted { columns: known, precisions: &precisions }.solved(marginal)?.coordinates)
     }
 
     /// The background with the greatest likelihood when the columns `fitted` are free. From a `start` its length is sought nearby.
-    pub fn background(&self, fitted: &Fitted<'_>, start: Option<&Background>) -> Option<Background> {
+    pub fn background(
+        &self,
+        fitted: &Fitted<'_>,
+        start: Option<&Background>,
+    ) -> Result<Background, InferenceError> {
         let first = match start {
             Some(start) => self.sized(fitted, start, STEPS)?,
             None => self.first(fitted)?,
@@ -269,7 +288,11 @@ impl Systems {
             // One length after the other while that helps: up, or down.
             let mut is_better = true;
             while is_better {
-                let Some(next) = self.of_length(best.length.wrapping_add(step), &best) else { break };
+                let length = best.length.wrapping_add(step);
+                if length >= LENGTHS_TRIED {
+                    break;
+                }
+                let next = self.with_length(length, &best)?;
                 let (found, sized) = self.sized(fitted, &next, STEPS)?;
                 is_better = found > likelihood;
                 if is_better {
@@ -277,42 +300,47 @@ impl Systems {
                 }
             }
         }
-        Some(best)
+        Ok(best)
     }
 
     /// The same with the length of the `start`.
-    pub fn resized(&self, fitted: &Fitted<'_>, start: &Background) -> Option<Background> {
-        Some(self.sized(fitted, start, STEPS_AGAIN)?.1)
+    pub fn resized(&self, fitted: &Fitted<'_>, start: &Background) -> Result<Background, InferenceError> {
+        Ok(self.sized(fitted, start, STEPS_AGAIN)?.1)
     }
 
     /// The best of a few lengths, and its likelihood.
-    fn first(&self, fitted: &Fitted<'_>) -> Option<(f64, Background)> {
+    fn first(&self, fitted: &Fitted<'_>) -> Result<(f64, Background), InferenceError> {
         let mut start = Background {
             prior: self.smooth.basis.prior(0)?.clone(),
             length: 0,
             shares: vec![[BACKGROUND_FIRST; 3]; self.channels.len()],
             freedom: vec![0.0; self.channels.len()],
         };
-        let mut best: Option<(f64, Background)> = None;
-        for length in LENGTHS_FIRST {
-            let found = self.sized(fitted, &self.of_length(length, &start)?, STEPS)?;
+        let [first, rest @ ..] = LENGTHS_FIRST;
+        let mut best = self.sized(fitted, &self.with_length(first, &start)?, STEPS)?;
+        start.shares.clone_from(&best.1.shares);
+        for length in rest {
+            let found = self.sized(fitted, &self.with_length(length, &start)?, STEPS)?;
             start.shares.clone_from(&found.1.shares);
-            if best.as_ref().is_none_or(|(likelihood, _)| found.0 > *likelihood) {
-                best = Some(found);
+            if found.0 > best.0 {
+                best = found;
             }
         }
-        best
+        Ok(best)
     }
 
-    /// With another of the lengths that are tried; none beyond them.
-    fn of_length(&self, length: usize, like: &Background) -> Option<Background> {
-        let is_tried = length < LENGTHS_TRIED;
-        let prior = self.smooth.basis.prior(length).filter(|_| is_tried)?.clone();
-        Some(Background { prior, length, ..like.clone() })
+    /// With another of the lengths that are tried.
+    fn with_length(&self, length: usize, like: &Background) -> Result<Background, InferenceError> {
+        Ok(Background { prior: self.smooth.basis.prior(length)?.clone(), length, ..like.clone() })
     }
 
     /// The sizes with the greatest likelihood for a length, and that likelihood.
-    fn sized(&self, fitted: &Fitted<'_>, start: &Background, steps: usize) -> Option<(f64, Background)> {
+    fn sized(
+        &self,
+        fitted: &Fitted<'_>,
+        start: &Background,
+        steps: usize,
+    ) -> Result<(f64, Background), InferenceError> {
         let mut background = start.clone();
         let mut likelihood = f64::NEG_INFINITY;
         let equations = self.picked(&fitted.columns);
@@ -323,7 +351,7 @@ impl Systems {
             likelihood = -0.5 * (marginal.square - solution.removed + marginal.log_determinant);
             background = self.updated(&background, &equations, &marginal, &solution.coordinates);
         }
-        Some((likelihood, background))
+        Ok((likelihood, background))
     }
 
     /// Each channel's smooth remainder, with these coordinates of the columns.
@@ -408,22 +436,22 @@ impl Marginal {
 
 impl Fitted<'_> {
     /// The factor of what the rows and the priors tell of the columns.
-    pub fn factorised(&self, marginal: &Marginal) -> Option<LargeFactor> {
+    pub fn factorised(&self, marginal: &Marginal) -> Result<LargeFactor, InferenceError> {
         let mut inner = marginal.fisher.picked(&self.columns, &self.columns);
         for (at, column) in self.columns.iter().enumerate() {
             inner.row_mut(at)[at] += self.precisions[*column];
         }
-        inner.factorised()
+        factorised(&inner, Stage::Causes)
     }
 
     /// The generalised least-squares solution.
-    pub fn solved(&self, marginal: &Marginal) -> Option<Solved> {
+    pub fn solved(&self, marginal: &Marginal) -> Result<Solved, InferenceError> {
         let score: Vec<f64> = self.columns.iter().map(|column| marginal.score[*column]).collect();
         let found = self.factorised(marginal)?.solve(&score);
         let removed = found.iter().zip(&score).map(|(psi, score)| psi * score).sum();
         let mut coordinates = vec![0.0; marginal.score.len()];
         self.columns.iter().zip(found).for_each(|(column, psi)| coordinates[*column] = psi);
-        Some(Solved { coordinates, removed })
+        Ok(Solved { coordinates, removed })
     }
 }
 

@@ -7,6 +7,7 @@
 
 use super::equations::NormalEquations;
 use super::whitening::Whitening;
+use crate::error::{InferenceError, Stage, factorised};
 use tactpad_numeric::dense::{Matrix, gram};
 use tactpad_numeric::linear::LargeFactor;
 use tactpad_numeric::products::dot;
@@ -45,15 +46,15 @@ impl StatedErrors {
         signatures: &[Vec<f64>],
         background: &[Vec<f64>],
         residual: &[f64],
-    ) -> Option<Self> {
+    ) -> Result<Self, InferenceError> {
         let mut inner = products(&columns);
         (0..columns.len()).for_each(|at| inner.row_mut(at)[at] += 1.0);
-        let factor = if columns.is_empty() { None } else { Some(inner.factorised()?) };
+        let factor = if columns.is_empty() { None } else { Some(factorised(&inner, Stage::StatedErrors)?) };
         let against = |of: &[f64]| -> Vec<f64> {
             let right: Vec<f64> = columns.iter().map(|column| dot(column, of)).collect();
             factor.as_ref().map_or_else(Vec::new, |factor| factor.solve_lower(&right))
         };
-        Some(Self {
+        Ok(Self {
             signatures: signatures.iter().map(|column| against(column)).collect(),
             background: background.iter().map(|column| against(column)).collect(),
             residual: against(residual),
@@ -79,14 +80,17 @@ impl StatedErrors {
 }
 
 impl ChannelSystem {
-    /// `signatures` are columns with their numbers, `errors` are those that the model states; `None` if they are not finite.
+    /// `signatures` are columns with their numbers, `errors` are those that the model states.
+    ///
+    /// # Errors
+    /// The errors are not finite.
     pub fn of(
         signatures: &[(usize, &[f64])],
         background: &[Vec<f64>],
         errors: &[Vec<f64>],
         residual: &[f64],
         whitening: Whitening,
-    ) -> Option<Self> {
+    ) -> Result<Self, InferenceError> {
         let columns: Vec<usize> = signatures.iter().map(|(number, _)| *number).collect();
         let whitened = |of: &[Vec<f64>]| of.iter().map(|column| whitening.whitened(column)).collect();
         let signatures: Vec<Vec<f64>> =
@@ -114,11 +118,18 @@ impl ChannelSystem {
                 + stated.factor.as_ref().map_or(0.0, LargeFactor::log_determinant),
             columns,
         };
-        Some(Self { equations, whitening, signatures, background, residual, stated })
+        Ok(Self { equations, whitening, signatures, background, residual, stated })
     }
 
     /// The normal equations of some of its columns, and of `further` ones with their numbers.
-    pub fn beside(&self, columns: &[usize], further: &[(usize, &[f64])]) -> Option<NormalEquations> {
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn beside(
+        &self,
+        columns: &[usize],
+        further: &[(usize, &[f64])],
+    ) -> Result<NormalEquations, InferenceError> {
         let further: Vec<(usize, Vec<f64>)> =
             further.iter().map(|(number, values)| (*number, self.whitening.whitened(values))).collect();
         let own = self.equations.columns.iter().zip(&self.signatures);
@@ -127,7 +138,7 @@ impl ChannelSystem {
         let all: Vec<(usize, &[f64])> =
             own.map(|(number, values)| (*number, values.as_slice())).chain(further).collect();
         let white = Whitening::none(self.residual.len());
-        Some(Self::of(&all, &self.background, &self.stated.columns, &self.residual, white)?.equations)
+        Ok(Self::of(&all, &self.background, &self.stated.columns, &self.residual, white)?.equations)
     }
 
     /// D⁻½ (r − A ψ − B z − E ê).

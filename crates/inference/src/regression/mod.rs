@@ -23,6 +23,7 @@ pub use self::kernel::{Group, Labels};
 use self::kernel::{Kernel, pivots, scale, scaled};
 use self::system::{Solution, System};
 use crate::covariance::whitening::Whitening;
+use crate::error::{InferenceError, Stage};
 use crate::noise::NoiseLevel;
 
 use tactpad_numeric::linear::LargeFactor;
@@ -66,8 +67,15 @@ pub struct RegressionFit {
 }
 
 impl Regression {
-    /// Chooses the kernel by the `readings` of all channels; `None` where these rows have no unique solution.
-    pub fn of(labels: &Labels, readings: &[Vec<f64>]) -> Option<Self> {
+    /// Chooses the kernel by the `readings` of all channels.
+    ///
+    /// # Errors
+    /// These rows have no unique solution.
+    pub fn of(labels: &Labels, readings: &[Vec<f64>]) -> Result<Self, InferenceError> {
+        Self::chosen(labels, readings).ok_or_else(|| no_solution(readings.iter().flatten()))
+    }
+
+    fn chosen(labels: &Labels, readings: &[Vec<f64>]) -> Option<Self> {
         let scales: Vec<(Vec<f64>, f64)> =
             labels.groups.iter().map(|group| scale(group, &labels.rows)).collect();
         let rows: Vec<Vec<f64>> =
@@ -118,7 +126,22 @@ impl Regression {
 
     /// The regression of a channel by the functions at its rows, row by row. `is_told` says which readings count, `follows` which rows
     /// go on with the row before.
+    ///
+    /// # Errors
+    /// These rows have no unique solution.
     pub fn fitted(
+        &self,
+        functions: &[Vec<f64>],
+        readings: &[f64],
+        is_told: &[bool],
+        follows: &[bool],
+    ) -> Result<RegressionFit, InferenceError> {
+        let fit = self.fitted_in_turn(functions, readings, is_told, follows);
+        fit.ok_or_else(|| no_solution(readings.iter()))
+    }
+
+    /// Weights and noise, which follow from each other.
+    fn fitted_in_turn(
         &self,
         functions: &[Vec<f64>],
         readings: &[f64],
@@ -205,6 +228,12 @@ impl Regression {
             left,
         ))
     }
+}
+
+/// No unique solution of these readings.
+fn no_solution<'r>(mut readings: impl Iterator<Item = &'r f64>) -> InferenceError {
+    let is_finite = readings.all(|reading| reading.is_finite());
+    InferenceError { stage: Stage::Regression, channel: None, is_finite }
 }
 
 impl RegressionFit {

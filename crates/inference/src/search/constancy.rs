@@ -8,6 +8,7 @@
 
 use super::score_test::Projected;
 use super::{AttributionFit, Search};
+use crate::error::InferenceError;
 use crate::model::Signature;
 use crate::observations::Sample;
 use tactpad_numeric::statistics::median;
@@ -24,13 +25,18 @@ const SHEAR_MIN: f64 = 0.2;
 impl<L> Search<'_, L> {
     /// Whether a fitted cause is as large in all parts of the measurement, as far as they tell, and no number of it ended where it
     /// can go no further.
-    pub fn holds_throughout(&self, fit: &AttributionFit, at: usize) -> Option<bool> {
+    pub fn holds_throughout(&self, fit: &AttributionFit, at: usize) -> Result<bool, InferenceError> {
         let own = self.test_within(fit, at)?.square;
-        Some(!self.is_at_an_end(fit, at) && self.is_alike(fit, &self.effect(fit, at), own)?)
+        Ok(!self.is_at_an_end(fit, at) && self.is_alike(fit, &self.effect(fit, at), own)?)
     }
 
     /// The same of a channel's zero, whose square over its variance is `own`.
-    pub fn zero_holds_throughout(&self, fit: &AttributionFit, channel: usize, own: f64) -> Option<bool> {
+    pub fn zero_holds_throughout(
+        &self,
+        fit: &AttributionFit,
+        channel: usize,
+        own: f64,
+    ) -> Result<bool, InferenceError> {
         let is_own = |at: usize| (at == channel).then(|| vec![1.0; self.observations.rows()]);
         self.is_alike(fit, &(0..self.observations.channels.len()).map(is_own).collect(), own)
     }
@@ -45,7 +51,7 @@ impl<L> Search<'_, L> {
     }
 
     /// Whether an effect that takes `own` off the weighted squares is as large in all parts.
-    fn is_alike(&self, fit: &AttributionFit, effect: &Signature, own: f64) -> Option<bool> {
+    fn is_alike(&self, fit: &AttributionFit, effect: &Signature, own: f64) -> Result<bool, InferenceError> {
         let partitions = self.partitions(effect);
         let fitted = self.columns.fitted(fit.applied.iter().map(|(held, _)| *held));
         for parts in &partitions {
@@ -54,10 +60,10 @@ impl<L> Search<'_, L> {
             let numbers: Vec<usize> = (fit.systems.columns..fit.systems.columns + parts.len()).collect();
             let test = projected.test(&numbers, &projected.score);
             if test.p_value() < LEVEL / partitions.len() as f64 && test.square > SHARE_MIN * own {
-                return Some(false);
+                return Ok(false);
             }
         }
-        Some(true)
+        Ok(true)
     }
 
     /// Σ J ψ̂ of a fitted cause.

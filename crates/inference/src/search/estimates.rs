@@ -2,6 +2,7 @@
 
 use super::score_test::Projected;
 use super::{Attribution, Search};
+use crate::error::InferenceError;
 use crate::hypothesis::Parameter;
 use crate::policy::{POWER, WITHIN_95};
 use tactpad_numeric::chi_square;
@@ -35,7 +36,7 @@ fn norm(coordinates: &[f64], covariance: &Matrix) -> f64 {
 
 impl<L> Search<'_, L> {
     /// A fitted cause's numbers with their intervals.
-    pub fn estimates(&self, found: &Attribution, at: usize) -> Option<Vec<Estimate>> {
+    pub fn estimates(&self, found: &Attribution, at: usize) -> Result<Vec<Estimate>, InferenceError> {
         let covariance = self.covariance(&found.fit, at)?;
         let (hypothesis, coordinates) = &found.fit.applied[at];
         let it = &self.model.hypotheses()[*hypothesis];
@@ -51,7 +52,7 @@ impl<L> Search<'_, L> {
                 interval95: [-spread, spread].map(|by| parameter.value(coordinates[k] + by)),
             }
         };
-        Some(parameters.iter().enumerate().map(estimate).collect())
+        Ok(parameters.iter().enumerate().map(estimate).collect())
     }
 
     /// The numbers of a fitted cause's course.
@@ -63,7 +64,7 @@ impl<L> Search<'_, L> {
     }
 
     /// For each hypothesis that was asked for and not found, its number and the size that would have been; none where nothing tells of it.
-    pub fn detectable(&self, found: &Attribution) -> Option<Vec<(usize, Detectable)>> {
+    pub fn detectable(&self, found: &Attribution) -> Result<Vec<(usize, Detectable)>, InferenceError> {
         let projected = self.projected(&found.fit)?;
         let largest = self.columns.of_hypothesis.iter().map(Vec::len).max().unwrap_or(0);
         let noncentralities: Vec<f64> = (0..=largest)
@@ -74,7 +75,7 @@ impl<L> Search<'_, L> {
         let asked = (0..self.columns.of_hypothesis.len())
             .filter(|at| !self.is_zero(*at) && found.fit.applied.iter().all(|(held, _)| held != at));
         let detectable = |at| Some((at, self.detectable_size(&projected, at, &noncentralities)?));
-        Some(asked.filter_map(detectable).collect())
+        Ok(asked.filter_map(detectable).collect())
     }
 
     fn detectable_size(

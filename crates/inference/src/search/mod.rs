@@ -16,6 +16,7 @@ use self::bootstrap::{Bootstrap, Draw};
 use self::columns::Columns;
 use self::score_test::{Projected, Test};
 use crate::covariance::{Background, Marginal, Smooth, Systems};
+use crate::error::{InferenceError, Stage, factorised};
 use crate::hypothesis::Parameter;
 use crate::model::{Linearised, Model};
 use crate::observations::Observations;
@@ -44,6 +45,8 @@ pub type Applied = Vec<(usize, Vec<f64>)>;
 pub struct AttributionFit {
     /// Applied hypotheses, with the fitted coordinates.
     pub applied: Applied,
+    /// Whether it stands; else it ran out of steps on the way.
+    pub is_converged: bool,
     /// The channels' systems about the point.
     pub systems: Systems,
     /// Sizes of the smooth background.
@@ -93,7 +96,7 @@ impl<'m, L> Search<'m, L> {
 
     /// Forward selection from causes that are held to be there: whatever is not significant is taken out; while the best
     /// candidate is, it is fitted.
-    pub fn run(&self, start: &Applied) -> Option<Attribution> {
+    pub fn run(&self, start: &Applied) -> Result<Attribution, InferenceError> {
         let mut fit = self.fitted(start, None)?;
         let mut critical = self.critical(&fit)?;
         while let Some(least) = self.superfluous(&fit, critical)? {
@@ -115,7 +118,7 @@ impl<'m, L> Search<'m, L> {
                 fit = self.fitted(&applied, Some(&fit))?;
             }
         }
-        Some(Attribution { fit, critical })
+        Ok(Attribution { fit, critical })
     }
 
     /// The fit, or where its last cause ended at an end of its range, that with a rival in its place which explains the data as well
@@ -125,10 +128,10 @@ impl<'m, L> Search<'m, L> {
         fit: AttributionFit,
         critical: f64,
         barred: &mut Vec<usize>,
-    ) -> Option<AttributionFit> {
+    ) -> Result<AttributionFit, InferenceError> {
         let Some(last) = fit.applied.len().checked_sub(1).filter(|last| self.is_at_an_end(&fit, *last))
         else {
-            return Some(fit);
+            return Ok(fit);
         };
         let (projected, score) = self.without(&fit, last)?;
         let mut rivals = self.rivals(&fit, critical, last, &projected, &score);
@@ -139,10 +142,10 @@ impl<'m, L> Search<'m, L> {
             let other = self.fitted(&applied, Some(&fit))?;
             if !self.is_at_an_end(&other, last) {
                 barred.push(fit.applied[last].0);
-                return Some(other);
+                return Ok(other);
             }
         }
-        Some(fit)
+        Ok(fit)
     }
 
     /// Whether a hypothesis is a channel's zero.
@@ -152,11 +155,16 @@ impl<'m, L> Search<'m, L> {
 
     /// The fit of these hypotheses by Gauss and Newton's method, with the covariance that goes with it. With `start`, a fit of nearly the
     /// same ones, that is not sought from the beginning.
-    pub fn fitted(&self, applied: &Applied, start: Option<&AttributionFit>) -> Option<AttributionFit> {
+    pub fn fitted(
+        &self,
+        applied: &Applied,
+        start: Option<&AttributionFit>,
+    ) -> Result<AttributionFit, InferenceError> {
         let mut applied = applied.clone();
         let mut before: Option<(Systems, Background)> = None;
         let mut last: Option<GaussNewtonStep> = None;
-        for step in 0..=REFITS {
+        let mut steps = 0;
+        loop {
             let linearised = self.model.linearised(&applied);
             let systems = Systems::of(
                 self.observations,
@@ -175,8 +183,9 @@ impl<'m, L> Search<'m, L> {
             self.columns.pull(&mut marginal, &applied);
             let solved = fitted.solved(&marginal)?;
             let moves = self.moves(&applied, &solved.coordinates, &marginal);
-            if step == REFITS || moves < STANDS {
-                return Some(AttributionFit {
+            if steps == REFITS || moves < STANDS {
+                return Ok(AttributionFit {
+                    is_converged: moves < STANDS,
                     applied,
                     systems,
                     background: found,
@@ -188,8 +197,8 @@ impl<'m, L> Search<'m, L> {
             let next = self.next_step(&applied, solved.coordinates, &marginal, last.as_ref());
             self.step(&mut applied, &next);
             (before, last) = (Some((systems, found)), Some(next));
+            steps += 1;
         }
-        None
     }
 
     /// By how many standard deviations a step moves the numbers that are asked for at most; a course has none.
@@ -232,7 +241,7 @@ impl<'m, L> Search<'m, L> {
     }
 
     /// The critical p-value where these causes hold.
-    fn critical(&self, fit: &AttributionFit) -> Option<f64> {
+    fn critical(&self, fit: &AttributionFit) -> Result<f64, InferenceError> {
         let projected = self.projected(fit)?;
         let mut bootstrap = Bootstrap::of(
             &fit.systems,
@@ -258,7 +267,7 @@ impl<'m, L> Search<'m, L> {
             })
             .collect();
         least.sort_by(f64::total_cmp);
-        Some(least[(LEVEL * DRAWS as f64) as usize])
+        Ok(least[(LEVEL * DRAWS as f64) as usize])
     }
 
     /// The channels' parts in what is known of a hypothesis: they add up to 1.
@@ -279,7 +288,7 @@ impl<'m, L> Search<'m, L> {
     }
 
     /// Information and score beside what is fitted.
-    pub(crate) fn projected(&self, fit: &AttributionFit) -> Option<Projected> {
+    pub(crate) fn projected(&self, fit: &AttributionFit) -> Result<Projected, InferenceError> {
         Projected::of(&fit.marginal, &self.columns.fitted(fit.applied.iter().map(|(at, _)| *at)))
     }
 
@@ -294,7 +303,12 @@ impl<'m, L> Search<'m, L> {
     }
 
     /// The candidate with the best fit, if it is significant.
-    fn next(&self, fit: &AttributionFit, critical: f64, barred: &[usize]) -> Option<Option<usize>> {
+    fn next(
+        &self,
+        fit: &AttributionFit,
+        critical: f64,
+        barred: &[usize],
+    ) -> Result<Option<usize>, InferenceError> {
         let projected = self.projected(fit)?;
         let least = self.least_square(fit)?;
         let holds = |at: usize| barred.contains(&at) || fit.applied.iter().any(|(held, _)| *held == at);
@@ -307,7 +321,7 @@ impl<'m, L> Search<'m, L> {
         candidates.sort_by(|(one, _), (other, _)| one.by_chance(other));
         candidates.truncate(SHORTLIST);
         // One that the held ones reproduce has no fit beside them.
-        let closely = |(_, at): &(Test, usize)| Some((*at, self.criterion(fit, *at)?));
+        let closely = |(_, at): &(Test, usize)| Some((*at, self.criterion(fit, *at).ok()?));
         let looked_at: Vec<(usize, (f64, Test))> = candidates.par_iter().filter_map(closely).collect();
         let mut best: Option<(f64, usize)> = None;
         for (at, (criterion, test)) in looked_at {
@@ -316,12 +330,12 @@ impl<'m, L> Search<'m, L> {
                 best = Some((criterion, at));
             }
         }
-        Some(best.map(|(_, at)| at))
+        Ok(best.map(|(_, at)| at))
     }
 
     /// Schwarz's criterion of the fit with a candidate beside the held causes, and the candidate's test. The covariance is found
     /// anew, so that the background does not take the candidate's part.
-    fn criterion(&self, fit: &AttributionFit, at: usize) -> Option<(f64, Test)> {
+    fn criterion(&self, fit: &AttributionFit, at: usize) -> Result<(f64, Test), InferenceError> {
         let held = || fit.applied.iter().map(|(held, _)| *held);
         let both = self.columns.fitted(held().chain([at]));
         let background = fit.systems.resized(&both, &fit.background)?;
@@ -329,11 +343,11 @@ impl<'m, L> Search<'m, L> {
         let projected = Projected::of(&marginal, &self.columns.fitted(held()))?;
         let test = self.test(&projected, at, &projected.score);
         let deviance = marginal.square - both.solved(&marginal)?.removed + marginal.log_determinant();
-        Some((deviance + test.freedom as f64 * (self.observations.rows() as f64).ln(), test))
+        Ok((deviance + test.freedom as f64 * (self.observations.rows() as f64).ln(), test))
     }
 
     /// The place in the fit of a cause that is not significant beside the others; the least of them.
-    fn superfluous(&self, fit: &AttributionFit, critical: f64) -> Option<Option<usize>> {
+    fn superfluous(&self, fit: &AttributionFit, critical: f64) -> Result<Option<usize>, InferenceError> {
         let mut worst: Option<(f64, usize)> = None;
         let least = self.least_square(fit)?;
         for at in 0..fit.applied.len() {
@@ -345,30 +359,30 @@ impl<'m, L> Search<'m, L> {
                 worst = Some((p_value, at));
             }
         }
-        Some(worst.map(|(_, at)| at))
+        Ok(worst.map(|(_, at)| at))
     }
 
     /// What a cause must take off the weighted squares to be more than the signatures of those with a course may be wrong by: where a
     /// signature goes with the load in proportion the background holds its error; where it has a course of its own, so much of what the
     /// cause explains may be that cause still, in another guise.
-    fn least_square(&self, fit: &AttributionFit) -> Option<f64> {
+    fn least_square(&self, fit: &AttributionFit) -> Result<f64, InferenceError> {
         let has_course = |at: &usize| !self.columns.shapes[fit.applied[*at].0].is_empty();
         let mut squares =
-            (0..fit.applied.len()).filter(has_course).map(|at| Some(self.test_within(fit, at)?.square));
-        let largest = squares.try_fold(0.0, |largest, square| Some(f64::max(largest, square?)))?;
-        Some(SIGNATURE_ERROR * SIGNATURE_ERROR * largest)
+            (0..fit.applied.len()).filter(has_course).map(|at| Ok(self.test_within(fit, at)?.square));
+        let largest = squares.try_fold(0.0, |largest, square| Ok(f64::max(largest, square?)))?;
+        Ok(SIGNATURE_ERROR * SIGNATURE_ERROR * largest)
     }
 
     /// The test of a fitted cause beside all others that are fitted.
-    pub fn test_within(&self, fit: &AttributionFit, at: usize) -> Option<Test> {
+    pub fn test_within(&self, fit: &AttributionFit, at: usize) -> Result<Test, InferenceError> {
         let (hypothesis, _) = fit.applied[at];
         let own = &self.columns.of_hypothesis[hypothesis];
         let (projected, score) = self.without(fit, at)?;
-        Some(projected.test(own, &score))
+        Ok(projected.test(own, &score))
     }
 
     /// Everything but one fitted cause projected out, and the score of the residual without that cause.
-    pub fn without(&self, fit: &AttributionFit, at: usize) -> Option<(Projected, Vec<f64>)> {
+    pub fn without(&self, fit: &AttributionFit, at: usize) -> Result<(Projected, Vec<f64>), InferenceError> {
         let others =
             fit.applied.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, (held, _))| *held);
         let projected = Projected::of(&fit.marginal, &self.columns.fitted(others))?;
@@ -381,20 +395,20 @@ impl<'m, L> Search<'m, L> {
                 .zip(projected.fisher.row(*column))
                 .for_each(|(score, entry)| *score += psi * entry);
         }
-        Some((projected, score))
+        Ok((projected, score))
     }
 
     /// Covariance of a fitted cause's coordinates.
-    pub fn covariance(&self, fit: &AttributionFit, at: usize) -> Option<Matrix> {
+    pub fn covariance(&self, fit: &AttributionFit, at: usize) -> Result<Matrix, InferenceError> {
         let (projected, _) = self.without(fit, at)?;
         let own: Vec<usize> = self.columns.all_of(fit.applied[at].0).collect();
         let mut inner = projected.fisher.picked(&own, &own);
         for (row, column) in own.iter().enumerate() {
             inner.row_mut(row)[row] += self.columns.precisions[*column];
         }
-        let factor = inner.factorised()?;
+        let factor = factorised(&inner, Stage::Causes)?;
         let unit = |at: usize| (0..own.len()).map(|k| f64::from(u8::from(k == at))).collect::<Vec<_>>();
-        Some(Matrix::from_rows(&(0..own.len()).map(|at| factor.solve(&unit(at))).collect::<Vec<_>>()))
+        Ok(Matrix::from_rows(&(0..own.len()).map(|at| factor.solve(&unit(at))).collect::<Vec<_>>()))
     }
 }
 

@@ -8,6 +8,7 @@
 
 use super::score_test::{Projected, Test};
 use super::{AttributionFit, Search};
+use crate::error::InferenceError;
 
 impl<L> Search<'_, L> {
     /// The rivals that explain the data as well as a fitted cause, `projected` and `score` being without it.
@@ -50,7 +51,7 @@ impl<L> Search<'_, L> {
     }
 
     /// What all fitted causes together take off the weighted squares, beside the nuisances.
-    pub fn removed(&self, fit: &AttributionFit) -> Option<f64> {
+    pub fn removed(&self, fit: &AttributionFit) -> Result<f64, InferenceError> {
         let projected = Projected::of(&fit.marginal, &self.columns.fitted([]))?;
         let mut score = projected.score.clone();
         let mut columns = Vec::new();
@@ -63,6 +64,6 @@ impl<L> Search<'_, L> {
                 columns.push(*column);
             }
         }
-        Some(projected.test(&columns, &score).square)
+        Ok(projected.test(&columns, &score).square)
     }
 }

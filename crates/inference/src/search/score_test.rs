@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::covariance::{Fitted, Marginal};
+use crate::error::InferenceError;
 use tactpad_numeric::chi_square;
 use tactpad_numeric::dense::Matrix;
 
@@ -48,8 +49,11 @@ impl Test {
 }
 
 impl Projected {
-    /// `None` if the fitted columns are not independent.
-    pub fn of(marginal: &Marginal, fitted: &Fitted<'_>) -> Option<Self> {
+    /// With these columns projected out.
+    ///
+    /// # Errors
+    /// They are not independent.
+    pub fn of(marginal: &Marginal, fitted: &Fitted<'_>) -> Result<Self, InferenceError> {
         let all: Vec<usize> = (0..marginal.score.len()).collect();
         let factor = fitted.factorised(marginal)?;
         let across = marginal.fisher.picked(&fitted.columns, &all);
@@ -71,7 +75,7 @@ impl Projected {
         let mut projected =
             Self { fisher, score: Vec::new(), whole, weights, fitted: fitted.columns.clone() };
         projected.score = projected.projected(&marginal.score);
-        Some(projected)
+        Ok(projected)
     }
 
     /// A score with the fitted columns projected out.

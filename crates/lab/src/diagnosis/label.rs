@@ -1,7 +1,8 @@
-//! What a diagnosis calls the hypotheses of the inference: an effect, and where it acts.
+//! The inference in the words of a diagnosis: a hypothesis is called by an effect and where it acts.
 
 use crate::diagnosis::data::target::Target;
 use crate::effect::Effect;
+use tactpad_inference::error::InferenceError;
 
 /// An effect, and where it acts.
 pub(crate) type Label = (Effect, Target);
@@ -11,3 +12,9 @@ pub(crate) type Hypothesis = tactpad_inference::hypothesis::Hypothesis<Label>;
 
 /// A search among such hypotheses.
 pub(crate) type Search<'m> = tactpad_inference::search::Search<'m, Label>;
+
+/// Why nothing can be told by readings, where channels have these names.
+pub(super) fn no_solution<S: AsRef<str>>(error: &InferenceError, channels: &[S]) -> String {
+    let told = error.told(channels);
+    format!("these readings have no noise at all, or numbers too large to be readings: {told}")
+}

@@ -36,19 +36,21 @@ use self::causes::catalogue::CATALOGUE;
 use self::data::observed::observed;
 use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};
-use self::label::Search;
+use self::label::{Search, no_solution};
 use self::naming::separation::Separation;
 use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
 use self::naming::{not_detected, offsets};
-use self::report::{Diagnosis, Finding, NotTestable, Residuals, Verdict};
+use self::report::{Diagnosis, Finding, NotTestable, Notice, Residuals, Verdict};
 use self::simulation::atlas::{Atlas, attributed};
 use self::simulation::simulated::Simulated;
 use self::validation::ceiling::ceiling_share;
 use self::validation::gain::{Rows, gain, rmse};
 use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
+use tactpad_core::quantity::CHANNEL_NAMES;
 use tactpad_core::tables::measured::Table;
 use tactpad_inference::covariance::Remainder;
+use tactpad_inference::error::InferenceError;
 use tactpad_inference::model::Model;
 use tactpad_inference::observations::Observations;
 use tactpad_inference::policy::REMAINDER_MAX;
@@ -73,7 +75,7 @@ pub enum DiagnosisError {
     /// No channel goes with the contacts.
     Silent,
     /// The numbers have no unique solution.
-    Singular,
+    Inference(InferenceError),
 }
 
 impl fmt::Display for DiagnosisError {
@@ -91,7 +93,7 @@ impl fmt::Display for DiagnosisError {
             Self::Silent => f.write_str(
                 "no channel follows the contacts; measure again, and see that each row has the channels of its own contact",
             ),
-            Self::Singular => f.write_str("these readings have no noise at all, or numbers too large to be readings: nothing can be told by them"),
+            Self::Inference(error) => f.write_str(&no_solution(error, &CHANNEL_NAMES)),
         }
     }
 }
@@ -112,7 +114,7 @@ pub fn diagnose(
     let all = &gate.observations;
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
     let mut model = Atlas::new(pad, without, all, &open);
-    let found = attributed(&mut model).ok_or(DiagnosisError::Singular)?;
+    let found = attributed(&mut model).map_err(DiagnosisError::Inference)?;
     let at_locked = model.at(&locked);
     let search = Search::new(&model, all, &open);
     let measured = gate.unrepaired.as_ref();
@@ -128,7 +130,7 @@ pub fn diagnose(
         Rows { model: &model, observations: &open, unrepaired: as_measured(0) },
         Rows { model: &at_locked, observations: &locked, unrepaired: as_measured(1) },
     ];
-    let diagnosis = summary(&search, &found, &rows, &model.missing()).ok_or(DiagnosisError::Singular)?;
+    let diagnosis = summary(&search, &found, &rows, &model.missing()).map_err(DiagnosisError::Inference)?;
     let excess = (!without.contains(&Effect::NoiseExcess))
         .then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
@@ -161,7 +163,8 @@ fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Dia
     diagnosis.verdict = verdict(&diagnosis.findings, diagnosis.unnamed_share);
     diagnosis.not_detected.extend(gate.not_detected.into_iter().chain(excess.not_detected));
     diagnosis.not_testable.extend(gate.not_testable);
-    diagnosis.gatekeepers = gate.notices.into_iter().chain(excess.notices).collect();
+    let own = gate.notices.into_iter().chain(excess.notices);
+    diagnosis.gatekeepers.splice(..0, own);
     diagnosis
 }
 
@@ -191,7 +194,7 @@ fn summary(
     found: &Attribution,
     [open, locked]: &[Rows<'_>; 2],
     missing: &[NotTestable],
-) -> Option<Diagnosis> {
+) -> Result<Diagnosis, InferenceError> {
     let fit = &found.fit;
     let remainders = unnamed_squares(found);
     let whole = search.removed(fit)? + remainders.iter().sum::<f64>();
@@ -209,7 +212,7 @@ fn summary(
     findings.extend(offsets(search, found, whole + search.offsets_square(found)?, &doubted_by_channel)?);
     let unnamed_share = if unnamed > 0.0 { unnamed / whole } else { 0.0 };
     let nothing = Vec::new();
-    Some(Diagnosis {
+    Ok(Diagnosis {
         residuals: residuals(open, found, &applied),
         channels: open.observations.channels.clone(),
         full_scale: search.model.full_scale(),
@@ -226,8 +229,15 @@ fn summary(
         unnamed_share,
         unnamed_by_channel,
         findings,
-        gatekeepers: Vec::new(),
+        gatekeepers: unsettled(fit).into_iter().collect(),
     })
+}
+
+/// A fit that ran out of steps is told.
+fn unsettled(fit: &AttributionFit) -> Option<Notice> {
+    let detail = "the numbers of the causes had not settled when the steps were used up; a cause that the catalogue lacks may be one \
+                  reason: look at the residuals of the largest finding";
+    (!fit.is_converged).then(|| Notice { check: "fit", channel: None, detail: detail.to_owned() })
 }
 
 /// Root mean square of the channels' noise.

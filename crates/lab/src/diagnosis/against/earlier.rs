@@ -6,6 +6,7 @@
 use super::columns::{Columns, extent};
 use super::recording::Recording;
 use super::unfit::{ComparisonError, ROWS_MIN};
+use tactpad_inference::error::InferenceError;
 use tactpad_inference::model::Signature;
 use tactpad_inference::observations::Sample;
 use tactpad_inference::regression::{Labels, Regression, RegressionFit};
@@ -80,12 +81,13 @@ impl EarlierRecording {
             .filter(|channel| observations.is_told[*channel].iter().filter(|it| **it).count() >= ROWS_MIN)
             .collect();
         let readings: Vec<Vec<f64>> = alive.iter().map(|channel| centred(recording, *channel)).collect();
-        let regression = Regression::of(&labels, &readings).ok_or(ComparisonError::Singular)?;
+        let no_solution = |error| ComparisonError::of(&error, &observations.channels);
+        let regression = Regression::of(&labels, &readings).map_err(no_solution)?;
         let functions = regression.functions_at(&labels);
         let mut channels = vec![None; observations.channels.len()];
         for channel in alive {
             let known = EarlierChannel { recording, functions: &functions, channel };
-            let fit = known.fitted(&regression).ok_or(ComparisonError::Singular)?;
+            let fit = known.fitted(&regression).map_err(|error| no_solution(error.in_channel(channel)))?;
             let own = known.parts(&fit);
             channels[channel] = Some(Channel {
                 wander: between(own.iter().map(|part| part.zero)),
@@ -191,7 +193,7 @@ struct EarlierChannel<'r> {
 }
 
 impl EarlierChannel<'_> {
-    fn fitted(&self, regression: &Regression) -> Option<RegressionFit> {
+    fn fitted(&self, regression: &Regression) -> Result<RegressionFit, InferenceError> {
         let observations = &self.recording.observations;
         let (readings, is_told) = (&observations.readings[self.channel], &observations.is_told[self.channel]);
         regression.fitted(self.functions, readings, is_told, &observations.follows())

@@ -140,14 +140,14 @@ fn told(
     });
     let (model, at_locked) = (LaterRecording::new(setting, &open), LaterRecording::new(setting, &locked));
     let search = Search::new(&model, all, &open.observations);
-    let found = search.run(&Vec::new()).ok_or(ComparisonError::Singular)?;
+    let no_solution = |error| ComparisonError::of(&error, &all.channels);
+    let found = search.run(&Vec::new()).map_err(no_solution)?;
     let rows = [(&model, &open), (&at_locked, &locked)].map(|(model, part)| Rows {
         model: model as &dyn Model<Label>,
         observations: &part.observations,
         unrepaired: None,
     });
-    let mut diagnosis =
-        summary(&search, &found, &rows, &missing(columns, there)).ok_or(ComparisonError::Singular)?;
+    let mut diagnosis = summary(&search, &found, &rows, &missing(columns, there)).map_err(no_solution)?;
     standing(&mut diagnosis, &search, &rows, &found);
     let signals = &found.fit.linearised.readings;
     let excess = asked

@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+use crate::diagnosis::label::no_solution;
+use tactpad_inference::error::InferenceError;
+
 /// Fewest rows, of a recording and of a channel of it.
 pub(super) const ROWS_MIN: usize = 60;
 /// Fewest places, or presses, by which changes can be told.
@@ -46,8 +49,8 @@ pub enum ComparisonError {
     Blocks(usize),
     /// No channel goes with the labels.
     Silent,
-    /// The numbers have no unique solution.
-    Singular,
+    /// What could not be computed, and why.
+    NoSolution(String),
 }
 
 impl fmt::Display for ComparisonError {
@@ -83,8 +86,15 @@ impl fmt::Display for ComparisonError {
                 "contacts at {blocks} places, or in as many presses: it takes {BLOCKS_MIN} at least to tell a change from chance"
             ),
             Self::Silent => f.write_str("no channel follows the labels as it did in the earlier recording; see that each row has the channels of its own contact"),
-            Self::Singular => f.write_str("these readings have no noise at all, or numbers too large to be readings: nothing can be told by them"),
+            Self::NoSolution(told) => f.write_str(told),
         }
+    }
+}
+
+impl ComparisonError {
+    /// An error of the inference, where channels have these names.
+    pub(super) fn of(error: &InferenceError, channels: &[String]) -> Self {
+        Self::NoSolution(no_solution(error, channels))
     }
 }
 

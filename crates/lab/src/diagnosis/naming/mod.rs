@@ -9,6 +9,7 @@ use super::report::{Finding, NotDetected};
 use crate::diagnosis::Search;
 use crate::diagnosis::data::target::Target;
 use crate::effect::Effect;
+use tactpad_inference::error::InferenceError;
 use tactpad_inference::policy::WITHIN_95;
 use tactpad_inference::search::Attribution;
 use tactpad_inference::search::estimates::{Detectable, Estimate};
@@ -20,7 +21,7 @@ pub(crate) fn findings(
     search: &Search<'_>,
     found: &Attribution,
     whole: f64,
-) -> Option<Vec<(usize, Finding)>> {
+) -> Result<Vec<(usize, Finding)>, InferenceError> {
     let mut findings = Vec::new();
     for at in 0..found.fit.applied.len() {
         let (hypothesis, _) = found.fit.applied[at];
@@ -45,7 +46,7 @@ pub(crate) fn findings(
         findings.push((at, finding));
     }
     findings.sort_by(|(_, one), (_, other)| other.share.total_cmp(&one.share));
-    Some(findings)
+    Ok(findings)
 }
 
 /// The zeros that are not zero. Beside what is `left_by_channel` without a name each is doubted, if it is far more than that; else it
@@ -55,7 +56,7 @@ pub(crate) fn offsets(
     found: &Attribution,
     whole: f64,
     left_by_channel: &[f64],
-) -> Option<Vec<Finding>> {
+) -> Result<Vec<Finding>, InferenceError> {
     let finding = |(channel, [zero, variance]): (usize, [f64; 2])| {
         let square = zero * zero / variance;
         let spread = WITHIN_95 * variance.sqrt();
@@ -80,14 +81,17 @@ pub(crate) fn offsets(
         };
         is_found.then(|| if is_clear { finding } else { doubted(finding) })
     };
-    Some(search.least_zeros(found)?.into_iter().enumerate().filter_map(finding).collect())
+    Ok(search.least_zeros(found)?.into_iter().enumerate().filter_map(finding).collect())
 }
 
 /// What was asked for and not found, with the size that would have been.
-pub(crate) fn not_detected(search: &Search<'_>, found: &Attribution) -> Option<Vec<NotDetected>> {
+pub(crate) fn not_detected(
+    search: &Search<'_>,
+    found: &Attribution,
+) -> Result<Vec<NotDetected>, InferenceError> {
     let of = |(at, Detectable { minimum, rival_share }): (usize, Detectable)| {
         let (effect, target) = search.model.hypotheses()[at].label;
         NotDetected { effect, target, minimum_detectable: minimum, rival_share }
     };
-    Some(search.detectable(found)?.into_iter().map(of).collect())
+    Ok(search.detectable(found)?.into_iter().map(of).collect())
 }

@@ -248,7 +248,7 @@ impl<'s, 'm> JointRows<'s, 'm> {
         let mut fisher = Matrix::zeros(count, count);
         let own = |ChannelEquations { channel, present, further }: &ChannelEquations| {
             let both = present.plus(repeats as f64, further);
-            Some(both.reduced(&background.prior, &background.shares[*channel])?.fisher)
+            Some(both.reduced(&background.prior, &background.shares[*channel]).ok()?.fisher)
         };
         let channels: Option<Vec<Matrix>> = discrimination.channels.par_iter().map(own).collect();
         for (told, own) in discrimination.channels.iter().zip(channels?) {
@@ -316,7 +316,7 @@ fn equations(columns: &[(usize, Vec<f64>)], background: &[Vec<f64>]) -> Option<N
     let count = background.first().map_or(0, Vec::len);
     let columns: Vec<(usize, &[f64])> = columns.iter().map(|(at, column)| (*at, column.as_slice())).collect();
     let white = Whitening::none(count);
-    Some(ChannelSystem::of(&columns, background, &[], &vec![0.0; count], white)?.equations)
+    Some(ChannelSystem::of(&columns, background, &[], &vec![0.0; count], white).ok()?.equations)
 }
 
 /// ψᵀ (I_cc − I_cf I_ff⁻¹ I_fc) ψ: what is left of a cause when columns are free.

@@ -12,6 +12,7 @@ use crate::diagnosis::data::target::Target;
 use crate::diagnosis::label::Search;
 use crate::diagnosis::report::{Finding, INSEPARABLE};
 use crate::effect::Effect;
+use tactpad_inference::error::InferenceError;
 use tactpad_inference::search::Attribution;
 
 /// A cause is named where it explains so many times what is left unexplained in the channels that tell of it,
@@ -51,7 +52,7 @@ pub(crate) fn named(
     found: &Attribution,
     whole: f64,
     remainders: Vec<f64>,
-) -> Option<NamingResult> {
+) -> Result<NamingResult, InferenceError> {
     let fit = &found.fit;
     let squares = |place: usize, finding: &Finding| -> Vec<f64> {
         let parts = search.parts(fit, fit.applied[place].0);
@@ -72,7 +73,7 @@ pub(crate) fn named(
         candidates[at].is_doubted = true;
         add(&mut doubted_by_channel, &squares(candidates[at].place, &candidates[at].finding));
     }
-    Some(NamingResult { candidates, unnamed_by_channel, doubted_by_channel })
+    Ok(NamingResult { candidates, unnamed_by_channel, doubted_by_channel })
 }
 
 fn add(to: &mut [f64], squares: &[f64]) {

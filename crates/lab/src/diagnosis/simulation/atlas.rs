@@ -11,6 +11,7 @@ use crate::tangent::SimulatedPad;
 use crate::tangent::{STIFFNESS_REACH, TURN_REACH_DEG, on_grid, shift_reach_mm};
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
+use tactpad_inference::error::InferenceError;
 use tactpad_inference::hypothesis::{Coordinate, Parameter};
 use tactpad_inference::model::{ChannelBaselines, CommonError, Linearised, Model, Written};
 use tactpad_inference::observations::Observations;
@@ -50,14 +51,14 @@ pub(crate) struct Atlas<'f> {
 
 /// What the search finds. Where that is too far from any field that is known, it is searched again about the field of the pad that was
 /// found: what only made up for the tangent's error goes, and what that hid is seen.
-pub(crate) fn attributed(atlas: &mut Atlas<'_>) -> Option<Attribution> {
+pub(crate) fn attributed(atlas: &mut Atlas<'_>) -> Result<Attribution, InferenceError> {
     let mut found = atlas.search().run(&Vec::new())?;
     while atlas.solved.len() < SOLVED_MAX && atlas.is_far(&found.fit)? {
         let Some(solved) = atlas.solve(&found.fit.applied) else { break };
         atlas.add(solved);
         found = atlas.search().run(&found.fit.applied)?;
     }
-    Some(found)
+    Ok(found)
 }
 
 impl<'f> Atlas<'f> {
@@ -177,7 +178,7 @@ impl<'f> Atlas<'f> {
     }
 
     /// Whether the tangent's error moves a number of a fitted cause by more than that is known.
-    fn is_far(&self, fit: &AttributionFit) -> Option<bool> {
+    fn is_far(&self, fit: &AttributionFit) -> Result<bool, InferenceError> {
         let at = self.nearest(&fit.applied).map_or(&[][..], |k| &self.solved[k].at);
         let search = self.search();
         for (place, (hypothesis, psi)) in fit.applied.iter().enumerate() {
@@ -188,10 +189,10 @@ impl<'f> Atlas<'f> {
             let own = &search.columns.of_hypothesis[*hypothesis];
             let square = dot(&projected.fisher.picked(own, own).times(&by), &by);
             if error * square.max(0.0).sqrt() > FAR {
-                return Some(true);
+                return Ok(true);
             }
         }
-        Some(false)
+        Ok(false)
     }
 }
 

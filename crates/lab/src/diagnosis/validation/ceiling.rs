@@ -61,13 +61,14 @@ fn left(
     let told = |channel: usize| -> Vec<f64> {
         residuals[channel].iter().map(|it| if it.is_nan() { zeros[channel] } else { *it }).collect()
     };
-    let regression = Regression::of(learnt, &alive.iter().map(|channel| told(*channel)).collect::<Vec<_>>())?;
+    let regression =
+        Regression::of(learnt, &alive.iter().map(|channel| told(*channel)).collect::<Vec<_>>()).ok()?;
     let [at_open, at_locked] = [learnt, judged].map(|labels| regression.functions_at(labels));
     let follows = open.observations.follows();
     let in_series = locked.observations.in_series();
     for channel in alive {
         let is_told = &open.observations.is_told[channel];
-        let fit = regression.fitted(&at_open, &told(channel), is_told, &follows)?;
+        let fit = regression.fitted(&at_open, &told(channel), is_told, &follows).ok()?;
         for (row, residual) in judged_residuals[channel].iter().enumerate() {
             if residual.is_nan() {
                 continue;

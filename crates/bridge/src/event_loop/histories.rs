@@ -23,6 +23,8 @@ enum Happening {
     Plug(bool),
     /// The pad begins anew, with this clock (µs) and these offsets (counts), after a text of its boot loader.
     Restart { time_us: u64, is_flagged: bool, offset: i32, text: String },
+    /// For so many milliseconds nothing comes of a contact; then all of it does.
+    Stall(Contact, u64),
     /// Bytes that are no frame.
     Rubbish(Vec<u8>),
     /// A contact for so many milliseconds.
@@ -100,6 +102,7 @@ fn happenings() -> impl Strategy<Value = Happening> {
         1 => prop::collection::vec(any::<u8>(), 1..100).prop_map(Happening::Rubbish),
         3 => (contacts(), 0..800_u64).prop_map(|(contact, ms)| Happening::Touch(contact, ms)),
         2 => prop_oneof![0..64_u64, 0..800_u64].prop_map(|ms| Happening::Touch(AWAY, ms)),
+        1 => (contacts(), 0..1_000_u64).prop_map(|(contact, ms)| Happening::Stall(contact, ms)),
         1 => prop_oneof![1..3_u32, any::<u32>()].prop_map(Happening::Lose),
         1 => (ages(), 1..5_u32).prop_map(|(age, frames)| Happening::Repeat { age, frames }),
         1 => times_us().prop_map(Happening::Jump),
@@ -125,6 +128,18 @@ fn repeat(play: &mut Play, age: u32, frames: u32) {
     (play.sequence, play.time_us) = (sequence, time_us);
 }
 
+/// The pad's samples of a contact come late, all at once.
+fn stall(play: &mut Play, contact: &Contact, ms: u64) {
+    let time_us = play.time_us;
+    play.wait(ms);
+    play.time_us = time_us;
+    for _ in 0..ms {
+        let sample = play.sample(contact);
+        play.send(play.now, &Message::Sample(sample));
+        play.time_us = play.time_us.wrapping_add(play.us_per_ms);
+    }
+}
+
 impl Happening {
     fn apply_to(&self, play: &mut Play) {
         let begin = play.now;
@@ -138,6 +153,7 @@ impl Happening {
                 (play.time_us, play.sequence, play.offset) = (*time_us, 0, [*offset; 9]);
                 play.status = if *is_flagged { Status::OK.with_restarted() } else { Status::OK };
             }
+            Self::Stall(contact, ms) => stall(play, contact, *ms),
             Self::Rubbish(bytes) => drop(play.send_bytes(begin, bytes)),
             Self::Touch(contact, ms) => drop(play.touch(contact, *ms)),
             Self::Lose(frames) => play.sequence = play.sequence.wrapping_add(*frames),
@@ -205,6 +221,21 @@ proptest! {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_finger_that_stays_while_its_samples_come_late_counts_again(
+        stalls_ms in prop::collection::vec(0..2_000_u64, 1..8),
+    ) {
+        let mut play = Play::start();
+        for stall_ms in stalls_ms {
+            play.touch(&RIGHT, 100);
+            stall(&mut play, &RIGHT, stall_ms);
+            // In doubt for 50 ms.
+            play.touch(&RIGHT, 60);
+            prop_assert!(play.bridge.driver.pipeline.held().next().is_some(), "{stall_ms} ms");
+        }
+        prop_assert!(play.bridge.driver.pipeline.health().restarts == 0, "a restart");
+    }
 
     #[test]
     fn frames_from_the_past_lose_no_press(

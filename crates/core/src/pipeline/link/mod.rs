@@ -459,6 +459,9 @@ mod tests {
             (0, 10_600, Some(Fault::Restarted)),
             (9_000, 400, Some(Fault::Restarted)),
             (3_000, 3_000, Some(Fault::Restarted)),
+            // It kept its samples meanwhile, or the newest of them.
+            (501, 501, None),
+            (560, 560, None),
         ] {
             let mut rig = Rig::new();
             rig.hear(0, sample(500, 500_000));

@@ -83,15 +83,24 @@ pub(super) fn step_between(
 }
 
 /// The step from the last sample before a silence to `next`, which came `passed_us` of host time later. Nobody counts what is
-/// missing.
+/// missing. The samples of a pad that kept them meanwhile come late, and go on by number and time from where it fell silent.
 pub(super) fn step_over_silence(last: &Sample, next: &Sample, passed_us: u64) -> SequenceStep {
     if next.status.restarted() {
         SequenceStep::Anew
-    } else if next.sequence != last.sequence && goes_on_after_gap(last, next, passed_us) {
+    } else if goes_on_closely(last, next)
+        || next.sequence != last.sequence && goes_on_after_gap(last, next, passed_us)
+    {
         SequenceStep::Next
     } else {
         SequenceStep::Apart
     }
+}
+
+/// Whether `next` is one of the next samples of the run of `last`, by number and by the pad's clock.
+fn goes_on_closely(last: &Sample, next: &Sample) -> bool {
+    let ahead = next.sequence.wrapping_sub(last.sequence);
+    let shown_us = next.time_us.wrapping_sub(last.time_us);
+    (1..=SKIPPED_MAX).contains(&ahead) && (1..=GAP_MAX_US).contains(&shown_us)
 }
 
 /// Whether `next` can be of the run of `last` after a gap of `passed_us` of host time. A run that began anew shows another time
@@ -115,12 +124,7 @@ pub(super) struct OtherRun {
 impl OtherRun {
     /// The run that `sample` goes on, if it does, or begins.
     pub(super) fn with(run: Option<Self>, sample: &Sample) -> Self {
-        let goes_on = |run: &Self| {
-            let ahead = sample.sequence.wrapping_sub(run.newest.sequence);
-            let shown_us = sample.time_us.wrapping_sub(run.newest.time_us);
-            (1..=SKIPPED_MAX).contains(&ahead) && (1..=GAP_MAX_US).contains(&shown_us)
-        };
-        let frames = run.filter(goes_on).map_or(0, |run| run.frames);
+        let frames = run.filter(|run| goes_on_closely(&run.newest, sample)).map_or(0, |run| run.frames);
         Self { newest: *sample, frames: frames + 1 }
     }
 

@@ -10,11 +10,11 @@ use std::hint::black_box;
 
 use criterion::{Bencher, Criterion, criterion_group, criterion_main};
 use firmware_proto::sample::{Sample, Status};
+use tactpad::numeric::memory::{PlayOperator, Relaxation};
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::InfluenceField;
 use tactpad::pipeline::compensation::Compensation;
-use tactpad::pipeline::compensation::creep::Creep;
-use tactpad::pipeline::compensation::hysteresis::{PLAYS, PlayOperators};
+use tactpad::pipeline::compensation::hysteresis::PLAYS;
 use tactpad::pipeline::compensation::memory::Memory;
 use tactpad::pipeline::compensation::thermal::Thermal;
 use tactpad::pipeline::compensation::thermometer::Thermometer;
@@ -57,14 +57,14 @@ fn plain(layers: &[Layer], channels: &[f32; CHANNELS]) -> [f32; 5] {
 
 /// What the pipeline does with the inverse decoder's channels, all of it, while a finger presses.
 fn live(bencher: &mut Bencher<'_>, field: &InfluenceField, strain: &Strain) {
-    let play = PlayOperators { threshold_uv: [800.0; CHANNELS], share: [0.03; CHANNELS] };
+    let plays = [PlayOperator { threshold: 800.0, share: 0.03 }; CHANNELS];
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let inverse = Inverse::new(field.clone(), noise);
-    let creep = Creep { time_s: 8.0, share: 0.01 };
+    let creep = Relaxation { time_s: 8.0, share: 0.01 };
     let thermal =
         Thermal { reference_c: 20.0, zero_uv_per_c: [50.0; CHANNELS], gain_per_c: [-5e-4; CHANNELS] };
     let compensation =
-        Compensation { zero_uv: None, thermal: Some(thermal), creep, hysteresis: [play; PLAYS] };
+        Compensation { zero_uv: None, thermal: Some(thermal), creep, hysteresis: [plays; PLAYS] };
     let (mut memory, mut watch) = (Memory::of(&compensation), Watch::new(Some(&inverse)));
     let mut thermometer = Thermometer::of(compensation.thermal);
     let sample = Sample {

@@ -21,12 +21,12 @@ use tactpad::lab::tangent::{SimulatedPad, Solve};
 use tactpad::mechanics::mesh::Fineness;
 use tactpad::mechanics::simulator::Simulator;
 use tactpad::network::Zero;
+use tactpad::numeric::memory::{PlayOperator, Relaxation};
 use tactpad::pad::changes::{FieldChange, FieldChanges, Flaw};
-use tactpad::pad::device::behaviour::{Crosstalk, PlayOperator, Prony};
+use tactpad::pad::device::behaviour::{Crosstalk, OnChannels};
 use tactpad::pad::device::{Device, Side};
 use tactpad::pad::field::PadField;
 use tactpad::pad::influence::{InfluenceField, MAPS};
-use tactpad::pipeline::compensation::creep::NO_CREEP;
 use tactpad::pipeline::contact::regression::Target;
 use tactpad::pipeline::contact::{Decoder, Method, read};
 use tactpad::pipeline::shipped;
@@ -207,14 +207,13 @@ fn it_says_how_sure_it_is() {
 fn hysteresis_is_found(counts: [(usize, f64); 2]) {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
-    device.behaviour.hysteresis =
-        vec![PlayOperator { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.0625 }];
+    device.behaviour.hysteresis = vec![OnChannels::all(PlayOperator { threshold: 800.0, share: 0.0625 })];
     let (measured, unseen) = (Measured::calibration(&device), Measured::unseen(&device));
     for (count, allowed_uv) in counts {
         let calibration = measured.inverse(count);
         let kept = |channel: usize| {
             let plays = calibration.compensation.hysteresis.iter();
-            plays.map(|play| play.share[channel] * play.threshold_uv[channel]).sum::<f64>()
+            plays.map(|plays| plays[channel].share * plays[channel].threshold).sum::<f64>()
         };
         println!("{count}: kept at rest {:.1?} µV", std::array::from_fn::<f64, CHANNELS, _>(kept));
         let truly = |channel: usize| 50.0 * device.modules[channel / 3].gain[channel % 3];
@@ -437,8 +436,7 @@ fn on_a_wrong_stage(device: &Device) -> Device {
 fn is_no_worse_than_a_wrench(seed: u32, many: usize) {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
-    device.behaviour.hysteresis =
-        vec![PlayOperator { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.03 }];
+    device.behaviour.hysteresis = vec![OnChannels::all(PlayOperator { threshold: 800.0, share: 0.03 })];
     let field = faulty(seed);
     let measured = Measured::on(&field, &on_a_wrong_stage(&device), &plans::paper::plan(&device.contact), 1);
     let unseen = Measured::on(&field, &device, &plans::recommended::plan(&device.contact, 9), 2);
@@ -494,8 +492,7 @@ fn what_pads_share_beyond_the_simulation_is_taken_over() {
 fn zeros_that_nobody_read_are_found(counts: [(usize, f64); 2]) {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
-    device.behaviour.hysteresis =
-        vec![PlayOperator { channels: [true; CHANNELS], threshold_uv: 800.0, share: 0.05 }];
+    device.behaviour.hysteresis = vec![OnChannels::all(PlayOperator { threshold: 800.0, share: 0.05 })];
     let mut plan = plans::paper::plan(&device.contact);
     plan.rows.retain(|row| row.label.fz_n > 0.0);
     let Measurement { table, .. } = carry_out(&plan, &device, field(), 1);
@@ -544,8 +541,8 @@ fn creep_is_found_where_there_is_some() {
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
     let contacts = 100;
     let creep_of = |device: &Device| Measured::unseen(device).inverse(contacts).compensation.creep;
-    assert_eq!(creep_of(&device), NO_CREEP);
-    device.behaviour.creep = vec![Prony { channels: [true; CHANNELS], time_s: 8.0, share: 0.008 }];
+    assert_eq!(creep_of(&device), Relaxation::NONE);
+    device.behaviour.creep = vec![OnChannels::all(Relaxation { time_s: 8.0, share: 0.008 })];
     let found = creep_of(&device);
     // What 20 s add to 2 s, the plan's dwells.
     let grown = |time_s: f64, share: f64| share * ((-2.0 / time_s).exp() - (-20.0 / time_s).exp());

@@ -3,8 +3,9 @@
 use std::sync::OnceLock;
 
 use tactpad::lab::rig::measurement::{Measurement, carry_on, carry_out};
+use tactpad::numeric::memory::{PlayOperator, Relaxation};
 use tactpad::pad::device::Device;
-use tactpad::pad::device::behaviour::{Behaviour, PlayOperator, Prony};
+use tactpad::pad::device::behaviour::{Behaviour, OnChannels};
 use tactpad::pad::field::PadField;
 use tactpad::pad::twin::life::Life;
 use tactpad::quantity::{CHANNELS, Contact};
@@ -12,7 +13,6 @@ use tactpad::tables::measured::{Approach, Label, Row, Table};
 use tactpad::tables::plans;
 
 const PRESS: Label = Label { x_mm: 4.0, y_mm: -6.0, fx_n: 0.5, fy_n: 0.0, fz_n: 2.0 };
-const ALL: [bool; CHANNELS] = [true; CHANNELS];
 
 fn field() -> &'static PadField {
     static FIELD: OnceLock<PadField> = OnceLock::new();
@@ -72,14 +72,14 @@ fn dwell_and_approach_show_creep_and_hysteresis() {
         ..Row::of(PRESS)
     };
     let hysteresis = |it: &mut Behaviour| {
-        it.hysteresis = vec![PlayOperator { channels: ALL, threshold_uv: 100.0, share: 0.2 }];
+        it.hysteresis = vec![OnChannels::all(PlayOperator { threshold: 100.0, share: 0.2 })];
     };
     let rows = vec![row(1.0, Approach::Loading), row(1.0, Approach::Unloading)];
     let Measurement { table, .. } = measured(rows, 1, hysteresis);
     let [up, down] = [0, 1].map(|index: usize| table.rows[index].uv.unwrap()[2]);
     assert!(ideal_uv(PRESS)[2] > 200.0);
     assert_near(down - up, 40.0, 1e-6, "the loop's width");
-    let creep = |it: &mut Behaviour| it.creep = vec![Prony { channels: ALL, time_s: 4.0, share: 0.1 }];
+    let creep = |it: &mut Behaviour| it.creep = vec![OnChannels::all(Relaxation { time_s: 4.0, share: 0.1 })];
     let rows = vec![row(1.0, Approach::Loading), row(400.0, Approach::Loading)];
     let Measurement { table, .. } = measured(rows, 1, creep);
     let [soon, late] = [0, 1].map(|index: usize| table.rows[index].uv.unwrap()[2] / ideal_uv(PRESS)[2]);
@@ -171,8 +171,8 @@ fn truth_stays_on_the_plate_and_seeds_decide() {
 fn remembering() -> Device {
     let mut device = Device::nominal();
     let it = &mut device.behaviour;
-    it.hysteresis = vec![PlayOperator { channels: ALL, threshold_uv: 100.0, share: 0.2 }];
-    it.creep = vec![Prony { channels: ALL, time_s: 30.0, share: 0.1 }];
+    it.hysteresis = vec![OnChannels::all(PlayOperator { threshold: 100.0, share: 0.2 })];
+    it.creep = vec![OnChannels::all(Relaxation { time_s: 30.0, share: 0.1 })];
     it.noise.additive_uv = [10.0; CHANNELS];
     it.noise.walk_uv = [300.0; CHANNELS];
     it.ageing.share = [0.19; CHANNELS];

@@ -1,10 +1,10 @@
 //! The live core allocates nothing after it was made.
 
+use tactpad::numeric::memory::{PlayOperator, Relaxation};
 use tactpad::pad::device::Device;
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::compensation::Compensation;
-use tactpad::pipeline::compensation::creep::Creep;
-use tactpad::pipeline::compensation::hysteresis::{PLAYS, PlayOperators};
+use tactpad::pipeline::compensation::hysteresis::PLAYS;
 use tactpad::pipeline::compensation::thermal::Thermal;
 use tactpad::pipeline::contact::Decoder;
 use tactpad::pipeline::contact::inverse::Inverse;
@@ -27,13 +27,13 @@ fn ten_seconds_of_play_allocate_nothing() {
 
 #[test]
 fn hysteresis_warmth_and_warnings_allocate_nothing() {
-    let play = PlayOperators { threshold_uv: [300.0; CHANNELS], share: [0.03; CHANNELS] };
+    let plays = [PlayOperator { threshold: 300.0, share: 0.03 }; CHANNELS];
     let noise = Noise::of_channels([5.0; CHANNELS], [0.01; CHANNELS]);
     let thermal =
         Thermal { reference_c: 20.0, zero_uv_per_c: [50.0; CHANNELS], gain_per_c: [-5e-4; CHANNELS] };
-    let creep = Creep { time_s: 8.0, share: 0.01 };
+    let creep = Relaxation { time_s: 8.0, share: 0.01 };
     let compensation =
-        Compensation { zero_uv: None, thermal: Some(thermal), creep, hysteresis: [play; PLAYS] };
+        Compensation { zero_uv: None, thermal: Some(thermal), creep, hysteresis: [plays; PLAYS] };
     let decoder =
         Decoder::from(Inverse::new(PadField::nominal().signals, noise)).compensated_by(compensation);
     let mut device = Device::nominal();

@@ -2,10 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop at what it did not expect")]
 
 use crate::played::Played;
-use tactpad::pad::device::{Device, behaviour};
+use tactpad::numeric::memory::PlayOperator;
+use tactpad::pad::device::Device;
+use tactpad::pad::device::behaviour::OnChannels;
 use tactpad::pad::field::PadField;
 use tactpad::pipeline::compensation::Compensation;
-use tactpad::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS, PlayOperators};
+use tactpad::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS};
 use tactpad::pipeline::contact::Decoder;
 use tactpad::pipeline::contact::inverse::Inverse;
 use tactpad::pipeline::contact::uncertainty::Noise;
@@ -17,17 +19,14 @@ const SHARE: f64 = 0.0625;
 
 fn pad() -> Device {
     let mut device = Device::nominal();
-    device.behaviour.hysteresis = vec![behaviour::PlayOperator {
-        channels: [true; CHANNELS],
-        threshold_uv: THRESHOLD_UV,
-        share: SHARE,
-    }];
+    device.behaviour.hysteresis = vec![OnChannels::all(PLAY)];
     device.behaviour.noise.additive_uv = [3.0; CHANNELS];
     device
 }
 
-const KNOWN: Hysteresis =
-    [PlayOperators { threshold_uv: [THRESHOLD_UV; CHANNELS], share: [SHARE; CHANNELS] }, PlayOperators::NONE];
+const PLAY: PlayOperator = PlayOperator { threshold: THRESHOLD_UV, share: SHARE };
+
+const KNOWN: Hysteresis = [[PLAY; CHANNELS], [PlayOperator::NONE; CHANNELS]];
 
 fn played(hysteresis: Hysteresis) -> Played {
     let field = PadField::nominal();

@@ -6,6 +6,7 @@ use firmware_proto::frame::Message;
 use firmware_proto::identity::{Identity, SerialNumber};
 use firmware_proto::link::encode_message;
 use firmware_proto::sample::Status;
+use tactpad::numeric::memory::{PlayOperator, Relaxation};
 use tactpad::pad::field::PadField;
 use tactpad::pad::weight::Weight;
 use tactpad::pipeline::call::{Call, OwnedCall};
@@ -13,8 +14,6 @@ use tactpad::pipeline::capture::head::Head;
 use tactpad::pipeline::capture::reader::CaptureReader;
 use tactpad::pipeline::capture::writer::CaptureWriter;
 use tactpad::pipeline::compensation::Compensation;
-use tactpad::pipeline::compensation::creep::Creep;
-use tactpad::pipeline::compensation::hysteresis::PlayOperators;
 use tactpad::pipeline::control::OutputEvent;
 use tactpad::pipeline::weighing::Progress;
 use tactpad::pipeline::weighing::factor::Weighed;
@@ -139,10 +138,10 @@ fn every_decoder_that_plays_is_mended_and_a_second_weight_finds_nothing_more() {
 
 #[test]
 fn friction_and_creep_follow_the_gain() {
-    let play = PlayOperators { threshold_uv: [600.0; CHANNELS], share: [0.05; CHANNELS] };
+    let plays = [PlayOperator { threshold: 600.0, share: 0.05 }; CHANNELS];
     let compensation = Compensation {
-        hysteresis: [play, PlayOperators::NONE],
-        creep: Creep { time_s: 8.0, share: 0.01 },
+        hysteresis: [plays, [PlayOperator::NONE; CHANNELS]],
+        creep: Relaxation { time_s: 8.0, share: 0.01 },
         ..Compensation::NONE
     };
     let mut rig = Rig::new(profile("super-mario"));

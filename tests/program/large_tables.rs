@@ -6,9 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use tactpad::numeric::memory::{PlayOperator, Relaxation};
 use tactpad::pad::field::PadField;
-use tactpad::pipeline::compensation::creep::Creep;
-use tactpad::pipeline::compensation::hysteresis::PlayOperators;
 use tactpad::pipeline::shipped;
 use tactpad::quantity::{CHANNEL_NAMES, CHANNELS, Contact};
 
@@ -52,9 +51,9 @@ fn said(output: &Output) -> String {
 /// Writes the decoder of a pad that creeps and has hysteresis; its file's name.
 fn pad_with_memory(folder: &Path) -> &'static str {
     let mut decoder = shipped::decoder();
-    let play = PlayOperators { threshold_uv: [500.0; CHANNELS], share: [0.05; CHANNELS] };
-    decoder.compensation.hysteresis = [play, PlayOperators::NONE];
-    decoder.compensation.creep = Creep { time_s: 8.0, share: 0.01 };
+    let plays = [PlayOperator { threshold: 500.0, share: 0.05 }; CHANNELS];
+    decoder.compensation.hysteresis = [plays, [PlayOperator::NONE; CHANNELS]];
+    decoder.compensation.creep = Relaxation { time_s: 8.0, share: 0.01 };
     fs::write(folder.join("memory.decoder"), decoder.to_bytes("of a test").unwrap()).unwrap();
     "memory.decoder"
 }

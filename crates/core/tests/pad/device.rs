@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use proptest::prelude::{Just, Strategy, any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
-use tactpad_core::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, PlayOperator, Prony};
+use tactpad_core::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, OnChannels};
 use tactpad_core::pad::device::parameter::Parameter;
 use tactpad_core::pad::device::schema::Effect;
 use tactpad_core::pad::device::unit::Unit;
@@ -19,6 +19,7 @@ use tactpad_core::pad::device::{Device, Module, Side};
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::toml_text::TEXT_BYTES_MAX;
 use tactpad_core::toml_text::diag::Diagnostic;
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 #[cfg(target_os = "linux")]
 use crate::worked::worked;
@@ -221,11 +222,11 @@ fn behaviour_is_read_as_it_is_written() {
     assert_eq!(
         hysteresis,
         &[
-            PlayOperator { channels: [true; CHANNELS], threshold_uv: 20.0, share: 0.5 },
-            PlayOperator { channels: z_only, threshold_uv: 200.0, share: 0.25 }
+            OnChannels::all(PlayOperator { threshold: 20.0, share: 0.5 }),
+            OnChannels { channels: z_only, law: PlayOperator { threshold: 200.0, share: 0.25 } }
         ]
     );
-    assert_eq!(creep, &[Prony { channels: [true; CHANNELS], time_s: 30.0, share: 0.02 }]);
+    assert_eq!(creep, &[OnChannels::all(Relaxation { time_s: 30.0, share: 0.02 })]);
     assert_eq!(rig.reference_zero_n, [0.01, -0.02, 0.03]);
     assert_eq!(Device::from_toml(&device.to_toml()), (Some(device.clone()), vec![]));
 }
@@ -248,7 +249,7 @@ fn over_a_device_keys_replace_keys_and_lists_replace_lists() {
     expected.behaviour.thermal.reference_c = 20.0;
     assert_eq!(laid("[thermal]\nreference_c = 20\n"), expected);
     let mut expected = device.clone();
-    expected.behaviour.creep = vec![Prony { channels: [true; CHANNELS], time_s: 5.0, share: 0.1 }];
+    expected.behaviour.creep = vec![OnChannels::all(Relaxation { time_s: 5.0, share: 0.1 })];
     assert_eq!(laid("[[creep]]\ntime_s = 5\nshare = 0.1\n"), expected);
     let mut expected = device.clone();
     expected.behaviour.crosstalk.clear();

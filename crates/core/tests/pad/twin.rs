@@ -4,11 +4,12 @@ use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 use tactpad_core::pad::device::Device;
-use tactpad_core::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, PlayOperator, Prony};
+use tactpad_core::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, OnChannels};
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pad::twin::life::{Life, LifeError};
 use tactpad_core::pad::twin::pad::{Circumstances, TwinPad};
 use tactpad_core::quantity::{CHANNELS, Contact};
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 use tactpad_numeric::statistics::{mean, population_deviation};
 
 const PRESS: Contact = Contact { x_mm: 3.0, y_mm: -7.0, fx_n: 0.4, fy_n: -0.2, fz_n: 2.0 };
@@ -156,9 +157,8 @@ fn couplings_add_shares_of_others() {
 fn memory_acts_on_the_strain_before_the_gain() {
     let mut device = Device::nominal();
     device.modules[0].gain = [2.0; 3];
-    device.behaviour.hysteresis =
-        vec![PlayOperator { channels: [true; CHANNELS], threshold_uv: 50.0, share: 0.1 }];
-    device.behaviour.creep = vec![Prony { channels: [true; CHANNELS], time_s: 5.0, share: 0.04 }];
+    device.behaviour.hysteresis = vec![OnChannels::all(PlayOperator { threshold: 50.0, share: 0.1 })];
+    device.behaviour.creep = vec![OnChannels::all(Relaxation { time_s: 5.0, share: 0.04 })];
     let mut pad = TwinPad::new(&device, field(), 1);
     let strain_uv = ideal_uv(&PRESS)[2];
     assert!(strain_uv > 200.0);
@@ -212,10 +212,9 @@ fn the_seed_decides_and_nothing_else() {
 fn lively() -> Device {
     let mut device = Device::nominal();
     let it = &mut device.behaviour;
-    it.hysteresis = [60.0, 300.0]
-        .map(|threshold_uv| PlayOperator { channels: [true; CHANNELS], threshold_uv, share: 0.1 })
-        .to_vec();
-    it.creep = vec![Prony { channels: [true; CHANNELS], time_s: 20.0, share: 0.05 }];
+    it.hysteresis =
+        [60.0, 300.0].map(|threshold| OnChannels::all(PlayOperator { threshold, share: 0.1 })).to_vec();
+    it.creep = vec![OnChannels::all(Relaxation { time_s: 20.0, share: 0.05 })];
     it.ageing.share = [0.19; CHANNELS];
     it.noise.additive_uv = [5.0; CHANNELS];
     (it.noise.share, it.noise.share_time_s) = ([0.02; CHANNELS], 3.0);
@@ -268,7 +267,7 @@ fn a_life_is_refused_that_is_none_or_of_another_pad() {
     let bytes = Life { state: pad.into_state(), around: AROUND }.to_bytes(&device);
     let refusal = |bytes: &[u8], device: &Device| Life::from_bytes(bytes, device).err();
     let mut other = device.clone();
-    other.behaviour.creep[0].share = 0.06;
+    other.behaviour.creep[0].law.share = 0.06;
     assert_eq!(refusal(&bytes, &other), Some(LifeError::Device));
     let mut other_hand = device.clone();
     (other_hand.behaviour.finger.wander_mm, other_hand.behaviour.rig.stage_x_mm) = (1.0, 2.0);

@@ -106,7 +106,7 @@ impl Basis {
     }
 
     /// How many functions there are.
-    pub const fn len(&self) -> usize {
+    pub(crate) const fn len(&self) -> usize {
         self.orders.len()
     }
 

@@ -5,10 +5,11 @@ use super::report::Diagnosis;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::mechanics::side_share;
 use crate::effect::{DeviceChange, Effect};
-use tactpad_core::pad::device::behaviour::{Crosstalk, ModuleCrosstalk, PlayOperator, Prony};
+use tactpad_core::pad::device::behaviour::{Crosstalk, ModuleCrosstalk, OnChannels};
 use tactpad_core::pad::device::parameter::Parameter;
 use tactpad_core::pad::device::{Device, Module, Side};
 use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS};
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 /// A device file opens the side of a frame or does not: from this part of the side on, open is nearer.
 const NEARER_OPEN: f64 = 0.5;
@@ -152,14 +153,14 @@ fn remember(
     for channel in channels {
         let own = std::array::from_fn(|other| other == channel);
         if effect == Effect::Creep {
-            let term = |[time_s, share]: [f64; 2]| Prony { channels: own, time_s, share };
+            let term =
+                |[time_s, share]: [f64; 2]| OnChannels { channels: own, law: Relaxation { time_s, share } };
             device.behaviour.creep.extend(terms(&values).map(term));
         } else {
             let full_scale_uv = circumstances.full_scale.get(channel)?;
-            let play = |[threshold, share]: [f64; 2]| PlayOperator {
+            let play = |[threshold, share]: [f64; 2]| OnChannels {
                 channels: own,
-                threshold_uv: threshold * full_scale_uv,
-                share,
+                law: PlayOperator { threshold: threshold * full_scale_uv, share },
             };
             device.behaviour.hysteresis.extend(plays(&values).map(play));
         }
@@ -335,10 +336,10 @@ mod tests {
         // Σ 2 w r, and Σ c (1 − exp(−20 s/τ)).
         let height = |channel: usize| -> f64 {
             let own = hysteresis.iter().filter(|it| it.channels[channel]);
-            own.map(|it| 2.0 * it.share * it.threshold_uv).sum()
+            own.map(|it| 2.0 * it.law.share * it.law.threshold).sum()
         };
         (0..CHANNELS).for_each(|channel| near(height(channel), 0.04 * 5000.0));
-        near(creep.iter().map(|it| it.share * (1.0 - (-20.0 / it.time_s).exp())).sum(), 0.03);
+        near(creep.iter().map(|it| it.law.share * (1.0 - (-20.0 / it.law.time_s).exp())).sum(), 0.03);
         assert!(creep.iter().all(|it| it.channels[2] && !it.channels[0]));
     }
 

@@ -13,9 +13,8 @@ use crate::cli::printing::wrapped::hanging;
 use tactpad::lab::calibration::fit::Calibration;
 use tactpad::lab::calibration::result::numbers::{Number, Pair, Quantity, ToldBy};
 use tactpad::lab::diagnosis::data::target::Target;
+use tactpad::numeric::memory::{PlayOperator, Relaxation};
 use tactpad::numeric::statistics::mean;
-use tactpad::pipeline::compensation::creep::NO_CREEP;
-use tactpad::pipeline::compensation::hysteresis::PlayOperators;
 use tactpad::quantity::{CHANNEL_NAMES, CHANNELS};
 
 /// So many pairs that are not told apart are said to people; documents have all.
@@ -195,12 +194,14 @@ impl FoundPad {
     fn frictions(&self) -> impl Iterator<Item = Friction> {
         let is_mean =
             |it: &&Number| matches!((it.quantity, it.target), (Quantity::Friction { .. }, Target::Pad));
-        let plays = self.calibration.compensation.hysteresis.iter().filter(|it| mean(it.threshold_uv) > 0.0);
+        let threshold_uv = |plays: &[PlayOperator; CHANNELS]| mean(plays.map(|play| play.threshold));
+        let plays = self.calibration.compensation.hysteresis.iter();
+        let plays = plays.filter(move |plays| threshold_uv(plays) > 0.0);
         plays
             .zip(self.numbers().filter(is_mean))
-            .map(|(play, number): (&PlayOperators, &Number)| Friction {
-                threshold_uv: mean(play.threshold_uv),
-                share: mean(play.share),
+            .map(move |(plays, number)| Friction {
+                threshold_uv: threshold_uv(plays),
+                share: mean(plays.map(|play| play.share)),
                 standing: self.standing(number),
             })
             .filter(|it| it.share > 0.0)
@@ -210,7 +211,7 @@ impl FoundPad {
         let creep = self.calibration.compensation.creep;
         let number = self.numbers().find(|it| it.quantity == Quantity::Creep)?;
         let standing = self.standing(number);
-        (creep != NO_CREEP).then_some(Creep { time_s: creep.time_s, share: creep.share, standing })
+        (creep != Relaxation::NONE).then_some(Creep { time_s: creep.time_s, share: creep.share, standing })
     }
 }
 

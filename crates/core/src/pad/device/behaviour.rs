@@ -4,6 +4,7 @@
 //! `docs/twin.md` has the equations, in the order in which a contact passes them.
 
 use crate::quantity::CHANNELS;
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 /// All of it. What a device file does not write is ideal: [`Behaviour::IDEAL`].
 #[derive(Clone, Debug, PartialEq)]
@@ -15,9 +16,9 @@ pub struct Behaviour {
     /// Modules that strain others, mechanically: before everything else.
     pub module_crosstalk: Vec<ModuleCrosstalk>,
     /// Hysteresis: the sum of play operators.
-    pub hysteresis: Vec<PlayOperator>,
-    /// Slow strain: the sum of Prony terms.
-    pub creep: Vec<Prony>,
+    pub hysteresis: Vec<OnChannels<PlayOperator>>,
+    /// Slow strain: the sum of relaxations.
+    pub creep: Vec<OnChannels<Relaxation>>,
     /// Loss of strain with the cycles of load.
     pub ageing: Ageing,
     /// Random noise and drift.
@@ -72,28 +73,20 @@ pub struct ModuleCrosstalk {
     pub share: f64,
 }
 
-/// A play operator: its state follows the strain but stays up to a threshold behind. A strain e with state p reads
-/// e + share (p − e). Where the strain turns far apart, loading and unloading differ by 2 share · threshold.
+/// A law of the strain that some channels have.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlayOperator {
+pub struct OnChannels<T> {
     /// Which channels have it.
     pub channels: [bool; CHANNELS],
-    /// How far the state lags behind.
-    pub threshold_uv: f64,
-    /// Its part of the strain.
-    pub share: f64,
+    /// In microvolts where it has a unit of strain.
+    pub law: T,
 }
 
-/// A Prony term: it adds `share` of the strain, low-passed with `time_s`. A step of load reads 1 at once and 1 + share in
-/// the end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Prony {
-    /// Which channels have it.
-    pub channels: [bool; CHANNELS],
-    /// Its time constant.
-    pub time_s: f64,
-    /// Of the strain, after a long time.
-    pub share: f64,
+impl<T> OnChannels<T> {
+    /// Of all channels.
+    pub const fn all(law: T) -> Self {
+        Self { channels: [true; CHANNELS], law }
+    }
 }
 
 /// The strain's loss after n cycles: share · ln(1 + n/`onset_cycles`) / ln(1 + `cycles`/`onset_cycles`).

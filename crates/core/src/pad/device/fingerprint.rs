@@ -59,8 +59,8 @@ impl Device {
 mod tests {
     use super::*;
     use crate::pad::device::Side;
-    use crate::pad::device::behaviour::Prony;
-    use crate::quantity::CHANNELS;
+    use crate::pad::device::behaviour::OnChannels;
+    use tactpad_numeric::memory::Relaxation;
 
     #[test]
     fn a_pads_fingerprint_knows_the_pad_and_neither_hand_nor_rig() {
@@ -74,7 +74,7 @@ mod tests {
             assert_eq!(device.pad_fingerprint() != nominal.pad_fingerprint(), is_pads, "{parameter}");
         }
         let mut crept = nominal.clone();
-        let term = Prony { channels: [true; CHANNELS], time_s: 8.0, share: 0.01 };
+        let term = OnChannels::all(Relaxation { time_s: 8.0, share: 0.01 });
         crept.behaviour.creep.push(term);
         assert_ne!(crept.pad_fingerprint(), nominal.pad_fingerprint());
     }

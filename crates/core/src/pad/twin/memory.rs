@@ -1,15 +1,15 @@
 //! Memory of the strains: hysteresis as play operators (Prandtl and Ishlinskii), creep as a Prony series.
 
 use crate::bytes::{Reader, push_doubles};
-use crate::pad::device::behaviour::{Behaviour, PlayOperator, Prony};
+use crate::pad::device::behaviour::{Behaviour, OnChannels};
 use crate::quantity::CHANNELS;
-use tactpad_numeric::memory::{low_passed, pulled};
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 /// The state of all play operators and Prony terms of a pad.
 #[derive(Clone, Debug)]
 pub(super) struct Memory {
-    plays: Vec<(PlayOperator, [f64; CHANNELS])>,
-    terms: Vec<(Prony, [f64; CHANNELS])>,
+    plays: Vec<(OnChannels<PlayOperator>, [f64; CHANNELS])>,
+    terms: Vec<(OnChannels<Relaxation>, [f64; CHANNELS])>,
     /// The strains last seen.
     strain_uv: [f64; CHANNELS],
 }
@@ -28,25 +28,17 @@ impl Memory {
     /// The strains with hysteresis and creep, when they went evenly from the last ones to these within `after_s`.
     pub(super) fn follow(&mut self, after_s: f64, strain_uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
         let mut read_uv = *strain_uv;
-        for (play, states) in &mut self.plays {
-            for (channel, state) in
-                states.iter_mut().enumerate().filter(|(channel, _)| play.channels[*channel])
-            {
+        for (OnChannels { channels, law }, states) in &mut self.plays {
+            for (channel, state) in states.iter_mut().enumerate().filter(|(channel, _)| channels[*channel]) {
                 let strain = strain_uv[channel];
-                // A play operator adds w (p − e).
-                *state = pulled(*state, strain, play.threshold_uv);
-                read_uv[channel] += play.share * (*state - strain);
+                *state = law.pulled(*state, strain);
+                read_uv[channel] += law.added(*state, strain);
             }
         }
-        for (term, states) in &mut self.terms {
-            // Prony term: the strain low-passed with τ, adds its share.
-            let kept = libm::exp(-after_s / term.time_s);
-            for (channel, state) in
-                states.iter_mut().enumerate().filter(|(channel, _)| term.channels[*channel])
-            {
-                let ends = [self.strain_uv[channel], strain_uv[channel]];
-                *state = low_passed(*state, ends, after_s / term.time_s, kept);
-                read_uv[channel] += term.share * *state;
+        for (OnChannels { channels, law }, states) in &mut self.terms {
+            for (channel, state) in states.iter_mut().enumerate().filter(|(channel, _)| channels[*channel]) {
+                *state = law.followed(*state, [self.strain_uv[channel], strain_uv[channel]], after_s);
+                read_uv[channel] += law.added(*state);
             }
         }
         self.strain_uv = *strain_uv;
@@ -74,9 +66,9 @@ impl Memory {
 mod tests {
     use super::*;
 
-    const ALL: [bool; CHANNELS] = [true; CHANNELS];
-
-    fn memory(hysteresis: Vec<PlayOperator>, creep: Vec<Prony>) -> Memory {
+    fn memory(plays: &[PlayOperator], terms: &[Relaxation]) -> Memory {
+        let hysteresis = plays.iter().map(|play| OnChannels::all(*play)).collect();
+        let creep = terms.iter().map(|term| OnChannels::all(*term)).collect();
         Memory::new(&Behaviour { hysteresis, creep, ..Behaviour::IDEAL })
     }
 
@@ -86,13 +78,8 @@ mod tests {
 
     #[test]
     fn a_prony_step_relaxes_to_its_plateau() {
-        let mut memory = memory(
-            vec![],
-            vec![
-                Prony { channels: ALL, time_s: 4.0, share: 0.1 },
-                Prony { channels: ALL, time_s: 40.0, share: 0.05 },
-            ],
-        );
+        let mut memory =
+            memory(&[], &[Relaxation { time_s: 4.0, share: 0.1 }, Relaxation { time_s: 40.0, share: 0.05 }]);
         assert_eq!(reads(&mut memory, 0.0, 1000.0), 1000.0, "a sudden load has not crept");
         for step in 1..=600 {
             let seconds = f64::from(step) * 0.5;
@@ -106,7 +93,7 @@ mod tests {
 
     #[test]
     fn a_ramp_creeps_the_same_in_one_step_as_in_many() {
-        let term = || memory(vec![], vec![Prony { channels: ALL, time_s: 0.7, share: 0.2 }]);
+        let term = || memory(&[], &[Relaxation { time_s: 0.7, share: 0.2 }]);
         let (mut one, mut many) = (term(), term());
         let whole = reads(&mut one, 2.0, 500.0);
         let parts = (1..=1000).map(|part| reads(&mut many, 0.002, f64::from(part) * 0.5)).last().unwrap();
@@ -118,8 +105,8 @@ mod tests {
 
     #[test]
     fn a_play_operator_closes_its_loop() {
-        let play = PlayOperator { channels: ALL, threshold_uv: 100.0, share: 0.25 };
-        let mut memory = memory(vec![play], vec![]);
+        let play = PlayOperator { threshold: 100.0, share: 0.25 };
+        let mut memory = memory(&[play], &[]);
         let up = |level: i32| f64::from(level) * 10.0;
         let loading: Vec<f64> = (0..=100).map(|level| reads(&mut memory, 0.01, up(level))).collect();
         let unloading: Vec<f64> = (0..=100).rev().map(|level| reads(&mut memory, 0.01, up(level))).collect();
@@ -140,8 +127,8 @@ mod tests {
 
     #[test]
     fn rates_do_not_matter_to_friction() {
-        let play = PlayOperator { channels: ALL, threshold_uv: 30.0, share: 0.4 };
-        let (mut slow, mut fast) = (memory(vec![play], vec![]), memory(vec![play], vec![]));
+        let play = PlayOperator { threshold: 30.0, share: 0.4 };
+        let (mut slow, mut fast) = (memory(&[play], &[]), memory(&[play], &[]));
         for strain_uv in [0.0, 300.0, 120.0, 500.0, -40.0] {
             assert_eq!(reads(&mut slow, 100.0, strain_uv), reads(&mut fast, 1e-3, strain_uv));
         }
@@ -149,12 +136,13 @@ mod tests {
 
     #[test]
     fn channels_that_are_left_out_remember_nothing() {
-        let mut channels = ALL;
+        let mut channels = [true; CHANNELS];
         channels[4] = false;
-        let mut memory = memory(
-            vec![PlayOperator { channels, threshold_uv: 100.0, share: 0.5 }],
-            vec![Prony { channels, time_s: 1.0, share: 0.5 }],
-        );
+        let mut memory = Memory::new(&Behaviour {
+            hysteresis: vec![OnChannels { channels, law: PlayOperator { threshold: 100.0, share: 0.5 } }],
+            creep: vec![OnChannels { channels, law: Relaxation { time_s: 1.0, share: 0.5 } }],
+            ..Behaviour::IDEAL
+        });
         let read_uv = memory.follow(10.0, &[1000.0; CHANNELS]);
         assert_eq!(read_uv[4], 1000.0);
         assert!(read_uv[3] != 1000.0 && read_uv[5] == read_uv[3]);

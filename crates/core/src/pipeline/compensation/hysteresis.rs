@@ -8,7 +8,7 @@
 //! Kuhnen, Eur. J. Control 9 (2003) 407.
 
 use crate::quantity::CHANNELS;
-use tactpad_numeric::memory::pulled;
+use tactpad_numeric::memory::PlayOperator;
 
 /// How many play operators a channel has.
 pub const PLAYS: usize = 2;
@@ -19,30 +19,11 @@ const ROUNDS: usize = 12;
 /// A round that changes less is the last.
 const ROUND_END_UV: f64 = 1e-7;
 
-/// One play operator in each channel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlayOperators {
-    /// Half the width of its band.
-    pub threshold_uv: [f64; CHANNELS],
-    /// Share w of the channel; one below zero corrects another operator's.
-    pub share: [f64; CHANNELS],
-}
-
-impl PlayOperators {
-    /// A play operator that does nothing.
-    pub const NONE: Self = Self { threshold_uv: [0.0; CHANNELS], share: [0.0; CHANNELS] };
-
-    /// A channel's state when its strain without hysteresis went here. It stays within the threshold of the strain.
-    pub const fn pulled(&self, channel: usize, state_uv: f64, free_uv: f64) -> f64 {
-        pulled(state_uv, free_uv, self.threshold_uv[channel])
-    }
-}
-
-/// The hysteresis of a pad. The magnitudes of a channel's shares are less than 1 in sum.
-pub type Hysteresis = [PlayOperators; PLAYS];
+/// The hysteresis of a pad, µV: for each operator, one in each channel. The magnitudes of a channel's shares are less than 1 in sum.
+pub type Hysteresis = [[PlayOperator; CHANNELS]; PLAYS];
 
 /// A pad without hysteresis.
-pub const NO_HYSTERESIS: Hysteresis = [PlayOperators::NONE; PLAYS];
+pub const NO_HYSTERESIS: Hysteresis = [[PlayOperator::NONE; CHANNELS]; PLAYS];
 
 /// Where the play operators of a pad are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,9 +35,9 @@ pub struct History {
 impl History {
     /// The channels went to these strains, which are without hysteresis.
     pub fn follow(&mut self, hysteresis: &Hysteresis, free_uv: &[f64; CHANNELS]) {
-        for (states, play) in self.state_uv.iter_mut().zip(hysteresis) {
-            for (channel, (state, free)) in states.iter_mut().zip(free_uv).enumerate() {
-                *state = play.pulled(channel, *state, *free);
+        for (states, plays) in self.state_uv.iter_mut().zip(hysteresis) {
+            for ((state, play), free) in states.iter_mut().zip(plays).zip(free_uv) {
+                *state = play.pulled(*state, *free);
             }
         }
     }
@@ -71,7 +52,7 @@ impl History {
         std::array::from_fn(|channel| {
             // Σⱼ wⱼ (pⱼ − e)
             let plays = self.state_uv.iter().zip(hysteresis);
-            plays.map(|(states, play)| play.share[channel] * (states[channel] - free_uv[channel])).sum()
+            plays.map(|(states, plays)| plays[channel].added(states[channel], free_uv[channel])).sum()
         })
     }
 
@@ -80,9 +61,9 @@ impl History {
         // by no more than e does.
         let mut free_uv = read_uv;
         for _ in 0..ROUNDS {
-            let added_uv = |(states, play): (&[f64; CHANNELS], &PlayOperators)| {
-                let state = play.pulled(channel, states[channel], free_uv);
-                play.share[channel] * (state - free_uv)
+            let added_uv = |(states, plays): (&[f64; CHANNELS], &[PlayOperator; CHANNELS])| {
+                let play = &plays[channel];
+                play.added(play.pulled(states[channel], free_uv), free_uv)
             };
             let next_uv = read_uv - self.state_uv.iter().zip(hysteresis).map(added_uv).sum::<f64>();
             let change_uv = (next_uv - free_uv).abs();
@@ -101,9 +82,11 @@ mod tests {
     use tactpad_numeric::random::SplitMix64;
 
     fn hysteresis() -> Hysteresis {
-        let play = |threshold_uv: f64, share: f64| PlayOperators {
-            threshold_uv: std::array::from_fn(|channel| threshold_uv * (1.0 + 0.1 * channel as f64)),
-            share: [share; CHANNELS],
+        let play = |threshold_uv: f64, share: f64| {
+            std::array::from_fn(|channel| {
+                let threshold = threshold_uv * (1.0 + 0.1 * channel as f64);
+                PlayOperator { threshold, share }
+            })
         };
         [play(100.0, 0.05), play(800.0, 0.0625)]
     }

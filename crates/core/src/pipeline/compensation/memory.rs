@@ -7,12 +7,13 @@
 //! the zero that was taken before is mended (see [`UntouchedOffset`]).
 
 use super::Compensation;
-use super::creep::{Creep, CreepState, NO_CREEP};
+use super::creep::CreepState;
 use super::hysteresis::{History, Hysteresis, NO_HYSTERESIS};
 use crate::pipeline::interruption::Effect;
 use crate::pipeline::signal::tare::UntouchedOffset;
 use crate::quantity::{CHANNELS, Strain};
 use crate::time::StreamInstant;
+use tactpad_numeric::memory::Relaxation;
 
 /// So long without a sample is a silence: a finger that is there after it need not have been there all the time.
 pub(super) const SILENCE_US: u64 = 100_000;
@@ -21,7 +22,7 @@ pub(super) const SILENCE_US: u64 = 100_000;
 #[derive(Clone, Copy, Debug)]
 pub struct Memory {
     hysteresis: Hysteresis,
-    creep: Creep,
+    creep: Relaxation,
     is_none: bool,
     likely: History,
     /// From the lowest and the highest states that there can be.
@@ -37,11 +38,11 @@ impl Memory {
         Self::of_pad(compensation.hysteresis, compensation.creep)
     }
 
-    fn of_pad(hysteresis: Hysteresis, creep: Creep) -> Self {
+    fn of_pad(hysteresis: Hysteresis, creep: Relaxation) -> Self {
         let mut memory = Self {
             hysteresis,
             creep,
-            is_none: hysteresis == NO_HYSTERESIS && creep == NO_CREEP,
+            is_none: hysteresis == NO_HYSTERESIS && creep == Relaxation::NONE,
             likely: History::default(),
             ends: [History::default(); 2],
             crept: CreepState::default(),
@@ -63,7 +64,7 @@ impl Memory {
     /// The states may be anywhere, and are thought to be where they were.
     fn doubt(&mut self) {
         for (end, sign) in self.ends.iter_mut().zip([-1.0, 1.0]) {
-            end.state_uv = self.hysteresis.map(|play| play.threshold_uv.map(|uv| sign * uv));
+            end.state_uv = self.hysteresis.map(|play| play.map(|it| sign * it.threshold));
         }
     }
 
@@ -84,7 +85,7 @@ impl Memory {
         let [low, high] = &self.ends;
         let doubt_uv = |k: usize| {
             let plays = self.hysteresis.iter().zip(low.state_uv.iter().zip(&high.state_uv));
-            plays.map(|(play, (low, high))| play.share[k].abs() * (high[k] - low[k]) / 2.0).sum()
+            plays.map(|(play, (low, high))| play[k].share.abs() * (high[k] - low[k]) / 2.0).sum()
         };
         let (lag_uv, crept_uv) =
             (self.likely.added_uv(&self.hysteresis, &[0.0; CHANNELS]), self.crept.added_uv(&self.creep));
@@ -109,7 +110,7 @@ impl Memory {
     /// Time passes until then, in which nobody knows the strain: what has crept fades.
     pub fn wait(&mut self, at: StreamInstant) {
         let waited_us = self.passed_us(at);
-        self.crept.hold(&[0.0; CHANNELS], waited_us as f64 * 1e-6, self.creep.time_s);
+        self.crept.hold(&[0.0; CHANNELS], waited_us as f64 * 1e-6, &self.creep);
     }
 
     /// Goes on to a strain without hysteresis and creep, at this time; `None` if nothing touches the pad.
@@ -122,7 +123,7 @@ impl Memory {
         }
         let passed_us = self.passed_us(at);
         let free_uv = free.map_or([0.0; CHANNELS], |free| free.uv.map(f64::from));
-        self.crept.hold(&free_uv, passed_us as f64 * 1e-6, self.creep.time_s);
+        self.crept.hold(&free_uv, passed_us as f64 * 1e-6, &self.creep);
         self.likely.follow(&self.hysteresis, &free_uv);
         self.ends.iter_mut().for_each(|end| end.follow(&self.hysteresis, &free_uv));
     }
@@ -136,10 +137,10 @@ impl Memory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::compensation::hysteresis::PlayOperators;
+    use tactpad_numeric::memory::PlayOperator;
 
     const HYSTERESIS: Hysteresis =
-        [PlayOperators { threshold_uv: [800.0; CHANNELS], share: [0.0625; CHANNELS] }, PlayOperators::NONE];
+        [[PlayOperator { threshold: 800.0, share: 0.0625 }; CHANNELS], [PlayOperator::NONE; CHANNELS]];
 
     #[test]
     fn a_press_says_where_hysteresis_is() {
@@ -160,7 +161,7 @@ mod tests {
 
     #[test]
     fn strains_that_turn_out_to_be_larger_leave_as_much_in_the_readings() {
-        let creep = Creep { time_s: 8.0, share: 0.01 };
+        let creep = Relaxation { time_s: 8.0, share: 0.01 };
         let memory = |uv: f32| {
             let mut memory =
                 Memory::of(&Compensation { hysteresis: HYSTERESIS, creep, ..Compensation::NONE });
@@ -179,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_long_press_does_not_creep_and_leaves_nothing() {
-        let creep = Creep { time_s: 8.0, share: 0.01 };
+        let creep = Relaxation { time_s: 8.0, share: 0.01 };
         let (mut memory, mut pad) =
             (Memory::of(&Compensation { creep, ..Compensation::NONE }), CreepState::default());
         let mut at = StreamInstant::default();
@@ -192,7 +193,7 @@ mod tests {
                 assert!((memory.rest().uv[0] - read_uv).abs() < 0.05 && read_uv > 15.0, "{read_uv}");
             }
             memory.follow(at, (pressed_uv > 0.0).then_some(&free));
-            pad.hold(&[pressed_uv; CHANNELS], 1e-3, creep.time_s);
+            pad.hold(&[pressed_uv; CHANNELS], 1e-3, &creep);
             at = at.plus_us(1_000);
         }
     }

@@ -7,10 +7,10 @@ pub mod memory;
 pub mod thermal;
 pub mod thermometer;
 
-use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
 use crate::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS};
 use crate::pipeline::compensation::thermal::Thermal;
 use crate::quantity::CHANNELS;
+use tactpad_numeric::memory::Relaxation;
 
 /// Compensation of a pad's channels for all that is not the contact. Any decoder can have one.
 ///
@@ -21,7 +21,7 @@ use crate::quantity::CHANNELS;
 /// ```
 ///
 /// where e is what the contact at hand makes it read, z the zero, β and γ the coefficients of [`Thermal`], c the state of
-/// [`Creep`] and pⱼ those of [`Hysteresis`]. A decoder takes e.
+/// [`Relaxation`] and pⱼ those of [`Hysteresis`]. A decoder takes e.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compensation {
     /// z in µV: what the untouched pad reads at the reference temperature, if it was calibrated by a table that never
@@ -30,12 +30,13 @@ pub struct Compensation {
     /// How the channels follow the temperature, if it was calibrated at several.
     pub thermal: Option<Thermal>,
     /// How much the channels creep.
-    pub creep: Creep,
+    pub creep: Relaxation,
     /// Hysteresis of the channels.
     pub hysteresis: Hysteresis,
 }
 
 impl Compensation {
     /// Of a pad of which nothing is known: nothing is taken off.
-    pub const NONE: Self = Self { zero_uv: None, thermal: None, creep: NO_CREEP, hysteresis: NO_HYSTERESIS };
+    pub const NONE: Self =
+        Self { zero_uv: None, thermal: None, creep: Relaxation::NONE, hysteresis: NO_HYSTERESIS };
 }

@@ -12,10 +12,10 @@ use crate::bytes::{FormatError, Reader, push_floats, push_text, sealed, unsealed
 use crate::network::Zero;
 use crate::pad::influence::InfluenceField;
 use crate::pipeline::compensation::Compensation;
-use crate::pipeline::compensation::creep::Creep;
 use crate::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS};
 use crate::pipeline::compensation::thermal::Thermal;
 use crate::quantity::{CHANNELS, Contact};
+use tactpad_numeric::memory::Relaxation;
 
 /// First bytes of a file; the number grows with every change of the form.
 pub const MAGIC: &[u8] = b"tactpad decoder 5\n";
@@ -143,8 +143,13 @@ fn push_numbers<'n>(to: &mut Vec<u8>, numbers: impl IntoIterator<Item = &'n f64>
 
 /// What may be missing begins with how many there are of it.
 fn push_compensation(to: &mut Vec<u8>, compensation: &Compensation) {
-    let Compensation { zero_uv, thermal, creep: Creep { time_s, share }, hysteresis } = compensation;
-    push_numbers(to, hysteresis.iter().flat_map(|play| play.threshold_uv.iter().chain(&play.share)));
+    let Compensation { zero_uv, thermal, creep: Relaxation { time_s, share }, hysteresis } = compensation;
+    for plays in hysteresis {
+        push_numbers(
+            to,
+            plays.iter().map(|play| &play.threshold).chain(plays.iter().map(|play| &play.share)),
+        );
+    }
     push_numbers(to, &[f64::from(u8::from(zero_uv.is_some()))]);
     push_numbers(to, zero_uv.iter().flatten());
     push_numbers(to, &[f64::from(u8::from(thermal.is_some()))]);
@@ -189,8 +194,8 @@ fn read_thermal(from: &mut Reader<'_>) -> Option<Thermal> {
     Some(thermal).filter(Thermal::is_sound)
 }
 
-fn read_creep(from: &mut Reader<'_>) -> Option<Creep> {
-    Some(Creep {
+fn read_creep(from: &mut Reader<'_>) -> Option<Relaxation> {
+    Some(Relaxation {
         time_s: from.double().filter(|time_s| time_s.is_finite() && *time_s >= 0.0)?,
         share: from.double().filter(|share| share.abs() < 1.0)?,
     })
@@ -223,15 +228,15 @@ fn read_noise(from: &mut Reader<'_>) -> Option<Noise> {
 
 fn read_hysteresis(from: &mut Reader<'_>) -> Option<Hysteresis> {
     let mut hysteresis = NO_HYSTERESIS;
-    for play in &mut hysteresis {
-        for number in &mut play.threshold_uv {
+    for plays in &mut hysteresis {
+        for number in plays.iter_mut().map(|play| &mut play.threshold) {
             *number = from.double().filter(|number| number.is_finite() && *number >= 0.0)?;
         }
-        for number in &mut play.share {
+        for number in plays.iter_mut().map(|play| &mut play.share) {
             *number = from.double().filter(|number| number.is_finite())?;
         }
     }
-    let shares = |channel: usize| hysteresis.iter().map(|play| play.share[channel].abs()).sum::<f64>();
+    let shares = |channel: usize| hysteresis.iter().map(|plays| plays[channel].share.abs()).sum::<f64>();
     (0..CHANNELS).all(|channel| shares(channel) < 1.0).then_some(hysteresis)
 }
 
@@ -272,10 +277,10 @@ fn read_neighbours(from: &mut Reader<'_>) -> Option<Neighbours> {
 mod tests {
     use super::*;
     use crate::pad::field::PadField;
-    use crate::pipeline::compensation::hysteresis::PlayOperators;
     use crate::pipeline::contact::inverse::NO_CROSSTALK;
     use crate::pipeline::contact::statics::Statics;
     use crate::quantity::Strain;
+    use tactpad_numeric::memory::PlayOperator;
 
     const COMPENSATION: Compensation = Compensation {
         zero_uv: Some([-120.0; CHANNELS]),
@@ -284,10 +289,10 @@ mod tests {
             zero_uv_per_c: [40.0; CHANNELS],
             gain_per_c: [1e-3; CHANNELS],
         }),
-        creep: Creep { time_s: 8.0, share: 0.01 },
+        creep: Relaxation { time_s: 8.0, share: 0.01 },
         hysteresis: [
-            PlayOperators { threshold_uv: [700.0; CHANNELS], share: [0.05; CHANNELS] },
-            PlayOperators::NONE,
+            [PlayOperator { threshold: 700.0, share: 0.05 }; CHANNELS],
+            [PlayOperator::NONE; CHANNELS],
         ],
     };
 

@@ -1,9 +1,9 @@
 //! Result of a weighing, kept for good: the decoder of the pad as it is now.
 
 use crate::pipeline::compensation::Compensation;
-use crate::pipeline::compensation::hysteresis::PlayOperators;
 use crate::pipeline::contact::Decoder;
 use crate::pipeline::contact::uncertainty::Noise;
+use tactpad_numeric::memory::PlayOperator;
 
 /// The decoder of a pad that reads `factor` times what it read at the calibration, where that is known but for `deviation`, a
 /// share. `None` for a decoder that does not know what its channels should read.
@@ -23,7 +23,7 @@ pub fn kept(decoder: &Decoder, factor: f64, deviation: f64) -> Option<Decoder> {
     let hysteresis = decoder
         .compensation
         .hysteresis
-        .map(|play| PlayOperators { threshold_uv: play.threshold_uv.map(|uv| factor * uv), ..play });
+        .map(|plays| plays.map(|play| PlayOperator { threshold: factor * play.threshold, ..play }));
     let compensation = Compensation { hysteresis, ..decoder.compensation };
     Some(Decoder::from(inverse.scaled(factor, noise)).compensated_by(compensation))
 }
@@ -61,14 +61,11 @@ mod tests {
 
     #[test]
     fn thresholds_follow_the_gain_and_shares_stay() {
-        let play = PlayOperators { threshold_uv: [800.0; CHANNELS], share: [0.05; CHANNELS] };
-        let compensation = Compensation {
-            hysteresis: [play, PlayOperators::NONE],
-            zero_uv: Some([70.0; CHANNELS]),
-            ..Compensation::NONE
-        };
+        let plays =
+            |threshold| [[PlayOperator { threshold, share: 0.05 }; CHANNELS], [PlayOperator::NONE; CHANNELS]];
+        let compensation =
+            Compensation { hysteresis: plays(800.0), zero_uv: Some([70.0; CHANNELS]), ..Compensation::NONE };
         let found = kept(&shipped::decoder().compensated_by(compensation), 0.75, 0.006).unwrap().compensation;
-        let wanted = PlayOperators { threshold_uv: [600.0; CHANNELS], ..play };
-        assert_eq!(found, Compensation { hysteresis: [wanted, PlayOperators::NONE], ..compensation });
+        assert_eq!(found, Compensation { hysteresis: plays(600.0), ..compensation });
     }
 }

@@ -9,13 +9,13 @@ mod part;
 pub use self::part::UntouchedReading;
 use self::part::{Follow, RecordingPart};
 use crate::pipeline::compensation::Compensation;
-use crate::pipeline::compensation::creep::{Creep, NO_CREEP};
 use crate::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS, PLAYS};
 use crate::pipeline::compensation::thermal::Thermal;
 use crate::pipeline::contact::Decoder;
 use crate::quantity::CHANNELS;
 use crate::tables::measured::zero::{self, Zeros};
 use crate::tables::measured::{Row, Table};
+use tactpad_numeric::memory::Relaxation;
 
 /// Rounds of the fixed-point iteration between strains and their lags.
 const ROUNDS: usize = 4;
@@ -141,8 +141,8 @@ impl Recording {
 
     /// Without creep.
     #[must_use]
-    pub fn without_creep(mut self, creep: &Creep) -> Self {
-        if *creep == NO_CREEP {
+    pub fn without_creep(mut self, creep: &Relaxation) -> Self {
+        if *creep == Relaxation::NONE {
             return self;
         }
         for channel in 0..CHANNELS {
@@ -150,11 +150,10 @@ impl Recording {
             let mut free_uv: Vec<f64> = self.tared.rows.iter().map(read_uv).collect();
             // Creep follows the strain without creep: a second round of the fixed-point iteration is near enough.
             for _ in 0..2 {
-                let crept =
-                    self.crept_by(creep.time_s, |at, is_zero| if is_zero { 0.0 } else { free_uv[at] });
+                let crept = self.crept_by(creep, |at, is_zero| if is_zero { 0.0 } else { free_uv[at] });
                 let rows = self.tared.rows.iter().zip(self.relative(crept));
                 free_uv.iter_mut().zip(rows).for_each(|(free_uv, (row, [crept_uv]))| {
-                    *free_uv = read_uv(row) - creep.added_uv(crept_uv);
+                    *free_uv = read_uv(row) - creep.added(crept_uv);
                 });
             }
             self.set(channel, &free_uv);
@@ -188,18 +187,23 @@ impl Recording {
     /// How far a channel has crept in each row with this relaxation time. Loads are held for their dwell, and what they leave
     /// behind fades until the next one; where rows have no times, it has faded. Strains are those of `known`, else the row's
     /// channel.
-    pub fn crept(&self, channel: usize, time_s: f64, known: impl Fn(usize) -> Option<f64>) -> Vec<[f64; 1]> {
+    pub fn crept(
+        &self,
+        channel: usize,
+        creep: &Relaxation,
+        known: impl Fn(usize) -> Option<f64>,
+    ) -> Vec<[f64; 1]> {
         let read_uv = |at: usize| self.tared.rows[at].uv.map_or(0.0, |uv| uv[channel]);
-        self.crept_by(time_s, |at, is_zero| {
+        self.crept_by(creep, |at, is_zero| {
             known(at).unwrap_or_else(|| if is_zero { 0.0 } else { read_uv(at) })
         })
     }
 
     /// The same by the strain of each row, which is told whether it is one of the untouched pad.
-    fn crept_by(&self, time_s: f64, strain_uv: impl Fn(usize, bool) -> f64) -> Vec<[f64; 1]> {
+    fn crept_by(&self, creep: &Relaxation, strain_uv: impl Fn(usize, bool) -> f64) -> Vec<[f64; 1]> {
         let mut states = Vec::with_capacity(self.tared.rows.len());
         for part in &self.parts {
-            part.crept(&self.tared.rows, time_s, &strain_uv, |state| states.push(state));
+            part.crept(&self.tared.rows, creep, &strain_uv, |state| states.push(state));
         }
         states
     }
@@ -252,14 +256,14 @@ impl Recording {
 }
 
 fn without(uv: f64, hysteresis: &Hysteresis, channel: usize, lags: &[f64; PLAYS]) -> f64 {
-    uv - hysteresis.iter().zip(lags).map(|(play, lag_uv)| play.share[channel] * lag_uv).sum::<f64>()
+    uv - hysteresis.iter().zip(lags).map(|(plays, lag_uv)| plays[channel].share * lag_uv).sum::<f64>()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::compensation::hysteresis::PlayOperators;
     use crate::tables::measured::Label;
+    use tactpad_numeric::memory::PlayOperator;
 
     /// Rows of (Fz, µV).
     fn table(rows: &[(f64, f64)]) -> Table {
@@ -272,8 +276,8 @@ mod tests {
 
     #[test]
     fn each_table_has_its_own_zeros_and_begins_at_rest() {
-        let play = PlayOperators { threshold_uv: [100.0; CHANNELS], share: [0.1; CHANNELS] };
-        let hysteresis = [play, PlayOperators::NONE];
+        let play = PlayOperator { threshold: 100.0, share: 0.1 };
+        let hysteresis = [[play; CHANNELS], [PlayOperator::NONE; CHANNELS]];
         let tables = [table(&[(0.0, 10.0), (4.0, 2000.0)]), table(&[(1.0, 600.0), (0.0, 90.0)])];
         let recordings = tables.map(|table| Recording::of(table, 5.0).unwrap());
         let alone: Vec<Row> =

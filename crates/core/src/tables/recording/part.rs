@@ -4,11 +4,11 @@
 
 use std::ops::Range;
 
-use crate::pipeline::compensation::creep;
 use crate::pipeline::compensation::hysteresis::{Hysteresis, PLAYS};
 use crate::quantity::CHANNELS;
 use crate::tables::measured::zero::Zeros;
 use crate::tables::measured::{Approach, DWELL_S, READ_S, Row};
+use tactpad_numeric::memory::Relaxation;
 
 /// A reading of the untouched pad: its row, and the channels.
 pub type UntouchedReading = (usize, [f64; CHANNELS]);
@@ -79,7 +79,7 @@ impl RecordingPart {
     pub(super) fn crept(
         &self,
         rows: &[Row],
-        time_s: f64,
+        creep: &Relaxation,
         strain_uv: impl Fn(usize, bool) -> f64,
         mut tell: impl FnMut([f64; 1]),
     ) {
@@ -88,12 +88,11 @@ impl RecordingPart {
         for (at, is_zero) in self.places() {
             let row = &rows[at];
             let HoldTimes { rest_s, before_s, after_s } = HoldTimes::of(row, previous.replace(row));
-            let rested_uv =
-                rest_s.map_or(0.0, |rest_s| creep::held_uv(crept_uv, 0.0, creep::left(rest_s, time_s)));
+            let rested_uv = rest_s.map_or(0.0, |rest_s| creep.held(crept_uv, 0.0, rest_s));
             let strain_uv = strain_uv(at, is_zero);
-            let read_uv = creep::held_uv(rested_uv, strain_uv, creep::left(before_s, time_s));
+            let read_uv = creep.held(rested_uv, strain_uv, before_s);
             tell([read_uv]);
-            crept_uv = creep::held_uv(read_uv, strain_uv, creep::left(after_s, time_s));
+            crept_uv = creep.held(read_uv, strain_uv, after_s);
         }
     }
 
@@ -122,7 +121,7 @@ impl RecordingPart {
         let mut plays_uv = [0.0; PLAYS];
         let mut go = |uv: f64| {
             let plays = plays_uv.iter_mut().zip(hysteresis);
-            plays.for_each(|(state_uv, play)| *state_uv = play.pulled(channel, *state_uv, uv));
+            plays.for_each(|(state_uv, plays)| *state_uv = plays[channel].pulled(*state_uv, uv));
             plays_uv
         };
         let mut previous: Option<usize> = None;

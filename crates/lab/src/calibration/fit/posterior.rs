@@ -4,10 +4,10 @@ use crate::calibration::data::contacts::{FieldAtPlace, Knowledge, Measured};
 use crate::calibration::model::ParameterLayout;
 use crate::calibration::problem::{PosteriorFit, Problem};
 use tactpad_core::pad::influence::{InfluenceField, MAPS};
-use tactpad_core::pipeline::compensation::creep::Creep;
 use tactpad_core::pipeline::compensation::hysteresis::Hysteresis;
 use tactpad_core::pipeline::compensation::thermal::Thermal;
 use tactpad_core::quantity::{CHANNELS, Strain};
+use tactpad_numeric::memory::Relaxation;
 use tactpad_numeric::products::dot;
 
 impl PosteriorFit {
@@ -39,7 +39,7 @@ impl Problem<'_> {
         &self,
         values: &[f64],
         hysteresis: &Hysteresis,
-        creep: &Creep,
+        creep: &Relaxation,
     ) -> Vec<(Strain, [f64; 3])> {
         let mut recording = self.recording.clone().less(&ParameterLayout::zeros(values));
         if let Some(reference_c) = self.reference_c {

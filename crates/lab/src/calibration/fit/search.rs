@@ -11,7 +11,7 @@ use crate::calibration::model::prior::Prior;
 use crate::calibration::problem::effort::Effort;
 use crate::calibration::problem::hyperparameters::Settings;
 use crate::calibration::problem::{PosteriorFit, Problem};
-use tactpad_core::pipeline::compensation::creep::Creep;
+use tactpad_numeric::memory::Relaxation;
 
 /// Prior standard deviations of the background that are tried beside none, as a share of each map: the larger ones where the
 /// larger of the small ones is best.
@@ -148,7 +148,7 @@ fn with_memory(
 /// The fit with nothing but what is known of pads of this kind. In play noise lasts from one contact to the next: as long as
 /// the evidence says.
 fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &FitCount<'_>) -> Option<PosteriorFit> {
-    let Prior { thresholds_uv, creep: Creep { time_s: creep_time_s, .. }, .. } = *prior;
+    let Prior { thresholds_uv, creep: Relaxation { time_s: creep_time_s, .. }, .. } = *prior;
     let tried = |noise_time_s: f64| {
         let settings =
             Settings { background: 0.0, thresholds_uv, creep_time_s, noise_time_s, elastic_scale: 1.0 };

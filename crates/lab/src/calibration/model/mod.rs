@@ -27,11 +27,11 @@ use crate::calibration::data::contacts::{
     BACKGROUND_DEGREE, FieldAtPlace, Knowledge, Lags, Maps, Measured, TERMS, response,
 };
 use crate::calibration::data::rig::{RIG_NUMBERS, RigPrior};
-use tactpad_core::pipeline::compensation::creep::{Creep, NO_CREEP};
-use tactpad_core::pipeline::compensation::hysteresis::{Hysteresis, PLAYS, PlayOperators};
+use tactpad_core::pipeline::compensation::hysteresis::{Hysteresis, PLAYS};
 use tactpad_core::pipeline::contact::inverse::CROSSTALK_MAX;
 use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 /// A precision that no measurement outweighs.
 pub(crate) const CERTAIN: f64 = 1e18;
@@ -166,18 +166,20 @@ impl ParameterLayout {
 
     /// The hysteresis by these parameters. Thresholds are in strains before gains: rᵢₖ = thresholdᵢ |gₖ|.
     pub(crate) fn hysteresis(values: &[f64], thresholds_uv: &[f64; PLAYS]) -> Hysteresis {
-        std::array::from_fn(|play| PlayOperators {
-            threshold_uv: std::array::from_fn(|k| thresholds_uv[play] * Self::gain(values, k).abs()),
-            share: std::array::from_fn(|k| Self::share(values, play, k).clamp(-SHARE_MAX, SHARE_MAX)),
+        std::array::from_fn(|play| {
+            std::array::from_fn(|k| PlayOperator {
+                threshold: thresholds_uv[play] * Self::gain(values, k).abs(),
+                share: Self::share(values, play, k).clamp(-SHARE_MAX, SHARE_MAX),
+            })
         })
     }
 
     /// The creep by these parameters.
-    pub(crate) fn creep(values: &[f64], time_s: f64) -> Creep {
+    pub(crate) fn creep(values: &[f64], time_s: f64) -> Relaxation {
         if time_s == 0.0 {
-            return NO_CREEP;
+            return Relaxation::NONE;
         }
-        Creep { time_s, share: values[CREEP].clamp(-SHARE_MAX, SHARE_MAX) }
+        Relaxation { time_s, share: values[CREEP].clamp(-SHARE_MAX, SHARE_MAX) }
     }
 
     fn share(values: &[f64], play: usize, channel: usize) -> f64 {

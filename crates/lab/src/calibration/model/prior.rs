@@ -7,9 +7,9 @@ use crate::calibration::noise::NoisePrior;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pad::influence::{InfluenceField, MAPS};
-use tactpad_core::pipeline::compensation::creep::{Creep, NO_CREEP};
 use tactpad_core::pipeline::compensation::hysteresis::{Hysteresis, NO_HYSTERESIS, PLAYS};
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::memory::Relaxation;
 
 /// A channel with a smaller gain than this is dead and says nothing of other pads.
 const GAIN_MIN: f64 = 0.05;
@@ -28,7 +28,7 @@ pub(crate) struct Prior {
     pub(crate) thresholds_uv: [f64; PLAYS],
     /// Shares of each play operator in each channel.
     pub(crate) shares: [[f64; CHANNELS]; PLAYS],
-    pub(crate) creep: Creep,
+    pub(crate) creep: Relaxation,
     /// Prior of the channels' noise.
     pub(crate) noise: NoisePrior,
 }
@@ -94,13 +94,13 @@ impl Prior {
     ) -> Self {
         // The decoder's thresholds are in readings: r/|g| in strains.
         let threshold_uv = |play: usize| {
-            let before_gains = (0..CHANNELS).map(|k| hysteresis[play].threshold_uv[k] / gain[k].abs());
+            let before_gains = (0..CHANNELS).map(|k| hysteresis[play][k].threshold / gain[k].abs());
             before_gains.sum::<f64>() / CHANNELS as f64
         };
         Self {
             thresholds_uv: std::array::from_fn(threshold_uv),
-            shares: hysteresis.map(|play| play.share),
-            creep: NO_CREEP,
+            shares: hysteresis.map(|plays| plays.map(|play| play.share)),
+            creep: Relaxation::NONE,
             field,
             solved: None,
             gain,
@@ -141,10 +141,10 @@ fn gains(simulated: &InfluenceField, earlier: &InfluenceField) -> [f64; CHANNELS
 mod tests {
     use super::*;
     use tactpad_core::pipeline::compensation::Compensation;
-    use tactpad_core::pipeline::compensation::hysteresis::PlayOperators;
     use tactpad_core::pipeline::contact::Decoder;
     use tactpad_core::pipeline::contact::inverse::Inverse;
     use tactpad_core::pipeline::contact::uncertainty::Noise;
+    use tactpad_numeric::memory::PlayOperator;
 
     #[test]
     fn another_pad_is_factorised_into_strains_and_gains() {
@@ -157,8 +157,8 @@ mod tests {
             std::array::from_fn::<f64, MAPS, _>(|map| gain[map / 3] * gains[map / 3][map % 3])
         };
         let signals = InfluenceField::sampled(spacing_mm, reach_mm, reach_mm, amplified);
-        let threshold_uv = gain.map(|gain| 700.0 * gain);
-        let hysteresis = [PlayOperators { threshold_uv, share: [0.05; CHANNELS] }, PlayOperators::NONE];
+        let plays = gain.map(|gain| PlayOperator { threshold: 700.0 * gain, share: 0.05 });
+        let hysteresis = [plays, [PlayOperator::NONE; CHANNELS]];
         let noise = Noise::of_channels([3.0; CHANNELS], [0.01; CHANNELS]);
         let compensation = Compensation { hysteresis, ..Compensation::NONE };
         let decoder = Decoder::from(Inverse::new(signals, noise)).compensated_by(compensation);

@@ -112,7 +112,7 @@ pub(crate) fn from_residuals(residuals: &[Vec<SquaredResidual>; CHANNELS], prior
 /// The noise with the variance of the zeros, which drift by `drift_uv` from one reading of the untouched pad to the next, and of
 /// the hysteresis states. All contacts between two readings share these errors, so the residuals show only a part of them.
 pub(crate) fn with_zeros(noise: Noise, drift_uv: &[f64; CHANNELS], hysteresis: &Hysteresis) -> Noise {
-    let kept_uv = |k: usize| hysteresis.iter().map(|play| play.share[k] * play.threshold_uv[k]).sum::<f64>();
+    let kept_uv = |k: usize| hysteresis.iter().map(|plays| plays[k].share * plays[k].threshold).sum::<f64>();
     // A drift D between two zeros has the variance of both, D² = 2 Z². A zero interpolated between two has Z² (w² + (1 − w)²),
     // on average over w ⅔ Z² = D²/3.
     let variance = |k: usize| {

@@ -40,6 +40,7 @@ use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::recording::Recording;
 use tactpad_numeric::linear::LargeFactor;
+use tactpad_numeric::memory::Relaxation;
 use tactpad_numeric::products::{combined, dot};
 
 /// Most Gauss-Newton steps of a fit; the channels are nearly linear in the parameters.
@@ -256,9 +257,11 @@ impl<'f> Problem<'f> {
         if time_s == 0.0 {
             return;
         }
+        // Only states are asked for, which are those of any share.
+        let creep = Relaxation { time_s, share: 1.0 };
         for channel in 0..CHANNELS {
             let known = |at: usize| strains.get(&at).map(|uv| uv[channel]);
-            let states = self.recording.crept(channel, time_s, known);
+            let states = self.recording.crept(channel, &creep, known);
             for Jump { rows: [first, second], crept_uv, .. } in &mut self.jumps.all {
                 crept_uv[channel] = states[*second][0] - states[*first][0];
             }

@@ -4,10 +4,11 @@ use super::cause::{Cause, ChainStage, Need, Places};
 use super::memory::{THRESHOLDS, TIMES_S, plays, terms};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::model::chain::Chain;
-use crate::diagnosis::model::memory::{ChannelFriction, Prony};
+use crate::diagnosis::model::memory::ChannelFriction;
 use crate::diagnosis::model::setting::Setting;
 use crate::effect::Effect;
 use tactpad_inference::hypothesis::{Coordinate, Parameter, with_shapes};
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 /// Height of the loop of a full stroke, as a share of full scale, and its course. What a height is a share of is the model's full
 /// scale, which is no better known than to 0.8 %. Nobody writes from how far above a static load came, so that is fitted, too.
@@ -225,8 +226,11 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
         |target, values, setting, chain| {
             let above = values[1 + THRESHOLDS.len()];
             for channel in channels_of(target, setting) {
-                let play =
-                    |[threshold, share]: [f64; 2]| ChannelFriction { channel, threshold, share, above };
+                let play = |[threshold, share]: [f64; 2]| ChannelFriction {
+                    channel,
+                    play: PlayOperator { threshold, share },
+                    above,
+                };
                 chain.memory.plays.extend(plays(values).map(play));
             }
         },
@@ -240,8 +244,8 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
         |_| CREEP.to_vec(),
         |target, values, setting, chain| {
             for channel in channels_of(target, setting) {
-                let term = |[time_s, share]: [f64; 2]| Prony { channel, time_s, share };
-                chain.memory.prony.extend(terms(values).map(term));
+                let term = |[time_s, share]: [f64; 2]| (channel, Relaxation { time_s, share });
+                chain.memory.relaxations.extend(terms(values).map(term));
             }
         },
     )

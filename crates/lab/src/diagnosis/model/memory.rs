@@ -9,35 +9,24 @@
 
 use tactpad_core::tables::measured::Label;
 use tactpad_inference::observations::Sample;
-use tactpad_numeric::memory::{low_passed, pulled};
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 /// Friction in one channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ChannelFriction {
     pub(crate) channel: usize,
-    /// r: half the width of its band, as a share of the channel's full scale.
-    pub(crate) threshold: f64,
-    /// w.
-    pub(crate) share: f64,
+    /// Its threshold is a share of the channel's full scale.
+    pub(crate) play: PlayOperator,
     /// A static load that comes from above came from so many times as far above as is thought.
     pub(crate) above: f64,
-}
-
-/// Slow giving way of one channel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Prony {
-    pub(crate) channel: usize,
-    /// τ.
-    pub(crate) time_s: f64,
-    /// c.
-    pub(crate) share: f64,
 }
 
 /// Memory of the channels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct MemoryChain {
     pub(crate) plays: Vec<ChannelFriction>,
-    pub(crate) prony: Vec<Prony>,
+    /// Each with its channel.
+    pub(crate) relaxations: Vec<(usize, Relaxation)>,
 }
 
 /// How a row came about.
@@ -134,45 +123,44 @@ impl RowSequence {
         RowInterval { rows: [at; 2], part: 0.0 }
     }
 
-    /// p − e, row by row, of a play operator.
-    fn held_back(&self, threshold: f64, above: f64, strain: &[f64]) -> Vec<f64> {
+    /// w (p − e), row by row, of a play operator.
+    fn held_back(&self, play: &PlayOperator, above: f64, strain: &[f64]) -> Vec<f64> {
         let mut state = 0.0;
         let rows = self.steps.iter().zip(strain);
         rows.map(|(step, strain)| {
             match step {
                 RowTransition::Static { overload: Some(times), .. } => {
-                    state = pulled(0.0, strain * (1.0 + above * (times - 1.0)), threshold);
+                    state = play.pulled(0.0, strain * (1.0 + above * (times - 1.0)));
                 }
                 RowTransition::Static { .. } | RowTransition::First => state = 0.0,
                 RowTransition::Next { .. } => {}
             }
-            state = pulled(state, *strain, threshold);
-            state - strain
+            state = play.pulled(state, *strain);
+            play.added(state, *strain)
         })
         .collect()
     }
 
-    /// The strain, low-passed. Between two rows it goes evenly; with an `early` of 1 it is at once where it goes, with −1 it goes there
+    /// c u, row by row, of a relaxation. Between two rows it goes evenly; with an `early` of 1 it is at once where it goes, with −1 it goes there
     /// at the end.
-    fn crept(&self, time_s: f64, early: f64, strain: &[f64]) -> Vec<f64> {
+    fn crept(&self, relaxation: &Relaxation, early: f64, strain: &[f64]) -> Vec<f64> {
         let (mut state, mut before) = (0.0, 0.0);
         let rows = self.steps.iter().zip(strain);
         rows.map(|(step, strain)| {
             state = match step {
                 RowTransition::Static { dwell_s, .. } => {
                     // 1 − exp(−t/τ)
-                    dwell_s.map_or(0.0, |dwell_s| -strain * libm::expm1(-dwell_s / time_s))
+                    dwell_s.map_or(0.0, |dwell_s| -strain * libm::expm1(-dwell_s / relaxation.time_s))
                 }
                 RowTransition::First => 0.0,
                 RowTransition::Next { after_s } => {
-                    let times = after_s / time_s;
                     let first = before + early.max(0.0) * (strain - before);
                     let last = strain + early.min(0.0) * (strain - before);
-                    low_passed(state, [first, last], times, libm::exp(-times))
+                    relaxation.followed(state, [first, last], *after_s)
                 }
             };
             before = *strain;
-            state
+            relaxation.added(state)
         })
         .collect()
     }
@@ -205,14 +193,16 @@ impl MemoryChain {
         strain: &[f64],
         early: f64,
     ) -> Option<Vec<f64>> {
-        let plays = self.plays.iter().filter(|it| it.channel == channel && it.share != 0.0);
-        let plays = plays.map(|it| (it.share, course.held_back(it.threshold * full_scale, it.above, strain)));
-        let prony = self.prony.iter().filter(|it| it.channel == channel && it.share != 0.0);
-        let prony = prony.map(|it| (it.share, course.crept(it.time_s, early, strain)));
-        plays.chain(prony).fold(None, |sum, (share, rows)| {
-            let mut sum = sum.unwrap_or_else(|| vec![0.0; rows.len()]);
-            sum.iter_mut().zip(rows).for_each(|(sum, value)| *sum += share * value);
-            Some(sum)
+        let plays = self.plays.iter().filter(|it| it.channel == channel && it.play.share != 0.0);
+        let plays = plays.map(|it| {
+            let play = PlayOperator { threshold: it.play.threshold * full_scale, ..it.play };
+            course.held_back(&play, it.above, strain)
+        });
+        let relaxations = self.relaxations.iter().filter(|(of, it)| *of == channel && it.share != 0.0);
+        let relaxations = relaxations.map(|(_, it)| course.crept(it, early, strain));
+        plays.chain(relaxations).reduce(|mut sum, rows| {
+            sum.iter_mut().zip(rows).for_each(|(sum, value)| *sum += value);
+            sum
         })
     }
 }
@@ -248,8 +238,12 @@ mod tests {
     #[test]
     fn a_loop_of_a_series_is_that_of_static_loads_from_both_sides() {
         let chain = MemoryChain {
-            plays: vec![ChannelFriction { channel: 0, threshold: 0.1, share: 0.2, above: 1.0 }],
-            prony: Vec::new(),
+            plays: vec![ChannelFriction {
+                channel: 0,
+                play: PlayOperator { threshold: 0.1, share: 0.2 },
+                above: 1.0,
+            }],
+            relaxations: Vec::new(),
         };
         let up_and_down: Vec<f64> =
             (0..=20).map(|row: i32| 100.0 * f64::from(10 - (row - 10).abs())).collect();
@@ -265,8 +259,10 @@ mod tests {
 
     #[test]
     fn a_held_load_creeps_in_a_series_as_by_its_dwell() {
-        let chain =
-            MemoryChain { plays: Vec::new(), prony: vec![Prony { channel: 0, time_s: 4.0, share: 0.05 }] };
+        let chain = MemoryChain {
+            plays: Vec::new(),
+            relaxations: vec![(0, Relaxation { time_s: 4.0, share: 0.05 })],
+        };
         let mut strain = vec![500.0; 101];
         strain[0] = 0.0;
         // Within 0.1 s of the load.

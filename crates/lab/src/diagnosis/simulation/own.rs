@@ -1,11 +1,12 @@
 //! The chain of a device: what its file says beside the field.
 
 use crate::diagnosis::model::chain::{Chain, ChannelChain, MechanicsChain, Reference};
-use crate::diagnosis::model::memory::{ChannelFriction, MemoryChain, Prony};
+use crate::diagnosis::model::memory::{ChannelFriction, MemoryChain};
 use crate::rig::errors::RigErrors;
 use tactpad_core::pad::device::Device;
-use tactpad_core::pad::device::behaviour::{self, Behaviour, ModuleCrosstalk};
+use tactpad_core::pad::device::behaviour::{Behaviour, ModuleCrosstalk, OnChannels};
 use tactpad_core::quantity::CHANNELS;
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 /// What a device's file says of its channels and of the rig that measures it.
 pub(crate) fn own_chain(device: &Device, weights: Vec<f64>, reference: &Reference) -> Chain {
@@ -27,7 +28,7 @@ pub(crate) fn own_chain(device: &Device, weights: Vec<f64>, reference: &Referenc
         rig: RigErrors::of(rig),
         memory: MemoryChain {
             plays: hysteresis.iter().flat_map(|it| plays(it, reference)).collect(),
-            prony: creep.iter().flat_map(prony).collect(),
+            relaxations: creep.iter().flat_map(relaxations).collect(),
         },
         channels: ChannelChain {
             module_shares: module_crosstalk.iter().flat_map(by_axis).collect(),
@@ -48,20 +49,20 @@ pub(crate) fn own_chain(device: &Device, weights: Vec<f64>, reference: &Referenc
 
 /// A play operator, channel by channel.
 fn plays<'r>(
-    it: &'r behaviour::PlayOperator,
+    it: &'r OnChannels<PlayOperator>,
     reference: &'r Reference,
 ) -> impl Iterator<Item = ChannelFriction> + 'r {
     let of = |channel: usize| {
-        let threshold = it.threshold_uv / reference.full_scale[channel];
-        ChannelFriction { channel, threshold, share: it.share, above: 1.0 }
+        let threshold = it.law.threshold / reference.full_scale[channel];
+        ChannelFriction { channel, play: PlayOperator { threshold, ..it.law }, above: 1.0 }
     };
     (0..CHANNELS).filter(|channel| it.channels[*channel]).map(of)
 }
 
 /// A term of creep, channel by channel.
-fn prony(it: &behaviour::Prony) -> impl Iterator<Item = Prony> + use<'_> {
-    let of = |channel: usize| Prony { channel, time_s: it.time_s, share: it.share };
-    (0..CHANNELS).filter(|channel| it.channels[*channel]).map(of)
+fn relaxations(it: &OnChannels<Relaxation>) -> impl Iterator<Item = (usize, Relaxation)> + use<> {
+    let OnChannels { channels, law } = *it;
+    (0..CHANNELS).filter(move |channel| channels[*channel]).map(move |channel| (channel, law))
 }
 
 /// A module's share, channel by channel.

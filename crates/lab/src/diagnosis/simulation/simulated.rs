@@ -200,7 +200,7 @@ impl<'f> Simulated<'f> {
         let magnitudes: Vec<f64> = rows.iter().map(magnitude).collect();
         let load_rms = rms(magnitudes.iter().copied());
         let strains: Vec<[f64; CHANNELS]> = rows.iter().map(|row| row.strain(chain)).collect();
-        let friction = MemoryChain { prony: Vec::new(), ..chain.memory.clone() };
+        let friction = MemoryChain { relaxations: Vec::new(), ..chain.memory.clone() };
         let creep = MemoryChain { plays: Vec::new(), ..chain.memory.clone() };
         let doubt = |channel: usize| {
             let (full_scale, size) = (self.reference.full_scale[channel], self.reference.sizes[channel]);

@@ -2,13 +2,14 @@
 
 use super::coupling::channel_words;
 use crate::pad::device::Device;
-use crate::pad::device::behaviour::{PlayOperator, Prony};
+use crate::pad::device::behaviour::OnChannels;
 use crate::pad::device::lines::{lines, quoted};
 use crate::pad::device::reading::DeviceText;
 use crate::pad::device::schema::Key;
 use crate::pad::device::schema::behaviour::{CREEP, HYSTERESIS};
 use crate::quantity::{CHANNEL_NAMES, CHANNELS};
 use crate::toml_text::section::Section;
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 /// The key of the channels that have a term.
 const WHERE: &str = "channels";
@@ -19,25 +20,19 @@ const TERMS_MAX: usize = 16 * CHANNELS;
 /// A kind of term.
 struct Term<T: 'static> {
     table: &'static str,
-    keys: &'static [Key<T>],
-    /// A term without numbers, of all channels.
+    keys: &'static [Key<OnChannels<T>>],
+    /// A law without numbers.
     unread: T,
-    channels: fn(&mut T) -> &mut [bool; CHANNELS],
 }
 
 static PLAY: Term<PlayOperator> = Term {
     table: "hysteresis",
     keys: &HYSTERESIS,
-    unread: PlayOperator { channels: [true; CHANNELS], threshold_uv: f64::NAN, share: f64::NAN },
-    channels: |play| &mut play.channels,
+    unread: PlayOperator { threshold: f64::NAN, share: f64::NAN },
 };
 
-static PRONY: Term<Prony> = Term {
-    table: "creep",
-    keys: &CREEP,
-    unread: Prony { channels: [true; CHANNELS], time_s: f64::NAN, share: f64::NAN },
-    channels: |term| &mut term.channels,
-};
+static RELAXATION: Term<Relaxation> =
+    Term { table: "creep", keys: &CREEP, unread: Relaxation { time_s: f64::NAN, share: f64::NAN } };
 
 pub(super) fn read_hysteresis(root: &Section<'_>, device: &mut Device, reading: &mut DeviceText<'_>) {
     PLAY.read_over(root, &mut device.behaviour.hysteresis, reading);
@@ -48,26 +43,26 @@ pub(super) fn hysteresis_text(device: &Device) -> String {
 }
 
 pub(super) fn read_creep(root: &Section<'_>, device: &mut Device, reading: &mut DeviceText<'_>) {
-    PRONY.read_over(root, &mut device.behaviour.creep, reading);
+    RELAXATION.read_over(root, &mut device.behaviour.creep, reading);
 }
 
 pub(super) fn creep_text(device: &Device) -> String {
-    PRONY.text(&device.behaviour.creep)
+    RELAXATION.text(&device.behaviour.creep)
 }
 
 impl<T: Copy> Term<T> {
     /// Puts the text's list in the place of `terms`, if it has one.
-    fn read_over(&self, root: &Section<'_>, terms: &mut Vec<T>, reading: &mut DeviceText<'_>) {
+    fn read_over(&self, root: &Section<'_>, terms: &mut Vec<OnChannels<T>>, reading: &mut DeviceText<'_>) {
         if root.place_of(self.table).is_none() {
             return;
         }
         terms.clear();
         let known: Vec<_> = self.keys.iter().map(|key| key.name).chain([WHERE]).collect();
         for table in root.tables(self.table, &known, TERMS_MAX + 1, &mut reading.findings) {
-            let mut term = self.unread;
+            let mut term = OnChannels::all(self.unread);
             reading.require(&table, self.keys);
             reading.numbers(&table, &format!("{}.{}", self.table, terms.len()), self.keys, &mut term);
-            read_channels(&table, (self.channels)(&mut term), reading);
+            read_channels(&table, &mut term.channels, reading);
             if terms.len() == TERMS_MAX {
                 let message = format!("there are more than {TERMS_MAX} tables [[{}]]", self.table);
                 reading.findings.error(table.at, message, "write the sum of several as one");
@@ -76,11 +71,10 @@ impl<T: Copy> Term<T> {
         }
     }
 
-    fn text(&self, terms: &[T]) -> String {
-        let one = |term: &T| {
-            let mut term = *term;
-            let channels = channels_line(*(self.channels)(&mut term));
-            format!("\n[[{}]]\n{}{channels}", self.table, lines(self.keys, &term))
+    fn text(&self, terms: &[OnChannels<T>]) -> String {
+        let one = |term: &OnChannels<T>| {
+            let channels = channels_line(term.channels);
+            format!("\n[[{}]]\n{}{channels}", self.table, lines(self.keys, term))
         };
         terms.iter().map(one).collect()
     }

@@ -54,8 +54,9 @@ struct Term {
 
 fn check_hysteresis(behaviour: &Behaviour, finding: &mut Finding<'_, '_>) {
     let terms = behaviour.hysteresis.iter();
-    let terms: Vec<_> =
-        terms.map(|it| Term { channels: it.channels, place: it.threshold_uv, share: it.share }).collect();
+    let terms: Vec<_> = terms
+        .map(|it| Term { channels: it.channels, place: it.law.threshold, share: it.law.share })
+        .collect();
     check_distinct(&terms, "hysteresis", "threshold_uv", finding);
     check_sums(
         &terms,
@@ -74,7 +75,7 @@ fn check_hysteresis(behaviour: &Behaviour, finding: &mut Finding<'_, '_>) {
 fn check_creep(behaviour: &Behaviour, finding: &mut Finding<'_, '_>) {
     let terms = behaviour.creep.iter();
     let terms: Vec<_> =
-        terms.map(|it| Term { channels: it.channels, place: it.time_s, share: it.share }).collect();
+        terms.map(|it| Term { channels: it.channels, place: it.law.time_s, share: it.law.share }).collect();
     check_distinct(&terms, "creep", "time_s", finding);
     check_sums(
         &terms,

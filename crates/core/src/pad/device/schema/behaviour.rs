@@ -6,9 +6,10 @@
 use std::slice;
 
 use super::{AXES, Access, DEG, Effect, Key, MM, NEWTON, PATCH, RATIO, TILT_DEG, Table, UV};
-use crate::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, PlayOperator, Prony};
+use crate::pad::device::behaviour::{Behaviour, Crosstalk, ModuleCrosstalk, OnChannels};
 use crate::pad::device::unit::Unit;
 use crate::quantity::CHANNEL_NAMES;
+use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 const SECOND: Unit = Unit::Second;
 
@@ -38,6 +39,13 @@ macro_rules! channels {
 macro_rules! entry {
     ($record:ty, $key:ident, $unit:expr, $range:expr, $meaning:literal) => {
         Key::<$record>::new(stringify!($key), $unit, $range, one!($key), $meaning).with(Effect::Behaviour)
+    };
+}
+
+macro_rules! law {
+    ($law:ty, $key:ident, $field:ident, $unit:expr, $range:expr, $meaning:literal) => {
+        Key::<OnChannels<$law>>::new(stringify!($key), $unit, $range, one!(law.$field), $meaning)
+            .with(Effect::Behaviour)
     };
 }
 
@@ -238,13 +246,27 @@ pub(in crate::pad::device) static MODULE_CROSSTALK: [Key<ModuleCrosstalk>; 1] = 
 )];
 
 /// The numbers of a `[[hysteresis]]` table.
-pub(in crate::pad::device) static HYSTERESIS: [Key<PlayOperator>; 2] = [
-    entry!(PlayOperator, threshold_uv, UV, (0.1, 20_000.0), "how far the play operator stays behind"),
-    entry!(PlayOperator, share, RATIO, (0.0, 0.9), "the play operator's part of the strain"),
+pub(in crate::pad::device) static HYSTERESIS: [Key<OnChannels<PlayOperator>>; 2] = [
+    law!(
+        PlayOperator,
+        threshold_uv,
+        threshold,
+        UV,
+        (0.1, 20_000.0),
+        "how far the play operator stays behind"
+    ),
+    law!(PlayOperator, share, share, RATIO, (0.0, 0.9), "the play operator's part of the strain"),
 ];
 
 /// The numbers of a `[[creep]]` table.
-pub(in crate::pad::device) static CREEP: [Key<Prony>; 2] = [
-    entry!(Prony, time_s, SECOND, (0.01, 1e5), "the time constant"),
-    entry!(Prony, share, RATIO, (-0.5, 1.0), "the share of the strain that is added after a long time"),
+pub(in crate::pad::device) static CREEP: [Key<OnChannels<Relaxation>>; 2] = [
+    law!(Relaxation, time_s, time_s, SECOND, (0.01, 1e5), "the time constant"),
+    law!(
+        Relaxation,
+        share,
+        share,
+        RATIO,
+        (-0.5, 1.0),
+        "the share of the strain that is added after a long time"
+    ),
 ];

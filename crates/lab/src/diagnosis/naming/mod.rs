@@ -1,53 +1,20 @@
 //! Which of the fitted causes may be named, and what is said of those that are and of those that are not.
 
 pub(crate) mod experiments;
+mod findings;
 pub(crate) mod separation;
 pub(crate) mod withdrawal;
 
 use self::withdrawal::{OVER_NEAR, doubted, is_over};
 use super::report::{Finding, NotDetected};
-use crate::diagnosis::Search;
 use crate::diagnosis::data::target::Target;
+use crate::diagnosis::label::Search;
 use crate::effect::Effect;
 use tactpad_inference::error::InferenceError;
 use tactpad_inference::policy::WITHIN_95;
 use tactpad_inference::search::Attribution;
 use tactpad_inference::search::estimates::{Detectable, Estimate};
 use tactpad_numeric::chi_square;
-
-/// The findings with their places in the fit, the largest first. `whole` is the weighted squared residual above noise and
-/// background.
-pub(crate) fn findings(
-    search: &Search<'_>,
-    found: &Attribution,
-    whole: f64,
-) -> Result<Vec<(usize, Finding)>, InferenceError> {
-    let mut findings = Vec::new();
-    for at in 0..found.fit.applied.len() {
-        let (hypothesis, _) = found.fit.applied[at];
-        let (projected, score) = search.without(&found.fit, at)?;
-        let test = projected.test(&search.columns.of_hypothesis[hypothesis], &score);
-        let label = |at: usize| search.model.hypotheses()[at].label;
-        let (effect, target) = label(hypothesis);
-        let finding = Finding {
-            effect,
-            target,
-            parameters: search.estimates(found, at)?,
-            shapes: search.shapes(found, at),
-            p_value: test.p_value(),
-            share: (test.square / whole).clamp(0.0, 1.0),
-            confounded_with: search
-                .rivals(&found.fit, found.critical, at, &projected, &score)
-                .into_iter()
-                .map(label)
-                .collect(),
-            separate_by: None,
-        };
-        findings.push((at, finding));
-    }
-    findings.sort_by(|(_, one), (_, other)| other.share.total_cmp(&one.share));
-    Ok(findings)
-}
 
 /// The zeros that are not zero. Beside what is `left_by_channel` without a name each is doubted, if it is far more than that; else it
 /// is none.

@@ -5,7 +5,7 @@
 //! name means little; and many findings at once, above all of one effect, for which one reason is likelier than as many. The latter two
 //! stay in the report as a set with `unlisted_cause`.
 
-use super::findings;
+use super::findings::findings;
 use crate::diagnosis::causes::catalogue::CATALOGUE;
 use crate::diagnosis::causes::cause::Cause;
 use crate::diagnosis::data::target::Target;

@@ -45,8 +45,8 @@ pub type Applied = Vec<(usize, Vec<f64>)>;
 pub struct AttributionFit {
     /// Applied hypotheses, with the fitted coordinates.
     pub applied: Applied,
-    /// Whether it stands; else it ran out of steps on the way.
-    pub is_converged: bool,
+    /// By how many standard deviations one more step would move a number that is asked for at most.
+    pub unsettled: f64,
     /// The channels' systems about the point.
     pub systems: Systems,
     /// Sizes of the smooth background.
@@ -57,6 +57,13 @@ pub struct AttributionFit {
     pub linearised: Linearised,
     /// Coordinates of all columns beside the point: the nuisances, and what a last step would change.
     pub coordinates: Vec<f64>,
+}
+
+impl AttributionFit {
+    /// Whether it stands; else it ran out of steps on the way.
+    pub fn is_settled(&self) -> bool {
+        self.unsettled < STANDS
+    }
 }
 
 /// A Gauss-Newton step in all columns, and how much of it is taken.
@@ -185,7 +192,7 @@ impl<'m, L> Search<'m, L> {
             let moves = self.moves(&applied, &solved.coordinates, &marginal);
             if steps == REFITS || moves < STANDS {
                 return Ok(AttributionFit {
-                    is_converged: moves < STANDS,
+                    unsettled: moves,
                     applied,
                     systems,
                     background: found,

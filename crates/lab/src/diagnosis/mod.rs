@@ -235,9 +235,12 @@ fn summary(
 
 /// A fit that ran out of steps is told.
 fn unsettled(fit: &AttributionFit) -> Option<Notice> {
-    let detail = "the numbers of the causes had not settled when the steps were used up; a cause that the catalogue lacks may be one \
-                  reason: look at the residuals of the largest finding";
-    (!fit.is_converged).then(|| Notice { check: "fit", channel: None, detail: detail.to_owned() })
+    let detail = format!(
+        "when the steps of the fit were used up, one more would have moved a number by {:.1} of its standard deviations; take intervals to \
+         be wider by as much",
+        fit.unsettled
+    );
+    (!fit.is_settled()).then_some(Notice { check: "fit", channel: None, detail })
 }
 
 /// Root mean square of the channels' noise.

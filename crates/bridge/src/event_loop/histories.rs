@@ -25,6 +25,8 @@ enum Happening {
     Restart { time_us: u64, is_flagged: bool, offset: i32, text: String },
     /// For so many milliseconds nothing comes of a contact; then all of it does.
     Stall(Contact, u64),
+    /// For so many milliseconds of a contact the bridge does not come to run.
+    Starve(Contact, u64),
     /// Bytes that are no frame.
     Rubbish(Vec<u8>),
     /// A contact for so many milliseconds.
@@ -103,6 +105,7 @@ fn happenings() -> impl Strategy<Value = Happening> {
         3 => (contacts(), 0..800_u64).prop_map(|(contact, ms)| Happening::Touch(contact, ms)),
         2 => prop_oneof![0..64_u64, 0..800_u64].prop_map(|ms| Happening::Touch(AWAY, ms)),
         1 => (contacts(), 0..1_000_u64).prop_map(|(contact, ms)| Happening::Stall(contact, ms)),
+        1 => (contacts(), 0..3_000_u64).prop_map(|(contact, ms)| Happening::Starve(contact, ms)),
         1 => prop_oneof![1..3_u32, any::<u32>()].prop_map(Happening::Lose),
         1 => (ages(), 1..5_u32).prop_map(|(age, frames)| Happening::Repeat { age, frames }),
         1 => times_us().prop_map(Happening::Jump),
@@ -115,17 +118,20 @@ fn happenings() -> impl Strategy<Value = Happening> {
     ]
 }
 
-/// Sends frames again that are so old.
+/// Sends frames again that are so old: those that were sent, or where that is too long ago such as they may have been.
 fn repeat(play: &mut Play, age: u32, frames: u32) {
     let (sequence, time_us) = (play.sequence, play.time_us);
+    let sent = play.sent.clone();
     play.sequence = sequence.wrapping_sub(age);
     play.time_us = time_us.saturating_sub(1_000 * u64::from(age));
     for _ in 0..frames {
-        let sample = play.sample(&AWAY);
+        let number = play.sequence;
+        let made = play.sample(&AWAY);
+        let sample = sent.iter().rev().find(|it| it.sequence == number).copied().unwrap_or(made);
         play.send(play.now, &Message::Sample(sample));
         play.time_us += 1_000;
     }
-    (play.sequence, play.time_us) = (sequence, time_us);
+    (play.sequence, play.time_us, play.sent) = (sequence, time_us, sent);
 }
 
 /// The pad's samples of a contact come late, all at once.
@@ -154,6 +160,7 @@ impl Happening {
                 play.status = if *is_flagged { Status::OK.with_restarted() } else { Status::OK };
             }
             Self::Stall(contact, ms) => stall(play, contact, *ms),
+            Self::Starve(contact, ms) => drop(play.starve(contact, *ms)),
             Self::Rubbish(bytes) => drop(play.send_bytes(begin, bytes)),
             Self::Touch(contact, ms) => drop(play.touch(contact, *ms)),
             Self::Lose(frames) => play.sequence = play.sequence.wrapping_add(*frames),
@@ -224,16 +231,21 @@ proptest! {
 
     #[test]
     fn a_finger_that_stays_while_its_samples_come_late_counts_again(
-        stalls_ms in prop::collection::vec(0..2_000_u64, 1..8),
+        delays in prop::collection::vec((any::<bool>(), 0..3_000_u64), 1..8),
     ) {
         let mut play = Play::start();
-        for stall_ms in stalls_ms {
+        for (is_starved, ms) in delays {
             play.touch(&RIGHT, 100);
-            stall(&mut play, &RIGHT, stall_ms);
+            if is_starved {
+                play.starve(&RIGHT, ms);
+            } else {
+                stall(&mut play, &RIGHT, ms);
+            }
             // In doubt for 50 ms.
             play.touch(&RIGHT, 60);
-            prop_assert!(play.bridge.driver.pipeline.held().next().is_some(), "{stall_ms} ms");
+            prop_assert!(play.bridge.driver.pipeline.held().next().is_some(), "{is_starved} {ms} ms");
         }
+        prop_assert!(play.touch(&RIGHT, 2_500).is_empty(), "it is let go of later");
         prop_assert!(play.bridge.driver.pipeline.health().restarts == 0, "a restart");
     }
 

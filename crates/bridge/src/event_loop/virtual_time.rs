@@ -1,5 +1,6 @@
 //! A bridge and its pad in virtual time: what is due happens at the moment when it is due.
 
+use std::collections::VecDeque;
 use std::os::fd::{AsFd, BorrowedFd};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -82,6 +83,12 @@ pub(super) const ASLEEP: Woken = Woken { pad: false, request: false };
 /// Somebody asked for something.
 pub(super) const ASKED: Woken = Woken { pad: false, request: true };
 
+/// So many samples are remembered.
+const SENT_MAX: usize = 2_000;
+
+/// So many bytes wait in a terminal.
+const TERMINAL_BYTES: usize = 4096;
+
 /// What a pad has sent and nobody has read; nothing when it is pulled out.
 type Line = Arc<Mutex<Option<Vec<u8>>>>;
 
@@ -144,6 +151,8 @@ pub(super) struct Play {
     /// The number and the time (µs) that the pad's next sample has.
     pub(super) sequence: u32,
     pub(super) time_us: u64,
+    /// The samples that it has sent, as far as they are remembered.
+    pub(super) sent: VecDeque<Sample>,
     /// By so much its clock goes on in a millisecond, µs.
     pub(super) us_per_ms: u64,
     /// Status of the next sample.
@@ -183,6 +192,7 @@ impl Play {
             sequence: 1,
             time_us: 0,
             us_per_ms: 1_000,
+            sent: VecDeque::new(),
             status: Status::OK,
             offset: [0; 9],
             wiring: Box::new(|_, _| ()),
@@ -228,6 +238,29 @@ impl Play {
         self.touch(&Contact { fz_n, ..Contact::default() }, ms)
     }
 
+    /// Keeps this contact for so long, while the bridge does not come to run; what goes out then. Of what the pad sends as much waits
+    /// as a terminal holds; the rest is lost.
+    pub(super) fn starve(&mut self, contact: &Contact, ms: u64) -> Vec<Edge> {
+        let begin = self.now;
+        for _ in 0..ms {
+            let message = Message::Sample(self.sample(contact));
+            let mut frame = [0; ENCODED_MAX];
+            let length = encode_message(&message, &mut frame);
+            let mut line = self.line.lock().unwrap();
+            if let Some(line) = line.as_mut().filter(|line| line.len() + length <= TERMINAL_BYTES) {
+                line.extend_from_slice(&frame[..length]);
+            }
+            self.now = self.now.plus_us(1_000);
+            self.time_us = self.time_us.wrapping_add(self.us_per_ms);
+        }
+        let is_waiting = |line: &Line| line.lock().unwrap().as_ref().is_some_and(|line| !line.is_empty());
+        let mut edges = Vec::new();
+        while self.bridge.connection.pad().is_some() && is_waiting(&self.line) {
+            edges.extend(self.read(begin));
+        }
+        edges
+    }
+
     /// Keeps this contact for so long; what goes out.
     pub(super) fn touch(&mut self, contact: &Contact, ms: u64) -> Vec<Edge> {
         let begin = self.now;
@@ -257,6 +290,10 @@ impl Play {
             status: std::mem::replace(&mut self.status, Status::OK),
         };
         self.sequence = self.sequence.wrapping_add(1);
+        self.sent.push_back(sample);
+        if self.sent.len() > SENT_MAX {
+            self.sent.pop_front();
+        }
         sample
     }
 

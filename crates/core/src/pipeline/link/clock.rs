@@ -27,6 +27,8 @@ pub(super) struct StreamClock {
     pub(super) set: bool,
     /// Where the present look at the pace began: host time and the pad's.
     pace_from: (HostInstant, u64),
+    /// So much more than has passed may be shown by the end of it.
+    burst_us: u64,
     /// Whether the last look found that the pad's clock counts microseconds.
     is_on_pace: bool,
 }
@@ -39,6 +41,7 @@ impl StreamClock {
             heard: HostInstant::from_ns(0),
             set: false,
             pace_from: (HostInstant::from_ns(0), 0),
+            burst_us: PACE_BURST_US,
             is_on_pace: true,
         }
     }
@@ -62,21 +65,30 @@ impl StreamClock {
         let passed_us = now.us_since(host);
         if passed_us >= PACE_US {
             let shown_us = device_us.wrapping_sub(from_us);
-            self.is_on_pace = (passed_us / 2..=2 * passed_us + PACE_BURST_US).contains(&shown_us);
-            self.pace_from = (now, device_us);
+            self.is_on_pace = (passed_us / 2..=2 * passed_us + self.burst_us).contains(&shown_us);
+            (self.pace_from, self.burst_us) = ((now, device_us), PACE_BURST_US);
         }
         self.is_on_pace
     }
 
-    /// Takes a sample's device time. Returns false if the clock jumped and was joined anew; `continues` says whether
+    /// Takes the device time of a sample that comes so much later than it should. Returns false if the clock jumped and was joined anew; `continues` says whether
     /// a running sequence gives something to jump from.
-    pub(super) fn accept(&mut self, now: HostInstant, device_us: u64, continues: bool) -> bool {
+    pub(super) fn accept(
+        &mut self,
+        now: HostInstant,
+        device_us: u64,
+        delay_us: u64,
+        continues: bool,
+    ) -> bool {
         let stream_us = device_us.wrapping_add(self.offset_us);
         let smooth = stream_us > self.last.as_us() && stream_us - self.last.as_us() <= GAP_MAX_US;
-        if !continues || !smooth {
-            self.pace_from = (now, device_us);
+        // What a host takes late says nothing of the pace.
+        if !continues || !smooth || now.us_since(self.heard) > GAP_MAX_US {
+            // What is late may be made up for within the next look.
+            (self.pace_from, self.burst_us) = ((now, device_us), PACE_BURST_US.saturating_add(delay_us));
             self.is_on_pace |= !continues;
-        } else if self.keeps_pace(now, device_us) {
+        }
+        if continues && smooth && self.keeps_pace(now, device_us) {
             self.last = StreamInstant::from_us(stream_us);
             self.heard = now;
             return true;

@@ -15,7 +15,7 @@ use crate::pipeline::health::Health;
 use crate::pipeline::line_check::{LineCheck, LineFinding};
 use crate::time::{HostInstant, StreamInstant};
 use clock::StreamClock;
-use order::{NewestFrames, OtherRun, SequenceStep, step_between, step_over_silence};
+use order::{OtherRun, Run, SequenceStep};
 
 /// Without a sample for this long the link counts as lost. Everything is released then, well inside 100 ms.
 pub const SILENCE_MAX_US: u64 = 80_000;
@@ -68,10 +68,9 @@ pub enum LinkEvent {
 #[derive(Clone, Debug)]
 pub struct Link {
     receiver: MessageReceiver,
-    last: Option<Sample>,
-    newest: NewestFrames,
-    /// The last sample before the silence that lasts, and when it was heard.
-    before_silence: Option<(Sample, HostInstant)>,
+    /// What was heard of the pad that is there; nothing of one that was unplugged.
+    run: Option<Run>,
+    is_silent: bool,
     /// Frames that came since the last sample and do not go on from it.
     other: Option<OtherRun>,
     clock: StreamClock,
@@ -91,9 +90,8 @@ impl Link {
     pub fn new() -> Self {
         Self {
             receiver: MessageReceiver::new(),
-            last: None,
-            newest: NewestFrames::new(),
-            before_silence: None,
+            run: None,
+            is_silent: false,
             other: None,
             clock: StreamClock::new(),
             check: LineCheck::new(),
@@ -139,13 +137,13 @@ impl Link {
 
     /// When the link counts as lost if no sample comes before; `None` while nothing is to be lost.
     pub fn silent_at(&self) -> Option<HostInstant> {
-        self.last.map(|_| self.clock.heard.plus_us(SILENCE_MAX_US))
+        let is_heard = self.run.is_some() && !self.is_silent;
+        is_heard.then(|| self.clock.heard.plus_us(SILENCE_MAX_US))
     }
 
     /// The pad fell silent. Half a frame is forgotten. What comes next is of the same pad, which may have begun anew.
     pub fn fall_silent(&mut self, now: HostInstant) {
-        let heard = self.clock.heard;
-        self.before_silence = self.last.take().map(|last| (last, heard)).or(self.before_silence);
+        self.is_silent = true;
         self.other = None;
         self.clock.advance(now);
         self.receiver = MessageReceiver::new();
@@ -154,7 +152,7 @@ impl Link {
     /// The pad was unplugged: whatever comes next begins anew.
     pub fn unplug(&mut self, now: HostInstant) {
         self.fall_silent(now);
-        self.before_silence = None;
+        self.run = None;
         self.check.forget();
     }
 
@@ -191,7 +189,8 @@ impl Link {
             }
             SequenceStep::Skipped(frames) => {
                 health.frames_lost += u64::from(frames);
-                let gap_us = self.last.map_or(u64::MAX, |last| sample.time_us.wrapping_sub(last.time_us));
+                let since = |run: &Run| sample.time_us.wrapping_sub(run.last.time_us);
+                let gap_us = self.run.as_ref().map_or(u64::MAX, since);
                 (gap_us > BRIDGED_GAP_US || now.us_since(self.clock.heard) > BRIDGED_GAP_US)
                     .then_some(Fault::Lost)
             }
@@ -212,21 +211,26 @@ impl Link {
                 Some(Fault::Restarted)
             }
         };
-        let smooth =
-            self.clock.accept(now, sample.time_us, self.last.is_some() && fault != Some(Fault::Restarted));
-        (self.last, self.before_silence, self.other) = (Some(sample), None, None);
-        self.newest.keep(&sample);
+        let goes_on = fault != Some(Fault::Restarted);
+        let run = self.run.as_ref().filter(|_| goes_on);
+        let delay_us = run.map_or(0, |run| run.delay_us(now, &sample));
+        let smooth = self.clock.accept(now, sample.time_us, delay_us, run.is_some() && !self.is_silent);
+        match &mut self.run {
+            Some(run) if goes_on => run.take(now, &sample),
+            _ => self.run = Some(Run::beginning(now, &sample)),
+        }
+        (self.is_silent, self.other) = (false, None);
         let fault = if smooth { fault } else { jumped(fault, health) };
         LinkEvent::Sample { at: self.clock.last, sample, fault }
     }
 
     /// How this sample follows what was heard last.
     fn step(&self, now: HostInstant, sample: &Sample) -> SequenceStep {
-        match (self.last, self.before_silence) {
-            (Some(last), _) => step_between(&self.newest, &last, sample, now.us_since(self.clock.heard)),
-            (None, Some((last, heard))) => step_over_silence(&last, sample, now.us_since(heard)),
-            (None, None) if self.clock.set && sample.status.restarted() => SequenceStep::Anew,
-            (None, None) => SequenceStep::Next,
+        match &self.run {
+            Some(run) if self.is_silent => run.step_over_silence(now, sample),
+            Some(run) => run.step(now, sample),
+            None if self.clock.set && sample.status.restarted() => SequenceStep::Anew,
+            None => SequenceStep::Next,
         }
     }
 }
@@ -338,6 +342,23 @@ mod tests {
             let fault = faults.last().unwrap();
             assert_eq!((fault, rig.health.restarts), (Some(Fault::Restarted), 1), "{life}");
         }
+    }
+
+    #[test]
+    fn frames_that_come_late_are_no_restart() {
+        let mut rig = Rig::new();
+        let at = |number: u32| sample(number, 1_000 * u64::from(number));
+        for number in (0..100).chain(110..140) {
+            rig.hear(1_000 * u64::from(number), at(number));
+        }
+        for number in 100..110 {
+            assert_eq!(rig.hear(140_000, at(number)), (None, Some(Fault::Repeated)), "{number}");
+        }
+        rig.link.fall_silent(HostInstant::default().plus_us(300_000));
+        for number in 130..140 {
+            assert_eq!(rig.hear(300_000, at(number)), (None, Some(Fault::Repeated)), "{number}");
+        }
+        assert_eq!((rig.hear(300_000, at(140)).1, rig.health.restarts), (None, 0));
     }
 
     #[test]
@@ -459,7 +480,7 @@ mod tests {
             (0, 10_600, Some(Fault::Restarted)),
             (9_000, 400, Some(Fault::Restarted)),
             (3_000, 3_000, Some(Fault::Restarted)),
-            // It kept its samples meanwhile, or the newest of them.
+            // It kept its samples meanwhile, or all but the first 59.
             (501, 501, None),
             (560, 560, None),
         ] {

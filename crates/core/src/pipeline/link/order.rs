@@ -3,11 +3,12 @@
 use firmware_proto::sample::Sample;
 
 use super::clock::GAP_MAX_US;
+use crate::time::HostInstant;
 
 /// No pad samples faster than once in so many microseconds.
 const PERIOD_MIN_US: u64 = 50;
 
-/// So many frames may be missing between two that go on from one another, whatever time has passed.
+/// The number of the next frame may be ahead by so much, whatever time has passed.
 const SKIPPED_MAX: u32 = 64;
 
 /// So many of the newest frames are kept, to tell one that comes again from one of a run that began anew.
@@ -32,86 +33,114 @@ pub(super) enum SequenceStep {
     Anew,
 }
 
-/// The newest frames, each in the place of its number.
-#[derive(Clone, Debug)]
-pub(super) struct NewestFrames([Option<Sample>; KEPT]);
+/// A sample that came without delay counts as such up to this delay.
+const DELAY_MAX_US: u64 = 20_000;
 
-impl NewestFrames {
-    /// None has come.
-    pub(super) const fn new() -> Self {
-        Self([None; KEPT])
+/// A run of the pad as it was heard.
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    /// The newest frames, each in the place of its number.
+    newest: [Option<Sample>; KEPT],
+    pub(super) last: Sample,
+    /// When a sample was heard without delay, and the pad's time then. Those that a host took late, or a pad kept, come after it.
+    prompt: (HostInstant, u64),
+}
+
+impl Run {
+    /// It begins with this sample, heard at `now`.
+    pub(super) const fn beginning(now: HostInstant, first: &Sample) -> Self {
+        let mut run = Self { newest: [None; KEPT], last: *first, prompt: (now, first.time_us) };
+        run.newest[Self::place(first)] = Some(*first);
+        run
     }
 
     const fn place(sample: &Sample) -> usize {
         sample.sequence as usize % KEPT
     }
 
-    /// Keeps a frame in place of an older one.
-    pub(super) fn keep(&mut self, sample: &Sample) {
-        self.0[Self::place(sample)] = Some(*sample);
-    }
-
-    /// Whether this very frame is among them. A pad that began anew a moment ago sends the same numbers with other contents.
-    fn contain(&self, sample: &Sample) -> bool {
-        self.0[Self::place(sample)] == Some(*sample)
-    }
-}
-
-/// The step from `last` to `next`, which came `passed_us` of host time later than the last of the newest frames.
-pub(super) fn step_between(
-    newest: &NewestFrames,
-    last: &Sample,
-    next: &Sample,
-    passed_us: u64,
-) -> SequenceStep {
-    if newest.contain(next) {
-        return SequenceStep::Again;
-    }
-    if next.status.restarted() {
-        // The first frame of a run may come again, too.
-        let is_behind = next.time_us <= last.time_us;
-        return if is_behind { SequenceStep::Apart } else { SequenceStep::Anew };
-    }
-    match next.sequence.wrapping_sub(last.sequence) {
-        0 => SequenceStep::Apart,
-        1 => SequenceStep::Next,
-        ahead if ahead <= SKIPPED_MAX || goes_on_after_gap(last, next, passed_us) => {
-            SequenceStep::Skipped(ahead - 1)
+    /// Takes its next sample, heard at `now`.
+    pub(super) fn take(&mut self, now: HostInstant, next: &Sample) {
+        if !goes_on_closely(&self.last, next) || self.delay_us(now, next) <= DELAY_MAX_US {
+            self.prompt = (now, next.time_us);
         }
-        _ => SequenceStep::Apart,
+        self.newest[Self::place(next)] = Some(*next);
+        self.last = *next;
+    }
+
+    /// By how much `next`, heard at `now`, comes later than a sample that came without delay.
+    pub(super) fn delay_us(&self, now: HostInstant, next: &Sample) -> u64 {
+        let (heard, time_us) = self.prompt;
+        now.us_since(heard).saturating_sub(next.time_us.saturating_sub(time_us))
+    }
+
+    /// The step to `next`, heard at `now`.
+    pub(super) fn step(&self, now: HostInstant, next: &Sample) -> SequenceStep {
+        if self.has(next) {
+            return SequenceStep::Again;
+        }
+        if next.status.restarted() {
+            // The first frame of a run may come again, too.
+            let is_behind = next.time_us <= self.last.time_us;
+            return if is_behind { SequenceStep::Apart } else { SequenceStep::Anew };
+        }
+        match next.sequence.wrapping_sub(self.last.sequence) {
+            0 => SequenceStep::Apart,
+            1 => SequenceStep::Next,
+            ahead if ahead <= SKIPPED_MAX || self.goes_on_after_gap(now, next) => {
+                SequenceStep::Skipped(ahead - 1)
+            }
+            _ => SequenceStep::Apart,
+        }
+    }
+
+    /// The step over a silence to `next`, heard at `now`. Nobody counts what is missing. The samples of a pad that kept them meanwhile
+    /// come late, and go on by number and time from where it fell silent.
+    pub(super) fn step_over_silence(&self, now: HostInstant, next: &Sample) -> SequenceStep {
+        if self.has(next) {
+            SequenceStep::Again
+        } else if next.status.restarted() {
+            SequenceStep::Anew
+        } else if goes_on_closely(&self.last, next)
+            || next.sequence != self.last.sequence && self.goes_on_after_gap(now, next)
+        {
+            SequenceStep::Next
+        } else {
+            SequenceStep::Apart
+        }
+    }
+
+    /// Whether this very frame is one of the newest, or one of their time that was never heard, which comes late. A pad that began
+    /// anew a moment ago sends the same numbers with other contents.
+    fn has(&self, frame: &Sample) -> bool {
+        let behind = self.last.sequence.wrapping_sub(frame.sequence);
+        match &self.newest[Self::place(frame)] {
+            Some(kept) if kept.sequence == frame.sequence => kept == frame,
+            _ => (1..KEPT as u32).contains(&behind) && frame.time_us < self.last.time_us,
+        }
+    }
+
+    /// Whether `next`, heard at `now`, can be of this run after a gap. A run that began anew shows another time than has passed, or a
+    /// number that is behind, or farther ahead than samples fit into that time. So does a pad that ran while the host slept, whose
+    /// zero is as old as that.
+    fn goes_on_after_gap(&self, now: HostInstant, next: &Sample) -> bool {
+        let (heard, time_us) = self.prompt;
+        let passed_us = now.us_since(heard);
+        let is_in_time = next
+            .time_us
+            .checked_sub(time_us)
+            .is_some_and(|shown_us| (passed_us / 2..=2 * passed_us + GAP_MAX_US).contains(&shown_us));
+        let ahead = next.sequence.wrapping_sub(self.last.sequence);
+        let missing_us = next.time_us.checked_sub(self.last.time_us);
+        is_in_time
+            && missing_us.is_some_and(|us| u64::from(ahead) <= (us / PERIOD_MIN_US).max(SKIPPED_MAX.into()))
     }
 }
 
-/// The step from the last sample before a silence to `next`, which came `passed_us` of host time later. Nobody counts what is
-/// missing. The samples of a pad that kept them meanwhile come late, and go on by number and time from where it fell silent.
-pub(super) fn step_over_silence(last: &Sample, next: &Sample, passed_us: u64) -> SequenceStep {
-    if next.status.restarted() {
-        SequenceStep::Anew
-    } else if goes_on_closely(last, next)
-        || next.sequence != last.sequence && goes_on_after_gap(last, next, passed_us)
-    {
-        SequenceStep::Next
-    } else {
-        SequenceStep::Apart
-    }
-}
-
-/// Whether `next` is one of the next samples of the run of `last`, by number and by the pad's clock.
+/// Whether `next` is one of the next samples after `last`, by number and by the pad's clock.
 fn goes_on_closely(last: &Sample, next: &Sample) -> bool {
     let ahead = next.sequence.wrapping_sub(last.sequence);
     let shown_us = next.time_us.wrapping_sub(last.time_us);
     (1..=SKIPPED_MAX).contains(&ahead) && (1..=GAP_MAX_US).contains(&shown_us)
-}
-
-/// Whether `next` can be of the run of `last` after a gap of `passed_us` of host time. A run that began anew shows another time
-/// than has passed, or a number that is behind, or farther ahead than samples fit into that time. So does a pad that ran while
-/// the host slept, whose zero is as old as that.
-fn goes_on_after_gap(last: &Sample, next: &Sample, passed_us: u64) -> bool {
-    let ahead = next.sequence.wrapping_sub(last.sequence);
-    next.time_us.checked_sub(last.time_us).is_some_and(|shown_us| {
-        (passed_us / 2..=2 * passed_us + GAP_MAX_US).contains(&shown_us)
-            && u64::from(ahead) <= (shown_us / PERIOD_MIN_US).max(SKIPPED_MAX.into())
-    })
 }
 
 /// Frames that do not go on from the last sample, but from one another.

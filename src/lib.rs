@@ -38,7 +38,7 @@
 //! | [`pipeline`] | the live core, captures and replay | |
 //! | [`pad`], [`tables`], [`virtual_pad`] | device files, influence fields, the twin; measured tables; a pad made of software | |
 //! | [`network`], [`numeric`], [`toml_text`] | perceptrons; numerical methods; texts that people write | |
-//! | `lab` | calibration, diagnosis, evaluation, tuning | `lab` |
+//! | `lab` | calibration, diagnosis and its inference (`lab::inference`), evaluation, tuning | `lab` |
 //! | `mechanics`, `plot` | the finite-element simulator; figures | `simulator` |
 //! | `lab::{layout, metrology, ablation, scdf}` | the paper's studies | `simulator` |
 //! | `bridge` | ports, virtual devices and the loop between them (Linux) | `live` |

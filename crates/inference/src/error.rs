@@ -42,7 +42,7 @@ pub struct InferenceError {
     pub stage: Stage,
     /// In which channel; none where it is all of them.
     pub channel: Option<usize>,
-    /// Whether its entries are numbers; else they were too large for one.
+    /// Whether all numbers in it are finite.
     pub is_finite: bool,
 }
 
@@ -57,8 +57,7 @@ impl InferenceError {
     pub fn told<S: AsRef<str>>(&self, channels: &[S]) -> String {
         let of = self.channel.and_then(|at| channels.get(at));
         let of = of.map(|name| format!(" of channel {}", name.as_ref())).unwrap_or_default();
-        let why =
-            if self.is_finite { "its equations are not independent" } else { "its numbers are too large" };
+        let why = if self.is_finite { "the equations are not independent" } else { "numbers are not finite" };
         format!("{}{of} cannot be computed, as {why}", self.stage)
     }
 }

@@ -52,7 +52,7 @@ pub trait Model<L>: Sync {
     fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>>;
     /// Each channel's root mean square over the whole measurement, of which these may be some rows.
     fn sizes(&self) -> Vec<f64>;
-    /// Each channel's largest reading over the whole measurement; nothing where no effect is a share of it.
+    /// Each channel's largest reading over the whole measurement; nothing where no effect is a share of it. Studies ask for it.
     fn full_scale(&self) -> Vec<f64> {
         Vec::new()
     }
@@ -65,7 +65,7 @@ pub trait Model<L>: Sync {
         &[]
     }
     /// For each row, the contact that must have been written for these hypotheses to read what was read. None where the model
-    /// knows no contacts.
+    /// knows no contacts. Studies ask for it.
     fn contacts(
         &self,
         _applied: &[(usize, Vec<f64>)],
@@ -73,7 +73,8 @@ pub trait Model<L>: Sync {
     ) -> Option<Vec<Option<Written>>> {
         None
     }
-    /// The same at other rows, which nobody measured, and what the model gets wrong there. None where it cannot say.
+    /// The same at other rows, which nobody measured, and what the model gets wrong there. None where it cannot say. Studies ask
+    /// for it.
     fn elsewhere(
         &self,
         _rows: &Observations,

@@ -11,7 +11,7 @@ const LOCKED_ONE_IN: u64 = 5;
 /// The written circumstances of a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sample {
-    /// Where the contact was, by the stage.
+    /// Where the contact was, as written.
     pub place_mm: [f64; 2],
     /// Fx, Fy, Fz by the reference, or whatever loads there are.
     pub load: [f64; 3],
@@ -27,11 +27,11 @@ pub struct Sample {
     pub dwell_s: Option<f64>,
     /// Whether a static load came from a higher one.
     pub is_unloading: bool,
-    /// Of the pad.
+    /// Of the sensor.
     pub temp_c: Option<f64>,
-    /// Cycles of load that the pad has behind it.
+    /// Cycles of load that the sensor has behind it.
     pub cycle: Option<f64>,
-    /// By how much the pad was turned on the stage.
+    /// By how much the sensor was turned.
     pub turned_deg: f64,
     /// Its cluster, where that is not its location and session.
     pub block: Option<usize>,

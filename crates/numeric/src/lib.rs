@@ -1,5 +1,5 @@
-//! Numerical methods that know nothing of pads: linear systems, polynomials over the disc, oscillators, random numbers,
-//! statistics.
+//! Numerical methods that know nothing of pads: linear systems, polynomials over the disc, oscillators, operators that
+//! remember, random numbers, statistics.
 
 pub mod chi_square;
 pub mod dense;

@@ -54,21 +54,25 @@ impl Relaxation {
     }
 
     /// Its state when the input went evenly from one value to another within so long.
-    pub fn followed(&self, state: f64, [from, to]: [f64; 2], after_s: f64) -> f64 {
-        let times = after_s / self.time_s;
-        if times <= 0.0 {
-            return state;
-        }
-        // A ramp of slope v per time constant is followed with the lag v, and what differs decays:
-        // y = to − v + (y₀ − from + v) exp(−t/τ).
-        let lag = (to - from) / times;
-        to - lag + (state - from + lag) * libm::exp(-times)
+    pub fn followed(&self, state: f64, ends: [f64; 2], after_s: f64) -> f64 {
+        ramped(state, ends, after_s / self.time_s, self.left(after_s))
     }
 
     /// What it adds.
     pub const fn added(&self, state: f64) -> f64 {
         self.share * state
     }
+}
+
+/// A relaxation's state when its input went evenly from one value to another within so many time constants; `left` is exp(−`times`).
+pub fn ramped(state: f64, [from, to]: [f64; 2], times: f64, left: f64) -> f64 {
+    if times.is_nan() || times <= 0.0 {
+        return state;
+    }
+    // A ramp of slope v per time constant is followed with the lag v, and what differs decays:
+    // u = to − v + (u₀ − from + v) exp(−t/τ).
+    let lag = (to - from) / times;
+    to - lag + (state - from + lag) * left
 }
 
 /// A state whose input was held until this share of its distance was left: u ← e + (u − e) exp(−Δt/τ).

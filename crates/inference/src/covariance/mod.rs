@@ -24,7 +24,7 @@ use tactpad_numeric::linear::LargeFactor;
 use tactpad_numeric::products::dot;
 use tactpad_numeric::statistics::rms;
 
-/// Where its search begins, and where it ends.
+/// Where the search for the background's sizes begins, and where it ends.
 const BACKGROUND_FIRST: f64 = 0.01;
 const BACKGROUND_MIN: f64 = 1e-4;
 /// Degrees of freedom that the mean over all channels and loads counts for in each.
@@ -144,8 +144,8 @@ impl Systems {
             let (system, level) = rows.system(wide, before).map_err(|error| error.in_channel(channel))?;
             Ok((system, level, (size / sizes[channel]).powi(2)))
         };
-        let channels: Result<Vec<_>, InferenceError> =
-            (0..sizes.len()).into_par_iter().map(of_channel).collect();
+        // Of several errors that of the first channel, whichever is found first.
+        let channels: Vec<_> = (0..sizes.len()).into_par_iter().map(of_channel).collect();
         let mut systems = Self {
             channels: Vec::new(),
             noise: Vec::new(),
@@ -153,7 +153,8 @@ impl Systems {
             extents: Vec::new(),
             columns: columns.len(),
         };
-        for (system, level, extent) in channels? {
+        for channel in channels {
+            let (system, level, extent) = channel?;
             systems.channels.push(system);
             systems.noise.push(level);
             systems.extents.push(extent);
@@ -217,8 +218,8 @@ impl Systems {
             });
             system.beside(columns, &own.collect::<Vec<_>>()).map_err(|error| error.in_channel(channel))
         };
-        let all: Result<Vec<NormalEquations>, InferenceError> =
-            self.channels.par_iter().enumerate().map(of_channel).collect();
+        let all: Vec<_> = self.channels.par_iter().enumerate().map(of_channel).collect();
+        let all: Result<Vec<NormalEquations>, InferenceError> = all.into_iter().collect();
         self.marginal_of(&all?.iter().collect::<Vec<_>>(), self.columns + further.len(), background)
     }
 
@@ -239,9 +240,9 @@ impl Systems {
         let of_channel = |(channel, (it, shares)): (usize, (&&NormalEquations, &[f64; 3]))| {
             it.reduced(&background.prior, shares).map_err(|error| error.in_channel(channel))
         };
-        let channels: Result<Vec<Reduced>, InferenceError> =
+        let channels: Vec<_> =
             equations.par_iter().zip(&background.shares).enumerate().map(of_channel).collect();
-        let channels = channels?;
+        let channels = channels.into_iter().collect::<Result<Vec<Reduced>, InferenceError>>()?;
         for (NormalEquations { columns, .. }, reduced) in equations.iter().zip(&channels) {
             for (row, number) in columns.iter().enumerate() {
                 score[*number] += reduced.score[row];
@@ -292,7 +293,7 @@ impl Systems {
                 if length >= LENGTHS_TRIED {
                     break;
                 }
-                let next = self.with_length(length, &best)?;
+                let Ok(next) = self.with_length(length, &best) else { break };
                 let (found, sized) = self.sized(fitted, &next, STEPS)?;
                 is_better = found > likelihood;
                 if is_better {

@@ -27,7 +27,7 @@ use tactpad_numeric::products::dot;
 /// Draws of the bootstrap.
 const DRAWS: usize = 1000;
 /// By how much larger a candidate's p-value may be beside a background that takes its part than beside one that does not. Chosen on
-/// tables of other seeds than the campaign's, for false alarms in a thirtieth of them.
+/// tables of other seeds than those of the campaign (docs/diagnosis.md), for false alarms in a thirtieth of them.
 const TAKEN: f64 = 5.0;
 /// Candidates whose fit is looked at closely, by their score.
 const SHORTLIST: usize = 6;
@@ -192,7 +192,7 @@ impl<'m, L> Search<'m, L> {
             let moves = self.moves(&applied, &solved.coordinates, &marginal);
             if steps == REFITS || moves < STANDS {
                 return Ok(AttributionFit {
-                    unsettled: moves,
+                    unsettled: self.unsettled(&applied, &solved.coordinates, &marginal),
                     applied,
                     systems,
                     background: found,
@@ -206,6 +206,20 @@ impl<'m, L> Search<'m, L> {
             (before, last) = (Some((systems, found)), Some(next));
             steps += 1;
         }
+    }
+
+    /// By how many standard deviations a step moves a number that is asked for at most, as far as its range lets it.
+    fn unsettled(&self, applied: &Applied, step: &[f64], marginal: &Marginal) -> f64 {
+        let moved = |(at, coordinates): &(usize, Vec<f64>)| {
+            let columns =
+                self.columns.of_hypothesis[*at].iter().zip(&self.model.hypotheses()[*at].parameters);
+            let moved = columns.zip(coordinates).map(|((column, parameter), psi)| {
+                let after = parameter.coordinate(parameter.value(psi + step[*column]));
+                (after - psi).abs() * marginal.fisher.at(*column, *column).sqrt()
+            });
+            moved.fold(0.0, f64::max)
+        };
+        applied.iter().map(moved).fold(0.0, f64::max)
     }
 
     /// By how many standard deviations a step moves the numbers that are asked for at most; a course has none.
@@ -386,6 +400,23 @@ impl<'m, L> Search<'m, L> {
         let own = &self.columns.of_hypothesis[hypothesis];
         let (projected, score) = self.without(fit, at)?;
         Ok(projected.test(own, &score))
+    }
+
+    /// What all fitted causes together take off the weighted squares, beside the nuisances.
+    pub fn removed(&self, fit: &AttributionFit) -> Result<f64, InferenceError> {
+        let projected = Projected::of(&fit.marginal, &self.columns.fitted([]))?;
+        let mut score = projected.score.clone();
+        let mut columns = Vec::new();
+        for (hypothesis, coordinates) in &fit.applied {
+            for (column, psi) in self.columns.of_hypothesis[*hypothesis].iter().zip(coordinates) {
+                score
+                    .iter_mut()
+                    .zip(projected.fisher.row(*column))
+                    .for_each(|(score, entry)| *score += psi * entry);
+                columns.push(*column);
+            }
+        }
+        Ok(projected.test(&columns, &score).square)
     }
 
     /// Everything but one fitted cause projected out, and the score of the residual without that cause.

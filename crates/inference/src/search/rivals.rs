@@ -1,6 +1,6 @@
 //! Causes that explain the data as well as a fitted one: the encompassing rule.
 //!
-//! A cause is named if it survives every rival: if something significant of it is left when the rival is fitted in its place. A
+//! A cause stands if it survives every rival: if something significant of it is left when the rival is fitted in its place. A
 //! rival that leaves nothing of it explains the data as well, and the two are confounded. A rival of which something is left
 //! beside the cause is another cause, and the search has it.
 //!
@@ -8,7 +8,6 @@
 
 use super::score_test::{Projected, Test};
 use super::{AttributionFit, Search};
-use crate::error::InferenceError;
 
 impl<L> Search<'_, L> {
     /// The rivals that explain the data as well as a fitted cause, `projected` and `score` being without it.
@@ -48,22 +47,5 @@ impl<L> Search<'_, L> {
             let back = parameter.coordinate(parameter.value(*psi));
             (back - psi).abs() <= 1e-9 + 1e-6 * psi.abs()
         })
-    }
-
-    /// What all fitted causes together take off the weighted squares, beside the nuisances.
-    pub fn removed(&self, fit: &AttributionFit) -> Result<f64, InferenceError> {
-        let projected = Projected::of(&fit.marginal, &self.columns.fitted([]))?;
-        let mut score = projected.score.clone();
-        let mut columns = Vec::new();
-        for (hypothesis, coordinates) in &fit.applied {
-            for (column, psi) in self.columns.of_hypothesis[*hypothesis].iter().zip(coordinates) {
-                score
-                    .iter_mut()
-                    .zip(projected.fisher.row(*column))
-                    .for_each(|(score, entry)| *score += psi * entry);
-                columns.push(*column);
-            }
-        }
-        Ok(projected.test(&columns, &score).square)
     }
 }

@@ -15,6 +15,6 @@ pub(crate) type Search<'m> = tactpad_inference::search::Search<'m, Label>;
 
 /// Why nothing can be told by readings, where channels have these names.
 pub(super) fn no_solution<S: AsRef<str>>(error: &InferenceError, channels: &[S]) -> String {
-    let told = error.told(channels);
-    format!("these readings have no noise at all, or numbers too large to be readings: {told}")
+    let why = if error.is_finite { "have no noise at all" } else { "hold numbers too large to be readings" };
+    format!("these readings {why}: {}", error.told(channels))
 }

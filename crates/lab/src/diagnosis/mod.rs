@@ -15,7 +15,7 @@
 //! [`against`] holds two recordings of one sensor against each other, without a simulator; [`report`], [`extension`] and [`agreement`] are what
 //! comes of a diagnosis.
 //!
-//! What is said of channels and places is in `naming`; how sure that is, in the inference, which knows of neither.
+//! What is said of channels and places is in `naming`; how sure that is, in the inference, which knows no pad.
 
 pub mod against;
 pub mod agreement;
@@ -74,7 +74,7 @@ pub enum DiagnosisError {
     Unloaded,
     /// No channel goes with the contacts.
     Silent,
-    /// The numbers have no unique solution.
+    /// The inference has no answer.
     Inference(InferenceError),
 }
 
@@ -236,8 +236,8 @@ fn summary(
 /// A fit that ran out of steps is told.
 fn unsettled(fit: &AttributionFit) -> Option<Notice> {
     let detail = format!(
-        "when the steps of the fit were used up, one more would have moved a number by {:.1} of its standard deviations; take intervals to \
-         be wider by as much",
+        "when the steps of the fit were used up, one more would have moved a number by {:.1} of its standard deviations; its 95 % \
+         interval is too narrow by that on either side",
         fit.unsettled
     );
     (!fit.is_settled()).then_some(Notice { check: "fit", channel: None, detail })

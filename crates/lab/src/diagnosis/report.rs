@@ -41,7 +41,7 @@ pub struct Diagnosis {
     pub ceiling_share: Option<f64>,
     /// On the locked rows; `None` where nothing was found.
     pub gain: Option<Gain>,
-    /// Notices of the checks of the recording.
+    /// Notices of the checks of the recording, and of the fit.
     pub gatekeepers: Vec<Notice>,
     /// Residuals, row by row.
     pub residuals: Residuals,
@@ -86,7 +86,7 @@ pub struct Residuals {
     pub extended: Vec<Vec<f64>>,
 }
 
-/// Notice of a check of the recording.
+/// Notice of a check of the recording, or of the fit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
     /// The check, in a word.

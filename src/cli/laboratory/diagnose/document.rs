@@ -107,7 +107,7 @@ struct Decoded {
     change_high95: f64,
 }
 
-/// The result of a check of the recording; `channel` is `all` where it was in whole rows.
+/// The result of a check of the recording, or of the fit; `channel` is `all` where it was in whole rows.
 #[derive(Serialize)]
 struct Notice<'d> {
     check: &'static str,

@@ -17,7 +17,7 @@ impl fmt::Display for DiagnosisText<'_> {
         writeln!(f, "{}", hanging("", &verdict(diagnosis)))?;
         writeln!(f, "{}", hanging("", &sizes(diagnosis)))?;
         for (at, notice) in diagnosis.gatekeepers.iter().enumerate() {
-            let first = if at == 0 { "\nBefore the diagnosis, of the recording itself:\n" } else { "" };
+            let first = if at == 0 { "\nOf the recording itself, and of the fit:\n" } else { "" };
             writeln!(f, "{first}{}", hanging("  - ", &format!("{}.", notice.detail)))?;
         }
         for (number, finding) in (1..).zip(&diagnosis.findings) {

@@ -3,7 +3,7 @@
 use crate::bytes::{Reader, push_doubles};
 use crate::pad::device::behaviour::{Behaviour, OnChannels};
 use crate::quantity::CHANNELS;
-use tactpad_numeric::memory::{PlayOperator, Relaxation};
+use tactpad_numeric::memory::{PlayOperator, Relaxation, ramped};
 
 /// The state of all play operators and Prony terms of a pad.
 #[derive(Clone, Debug)]
@@ -36,8 +36,9 @@ impl Memory {
             }
         }
         for (OnChannels { channels, law }, states) in &mut self.terms {
+            let (times, left) = (after_s / law.time_s, law.left(after_s));
             for (channel, state) in states.iter_mut().enumerate().filter(|(channel, _)| channels[*channel]) {
-                *state = law.followed(*state, [self.strain_uv[channel], strain_uv[channel]], after_s);
+                *state = ramped(*state, [self.strain_uv[channel], strain_uv[channel]], times, left);
                 read_uv[channel] += law.added(*state);
             }
         }

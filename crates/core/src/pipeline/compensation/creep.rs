@@ -1,6 +1,6 @@
 //! Creep: the part of a channel's reading that follows a load late, µV: adhesive and polyimide give way slowly.
 //!
-//! A channel reads s = e + w c, where e is the strain of a sudden load and c that strain low-passed with a relaxation time:
+//! A channel reads s = e + c u, where e is the strain of a sudden load and u that strain low-passed with a relaxation time:
 //! the first term of a Prony series.
 //!
 //! Source: J. D. Ferry, Viscoelastic Properties of Polymers (1980), chapter 1.

@@ -80,7 +80,7 @@ impl Memory {
         if self.is_none {
             return UntouchedOffset::NONE;
         }
-        // Untouched, e = 0: it reads Σⱼ wⱼ pⱼ + w c, and with p⁻ ≤ p ≤ p⁺ that is off by Σⱼ |wⱼ| (p⁺ⱼ − p⁻ⱼ) / 2 at most if p
+        // Untouched, e = 0: it reads Σⱼ wⱼ pⱼ + c u, and with p⁻ ≤ p ≤ p⁺ that is off by Σⱼ |wⱼ| (p⁺ⱼ − p⁻ⱼ) / 2 at most if p
         // is in the middle.
         let [low, high] = &self.ends;
         let doubt_uv = |k: usize| {
@@ -100,7 +100,7 @@ impl Memory {
         if self.is_none {
             return *strain;
         }
-        // e of s = e + w c + Σⱼ wⱼ (pⱼ(e) − e), with the c of the sample before: in a sample's time nothing creeps.
+        // e of s = e + c u + Σⱼ wⱼ (pⱼ(e) − e), with the u of the sample before: in a sample's time nothing creeps.
         let crept_uv = self.crept.added_uv(&self.creep);
         let read_uv = std::array::from_fn(|k| f64::from(strain.uv[k]) - crept_uv[k]);
         let free_uv = self.likely.freed(&self.hysteresis, &read_uv);

@@ -17,11 +17,11 @@ use tactpad_numeric::memory::Relaxation;
 /// Channel by channel, a pad at temperature T reads
 ///
 /// ```text
-/// r = z + β (T − T₀) + (1 + γ (T − T₀)) s,    s = e + w c + Σⱼ wⱼ (pⱼ − e)
+/// r = z + β (T − T₀) + (1 + γ (T − T₀)) s,    s = e + c u + Σⱼ wⱼ (pⱼ − e)
 /// ```
 ///
-/// where e is what the contact at hand makes it read, z the zero, β and γ the coefficients of [`Thermal`], c the state of
-/// [`Relaxation`] and pⱼ those of [`Hysteresis`]. A decoder takes e.
+/// where e is what the contact at hand makes it read, z the zero, β and γ the coefficients of [`Thermal`], c and u the share and
+/// the state of [`Relaxation`], wⱼ and pⱼ those of [`Hysteresis`]. A decoder takes e.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compensation {
     /// z in µV: what the untouched pad reads at the reference temperature, if it was calibrated by a table that never

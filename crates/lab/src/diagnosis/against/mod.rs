@@ -2,7 +2,7 @@
 //!
 //! The way of the data: two tables have columns in common (`columns`), rows become observations (`recording`); a regression of the
 //! earlier ones says what the later ones should read, and how far that may be off (`earlier`); changes of the sensor and of what
-//! measured it (`change`) are hypotheses about that (`later`). Everything else is the engine's.
+//! measured it (`change`) are hypotheses about that (`later`). Everything else is the inference's.
 
 mod change;
 mod columns;
@@ -117,7 +117,7 @@ fn checked(
     if is_alive { Ok((after, gate)) } else { Err(ComparisonError::Silent) }
 }
 
-/// What the engine finds.
+/// What the inference finds.
 fn told(
     columns: &Columns,
     known: &EarlierRecording,
@@ -181,7 +181,7 @@ fn is_known_zero(zero: &Finding, findings: &[Finding], columns: &Columns) -> boo
     columns.has_loads() || !findings.iter().any(acts_on)
 }
 
-/// What stood for places and loads in the engine is none to be shown.
+/// What stood for places and loads in the inference is none to be shown.
 fn unplaced(diagnosis: &mut Diagnosis, columns: &Columns) {
     let has_place = ["x_mm", "y_mm"].iter().any(|name| columns.input(name).is_some());
     for sample in &mut diagnosis.residuals.samples {

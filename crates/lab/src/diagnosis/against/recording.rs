@@ -95,7 +95,7 @@ impl Recording {
         mended
     }
 
-    /// Places and loads as the engine takes them: those that are there, or whatever varies. `extents` are each input's least and
+    /// Places and loads as the inference takes them: those that are there, or whatever varies. `extents` are each input's least and
     /// greatest value.
     pub(super) fn placed(&mut self, columns: &Columns, extents: &[[f64; 2]]) {
         let is_place = ["x_mm", "y_mm"].map(|name| columns.input(name));

@@ -88,7 +88,9 @@ pub(super) fn notices(subject: &Subject<'_>) -> String {
         )
     };
     let rows: String = subject.diagnosis.gatekeepers.iter().map(row).collect();
-    format!("<section id=\"gatekeepers\"><h2>Noticed before the diagnosis</h2><ul>{rows}</ul></section>")
+    format!(
+        "<section id=\"gatekeepers\"><h2>Noticed of the recording and of the fit</h2><ul>{rows}</ul></section>"
+    )
 }
 
 /// How it was computed.

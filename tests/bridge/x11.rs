@@ -4,8 +4,8 @@
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::channel;
-use std::time::{Duration, Instant};
 
+use crate::clock::{MS, monotonic_ns};
 use rustix::process::{Pid, Signal, kill_process};
 use tactpad::bridge::clock::Clock;
 use tactpad::bridge::latency::{Durations, Percentiles};
@@ -135,9 +135,9 @@ impl Client {
     /// The same, once there is so much of it: the server reads the requests of each program in its own time. After ten seconds it is
     /// what there is.
     fn seen_so_many(&self, count: usize) -> Vec<(u32, bool)> {
-        let begun = Instant::now();
+        let deadline_ns = monotonic_ns() + 10_000 * MS;
         let mut seen = self.seen();
-        while seen.len() < count && begun.elapsed() < Duration::from_secs(10) {
+        while seen.len() < count && monotonic_ns() < deadline_ns {
             seen.extend(self.seen());
         }
         seen

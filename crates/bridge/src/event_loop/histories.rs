@@ -25,8 +25,6 @@ enum Happening {
     Restart { time_us: u64, is_flagged: bool, offset: i32, text: String },
     /// For so many milliseconds nothing comes of a contact; then all of it does.
     Stall(Contact, u64),
-    /// For so many milliseconds of a contact the bridge does not come to run.
-    Starve(Contact, u64),
     /// Bytes that are no frame.
     Rubbish(Vec<u8>),
     /// A contact for so many milliseconds.
@@ -105,7 +103,6 @@ fn happenings() -> impl Strategy<Value = Happening> {
         3 => (contacts(), 0..800_u64).prop_map(|(contact, ms)| Happening::Touch(contact, ms)),
         2 => prop_oneof![0..64_u64, 0..800_u64].prop_map(|ms| Happening::Touch(AWAY, ms)),
         1 => (contacts(), 0..1_000_u64).prop_map(|(contact, ms)| Happening::Stall(contact, ms)),
-        1 => (contacts(), 0..3_000_u64).prop_map(|(contact, ms)| Happening::Starve(contact, ms)),
         1 => prop_oneof![1..3_u32, any::<u32>()].prop_map(Happening::Lose),
         1 => (ages(), 1..5_u32).prop_map(|(age, frames)| Happening::Repeat { age, frames }),
         1 => times_us().prop_map(Happening::Jump),
@@ -160,7 +157,6 @@ impl Happening {
                 play.status = if *is_flagged { Status::OK.with_restarted() } else { Status::OK };
             }
             Self::Stall(contact, ms) => stall(play, contact, *ms),
-            Self::Starve(contact, ms) => drop(play.starve(contact, *ms)),
             Self::Rubbish(bytes) => drop(play.send_bytes(begin, bytes)),
             Self::Touch(contact, ms) => drop(play.touch(contact, *ms)),
             Self::Lose(frames) => play.sequence = play.sequence.wrapping_add(*frames),

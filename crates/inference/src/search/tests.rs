@@ -2,8 +2,7 @@
 
 use super::*;
 use crate::hypothesis::Hypothesis;
-use crate::model::CommonError;
-use crate::model::Signature;
+use crate::model::{CommonError, Signature};
 use crate::observations::Sample;
 use tactpad_numeric::random::SplitMix64;
 use tactpad_numeric::statistics::rms;

@@ -471,6 +471,15 @@ mod tests {
     }
 
     #[test]
+    fn a_restart_after_silence_is_told_among_numbers_that_were_never_heard() {
+        let mut rig = Rig::new();
+        rig.hear(0, sample(22, 22_000));
+        rig.link.fall_silent(HostInstant::default().plus_us(90_000));
+        let first = Sample { status: Status::OK.with_restarted(), ..sample(0, 0) };
+        assert_eq!(rig.hear(150_000, first).1, Some(Fault::Restarted));
+    }
+
+    #[test]
     fn a_restart_that_is_not_flagged_shows_after_silence_by_number_or_clock() {
         // The pad's number and clock (ms) after a silence of ten seconds.
         for (sequence, time_ms, fault) in [

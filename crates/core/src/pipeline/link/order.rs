@@ -14,6 +14,9 @@ const SKIPPED_MAX: u32 = 64;
 /// So many of the newest frames are kept, to tell one that comes again from one of a run that began anew.
 const KEPT: usize = 64;
 
+/// A sample with no more delay came without any.
+const DELAY_MAX_US: u64 = 20_000;
+
 /// So many frames that go on from one another are a run of the pad, which began anew. One that is late or came again goes on in
 /// nothing.
 const RUN_FRAMES: u32 = 3;
@@ -32,9 +35,6 @@ pub(super) enum SequenceStep {
     /// The pad says that it began anew.
     Anew,
 }
-
-/// A sample that came without delay counts as such up to this delay.
-const DELAY_MAX_US: u64 = 20_000;
 
 /// A run of the pad as it was heard.
 #[derive(Clone, Debug)]
@@ -115,7 +115,10 @@ impl Run {
         let behind = self.last.sequence.wrapping_sub(frame.sequence);
         match &self.newest[Self::place(frame)] {
             Some(kept) if kept.sequence == frame.sequence => kept == frame,
-            _ => (1..KEPT as u32).contains(&behind) && frame.time_us < self.last.time_us,
+            _ => {
+                let is_behind = (1..KEPT as u32).contains(&behind) && frame.time_us < self.last.time_us;
+                is_behind && !frame.status.restarted()
+            }
         }
     }
 

@@ -1,6 +1,8 @@
 //! After whatever happened, a pad plays. Histories are drawn at random, in any order and with any waits.
 
-use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop, prop_assert, prop_oneof, proptest};
+use proptest::prelude::{
+    Just, ProptestConfig, Strategy, any, prop, prop_assert, prop_assert_eq, prop_oneof, proptest,
+};
 
 use firmware_proto::frame::Message;
 use firmware_proto::identity::{Identity, SerialNumber};
@@ -25,6 +27,9 @@ enum Happening {
     Restart { time_us: u64, is_flagged: bool, offset: i32, text: String },
     /// For so many milliseconds nothing comes of a contact; then all of it does.
     Stall(Contact, u64),
+    /// For so many milliseconds the bridge does not come to run, and the line keeps what it holds of a contact; somebody may ask for
+    /// something meanwhile.
+    Starve(Contact, u64, Option<Request>),
     /// Bytes that are no frame.
     Rubbish(Vec<u8>),
     /// A contact for so many milliseconds.
@@ -89,8 +94,8 @@ fn ages() -> impl Strategy<Value = u32> {
 }
 
 fn happenings() -> impl Strategy<Value = Happening> {
-    let rail_contacts = prop_oneof![Just(AWAY), contacts()];
-    let rail = (0..9_usize, -20..20_i32, 1..2_000_i32, rail_contacts, 1..3_000_u64);
+    let any_or_none = || prop_oneof![Just(AWAY), contacts()];
+    let rail = (0..9_usize, -20..20_i32, 1..2_000_i32, any_or_none(), 1..3_000_u64);
     let restart = (times_us(), any::<bool>(), -400_000..400_000_i32, "[ -~\r\n]{0,80}");
     prop_oneof![
         3 => waits_ms().prop_map(Happening::Wait),
@@ -103,6 +108,9 @@ fn happenings() -> impl Strategy<Value = Happening> {
         3 => (contacts(), 0..800_u64).prop_map(|(contact, ms)| Happening::Touch(contact, ms)),
         2 => prop_oneof![0..64_u64, 0..800_u64].prop_map(|ms| Happening::Touch(AWAY, ms)),
         1 => (contacts(), 0..1_000_u64).prop_map(|(contact, ms)| Happening::Stall(contact, ms)),
+        2 => (any_or_none(), 0..1_000_u64, prop::option::of(requests())).prop_map(|(contact, ms, request)| {
+            Happening::Starve(contact, ms, request)
+        }),
         1 => prop_oneof![1..3_u32, any::<u32>()].prop_map(Happening::Lose),
         1 => (ages(), 1..5_u32).prop_map(|(age, frames)| Happening::Repeat { age, frames }),
         1 => times_us().prop_map(Happening::Jump),
@@ -157,6 +165,7 @@ impl Happening {
                 play.status = if *is_flagged { Status::OK.with_restarted() } else { Status::OK };
             }
             Self::Stall(contact, ms) => stall(play, contact, *ms),
+            Self::Starve(contact, ms, request) => drop(play.starve(contact, *ms, request.clone())),
             Self::Rubbish(bytes) => drop(play.send_bytes(begin, bytes)),
             Self::Touch(contact, ms) => drop(play.touch(contact, *ms)),
             Self::Lose(frames) => play.sequence = play.sequence.wrapping_add(*frames),
@@ -193,6 +202,32 @@ impl Happening {
     }
 }
 
+/// What is wrong half a second after this history, with a pad that is sound again: nothing may be.
+fn plays_after(history: &[Happening]) -> Result<(), String> {
+    let mut play = Play::waiting();
+    for happening in history {
+        happening.apply_to(&mut play);
+    }
+    // A player's own wishes come to their end; the bridge looks for a pad four times a second.
+    play.plug_in();
+    play.ask(Request::Resume);
+    play.wait(300);
+    while play.bridge.driver.pipeline.phase() == Phase::Weighing {
+        play.touch(&AWAY, 1_000);
+    }
+    // A clock that was not believed is looked at for a second first.
+    let was_off_pace = history.iter().any(|it| matches!(it, Happening::Pace(..)));
+    play.touch(&AWAY, if was_off_pace { 1_500 } else { 500 });
+    let pressed = play.touch(&RIGHT, 100);
+    let state = state(&play.bridge.driver, &play.bridge.connection).word();
+    if pressed.iter().all(|(_, value, _)| *value == 0) {
+        return Err(format!("{state}: {pressed:?}"));
+    }
+    play.touch(&AWAY, 200);
+    let is_held = play.bridge.driver.pipeline.held().next().is_some();
+    if is_held { Err("something stays down".into()) } else { Ok(()) }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -200,25 +235,36 @@ proptest! {
     fn after_any_history_a_sound_pad_plays_within_half_a_second(
         history in prop::collection::vec(happenings(), 0..30),
     ) {
-        let mut play = Play::waiting();
-        for happening in &history {
-            happening.apply_to(&mut play);
-        }
-        // A player's own wishes come to their end; the bridge looks for a pad four times a second.
-        play.plug_in();
-        play.ask(Request::Resume);
-        play.wait(300);
-        while play.bridge.driver.pipeline.phase() == Phase::Weighing {
-            play.touch(&AWAY, 1_000);
-        }
-        // A clock that was not believed is looked at for a second first.
-        let was_off_pace = history.iter().any(|it| matches!(it, Happening::Pace(..)));
-        play.touch(&AWAY, if was_off_pace { 1_500 } else { 500 });
-        let pressed = play.touch(&RIGHT, 100);
-        let state = state(&play.bridge.driver, &play.bridge.connection).word();
-        prop_assert!(pressed.iter().any(|(_, value, _)| *value != 0), "{state}: {pressed:?}");
-        play.touch(&AWAY, 200);
-        prop_assert!(play.bridge.driver.pipeline.held().next().is_none(), "something stays down");
+        prop_assert_eq!(plays_after(&history), Ok(()));
+    }
+}
+
+/// Those of the random histories that once failed, of which fewer than one in a thousand is.
+#[test]
+fn after_rare_histories_a_sound_pad_plays_within_half_a_second() {
+    use Happening::{Plug, Rail, Repeat, Restart, Saturate, Starve, Touch, Wait};
+    let restart = |offset| Restart { time_us: 0, is_flagged: false, offset, text: String::new() };
+    let finger = Contact { x_mm: -21.865955, y_mm: -11.15845, fz_n: 1.1808554, ..AWAY };
+    let rail = |channel, mv, noise_uv, contact, ms| Rail { channel, mv, noise_uv, contact, ms };
+    let histories = [
+        // Stream time ran away from samples that waited on the line.
+        vec![Plug(true), Wait(1), Touch(AWAY, 2), Repeat { age: 2, frames: 3 }, Starve(AWAY, 687, None)],
+        // One frame of the run before was the lowest load.
+        vec![
+            Plug(true),
+            restart(-170_497),
+            Wait(1),
+            Starve(AWAY, 59, None),
+            restart(0),
+            Saturate(0, 3),
+            Repeat { age: 1, frames: 2 },
+            Touch(AWAY, 21),
+        ],
+        // A zero under a finger, with a channel that was off: what is read without both looks like another finger.
+        vec![Plug(true), rail(8, -2, 1, finger, 181), rail(0, -11, 823, AWAY, 2_762)],
+    ];
+    for history in histories {
+        assert_eq!(plays_after(&history), Ok(()), "{history:?}");
     }
 }
 
@@ -233,7 +279,7 @@ proptest! {
         for (is_starved, ms) in delays {
             play.touch(&RIGHT, 100);
             if is_starved {
-                play.starve(&RIGHT, ms);
+                play.starve(&RIGHT, ms, None);
             } else {
                 stall(&mut play, &RIGHT, ms);
             }

@@ -238,9 +238,9 @@ impl Play {
         self.touch(&Contact { fz_n, ..Contact::default() }, ms)
     }
 
-    /// Keeps this contact for so long, while the bridge does not come to run; what goes out then. Of what the pad sends as much waits
-    /// as a terminal holds; the rest is lost.
-    pub(super) fn starve(&mut self, contact: &Contact, ms: u64) -> Vec<Edge> {
+    /// Keeps this contact for so long, while the bridge does not come to run, and somebody asks it for something; what goes out then.
+    /// Of what the pad sends as much waits as a terminal holds; the rest is lost.
+    pub(super) fn starve(&mut self, contact: &Contact, ms: u64, request: Option<Request>) -> Vec<Edge> {
         let begin = self.now;
         for _ in 0..ms {
             let message = Message::Sample(self.sample(contact));
@@ -255,6 +255,11 @@ impl Play {
         }
         let is_waiting = |line: &Line| line.lock().unwrap().as_ref().is_some_and(|line| !line.is_empty());
         let mut edges = Vec::new();
+        if let Some(request) = request {
+            self.bridge.requests.sender().unwrap().send(request).unwrap();
+            self.turn(Woken { pad: self.bridge.connection.pad().is_some(), request: true });
+            edges.extend(self.take(begin));
+        }
         while self.bridge.connection.pad().is_some() && is_waiting(&self.line) {
             edges.extend(self.read(begin));
         }

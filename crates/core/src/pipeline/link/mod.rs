@@ -125,9 +125,10 @@ impl Link {
         }
     }
 
-    /// Stream time at host time `now`: the last sample's, advanced by the host's clock since.
+    /// Stream time at host time `now`: the last sample's, advanced by the host's clock since. As long as a pad does not count as
+    /// silent its next samples may be waiting on the line, however late it is: stream time does not run away from them.
     pub fn stream_at(&self, now: HostInstant) -> StreamInstant {
-        self.clock.at(now)
+        self.clock.at(self.silent_at().map_or(now, |silent_at| now.min(silent_at)))
     }
 
     /// Host time at which stream time reaches `at` if no sample comes before.

@@ -1,4 +1,4 @@
-//! The nearest untouched rows of a table that are of a row's own session and temperature, found without looking at all others.
+//! The nearest untouched rows of a table that are of a row's own session and temperature.
 
 use std::collections::BTreeMap;
 
@@ -6,66 +6,36 @@ use super::Table;
 use super::zero::Zeros;
 use crate::quantity::CHANNELS;
 
-/// Temperatures closer than this have a common zero.
-const SAME_TEMPERATURE_C: f64 = 1.0;
+/// Temperatures of one band, or of neighbouring ones, have a common zero: those closer than this have, and those twice as far apart
+/// have not.
+const BAND_C: f64 = 0.5;
+
+/// No pad is colder or warmer: what is written beyond is of the last band.
+const PAD_C: [f64; 2] = [-100.0, 200.0];
 
 /// Zeros of a table's rows, µV, by the untouched rows of their own temperature.
 #[derive(Clone, Debug)]
 pub struct ZerosByTemperature<'t> {
     table: &'t Table,
     zeros: Zeros,
-    all: Group,
-    by_session: BTreeMap<Option<usize>, Group>,
+    all: Bands,
+    by_session: BTreeMap<Option<usize>, Bands>,
 }
 
-/// Untouched rows, in order.
-#[derive(Clone, Debug, Default)]
-struct Group {
-    rows: Vec<usize>,
-    /// Those of no known temperature, which are as warm as any row.
-    unknown: Vec<usize>,
-    /// The others, by their temperature's whole part.
-    by_degree: BTreeMap<i64, Degree>,
-}
-
-/// Untouched rows whose temperatures have one whole part.
-#[derive(Clone, Debug, Default)]
-struct Degree {
-    rows: Vec<usize>,
-    warmest: MaximumTree,
-    /// Of the temperatures' negatives.
-    coldest: MaximumTree,
-}
-
-/// The largest number of each half of a list, of each quarter, and so on.
-#[derive(Clone, Debug, Default)]
-struct MaximumTree {
-    /// A power of two.
-    width: usize,
-    nodes: Vec<f64>,
-}
-
-/// Which way to look.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Before,
-    After,
-}
+/// Untouched rows in order, by the band of their temperature; those of no known temperature are as warm as any row.
+type Bands = BTreeMap<Option<i64>, Vec<usize>>;
 
 impl<'t> ZerosByTemperature<'t> {
     /// Of the table's untouched rows `zeros`.
     pub fn of(table: &'t Table, zeros: Zeros) -> Self {
-        let mut by_session: BTreeMap<Option<usize>, Vec<usize>> = BTreeMap::new();
-        for row in zeros.rows() {
-            by_session.entry(table.rows[*row].session).or_default().push(*row);
+        let (mut all, mut by_session) = (Bands::new(), BTreeMap::<_, Bands>::new());
+        for at in zeros.rows() {
+            let row = &table.rows[*at];
+            for bands in [&mut all, by_session.entry(row.session).or_default()] {
+                bands.entry(row.temp_c.map(band)).or_default().push(*at);
+            }
         }
-        let group = |(session, rows)| (session, Group::of(table, rows));
-        Self {
-            table,
-            all: Group::of(table, zeros.rows().to_vec()),
-            by_session: by_session.into_iter().map(group).collect(),
-            zeros,
-        }
+        Self { table, zeros, all, by_session }
     }
 
     /// Zero of a row, µV, by the untouched rows of its own temperature, as far as temperatures are known. Those of
@@ -74,112 +44,31 @@ impl<'t> ZerosByTemperature<'t> {
     pub fn at(&self, row: usize) -> Option<[f64; CHANNELS]> {
         let here = self.table.rows.get(row)?;
         let value = |zero: usize| self.table.rows[zero].uv.unwrap_or_default();
-        let between = |group: &Group| {
-            let [before, after] =
-                [Side::Before, Side::After].map(|side| group.nearest(row, here.temp_c, side));
+        let between = |bands: &Bands| {
+            let [before, after] = nearest(bands, row, here.temp_c.map(band));
             self.zeros.between(row, before, after, value)
         };
         self.by_session.get(&here.session).and_then(between).or_else(|| between(&self.all))
     }
 }
 
-impl Group {
-    fn of(table: &Table, rows: Vec<usize>) -> Self {
-        let mut unknown = Vec::new();
-        let mut by_degree: BTreeMap<i64, Vec<usize>> = BTreeMap::new();
-        for row in &rows {
-            match table.rows[*row].temp_c {
-                Some(temp_c) => by_degree.entry(degree(temp_c)).or_default().push(*row),
-                None => unknown.push(*row),
-            }
-        }
-        let of_degree = |(degree, rows): (i64, Vec<usize>)| {
-            let temperatures = |sign: f64| -> Vec<f64> {
-                rows.iter().map(|row| sign * table.rows[*row].temp_c.unwrap_or_default()).collect()
-            };
-            let (warmest, coldest) =
-                (MaximumTree::of(&temperatures(1.0)), MaximumTree::of(&temperatures(-1.0)));
-            (degree, Degree { rows, warmest, coldest })
-        };
-        Self { rows, unknown, by_degree: by_degree.into_iter().map(of_degree).collect() }
-    }
-
-    /// The nearest row on one side of `row` that is as warm.
-    fn nearest(&self, row: usize, temp_c: Option<f64>, side: Side) -> Option<usize> {
-        let Some(temp_c) = temp_c else { return side.first(&self.rows, row) };
-        let here = degree(temp_c);
-        let at = |degree: i64| self.by_degree.get(&degree);
-        let found = [
-            side.first(&self.unknown, row),
-            at(here).and_then(|same| side.first(&same.rows, row)),
-            at(here - 1)
-                .and_then(|colder| colder.at_least(&colder.warmest, row, temp_c - SAME_TEMPERATURE_C, side)),
-            at(here + 1)
-                .and_then(|warmer| warmer.at_least(&warmer.coldest, row, -temp_c - SAME_TEMPERATURE_C, side)),
-        ];
-        let found = found.into_iter().flatten();
-        if side == Side::Before { found.max() } else { found.min() }
-    }
+fn band(temp_c: f64) -> i64 {
+    (temp_c.clamp(PAD_C[0], PAD_C[1]) / BAND_C).floor() as i64
 }
 
-fn degree(temp_c: f64) -> i64 {
-    (temp_c / SAME_TEMPERATURE_C).floor() as i64
-}
-
-impl Degree {
-    fn at_least(&self, numbers: &MaximumTree, row: usize, least: f64, side: Side) -> Option<usize> {
-        let place = numbers.nearest(self.rows.partition_point(|zero| *zero < row), least, side)?;
-        self.rows.get(place).copied()
-    }
-}
-
-impl Side {
-    /// The nearest of these rows.
-    fn first(self, rows: &[usize], row: usize) -> Option<usize> {
-        let (before, after) = rows.split_at(rows.partition_point(|zero| *zero < row));
-        if self == Self::Before { before.last().copied() } else { after.first().copied() }
-    }
-}
-
-impl MaximumTree {
-    fn of(numbers: &[f64]) -> Self {
-        let width = numbers.len().next_power_of_two();
-        let mut nodes = vec![f64::NEG_INFINITY; 2 * width];
-        nodes[width..][..numbers.len()].copy_from_slice(numbers);
-        for node in (1..width).rev() {
-            nodes[node] = nodes[2 * node].max(nodes[2 * node + 1]);
-        }
-        Self { width, nodes }
-    }
-
-    /// The last place before `split`, or the first one from it on, with this number or a larger one.
-    fn nearest(&self, split: usize, least: f64, side: Side) -> Option<usize> {
-        self.within(1, 0, self.width, split, least, side)
-    }
-
-    fn within(
-        &self,
-        node: usize,
-        from: usize,
-        width: usize,
-        split: usize,
-        least: f64,
-        side: Side,
-    ) -> Option<usize> {
-        let is_beside = if side == Side::Before { from >= split } else { from + width <= split };
-        // Not a number, where the list is empty, is not at least anything.
-        let is_high = self.nodes.get(node).is_some_and(|highest| *highest >= least);
-        if is_beside || !is_high {
-            return None;
-        }
-        if width == 1 {
-            return Some(from);
-        }
-        let half = width / 2;
-        let left = || self.within(2 * node, from, half, split, least, side);
-        let right = || self.within(2 * node + 1, from + half, half, split, least, side);
-        if side == Side::Before { right().or_else(left) } else { left().or_else(right) }
-    }
+/// The nearest row before `row`, and from it on, that is as warm.
+fn nearest(bands: &Bands, row: usize, here: Option<i64>) -> [Option<usize>; 2] {
+    let as_warm: Vec<&Vec<usize>> = match here {
+        Some(here) => [None, Some(here - 1), Some(here), Some(here + 1)]
+            .iter()
+            .filter_map(|band| bands.get(band))
+            .collect(),
+        None => bands.values().collect(),
+    };
+    let split = |rows: &[usize]| rows.partition_point(|zero| *zero < row);
+    let before = as_warm.iter().filter_map(|rows| rows[..split(rows)].last().copied()).max();
+    let after = as_warm.iter().filter_map(|rows| rows[split(rows)..].first().copied()).min();
+    [before, after]
 }
 
 #[cfg(test)]
@@ -225,9 +114,9 @@ mod tests {
         let alike = ZerosByTemperature::of(&table, zeros.clone());
         for (at, here) in table.rows.iter().enumerate() {
             let is_as_warm = |zero: &&usize| {
-                let apart =
-                    here.temp_c.zip(table.rows[**zero].temp_c).map(|(one, other)| (one - other).abs());
-                apart.is_none_or(|apart_c| apart_c <= SAME_TEMPERATURE_C)
+                let other = table.rows[**zero].temp_c;
+                let apart = here.temp_c.zip(other).map(|(one, other)| band(one).abs_diff(band(other)));
+                apart.is_none_or(|bands| bands <= 1)
             };
             let before = zeros.rows().iter().filter(|zero| **zero < at).rfind(is_as_warm);
             let after = zeros.rows().iter().filter(|zero| **zero >= at).find(is_as_warm);

@@ -1,4 +1,4 @@
-//! From the half-bridges to what a pad writes down: bridge law, couplings, gain, offset, temperature, converter.
+//! From the half-bridges to what a pad writes down: bridge law, [`channels`](super::channels), converter.
 //!
 //! A module's seven gauges form three half-bridges. With rᵢ = ΔRᵢ/R, where R is the bridge's resistance, the signals
 //! are S = δ·d for the excitation δ and the differences d
@@ -33,8 +33,8 @@
 //!
 //! Source: Wu et al., *Sensors* 2026, 26(4), 1378, section 2.2; the signs and forms are those of `models/sstid.toml`.
 
-use crate::pad::device::behaviour::{Behaviour, ModuleCrosstalk, Thermal};
-use crate::pad::device::{Circuit, Device, Module};
+use crate::pad::channels::{ChannelChain, ChannelConditions};
+use crate::pad::device::{Circuit, Device};
 use crate::quantity::CHANNELS;
 
 /// Signals of the nine half-bridges for one contact, µV: gauge law and excitation are in it.
@@ -63,107 +63,62 @@ impl Bridges {
     }
 }
 
-/// Factors by which the nine channels make nine others, `[into][from]`.
-type Mixing = [[f64; CHANNELS]; CHANNELS];
-
 /// The electronics of a pad between its bridges and its converter, and the coupling of its modules.
-///
-/// A measured channel is s = (1 + X) g (1 + M) b + z: the bridges b, the shares M that modules take of each other, the gains
-/// g with their change by temperature, the shares X of electrical crosstalk, the zeros z.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Readout {
     circuit: Circuit,
-    module_coupling: Mixing,
-    gain: [f64; CHANNELS],
-    crosstalk: Mixing,
-    offset_uv: [f64; CHANNELS],
-    thermal: Thermal,
+    channels: ChannelChain,
+    /// Temperature at which gains and zeros are nominal.
+    reference_c: f64,
 }
 
 impl Readout {
-    /// The readout of `device`: its circuit, its modules' gains and offsets, its couplings and its temperature law.
+    /// The readout of `device`.
     pub fn of(device: &Device) -> Self {
-        let Behaviour { thermal, crosstalk, module_crosstalk, .. } = &device.behaviour;
-        let channels = |of: fn(&Module) -> &[f64; 3]| {
-            let mut channels = [0.0; CHANNELS];
-            for (channel, value) in channels.iter_mut().zip(device.modules.iter().flat_map(of)) {
-                *channel = *value;
-            }
-            channels
-        };
-        let between = crosstalk.iter().map(|it| (it.channel, it.with, it.share));
-        let axes = |it: &ModuleCrosstalk| {
-            let ModuleCrosstalk { module, with, share } = *it;
-            (0..3).map(move |axis| (3 * module + axis, 3 * with + axis, share))
-        };
         Self {
             circuit: device.circuit,
-            module_coupling: mixing(module_crosstalk.iter().flat_map(axes)),
-            gain: channels(|module| &module.gain),
-            crosstalk: mixing(between),
-            offset_uv: channels(|module| &module.offset_uv),
-            thermal: *thermal,
+            channels: ChannelChain::of(device),
+            reference_c: device.behaviour.thermal.reference_c,
         }
     }
 
-    /// The channels as a measured file has them, in microvolts: raw, with offset and temperature, not tared.
+    /// A new pad at the first moment of a measurement.
+    pub fn conditions(&self, temperature_c: f64) -> ChannelConditions {
+        ChannelConditions { above_c: temperature_c - self.reference_c, ..ChannelConditions::default() }
+    }
+
+    /// The channels of a new pad, in microvolts: raw, with offset and temperature, not tared.
     ///
     /// Gain acts on the bridge's signal alone, so that a gain of zero is a dead channel that still has its offset.
     pub fn read_uv(&self, bridges: &Bridges, temperature_c: f64) -> [f64; CHANNELS] {
-        let signal_uv = self.signal_uv(&self.strain_uv(bridges), temperature_c);
-        let zero_uv = self.zero_uv(temperature_c);
-        std::array::from_fn(|channel| signal_uv[channel] + zero_uv[channel])
+        let mut uv = self.strain_uv(bridges);
+        self.channels.read(&mut uv, &self.conditions(temperature_c));
+        uv
     }
 
     /// Channels by the modules' strains, µV: the bridges by the circuit's law, with what modules take of
     /// each other.
     pub fn strain_uv(&self, bridges: &Bridges) -> [f64; CHANNELS] {
-        let bridges_uv = if self.circuit.bridge_nonlinearity {
+        let mut uv = if self.circuit.bridge_nonlinearity {
             bridges.exact_uv(self.circuit.excitation_v)
         } else {
             bridges.signal_uv
         };
-        mixed(&self.module_coupling, &bridges_uv)
+        self.channels.couple(&mut uv);
+        uv
     }
 
-    /// The channels without their zeros: strains with gain and crosstalk.
-    pub fn signal_uv(&self, strain_uv: &[f64; CHANNELS], temperature_c: f64) -> [f64; CHANNELS] {
-        // s = (1 + X) g (1 + α ΔT) b, with α the gains' temperature coefficients.
-        let above_c = temperature_c - self.thermal.reference_c;
-        let amplified = std::array::from_fn(|channel| {
-            let gain = self.gain[channel] * (1.0 + self.thermal.gain_per_c[channel] * above_c);
-            gain * strain_uv[channel]
-        });
-        mixed(&self.crosstalk, &amplified)
+    /// The channels without their zeros: strains with ageing, gain and crosstalk.
+    pub fn signal_uv(&self, strain_uv: &[f64; CHANNELS], at: &ChannelConditions) -> [f64; CHANNELS] {
+        let mut uv = *strain_uv;
+        self.channels.amplify(&mut uv, at);
+        uv
     }
 
     /// Zeros of the untouched pad, µV.
-    pub fn zero_uv(&self, temperature_c: f64) -> [f64; CHANNELS] {
-        let Thermal { reference_c, zero_uv_per_c, zero_uv_per_c2, .. } = &self.thermal;
-        // z = offset + (β + β₂ ΔT) ΔT.
-        let above_c = temperature_c - reference_c;
-        std::array::from_fn(|channel| {
-            let per_c = zero_uv_per_c[channel] + zero_uv_per_c2[channel] * above_c;
-            self.offset_uv[channel] + per_c * above_c
-        })
+    pub fn zero_uv(&self, at: &ChannelConditions) -> [f64; CHANNELS] {
+        std::array::from_fn(|channel| self.channels.zero(channel, at))
     }
-}
-
-/// The matrix 1 + X with the given shares X: (into, from, share). An index that names no channel is left out.
-fn mixing(shares: impl Iterator<Item = (usize, usize, f64)>) -> Mixing {
-    let mut mixing: Mixing =
-        std::array::from_fn(|into| std::array::from_fn(|from| f64::from(u8::from(into == from))));
-    for (into, from, share) in shares {
-        if let Some(factor) = mixing.get_mut(into).and_then(|row| row.get_mut(from)) {
-            *factor += share;
-        }
-    }
-    mixing
-}
-
-/// Matrix times vector.
-fn mixed(mixing: &Mixing, from_uv: &[f64; CHANNELS]) -> [f64; CHANNELS] {
-    mixing.map(|row| row.iter().zip(from_uv).map(|(factor, uv)| factor * uv).sum())
 }
 
 /// An analogue-to-digital converter with a symmetric range, in the wire's terms.
@@ -205,7 +160,7 @@ mod tests {
     use firmware_proto::{DEFAULT_COUNT_BITS, DEFAULT_PICOVOLTS_PER_COUNT};
 
     use super::*;
-    use crate::pad::device::behaviour::Crosstalk;
+    use crate::pad::device::behaviour::{Crosstalk, ModuleCrosstalk};
     use crate::pipeline::signal::Scale;
     use tactpad_numeric::random::SplitMix64;
 

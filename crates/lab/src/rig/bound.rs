@@ -111,7 +111,8 @@ impl Bound {
     fn signal_uv(&self, numbers: [f64; 5]) -> [f64; CHANNELS] {
         let [x_mm, y_mm, fx_n, fy_n, fz_n] = numbers.map(|number| number as f32);
         let bridges = bridges(&self.field, &Contact { x_mm, y_mm, fx_n, fy_n, fz_n });
-        self.readout.signal_uv(&self.readout.strain_uv(&bridges), self.temperature_c)
+        self.readout
+            .signal_uv(&self.readout.strain_uv(&bridges), &self.readout.conditions(self.temperature_c))
     }
 
     /// σ² = a²/n + v (b s)² with the relative noise's v of [`variance_of_mean`]; a single reading has n = v = 1.

@@ -31,7 +31,7 @@ pub fn examples(device: &Device, field: &PadField, seed: u64) -> Vec<Example> {
     let contacts = dataset::paper(&device.contact, seed);
     let read = |contact| {
         let strain_uv = readout.strain_uv(&bridges(field, contact));
-        let uv = readout.signal_uv(&strain_uv, reference_c).map(|uv| uv as f32);
+        let uv = readout.signal_uv(&strain_uv, &readout.conditions(reference_c)).map(|uv| uv as f32);
         Example { uv, contact: numbers(contact) }
     };
     contacts.iter().map(read).collect()

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::bridges_of;
 use super::state::PadState;
+use crate::pad::channels::ChannelConditions;
 use crate::pad::device::Device;
 use crate::pad::device::behaviour::{Ageing, Behaviour, Mains, Noise, Sampling};
 use crate::pad::field::PadField;
@@ -79,36 +80,34 @@ impl TwinPad {
         self.state.at_s += after_s;
         let strain_uv = self.readout.strain_uv(&bridges_of(&self.field, contacts));
         let remembered_uv = self.state.memory.follow(after_s, &strain_uv);
-        let aged_uv =
-            std::array::from_fn(|channel| self.left(channel, around.cycles) * remembered_uv[channel]);
-        let mut signal_uv = self.readout.signal_uv(&aged_uv, around.temperature_c);
+        let conditions = ChannelConditions {
+            hours: self.state.at_s / 3600.0,
+            aged: self.ageing.part(around.cycles),
+            ..self.readout.conditions(around.temperature_c)
+        };
+        let mut signal_uv = self.readout.signal_uv(&remembered_uv, &conditions);
         for ((uv, relative), share) in
             signal_uv.iter_mut().zip(&mut self.state.relative).zip(self.noise.share)
         {
             *uv *= 1.0 + share * relative.next(after_s);
         }
         let shown_uv = self.state.delay.show(self.state.at_s, signal_uv);
-        let zero_uv = self.readout.zero_uv(around.temperature_c);
+        let zero_uv = self.readout.zero_uv(&conditions);
         std::array::from_fn(|channel| {
             let added_uv = self.added_uv(channel, after_s);
             self.converted(shown_uv[channel] + zero_uv[channel] + added_uv)
         })
     }
 
-    /// Share of a channel's strain that is left after these cycles of load.
-    fn left(&self, channel: usize, cycles: f64) -> f64 {
-        1.0 - self.ageing.share[channel] * self.ageing.part(cycles)
-    }
-
-    /// Noise, drift and pickup.
+    /// Noise and pickup.
     fn added_uv(&mut self, channel: usize, after_s: f64) -> f64 {
-        let Noise { additive_uv, drift_uv_per_h, walk_uv, .. } = &self.noise;
+        let Noise { additive_uv, walk_uv, .. } = &self.noise;
         let white_uv = additive_uv[channel] * f64::from(self.state.white.normal());
         let walk_uv = walk_uv[channel] * self.state.walks[channel].next(after_s);
         let sampled_s = self.state.at_s - self.sampling.skew_us[channel] * 1e-6;
         let turns = self.state.mains_phase + self.mains.frequency_hz * sampled_s;
         let mains_uv = self.mains.amplitude_uv[channel] * libm::sin(TAU * (turns - libm::floor(turns)));
-        white_uv + walk_uv + drift_uv_per_h[channel] * self.state.at_s / 3600.0 + mains_uv
+        white_uv + walk_uv + mains_uv
     }
 
     fn converted(&self, uv: f64) -> f64 {

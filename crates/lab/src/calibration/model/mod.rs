@@ -3,12 +3,12 @@
 //! Channel k reads at a contact
 //!
 //! ```text
-//! sₖ = zₖ + S ((1 + αₖ ΔT) gₖ eₖ + Σₗ Xₖₗ eₗ) + Σᵢ wᵢₖ lᵢₖ + c uₖ,    eₖ = (1 + A b) Σₐ Fₐ Eₖₐ(x, y)
+//! yₖ = zₖ + Σₗ (1 + X)ₖₗ sₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ,    sₗ = hₗ eₗ,    hₗ = S (1 + αₗ ΔT) gₗ,    eₗ = (1 + A b) Σₐ Fₐ Eₗₐ(x, y)
 //! E = G + b ∇²G + Σⱼ wⱼ(qⱼ) ∂G/∂pⱼ + background
 //! ```
 //!
-//! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains, crosstalk X, shares w and lags l of the
-//! play operators, creep's share c and state u, blur b, and weights w of physical parameters q ([`physical`](self::physical)). G is the simulator's field. A is what ageing takes
+//! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains, crosstalk X
+//! by the law of the channels ([`tactpad_core::pad::channels`]; a test holds them against it), shares w and lags l of the play operators, creep's share c and state u, blur b, and weights w of physical parameters q ([`physical`](self::physical)). G is the simulator's field. A is what ageing takes
 //! over the measurement, and b the part of it that was still to come at the contact ([`ageing`](super::ageing)): a decoder is
 //! of the pad as it was at last. Place and force of a written label are corrected by the rig's errors ρ ([`rig`](crate::calibration::data::rig)).
 
@@ -37,8 +37,6 @@ use tactpad_numeric::memory::{PlayOperator, Relaxation};
 pub(crate) const CERTAIN: f64 = 1e18;
 /// Largest magnitude of a play operator's share. A negative one corrects another.
 const SHARE_MAX: f64 = 0.25;
-/// A channel with a smaller gain is dead, and no other one has anything of it.
-const GAIN_MIN: f64 = 0.05;
 
 /// The parameter vector θ, by kind: zeros, gains, crosstalk (into, from), hysteresis (shares of all channels; each channel's
 /// difference), creep, blur, temperature coefficients of the gains, ln S, blur of a weight, ageing, the rig, physical
@@ -251,26 +249,29 @@ impl ParameterLayout {
         ZEROS + channel
     }
 
-    /// Mixture matrix of the nine strains: S gₖ on the diagonal, S Xₖₗ beside it.
+    /// From strains to channels: (1 + X)ₖₗ S gₗ.
     fn mixture(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
-        let scale = Self::scale_factor(values);
+        let gains: [f64; CHANNELS] = std::array::from_fn(|channel| Self::gain(values, channel));
+        Self::coupling(values).map(|shares| std::array::from_fn(|from| shares[from] * gains[from]))
+    }
+
+    /// 1 + X.
+    fn coupling(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
         std::array::from_fn(|into| {
             std::array::from_fn(|from| {
-                let own = if from == into { values[GAINS + into] } else { 0.0 };
-                scale * (own + values[CROSSTALKS + into * CHANNELS + from])
+                let own = f64::from(u8::from(into == from));
+                own + values[CROSSTALKS + into * CHANNELS + from]
             })
         })
     }
 
-    /// Crosstalk by the channels' own signals: Lₖₗ = Xₖₗ/gₗ, of which no decoder has more than a bound.
+    /// Crosstalk X, of which no decoder has more than a bound.
     pub(crate) fn crosstalk(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
         let most = f64::from(CROSSTALK_MAX);
-        let share = |into: usize, from: usize| {
-            let own = values[GAINS + from];
-            let share = values[CROSSTALKS + into * CHANNELS + from] / own;
-            if into == from || own.abs() < GAIN_MIN { 0.0 } else { share.clamp(-most, most) }
-        };
-        std::array::from_fn(|into| std::array::from_fn(|from| share(into, from)))
+        let share = |into: usize, from: usize| values[CROSSTALKS + into * CHANNELS + from].clamp(-most, most);
+        std::array::from_fn(|into| {
+            std::array::from_fn(|from| if into == from { 0.0 } else { share(into, from) })
+        })
     }
 
     /// A channel's gain S gₖ as a sum of parameters, in linear order: ∂/∂gₖ = S, ∂/∂ln S = S gₖ.
@@ -340,7 +341,7 @@ impl ParameterLayout {
         place: &FieldAtPlace,
         knowledge: Knowledge,
     ) -> Maps {
-        // S (gₖ Eₖₐ + Σₗ Xₖₗ Eₗₐ).
+        // Σₗ (1 + X)ₖₗ S gₗ Eₗₐ.
         let strain_maps = self.strain_maps(values, scale, place, knowledge);
         Self::mixture(values).map(|factors| {
             std::array::from_fn(|axis| {
@@ -383,7 +384,7 @@ impl ParameterLayout {
     ) -> [[f64; UNKNOWNS]; CHANNELS] {
         let maps = self.maps(values, scale, &contact.place, contact.knowledge);
         let (gain, force_n) = (Self::gain_before_ageing(values, contact), Self::force_now_n(values, contact));
-        // By the place S (gₖ Σₐ Fₐ ∇Eₖₐ + Σₗ Xₖₗ Σₐ Fₐ ∇Eₗₐ); by the force the maps.
+        // By the place Σₗ (1 + X)ₖₗ S gₗ Σₐ Fₐ ∇Eₗₐ; by the force the maps.
         let of_strains = [0, 1].map(|axis| {
             let gradient = self.strain_gradient(values, scale, &contact.place, axis);
             gradient.map(|map| response(&map, &force_n))
@@ -414,28 +415,30 @@ impl ParameterLayout {
         let strains_uv = strain_maps.map(|map| response(&map, force_n));
         let weights: Vec<[f64; 2]> = self.weights(values).collect();
         let factor = Self::scale_factor(values);
+        let coupling = Self::coupling(values);
+        let thermal: [f64; CHANNELS] = std::array::from_fn(|k| 1.0 + values[GAIN_SLOPES + k] * above_c);
+        // hₗ = S (1 + αₗ ΔT) gₗ, sₗ = hₗ eₗ.
+        let gains: [f64; CHANNELS] = std::array::from_fn(|k| factor * thermal[k] * values[GAINS + k]);
+        let signals_uv: [f64; CHANNELS] = std::array::from_fn(|k| gains[k] * strains_uv[k]);
         let mut derivatives = vec![0.0; self.size()];
         for channel in 0..CHANNELS {
             derivatives.fill(0.0);
-            // h = (1 + αₖ ΔT) S gₖ.
-            let thermal_gain = 1.0 + values[GAIN_SLOPES + channel] * above_c;
-            let own_gain = factor * values[GAINS + channel];
-            let gain = thermal_gain * own_gain;
-            let shares = &values[CROSSTALKS + channel * CHANNELS..][..CHANNELS];
-            let crosstalk_uv: f64 =
-                factor * shares.iter().zip(strains_uv).map(|(share, uv)| share * uv).sum::<f64>();
-            let loaded_uv = gain * strains_uv[channel] + crosstalk_uv;
-            // ∂/∂zₖ = 1, ∂/∂gₖ = (1 + αₖ ΔT) S eₖ, ∂/∂αₖ = ΔT S gₖ eₖ, ∂/∂Xₖₗ = S eₗ, ∂/∂ln S = h eₖ + S Σₗ Xₖₗ eₗ.
+            let gain = gains[channel];
+            let loaded_uv: f64 = coupling[channel].iter().zip(signals_uv).map(|(share, uv)| share * uv).sum();
+            // ∂/∂zₖ = 1, ∂/∂gₗ = (1 + X)ₖₗ S (1 + αₗ ΔT) eₗ, ∂/∂αₗ = (1 + X)ₖₗ ΔT S gₗ eₗ, ∂/∂Xₖₗ = sₗ, ∂/∂ln S = Σₗ (1 + X)ₖₗ sₗ.
             derivatives[ZEROS + channel] = 1.0;
-            derivatives[GAINS + channel] = thermal_gain * factor * strains_uv[channel];
-            derivatives[GAIN_SLOPES + channel] = above_c * own_gain * strains_uv[channel];
-            derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS]
-                .copy_from_slice(&strains_uv.map(|uv| factor * uv));
+            for (from, share) in coupling[channel].iter().enumerate() {
+                let strain_uv = share * factor * strains_uv[from];
+                derivatives[GAINS + from] = thermal[from] * strain_uv;
+                derivatives[GAIN_SLOPES + from] = above_c * values[GAINS + from] * strain_uv;
+            }
+            derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&signals_uv);
             derivatives[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
             derivatives[LOG_SCALE] = loaded_uv;
-            // ∂/∂A = b (h eₖ + S Σₗ Xₖₗ eₗ)/(1 + A b).
+            // ∂/∂A = b Σₗ (1 + X)ₖₗ sₗ/(1 + A b).
             derivatives[AGEING] = to_come * loaded_uv / gain_before_ageing;
-            // ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ, ∂/∂βₖₐₜ = h Fₐ scaleₖₐ Uₜ.
+            // Of the maps without what comes by crosstalk, some percent: ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ,
+            // ∂/∂βₖₐₜ = h Fₐ scaleₖₐ Uₜ.
             derivatives[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
             let physical = weights.iter().zip(&place.sensitivities);
             for (slope, ([_, by_parameter], maps)) in derivatives[PHYSICAL..].iter_mut().zip(physical) {
@@ -447,7 +450,7 @@ impl ParameterLayout {
                 terms.for_each(|(slope, term)| *slope = factor * term);
             }
             let memory_uv = Self::memory_uv(values, channel, lags, crept_uv, &mut derivatives);
-            // sₖ = zₖ + h eₖ + S Σₗ Xₖₗ eₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ.
+            // yₖ = zₖ + Σₗ (1 + X)ₖₗ sₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ.
             let uv = values[ZEROS + channel] + loaded_uv + memory_uv;
             each(channel, uv, &derivatives);
         }
@@ -461,3 +464,6 @@ const fn blur_at(knowledge: Knowledge) -> usize {
         Knowledge::Written | Knowledge::Unlabelled => BLUR,
     }
 }
+
+#[cfg(test)]
+mod tests;

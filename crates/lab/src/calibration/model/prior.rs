@@ -69,7 +69,7 @@ impl Prior {
     /// and strains.
     pub(crate) fn at(field: &PadField, earlier: &EarlierCalibration<'_>) -> Self {
         let mut prior = Self::of_kind(field, earlier);
-        // G′ = (1 + L) g E, and X = L g.
+        // G′ = (1 + X) g E.
         let inverse = earlier.inverse;
         let gain = prior.gain;
         let strain = |place_mm: [f64; 2]| {
@@ -80,8 +80,7 @@ impl Prior {
         };
         prior.field.signals = resampled(field, strain);
         prior.field.sensitivities.clear();
-        prior.crosstalk =
-            inverse.crosstalk().map(|line| std::array::from_fn(|from| f64::from(line[from]) * gain[from]));
+        prior.crosstalk = inverse.crosstalk().map(|line| line.map(f64::from));
         prior
     }
 

@@ -83,7 +83,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
         ChainStage::Channels,
         Places::Channels,
         |_| vec![Parameter::additive("skew_us", [-1e6, 1e6], 500.0)],
-        |target, values, _, chain| each_channel(target, &mut chain.channels.skew_s, 1e-6 * values[0]),
+        |target, values, _, chain| each_channel(target, &mut chain.skew_s, 1e-6 * values[0]),
     )
     .with(Need::Series),
     // A module stands elsewhere under the plate.
@@ -161,7 +161,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     // A module strains another one, axis by axis, by a share of its three strains: through the base, before the channels.
     Cause::new(
         Effect::ModuleCrosstalk,
-        ChainStage::Channels,
+        ChainStage::Coupling,
         Places::ModulePairs,
         |_| vec![Parameter::additive("share", [-0.9, 0.9], 1e-3)],
         |target, values, _, chain| {

@@ -14,6 +14,8 @@ pub(crate) enum ChainStage {
     Contact,
     /// On the strains under it.
     Mechanics,
+    /// On what modules take of each other's strains.
+    Coupling,
     /// On the channels.
     Channels,
 }

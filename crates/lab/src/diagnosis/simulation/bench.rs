@@ -68,7 +68,11 @@ impl Forward for Bench<'_, '_> {
         let mut maps = self.simulated.maps(place_mm, &self.chain);
         if let Some(changed) = &self.changed {
             let changes = changed.gains(place_mm[0] as f32, place_mm[1] as f32).value;
-            maps.iter_mut().flatten().zip(changes.iter().flatten()).for_each(|(map, change)| *map += change);
+            for axis in 0..3 {
+                let mut strain = changes.map(|map| map[axis]);
+                self.chain.channels.couple(&mut strain);
+                maps.iter_mut().zip(strain).for_each(|(map, change)| map[axis] += change);
+            }
         }
         maps
     }

@@ -1,49 +1,31 @@
 //! The chain of a device: what its file says beside the field.
 
-use crate::diagnosis::model::chain::{Chain, ChannelChain, MechanicsChain, Reference};
+use crate::diagnosis::model::chain::{Chain, MechanicsChain, Reference};
 use crate::diagnosis::model::memory::{ChannelFriction, MemoryChain};
 use crate::rig::errors::RigErrors;
+use tactpad_core::pad::channels::ChannelChain;
 use tactpad_core::pad::device::Device;
-use tactpad_core::pad::device::behaviour::{Behaviour, ModuleCrosstalk, OnChannels};
+use tactpad_core::pad::device::behaviour::{Behaviour, OnChannels};
 use tactpad_core::quantity::CHANNELS;
 use tactpad_numeric::memory::{PlayOperator, Relaxation};
 
 /// What a device's file says of its channels and of the rig that measures it.
 pub(crate) fn own_chain(device: &Device, weights: Vec<f64>, reference: &Reference) -> Chain {
-    let Behaviour {
-        thermal,
-        crosstalk,
-        module_crosstalk,
-        hysteresis,
-        creep,
-        ageing,
-        noise,
-        sampling,
-        rig,
-        ..
-    } = &device.behaviour;
-    let modules = || device.modules.iter();
-    let nominal = Chain::nominal(CHANNELS, weights.len());
+    let Behaviour { hysteresis, creep, ageing, sampling, rig, .. } = &device.behaviour;
+    let mut channels = ChannelChain::of(device);
+    channels.full_scale.clone_from(&reference.full_scale);
+    // What is lost by the recording's last cycle.
+    channels.loss.iter_mut().for_each(|share| *share *= ageing.part(reference.cycle));
+    let nominal = Chain::nominal(channels, weights.len());
     Chain {
         rig: RigErrors::of(rig),
         memory: MemoryChain {
             plays: hysteresis.iter().flat_map(|it| plays(it, reference)).collect(),
             relaxations: creep.iter().flat_map(relaxations).collect(),
         },
-        channels: ChannelChain {
-            module_shares: module_crosstalk.iter().flat_map(by_axis).collect(),
-            gain: modules().flat_map(|module| module.gain).collect(),
-            // What is lost by the recording's last cycle.
-            loss: ageing.share.iter().map(|share| share * ageing.part(reference.cycle)).collect(),
-            gain_per_c: thermal.gain_per_c.to_vec(),
-            shares: crosstalk.iter().map(|it| (it.channel, it.with, it.share)).collect(),
-            offset: modules().flat_map(|module| module.offset_uv).collect(),
-            zero_per_c: thermal.zero_uv_per_c.to_vec(),
-            drift_per_h: noise.drift_uv_per_h.to_vec(),
-            skew_s: sampling.skew_us.map(|us| 1e-6 * us).to_vec(),
-            ..nominal.channels
-        },
+        skew_s: sampling.skew_us.map(|us| 1e-6 * us).to_vec(),
         mechanics: MechanicsChain { weights, ..nominal.mechanics },
+        ..nominal
     }
 }
 
@@ -63,12 +45,6 @@ fn plays<'r>(
 fn relaxations(it: &OnChannels<Relaxation>) -> impl Iterator<Item = (usize, Relaxation)> + use<> {
     let OnChannels { channels, law } = *it;
     (0..CHANNELS).filter(move |channel| channels[*channel]).map(move |channel| (channel, law))
-}
-
-/// A module's share, channel by channel.
-fn by_axis(it: &ModuleCrosstalk) -> impl Iterator<Item = (usize, usize, f64)> + use<> {
-    let ModuleCrosstalk { module, with, share } = *it;
-    (0..3).map(move |axis| (3 * module + axis, 3 * with + axis, share))
 }
 
 #[cfg(test)]

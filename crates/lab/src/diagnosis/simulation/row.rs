@@ -16,7 +16,7 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Σₐ Fₐ Gₐ about a patch of another size or height, with the changes of the field.
+    /// Σₐ Fₐ Gₐ about a patch of another size or height, with the changes of the field and what modules take of each other.
     pub(crate) fn strain(&self, chain: &Chain) -> [f64; CHANNELS] {
         let Self { force_n, gains, laplacian, changes, .. } = self;
         let mechanics = &chain.mechanics;
@@ -32,6 +32,7 @@ impl Row {
         for (weight, change) in mechanics.weights.iter().zip(changes).filter(|(weight, _)| **weight != 0.0) {
             strain.iter_mut().zip(change).for_each(|(strain, change)| *strain += weight * change);
         }
+        chain.channels.couple(&mut strain);
         strain
     }
 }

@@ -94,7 +94,10 @@ impl<'f> Simulated<'f> {
                     zero_of,
                     label: (cause.effect, target),
                     parameters: cause.parameters(&setting),
-                    signature_error: if cause.stage == ChainStage::Channels { 0.0 } else { SIGNATURE_ERROR },
+                    signature_error: match cause.stage {
+                        ChainStage::Contact | ChainStage::Mechanics => SIGNATURE_ERROR,
+                        ChainStage::Coupling | ChainStage::Channels => 0.0,
+                    },
                 });
                 causes.push(cause);
             }
@@ -235,7 +238,7 @@ impl<'f> Simulated<'f> {
             let row = self.reading(at, strain, chain);
             channels.iter_mut().zip(row).for_each(|(channel, value)| channel.push(value));
         }
-        let late = channels.iter_mut().zip(&chain.channels.skew_s).filter(|(_, skew_s)| **skew_s != 0.0);
+        let late = channels.iter_mut().zip(&chain.skew_s).filter(|(_, skew_s)| **skew_s != 0.0);
         for (channel, skew_s) in late {
             let then = |row: usize| self.course.moment(row, -skew_s).of(|row| channel[row]);
             *channel = (0..channel.len()).map(then).collect();
@@ -246,7 +249,7 @@ impl<'f> Simulated<'f> {
     /// Readings of a row at these strains, without memory.
     pub(crate) fn reading(&self, at: usize, strain: &[f64; CHANNELS], chain: &Chain) -> [f64; CHANNELS] {
         let mut values = *strain;
-        chain.channels.read(&mut values, &self.sequence.samples[at], &self.reference);
+        chain.channels.read(&mut values, &self.reference.conditions(&self.sequence.samples[at]));
         values
     }
 
@@ -254,7 +257,7 @@ impl<'f> Simulated<'f> {
     pub(crate) fn of_order(&self, chain: &Chain) -> Vec<Vec<f64>> {
         let mut alone = Chain { memory: MemoryChain::default(), ..chain.clone() };
         alone.rig.lag_s = 0.0;
-        alone.channels.skew_s.fill(0.0);
+        alone.skew_s.fill(0.0);
         let read = |chain: &Chain| self.read(&self.strained(&self.rows(chain), chain), chain);
         let channels = read(chain).into_iter().zip(read(&alone));
         channels.map(|(all, alone)| all.iter().zip(alone).map(|(a, b)| a - b).collect()).collect()
@@ -280,7 +283,9 @@ impl<'f> Simulated<'f> {
                 let row = |(at, near)| self.row(at, chain, Some(near)).strain(chain);
                 rows.iter().enumerate().map(row).collect()
             }
-            ChainStage::Mechanics => rows.iter().map(|row| row.strain(chain)).collect(),
+            ChainStage::Mechanics | ChainStage::Coupling => {
+                rows.iter().map(|row| row.strain(chain)).collect()
+            }
             ChainStage::Channels => return self.read(remembered, chain),
         };
         self.read(&self.remembered(strains, chain), chain)

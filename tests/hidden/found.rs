@@ -44,7 +44,11 @@ fn are_found<'c>(causes: impl Iterator<Item = &'c &'c str> + Clone, rounds: u64,
 /// gains are found below.)
 #[test]
 fn a_hidden_effect_of_each_kind_is_found() {
-    are_found(["channel_offset", "module_rotated", "stage_offset", "thermal_zero"].iter(), 1, 0);
+    are_found(
+        ["channel_offset", "channel_intermittent", "module_rotated", "stage_offset", "thermal_zero"].iter(),
+        1,
+        0,
+    );
 }
 
 #[test]

@@ -181,7 +181,7 @@ fn late_labels_and_late_channels_are_late() {
     assert!((contacts[20].force[2] - 2.05).abs() < 1e-9, "{:?}", contacts[20]);
     let truths = [Truth::new("channel_skew", "m1z", &[("skew_us", 20_000.0)])];
     let mut signals: Vec<[f64; 9]> = rows.iter().map(|row| [row.contact.force[2]; 9]).collect();
-    electrical::conduct(&truths, &rows, &mut signals, &[5.0; 9]);
+    electrical::conduct(&truths, &rows, &mut signals, &[5.0; 9], &mut Random::new(1, "connectors"));
     assert!((signals[20][5] - 1.98).abs() < 1e-9 && (signals[20][4] - 2.0).abs() < 1e-12);
 }
 

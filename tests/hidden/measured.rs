@@ -101,7 +101,7 @@ pub(crate) fn measured(
     }
     unknown(&contacts, &mut signal);
     memory::remember(truths, &rows, &mut signal, &full_scale);
-    electrical::conduct(truths, &rows, &mut signal, &full_scale);
+    electrical::conduct(truths, &rows, &mut signal, &full_scale, &mut drawn("connectors"));
     warmth::warm(truths, &rows, &mut signal);
     electrical::add(truths, &rows, &mut signal, &mut drawn("mains"));
     add_noise(truths, &rows, &mut signal, &rms, quality, &mut drawn("noise"));

@@ -6,7 +6,7 @@ use crate::random::Random;
 use crate::truth::{CHANNELS, Truth};
 
 /// All causes: those that static contacts show, those that need time, temperature or cycles, those of the electronics.
-pub(crate) const CAUSES: [&str; 35] = [
+pub(crate) const CAUSES: [&str; 36] = [
     "channel_gain",
     "channel_offset",
     "noise_excess",
@@ -16,6 +16,7 @@ pub(crate) const CAUSES: [&str; 35] = [
     "channel_crosstalk",
     "gauge_nonlinearity",
     "adc_clipping",
+    "channel_intermittent",
     "channel_skew",
     "mains_pickup",
     "module_displaced",
@@ -85,6 +86,7 @@ pub(crate) fn drawn(effect: &str, times: f64, random: &mut Random) -> Truth {
             };
             Truth::new(effect, target, &[("limit_uv", limit / times)])
         }
+        "channel_intermittent" => Truth::new(effect, target, &[("gain", 1.0 - (times * 0.15).min(0.9))]),
         "channel_skew" => Truth::new(effect, target, &[("skew_us", size(15_000.0))]),
         "mains_pickup" => mains(random, times),
         "module_displaced" => displaced(random, &module, times),
@@ -217,7 +219,7 @@ fn largest(effect: &str, name: &str) -> f64 {
         ("module_stiffness", _) => 0.9,
         ("plate_stiffness", _) => 0.45,
         ("contact_size", _) => 2.0,
-        ("channel_gain" | "excitation_gain" | "reference_gain", _) => 0.9,
+        ("channel_gain" | "channel_intermittent" | "excitation_gain" | "reference_gain", _) => 0.9,
         (_, "share" | "share_of_full_scale" | "share_at_20s" | "share_at_end") => 0.5,
         ("stage_offset", _) => 1.5,
         ("stage_scale", _) => 0.05,

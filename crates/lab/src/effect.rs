@@ -70,6 +70,8 @@ effects! {
     ChannelCrosstalk: "channel_crosstalk", "crosstalk between channels", "{target} takes up {share} of {with}";
     GaugeNonlinearity: "gauge_nonlinearity", "bent response", "the response of {target} is bent by {second_order_percent_fs}";
     AdcClipping: "adc_clipping", "clipping", "{target} is clipped at {limit_uv}";
+    ChannelIntermittent: "channel_intermittent", "intermittent connection",
+        "{target} reads {gain|too much|too little} in {share_of_rows} of the rows, and goes there and back";
     ChannelSkew: "channel_skew", "channel out of step", "{target} is read {skew_us|late|early}"
         => ("skew_us", "sampling.skew_us.{channel}", Add);
     MainsPickup: "mains_pickup", "mains pickup", "{target} takes up {amplitude_uv} of the mains at {frequency_hz}";

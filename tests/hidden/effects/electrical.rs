@@ -7,10 +7,18 @@ use crate::random::Random;
 use crate::truth::{Truth, channel};
 
 /// What the electronics do to signals before their noise. `full_scale` is each channel's largest signal.
-pub(crate) fn conduct(truths: &[Truth], rows: &[Row], signals: &mut [[f64; 9]], full_scale: &[f64; 9]) {
+pub(crate) fn conduct(
+    truths: &[Truth],
+    rows: &[Row],
+    signals: &mut [[f64; 9]],
+    full_scale: &[f64; 9],
+    random: &mut Random,
+) {
     for truth in truths {
-        if truth.effect == "channel_skew" {
-            late(truth, rows, signals);
+        match truth.effect.as_str() {
+            "channel_skew" => late(truth, rows, signals),
+            "channel_intermittent" => come_loose(truth, signals, random),
+            _ => {}
         }
         let source = truth.with.as_deref().and_then(channel).unwrap_or_default();
         let targets = truth.channels();
@@ -68,6 +76,22 @@ pub(crate) fn convert(truths: &[Truth], signals: &mut [[f64; 9]], random: &mut R
                 }
                 _ => {}
             }
+        }
+    }
+}
+
+/// A connector is sound for some sixty rows at a time, and loose for some twenty.
+fn come_loose(truth: &Truth, signals: &mut [[f64; 9]], random: &mut Random) {
+    let (mut is_loose, mut left) = (false, 0);
+    for signal in signals {
+        if left == 0 {
+            is_loose = !is_loose;
+            // Ages of a process without memory.
+            left = 1 + (-(if is_loose { 20.0 } else { 60.0 }) * random.unit().max(1e-9).ln()) as usize;
+        }
+        left -= 1;
+        if is_loose {
+            truth.channels().into_iter().for_each(|channel| signal[channel] *= truth.value("gain"));
         }
     }
 }

@@ -84,7 +84,8 @@ fn derivatives_are_the_differences_of_readings() {
         on_contacts(crosstalk, |layout, values, scale, contact| {
             let derived = readings(layout, values, scale, contact);
             for at in parameters.start..parameters.end.min(layout.size()) {
-                let is_own = (CROSSTALKS..SHARES).contains(&at) && (at - CROSSTALKS) % (CHANNELS + 1) == 0;
+                let is_own =
+                    (CROSSTALKS..SHARES).contains(&at) && (at - CROSSTALKS).is_multiple_of(CHANNELS + 1);
                 if is_own || (RIG_AT..PHYSICAL).contains(&at) {
                     continue;
                 }

@@ -11,7 +11,7 @@ pub(crate) mod checks;
 pub(crate) mod gate;
 pub(crate) mod prediction;
 
-use self::checks::{clipping, clock, dead, mains, missing, rates, steps, stuck, wiring};
+use self::checks::{clipping, clock, dead, intermittent, mains, missing, rates, steps, stuck, wiring};
 pub(super) use self::gate::Gate;
 use crate::effect::Effect;
 use tactpad_inference::observations::Observations;
@@ -20,14 +20,16 @@ type Check = fn(&mut Gate);
 /// Checks of the table, in their order: times before series, codes before anything that calculates.
 const OF_TABLE: [Check; 4] = [clock::check, missing::check, stuck::check, rates::check];
 /// Checks of channels and electronics: wires before whatever holds a channel against its own model.
-const OF_CHANNELS: [Check; 5] = [dead::check, wiring::check, clipping::check, steps::check, mains::check];
+const OF_CHANNELS: [Check; 6] =
+    [dead::check, wiring::check, clipping::check, intermittent::check, steps::check, mains::check];
 
 /// Effects that the checks name, [`checks::excess`] among them.
-pub(super) const EFFECTS: [Effect; 6] = [
+pub(super) const EFFECTS: [Effect; 7] = [
     Effect::ChannelDead,
     Effect::ChannelsSwapped,
     Effect::ChannelPolarity,
     Effect::AdcClipping,
+    Effect::ChannelIntermittent,
     Effect::MainsPickup,
     Effect::NoiseExcess,
 ];

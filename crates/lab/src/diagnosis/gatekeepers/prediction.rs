@@ -33,6 +33,11 @@ impl Fitted {
         (constant.is_finite() && factors.iter().all(|b| b.is_finite())).then_some(Self { constant, factors })
     }
 
+    /// The factor of one of the regressors.
+    pub(super) fn factor(&self, regressor: usize) -> f64 {
+        self.factors[regressor]
+    }
+
     /// What it says of regressors' values in other rows.
     pub(super) fn predicted(&self, regressors: &[Vec<f64>], row: usize) -> f64 {
         self.constant + self.factors.iter().zip(regressors).map(|(b, column)| b * column[row]).sum::<f64>()

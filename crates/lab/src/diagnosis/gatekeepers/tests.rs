@@ -264,3 +264,52 @@ fn what_the_press_does_itself_is_not_the_mains() {
     }
     assert_eq!(found(&guarded(&table, None, |_| true)), vec![]);
 }
+
+/// In states of these lengths by turns, a channel reads `gain` times as much in every second.
+fn loosened(readings: &mut [f64], gain: f64, lengths: [usize; 2]) {
+    let period = lengths[0] + lengths[1];
+    let loose = readings.iter_mut().enumerate().filter(|(row, _)| row % period >= lengths[0]);
+    // What it reads without load stays.
+    loose.for_each(|(_, y)| *y = 7.0 + gain * (*y - 7.0));
+}
+
+#[test]
+fn a_gain_that_jumps_and_comes_back_is_a_loose_connector() {
+    for (gain, lengths) in [(0.8, [50, 20]), (1.3, [30, 31]), (0.1, [90, 6])] {
+        let (mut observations, expected) = pressed(600);
+        loosened(&mut observations.readings[1], gain, lengths);
+        let gate = guarded(&observations, Some(&expected), |_| true);
+        assert_eq!(found(&gate), [(Effect::ChannelIntermittent, Target::Channel(1))], "{gain}");
+        assert_eq!(checks(&gate), [("intermittent", Some(1))]);
+        let stated = &gate.findings[0].parameters[0];
+        // Of two states that are equally often there each may be the loose one.
+        let is_held = [gain, 1.0 / gain]
+            .iter()
+            .any(|gain| (stated.interval95[0]..=stated.interval95[1]).contains(gain));
+        assert!(is_held, "{gain}: {stated:?}");
+        let period = lengths[0] + lengths[1];
+        let right =
+            (0..600).filter(|row| gate.observations.is_told[1][*row] == (row % period < lengths[0])).count();
+        assert!(right > 590 || lengths[0] < lengths[1] && right < 10, "{gain}: {right}");
+    }
+}
+
+#[test]
+fn what_is_no_loose_connector_is_not_called_one() {
+    let spoilt: [fn(&mut Observations); 5] = [
+        |_| (),
+        // One gain, another from the middle on, and one that goes away slowly.
+        |it| it.readings[1].iter_mut().for_each(|y| *y *= 1.3),
+        |it| it.readings[1].iter_mut().skip(300).for_each(|y| *y *= 1.3),
+        |it| it.readings[1].iter_mut().enumerate().for_each(|(row, y)| *y *= 1.0 - 5e-4 * row as f64),
+        // The supply, which all channels have.
+        |it| it.readings.iter_mut().for_each(|of| loosened(of, 0.8, [50, 20])),
+    ];
+    for (at, spoil) in spoilt.iter().enumerate() {
+        let (mut observations, expected) = pressed(600);
+        observations.samples.iter_mut().enumerate().for_each(|(row, it)| it.t_s = Some(row as f64));
+        spoil(&mut observations);
+        let gate = guarded(&observations, Some(&expected), |_| true);
+        assert_eq!(found(&gate), [], "{at}");
+    }
+}

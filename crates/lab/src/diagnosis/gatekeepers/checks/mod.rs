@@ -4,6 +4,7 @@ pub(crate) mod clipping;
 pub(crate) mod clock;
 pub(crate) mod dead;
 pub(crate) mod excess;
+pub(crate) mod intermittent;
 mod line;
 pub(crate) mod mains;
 pub(crate) mod missing;

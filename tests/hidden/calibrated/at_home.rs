@@ -61,7 +61,7 @@ fn said(contact: &Contact) -> quantity::Contact {
 }
 
 fn played(wiring: &Wiring, seed: u64) -> (Vec<Window>, Vec<Placement>) {
-    let changes = Changes { table: &NOMINAL, memory: Memory::Nothing, rig: &[] };
+    let changes = Changes { table: &NOMINAL, memory: Memory::Nothing, rig: &[], background: None };
     let presses = apart(plan(PRESSES, seed, "calibrated at home"));
     let full_scale = full_scale(&presses);
     let weights = weighed(WEIGHT_N, &MARKS_MM, OFF_MM, seed);
@@ -91,7 +91,7 @@ fn tried(seed: u64) -> Summary {
     let found: AtHome = calibrated(&windows, &placements, &pad, None, &|_, _| ()).unwrap();
     let unseen = plan(UNSEEN, seed, "calibrated unseen");
     let full_scale = full_scale(&unseen);
-    let changes = Changes { table: &NOMINAL, memory: Memory::Nothing, rig: &[] };
+    let changes = Changes { table: &NOMINAL, memory: Memory::Nothing, rig: &[], background: None };
     let unseen = recorded(unseen, &changes, &wiring, &full_scale, 2 * seed + 1_001);
     let decoded = decoded_by(&found.calibration.decoder(), unseen.measured.csv().as_bytes(), &unseen.truths);
     let summary = Summary::of(&decoded, |_| true);

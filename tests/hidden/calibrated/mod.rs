@@ -6,6 +6,7 @@
 //! program reached.
 
 mod at_home;
+mod bound;
 mod cases;
 mod judged;
 mod memory;
@@ -30,7 +31,7 @@ fn run(case: &Case, seed: u64) -> Judged {
     let plans = [plan(CONTACTS, seed, "calibrated known"), plan(UNSEEN, seed, "calibrated unseen")];
     let full_scale = full_scale(&plans[0]);
     let rig = case.rig();
-    let changes = Changes { table: case.table, memory: case.memory, rig: &rig };
+    let changes = Changes { table: case.table, memory: case.memory, rig: &rig, background: None };
     let mut recording = 2 * seed;
     let [known, unseen] = plans.map(|plan| {
         recording += 1;

@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use super::bound::Background;
 use super::memory::Memory;
 use crate::effects::rig;
 use crate::fields::{Table, signals};
@@ -53,6 +54,8 @@ pub(super) struct Changes<'a> {
     pub(super) memory: Memory,
     /// What the rig does wrong.
     pub(super) rig: &'a [Truth],
+    /// By what the field is off from any simulator's.
+    pub(super) background: Option<&'a Background>,
 }
 
 /// A recording, and what was really done.
@@ -89,10 +92,16 @@ impl Wiring {
 
     /// Gains, then leaks of what the others read, then what the bridges are out of balance by.
     fn conduct(&self, strain: &[f64; 9]) -> [f64; 9] {
+        let read = self.beyond_zero(strain);
+        std::array::from_fn(|channel| read[channel] + self.offsets_uv[channel])
+    }
+
+    /// The same without what bridges are out of balance by.
+    pub(super) fn beyond_zero(&self, strain: &[f64; 9]) -> [f64; 9] {
         let own: [f64; 9] = std::array::from_fn(|channel| self.gains[channel] * strain[channel]);
         let mut read = own;
         self.leaks.iter().for_each(|(into, from, share)| read[*into] += share * own[*from]);
-        std::array::from_fn(|channel| read[channel] + self.offsets_uv[channel])
+        read
     }
 
     /// What is hidden, in the program's words.
@@ -166,6 +175,11 @@ fn contact(random: &mut Random) -> Row {
     row(Contact { place, force }, DWELLS_S[dwell_s], unloading == 1 && force_n < UNLOADING_MAX_N)
 }
 
+/// Deviation of a reading so far beyond its zero.
+pub(super) fn noise_uv(beyond_zero_uv: f64) -> f64 {
+    (NOISE * beyond_zero_uv).hypot(NOISE_UV)
+}
+
 /// Carries out a plan. `full_scale` is each channel's, for what the pad remembers.
 pub(super) fn recorded(
     rows: Vec<Row>,
@@ -177,6 +191,11 @@ pub(super) fn recorded(
     let truths = rig::true_contacts(changes.rig, &rows);
     let mut strains: Vec<[f64; 9]> =
         truths.iter().map(|contact| signals(&changes.table.at(contact.place), contact.force)).collect();
+    if let Some(background) = changes.background {
+        for (strain, contact) in strains.iter_mut().zip(&truths) {
+            strain.iter_mut().zip(background.uv(contact)).for_each(|(strain, uv)| *strain += uv);
+        }
+    }
     changes.memory.remember(&rows, &mut strains, full_scale);
     let random = &mut Random::new(seed, "calibrated noise");
     let noisy = |strain: &[f64; 9]| {

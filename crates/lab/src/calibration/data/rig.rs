@@ -56,6 +56,8 @@ impl RigNumber {
 
 /// How many they are.
 pub(crate) const RIG_NUMBERS: usize = 11;
+/// Place of the reference's gain among them.
+pub(crate) const REFERENCE_GAIN: usize = 6;
 /// In the order of the parameters. Wide deviations are those of a laboratory that was not careful here: a pad is put against
 /// stops by eye, and a six-axis sensor is calibrated to one or two percent and screwed on by hand.
 pub(crate) static RIG: [RigNumber; RIG_NUMBERS] = [
@@ -226,6 +228,7 @@ mod tests {
     fn each_number_is_one_of_a_cause_of_the_diagnosis() {
         let known: Vec<Effect> = crate::diagnosis::effects().collect();
         assert!(RIG.iter().all(|it| known.contains(&it.effect)));
+        assert_eq!(RIG[REFERENCE_GAIN].effect, Effect::ReferenceGain);
         assert!(
             RIG.iter()
                 .all(|it| it.name.split_once('.').is_some_and(|(effect, _)| effect == it.effect.name()))

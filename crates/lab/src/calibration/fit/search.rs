@@ -106,11 +106,12 @@ fn with_background<'b>(
     counted: &FitCount<'_>,
 ) -> (Problem<'b>, PosteriorFit) {
     let smooth = problem.clone().with_background();
-    // Of so many parameters a step that gains little may stand before one that gains much: each is carried to its maximum.
+    // Of so many parameters a step that gains little may stand before one that gains much: each is carried to its maximum. None goes
+    // on from the plain fit, whose poses, moduli and rig have taken up what is none of theirs.
     let tried = |background| {
         let mut settings = plain.settings;
         settings.background = background;
-        counted.fitted(&smooth, settings, Some(&plain), Effort::FULL)
+        counted.fitted(&smooth, settings, None, Effort::FULL)
     };
     let [_, largest] = SMALL_BACKGROUNDS;
     let small = most_probable(SMALL_BACKGROUNDS.to_vec(), tried);

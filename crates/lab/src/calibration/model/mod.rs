@@ -3,14 +3,15 @@
 //! Channel k reads at a contact
 //!
 //! ```text
-//! yₖ = zₖ + Σₗ (1 + X)ₖₗ sₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ,    sₗ = hₗ eₗ,    hₗ = S (1 + αₗ ΔT) gₗ,    eₗ = (1 + A b) Σₐ Fₐ Eₗₐ(x, y)
-//! E = G + b ∇²G + Σⱼ wⱼ(qⱼ) ∂G/∂pⱼ + background
+//! yₖ = zₖ + Σₗ (1 + X)ₖₗ sₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ,    sₗ = S (1 + αₗ ΔT) (gₗ eₗ + dₗ)
+//! eₗ = (1 + A b) Σₐ Fₐ Eₗₐ(x, y),    E = G + b ∇²G + Σⱼ wⱼ(qⱼ) ∂G/∂pⱼ,    dₗ = ρ (1 + A b) Σₐ Fₐ Dₗₐ(x, y)
 //! ```
 //!
 //! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains, crosstalk X
 //! by the law of the channels ([`tactpad_core::pad::channels`]; a test holds them against it), shares w and lags l of the play operators, creep's share c and state u, blur b, and weights w of physical parameters q ([`physical`](self::physical)). G is the simulator's field. A is what ageing takes
 //! over the measurement, and b the part of it that was still to come at the contact ([`ageing`](super::ageing)): a decoder is
-//! of the pad as it was at last. Place and force of a written label are corrected by the rig's errors ρ ([`rig`](crate::calibration::data::rig)).
+//! of the pad as it was at last. D is the background, ρ the gain of the reference: the background is in readings by newtons as written. What gains and forces multiplied would have
+//! too small a background: the most probable product of a number and hundreds of small ones has them too small. Place and force of a written label are corrected by the rig's errors ρ ([`rig`](crate::calibration::data::rig)).
 
 pub(crate) mod physical;
 pub(crate) mod prior;
@@ -26,7 +27,7 @@ use self::prior_deviations::{
 use crate::calibration::data::contacts::{
     BACKGROUND_DEGREE, FieldAtPlace, Knowledge, Lags, Maps, Measured, TERMS, response,
 };
-use crate::calibration::data::rig::{RIG_NUMBERS, RigPrior};
+use crate::calibration::data::rig::{REFERENCE_GAIN, RIG_NUMBERS, RigPrior};
 use tactpad_core::pipeline::compensation::hysteresis::{Hysteresis, PLAYS};
 use tactpad_core::pipeline::contact::inverse::CROSSTALK_MAX;
 use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
@@ -214,6 +215,11 @@ impl ParameterLayout {
         std::array::from_fn(|at| values[RIG_AT + at])
     }
 
+    /// ρ: what the reference writes of a newton.
+    fn reference_gain(values: &[f64]) -> f64 {
+        libm::exp(values[RIG_AT + REFERENCE_GAIN])
+    }
+
     /// Place of the first parameter of the rig.
     pub(crate) const fn first_of_rig() -> usize {
         RIG_AT
@@ -247,12 +253,6 @@ impl ParameterLayout {
     /// Place of a channel's zero.
     pub(crate) const fn zero_at(channel: usize) -> usize {
         ZEROS + channel
-    }
-
-    /// From strains to channels: (1 + X)ₖₗ S gₗ.
-    fn mixture(values: &[f64]) -> [[f64; CHANNELS]; CHANNELS] {
-        let gains: [f64; CHANNELS] = std::array::from_fn(|channel| Self::gain(values, channel));
-        Self::coupling(values).map(|shares| std::array::from_fn(|from| shares[from] * gains[from]))
     }
 
     /// 1 + X.
@@ -311,7 +311,7 @@ impl ParameterLayout {
     }
 
     /// The strain maps E at a place, µV/N before gains.
-    fn strain_maps(&self, values: &[f64], scale: &Maps, place: &FieldAtPlace, knowledge: Knowledge) -> Maps {
+    fn strain_maps(&self, values: &[f64], place: &FieldAtPlace, knowledge: Knowledge) -> Maps {
         // E = G + b ∇²G …
         let mut maps = place.gains;
         for (map, laplacian) in maps.as_flattened_mut().iter_mut().zip(place.laplacian.as_flattened()) {
@@ -323,14 +323,31 @@ impl ParameterLayout {
                 *map += weight * slope;
             }
         }
-        // … + scale Σₜ βₜ Uₜ(x, y), the background by its polynomials' coefficients β.
-        let background = values[self.background(0, 0)..].chunks_exact(TERMS);
-        for ((map, scale), terms) in
-            maps.as_flattened_mut().iter_mut().zip(scale.as_flattened()).zip(background)
-        {
-            *map += scale * terms.iter().zip(&place.terms).map(|(value, term)| value * term).sum::<f64>();
-        }
         maps
+    }
+
+    /// Adds the background to maps: ρ scale Σₜ βₜ Uₜ(x, y), by its polynomials' coefficients β and their values U.
+    fn add_background(&self, values: &[f64], scale: &Maps, terms: &[f64; TERMS], maps: &mut Maps) {
+        let background = values[self.background(0, 0)..].chunks_exact(TERMS);
+        let maps = maps.as_flattened_mut().iter_mut().zip(scale.as_flattened());
+        let written = Self::reference_gain(values);
+        for ((map, scale), coefficients) in maps.zip(background) {
+            *map +=
+                written * scale * coefficients.iter().zip(terms).map(|(beta, term)| beta * term).sum::<f64>();
+        }
+    }
+
+    /// From maps of the strains to those of the channels: (1 + X)ₖₗ S (gₗ Eₗ + Dₗ), with D by these values of the polynomials.
+    fn channel_maps(&self, values: &[f64], scale: &Maps, strains: &Maps, terms: &[f64; TERMS]) -> Maps {
+        let mut signals: Maps =
+            std::array::from_fn(|channel| strains[channel].map(|map| values[GAINS + channel] * map));
+        self.add_background(values, scale, terms, &mut signals);
+        let factor = Self::scale_factor(values);
+        Self::coupling(values).map(|shares| {
+            std::array::from_fn(|axis| {
+                factor * shares.iter().zip(&signals).map(|(share, from)| share * from[axis]).sum::<f64>()
+            })
+        })
     }
 
     /// The channels' maps at a place, µV/N.
@@ -341,13 +358,8 @@ impl ParameterLayout {
         place: &FieldAtPlace,
         knowledge: Knowledge,
     ) -> Maps {
-        // Σₗ (1 + X)ₖₗ S gₗ Eₗₐ.
-        let strain_maps = self.strain_maps(values, scale, place, knowledge);
-        Self::mixture(values).map(|factors| {
-            std::array::from_fn(|axis| {
-                factors.iter().zip(&strain_maps).map(|(factor, from)| factor * from[axis]).sum()
-            })
-        })
+        let strains = self.strain_maps(values, place, knowledge);
+        self.channel_maps(values, scale, &strains, &place.terms)
     }
 
     /// The channels' signals under a contact's load alone: without zeros, hysteresis and creep.
@@ -357,20 +369,13 @@ impl ParameterLayout {
     }
 
     /// ∇E along x or y at a place, µV/N per mm. The blur is left out.
-    fn strain_gradient(&self, values: &[f64], scale: &Maps, place: &FieldAtPlace, axis: usize) -> Maps {
-        // ∇G + Σⱼ wⱼ ∇∂G/∂pⱼ + scale Σₜ βₜ ∇Uₜ(x, y).
+    fn strain_gradient(&self, values: &[f64], place: &FieldAtPlace, axis: usize) -> Maps {
+        // ∇G + Σⱼ wⱼ ∇∂G/∂pⱼ.
         let mut maps = place.gradient[axis];
         for ([weight, _], slope) in self.weights(values).zip(&place.sensitivity_gradients) {
             for (map, slope) in maps.as_flattened_mut().iter_mut().zip(slope[axis].as_flattened()) {
                 *map += weight * slope;
             }
-        }
-        let background = values[self.background(0, 0)..].chunks_exact(TERMS);
-        for ((map, scale), terms) in
-            maps.as_flattened_mut().iter_mut().zip(scale.as_flattened()).zip(background)
-        {
-            let slopes = terms.iter().zip(&place.term_gradients[axis]);
-            *map += scale * slopes.map(|(value, term)| value * term).sum::<f64>();
         }
         maps
     }
@@ -384,19 +389,15 @@ impl ParameterLayout {
     ) -> [[f64; UNKNOWNS]; CHANNELS] {
         let maps = self.maps(values, scale, &contact.place, contact.knowledge);
         let (gain, force_n) = (Self::gain_before_ageing(values, contact), Self::force_now_n(values, contact));
-        // By the place Σₗ (1 + X)ₖₗ S gₗ Σₐ Fₐ ∇Eₗₐ; by the force the maps.
-        let of_strains = [0, 1].map(|axis| {
-            let gradient = self.strain_gradient(values, scale, &contact.place, axis);
-            gradient.map(|map| response(&map, &force_n))
+        // By the place Σₐ Fₐ ∇ of the maps; by the force the maps.
+        let by_place = [0, 1].map(|axis| {
+            let gradient = self.strain_gradient(values, &contact.place, axis);
+            self.channel_maps(values, scale, &gradient, &contact.place.term_gradients[axis])
+                .map(|map| response(&map, &force_n))
         });
-        let mixture = Self::mixture(values);
-        let by_place = |channel: usize, axis: usize| {
-            let factors = &mixture[channel];
-            factors.iter().zip(&of_strains[axis]).map(|(factor, slope)| factor * slope).sum::<f64>()
-        };
         std::array::from_fn(|channel| {
             let [fx, fy, fz] = maps[channel].map(|uv_per_n| gain * uv_per_n);
-            [by_place(channel, 0), by_place(channel, 1), fx, fy, fz]
+            [by_place[0][channel], by_place[1][channel], fx, fy, fz]
         })
     }
 
@@ -411,41 +412,49 @@ impl ParameterLayout {
         let Measured { knowledge, place, lags, crept_uv, above_c, to_come, .. } = contact;
         let gain_before_ageing = Self::gain_before_ageing(values, contact);
         let force_n = &Self::force_now_n(values, contact);
-        let strain_maps = self.strain_maps(values, scale, place, *knowledge);
-        let strains_uv = strain_maps.map(|map| response(&map, force_n));
+        let strains_uv = self.strain_maps(values, place, *knowledge).map(|map| response(&map, force_n));
+        let mut background = [[0.0; 3]; CHANNELS];
+        self.add_background(values, scale, &place.terms, &mut background);
         let weights: Vec<[f64; 2]> = self.weights(values).collect();
-        let factor = Self::scale_factor(values);
+        let (factor, written) = (Self::scale_factor(values), Self::reference_gain(values));
         let coupling = Self::coupling(values);
         let thermal: [f64; CHANNELS] = std::array::from_fn(|k| 1.0 + values[GAIN_SLOPES + k] * above_c);
-        // hₗ = S (1 + αₗ ΔT) gₗ, sₗ = hₗ eₗ.
-        let gains: [f64; CHANNELS] = std::array::from_fn(|k| factor * thermal[k] * values[GAINS + k]);
-        let signals_uv: [f64; CHANNELS] = std::array::from_fn(|k| gains[k] * strains_uv[k]);
+        // gₗ eₗ + dₗ, and sₗ = S (1 + αₗ ΔT) of it.
+        let background_uv = background.map(|map| response(&map, force_n));
+        let unscaled_uv: [f64; CHANNELS] =
+            std::array::from_fn(|k| values[GAINS + k] * strains_uv[k] + background_uv[k]);
+        let signals_uv: [f64; CHANNELS] = std::array::from_fn(|k| factor * thermal[k] * unscaled_uv[k]);
         let mut derivatives = vec![0.0; self.size()];
         for channel in 0..CHANNELS {
             derivatives.fill(0.0);
-            let gain = gains[channel];
+            let unit_gain = factor * thermal[channel];
+            let gain = unit_gain * values[GAINS + channel];
             let loaded_uv: f64 = coupling[channel].iter().zip(signals_uv).map(|(share, uv)| share * uv).sum();
-            // ∂/∂zₖ = 1, ∂/∂gₗ = (1 + X)ₖₗ S (1 + αₗ ΔT) eₗ, ∂/∂αₗ = (1 + X)ₖₗ ΔT S gₗ eₗ, ∂/∂Xₖₗ = sₗ, ∂/∂ln S = Σₗ (1 + X)ₖₗ sₗ.
+            // ∂/∂zₖ = 1, ∂/∂gₗ = (1 + X)ₖₗ S (1 + αₗ ΔT) eₗ, ∂/∂αₗ = (1 + X)ₖₗ ΔT S (gₗ eₗ + dₗ), ∂/∂Xₖₗ = sₗ,
+            // ∂/∂ln S = Σₗ (1 + X)ₖₗ sₗ.
             derivatives[ZEROS + channel] = 1.0;
             for (from, share) in coupling[channel].iter().enumerate() {
-                let strain_uv = share * factor * strains_uv[from];
-                derivatives[GAINS + from] = thermal[from] * strain_uv;
-                derivatives[GAIN_SLOPES + from] = above_c * values[GAINS + from] * strain_uv;
+                derivatives[GAINS + from] = share * factor * thermal[from] * strains_uv[from];
+                derivatives[GAIN_SLOPES + from] = share * factor * above_c * unscaled_uv[from];
             }
             derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&signals_uv);
             derivatives[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
             derivatives[LOG_SCALE] = loaded_uv;
+            // ∂/∂ln ρ where forces stay: the background's part.
+            derivatives[RIG_AT + REFERENCE_GAIN] = (0..CHANNELS)
+                .map(|from| coupling[channel][from] * factor * thermal[from] * background_uv[from])
+                .sum();
             // ∂/∂A = b Σₗ (1 + X)ₖₗ sₗ/(1 + A b).
             derivatives[AGEING] = to_come * loaded_uv / gain_before_ageing;
-            // Of the maps without what comes by crosstalk, some percent: ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ,
-            // ∂/∂βₖₐₜ = h Fₐ scaleₖₐ Uₜ.
+            // Of the maps without what comes by crosstalk, some percent: with h = S (1 + αₖ ΔT) gₖ ∂/∂b = h F·∇²Gₖ,
+            // ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ, and ∂/∂βₖₐₜ = ρ S (1 + αₖ ΔT) Fₐ scaleₖₐ Uₜ.
             derivatives[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
             let physical = weights.iter().zip(&place.sensitivities);
             for (slope, ([_, by_parameter], maps)) in derivatives[PHYSICAL..].iter_mut().zip(physical) {
                 *slope = gain * by_parameter * response(&maps[channel], force_n);
             }
             for axis in 0..3 {
-                let factor = gain * scale[channel][axis] * force_n[axis];
+                let factor = unit_gain * written * scale[channel][axis] * force_n[axis];
                 let terms = derivatives[self.background(channel, axis)..].iter_mut().zip(&place.terms);
                 terms.for_each(|(slope, term)| *slope = factor * term);
             }

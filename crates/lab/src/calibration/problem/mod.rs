@@ -341,11 +341,11 @@ impl<'f> Problem<'f> {
         });
         let label_jacobian = self.layout.label_jacobian(values, &self.scale, contact);
         if contact.knowledge == Knowledge::Written {
-            // ∂f/∂ρⱼ = J ∂T/∂ρⱼ.
+            // ∂f/∂ρⱼ = J ∂T/∂ρⱼ, beside what f has of ρ itself.
             let slopes = contact.written.slopes(&ParameterLayout::rig(values));
             for (row, jacobian) in rows.iter_mut().zip(&label_jacobian) {
                 let of_rig = row[ParameterLayout::first_of_rig()..].iter_mut().zip(&slopes);
-                of_rig.for_each(|(entry, slope)| *entry = dot(jacobian, slope));
+                of_rig.for_each(|(entry, slope)| *entry += dot(jacobian, slope));
             }
         }
         // r = y − f(θ) − J d, where the contact is taken to be off its label by d.

@@ -45,9 +45,11 @@ pub(super) fn failed(cases: &[Case], judged: &[Vec<Judged>]) -> Vec<String> {
     }
     hold("regions of all fields", covered(cases, judged), COVERED);
     let stated = judged.iter().flatten().flat_map(|judged| judged.stated.iter().copied());
-    let [_, far, rms] = calibration_of(stated).unwrap_or([0.0, 1.0, 0.0]);
+    let [count, far, rms] = calibration_of(stated).unwrap_or([1.0, 1.0, 0.0]);
     hold("stated numbers beyond two deviations", far, [0.0, FAR_MOST]);
-    hold("rms of their errors over deviations", rms, RMS);
+    // The root mean square of n such numbers scatters by 1/√2n.
+    let chance = (2.0 * count).sqrt().recip();
+    hold("rms of their errors over deviations", rms, [RMS[0] - chance, RMS[1] + chance]);
     let wrong = judged.iter().flatten().map(|judged| judged.wrong.len()).sum::<usize>();
     hold("names of what is not there", wrong as f64, [0.0; 2]);
     failed

@@ -117,7 +117,8 @@ pub(crate) fn wide_precisions(system: &ChannelSystem, modelled: &[f64]) -> Vec<f
     let precision = |column: &Vec<f64>| {
         let told = column.iter().zip(&system.whitening.weights).filter(|(_, weight)| **weight > 0.0);
         let own = rms(told.map(|(value, weight)| value / weight));
-        (own / (SIGNATURE_PRIOR * size)).powi(2)
+        // Of a column that is nothing in all rows that tell something, anything may be.
+        if own > 0.0 { (own / (SIGNATURE_PRIOR * size)).powi(2) } else { 1.0 }
     };
     system.signatures.iter().map(precision).collect()
 }

@@ -10,6 +10,8 @@
 //! smooth part are fitted in turns. Two states are believed if they take away half of the squares, and more than so many changes take
 //! away by chance: by Schwarz's criterion, where a change, which may be at any of n rows, costs 3 ln n.
 //!
+//! And not if rows near one another in place have one state.
+//!
 //! Source: A. J. Viterbi, IEEE Trans. Inf. Theory 13 (1967) 260; G. Schwarz, Ann. Statist. 6 (1978) 461.
 
 use crate::diagnosis::data::target::Target;
@@ -19,6 +21,7 @@ use crate::diagnosis::report::Estimate;
 use crate::effect::Effect;
 use tactpad_inference::observations::Sample;
 use tactpad_inference::policy::WITHIN_95;
+use tactpad_numeric::statistics::rms;
 
 /// Rows for each number of the smooth part, at least.
 const ROWS_PER_COLUMN: usize = 8;
@@ -38,6 +41,13 @@ const SHARES: [f64; 3] = [0.15, 0.4, 0.7];
 const ROUNDS: usize = 12;
 /// What leaves less than so many times the squares over explains as much.
 const AS_MUCH: f64 = 1.2;
+/// Of a row so many neighbours in place are asked for their states, and of so many rows at most.
+const NEIGHBOURS: usize = 6;
+const ASKED_MAX: usize = 500;
+/// A row shows the state if the channel should read this part of its root mean square.
+const SHOWING: f64 = 0.5;
+/// Where they differ from the row's own less than this part as often as those of any two rows, the place says the state.
+const APART_MIN: f64 = 0.72;
 /// A change counts as so many numbers: it may be at any row.
 const CHANGE_NUMBERS: f64 = 3.0;
 /// Two channels whose states agree in more rows have one cause, which is none of a channel's wires.
@@ -46,9 +56,9 @@ const AGREE: f64 = 0.8;
 /// A channel in two states.
 struct TwoStates {
     rows: Vec<usize>,
-    /// Of each of these, whether it is of the rarer state.
-    is_rare: Vec<bool>,
-    /// Gain of the rarer state over that of the other, and its standard deviation.
+    /// Of each of these, whether it is of the loose state.
+    is_loose: Vec<bool>,
+    /// Gain of the loose state over that of the other, and its standard deviation.
     ratio: [f64; 2],
     p_value: f64,
 }
@@ -60,17 +70,18 @@ pub(crate) fn check(gate: &mut Gate) {
         if found.iter().any(|(other, others)| other != channel && agrees(it, others)) {
             continue;
         }
-        let of = |rare: bool| it.rows.iter().zip(&it.is_rare).filter(move |(_, is_rare)| **is_rare == rare);
-        let rare: Vec<usize> = of(true).map(|(row, _)| *row).collect();
+        let of =
+            |loose: bool| it.rows.iter().zip(&it.is_loose).filter(move |(_, is_loose)| **is_loose == loose);
+        let loose: Vec<usize> = of(true).map(|(row, _)| *row).collect();
         let [ratio, deviation] = it.ratio;
         let detail = format!(
             "{} reads {ratio:.3} times as much in {}, and goes there and back; these have no weight; move its wires and its \
              connector while the pad is under a weight",
             gate.name(*channel),
-            rows_text(rare.len())
+            rows_text(loose.len())
         );
-        let share = rare.len() as f64 / it.rows.len() as f64;
-        let taken = gate.mended(|gate| gate.mask(*channel, &rare));
+        let share = loose.len() as f64 / it.rows.len() as f64;
+        let taken = gate.mended(|gate| gate.mask(*channel, &loose));
         gate.notice("intermittent", Some(*channel), detail);
         let within = WITHIN_95 * deviation;
         gate.find(Effect::ChannelIntermittent, Target::Channel(*channel), it.p_value, taken).parameters = vec![
@@ -81,10 +92,10 @@ pub(crate) fn check(gate: &mut Gate) {
 }
 
 fn agrees(one: &TwoStates, other: &TwoStates) -> bool {
-    let rare = |it: &TwoStates| -> std::collections::BTreeSet<usize> {
-        it.rows.iter().zip(&it.is_rare).filter(|(_, is_rare)| **is_rare).map(|(row, _)| *row).collect()
+    let loose = |it: &TwoStates| -> std::collections::BTreeSet<usize> {
+        it.rows.iter().zip(&it.is_loose).filter(|(_, is_loose)| **is_loose).map(|(row, _)| *row).collect()
     };
-    let (one, other) = (rare(one), rare(other));
+    let (one, other) = (loose(one), loose(other));
     let both = one.intersection(&other).count() as f64;
     both > AGREE * one.len().max(other.len()) as f64
 }
@@ -102,10 +113,12 @@ fn two_states(gate: &Gate, channel: usize) -> Option<TwoStates> {
     let fit = channel.settled(channel.beginning(&one_state)?)?;
     let changes = fit.changes();
     let seconds = fit.is_second.iter().filter(|it| **it).count();
-    let is_second_rare = 2 * seconds <= rows.len();
-    let is_rare: Vec<bool> = fit.is_second.iter().map(|it| *it == is_second_rare).collect();
     let gain = channel.gain(&fit)?;
-    let ratio = if is_second_rare { (gain + fit.jump) / gain } else { gain / (gain + fit.jump) };
+    // The loose state is the one that is farther from what the channel should read.
+    let is_second_loose = (gain + fit.jump - 1.0).abs() > (gain - 1.0).abs();
+    let is_loose: Vec<bool> = fit.is_second.iter().map(|it| *it == is_second_loose).collect();
+    let sound_gain = if is_second_loose { gain } else { gain + fit.jump };
+    let ratio = (2.0 * gain + fit.jump - sound_gain) / sound_gain;
     // Schwarz's criterion of one more number and its changes.
     let numbers = 1.0 + CHANGE_NUMBERS * changes as f64;
     let p_value = (-0.5 * (count * (whole / fit.square).ln() - numbers * count.ln())).exp();
@@ -114,12 +127,48 @@ fn two_states(gate: &Gate, channel: usize) -> Option<TwoStates> {
         && fit.square < LEFT_MAX * whole
         && (ratio - 1.0).abs() > JUMP_MIN
         && p_value * (gate.channels() as f64) < LEVEL
-        && !channel.changes_once(&fit);
-    let rare: Vec<f64> = channel.own.iter().zip(&is_rare).map(|(f, it)| if *it { *f } else { 0.0 }).collect();
+        && !channel.changes_once(&fit)
+        && !is_of_the_place(gate, &rows, &is_loose, &channel.own);
+    let loose: Vec<f64> =
+        channel.own.iter().zip(&is_loose).map(|(f, it)| if *it { *f } else { 0.0 }).collect();
     let variance = fit.square / (count - channel.smooth.len() as f64 - 2.0);
-    let deviation = (variance / squares(&rare)).sqrt() / gain.abs();
+    let deviation = (variance / squares(&loose)).sqrt() / sound_gain.abs();
     let p_value = p_value.max(f64::MIN_POSITIVE);
-    is_believed.then_some(TwoStates { rows, is_rare, ratio: [ratio, deviation], p_value })
+    is_believed.then_some(TwoStates { rows, is_loose, ratio: [ratio, deviation], p_value })
+}
+
+/// Whether rows that are near in place have one state, however far they are apart in time: a plan goes from place to place, and what a
+/// model lacks of a place looks like a change of the gain there.
+fn is_of_the_place(gate: &Gate, rows: &[usize], is_loose: &[bool], own: &[f64]) -> bool {
+    // A channel that should read next to nothing does not show its gain.
+    let least = SHOWING * rms(own.iter().copied());
+    let shows: Vec<usize> = (0..rows.len()).filter(|at| own[*at].abs() >= least).collect();
+    let place_mm = |at: usize| gate.observations.samples[rows[at]].place_mm;
+    let (mut apart, mut asked) = (0.0, 0.0);
+    for at in shows.iter().copied().step_by(shows.len().div_ceil(ASKED_MAX).max(1)) {
+        let [x, y] = place_mm(at);
+        let mut others: Vec<(f64, std::cmp::Reverse<usize>, usize)> = shows
+            .iter()
+            .filter(|other| **other != at)
+            .map(|&other| {
+                let [other_x, other_y] = place_mm(other);
+                // To a micrometre, so that one place is one place.
+                let mm = (1e3 * libm::hypot(other_x - x, other_y - y)).round();
+                (mm, std::cmp::Reverse(other.abs_diff(at)), other)
+            })
+            .collect();
+        let count = NEIGHBOURS.min(others.len());
+        if count == 0 {
+            continue;
+        }
+        others.select_nth_unstable_by(count - 1, |one, other| {
+            one.0.total_cmp(&other.0).then_with(|| one.1.cmp(&other.1))
+        });
+        apart += others[..count].iter().filter(|it| is_loose[it.2] != is_loose[at]).count() as f64;
+        asked += count as f64;
+    }
+    let loose = shows.iter().filter(|at| is_loose[**at]).count() as f64 / shows.len().max(1) as f64;
+    apart < APART_MIN * 2.0 * loose * (1.0 - loose) * asked
 }
 
 /// A channel in the rows in which it tells something.

@@ -73,7 +73,11 @@ fn an_ideal_decoder_reaches_the_bound_and_no_more() {
             judged.by_truth.position_mae_mm / least.position_mae_mm,
             judged.by_truth.force_mae_n / least.force_mae_n,
         ];
-        assert!(shares.iter().all(|share| (0.9..1.15).contains(share)), "{}: {shares:?}", table.plan);
+        // Magnitudes of normal numbers scatter by 0.76 of their mean; of n rows two places are read. Three deviations, and what the
+        // decoder's own steps cost.
+        let chance = 3.0 * 0.76 / (2.0 * table.truths().len() as f64).sqrt();
+        let may = 1.0 - chance..1.05 + chance;
+        assert!(shares.iter().all(|share| may.contains(share)), "{}: {shares:?}, {may:?}", table.plan);
         assert!((0.92..0.98).contains(&judged.coverage95.unwrap()), "{:?}", judged.coverage95);
     }
 }

@@ -98,7 +98,7 @@ fn a_profile_is_changed_tried_and_kept_by_keys_alone() {
         }
         browser.keys(&[], &[LEFT]);
     }
-    assert!(value() < 1.6);
+    assert!(comes_true(|| value() < 1.6));
     let text = browser.run("return document.activeElement.getAttribute('aria-valuetext')");
     assert!(text.as_str().is_some_and(|text| text.contains('N')), "{text}");
     assert!(comes_true(|| shown.status()["held"].to_string().contains("BTN_SOUTH")), "{}", shown.status());

@@ -1,13 +1,13 @@
 //! From a pad's measured contacts to its own influence field: the simulator's field, corrected by the pad's own parameters.
 //!
-//! Channel k reads s = z + gₖ Σₐ Fₐ Eₖₐ(x, y) + Σₗ Xₖₗ Σₐ Fₐ Eₗₐ(x, y), where
+//! Channel k reads
 //!
 //! ```text
-//! E = G + Σⱼ pⱼ ∂G/∂pⱼ + background
+//! y = z + Σₗ (1 + X)ₖₗ Σₐ Fₐ (gₗ Eₗₐ + Dₗₐ)(x, y),    E = G + Σⱼ pⱼ ∂G/∂pⱼ
 //! ```
 //!
 //! G is the simulator's field of the nominal pad, or of one nearer to what is found where the tangent does not reach (`fit`), g the channels' gains, p the modules' poses and stiffnesses, X the crosstalk, z the zeros.
-//! The background is a smooth polynomial for each channel and force: the discrepancy that no physical parameter explains. Every
+//! The background D is a smooth polynomial for each channel and force: the discrepancy that no physical parameter explains. Every
 //! parameter has a Gaussian prior, centred on the nominal pad (or on another pad's calibration), so that 20 contacts say what
 //! they can and leave the others where they were. The posterior's maximum is found by Gauss and Newton's method, its covariance
 //! by the Laplace approximation. Hyperparameters are found from the contacts themselves: the background's size, thresholds and

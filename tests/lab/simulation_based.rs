@@ -185,10 +185,9 @@ fn wire(device: &mut Device, random: &mut SplitMix64, truth: &mut BTreeMap<Strin
     truth.insert("ageing.share_at_end".into(), lost);
     let pairs = (0..CHANNELS * CHANNELS).map(|index| (index / CHANNELS, index % CHANNELS));
     for (channel, with) in pairs.filter(|(channel, with)| channel != with) {
-        // The fit has it of the other's strain, the device of its signal.
-        let of_strain = normal(random, 0.02);
-        device.behaviour.crosstalk.push(Crosstalk { channel, with, share: of_strain / gains[with] });
-        truth.insert(format!("crosstalk {channel} {with}"), (1.0 - lost) * of_strain);
+        let share = normal(random, 0.02);
+        device.behaviour.crosstalk.push(Crosstalk { channel, with, share });
+        truth.insert(format!("crosstalk {channel} {with}"), share);
     }
 }
 

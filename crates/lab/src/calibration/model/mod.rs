@@ -430,13 +430,8 @@ impl ParameterLayout {
             let unit_gain = factor * thermal[channel];
             let gain = unit_gain * values[GAINS + channel];
             let loaded_uv: f64 = coupling[channel].iter().zip(signals_uv).map(|(share, uv)| share * uv).sum();
-            // ∂/∂zₖ = 1, ∂/∂gₗ = (1 + X)ₖₗ S (1 + αₗ ΔT) eₗ, ∂/∂αₗ = (1 + X)ₖₗ ΔT S (gₗ eₗ + dₗ), ∂/∂Xₖₗ = sₗ,
-            // ∂/∂ln S = Σₗ (1 + X)ₖₗ sₗ.
+            // ∂/∂zₖ = 1, ∂/∂Xₖₗ = sₗ, ∂/∂ln S = Σₗ (1 + X)ₖₗ sₗ.
             derivatives[ZEROS + channel] = 1.0;
-            for (from, share) in coupling[channel].iter().enumerate() {
-                derivatives[GAINS + from] = share * factor * thermal[from] * strains_uv[from];
-                derivatives[GAIN_SLOPES + from] = share * factor * above_c * unscaled_uv[from];
-            }
             derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&signals_uv);
             derivatives[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
             derivatives[LOG_SCALE] = loaded_uv;
@@ -446,8 +441,11 @@ impl ParameterLayout {
                 .sum();
             // ∂/∂A = b Σₗ (1 + X)ₖₗ sₗ/(1 + A b).
             derivatives[AGEING] = to_come * loaded_uv / gain_before_ageing;
-            // Of the maps without what comes by crosstalk, some percent: with h = S (1 + αₖ ΔT) gₖ ∂/∂b = h F·∇²Gₖ,
-            // ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ, and ∂/∂βₖₐₜ = ρ S (1 + αₖ ΔT) Fₐ scaleₖₐ Uₜ.
+            // Of the channel's own signal, without what comes by crosstalk, some percent; of all parameters alike, as what a gain and a
+            // modulus do against each other is none in sₖ, and would be some in yₖ: ∂/∂gₖ = S (1 + αₖ ΔT) eₖ, ∂/∂αₖ = ΔT S (gₖ eₖ + dₖ),
+            // with h = S (1 + αₖ ΔT) gₖ ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ, and ∂/∂βₖₐₜ = ρ S (1 + αₖ ΔT) Fₐ scaleₖₐ Uₜ.
+            derivatives[GAINS + channel] = unit_gain * strains_uv[channel];
+            derivatives[GAIN_SLOPES + channel] = factor * above_c * unscaled_uv[channel];
             derivatives[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
             let physical = weights.iter().zip(&place.sensitivities);
             for (slope, ([_, by_parameter], maps)) in derivatives[PHYSICAL..].iter_mut().zip(physical) {

@@ -83,9 +83,9 @@ fn channels_read_by_the_law() {
 
 #[test]
 fn derivatives_are_the_differences_of_readings() {
-    // Of the maps they leave out what comes by crosstalk.
+    // Of a channel's own signal they leave out what comes by crosstalk.
     for (crosstalk, parameters) in
-        [(0.05, ZEROS..BLUR), (0.05, GAIN_SLOPES..RIG_AT), (0.0, ZEROS..usize::MAX)]
+        [(0.05, CROSSTALKS..BLUR), (0.05, LOG_SCALE..RIG_AT), (0.0, ZEROS..usize::MAX)]
     {
         on_contacts(crosstalk, |layout, values, scale, contact| {
             let derived = readings(layout, values, scale, contact);

@@ -14,8 +14,18 @@ use super::pad::{Changes, Wiring, full_scale, noise_uv, plan, recorded};
 use crate::background::Smooth;
 use crate::fields::{NOMINAL, Table, signals};
 use crate::plan::Contact;
-use crate::program::calibrated;
 use crate::random::Random;
+
+use tactpad::lab::contacts::Contacts;
+use tactpad::lab::field_cache::solve;
+use tactpad::lab::tangent::SimulatedPad;
+use tactpad::pad::changes::FieldChanges;
+use tactpad::pad::device::Device;
+use tactpad::pad::field::PadField;
+use tactpad::pipeline::contact::Decoder;
+use tactpad::tables::measured::columns::TableKind;
+use tactpad::tables::measured::read;
+use tactpad::tables::recording::Recording;
 
 /// A smooth error of each channel's map of each force.
 #[derive(Debug)]
@@ -134,11 +144,7 @@ fn outcome(contacts: usize, share: f64, length_mm: f64, seed: u64) -> Outcome {
         recording += 1;
         recorded(plan, &changes, &wiring, &full_scale, recording)
     });
-    let folder = tempfile::tempdir().unwrap();
-    let [csv, decoder] = ["known.csv", "decoder"].map(|name| folder.path().join(name));
-    std::fs::write(&csv, known.measured.csv()).unwrap();
-    calibrated(&csv, &decoder);
-    let decoder = tactpad::pipeline::contact::read::decoder(&std::fs::read(&decoder).unwrap()).unwrap();
+    let decoder = calibrated(known.measured.csv().as_bytes());
     let loaded: Vec<Contact> =
         unseen.truths.iter().copied().filter(|contact| contact.force != [0.0; 3]).collect();
     let decoded: Vec<Decoded> = decoded_by(&decoder, unseen.measured.csv().as_bytes(), &unseen.truths);
@@ -154,6 +160,17 @@ fn outcome(contacts: usize, share: f64, length_mm: f64, seed: u64) -> Outcome {
         found.covered
     );
     Outcome { seed, place, force, covered: found.covered }
+}
+
+/// What `adapt --method inverse` writes, without the names that it gives to causes beside.
+fn calibrated(mut csv: &[u8]) -> Decoder {
+    let (device, field) = (Device::nominal(), PadField::nominal());
+    let changes = FieldChanges::nominal();
+    let pad = SimulatedPad { device: &device, field: &field, flaws: &changes.0, solve: &solve };
+    let table = read::table(&mut csv, TableKind::Measured, device.plate.radius_mm()).unwrap();
+    let recording = Recording::tared_or_raw(table, device.contact.full_scale_n);
+    let contacts = Contacts::of(vec![recording], None, 0).unwrap();
+    contacts.calibration(&pad, None, &|_, _| {}).unwrap().decoder()
 }
 
 /// Two seeds at a time.
@@ -179,44 +196,41 @@ fn median(outcomes: &[Outcome], of: fn(&Outcome) -> f64) -> f64 {
     values[values.len() / 2]
 }
 
-/// What the errors may be, in the middle of the seeds and of the worst.
-fn are_near_the_bound(outcomes: &[Outcome], median_most: f64) {
-    let medians = are_covered(outcomes);
-    let far: Vec<&Outcome> = outcomes.iter().filter(|it| it.place.max(it.force) > WORST_MOST).collect();
+/// No seed's errors are further from the bound than this, and no seed's regions hold less than they should by more.
+fn every_seed_is_near_the_bound(outcomes: &[Outcome]) {
+    let far: Vec<&Outcome> = outcomes
+        .iter()
+        .filter(|it| it.place.max(it.force) > WORST_MOST || it.covered < COVERED_LEAST)
+        .collect();
     assert!(far.is_empty(), "{far:?}");
-    assert!(medians.iter().all(|median| *median <= median_most), "{medians:?}");
 }
 
-/// The regions hold what they say, of all seeds and of each; the medians of the errors over the bound.
-fn are_covered(outcomes: &[Outcome]) -> [f64; 2] {
-    let worst = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).fold(0.0, f64::max);
+/// Medians of place and force over the bound, and the mean share in the regions.
+fn pooled(outcomes: &[Outcome]) -> ([f64; 2], f64) {
     let medians = [median(outcomes, |it| it.place), median(outcomes, |it| it.force)];
-    let worsts = [worst(|it| it.place), worst(|it| it.force)];
-    let pooled = outcomes.iter().map(|it| it.covered).sum::<f64>() / outcomes.len() as f64;
-    let least = outcomes.iter().map(|it| it.covered).fold(1.0, f64::min);
-    println!(
-        "medians {medians:.3?}, worst {worsts:.3?}, {pooled:.3} in the regions, {least:.3} of the worst seed"
-    );
-    let uncovered: Vec<&Outcome> = outcomes.iter().filter(|it| it.covered < 0.85).collect();
-    assert!(uncovered.is_empty(), "{uncovered:?}");
-    // A seed has a calibration of its own, so one in forty may be beside.
-    assert!((0.92..=0.999).contains(&pooled), "{pooled}");
-    medians
+    let covered = outcomes.iter().map(|it| it.covered).sum::<f64>() / outcomes.len() as f64;
+    println!("medians {medians:.3?}, {covered:.3} in the regions");
+    (medians, covered)
 }
 
-/// A tenth above what the program came to on other seeds, 501 to 508; one seed in this place, forty below.
-const MEDIAN_MOST: f64 = 1.33;
+const MEDIAN_MOST: f64 = 1.15;
 const WORST_MOST: f64 = 1.6;
+const COVERED_LEAST: f64 = 0.85;
+const COVERED_POOLED: RangeInclusive<f64> = 0.92..=0.99;
 
 #[test]
 fn a_field_that_is_off_smoothly_costs_little() {
-    are_near_the_bound(&outcomes(648, 0.015, 14.0, 401..=401), WORST_MOST);
+    every_seed_is_near_the_bound(&outcomes(648, 0.015, 14.0, 401..=401));
 }
 
 #[test]
 #[ignore = "proof: 900 s: forty seeds instead of one"]
 fn fields_that_are_off_smoothly_cost_little() {
-    are_near_the_bound(&outcomes(648, 0.015, 14.0, 401..=440), MEDIAN_MOST);
+    let outcomes = outcomes(648, 0.015, 14.0, 401..=440);
+    let (medians, covered) = pooled(&outcomes);
+    every_seed_is_near_the_bound(&outcomes);
+    assert!(COVERED_POOLED.contains(&covered));
+    assert!(medians.iter().all(|median| *median <= MEDIAN_MOST));
 }
 
 #[test]
@@ -226,6 +240,7 @@ fn other_smooth_errors_cost_little() {
         [(648, 0.0, 14.0), (648, 0.005, 20.0), (648, 0.03, 10.0), (73, 0.015, 14.0), (20, 0.015, 14.0)]
     {
         let outcomes = outcomes(contacts, share, length_mm, 441..=444);
-        are_covered(&outcomes);
+        pooled(&outcomes);
+        assert!(outcomes.iter().all(|it| it.covered >= COVERED_LEAST), "{outcomes:?}");
     }
 }

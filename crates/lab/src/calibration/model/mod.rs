@@ -10,8 +10,9 @@
 //! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains, crosstalk X
 //! by the law of the channels ([`tactpad_core::pad::channels`]; a test holds them against it), shares w and lags l of the play operators, creep's share c and state u, blur b, and weights w of physical parameters q ([`physical`](self::physical)). G is the simulator's field. A is what ageing takes
 //! over the measurement, and b the part of it that was still to come at the contact ([`ageing`](super::ageing)): a decoder is
-//! of the pad as it was at last. D is the background, ρ the gain of the reference: the background is in readings by newtons as written. What gains and forces multiplied would have
-//! too small a background: the most probable product of a number and hundreds of small ones has them too small. Place and force of a written label are corrected by the rig's errors ρ ([`rig`](crate::calibration::data::rig)).
+//! of the pad as it was at last. D is the background, ρ the gain of the reference: the background is in readings by newtons as
+//! written. What gains and forces multiplied would have too small a background: the most probable product of a number and hundreds of
+//! small ones has them too small. Place and force of a written label are corrected by the rig's errors ρ ([`rig`](crate::calibration::data::rig)).
 
 pub(crate) mod physical;
 pub(crate) mod prior;
@@ -33,6 +34,7 @@ use tactpad_core::pipeline::contact::inverse::CROSSTALK_MAX;
 use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_numeric::memory::{PlayOperator, Relaxation};
+use tactpad_numeric::products::{combined, dot};
 
 /// A precision that no measurement outweighs.
 pub(crate) const CERTAIN: f64 = 1e18;
@@ -401,14 +403,8 @@ impl ParameterLayout {
         })
     }
 
-    /// The model f(θ) of each channel at a contact and its derivatives ∂f/∂θ: calls `each` with channel, µV, derivatives.
-    pub(crate) fn readings(
-        &self,
-        values: &[f64],
-        scale: &Maps,
-        contact: &Measured,
-        mut each: impl FnMut(usize, f64, &[f64]),
-    ) {
+    /// The model f(θ) of the channels at a contact, and its derivatives.
+    pub(crate) fn readings(&self, values: &[f64], scale: &Maps, contact: &Measured) -> Readings {
         let Measured { knowledge, place, lags, crept_uv, above_c, to_come, .. } = contact;
         let gain_before_ageing = Self::gain_before_ageing(values, contact);
         let force_n = &Self::force_now_n(values, contact);
@@ -424,43 +420,87 @@ impl ParameterLayout {
         let unscaled_uv: [f64; CHANNELS] =
             std::array::from_fn(|k| values[GAINS + k] * strains_uv[k] + background_uv[k]);
         let signals_uv: [f64; CHANNELS] = std::array::from_fn(|k| factor * thermal[k] * unscaled_uv[k]);
-        let mut derivatives = vec![0.0; self.size()];
-        for channel in 0..CHANNELS {
-            derivatives.fill(0.0);
+        let of_signal = |channel: usize| {
+            let mut slopes = vec![0.0; self.size()];
             let unit_gain = factor * thermal[channel];
             let gain = unit_gain * values[GAINS + channel];
-            let loaded_uv: f64 = coupling[channel].iter().zip(signals_uv).map(|(share, uv)| share * uv).sum();
-            // ∂/∂zₖ = 1, ∂/∂Xₖₗ = sₗ, ∂/∂ln S = Σₗ (1 + X)ₖₗ sₗ.
-            derivatives[ZEROS + channel] = 1.0;
-            derivatives[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&signals_uv);
-            derivatives[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
-            derivatives[LOG_SCALE] = loaded_uv;
+            // ∂/∂gₖ = S (1 + αₖ ΔT) eₖ, ∂/∂αₖ = ΔT S (gₖ eₖ + dₖ), ∂/∂ln S = sₖ, ∂/∂A = b sₖ/(1 + A b).
+            slopes[GAINS + channel] = unit_gain * strains_uv[channel];
+            slopes[GAIN_SLOPES + channel] = factor * above_c * unscaled_uv[channel];
+            slopes[LOG_SCALE] = signals_uv[channel];
+            slopes[AGEING] = to_come * signals_uv[channel] / gain_before_ageing;
             // ∂/∂ln ρ where forces stay: the background's part.
-            derivatives[RIG_AT + REFERENCE_GAIN] = (0..CHANNELS)
-                .map(|from| coupling[channel][from] * factor * thermal[from] * background_uv[from])
-                .sum();
-            // ∂/∂A = b Σₗ (1 + X)ₖₗ sₗ/(1 + A b).
-            derivatives[AGEING] = to_come * loaded_uv / gain_before_ageing;
-            // Of the channel's own signal, without what comes by crosstalk, some percent; of all parameters alike, as what a gain and a
-            // modulus do against each other is none in sₖ, and would be some in yₖ: ∂/∂gₖ = S (1 + αₖ ΔT) eₖ, ∂/∂αₖ = ΔT S (gₖ eₖ + dₖ),
-            // with h = S (1 + αₖ ΔT) gₖ ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ, and ∂/∂βₖₐₜ = ρ S (1 + αₖ ΔT) Fₐ scaleₖₐ Uₜ.
-            derivatives[GAINS + channel] = unit_gain * strains_uv[channel];
-            derivatives[GAIN_SLOPES + channel] = factor * above_c * unscaled_uv[channel];
-            derivatives[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
+            slopes[RIG_AT + REFERENCE_GAIN] = unit_gain * background_uv[channel];
+            // With h = S (1 + αₖ ΔT) gₖ: ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ.
+            slopes[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
             let physical = weights.iter().zip(&place.sensitivities);
-            for (slope, ([_, by_parameter], maps)) in derivatives[PHYSICAL..].iter_mut().zip(physical) {
+            for (slope, ([_, by_parameter], maps)) in slopes[PHYSICAL..].iter_mut().zip(physical) {
                 *slope = gain * by_parameter * response(&maps[channel], force_n);
             }
+            // ∂/∂βₖₐₜ = ρ S (1 + αₖ ΔT) Fₐ scaleₖₐ Uₜ.
             for axis in 0..3 {
                 let factor = unit_gain * written * scale[channel][axis] * force_n[axis];
-                let terms = derivatives[self.background(channel, axis)..].iter_mut().zip(&place.terms);
+                let terms = slopes[self.background(channel, axis)..].iter_mut().zip(&place.terms);
                 terms.for_each(|(slope, term)| *slope = factor * term);
             }
-            let memory_uv = Self::memory_uv(values, channel, lags, crept_uv, &mut derivatives);
-            // yₖ = zₖ + Σₗ (1 + X)ₖₗ sₗ + Σᵢ wᵢₖ lᵢₖ + c uₖ.
-            let uv = values[ZEROS + channel] + loaded_uv + memory_uv;
-            each(channel, uv, &derivatives);
+            slopes
+        };
+        let beside_signals = |channel: usize| {
+            let mut slopes = vec![0.0; self.size()];
+            // ∂/∂zₖ = 1, ∂/∂Xₖₗ = sₗ.
+            slopes[ZEROS + channel] = 1.0;
+            slopes[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&signals_uv);
+            slopes[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
+            let memory_uv = Self::memory_uv(values, channel, lags, crept_uv, &mut slopes);
+            (values[ZEROS + channel] + memory_uv, slopes)
+        };
+        let signals = (0..CHANNELS).map(of_signal).collect();
+        let (others_uv, rest): (Vec<f64>, Vec<Vec<f64>>) = (0..CHANNELS).map(beside_signals).unzip();
+        let uv = std::array::from_fn(|channel| dot(&coupling[channel], &signals_uv) + others_uv[channel]);
+        Readings { uv, slopes: ReadingSlopes { coupling, signals, rest } }
+    }
+}
+
+/// What the channels read at a contact.
+pub(crate) struct Readings {
+    /// Of each channel, µV.
+    pub(crate) uv: [f64; CHANNELS],
+    pub(crate) slopes: ReadingSlopes,
+}
+
+/// Derivatives of the readings by the parameters, a row for each channel:
+///
+/// ```text
+/// ∂y/∂θ = (1 + X) ∂s/∂θ + ∂y/∂θ where s stays
+/// ```
+///
+/// Both parts have few entries, as most parameters are of one channel's signal alone; their sum has many.
+pub(crate) struct ReadingSlopes {
+    /// 1 + X.
+    pub(crate) coupling: [[f64; CHANNELS]; CHANNELS],
+    /// ∂s/∂θ.
+    pub(crate) signals: Vec<Vec<f64>>,
+    /// ∂y/∂θ where s stays.
+    pub(crate) rest: Vec<Vec<f64>>,
+}
+
+impl ReadingSlopes {
+    /// ∂y/∂θ.
+    pub(crate) fn whole(&self) -> Vec<Vec<f64>> {
+        let mut rows = combined(&self.coupling, &self.signals);
+        for (row, rest) in rows.iter_mut().zip(&self.rest) {
+            row.iter_mut().zip(rest).for_each(|(slope, rest)| *slope += rest);
         }
+        rows
+    }
+
+    /// The same beside further parameters, whose derivatives stand at the ends of these rows.
+    pub(crate) fn widened(mut self, rows: &[Vec<f64>]) -> Self {
+        for ((signal, rest), row) in self.signals.iter_mut().zip(&mut self.rest).zip(rows) {
+            rest.extend(&row[rest.len()..]);
+            signal.resize(row.len(), 0.0);
+        }
+        self
     }
 }
 

@@ -7,9 +7,10 @@
 //! P are the precisions of the prior and m its mean. The first sums are over contacts, with the residuals r of nine channels,
 //! their covariance V and A = ∂f/∂θ; the second ones over single numbers with a variance σ² and derivatives a.
 
+use crate::calibration::model::ReadingSlopes;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_numeric::linear::{LargeFactor, Reduced, Symmetric};
-use tactpad_numeric::products::dot;
+use tactpad_numeric::products::{combined, dot};
 
 /// So many products are collected before they go into H, which is larger than a processor's cache.
 const COLLECTED: usize = 72;
@@ -38,24 +39,27 @@ impl NormalEquations {
         Self { curvature, gradient, collected: Vec::with_capacity(COLLECTED) }
     }
 
-    /// Adds a contact by the channels' derivatives, the rows aₖ of A, and those of V⁻¹ A: with these, vₖ,
+    /// Adds a contact by the channels' derivatives A = C S + R ([`ReadingSlopes`]) and the rows of V⁻¹ A, `weighted`:
     ///
     /// ```text
-    /// Aᵀ V⁻¹ A = Σₖ aₖ vₖᵀ        Aᵀ V⁻¹ r = Σₖ rₖ vₖ
+    /// Aᵀ V⁻¹ A = Sᵀ (Cᵀ V⁻¹ A) + Rᵀ (V⁻¹ A)        Aᵀ V⁻¹ r = (V⁻¹ A)ᵀ r
     /// ```
     ///
-    /// Most parameters are of one channel alone, so aₖ has few entries.
+    /// The rows of S and R have few entries.
     pub(crate) fn add_contact(
         &mut self,
-        rows: Vec<Vec<f64>>,
+        slopes: ReadingSlopes,
         weighted: Vec<Vec<f64>>,
         residual_uv: &[f64; CHANNELS],
     ) {
-        for ((row, weighted), residual_uv) in rows.into_iter().zip(weighted).zip(residual_uv) {
-            let sums = self.gradient.iter_mut().zip(&weighted);
-            sums.for_each(|(sum, slope)| *sum += slope * residual_uv);
-            self.collected.push((row, weighted));
+        for (row, residual_uv) in weighted.iter().zip(residual_uv) {
+            self.gradient.iter_mut().zip(row).for_each(|(sum, slope)| *sum += slope * residual_uv);
         }
+        let ReadingSlopes { coupling, signals, rest } = slopes;
+        let transposed: [[f64; CHANNELS]; CHANNELS] =
+            std::array::from_fn(|from| std::array::from_fn(|into| coupling[into][from]));
+        self.collected.extend(signals.into_iter().zip(combined(&transposed, &weighted)));
+        self.collected.extend(rest.into_iter().zip(weighted));
         self.add_collected_if_many();
     }
 

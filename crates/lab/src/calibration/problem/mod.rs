@@ -20,7 +20,7 @@ use self::effort::Effort;
 use self::evidence::{log_likelihood_of_contacts, log_prior};
 use self::hyperparameters::{Estimates, Settings};
 use self::jumps::{Jump, Jumps};
-use super::model::ParameterLayout;
+use super::model::{ParameterLayout, ReadingSlopes, Readings};
 use super::noise::NoisePrior;
 use crate::ageing;
 use crate::calibration::data::contacts::{FieldAtPlace, Fitted, Knowledge, Maps, Measured, TERMS};
@@ -298,7 +298,8 @@ impl<'f> Problem<'f> {
         let mut previous_s = None;
         for (at, known) in self.contacts.iter().enumerate() {
             let (_, contact) = known;
-            let (residual, mut rows) = self.linearised(values, contact);
+            let (residual, slopes) = self.linearised(values, contact);
+            let mut rows = slopes.whole();
             widen(at, known, &mut rows);
             let precision = estimates.noise_model.marginal_precision(&residual)?.matrix();
             let weighted = combined(&precision, &rows);
@@ -308,7 +309,7 @@ impl<'f> Problem<'f> {
                 }
                 filter.see(&precision, &residual, &weighted);
             }
-            equations.add_contact(rows, weighted, &residual.residual_uv);
+            equations.add_contact(slopes.widened(&rows), weighted, &residual.residual_uv);
         }
         if let Some(filter) = filter {
             filter.end(Some(&mut equations))?;
@@ -332,18 +333,14 @@ impl<'f> Problem<'f> {
     }
 
     /// A contact's residual, and the channels' derivatives by the parameters.
-    fn linearised(&self, values: &[f64], contact: &Measured) -> (Residual, Vec<Vec<f64>>) {
-        let mut fitted_uv = [0.0; CHANNELS];
-        let mut rows = Vec::with_capacity(CHANNELS);
-        self.layout.readings(values, &self.scale, contact, |channel, uv, slopes| {
-            fitted_uv[channel] = uv;
-            rows.push(slopes.to_vec());
-        });
+    fn linearised(&self, values: &[f64], contact: &Measured) -> (Residual, ReadingSlopes) {
+        let Readings { uv: fitted_uv, slopes: mut by_parameters } =
+            self.layout.readings(values, &self.scale, contact);
         let label_jacobian = self.layout.label_jacobian(values, &self.scale, contact);
         if contact.knowledge == Knowledge::Written {
             // ∂f/∂ρⱼ = J ∂T/∂ρⱼ, beside what f has of ρ itself.
             let slopes = contact.written.slopes(&ParameterLayout::rig(values));
-            for (row, jacobian) in rows.iter_mut().zip(&label_jacobian) {
+            for (row, jacobian) in by_parameters.rest.iter_mut().zip(&label_jacobian) {
                 let of_rig = row[ParameterLayout::first_of_rig()..].iter_mut().zip(&slopes);
                 of_rig.for_each(|(entry, slope)| *entry += dot(jacobian, slope));
             }
@@ -357,7 +354,7 @@ impl<'f> Problem<'f> {
         // Noise in proportion to a reading that has it would draw the fit to the small readings.
         let uv = if contact.knowledge == Knowledge::Written { contact.uv } else { fitted_uv };
         let Measured { knowledge, at_s, .. } = *contact;
-        (Residual { knowledge, at_s, uv, force_n, residual_uv, label_jacobian }, rows)
+        (Residual { knowledge, at_s, uv, force_n, residual_uv, label_jacobian }, by_parameters)
     }
 
     fn residuals(&self, values: &[f64]) -> Vec<Residual> {

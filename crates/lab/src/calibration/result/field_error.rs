@@ -87,11 +87,9 @@ pub(crate) fn decoder(problem: &Problem<'_>, fit: &PosteriorFit, noise: Noise) -
 impl Problem<'_> {
     fn load(&self, fit: &PosteriorFit, place_mm: [f64; 2], force_n: [f64; 3]) -> Load {
         let place = FieldAtPlace::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
-        let mut halves = Vec::with_capacity(CHANNELS);
         let contact = Measured::unmeasured(place_mm, place, force_n);
-        self.layout.readings(&fit.values, &self.scale, &contact, |_, _, derivatives| {
-            halves.push(fit.factor.solve_lower(derivatives));
-        });
+        let rows = self.layout.readings(&fit.values, &self.scale, &contact).slopes.whole();
+        let halves = rows.iter().map(|row| fit.factor.solve_lower(row)).collect();
         Load { place_mm, force_n, halves }
     }
 
@@ -135,13 +133,14 @@ impl Problem<'_> {
         let mut maps = vec![[0.0; MAPS]; changes.len()];
         for axis in 0..3 {
             contact.force_n = std::array::from_fn(|k| f64::from(u8::from(k == axis)));
-            self.layout.readings(&fit.values, &self.scale, &contact, |channel, _, derivatives| {
+            let rows = self.layout.readings(&fit.values, &self.scale, &contact).slopes.whole();
+            for (channel, derivatives) in rows.iter().enumerate() {
                 for (maps, change) in maps.iter_mut().zip(changes) {
                     // ∂sₖ/∂θ δθ; a zero is no part of a map.
                     let zero_uv = change[ParameterLayout::zero_at(channel)];
                     maps[3 * channel + axis] = dot(derivatives, change) - zero_uv;
                 }
-            });
+            }
         }
         maps
     }
@@ -452,9 +451,10 @@ mod tests {
                 let change = fit.factor.solve_upper(&normal);
                 for (contact, held) in contacts.iter().zip(&mut held) {
                     let mut uv = problem.layout.load_uv(&fit.values, &problem.scale, contact);
-                    problem.layout.readings(&fit.values, &problem.scale, contact, |k, _, derivatives| {
-                        uv[k] += dot(derivatives, &change) - change[ParameterLayout::zero_at(k)];
-                    });
+                    let slopes = problem.layout.readings(&fit.values, &problem.scale, contact).slopes;
+                    for (k, row) in slopes.whole().iter().enumerate() {
+                        uv[k] += dot(row, &change) - change[ParameterLayout::zero_at(k)];
+                    }
                     let variances = decoder.noise().variances(&uv, contact.force_n[2]).noise;
                     let noisy = |k: usize| uv[k] + variances[k].sqrt() * f64::from(random.normal());
                     let strain = Strain { uv: std::array::from_fn(noisy).map(|uv: f64| uv as f32) };

@@ -47,7 +47,6 @@ impl<'d> ReferenceState<'d> {
     /// says no deviation: each channel's own share is as open as that of any pad.
     pub(super) fn by_decoder(problem: &Problem<'_>, prior: &Prior, decoder: &'d Inverse) -> Self {
         let settings = Settings {
-            background: 0.0,
             thresholds_uv: prior.thresholds_uv,
             creep_time_s: prior.creep.time_s,
             noise_time_s: 0.0,

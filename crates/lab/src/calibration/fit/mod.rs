@@ -157,7 +157,7 @@ impl Calibration {
             gain: std::array::from_fn(|channel| ParameterLayout::gain(values, channel)),
             numbers,
             not_told_apart,
-            background: settings.background,
+            background: problem.background(fit),
             from_earlier,
             flaw: problem.prior.solved.as_ref().and_then(flaws::of),
             compensation: Compensation { zero_uv, thermal, creep, hysteresis },

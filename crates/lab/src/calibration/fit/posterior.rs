@@ -33,6 +33,11 @@ impl PosteriorFit {
 }
 
 impl Problem<'_> {
+    /// Standard deviation of the smooth background that the evidence chose, as a share of each map; 0: none.
+    pub(crate) fn background(&self, fit: &PosteriorFit) -> f64 {
+        if self.layout.terms > 0 { fit.estimates.prior_deviations.background.whole() } else { 0.0 }
+    }
+
     /// The channels of contacts with written labels, at the reference temperature, without zeros, creep and hysteresis, and the
     /// written forces.
     pub(crate) fn compensated(

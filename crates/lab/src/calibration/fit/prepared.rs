@@ -47,7 +47,6 @@ impl PreparedRecording {
         // Hysteresis and noise go with what is beyond the zeros, so these have to be known about before anything else.
         let prior = Prior::simulated(field);
         let plain = Settings {
-            background: 0.0,
             thresholds_uv: [0.0; PLAYS],
             creep_time_s: 0.0,
             noise_time_s: 0.0,

@@ -13,10 +13,6 @@ use crate::calibration::problem::hyperparameters::Settings;
 use crate::calibration::problem::{PosteriorFit, Problem};
 use tactpad_numeric::memory::Relaxation;
 
-/// Prior standard deviations of the background that are tried beside none, as a share of each map: the larger ones where the
-/// larger of the small ones is best.
-const SMALL_BACKGROUNDS: [f64; 2] = [0.004, 0.01];
-const LARGE_BACKGROUNDS: [f64; 2] = [0.025, 0.06];
 /// Thresholds of play operators that are tried: a geometric sequence, then halved steps of its exponent around the best.
 const THRESHOLD_MIN_UV: f64 = 40.0;
 const THRESHOLD_RATIO: f64 = 1.6;
@@ -58,8 +54,7 @@ impl<'r> FitCount<'r> {
             + 1
             + prior.thresholds_uv.iter().map(search).sum::<usize>()
             + CREEP_TIMES_S.len()
-            + SMALL_BACKGROUNDS.len()
-            + LARGE_BACKGROUNDS.len()
+            + 1
     }
 
     /// Hears of so many more.
@@ -106,20 +101,9 @@ fn with_background<'b>(
     counted: &FitCount<'_>,
 ) -> (Problem<'b>, PosteriorFit) {
     let smooth = problem.clone().with_background();
-    // Of so many parameters a step that gains little may stand before one that gains much: each is carried to its maximum. None goes
-    // on from the plain fit, whose poses, moduli and rig have taken up what is none of theirs.
-    let tried = |background| {
-        let mut settings = plain.settings;
-        settings.background = background;
-        counted.fitted(&smooth, settings, None, Effort::FULL)
-    };
-    let [_, largest] = SMALL_BACKGROUNDS;
-    let small = most_probable(SMALL_BACKGROUNDS.to_vec(), tried);
-    let is_largest = small.as_ref().is_some_and(|it| it.settings.background == largest);
-    let large = if is_largest { most_probable(LARGE_BACKGROUNDS.to_vec(), tried) } else { None };
-    let evidence = |fit: &PosteriorFit| fit.log_evidence;
-    let found = small.into_iter().chain(large).max_by(|one, other| evidence(one).total_cmp(&evidence(other)));
-    match found.filter(|found| evidence(found) > evidence(&plain)) {
+    // It does not go on from the plain fit, whose poses, moduli and rig have taken up what is none of theirs.
+    let found = counted.fitted(&smooth, plain.settings, None, Effort::FULL);
+    match found.filter(|found| found.log_evidence > plain.log_evidence) {
         Some(found) => (smooth, found),
         None => (problem, plain),
     }
@@ -151,8 +135,7 @@ fn with_memory(
 fn with_lasting_noise(problem: &Problem<'_>, prior: &Prior, counted: &FitCount<'_>) -> Option<PosteriorFit> {
     let Prior { thresholds_uv, creep: Relaxation { time_s: creep_time_s, .. }, .. } = *prior;
     let tried = |noise_time_s: f64| {
-        let settings =
-            Settings { background: 0.0, thresholds_uv, creep_time_s, noise_time_s, elastic_scale: 1.0 };
+        let settings = Settings { thresholds_uv, creep_time_s, noise_time_s, elastic_scale: 1.0 };
         counted.fitted(problem, settings, None, Effort::FULL)
     };
     if problem.layout.is_play { most_probable(NOISE_TIMES_S.to_vec(), tried) } else { tried(0.0) }

@@ -14,6 +14,7 @@
 //! written. What gains and forces multiplied would have too small a background: the most probable product of a number and hundreds of
 //! small ones has them too small. Place and force of a written label are corrected by the rig's errors ρ ([`rig`](crate::calibration::data::rig)).
 
+pub(crate) mod background_deviations;
 pub(crate) mod physical;
 pub(crate) mod prior;
 pub(crate) mod prior_deviations;
@@ -23,7 +24,7 @@ use self::prior::Prior;
 use self::prior_deviations::{
     AGEING_DEVIATION, BLUR_DEVIATION_MM2, CREEP_DEVIATION, FINGER_BLUR_DEVIATION_MM2, GAIN_DEVIATION,
     GAIN_SLOPE_DEVIATION, LOG_SCALE_DEVIATION, ParameterKind, PriorDeviations, SHARE_DEVIATION,
-    WEIGHT_BLUR_DEVIATION_MM2, background_share,
+    WEIGHT_BLUR_DEVIATION_MM2,
 };
 use crate::calibration::data::contacts::{
     BACKGROUND_DEGREE, FieldAtPlace, Knowledge, Lags, Maps, Measured, TERMS, response,
@@ -93,14 +94,8 @@ impl ParameterLayout {
         values
     }
 
-    /// The diagonal P of the prior's precisions. `background` is the standard deviation of the field's smooth error, as a share of
-    /// each map's root mean square `scale`; zero: no background.
-    pub(crate) fn precisions(
-        &self,
-        background: f64,
-        prior_deviations: &PriorDeviations,
-        rig: &RigPrior,
-    ) -> Vec<f64> {
+    /// The diagonal P of the prior's precisions.
+    pub(crate) fn precisions(&self, prior_deviations: &PriorDeviations, rig: &RigPrior) -> Vec<f64> {
         let mut deviations = vec![0.0; self.size()];
         // P = 1/σ² with these σ, kind by kind.
         deviations[ZEROS..GAINS].fill(prior_deviations.of(ParameterKind::Zero));
@@ -127,11 +122,8 @@ impl ParameterLayout {
         for (deviation, parameter) in deviations[PHYSICAL..].iter_mut().zip(&self.physical) {
             *deviation = prior_deviations.of_one(parameter.kind(), parameter.parameter.module());
         }
-        // One share for each of the n + 1 polynomials of degree n.
-        let shares: Vec<f64> =
-            (0..=BACKGROUND_DEGREE).flat_map(|n| std::iter::repeat_n(background_share(n), n + 1)).collect();
-        for terms in deviations[self.background(0, 0)..].chunks_exact_mut(TERMS) {
-            terms.iter_mut().zip(&shares).for_each(|(deviation, share)| *deviation = background * share);
+        for (degree, at) in self.background_degrees() {
+            deviations[at] = prior_deviations.background.of(degree);
         }
         // What cannot differ is certain.
         deviations.iter().map(|deviation| (1.0 / deviation.powi(2)).min(CERTAIN)).collect()
@@ -153,6 +145,12 @@ impl ParameterLayout {
         let crosstalk = (0..CHANNELS * CHANNELS)
             .filter_map(|index| Some((self.crosstalk_kind(index)?, None, CROSSTALKS + index)));
         zeros.chain(crosstalk).chain(own).chain(physical)
+    }
+
+    /// Degree and place of each coefficient of the background: n + 1 of degree n for each map.
+    pub(crate) fn background_degrees(&self) -> impl Iterator<Item = (usize, usize)> {
+        let degrees = (0..=BACKGROUND_DEGREE).flat_map(|n| std::iter::repeat_n(n, n + 1));
+        degrees.cycle().zip(self.background(0, 0)..self.size())
     }
 
     /// The scale S of all that a load makes.

@@ -6,7 +6,7 @@
 //! Most modules are put down where they belong, and some are not. So the prior of a module's displacement is a mixture of two
 //! normal densities, as a scale mixture: a number λ scales the precision of both its coordinates, and is 1 or 1/WIDE².
 
-use crate::calibration::data::contacts::BACKGROUND_DEGREE;
+use super::background_deviations::{BackgroundDeviations, Coefficient};
 use tactpad_core::quantity::{CHANNELS, MODULES};
 
 /// Kinds of parameters that share a prior standard deviation.
@@ -107,15 +107,13 @@ pub(crate) struct PriorDeviations {
     displaced: [f64; MODULES],
     /// Those that the search began with.
     initial: [f64; KINDS],
+    /// Of the background's polynomials.
+    pub(crate) background: BackgroundDeviations,
 }
 
 impl PriorDeviations {
-    /// At the beginning, where zeros are taken off.
-    pub(crate) const TARED: Self = Self::with_zeros(ZERO_UV);
-    /// At the beginning, where they are not.
-    pub(crate) const RAW: Self = Self::with_zeros(RAW_ZERO_UV);
-
-    const fn with_zeros(zero_uv: f64) -> Self {
+    /// At the beginning: where zeros are taken off, and where they are not.
+    pub(crate) fn first(is_tared: bool) -> Self {
         let initial = [
             SHIFT_MM,
             TURN_DEG,
@@ -125,10 +123,11 @@ impl PriorDeviations {
             CROSSTALK,
             CROSSTALK,
             CROSSTALK,
-            zero_uv,
+            if is_tared { ZERO_UV } else { RAW_ZERO_UV },
             HYSTERESIS_OWN,
         ];
-        Self { deviations: initial, displaced: [1.0; MODULES], initial }
+        let background = BackgroundDeviations::first();
+        Self { deviations: initial, displaced: [1.0; MODULES], initial, background }
     }
 
     /// The same where those of stiffnesses, moduli and the plate's thickness begin with this share of what pads of all kinds have.
@@ -136,7 +135,7 @@ impl PriorDeviations {
         for kind in [ParameterKind::Stiffness, ParameterKind::PlateThickness, ParameterKind::CommonModulus]
             .map(|kind| kind as usize)
         {
-            let initial = elastic_scale * Self::TARED.initial[kind];
+            let initial = elastic_scale * Self::first(true).initial[kind];
             self.deviations[kind] *= initial / self.initial[kind];
             self.initial[kind] = initial;
         }
@@ -192,7 +191,11 @@ impl PriorDeviations {
     /// than pads do: without that bound two play operators of nearly the same small threshold, with opposite shares beyond any
     /// pad's, explain what is no hysteresis. And presses without labels do not show that a pad has less crosstalk than pads have:
     /// moduli, thickness and gains imitate a part of it, so that the parameters come out too small, and the deviation by them.
-    pub(crate) fn reestimated(&self, numbers: impl Iterator<Item = Deviating>) -> Self {
+    pub(crate) fn reestimated(
+        &self,
+        numbers: impl Iterator<Item = Deviating>,
+        background: impl Iterator<Item = Coefficient>,
+    ) -> Self {
         let mut squares = self.initial.map(|deviation| PSEUDO_COUNT * deviation * deviation);
         let mut counts = [PSEUDO_COUNT; KINDS];
         let mut displaced_mm2 = [0.0; MODULES];
@@ -211,7 +214,7 @@ impl PriorDeviations {
         *own_hysteresis = own_hysteresis.min(SHARE_DEVIATION);
         let crosstalk = &mut deviations[ParameterKind::CrosstalkUnlabelled as usize];
         *crosstalk = crosstalk.max(CROSSTALK);
-        Self { deviations, displaced, ..*self }
+        Self { deviations, displaced, background: self.background.reestimated(background), ..*self }
     }
 }
 
@@ -228,18 +231,10 @@ fn expected_factor(square: f64) -> f64 {
     (1.0 + odds * wide) / (1.0 + odds)
 }
 
-/// Prior standard deviation of a background polynomial of degree n, as a share of the whole background's. Finer features are
-/// smaller.
-pub(crate) fn background_share(n: usize) -> f64 {
-    // (1/(1 + n))/√(Σ (n + 1) (1/(1 + n))²): there are n + 1 polynomials of degree n, and all variances add up to 1.
-    let size = |n: usize| 1.0 / (1 + n) as f64;
-    let whole: f64 = (0..=BACKGROUND_DEGREE).map(|n| (n + 1) as f64 * size(n).powi(2)).sum();
-    size(n) / whole.sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::iter::empty;
 
     #[test]
     fn a_module_that_is_far_off_is_of_the_wide_part_and_the_others_are_not() {
@@ -252,7 +247,8 @@ mod tests {
             })
         };
         let numbers = || [both(0, 1.1), both(1, 0.2), both(2, 0.1)].into_iter().flatten();
-        let found = (0..20).fold(PriorDeviations::TARED, |found, _| found.reestimated(numbers()));
+        let found =
+            (0..20).fold(PriorDeviations::first(true), |found, _| found.reestimated(numbers(), empty()));
         let of = |module| found.of_one(ParameterKind::Shift, Some(module));
         assert!(of(0) > 3.0 * found.of(ParameterKind::Shift), "{found:?}");
         assert!([1, 2].iter().all(|module| of(*module) < 1.1 * found.of(ParameterKind::Shift)), "{found:?}");
@@ -272,7 +268,8 @@ mod tests {
             })
         };
         let found = |share| {
-            let of = (0..20).fold(PriorDeviations::TARED, |found, _| found.reestimated(shares(share)));
+            let of = (0..20)
+                .fold(PriorDeviations::first(true), |found, _| found.reestimated(shares(share), empty()));
             of.of(ParameterKind::OwnHysteresis)
         };
         assert!((found(0.03) - 0.03).abs() < 0.005, "{}", found(0.03));
@@ -286,7 +283,9 @@ mod tests {
                 let one = Deviating { kind, module: None, difference: share, variance: 1e-6 };
                 std::iter::repeat_n(one, 72)
             };
-            (0..20).fold(PriorDeviations::TARED, |found, _| found.reestimated(numbers())).of(kind)
+            (0..20)
+                .fold(PriorDeviations::first(true), |found, _| found.reestimated(numbers(), empty()))
+                .of(kind)
         };
         assert_eq!(found(ParameterKind::CrosstalkUnlabelled, 0.005), CROSSTALK);
         assert!(found(ParameterKind::Crosstalk, 0.005) < 0.5 * CROSSTALK);
@@ -295,7 +294,7 @@ mod tests {
 
     #[test]
     fn a_scale_of_the_deviations_is_neither_for_nor_against_a_pad() {
-        let wide = PriorDeviations::TARED;
+        let wide = PriorDeviations::first(true);
         let alike = wide.scaled(0.25);
         assert_eq!(
             [ParameterKind::Stiffness, ParameterKind::Turn].map(|kind| alike.of(kind)),
@@ -310,7 +309,7 @@ mod tests {
             difference: 0.6,
             variance: 1e-3,
         });
-        let found = wide.reestimated(stiff);
+        let found = wide.reestimated(stiff, empty());
         assert!(
             (found.scaled(0.25).of(ParameterKind::Stiffness) / found.of(ParameterKind::Stiffness) - 0.25)
                 .abs()

@@ -11,8 +11,6 @@ use tactpad_core::quantity::CHANNELS;
 /// Hyperparameters that stay fixed while the parameters are fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Settings {
-    /// Prior standard deviation of the background, as a share of each map's root mean square; zero: none.
-    pub(crate) background: f64,
     /// Thresholds of the play operators, in strains before gains; an operator with zero does nothing.
     pub(crate) thresholds_uv: [f64; PLAYS],
     /// Relaxation time of creep; zero: no creep.
@@ -39,7 +37,7 @@ impl Estimates {
     pub(crate) fn first(noise: NoisePrior, noise_time_s: f64, is_tared: bool) -> Self {
         Self {
             noise_model: NoiseModel::prior(noise, noise_time_s),
-            prior_deviations: if is_tared { PriorDeviations::TARED } else { PriorDeviations::RAW },
+            prior_deviations: PriorDeviations::first(is_tared),
             drift_uv: [DRIFT_UV; CHANNELS],
             rig: RigPrior::new(),
         }

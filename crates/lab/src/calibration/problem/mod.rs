@@ -26,6 +26,7 @@ use crate::ageing;
 use crate::calibration::data::contacts::{FieldAtPlace, Fitted, Knowledge, Maps, Measured, TERMS};
 use crate::calibration::data::plate::scale;
 use crate::calibration::data::rig::RigPrior;
+use crate::calibration::model::background_deviations::Coefficient;
 use crate::calibration::model::physical::free;
 use crate::calibration::model::prior::Prior;
 use crate::calibration::model::prior_deviations::Deviating;
@@ -175,8 +176,7 @@ impl<'f> Problem<'f> {
         for _ in 0..STEPS_MAX {
             // One Gauss-Newton step with the present hyperparameters.
             let mean = self.layout.prior_mean(self.prior, &estimates.rig);
-            let precisions =
-                self.layout.precisions(settings.background, &estimates.prior_deviations, &estimates.rig);
+            let precisions = self.layout.precisions(&estimates.prior_deviations, &estimates.rig);
             self.follow_load_path(&values, &settings);
             let GaussNewtonStep { delta, factor } = self.step(&values, &estimates, &mean, &precisions)?;
             values.iter_mut().zip(&delta).for_each(|(value, delta)| *value += delta);
@@ -205,9 +205,14 @@ impl<'f> Problem<'f> {
                 let (difference, variance) = (values[at] - mean[at], variances[at]);
                 Deviating { kind, module, difference, variance }
             });
+            let background = self.layout.background_degrees().map(|(degree, at)| Coefficient {
+                degree,
+                value: values[at],
+                variance: variances[at],
+            });
             let freedom_ratio = self.degrees_of_freedom_ratio(&precisions, &variances);
             estimates = Estimates {
-                prior_deviations: estimates.prior_deviations.reestimated(deviating),
+                prior_deviations: estimates.prior_deviations.reestimated(deviating, background),
                 noise_model: estimates.noise_model.reestimated(&residuals, freedom_ratio),
                 drift_uv: self.jumps.drift_uv(&self.layout, &values),
                 rig: self.rig_prior(&estimates.rig, &values, &variances),
@@ -328,7 +333,7 @@ impl<'f> Problem<'f> {
     /// Mean and precisions of the prior at a fit's hyperparameters.
     pub(crate) fn prior_of(&self, fit: &PosteriorFit) -> (Vec<f64>, Vec<f64>) {
         let Estimates { prior_deviations, rig, .. } = &fit.estimates;
-        let precisions = self.layout.precisions(fit.settings.background, prior_deviations, rig);
+        let precisions = self.layout.precisions(prior_deviations, rig);
         (self.layout.prior_mean(self.prior, rig), precisions)
     }
 

@@ -349,13 +349,8 @@ mod tests {
     use tactpad_numeric::random::SplitMix64;
 
     const NOISE_UV: f64 = 10.0;
-    const SETTINGS: Settings = Settings {
-        background: 0.01,
-        thresholds_uv: [0.0; PLAYS],
-        creep_time_s: 0.0,
-        noise_time_s: 0.0,
-        elastic_scale: 1.0,
-    };
+    const SETTINGS: Settings =
+        Settings { thresholds_uv: [0.0; PLAYS], creep_time_s: 0.0, noise_time_s: 0.0, elastic_scale: 1.0 };
     /// χ² of five numbers below which 95 % of all cases lie.
     const CHI_SQUARE_95: f64 = 11.0705;
 

@@ -205,8 +205,7 @@ impl Number {
         fit: &PosteriorFit,
         asked: &OptionalNumbers,
     ) -> (Vec<Self>, Vec<Pair>) {
-        let precisions =
-            layout.precisions(fit.settings.background, &fit.estimates.prior_deviations, &RigPrior::new());
+        let precisions = layout.precisions(&fit.estimates.prior_deviations, &RigPrior::new());
         let combined = combined(layout, fit, asked);
         // A triangular solve for each, some 100 in all: nothing beside one step of the fit.
         let halves: Vec<Vec<f64>> = combined.iter().map(|(.., sum)| fit.halved(sum)).collect();

@@ -283,7 +283,7 @@ fn differing(device: &Device, field: &PadField) -> Maps {
     let of_modules =
         physical.into_iter().zip(sensitivities).filter(|(it, _)| it.parameter.module().is_some());
     let (physical, sensitivities): (Vec<_>, Vec<_>) = of_modules.unzip();
-    let prior = PriorDeviations::TARED;
+    let prior = PriorDeviations::first(true);
     let mut squares: Maps = [[0.0; 3]; CHANNELS];
     let mut count = 0.0;
     for place_mm in places(f64::from(field.signals.radius_mm()), PLACES) {

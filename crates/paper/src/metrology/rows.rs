@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use tactpad_core::quantity::CHANNELS;
-use tactpad_core::tables::measured::alike::ZerosByTemperature;
+use tactpad_core::tables::measured::zero::alike::ZerosByTemperature;
 use tactpad_core::tables::measured::zero::{self, UNLOADED_N, UntouchedRows};
 use tactpad_core::tables::measured::{Label, Row, Table};
 use tactpad_numeric::statistics::median;

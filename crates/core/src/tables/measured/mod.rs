@@ -6,7 +6,6 @@
 //!
 //! As a file a table is CSV: [`mod@read`] and [`mod@write`] turn texts into tables and back. Whoever calls opens the files.
 
-pub mod alike;
 pub mod columns;
 pub mod ending;
 pub mod error;

@@ -102,8 +102,13 @@ impl Recording {
             let rows = &mut self.tared.rows[part.first..][..part.rows];
             let temperatures: Vec<Option<f64>> = rows.iter().map(|row| row.temp_c).collect();
             let zero_uv = |at: usize| thermal.zero_uv(temperatures[at]);
+            let of_zeros = |zeros: &Zeros| {
+                let values: Vec<[f64; CHANNELS]> = zeros.rows().iter().map(|at| zero_uv(*at)).collect();
+                zeros.of_channels(&values)
+            };
+            let taken = part.zeros.as_ref().map(of_zeros);
             for (at, row) in rows.iter_mut().enumerate() {
-                let taken_uv = part.zeros.as_ref().map_or([0.0; CHANNELS], |zeros| zeros.at(at, zero_uv));
+                let taken_uv = taken.as_ref().map_or([0.0; CHANNELS], |taken| taken[at]);
                 let (here_uv, gain) = (zero_uv(at), thermal.gain(row.temp_c));
                 for (k, uv) in row.uv.iter_mut().flatten().enumerate() {
                     // (s − z(T) + z₀)/(1 + α ΔT): z(T) is the zero's thermal part here, z₀ that of the zero which was taken off.
@@ -151,7 +156,7 @@ impl Recording {
             // Creep follows the strain without creep: a second round of the fixed-point iteration is near enough.
             for _ in 0..2 {
                 let crept = self.crept_by(creep, |at, is_zero| if is_zero { 0.0 } else { free_uv[at] });
-                let rows = self.tared.rows.iter().zip(self.relative(crept));
+                let rows = self.tared.rows.iter().zip(self.relative(channel, crept));
                 free_uv.iter_mut().zip(rows).for_each(|(free_uv, (row, [crept_uv]))| {
                     *free_uv = read_uv(row) - creep.added(crept_uv);
                 });
@@ -212,7 +217,7 @@ impl Recording {
     #[must_use]
     pub fn without_hysteresis(mut self, hysteresis: &Hysteresis) -> Table {
         for channel in 0..CHANNELS {
-            let lags = self.relative(self.states(channel, hysteresis, |_| None));
+            let lags = self.relative(channel, self.states(channel, hysteresis, |_| None));
             for (row, lags) in self.tared.rows.iter_mut().zip(lags) {
                 row.uv
                     .iter_mut()
@@ -233,7 +238,7 @@ impl Recording {
         let rows = &self.tared.rows;
         let mut states = vec![[0.0; PLAYS]; rows.len()];
         for _ in 0..ROUNDS {
-            states = self.relative(states);
+            states = self.relative(channel, states);
             let free_uv = |at: usize, is_zero: bool, lags: &[f64; PLAYS]| {
                 let read_uv = || {
                     rows[at].uv.filter(|_| !is_zero).map(|uv| without(uv[channel], hysteresis, channel, lags))
@@ -246,11 +251,11 @@ impl Recording {
         states
     }
 
-    /// These states relative to those of the untouched pad. What hysteresis or creep added to a row's tared channel is the sum
+    /// These states of a channel relative to those of the untouched pad. What hysteresis or creep added to a row's tared channel is the sum
     /// of shares times this.
     #[must_use]
-    pub fn relative<const N: usize>(&self, mut states: Vec<[f64; N]>) -> Vec<[f64; N]> {
-        self.parts.iter().for_each(|part| part.relative(&mut states));
+    pub fn relative<const N: usize>(&self, channel: usize, mut states: Vec<[f64; N]>) -> Vec<[f64; N]> {
+        self.parts.iter().for_each(|part| part.relative(channel, &mut states));
         states
     }
 }

@@ -96,18 +96,14 @@ impl RecordingPart {
         }
     }
 
-    /// Makes states of the recording's rows relative to those of the untouched pad, which without its reading is one at rest.
-    pub(super) fn relative<const N: usize>(&self, states: &mut [[f64; N]]) {
+    /// Makes a channel's states in the recording's rows relative to those of the untouched pad, which without its reading is one at
+    /// rest.
+    pub(super) fn relative<const N: usize>(&self, channel: usize, states: &mut [[f64; N]]) {
         let (Some(zeros), states) = (&self.zeros, &mut states[self.range()]) else { return };
-        // The others are relative to what these are now.
-        let mut of_zeros = Vec::with_capacity(zeros.rows().len());
-        for (at, is_zero) in self.places() {
-            let at = at - self.first;
-            let zero_uv = zeros.at(at, |zero| states[zero]);
-            let relative = std::array::from_fn(|term| states[at][term] - zero_uv[term]);
-            if is_zero { of_zeros.push(relative) } else { states[at] = relative }
+        let of_zeros: Vec<[f64; N]> = zeros.rows().iter().map(|at| states[*at]).collect();
+        for (state, zero) in states.iter_mut().zip(zeros.of_channel(channel, &of_zeros)) {
+            state.iter_mut().zip(zero).for_each(|(state, zero)| *state -= zero);
         }
-        zeros.rows().iter().zip(of_zeros).for_each(|(zero, state)| states[*zero] = state);
     }
 
     /// Puts the play operators' states less the strains, which follow from what stood there before, in the place of that.

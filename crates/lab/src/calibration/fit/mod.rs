@@ -13,6 +13,7 @@ use self::prepared::PreparedRecording;
 use self::search::{FitCount, LOG_EVIDENCE_GAIN, Report};
 use super::model::ParameterLayout;
 use super::noise;
+use super::problem::hyperparameters::Estimates;
 use super::problem::{PosteriorFit, Problem};
 use crate::calibration::data::contacts::{Fitted, Knowledge};
 use crate::calibration::data::earlier::EarlierCalibration;
@@ -138,7 +139,8 @@ impl Calibration {
         let creep = ParameterLayout::creep(values, settings.creep_time_s);
         let contacts = problem.compensated(values, &hysteresis, &creep);
         // What the residuals do not show: drift of the zeros, hysteresis states, the field's posterior covariance.
-        let noise = noise::with_zeros(fit.estimates.noise_model.noise, &fit.estimates.drift_uv, &hysteresis);
+        let Estimates { noise_model, drift_uv, .. } = &fit.estimates;
+        let noise = noise::with_zeros(noise_model.noise, drift_uv, problem.jumps.all.len(), &hysteresis);
         let decoder = field_error::decoder(problem, fit, noise);
         let (zero_uv, thermal_fit) = (prepared.zero_uv(fit), prepared.thermal(fit));
         let thermal = thermal_fit.map(|fit| fit.coefficients);

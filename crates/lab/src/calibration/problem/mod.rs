@@ -250,7 +250,7 @@ impl<'f> Problem<'f> {
                 let changes = states[*second].iter().zip(states[*first]).map(|(to, from)| to - from);
                 lags.iter_mut().zip(changes).for_each(|(lags, change_uv)| lags[channel] = change_uv);
             }
-            let states = self.recording.relative(states);
+            let states = self.recording.relative(channel, states);
             for (at, contact) in &mut self.contacts {
                 contact.lags.iter_mut().zip(states[*at]).for_each(|(lags, lag_uv)| lags[channel] = lag_uv);
             }
@@ -270,7 +270,7 @@ impl<'f> Problem<'f> {
             for Jump { rows: [first, second], crept_uv, .. } in &mut self.jumps.all {
                 crept_uv[channel] = states[*second][0] - states[*first][0];
             }
-            let states = self.recording.relative(states);
+            let states = self.recording.relative(channel, states);
             for (at, contact) in &mut self.contacts {
                 [contact.crept_uv[channel]] = states[*at];
             }

@@ -13,14 +13,18 @@
 //! - A decoder is fitted to light contacts, too. For it such forces are none only if the table's loads stand apart from
 //!   them, the least one being three times as large or more ([`UntouchedRows::of`]).
 //!
-//! The *zero of a row* lies between the readings of the two untouched rows around it, by their times where all rows have
-//! times, else by their places in the table; before the first and after the last it stays.
+//! The *zero of a row* lies between those of the two untouched rows around it, by their times where all rows have times, else by
+//! their places in the table; before the first and after the last it stays.
 //!
-//! - A decoder knows how the zero follows the temperature, or takes it to be constant: all untouched rows count
-//!   ([`Zeros::at`]).
+//! - A decoder knows how the zero follows the temperature, or takes it to be constant: all untouched rows count, and where their
+//!   readings are noisier than the zero drifts, the zero of each is smoothed over its neighbours ([`Drift`]).
 //! - Figures of merit do not know: untouched rows of the row's own temperature count, those of its own session first
-//!   ([`super::alike::ZerosByTemperature`]).
+//!   ([`alike::ZerosByTemperature`]).
 
+pub mod alike;
+pub mod drift;
+
+use self::drift::Drift;
 use super::{Row, Table};
 use crate::quantity::CHANNELS;
 
@@ -49,6 +53,8 @@ pub struct Zeros {
     rows: Vec<usize>,
     /// Each row's time, or its place in the table.
     places: Vec<f64>,
+    /// How each channel's zero goes from one untouched row to the next.
+    drifts: [Drift; CHANNELS],
 }
 
 /// Places of the rows in which something presses: what a decoder is fitted to.
@@ -109,7 +115,14 @@ impl Zeros {
         let is_timed = table.rows.iter().all(|row| row.t_s.is_some());
         let places = (0_u32..).zip(&table.rows);
         let places = places.map(|(place, row)| row.t_s.filter(|_| is_timed).unwrap_or(f64::from(place)));
-        (!rows.is_empty()).then(|| Self { rows, places: places.collect() })
+        let places: Vec<f64> = places.collect();
+        let here: Vec<f64> = rows.iter().map(|at| places[*at]).collect();
+        let drift = |channel: usize| {
+            let reading = |at: &usize| table.rows[*at].uv.map_or(0.0, |uv| uv[channel]);
+            Drift::of(&here, &rows.iter().map(reading).collect::<Vec<_>>())
+        };
+        let drifts = std::array::from_fn(drift);
+        (!rows.is_empty()).then_some(Self { rows, places, drifts })
     }
 
     /// The untouched rows, in order.
@@ -117,12 +130,32 @@ impl Zeros {
         &self.rows
     }
 
-    /// What is to be taken off a row, if `value` is what is to be taken off the untouched rows.
-    ///
-    /// It lies between those of the two untouched rows around it.
-    pub fn at<const N: usize>(&self, row: usize, value: impl Fn(usize) -> [f64; N]) -> [f64; N] {
-        let (before, after) = self.rows.split_at(self.rows.partition_point(|zero| *zero < row));
-        self.between(row, before.last().copied(), after.first().copied(), value).unwrap_or([0.0; N])
+    /// What is to be taken off each row of a channel, if its untouched rows read these values.
+    pub fn of_channel<const N: usize>(&self, channel: usize, values: &[[f64; N]]) -> Vec<[f64; N]> {
+        let smoothed = self.drifts[channel].smoothed(&self.here(), values);
+        let value = |zero: usize| smoothed[self.rows.partition_point(|at| *at < zero)];
+        let of_row = |row: usize| {
+            let (before, after) = self.rows.split_at(self.rows.partition_point(|zero| *zero < row));
+            self.between(row, before.last().copied(), after.first().copied(), value).unwrap_or([0.0; N])
+        };
+        (0..self.places.len()).map(of_row).collect()
+    }
+
+    /// The same for all channels.
+    pub fn of_channels(&self, values: &[[f64; CHANNELS]]) -> Vec<[f64; CHANNELS]> {
+        let mut all = vec![[0.0; CHANNELS]; self.places.len()];
+        for channel in 0..CHANNELS {
+            let own: Vec<[f64; 1]> = values.iter().map(|value| [value[channel]]).collect();
+            all.iter_mut()
+                .zip(self.of_channel(channel, &own))
+                .for_each(|(of_row, [own])| of_row[channel] = own);
+        }
+        all
+    }
+
+    /// Times or places of the untouched rows.
+    fn here(&self) -> Vec<f64> {
+        self.rows.iter().map(|at| self.places[*at]).collect()
     }
 
     /// Between the values of an untouched row before a row and one after it, as far as there are any.
@@ -145,17 +178,12 @@ impl Zeros {
 
     /// Takes the zero off the channels of each row of the table, and gives what the untouched rows read.
     pub fn tare(&self, table: &mut Table) -> Vec<(usize, [f64; CHANNELS])> {
-        let readings: Vec<_> =
-            self.rows.iter().filter_map(|at| Some((*at, table.rows.get(*at)?.uv?))).collect();
-        let read_uv = |zero: usize| {
-            let found = readings.binary_search_by_key(&zero, |(at, _)| *at);
-            found.map_or([0.0; CHANNELS], |place| readings[place].1)
-        };
-        for (at, row) in table.rows.iter_mut().enumerate() {
-            let zero_uv = self.at(at, read_uv);
+        let read_uv = |at: &usize| table.rows[*at].uv.unwrap_or_default();
+        let readings: Vec<[f64; CHANNELS]> = self.rows.iter().map(read_uv).collect();
+        for (row, zero_uv) in table.rows.iter_mut().zip(self.of_channels(&readings)) {
             row.uv.iter_mut().flatten().zip(zero_uv).for_each(|(uv, zero_uv)| *uv -= zero_uv);
         }
-        readings
+        self.rows.iter().copied().zip(readings).collect()
     }
 }
 
@@ -169,8 +197,8 @@ pub fn tared(table: &Table) -> Option<Table> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Label;
     use super::*;
+    use crate::tables::measured::Label;
 
     fn row(fz_n: f64, uv: f64) -> Row {
         Row { uv: Some([uv; CHANNELS]), ..Row::of(Label { fz_n, ..Label::default() }) }

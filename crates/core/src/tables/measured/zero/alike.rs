@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::Table;
-use super::zero::Zeros;
+use super::Zeros;
 use crate::quantity::CHANNELS;
+use crate::tables::measured::Table;
 
 /// Temperatures of one band, or of neighbouring ones, have a common zero: those closer than this have, and those twice as far apart
 /// have not.
@@ -73,9 +73,9 @@ fn nearest(bands: &Bands, row: usize, here: Option<i64>) -> [Option<usize>; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::zero::ZERO;
-    use super::super::{Label, Row};
+    use super::super::ZERO;
     use super::*;
+    use crate::tables::measured::{Label, Row};
     use tactpad_numeric::random::SplitMix64;
 
     fn row(fz_n: f64, uv: f64) -> Row {

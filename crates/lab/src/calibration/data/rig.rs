@@ -36,9 +36,9 @@ impl RigNumber {
         Self { effect, name, words, deviation, wide: WIDE, is_factor: false }
     }
 
-    /// Of a stage.
-    const fn of_stage(self) -> Self {
-        Self { wide: WIDE_OF_STAGE, ..self }
+    /// With another probability of the wide part.
+    const fn wide_with(self, wide: f64) -> Self {
+        Self { wide, ..self }
     }
 
     const fn factor(effect: Effect, name: &'static str, words: &'static str, deviation: f64) -> Self {
@@ -61,10 +61,14 @@ pub(crate) const REFERENCE_GAIN: usize = 6;
 /// In the order of the parameters. Wide deviations are those of a laboratory that was not careful here: a pad is put against
 /// stops by eye, and a six-axis sensor is calibrated to one or two percent and screwed on by hand.
 pub(crate) static RIG: [RigNumber; RIG_NUMBERS] = [
-    RigNumber::of(Effect::StageOffset, "stage_offset.x_mm", "offset of the stage along x", 0.4).of_stage(),
-    RigNumber::of(Effect::StageOffset, "stage_offset.y_mm", "offset of the stage along y", 0.4).of_stage(),
-    RigNumber::of(Effect::StageRotation, "stage_rotation.deg", "turn of the stage", 1.0).of_stage(),
-    RigNumber::factor(Effect::StageScale, "stage_scale.scale", "scale of the stage", 4e-3).of_stage(),
+    RigNumber::of(Effect::StageOffset, "stage_offset.x_mm", "offset of the stage along x", 0.4)
+        .wide_with(WIDE_OF_STAGE),
+    RigNumber::of(Effect::StageOffset, "stage_offset.y_mm", "offset of the stage along y", 0.4)
+        .wide_with(WIDE_OF_STAGE),
+    RigNumber::of(Effect::StageRotation, "stage_rotation.deg", "turn of the stage", 1.0)
+        .wide_with(WIDE_OF_STAGE),
+    RigNumber::factor(Effect::StageScale, "stage_scale.scale", "scale of the stage", 4e-3)
+        .wide_with(WIDE_OF_SCALE),
     RigNumber::of(Effect::ReferenceTilt, "reference_tilt.x_deg", "tilt of the reference about x", 1.5),
     RigNumber::of(Effect::ReferenceTilt, "reference_tilt.y_deg", "tilt of the reference about y", 1.5),
     RigNumber::factor(Effect::ReferenceGain, "reference_gain.gain", "gain of the reference", 0.015),
@@ -76,9 +80,10 @@ pub(crate) static RIG: [RigNumber; RIG_NUMBERS] = [
 /// The narrow part's deviation over the wide one's, for a laboratory that was careful.
 const NARROW: f64 = 0.1;
 /// How likely the wide part is. Of a stage it is less so: an offset is seen by eye, and what the model lacks of the plate's rim
-/// looks like a small one.
+/// looks like a small one. A leadscrew or a linear scale is right to a ten-thousandth, unless it is told to be another.
 const WIDE: f64 = 0.5;
 const WIDE_OF_STAGE: f64 = 0.05;
+const WIDE_OF_SCALE: f64 = 0.01;
 /// Contacts say something of an error from so much of the wide part's precision on.
 const LEAST_TOLD: f64 = 1e-3;
 /// Steps of the central differences by which T is differentiated: the errors are small, and T is smooth.

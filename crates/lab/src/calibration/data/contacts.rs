@@ -57,8 +57,6 @@ pub(crate) struct FieldAtPlace {
     pub(crate) sensitivity_gradients: Vec<[Maps; 2]>,
     /// The background's polynomials, each with a root mean square of 1 over the plate.
     pub(crate) terms: [f64; TERMS],
-    /// Their derivatives, per mm of x and of y.
-    pub(crate) term_gradients: [[f64; TERMS]; 2],
 }
 
 /// One measured contact.
@@ -117,9 +115,6 @@ impl FieldAtPlace {
         let jets = polynomials(sensitivities, plate_mm, place_mm);
         let values: Vec<f64> = jets.iter().map(|it| it.value).collect();
         let factors = term_factors();
-        let term = |of: fn(&Jet) -> f64, scale: f64| {
-            std::array::from_fn(|term| factors[term] * of(&jets[term]) * scale)
-        };
         let gains = field.signals.gains(place_mm[0] as f32, place_mm[1] as f32);
         Self {
             gains: gains.value,
@@ -128,8 +123,7 @@ impl FieldAtPlace {
             // Σₜ cₜ Uₜ.
             sensitivities: sensitivities.iter().map(|it| maps(it, &values, 1.0)).collect(),
             sensitivity_gradients: Vec::new(),
-            terms: term(|jet| jet.value, 1.0),
-            term_gradients: [term(|jet| jet.dx, 1.0 / plate_mm), term(|jet| jet.dy, 1.0 / plate_mm)],
+            terms: std::array::from_fn(|term| factors[term] * values[term]),
         }
     }
 }

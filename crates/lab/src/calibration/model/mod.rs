@@ -7,12 +7,16 @@
 //! eₗ = (1 + A b) Σₐ Fₐ Eₗₐ(x, y),    E = G + b ∇²G + Σⱼ wⱼ(qⱼ) ∂G/∂pⱼ,    dₗ = ρ (1 + A b) Σₐ Fₐ Dₗₐ(x, y)
 //! ```
 //!
-//! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains, crosstalk X
-//! by the law of the channels ([`tactpad_core::pad::channels`]; a test holds them against it), shares w and lags l of the play operators, creep's share c and state u, blur b, and weights w of physical parameters q ([`physical`](self::physical)). G is the simulator's field. A is what ageing takes
-//! over the measurement, and b the part of it that was still to come at the contact ([`ageing`](super::ageing)): a decoder is
-//! of the pad as it was at last. D is the background, ρ the gain of the reference: the background is in readings by newtons as
-//! written. What gains and forces multiplied would have too small a background: the most probable product of a number and hundreds of
-//! small ones has them too small. Place and force of a written label are corrected by the rig's errors ρ ([`rig`](crate::calibration::data::rig)).
+//! with zeros z, a scale S that is 1 where labels tell newtons, gains g and their temperature coefficients α, strains e before gains,
+//! crosstalk X by the law of the channels ([`tactpad_core::pad::channels`]; a test holds them against it), shares w and lags l of the
+//! play operators, creep's share c and state u, blur b, and weights w of physical parameters q ([`physical`](self::physical)). G is
+//! the simulator's field. A is what ageing takes over the measurement, and b the part of it that was still to come at the contact
+//! ([`ageing`](super::ageing)): a decoder is of the pad as it was at last. Place and force of a written label are corrected by the
+//! rig's errors ([`rig`](crate::calibration::data::rig)), of which ρ is the gain of the reference.
+//!
+//! D is the background: in readings by newtons as written, and at places as written. What gains and forces multiplied would have too
+//! small a background, as the most probable product of a number and hundreds of small ones has them too small; and at corrected
+//! places a fit would find that scale of the stage by which the background's polynomials suit best.
 
 pub(crate) mod background_deviations;
 pub(crate) mod physical;
@@ -389,11 +393,10 @@ impl ParameterLayout {
     ) -> [[f64; UNKNOWNS]; CHANNELS] {
         let maps = self.maps(values, scale, &contact.place, contact.knowledge);
         let (gain, force_n) = (Self::gain_before_ageing(values, contact), Self::force_now_n(values, contact));
-        // By the place Σₐ Fₐ ∇ of the maps; by the force the maps.
+        // By the place Σₐ Fₐ ∇ of the maps, where the background stays; by the force the maps.
         let by_place = [0, 1].map(|axis| {
             let gradient = self.strain_gradient(values, &contact.place, axis);
-            self.channel_maps(values, scale, &gradient, &contact.place.term_gradients[axis])
-                .map(|map| response(&map, &force_n))
+            self.channel_maps(values, scale, &gradient, &[0.0; TERMS]).map(|map| response(&map, &force_n))
         });
         std::array::from_fn(|channel| {
             let [fx, fy, fz] = maps[channel].map(|uv_per_n| gain * uv_per_n);

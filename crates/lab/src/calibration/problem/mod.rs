@@ -406,8 +406,13 @@ impl<'f> Problem<'f> {
             // So near the field is linear, and nothing is gained by being there.
             let [dx_mm, dy_mm] = [0, 1].map(|axis| place_mm[axis] - contact.place_mm[axis]);
             if libm::hypot(dx_mm, dy_mm) > RELOCATED_MM {
-                contact.place = Arc::new(FieldAtPlace::of(field, &self.sensitivities, plate_mm, place_mm));
-                contact.place_mm = place_mm;
+                let mut place = FieldAtPlace::of(field, &self.sensitivities, plate_mm, place_mm);
+                // Of a written contact the background is at the place as written: a stage's errors must not move it, or the fit
+                // finds those by which its polynomials suit best.
+                if contact.knowledge == Knowledge::Written {
+                    place.terms = contact.place.terms;
+                }
+                (contact.place, contact.place_mm) = (Arc::new(place), place_mm);
             }
         }
     }

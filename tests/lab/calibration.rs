@@ -546,15 +546,18 @@ fn creep_is_found_where_there_is_some() {
     let mut device = pad();
     device.behaviour.noise.additive_uv = [10.0; CHANNELS];
     let contacts = 100;
-    let creep_of = |device: &Device| Measured::unseen(device).inverse(contacts).compensation.creep;
-    assert_eq!(creep_of(&device), Relaxation::NONE);
+    let plan = plans::recommended::plan(&device.contact, 9);
+    let creep_of =
+        |device: &Device, seed| Measured::of(device, &plan, seed).inverse(contacts).compensation.creep;
+    assert_eq!(creep_of(&device, 2), Relaxation::NONE);
     device.behaviour.creep = vec![OnChannels::all(Relaxation { time_s: 8.0, share: 0.008 })];
-    let found = creep_of(&device);
-    // What 20 s add to 2 s, the plan's dwells.
-    let grown = |time_s: f64, share: f64| share * ((-2.0 / time_s).exp() - (-20.0 / time_s).exp());
-    println!("{found:?}");
-    let grown = [grown(found.time_s, found.share), grown(8.0, 0.008)];
-    assert!((grown[0] / grown[1] - 1.0).abs() < 0.3, "{found:?}");
+    // What 20 s add to 2 s, the plan's dwells, over what they truly do: of one recording two relaxation times may be as likely.
+    let grown =
+        |creep: Relaxation| creep.share * ((-2.0 / creep.time_s).exp() - (-20.0 / creep.time_s).exp());
+    let truly = grown(Relaxation { time_s: 8.0, share: 0.008 });
+    let mut found = [2, 3, 4].map(|seed| grown(creep_of(&device, seed)) / truly);
+    found.sort_by(f64::total_cmp);
+    assert!((found[1] - 1.0).abs() < 0.3, "{found:?}");
 }
 
 #[test]

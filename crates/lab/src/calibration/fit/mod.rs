@@ -140,7 +140,7 @@ impl Calibration {
         let contacts = problem.compensated(values, &hysteresis, &creep);
         // What the residuals do not show: drift of the zeros, hysteresis states, the field's posterior covariance.
         let Estimates { noise_model, drift_uv, .. } = &fit.estimates;
-        let noise = noise::with_zeros(noise_model.noise, drift_uv, problem.jumps.all.len(), &hysteresis);
+        let noise = noise::with_zeros(noise_model.noise, drift_uv, &hysteresis);
         let decoder = field_error::decoder(problem, fit, noise);
         let (zero_uv, thermal_fit) = (prepared.zero_uv(fit), prepared.thermal(fit));
         let thermal = thermal_fit.map(|fit| fit.coefficients);

@@ -94,7 +94,8 @@ pub(crate) fn fitted<'b>(
     Some(with_background(problem, plain, counted))
 }
 
-/// The same with a background, if the evidence asks for one.
+/// The same with a background: where labels tell the field, always, as no field is the simulator's; in play, if the evidence asks for
+/// one.
 fn with_background<'b>(
     problem: Problem<'b>,
     plain: PosteriorFit,
@@ -103,7 +104,8 @@ fn with_background<'b>(
     let smooth = problem.clone().with_background();
     // It does not go on from the plain fit, whose poses, moduli and rig have taken up what is none of theirs.
     let found = counted.fitted(&smooth, plain.settings, None, Effort::FULL);
-    match found.filter(|found| found.log_evidence > plain.log_evidence) {
+    let is_asked = |it: &PosteriorFit| !problem.layout.is_play || it.log_evidence > plain.log_evidence;
+    match found.filter(is_asked) {
         Some(found) => (smooth, found),
         None => (problem, plain),
     }

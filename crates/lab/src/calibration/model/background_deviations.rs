@@ -8,8 +8,8 @@ use crate::calibration::data::contacts::BACKGROUND_DEGREE;
 const DEGREES: usize = BACKGROUND_DEGREE + 1;
 /// The whole background that the search begins with, as a share of each map's root mean square.
 const FIRST: f64 = 0.01;
-/// Least deviation of a whole background: it never vanishes.
-const LEAST: f64 = 5e-4;
+/// Least deviation of a whole background, which never vanishes: the simulator is 0.44 % off from an independent solution.
+const LEAST: f64 = 4e-3;
 /// Degrees of freedom that the size of all degrees counts for in each.
 const POOLED_FREEDOM: f64 = 6.0;
 
@@ -49,7 +49,8 @@ impl BackgroundDeviations {
     /// τₙ² = (κ σ² sₙ² + Σ β²)/(κ + Σ γ),    σ² = Σ β²/sₙ²/Σ γ,    γ = 1 − v/τₙ²
     /// ```
     ///
-    /// where the share s is that of a degree in a background of size 1, and γ how far the contacts determine a coefficient.
+    /// where the share s is that of a degree in a background of size 1, and γ how far the contacts determine a coefficient; and at
+    /// least [`LEAST`] of that share.
     pub(crate) fn reestimated(&self, coefficients: impl Iterator<Item = Coefficient>) -> Self {
         let mut sums = [[0.0; 2]; DEGREES];
         for Coefficient { degree, value, variance } in coefficients {
@@ -58,10 +59,11 @@ impl BackgroundDeviations {
         }
         let told: f64 = sums.iter().map(|[_, freedom]| freedom).sum();
         let pooled = sums.iter().enumerate().map(|(n, [square, _])| square / share(n).powi(2)).sum::<f64>();
-        let size = (pooled / told.max(f64::MIN_POSITIVE)).max(LEAST * LEAST);
+        let size = pooled / told.max(f64::MIN_POSITIVE);
         Self(std::array::from_fn(|n| {
             let [square, freedom] = sums[n];
-            ((POOLED_FREEDOM * size * share(n).powi(2) + square) / (POOLED_FREEDOM + freedom)).sqrt()
+            let own = (POOLED_FREEDOM * size * share(n).powi(2) + square) / (POOLED_FREEDOM + freedom);
+            own.sqrt().max(LEAST * share(n))
         }))
     }
 }
@@ -101,12 +103,12 @@ mod tests {
         for (degree, wanted) in smooth.iter().enumerate().take(4) {
             assert!((of.of(degree) / wanted / 1.2 - 1.0).abs() < 0.25, "{degree}: {of:?}");
         }
-        assert!(of.of(5) < 0.3 * BackgroundDeviations::first().of(5), "{of:?}");
+        assert!(of.of(5) < 0.5 * BackgroundDeviations::first().of(5), "{of:?}");
     }
 
     #[test]
     fn none_becomes_small_and_does_not_vanish() {
         let of = found([0.0; DEGREES], 1e-3).whole();
-        assert!((0.5 * LEAST..2e-3).contains(&of), "{of}");
+        assert!((of / LEAST - 1.0).abs() < 1e-9, "{of}");
     }
 }

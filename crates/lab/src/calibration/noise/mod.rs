@@ -109,21 +109,15 @@ pub(crate) fn from_residuals(residuals: &[Vec<SquaredResidual>; CHANNELS], prior
     noise
 }
 
-/// The noise with the variance of the zeros, which drift by `drift_uv` from one reading of the untouched pad to the next, and of
-/// the hysteresis states. All contacts between two readings share these errors, so of n such `intervals` the residuals show all but
-/// an nth part, which is taken up by the zero of the fit.
-pub(crate) fn with_zeros(
-    noise: Noise,
-    drift_uv: &[f64; CHANNELS],
-    intervals: usize,
-    hysteresis: &Hysteresis,
-) -> Noise {
+/// The noise with the variance of the zeros, whose readings differ by `drift_uv` from one to the next, and of the hysteresis states.
+/// All contacts between two readings share these errors, so the residuals show only a part of them.
+pub(crate) fn with_zeros(noise: Noise, drift_uv: &[f64; CHANNELS], hysteresis: &Hysteresis) -> Noise {
     let kept_uv = |k: usize| hysteresis.iter().map(|plays| plays[k].share * plays[k].threshold).sum::<f64>();
-    // A drift D between two zeros has the variance of both, D² = 2 Z². A zero interpolated between two has Z² (w² + (1 − w)²),
-    // on average over w ⅔ Z² = D²/3.
+    // A difference D of two zeros has the variance of both beside that of two readings, D² = 2 Z² + 2 σ². A zero interpolated between
+    // two has Z² (w² + (1 − w)²), on average over w ⅔ Z².
     let variance = |k: usize| {
         noise.additive_uv[k].powi(2)
-            + drift_uv[k].powi(2) / 3.0 / intervals.max(1) as f64
+            + (drift_uv[k].powi(2) / 2.0 - noise.additive_uv[k].powi(2)).max(0.0) * 2.0 / 3.0
             + (HYSTERESIS_STATE_ERROR * kept_uv(k)).powi(2)
     };
     Noise { additive_uv: std::array::from_fn(|k| variance(k).sqrt()), ..noise }

@@ -13,8 +13,13 @@ const MISFIT_MAX: f64 = 23.51;
 /// Chi-square of three numbers that a hundredth exceeds: what is left without a channel explains the rest.
 const REST_MAX: f64 = 11.34;
 
-/// It does so, too, if it is less than this share of what is left with the channel: no pad is quite as it was calibrated.
-const REST_SHARE: f64 = 0.1;
+/// It does so, too, if it is less than this share of what is left with the channel: no pad is quite as it was calibrated. Two fingers
+/// leave as little in one pair of fifty.
+const REST_SHARE: f64 = 0.03;
+
+/// The same where nobody presses and a zero is sought: there a finger that has left is held if a channel that is off is not seen, and
+/// no second one is lost.
+const REST_SHARE_AT_REST: f64 = 0.1;
 
 /// A channel is named if without it the rest is a hundred times as likely as without any other: χ² is lower by 2 ln 100.
 const NAMED: f64 = 9.21;
@@ -92,7 +97,9 @@ pub(super) fn judge(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -
     if chi_square(&mean.left_uv, weights) <= MISFIT_MAX {
         return Finding::Fine;
     }
-    let Some((channel, fit)) = odd_one_out(inverse, mean, weights) else { return Finding::Unexplained };
+    let Some((channel, fit)) = odd_one_out(inverse, mean, weights, REST_SHARE) else {
+        return Finding::Unexplained;
+    };
     if reads(channel, &mean.uv, weights) < SILENT {
         Finding::Silent(channel)
     } else if is_far_off(inverse, channel, mean, &fit) {
@@ -113,7 +120,7 @@ pub fn load_without_stray_n(decoder: &Decoder, strain: &Strain) -> f32 {
         let mean = Mean::of(strain, &inverse.explain(strain)?);
         let weights = weights(inverse, &mean, &[0.0; CHANNELS]);
         let is_one_finger = chi_square(&mean.left_uv, &weights) <= MISFIT_MAX;
-        odd_one_out(inverse, &mean, &weights).filter(|_| !is_one_finger)
+        odd_one_out(inverse, &mean, &weights, REST_SHARE_AT_REST).filter(|_| !is_one_finger)
     };
     fit_without_stray().map_or_else(|| decoder.load_n(strain), |(_, fit)| fit.force_n[2] as f32)
 }
@@ -124,8 +131,14 @@ pub(super) fn is_far_from_a_finger(mean: &Mean) -> bool {
     most(&mean.left_uv) > STRAY_SHARE * most(&mean.uv)
 }
 
-/// The channel without which one finger explains the others, and what that is, if it shows which channel that is.
-fn odd_one_out(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -> Option<(usize, FitWithout)> {
+/// The channel without which one finger explains the others but for `rest_share` of what is left with it, and what that finger is; if it
+/// shows which channel that is.
+fn odd_one_out(
+    inverse: &Inverse,
+    mean: &Mean,
+    weights: &[f64; CHANNELS],
+    rest_share: f64,
+) -> Option<(usize, FitWithout)> {
     let Mean { uv, left_uv, .. } = mean;
     // χ² of the others at their own best contact, which has one degree of freedom less.
     let fits: [_; CHANNELS] = std::array::from_fn(|channel| inverse.without(channel, uv, weights));
@@ -134,7 +147,7 @@ fn odd_one_out(inverse: &Inverse, mean: &Mean, weights: &[f64; CHANNELS]) -> Opt
         let channels = (0..CHANNELS).filter(|channel| is_asked(*channel));
         channels.min_by(|one, other| misfit(*one).total_cmp(&misfit(*other)))
     };
-    let rest_max = REST_MAX.max(REST_SHARE * chi_square(left_uv, weights));
+    let rest_max = REST_MAX.max(rest_share * chi_square(left_uv, weights));
     let best = least(&|_| true).filter(|channel| misfit(*channel) < rest_max)?;
     let silent = least(&|channel| reads(channel, uv, weights) < SILENT)
         .filter(|channel| misfit(*channel) < REST_MAX.min(misfit(best) + SILENCE));

@@ -11,14 +11,14 @@ pub(crate) mod checks;
 pub(crate) mod gate;
 pub(crate) mod prediction;
 
-use self::checks::{clipping, clock, dead, intermittent, mains, missing, rates, steps, stuck, wiring};
+use self::checks::{clipping, clock, dead, intermittent, mains, missing, steps, stuck, wiring};
 pub(super) use self::gate::Gate;
 use crate::effect::Effect;
 use tactpad_inference::observations::Observations;
 
 type Check = fn(&mut Gate);
 /// Checks of the table, in their order: times before series, codes before anything that calculates.
-const OF_TABLE: [Check; 4] = [clock::check, missing::check, stuck::check, rates::check];
+const OF_TABLE: [Check; 5] = [clock::check, missing::check, stuck::check, stuck::held, clock::apart];
 /// Checks of channels and electronics: wires before whatever holds a channel against its own model.
 const OF_CHANNELS: [Check; 6] =
     [dead::check, wiring::check, clipping::check, intermittent::check, steps::check, mains::check];

@@ -4,11 +4,14 @@
 //! one time the first has weight. A clock that hardly ever moves tells no order, and is only reported.
 
 use crate::diagnosis::gatekeepers::gate::{Gate, rows_text};
+use tactpad_numeric::statistics::{Line, deviation};
 
 /// So many rows that are earlier than one before them came late; of more, the clock was set back.
 const LATE_MAX: usize = 8;
 /// If more than this part of a series repeats its times, the clock is coarse, not the row doubled.
 const DOUBLED_MAX: f64 = 0.1;
+/// The offset between the labels' clock and the channels' shows if it is this part of the time between two rows.
+const APART: f64 = 0.5;
 
 pub(crate) fn check(gate: &mut Gate) {
     let mut order: Vec<usize> = (0..gate.observations.rows()).collect();
@@ -99,5 +102,32 @@ fn doubled(gate: &mut Gate) {
             rows_text(coarse)
         );
         gate.notice("time", None, detail);
+    }
+}
+
+/// Holds `label_t_s` against `t_s`.
+pub(crate) fn apart(gate: &mut Gate) {
+    let times: Vec<[f64; 2]> = gate
+        .observations
+        .samples
+        .iter()
+        .filter_map(|sample| Some([sample.t_s?, sample.label_t_s?]))
+        .collect();
+    let mut steps: Vec<f64> =
+        times.windows(2).map(|pair| pair[1][0] - pair[0][0]).filter(|by| *by > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    let Some(step) = steps.get(steps.len() / 2).copied() else { return };
+    let apart: Vec<[f64; 2]> = times.iter().map(|[t, label]| [*t, label - t]).collect();
+    let [Some(first), Some(last)] = [times.first(), times.last()] else { return };
+    let line = Line::through(&apart);
+    let [begin, end] = [first, last].map(|[t, _]| line.at(*t));
+    let left: Vec<f64> = apart.iter().map(|[t, by]| by - line.at(*t)).collect();
+    if begin.abs().max(end.abs()) > APART * step {
+        let detail = format!(
+            "label_t_s is {begin:.4} s from t_s at the beginning and {end:.4} s at the end, beside a scatter of {:.4} s; rows are \
+             taken as they stand; merge the two recordings by one clock",
+            deviation(&left)
+        );
+        gate.notice("clocks", None, detail);
     }
 }

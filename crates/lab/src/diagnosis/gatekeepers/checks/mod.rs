@@ -8,7 +8,6 @@ pub(crate) mod intermittent;
 mod line;
 pub(crate) mod mains;
 pub(crate) mod missing;
-pub(crate) mod rates;
 pub(crate) mod steps;
 pub(crate) mod stuck;
 pub(crate) mod wiring;

@@ -10,6 +10,10 @@ use tactpad_numeric::statistics::median;
 const MOVES: f64 = 0.1;
 /// A channel that repeats in more than this part of its rows is held, not stuck.
 const HELD: f64 = 0.5;
+/// Of such a channel's changes, so many come after one and the same number of rows.
+const REGULAR: f64 = 0.8;
+/// Fewest changes to tell that.
+const CHANGES_MIN: usize = 10;
 
 pub(crate) fn check(gate: &mut Gate) {
     for channel in 0..gate.channels() {
@@ -29,6 +33,36 @@ pub(crate) fn check(gate: &mut Gate) {
         gate.mask(channel, &rows);
         gate.notice("stuck", Some(channel), detail);
     }
+}
+
+/// Channels that are sampled less often than the table has rows.
+pub(crate) fn held(gate: &mut Gate) {
+    (0..gate.channels()).for_each(|channel| keep_first(gate, channel));
+}
+
+/// Keeps the first of the rows over which a channel is held.
+fn keep_first(gate: &mut Gate, channel: usize) {
+    let readings = &gate.observations.readings[channel];
+    let told = gate.told(channel);
+    let runs: Vec<&[usize]> = told.chunk_by(|one, other| readings[*one] == readings[*other]).collect();
+    // The first and the last may be cut off.
+    let lengths: Vec<usize> = runs.iter().map(|run| run.len()).skip(1).rev().skip(1).collect();
+    let count = |length: usize| lengths.iter().filter(|it| **it == length).count();
+    let Some(every) = lengths.iter().copied().max_by_key(|length| count(*length)) else { return };
+    let is_held =
+        every > 1 && lengths.len() >= CHANGES_MIN && count(every) as f64 >= REGULAR * lengths.len() as f64;
+    if !is_held {
+        return;
+    }
+    let repeats: Vec<usize> = runs.iter().flat_map(|run| run[1..].to_vec()).collect();
+    let detail = format!(
+        "{} changes only at one row in {every}: it is sampled less often than the table has rows; the {} that repeat a reading \
+         have no weight; write each channel at its own times",
+        gate.name(channel),
+        rows_text(repeats.len())
+    );
+    gate.mask(channel, &repeats);
+    gate.notice("rates", Some(channel), detail);
 }
 
 /// The stretches in which a channel is stuck.

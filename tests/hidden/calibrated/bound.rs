@@ -1,7 +1,8 @@
 //! How near the decoder comes to the Cramér–Rao bound on pads whose field is off smoothly from any simulator's, seed by seed.
 //!
 //! The bound is that of the table at hand: unseen contacts are read once, with the noise of their readings, by somebody who
-//! knows field, gains and leaks. Its mean errors are √(2/π) deviations.
+//! knows field, gains and leaks. Its mean errors are √(2/π) deviations. Of few labels it is that of somebody who knows what pads
+//! are drawn from, and of this one what its labels tell ([`Learned`]).
 
 use std::f64::consts::FRAC_2_PI;
 use std::ops::RangeInclusive;
@@ -9,6 +10,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::judged::{Decoded, Summary, decoded_by};
+use super::learned::{Learned, inverse};
 use super::memory::Memory;
 use super::pad::{Changes, Wiring, full_scale, noise_uv, plan, recorded};
 use crate::background::Smooth;
@@ -32,6 +34,7 @@ use tactpad::tables::recording::Recording;
 pub(super) struct Background {
     /// By channel and axis, with its size in µV/N.
     maps: Vec<(Smooth, f64)>,
+    pub(super) length_mm: f64,
 }
 
 impl Background {
@@ -52,7 +55,12 @@ impl Background {
                 (Smooth::new(length_mm, random), share * rms)
             })
             .collect();
-        Self { maps }
+        Self { maps, length_mm }
+    }
+
+    /// Deviation of a map, µV/N.
+    pub(super) fn deviation(&self, channel: usize, axis: usize) -> f64 {
+        self.maps[3 * channel + axis].1
     }
 
     /// What it adds to the channels, µV.
@@ -65,61 +73,74 @@ impl Background {
     }
 }
 
-/// Mean errors of place (mm) and force (N) at the bound.
-fn bound(contacts: &[Contact], table: &Table, background: &Background, wiring: &Wiring) -> [f64; 2] {
-    let read = |numbers: [f64; 5]| {
+/// A pad with all that is hidden of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hidden<'h> {
+    pub(super) table: &'h Table,
+    pub(super) background: &'h Background,
+    pub(super) wiring: &'h Wiring,
+}
+
+impl Hidden<'_> {
+    /// The channels' strains, without gains and leaks.
+    pub(super) fn strain(&self, contact: &Contact) -> [f64; 9] {
+        let mut strain = signals(&self.table.at(contact.place), contact.force);
+        strain.iter_mut().zip(self.background.uv(contact)).for_each(|(strain, uv)| *strain += uv);
+        strain
+    }
+
+    /// What it reads beyond its zeros.
+    fn read(&self, numbers: [f64; 5]) -> [f64; 9] {
         let [x, y, fx, fy, fz] = numbers;
-        let contact = Contact { place: [x, y], force: [fx, fy, fz] };
-        let mut strain = signals(&table.at(contact.place), contact.force);
-        strain.iter_mut().zip(background.uv(&contact)).for_each(|(strain, uv)| *strain += uv);
-        wiring.beyond_zero(&strain)
-    };
-    let mut sums = [0.0; 2];
-    for contact in contacts {
+        self.wiring.beyond_zero(&self.strain(&Contact { place: [x, y], force: [fx, fy, fz] }))
+    }
+
+    /// Derivatives of the channels by x, y, Fx, Fy, Fz, and the variances of a reading's noise.
+    pub(super) fn linearised(&self, contact: &Contact) -> ([[f64; 9]; 5], [f64; 9]) {
         let Contact { place: [x, y], force: [fx, fy, fz] } = *contact;
         let numbers = [x, y, fx, fy, fz];
-        let weights = read(numbers).map(|uv| noise_uv(uv).powi(-2));
-        let slopes: [[f64; 9]; 5] = std::array::from_fn(|axis| {
+        let slopes = std::array::from_fn(|axis| {
             let step = 1e-3;
             let [below, above] = [-step, step].map(|by| {
                 let mut moved = numbers;
                 moved[axis] += by;
-                read(moved)
+                self.read(moved)
             });
             std::array::from_fn(|channel| (above[channel] - below[channel]) / (2.0 * step))
         });
-        // (JᵀWJ)⁻¹
-        let information: [[f64; 5]; 5] = std::array::from_fn(|i| {
-            std::array::from_fn(|j| (0..9).map(|k| slopes[i][k] * weights[k] * slopes[j][k]).sum())
-        });
-        let variances = inverse_diagonal(information);
-        let mean = |axes: std::ops::Range<usize>| {
-            let count = axes.len() as f64;
-            axes.map(|axis| (FRAC_2_PI * variances[axis]).sqrt()).sum::<f64>() / count
-        };
-        sums[0] += mean(0..2);
-        sums[1] += mean(2..5);
+        (slopes, self.read(numbers).map(|uv| noise_uv(uv).powi(2)))
     }
-    sums.map(|sum| sum / contacts.len() as f64)
-}
 
-/// The diagonal of a matrix's inverse, by Gauss and Jordan's elimination.
-fn inverse_diagonal(mut matrix: [[f64; 5]; 5]) -> [f64; 5] {
-    let mut inverse: [[f64; 5]; 5] =
-        std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
-    for pivot in 0..5 {
-        let own = matrix[pivot][pivot];
-        matrix[pivot] = matrix[pivot].map(|value| value / own);
-        inverse[pivot] = inverse[pivot].map(|value| value / own);
-        for row in (0..5).filter(|row| *row != pivot) {
-            let factor = matrix[row][pivot];
-            for column in 0..5 {
-                matrix[row][column] -= factor * matrix[pivot][column];
-                inverse[row][column] -= factor * inverse[pivot][column];
-            }
+    /// Mean errors of place (mm) and force (N) at the bound, with what is not known of the pad.
+    fn bound(&self, contacts: &[Contact], unknown: impl Fn(&Contact) -> [[f64; 9]; 9]) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        for contact in contacts {
+            let (slopes, variances) = self.linearised(contact);
+            let mut covariance = unknown(contact);
+            (0..9).for_each(|channel| covariance[channel][channel] += variances[channel]);
+            let weights = inverse(covariance);
+            // (JᵀWJ)⁻¹
+            let information: [[f64; 5]; 5] = std::array::from_fn(|i| {
+                std::array::from_fn(|j| {
+                    let weighted =
+                        weights.map(|row| row.iter().zip(slopes[j]).map(|(w, slope)| w * slope).sum());
+                    slopes[i]
+                        .iter()
+                        .zip(weighted)
+                        .map(|(slope, weighted): (&f64, f64)| slope * weighted)
+                        .sum()
+                })
+            });
+            let of = inverse(information);
+            let mean = |axes: std::ops::Range<usize>| {
+                let count = axes.len() as f64;
+                axes.map(|axis| (FRAC_2_PI * of[axis][axis]).sqrt()).sum::<f64>() / count
+            };
+            sums[0] += mean(0..2);
+            sums[1] += mean(2..5);
         }
+        sums.map(|sum| sum / contacts.len() as f64)
     }
-    std::array::from_fn(|axis| inverse[axis][axis])
 }
 
 /// What came of a seed: errors over the bound, and the share in the regions.
@@ -130,7 +151,12 @@ struct Outcome {
     place: f64,
     force: f64,
     covered: f64,
+    /// Errors over the bound that knows no more than the labels tell; 0 where that takes too long.
+    learned: [f64; 2],
 }
+
+/// Of more labels the bound that has to learn takes too long, and is hardly another one.
+const LEARNED_MAX: usize = 100;
 
 fn outcome(contacts: usize, share: f64, length_mm: f64, seed: u64) -> Outcome {
     let wiring = Wiring::drawn_wide(seed);
@@ -149,17 +175,24 @@ fn outcome(contacts: usize, share: f64, length_mm: f64, seed: u64) -> Outcome {
         unseen.truths.iter().copied().filter(|contact| contact.force != [0.0; 3]).collect();
     let decoded: Vec<Decoded> = decoded_by(&decoder, unseen.measured.csv().as_bytes(), &unseen.truths);
     let found = Summary::of(&decoded, |_| true);
-    let [place_mm, force_n] = bound(&loaded, &NOMINAL, &background, &wiring);
-    let (place, force) = (found.place_mm / place_mm, found.force_n / force_n);
+    let hidden = Hidden { table: &NOMINAL, background: &background, wiring: &wiring };
+    let over = |[place_mm, force_n]: [f64; 2]| [found.place_mm / place_mm, found.force_n / force_n];
+    let [place, force] = over(hidden.bound(&loaded, |_| [[0.0; 9]; 9]));
+    let learned = if contacts <= LEARNED_MAX {
+        let learned = Learned::of(hidden, &known.truths);
+        over(hidden.bound(&loaded, |contact| learned.unknown(contact)))
+    } else {
+        [0.0; 2]
+    };
     println!(
         "{contacts} labels, {:.1} % of {length_mm} mm, seed {seed}: {:.3} mm ({place:.2} of the bound), {:.4} N ({force:.2}), {:.3} in \
-         the regions",
+         the regions, over what labels tell {learned:.2?}",
         100.0 * share,
         found.place_mm,
         found.force_n,
         found.covered
     );
-    Outcome { seed, place, force, covered: found.covered }
+    Outcome { seed, place, force, covered: found.covered, learned }
 }
 
 /// What `adapt --method inverse` writes, without the names that it gives to causes beside.
@@ -234,13 +267,21 @@ fn fields_that_are_off_smoothly_cost_little() {
 }
 
 #[test]
-#[ignore = "proof: 400 s: backgrounds of other sizes and lengths, and fewer labels"]
+#[ignore = "proof: 60 s: backgrounds of other sizes and lengths, and fewer labels"]
 fn other_smooth_errors_cost_little() {
     for (contacts, share, length_mm) in
-        [(648, 0.0, 14.0), (648, 0.005, 20.0), (648, 0.03, 10.0), (73, 0.015, 14.0), (20, 0.015, 14.0)]
+        [(648, 0.0, 14.0), (648, 0.005, 20.0), (73, 0.015, 14.0), (20, 0.015, 14.0)]
     {
         let outcomes = outcomes(contacts, share, length_mm, 441..=444);
         pooled(&outcomes);
         assert!(outcomes.iter().all(|it| it.covered >= COVERED_LEAST), "{outcomes:?}");
     }
+}
+
+#[test]
+#[ignore = "proof: 30 s: misses its goal on one pad of four, as docs/decoding.md says: a background that is larger and finer"]
+fn a_large_and_fine_error_is_covered() {
+    let outcomes = outcomes(648, 0.03, 10.0, 441..=444);
+    pooled(&outcomes);
+    assert!(outcomes.iter().all(|it| it.covered >= COVERED_LEAST), "{outcomes:?}");
 }

@@ -9,6 +9,7 @@ mod at_home;
 mod bound;
 mod cases;
 mod judged;
+mod learned;
 mod memory;
 mod pad;
 mod report;

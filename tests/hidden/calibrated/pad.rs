@@ -25,18 +25,18 @@ const DWELLS_S: [f64; 2] = [2.0, 20.0];
 const BETWEEN_ZEROS: usize = 24;
 /// Deviation of the gains from 1.
 const GAIN: f64 = 0.1;
-const WIDE_GAIN: f64 = 0.25;
+pub(super) const WIDE_GAIN: f64 = 0.25;
 /// Leaks from channel to channel: how many, and how large.
 const LEAKS: usize = 10;
-const LEAK: f64 = 0.015;
+pub(super) const LEAK: f64 = 0.015;
 /// What bridges are out of balance by, in µV.
 const OFFSET_UV: f64 = 300.0;
 /// Noise, new for each contact: a share of the signal, and µV.
 const NOISE: f64 = 0.013;
 const NOISE_UV: f64 = 5.0;
 /// What the rig's labels are off by, along each axis.
-const LABEL_MM: f64 = 0.05;
-const LABEL_N: f64 = 0.01;
+pub(super) const LABEL_MM: f64 = 0.05;
+pub(super) const LABEL_N: f64 = 0.01;
 
 /// What the wires make of the strains.
 #[derive(Debug, Clone)]

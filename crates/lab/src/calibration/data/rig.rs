@@ -94,6 +94,16 @@ const STEP: f64 = 1e-4;
 pub(crate) struct RigPrior {
     pub(crate) mean: [f64; RIG_NUMBERS],
     pub(crate) precision: [f64; RIG_NUMBERS],
+    /// ln of how probable the mixtures make what the contacts say, over how probable these make it.
+    pub(crate) log_odds: f64,
+}
+
+/// A normal prior that stands for a mixture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct MatchedPrior {
+    mean: f64,
+    precision: f64,
+    log_odds: f64,
 }
 
 impl RigPrior {
@@ -102,6 +112,7 @@ impl RigPrior {
         Self {
             mean: [0.0; RIG_NUMBERS],
             precision: std::array::from_fn(|at| 1.0 / RIG[at].deviation_of_prior().powi(2)),
+            log_odds: 0.0,
         }
     }
 
@@ -113,27 +124,33 @@ impl RigPrior {
             let (mean, precision) = (self.mean[at], self.precision[at]);
             let wide = RIG[at].deviation;
             if told < LEAST_TOLD / (wide * wide) {
-                return (0.0, 1.0 / RIG[at].deviation_of_prior().powi(2));
+                let precision = 1.0 / RIG[at].deviation_of_prior().powi(2);
+                return MatchedPrior { mean: 0.0, precision, log_odds: 0.0 };
             }
             let by_contacts = (values[at] / variances[at] - precision * mean) / told;
             matched(told.recip(), by_contacts, wide, RIG[at].wide)
         };
-        let all: [(f64, f64); RIG_NUMBERS] = std::array::from_fn(of);
-        Self { mean: all.map(|(mean, _)| mean), precision: all.map(|(_, precision)| precision) }
+        let all: [MatchedPrior; RIG_NUMBERS] = std::array::from_fn(of);
+        Self {
+            mean: all.map(|it| it.mean),
+            precision: all.map(|it| it.precision),
+            log_odds: all.iter().map(|it| it.log_odds).sum(),
+        }
     }
 }
 
-/// Mean and precision of the normal prior that leaves the posterior moments of the mixture, where the contacts alone say m
-/// with the variance s².
+/// The normal prior that leaves the posterior moments of the mixture, where the contacts alone say m with the variance s².
 ///
 /// ```text
 /// part i: weight ∝ πᵢ N(m; 0, s² + σᵢ²), mean mᵢ = m σᵢ²/(s² + σᵢ²), variance vᵢ = s² σᵢ²/(s² + σᵢ²)
 /// ```
-fn matched(variance: f64, told: f64, wide: f64, probability: f64) -> (f64, f64) {
+fn matched(variance: f64, told: f64, wide: f64, probability: f64) -> MatchedPrior {
+    // ln N(m; μ, v), but for a constant.
+    let log_density = |mean: f64, whole: f64| -0.5 * ((told - mean).powi(2) / whole + libm::log(whole));
     let parts = [NARROW * wide, wide].map(|deviation| {
         let whole = variance + deviation * deviation;
         let share = deviation * deviation / whole;
-        (-0.5 * (told * told / whole + libm::log(whole)), told * share, variance * share)
+        (log_density(0.0, whole), told * share, variance * share)
     });
     // Σᵢ wᵢ mᵢ, and Σᵢ wᵢ (vᵢ + mᵢ²) less its square.
     let odds = (1.0 - probability) / probability;
@@ -145,10 +162,15 @@ fn matched(variance: f64, told: f64, wide: f64, probability: f64) -> (f64, f64) 
     let left = square - mean * mean;
     // The posterior's precision less that of the contacts; a prior that would widen it is the wide part.
     let precision = 1.0 / left - 1.0 / variance;
-    if precision <= 1.0 / (wide * wide) {
-        return (0.0, 1.0 / (wide * wide));
-    }
-    ((mean / left - told / variance) / precision, precision)
+    let (mean, precision) = if precision <= 1.0 / (wide * wide) {
+        (0.0, 1.0 / (wide * wide))
+    } else {
+        ((mean / left - told / variance) / precision, precision)
+    };
+    // ln Σᵢ πᵢ N(m; 0, s² + σᵢ²), by that of the wide part and its weight.
+    let log_mixture = parts[1].0 + libm::log(probability / of_wide);
+    let log_odds = log_mixture - log_density(mean, variance + 1.0 / precision);
+    MatchedPrior { mean, precision, log_odds }
 }
 
 /// The rig's errors by these values of its parameters.
@@ -255,8 +277,13 @@ mod tests {
             });
             let mean = sums[1] / sums[0];
             let left = sums[2] / sums[0] - mean * mean;
-            let (of_prior, precision) = matched(variance, told, wide, 0.3);
+            let MatchedPrior { mean: of_prior, precision, log_odds } = matched(variance, told, wide, 0.3);
             let whole = precision + 1.0 / variance;
+            // ln of the mixture's integral over that of the normal prior.
+            let spread = variance + 1.0 / precision;
+            let normal = -0.5 * ((told - of_prior).powi(2) / spread + spread.ln());
+            let mixture = (1e-4 * sums[0] / std::f64::consts::TAU.sqrt()).ln();
+            assert!((log_odds - (mixture - normal)).abs() < 1e-3, "{told}: {log_odds}");
             if precision > 1.01 / (wide * wide) {
                 assert!((whole * left - 1.0).abs() < 1e-3, "{told}: {whole} {left}");
                 let found = (precision * of_prior + told / variance) / whole;

@@ -54,7 +54,7 @@ impl<'r> FitCount<'r> {
             + 1
             + prior.thresholds_uv.iter().map(search).sum::<usize>()
             + CREEP_TIMES_S.len()
-            + 1
+            + 2
     }
 
     /// Hears of so many more.
@@ -102,8 +102,12 @@ fn with_background<'b>(
     counted: &FitCount<'_>,
 ) -> (Problem<'b>, PosteriorFit) {
     let smooth = problem.clone().with_background();
-    // It does not go on from the plain fit, whose poses, moduli and rig have taken up what is none of theirs.
-    let found = counted.fitted(&smooth, plain.settings, None, Effort::FULL);
+    // From the plain fit, whose poses, moduli and rig may have taken up what is the background's, and without it, where the background
+    // may take up what is theirs.
+    let tried = |from| counted.fitted(&smooth, plain.settings, from, Effort::FULL);
+    let (one, other) = rayon::join(|| tried(None), || tried(Some(&plain)));
+    let found =
+        one.into_iter().chain(other).max_by(|one, other| one.log_evidence.total_cmp(&other.log_evidence));
     let is_asked = |it: &PosteriorFit| !problem.layout.is_play || it.log_evidence > plain.log_evidence;
     match found.filter(is_asked) {
         Some(found) => (smooth, found),

@@ -37,7 +37,7 @@ use crate::calibration::data::rig::{REFERENCE_GAIN, RIG_NUMBERS, RigPrior};
 use tactpad_core::pipeline::compensation::hysteresis::{Hysteresis, PLAYS};
 use tactpad_core::pipeline::contact::inverse::CROSSTALK_MAX;
 use tactpad_core::pipeline::contact::uncertainty::UNKNOWNS;
-use tactpad_core::quantity::CHANNELS;
+use tactpad_core::quantity::{CHANNELS, MODULES};
 use tactpad_numeric::memory::{PlayOperator, Relaxation};
 use tactpad_numeric::products::{combined, dot};
 
@@ -56,6 +56,8 @@ pub(crate) struct ParameterLayout {
     pub(crate) terms: usize,
     /// Whether no contact was written down by a reference.
     pub(crate) is_play: bool,
+    /// Where the modules stand, counter-clockwise from +x.
+    pub(crate) module_angles_deg: [f64; MODULES],
 }
 
 const ZEROS: usize = 0;
@@ -155,6 +157,24 @@ impl ParameterLayout {
     pub(crate) fn background_degrees(&self) -> impl Iterator<Item = (usize, usize)> {
         let degrees = (0..=BACKGROUND_DEGREE).flat_map(|n| std::iter::repeat_n(n, n + 1));
         degrees.cycle().zip(self.background(0, 0)..self.size())
+    }
+
+    /// What each module's displacement has of the mean of all, by its parameters' places: to contacts with labels that is the stage's.
+    pub(crate) fn common_shift(&self, differences: impl Fn(usize) -> f64) -> Vec<(usize, f64)> {
+        // The parameter's direction: outwards, or counter-clockwise.
+        let direction = |it: &Physical| {
+            let (sin, cos) = self.module_angles_deg[it.parameter.module()?].to_radians().sin_cos();
+            Some(if it.parameter.name().ends_with("radial_mm") { [cos, sin] } else { [-sin, cos] })
+        };
+        let is_shift = |(it, _): &(&Physical, usize)| it.kind() == ParameterKind::Shift;
+        let shifts = self.physical.iter().zip(PHYSICAL..).filter(is_shift);
+        let shifts: Vec<(usize, [f64; 2])> =
+            shifts.filter_map(|(it, at)| Some((at, direction(it)?))).collect();
+        let mean = [0, 1].map(|axis| {
+            let sum: f64 = shifts.iter().map(|(at, direction)| direction[axis] * differences(*at)).sum();
+            sum / MODULES as f64
+        });
+        shifts.iter().map(|(at, direction)| (*at, dot(direction, &mean))).collect()
     }
 
     /// The scale S of all that a load makes.

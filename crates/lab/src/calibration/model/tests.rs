@@ -11,7 +11,12 @@ use tactpad_numeric::random::SplitMix64;
 fn on_contacts(crosstalk: f64, ask: impl Fn(&ParameterLayout, &[f64], &Maps, &Measured)) {
     let (device, field) = (Device::nominal(), PadField::nominal());
     let (physical, sensitivities) = free(&field, &device, &device);
-    let layout = ParameterLayout { physical, terms: TERMS, is_play: false };
+    let layout = ParameterLayout {
+        physical,
+        terms: TERMS,
+        is_play: false,
+        module_angles_deg: device.sites.angles_deg,
+    };
     let mut random = SplitMix64::new(21);
     let mut around = |mean: f64, by: f64| mean + by * f64::from(random.uniform());
     let mut values: Vec<f64> = (0..layout.size()).map(|_| around(0.0, 0.01)).collect();

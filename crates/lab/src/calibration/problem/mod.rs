@@ -122,7 +122,8 @@ impl<'f> Problem<'f> {
         };
         let contacts = fitted.iter().filter_map(measured).collect();
         let is_play = fitted.iter().all(|it| it.knowledge != Knowledge::Written);
-        let layout = ParameterLayout { physical, terms: 0, is_play };
+        let module_angles_deg = device.sites.angles_deg;
+        let layout = ParameterLayout { physical, terms: 0, is_play, module_angles_deg };
         Self {
             jumps: Jumps::of(recording),
             prior,
@@ -188,7 +189,7 @@ impl<'f> Problem<'f> {
             let mut log_evidence = log_likelihood_of_contacts(&residuals, &estimates.noise_model)?;
             log_evidence += self.jumps.log_likelihood(&self.layout, &values, &estimates.drift_uv)
                 - 0.5 * factor.log_determinant();
-            log_evidence += log_prior(&values, &mean, &precisions);
+            log_evidence += log_prior(&values, &mean, &precisions) + estimates.rig.log_odds;
             let gain =
                 found.as_ref().map_or(f64::INFINITY, |previous| (log_evidence - previous.log_evidence).abs());
             let located = self.located();
@@ -201,8 +202,15 @@ impl<'f> Problem<'f> {
                 located,
             });
             // Then the hyperparameters at the new parameters.
+            let mut differences: Vec<f64> =
+                values.iter().zip(&mean).map(|(value, mean)| value - mean).collect();
+            if !self.layout.is_play {
+                // Modules that are off alike are a stage that is off, and say nothing of how carefully modules are put down.
+                let common = self.layout.common_shift(|at| differences[at]);
+                common.into_iter().for_each(|(at, common)| differences[at] -= common);
+            }
             let deviating = self.layout.kinds().map(|(kind, module, at)| {
-                let (difference, variance) = (values[at] - mean[at], variances[at]);
+                let (difference, variance) = (differences[at], variances[at]);
                 Deviating { kind, module, difference, variance }
             });
             let background = self.layout.background_degrees().map(|(degree, at)| Coefficient {

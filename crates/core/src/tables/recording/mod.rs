@@ -102,17 +102,19 @@ impl Recording {
             let rows = &mut self.tared.rows[part.first..][..part.rows];
             let temperatures: Vec<Option<f64>> = rows.iter().map(|row| row.temp_c).collect();
             let zero_uv = |at: usize| thermal.zero_uv(temperatures[at]);
-            let of_zeros = |zeros: &Zeros| {
-                let values: Vec<[f64; CHANNELS]> = zeros.rows().iter().map(|at| zero_uv(*at)).collect();
-                zeros.of_channels(&values)
-            };
-            let taken = part.zeros.as_ref().map(of_zeros);
-            for (at, row) in rows.iter_mut().enumerate() {
-                let taken_uv = taken.as_ref().map_or([0.0; CHANNELS], |taken| taken[at]);
-                let (here_uv, gain) = (zero_uv(at), thermal.gain(row.temp_c));
-                for (k, uv) in row.uv.iter_mut().flatten().enumerate() {
+            for channel in 0..CHANNELS {
+                let of_zeros = |zeros: &Zeros| {
+                    let values: Vec<[f64; 1]> =
+                        zeros.rows().iter().map(|at| [zero_uv(*at)[channel]]).collect();
+                    zeros.of_channel(channel, &values)
+                };
+                let taken = part.zeros.as_ref().map(of_zeros);
+                for (at, row) in rows.iter_mut().enumerate() {
+                    let Some(uv) = &mut row.uv else { continue };
+                    let [taken_uv] = taken.as_ref().map_or([0.0], |taken| taken[at]);
                     // (s − z(T) + z₀)/(1 + α ΔT): z(T) is the zero's thermal part here, z₀ that of the zero which was taken off.
-                    *uv = (*uv - here_uv[k] + taken_uv[k]) / gain[k];
+                    uv[channel] =
+                        (uv[channel] - zero_uv(at)[channel] + taken_uv) / thermal.gain(row.temp_c)[channel];
                 }
             }
             for (at, uv) in &mut part.readings {

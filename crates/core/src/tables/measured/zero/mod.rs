@@ -179,9 +179,10 @@ impl Zeros {
     }
 }
 
-/// The table with its zero taken off the channels of each row; `None` if it never reads the untouched pad.
+/// The table with its zero taken off the channels of each row, as it was read, as the paper does it; `None` if it never reads the
+/// untouched pad.
 pub fn tared(table: &Table) -> Option<Table> {
-    let zeros = Zeros::of(table)?;
+    let zeros = Zeros { drifts: [Drift::AS_READ; CHANNELS], ..Zeros::of(table)? };
     let mut tared = table.clone();
     zeros.tare(&mut tared);
     Some(tared)

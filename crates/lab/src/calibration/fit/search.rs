@@ -1,5 +1,5 @@
-//! The fit: Gauss and Newton's method on all parameters, for several settings of lasting noise, the prior, hysteresis, creep and the
-//! background; the evidence selects.
+//! The fit: Gauss and Newton's method on all parameters, for several settings of lasting noise, the prior, hysteresis and creep,
+//! without a background and with one; the evidence selects.
 //!
 //! Source: C. M. Bishop, Pattern Recognition and Machine Learning, section 3.4 (model comparison by the evidence).
 
@@ -204,6 +204,10 @@ fn searched(
     let coarse = (0..THRESHOLDS).map(|step| THRESHOLD_MIN_UV * THRESHOLD_RATIO.powi(step));
     let effort = Effort { least, ..Effort::COARSE };
     let best = most_probable(coarse.collect(), |threshold_uv| tried(threshold_uv, plain, effort))?;
+    // A coarse step off the best threshold an operator that is there explains most of what it will.
+    if best.log_evidence < plain.log_evidence {
+        return None;
+    }
     let effort = Effort { least, ..Effort::FULL };
     let best = tried(best.settings.thresholds_uv[play], &best, effort)?;
     Some(refined(play, best, effort, &tried))

@@ -209,24 +209,25 @@ impl ParameterLayout {
         values[SHARES + play] + values[OWN_SHARES + play * CHANNELS + channel]
     }
 
-    /// Memory of earlier loads in a channel, µV: Σᵢ wᵢ lᵢ + c u, by lags l and creep states u. Its derivatives by the shares w and c are set in
-    /// `derivatives`.
-    pub(crate) fn memory_uv(
-        values: &[f64],
+    /// Memory of earlier loads in a channel, µV: Σᵢ wᵢ lᵢ + c u, by lags l and creep states u.
+    pub(crate) fn memory_uv(values: &[f64], channel: usize, lags: &Lags, crept_uv: &[f64; CHANNELS]) -> f64 {
+        let of_play =
+            |(play, lags): (usize, &[f64; CHANNELS])| Self::share(values, play, channel) * lags[channel];
+        values[CREEP] * crept_uv[channel] + lags.iter().enumerate().map(of_play).sum::<f64>()
+    }
+
+    /// Its derivatives: ∂/∂wᵢₖ = lᵢₖ and ∂/∂c = uₖ.
+    pub(crate) fn add_memory_slopes(
         channel: usize,
         lags: &Lags,
         crept_uv: &[f64; CHANNELS],
         derivatives: &mut [f64],
-    ) -> f64 {
-        // Σᵢ wᵢₖ lᵢₖ + c uₖ, with ∂/∂wᵢₖ = lᵢₖ and ∂/∂c = uₖ.
+    ) {
         derivatives[CREEP] = crept_uv[channel];
-        let mut uv = values[CREEP] * crept_uv[channel];
         for (play, lags) in lags.iter().enumerate() {
             derivatives[SHARES + play] = lags[channel];
             derivatives[OWN_SHARES + play * CHANNELS + channel] = lags[channel];
-            uv += Self::share(values, play, channel) * lags[channel];
         }
-        uv
     }
 
     /// The zeros z.
@@ -424,34 +425,49 @@ impl ParameterLayout {
         })
     }
 
-    /// The model f(θ) of the channels at a contact, and its derivatives.
-    pub(crate) fn readings(&self, values: &[f64], scale: &Maps, contact: &Measured) -> Readings {
-        let Measured { knowledge, place, lags, crept_uv, above_c, to_come, .. } = contact;
-        let gain_before_ageing = Self::gain_before_ageing(values, contact);
-        let force_n = &Self::force_now_n(values, contact);
-        let strains_uv = self.strain_maps(values, place, *knowledge).map(|map| response(&map, force_n));
+    /// The signals at a contact, sₗ = S (1 + αₗ ΔT) (gₗ eₗ + dₗ).
+    fn signals(&self, values: &[f64], scale: &Maps, contact: &Measured) -> Signals {
+        let Measured { knowledge, place, above_c, .. } = contact;
+        let force_n = Self::force_now_n(values, contact);
+        let strains_uv = self.strain_maps(values, place, *knowledge).map(|map| response(&map, &force_n));
         let mut background = [[0.0; 3]; CHANNELS];
         self.add_background(values, scale, &place.terms, &mut background);
+        let background_uv = background.map(|map| response(&map, &force_n));
+        let factor = Self::scale_factor(values);
+        let unit_gains = std::array::from_fn(|k| factor * (1.0 + values[GAIN_SLOPES + k] * above_c));
+        let unscaled_uv = std::array::from_fn(|k| values[GAINS + k] * strains_uv[k] + background_uv[k]);
+        let uv = std::array::from_fn(|k| unit_gains[k] * unscaled_uv[k]);
+        Signals { force_n, strains_uv, background_uv, unscaled_uv, unit_gains, uv }
+    }
+
+    /// The model f(θ) of the channels at a contact, µV: (1 + X) s + z + memory.
+    pub(crate) fn readings(&self, values: &[f64], scale: &Maps, contact: &Measured) -> [f64; CHANNELS] {
+        let (signals, coupling) = (self.signals(values, scale, contact), Self::coupling(values));
+        std::array::from_fn(|channel| {
+            let memory_uv = Self::memory_uv(values, channel, &contact.lags, &contact.crept_uv);
+            dot(&coupling[channel], &signals.uv) + values[ZEROS + channel] + memory_uv
+        })
+    }
+
+    /// ∂f/∂θ at a contact.
+    pub(crate) fn slopes(&self, values: &[f64], scale: &Maps, contact: &Measured) -> ReadingSlopes {
+        let Measured { knowledge, place, lags, crept_uv, above_c, to_come, .. } = contact;
+        let gain_before_ageing = Self::gain_before_ageing(values, contact);
+        let signals = self.signals(values, scale, contact);
+        let force_n = &signals.force_n;
         let weights: Vec<[f64; 2]> = self.weights(values).collect();
         let (factor, written) = (Self::scale_factor(values), Self::reference_gain(values));
-        let coupling = Self::coupling(values);
-        let thermal: [f64; CHANNELS] = std::array::from_fn(|k| 1.0 + values[GAIN_SLOPES + k] * above_c);
-        // gₗ eₗ + dₗ, and sₗ = S (1 + αₗ ΔT) of it.
-        let background_uv = background.map(|map| response(&map, force_n));
-        let unscaled_uv: [f64; CHANNELS] =
-            std::array::from_fn(|k| values[GAINS + k] * strains_uv[k] + background_uv[k]);
-        let signals_uv: [f64; CHANNELS] = std::array::from_fn(|k| factor * thermal[k] * unscaled_uv[k]);
         let of_signal = |channel: usize| {
             let mut slopes = vec![0.0; self.size()];
-            let unit_gain = factor * thermal[channel];
+            let unit_gain = signals.unit_gains[channel];
             let gain = unit_gain * values[GAINS + channel];
             // ∂/∂gₖ = S (1 + αₖ ΔT) eₖ, ∂/∂αₖ = ΔT S (gₖ eₖ + dₖ), ∂/∂ln S = sₖ, ∂/∂A = b sₖ/(1 + A b).
-            slopes[GAINS + channel] = unit_gain * strains_uv[channel];
-            slopes[GAIN_SLOPES + channel] = factor * above_c * unscaled_uv[channel];
-            slopes[LOG_SCALE] = signals_uv[channel];
-            slopes[AGEING] = to_come * signals_uv[channel] / gain_before_ageing;
+            slopes[GAINS + channel] = unit_gain * signals.strains_uv[channel];
+            slopes[GAIN_SLOPES + channel] = factor * above_c * signals.unscaled_uv[channel];
+            slopes[LOG_SCALE] = signals.uv[channel];
+            slopes[AGEING] = to_come * signals.uv[channel] / gain_before_ageing;
             // ∂/∂ln ρ where forces stay: the background's part.
-            slopes[RIG_AT + REFERENCE_GAIN] = unit_gain * background_uv[channel];
+            slopes[RIG_AT + REFERENCE_GAIN] = unit_gain * signals.background_uv[channel];
             // With h = S (1 + αₖ ΔT) gₖ: ∂/∂b = h F·∇²Gₖ, ∂/∂qⱼ = h ∂wⱼ/∂qⱼ F·∂Gₖ/∂pⱼ.
             slopes[blur_at(*knowledge)] = gain * response(&place.laplacian[channel], force_n);
             let physical = weights.iter().zip(&place.sensitivities);
@@ -470,23 +486,32 @@ impl ParameterLayout {
             let mut slopes = vec![0.0; self.size()];
             // ∂/∂zₖ = 1, ∂/∂Xₖₗ = sₗ.
             slopes[ZEROS + channel] = 1.0;
-            slopes[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&signals_uv);
+            slopes[CROSSTALKS + channel * CHANNELS..][..CHANNELS].copy_from_slice(&signals.uv);
             slopes[CROSSTALKS + channel * CHANNELS + channel] = 0.0;
-            let memory_uv = Self::memory_uv(values, channel, lags, crept_uv, &mut slopes);
-            (values[ZEROS + channel] + memory_uv, slopes)
+            Self::add_memory_slopes(channel, lags, crept_uv, &mut slopes);
+            slopes
         };
-        let signals = (0..CHANNELS).map(of_signal).collect();
-        let (others_uv, rest): (Vec<f64>, Vec<Vec<f64>>) = (0..CHANNELS).map(beside_signals).unzip();
-        let uv = std::array::from_fn(|channel| dot(&coupling[channel], &signals_uv) + others_uv[channel]);
-        Readings { uv, slopes: ReadingSlopes { coupling, signals, rest } }
+        ReadingSlopes {
+            coupling: Self::coupling(values),
+            signals: (0..CHANNELS).map(of_signal).collect(),
+            rest: (0..CHANNELS).map(beside_signals).collect(),
+        }
     }
 }
 
-/// What the channels read at a contact.
-pub(crate) struct Readings {
-    /// Of each channel, µV.
-    pub(crate) uv: [f64; CHANNELS],
-    pub(crate) slopes: ReadingSlopes,
+/// Signals at a contact, by channel, before crosstalk, zeros and memory.
+struct Signals {
+    force_n: [f64; 3],
+    /// eₗ.
+    strains_uv: [f64; CHANNELS],
+    /// dₗ.
+    background_uv: [f64; CHANNELS],
+    /// gₗ eₗ + dₗ.
+    unscaled_uv: [f64; CHANNELS],
+    /// S (1 + αₗ ΔT).
+    unit_gains: [f64; CHANNELS],
+    /// sₗ.
+    uv: [f64; CHANNELS],
 }
 
 /// Derivatives of the readings by the parameters, a row for each channel:

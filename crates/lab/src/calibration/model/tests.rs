@@ -54,10 +54,7 @@ fn channels_read_by_the_law() {
         let force_n = ParameterLayout::force_now_n(values, contact);
         let mut uv = strains.map(|map| response(&map, &force_n));
         let pairs = (0..CHANNELS).flat_map(|into| (0..CHANNELS).map(move |from| (into, from)));
-        let mut unused = vec![0.0; layout.size()];
-        let mut memory = |channel| {
-            ParameterLayout::memory_uv(values, channel, &contact.lags, &contact.crept_uv, &mut unused)
-        };
+        let memory = |channel| ParameterLayout::memory_uv(values, channel, &contact.lags, &contact.crept_uv);
         let chain = ChannelChain {
             gain: (0..CHANNELS).map(|channel| ParameterLayout::gain(values, channel)).collect(),
             gain_per_c: values[GAIN_SLOPES..LOG_SCALE].to_vec(),
@@ -68,7 +65,7 @@ fn channels_read_by_the_law() {
             ..ChannelChain::nominal(vec![1.0; CHANNELS])
         };
         chain.read(&mut uv, &ChannelConditions { above_c: contact.above_c, ..ChannelConditions::default() });
-        for (read_uv, uv) in layout.readings(values, scale, contact).uv.iter().zip(uv) {
+        for (read_uv, uv) in layout.readings(values, scale, contact).iter().zip(uv) {
             assert!((read_uv - uv).abs() < 1e-9, "{read_uv} {uv}");
         }
     });
@@ -77,7 +74,7 @@ fn channels_read_by_the_law() {
 #[test]
 fn derivatives_are_the_differences_of_readings() {
     on_contacts(0.05, |layout, values, scale, contact| {
-        let derived = layout.readings(values, scale, contact).slopes.whole();
+        let derived = layout.slopes(values, scale, contact).whole();
         for at in 0..layout.size() {
             let is_own = (CROSSTALKS..SHARES).contains(&at) && (at - CROSSTALKS).is_multiple_of(CHANNELS + 1);
             let is_of_rig = (RIG_AT..PHYSICAL).contains(&at) && at != RIG_AT + REFERENCE_GAIN;
@@ -88,7 +85,7 @@ fn derivatives_are_the_differences_of_readings() {
             let [below, above] = [-step, step].map(|by| {
                 let mut values = values.to_vec();
                 values[at] += by;
-                layout.readings(&values, scale, contact).uv
+                layout.readings(&values, scale, contact)
             });
             for (channel, derivatives) in derived.iter().enumerate() {
                 let difference = (above[channel] - below[channel]) / (2.0 * step);

@@ -49,7 +49,8 @@ impl Jumps {
         for Jump { change_uv, lags, crept_uv, .. } in &self.all {
             for channel in 0..CHANNELS {
                 derivatives.fill(0.0);
-                let memory_uv = ParameterLayout::memory_uv(values, channel, lags, crept_uv, &mut derivatives);
+                ParameterLayout::add_memory_slopes(channel, lags, crept_uv, &mut derivatives);
+                let memory_uv = ParameterLayout::memory_uv(values, channel, lags, crept_uv);
                 let residual_uv = change_uv[channel] - memory_uv;
                 // σ = max(drift, |r|/3): beyond three standard deviations an outlier weighs 9/r².
                 let deviation = drift_uv[channel].max(JUMP_PART * residual_uv.abs());

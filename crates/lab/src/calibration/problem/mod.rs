@@ -20,7 +20,7 @@ use self::effort::Effort;
 use self::evidence::{log_likelihood_of_contacts, log_prior};
 use self::hyperparameters::{Estimates, Settings};
 use self::jumps::{Jump, Jumps};
-use super::model::{ParameterLayout, ReadingSlopes, Readings};
+use super::model::{ParameterLayout, ReadingSlopes};
 use super::noise::NoisePrior;
 use crate::ageing;
 use crate::calibration::data::contacts::{FieldAtPlace, Fitted, Knowledge, Maps, Measured, TERMS};
@@ -311,7 +311,8 @@ impl<'f> Problem<'f> {
         let mut previous_s = None;
         for (at, known) in self.contacts.iter().enumerate() {
             let (_, contact) = known;
-            let (residual, slopes) = self.linearised(values, contact);
+            let residual = self.residual(values, contact);
+            let slopes = self.slopes(values, contact, &residual);
             let mut rows = slopes.whole();
             widen(at, known, &mut rows);
             let precision = estimates.noise_model.marginal_precision(&residual)?.matrix();
@@ -345,19 +346,24 @@ impl<'f> Problem<'f> {
         (self.layout.prior_mean(self.prior, rig), precisions)
     }
 
-    /// A contact's residual, and the channels' derivatives by the parameters.
-    fn linearised(&self, values: &[f64], contact: &Measured) -> (Residual, ReadingSlopes) {
-        let Readings { uv: fitted_uv, slopes: mut by_parameters } =
-            self.layout.readings(values, &self.scale, contact);
-        let label_jacobian = self.layout.label_jacobian(values, &self.scale, contact);
+    /// ∂f/∂θ at a contact.
+    fn slopes(&self, values: &[f64], contact: &Measured, residual: &Residual) -> ReadingSlopes {
+        let mut by_parameters = self.layout.slopes(values, &self.scale, contact);
         if contact.knowledge == Knowledge::Written {
             // ∂f/∂ρⱼ = J ∂T/∂ρⱼ, beside what f has of ρ itself.
             let slopes = contact.written.slopes(&ParameterLayout::rig(values));
-            for (row, jacobian) in by_parameters.rest.iter_mut().zip(&label_jacobian) {
+            for (row, jacobian) in by_parameters.rest.iter_mut().zip(&residual.label_jacobian) {
                 let of_rig = row[ParameterLayout::first_of_rig()..].iter_mut().zip(&slopes);
                 of_rig.for_each(|(entry, slope)| *entry += dot(jacobian, slope));
             }
         }
+        by_parameters
+    }
+
+    /// What a contact's readings have beyond the model, with the derivatives by the contact.
+    fn residual(&self, values: &[f64], contact: &Measured) -> Residual {
+        let fitted_uv = self.layout.readings(values, &self.scale, contact);
+        let label_jacobian = self.layout.label_jacobian(values, &self.scale, contact);
         // r = y − f(θ) − J d, where the contact is taken to be off its label by d.
         let off = contact.off_label();
         let residual_uv =
@@ -367,11 +373,11 @@ impl<'f> Problem<'f> {
         // Noise in proportion to a reading that has it would draw the fit to the small readings.
         let uv = if contact.knowledge == Knowledge::Written { contact.uv } else { fitted_uv };
         let Measured { knowledge, at_s, .. } = *contact;
-        (Residual { knowledge, at_s, uv, force_n, residual_uv, label_jacobian }, by_parameters)
+        Residual { knowledge, at_s, uv, force_n, residual_uv, label_jacobian }
     }
 
     fn residuals(&self, values: &[f64]) -> Vec<Residual> {
-        self.contacts.iter().map(|(_, contact)| self.linearised(values, contact).0).collect()
+        self.contacts.iter().map(|(_, contact)| self.residual(values, contact)).collect()
     }
 
     /// ln p(contacts | θ), but for a constant.
@@ -394,7 +400,7 @@ impl<'f> Problem<'f> {
             if contact.knowledge == Knowledge::Written {
                 return label;
             }
-            let (residual, _) = self.linearised(values, contact);
+            let residual = self.residual(values, contact);
             let error = noise_model.label_error(&residual).unwrap_or_default();
             std::array::from_fn(|k| label[k] + error[k])
         };

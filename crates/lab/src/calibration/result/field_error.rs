@@ -88,7 +88,7 @@ impl Problem<'_> {
     fn load(&self, fit: &PosteriorFit, place_mm: [f64; 2], force_n: [f64; 3]) -> Load {
         let place = FieldAtPlace::level(&self.prior.field, &self.sensitivities, self.plate_mm, place_mm);
         let contact = Measured::unmeasured(place_mm, place, force_n);
-        let rows = self.layout.readings(&fit.values, &self.scale, &contact).slopes.whole();
+        let rows = self.layout.slopes(&fit.values, &self.scale, &contact).whole();
         let halves = rows.iter().map(|row| fit.factor.solve_lower(row)).collect();
         Load { place_mm, force_n, halves }
     }
@@ -133,7 +133,7 @@ impl Problem<'_> {
         let mut maps = vec![[0.0; MAPS]; changes.len()];
         for axis in 0..3 {
             contact.force_n = std::array::from_fn(|k| f64::from(u8::from(k == axis)));
-            let rows = self.layout.readings(&fit.values, &self.scale, &contact).slopes.whole();
+            let rows = self.layout.slopes(&fit.values, &self.scale, &contact).whole();
             for (channel, derivatives) in rows.iter().enumerate() {
                 for (maps, change) in maps.iter_mut().zip(changes) {
                     // ∂sₖ/∂θ δθ; a zero is no part of a map.
@@ -446,7 +446,7 @@ mod tests {
                 let change = fit.factor.solve_upper(&normal);
                 for (contact, held) in contacts.iter().zip(&mut held) {
                     let mut uv = problem.layout.load_uv(&fit.values, &problem.scale, contact);
-                    let slopes = problem.layout.readings(&fit.values, &problem.scale, contact).slopes;
+                    let slopes = problem.layout.slopes(&fit.values, &problem.scale, contact);
                     for (k, row) in slopes.whole().iter().enumerate() {
                         uv[k] += dot(row, &change) - change[ParameterLayout::zero_at(k)];
                     }

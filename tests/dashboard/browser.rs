@@ -2,7 +2,6 @@
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
-use std::sync::{PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use serde_json::{Value, json};
 
@@ -36,19 +35,9 @@ pub(crate) const CONTROL: &str = "\u{e009}";
 pub(crate) const LEFT: &str = "\u{e012}";
 pub(crate) const RIGHT: &str = "\u{e014}";
 
-/// Who measures times has the machine for itself: no other browser draws meanwhile.
-static MACHINE: RwLock<()> = RwLock::new(());
-
-/// The machine, shared with other browsers or not.
-enum Place {
-    Shared { _guard: RwLockReadGuard<'static, ()> },
-    Alone { _guard: RwLockWriteGuard<'static, ()> },
-}
-
 /// A browser with one page; it is closed when this is dropped.
 pub(crate) struct Browser {
     driver: Child,
-    _place: Place,
     host: String,
     session: String,
 }
@@ -56,15 +45,6 @@ pub(crate) struct Browser {
 impl Browser {
     /// A browser with this page; `None` where there is none on this machine, which is told.
     pub(crate) fn open(url: &str) -> Option<Self> {
-        Self::open_at(Place::Shared { _guard: MACHINE.read().unwrap_or_else(PoisonError::into_inner) }, url)
-    }
-
-    /// The same, once no other browser of these tests is open; none opens until this one is closed.
-    pub(crate) fn open_alone(url: &str) -> Option<Self> {
-        Self::open_at(Place::Alone { _guard: MACHINE.write().unwrap_or_else(PoisonError::into_inner) }, url)
-    }
-
-    fn open_at(place: Place, url: &str) -> Option<Self> {
         if !require("chromedriver", "apt install chromium chromium-driver")
             || !require("chromium", "apt install chromium")
         {
@@ -72,8 +52,7 @@ impl Browser {
         }
         // It looks for a free port first and takes it then: another one may have been faster.
         let (driver, port) = (0..5).find_map(|_| start_driver()).unwrap();
-        let mut browser =
-            Self { driver, _place: place, host: format!("127.0.0.1:{port}"), session: String::new() };
+        let mut browser = Self { driver, host: format!("127.0.0.1:{port}"), session: String::new() };
         let binary =
             if std::path::Path::new("/usr/bin/chromium").exists() { "/usr/bin/chromium" } else { "chromium" };
         let options = json!({"goog:chromeOptions": {"binary": binary, "args": FLAGS}});

@@ -148,7 +148,7 @@ fn p99(took_us: &[f64]) -> f64 {
 fn an_open_page_makes_the_live_path_hardly_slower() {
     let events = FRAMES / FRAMES_PER_EDGE as usize;
     let (measured, other) = (Way::start(), Way::start());
-    let Some(browser) = Browser::open_alone(&other.shown.url) else { return };
+    let Some(browser) = Browser::open(&other.shown.url) else { return };
     let show = |way: &Way| {
         browser.run(&format!("location.href = '{}'", way.shown.url));
         browser.wait(&format!(

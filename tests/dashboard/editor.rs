@@ -15,9 +15,9 @@ use crate::shown::Shown;
 const THRESHOLD: &str = "[data-handle='button.0.press_n']";
 
 /// An editor with Contra, whose first button needs 2 N, on a pad that is pressed with less.
-fn editor(finger: &Finger, open: fn(&str) -> Option<Browser>) -> Option<(Shown, Browser)> {
+fn editor(finger: &Finger) -> Option<(Shown, Browser)> {
     let shown = Shown::start(&finger.address(), "contra");
-    let browser = open(&shown.url)?;
+    let browser = Browser::open(&shown.url)?;
     shown.wait_until_playing();
     browser.view("profile");
     browser.wait(&format!("document.querySelector(\"{THRESHOLD}\")"));
@@ -72,7 +72,7 @@ fn drag_and_wait(shown: &Shown, browser: &Browser) -> f64 {
 #[test]
 fn a_dragged_threshold_is_played_within_100_ms_kept_by_save_and_undone_by_revert() {
     let finger = Finger::start();
-    let Some((shown, browser)) = editor(&finger, Browser::open_alone) else { return };
+    let Some((shown, browser)) = editor(&finger) else { return };
     finger.pulse(15.0, 0.0, 1.8);
     assert!(comes_true(|| is_held(&shown, "ABS_HAT0X")) && rests(&shown, "BTN_SOUTH"));
     // From the last movement of the pointer before the key is down to the page that shows it.
@@ -114,7 +114,7 @@ fn a_dragged_threshold_is_played_within_100_ms_kept_by_save_and_undone_by_revert
 #[test]
 fn a_broken_text_shows_what_the_check_says_and_changes_nothing() {
     let finger = Finger::start();
-    let Some((shown, browser)) = editor(&finger, Browser::open) else { return };
+    let Some((shown, browser)) = editor(&finger) else { return };
     let broken = text(&browser).replace("8way", "9way").replace("press_n = 2.0", "press_n = \"two\"");
     write(&browser, &broken);
     let (_, expected) = read(&broken, OutputChoice::AsWritten);
@@ -153,7 +153,7 @@ fn rested_text(browser: &Browser, before: &str) -> String {
 #[test]
 fn undo_and_redo_go_through_all_changes_of_text_and_picture() {
     let finger = Finger::start();
-    let Some((_shown, browser)) = editor(&finger, Browser::open) else { return };
+    let Some((_shown, browser)) = editor(&finger) else { return };
     let first = text(&browser);
     browser.drag(THRESHOLD, [60, 0]);
     let second = rested_text(&browser, &first);
@@ -173,7 +173,7 @@ fn undo_and_redo_go_through_all_changes_of_text_and_picture() {
 #[test]
 fn a_decimal_comma_is_a_decimal_point_typed_and_pasted() {
     let finger = Finger::start();
-    let Some((_shown, browser)) = editor(&finger, Browser::open) else { return };
+    let Some((_shown, browser)) = editor(&finger) else { return };
     let field = "document.querySelector('input[type=number][data-field=\"button.0.press_n\"]')";
     browser.run(&format!("{field}.closest('details').open = true; {field}.focus(); {field}.select();"));
     browser.keys(&[], &["1", ",", "5"]);
@@ -193,7 +193,7 @@ fn a_decimal_comma_is_a_decimal_point_typed_and_pasted() {
 #[test]
 fn a_preview_ends_with_its_page() {
     let finger = Finger::start();
-    let Some((shown, browser)) = editor(&finger, Browser::open) else { return };
+    let Some((shown, browser)) = editor(&finger) else { return };
     finger.pulse(15.0, 0.0, 1.8);
     browser.drag(THRESHOLD, [-120, 0]);
     assert!(comes_true(|| is_held(&shown, "BTN_SOUTH")));

@@ -40,7 +40,7 @@ fn the_dot_the_forces_and_what_is_held_follow_the_finger() {
 #[test]
 fn it_is_renewed_fifty_times_a_second_and_at_most_fifty_milliseconds_old() {
     let shown = Shown::start("virtual", "super-mario");
-    let Some(browser) = Browser::open_alone(&shown.url) else { return };
+    let Some(browser) = Browser::open(&shown.url) else { return };
     shown.wait_until_playing();
     browser.wait("Number(document.documentElement.dataset.updates) > 100");
     // A machine that does other work keeps it from that at times, and not always.

@@ -99,7 +99,7 @@ fn of_table(table: &Table, pad: &SimulatedPad<'_>) -> Result<Diagnosis, String> 
     if rows > ROWS_MAX {
         return Err(format!("causes are looked for in {ROWS_MAX} rows at most, and here are {rows}"));
     }
-    diagnosis::diagnose(table, pad, &[]).map_err(|why| why.to_string())
+    diagnosis::causes(table, pad).map_err(|why| why.to_string())
 }
 
 /// Why a table's diagnosis names nothing.

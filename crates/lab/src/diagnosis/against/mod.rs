@@ -27,7 +27,7 @@ use crate::diagnosis::gatekeepers::{self, Gate, guarded};
 use crate::diagnosis::label::{Label, Search};
 use crate::diagnosis::report::{Diagnosis, Finding, Notice};
 use crate::diagnosis::validation::gain::Rows;
-use crate::diagnosis::{summary, with_gatekeepers};
+use crate::diagnosis::{Validation, summary, with_gatekeepers};
 use crate::effect::Effect;
 use tactpad_core::tables::measured::sheet::Sheet;
 use tactpad_inference::model::Model;
@@ -147,7 +147,8 @@ fn told(
         observations: &part.observations,
         unrepaired: None,
     });
-    let mut diagnosis = summary(&search, &found, &rows, &missing(columns, there)).map_err(no_solution)?;
+    let mut diagnosis = summary(&search, &found, &rows, &missing(columns, there), Validation::OnLockedRows)
+        .map_err(no_solution)?;
     standing(&mut diagnosis, &search, &rows, &found);
     let signals = &found.fit.linearised.readings;
     let excess = asked

@@ -27,11 +27,16 @@ pub(crate) fn ceiling_share(
     }
     let labels = [open, locked].map(|rows| labels(rows.observations));
     let left = |applied: &Applied| left([open, locked], &labels, applied, noise);
-    let (nominal, extended) = match applied.as_slice() {
-        [] => (left(applied), left(applied)),
-        _ => rayon::join(|| left(&Applied::new()), || left(applied)),
+    let ([nominal, flexible], [extended, both]) = match applied.as_slice() {
+        [] => {
+            let nominal = left(applied)?;
+            (nominal.clone(), nominal)
+        }
+        _ => {
+            let (nominal, extended) = rayon::join(|| left(&Applied::new()), || left(applied));
+            (nominal?, extended?)
+        }
     };
-    let ([nominal, flexible], [extended, both]) = (nominal?, extended?);
     let sum = |squares: &[f64]| squares.iter().sum::<f64>();
     let least = if sum(&both) < sum(&flexible) { both } else { flexible };
     let least = if sum(&extended) < sum(&least) { extended.clone() } else { least };

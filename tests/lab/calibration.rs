@@ -490,7 +490,6 @@ fn what_pads_share_beyond_the_simulation_is_taken_over() {
     let unseen = Measured::on(&field, &device, &plans::recommended::plan(&device.contact, 9), 2);
     let [with, without] =
         [measured.from(20, &earlier), inverse(&measured, 20)].map(|decoder| errors_of(&decoder, &unseen));
-    println!("with {with:?}\nwithout {without:?}");
     assert!(with.position_mae_mm < 0.7 * without.position_mae_mm);
     assert!(with.force_mae_n < 0.7 * without.force_mae_n);
 }
@@ -581,7 +580,6 @@ fn two_recordings_tell_how_it_follows_the_temperature() {
             .into_iter()
             .all(|((found, deviation), truly)| (found - truly).abs() < 4.0 * deviation && deviation < allowed)
     };
-    println!("{found:?}");
     assert!(near(&found.coefficients.zero_uv_per_c, found.zero_deviation.unwrap(), truly.zero_uv_per_c, 2.0));
     assert!(near(&found.coefficients.gain_per_c, found.gain_deviation.unwrap(), truly.gain_per_c, 1e-4));
     // Other temperatures, and the untouched pad is read at the first of them alone.

@@ -72,12 +72,14 @@ impl<'h> Learned<'h> {
                     (wiring.gains[channel] * background.deviation(channel, axis)).powi(2) * near * forces
                 })
                 .sum();
-            // Where a channel's signal goes: to itself, and by its leaks.
-            let mut goes = [0.0; 9];
-            goes[channel] = 1.0;
-            wiring.leaks.iter().filter(|leak| leak.1 == channel).for_each(|leak| goes[leak.0] += leak.2);
+            // Of a channel's signal into each channel: itself, and those into which it leaks.
+            let mut coupling = [0.0; 9];
+            coupling[channel] = 1.0;
+            wiring.leaks.iter().filter(|leak| leak.1 == channel).for_each(|leak| coupling[leak.0] += leak.2);
             for (i, row) in covariance.iter_mut().enumerate() {
-                row.iter_mut().zip(goes).for_each(|(entry, to)| *entry += (gain + maps) * goes[i] * to);
+                row.iter_mut()
+                    .zip(coupling)
+                    .for_each(|(entry, to)| *entry += (gain + maps) * coupling[i] * to);
                 if i != channel {
                     row[i] += LEAK.powi(2) * one.own[channel] * other.own[channel];
                 }

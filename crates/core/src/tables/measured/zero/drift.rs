@@ -57,7 +57,7 @@ impl Drift {
         let pulls: Vec<f64> = steps(places).iter().map(|step| (self.ratio * step).recip()).collect();
         let pull = |at: Option<usize>| at.and_then(|at| pulls.get(at)).copied().unwrap_or(0.0);
         let mut smoothed = values.to_vec();
-        let mut kept = Vec::with_capacity(values.len());
+        let mut superdiagonal = Vec::with_capacity(values.len());
         let mut before = (0.0, [0.0; N]);
         for (at, value) in smoothed.iter_mut().enumerate() {
             let (left, right) = (pull(at.checked_sub(1)), pull(Some(at)));
@@ -68,12 +68,12 @@ impl Drift {
                 .zip(carried)
                 .for_each(|(value, carried)| *value = (*value + left * carried) / pivot);
             before = (right / pivot, *value);
-            kept.push(right / pivot);
+            superdiagonal.push(right / pivot);
         }
         for at in (1..smoothed.len()).rev() {
             let behind = smoothed[at];
             let here = &mut smoothed[at - 1];
-            here.iter_mut().zip(behind).for_each(|(here, behind)| *here += kept[at - 1] * behind);
+            here.iter_mut().zip(behind).for_each(|(here, behind)| *here += superdiagonal[at - 1] * behind);
         }
         smoothed
     }

@@ -2,15 +2,16 @@
 
 use serde::Serialize;
 
-use tactpad::lab::calibration::result::predictive::{Partition, PredictiveCheck};
+use tactpad::lab::calibration::result::predictive::{Partition, Predicted, PredictiveCheck};
 
-/// A third of the contacts, held against all of them.
+/// Contacts that were held out, a third of them or all.
 #[derive(Serialize)]
 pub(super) struct CheckResult {
+    of: &'static str,
     by: &'static str,
     part: &'static str,
     contacts: usize,
-    /// Their mean square over that of all.
+    /// Their mean square over the stated one.
     ratio: f64,
     p_value: f64,
     /// Whether that is more than chance.
@@ -19,17 +20,21 @@ pub(super) struct CheckResult {
 
 impl CheckResult {
     pub(super) fn of(check: &PredictiveCheck) -> Self {
-        let PredictiveCheck { by, third, contacts, ratio, p_value } = *check;
+        let PredictiveCheck { of, by, third, contacts, ratio, p_value } = *check;
         let (by, parts) = words(by);
-        Self { by, part: parts[third.min(2)], contacts, ratio, p_value, missed: check.is_missed() }
+        let of = match of {
+            Predicted::Place => "place",
+            Predicted::Force => "force",
+        };
+        Self { of, by, part: parts[third.min(2)], contacts, ratio, p_value, missed: check.is_missed() }
     }
 
     /// The sentence about a check that is missed.
     pub(super) fn words(&self) -> String {
         format!(
-            "{} miss by {:.2} times what all do: the fit lacks something there, and regions that are stated there are too narrow by as \
-             much.",
+            "{}, each held out, miss their {} by {:.2} times what the fit states: it lacks something there.",
             self.part,
+            self.of,
             self.ratio.sqrt()
         )
     }
@@ -37,6 +42,7 @@ impl CheckResult {
 
 const fn words(by: Partition) -> (&'static str, [&'static str; 3]) {
     match by {
+        Partition::Whole => ("whole", ["Contacts"; 3]),
         Partition::Radius => {
             ("radius", ["Contacts in the middle", "Contacts half way to the rim", "Contacts near the rim"])
         }

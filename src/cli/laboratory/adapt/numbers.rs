@@ -58,6 +58,8 @@ struct FoundPadDocument<'d> {
     open_by_rig: Vec<OpenNumber>,
     /// Whether contacts miss alike in all parts of the measurement.
     checks: Vec<CheckResult>,
+    /// The factor by which what the decoder states is wider than the fit, for checks that are missed; 1 without.
+    widening: f64,
 }
 
 /// How well a number is known, and whether a diagnosis names its cause.
@@ -158,6 +160,7 @@ impl FoundPad {
             flaw: self.calibration.flaw.map(|(module, flaw)| format!("module{module} {flaw}")),
             open_by_rig: self.calibration.open_by_rig.iter().map(OpenNumber::of).collect(),
             checks: self.calibration.checks.iter().map(CheckResult::of).collect(),
+            widening: self.calibration.widening,
         }
     }
 
@@ -288,6 +291,13 @@ impl fmt::Display for FoundPad {
         }
         for check in self.calibration.checks.iter().filter(|it| it.is_missed()) {
             writeln!(f, "{}", hanging("", &CheckResult::of(check).words()))?;
+        }
+        let widening = self.calibration.widening;
+        if widening > 1.0 {
+            let widened = format!(
+                "The deviations that the decoder states are {widening:.2} times the fit's, for that."
+            );
+            writeln!(f, "{}", hanging("", &widened))?;
         }
         write!(f, "smooth background: {:.1} % of each map", 100.0 * self.calibration.background)?;
         let is_earlier = self.calibration.from_earlier;

@@ -70,6 +70,18 @@ impl Noise {
         }
     }
 
+    /// The same with all deviations of the channels larger by a factor.
+    #[must_use]
+    pub fn widened(self, factor: f64) -> Self {
+        let times = |deviations: [f64; CHANNELS]| deviations.map(|deviation| factor * deviation);
+        Self {
+            additive_uv: times(self.additive_uv),
+            share: times(self.share),
+            force_uv_per_n: times(self.force_uv_per_n),
+            ..self
+        }
+    }
+
     /// Covariance of a contact with this force by those of the field's errors that are alike all over the plate.
     pub(super) fn covariance_by_field(&self, force_n: &[f64; 3]) -> Covariance {
         // S B S: the shares B of the force in newtons again.

@@ -24,7 +24,7 @@ use crate::calibration::result::field_error;
 use crate::calibration::result::known::PressPrecision;
 use crate::calibration::result::numbers::{Number, OptionalNumbers, Pair};
 use crate::calibration::result::open::{OpenByRig, by_rig};
-use crate::calibration::result::predictive::{PredictiveCheck, checks};
+use crate::calibration::result::predictive::{PredictiveCheck, checks, widening};
 use crate::tangent::SimulatedPad;
 use tactpad_core::pad::changes::Flaw;
 use tactpad_core::pad::device::Device;
@@ -74,8 +74,10 @@ pub struct Calibration {
     pub map: Vec<PressPrecision>,
     /// Errors of the rig that are a large part of what is open there.
     pub open_by_rig: Vec<OpenByRig>,
-    /// Parts of the contacts, held against all of them; none without labels.
+    /// Contacts held out, all of them and by thirds; none without labels.
     pub checks: Vec<PredictiveCheck>,
+    /// The factor by which the noise is larger than the residuals', for checks that are missed; 1 without.
+    pub widening: f64,
 }
 
 /// Why there is no calibration.
@@ -148,11 +150,11 @@ impl Calibration {
         let (numbers, not_told_apart) = Number::all(&problem.layout, fit, &asked);
         let map = PressPrecision::map(&decoder);
         let open_by_rig = by_rig(&numbers, &map);
+        let checks = checks(&problem.clone().explained(fit));
+        let widening = widening(&checks);
+        let gain = noise::common_gain(&decoder, &contacts, problem.noise_prior());
         Self {
-            noise: Noise {
-                gain: noise::common_gain(&decoder, &contacts, problem.noise_prior()),
-                ..*decoder.noise()
-            },
+            noise: Noise { gain, ..*decoder.noise() }.widened(widening),
             field: decoder.field().clone(),
             field_error: decoder.field_error().clone(),
             crosstalk: *decoder.crosstalk(),
@@ -167,7 +169,8 @@ impl Calibration {
             contacts: problem.contacts(),
             open_by_rig,
             map,
-            checks: checks(&problem.clone().explained(fit)),
+            checks,
+            widening,
         }
     }
 

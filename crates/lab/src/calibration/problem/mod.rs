@@ -100,6 +100,8 @@ pub(crate) struct ExplainedContact {
     pub(crate) residual: Residual,
     /// Inverse covariance of the residual by the noise model.
     pub(crate) precision: MarginalPrecision,
+    /// Posterior covariance of what the fit says of the channels, A H⁻¹ Aᵀ with A = ∂s/∂θ, µV².
+    pub(crate) posterior_uv2: [[f64; CHANNELS]; CHANNELS],
 }
 
 impl<'f> Problem<'f> {
@@ -456,7 +458,10 @@ impl<'f> Problem<'f> {
         let contacts = self.contacts.iter().zip(self.residuals(&fit.values));
         let explained = contacts.filter_map(|((_, contact), residual)| {
             let precision = fit.estimates.noise_model.marginal_precision(&residual)?;
-            Some(ExplainedContact { place_mm: contact.place_mm, residual, precision })
+            let slopes = self.slopes(&fit.values, contact, &residual).whole();
+            let halves: Vec<Vec<f64>> = slopes.iter().map(|row| fit.factor.solve_lower(row)).collect();
+            let posterior_uv2 = std::array::from_fn(|k| std::array::from_fn(|l| dot(&halves[k], &halves[l])));
+            Some(ExplainedContact { place_mm: contact.place_mm, residual, precision, posterior_uv2 })
         });
         explained.collect()
     }

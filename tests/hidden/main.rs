@@ -12,6 +12,7 @@ mod background;
 mod calibrated;
 mod campaign;
 mod case;
+mod conventions;
 mod effects;
 mod fields;
 mod files;

@@ -63,7 +63,7 @@ impl Columns {
 }
 
 /// The measured channels and what the reference wrote, row for row.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Measured {
     pub(crate) rows: Vec<Row>,
     pub(crate) labels: Vec<Contact>,

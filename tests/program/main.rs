@@ -6,6 +6,7 @@ mod adapt_play;
 mod bad_input;
 #[cfg(target_os = "linux")]
 mod calibrate;
+mod conventions;
 mod diagnose;
 mod diagnose_play;
 mod diagnose_report;

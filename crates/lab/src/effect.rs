@@ -64,6 +64,10 @@ effects! {
     ChannelOffset: "channel_offset", "offset", "{target} reads {offset_uv} without load"
         => ("offset_uv", "module.{module}.offset_uv.{axis}", Add);
     NoiseExcess: "noise_excess", "too much noise", "{target} is {factor|noisier|quieter} than it should be";
+    LabelFrame: "label_frame", "another frame", "{target} stand in another frame than the pad's: {map}";
+    LabelSign: "label_sign", "other signs", "the signs of {with} are not those of a finger on the plate: {map}";
+    LabelUnit: "label_unit", "another unit", "the unit of {with} is another: {factor} of the one that is expected";
+    RowShift: "row_shift", "rows out of step", "{target} are {rows|late|early}";
     ChannelDead: "channel_dead", "dead channel", "{target} is dead";
     ChannelPolarity: "channel_polarity", "reversed channel", "{target} has the wrong sign";
     ChannelsSwapped: "channels_swapped", "swapped channels", "{target} and {with} have changed places";

@@ -5,6 +5,7 @@ pub(super) mod decoder_file;
 pub(super) mod destination;
 pub(super) mod device;
 pub(super) mod field;
+pub(super) mod labels;
 pub(super) mod played;
 pub(super) mod recording;
 pub(super) mod state_file;

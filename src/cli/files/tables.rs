@@ -13,6 +13,7 @@ use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::ending::OpenEnd;
 use tactpad::tables::measured::error::{Fault, ReadError};
 use tactpad::tables::measured::{read, write};
+use tactpad::tables::units::Units;
 
 /// Places are often written to two decimals; so rounded, one on the rim may lie this far beyond it.
 const RIM_TOLERANCE_MM: f64 = 0.01;
@@ -48,9 +49,27 @@ pub(crate) fn within_the_rim([x_mm, y_mm]: [f64; 2], patch: &Patch) -> Result<()
 
 /// Reads a table whose places lie within ±`place_max_mm`.
 pub(crate) fn read(path: &Path, kind: TableKind, place_max_mm: f64) -> Result<Table, Failure> {
-    let refused = |error| refusal(path, kind, error);
+    written_in(path, kind, place_max_mm, &Units::default(), "")
+}
+
+/// The same of labels and channels that are written in these units, and stay so; `way_out` is for numbers that are too large.
+pub(crate) fn written_in(
+    path: &Path,
+    kind: TableKind,
+    place_max_mm: f64,
+    units: &Units,
+    way_out: &str,
+) -> Result<Table, Failure> {
+    let refused = |error: ReadError| {
+        let is_too_large = matches!(error.fault, Fault::OutOfRange { .. });
+        let way_out = if is_too_large { way_out } else { "" };
+        match refusal(path, kind, error) {
+            Failure::Unusable(why) => Failure::Unusable(why + way_out),
+            failure => failure,
+        }
+    };
     let file = File::open(path).map_err(|error| refused(ReadError { line: 1, fault: Fault::Io(error) }))?;
-    let table = read::table(BufReader::new(file), kind, place_max_mm).map_err(refused)?;
+    let table = read::written_in(BufReader::new(file), kind, place_max_mm, units).map_err(refused)?;
     warn(path, table.open_end.as_ref());
     Ok(table)
 }

@@ -8,10 +8,13 @@ use clap::Args;
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file;
 use crate::cli::files::device::PadOptions;
+use crate::cli::files::field::field_of;
+use crate::cli::files::labels::LabelOptions;
 use crate::cli::files::tables;
 use crate::cli::printing::progress::Progress;
 use crate::cli::printing::written::{print_json, stdout};
 use tactpad::lab::evaluation::{Errors, Evaluation, EvaluationError};
+use tactpad::lab::tangent::SimulatedPad;
 use tactpad::pipeline::shipped;
 use tactpad::tables::measured::Label;
 use tactpad::tables::measured::columns::TableKind;
@@ -33,20 +36,24 @@ pub(crate) struct Arguments {
     truth: Option<PathBuf>,
     #[command(flatten)]
     pad: PadOptions,
+    #[command(flatten)]
+    meant: LabelOptions,
     /// Print one JSON document.
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { decoder, measured, truth, pad, json } = arguments;
+    let Arguments { decoder, measured, truth, pad, meant, json } = arguments;
     let device = pad.read()?;
     let decoder = decoder.as_deref().map_or_else(|| Ok(shipped::decoder()), decoder_file::read)?;
     let rim_mm = device.plate.radius_mm();
     // One table at a time: of the truth the labels are enough.
     let truth = truth.as_ref().map(|path| tables::read(path, TableKind::Plan, rim_mm)).transpose()?;
     let truth: Option<Vec<Label>> = truth.map(|truth| truth.rows.iter().map(|row| row.label).collect());
-    let table = tables::read(measured, TableKind::Measured, rim_mm)?;
+    let table = meant.read(measured, &device)?;
+    let field = field_of(&device)?;
+    meant.ask(&measured.display().to_string(), &table, &SimulatedPad::known(&device, &field))?;
     let progress = Progress::begin("decoding the contacts");
     let evaluation = Evaluation::of(&decoder, table, truth.as_deref(), device.contact.full_scale_n)
         .map_err(|error| unusable(measured, &error))?;

@@ -53,6 +53,7 @@ mod tests {
             share: 0.5,
             confounded_with: Vec::new(),
             separate_by: None,
+            labels: None,
         }
     }
 

@@ -232,6 +232,7 @@ mod tests {
             share: 0.1,
             confounded_with: Vec::new(),
             separate_by: None,
+            labels: None,
         }
     }
 

@@ -4,6 +4,7 @@
 //!
 //! | folder | stage |
 //! |---|---|
+//! | [`conventions`] | how labels are meant, before anything is held against them |
 //! | [`data`] | rows of a table become observations |
 //! | `gatekeepers` | the recording is checked before any physics |
 //! | `model` | the chain from contact to reading |
@@ -20,6 +21,7 @@
 pub mod against;
 pub mod agreement;
 mod causes;
+pub mod conventions;
 pub mod data;
 pub mod extension;
 mod gatekeepers;
@@ -33,6 +35,7 @@ mod validation;
 use std::fmt;
 
 use self::causes::catalogue::CATALOGUE;
+use self::conventions::Conventions;
 use self::data::observed::observed;
 use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};
@@ -56,7 +59,7 @@ use tactpad_inference::observations::Observations;
 use tactpad_inference::policy::REMAINDER_MAX;
 use tactpad_inference::search::{Applied, Attribution, AttributionFit};
 use tactpad_numeric::chi_square;
-use tactpad_numeric::statistics::{mean, rms};
+use tactpad_numeric::statistics::{mean, population_deviation, rms};
 
 /// Fewest rows, and fewest locations among them, by which causes can be told.
 const ROWS_MIN: usize = 60;
@@ -133,8 +136,23 @@ fn diagnosed(
     without: &[Effect],
     validation: Validation,
 ) -> Result<Diagnosis, DiagnosisError> {
-    check(table)?;
-    let gate = checked(&observed(table), pad, without)?;
+    let conventions = Conventions::of(table, pad);
+    let gate = if conventions.are_default() {
+        check_meant(table)?;
+        checked(&observed(table), pad, without)?
+    } else {
+        let meant = conventions.applied(table);
+        check_meant(&meant)?;
+        let [written, meant] = [observed(table), observed(&meant)];
+        let mut gate = checked(&meant, pad, without)?;
+        let [before, after] = [&written, &meant].map(|it| residual_square(it, pad));
+        let left = if before > 0.0 { (after / before).clamp(0.0, 1.0) } else { 1.0 };
+        gate.left *= left;
+        gate.findings.iter_mut().for_each(|finding| finding.share *= left);
+        gate.findings.splice(..0, conventions.findings(table, pad, 1.0 - left));
+        gate.notices.splice(..0, conventions.notice(table));
+        gate
+    };
     let all = &gate.observations;
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
     let mut model = Atlas::new(pad, without, all, &open);
@@ -178,6 +196,18 @@ fn checked(
     if (0..gate.observations.channels.len()).any(is_alive) { Ok(gate) } else { Err(DiagnosisError::Silent) }
 }
 
+/// The squared residual beside the model and a zero, each channel's in units of its reading's variance.
+fn residual_square(observations: &Observations, pad: &SimulatedPad<'_>) -> f64 {
+    let expected = Simulated::new(pad, &[], pad.device, pad.field, observations, observations, observations)
+        .readings(&[]);
+    let of_channel = |(read, expected): (&Vec<f64>, &Vec<f64>)| {
+        let left: Vec<f64> = read.iter().zip(expected).map(|(y, f)| y - f).collect();
+        (population_deviation(&left) / population_deviation(read)).powi(2)
+    };
+    let squares = observations.readings.iter().zip(&expected).map(of_channel);
+    squares.filter(|square| square.is_finite()).sum()
+}
+
 /// What the checks of the recording found goes first.
 fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Diagnosis {
     // Shares are of the residual before the repairs.
@@ -195,14 +225,20 @@ fn with_gatekeepers(mut diagnosis: Diagnosis, gate: Gate, excess: Excess) -> Dia
 
 /// The names of all effects that can be found.
 pub fn effects() -> impl Iterator<Item = Effect> {
-    CATALOGUE.iter().map(|cause| cause.effect).chain(gatekeepers::EFFECTS)
+    let of_recording = conventions::EFFECTS.into_iter().chain(gatekeepers::EFFECTS);
+    CATALOGUE.iter().map(|cause| cause.effect).chain(of_recording)
 }
 
 /// Whether there is enough in a table; quick, where [`diagnose`] takes seconds.
 ///
 /// # Errors
 /// What is missing.
-pub fn check(table: &Table) -> Result<(), DiagnosisError> {
+pub fn check(table: &Table, pad: &SimulatedPad<'_>) -> Result<(), DiagnosisError> {
+    check_meant(table).or_else(|_| check_meant(&Conventions::of(table, pad).applied(table)))
+}
+
+/// The same of a table whose labels are meant as they stand.
+fn check_meant(table: &Table) -> Result<(), DiagnosisError> {
     let all = observed(table);
     let locations = all.clusters().into_iter().max().map_or(0, |last| last + 1);
     match all {

@@ -129,6 +129,19 @@ pub struct Finding {
     pub confounded_with: Vec<(Effect, Target)>,
     /// The measurement that would tell them apart.
     pub separate_by: Option<String>,
+    /// Of the labels: what no number says.
+    pub labels: Option<LabelNote>,
+}
+
+/// What a finding of the labels says beside numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LabelNote {
+    /// Frame or sign, as an argument takes it.
+    pub map: Option<String>,
+    /// The rows, where it is not all of them.
+    pub part: Option<String>,
+    /// The argument that mends it; none where only the table can be mended.
+    pub argument: Option<String>,
 }
 
 impl Finding {

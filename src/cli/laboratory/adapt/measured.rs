@@ -1,15 +1,17 @@
 //! The measured tables that a decoder is fitted to.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
+use super::Arguments;
 use super::method::Method;
 use crate::cli::failure::Failure;
+use crate::cli::files::labels::LabelOptions;
 use crate::cli::files::tables;
 use tactpad::lab::calibration::screening::Fault;
 use tactpad::lab::contacts::Contacts;
+use tactpad::lab::tangent::SimulatedPad;
 use tactpad::pad::device::Device;
-use tactpad::tables::measured::columns::TableKind;
 use tactpad::tables::measured::{Table, zero};
 use tactpad::tables::recording::Recording;
 
@@ -17,33 +19,41 @@ use tactpad::tables::recording::Recording;
 pub(super) struct Measured {
     pub(super) contacts: Contacts,
     pub(super) names: String,
-    /// The rows by which causes may be looked for, by the tables' names; none where nobody asks for causes.
-    pub(super) tables: Vec<(String, Table)>,
+    /// The tables with all their rows, by their names.
+    whole: Vec<(String, Table)>,
 }
 
 impl Measured {
     /// Reads the tables of this pad; see [`Contacts::of`] for the others.
-    pub(super) fn read(
-        paths: &[PathBuf],
-        device: &Device,
-        rows: Option<usize>,
-        seed: u64,
-        method: Method,
-    ) -> Result<Self, Failure> {
+    pub(super) fn read(arguments: &Arguments, device: &Device, method: Method) -> Result<Self, Failure> {
+        let Arguments { measured: paths, rows, seed, meant, .. } = arguments;
         let each: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
         let names = each.join(", ");
-        let read = |path: &PathBuf| tables::read(path, TableKind::Measured, device.plate.radius_mm());
-        let tables = paths.iter().map(read).collect::<Result<Vec<_>, Failure>>()?;
-        let kept = if method == Method::Inverse { tables.clone() } else { Vec::new() };
+        let tables =
+            paths.iter().map(|path| meant.read(path, device)).collect::<Result<Vec<_>, Failure>>()?;
+        let kept = tables.clone();
         let full_scale_n = device.contact.full_scale_n;
         let recordings = tables.into_iter().map(|table| Recording::tared_or_raw(table, full_scale_n));
-        let contacts = Contacts::of(recordings.collect(), rows, seed);
+        let contacts = Contacts::of(recordings.collect(), *rows, *seed);
         let contacts = contacts.map_err(|error| Failure::Unusable(format!("{names}: {error}")))?;
         tables::within_memory(&names, contacts.count(), method.row_bytes(), |most| {
             format!("take some of them with --rows {most}")
         })?;
-        let kept = if rows.is_some() { drawn(kept, &contacts) } else { kept };
-        Ok(Self { contacts, names, tables: each.into_iter().zip(kept).collect() })
+        Ok(Self { contacts, names, whole: each.into_iter().zip(kept).collect() })
+    }
+
+    /// Refuses tables whose labels are meant otherwise than somebody said.
+    pub(super) fn ask(&self, meant: &LabelOptions, pad: &SimulatedPad<'_>) -> Result<(), Failure> {
+        self.whole.iter().try_for_each(|(name, table)| meant.ask(name, table, pad))
+    }
+
+    /// The rows by which causes may be looked for, by the tables' names.
+    pub(super) fn tables(&self, rows: Option<usize>) -> Cow<'_, [(String, Table)]> {
+        if rows.is_some() {
+            Cow::Owned(drawn(self.whole.clone(), &self.contacts))
+        } else {
+            Cow::Borrowed(&self.whole)
+        }
     }
 
     /// A decoder can be fitted to them, but a part of the pad is at fault.
@@ -59,10 +69,10 @@ impl Measured {
 
 /// The tables with the contacts that were drawn, and the readings of the untouched pad. Time series go: with rows left out they
 /// are none.
-fn drawn(tables: Vec<Table>, contacts: &Contacts) -> Vec<Table> {
+fn drawn(tables: Vec<(String, Table)>, contacts: &Contacts) -> Vec<(String, Table)> {
     let drawn: BTreeSet<usize> = contacts.places().iter().copied().collect();
     let mut first = 0;
-    let of_table = |mut table: Table| {
+    let of_table = |(name, mut table): (String, Table)| {
         let pressed: BTreeSet<usize> = zero::contacts(&table).into_iter().collect();
         let rows = std::mem::take(&mut table.rows).into_iter().enumerate();
         let before = first;
@@ -70,7 +80,7 @@ fn drawn(tables: Vec<Table>, contacts: &Contacts) -> Vec<Table> {
         let is_kept = |at: usize| drawn.contains(&(before + at)) || !pressed.contains(&at);
         table.rows =
             rows.filter(|(at, row)| row.trial.is_none() && is_kept(*at)).map(|(_, row)| row).collect();
-        table
+        (name, table)
     };
     tables.into_iter().map(of_table).collect()
 }

@@ -12,6 +12,7 @@ pub(crate) mod play;
 mod scdf;
 mod thermal;
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -27,6 +28,7 @@ use crate::cli::files::decoder_file;
 use crate::cli::files::destination::{Destination, Folder};
 use crate::cli::files::device::PadOptions;
 use crate::cli::files::field::{field_of, flaws, solve};
+use crate::cli::files::labels::LabelOptions;
 use crate::cli::printing::pictures;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, say, tell, written_over};
 use tactpad::lab::tangent::SimulatedPad;
@@ -72,6 +74,8 @@ pub(crate) struct Arguments {
     out: PathBuf,
     #[command(flatten)]
     pad: PadOptions,
+    #[command(flatten)]
+    meant: LabelOptions,
     /// Write the figure adapt-loss, how scdf learns, into this folder, as SVG and PNG.
     #[arg(long, value_name = "DIR", conflicts_with = "play")]
     figures: Option<PathBuf>,
@@ -118,12 +122,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return play::run(&options, &device);
     }
     let method = &arguments.method.unwrap_or(Method::Inverse);
-    let measured = Measured::read(&arguments.measured, &device, arguments.rows, arguments.seed, *method)?;
+    let measured = Measured::read(arguments, &device, *method)?;
     let to = Destination::of(out)?;
     let folder = arguments.folder(*method)?;
     let from = arguments.from.as_deref();
     let earlier = own::earlier(*method, from)?;
     let field = field_of(&device)?;
+    measured.ask(&arguments.meant, &SimulatedPad::known(&device, &field))?;
     let fault = measured.contacts.screened(&device, &field).map_err(|why| measured.refused(why))?;
     let fit = if *method == Method::Scdf {
         let (network, fit) = scdf::adapt(&measured, from, arguments.seed)?;
@@ -135,10 +140,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         let flaws = flaws(&device);
         let model = SimulatedPad { device: &device, field: &field, flaws: &flaws, solve: &solve };
+        // Nobody asks for causes where a decoder has no pad of its own.
+        let tables =
+            if *method == Method::Inverse { measured.tables(arguments.rows) } else { Cow::default() };
         // Neither waits for the other: what is named has no part in the fit.
         let (adapted, named) = rayon::join(
             || own::adapt(*method, &measured, earlier.as_ref(), &model),
-            || NamedCauses::by(&measured.tables, &model),
+            || NamedCauses::by(&tables, &model),
         );
         let (decoder, found) = adapted?;
         let note = format!("{} contacts of {}", measured.contacts.count(), measured.names);

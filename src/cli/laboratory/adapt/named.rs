@@ -94,7 +94,7 @@ fn found_in<'d>(measured: &'d str, diagnosis: &'d Diagnosis, finding: &'d Findin
 }
 
 fn of_table(table: &Table, pad: &SimulatedPad<'_>) -> Result<Diagnosis, String> {
-    diagnosis::check(table).map_err(|why| why.to_string())?;
+    diagnosis::check(table, pad).map_err(|why| why.to_string())?;
     let rows = table.rows.len();
     if rows > ROWS_MAX {
         return Err(format!("causes are looked for in {ROWS_MAX} rows at most, and here are {rows}"));

@@ -8,6 +8,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use crate::cli::failure::Failure;
 use crate::cli::files::destination::{Destination, Folder};
 use crate::cli::files::device::PadOptions;
+use crate::cli::files::labels::LabelOptions;
 use crate::cli::printing::reports;
 use crate::cli::printing::written::{both_print, is_same, is_stdout, written_over};
 use tactpad::lab::diagnosis;
@@ -47,6 +48,8 @@ pub(crate) struct Arguments {
     pub(super) channels: Vec<String>,
     #[command(flatten)]
     pub(super) pad: PadOptions,
+    #[command(flatten)]
+    pub(super) meant: LabelOptions,
     /// A device file to write: the model with the named causes in it; - is standard output.
     #[arg(long, value_name = "E.toml")]
     pub(super) save_device: Option<PathBuf>,

@@ -237,6 +237,7 @@ mod tests {
             share: 1.0,
             confounded_with: Vec::new(),
             separate_by: None,
+            labels: None,
         }
     }
 

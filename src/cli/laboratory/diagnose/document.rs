@@ -59,11 +59,21 @@ pub(crate) struct Finding<'d> {
     status: &'static str,
     #[serde(flatten)]
     cause: Cause,
-    parameters: BTreeMap<&'static str, Estimate>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    part: Option<&'d str>,
+    parameters: BTreeMap<&'static str, ParameterValue<'d>>,
     p_value: f64,
     share: f64,
     confounded_with: Vec<Cause>,
     separate_by: Option<&'d str>,
+}
+
+/// A number with its interval, or a text.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum ParameterValue<'d> {
+    Number(Estimate),
+    Text(&'d str),
 }
 
 #[derive(Serialize)]
@@ -163,13 +173,16 @@ impl<'d> Finding<'d> {
     pub(crate) fn of(finding: &'d report::Finding, channels: &[String]) -> Self {
         let estimate = |it: &report::Estimate| {
             let [low95, high95] = it.interval95;
-            (it.name, Estimate { value: it.value, low95, high95 })
+            (it.name, ParameterValue::Number(Estimate { value: it.value, low95, high95 }))
         };
+        let labels = finding.labels.as_ref();
+        let map = labels.and_then(|it| it.map.as_deref()).map(|map| ("map", ParameterValue::Text(map)));
         let others = finding.confounded_with.iter();
         Self {
             status: if finding.confounded_with.is_empty() { "NAMED" } else { "CONFOUNDED" },
             cause: Cause::of(finding.effect, &finding.target, channels),
-            parameters: finding.parameters.iter().map(estimate).collect(),
+            part: labels.and_then(|it| it.part.as_deref()),
+            parameters: finding.parameters.iter().map(estimate).chain(map).collect(),
             p_value: finding.p_value,
             share: finding.share,
             confounded_with: others.map(|(effect, target)| Cause::of(*effect, target, channels)).collect(),

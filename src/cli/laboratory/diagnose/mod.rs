@@ -29,7 +29,6 @@ use tactpad::lab::effect::Effect;
 use tactpad::lab::tangent::SimulatedPad;
 use tactpad::pad::device::Device;
 use tactpad::tables::measured::Table;
-use tactpad::tables::measured::columns::TableKind;
 
 /// Memory that the search for causes takes for each row, with what it repeats of it.
 const ROW_BYTES: usize = 32_000;
@@ -48,18 +47,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Diagnoses a measured table.
 fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
-    let Arguments { pad, save_device, report, without, json, .. } = arguments;
+    let Arguments { pad, meant, save_device, report, without, json, .. } = arguments;
     let saved = save_device.as_deref().map(|path| destination(path, arguments)).transpose()?;
     let device = pad.read()?;
     let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;
-    let table = tables::read(measured, TableKind::Measured, device.plate.radius_mm())?;
+    let table = meant.read(measured, &device)?;
     tables::within_memory(&measured.display().to_string(), table.rows.len(), ROW_BYTES, tables::fewer_rows)?;
-    // It takes a while until the engine itself could say so.
-    diagnosis::check(&table).map_err(|why| unfit(measured, &why))?;
     let field = field_of(&device)?;
+    // It takes a while until the engine itself could say so.
+    let known = SimulatedPad::known(&device, &field);
+    diagnosis::check(&table, &known).map_err(|why| unfit(measured, &why))?;
     let progress = Progress::begin("looking for causes");
     let flaws = flaws(&device);
-    let model = SimulatedPad { device: &device, field: &field, flaws: &flaws, solve: &solve };
+    let model = SimulatedPad { flaws: &flaws, solve: &solve, ..known };
     let diagnosis = diagnosis::diagnose(&table, &model, without).map_err(|why| unfit(measured, &why))?;
     drop(progress);
     if let Some(to) = saved {

@@ -78,7 +78,13 @@ pub(super) fn cause(effect: Effect, target: &Target, channels: &[String]) -> Str
 
 /// A cause with its numbers and their intervals.
 pub(crate) fn sized(finding: &Finding, channels: &[String]) -> String {
-    let numbers: Vec<String> = finding.parameters.iter().map(estimate).collect();
+    let mut numbers: Vec<String> = finding.parameters.iter().map(estimate).collect();
+    if let Some(note) = &finding.labels {
+        let map = note.map.iter().map(|map| format!("\"{map}\""));
+        numbers.extend(
+            map.chain(note.part.clone()).chain(note.argument.iter().map(|it| format!("say so with {it}"))),
+        );
+    }
     let first = cause(finding.effect, &finding.target, channels);
     let colon = if numbers.is_empty() { "" } else { ": " };
     format!("{first}{colon}{}", numbers.join(", "))

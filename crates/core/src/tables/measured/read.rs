@@ -12,11 +12,12 @@ use super::rows::Rows;
 use super::write::push_text;
 use super::{Approach, Label, Row, Table};
 use crate::quantity::CHANNELS;
+use crate::tables::units::{CHANNEL_UNITS, FORCE_UNITS, PLACE_UNITS, UnitTable, Units};
 
 /// As many rows as a gigabyte holds.
 pub const ROWS_MAX: usize = (1 << 30) / size_of::<Row>();
 
-const FORCES_N: RangeInclusive<f64> = -100.0..=100.0;
+const FORCE_MAX_N: f64 = 100.0;
 /// Eleven days: what plays in a game, or streams from a pad, counts from its beginning.
 const CONTACT_TIMES_S: RangeInclusive<f64> = 0.0..=1e6;
 /// Whoever measures may count from 1970.
@@ -25,7 +26,7 @@ const TEMPERATURES_C: RangeInclusive<f64> = -100.0..=200.0;
 const CYCLES: RangeInclusive<f64> = 0.0..=1e12;
 const DWELLS_S: RangeInclusive<f64> = 0.0..=1e6;
 const TURNS_DEG: RangeInclusive<f64> = -360.0..=360.0;
-const CHANNELS_UV: RangeInclusive<f64> = -1e8..=1e8;
+const CHANNEL_MAX_UV: f64 = 1e8;
 
 /// Reads all rows of a table; at least one, or it is an error.
 ///
@@ -33,10 +34,23 @@ const CHANNELS_UV: RangeInclusive<f64> = -1e8..=1e8;
 /// Columns whose names are not known are carried along as texts, but for [`TableKind::Contacts`]. An empty cell of an
 /// optional column says that this row has none; a table of contacts has all times or no column of them.
 pub fn table(from: impl BufRead, kind: TableKind, place_max_mm: f64) -> Result<Table, ReadError> {
+    written_in(from, kind, place_max_mm, &Units::default())
+}
+
+/// The same of labels and channels in these units. They are left as they are written.
+///
+/// # Errors
+/// As of [`table`].
+pub fn written_in(
+    from: impl BufRead,
+    kind: TableKind,
+    place_max_mm: f64,
+    units: &Units,
+) -> Result<Table, ReadError> {
     let mut rows = Rows::begin(from, Fault::Empty(kind))?;
     let names: Vec<_> = rows.names().iter().map(String::as_str).collect();
     let layout = Layout::of(&names, kind).map_err(|fault| rows.error(fault))?;
-    let mut reader = Reader::new(layout, kind, place_max_mm);
+    let mut reader = Reader::new(layout, kind, place_max_mm, units);
     reader.table.open_end = rows.each(|line, cells| reader.row(line, cells))?;
     if reader.table.rows.is_empty() {
         return Err(rows.error(Fault::NoRows));
@@ -46,26 +60,45 @@ pub fn table(from: impl BufRead, kind: TableKind, place_max_mm: f64) -> Result<T
     Ok(reader.table)
 }
 
+/// Numbers of a column that may be.
+struct AllowedNumbers {
+    range: RangeInclusive<f64>,
+    unit: &'static str,
+}
+
+impl AllowedNumbers {
+    /// Up to ±`max` in the pad's unit, written in units of this size.
+    fn within(max: f64, size: f64, names: UnitTable, own: &'static str) -> Self {
+        let max = max / size;
+        let by_name = names.iter().find(|(_, known)| *known == size).map_or("units", |(name, _)| *name);
+        Self { range: -max..=max, unit: if size == 1.0 { own } else { by_name } }
+    }
+}
+
 /// A table as far as it is read.
 struct Reader {
     kind: TableKind,
     layout: Layout,
     channel_columns: [String; CHANNELS],
-    places_mm: RangeInclusive<f64>,
+    places: AllowedNumbers,
+    forces: AllowedNumbers,
+    channels: AllowedNumbers,
     trials: BTreeMap<String, usize>,
     sessions: BTreeMap<String, usize>,
     table: Table,
 }
 
 impl Reader {
-    fn new(layout: Layout, kind: TableKind, place_max_mm: f64) -> Self {
+    fn new(layout: Layout, kind: TableKind, place_max_mm: f64, units: &Units) -> Self {
         let mut table = Table::default();
         table.others.names = layout.others.iter().map(|(_, name)| name.clone()).collect();
         Self {
             kind,
             layout,
             channel_columns: channel_columns(),
-            places_mm: -place_max_mm..=place_max_mm,
+            places: AllowedNumbers::within(place_max_mm, units.mm, PLACE_UNITS, "mm"),
+            forces: AllowedNumbers::within(FORCE_MAX_N, units.n, FORCE_UNITS, "N"),
+            channels: AllowedNumbers::within(CHANNEL_MAX_UV, units.uv, CHANNEL_UNITS, "µV"),
             trials: BTreeMap::new(),
             sessions: BTreeMap::new(),
             table,
@@ -164,8 +197,8 @@ impl Reader {
         let mut numbers = [0.0; LABEL.len()];
         for ((name, column), found) in LABEL.iter().zip(self.layout.label).zip(&mut numbers) {
             let is_place = name.ends_with("_mm");
-            let (allowed, unit) = if is_place { (&self.places_mm, "mm") } else { (&FORCES_N, "N") };
-            *found = number(name, cells.get(column).map_or("", AsRef::as_ref), allowed, unit)?;
+            let AllowedNumbers { range, unit } = if is_place { &self.places } else { &self.forces };
+            *found = number(name, cells.get(column).map_or("", AsRef::as_ref), range, unit)?;
         }
         let [x_mm, y_mm, fx_n, fy_n, fz_n] = numbers;
         Ok(Label { x_mm, y_mm, fx_n, fy_n, fz_n })
@@ -175,7 +208,8 @@ impl Reader {
         let Some(columns) = self.layout.channels else { return Ok(None) };
         let mut uv = [0.0; CHANNELS];
         for ((name, column), uv) in self.channel_columns.iter().zip(columns).zip(&mut uv) {
-            *uv = number(name, cells.get(column).map_or("", AsRef::as_ref), &CHANNELS_UV, "µV")?;
+            let AllowedNumbers { range, unit } = &self.channels;
+            *uv = number(name, cells.get(column).map_or("", AsRef::as_ref), range, unit)?;
         }
         Ok(Some(uv))
     }

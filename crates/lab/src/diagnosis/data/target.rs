@@ -4,6 +4,31 @@ use std::fmt;
 
 use tactpad_core::pad::device::Side;
 
+/// Columns of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LabelColumns {
+    /// All labels.
+    All,
+    /// x and y.
+    Places,
+    /// Fx, Fy and Fz.
+    Forces,
+    /// The channels.
+    Channels,
+}
+
+impl LabelColumns {
+    /// Its name in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::All => "labels",
+            Self::Places => "places",
+            Self::Forces => "forces",
+            Self::Channels => "channels",
+        }
+    }
+}
+
 /// Where a cause acts. Channels and modules are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
@@ -33,6 +58,8 @@ pub enum Target {
     },
     /// A module, on one of its sides.
     ModuleSide(usize, Side),
+    /// The labels, or some columns.
+    Labels(LabelColumns),
 }
 
 impl Target {
@@ -42,6 +69,7 @@ impl Target {
             Self::Pad => "pad".to_owned(),
             Self::Rig => "rig".to_owned(),
             Self::All => "all".to_owned(),
+            Self::Labels(_) => "labels".to_owned(),
             Self::Channel(channel) | Self::Channels { into: channel, .. } => channel_name(channels, channel),
             Self::Module(module) | Self::Modules { into: module, .. } | Self::ModuleSide(module, _) => {
                 format!("module{module}")
@@ -54,6 +82,7 @@ impl Target {
         match *self {
             Self::Channels { from, .. } => Some(channel_name(channels, from)),
             Self::Modules { from, .. } => Some(format!("module{from}")),
+            Self::Labels(columns) if columns != LabelColumns::All => Some(columns.name().to_owned()),
             _ => None,
         }
     }

@@ -103,6 +103,7 @@ impl Gate {
             share,
             confounded_with: Vec::new(),
             separate_by: None,
+            labels: None,
         });
         &mut self.findings[at]
     }
@@ -141,7 +142,7 @@ pub(super) fn squares(values: &[f64]) -> f64 {
 }
 
 /// The correlation of two columns; 0 where one stays the same.
-pub(super) fn correlation(one: &[f64], other: &[f64]) -> f64 {
+pub(in crate::diagnosis) fn correlation(one: &[f64], other: &[f64]) -> f64 {
     let [mean_one, mean_other] = [mean(one), mean(other)];
     let product: f64 = one.iter().zip(other).map(|(a, b)| (a - mean_one) * (b - mean_other)).sum();
     let whole = (squares(one) * squares(other)).sqrt();
@@ -149,6 +150,6 @@ pub(super) fn correlation(one: &[f64], other: &[f64]) -> f64 {
 }
 
 /// `1 row`, `2 rows`.
-pub(super) fn rows_text(count: usize) -> String {
+pub(in crate::diagnosis) fn rows_text(count: usize) -> String {
     if count == 1 { "1 row".to_owned() } else { format!("{count} rows") }
 }

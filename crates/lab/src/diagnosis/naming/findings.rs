@@ -32,6 +32,7 @@ pub(crate) fn findings(
                 .map(label)
                 .collect(),
             separate_by: None,
+            labels: None,
         };
         findings.push((at, finding));
     }

@@ -45,6 +45,7 @@ pub(crate) fn offsets(
             share: square / whole,
             confounded_with: Vec::new(),
             separate_by: None,
+            labels: None,
         };
         is_found.then(|| if is_clear { finding } else { doubted(finding) })
     };

@@ -135,6 +135,7 @@ mod tests {
             share: 0.3,
             confounded_with: Vec::new(),
             separate_by: None,
+            labels: None,
         }
     }
 

@@ -81,6 +81,7 @@ impl<'c> Selection<'c> {
                 share: if whole > 0.0 { (alone.square / whole).clamp(0.0, 1.0) } else { 0.0 },
                 confounded_with: self.rivals(&others, &alone),
                 separate_by: None,
+                labels: None,
             }
         };
         selected.iter().enumerate().map(finding).collect()

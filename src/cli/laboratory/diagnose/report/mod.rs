@@ -117,6 +117,7 @@ mod tests {
                 share: f64::NAN,
                 confounded_with: vec![(Effect::ZeroDrift, Target::Pad)],
                 separate_by: Some("measure <again>".to_owned()),
+                labels: None,
             }],
             not_detected: Vec::new(),
             not_testable: Vec::new(),

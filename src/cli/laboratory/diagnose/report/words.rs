@@ -55,8 +55,10 @@ fn filled(wanted: &str, finding: &Finding, channels: &[String]) -> String {
     let Finding { target, parameters, .. } = finding;
     match wanted {
         "target" if matches!(target, Target::Pad | Target::Rig | Target::All) => "every channel".to_owned(),
+        "target" if matches!(target, Target::Labels(_)) => "the labels".to_owned(),
         "target" => subject(target, channels),
         "with" => target.with(channels).map(|with| place(&with)).unwrap_or_default(),
+        "map" => finding.labels.as_ref().and_then(|it| it.map.clone()).unwrap_or_default(),
         "side" => target.side().map(|it| it.name().replace('-', "−")).unwrap_or_default(),
         _ => sizes(wanted, parameters),
     }
@@ -172,6 +174,7 @@ mod tests {
             share: 0.5,
             confounded_with: Vec::new(),
             separate_by: None,
+            labels: None,
         }
     }
 

@@ -177,6 +177,7 @@ fn finding(channel: usize, excess: f64, deviation: f64) -> Finding {
         share: 0.0,
         confounded_with: Vec::new(),
         separate_by: None,
+        labels: None,
     }
 }
 

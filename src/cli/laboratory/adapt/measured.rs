@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 
-use super::Arguments;
 use super::method::Method;
 use crate::cli::failure::Failure;
 use crate::cli::files::labels::LabelOptions;
@@ -15,6 +15,13 @@ use tactpad::pad::device::Device;
 use tactpad::tables::measured::{Table, zero};
 use tactpad::tables::recording::Recording;
 
+/// So many of the contacts, or all of them, drawn by a seed.
+#[derive(Clone, Copy)]
+pub(super) struct RowDraw {
+    pub(super) rows: Option<usize>,
+    pub(super) seed: u64,
+}
+
 /// The contacts of the tables, and what people call these.
 pub(super) struct Measured {
     pub(super) contacts: Contacts,
@@ -25,8 +32,13 @@ pub(super) struct Measured {
 
 impl Measured {
     /// Reads the tables of this pad; see [`Contacts::of`] for the others.
-    pub(super) fn read(arguments: &Arguments, device: &Device, method: Method) -> Result<Self, Failure> {
-        let Arguments { measured: paths, rows, seed, meant, .. } = arguments;
+    pub(super) fn read(
+        paths: &[PathBuf],
+        meant: &LabelOptions,
+        device: &Device,
+        draw: RowDraw,
+        method: Method,
+    ) -> Result<Self, Failure> {
         let each: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
         let names = each.join(", ");
         let tables =
@@ -34,7 +46,7 @@ impl Measured {
         let kept = tables.clone();
         let full_scale_n = device.contact.full_scale_n;
         let recordings = tables.into_iter().map(|table| Recording::tared_or_raw(table, full_scale_n));
-        let contacts = Contacts::of(recordings.collect(), *rows, *seed);
+        let contacts = Contacts::of(recordings.collect(), draw.rows, draw.seed);
         let contacts = contacts.map_err(|error| Failure::Unusable(format!("{names}: {error}")))?;
         tables::within_memory(&names, contacts.count(), method.row_bytes(), |most| {
             format!("take some of them with --rows {most}")

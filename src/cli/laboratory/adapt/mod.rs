@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use self::measured::Measured;
+use self::measured::{Measured, RowDraw};
 use self::method::Method;
 use self::named::NamedCauses;
 use self::numbers::FoundPad;
@@ -122,7 +122,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         return play::run(&options, &device);
     }
     let method = &arguments.method.unwrap_or(Method::Inverse);
-    let measured = Measured::read(arguments, &device, *method)?;
+    let draw = RowDraw { rows: arguments.rows, seed: arguments.seed };
+    let measured = Measured::read(&arguments.measured, &arguments.meant, &device, draw, *method)?;
     let to = Destination::of(out)?;
     let folder = arguments.folder(*method)?;
     let from = arguments.from.as_deref();

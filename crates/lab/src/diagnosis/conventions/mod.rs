@@ -21,8 +21,8 @@ use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_core::tables::convention::{Frame, LabelConvention, PlaneMap, Sign};
-use tactpad_core::tables::measured::Table;
 use tactpad_core::tables::measured::zero::{UntouchedRows, contacts};
+use tactpad_core::tables::measured::{Label, Table};
 use tactpad_core::tables::units::{CHANNEL_UNITS, FORCE_UNITS, PLACE_UNITS, Units};
 use tactpad_numeric::statistics::median;
 
@@ -162,21 +162,19 @@ struct Agreement {
 impl Agreement {
     /// `None` where there is too little to tell, or no wiring makes contacts of the readings.
     fn of(table: &Table, pad: &SimulatedPad<'_>, rows_late: isize) -> Option<Self> {
-        let table = &shifted(table, rows_late);
-        let rows = readings(table);
-        let all: Vec<[f64; CHANNELS]> = rows.iter().map(|(_, uv)| *uv).collect();
+        let mut rows = readings(table, rows_late);
+        let all: Vec<[f64; CHANNELS]> = rows.iter().map(|(_, uv, _)| *uv).collect();
         let decoding = Decoding::new(pad.field, &all)?;
-        let (rows, loaded): (Vec<usize>, Vec<[f64; CHANNELS]>) =
-            rows.into_iter().filter(|(_, uv)| decoding.is_loaded(uv)).unzip();
+        rows.retain(|(_, uv, _)| decoding.is_loaded(uv));
+        let loaded: Vec<[f64; CHANNELS]> = rows.iter().map(|(_, uv, _)| *uv).collect();
         if loaded.len() < CONTACTS_MIN {
             return None;
         }
         let wiring = decoding.wiring(&loaded)?;
-        let contact = |(row, uv): (usize, &[f64; CHANNELS])| {
-            let decoded = decoding.contact(&wiring.of(uv))?;
-            Some(WrittenContact { row, decoded, label: table.rows[row].label })
+        let contact = |(row, uv, label): (usize, [f64; CHANNELS], Label)| {
+            Some(WrittenContact { row, decoded: decoding.contact(&wiring.of(&uv))?, label })
         };
-        let all_contacts: Vec<WrittenContact> = rows.into_iter().zip(&loaded).filter_map(contact).collect();
+        let all_contacts: Vec<WrittenContact> = rows.into_iter().filter_map(contact).collect();
         let contacts = all_contacts.len();
         let least = (PART_MIN * contacts as f64).max(CONTACTS_MIN as f64);
         let mut mappings: Vec<Mapping> = Vec::new();
@@ -270,22 +268,28 @@ impl Conventions {
     }
 }
 
-/// Rows of contacts, each with its readings relative to those of the untouched pad.
-fn readings(table: &Table) -> Vec<(usize, [f64; CHANNELS])> {
+/// Contacts: the row that is read, its readings relative to those of the untouched pad, and its label, which stands so many rows later.
+fn readings(table: &Table, rows_late: isize) -> Vec<(usize, [f64; CHANNELS], Label)> {
+    let read = |labelled: usize| {
+        let row = labelled.checked_add_signed(-rows_late)?;
+        Some((row, table.rows.get(row)?.uv.as_ref()?))
+    };
     let pressed = contacts(table);
     let step = pressed.len().div_ceil(CONTACTS_MAX).max(1);
-    let rows = UntouchedRows::of(table);
-    let untouched: Vec<&[f64; CHANNELS]> =
-        table.rows.iter().filter(|row| rows.is(row)).filter_map(|row| row.uv.as_ref()).collect();
+    let untouched = UntouchedRows::of(table);
+    let untouched: Vec<&[f64; CHANNELS]> = (0..table.rows.len())
+        .filter(|at| untouched.is(&table.rows[*at]))
+        .filter_map(|at| read(at).map(|(_, uv)| uv))
+        .collect();
     // Some of them may be another row's.
     let zero: [f64; CHANNELS] =
         std::array::from_fn(|k| median(untouched.iter().map(|uv| uv[k])).unwrap_or_default());
     let relative = |at: usize| {
-        let uv = table.rows[at].uv?;
-        Some((at, std::array::from_fn(|k| uv[k] - zero[k])))
+        let (row, uv) = read(at)?;
+        let uv: [f64; CHANNELS] = std::array::from_fn(|k| uv[k] - zero[k]);
+        uv.iter().all(|uv| uv.is_finite()).then_some((row, uv, table.rows[at].label))
     };
-    let is_finite = |(_, uv): &(usize, [f64; CHANNELS])| uv.iter().all(|uv| uv.is_finite());
-    pressed.into_iter().step_by(step).filter_map(relative).filter(is_finite).collect()
+    pressed.into_iter().step_by(step).filter_map(relative).collect()
 }
 
 /// The convention by which labels follow contacts so.

@@ -171,6 +171,12 @@ fn codes_are_masked_and_what_only_looks_like_one_is_not() {
         let gate = guarded(&table, None, |_| true);
         assert_eq!((checks(&gate), masked(&gate, 0)), (vec![("missing", Some(0))], 100), "{code}");
     }
+    for wild in [1e6, -1e6] {
+        let (mut table, expected) = pressed(200);
+        table.readings[0][17] = wild;
+        let gate = guarded(&table, Some(&expected), |_| true);
+        assert_eq!((checks(&gate), masked(&gate, 0)), (vec![("missing", Some(0))], 1), "{wild}");
+    }
     // Rest between static loads, to the last digit, in all channels.
     let (mut table, _) = pressed(200);
     table.readings.iter_mut().for_each(|of| of.iter_mut().step_by(2).for_each(|y| *y = 0.0));

@@ -1,4 +1,5 @@
-//! Codes that stand for a missing reading: not a number, or one value over and over that does not belong there.
+//! Codes that stand for a missing reading: not a number, one value over and over that does not belong there, or a single one that no
+//! contact can make.
 //!
 //! A value that recurs to the last digit is a code if it lies further from all others than the others lie apart; or if the readings
 //! jump to it and back again and again while no other channel does. Limits of a converter and its steps do neither: the readings
@@ -19,10 +20,18 @@ const JUMP: f64 = 2.0;
 /// Of a code's rows this share are jumps at least; a real event takes as many other channels along.
 const JUMPS: f64 = 0.2;
 
+/// A reading that no contact can make is so many widths of the ordinary ones away from them …
+const WILD: f64 = 20.0;
+/// … while no other channel is so many of its own.
+const ALONG: f64 = 2.0;
+
 pub(crate) fn check(gate: &mut Gate) {
     unwritten(gate);
+    (0..gate.channels()).for_each(|channel| not_numbers(gate, channel));
+    let ordinary: Vec<Option<[f64; 2]>> =
+        (0..gate.channels()).map(|channel| ordinary(gate, channel)).collect();
     for channel in 0..gate.channels() {
-        not_numbers(gate, channel);
+        wild(gate, channel, &ordinary);
         while let Some((code, rows)) = code(gate, channel) {
             let detail = format!(
                 "{} reads {code} in {}, which no reading around it is near: a code for a missing one; these have no weight; leave \
@@ -74,6 +83,44 @@ fn not_numbers(gate: &mut Gate, channel: usize) {
         gate.name(channel),
         rows_text(rows.len())
     );
+    gate.notice("missing", Some(channel), detail);
+}
+
+/// The ends of a channel's ordinary readings; `None` where it has only one.
+fn ordinary(gate: &Gate, channel: usize) -> Option<[f64; 2]> {
+    let mut sorted = gate.readings(channel, &gate.told(channel));
+    sorted.sort_by(f64::total_cmp);
+    let left_out = ((1.0 - ORDINARY) * sorted.len() as f64).ceil() as usize;
+    let [low, high] = [*sorted.get(left_out)?, *sorted.get(sorted.len().checked_sub(1 + left_out)?)?];
+    (low < high).then_some([low, high])
+}
+
+/// By how many widths of the ordinary readings one lies beyond them.
+fn beyond(reading: f64, [low, high]: [f64; 2]) -> f64 {
+    (reading - high).max(low - reading).max(0.0) / (high - low)
+}
+
+/// Readings that are far from all ordinary ones by themselves.
+fn wild(gate: &mut Gate, channel: usize, ordinary: &[Option<[f64; 2]>]) {
+    let Some(own) = ordinary[channel] else { return };
+    let goes_along = |row: usize| {
+        ordinary.iter().enumerate().any(|(other, ends)| {
+            let reading = gate.observations.readings[other][row];
+            other != channel && ends.is_some_and(|ends| beyond(reading, ends) > ALONG)
+        })
+    };
+    let readings = &gate.observations.readings[channel];
+    let is_wild = |row: &usize| beyond(readings[*row], own) > WILD && !goes_along(*row);
+    let rows: Vec<usize> = gate.told(channel).into_iter().filter(is_wild).collect();
+    let Some(first) = rows.first() else { return };
+    let detail = format!(
+        "{} reads {} in {}, far beyond all its other readings, and no other channel moves; these have no weight; see what the recorder \
+         writes there",
+        gate.name(channel),
+        readings[*first],
+        rows_text(rows.len())
+    );
+    gate.mask(channel, &rows);
     gate.notice("missing", Some(channel), detail);
 }
 

@@ -36,6 +36,20 @@ pub fn population_deviation(values: &[f64]) -> f64 {
     rms(values.iter().map(|value| value - mean))
 }
 
+/// Σ (x − mean)²; 0 without values.
+pub fn squares(values: &[f64]) -> f64 {
+    let middle = mean(values);
+    values.iter().map(|value| (value - middle).powi(2)).sum()
+}
+
+/// The correlation of two columns; 0 where one stays the same.
+pub fn correlation(one: &[f64], other: &[f64]) -> f64 {
+    let [mean_one, mean_other] = [mean(one), mean(other)];
+    let product: f64 = one.iter().zip(other).map(|(a, b)| (a - mean_one) * (b - mean_other)).sum();
+    let whole = (squares(one) * squares(other)).sqrt();
+    if whole > 0.0 && product.is_finite() { (product / whole).clamp(-1.0, 1.0) } else { 0.0 }
+}
+
 /// The middle value, the lower of two; `None` without values.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = values.into_iter().collect();

@@ -211,3 +211,8 @@ pub struct WithoutFinding {
     /// The residual without it over the nominal one.
     pub rmse_ratio: f64,
 }
+
+/// `1 row`, `2 rows`.
+pub(crate) fn rows_text(count: usize) -> String {
+    if count == 1 { "1 row".to_owned() } else { format!("{count} rows") }
+}

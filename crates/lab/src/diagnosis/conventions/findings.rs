@@ -1,11 +1,10 @@
 //! What is said of the labels: findings, what tells them from faults of the wiring, and the arguments that mend them.
 
+use super::detection::{Conventions, LabelPart};
 use super::symmetry::Readings;
 use super::wiring::SignedPermutation;
-use super::{Conventions, LabelPart};
 use crate::diagnosis::data::target::{LabelColumns, Target};
-use crate::diagnosis::gatekeepers::gate::rows_text;
-use crate::diagnosis::report::{Estimate, Finding, LabelNote, Notice};
+use crate::diagnosis::report::{Estimate, Finding, LabelNote, Notice, rows_text};
 use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
 use tactpad_core::quantity::{CHANNEL_NAMES, CHANNELS};

@@ -4,7 +4,6 @@
 //! signs of its channels: s(g c) = P s(c) for contacts c, with a map g of contacts and a signed permutation P.
 
 use super::wiring::SignedPermutation;
-use crate::diagnosis::gatekeepers::gate::correlation;
 use tactpad_core::pad::device::Device;
 use tactpad_core::pad::field::PadField;
 use tactpad_core::quantity::{CHANNELS, Contact};
@@ -12,6 +11,7 @@ use tactpad_core::tables::convention::{Frame, LabelConvention, PlaneMap, Sign};
 use tactpad_core::tables::measured::Label;
 use tactpad_core::tables::units::Units;
 use tactpad_numeric::random::SplitMix64;
+use tactpad_numeric::statistics::correlation;
 
 /// Contacts by which readings are compared.
 const CONTACTS: usize = 80;

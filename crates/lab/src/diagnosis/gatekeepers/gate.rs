@@ -4,7 +4,7 @@ use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Finding, NotDetected, NotTestable, Notice};
 use crate::effect::Effect;
 use tactpad_inference::observations::Observations;
-use tactpad_numeric::statistics::mean;
+use tactpad_numeric::statistics::squares;
 
 /// Probability by which a check may find anything in a sound recording.
 pub(super) const LEVEL: f64 = 1e-3;
@@ -133,23 +133,4 @@ impl Gate {
         self.left = left;
         share
     }
-}
-
-/// Σ (x − mean)²; 0 without values.
-pub(super) fn squares(values: &[f64]) -> f64 {
-    let middle = mean(values);
-    values.iter().map(|value| (value - middle).powi(2)).sum()
-}
-
-/// The correlation of two columns; 0 where one stays the same.
-pub(in crate::diagnosis) fn correlation(one: &[f64], other: &[f64]) -> f64 {
-    let [mean_one, mean_other] = [mean(one), mean(other)];
-    let product: f64 = one.iter().zip(other).map(|(a, b)| (a - mean_one) * (b - mean_other)).sum();
-    let whole = (squares(one) * squares(other)).sqrt();
-    if whole > 0.0 && product.is_finite() { (product / whole).clamp(-1.0, 1.0) } else { 0.0 }
-}
-
-/// `1 row`, `2 rows`.
-pub(in crate::diagnosis) fn rows_text(count: usize) -> String {
-    if count == 1 { "1 row".to_owned() } else { format!("{count} rows") }
 }

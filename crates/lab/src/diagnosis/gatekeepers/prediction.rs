@@ -1,9 +1,8 @@
 //! Prediction of a channel by others: least squares.
 
-use super::gate::squares;
 use tactpad_numeric::dense::{Matrix, gram};
 use tactpad_numeric::products::dot;
-use tactpad_numeric::statistics::mean;
+use tactpad_numeric::statistics::{mean, squares};
 
 /// Of a regressor that is nearly a sum of others, this part of its square is added, so that the system has a solution.
 const RIDGE: f64 = 1e-9;

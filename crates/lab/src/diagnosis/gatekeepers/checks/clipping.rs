@@ -6,9 +6,9 @@
 
 use super::steps::least_gap;
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text};
+use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
 use crate::diagnosis::gatekeepers::prediction::Fitted;
-use crate::diagnosis::report::Estimate;
+use crate::diagnosis::report::{Estimate, rows_text};
 use crate::effect::Effect;
 use tactpad_numeric::statistics::{mean, population_deviation};
 

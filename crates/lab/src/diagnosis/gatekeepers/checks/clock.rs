@@ -3,7 +3,8 @@
 //! A row that comes late is sorted to its place; where the clock was set back, what follows is a series of its own; of rows with
 //! one time the first has weight. A clock that hardly ever moves tells no order, and is only reported.
 
-use crate::diagnosis::gatekeepers::gate::{Gate, rows_text};
+use crate::diagnosis::gatekeepers::gate::Gate;
+use crate::diagnosis::report::rows_text;
 use tactpad_numeric::statistics::{Line, deviation};
 
 /// So many rows that are earlier than one before them came late; of more, the clock was set back.

@@ -7,10 +7,12 @@
 //! Source: R. A. Fisher, Metron 1 (1921) 3; R. A. Fisher, Statistical Methods for Research Workers (1925), the F test.
 
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text, squares};
+use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
 use crate::diagnosis::gatekeepers::prediction::explained;
+use crate::diagnosis::report::rows_text;
 use crate::effect::Effect;
 use tactpad_numeric::chi_square;
+use tactpad_numeric::statistics::squares;
 
 /// No answer is smaller than this part of the signal.
 const ANSWER_MIN: f64 = 0.01;

@@ -15,13 +15,13 @@
 //! Source: A. J. Viterbi, IEEE Trans. Inf. Theory 13 (1967) 260; G. Schwarz, Ann. Statist. 6 (1978) 461.
 
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text, squares};
+use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
 use crate::diagnosis::gatekeepers::prediction::Fitted;
-use crate::diagnosis::report::Estimate;
+use crate::diagnosis::report::{Estimate, rows_text};
 use crate::effect::Effect;
 use tactpad_inference::observations::Sample;
 use tactpad_inference::policy::WITHIN_95;
-use tactpad_numeric::statistics::rms;
+use tactpad_numeric::statistics::{rms, squares};
 
 /// Rows for each number of the smooth part, at least.
 const ROWS_PER_COLUMN: usize = 8;

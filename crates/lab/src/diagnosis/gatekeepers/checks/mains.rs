@@ -8,8 +8,8 @@
 
 use super::line::{RowRun, Waves};
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text};
-use crate::diagnosis::report::{Estimate, NotDetected, NotTestable};
+use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
+use crate::diagnosis::report::{Estimate, NotDetected, NotTestable, rows_text};
 use crate::effect::Effect;
 use tactpad_inference::policy::{POWER, WITHIN_95};
 use tactpad_numeric::chi_square;

@@ -5,7 +5,8 @@
 //! jump to it and back again and again while no other channel does. Limits of a converter and its steps do neither: the readings
 //! around them are next to them.
 
-use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text};
+use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
+use crate::diagnosis::report::rows_text;
 
 /// Fewest rows of a code.
 const ROWS_MIN: usize = 3;

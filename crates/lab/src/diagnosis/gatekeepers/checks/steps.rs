@@ -2,7 +2,8 @@
 //!
 //! The step is the least distance of two values, if all distances are whole multiples of it.
 
-use crate::diagnosis::gatekeepers::gate::{Gate, rows_text};
+use crate::diagnosis::gatekeepers::gate::Gate;
+use crate::diagnosis::report::rows_text;
 use tactpad_numeric::statistics::median;
 
 /// Values in all for a step to be told, and distances from a multiple that digits of a file may leave.

@@ -3,8 +3,9 @@
 //! A converter's steps let values repeat by chance: with the share p of repeats in the rest of the channel, a run of k repeats
 //! somewhere in n rows has at most the probability n pᵏ.
 
-use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, rows_text, squares};
-use tactpad_numeric::statistics::median;
+use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
+use crate::diagnosis::report::rows_text;
+use tactpad_numeric::statistics::{median, squares};
 
 /// Others move if their mean square in the stretch is this part of that of all rows: a third of its deviation.
 const MOVES: f64 = 0.1;

@@ -5,9 +5,10 @@
 //! u^(−n/2)), and leaves each of them at most half. A sign shows in none of this: it is that of r in the right place.
 
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL, correlation, squares};
+use crate::diagnosis::gatekeepers::gate::{Gate, LEVEL};
 use crate::effect::Effect;
 use tactpad_numeric::chi_square;
+use tactpad_numeric::statistics::{correlation, squares};
 
 /// No less than this is left: what sound pads of a kind differ by is not told apart.
 const LEFT_MIN: f64 = 0.05;

@@ -1,9 +1,9 @@
 //! Conventions of the labels: their frame, their signs, their units, and which row they belong to.
 //!
 //! A table whose labels are meant otherwise looks like many faults of the wiring at once. So this is asked first: the readings alone tell the
-//! contacts ([`decoding`]), and the map from these to the labels is the convention ([`mapping`]). Wiring faults break what nine readings
+//! contacts (`decoding`), and the map from these to the labels is the convention (`mapping`). Wiring faults break what nine readings
 //! of five unknowns must obey, conventions do not. Where both explain the readings alike, as a frame that is turned by a third and cables that
-//! are exchanged in a circle ([`symmetry`]), the fewest mistakes are taken ([`detection`]), and all are said ([`findings`]).
+//! are exchanged in a circle (`symmetry`), the fewest mistakes are taken (`detection`), and all are said (`findings`).
 
 mod decoding;
 mod detection;

@@ -97,7 +97,9 @@ fn found(finding: &Finding, channels: &[String]) -> String {
     if !finding.confounded_with.is_empty() {
         let others = finding.confounded_with.iter().map(|(effect, target)| cause(*effect, target, channels));
         let others: Vec<String> = others.collect();
-        text += &format!(". These rows do not tell it from {}", others.join(", or from "));
+        // Labels are one thing with all of these mistakes in the wiring together.
+        let between = if finding.labels.is_some() { " together with " } else { ", or from " };
+        text += &format!(". These rows do not tell it from {}", others.join(between));
     }
     let is_alone = finding.confounded_with.iter().all(|(effect, _)| *effect == Effect::Unlisted);
     if let Some(measurement) = finding.separate_by.as_ref().filter(|_| !is_alone) {

@@ -137,7 +137,9 @@ fn diagnosed(
     validation: Validation,
 ) -> Result<Diagnosis, DiagnosisError> {
     let conventions = Conventions::of(table, pad);
-    let gate = if conventions.are_default() {
+    // Whoever leaves one of them out takes the labels as they are written.
+    let are_asked_for = !conventions::EFFECTS.iter().any(|effect| without.contains(effect));
+    let gate = if conventions.are_default() || !are_asked_for {
         check_meant(table)?;
         checked(&observed(table), pad, without)?
     } else {

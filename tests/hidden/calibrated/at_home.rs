@@ -1,6 +1,10 @@
-//! A calibration at home on another program's field: a thousand presses without labels, and 200 g on five marks.
+//! A calibration at home on another program's fields, whose map is off smoothly besides: a thousand presses without labels, and
+//! 200 g on five marks.
 //!
-//! Goals: medians of 0.16 mm and 0.021 N on unseen contacts.
+//! Goals, on unseen contacts of twenty pads: medians of 0.21 mm and 0.025 N, no pad beyond 0.35 mm, 90 to 98 % in the regions and no pad
+//! below 80 %.
+
+use std::ops::RangeInclusive;
 
 use tactpad::lab::field_cache;
 use tactpad::lab::play::home::{AtHome, calibrated};
@@ -12,10 +16,11 @@ use tactpad::pad::field::PadField;
 use tactpad::quantity;
 
 use super::UNSEEN;
+use super::bound::Background;
+use super::cases::{CASES, FIELDS};
 use super::judged::{Summary, decoded_by};
 use super::memory::Memory;
 use super::pad::{Changes, Recorded, Wiring, full_scale, plan, recorded, weighed};
-use crate::fields::NOMINAL;
 use crate::plan::Contact;
 
 const PRESSES: usize = 1000;
@@ -60,13 +65,16 @@ fn said(contact: &Contact) -> quantity::Contact {
     quantity::Contact { x_mm, y_mm, fx_n, fy_n, fz_n }
 }
 
-fn played(wiring: &Wiring, seed: u64) -> (Vec<Window>, Vec<Placement>) {
-    let changes = Changes { table: &NOMINAL, memory: Memory::Nothing, rig: &[], background: None };
+/// By how much fields are off smoothly, as a share of each map's root mean square, and how smoothly.
+const BACKGROUND: f64 = 0.015;
+const BACKGROUND_MM: f64 = 14.0;
+
+fn played(changes: &Changes<'_>, wiring: &Wiring, seed: u64) -> (Vec<Window>, Vec<Placement>) {
     let presses = apart(plan(PRESSES, seed, "calibrated at home"));
     let full_scale = full_scale(&presses);
     let weights = weighed(WEIGHT_N, &MARKS_MM, OFF_MM, seed);
     let [presses, weights] = [(presses, 2 * seed), (weights, 2 * seed + 1)]
-        .map(|(rows, seed)| recorded(rows, &changes, wiring, &full_scale, seed));
+        .map(|(rows, seed)| recorded(rows, changes, wiring, &full_scale, seed));
     let (mut gatherer, mut at_s) = (WindowCollector::default(), 0.0);
     windows(&presses, PRESS_S, &mut gatherer, &mut at_s);
     let moments = windows(&weights, WEIGHT_S, &mut gatherer, &mut at_s);
@@ -83,50 +91,56 @@ fn apart(rows: Vec<crate::plan::Row>) -> Vec<crate::plan::Row> {
 
 /// Errors of place and force against the truth, and the share of truths in the stated regions.
 fn tried(seed: u64) -> Summary {
+    let case = &CASES[..FIELDS][seed as usize % FIELDS];
     let wiring = Wiring::drawn_wide(seed);
-    let (windows, placements) = played(&wiring, seed);
+    let background = Background::drawn(case.table, BACKGROUND, BACKGROUND_MM, seed);
+    let changes =
+        Changes { table: case.table, memory: Memory::Nothing, rig: &[], background: Some(&background) };
+    let (windows, placements) = played(&changes, &wiring, seed);
     let nominal = PadField::nominal();
     let device = Device::nominal();
     let pad = SimulatedPad { solve: &field_cache::solve, ..SimulatedPad::known(&device, &nominal) };
     let found: AtHome = calibrated(&windows, &placements, &pad, None, &|_, _| ()).unwrap();
     let unseen = plan(UNSEEN, seed, "calibrated unseen");
     let full_scale = full_scale(&unseen);
-    let changes = Changes { table: &NOMINAL, memory: Memory::Nothing, rig: &[], background: None };
     let unseen = recorded(unseen, &changes, &wiring, &full_scale, 2 * seed + 1_001);
     let decoded = decoded_by(&found.calibration.decoder(), unseen.measured.csv().as_bytes(), &unseen.truths);
     let summary = Summary::of(&decoded, |_| true);
     let Summary { place_mm, force_n, covered, .. } = summary;
     println!(
-        "pad {seed:2}: {place_mm:.3} mm, {force_n:.4} N, {covered:.3} inside, {} presses",
-        found.presses
+        "pad {seed:2}, {}: {place_mm:.3} mm, {force_n:.4} N, {covered:.3} inside, {} presses",
+        case.name, found.presses
     );
     summary
 }
 
-/// Of so many pads; the medians may be so many times their goals.
-fn are_enough(pads: u64, most: f64) {
-    let mut pads: Vec<Summary> = (1..=pads).map(tried).collect();
-    let covered = pads.iter().map(|it| it.covered).sum::<f64>() / pads.len() as f64;
-    let median = |pads: &mut [Summary], of: fn(&Summary) -> f64| {
-        pads.sort_by(|one, other| of(one).total_cmp(&of(other)));
-        let middle = pads.len() / 2;
-        0.5 * (of(&pads[middle]) + of(&pads[(pads.len() - 1) / 2]))
-    };
-    let [place_mm, force_n] = [median(&mut pads, |it| it.place_mm), median(&mut pads, |it| it.force_n)];
-    println!("medians {place_mm:.3} mm, {force_n:.4} N; {covered:.3} inside");
-    assert!(place_mm <= most * 0.16 && force_n <= most * 0.021, "{place_mm} mm, {force_n} N");
-    assert!((0.9..=1.0).contains(&covered), "{covered}");
-}
+const MEDIANS_MOST: [f64; 2] = [0.21, 0.025];
+const WORST_MOST_MM: f64 = 0.35;
+const COVERED_POOLED: RangeInclusive<f64> = 0.9..=0.98;
+const COVERED_LEAST: f64 = 0.8;
 
 #[test]
 #[ignore = "proof: 30 s: tests/lab and tests/program have smaller ones on the simulator's field"]
 fn a_thousand_presses_without_labels_and_a_weight() {
-    // A single pad may be a quarter worse than the median of ten.
-    are_enough(1, 1.25);
+    let pad = tried(6);
+    assert!(pad.place_mm <= WORST_MOST_MM && pad.covered >= COVERED_LEAST, "{pad:?}");
 }
 
 #[test]
-#[ignore = "proof: 300 s: misses its goals, as docs/decoding.md says: ten pads instead of one"]
-fn a_thousand_presses_without_labels_and_a_weight_on_ten_pads() {
-    are_enough(10, 1.0);
+#[ignore = "proof: 1500 s: misses its goals, as docs/decoding.md says: twenty pads instead of one"]
+fn a_thousand_presses_without_labels_and_a_weight_on_twenty_pads() {
+    let pads: Vec<Summary> = (1..=20).map(tried).collect();
+    let covered = pads.iter().map(|it| it.covered).sum::<f64>() / pads.len() as f64;
+    let median = |of: fn(&Summary) -> f64| {
+        let mut values: Vec<f64> = pads.iter().map(of).collect();
+        values.sort_by(f64::total_cmp);
+        0.5 * (values[values.len() / 2] + values[(values.len() - 1) / 2])
+    };
+    let medians = [median(|it| it.place_mm), median(|it| it.force_n)];
+    println!("medians {:.3} mm, {:.4} N; {covered:.3} inside", medians[0], medians[1]);
+    assert!(medians.iter().zip(MEDIANS_MOST).all(|(median, most)| *median <= most), "{medians:?}");
+    let far: Vec<&Summary> =
+        pads.iter().filter(|it| it.place_mm > WORST_MOST_MM || it.covered < COVERED_LEAST).collect();
+    assert!(far.is_empty(), "{far:?}");
+    assert!(COVERED_POOLED.contains(&covered), "{covered}");
 }

@@ -9,14 +9,16 @@ use std::ops::RangeInclusive;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::cases::{CASES, Case};
 use super::judged::{Decoded, Summary, decoded_by};
 use super::learned::{Learned, inverse};
 use super::memory::Memory;
 use super::pad::{Changes, Wiring, full_scale, noise_uv, plan, recorded};
 use crate::background::Smooth;
-use crate::fields::{NOMINAL, Table, signals};
+use crate::fields::{Table, signals};
 use crate::plan::Contact;
 use crate::random::Random;
+use crate::truth::Truth;
 
 use tactpad::lab::contacts::Contacts;
 use tactpad::lab::field_cache::solve;
@@ -111,6 +113,41 @@ impl Hidden<'_> {
         (slopes, self.read(numbers).map(|uv| noise_uv(uv).powi(2)))
     }
 
+    /// Covariance of a contact's readings by a fault of the rig that nobody knows of: normal, of its own size, and an offset of the
+    /// stage no larger than three modules that were put down wrongly in the same way, which look like it.
+    fn unknown_by_rig(&self, rig: &[Truth], contact: &Contact) -> [[f64; 9]; 9] {
+        let mut covariance = [[0.0; 9]; 9];
+        let mut add = |deviation: f64, slope: &[f64; 9]| {
+            for (row, i) in covariance.iter_mut().zip(0..9) {
+                row.iter_mut().zip(slope).for_each(|(entry, other)| {
+                    *entry += deviation * deviation * slope[i] * other;
+                });
+            }
+        };
+        let (slopes, _) = self.linearised(contact);
+        for fault in rig {
+            let number = |name: &str| -> f64 {
+                fault.parameters.iter().find(|(own, _)| own == name).map_or(0.0, |(_, value)| *value)
+            };
+            match &*fault.effect {
+                "stage_offset" => {
+                    let fault_mm = number("x_mm").hypot(number("y_mm")) / 2_f64.sqrt();
+                    let modules_mm = POSE_MM / 3_f64.sqrt();
+                    let told_mm = (fault_mm.powi(-2) + modules_mm.powi(-2)).powf(-0.5);
+                    slopes[..2].iter().for_each(|slope| add(told_mm, slope));
+                }
+                "reference_gain" => {
+                    let signals = std::array::from_fn(|channel| {
+                        (0..3).map(|axis| contact.force[axis] * slopes[2 + axis][channel]).sum()
+                    });
+                    add(number("gain") - 1.0, &signals);
+                }
+                _ => (),
+            }
+        }
+        covariance
+    }
+
     /// Mean errors of place (mm) and force (N) at the bound, with what is not known of the pad.
     fn bound(&self, contacts: &[Contact], unknown: impl Fn(&Contact) -> [[f64; 9]; 9]) -> [f64; 2] {
         let mut sums = [0.0; 2];
@@ -157,42 +194,87 @@ struct Outcome {
 
 /// Of more labels the bound that has to learn takes too long, and is hardly another one.
 const LEARNED_MAX: usize = 100;
+/// By how much modules are put down wrongly along each axis.
+const POSE_MM: f64 = 0.2;
 
-fn outcome(contacts: usize, share: f64, length_mm: f64, seed: u64) -> Outcome {
-    let wiring = Wiring::drawn_wide(seed);
-    let background = Background::drawn(&NOMINAL, share, length_mm, seed);
-    let plans = [plan(contacts, seed, "bound known"), plan(super::UNSEEN, seed, "bound unseen")];
-    let full_scale = full_scale(&plans[0]);
-    let changes =
-        Changes { table: &NOMINAL, memory: Memory::Nothing, rig: &[], background: Some(&background) };
-    let mut recording = 2 * seed;
-    let [known, unseen] = plans.map(|plan| {
-        recording += 1;
-        recorded(plan, &changes, &wiring, &full_scale, recording)
+/// Pads of this kind and so many labels each.
+#[derive(Debug, Clone, Copy)]
+struct Kind<'c> {
+    contacts: usize,
+    /// The background, as a share of each map's root mean square, and its length.
+    share: f64,
+    length_mm: f64,
+    case: &'c Case,
+}
+
+impl Kind<'_> {
+    const fn nominal(contacts: usize, share: f64, length_mm: f64) -> Self {
+        Self { contacts, share, length_mm, case: &CASES[0] }
+    }
+
+    fn outcome(&self, seed: u64) -> Outcome {
+        let Self { contacts, share, length_mm, case } = *self;
+        let table: &Table = case.table;
+        let wiring = Wiring::drawn_wide(seed);
+        let background = Background::drawn(table, share, length_mm, seed);
+        let plans = [plan(contacts, seed, "bound known"), plan(super::UNSEEN, seed, "bound unseen")];
+        let full_scale = full_scale(&plans[0]);
+        let rig = case.rig();
+        let changes = Changes { table, memory: case.memory, rig: &rig, background: Some(&background) };
+        let mut recording = 2 * seed;
+        let [known, unseen] = plans.map(|plan| {
+            recording += 1;
+            recorded(plan, &changes, &wiring, &full_scale, recording)
+        });
+        let decoder = calibrated(known.measured.csv().as_bytes());
+        let loaded: Vec<Contact> =
+            unseen.truths.iter().copied().filter(|contact| contact.force != [0.0; 3]).collect();
+        let decoded: Vec<Decoded> = decoded_by(&decoder, unseen.measured.csv().as_bytes(), &unseen.truths);
+        let found = Summary::of(&decoded, |_| true);
+        let hidden = Hidden { table, background: &background, wiring: &wiring };
+        let over = |[place_mm, force_n]: [f64; 2]| [found.place_mm / place_mm, found.force_n / force_n];
+        let [place, force] = over(hidden.bound(&loaded, |contact| hidden.unknown_by_rig(&rig, contact)));
+        let learned = if contacts <= LEARNED_MAX {
+            let learned = Learned::of(hidden, &known.truths);
+            over(hidden.bound(&loaded, |contact| learned.unknown(contact)))
+        } else {
+            [0.0; 2]
+        };
+        println!(
+            "{}, {contacts} labels, {:.1} % of {length_mm} mm, seed {seed}: {:.3} mm ({place:.2} of the bound), {:.4} N ({force:.2}), \
+             {:.3} in the regions, over what labels tell {learned:.2?}",
+            case.name,
+            100.0 * share,
+            found.place_mm,
+            found.force_n,
+            found.covered
+        );
+        Outcome { seed, place, force, covered: found.covered, learned }
+    }
+
+    fn outcomes(self, seeds: RangeInclusive<u64>) -> Vec<Outcome> {
+        outcomes(&seeds.map(|seed| (self, seed)).collect::<Vec<_>>())
+    }
+}
+
+/// Two pads at a time, in their order.
+fn outcomes(pads: &[(Kind<'_>, u64)]) -> Vec<Outcome> {
+    let (done, next) = (Mutex::new(Vec::new()), AtomicUsize::new(0));
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                loop {
+                    let at = next.fetch_add(1, Ordering::Relaxed);
+                    let Some((kind, seed)) = pads.get(at) else { break };
+                    let outcome = kind.outcome(*seed);
+                    done.lock().unwrap().push((at, outcome));
+                }
+            });
+        }
     });
-    let decoder = calibrated(known.measured.csv().as_bytes());
-    let loaded: Vec<Contact> =
-        unseen.truths.iter().copied().filter(|contact| contact.force != [0.0; 3]).collect();
-    let decoded: Vec<Decoded> = decoded_by(&decoder, unseen.measured.csv().as_bytes(), &unseen.truths);
-    let found = Summary::of(&decoded, |_| true);
-    let hidden = Hidden { table: &NOMINAL, background: &background, wiring: &wiring };
-    let over = |[place_mm, force_n]: [f64; 2]| [found.place_mm / place_mm, found.force_n / force_n];
-    let [place, force] = over(hidden.bound(&loaded, |_| [[0.0; 9]; 9]));
-    let learned = if contacts <= LEARNED_MAX {
-        let learned = Learned::of(hidden, &known.truths);
-        over(hidden.bound(&loaded, |contact| learned.unknown(contact)))
-    } else {
-        [0.0; 2]
-    };
-    println!(
-        "{contacts} labels, {:.1} % of {length_mm} mm, seed {seed}: {:.3} mm ({place:.2} of the bound), {:.4} N ({force:.2}), {:.3} in \
-         the regions, over what labels tell {learned:.2?}",
-        100.0 * share,
-        found.place_mm,
-        found.force_n,
-        found.covered
-    );
-    Outcome { seed, place, force, covered: found.covered, learned }
+    let mut done = done.into_inner().unwrap();
+    done.sort_by_key(|(at, _)| *at);
+    done.into_iter().map(|(_, outcome)| outcome).collect()
 }
 
 /// What `adapt --method inverse` writes, without the names that it gives to causes beside.
@@ -204,23 +286,6 @@ fn calibrated(mut csv: &[u8]) -> Decoder {
     let recording = Recording::tared_or_raw(table, device.contact.full_scale_n);
     let contacts = Contacts::of(vec![recording], None, 0).unwrap();
     contacts.calibration(&pad, None, &|_, _| {}).unwrap().decoder()
-}
-
-/// Two seeds at a time.
-fn outcomes(contacts: usize, share: f64, length_mm: f64, seeds: RangeInclusive<u64>) -> Vec<Outcome> {
-    let seeds: Vec<u64> = seeds.collect();
-    let (done, next) = (Mutex::new(Vec::new()), AtomicUsize::new(0));
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                while let Some(seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let outcome = outcome(contacts, share, length_mm, *seed);
-                    done.lock().unwrap().push(outcome);
-                }
-            });
-        }
-    });
-    done.into_inner().unwrap()
 }
 
 fn median(outcomes: &[Outcome], of: fn(&Outcome) -> f64) -> f64 {
@@ -253,13 +318,13 @@ const COVERED_POOLED: RangeInclusive<f64> = 0.92..=0.99;
 
 #[test]
 fn a_field_that_is_off_smoothly_costs_little() {
-    every_seed_is_near_the_bound(&outcomes(648, 0.015, 14.0, 401..=401));
+    every_seed_is_near_the_bound(&Kind::nominal(648, 0.015, 14.0).outcomes(401..=401));
 }
 
 #[test]
 #[ignore = "proof: 900 s: forty seeds instead of one"]
 fn fields_that_are_off_smoothly_cost_little() {
-    let outcomes = outcomes(648, 0.015, 14.0, 401..=440);
+    let outcomes = Kind::nominal(648, 0.015, 14.0).outcomes(401..=440);
     let (medians, covered) = pooled(&outcomes);
     every_seed_is_near_the_bound(&outcomes);
     assert!(COVERED_POOLED.contains(&covered));
@@ -272,7 +337,7 @@ fn other_smooth_errors_cost_little() {
     for (contacts, share, length_mm) in
         [(648, 0.0, 14.0), (648, 0.005, 20.0), (73, 0.015, 14.0), (20, 0.015, 14.0)]
     {
-        let outcomes = outcomes(contacts, share, length_mm, 441..=444);
+        let outcomes = Kind::nominal(contacts, share, length_mm).outcomes(441..=444);
         pooled(&outcomes);
         assert!(outcomes.iter().all(|it| it.covered >= COVERED_LEAST), "{outcomes:?}");
     }
@@ -281,7 +346,41 @@ fn other_smooth_errors_cost_little() {
 #[test]
 #[ignore = "proof: 30 s: misses its goal on one pad of four, as docs/decoding.md says: a background that is larger and finer"]
 fn a_large_and_fine_error_is_covered() {
-    let outcomes = outcomes(648, 0.03, 10.0, 441..=444);
+    let outcomes = Kind::nominal(648, 0.03, 10.0).outcomes(441..=444);
     pooled(&outcomes);
     assert!(outcomes.iter().all(|it| it.covered >= COVERED_LEAST), "{outcomes:?}");
+}
+
+/// With a fault of the rig, the errors over the bound with that fault unknown.
+const RIG_MOST: f64 = 1.3;
+
+#[test]
+#[ignore = "proof: 500 s: misses its goal on one pad of 52, as docs/decoding.md says: six fields, memories and rigs, with four backgrounds each"]
+fn other_pads_and_rigs_cost_little() {
+    const BACKGROUNDS: [(f64, f64); 4] = [(0.0, 14.0), (0.005, 20.0), (0.015, 14.0), (0.03, 20.0)];
+    let kinds = CASES.iter().flat_map(|case| {
+        BACKGROUNDS.iter().map(move |(share, length_mm)| Kind {
+            contacts: 648,
+            share: *share,
+            length_mm: *length_mm,
+            case,
+        })
+    });
+    let pads: Vec<(Kind<'_>, u64)> = kinds.zip(701..).collect();
+    let outcomes = outcomes(&pads);
+    for (case, of_case) in CASES.iter().zip(outcomes.chunks(BACKGROUNDS.len())) {
+        println!("{}:", case.name);
+        pooled(of_case);
+    }
+    let too_far: Vec<&Outcome> = pads
+        .iter()
+        .zip(&outcomes)
+        .filter(|((kind, _), outcome)| {
+            let most = if kind.case.rig().is_empty() { WORST_MOST } else { RIG_MOST };
+            kind.case.memory == Memory::Nothing && outcome.place.max(outcome.force) > most
+                || outcome.covered < COVERED_LEAST
+        })
+        .map(|(_, outcome)| outcome)
+        .collect();
+    assert!(too_far.is_empty(), "{too_far:?}");
 }

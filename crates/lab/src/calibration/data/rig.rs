@@ -3,8 +3,8 @@
 //! A written label L stands for the contact T(L; ρ) of [`RigErrors`]. What the channels read of it changes with an error ρⱼ by
 //! J ∂T/∂ρⱼ, where J are their derivatives by x, y, Fx, Fy, Fz.
 //!
-//! Most rigs are right in most of this, and some are wrong in some of it. So the prior of an error is a mixture of two normal
-//! densities, a narrow one and a wide one, and the fit has the normal density that leaves the same posterior moments.
+//! Most rigs are right in most of this, and some are wrong in some of it. So the prior of a cause's numbers is a mixture of two
+//! normal densities, a narrow one and a wide one, and the fit has the normal densities that leave the same posterior moments.
 //!
 //! Source: T. P. Minka, Expectation propagation for approximate Bayesian inference, UAI 2001; for such mixtures D.
 //! Hernández-Lobato and others, Mach. Learn. 99 (2015) 437.
@@ -103,7 +103,13 @@ pub(crate) struct RigPrior {
 struct MatchedPrior {
     mean: f64,
     precision: f64,
-    log_odds: f64,
+}
+
+/// What the contacts alone say of an error: its value and the variance of that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Told {
+    value: f64,
+    variance: f64,
 }
 
 impl RigPrior {
@@ -118,59 +124,79 @@ impl RigPrior {
 
     /// Those that leave the posterior moments of the mixtures, by the present posterior's means and variances.
     pub(crate) fn matched(&self, values: &[f64; RIG_NUMBERS], variances: &[f64]) -> Self {
-        let of = |at: usize| {
-            // What the contacts say: the posterior less the present prior, 1/s² = 1/v − P, m = s² (θ/v − P μ).
-            let told = 1.0 / variances[at] - self.precision[at];
-            let (mean, precision) = (self.mean[at], self.precision[at]);
-            let wide = RIG[at].deviation;
-            if told < LEAST_TOLD / (wide * wide) {
-                let precision = 1.0 / RIG[at].deviation_of_prior().powi(2);
-                return MatchedPrior { mean: 0.0, precision, log_odds: 0.0 };
-            }
-            let by_contacts = (values[at] / variances[at] - precision * mean) / told;
-            matched(told.recip(), by_contacts, wide, RIG[at].wide)
+        let told = |at: usize| {
+            // The posterior less the present prior, 1/s² = 1/v − P, m = s² (θ/v − P μ).
+            let precision = 1.0 / variances[at] - self.precision[at];
+            let value = (values[at] / variances[at] - self.precision[at] * self.mean[at]) / precision;
+            (precision >= LEAST_TOLD / RIG[at].deviation.powi(2))
+                .then_some(Told { value, variance: precision.recip() })
         };
-        let all: [MatchedPrior; RIG_NUMBERS] = std::array::from_fn(of);
-        Self {
-            mean: all.map(|it| it.mean),
-            precision: all.map(|it| it.precision),
-            log_odds: all.iter().map(|it| it.log_odds).sum(),
+        let mut matched = Self { log_odds: 0.0, ..*self };
+        let numbers: [usize; RIG_NUMBERS] = std::array::from_fn(|at| at);
+        for group in numbers.chunk_by(|one, other| RIG[*one].effect == RIG[*other].effect) {
+            let axes: Vec<(f64, Option<Told>)> =
+                group.iter().map(|at| (RIG[*at].deviation, told(*at))).collect();
+            let (priors, log_odds) = matched_together(&axes, RIG[group[0]].wide);
+            matched.log_odds += log_odds;
+            for (at, MatchedPrior { mean, precision }) in group.iter().zip(priors) {
+                matched.mean[*at] = mean;
+                matched.precision[*at] = precision;
+            }
         }
+        matched
     }
 }
 
-/// The normal prior that leaves the posterior moments of the mixture, where the contacts alone say m with the variance s².
+/// The normal priors that leave the posterior moments of a cause's mixture, where the contacts say m with the variance s² of each of
+/// its numbers, and ln of how probable the mixture makes what the contacts say, over how probable these priors make it. A cause is
+/// there or it is not: its numbers are all of the wide part or all of the narrow one.
 ///
 /// ```text
-/// part i: weight ∝ πᵢ N(m; 0, s² + σᵢ²), mean mᵢ = m σᵢ²/(s² + σᵢ²), variance vᵢ = s² σᵢ²/(s² + σᵢ²)
+/// part i: weight ∝ πᵢ Πⱼ N(mⱼ; 0, sⱼ² + σᵢⱼ²), means mⱼ σᵢⱼ²/(sⱼ² + σᵢⱼ²), variances sⱼ² σᵢⱼ²/(sⱼ² + σᵢⱼ²)
 /// ```
-fn matched(variance: f64, told: f64, wide: f64, probability: f64) -> MatchedPrior {
+fn matched_together(numbers: &[(f64, Option<Told>)], probability: f64) -> (Vec<MatchedPrior>, f64) {
     // ln N(m; μ, v), but for a constant.
-    let log_density = |mean: f64, whole: f64| -0.5 * ((told - mean).powi(2) / whole + libm::log(whole));
-    let parts = [NARROW * wide, wide].map(|deviation| {
-        let whole = variance + deviation * deviation;
-        let share = deviation * deviation / whole;
-        (log_density(0.0, whole), told * share, variance * share)
-    });
-    // Σᵢ wᵢ mᵢ, and Σᵢ wᵢ (vᵢ + mᵢ²) less its square.
-    let odds = (1.0 - probability) / probability;
-    let of_wide = 1.0 / (1.0 + odds * libm::exp(parts[0].0 - parts[1].0));
-    let weights = [1.0 - of_wide, of_wide];
-    let both = || weights.into_iter().zip(parts);
-    let mean: f64 = both().map(|(weight, (_, mean, _))| weight * mean).sum();
-    let square: f64 = both().map(|(weight, (_, mean, own))| weight * (own + mean * mean)).sum();
-    let left = square - mean * mean;
-    // The posterior's precision less that of the contacts; a prior that would widen it is the wide part.
-    let precision = 1.0 / left - 1.0 / variance;
-    let (mean, precision) = if precision <= 1.0 / (wide * wide) {
-        (0.0, 1.0 / (wide * wide))
-    } else {
-        ((mean / left - told / variance) / precision, precision)
+    let log_density =
+        |told: f64, mean: f64, whole: f64| -0.5 * ((told - mean).powi(2) / whole + libm::log(whole));
+    let log_of_part = |narrower: f64| -> f64 {
+        let all = numbers.iter().filter_map(|(wide, told)| Some((narrower * wide, (*told)?)));
+        all.map(|(deviation, Told { value, variance })| {
+            log_density(value, 0.0, variance + deviation * deviation)
+        })
+        .sum()
     };
-    // ln Σᵢ πᵢ N(m; 0, s² + σᵢ²), by that of the wide part and its weight.
-    let log_mixture = parts[1].0 + libm::log(probability / of_wide);
-    let log_odds = log_mixture - log_density(mean, variance + 1.0 / precision);
-    MatchedPrior { mean, precision, log_odds }
+    let [log_narrow, log_wide] = [NARROW, 1.0].map(log_of_part);
+    let odds = (1.0 - probability) / probability;
+    let of_wide = 1.0 / (1.0 + odds * libm::exp(log_narrow - log_wide));
+    // ln Σᵢ πᵢ Πⱼ N(mⱼ; 0, sⱼ² + σᵢⱼ²), by the wide part and its weight.
+    let mut log_odds = log_wide + libm::log(probability / of_wide);
+    let mut of_number = |(wide, told): &(f64, Option<Told>)| {
+        let parts = [(1.0 - of_wide, NARROW * wide), (of_wide, *wide)];
+        let Some(Told { value, variance }) = *told else {
+            let square: f64 = parts.iter().map(|(weight, deviation)| weight * deviation * deviation).sum();
+            return MatchedPrior { mean: 0.0, precision: square.recip() };
+        };
+        // Σᵢ wᵢ mᵢ, and Σᵢ wᵢ (vᵢ + mᵢ²) less its square.
+        let [mut mean, mut square] = [0.0; 2];
+        for (weight, deviation) in parts {
+            let share = deviation * deviation / (variance + deviation * deviation);
+            mean += weight * value * share;
+            square += weight * (variance * share + (value * share).powi(2));
+        }
+        let left = square - mean * mean;
+        // The posterior's precision less that of the contacts; a prior that would widen it is the wide part.
+        let least = 1.0 / (wide * wide);
+        let precision = 1.0 / left - 1.0 / variance;
+        let prior = if precision <= least {
+            MatchedPrior { mean: 0.0, precision: least }
+        } else {
+            MatchedPrior { mean: (mean / left - value / variance) / precision, precision }
+        };
+        log_odds -= log_density(value, prior.mean, variance + prior.precision.recip());
+        prior
+    };
+    let priors = numbers.iter().map(&mut of_number).collect();
+    (priors, log_odds)
 }
 
 /// The rig's errors by these values of its parameters.
@@ -277,7 +303,9 @@ mod tests {
             });
             let mean = sums[1] / sums[0];
             let left = sums[2] / sums[0] - mean * mean;
-            let MatchedPrior { mean: of_prior, precision, log_odds } = matched(variance, told, wide, 0.3);
+            let axis = (wide, Some(Told { value: told, variance }));
+            let (priors, log_odds) = matched_together(&[axis], 0.3);
+            let MatchedPrior { mean: of_prior, precision } = priors[0];
             let whole = precision + 1.0 / variance;
             // ln of the mixture's integral over that of the normal prior.
             let spread = variance + 1.0 / precision;

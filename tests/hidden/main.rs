@@ -13,6 +13,7 @@ mod calibrated;
 mod campaign;
 mod case;
 mod conventions;
+mod dense;
 mod effects;
 mod fields;
 mod files;

@@ -15,6 +15,7 @@ mod docs;
 mod hints;
 #[cfg(target_os = "linux")]
 mod large_tables;
+mod made;
 mod networks;
 mod paper;
 mod plot;

@@ -30,10 +30,10 @@ impl Noise {
 
     /// The levels with the greatest likelihood of these residuals, of which `freedom_ratio` are degrees of freedom; one level where
     /// there are too few rows of a kind. Series are often at few loads: how their noise grows with the signal is as in static
-    /// samples unless they tell.
-    pub fn of(residual: &[f64], signal: &[f64], in_series: &[bool], freedom_ratio: f64) -> Self {
+    /// samples unless they tell. `size` is what the channel reads, as a root mean square: where noise ends is a share of that, whatever
+    /// a model makes of the signal, so that models can be compared by their likelihoods.
+    pub fn of(residual: &[f64], signal: &[f64], in_series: &[bool], freedom_ratio: f64, size: f64) -> Self {
         let squares: Vec<f64> = residual.iter().map(|r| r * r / freedom_ratio).collect();
-        let size = rms(signal.iter().copied());
         let mut kinds = [const { (Vec::new(), Vec::new()) }; 2];
         for ((square, signal), in_series) in squares.iter().zip(signal).zip(in_series) {
             let (squares, signals) = &mut kinds[usize::from(*in_series)];
@@ -155,7 +155,7 @@ mod tests {
         let residual: Vec<f64> =
             in_series.iter().map(|it| deviation(it) * f64::from(random.normal())).collect();
         let signal = vec![100.0; 2000];
-        let of = |rows: usize| Noise::of(&residual[..rows], &signal[..rows], &in_series[..rows], 1.0);
+        let of = |rows: usize| Noise::of(&residual[..rows], &signal[..rows], &in_series[..rows], 1.0, 100.0);
         let found = of(2000);
         assert!(found.is_by_kind());
         for kind in [false, true] {

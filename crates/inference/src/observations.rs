@@ -123,6 +123,13 @@ impl Observations {
         [open, locked]
     }
 
+    /// Two halves of the clusters, the one between the other.
+    pub fn halves(&self) -> [Vec<usize>; 2] {
+        let clusters = self.clusters();
+        let (one, other) = (0..self.rows()).partition(|row| clusters[*row].is_multiple_of(2));
+        [one, other]
+    }
+
     /// Root mean square of the loads' magnitudes.
     pub fn load_rms(&self) -> f64 {
         rms(self.samples.iter().map(|it| libm::sqrt(it.load.iter().map(|n| n * n).sum())))

@@ -68,6 +68,7 @@ fn line(case: &Case, more: &[&str]) -> Value {
         Ok(diagnosis) => {
             line["score"] = Score::of(&diagnosis, &case.truths).json();
             line["not_testable"] = diagnosis["not_testable"].clone();
+            line["ceiling_share"] = diagnosis["ceiling_share"].clone();
             line["ratio"] = json!(
                 ["rmse_ratio", "rmse_ratio_low95", "rmse_ratio_high95"]
                     .map(|key| diagnosis["gain"][key].clone())

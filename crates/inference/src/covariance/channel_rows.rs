@@ -8,7 +8,7 @@ use crate::model::Column;
 use crate::noise::Noise;
 use crate::observations::Observations;
 use crate::policy::BACKGROUND_MAX;
-use tactpad_numeric::statistics::rms;
+use tactpad_numeric::statistics::{population_deviation, rms};
 
 /// A column's prior while noise is estimated, as a share of the channel's root mean square.
 const SIGNATURE_PRIOR: f64 = 0.1;
@@ -107,7 +107,11 @@ impl ChannelRows<'_> {
             + reduced.freedom(wide, &shares).iter().sum::<f64>()
             + system.stated.freedom();
         let freedom_ratio = (1.0 - effective / rows).max(FREEDOM_RATIO_MIN);
-        Ok((Noise::of(&residual, &modelled, &in_series, freedom_ratio), system.whitening.memory_of(&left)))
+        let size = population_deviation(&self.observations.readings[self.channel]);
+        Ok((
+            Noise::of(&residual, &modelled, &in_series, freedom_ratio, size),
+            system.whitening.memory_of(&left),
+        ))
     }
 }
 

@@ -35,8 +35,13 @@ fn norm(coordinates: &[f64], covariance: &Matrix) -> f64 {
 }
 
 impl<L> Search<'_, L> {
-    /// A fitted cause's numbers with their intervals.
-    pub fn estimates(&self, found: &Attribution, at: usize) -> Result<Vec<Estimate>, InferenceError> {
+    /// A fitted cause's numbers with their intervals. `doubt` is what else may be in each of them, as a variance.
+    pub fn estimates(
+        &self,
+        found: &Attribution,
+        at: usize,
+        doubt: &[f64],
+    ) -> Result<Vec<Estimate>, InferenceError> {
         let covariance = self.covariance(&found.fit, at)?;
         let (hypothesis, coordinates) = &found.fit.applied[at];
         let it = &self.model.hypotheses()[*hypothesis];
@@ -45,7 +50,8 @@ impl<L> Search<'_, L> {
         let estimate = |(k, parameter): (usize, &Parameter)| {
             let deviation = covariance.at(k, k).max(0.0).sqrt();
             // An error of the signature moves all numbers in proportion, and turns them by as much.
-            let spread = WITHIN_95 * deviation * libm::hypot(1.0, it.signature_error * size);
+            let deviation = deviation * libm::hypot(1.0, it.signature_error * size);
+            let spread = WITHIN_95 * libm::hypot(deviation, doubt.get(k).copied().unwrap_or_default().sqrt());
             Estimate {
                 name: parameter.name,
                 value: parameter.value(coordinates[k]),

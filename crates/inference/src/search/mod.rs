@@ -15,14 +15,15 @@ use rayon::prelude::*;
 use self::bootstrap::{Bootstrap, Draw};
 use self::columns::Columns;
 use self::score_test::{Projected, Test};
-use crate::covariance::{Background, Marginal, Smooth, Systems};
+use crate::covariance::{Background, Fitted, Marginal, Smooth, Systems};
 use crate::error::{InferenceError, Stage, factorised};
 use crate::hypothesis::Parameter;
-use crate::model::{Linearised, Model};
+use crate::model::{Linearised, Model, Signature};
 use crate::observations::Observations;
 use crate::policy::{LEVEL, SIGNATURE_ERROR};
 use tactpad_numeric::dense::Matrix;
 use tactpad_numeric::products::dot;
+use tactpad_numeric::statistics::mean;
 
 /// Draws of the bootstrap.
 const DRAWS: usize = 1000;
@@ -40,6 +41,9 @@ const STANDS: f64 = 0.1;
 
 /// Hypotheses that hold, each with its coordinates.
 pub type Applied = Vec<(usize, Vec<f64>)>;
+
+/// Hypotheses by effect.
+pub type Family = Vec<Vec<usize>>;
 
 /// The measurement about a fitted point.
 pub struct AttributionFit {
@@ -78,6 +82,8 @@ pub struct Attribution {
     pub fit: AttributionFit,
     /// The p-value below which a cause is found: the family-wise level's quantile of the least of all.
     pub critical: f64,
+    /// Hypotheses that are fitted together, whether they are significant or not, effect by effect: what each specimen has of its own.
+    pub family: Family,
 }
 
 /// Finds causes.
@@ -101,31 +107,31 @@ impl<'m, L> Search<'m, L> {
         Self { model, observations, smooth, columns, clusters: observations.clusters() }
     }
 
-    /// Forward selection from causes that are held to be there: whatever is not significant is taken out; while the best
-    /// candidate is, it is fitted.
-    pub fn run(&self, start: &Applied) -> Result<Attribution, InferenceError> {
+    /// Forward selection from causes that are held to be there: whatever is not significant is taken out, but for a `family`, whose members
+    /// are asked for together; while the best candidate is significant, it is fitted.
+    pub fn run(&self, start: &Applied, family: &[Vec<usize>]) -> Result<Attribution, InferenceError> {
         let mut fit = self.fitted(start, None)?;
         let mut critical = self.critical(&fit)?;
-        while let Some(least) = self.superfluous(&fit, critical)? {
+        while let Some(least) = self.superfluous(&fit, critical, family)? {
             let mut applied = fit.applied.clone();
             applied.remove(least);
             fit = self.fitted(&applied, Some(&fit))?;
         }
         // What was taken out or replaced stays out, so that the search ends.
         let mut barred: Vec<usize> = Vec::new();
-        while fit.applied.len() < CAUSES_MAX {
-            let Some(next) = self.next(&fit, critical, &barred)? else { break };
+        while fit.applied.len() < CAUSES_MAX + family.iter().flatten().count() {
+            let Some(next) = self.next(&fit, critical, &barred, family)? else { break };
             let mut applied = fit.applied.clone();
             applied.push((next, vec![0.0; self.model.hypotheses()[next].parameters.len()]));
             fit = self.within_range(self.fitted(&applied, Some(&fit))?, critical, &mut barred)?;
             critical = self.critical(&fit)?;
-            while let Some(least) = self.superfluous(&fit, critical)? {
+            while let Some(least) = self.superfluous(&fit, critical, family)? {
                 let mut applied = fit.applied.clone();
                 barred.push(applied.remove(least).0);
                 fit = self.fitted(&applied, Some(&fit))?;
             }
         }
-        Ok(Attribution { fit, critical })
+        Ok(Attribution { fit, critical, family: family.to_vec() })
     }
 
     /// The fit, or where its last cause ended at an end of its range, that with a rival in its place which explains the data as well
@@ -329,12 +335,14 @@ impl<'m, L> Search<'m, L> {
         fit: &AttributionFit,
         critical: f64,
         barred: &[usize],
+        family: &[Vec<usize>],
     ) -> Result<Option<usize>, InferenceError> {
         let projected = self.projected(fit)?;
         let least = self.least_square(fit)?;
+        let reproduced = self.reproduced(fit, family)?;
         let holds = |at: usize| barred.contains(&at) || fit.applied.iter().any(|(held, _)| *held == at);
         let mut candidates: Vec<(Test, usize)> = (0..self.columns.of_hypothesis.len())
-            .filter(|at| !holds(*at) && !self.is_zero(*at))
+            .filter(|at| !holds(*at) && !self.is_zero(*at) && !reproduced[*at])
             .map(|at| (self.test(&projected, at, &projected.score), at))
             .collect();
         // The bootstrap knows how large candidates are by chance beside a background that has their part, too.
@@ -354,6 +362,44 @@ impl<'m, L> Search<'m, L> {
         Ok(best.map(|(_, at)| at))
     }
 
+    /// Which hypotheses a family reproduces to within what a signature may be wrong by: by the little that is left of them beside it
+    /// nothing can be told, however well it is seen.
+    ///
+    /// ```text
+    /// |s − A (AᵀA)⁻¹ Aᵀ s|² < ε² |s|², each channel in units of its root mean square, about its mean
+    /// ```
+    fn reproduced(&self, fit: &AttributionFit, family: &[Vec<usize>]) -> Result<Vec<bool>, InferenceError> {
+        let signatures = &fit.linearised.signatures;
+        let sizes = self.model.sizes();
+        let scaled = |signature: &Signature| -> Vec<f64> {
+            let channels = signature.iter().zip(&sizes).zip(&fit.linearised.readings);
+            let scaled = channels.flat_map(|((values, size), readings)| match values {
+                Some(values) => {
+                    let middle = mean(values.iter().copied());
+                    values.iter().map(|value| (value - middle) / size.max(f64::MIN_POSITIVE)).collect()
+                }
+                None => vec![0.0; readings.len()],
+            });
+            scaled.collect()
+        };
+        let asked = |at: usize| signatures[at].iter().take(self.columns.of_hypothesis[at].len());
+        let members: Vec<Vec<f64>> = family.iter().flatten().flat_map(|at| asked(*at).map(scaled)).collect();
+        if members.is_empty() {
+            return Ok(vec![false; signatures.len()]);
+        }
+        let products =
+            |column: &[f64]| members.iter().map(|member| dot(member, column)).collect::<Vec<f64>>();
+        let gram: Vec<Vec<f64>> = members.iter().map(|member| products(member)).collect();
+        let factor = factorised(&Matrix::from_rows(&gram), Stage::Causes)?;
+        let is_reproduced = |signature: &Signature| {
+            let column = scaled(signature);
+            let across = products(&column);
+            let whole = dot(&column, &column);
+            whole - dot(&factor.solve(&across), &across) < SIGNATURE_ERROR * SIGNATURE_ERROR * whole
+        };
+        Ok((0..signatures.len()).into_par_iter().map(|at| asked(at).all(is_reproduced)).collect())
+    }
+
     /// Schwarz's criterion of the fit with a candidate beside the held causes, and the candidate's test. The covariance is found
     /// anew, so that the background does not take the candidate's part.
     fn criterion(&self, fit: &AttributionFit, at: usize) -> Result<(f64, Test), InferenceError> {
@@ -367,11 +413,56 @@ impl<'m, L> Search<'m, L> {
         Ok((deviance + test.freedom as f64 * (self.observations.rows() as f64).ln(), test))
     }
 
+    /// −2 ln of how probable a fit makes the readings, but for a constant, with 2 ln M for each cause that was chosen among M hypotheses.
+    /// The numbers ψ of a cause are normal about none, and so are those of one effect in a family, with the deviation σ that they show:
+    ///
+    /// ```text
+    /// rᵀ V⁻¹ r + ln det V + Σ ψ²/σ² + ln det(F + P) + Σ ln σ²,  σ² = mean of ψ²,  P = diag(1/σ²)
+    /// ```
+    ///
+    /// Source: D. J. C. MacKay, Neural Computation 4 (1992) 415; of the choice J. Chen, Z. Chen, Biometrika 95 (2008) 759, γ = 1.
+    pub fn criterion_of(&self, found: &Attribution) -> Result<f64, InferenceError> {
+        let Attribution { fit, family, .. } = found;
+        let mut precisions = self.columns.precisions.clone();
+        let mut criterion = fit.marginal.log_determinant();
+        let (members, chosen): (Vec<_>, Vec<_>) =
+            fit.applied.iter().partition(|(held, _)| family.iter().flatten().any(|member| member == held));
+        let of_effect = |effect: &Vec<usize>| -> Vec<&(usize, Vec<f64>)> {
+            members.iter().copied().filter(|(held, _)| effect.contains(held)).collect()
+        };
+        for group in family.iter().map(of_effect).chain(chosen.iter().map(|cause| vec![*cause])) {
+            let numbers: Vec<(usize, f64)> = group
+                .iter()
+                .flat_map(|(held, psi)| {
+                    self.columns.of_hypothesis[*held].iter().copied().zip(psi.iter().copied())
+                })
+                .collect();
+            let square = numbers.iter().map(|(_, psi)| psi * psi).sum::<f64>() / numbers.len() as f64;
+            let square = square.max(f64::MIN_POSITIVE.sqrt());
+            for (column, psi) in numbers {
+                precisions[column] = square.recip();
+                criterion += psi * psi / square + square.ln();
+            }
+        }
+        let columns = self.columns.fitted(fit.applied.iter().map(|(held, _)| *held)).columns;
+        let fitted = Fitted { columns, precisions: &precisions };
+        let free = self.columns.fitted(fit.applied.iter().map(|(held, _)| *held));
+        criterion += fit.marginal.square - free.solved(&fit.marginal)?.removed;
+        criterion += fitted.factorised(&fit.marginal)?.log_determinant();
+        Ok(criterion + 2.0 * chosen.len() as f64 * (self.columns.of_hypothesis.len() as f64).ln())
+    }
+
     /// The place in the fit of a cause that is not significant beside the others; the least of them.
-    fn superfluous(&self, fit: &AttributionFit, critical: f64) -> Result<Option<usize>, InferenceError> {
+    fn superfluous(
+        &self,
+        fit: &AttributionFit,
+        critical: f64,
+        family: &[Vec<usize>],
+    ) -> Result<Option<usize>, InferenceError> {
         let mut worst: Option<(f64, usize)> = None;
         let least = self.least_square(fit)?;
-        for at in 0..fit.applied.len() {
+        let is_chosen = |at: &usize| !is_member(family, fit.applied[*at].0);
+        for at in (0..fit.applied.len()).filter(is_chosen) {
             let test = self.test_within(fit, at)?;
             let p_value = test.p_value();
             if (p_value > critical || test.square < least)
@@ -421,19 +512,58 @@ impl<'m, L> Search<'m, L> {
 
     /// Everything but one fitted cause projected out, and the score of the residual without that cause.
     pub fn without(&self, fit: &AttributionFit, at: usize) -> Result<(Projected, Vec<f64>), InferenceError> {
+        self.without_all(fit, &[at])
+    }
+
+    /// The same of several.
+    fn without_all(
+        &self,
+        fit: &AttributionFit,
+        places: &[usize],
+    ) -> Result<(Projected, Vec<f64>), InferenceError> {
         let others =
-            fit.applied.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, (held, _))| *held);
+            fit.applied.iter().enumerate().filter(|(at, _)| !places.contains(at)).map(|(_, (held, _))| *held);
         let projected = Projected::of(&fit.marginal, &self.columns.fitted(others))?;
-        let (hypothesis, coordinates) = &fit.applied[at];
-        // r + J ψ̂: the residual about the point without the cause, to first order.
+        // r + J ψ̂: the residual about the point without the causes, to first order.
         let mut score = projected.score.clone();
-        for (column, psi) in self.columns.of_hypothesis[*hypothesis].iter().zip(coordinates) {
-            score
-                .iter_mut()
-                .zip(projected.fisher.row(*column))
-                .for_each(|(score, entry)| *score += psi * entry);
+        for (hypothesis, coordinates) in places.iter().map(|at| &fit.applied[*at]) {
+            for (column, psi) in self.columns.of_hypothesis[*hypothesis].iter().zip(coordinates) {
+                score
+                    .iter_mut()
+                    .zip(projected.fisher.row(*column))
+                    .for_each(|(score, entry)| *score += psi * entry);
+            }
         }
         Ok((projected, score))
+    }
+
+    /// What each fitted cause takes off the weighted squares: beside all others; of a family's effect all members together, each by what
+    /// it takes off alone. Beside a family what several explain alike is shared by these parts, so that they add up to the whole.
+    pub fn squares(&self, found: &Attribution) -> Result<Vec<f64>, InferenceError> {
+        let Attribution { fit, family, .. } = found;
+        let mut squares = Vec::new();
+        for at in 0..fit.applied.len() {
+            squares.push(self.test_within(fit, at)?.square);
+        }
+        for effect in family {
+            let members: Vec<usize> =
+                (0..fit.applied.len()).filter(|at| effect.contains(&fit.applied[*at].0)).collect();
+            let (projected, score) = self.without_all(fit, &members)?;
+            let columns = |at: &usize| self.columns.of_hypothesis[fit.applied[*at].0].clone();
+            let whole = projected.test(&members.iter().flat_map(columns).collect::<Vec<_>>(), &score).square;
+            let alone: Vec<f64> =
+                members.iter().map(|at| projected.test(&columns(at), &score).square).collect();
+            let sum: f64 = alone.iter().sum();
+            for (at, alone) in members.into_iter().zip(alone) {
+                squares[at] = if sum > 0.0 { whole * alone / sum } else { 0.0 };
+            }
+        }
+        let sum: f64 = squares.iter().sum();
+        if !family.is_empty() && sum > 0.0 {
+            let whole = self.removed(fit)?;
+            squares.iter_mut().for_each(|square| *square *= whole / sum);
+        }
+        Ok(squares)
     }
 
     /// Covariance of a fitted cause's coordinates.
@@ -448,6 +578,11 @@ impl<'m, L> Search<'m, L> {
         let unit = |at: usize| (0..own.len()).map(|k| f64::from(u8::from(k == at))).collect::<Vec<_>>();
         Ok(Matrix::from_rows(&(0..own.len()).map(|at| factor.solve(&unit(at))).collect::<Vec<_>>()))
     }
+}
+
+/// Whether a hypothesis is one of a family.
+pub fn is_member(family: &[Vec<usize>], hypothesis: usize) -> bool {
+    family.iter().flatten().any(|member| *member == hypothesis)
 }
 
 /// How much of a step is taken after one of which t₀ was taken, and of which it is ρ times: the steps vanish at the fit, and by the secant

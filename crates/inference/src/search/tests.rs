@@ -35,6 +35,8 @@ fn steps_that_turn_back_as_far_as_they_went_lead_to_the_fit() {
 enum Cause {
     Zero(usize),
     Gain(usize),
+    /// All channels have one gain.
+    Supply,
     /// All places are written wrong.
     Offset,
 }
@@ -79,15 +81,16 @@ impl Sensor {
         let hypothesis = |label: Cause| {
             let (parameters, zero_of) = match label {
                 Cause::Zero(channel) => (vec![Parameter::additive("zero", [-1e3, 1e3], 0.1)], Some(channel)),
-                Cause::Gain(_) => (vec![Parameter::factor("gain", [0.05, 20.0])], None),
+                Cause::Gain(_) | Cause::Supply => (vec![Parameter::factor("gain", [0.05, 20.0])], None),
                 Cause::Offset => {
                     let mm = |name| Parameter::additive(name, [-5.0, 5.0], 0.01);
                     (vec![mm("x_mm"), mm("y_mm")], None)
                 }
             };
-            Hypothesis { label, parameters, signature_error: 0.0, zero_of }
+            Hypothesis { label, parameters, signature_error: 0.0, ordinary: 0.0, zero_of }
         };
-        let all = (0..channels).flat_map(|k| [Cause::Zero(k), Cause::Gain(k)]).chain([Cause::Offset]);
+        let all = (0..channels).flat_map(|k| [Cause::Zero(k), Cause::Gain(k)]);
+        let all = all.chain([Cause::Offset, Cause::Supply]);
         Self {
             maps: (0..channels).map(|_| [(); 3].map(|()| Map::smooth(random))).collect(),
             samples,
@@ -158,6 +161,7 @@ impl Model<Cause> for Sensor {
             match label {
                 Cause::Zero(channel) => zeros[*channel] += values[0],
                 Cause::Gain(channel) => gains[*channel] *= values[0],
+                Cause::Supply => gains.iter_mut().for_each(|gain| *gain *= values[0]),
                 Cause::Offset => offset_mm = [values[0], values[1]],
             }
         }
@@ -196,7 +200,7 @@ impl Model<Cause> for Sensor {
 fn is_alarm(search: &Search<'_, Cause>) -> bool {
     let fit = search.fitted(&Vec::new(), None).unwrap();
     let critical = search.critical(&fit).unwrap();
-    search.next(&fit, critical, &[]).unwrap().is_some()
+    search.next(&fit, critical, &[], &[]).unwrap().is_some()
 }
 
 #[test]
@@ -226,7 +230,7 @@ fn causes_are_found_with_their_numbers_in_any_number_of_channels() {
         let applied = vec![(gain, vec![libm::log(1.12)]), (offset, vec![0.8, -0.5]), (zero, vec![40.0])];
         let measured = sensor.measured(&applied, 0.01, random);
         let search = Search::new(&sensor, &measured, &measured);
-        let found = search.run(&Vec::new()).unwrap();
+        let found = search.run(&Vec::new(), &[]).unwrap();
         let mut causes: Vec<usize> = found.fit.applied.iter().map(|(at, _)| *at).collect();
         causes.sort_unstable();
         assert_eq!(causes, [gain, offset], "{channels} channels");
@@ -235,7 +239,7 @@ fn causes_are_found_with_their_numbers_in_any_number_of_channels() {
             let (projected, score) = search.without(&found.fit, at).unwrap();
             assert_eq!(search.rivals(&found.fit, found.critical, at, &projected, &score), [0; 0]);
             assert!(search.holds_throughout(&found.fit, at).unwrap(), "{channels} channels");
-            for (estimate, wanted) in search.estimates(&found, at).unwrap().iter().zip(wanted) {
+            for (estimate, wanted) in search.estimates(&found, at, &[]).unwrap().iter().zip(wanted) {
                 let [low, high] = estimate.interval95;
                 // Half as far again: one interval in twenty misses.
                 let off = (estimate.value - wanted).abs() / (0.5 * (high - low));
@@ -245,4 +249,44 @@ fn causes_are_found_with_their_numbers_in_any_number_of_channels() {
         let [off, variance] = search.least_zeros(&found).unwrap()[1];
         assert!((off - 40.0).abs() < 4.0 * variance.sqrt(), "{off} ± {}", variance.sqrt());
     }
+}
+
+/// What the search finds from nothing, and beside a gain of each channel; the rivals of the first of these.
+fn sparse_and_dense(gains: &[f64]) -> (Attribution, Attribution, bool, Vec<usize>) {
+    let random = &mut SplitMix64::new(61);
+    let sensor = Sensor::new(gains.len(), contacts(random));
+    let family: Family =
+        vec![(0..gains.len()).map(|channel| sensor.place_of(Cause::Gain(channel))).collect()];
+    let of = |log: &dyn Fn(usize) -> f64| -> Applied {
+        family[0].iter().enumerate().map(|(channel, at)| (*at, vec![log(channel)])).collect()
+    };
+    let measured = sensor.measured(&of(&|channel| libm::log(gains[channel])), 0.01, random);
+    let search = Search::new(&sensor, &measured, &measured);
+    let sparse = search.run(&Vec::new(), &[]).unwrap();
+    let dense = search.run(&of(&|_| 0.0), &family).unwrap();
+    let [of_sparse, of_dense] = [&sparse, &dense].map(|it| search.criterion_of(it).unwrap());
+    let (projected, score) = search.without(&dense.fit, 0).unwrap();
+    let rivals = search.rivals(&dense.fit, dense.critical, 0, &projected, &score);
+    assert!(rivals.contains(&sensor.place_of(Cause::Supply)), "the other gains make up for it");
+    let rivals = search.rivals_of_member(&dense, 0, rivals).unwrap().0;
+    let squares = search.squares(&dense).unwrap();
+    let whole = search.removed(&dense.fit).unwrap();
+    assert!((squares.iter().sum::<f64>() / whole - 1.0).abs() < 1e-9, "{squares:?} of {whole}");
+    (sparse, dense, of_dense < of_sparse, rivals)
+}
+
+#[test]
+fn gains_of_all_channels_are_found_as_such_and_a_supply_where_they_go_together() {
+    let own = [1.13, 0.85, 0.94, 1.19, 0.82, 1.08, 0.9, 1.16];
+    let (_, dense, is_dense, rivals) = sparse_and_dense(&own);
+    assert!(is_dense && rivals.is_empty(), "{rivals:?}");
+    for ((_, psi), gain) in dense.fit.applied.iter().zip(own) {
+        assert!((psi[0] - libm::log(gain)).abs() < 0.02, "{psi:?} is not ln {gain}");
+    }
+    // A supply of 1.3 is likelier than eight like it.
+    let (sparse, _, is_dense, rivals) = sparse_and_dense(&[1.3; 8]);
+    assert!(!is_dense && sparse.fit.applied.len() == 1 && rivals.len() == 1, "{rivals:?}");
+    // Beside gains of their own it is one reason that they may have in common.
+    let (_, _, is_dense, rivals) = sparse_and_dense(&own.map(|gain| 1.3 * gain));
+    assert!(is_dense && rivals.len() == 1, "{rivals:?}");
 }

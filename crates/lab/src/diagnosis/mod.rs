@@ -41,12 +41,13 @@ use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};
 use self::label::{Search, no_solution};
 use self::naming::separation::Separation;
+use self::naming::untestable::with_untestable;
 use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
 use self::naming::{not_detected, offsets};
 use self::report::{Diagnosis, Finding, NotTestable, Notice, Residuals, Verdict};
 use self::simulation::atlas::{Atlas, attributed};
 use self::simulation::simulated::Simulated;
-use self::validation::ceiling::ceiling_share;
+use self::validation::ceiling::{ceiling_share, is_all_removed};
 use self::validation::gain::{Rows, gain, rmse};
 use crate::effect::Effect;
 use crate::tangent::SimulatedPad;
@@ -174,13 +175,26 @@ fn diagnosed(
         Rows { model: &model, observations: &open, unrepaired: as_measured(0) },
         Rows { model: &at_locked, observations: &locked, unrepaired: as_measured(1) },
     ];
+    // What each pad has of its own comes in all sizes: whether more is left is asked of all of it together.
+    let halves = open.halves().map(|rows| open.picked(&rows));
+    let models = halves.each_ref().map(|half| model.at(half));
+    let half = |at: usize| Rows { model: &models[at], observations: &halves[at], unrepaired: None };
+    let is_all = !found.family.is_empty()
+        && is_all_removed([&half(0), &half(1)], &found.fit.applied, &found.fit.systems.noise);
+    let judgement = Judgement { is_all, validation };
     let diagnosis =
-        summary(&search, &found, &rows, &model.missing(), validation).map_err(DiagnosisError::Inference)?;
+        summary(&search, &found, &rows, &model.missing(), judgement).map_err(DiagnosisError::Inference)?;
     let excess = (!without.contains(&Effect::NoiseExcess))
         .then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
+    let effect = |at: &usize| model.hypotheses()[*at].label.0;
+    let mut family: Vec<Effect> = found.family.iter().flatten().map(effect).collect();
+    if !family.is_empty() {
+        family.push(Effect::ChannelOffset);
+    }
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
     diagnosis.not_detected.retain(|it| !without.contains(&it.effect));
-    diagnosis.findings = in_common(diagnosis.findings);
+    diagnosis.findings = in_common(diagnosis.findings, &family);
+    diagnosis.findings = with_untestable(diagnosis.findings, &diagnosis.not_testable, &open);
     Ok(diagnosis)
 }
 
@@ -251,20 +265,28 @@ fn check_meant(table: &Table) -> Result<(), DiagnosisError> {
     }
 }
 
+/// How findings are judged.
+#[derive(Clone, Copy)]
+struct Judgement {
+    /// Nothing is left of which they may be a part.
+    is_all: bool,
+    validation: Validation,
+}
+
 /// Everything that is said about what was found.
 fn summary(
     search: &Search<'_>,
     found: &Attribution,
     [open, locked]: &[Rows<'_>; 2],
     missing: &[NotTestable],
-    validation: Validation,
+    Judgement { is_all, validation }: Judgement,
 ) -> Result<Diagnosis, InferenceError> {
     let (fit, rows) = (&found.fit, [open, locked]);
     let is_validated = validation == Validation::OnLockedRows;
     let remainders = unnamed_squares(found);
     let whole = search.removed(fit)? + remainders.iter().sum::<f64>();
     let NamingResult { candidates, unnamed_by_channel, doubted_by_channel } =
-        named(search, found, whole, remainders)?;
+        named(search, found, whole, remainders, is_all)?;
     let unnamed: f64 = unnamed_by_channel.iter().sum();
     let separation = Separation::new(search, found);
     let applied: Applied = candidates.iter().map(|it| fit.applied[it.place].clone()).collect();

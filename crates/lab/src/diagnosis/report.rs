@@ -4,6 +4,7 @@ use crate::diagnosis::data::target::Target;
 use crate::effect::Effect;
 use tactpad_inference::observations::Sample;
 pub use tactpad_inference::search::estimates::Estimate;
+use tactpad_numeric::statistics::mean;
 
 /// Sentence where nothing tells confounded causes apart.
 pub(super) const INSEPARABLE: &str = "no measurement in the catalogue separates these";
@@ -45,6 +46,35 @@ pub struct Diagnosis {
     pub gatekeepers: Vec<Notice>,
     /// Residuals, row by row.
     pub residuals: Residuals,
+}
+
+/// Gains of several channels that may have one reason in common.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CommonGain {
+    /// Their geometric mean.
+    pub factor: f64,
+    /// The part of the residual that gains explain.
+    pub share: f64,
+    /// What would tell whose it is: the shortest that is said of any of them.
+    pub separate_by: Option<String>,
+}
+
+impl Diagnosis {
+    /// What the channels' gains have in common, where the supply or the force sensor may be the reason; none where each channel has its own,
+    /// or one has.
+    pub fn common_gain(&self) -> Option<CommonGain> {
+        let is_common =
+            |rival: &(Effect, Target)| matches!(rival.0, Effect::ExcitationGain | Effect::ReferenceGain);
+        let gains = self.findings.iter().filter(|it| it.effect == Effect::ChannelGain);
+        let common = gains.clone().filter(|it| it.confounded_with.iter().any(is_common));
+        let logs: Vec<f64> =
+            common.clone().filter_map(|it| Some(libm::log(it.parameters.first()?.value))).collect();
+        (logs.len() > 1).then(|| CommonGain {
+            factor: libm::exp(mean(logs)),
+            share: gains.map(|it| it.share).sum(),
+            separate_by: common.filter_map(|it| it.separate_by.clone()).min_by_key(String::len),
+        })
+    }
 }
 
 #[cfg(test)]

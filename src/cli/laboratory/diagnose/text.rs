@@ -5,7 +5,7 @@ use std::fmt;
 use super::numbers::{decoded, estimate, range};
 use crate::cli::printing::wrapped::hanging;
 use tactpad::lab::diagnosis::data::target::Target;
-use tactpad::lab::diagnosis::report::{Diagnosis, Finding, Gain, NotDetected, Verdict};
+use tactpad::lab::diagnosis::report::{CommonGain, Diagnosis, Finding, Gain, NotDetected, Verdict};
 use tactpad::lab::effect::Effect;
 
 /// A diagnosis in lines of a terminal.
@@ -14,6 +14,9 @@ pub(super) struct DiagnosisText<'d>(pub(super) &'d Diagnosis);
 impl fmt::Display for DiagnosisText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(diagnosis) = self;
+        if let Some(gains) = common_gain(diagnosis) {
+            writeln!(f, "{}", hanging("", &gains))?;
+        }
         writeln!(f, "{}", hanging("", &verdict(diagnosis)))?;
         writeln!(f, "{}", hanging("", &sizes(diagnosis)))?;
         for (at, notice) in diagnosis.gatekeepers.iter().enumerate() {
@@ -21,7 +24,8 @@ impl fmt::Display for DiagnosisText<'_> {
             writeln!(f, "{first}{}", hanging("  - ", &format!("{}.", notice.detail)))?;
         }
         for (number, finding) in (1..).zip(&diagnosis.findings) {
-            writeln!(f, "\n{}", hanging(&format!("{number:>3}  "), &found(finding, &diagnosis.channels)))?;
+            let text = found(finding, &diagnosis.channels) + &to_tell(finding, &diagnosis.findings);
+            writeln!(f, "\n{}", hanging(&format!("{number:>3}  "), &(text + ".")))?;
         }
         if let Some(gain) = &diagnosis.gain {
             writeln!(f, "\n{}", hanging("", &gained(gain, diagnosis)))?;
@@ -29,6 +33,17 @@ impl fmt::Display for DiagnosisText<'_> {
         untested(f, diagnosis)?;
         undetected(f, &diagnosis.not_detected)
     }
+}
+
+/// What gains have in common, and who may have it.
+pub(super) fn common_gain(diagnosis: &Diagnosis) -> Option<String> {
+    let CommonGain { factor, share, separate_by } = diagnosis.common_gain()?;
+    let told_by = separate_by.map(|it| format!(" To tell: {it}.")).unwrap_or_default();
+    Some(format!(
+        "Gains are {:.0} % of what the model gets wrong here. The channels have a factor of {factor:.2} in common, and these rows do not \
+         tell whether the supply, the force sensor or each channel has it.{told_by}",
+        100.0 * share
+    ))
 }
 
 fn verdict(diagnosis: &Diagnosis) -> String {
@@ -101,11 +116,20 @@ fn found(finding: &Finding, channels: &[String]) -> String {
         let between = if finding.labels.is_some() { " together with " } else { ", or from " };
         text += &format!(". These rows do not tell it from {}", others.join(between));
     }
+    text
+}
+
+/// The measurement that tells, once for all findings of which it does.
+fn to_tell(finding: &Finding, all: &[Finding]) -> String {
     let is_alone = finding.confounded_with.iter().all(|(effect, _)| *effect == Effect::Unlisted);
-    if let Some(measurement) = finding.separate_by.as_ref().filter(|_| !is_alone) {
-        text += &format!(". To tell: {}", measurement.trim_end_matches('.'));
+    let Some(measurement) = finding.separate_by.as_ref().filter(|_| !is_alone) else { return String::new() };
+    let first = all.iter().position(|other| other.separate_by.as_ref() == Some(measurement));
+    match first {
+        Some(first) if !std::ptr::eq(&raw const all[first], finding) => {
+            format!(". To tell: as for {}", first + 1)
+        }
+        _ => format!(". To tell: {}", measurement.trim_end_matches('.')),
     }
-    text + "."
 }
 
 fn gained(gain: &Gain, diagnosis: &Diagnosis) -> String {

@@ -171,7 +171,16 @@ pub(super) fn hypotheses(
     }
     let all = all.into_iter().filter(|(effect, ..)| asks_for(*effect));
     all.map(|(effect, target, parameters, act)| {
-        (Hypothesis { label: (effect, target), parameters, signature_error: 0.0, zero_of: None }, act)
+        (
+            Hypothesis {
+                label: (effect, target),
+                parameters,
+                signature_error: 0.0,
+                ordinary: 0.0,
+                zero_of: None,
+            },
+            act,
+        )
     })
     .collect()
 }

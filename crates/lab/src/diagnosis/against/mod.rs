@@ -27,7 +27,7 @@ use crate::diagnosis::gatekeepers::{self, Gate, guarded};
 use crate::diagnosis::label::{Label, Search};
 use crate::diagnosis::report::{Diagnosis, Finding, Notice};
 use crate::diagnosis::validation::gain::Rows;
-use crate::diagnosis::{Validation, summary, with_gatekeepers};
+use crate::diagnosis::{Judgement, Validation, summary, with_gatekeepers};
 use crate::effect::Effect;
 use tactpad_core::tables::measured::sheet::Sheet;
 use tactpad_inference::model::Model;
@@ -141,14 +141,20 @@ fn told(
     let (model, at_locked) = (LaterRecording::new(setting, &open), LaterRecording::new(setting, &locked));
     let search = Search::new(&model, all, &open.observations);
     let no_solution = |error| ComparisonError::of(&error, &all.channels);
-    let found = search.run(&Vec::new()).map_err(no_solution)?;
+    let found = search.run(&Vec::new(), &[]).map_err(no_solution)?;
     let rows = [(&model, &open), (&at_locked, &locked)].map(|(model, part)| Rows {
         model: model as &dyn Model<Label>,
         observations: &part.observations,
         unrepaired: None,
     });
-    let mut diagnosis = summary(&search, &found, &rows, &missing(columns, there), Validation::OnLockedRows)
-        .map_err(no_solution)?;
+    let mut diagnosis = summary(
+        &search,
+        &found,
+        &rows,
+        &missing(columns, there),
+        Judgement { is_all: false, validation: Validation::OnLockedRows },
+    )
+    .map_err(no_solution)?;
     standing(&mut diagnosis, &search, &rows, &found);
     let signals = &found.fit.linearised.readings;
     let excess = asked

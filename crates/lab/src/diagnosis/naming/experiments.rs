@@ -135,8 +135,9 @@ fn without_reference(rows: &Observations, repeated: &[Sample]) -> [Experiment; 2
 }
 
 /// Dimensions that are measured by hand, with the standard deviation of that: 0.1 mm at the modules' edges, half a degree along an edge
-/// of 8 mm, a fifth of one along a mark over the plate, and 0.1 mm over 40 mm of the stage's way.
-const BY_HAND: [(Effect, f64, &str, &str); 4] = [
+/// of 8 mm, a fifth of one along a mark over the plate, 0.1 mm over 40 mm of the stage's way, and a resistor of 0.1 % beside an arm of a
+/// bridge that is known to 0.5 %.
+const BY_HAND: [(Effect, f64, &str, &str); 5] = [
     (
         Effect::ModuleDisplaced,
         0.1,
@@ -149,6 +150,12 @@ const BY_HAND: [(Effect, f64, &str, &str); 4] = [
         0.2,
         "put a mark on pad and stage and take the angle between them",
         "the pad's channels have no part in that",
+    ),
+    (
+        Effect::ExcitationGain,
+        0.005,
+        "shunt an arm of one bridge with a known resistor",
+        "its step is that of supply and converter alone: neither strain nor force sensor has a part in it",
     ),
     (Effect::StageScale, 0.0025, "measure the stage's way with a caliper", "the pad has no part in that"),
 ];

@@ -3,7 +3,7 @@
 use crate::diagnosis::label::Search;
 use crate::diagnosis::report::Finding;
 use tactpad_inference::error::InferenceError;
-use tactpad_inference::search::Attribution;
+use tactpad_inference::search::{Attribution, is_member};
 
 /// The findings with their places in the fit, the largest first. `whole` is the weighted squared residual above noise and
 /// background.
@@ -13,24 +13,29 @@ pub(crate) fn findings(
     whole: f64,
 ) -> Result<Vec<(usize, Finding)>, InferenceError> {
     let mut findings = Vec::new();
-    for at in 0..found.fit.applied.len() {
+    for (at, square) in search.squares(found)?.into_iter().enumerate() {
         let (hypothesis, _) = found.fit.applied[at];
         let (projected, score) = search.without(&found.fit, at)?;
         let test = projected.test(&search.columns.of_hypothesis[hypothesis], &score);
+        let is_member = is_member(&found.family, hypothesis);
+        if is_member && test.p_value() >= found.critical {
+            continue;
+        }
+        let mut rivals = search.rivals(&found.fit, found.critical, at, &projected, &score);
+        let mut doubt = Vec::new();
+        if is_member {
+            (rivals, doubt) = search.rivals_of_member(found, at, rivals)?;
+        }
         let label = |at: usize| search.model.hypotheses()[at].label;
         let (effect, target) = label(hypothesis);
         let finding = Finding {
             effect,
             target,
-            parameters: search.estimates(found, at)?,
+            parameters: search.estimates(found, at, &doubt)?,
             shapes: search.shapes(found, at),
             p_value: test.p_value(),
-            share: (test.square / whole).clamp(0.0, 1.0),
-            confounded_with: search
-                .rivals(&found.fit, found.critical, at, &projected, &score)
-                .into_iter()
-                .map(label)
-                .collect(),
+            share: (square / whole).clamp(0.0, 1.0),
+            confounded_with: rivals.into_iter().map(label).collect(),
             separate_by: None,
             labels: None,
         };

@@ -3,6 +3,7 @@
 pub(crate) mod experiments;
 mod findings;
 pub(crate) mod separation;
+pub(crate) mod untestable;
 pub(crate) mod withdrawal;
 
 use self::withdrawal::{OVER_NEAR, doubted, is_over};

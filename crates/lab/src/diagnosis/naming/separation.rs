@@ -92,7 +92,8 @@ impl<'s, 'm> Separation<'s, 'm> {
         Self { search, found, experiments, elsewhere }
     }
 
-    /// The measurement that separates the fitted cause at this place from its rivals, as a sentence; none where the model cannot say.
+    /// The measurement that separates the fitted cause at this place from its rivals, as a sentence; else one for each rival. None where
+    /// the model cannot say.
     pub(crate) fn told(&self, at: usize, rivals: &[(Effect, Target)]) -> Option<String> {
         let hypotheses = self.search.model.hypotheses();
         let is_rival = |number: &usize| rivals.contains(&hypotheses[*number].label);
@@ -100,23 +101,36 @@ impl<'s, 'm> Separation<'s, 'm> {
         if rivals.is_empty() {
             return None;
         }
+        if let Some(sentence) = self.cheapest(at, &rivals)? {
+            return Some(sentence);
+        }
+        let mut sentences: Vec<String> = Vec::new();
+        for rival in &rivals {
+            let sentence = match self.cheapest(at, &[*rival])? {
+                Some(sentence) if rivals.len() > 1 => sentence,
+                _ => return Some(INSEPARABLE.to_owned()),
+            };
+            if !sentences.contains(&sentence) {
+                sentences.push(sentence);
+            }
+        }
+        Some(sentences.join("; and "))
+    }
+
+    /// The cheapest measurement that separates it from all of these rivals, if one does. None where the model cannot say.
+    fn cheapest(&self, at: usize, rivals: &[usize]) -> Option<Option<String>> {
         let mut best: Option<(f64, usize, &Experiment)> = None;
         for (number, experiment) in self.experiments.iter().enumerate() {
             if best.is_some_and(|(minutes, ..)| minutes <= experiment.minutes) {
                 break;
             }
-            let Some(repeats) = self.both(number)?.repeats(at, &rivals) else { continue };
+            let Some(repeats) = self.both(number)?.repeats(at, rivals) else { continue };
             let minutes = repeats as f64 * experiment.minutes;
             if best.is_none_or(|(least, ..)| minutes < least) {
                 best = Some((minutes, repeats, experiment));
             }
         }
-        Some(
-            best.map_or_else(
-                || INSEPARABLE.to_owned(),
-                |(_, repeats, experiment)| sentence(repeats, experiment),
-            ),
-        )
+        Some(best.map(|(_, repeats, experiment)| sentence(repeats, experiment)))
     }
 
     /// With an experiment; none where the model cannot say.
@@ -379,7 +393,8 @@ mod tests {
         }
         let model = Atlas::new(&pad, &[], &measured, &measured);
         let search = Search::new(&model, &measured, &measured);
-        let found = Attribution { fit: search.fitted(&applied, None).unwrap(), critical: 1e-4 };
+        let found =
+            Attribution { fit: search.fitted(&applied, None).unwrap(), critical: 1e-4, family: Vec::new() };
         let of = |it: &&Hypothesis| rivals.contains(&it.label.0);
         let rivals: Vec<(Effect, Target)> = model.hypotheses().iter().filter(of).map(|it| it.label).collect();
         let numbers: Vec<usize> =
@@ -395,10 +410,10 @@ mod tests {
     fn weights_tell_a_wrong_excitation_from_a_wrong_reference() {
         let (sentence, each) = told((Effect::ExcitationGain, &[1.05]), &[Effect::ReferenceGain]);
         assert!(sentence.starts_with("place a known weight of 3 N at 12 of the places, once"), "{sentence}");
-        // Whatever has both in it tells nothing, however often it is made.
+        // Whatever has both in it tells nothing, however often it is made: weights and a shunt have one of them.
         let helps: Vec<&str> =
             each.iter().filter(|(_, repeats)| repeats.is_some()).map(|(what, _)| what.as_str()).collect();
-        assert_eq!(helps.len(), 1, "{each:?}");
+        assert_eq!(helps.len(), 2, "{each:?}");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::diagnosis::label::Search;
 use crate::diagnosis::report::{Finding, INSEPARABLE};
 use crate::effect::Effect;
 use tactpad_inference::error::InferenceError;
-use tactpad_inference::search::Attribution;
+use tactpad_inference::search::{Attribution, is_member};
 
 /// A cause is named where it explains so many times what is left unexplained in the channels that tell of it,
 pub(crate) const OVER_NEAR: f64 = 10.0;
@@ -46,12 +46,13 @@ pub(crate) struct NamingResult {
 
 /// The findings of `whole` weighted squares, and which of them may be named. Without an explanation are the remainders, and what causes
 /// explain that hold in some parts of the measurement only. What explains little beside these is doubted, and then so is what explains
-/// little beside that.
+/// little beside that; nothing is where `is_all` says that all is told.
 pub(crate) fn named(
     search: &Search<'_>,
     found: &Attribution,
     whole: f64,
     remainders: Vec<f64>,
+    is_all: bool,
 ) -> Result<NamingResult, InferenceError> {
     let fit = &found.fit;
     let squares = |place: usize, finding: &Finding| -> Vec<f64> {
@@ -66,12 +67,16 @@ pub(crate) fn named(
             candidates.push(Candidate { place, finding, is_doubted: false });
         }
     }
-    let mut doubted_by_channel = unnamed_by_channel.clone();
+    let mut doubted_by_channel =
+        if is_all { vec![0.0; unnamed_by_channel.len()] } else { unnamed_by_channel.clone() };
     let is_little =
         |it: &Candidate, left: &[f64]| !it.is_doubted && !is_told(&squares(it.place, &it.finding), left);
     while let Some(at) = candidates.iter().rposition(|it| is_little(it, &doubted_by_channel)) {
         candidates[at].is_doubted = true;
-        add(&mut doubted_by_channel, &squares(candidates[at].place, &candidates[at].finding));
+        // What a pad has of its own is expected in all sizes: a small part of it says nothing of the larger ones.
+        if !is_member(&found.family, fit.applied[candidates[at].place].0) {
+            add(&mut doubted_by_channel, &squares(candidates[at].place, &candidates[at].finding));
+        }
     }
     Ok(NamingResult { candidates, unnamed_by_channel, doubted_by_channel })
 }
@@ -99,9 +104,11 @@ pub(crate) fn is_over(square: f64, unnamed_by_channel: &[f64]) -> bool {
 
 /// Sets beside findings that one reason may have in common that it may be none of the catalogue: beside those of one effect at several
 /// targets, beside three or more of any effects, and then also beside what each target has of its own, as that may be a part of it.
-/// What the checks of the recording found does not count: it is seen in the readings themselves.
-pub(crate) fn in_common(findings: Vec<Finding>) -> Vec<Finding> {
-    let asks = |effect: Effect| of_catalogue(effect).is_some_and(|it| !it.is_individual);
+/// What the checks of the recording found does not count: it is seen in the readings themselves. Nor do effects of a `family`, of which each
+/// target has its own.
+pub(crate) fn in_common(findings: Vec<Finding>, family: &[Effect]) -> Vec<Finding> {
+    let is_own = |it: &Cause| it.is_individual || family.contains(&it.effect);
+    let asks = |effect: Effect| of_catalogue(effect).is_some_and(|it| !is_own(it));
     let effects: Vec<Effect> = findings.iter().map(|it| it.effect).filter(|effect| asks(*effect)).collect();
     let alike = |effect: Effect| effects.iter().filter(|it| **it == effect).count();
     let is_doubted = |effect: Effect| alike(effect) > ALIKE_MAX || effects.len() > CAUSES_MAX;
@@ -140,7 +147,7 @@ mod tests {
     }
 
     fn doubted(causes: &[(Effect, Target)]) -> Vec<usize> {
-        let findings = in_common(causes.iter().copied().map(finding).collect());
+        let findings = in_common(causes.iter().copied().map(finding).collect(), &[]);
         (0..findings.len())
             .filter(|at| findings[*at].confounded_with == [(Effect::Unlisted, Target::Pad)])
             .collect()

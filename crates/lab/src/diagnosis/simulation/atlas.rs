@@ -1,5 +1,6 @@
 //! The simulated pad about more than one field: its own, and those of changed pads that lie too far off for its tangent.
 
+use crate::diagnosis::data::target::Target;
 use crate::diagnosis::extension::{Circumstances, with};
 use crate::diagnosis::label::{Hypothesis, Label, Search};
 use crate::diagnosis::model::mechanics::changed;
@@ -15,11 +16,16 @@ use tactpad_inference::error::InferenceError;
 use tactpad_inference::hypothesis::{Coordinate, Parameter};
 use tactpad_inference::model::{ChannelBaselines, CommonError, Linearised, Model, Written};
 use tactpad_inference::observations::Observations;
-use tactpad_inference::search::{Applied, Attribution, AttributionFit};
+use tactpad_inference::search::{Applied, Attribution, AttributionFit, Family};
 use tactpad_numeric::products::dot;
 
 /// No more fields than this are solved for one diagnosis.
 const SOLVED_MAX: usize = 3;
+/// What each pad has of its own by make.
+const OF_EACH_PAD: [Effect; 4] =
+    [Effect::ChannelGain, Effect::ModuleDisplaced, Effect::ModuleRotated, Effect::ModuleTilted];
+/// So few causes are not held against a pad that has all of these.
+const SPARSE_MAX: usize = 2;
 /// A field is solved where the tangent's error would move a number by so many of its own standard deviations.
 const FAR: f64 = 1.0;
 
@@ -52,13 +58,43 @@ pub(crate) struct Atlas<'f> {
 /// What the search finds. Where that is too far from any field that is known, it is searched again about the field of the pad that was
 /// found: what only made up for the tangent's error goes, and what that hid is seen.
 pub(crate) fn attributed(atlas: &mut Atlas<'_>) -> Result<Attribution, InferenceError> {
-    let mut found = atlas.search().run(&Vec::new())?;
+    let mut found = chosen(&atlas.search())?;
     while atlas.solved.len() < SOLVED_MAX && atlas.is_far(&found.fit)? {
         let Some(solved) = atlas.solve(&found.fit.applied) else { break };
         atlas.add(solved);
-        found = atlas.search().run(&found.fit.applied)?;
+        found = atlas.search().run(&found.fit.applied, &found.family)?;
     }
     Ok(found)
+}
+
+/// What the search finds from nothing, or where it finds several causes and that is likelier, beside what each pad has of its own.
+fn chosen(search: &Search<'_>) -> Result<Attribution, InferenceError> {
+    let sparse = search.run(&Vec::new(), &[])?;
+    if sparse.fit.applied.len() <= SPARSE_MAX {
+        return Ok(sparse);
+    }
+    let hypotheses = search.model.hypotheses();
+    // Nobody knows the gain of a channel that tells nothing.
+    let is_told = |target: Target| match target {
+        Target::Channel(channel) => search.observations.is_alive(channel),
+        _ => true,
+    };
+    let of_effect = |effect: Effect| -> Vec<usize> {
+        let is_member = |at: &usize| {
+            let (own, target) = hypotheses[*at].label;
+            own == effect && is_told(target)
+        };
+        (0..hypotheses.len()).filter(is_member).collect()
+    };
+    let family: Family =
+        OF_EACH_PAD.map(of_effect).into_iter().filter(|members| !members.is_empty()).collect();
+    let none = |at: &usize| (*at, vec![0.0; hypotheses[*at].parameters.len()]);
+    // Rows that do not tell all of it have no such fit.
+    let Ok(dense) = search.run(&family.iter().flatten().map(none).collect(), &family) else {
+        return Ok(sparse);
+    };
+    let is_dense = search.criterion_of(&dense)? < search.criterion_of(&sparse)?;
+    Ok(if is_dense { dense } else { sparse })
 }
 
 impl<'f> Atlas<'f> {

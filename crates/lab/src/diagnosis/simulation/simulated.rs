@@ -98,6 +98,7 @@ impl<'f> Simulated<'f> {
                         ChainStage::Contact | ChainStage::Mechanics => SIGNATURE_ERROR,
                         ChainStage::Coupling | ChainStage::Channels => 0.0,
                     },
+                    ordinary: if target == Target::Pad { cause.ordinary } else { 0.0 },
                 });
                 causes.push(cause);
             }
@@ -144,7 +145,7 @@ impl<'f> Simulated<'f> {
         chain
     }
 
-    /// With a row `near` it, of another chain, whose maps are its own if it is at the same place.
+    /// With a row `near` it, of another chain, whose maps are its own if it is at the same place, and whose changes if it bears the same force.
     fn row(&self, at: usize, chain: &Chain, near: Option<&Row>) -> Row {
         let samples = &self.sequence.samples;
         let then = self.course.moment(at, chain.rig.lag_s);
@@ -156,13 +157,11 @@ impl<'f> Simulated<'f> {
             Some(near) => (near.gains, near.laplacian),
             None => (continued(&self.signals, place_mm), self.signals.laplacian(place_mm)),
         };
-        Row {
-            place_mm,
-            force_n,
-            gains,
-            laplacian,
-            changes: self.changes[at].iter().map(|maps| maps.map(|map| response(&map, &force_n))).collect(),
-        }
+        let changes = match near.filter(|it| it.force_n == force_n) {
+            Some(near) => near.changes.clone(),
+            None => self.changes[at].iter().map(|maps| maps.map(|map| response(&map, &force_n))).collect(),
+        };
+        Row { place_mm, force_n, gains, laplacian, changes }
     }
 
     /// What a unit of true force along each axis strains at a place that is written so, without the field's changes.

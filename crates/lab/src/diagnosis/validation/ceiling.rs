@@ -47,6 +47,15 @@ pub(crate) fn ceiling_share(
     (whole > SURE * scatter).then(|| ((sum(&nominal) - sum(&extended)) / whole).clamp(0.0, 1.0))
 }
 
+/// From this share on, causes leave nothing of which they may be a part.
+const ALL: f64 = 0.95;
+
+/// Whether these causes remove all that a flexible model could, by one half of the places against the other. The rows are those in
+/// which the causes were found, so that no locked row has a part in it; the causes' few numbers hardly fit either half by chance.
+pub(crate) fn is_all_removed(halves: [&Rows<'_>; 2], applied: &Applied, noise: &[Noise]) -> bool {
+    ceiling_share(halves, applied, noise).is_some_and(|share| share >= ALL)
+}
+
 /// For each cluster of the locked rows, the squares that the model with these hypotheses leaves, and those that it leaves together
 /// with the regression.
 fn left(

@@ -1,5 +1,6 @@
 //! The whole answer in one sentence.
 
+use super::super::text::common_gain;
 use super::subject::Subject;
 use super::words::{capital, cause, listed, place, sentence};
 use tactpad::lab::diagnosis::data::target::Target;
@@ -16,6 +17,9 @@ pub(super) fn headline(subject: &Subject<'_>) -> String {
     let diagnosis = subject.diagnosis;
     let told = capital(&told(diagnosis));
     let percent = 100.0 * diagnosis.unnamed_share;
+    if let Some(gains) = common_gain(diagnosis) {
+        return gains;
+    }
     match diagnosis.verdict {
         Verdict::NoDiscrepancy => {
             "The model accounts for these rows: nothing is wrong beyond noise and background.".to_owned()

@@ -3,9 +3,6 @@
 //! The maps of labels and channels are written out here, not taken from the program.
 
 use std::fs;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread;
 
 use serde_json::{Value, json};
 
@@ -16,6 +13,7 @@ use crate::program::{diagnosed, folder};
 use crate::random::Random;
 use crate::sizes::{CAUSES, drawn};
 use crate::truth::{CHANNELS, Truth};
+use crate::two;
 
 /// A map of the plane, line by line.
 type Plane = [[f64; 2]; 2];
@@ -284,25 +282,10 @@ fn run(seed: u64, hidden: Hidden) -> (Change, Verdict) {
 
 /// How many of the seeds are right, and how many have a wrong name; two at a time.
 fn tried(seeds: std::ops::RangeInclusive<u64>, hidden: Hidden) -> [usize; 2] {
-    let (next, last) = (AtomicU64::new(*seeds.start()), *seeds.end());
-    let counted = Mutex::new([0; 2]);
-    thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                loop {
-                    let seed = next.fetch_add(1, Ordering::Relaxed);
-                    if seed > last {
-                        return;
-                    }
-                    let (_, verdict) = run(seed, hidden);
-                    let mut counted = counted.lock().unwrap();
-                    counted[0] += usize::from(verdict.is_right);
-                    counted[1] += usize::from(!verdict.wrong.is_empty());
-                }
-            });
-        }
-    });
-    counted.into_inner().unwrap()
+    let seeds: Vec<u64> = seeds.collect();
+    two::at_a_time(&seeds, |seed| run(*seed, hidden).1).iter().fold([0; 2], |[right, wrong], verdict| {
+        [right + usize::from(verdict.is_right), wrong + usize::from(!verdict.wrong.is_empty())]
+    })
 }
 
 #[test]

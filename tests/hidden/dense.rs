@@ -1,11 +1,6 @@
 //! Pads as they are made: each channel has a gain and a zero of its own, each module stands and is turned a little otherwise, and all of
 //! it creeps, rubs and ages.
 
-use std::ops::RangeInclusive;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread;
-
 use serde_json::Value;
 
 use crate::case::Case;
@@ -14,6 +9,7 @@ use crate::plan::Plan;
 use crate::random::Random;
 use crate::score::Score;
 use crate::truth::{CHANNELS, Truth};
+use crate::two;
 
 /// Noise of the readings, µV.
 const NOISES_UV: [f64; 3] = [0.2, 4.0, 20.0];
@@ -51,6 +47,7 @@ fn truths(random: &mut Random) -> Vec<Truth> {
 }
 
 #[derive(Debug)]
+#[expect(dead_code, reason = "printed where something is wrong")]
 struct Outcome {
     seed: u64,
     score: Score,
@@ -58,7 +55,7 @@ struct Outcome {
     rmse_ratio: f64,
 }
 
-fn run(seed: u64) -> Outcome {
+fn run(&seed: &u64) -> Outcome {
     let random = &mut Random::new(seed, "dense");
     let truths = truths(random);
     let plan = Plan::BOTH[seed as usize % 2];
@@ -104,28 +101,6 @@ fn run(seed: u64) -> Outcome {
     Outcome { seed, score, rmse_ratio }
 }
 
-/// Two at a time, in their order.
-fn all(seeds: RangeInclusive<u64>) -> Vec<Outcome> {
-    let (done, next, last) = (Mutex::new(Vec::new()), AtomicU64::new(*seeds.start()), *seeds.end());
-    thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                loop {
-                    let seed = next.fetch_add(1, Ordering::Relaxed);
-                    if seed > last {
-                        break;
-                    }
-                    let outcome = run(seed);
-                    done.lock().unwrap().push(outcome);
-                }
-            });
-        }
-    });
-    let mut done = done.into_inner().unwrap();
-    done.sort_by_key(|it| it.seed);
-    done
-}
-
 /// No wrong name beyond one in fifty runs, 90 to 99 % of the stated intervals hold, and nothing becomes worse.
 fn are_told(outcomes: &[Outcome]) {
     let wrong: Vec<&Outcome> = outcomes.iter().filter(|it| !it.score.wrong.is_empty()).collect();
@@ -146,11 +121,11 @@ fn are_told(outcomes: &[Outcome]) {
 #[test]
 #[ignore = "proof: 60 s: tests/program has one on the simulator's own field"]
 fn a_pad_as_it_is_made_is_told() {
-    are_told(&all(1001..=1002));
+    are_told(&two::at_a_time(&[1001, 1002], run));
 }
 
 #[test]
 #[ignore = "proof: 900 s: forty pads instead of two"]
 fn pads_as_they_are_made_are_told() {
-    are_told(&all(1001..=1040));
+    are_told(&two::at_a_time(&(1001..=1040).collect::<Vec<_>>(), run));
 }

@@ -29,3 +29,4 @@ mod score;
 mod simulator;
 mod sizes;
 mod truth;
+mod two;

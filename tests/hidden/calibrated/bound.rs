@@ -6,8 +6,6 @@
 
 use std::f64::consts::FRAC_2_PI;
 use std::ops::RangeInclusive;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::cases::{CASES, Case};
 use super::judged::{Decoded, Summary, decoded_by};
@@ -19,6 +17,7 @@ use crate::fields::{Table, signals};
 use crate::plan::Contact;
 use crate::random::Random;
 use crate::truth::Truth;
+use crate::two;
 
 use tactpad::lab::contacts::Contacts;
 use tactpad::lab::field_cache::solve;
@@ -257,24 +256,8 @@ impl Kind<'_> {
     }
 }
 
-/// Two pads at a time, in their order.
 fn outcomes(pads: &[(Kind<'_>, u64)]) -> Vec<Outcome> {
-    let (done, next) = (Mutex::new(Vec::new()), AtomicUsize::new(0));
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                loop {
-                    let at = next.fetch_add(1, Ordering::Relaxed);
-                    let Some((kind, seed)) = pads.get(at) else { break };
-                    let outcome = kind.outcome(*seed);
-                    done.lock().unwrap().push((at, outcome));
-                }
-            });
-        }
-    });
-    let mut done = done.into_inner().unwrap();
-    done.sort_by_key(|(at, _)| *at);
-    done.into_iter().map(|(_, outcome)| outcome).collect()
+    two::at_a_time(pads, |(kind, seed)| kind.outcome(*seed))
 }
 
 /// What `adapt --method inverse` writes, without the names that it gives to causes beside.

@@ -15,12 +15,11 @@ mod pad;
 mod report;
 
 use std::ops::RangeInclusive;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use self::cases::{CASES, Case, FIELDS};
 use self::judged::{Judged, judged};
 use self::pad::{Changes, Wiring, full_scale, plan, recorded};
+use crate::two;
 
 /// Contacts that are calibrated by, and unseen ones.
 const CONTACTS: usize = 648;
@@ -47,19 +46,10 @@ fn run(case: &Case, seed: u64) -> Judged {
 fn all(cases: &[Case], seeds: RangeInclusive<u64>) -> Vec<Vec<Judged>> {
     let jobs: Vec<(usize, u64)> =
         seeds.flat_map(|seed| (0..cases.len()).map(move |case| (case, seed))).collect();
-    let done: Vec<Mutex<Vec<Judged>>> = cases.iter().map(|_| Mutex::default()).collect();
-    let next = AtomicUsize::new(0);
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                while let Some((case, seed)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let judged = run(&cases[*case], *seed);
-                    done[*case].lock().unwrap().push(judged);
-                }
-            });
-        }
-    });
-    done.into_iter().map(|judged| judged.into_inner().unwrap()).collect()
+    let mut judged: Vec<Vec<Judged>> = cases.iter().map(|_| Vec::new()).collect();
+    let done = two::at_a_time(&jobs, |(case, seed)| run(&cases[*case], *seed));
+    jobs.iter().zip(done).for_each(|((case, _), done)| judged[*case].push(done));
+    judged
 }
 
 fn are_calibrated(cases: &[Case], seeds: RangeInclusive<u64>) {

@@ -17,10 +17,11 @@ mod report;
 use std::env;
 use std::ops::RangeInclusive;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use lines::Lines;
 use parts::Job;
+
+use crate::two;
 
 /// How long the campaign is.
 #[derive(Debug, Clone, Copy)]
@@ -70,20 +71,13 @@ fn campaign() {
 fn run(part: &str, jobs: &[Job], lines: &Lines) {
     let open: Vec<&Job> = jobs.iter().filter(|job| lines.get(&job.key).is_none()).collect();
     println!("{part}: {} runs, {} of them still to do", jobs.len(), open.len());
-    let next = AtomicUsize::new(0);
     let progress = Mutex::new(0_usize);
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                while let Some(job) = open.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    lines.add((job.run)(lines), job);
-                    let mut done = progress.lock().unwrap();
-                    *done += 1;
-                    if done.is_multiple_of(10) || *done == open.len() {
-                        println!("{part}: {done} of {}", open.len());
-                    }
-                }
-            });
+    two::at_a_time(&open, |job| {
+        lines.add((job.run)(lines), job);
+        let mut done = progress.lock().unwrap();
+        *done += 1;
+        if done.is_multiple_of(10) || *done == open.len() {
+            println!("{part}: {done} of {}", open.len());
         }
     });
 }

@@ -18,6 +18,8 @@ const PLACEMENTS_MIN: usize = 3;
 /// A region is open if its place is known so much worse than the median region's, and by no less than so many millimetres.
 const OPEN_RATIO: f64 = 1.5;
 const OPEN_MM: f64 = 0.1;
+/// Deviation of the modules' places, twice what hands come to, beyond which it is more likely the field that differs.
+const DISPLACED_MAX_MM: f64 = 0.3;
 /// The middle, and the ring around it, whose sixths are regions of their own; beyond is the rim.
 const MIDDLE_MM: f64 = 9.0;
 const RING_MM: f64 = 20.0;
@@ -119,6 +121,16 @@ impl AtHome {
     /// Whether something said how strong a newton is: presses alone never do.
     pub const fn knows_scale(&self) -> bool {
         self.placements > 0
+    }
+
+    /// By how much each module seems to be displaced, mm, where that is more than pads are built off by. Presses without labels do not tell
+    /// it from an error of the simulated field: what is stated of places and forces is then too narrow.
+    pub fn displaced_mm(&self) -> Option<f64> {
+        let numbers = self.calibration.numbers.iter();
+        let shifts = numbers.filter(|it| it.quantity.name().ends_with("radial_mm"));
+        // One module may be far off by itself: all of them are not.
+        let least = shifts.map(|it| it.prior_deviation).reduce(f64::min)?;
+        (least > DISPLACED_MAX_MM).then_some(least)
     }
 
     /// The plate's regions: the middle, six parts of the ring around it, six of the rim.

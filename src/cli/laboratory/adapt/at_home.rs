@@ -31,6 +31,8 @@ const WEIGHING: &str = "tactpad calibrate --weight-g says when and where; the mo
 #[derive(Serialize)]
 struct AtHomeReport {
     method: Method,
+    /// What makes the decoder less sure than it states.
+    warnings: Vec<String>,
     #[serde(flatten)]
     summary: Summary,
     pad: FoundPad,
@@ -67,15 +69,26 @@ impl AtHomeReport {
     fn of(found: AtHome, windows: &[Window]) -> Self {
         Self {
             method: Method::Inverse,
+            warnings: found.displaced_mm().map(displaced).into_iter().collect(),
             summary: Summary::of(&found, windows),
             pad: FoundPad::of(found.calibration, NamedCauses::none()),
         }
     }
 }
 
+fn displaced(mm: f64) -> String {
+    format!(
+        "the modules seem to be displaced by {mm:.1} mm each, more than pads are built off by. Presses do not tell that from a pad that gives way \
+         otherwise, so places and forces are known less well than stated here; a table of labelled contacts tells (tactpad protocol)"
+    )
+}
+
 impl fmt::Display for AtHomeReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}", self.summary.source())?;
+        for warning in &self.warnings {
+            writeln!(f, "{}", hanging("warning: ", warning))?;
+        }
         writeln!(f, "{}", self.pad)?;
         writeln!(f, "\n{HEADING}")?;
         for PlatePart { name, deviation_mm, force_share, presses, open } in &self.summary.map {

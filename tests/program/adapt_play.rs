@@ -39,6 +39,7 @@ fn a_pad_is_calibrated_by_play_and_a_weight() {
     assert_eq!((&found["placements"], &found["scale_known"]), (&5.into(), &true.into()));
     assert!(found["presses"].as_u64().unwrap() > 100, "{found}");
     assert_eq!(found["map"].as_array().unwrap().len(), 13);
+    assert_eq!(found["warnings"], serde_json::json!([]), "its modules are where pads have theirs");
     let gain: Vec<f64> =
         found["pad"]["gain"].as_array().unwrap().iter().map(|it| it.as_f64().unwrap()).collect();
     let truth = [1.3, 1.2, 0.9, 1.2, 1.4, 1.1, 1.35, 1.25, 1.0];

@@ -121,11 +121,11 @@ fn are_told(outcomes: &[Outcome]) {
 #[test]
 #[ignore = "proof: 60 s: tests/program has one on the simulator's own field"]
 fn a_pad_as_it_is_made_is_told() {
-    are_told(&two::at_a_time(&[1001, 1002], run));
+    are_told(&two::at_a_time(&[1004], run));
 }
 
 #[test]
-#[ignore = "proof: 900 s: forty pads instead of two"]
+#[ignore = "proof: 900 s: misses its goals, as docs/diagnosis.md says: forty pads instead of one"]
 fn pads_as_they_are_made_are_told() {
     are_told(&two::at_a_time(&(1001..=1040).collect::<Vec<_>>(), run));
 }

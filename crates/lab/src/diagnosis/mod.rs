@@ -10,7 +10,7 @@
 //! | `model` | the chain from contact to reading |
 //! | `causes` | the catalogue of hypotheses |
 //! | `simulation` | the simulated pad as a model of nine channels, about its own field or those of changed pads (`atlas`); [`tactpad_inference`] says which hypotheses explain what it gets wrong |
-//! | `naming` | which of them may be named: not those that look like parts of something else (`withdrawal`); models of further measurements (`experiments`) say which would tell the others apart (`separation`) |
+//! | `naming` | which of them may be named: not those that look like parts of something else (`withdrawal`); models of further measurements (`experiments`) say which would tell the others apart (`separation`); causes that lack a column stay rivals (`untestable`) |
 //! | `validation` | the worth of the findings on rows that had no part in it, in readings and in contacts that the model decodes backwards |
 //!
 //! [`against`] holds two recordings of one sensor against each other, without a simulator; [`report`], [`extension`] and [`agreement`] are what

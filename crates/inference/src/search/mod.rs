@@ -20,7 +20,7 @@ use crate::error::{InferenceError, Stage, factorised};
 use crate::hypothesis::Parameter;
 use crate::model::{Linearised, Model, Signature};
 use crate::observations::Observations;
-use crate::policy::{LEVEL, SIGNATURE_ERROR};
+use crate::policy::{LEVEL, SIGNATURE_ERROR, WITHIN_95};
 use tactpad_numeric::dense::Matrix;
 use tactpad_numeric::products::dot;
 use tactpad_numeric::statistics::mean;
@@ -84,6 +84,8 @@ pub struct Attribution {
     pub critical: f64,
     /// Hypotheses that are fitted together, whether they are significant or not, effect by effect: what each specimen has of its own.
     pub family: Family,
+    /// For each hypothesis, whether these reproduce it.
+    pub reproduced: Vec<bool>,
 }
 
 /// Finds causes.
@@ -131,7 +133,8 @@ impl<'m, L> Search<'m, L> {
                 fit = self.fitted(&applied, Some(&fit))?;
             }
         }
-        Ok(Attribution { fit, critical, family: family.to_vec() })
+        let reproduced = self.reproduced(&fit, family)?;
+        Ok(Attribution { fit, critical, family: family.to_vec(), reproduced })
     }
 
     /// The fit, or where its last cause ended at an end of its range, that with a rival in its place which explains the data as well
@@ -362,14 +365,16 @@ impl<'m, L> Search<'m, L> {
         Ok(best.map(|(_, at)| at))
     }
 
-    /// Which hypotheses a family reproduces to within what a signature may be wrong by: by the little that is left of them beside it
-    /// nothing can be told, however well it is seen.
+    /// Which hypotheses a family reproduces to within what signatures may be wrong by: by the little that is left of them beside it nothing
+    /// can be told, however well it is seen. Shares ε of signatures are wrong, of s and of the members a that make it up.
     ///
     /// ```text
-    /// |s − A (AᵀA)⁻¹ Aᵀ s|² < ε² |s|², each channel in units of its root mean square, about its mean
+    /// c = (AᵀA)⁻¹ Aᵀ s, each channel in units of its root mean square, about its mean
+    /// |s − A c|² < ε₀² |s|² + 1.96² (ε² |s|² + Σ εₖ² cₖ² |aₖ|²)
     /// ```
     fn reproduced(&self, fit: &AttributionFit, family: &[Vec<usize>]) -> Result<Vec<bool>, InferenceError> {
         let signatures = &fit.linearised.signatures;
+        let errors: Vec<f64> = self.model.hypotheses().iter().map(|it| it.signature_error).collect();
         let sizes = self.model.sizes();
         let scaled = |signature: &Signature| -> Vec<f64> {
             let channels = signature.iter().zip(&sizes).zip(&fit.linearised.readings);
@@ -383,21 +388,27 @@ impl<'m, L> Search<'m, L> {
             scaled.collect()
         };
         let asked = |at: usize| signatures[at].iter().take(self.columns.of_hypothesis[at].len());
-        let members: Vec<Vec<f64>> = family.iter().flatten().flat_map(|at| asked(*at).map(scaled)).collect();
+        let of_member = |at: usize| asked(at).map(scaled).zip(std::iter::repeat(errors[at]));
+        let (members, of_members): (Vec<Vec<f64>>, Vec<f64>) =
+            family.iter().flatten().copied().flat_map(of_member).unzip();
         if members.is_empty() {
             return Ok(vec![false; signatures.len()]);
         }
         let products =
             |column: &[f64]| members.iter().map(|member| dot(member, column)).collect::<Vec<f64>>();
-        let gram: Vec<Vec<f64>> = members.iter().map(|member| products(member)).collect();
-        let factor = factorised(&Matrix::from_rows(&gram), Stage::Causes)?;
-        let is_reproduced = |signature: &Signature| {
+        let gram = Matrix::from_rows(&members.iter().map(|member| products(member)).collect::<Vec<_>>());
+        let factor = factorised(&gram, Stage::Causes)?;
+        let is_reproduced = |at: usize, signature: &Signature| {
             let column = scaled(signature);
             let across = products(&column);
-            let whole = dot(&column, &column);
-            whole - dot(&factor.solve(&across), &across) < SIGNATURE_ERROR * SIGNATURE_ERROR * whole
+            let (mixture, whole) = (factor.solve(&across), dot(&column, &column));
+            let parts = mixture.iter().zip(&of_members).enumerate();
+            let wrong = errors[at].powi(2) * whole
+                + parts.map(|(k, (c, error))| (c * error).powi(2) * gram.at(k, k)).sum::<f64>();
+            whole - dot(&mixture, &across) < SIGNATURE_ERROR.powi(2) * whole + WITHIN_95.powi(2) * wrong
         };
-        Ok((0..signatures.len()).into_par_iter().map(|at| asked(at).all(is_reproduced)).collect())
+        let all = 0..signatures.len();
+        Ok(all.into_par_iter().map(|at| asked(at).all(|it| is_reproduced(at, it))).collect())
     }
 
     /// Schwarz's criterion of the fit with a candidate beside the held causes, and the candidate's test. The covariance is found

@@ -6,16 +6,21 @@
 //!
 //! Source: G. E. Mizon, J.-F. Richard, Econometrica 54 (1986) 657.
 
+use std::ops::Range;
+
 use super::score_test::{Projected, Test};
 use super::{Attribution, AttributionFit, Search, is_member};
 use crate::error::{InferenceError, Stage, factorised};
 use crate::policy::LEVEL;
 use tactpad_numeric::chi_square;
+use tactpad_numeric::dense::gram;
 use tactpad_numeric::products::dot;
 use tactpad_numeric::statistics::rms;
 
 /// What has no more than this part in one member moves several.
 const SEVERAL: f64 = 0.5;
+/// An effect or a member with more than this part in a mixture is moved by it.
+const MOVED: f64 = 0.05;
 
 impl<L> Search<'_, L> {
     /// The rivals that explain the data as well as a fitted cause, `projected` and `score` being without it.
@@ -47,24 +52,34 @@ impl<L> Search<'_, L> {
             .collect()
     }
 
-    /// Of these rivals of a family's member, those that are no more than another name of it: not those that move several members together,
-    /// as a supply moves all gains, where the members have no more in common than chance gives such numbers. Of what is ordinary in any
-    /// specimen so much is in each of the member's numbers, as a variance: (d σ)² of each such rival that was left out.
+    /// The rivals of a family's member: those that explain the data as well, and those that the family reproduces, as what is left of
+    /// the member beside these may be an error of the signatures. Not those that move several members together, as a supply moves all
+    /// gains, where the members have no more in common than chance gives such numbers (`in_common`). Of what is ordinary in any specimen so much is in
+    /// each of the member's numbers, as a variance: (d σ)² of each such rival that was left out.
     ///
     /// ```text
-    /// d = F⁻¹ F_r: the rival as a mixture of the members, each in units of the root mean square of its effect's numbers
-    /// c = dᵀψ/dᵀd, s² = |ψ − c d|²/(n − 1), t = c |d|/s
+    /// d = F⁻¹ F_r: the rival as a mixture of the members, each in units of the root mean square of its effect's numbers,
+    ///     of the effects that it moves
     /// ```
     pub fn rivals_of_member(
         &self,
         found: &Attribution,
         at: usize,
-        rivals: Vec<usize>,
+        projected: &Projected,
+        score: &[f64],
     ) -> Result<(Vec<usize>, Vec<f64>), InferenceError> {
-        let Attribution { fit, family, .. } = found;
-        let others = fit.applied.iter().map(|(held, _)| *held).filter(|held| !is_member(family, *held));
-        let projected = Projected::of(&fit.marginal, &self.columns.fitted(others))?;
+        let Attribution { fit, family, reproduced, .. } = found;
+        let mut rivals = self.rivals(fit, found.critical, at, projected, score);
+        let held =
+            |rival: usize| fit.applied.iter().any(|(held, _)| *held == rival) || rivals.contains(&rival);
+        let others: Vec<usize> = (0..reproduced.len())
+            .filter(|rival| reproduced[*rival] && !held(*rival) && !self.is_zero(*rival))
+            .collect();
+        let chosen = fit.applied.iter().map(|(held, _)| *held).filter(|held| !is_member(family, *held));
+        let projected = Projected::of(&fit.marginal, &self.columns.fitted(chosen))?;
         let (mut columns, mut psi, mut sizes) = (Vec::new(), Vec::new(), Vec::new());
+        // Where each effect's numbers end.
+        let mut ends = Vec::new();
         for effect in family {
             let before = psi.len();
             for (held, own) in fit.applied.iter().filter(|(held, _)| effect.contains(held)) {
@@ -72,25 +87,43 @@ impl<L> Search<'_, L> {
                 psi.extend(&own[..self.columns.of_hypothesis[*held].len()]);
             }
             sizes.resize(psi.len(), rms(psi[before..].iter().copied()).max(f64::MIN_POSITIVE.sqrt()));
+            ends.push(psi.len());
         }
         psi.iter_mut().zip(&sizes).for_each(|(psi, size)| *psi /= size);
         let factor = factorised(&projected.fisher.picked(&columns, &columns), Stage::Causes)?;
         let mixture = |column: usize| {
             factor.solve(&columns.iter().map(|at| projected.fisher.at(*at, column)).collect::<Vec<_>>())
         };
-        let is_by_chance = |column: &usize| {
-            let mixture: Vec<f64> = mixture(*column).iter().zip(&sizes).map(|(d, size)| d / size).collect();
-            let square = dot(&mixture, &mixture);
-            let largest = mixture.iter().fold(0.0, |largest: f64, d| largest.max(d * d));
-            let common = dot(&mixture, &psi) / square;
-            let left: f64 = psi.iter().zip(&mixture).map(|(psi, d)| (psi - common * d).powi(2)).sum();
-            let freedom = (psi.len() - 1) as f64;
-            let t_square = common * common * square / (left / freedom);
-            largest < SEVERAL * square && t_exceeded(t_square, freedom) > LEVEL
-        };
-        let is_left = |rival: &usize| !self.columns.of_hypothesis[*rival].iter().all(is_by_chance);
-        let (left, dismissed): (Vec<usize>, Vec<usize>) = rivals.into_iter().partition(is_left);
         let own = &self.columns.of_hypothesis[fit.applied[at].0];
+        let scaled = |column: &usize| -> Vec<f64> {
+            mixture(*column).iter().zip(&sizes).map(|(d, size)| d / size).collect()
+        };
+        let moves = |rival: &usize| {
+            self.columns.of_hypothesis[*rival].iter().any(|column| {
+                let mixture = scaled(column);
+                let of_own = columns.iter().zip(&mixture).filter(|(member, _)| own.contains(member));
+                of_own.map(|(_, d)| d * d).sum::<f64>() > MOVED * dot(&mixture, &mixture)
+            })
+        };
+        rivals.extend(others.into_iter().filter(moves));
+        // Whether the members have no more of a rival than chance gives such numbers.
+        let is_by_chance = |rival: &usize| {
+            let mixtures: Vec<Vec<f64>> = self.columns.of_hypothesis[*rival].iter().map(scaled).collect();
+            let part = |mixture: &[f64], of: Range<usize>| {
+                mixture[of].iter().map(|d| d * d).sum::<f64>() / dot(mixture, mixture)
+            };
+            let is_of_several =
+                |mixture: &Vec<f64>| (0..psi.len()).all(|at| part(mixture, at..at + 1) < SEVERAL);
+            let effects =
+                std::iter::once(0).chain(ends.iter().copied()).zip(&ends).map(|(from, to)| from..*to);
+            let is_moved =
+                |of: &Range<usize>| mixtures.iter().any(|mixture| part(mixture, of.clone()) > MOVED);
+            let moved: Vec<usize> = effects.filter(is_moved).flatten().collect();
+            let picked = |of: &[f64]| moved.iter().map(|at| of[*at]).collect::<Vec<f64>>();
+            let mixtures_moved: Vec<Vec<f64>> = mixtures.iter().map(|mixture| picked(mixture)).collect();
+            mixtures.iter().all(is_of_several) && in_common(&mixtures_moved, &picked(&psi)) > LEVEL
+        };
+        let (dismissed, left): (Vec<usize>, Vec<usize>) = rivals.into_iter().partition(is_by_chance);
         let mut doubt = vec![0.0; own.len()];
         for rival in dismissed {
             let mixture = mixture(self.columns.of_hypothesis[rival][0]);
@@ -116,12 +149,26 @@ impl<L> Search<'_, L> {
     }
 }
 
-/// Probability that Student's t of so many degrees of freedom is further from zero, by a normal number that is about as seldom.
+/// Probability that n normal numbers ψ with mean 0 have more in common with q mixtures D than these:
 ///
-/// Source: D. L. Wallace, Ann. Math. Statist. 30 (1959) 1124: z = (8ν + 1)/(8ν + 3) √(ν ln(1 + t²/ν)), to 0.02.
-fn t_exceeded(t_square: f64, freedom: f64) -> f64 {
-    let z = (8.0 * freedom + 1.0) / (8.0 * freedom + 3.0) * (freedom * (t_square / freedom).ln_1p()).sqrt();
-    chi_square::exceeded(z * z, 1)
+/// ```text
+/// (ν + q/2 − 1) ln(|ψ|²/|ψ − D c|²) ~ χ² of q,  ν = n − q,  c by least squares
+/// ```
+///
+/// Source: M. S. Bartlett, Proc. R. Soc. A 160 (1937) 268; exact for q = 2, and to 3 % for q = 1 and 8 numbers. 0 where nothing is left of ψ,
+/// or there are too few.
+fn in_common(mixtures: &[Vec<f64>], psi: &[f64]) -> f64 {
+    let (count, freedom) = (mixtures.len(), psi.len() as f64 - mixtures.len() as f64);
+    let Some(factor) = gram(&mixtures.iter().map(Vec::as_slice).collect::<Vec<_>>()).factorised() else {
+        return 0.0;
+    };
+    let across: Vec<f64> = mixtures.iter().map(|mixture| dot(mixture, psi)).collect();
+    let whole = dot(psi, psi);
+    let left = whole - dot(&factor.solve(&across), &across);
+    if freedom < 1.0 || left <= 0.0 {
+        return 0.0;
+    }
+    chi_square::exceeded((freedom + count as f64 / 2.0 - 1.0) * (whole / left).ln(), count)
 }
 
 #[cfg(test)]
@@ -129,10 +176,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn t_is_students() {
-        // Of tables: 95 % lie within 2.306 of 8 degrees of freedom, 99 % within 3.355; 95 % within 2.086 of 20.
-        for (t, freedom, wanted) in [(2.306_f64, 8.0, 0.05), (3.355, 8.0, 0.01), (2.086, 20.0, 0.05)] {
-            assert!((t_exceeded(t * t, freedom) / wanted - 1.0).abs() < 0.02, "{t} {freedom}");
-        }
+    fn numbers_that_have_something_in_common_are_known_by_f() {
+        // Of tables: 95 % of Student's t lie within 2.306 of 8 degrees of freedom; of F with 2 and 4 below 6.944.
+        let alone = |t: f64| in_common(&[vec![1.0; 9]], &numbers(9, t / 3.0 / 8.0_f64.sqrt()));
+        assert!((alone(2.306) / 0.05 - 1.0).abs() < 0.03);
+        let [one, other] = [[1.0, 0.0], [0.0, 1.0]].map(|on| on.repeat(3));
+        let psi = [1.0, 0.5, -1.0, -0.5, 0.0, 0.0];
+        let c = (6.944_f64 * 2.0 / 4.0 * 2.5 / 6.0).sqrt();
+        let psi: Vec<f64> = psi.iter().map(|left| left + c).collect();
+        assert!((in_common(&[one, other], &psi) / 0.05 - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn numbers_that_are_nothing_else_and_too_few_are_in_common() {
+        assert_eq!(in_common(&[vec![1.0, 2.0, 3.0]], &[2.0, 4.0, 6.0]), 0.0);
+        assert_eq!(in_common(&[vec![1.0], vec![2.0]], &[1.0]), 0.0);
+    }
+
+    /// So many numbers with this mean and Σ of squares about it 1.
+    fn numbers(count: usize, mean: f64) -> Vec<f64> {
+        let away = (0..count).map(|at| [1.0, -1.0, 0.0][at % 3]);
+        let norm = (2.0 * (count / 3) as f64).sqrt();
+        away.map(|it| mean + it / norm).collect()
     }
 }

@@ -268,7 +268,7 @@ fn sparse_and_dense(gains: &[f64]) -> (Attribution, Attribution, bool, Vec<usize
     let (projected, score) = search.without(&dense.fit, 0).unwrap();
     let rivals = search.rivals(&dense.fit, dense.critical, 0, &projected, &score);
     assert!(rivals.contains(&sensor.place_of(Cause::Supply)), "the other gains make up for it");
-    let rivals = search.rivals_of_member(&dense, 0, rivals).unwrap().0;
+    let rivals = search.rivals_of_member(&dense, 0, &projected, &score).unwrap().0;
     let squares = search.squares(&dense).unwrap();
     let whole = search.removed(&dense.fit).unwrap();
     assert!((squares.iter().sum::<f64>() / whole - 1.0).abs() < 1e-9, "{squares:?} of {whole}");

@@ -21,11 +21,11 @@ pub(crate) fn findings(
         if is_member && test.p_value() >= found.critical {
             continue;
         }
-        let mut rivals = search.rivals(&found.fit, found.critical, at, &projected, &score);
-        let mut doubt = Vec::new();
-        if is_member {
-            (rivals, doubt) = search.rivals_of_member(found, at, rivals)?;
-        }
+        let (rivals, doubt) = if is_member {
+            search.rivals_of_member(found, at, &projected, &score)?
+        } else {
+            (search.rivals(&found.fit, found.critical, at, &projected, &score), Vec::new())
+        };
         let label = |at: usize| search.model.hypotheses()[at].label;
         let (effect, target) = label(hypothesis);
         let finding = Finding {

@@ -393,8 +393,12 @@ mod tests {
         }
         let model = Atlas::new(&pad, &[], &measured, &measured);
         let search = Search::new(&model, &measured, &measured);
-        let found =
-            Attribution { fit: search.fitted(&applied, None).unwrap(), critical: 1e-4, family: Vec::new() };
+        let found = Attribution {
+            fit: search.fitted(&applied, None).unwrap(),
+            critical: 1e-4,
+            family: Vec::new(),
+            reproduced: Vec::new(),
+        };
         let of = |it: &&Hypothesis| rivals.contains(&it.label.0);
         let rivals: Vec<(Effect, Target)> = model.hypotheses().iter().filter(of).map(|it| it.label).collect();
         let numbers: Vec<usize> =

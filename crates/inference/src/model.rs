@@ -58,8 +58,8 @@ pub trait Model<L>: Sync {
     }
     /// The readings, and their derivatives by all coordinates.
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised;
-    /// What is known of its own errors.
-    fn common_errors(&self) -> Vec<CommonError>;
+    /// What is known of its own errors, when hypotheses hold with these coordinates. Their number and deviations are always the same.
+    fn common_errors(&self, applied: &[(usize, Vec<f64>)]) -> Vec<CommonError>;
     /// A channel's further errors, row by row: independent columns of deviation 1 each, which no other channel shares.
     fn stated_errors(&self, _channel: usize) -> &[Vec<f64>] {
         &[]

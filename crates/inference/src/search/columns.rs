@@ -7,8 +7,10 @@ use crate::observations::Observations;
 
 /// Which column means what.
 pub struct Columns {
-    /// The zeros, and the model's own errors.
-    nuisance: Vec<Signature>,
+    /// The channels' zeros.
+    zeros: Vec<Signature>,
+    /// How many columns the zeros and the model's own errors are.
+    nuisances: usize,
     /// For each hypothesis, the numbers of the columns that are asked for.
     pub of_hypothesis: Vec<Vec<usize>>,
     /// For each hypothesis, the columns of its course: free wherever it holds.
@@ -25,13 +27,13 @@ impl Columns {
         let zero = |channel: usize| -> Signature {
             (0..channels).map(|k| (k == channel).then(|| vec![1.0; rows])).collect()
         };
-        let mut nuisance: Vec<Signature> = (0..channels).map(zero).collect();
-        nuisance.extend(errors.iter().map(|error| error.signature.clone()));
+        let zeros = (0..channels).map(zero).collect();
         // A channel that tells nothing has no zero.
         let dead = |channel: usize| f64::from(u8::from(!observations.is_alive(channel)));
         let mut precisions: Vec<f64> = (0..channels).map(dead).collect();
         precisions.extend(errors.iter().map(|error| 1.0 / (error.deviation * error.deviation)));
-        let mut next = nuisance.len();
+        let nuisances = channels + errors.len();
+        let mut next = nuisances;
         let (mut of_hypothesis, mut shapes) = (Vec::new(), Vec::new());
         for hypothesis in hypotheses {
             if let Some(channel) = hypothesis.zero_of {
@@ -46,14 +48,19 @@ impl Columns {
             let precision = |it: &Parameter| it.shape.map_or(0.0, |deviation| 1.0 / (deviation * deviation));
             precisions.extend(hypothesis.parameters.iter().map(precision));
         }
-        Self { nuisance, of_hypothesis, shapes, precisions, channels }
+        Self { zeros, nuisances, of_hypothesis, shapes, precisions, channels }
     }
 
     /// The columns themselves, about the present point.
-    pub fn signatures<'c>(&'c self, linearised: &'c Linearised) -> Vec<Column<'c>> {
+    pub fn signatures<'c>(
+        &'c self,
+        linearised: &'c Linearised,
+        errors: &'c [CommonError],
+    ) -> Vec<Column<'c>> {
         let own = linearised.signatures.iter().zip(&self.of_hypothesis);
         let of_hypotheses = own.filter(|(_, columns)| columns[0] >= self.channels).flat_map(|(all, _)| all);
-        self.nuisance.iter().chain(of_hypotheses).map(Vec::as_slice).collect()
+        let errors = errors.iter().map(|error| &error.signature);
+        self.zeros.iter().chain(errors).chain(of_hypotheses).map(Vec::as_slice).collect()
     }
 
     /// Adds the pull of the priors where courses are other than expected: −P ψ.
@@ -74,9 +81,9 @@ impl Columns {
 
     /// The nuisances and these hypotheses, free.
     pub fn fitted(&self, hypotheses: impl IntoIterator<Item = usize>) -> Fitted<'_> {
-        let mut columns: Vec<usize> = (0..self.nuisance.len()).collect();
+        let mut columns: Vec<usize> = (0..self.nuisances).collect();
         for hypothesis in hypotheses {
-            let own = self.of_hypothesis[hypothesis].iter().filter(|column| **column >= self.nuisance.len());
+            let own = self.of_hypothesis[hypothesis].iter().filter(|column| **column >= self.nuisances);
             columns.extend(own.chain(&self.shapes[hypothesis]));
         }
         Fitted { columns, precisions: &self.precisions }

@@ -104,7 +104,7 @@ pub struct Search<'m, L> {
 impl<'m, L> Search<'m, L> {
     /// `observations` are the open rows of `all`.
     pub fn new(model: &'m dyn Model<L>, all: &'m Observations, observations: &'m Observations) -> Self {
-        let columns = Columns::of(model.hypotheses(), &model.common_errors(), observations);
+        let columns = Columns::of(model.hypotheses(), &model.common_errors(&[]), observations);
         let smooth = Arc::new(Smooth::of(all, observations));
         Self { model, observations, smooth, columns, clusters: observations.clusters() }
     }
@@ -182,12 +182,13 @@ impl<'m, L> Search<'m, L> {
         let mut steps = 0;
         loop {
             let linearised = self.model.linearised(&applied);
+            let errors = self.model.common_errors(&applied);
             let systems = Systems::of(
                 self.observations,
                 &self.smooth,
                 self.model,
                 &linearised,
-                &self.columns.signatures(&linearised),
+                &self.columns.signatures(&linearised, &errors),
                 before.as_ref().map(|(systems, _)| systems).or(start.map(|fit| &fit.systems)),
             )?;
             let fitted = self.columns.fitted(applied.iter().map(|(at, _)| *at));

@@ -191,7 +191,7 @@ impl Model<Cause> for Sensor {
         }
     }
 
-    fn common_errors(&self) -> Vec<CommonError> {
+    fn common_errors(&self, _applied: &[(usize, Vec<f64>)]) -> Vec<CommonError> {
         Vec::new()
     }
 }

@@ -297,7 +297,7 @@ impl Model<Label> for LaterRecording<'_> {
         }
     }
 
-    fn common_errors(&self) -> Vec<CommonError> {
+    fn common_errors(&self, _applied: &[(usize, Vec<f64>)]) -> Vec<CommonError> {
         let own = self.setting.own.iter().filter(|(.., deviation)| *deviation > 0.0);
         let signature = |act: &ChangeKind, parameter: usize| {
             let at = self.acts.iter().position(|other| other == act)?;

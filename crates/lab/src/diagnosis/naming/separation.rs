@@ -171,11 +171,13 @@ impl<'s, 'm> JointRows<'s, 'm> {
                 [own, CausePair { present: none(), further: zero(k, rows[1]), precision: 0.0 }]
             })
             .collect();
-        pairs.extend(search.model.common_errors().into_iter().zip(errors).map(|(present, further)| {
-            let CommonError { deviation, signature } = present;
-            let precision = 1.0 / (deviation * deviation);
-            CausePair { present: signature, further: further.signature.clone(), precision }
-        }));
+        pairs.extend(search.model.common_errors(&found.fit.applied).into_iter().zip(errors).map(
+            |(present, further)| {
+                let CommonError { deviation, signature } = present;
+                let precision = 1.0 / (deviation * deviation);
+                CausePair { present: signature, further: further.signature.clone(), precision }
+            },
+        ));
         Self { search, found, experiment, further, pairs }
     }
 

@@ -253,8 +253,8 @@ impl Model<Label> for Atlas<'_> {
         self.about(applied).linearised(applied)
     }
 
-    fn common_errors(&self) -> Vec<CommonError> {
-        self.first.common_errors()
+    fn common_errors(&self, applied: &[(usize, Vec<f64>)]) -> Vec<CommonError> {
+        self.about(applied).common_errors(applied)
     }
 
     fn contacts(
@@ -276,7 +276,7 @@ impl Model<Label> for Atlas<'_> {
         applied: &[(usize, Vec<f64>)],
     ) -> Option<(Linearised, Vec<CommonError>)> {
         let there = self.with(Atlas::in_order(&self.pad, self.without, self.all, rows, rows));
-        Some((there.linearised(applied), there.common_errors()))
+        Some((there.linearised(applied), there.common_errors(applied)))
     }
 }
 

@@ -27,13 +27,15 @@ use tactpad_inference::observations::{Observations, Sample};
 use tactpad_inference::policy::{BACKGROUND_MAX, SIGNATURE_ERROR};
 use tactpad_numeric::statistics::rms;
 
-/// Standard deviation of a factor that all modules' x, y or z channels share, of their answer to shear or to normal loads: the
-/// simulator's discretisation. Held against an independent solution: −0.5, −1.2 and +0.7 % of shear, +0.3, −0.1, +0.6 % of normal
+/// Standard deviation of factors that all modules' x, y or z channels share, of their answer to any load, to shear and to normal
+/// loads: the simulator's discretisation. Held against an independent solution: −0.5, −1.2 and +0.7 % of shear, +0.3, −0.1, +0.6 % of normal
 /// loads.
 const COMMON_ERROR: f64 = 0.008;
 /// Standard deviations of the simulator's error that look like a cause, as coordinates of that cause: the plate's polynomials are
 /// stiffer than the plate, and its splines round the field off. Held against the same solution: 1.1 % and 0.64 mm².
 const ERRORS_LIKE: [(Effect, f64); 2] = [(Effect::PlateStiffness, 0.015), (Effect::ContactSize, 0.65)];
+/// Half the width of the difference that makes the derivative by such a factor's logarithm.
+const STEP: f64 = 1e-3;
 /// Readings that change by less than this part of the largest reading do not change.
 const NOTHING: f64 = 1e-9;
 
@@ -295,6 +297,35 @@ impl<'f> Simulated<'f> {
         self.remembered(rows.iter().map(|row| row.strain(chain)).collect(), chain)
     }
 
+    /// ∂readings/∂ln g where all modules' x, y or z channels answer g times: with all that is remembered.
+    fn gain_of_axis(&self, point: &Point<'_>, axis: usize) -> Signature {
+        let moved = |by: f64| {
+            let mut chain = point.chain.clone();
+            (axis..CHANNELS).step_by(3).for_each(|channel| chain.channels.gain[channel] *= by.exp());
+            self.read(&point.remembered, &chain)
+        };
+        let channels = moved(STEP).into_iter().zip(moved(-STEP)).enumerate();
+        let slope = |(above, below): (f64, f64)| (above - below) / (2.0 * STEP);
+        channels
+            .map(|(channel, (above, below))| {
+                (channel % 3 == axis).then(|| above.into_iter().zip(below).map(slope).collect())
+            })
+            .collect()
+    }
+
+    /// What x, y or z channels answer to these parts of the loads, without what is remembered.
+    fn answer_of_axis(&self, point: &Point<'_>, axis: usize, taken: [f64; 3]) -> Signature {
+        let of_channel = |channel: usize| {
+            let of = |row: &usize| {
+                let row = &point.rows[*row];
+                let force_n = [0, 1, 2].map(|load| taken[load] * row.force_n[load]);
+                response(&row.gains.value[channel], &force_n)
+            };
+            (channel % 3 == axis).then(|| self.picked.iter().map(of).collect())
+        };
+        (0..CHANNELS).map(of_channel).collect()
+    }
+
     /// ∂readings/∂ψ by one coordinate: a central difference.
     fn signature(&self, point: &Point<'_>, [at, parameter]: [usize; 2]) -> Signature {
         let hypothesis = &self.hypotheses[at];
@@ -361,21 +392,18 @@ impl Model<Label> for Simulated<'_> {
         }
     }
 
-    fn common_errors(&self) -> Vec<CommonError> {
-        let point = self.point(&[]);
+    fn common_errors(&self, applied: &[(usize, Vec<f64>)]) -> Vec<CommonError> {
+        let point = self.point(applied);
         let mut errors = Vec::new();
-        for (axis, is_normal) in (0..3).flat_map(|axis| [(axis, false), (axis, true)]) {
-            let signature = (0..CHANNELS).map(|channel| {
-                let of = |row: &usize| {
-                    let row = &point.rows[*row];
-                    let [fx_n, fy_n, fz_n] = row.force_n;
-                    let force_n = if is_normal { [0.0, 0.0, fz_n] } else { [fx_n, fy_n, 0.0] };
-                    response(&row.gains.value[channel], &force_n)
-                };
-                (channel % 3 == axis).then(|| self.picked.iter().map(of).collect())
-            });
-            errors.push(CommonError { deviation: COMMON_ERROR, signature: signature.collect() });
+        for axis in 0..3 {
+            errors.push(self.gain_of_axis(&point, axis));
+            errors.extend(
+                [[1.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|taken| self.answer_of_axis(&point, axis, taken)),
+            );
         }
+        let errors = errors.into_iter();
+        let mut errors: Vec<CommonError> =
+            errors.map(|signature| CommonError { deviation: COMMON_ERROR, signature }).collect();
         for (effect, deviation) in ERRORS_LIKE {
             let like = self.hypotheses.iter().position(|it| it.label.0 == effect);
             errors

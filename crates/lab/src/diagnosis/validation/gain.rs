@@ -209,7 +209,7 @@ fn expected(search: &Search<'_>, fit: &AttributionFit, rows: &Rows<'_>) -> Vec<V
             of.iter_mut().zip(function).for_each(|(value, function)| *value += z * function);
         }
     }
-    for (error, by) in rows.model.common_errors().iter().zip(&fit.coordinates[channels..]) {
+    for (error, by) in rows.model.common_errors(&fit.applied).iter().zip(&fit.coordinates[channels..]) {
         for (of, signature) in readings.iter_mut().zip(&error.signature) {
             of.iter_mut().zip(signature.iter().flatten()).for_each(|(value, slope)| *value += by * slope);
         }

@@ -39,7 +39,7 @@ use self::conventions::Conventions;
 use self::data::observed::observed;
 use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};
-use self::label::{Search, no_solution};
+use self::label::{Label, Search, no_solution};
 use self::naming::separation::Separation;
 use self::naming::untestable::with_untestable;
 use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
@@ -156,36 +156,68 @@ fn diagnosed(
         gate.notices.splice(..0, conventions.notice(table));
         gate
     };
-    let all = &gate.observations;
+    let all = gate.observations.clone();
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
-    let mut model = Atlas::new(pad, without, all, &open);
+    let mut model = Atlas::new(pad, without, &all, &open);
     let found = attributed(&mut model).map_err(DiagnosisError::Inference)?;
-    let at_locked = model.at(&locked);
-    let search = Search::new(&model, all, &open);
-    let measured = gate.unrepaired.as_ref();
-    let parts = measured.map(|whole| [&open, &locked].map(|part| (whole, whole.picked(&part.numbers))));
+    let missing = model.missing();
+    concluded(gate, [&open, &locked], &model, &found, Question { missing, without, validation })
+        .map_err(DiagnosisError::Inference)
+}
+
+/// A model that can be had at other rows.
+trait ModelOfRows: Model<Label> {
+    /// At some of the same measurement's rows.
+    fn at<'o>(&'o self, rows: &'o Observations) -> Box<dyn Model<Label> + 'o>;
+    /// At `rows` of `all`, which are the measurement before its faults were mended.
+    fn at_measured<'o>(&'o self, all: &'o Observations, rows: &'o Observations)
+    -> Box<dyn Model<Label> + 'o>;
+}
+
+/// What was asked, and what cannot be answered.
+struct Question<'q> {
+    missing: Vec<NotTestable>,
+    without: &'q [Effect],
+    validation: Validation,
+}
+
+/// What is said of causes that were found at the open rows, after the checks of the recording.
+fn concluded(
+    mut gate: Gate,
+    [open, locked]: [&Observations; 2],
+    model: &dyn ModelOfRows,
+    found: &Attribution,
+    Question { missing, without, validation }: Question<'_>,
+) -> Result<Diagnosis, InferenceError> {
+    let measured = gate.unrepaired.take();
+    let all = &gate.observations;
+    let at_locked = model.at(locked);
+    let search = Search::new(model, all, open);
+    let parts = measured.as_ref().map(|whole| [open, locked].map(|part| (whole, whole.picked(&part.numbers))));
     let models = parts
         .as_ref()
-        .map(|parts| parts.each_ref().map(|(whole, part)| (Atlas::new(pad, without, whole, part), part)));
+        .map(|parts| parts.each_ref().map(|(whole, part)| (model.at_measured(whole, part), part)));
     let unrepaired = models.as_ref().map(|models| {
-        models.each_ref().map(|(model, observations)| Rows { model, observations, unrepaired: None })
+        models.each_ref().map(|(model, observations)| Rows {
+            model: model.as_ref(),
+            observations,
+            unrepaired: None,
+        })
     });
     let as_measured = |at: usize| unrepaired.as_ref().map(|rows| &rows[at]);
     let rows = [
-        Rows { model: &model, observations: &open, unrepaired: as_measured(0) },
-        Rows { model: &at_locked, observations: &locked, unrepaired: as_measured(1) },
+        Rows { model, observations: open, unrepaired: as_measured(0) },
+        Rows { model: at_locked.as_ref(), observations: locked, unrepaired: as_measured(1) },
     ];
-    // What each pad has of its own comes in all sizes: whether more is left is asked of all of it together.
+    // What each specimen has of its own comes in all sizes: whether more is left is asked of all of it together.
     let halves = open.halves().map(|rows| open.picked(&rows));
     let models = halves.each_ref().map(|half| model.at(half));
-    let half = |at: usize| Rows { model: &models[at], observations: &halves[at], unrepaired: None };
+    let half = |at: usize| Rows { model: models[at].as_ref(), observations: &halves[at], unrepaired: None };
     let is_all = !found.family.is_empty()
         && is_all_removed([&half(0), &half(1)], &found.fit.applied, &found.fit.systems.noise);
-    let judgement = Judgement { is_all, validation };
-    let diagnosis =
-        summary(&search, &found, &rows, &model.missing(), judgement).map_err(DiagnosisError::Inference)?;
+    let diagnosis = summary(&search, found, &rows, &missing, Judgement { is_all, validation })?;
     let excess = (!without.contains(&Effect::NoiseExcess))
-        .then(|| excess(&open, &found.fit.systems.noise, &found.fit.linearised.readings));
+        .then(|| excess(open, &found.fit.systems.noise, &found.fit.linearised.readings));
     let effect = |at: &usize| model.hypotheses()[*at].label.0;
     let mut family: Vec<Effect> = found.family.iter().flatten().map(effect).collect();
     if !family.is_empty() {
@@ -194,7 +226,7 @@ fn diagnosed(
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
     diagnosis.not_detected.retain(|it| !without.contains(&it.effect));
     diagnosis.findings = in_common(diagnosis.findings, &family);
-    diagnosis.findings = with_untestable(diagnosis.findings, &diagnosis.not_testable, &open);
+    diagnosis.findings = with_untestable(diagnosis.findings, &diagnosis.not_testable, open);
     Ok(diagnosis)
 }
 

@@ -4,4 +4,5 @@ pub(crate) mod chain;
 pub(crate) mod inverse;
 pub(crate) mod mechanics;
 pub(crate) mod memory;
+pub(crate) mod reading;
 pub(crate) mod setting;

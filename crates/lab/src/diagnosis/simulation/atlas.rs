@@ -1,5 +1,6 @@
 //! The simulated pad about more than one field: its own, and those of changed pads that lie too far off for its tangent.
 
+use crate::diagnosis::ModelOfRows;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::extension::{Circumstances, with};
 use crate::diagnosis::label::{Hypothesis, Label, Search};
@@ -68,7 +69,7 @@ pub(crate) fn attributed(atlas: &mut Atlas<'_>) -> Result<Attribution, Inference
 }
 
 /// What the search finds from nothing, or where it finds several causes and that is likelier, beside what each pad has of its own.
-fn chosen(search: &Search<'_>) -> Result<Attribution, InferenceError> {
+pub(crate) fn chosen(search: &Search<'_>) -> Result<Attribution, InferenceError> {
     let sparse = search.run(&Vec::new(), &[])?;
     if sparse.fit.applied.len() <= SPARSE_MAX {
         return Ok(sparse);
@@ -133,11 +134,6 @@ impl<'f> Atlas<'f> {
             reaches,
             observations,
         }
-    }
-
-    /// The same pads at other observations of all.
-    pub(crate) fn at<'o>(&'o self, observations: &'o Observations) -> Atlas<'o> {
-        self.with(Atlas::new(&self.pad, self.without, self.all, observations))
     }
 
     /// Another atlas with the same pads.
@@ -277,6 +273,20 @@ impl Model<Label> for Atlas<'_> {
     ) -> Option<(Linearised, Vec<CommonError>)> {
         let there = self.with(Atlas::in_order(&self.pad, self.without, self.all, rows, rows));
         Some((there.linearised(applied), there.common_errors(applied)))
+    }
+}
+
+impl ModelOfRows for Atlas<'_> {
+    fn at<'o>(&'o self, rows: &'o Observations) -> Box<dyn Model<Label> + 'o> {
+        Box::new(self.with(Atlas::new(&self.pad, self.without, self.all, rows)))
+    }
+
+    fn at_measured<'o>(
+        &'o self,
+        all: &'o Observations,
+        rows: &'o Observations,
+    ) -> Box<dyn Model<Label> + 'o> {
+        Box::new(Atlas::new(&self.pad, self.without, all, rows))
     }
 }
 

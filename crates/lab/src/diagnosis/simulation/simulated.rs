@@ -13,6 +13,7 @@ use crate::diagnosis::label::{Hypothesis, Label};
 use crate::diagnosis::model::chain::{Chain, Reference};
 use crate::diagnosis::model::mechanics::{Maps, at_places, changes, side_share};
 use crate::diagnosis::model::memory::{MemoryChain, RowSequence};
+use crate::diagnosis::model::reading::{read, remembered, slopes};
 use crate::diagnosis::model::setting::{Change, Setting};
 use crate::diagnosis::report::NotTestable;
 use crate::effect::Effect;
@@ -21,7 +22,6 @@ use tactpad_core::pad::device::{Device, Side};
 use tactpad_core::pad::field::PadField;
 use tactpad_core::pad::influence::InfluenceField;
 use tactpad_core::quantity::{CHANNELS, MODULES};
-use tactpad_inference::hypothesis::Parameter;
 use tactpad_inference::model::{CommonError, Linearised, Model, Signature};
 use tactpad_inference::observations::{Observations, Sample};
 use tactpad_inference::policy::{BACKGROUND_MAX, SIGNATURE_ERROR};
@@ -36,8 +36,6 @@ const COMMON_ERROR: f64 = 0.008;
 const ERRORS_LIKE: [(Effect, f64); 2] = [(Effect::PlateStiffness, 0.015), (Effect::ContactSize, 0.65)];
 /// Half the width of the difference that makes the derivative by such a factor's logarithm.
 const STEP: f64 = 1e-3;
-/// Readings that change by less than this part of the largest reading do not change.
-const NOTHING: f64 = 1e-9;
 
 /// Nine channels by a pad's field.
 pub(crate) struct Simulated<'f> {
@@ -188,13 +186,8 @@ impl<'f> Simulated<'f> {
     }
 
     /// The strains of all rows, with what the channels remember of them.
-    fn remembered(&self, mut strains: Vec<[f64; CHANNELS]>, chain: &Chain) -> Vec<[f64; CHANNELS]> {
-        for (channel, full_scale) in self.reference.full_scale.iter().enumerate() {
-            let own: Vec<f64> = strains.iter().map(|strain| strain[channel]).collect();
-            let added = chain.memory.added(&self.course, channel, *full_scale, &own, 0.0).unwrap_or_default();
-            strains.iter_mut().zip(added).for_each(|(strain, added)| strain[channel] += added);
-        }
-        strains
+    fn remembered(&self, strains: Vec<[f64; CHANNELS]>, chain: &Chain) -> Vec<[f64; CHANNELS]> {
+        remembered(strains, chain, &self.course, &self.reference.full_scale)
     }
 
     /// Half of what friction adds to strains that are too large by the largest background, less what to ones that are too small; and
@@ -234,17 +227,7 @@ impl<'f> Simulated<'f> {
 
     /// Readings of the channels at strains with their memory, at the rows that are asked for.
     fn read(&self, strains: &[[f64; CHANNELS]], chain: &Chain) -> Vec<Vec<f64>> {
-        let mut channels = vec![Vec::new(); CHANNELS];
-        for (at, strain) in strains.iter().enumerate() {
-            let row = self.reading(at, strain, chain);
-            channels.iter_mut().zip(row).for_each(|(channel, value)| channel.push(value));
-        }
-        let late = channels.iter_mut().zip(&chain.skew_s).filter(|(_, skew_s)| **skew_s != 0.0);
-        for (channel, skew_s) in late {
-            let then = |row: usize| self.course.moment(row, -skew_s).of(|row| channel[row]);
-            *channel = (0..channel.len()).map(then).collect();
-        }
-        self.picked(channels)
+        self.picked(read(strains, chain, &self.course, &self.reference, &self.sequence.samples))
     }
 
     /// Readings of a row at these strains, without memory.
@@ -329,8 +312,9 @@ impl<'f> Simulated<'f> {
     /// ∂readings/∂ψ by one coordinate: a central difference.
     fn signature(&self, point: &Point<'_>, [at, parameter]: [usize; 2]) -> Signature {
         let hypothesis = &self.hypotheses[at];
-        let Parameter { step, shape, .. } = hypothesis.parameters[parameter];
-        if shape.is_some() && point.applied.iter().all(|(held, _)| *held != at) {
+        if hypothesis.parameters[parameter].shape.is_some()
+            && point.applied.iter().all(|(held, _)| *held != at)
+        {
             return vec![None; CHANNELS];
         }
         let moved = |by: f64| {
@@ -345,19 +329,7 @@ impl<'f> Simulated<'f> {
             applied[own].1[parameter] += by;
             self.perturbed(point, self.causes[at].stage, &self.chain(&applied))
         };
-        // A number that cannot be below none is changed upwards only.
-        let is_one_sided = hypothesis.parameters[parameter].is_one_sided();
-        let above = moved(step);
-        let below = if is_one_sided { &point.readings } else { &moved(-step) };
-        let width = if is_one_sided { step } else { 2.0 * step };
-        let channels = above.into_iter().zip(below).zip(&self.reference.full_scale);
-        channels
-            .map(|((above, below), full_scale)| {
-                let slopes: Vec<f64> = above.iter().zip(below).map(|(a, b)| (a - b) / width).collect();
-                let is_changed = slopes.iter().any(|slope| (slope * step).abs() > NOTHING * full_scale);
-                is_changed.then_some(slopes)
-            })
-            .collect()
+        slopes(&hypothesis.parameters[parameter], &point.readings, moved, &self.reference.full_scale)
     }
 }
 

@@ -1,8 +1,61 @@
 //! What a diagnosis can name: one row of a table for each effect.
 
+use std::collections::BTreeSet;
 use std::fmt;
+use std::sync::{Mutex, PoisonError};
 
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
+
+/// What kind of cause an effect is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EffectFamily {
+    /// Of channels, supply or reference: all of them are factors of what is read.
+    Gain,
+    /// Wires, converters, and what they pick up.
+    Electrical,
+    /// Plate, modules, bonds and frames, or whatever bears the load.
+    Mechanical,
+    /// What measures and writes down.
+    Rig,
+    /// What changes with time, temperature, load cycles or the loads before.
+    Time,
+    /// How what was written is meant.
+    Labels,
+}
+
+/// What somebody's own simulation can vary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct OwnEffect {
+    name: &'static str,
+    sentence: &'static str,
+    family: EffectFamily,
+}
+
+impl OwnEffect {
+    /// An effect of this name.
+    pub fn new(name: &str, family: EffectFamily) -> Self {
+        let sentence = interned(&format!("{name} is not as in the model"));
+        Self { name: interned(name), sentence, family }
+    }
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        self.name
+    }
+}
+
+/// The same text for as long as the program runs; each is kept once.
+pub(crate) fn interned(text: &str) -> &'static str {
+    static KEPT: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = kept.get(text) {
+        return known;
+    }
+    let text: &'static str = Box::leak(text.into());
+    kept.insert(text);
+    text
+}
 
 /// What becomes of a device's number by a finding's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,20 +77,22 @@ macro_rules! effects {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Effect {
             $(#[doc = $title] $effect,)*
+            /// What somebody's own simulation can vary.
+            Own(OwnEffect),
         }
 
         impl Effect {
-            /// All of them, in the order of the table.
+            /// All of the table, in its order.
             pub const ALL: &[Self] = &[$(Self::$effect,)*];
 
             /// Its name in JSON and in arguments.
             pub const fn name(self) -> &'static str {
-                match self { $(Self::$effect => $name,)* }
+                match self { $(Self::$effect => $name,)* Self::Own(own) => own.name }
             }
 
             /// Its name for people.
             pub const fn title(self) -> &'static str {
-                match self { $(Self::$effect => $title,)* }
+                match self { $(Self::$effect => $title,)* Self::Own(own) => own.name }
             }
 
             /// The sentence that a finding makes of it.
@@ -46,12 +101,12 @@ macro_rules! effects {
             /// with its own sign, `{x_mm|in x}` with a word behind it. Of numbers that `&` joins those are told that are not none within
             /// their intervals. Numbers without a unit are told in per cent.
             pub const fn sentence(self) -> &'static str {
-                match self { $(Self::$effect => $sentence,)* }
+                match self { $(Self::$effect => $sentence,)* Self::Own(own) => own.sentence }
             }
 
             /// The device's numbers that hold it; none where it is no number of a device file, or not one by itself.
             pub(crate) const fn device_numbers(self) -> &'static [DeviceNumber] {
-                match self { $(Self::$effect => &[$($($number),+)?],)* }
+                match self { $(Self::$effect => &[$($($number),+)?],)* Self::Own(_) => &[] }
             }
         }
     };
@@ -139,6 +194,50 @@ effects! {
 }
 
 impl Effect {
+    /// What kind of cause it is; none where that is not known.
+    pub const fn family(self) -> Option<EffectFamily> {
+        use EffectFamily::{Electrical, Gain, Labels, Mechanical, Rig, Time};
+        Some(match self {
+            Self::ChannelGain | Self::ModuleGain | Self::ExcitationGain | Self::ReferenceGain => Gain,
+            Self::ChannelOffset
+            | Self::NoiseExcess
+            | Self::ChannelDead
+            | Self::ChannelPolarity
+            | Self::ChannelsSwapped
+            | Self::ChannelCrosstalk
+            | Self::GaugeNonlinearity
+            | Self::AdcClipping
+            | Self::ChannelIntermittent
+            | Self::ChannelSkew
+            | Self::MainsPickup => Electrical,
+            Self::ModuleDisplaced
+            | Self::ModuleRotated
+            | Self::ModuleTilted
+            | Self::ModuleStiffness
+            | Self::ModuleDebonded
+            | Self::ModuleFrameOpen
+            | Self::ModuleCrosstalk
+            | Self::PlateStiffness => Mechanical,
+            Self::ThermalZero
+            | Self::ThermalGain
+            | Self::ZeroDrift
+            | Self::Hysteresis
+            | Self::Creep
+            | Self::Ageing => Time,
+            Self::ReferenceTilt
+            | Self::ReferenceZero
+            | Self::StageOffset
+            | Self::StageRotation
+            | Self::StageScale
+            | Self::ContactHeight
+            | Self::ContactSize
+            | Self::TimeLag => Rig,
+            Self::LabelFrame | Self::LabelSign | Self::LabelUnit | Self::RowShift => Labels,
+            Self::Own(own) => own.family,
+            Self::Unlisted => return None,
+        })
+    }
+
     /// The effect of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|effect| effect.name() == name)

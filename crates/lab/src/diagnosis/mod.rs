@@ -13,7 +13,8 @@
 //! | `naming` | which of them may be named: not those that look like parts of something else (`withdrawal`); models of further measurements (`experiments`) say which would tell the others apart (`separation`); causes that lack a column stay rivals (`untestable`) |
 //! | `validation` | the worth of the findings on rows that had no part in it, in readings and in contacts that the model decodes backwards |
 //!
-//! [`against`] holds two recordings of one sensor against each other, without a simulator; [`report`], [`extension`] and [`agreement`] are what
+//! [`against`] holds two recordings of one sensor against each other, without a simulator; [`prediction`] a recording of any sensor against what
+//! anybody's model says of it; [`report`], [`extension`] and [`agreement`] are what
 //! comes of a diagnosis.
 //!
 //! What is said of channels and places is in `naming`; how sure that is, in the inference, which knows no pad.
@@ -28,6 +29,7 @@ mod gatekeepers;
 mod label;
 pub(crate) mod model;
 mod naming;
+pub mod prediction;
 pub mod report;
 mod simulation;
 mod validation;
@@ -161,8 +163,14 @@ fn diagnosed(
     let mut model = Atlas::new(pad, without, &all, &open);
     let found = attributed(&mut model).map_err(DiagnosisError::Inference)?;
     let missing = model.missing();
-    concluded(gate, [&open, &locked], &model, &found, Question { missing, without, validation })
-        .map_err(DiagnosisError::Inference)
+    concluded(
+        gate,
+        [&open, &locked],
+        &model,
+        &found,
+        Question { missing, without, individual: &[], validation },
+    )
+    .map_err(DiagnosisError::Inference)
 }
 
 /// A model that can be had at other rows.
@@ -178,6 +186,8 @@ trait ModelOfRows: Model<Label> {
 struct Question<'q> {
     missing: Vec<NotTestable>,
     without: &'q [Effect],
+    /// What each target has of its own: several at once need no reason in common.
+    individual: &'q [Effect],
     validation: Validation,
 }
 
@@ -187,13 +197,14 @@ fn concluded(
     [open, locked]: [&Observations; 2],
     model: &dyn ModelOfRows,
     found: &Attribution,
-    Question { missing, without, validation }: Question<'_>,
+    Question { missing, without, individual, validation }: Question<'_>,
 ) -> Result<Diagnosis, InferenceError> {
     let measured = gate.unrepaired.take();
     let all = &gate.observations;
     let at_locked = model.at(locked);
     let search = Search::new(model, all, open);
-    let parts = measured.as_ref().map(|whole| [open, locked].map(|part| (whole, whole.picked(&part.numbers))));
+    let parts =
+        measured.as_ref().map(|whole| [open, locked].map(|part| (whole, whole.picked(&part.numbers))));
     let models = parts
         .as_ref()
         .map(|parts| parts.each_ref().map(|(whole, part)| (model.at_measured(whole, part), part)));
@@ -219,8 +230,9 @@ fn concluded(
     let excess = (!without.contains(&Effect::NoiseExcess))
         .then(|| excess(open, &found.fit.systems.noise, &found.fit.linearised.readings));
     let effect = |at: &usize| model.hypotheses()[*at].label.0;
-    let mut family: Vec<Effect> = found.family.iter().flatten().map(effect).collect();
-    if !family.is_empty() {
+    let own = found.family.iter().flatten().map(effect);
+    let mut family: Vec<Effect> = own.chain(individual.iter().copied()).collect();
+    if !found.family.is_empty() {
         family.push(Effect::ChannelOffset);
     }
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());

@@ -1,7 +1,7 @@
 //! Report of a diagnosis.
 
 use crate::diagnosis::data::target::Target;
-use crate::effect::Effect;
+use crate::effect::{Effect, EffectFamily};
 use tactpad_inference::observations::Sample;
 pub use tactpad_inference::search::estimates::Estimate;
 use tactpad_numeric::statistics::mean;
@@ -175,6 +175,13 @@ pub struct LabelNote {
 }
 
 impl Finding {
+    /// The family of the cause and of all that it is confounded with; none where they are of several, or one is not known.
+    pub fn family(&self) -> Option<EffectFamily> {
+        let own = self.effect.family();
+        let is_own = |(effect, _): &(Effect, Target)| effect.family() == own;
+        own.filter(|_| self.confounded_with.iter().all(is_own))
+    }
+
     /// Whether it may be a part of something that is not in the catalogue.
     pub fn is_doubted(&self) -> bool {
         self.confounded_with.iter().any(|(effect, _)| *effect == Effect::Unlisted)

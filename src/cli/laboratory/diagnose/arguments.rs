@@ -19,6 +19,7 @@ use tactpad::lab::effect::Effect;
 #[command(
     after_help = "Example: tactpad diagnose --measured measured.csv --save-device found.toml\n         \
                   tactpad diagnose --measured today.csv --against january.csv\n         \
+                  tactpad diagnose --measured load-cell.csv --model predicted.csv\n         \
                   tactpad diagnose --play today.cap --against january.cap\n\n\
                   Without --device and --imperfections the model is the nominal pad. What the words mean stands in \
                   docs/diagnosis.md."
@@ -38,13 +39,21 @@ pub(crate) struct Arguments {
     /// An earlier recording of the same sensor, whatever sensor that is: what changed since? Neither a model nor forces are needed.
     ///
     /// With --play an earlier capture of the same pad.
-    #[arg(long, value_name = "EARLIER")]
+    #[arg(long, value_name = "EARLIER", group = "held_against")]
     pub(super) against: Option<PathBuf>,
-    /// With --against: the columns that are labels; else those of docs/diagnosis.md that both files have.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "against")]
+    /// What a model of one's own predicts for the same rows, in the same order, whatever sensor that is: why is it wrong?
+    ///
+    /// Predicted channels have the names of the measured ones.
+    #[arg(long, value_name = "P.csv", requires = "measured", group = "held_against")]
+    pub(super) model: Option<PathBuf>,
+    /// With --model: a folder with what the model can vary, effects.toml and a table of derivatives EFFECT.csv for each.
+    #[arg(long, value_name = "FOLDER", requires = "model")]
+    pub(super) effects: Option<PathBuf>,
+    /// With --against or --model: the columns that are labels; else those of docs/diagnosis.md that both files have.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "held_against")]
     pub(super) labels: Vec<String>,
-    /// With --against: the columns that are channels; else all other columns of numbers that both files have.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "against")]
+    /// With --against or --model: the columns that are channels; else all other columns of numbers that both files have.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "held_against")]
     pub(super) channels: Vec<String>,
     #[command(flatten)]
     pub(super) pad: PadOptions,
@@ -91,6 +100,9 @@ pub(super) fn folder(path: &Path, arguments: &Arguments) -> Result<Folder, Failu
         }
         if arguments.against.as_deref().is_some_and(|earlier| is_same(earlier, &file)) {
             return Err(written_over(&file, "is the earlier recording"));
+        }
+        if arguments.model.as_deref().is_some_and(|model| is_same(model, &file)) {
+            return Err(written_over(&file, "is the table of predictions"));
         }
         if arguments.save_device.as_deref().is_some_and(|saved| is_same(saved, &file)) {
             return Err(written_over(&file, "is the device to save"));

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::numbers::word;
 use tactpad::lab::diagnosis::data::target::Target;
 use tactpad::lab::diagnosis::report::{self, Diagnosis};
-use tactpad::lab::effect::Effect;
+use tactpad::lab::effect::{Effect, EffectFamily};
 use tactpad::pad::device::Side;
 
 /// Version of the document's form.
@@ -59,6 +59,9 @@ pub(crate) struct Finding<'d> {
     status: &'static str,
     #[serde(flatten)]
     cause: Cause,
+    /// Of the cause, and of all that it is confounded with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    family: Option<EffectFamily>,
     #[serde(skip_serializing_if = "Option::is_none")]
     part: Option<&'d str>,
     parameters: BTreeMap<&'static str, ParameterValue<'d>>,
@@ -181,6 +184,7 @@ impl<'d> Finding<'d> {
         Self {
             status: if finding.confounded_with.is_empty() { "NAMED" } else { "CONFOUNDED" },
             cause: Cause::of(finding.effect, &finding.target, channels),
+            family: finding.family(),
             part: labels.and_then(|it| it.part.as_deref()),
             parameters: finding.parameters.iter().map(estimate).chain(map).collect(),
             p_value: finding.p_value,

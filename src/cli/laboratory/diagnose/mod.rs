@@ -1,12 +1,14 @@
 //! `tactpad diagnose`: what measured contacts show that the model of the pad gets wrong, and why.
 
 mod against;
+mod any_sensor;
 mod arguments;
 pub(crate) mod changes;
 pub(crate) mod document;
 mod files;
 mod numbers;
 mod play;
+mod prediction;
 mod report;
 pub(crate) mod text;
 
@@ -34,6 +36,9 @@ use tactpad::tables::measured::Table;
 const ROW_BYTES: usize = 32_000;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let (Some(measured), Some(predicted)) = (&arguments.measured, &arguments.model) {
+        return prediction::run(arguments, measured, predicted);
+    }
     match (&arguments.play, &arguments.measured, &arguments.against) {
         (Some(later), _, Some(earlier)) => play::run(arguments, [earlier, later]),
         (_, Some(measured), Some(earlier)) => against::run(arguments, measured, earlier),

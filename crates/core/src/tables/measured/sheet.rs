@@ -66,6 +66,20 @@ impl Sheet {
         self.column(name)?.texts.as_deref()
     }
 
+    /// The same rows with the numbers that `other` has in these columns.
+    ///
+    /// Columns that one of the two has not stay as they are.
+    #[must_use]
+    pub fn with_numbers_of(&self, other: &Self, names: &[String]) -> Self {
+        let mut sheet = self.clone();
+        for column in sheet.columns.iter_mut().filter(|column| names.contains(&column.name)) {
+            if let Some(numbers) = other.numbers(&column.name).filter(|it| it.len() == column.numbers.len()) {
+                column.numbers = numbers.to_vec();
+            }
+        }
+        sheet
+    }
+
     fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|column| column.name == name)
     }

@@ -7,11 +7,11 @@ use tactpad_inference::regression::Group;
 
 /// Labels by which channels are predicted: those of a group share one length.
 const PLACES: [&[&str]; 2] = [&["x_mm", "y_mm"], &["z_mm"]];
-const LOADS: [&[&str]; 2] = [&["fx_n", "fy_n", "fz_n"], &["scale_g"]];
+const LOADS: [&[&str]; 3] = [&["fx_n", "fy_n", "fz_n"], &["mx_nm", "my_nm", "mz_nm"], &["scale_g"]];
 /// Labels that say when and how.
 const CIRCUMSTANCES: [&str; 6] = ["t_s", "label_t_s", "temp_c", "cycle", "trial", "session"];
 /// What plans write beside them.
-const PLANNED: [&str; 2] = ["dwell_s", "approach"];
+pub(in crate::diagnosis) const PLANNED: [&str; 2] = ["dwell_s", "approach"];
 
 /// What varies by less than this part of itself stays the same.
 const LAST_DIGITS: f64 = 1e-5;
@@ -28,19 +28,19 @@ pub struct ColumnSelection<'a> {
 }
 
 impl ColumnSelection<'_> {
-    pub(super) fn asks_for(&self, effect: Effect) -> bool {
+    pub(in crate::diagnosis) fn asks_for(&self, effect: Effect) -> bool {
         self.without.iter().all(|other| *other != effect)
     }
 }
 
 /// The columns that both tables have.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Columns {
+pub(in crate::diagnosis) struct Columns {
     /// Labels that the channels are predicted by: they vary in the earlier table.
-    pub(super) inputs: Vec<String>,
+    pub(in crate::diagnosis) inputs: Vec<String>,
     /// The inputs' groups.
-    pub(super) groups: Vec<Group>,
-    pub(super) channels: Vec<String>,
+    pub(in crate::diagnosis) groups: Vec<Group>,
+    pub(in crate::diagnosis) channels: Vec<String>,
     /// Circumstances that may be used.
     circumstances: Vec<&'static str>,
 }
@@ -106,6 +106,23 @@ impl Columns {
         if columns.inputs.is_empty() { Err(ComparisonError::Constant) } else { Ok(columns) }
     }
 
+    /// These channels, and what varies of these labels beside them in the measured table. All circumstances may be used.
+    pub(in crate::diagnosis) fn beside(channels: Vec<String>, measured: &Sheet, labels: &[String]) -> Self {
+        let is_input = |name: &&str| !channels.iter().any(|it| it == name) && varies(measured, name);
+        let mut columns = Self {
+            inputs: Vec::new(),
+            groups: Vec::new(),
+            channels: channels.clone(),
+            circumstances: CIRCUMSTANCES.to_vec(),
+        };
+        for (names, is_load) in PLACES.iter().map(|it| (it, false)).chain(LOADS.iter().map(|it| (it, true))) {
+            columns.add(names.iter().copied().filter(is_input), is_load);
+        }
+        let others = labels.iter().map(String::as_str).filter(|name| !is_known(name)).filter(is_input);
+        others.for_each(|name| columns.add([name].into_iter(), false));
+        columns
+    }
+
     fn add<'n>(&mut self, names: impl Iterator<Item = &'n str>, is_load: bool) {
         let first = self.inputs.len();
         self.inputs.extend(names.map(str::to_owned));
@@ -115,7 +132,7 @@ impl Columns {
     }
 
     /// The place of an input among the inputs.
-    pub(super) fn input(&self, name: &str) -> Option<usize> {
+    pub(in crate::diagnosis) fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input == name)
     }
 
@@ -135,12 +152,13 @@ impl Columns {
     }
 }
 
-fn is_known(name: &str) -> bool {
+/// Whether a column of this name is a label, or says when and how.
+pub(in crate::diagnosis) fn is_known(name: &str) -> bool {
     CIRCUMSTANCES.contains(&name) || PLACES.iter().chain(&LOADS).any(|names| names.contains(&name))
 }
 
 /// Whether a column varies by more than its last digits.
-fn varies(sheet: &Sheet, name: &str) -> bool {
+pub(in crate::diagnosis) fn varies(sheet: &Sheet, name: &str) -> bool {
     let numbers =
         || sheet.numbers(name).unwrap_or_default().iter().copied().filter(|number| number.is_finite());
     let [low, high] = extent(numbers());
@@ -148,6 +166,6 @@ fn varies(sheet: &Sheet, name: &str) -> bool {
 }
 
 /// The least and the greatest value.
-pub(super) fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+pub(in crate::diagnosis) fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }

@@ -5,10 +5,10 @@
 //! measured it (`change`) are hypotheses about that (`later`). Everything else is the inference's.
 
 mod change;
-mod columns;
+pub(in crate::diagnosis) mod columns;
 mod earlier;
 mod later;
-mod recording;
+pub(in crate::diagnosis) mod recording;
 mod standing;
 mod unfit;
 
@@ -42,7 +42,7 @@ pub fn effects() -> impl Iterator<Item = Effect> {
 }
 
 /// Columns whose texts are needed.
-pub const TEXTS: [&str; 2] = ["trial", "session"];
+pub const TEXTS: [&str; 3] = ["trial", "session", "approach"];
 
 /// Holds a table against an earlier one of the same sensor.
 ///
@@ -189,7 +189,7 @@ fn is_known_zero(zero: &Finding, findings: &[Finding], columns: &Columns) -> boo
 }
 
 /// What stood for places and loads in the inference is none to be shown.
-fn unplaced(diagnosis: &mut Diagnosis, columns: &Columns) {
+pub(in crate::diagnosis) fn unplaced(diagnosis: &mut Diagnosis, columns: &Columns) {
     let has_place = ["x_mm", "y_mm"].iter().any(|name| columns.input(name).is_some());
     for sample in &mut diagnosis.residuals.samples {
         sample.block = None;

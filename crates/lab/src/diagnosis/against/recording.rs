@@ -17,24 +17,28 @@ const PRESSED: [f64; 2] = [0.4, 0.6];
 /// Fewest presses that are presses; a series without is cut into so many equal parts.
 const PRESSES_MIN: usize = 4;
 const PARTS: usize = 8;
+/// How a load from above is written.
+const UNLOADING: &str = "unloading";
 /// What stands for places where none varies: half the extent of whatever varies instead.
 const HALF_SIDE_MM: f64 = 10.0;
 
 /// A recording.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Recording {
+pub(in crate::diagnosis) struct Recording {
     /// The readings as they are. Samples have their row's number as block.
-    pub(super) observations: Observations,
+    pub(in crate::diagnosis) observations: Observations,
     /// For each row, the labels.
-    pub(super) inputs: Vec<Vec<f64>>,
+    pub(in crate::diagnosis) inputs: Vec<Vec<f64>>,
+    /// For each row, its number in the table.
+    pub(in crate::diagnosis) table_rows: Vec<usize>,
     /// For each row its cluster.
-    pub(super) blocks: Vec<usize>,
+    pub(in crate::diagnosis) blocks: Vec<usize>,
     /// How many rows had no label.
-    pub(super) unlabelled: usize,
+    pub(in crate::diagnosis) unlabelled: usize,
 }
 
 impl Recording {
-    pub(super) fn of(sheet: &Sheet, columns: &Columns) -> Self {
+    pub(in crate::diagnosis) fn of(sheet: &Sheet, columns: &Columns) -> Self {
         let labels: Vec<Vec<f64>> = columns.inputs.iter().map(|name| label(sheet, name)).collect();
         let is_written = |row: &usize| labels.iter().all(|label| label[*row].is_finite());
         let rows: Vec<usize> = (0..sheet.rows()).filter(is_written).collect();
@@ -51,6 +55,8 @@ impl Recording {
             label_t_s: finite("label_t_s", *row),
             temp_c: finite("temp_c", *row),
             cycle: finite("cycle", *row),
+            dwell_s: sheet.numbers("dwell_s").map(|all| all[*row]).filter(|it| it.is_finite()),
+            is_unloading: sheet.texts("approach").is_some_and(|all| all[*row] == UNLOADING),
             block: Some(at),
             ..Sample::default()
         };
@@ -68,27 +74,29 @@ impl Recording {
                 samples,
             },
             inputs,
-            blocks: Vec::new(),
             unlabelled: sheet.rows() - rows.len(),
+            table_rows: rows,
+            blocks: Vec::new(),
         };
         recording.blocks = recording.clusters(columns);
         recording
     }
 
     /// The rows at these places.
-    pub(super) fn picked(&self, rows: &[usize]) -> Self {
+    pub(in crate::diagnosis) fn picked(&self, rows: &[usize]) -> Self {
         let mut observations = self.observations.picked(rows);
         observations.samples.iter_mut().enumerate().for_each(|(at, sample)| sample.block = Some(at));
         Self {
             observations,
             inputs: rows.iter().map(|row| self.inputs[*row].clone()).collect(),
+            table_rows: rows.iter().map(|row| self.table_rows[*row]).collect(),
             blocks: rows.iter().map(|row| self.blocks[*row]).collect(),
             unlabelled: self.unlabelled,
         }
     }
 
     /// What checks have mended, which may have put rows in another order.
-    pub(super) fn mended(&self, observations: &Observations) -> Self {
+    pub(in crate::diagnosis) fn mended(&self, observations: &Observations) -> Self {
         let order: Vec<usize> = observations.samples.iter().filter_map(|sample| sample.block).collect();
         let mut mended = self.picked(&order);
         mended.observations = observations.clone();
@@ -97,7 +105,7 @@ impl Recording {
 
     /// Places and loads as the inference takes them: those that are there, or whatever varies. `extents` are each input's least and
     /// greatest value.
-    pub(super) fn placed(&mut self, columns: &Columns, extents: &[[f64; 2]]) {
+    pub(in crate::diagnosis) fn placed(&mut self, columns: &Columns, extents: &[[f64; 2]]) {
         let is_place = ["x_mm", "y_mm"].map(|name| columns.input(name));
         let forces = ["fx_n", "fy_n", "fz_n"].map(|name| columns.input(name));
         let unit = |row: &[f64], at: usize| {

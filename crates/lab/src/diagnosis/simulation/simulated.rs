@@ -6,9 +6,8 @@ use rayon::prelude::*;
 
 use super::own::own_chain;
 use super::row::{Row, continued, response};
-use crate::diagnosis::causes::catalogue::CATALOGUE;
 use crate::diagnosis::causes::cause::{Cause, ChainStage};
-use crate::diagnosis::data::target::Target;
+use crate::diagnosis::causes::{hypotheses, missing};
 use crate::diagnosis::label::{Hypothesis, Label};
 use crate::diagnosis::model::chain::{Chain, Reference};
 use crate::diagnosis::model::mechanics::{Maps, at_places, changes, side_share};
@@ -24,7 +23,7 @@ use tactpad_core::pad::influence::InfluenceField;
 use tactpad_core::quantity::{CHANNELS, MODULES};
 use tactpad_inference::model::{CommonError, Linearised, Model, Signature};
 use tactpad_inference::observations::{Observations, Sample};
-use tactpad_inference::policy::{BACKGROUND_MAX, SIGNATURE_ERROR};
+use tactpad_inference::policy::BACKGROUND_MAX;
 use tactpad_numeric::statistics::rms;
 
 /// Standard deviation of factors that all modules' x, y or z channels share, of their answer to any load, to shear and to normal
@@ -81,28 +80,7 @@ impl<'f> Simulated<'f> {
         let course =
             |of: &Observations| RowSequence::of(&of.samples, &of.follows(), pad.device.contact.full_scale_n);
         let setting = setting(pad.device, changes(pad.device, own, field, pad.flaws), all, &course(all));
-        let mut hypotheses = Vec::new();
-        let mut causes: Vec<&'static Cause> = Vec::new();
-        let is_asked = |cause: &&Cause| !without.contains(&cause.effect) && cause.missing(&setting).is_none();
-        for cause in CATALOGUE.iter().filter(is_asked) {
-            for target in cause.targets(&setting) {
-                let zero_of = match (cause.effect, target) {
-                    (Effect::ChannelOffset, Target::Channel(channel)) => Some(channel),
-                    _ => None,
-                };
-                hypotheses.push(Hypothesis {
-                    zero_of,
-                    label: (cause.effect, target),
-                    parameters: cause.parameters(&setting),
-                    signature_error: match cause.stage {
-                        ChainStage::Contact | ChainStage::Mechanics => SIGNATURE_ERROR,
-                        ChainStage::Coupling | ChainStage::Channels => 0.0,
-                    },
-                    ordinary: if target == Target::Pad { cause.ordinary } else { 0.0 },
-                });
-                causes.push(cause);
-            }
-        }
+        let (hypotheses, causes) = hypotheses(&setting, |effect| !without.contains(&effect));
         let places_mm: Vec<[f64; 2]> = sequence.samples.iter().map(|sample| sample.place_mm).collect();
         let reference = reference(pad.device, pad.field, all);
         let weights = setting.own_weights(pad.device, own);
@@ -128,9 +106,7 @@ impl<'f> Simulated<'f> {
 
     /// The causes that cannot be asked for, and what is missing.
     pub(crate) fn missing(&self) -> Vec<NotTestable> {
-        let missing =
-            CATALOGUE.iter().filter_map(|cause| Some((cause.effect, cause.missing(&self.setting)?)));
-        missing.map(|(effect, needs)| NotTestable { effect, needs }).collect()
+        missing(&self.setting)
     }
 
     /// The chain of these hypotheses.

@@ -15,6 +15,6 @@ pub const BACKGROUND_MAX: f64 = 0.03;
 pub const SIGNATURE_ERROR: f64 = BACKGROUND_MAX;
 /// Root mean square of what a model itself gets wrong, smooth as well and the same way. The pad's simulator: 0.44 % against an independent
 /// solution.
-const MODEL_ERROR: f64 = 0.005;
+pub const MODEL_ERROR: f64 = 0.005;
 /// Largest smooth remainder that is not a finding.
 pub const REMAINDER_MAX: f64 = BACKGROUND_MAX + MODEL_ERROR;

@@ -4,6 +4,7 @@ mod bootstrap;
 pub mod columns;
 mod constancy;
 pub mod estimates;
+mod family;
 mod rivals;
 pub mod score_test;
 mod zeros;
@@ -14,16 +15,16 @@ use rayon::prelude::*;
 
 use self::bootstrap::{Bootstrap, Draw};
 use self::columns::Columns;
+use self::family::FamilySpan;
 use self::score_test::{Projected, Test};
 use crate::covariance::{Background, Fitted, Marginal, Smooth, Systems};
 use crate::error::{InferenceError, Stage, factorised};
 use crate::hypothesis::Parameter;
-use crate::model::{Linearised, Model, Signature};
+use crate::model::{Linearised, Model};
 use crate::observations::Observations;
-use crate::policy::{LEVEL, SIGNATURE_ERROR, WITHIN_95};
+use crate::policy::{LEVEL, SIGNATURE_ERROR};
 use tactpad_numeric::dense::Matrix;
 use tactpad_numeric::products::dot;
-use tactpad_numeric::statistics::mean;
 
 /// Draws of the bootstrap.
 const DRAWS: usize = 1000;
@@ -133,7 +134,7 @@ impl<'m, L> Search<'m, L> {
                 fit = self.fitted(&applied, Some(&fit))?;
             }
         }
-        let reproduced = self.reproduced(&fit, family)?;
+        let reproduced = FamilySpan::of(self, &fit, family)?.reproduced();
         Ok(Attribution { fit, critical, family: family.to_vec(), reproduced })
     }
 
@@ -343,7 +344,7 @@ impl<'m, L> Search<'m, L> {
     ) -> Result<Option<usize>, InferenceError> {
         let projected = self.projected(fit)?;
         let least = self.least_square(fit)?;
-        let reproduced = self.reproduced(fit, family)?;
+        let reproduced = FamilySpan::of(self, fit, family)?.reproduced();
         let holds = |at: usize| barred.contains(&at) || fit.applied.iter().any(|(held, _)| *held == at);
         let mut candidates: Vec<(Test, usize)> = (0..self.columns.of_hypothesis.len())
             .filter(|at| !holds(*at) && !self.is_zero(*at) && !reproduced[*at])
@@ -364,52 +365,6 @@ impl<'m, L> Search<'m, L> {
             }
         }
         Ok(best.map(|(_, at)| at))
-    }
-
-    /// Which hypotheses a family reproduces to within what signatures may be wrong by: by the little that is left of them beside it nothing
-    /// can be told, however well it is seen. Shares ε of signatures are wrong, of s and of the members a that make it up.
-    ///
-    /// ```text
-    /// c = (AᵀA)⁻¹ Aᵀ s, each channel in units of its root mean square, about its mean
-    /// |s − A c|² < ε₀² |s|² + 1.96² (ε² |s|² + Σ εₖ² cₖ² |aₖ|²)
-    /// ```
-    fn reproduced(&self, fit: &AttributionFit, family: &[Vec<usize>]) -> Result<Vec<bool>, InferenceError> {
-        let signatures = &fit.linearised.signatures;
-        let errors: Vec<f64> = self.model.hypotheses().iter().map(|it| it.signature_error).collect();
-        let sizes = self.model.sizes();
-        let scaled = |signature: &Signature| -> Vec<f64> {
-            let channels = signature.iter().zip(&sizes).zip(&fit.linearised.readings);
-            let scaled = channels.flat_map(|((values, size), readings)| match values {
-                Some(values) => {
-                    let middle = mean(values.iter().copied());
-                    values.iter().map(|value| (value - middle) / size.max(f64::MIN_POSITIVE)).collect()
-                }
-                None => vec![0.0; readings.len()],
-            });
-            scaled.collect()
-        };
-        let asked = |at: usize| signatures[at].iter().take(self.columns.of_hypothesis[at].len());
-        let of_member = |at: usize| asked(at).map(scaled).zip(std::iter::repeat(errors[at]));
-        let (members, of_members): (Vec<Vec<f64>>, Vec<f64>) =
-            family.iter().flatten().copied().flat_map(of_member).unzip();
-        if members.is_empty() {
-            return Ok(vec![false; signatures.len()]);
-        }
-        let products =
-            |column: &[f64]| members.iter().map(|member| dot(member, column)).collect::<Vec<f64>>();
-        let gram = Matrix::from_rows(&members.iter().map(|member| products(member)).collect::<Vec<_>>());
-        let factor = factorised(&gram, Stage::Causes)?;
-        let is_reproduced = |at: usize, signature: &Signature| {
-            let column = scaled(signature);
-            let across = products(&column);
-            let (mixture, whole) = (factor.solve(&across), dot(&column, &column));
-            let parts = mixture.iter().zip(&of_members).enumerate();
-            let wrong = errors[at].powi(2) * whole
-                + parts.map(|(k, (c, error))| (c * error).powi(2) * gram.at(k, k)).sum::<f64>();
-            whole - dot(&mixture, &across) < SIGNATURE_ERROR.powi(2) * whole + WITHIN_95.powi(2) * wrong
-        };
-        let all = 0..signatures.len();
-        Ok(all.into_par_iter().map(|at| asked(at).all(|it| is_reproduced(at, it))).collect())
     }
 
     /// Schwarz's criterion of the fit with a candidate beside the held causes, and the candidate's test. The covariance is found

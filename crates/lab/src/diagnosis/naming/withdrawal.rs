@@ -64,7 +64,8 @@ pub(crate) fn named(
         if finding.confounded_with.is_empty() && !search.holds_throughout(fit, place)? {
             add(&mut unnamed_by_channel, &squares(place, &finding));
         } else {
-            candidates.push(Candidate { place, finding, is_doubted: false });
+            let is_doubted = search.is_within_model_error(found, place)?;
+            candidates.push(Candidate { place, finding, is_doubted });
         }
     }
     let mut doubted_by_channel =

@@ -17,6 +17,7 @@ mod dense;
 mod effects;
 mod fields;
 mod files;
+mod foreign;
 mod found;
 mod generator;
 mod limits;

@@ -2,7 +2,12 @@
 //!
 //! A cause stands if it survives every rival: if something significant of it is left when the rival is fitted in its place. A
 //! rival that leaves nothing of it explains the data as well, and the two are confounded. A rival of which something is left
-//! beside the cause is another cause, and the search has it.
+//! beside the cause is another cause, and the search has it. What is left may be no more than an error of the two signatures, however well
+//! it is seen:
+//!
+//! ```text
+//! q(cause | rival) < 1.96² (ε² + εᵣ²) q(both),  q what is taken off the weighted squares
+//! ```
 //!
 //! Source: G. E. Mizon, J.-F. Richard, Econometrica 54 (1986) 657.
 
@@ -11,14 +16,16 @@ use std::ops::Range;
 use super::score_test::{Projected, Test};
 use super::{Attribution, AttributionFit, Search, is_member};
 use crate::error::{InferenceError, Stage, factorised};
-use crate::policy::LEVEL;
+use crate::policy::{LEVEL, WITHIN_95};
 use tactpad_numeric::chi_square;
 use tactpad_numeric::dense::gram;
 use tactpad_numeric::products::dot;
-use tactpad_numeric::statistics::rms;
+use tactpad_numeric::statistics::{population_deviation, rms};
 
 /// What has no more than this part in one member moves several.
 const SEVERAL: f64 = 0.5;
+/// A rival that leaves no more than this part of what both explain is fitted in the cause's place.
+const NEAR: f64 = 0.25;
 /// An effect or a member with more than this part in a mixture is moved by it.
 const MOVED: f64 = 0.05;
 
@@ -46,10 +53,71 @@ impl<L> Search<'_, L> {
                     freedom: both.freedom - alone.freedom,
                 };
                 // Whatever has no direction of its own beside a rival is that rival.
-                (beyond.freedom == 0 || beyond.p_value() > critical)
-                    && self.is_possible(*rival, projected, score)
+                let is_rival = beyond.freedom == 0
+                    || beyond.p_value() > critical
+                    || beyond.square < self.wrong_share(own, *rival) * both.square;
+                is_rival && self.is_possible(*rival, projected, score)
             })
             .collect()
+    }
+
+    /// The rivals of a cause beside which little of it is left, and that explain the data as well where they are fitted in its place: far from
+    /// none signatures bend, and what is left of the cause may be that.
+    ///
+    /// ```text
+    /// q(cause | rival) < NEAR q(both),   Dᵣ < D + χ²(critical),   D = n ln(squares that a fit leaves)
+    /// ```
+    pub fn rivals_in_place(
+        &self,
+        found: &Attribution,
+        at: usize,
+        projected: &Projected,
+        score: &[f64],
+    ) -> Result<Vec<usize>, InferenceError> {
+        let (fit, critical) = (&found.fit, found.critical);
+        let (own, _) = fit.applied[at];
+        let columns = &self.columns.of_hypothesis[own];
+        let mut rivals = self.rivals(fit, critical, at, projected, score);
+        let held = |rival: usize| fit.applied.iter().any(|(held, _)| *held == rival);
+        let bends = |rival: usize| self.wrong_share(own, rival) > 0.0;
+        let others: Vec<usize> = (0..self.columns.of_hypothesis.len())
+            .filter(|rival| {
+                !held(*rival) && !rivals.contains(rival) && !self.is_zero(*rival) && bends(*rival)
+            })
+            .collect();
+        let least = self.deviance(fit) + chi_square::quantile(critical, 1);
+        for rival in others {
+            let alone = projected.test(&self.columns.of_hypothesis[rival], score);
+            let both =
+                projected.test(&[self.columns.of_hypothesis[rival].as_slice(), columns].concat(), score);
+            if both.square - alone.square > NEAR * both.square {
+                continue;
+            }
+            let mut applied = fit.applied.clone();
+            applied[at] = (rival, vec![0.0; self.model.hypotheses()[rival].parameters.len()]);
+            // One that cannot be fitted explains nothing.
+            let Ok(other) = self.fitted(&applied, Some(fit)) else { continue };
+            if !self.is_at_an_end(&other, at) && self.deviance(&other) < least {
+                rivals.push(rival);
+            }
+        }
+        Ok(rivals)
+    }
+
+    /// n ln of the mean square that a fit leaves, each channel about its mean and in units of its root mean square: −2 ln of how probable it
+    /// makes the readings by a noise that is known by nothing else, but for a constant. Doubts of labels that are moved have no part.
+    fn deviance(&self, fit: &AttributionFit) -> f64 {
+        let (mut square, mut count) = (0.0, 0.0);
+        let sizes = self.model.sizes();
+        for (channel, modelled) in self.model.readings(&fit.applied).iter().enumerate() {
+            let read = self.observations.readings[channel].iter().zip(modelled);
+            let told = read.zip(&self.observations.is_told[channel]).filter(|(_, is_told)| **is_told);
+            let left: Vec<f64> =
+                told.map(|((read, modelled), _)| (read - modelled) / sizes[channel]).collect();
+            count += left.len() as f64;
+            square += left.len() as f64 * population_deviation(&left).powi(2);
+        }
+        count * (square / count).ln()
     }
 
     /// The rivals of a family's member: those that explain the data as well, and those that the family reproduces, as what is left of
@@ -134,6 +202,12 @@ impl<L> Search<'_, L> {
             }
         }
         Ok((left, doubt))
+    }
+
+    /// The part of what two hypotheses explain that may be an error of their signatures.
+    fn wrong_share(&self, one: usize, other: usize) -> f64 {
+        let errors = [one, other].map(|at| self.model.hypotheses()[at].signature_error);
+        WITHIN_95.powi(2) * dot(&errors, &errors)
     }
 
     /// Whether a rival would explain the data with numbers that are physically possible.

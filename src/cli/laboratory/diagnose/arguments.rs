@@ -46,6 +46,9 @@ pub(crate) struct Arguments {
     /// Predicted channels have the names of the measured ones.
     #[arg(long, value_name = "P.csv", requires = "measured", group = "held_against")]
     pub(super) model: Option<PathBuf>,
+    /// With --model: what it gets wrong by itself, in per cent of what loads do to a channel; what is no larger is no finding.
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.5, value_parser = model_error, requires = "model")]
+    pub(super) model_error: f64,
     /// With --model: a folder with what the model can vary, effects.toml and a table of derivatives EFFECT.csv for each.
     #[arg(long, value_name = "FOLDER", requires = "model")]
     pub(super) effects: Option<PathBuf>,
@@ -77,6 +80,12 @@ impl Arguments {
     fn is_measured(&self, path: &Path) -> bool {
         self.measured.as_deref().is_some_and(|measured| is_same(measured, path))
     }
+}
+
+/// A share that a model may get wrong.
+fn model_error(text: &str) -> Result<f64, String> {
+    let percent: f64 = text.parse().map_err(|_| format!("{text} is no number"))?;
+    if (0.0..=50.0).contains(&percent) { Ok(percent) } else { Err("it is from 0 to 50 per cent".to_owned()) }
 }
 
 /// Where the device goes: nowhere that is read, and not between the lines of a document.

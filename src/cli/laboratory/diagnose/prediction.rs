@@ -19,7 +19,8 @@ const ROW_BYTES: usize = 32_000;
 const EFFECTS: &str = "effects.toml";
 
 pub(super) fn run(arguments: &Arguments, measured: &Path, predicted: &Path) -> Result<(), Failure> {
-    let Arguments { save_device, report, labels, channels, without, json, pad, effects, .. } = arguments;
+    let Arguments { save_device, report, labels, channels, without, json, pad, effects, model_error, .. } =
+        arguments;
     if save_device.is_some() || pad.is_given() {
         return Err(Failure::Unusable(
             "--save-device, --device and --imperfections are of the pad's own model, and --model takes another one instead; leave one of \
@@ -35,7 +36,7 @@ pub(super) fn run(arguments: &Arguments, measured: &Path, predicted: &Path) -> R
     let diagnosis = {
         let _progress = Progress::begin("looking for causes");
         let asked = ColumnSelection { labels, channels, without };
-        diagnose(&measurement, &prediction, &own, &asked)
+        diagnose(&measurement, &prediction, &own, &asked, 0.01 * model_error)
             .map_err(|why| Failure::Unusable(format!("{names}: {why}")))?
     };
     let model = format!("the predictions {}", file_name(predicted));

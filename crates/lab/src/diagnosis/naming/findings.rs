@@ -24,7 +24,7 @@ pub(crate) fn findings(
         let (rivals, doubt) = if is_member {
             search.rivals_of_member(found, at, &projected, &score)?
         } else {
-            (search.rivals(&found.fit, found.critical, at, &projected, &score), Vec::new())
+            (search.rivals_in_place(found, at, &projected, &score)?, Vec::new())
         };
         let label = |at: usize| search.model.hypotheses()[at].label;
         let (effect, target) = label(hypothesis);

@@ -23,7 +23,8 @@ use crate::effect::Effect;
 use tactpad_core::tables::measured::sheet::Sheet;
 use tactpad_inference::observations::Observations;
 
-/// Holds a measured table against predictions of the same rows: what differs, why, and what the findings gain on locked rows.
+/// Holds a measured table against predictions of the same rows: what differs, why, and what the findings gain on locked rows. `model_error` is
+/// what the model itself gets wrong, as a share of a channel's root mean square: what is no larger is no finding.
 ///
 /// # Errors
 /// The tables are not of the same rows, or have too little in them.
@@ -32,6 +33,7 @@ pub fn diagnose(
     predicted: &Sheet,
     derivatives: &[Derivative],
     asked: &ColumnSelection<'_>,
+    model_error: f64,
 ) -> Result<Diagnosis, PredictionError> {
     let rows = PredictedRows::of(measured, predicted, asked)?;
     if rows.recording.inputs.len() < ROWS_MIN {
@@ -66,7 +68,7 @@ pub fn diagnose(
     if !(0..expected.len()).any(|channel| gate.observations.is_alive(channel)) {
         return Err(PredictionError::Silent);
     }
-    let sensor = Sensor::of(&rows, derivatives, asked).map_err(no_solution)?;
+    let sensor = Sensor::of(&rows, derivatives, asked, model_error).map_err(no_solution)?;
     let all = gate.observations.clone();
     let [open, locked] = all.split().map(|rows| all.picked(&rows));
     let model = SensorAt::new(&sensor, &open);

@@ -2,12 +2,14 @@
 //!
 //! ```text
 //! eₖ(row) = Pₖ(row) − rₖ + fₖ(labels) − fₖ(written) + Σⱼ aⱼ Dⱼₖ(row)
-//! yₖ(row) = law of the channels at (mₖ + rₖ) − rₖ
+//! yₖ(row) = law of the channels at mₖ, and at rₖ without its bend, − rₖ
 //! ```
 //!
 //! P are the predictions, f a regression of them on the labels, which says how they change where the labels are wrong, D the derivatives by
 //! what somebody's own simulation can vary, r what channels should read at rest. m is e with what is remembered of it; the law of the
 //! channels is that of all ([`tactpad_core::pad::channels`]). All readings are beside r, so that a background is a share of what loads do.
+
+use rayon::prelude::*;
 
 use super::derivative::Derivative;
 use super::rows::PredictedRows;
@@ -46,6 +48,16 @@ const OF_LABELS: [(Effect, &[&str]); 6] = [
     (Effect::ReferenceGain, &["fx_n", "fy_n", "fz_n"]),
     (Effect::ReferenceZero, &["fx_n", "fy_n", "fz_n"]),
 ];
+/// What a model may get wrong in all channels alike looks like one of these, or like what somebody's own simulation can vary.
+const ERRORS_LIKE: [Effect; 7] = [
+    Effect::ExcitationGain,
+    Effect::ReferenceTilt,
+    Effect::ReferenceGain,
+    Effect::ReferenceZero,
+    Effect::StageOffset,
+    Effect::StageRotation,
+    Effect::StageScale,
+];
 /// Half the width of the difference that makes a derivative by an own effect, as a share of its prior deviation.
 const STEP: f64 = 1e-3;
 
@@ -56,6 +68,16 @@ enum Change {
     Cause(&'static Cause),
     /// One of the derivatives, by its number.
     Derivative(usize),
+}
+
+/// Where hypotheses hold: what derivatives are taken about.
+struct Point<'p> {
+    applied: &'p [(usize, Vec<f64>)],
+    chain: Chain,
+    strains: Vec<Vec<f64>>,
+    /// m.
+    remembered: Vec<Vec<f64>>,
+    readings: Vec<Vec<f64>>,
 }
 
 /// How the predictions go with the labels.
@@ -85,6 +107,8 @@ pub(super) struct Sensor {
     /// None where no label is written, or none goes with the predictions.
     response: Option<LabelResponse>,
     nominal: Chain,
+    /// What the model itself gets wrong, as a share of a channel's root mean square.
+    model_error: f64,
 }
 
 impl Sensor {
@@ -92,6 +116,7 @@ impl Sensor {
         rows: &PredictedRows,
         derivatives: &[Derivative],
         asked: &ColumnSelection<'_>,
+        model_error: f64,
     ) -> Result<Self, InferenceError> {
         let PredictedRows { columns, recording, .. } = rows;
         let observations = &recording.observations;
@@ -147,6 +172,7 @@ impl Sensor {
             derivatives: derivatives.iter().map(at_rows).collect(),
             inputs: recording.inputs.clone(),
             rest: rows.rest(),
+            model_error,
             hypotheses,
             changes,
             setting,
@@ -242,19 +268,61 @@ impl Sensor {
         (0..self.strains.len()).map(|at| self.strain(at, chain, sizes)).collect()
     }
 
-    /// m + r.
-    fn remembered(&self, strains: Vec<Vec<f64>>, chain: &Chain) -> Vec<Vec<f64>> {
-        let mut values = remembered(strains, chain, &self.course, &self.reference.full_scale);
-        for row in &mut values {
-            row.iter_mut().zip(&self.rest).for_each(|(value, rest)| *value += rest);
+    fn point<'p>(&self, applied: &'p [(usize, Vec<f64>)]) -> Point<'p> {
+        let (chain, sizes) = self.chain(applied);
+        let strains = self.strained(&chain, &sizes);
+        let remembered = self.remembered(strains.clone(), &chain);
+        let readings = self.read(&remembered, &chain);
+        Point { applied, chain, strains, remembered, readings }
+    }
+
+    /// ∂readings/∂ψ by one coordinate, at all rows.
+    fn signature(&self, point: &Point<'_>, at: usize, parameter: usize) -> Signature {
+        let Hypothesis { parameters, .. } = &self.hypotheses[at];
+        let held = point.applied.iter().position(|(held, _)| *held == at);
+        if parameters[parameter].shape.is_some() && held.is_none() {
+            return vec![None; self.rest.len()];
         }
-        values
+        let moved = |by: f64| {
+            let mut applied = point.applied.to_vec();
+            let own = held.unwrap_or(applied.len());
+            if held.is_none() {
+                applied.push((at, vec![0.0; parameters.len()]));
+            }
+            applied[own].1[parameter] += by;
+            let (chain, sizes) = self.chain(&applied);
+            match self.changes[at] {
+                Change::Cause(Cause { stage: ChainStage::Channels, .. }) => {
+                    self.read(&point.remembered, &chain)
+                }
+                // What memory adds changes, and not the strains.
+                Change::Cause(Cause { stage: ChainStage::Mechanics | ChainStage::Coupling, .. }) => {
+                    self.read(&self.remembered(point.strains.clone(), &chain), &chain)
+                }
+                _ => {
+                    let strains = self.strained(&chain, &sizes);
+                    self.read(&self.remembered(strains, &chain), &chain)
+                }
+            }
+        };
+        slopes(&parameters[parameter], &point.readings, moved, &self.reference.full_scale)
+    }
+
+    fn remembered(&self, strains: Vec<Vec<f64>>, chain: &Chain) -> Vec<Vec<f64>> {
+        remembered(strains, chain, &self.course, &self.reference.full_scale)
     }
 
     fn read(&self, remembered: &[Vec<f64>], chain: &Chain) -> Vec<Vec<f64>> {
         let mut channels = read(remembered, chain, &self.course, &self.reference, &self.samples);
-        for (channel, rest) in channels.iter_mut().zip(&self.rest) {
-            channel.iter_mut().for_each(|value| *value -= rest);
+        // What rest reads has a gain, and no bend: the slope is that at rest.
+        let mut straight = chain.channels.clone();
+        straight.second_order.fill(0.0);
+        for (row, sample) in self.samples.iter().enumerate() {
+            let mut rest = self.rest.clone();
+            straight.amplify(&mut rest, &self.reference.conditions(sample));
+            for ((channel, read), rest) in channels.iter_mut().zip(rest).zip(&self.rest) {
+                channel[row] += read - rest;
+            }
         }
         channels
     }
@@ -368,11 +436,30 @@ fn reference(strains: &[Vec<f64>], samples: &[Sample]) -> Reference {
 pub(super) struct SensorAt<'s> {
     sensor: &'s Sensor,
     picked: Vec<usize>,
+    /// For each channel, what its model may get wrong of itself.
+    errors: Vec<Vec<Vec<f64>>>,
 }
 
 impl<'s> SensorAt<'s> {
     pub(super) fn new(sensor: &'s Sensor, rows: &Observations) -> Self {
-        Self { sensor, picked: rows.numbers.clone() }
+        let picked = rows.numbers.clone();
+        // As a gain, and as a bend.
+        let of_channel = |channel: usize| -> Vec<Vec<f64>> {
+            let full_scale = sensor.reference.full_scale[channel];
+            let of = |error: &dyn Fn(f64) -> f64| -> Vec<f64> {
+                let strain = |row: &usize| sensor.strains[*row][channel];
+                picked.iter().map(|row| sensor.model_error * error(strain(row))).collect()
+            };
+            vec![of(&|strain| strain), of(&|strain| strain * strain / full_scale)]
+        };
+        let channels = if sensor.model_error > 0.0 { 0..sensor.rest.len() } else { 0..0 };
+        let errors = channels.map(of_channel).collect();
+        Self { sensor, picked, errors }
+    }
+
+    fn at_rows(&self, signature: Signature) -> Signature {
+        let picked = |of: Vec<f64>| self.picked.iter().map(|row| of[*row]).collect();
+        signature.into_iter().map(|of| of.map(picked)).collect()
     }
 
     /// Each channel's values at these rows.
@@ -390,9 +477,7 @@ impl Model<Label> for SensorAt<'_> {
     }
 
     fn readings(&self, applied: &[(usize, Vec<f64>)]) -> Vec<Vec<f64>> {
-        let (chain, sizes) = self.sensor.chain(applied);
-        let strains = self.sensor.strained(&chain, &sizes);
-        self.picked(self.sensor.read(&self.sensor.remembered(strains, &chain), &chain))
+        self.picked(self.sensor.point(applied).readings)
     }
 
     fn sizes(&self) -> Vec<f64> {
@@ -404,57 +489,46 @@ impl Model<Label> for SensorAt<'_> {
     }
 
     fn linearised(&self, applied: &[(usize, Vec<f64>)]) -> Linearised {
-        use rayon::prelude::*;
-        let sensor = self.sensor;
-        let (chain, sizes) = sensor.chain(applied);
-        let strains = sensor.strained(&chain, &sizes);
-        let remembered = sensor.remembered(strains.clone(), &chain);
-        let readings = sensor.read(&remembered, &chain);
-        let signature = |at: usize, parameter: usize| -> Signature {
-            let Hypothesis { parameters, .. } = &sensor.hypotheses[at];
-            let held = applied.iter().position(|(held, _)| *held == at);
-            if parameters[parameter].shape.is_some() && held.is_none() {
-                return vec![None; readings.len()];
-            }
-            let moved = |by: f64| {
-                let mut applied = applied.to_vec();
-                let own = held.unwrap_or(applied.len());
-                if held.is_none() {
-                    applied.push((at, vec![0.0; parameters.len()]));
-                }
-                applied[own].1[parameter] += by;
-                let (chain, sizes) = sensor.chain(&applied);
-                match sensor.changes[at] {
-                    Change::Cause(Cause { stage: ChainStage::Channels, .. }) => {
-                        sensor.read(&remembered, &chain)
-                    }
-                    // What memory adds changes, and not the strains.
-                    Change::Cause(Cause { stage: ChainStage::Mechanics | ChainStage::Coupling, .. }) => {
-                        sensor.read(&sensor.remembered(strains.clone(), &chain), &chain)
-                    }
-                    _ => {
-                        let strains = sensor.strained(&chain, &sizes);
-                        sensor.read(&sensor.remembered(strains, &chain), &chain)
-                    }
-                }
-            };
-            let slopes = slopes(&parameters[parameter], &readings, moved, &sensor.reference.full_scale);
-            let picked = |of: Vec<f64>| self.picked.iter().map(|row| of[*row]).collect();
-            slopes.into_iter().map(|of| of.map(picked)).collect()
-        };
+        let (sensor, point) = (self.sensor, self.sensor.point(applied));
         let hypotheses = sensor.hypotheses.par_iter().enumerate();
-        let signatures = hypotheses
-            .map(|(at, it)| (0..it.parameters.len()).map(|parameter| signature(at, parameter)).collect());
+        let signatures = hypotheses.map(|(at, it)| {
+            let of = |parameter| self.at_rows(sensor.signature(&point, at, parameter));
+            (0..it.parameters.len()).map(of).collect()
+        });
         Linearised {
             signatures: signatures.collect(),
             loads: self.picked.iter().map(|row| sensor.samples[*row].load).collect(),
-            doubts: self.picked(sensor.doubts(&chain)),
-            readings: self.picked(readings),
+            doubts: self.picked(sensor.doubts(&point.chain)),
+            readings: self.picked(point.readings.clone()),
         }
     }
 
-    fn common_errors(&self, _applied: &[(usize, Vec<f64>)]) -> Vec<CommonError> {
-        Vec::new()
+    /// Each as large, in units of the channels' root mean squares, as the model's error.
+    fn common_errors(&self, applied: &[(usize, Vec<f64>)]) -> Vec<CommonError> {
+        let (sensor, point) = (self.sensor, self.sensor.point(applied));
+        if sensor.model_error <= 0.0 {
+            return Vec::new();
+        }
+        let is_like = |effect: Effect| matches!(effect, Effect::Own(_)) || ERRORS_LIKE.contains(&effect);
+        let like = (0..sensor.hypotheses.len()).filter(|at| is_like(sensor.hypotheses[*at].label.0));
+        let of =
+            |at: usize| (0..sensor.hypotheses[at].parameters.len()).map(move |parameter| (at, parameter));
+        let like: Vec<(usize, usize)> = like.flat_map(of).collect();
+        let error = |(at, parameter): &(usize, usize)| {
+            let signature = sensor.signature(&point, *at, *parameter);
+            let channels = signature.iter().zip(&sensor.reference.sizes);
+            let shares = channels.map(|(slopes, size)| {
+                slopes.as_ref().map_or(0.0, |slopes| (rms(slopes.iter().copied()) / size).powi(2))
+            });
+            let share = mean(shares.collect::<Vec<f64>>()).sqrt();
+            let deviation = sensor.model_error / share.max(f64::MIN_POSITIVE.sqrt());
+            CommonError { deviation, signature: self.at_rows(signature) }
+        };
+        like.par_iter().map(error).collect()
+    }
+
+    fn stated_errors(&self, channel: usize) -> &[Vec<f64>] {
+        self.errors.get(channel).map_or(&[], Vec::as_slice)
     }
 }
 

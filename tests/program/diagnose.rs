@@ -156,3 +156,74 @@ fn what_changed_in_any_sensor_is_named() {
     let gain = finding["parameters"]["gain"]["value"].as_f64().unwrap();
     assert!((gain - 0.85).abs() < 0.03, "{gain}");
 }
+
+/// A sensor of two channels under one load, in so many rows.
+fn sensor(rows: usize, channels: &str, number: impl Fn(usize, usize) -> String) -> String {
+    let row = |at: usize| {
+        let cells = (0..channels.split(',').count()).map(|channel| number(at, channel));
+        cells.collect::<Vec<_>>().join(",") + "\n"
+    };
+    format!("{channels}\n{}", (0..rows).map(row).collect::<String>())
+}
+
+#[test]
+fn predictions_of_other_rows_or_channels_are_refused_by_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: String| fs::write(folder.path().join(name), text).unwrap();
+    let number = |at: usize, channel: usize| {
+        (if channel == 0 { at as f64 } else { channel as f64 * (at % 17) as f64 }).to_string()
+    };
+    let read = |at: usize, channel: usize| match channel {
+        0 => at.to_string(),
+        _ => (channel as f64 * (at % 17) as f64 + 0.1 * ((7 * at + channel) % 5) as f64).to_string(),
+    };
+    write("m.csv", sensor(100, "fz_n,a,b", read));
+    write("shorter.csv", sensor(99, "fz_n,a,b", number));
+    write("other.csv", sensor(100, "fz_n,a,b", |at, channel| number(at + usize::from(at == 41), channel)));
+    write(
+        "gap.csv",
+        sensor(100, "fz_n,a,b", |at, k| if (at, k) == (6, 2) { String::new() } else { number(at, k) }),
+    );
+    write("names.csv", sensor(100, "fz_n,c,d", number));
+    write("p.csv", sensor(100, "fz_n,a,b", number));
+    for (model, words) in [
+        ("shorter.csv", ["100", "99"]),
+        ("other.csv", ["row 42", "fz_n"]),
+        ("gap.csv", ["row 7", "b"]),
+        ("names.csv", ["no channel", "name"]),
+        ("missing.csv", ["missing.csv", "CSV"]),
+    ] {
+        let said = refused(folder.path(), &format!("--measured m.csv --model {model}"));
+        assert!(words.iter().all(|word| said.contains(word)) && said.lines().count() == 1, "{model}: {said}");
+    }
+    let effects = folder.path().join("effects");
+    fs::create_dir(&effects).unwrap();
+    let asked = "--measured m.csv --model p.csv --effects effects";
+    assert!(refused(folder.path(), asked).contains("effects.toml"));
+    let section = |low: &str, family: &str| {
+        format!(
+            "[gap]\nunit = \"mm\"\nlow = {low}\nhigh = 1.0\nprior_deviation = 0.1\nfamily = \"{family}\"\n"
+        )
+    };
+    for (text, word) in [
+        (section("-1.0", "mechanics"), "family"),
+        (section("0.5", "mechanical"), "[gap]"),
+        (section("-1.0", "mechanical").replace("[gap]", "[creep]"), "[creep]"),
+        (section("-1.0", "mechanical"), "gap.csv"),
+    ] {
+        fs::write(effects.join("effects.toml"), text).unwrap();
+        let said = refused(folder.path(), asked);
+        assert!(said.contains(word) && said.contains("effects"), "{said}");
+    }
+    for (table, words) in [
+        (sensor(7, "a,b", number), ["7 rows", "100"]),
+        (sensor(100, "c,d", number), ["a, b", "channel"]),
+        (sensor(100, "a", |at, _| if at == 3 { "?".to_owned() } else { "1".to_owned() }), ["row 4", "a"]),
+    ] {
+        fs::write(effects.join("gap.csv"), table).unwrap();
+        let said = refused(folder.path(), asked);
+        assert!(words.iter().all(|word| said.contains(word)) && said.contains("gap.csv"), "{said}");
+    }
+    assert!(refused(folder.path(), "--measured m.csv --effects effects").contains("--model"));
+    assert!(refused(folder.path(), "--measured m.csv --model p.csv --against p.csv").contains("--against"));
+}

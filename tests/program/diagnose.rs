@@ -5,6 +5,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
+use serde_json::Value;
+use tactpad::numeric::random::SplitMix64;
 use tactpad::quantity::{CHANNEL_NAMES, CHANNELS};
 
 const LABEL: &str = "x_mm,y_mm,fx_n,fy_n,fz_n";
@@ -136,7 +138,7 @@ fn what_changed_in_any_sensor_is_named() {
     write("before.csv", &other_sensor(1, 1.0));
     write("same.csv", &other_sensor(2, 1.0));
     write("weaker.csv", &other_sensor(3, 0.85));
-    let found = |file: &str| -> serde_json::Value {
+    let found = |file: &str| -> Value {
         let output = diagnose(folder.path(), &format!("--measured {file} --against before.csv --json"));
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice(&output.stdout).unwrap()
@@ -226,4 +228,47 @@ fn predictions_of_other_rows_or_channels_are_refused_by_what_is_wrong() {
     }
     assert!(refused(folder.path(), "--measured m.csv --effects effects").contains("--model"));
     assert!(refused(folder.path(), "--measured m.csv --model p.csv --against p.csv").contains("--against"));
+}
+
+/// A scale and three channels that follow it, with this deviation of their noise.
+fn weighed(seed: u64, noise: f64, label: impl Fn(f64) -> f64) -> String {
+    let mut random = SplitMix64::new(seed);
+    let mut text = String::from("scale_g,a,b,c\n");
+    for _ in 0..300 {
+        let load = 800.0 * f64::from(random.fraction());
+        let channels = [(900.0, -1.2), (500.0, -0.5), (40.0, 0.6)].map(|(zero, slope): (f64, f64)| {
+            let bent = slope * load * (1.0 + 1e-4 * load);
+            format!("{:.4}", zero + bent + noise * f64::from(random.normal()))
+        });
+        text += &format!("{:.4},{}\n", label(load), channels.join(","));
+    }
+    text
+}
+
+#[test]
+fn noise_that_grew_in_all_channels_and_labels_that_go_nowhere_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: String| fs::write(folder.path().join(name), text).unwrap();
+    write("earlier.csv", weighed(1, 4.0, |load| load));
+    write("same.csv", weighed(2, 4.0, |load| load));
+    write("loud.csv", weighed(3, 40.0, |load| load));
+    write("kilograms.csv", weighed(4, 4.0, |load| load / 1000.0));
+    write("stuck.csv", weighed(5, 4.0, |_| 61.1));
+    let said = |file: &str| -> Value {
+        let output = diagnose(folder.path(), &format!("--json --measured {file} --against earlier.csv"));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    assert_eq!(said("same.csv")["verdict"], "no_discrepancy");
+    let loud = said("loud.csv");
+    let found: Vec<_> =
+        loud["findings"].as_array().unwrap().iter().map(|it| (&it["effect"], &it["target"])).collect();
+    let all = ["a", "b", "c"].map(|channel| ("noise_excess", channel));
+    assert!(
+        found.len() == 3 && all.iter().all(|it| found.iter().any(|of| *of.0 == it.0 && *of.1 == it.1)),
+        "{found:?}"
+    );
+    for file in ["kilograms.csv", "stuck.csv"] {
+        let why = refused(folder.path(), &format!("--measured {file} --against earlier.csv"));
+        assert!(why.contains("scale_g") && why.contains("unit") && why.lines().count() == 1, "{why}");
+    }
 }

@@ -129,6 +129,14 @@ impl EarlierRecording {
         self.channels.iter().map(signal).collect()
     }
 
+    /// The mean square of a channel's noise that is expected at these signals, and its relative variance.
+    pub(super) fn noise(&self, channel: usize, signals: &[f64]) -> Option<[f64; 2]> {
+        let Channel { fit, left, .. } = self.channels[channel].as_ref()?;
+        let told = left.iter().filter(|[_, weight]| *weight > 0.0).count();
+        let square = mean(signals.iter().map(|signal| fit.noise.variance(*signal)).collect::<Vec<_>>());
+        Some([square, 2.0 * correlated(fit) / told as f64])
+    }
+
     /// Whether zeros are known by temperature.
     pub(super) const fn has_temperature(&self) -> bool {
         self.temp_c.is_some()

@@ -22,7 +22,7 @@ use self::standing::standing;
 pub use self::unfit::ComparisonError;
 use self::unfit::{BLOCKS_MIN, ROWS_MIN};
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::gatekeepers::checks::excess::excess;
+use crate::diagnosis::gatekeepers::checks::excess::{excess, excess_over};
 use crate::diagnosis::gatekeepers::{self, Gate, guarded};
 use crate::diagnosis::label::{Label, Search};
 use crate::diagnosis::report::{Diagnosis, Finding, Notice};
@@ -59,6 +59,13 @@ pub fn compare(
         if recording.inputs.len() < ROWS_MIN {
             return Err(ComparisonError::Rows { rows: recording.inputs.len(), which });
         }
+    }
+    if let Some(at) = before.unused_label(&after) {
+        let extents = [&before, &after].map(|it| extent(it.inputs.iter().map(|row| row[at])));
+        return Err(ComparisonError::Narrow {
+            name: columns.inputs[at].clone(),
+            extents: extents.map(|it| it.map(short)),
+        });
     }
     let has_temperature = [&before, &after].into_iter().all(varies_in_temperature);
     let sound = guarded(&before.observations, None, |_| true);
@@ -157,9 +164,18 @@ fn told(
     .map_err(no_solution)?;
     standing(&mut diagnosis, &search, &rows, &found);
     let signals = &found.fit.linearised.readings;
-    let excess = asked
-        .asks_for(Effect::NoiseExcess)
-        .then(|| excess(&open.observations, &found.fit.systems.noise, signals));
+    let expected: Vec<Option<[f64; 2]>> =
+        signals.iter().enumerate().map(|(channel, signals)| known.noise(channel, signals)).collect();
+    // Means of held loads have another noise than rows of a series.
+    let has_series = |it: &Recording| it.observations.in_series().contains(&true);
+    let noise = &found.fit.systems.noise;
+    let excess = asked.asks_for(Effect::NoiseExcess).then(|| {
+        if has_series(before) == has_series(after) {
+            excess_over(&open.observations, noise, signals, &expected)
+        } else {
+            excess(&open.observations, noise, signals)
+        }
+    });
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
     let own = diagnosis.findings.clone();
     // Readings at a limit that was not seen look like noise.
@@ -208,6 +224,12 @@ fn circumstances(after: &Recording, known: &EarlierRecording) -> Circumstances {
         has_temperature: known.has_temperature(),
         has_series: in_series.count() >= SERIES_MIN,
     }
+}
+
+/// A number of four digits, as a sentence takes it.
+fn short(number: f64) -> String {
+    let digits = if number == 0.0 { 0 } else { (3 - number.abs().log10().floor() as i32).clamp(0, 9) };
+    format!("{number:.0$}", digits as usize)
 }
 
 fn varies_in_temperature(recording: &Recording) -> bool {

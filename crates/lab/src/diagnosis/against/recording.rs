@@ -1,6 +1,6 @@
 //! A recording of any sensor as observations, and the labels that its channels are predicted by.
 
-use super::columns::Columns;
+use super::columns::{Columns, extent};
 use tactpad_core::tables::measured::sheet::Sheet;
 use tactpad_inference::observations::{Observations, Sample};
 use tactpad_numeric::statistics::median;
@@ -17,6 +17,9 @@ const PRESSED: [f64; 2] = [0.4, 0.6];
 /// Fewest presses that are presses; a series without is cut into so many equal parts.
 const PRESSES_MIN: usize = 4;
 const PARTS: usize = 8;
+/// A label goes nowhere whose range is less than this part of the earlier one, and a channel as far as before whose range is more.
+const NARROW: f64 = 0.05;
+const AS_FAR: f64 = 0.5;
 /// How a load from above is written.
 const UNLOADING: &str = "unloading";
 /// What stands for places where none varies: half the extent of whatever varies instead.
@@ -124,6 +127,25 @@ impl Recording {
                 [1.0, 0.0, 0.0]
             };
         }
+    }
+
+    /// A label that goes next to nowhere in a later recording whose channels go as far as here: it is stuck, or in another unit.
+    pub(in crate::diagnosis) fn unused_label(&self, later: &Self) -> Option<usize> {
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            let [low, high] = extent(values.filter(|it| it.is_finite()));
+            high - low
+        };
+        let of_label = |of: &Self, at: usize| range(&mut of.inputs.iter().map(|row| row[at]));
+        let channels = self.observations.readings.iter().zip(&later.observations.readings);
+        let goes_as_far = |(before, after): (&Vec<f64>, &Vec<f64>)| {
+            range(&mut after.iter().copied()) > AS_FAR * range(&mut before.iter().copied())
+        };
+        let far = channels.filter(|pair| goes_as_far(*pair)).count();
+        let is_narrow = |at: &usize| of_label(later, *at) < NARROW * of_label(self, *at);
+        // Where other labels vary they may be why.
+        let narrow: Vec<usize> = (0..self.inputs.first().map_or(0, Vec::len)).filter(is_narrow).collect();
+        let is_all = narrow.len() == self.inputs.first().map_or(0, Vec::len);
+        narrow.first().copied().filter(|_| is_all && 2 * far > self.observations.readings.len())
     }
 
     /// Rows that share their errors: those of one location and session, or of one press of a series.

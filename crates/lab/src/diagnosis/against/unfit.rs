@@ -34,6 +34,13 @@ pub enum ComparisonError {
     Labels,
     /// All labels stay the same.
     Constant,
+    /// All labels go next to nowhere, and the channels as far as in the earlier recording.
+    Narrow {
+        /// Name of the first.
+        name: String,
+        /// Its least and greatest value: in the earlier recording, and in the measured table.
+        extents: [[String; 2]; 2],
+    },
     /// Too few rows.
     Rows {
         /// How many.
@@ -72,6 +79,11 @@ impl fmt::Display for ComparisonError {
             ),
             Self::Constant => f.write_str(
                 "all labels stay the same in the earlier recording: what the channels should read under others is not known",
+            ),
+            Self::Narrow { name, extents: [[low, high], [least, most]] } => write!(
+                f,
+                "{name} goes from {least} to {most} in the measured table and from {low} to {high} in the earlier recording, while the channels \
+                 go as far as there: it is stuck, or in another unit; mend that column, or leave it out with --labels"
             ),
             Self::Rows { rows, which } => {
                 write!(f, "{which} has {rows} rows with labels: it takes {ROWS_MIN} at least")

@@ -4,6 +4,8 @@
 //! that is the same in all and one that goes with the signal: ln σ = ln b √(r² + S²) + e with S the signal's root mean square and
 //! r = a/b. They differ by the standard deviation [`NATURAL`] of e, or by what the others differ by where that is no chance. Static
 //! samples and series, where each has its own noise, are looked at apart; what counts is the kind that tells more.
+//!
+//! Where an earlier recording knows each channel's noise, it is held against that: there all channels may be loud together.
 
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::report::{Estimate, Finding, NotDetected, Notice};
@@ -76,15 +78,19 @@ pub(crate) fn excess(observations: &Observations, noise: &[Noise], signals: &[Ve
         })
         .filter(|levels| levels.len() > OTHERS_MIN)
         .collect();
+    let all = (0..noise.len()).filter_map(|channel| Some((channel, beside(&by_kind, channel)?))).collect();
+    told(observations, all, "the other channels let expect")
+}
+
+/// What is said of channels whose noise is known beside what is expected by `whom`.
+fn told(observations: &Observations, all: Vec<(usize, NoiseExcess)>, whom: &str) -> Excess {
     let mut found = Excess::default();
-    let all: Vec<(usize, NoiseExcess)> =
-        (0..noise.len()).filter_map(|channel| Some((channel, beside(&by_kind, channel)?))).collect();
     let critical = chi_square::quantile(2.0 * LEVEL / all.len() as f64, 1).sqrt();
     for (channel, own) in all {
         let deviation = own.variance.sqrt();
         if own.excess > critical * deviation {
             found.findings.push(finding(channel, own.excess, deviation));
-            found.notices.push(notice(observations, channel, &own));
+            found.notices.push(notice(observations, channel, &own, whom));
         } else {
             found.not_detected.push(NotDetected {
                 effect: Effect::NoiseExcess,
@@ -98,6 +104,23 @@ pub(crate) fn excess(observations: &Observations, noise: &[Noise], signals: &[Ve
         }
     }
     found
+}
+
+/// Holds the channels' noise against what it was: for each channel the mean square that is expected of these rows and its relative variance;
+/// none where that is not known.
+pub(crate) fn excess_over(
+    observations: &Observations,
+    noise: &[Noise],
+    signals: &[Vec<f64>],
+    expected: &[Option<[f64; 2]>],
+) -> Excess {
+    let of_channel = |channel: usize| {
+        let [square, variance] = expected[channel]?;
+        let own = level(observations, (channel, (&noise[channel], &signals[channel])), &[false, true])?;
+        let variance = NATURAL * NATURAL + own.variance + 0.25 * variance;
+        Some((channel, NoiseExcess { noise: own.noise, excess: own.noise - 0.5 * square.ln(), variance }))
+    };
+    told(observations, (0..noise.len()).filter_map(of_channel).collect(), "the earlier recording lets expect")
 }
 
 /// A channel's level in rows of these kinds.
@@ -181,9 +204,9 @@ fn finding(channel: usize, excess: f64, deviation: f64) -> Finding {
     }
 }
 
-fn notice(observations: &Observations, channel: usize, own: &NoiseExcess) -> Notice {
+fn notice(observations: &Observations, channel: usize, own: &NoiseExcess, whom: &str) -> Notice {
     let detail = format!(
-        "{} has {:.1} times the noise that the other channels let expect: {:.1} instead of {:.1}; its rows keep as little weight \
+        "{} has {:.1} times the noise that {whom}: {:.1} instead of {:.1}; its rows keep as little weight \
          as that; look at its wires, and at its spectrum in a series at rest",
         observations.channels.get(channel).map_or("?", String::as_str),
         libm::exp(own.excess),

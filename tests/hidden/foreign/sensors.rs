@@ -147,7 +147,7 @@ impl Sensor {
         match hidden.map(|it| (it.effect.as_str(), it.parameter.as_str())) {
             // Written over true load.
             Some(("reference_gain", _)) => {
-                rows.iter_mut().for_each(|row| row[2..5].iter_mut().for_each(|n| *n /= 1.0 + size))
+                rows.iter_mut().for_each(|row| row[2..5].iter_mut().for_each(|n| *n /= 1.0 + size));
             }
             // Written minus true load.
             Some(("reference_zero", parameter)) => {

@@ -252,7 +252,7 @@ fn causes_are_found_with_their_numbers_in_any_number_of_channels() {
 }
 
 /// What the search finds from nothing, and beside a gain of each channel; the rivals of the first of these.
-fn sparse_and_dense(gains: &[f64]) -> (Attribution, Attribution, bool, Vec<usize>) {
+pub(super) fn sparse_and_dense(gains: &[f64]) -> (Attribution, Attribution, bool, Vec<usize>) {
     let random = &mut SplitMix64::new(61);
     let sensor = Sensor::new(gains.len(), contacts(random));
     let family: Family =

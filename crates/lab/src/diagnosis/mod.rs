@@ -230,7 +230,7 @@ fn concluded(
     let excess = (!without.contains(&Effect::NoiseExcess))
         .then(|| excess(open, &found.fit.systems.noise, &found.fit.linearised.readings));
     let effect = |at: &usize| model.hypotheses()[*at].label.0;
-    let own = found.family.iter().flatten().map(effect);
+    let own = found.family.iter().filter(|members| !found.are_alike(members)).flatten().map(effect);
     let mut family: Vec<Effect> = own.chain(individual.iter().copied()).collect();
     if !found.family.is_empty() {
         family.push(Effect::ChannelOffset);

@@ -32,7 +32,7 @@ impl PredictedRows {
             let [measured, predicted] = [measured, predicted].map(Sheet::rows);
             return Err(PredictionError::Rows { measured, predicted });
         }
-        for name in asked.labels.iter().filter(|name| measured.numbers(name).is_none()) {
+        if let Some(name) = asked.labels.iter().find(|name| measured.numbers(name).is_none()) {
             return Err(PredictionError::NoNumbers { name: name.clone(), which: "the measured table" });
         }
         for name in asked.channels {

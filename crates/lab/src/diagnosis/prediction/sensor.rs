@@ -149,7 +149,7 @@ impl Sensor {
                 && hypothesis.parameters.len() == labels.len()
             {
                 let mut labels = labels.iter();
-                hypothesis.parameters.retain(|_| labels.next().is_some_and(|name| has(name)));
+                hypothesis.parameters.retain(|_| labels.next().is_some_and(&has));
             }
         }
         let mut changes: Vec<Change> = causes.into_iter().map(Change::Cause).collect();

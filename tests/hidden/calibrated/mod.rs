@@ -71,7 +71,7 @@ fn pads_of_another_programs_fields_are_calibrated() {
 }
 
 #[test]
-#[ignore = "proof: 90 s: misses its goal, as docs/decoding.md says: beside a stage that is off a module has a name that is wrong"]
+#[ignore = "proof: 90 s: memories that are none of the program's, and rigs with a fault"]
 fn pads_with_other_memories_and_on_wrong_rigs_are_calibrated() {
     are_calibrated(&CASES, 1..=1);
 }

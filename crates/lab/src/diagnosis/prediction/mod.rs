@@ -65,7 +65,7 @@ pub fn diagnose(
     if blocks.len() < BLOCKS_MIN {
         return Err(PredictionError::Blocks(blocks.len()));
     }
-    if !(0..expected.len()).any(|channel| gate.observations.is_alive(channel)) {
+    if !rows.any_follows(&gate.observations) {
         return Err(PredictionError::Silent);
     }
     let sensor = Sensor::of(&rows, derivatives, asked, model_error).map_err(no_solution)?;

@@ -6,9 +6,12 @@ use crate::diagnosis::against::columns::{Columns, PLANNED, extent, is_known, var
 use crate::diagnosis::against::recording::Recording;
 use tactpad_core::tables::measured::sheet::Sheet;
 use tactpad_inference::observations::Observations;
+use tactpad_numeric::statistics::correlation;
 
 /// Numbers of two tables that differ by less than this part of their column's range are the same.
 const SAME: f64 = 1e-3;
+/// So many standard deviations of what chance makes of a correlation.
+const FOLLOWS: f64 = 4.0;
 /// What stands for places where no label says any: half the extent of what the first two channels should read.
 const HALF_SIDE_MM: f64 = 10.0;
 
@@ -47,24 +50,29 @@ impl PredictedRows {
             predicted.numeric().filter(|name| measured.numbers(name).is_some()).map(str::to_owned).collect();
         let is_label =
             |name: &String| is_known(name) || PLANNED.contains(&name.as_str()) || asked.labels.contains(name);
-        // What the predictions repeat of the measured table is no channel.
-        let is_repeated = |name: &String| other_row(measured, predicted, name).is_none();
-        let channels: Vec<String> = if asked.channels.is_empty() {
-            let is_free = |name: &&String| !is_label(name) && varies(predicted, name) && !is_repeated(name);
-            both.iter().filter(is_free).cloned().collect()
+        let channels = if asked.channels.is_empty() {
+            let (repeated, channels): (Vec<String>, Vec<String>) = both
+                .iter()
+                .filter(|name| !is_label(name) && varies(predicted, name))
+                .cloned()
+                .partition(|name| other_row(measured, predicted, name).is_none());
+            // What the predictions repeat of the measured table is a label.
+            match channels.is_empty() {
+                true if repeated.is_empty() => return Err(PredictionError::Channels),
+                true => return Err(PredictionError::Same(repeated.join(", "))),
+                false => channels,
+            }
         } else {
             asked.channels.to_vec()
         };
-        if channels.is_empty() {
-            return Err(PredictionError::Channels);
-        }
-        let labels: Vec<&String> = both.iter().filter(|name| !channels.contains(name)).collect();
-        if let Some((name, row)) =
-            labels.iter().find_map(|name| Some((*name, other_row(measured, predicted, name)?)))
-        {
+        let is_repeated = |name: &&String| other_row(measured, predicted, name).is_none();
+        let labels = both.iter().filter(|name| !channels.contains(name));
+        let (repeated, others): (Vec<&String>, Vec<&String>) = labels.partition(is_repeated);
+        let other = others.into_iter().find(|name| is_label(name));
+        if let Some((name, row)) = other.and_then(|name| Some((name, other_row(measured, predicted, name)?))) {
             return Err(PredictionError::OtherRow { name: name.clone(), row });
         }
-        let labels: Vec<String> = labels.into_iter().chain(asked.labels).cloned().collect();
+        let labels: Vec<String> = repeated.into_iter().chain(asked.labels).cloned().collect();
         let columns = Columns::beside(channels, measured, &labels);
         let recording = Recording::of(measured, &columns);
         let model = Recording::of(&measured.with_numbers_of(predicted, &columns.channels), &columns);
@@ -72,7 +80,8 @@ impl PredictedRows {
         if let Some((channel, row)) = (0..readings.len()).find_map(|channel| {
             Some((channel, readings[channel].iter().position(|number| !number.is_finite())?))
         }) {
-            return Err(PredictionError::NoPrediction { name: columns.channels[channel].clone(), row });
+            let (name, row) = (columns.channels[channel].clone(), model.table_rows[row]);
+            return Err(PredictionError::NoPrediction { name, row });
         }
         let of_row = |row: usize| readings.iter().map(|channel| channel[row]).collect();
         let predicted = (0..recording.inputs.len()).map(of_row).collect();
@@ -83,6 +92,17 @@ impl PredictedRows {
     pub(super) fn predictions(&self) -> Vec<Vec<f64>> {
         let channels = self.columns.channels.len();
         (0..channels).map(|channel| self.predicted.iter().map(|row| row[channel]).collect()).collect()
+    }
+
+    /// Whether any channel goes with its prediction by more than chance.
+    pub(super) fn any_follows(&self, observations: &Observations) -> bool {
+        let follows = |(channel, predicted): (usize, &Vec<f64>)| {
+            let rows = observations.readings[channel].iter().zip(predicted).zip(&observations.is_told[channel]);
+            let told = rows.filter(|(_, is_told)| **is_told).map(|((read, predicted), _)| (*read, *predicted));
+            let (read, predicted): (Vec<f64>, Vec<f64>) = told.unzip();
+            correlation(&read, &predicted).abs() * (read.len() as f64).sqrt() > FOLLOWS
+        };
+        self.predictions().iter().enumerate().any(follows)
     }
 
     /// For each row, what each channel should read beside what it reads at rest.
@@ -125,8 +145,9 @@ impl PredictedRows {
             let channels = self.predictions();
             for (axis, channel) in channels.iter().take(2).enumerate() {
                 let [low, high] = extent(channel.iter().copied());
+                let width = (high - low).max(f64::MIN_POSITIVE);
                 for (sample, value) in self.recording.observations.samples.iter_mut().zip(channel) {
-                    sample.place_mm[axis] = HALF_SIDE_MM * (2.0 * value - low - high) / (high - low);
+                    sample.place_mm[axis] = HALF_SIDE_MM * (2.0 * value - low - high) / width;
                 }
             }
         }

@@ -44,6 +44,8 @@ pub enum PredictionError {
     },
     /// The tables have no channel in common.
     Channels,
+    /// These columns, which could be channels, are predicted as they were measured.
+    Same(String),
     /// Too few rows.
     Few(usize),
     /// Too few places or presses.
@@ -82,6 +84,10 @@ impl fmt::Display for PredictionError {
             Self::Channels => f.write_str(
                 "no channel is predicted: no column of the predictions that varies and is no label has the name of a measured one; name \
                  channels alike in both tables",
+            ),
+            Self::Same(names) => write!(
+                f,
+                "{names}: the predictions are the measured numbers themselves; write there what your model says"
             ),
             Self::Few(rows) => write!(f, "{rows} rows with labels: it takes {ROWS_MIN} at least"),
             Self::Blocks(blocks) => write!(

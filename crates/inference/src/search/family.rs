@@ -22,7 +22,7 @@ const DRAWS: usize = 2000;
 const RIDGE: f64 = 1e-9;
 
 /// The signatures of a family's members, each channel in units of its root mean square and about its mean.
-pub(super) struct FamilySpan<'s, 'm, L> {
+struct FamilySpan<'s, 'm, L> {
     search: &'s Search<'m, L>,
     fit: &'s AttributionFit,
     sizes: Vec<f64>,
@@ -44,7 +44,7 @@ struct Mixture {
 }
 
 impl<'s, 'm, L> FamilySpan<'s, 'm, L> {
-    pub(super) fn of(
+    fn of(
         search: &'s Search<'m, L>,
         fit: &'s AttributionFit,
         family: &[Vec<usize>],
@@ -101,7 +101,7 @@ impl<'s, 'm, L> FamilySpan<'s, 'm, L> {
     /// ```text
     /// |s − A c|² < ε₀² |s|² + 1.96² (ε² |s|² + Σ εₖ² cₖ² |aₖ|²)
     /// ```
-    pub(super) fn reproduced(&self) -> Vec<bool> {
+    fn reproduced(&self) -> Vec<bool> {
         let errors: Vec<f64> = self.search.model.hypotheses().iter().map(|it| it.signature_error).collect();
         let is_reproduced = |own: f64, column: &[f64]| {
             let Mixture { weights, whole, left } = self.mixture(column);
@@ -152,6 +152,15 @@ impl Attribution {
 }
 
 impl<L> Search<'_, L> {
+    /// Which hypotheses a family reproduces.
+    pub(super) fn reproduced(
+        &self,
+        fit: &AttributionFit,
+        family: &[Vec<usize>],
+    ) -> Result<Vec<bool>, InferenceError> {
+        Ok(FamilySpan::of(self, fit, family)?.reproduced())
+    }
+
     /// Whether a fitted cause beside a family changes no more, beyond what the members make up, than a model itself gets wrong, and in the same
     /// way, smoothly with the place and the load.
     ///

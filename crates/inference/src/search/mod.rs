@@ -15,7 +15,6 @@ use rayon::prelude::*;
 
 use self::bootstrap::{Bootstrap, Draw};
 use self::columns::Columns;
-use self::family::FamilySpan;
 use self::score_test::{Projected, Test};
 use crate::covariance::{Background, Fitted, Marginal, Smooth, Systems};
 use crate::error::{InferenceError, Stage, factorised};
@@ -134,7 +133,7 @@ impl<'m, L> Search<'m, L> {
                 fit = self.fitted(&applied, Some(&fit))?;
             }
         }
-        let reproduced = FamilySpan::of(self, &fit, family)?.reproduced();
+        let reproduced = self.reproduced(&fit, family)?;
         Ok(Attribution { fit, critical, family: family.to_vec(), reproduced })
     }
 
@@ -344,7 +343,7 @@ impl<'m, L> Search<'m, L> {
     ) -> Result<Option<usize>, InferenceError> {
         let projected = self.projected(fit)?;
         let least = self.least_square(fit)?;
-        let reproduced = FamilySpan::of(self, fit, family)?.reproduced();
+        let reproduced = self.reproduced(fit, family)?;
         let holds = |at: usize| barred.contains(&at) || fit.applied.iter().any(|(held, _)| *held == at);
         let mut candidates: Vec<(Test, usize)> = (0..self.columns.of_hypothesis.len())
             .filter(|at| !holds(*at) && !self.is_zero(*at) && !reproduced[*at])

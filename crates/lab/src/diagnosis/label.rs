@@ -3,6 +3,8 @@
 use crate::diagnosis::data::target::Target;
 use crate::effect::Effect;
 use tactpad_inference::error::InferenceError;
+use tactpad_inference::model::Model;
+use tactpad_inference::observations::Observations;
 
 /// An effect, and where it acts.
 pub(crate) type Label = (Effect, Target);
@@ -12,6 +14,15 @@ pub(crate) type Hypothesis = tactpad_inference::hypothesis::Hypothesis<Label>;
 
 /// A search among such hypotheses.
 pub(crate) type Search<'m> = tactpad_inference::search::Search<'m, Label>;
+
+/// A model that can be had at other rows.
+pub(crate) trait ModelOfRows: Model<Label> {
+    /// At some of the same measurement's rows.
+    fn at<'o>(&'o self, rows: &'o Observations) -> Box<dyn Model<Label> + 'o>;
+    /// At `rows` of `all`, which are the measurement before its faults were mended.
+    fn at_measured<'o>(&'o self, all: &'o Observations, rows: &'o Observations)
+    -> Box<dyn Model<Label> + 'o>;
+}
 
 /// Why nothing can be told by readings, where channels have these names.
 pub(super) fn no_solution<S: AsRef<str>>(error: &InferenceError, channels: &[S]) -> String {

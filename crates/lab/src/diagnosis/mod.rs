@@ -41,7 +41,7 @@ use self::conventions::Conventions;
 use self::data::observed::observed;
 use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};
-use self::label::{Label, Search, no_solution};
+use self::label::{ModelOfRows, Search, no_solution};
 use self::naming::separation::Separation;
 use self::naming::untestable::with_untestable;
 use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
@@ -171,15 +171,6 @@ fn diagnosed(
         Question { missing, without, individual: &[], validation },
     )
     .map_err(DiagnosisError::Inference)
-}
-
-/// A model that can be had at other rows.
-trait ModelOfRows: Model<Label> {
-    /// At some of the same measurement's rows.
-    fn at<'o>(&'o self, rows: &'o Observations) -> Box<dyn Model<Label> + 'o>;
-    /// At `rows` of `all`, which are the measurement before its faults were mended.
-    fn at_measured<'o>(&'o self, all: &'o Observations, rows: &'o Observations)
-    -> Box<dyn Model<Label> + 'o>;
 }
 
 /// What was asked, and what cannot be answered.

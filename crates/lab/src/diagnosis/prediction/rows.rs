@@ -69,7 +69,8 @@ impl PredictedRows {
         let labels = both.iter().filter(|name| !channels.contains(name));
         let (repeated, others): (Vec<&String>, Vec<&String>) = labels.partition(is_repeated);
         let other = others.into_iter().find(|name| is_label(name));
-        if let Some((name, row)) = other.and_then(|name| Some((name, other_row(measured, predicted, name)?))) {
+        if let Some((name, row)) = other.and_then(|name| Some((name, other_row(measured, predicted, name)?)))
+        {
             return Err(PredictionError::OtherRow { name: name.clone(), row });
         }
         let labels: Vec<String> = repeated.into_iter().chain(asked.labels).cloned().collect();
@@ -97,8 +98,10 @@ impl PredictedRows {
     /// Whether any channel goes with its prediction by more than chance.
     pub(super) fn any_follows(&self, observations: &Observations) -> bool {
         let follows = |(channel, predicted): (usize, &Vec<f64>)| {
-            let rows = observations.readings[channel].iter().zip(predicted).zip(&observations.is_told[channel]);
-            let told = rows.filter(|(_, is_told)| **is_told).map(|((read, predicted), _)| (*read, *predicted));
+            let rows =
+                observations.readings[channel].iter().zip(predicted).zip(&observations.is_told[channel]);
+            let told =
+                rows.filter(|(_, is_told)| **is_told).map(|((read, predicted), _)| (*read, *predicted));
             let (read, predicted): (Vec<f64>, Vec<f64>) = told.unzip();
             correlation(&read, &predicted).abs() * (read.len() as f64).sqrt() > FOLLOWS
         };

@@ -13,12 +13,11 @@ use rayon::prelude::*;
 
 use super::derivative::Derivative;
 use super::rows::PredictedRows;
-use crate::diagnosis::ModelOfRows;
 use crate::diagnosis::against::ColumnSelection;
 use crate::diagnosis::causes::cause::{Cause, ChainStage};
 use crate::diagnosis::causes::{hypotheses, missing};
 use crate::diagnosis::data::target::Target;
-use crate::diagnosis::label::{Hypothesis, Label};
+use crate::diagnosis::label::{Hypothesis, Label, ModelOfRows};
 use crate::diagnosis::model::chain::{Chain, Reference};
 use crate::diagnosis::model::memory::RowSequence;
 use crate::diagnosis::model::reading::{read, remembered, slopes};

@@ -1,9 +1,8 @@
 //! The simulated pad about more than one field: its own, and those of changed pads that lie too far off for its tangent.
 
-use crate::diagnosis::ModelOfRows;
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::extension::{Circumstances, with};
-use crate::diagnosis::label::{Hypothesis, Label, Search};
+use crate::diagnosis::label::{Hypothesis, Label, ModelOfRows, Search};
 use crate::diagnosis::model::mechanics::changed;
 use crate::diagnosis::report::NotTestable;
 use crate::diagnosis::simulation::bench::contacts;

@@ -65,11 +65,11 @@ fn csv(sensor: &Sensor, readings: &[Vec<f64>], with_labels: bool) -> String {
     text
 }
 
-fn said(folder: &Path) -> Value {
+fn said(folder: &Path) -> Result<Value, String> {
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let (predicted, own) = (path("predicted.csv"), folder.to_str().unwrap());
     let more = ["--model", predicted.as_str(), "--effects", own];
-    diagnosed(&folder.join("measured.csv"), &more).unwrap()
+    diagnosed(&folder.join("measured.csv"), &more)
 }
 
 /// The findings, those of zeros aside: each channel has one.
@@ -103,8 +103,12 @@ struct Outcome {
 fn judged(kind: usize, seed: u64, hidden: Option<Hidden>) -> Outcome {
     let folder = tempfile::tempdir().unwrap();
     measured(kind, seed, hidden.as_ref(), folder.path());
-    let said = said(folder.path());
-    let mut outcome = Outcome { kind, seed, is_alarm: !findings(&said).is_empty(), ..Outcome::default() };
+    let mut outcome = Outcome { kind, seed, ..Outcome::default() };
+    let said = match said(folder.path()) {
+        Ok(said) => said,
+        Err(why) => return Outcome { hidden, is_alarm: true, wrong: vec![why], ..outcome },
+    };
+    outcome.is_alarm = !findings(&said).is_empty();
     for finding in findings(&said) {
         let rivals = finding["confounded_with"].as_array().unwrap();
         let Some(hidden) = &hidden else { continue };
@@ -128,7 +132,7 @@ fn judged(kind: usize, seed: u64, hidden: Option<Hidden>) -> Outcome {
 fn hidden(kind: usize, seed: u64) -> Vec<Hidden> {
     let folder = tempfile::tempdir().unwrap();
     measured(kind, seed, None, folder.path());
-    let said = said(folder.path());
+    let said = said(folder.path()).unwrap();
     let random = &mut Random::new(seed, "foreign hidden");
     let mut effects: Vec<(String, Vec<Hidden>)> = Vec::new();
     for it in said["not_detected"].as_array().unwrap() {

@@ -228,6 +228,10 @@ fn predictions_of_other_rows_or_channels_are_refused_by_what_is_wrong() {
     }
     assert!(refused(folder.path(), "--measured m.csv --effects effects").contains("--model"));
     assert!(refused(folder.path(), "--measured m.csv --model p.csv --against p.csv").contains("--against"));
+    for other in ["--model", "--against"] {
+        let said = refused(folder.path(), &format!("--measured m.csv {other} p.csv --units mm,kg,uV"));
+        assert!(said.contains("--units") && said.lines().count() == 1, "{said}");
+    }
 }
 
 /// A scale and three channels that follow it, with this deviation of their noise.

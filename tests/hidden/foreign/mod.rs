@@ -177,9 +177,10 @@ fn are_told(nulls: std::ops::RangeInclusive<u64>, seeds: std::ops::RangeInclusiv
     let [stated, held] = [count(&|it| it.holds.is_some()), count(&|it| it.holds == Some(true))];
     let wrong: Vec<&Outcome> = told.iter().filter(|it| !it.wrong.is_empty()).collect();
     let missed: Vec<&Outcome> = told.iter().filter(|it| !it.is_named && !it.is_in_set).collect();
+    let unanswered = count(&|it| it.wrong.iter().any(|why| why.starts_with("tactpad:")));
     println!(
-        "{} of {} sound tables with an alarm; of {} causes {right} told, {named} of them named, {} tables with a wrong name; \
-         {held} of {stated} intervals hold",
+        "{} of {} sound tables with an alarm; of {} causes {right} told, {named} of them named, {} tables with a wrong name or no \
+         answer, {unanswered} of them without; {held} of {stated} intervals hold",
         alarms.len(),
         sound.len(),
         told.len(),
@@ -201,7 +202,7 @@ fn a_load_cell_a_beam_and_a_capacitive_cell_are_told() {
 }
 
 #[test]
-#[ignore = "proof: 600 s: sixty sound tables of each sensor and twenty of each cause instead of a few"]
+#[ignore = "proof: 300 s: sixty sound tables of each sensor and twenty of each cause instead of a few"]
 fn many_sensors_that_are_no_pad_are_told() {
     are_told(1001..=1060, 1001..=1020);
 }

@@ -36,6 +36,14 @@ use tactpad::tables::measured::Table;
 const ROW_BYTES: usize = 32_000;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let is_of_any_sensor = arguments.against.is_some() || arguments.model.is_some();
+    if arguments.meant.are_said() && is_of_any_sensor {
+        return Err(Failure::Unusable(
+            "--frame, --sign and --units say how labels of a pad are meant, and --against and --model take them as they are written; \
+             turn the columns before, or leave these options out"
+                .into(),
+        ));
+    }
     if let (Some(measured), Some(predicted)) = (&arguments.measured, &arguments.model) {
         return prediction::run(arguments, measured, predicted);
     }

@@ -2,7 +2,7 @@
 
 use crate::hypothesis::Hypothesis;
 use crate::noise::Noise;
-use crate::observations::Observations;
+use crate::observations::{Observations, Zeros};
 
 /// A contact's numbers: x, y and the three loads.
 pub type Written = [f64; 5];
@@ -39,7 +39,7 @@ pub struct Linearised {
 /// Zero and noise of each channel.
 pub struct ChannelBaselines<'t> {
     /// What it reads without load.
-    pub zeros: &'t [f64],
+    pub zeros: &'t Zeros,
     /// Its noise.
     pub noise: &'t [Noise],
 }

@@ -1,7 +1,7 @@
 //! Observations of any number of channels: readings, and the labels beside them.
 
 use tactpad_numeric::random::SplitMix64;
-use tactpad_numeric::statistics::rms;
+use tactpad_numeric::statistics::{mean, rms};
 
 /// Places nearer to each other than this are one location.
 const LOCATION_MM: f64 = 0.25;
@@ -15,6 +15,8 @@ pub struct Sample {
     pub place_mm: [f64; 2],
     /// Fx, Fy, Fz by the reference, or whatever loads there are.
     pub load: [f64; 3],
+    /// Index of its measurement, where several were made one after the other.
+    pub measurement: usize,
     /// Index of its session.
     pub session: usize,
     /// Index of its time series; none for a static sample.
@@ -33,6 +35,8 @@ pub struct Sample {
     pub cycle: Option<f64>,
     /// By how much the sensor was turned.
     pub turned_deg: f64,
+    /// Whether the load is a known weight's, which no reference has a part in.
+    pub is_weight: bool,
     /// Its cluster, where that is not its location and session.
     pub block: Option<usize>,
 }
@@ -57,6 +61,35 @@ pub struct Observations {
     pub samples: Vec<Sample>,
     /// The rows' numbers in the whole measurement.
     pub numbers: Vec<usize>,
+}
+
+/// Each channel's zero, in each measurement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Zeros {
+    of_channels: Vec<Vec<f64>>,
+}
+
+impl Zeros {
+    /// The means of what a model leaves at these rows, channel by channel; what is not a number tells nothing. A measurement that none of the
+    /// rows is of has the mean of all.
+    pub fn of(residuals: &[Vec<f64>], samples: &[Sample]) -> Self {
+        let measurements = samples.iter().map(|it| it.measurement + 1).max().unwrap_or(0);
+        let of_channel = |residuals: &Vec<f64>| {
+            let mean_of = |is_own: &dyn Fn(&Sample) -> bool| {
+                let own = residuals.iter().zip(samples).filter(|(it, sample)| !it.is_nan() && is_own(sample));
+                mean(own.map(|(residual, _)| *residual))
+            };
+            let whole = mean_of(&|_| true);
+            let of = |measurement| mean_of(&|sample| sample.measurement == measurement);
+            (0..measurements).map(of).map(|zero| if zero.is_nan() { whole } else { zero }).collect()
+        };
+        Self { of_channels: residuals.iter().map(of_channel).collect() }
+    }
+
+    /// The channel's at a row.
+    pub fn at(&self, channel: usize, sample: &Sample) -> f64 {
+        self.of_channels[channel].get(sample.measurement).copied().unwrap_or_default()
+    }
 }
 
 impl Observations {
@@ -104,8 +137,8 @@ impl Observations {
     pub fn clusters(&self) -> Vec<usize> {
         let steps = |mm: f64| libm::round(mm / LOCATION_MM) as i64;
         let key = |sample: &Sample| match sample.block {
-            Some(block) => (block, [0; 2]),
-            None => (sample.session, sample.place_mm.map(steps)),
+            Some(block) => (sample.measurement, block, [0; 2]),
+            None => (sample.measurement, sample.session, sample.place_mm.map(steps)),
         };
         let mut keys: Vec<_> = self.samples.iter().map(key).collect();
         let rows = keys.clone();

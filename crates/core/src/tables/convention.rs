@@ -7,7 +7,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::measured::{Label, Table};
+use super::measured::{Label, Row, Table};
 use super::units::Units;
 
 /// A map of the plane that keeps lengths: y is mirrored or not, then all is turned.
@@ -236,6 +236,12 @@ impl LabelConvention {
         Label { x_mm, y_mm, fx_n, fy_n, fz_n }
     }
 
+    /// The same of a row's label. The force of a known weight is nobody's to write.
+    pub fn meant_of(&self, row: &Row) -> Label {
+        let meant = self.meant(&row.label);
+        row.weight_g.map_or(meant, |weight_g| meant.under_weight(weight_g))
+    }
+
     /// What is written so of a label in the pad's frame.
     pub fn written(&self, meant: &Label) -> Label {
         let Self { frame, sign, units } = self;
@@ -249,7 +255,7 @@ impl LabelConvention {
     #[must_use]
     pub fn applied(&self, mut table: Table) -> Table {
         for row in &mut table.rows {
-            row.label = self.meant(&row.label);
+            row.label = self.meant_of(row);
             row.uv = row.uv.map(|uv| uv.map(|value| self.units.uv * value));
         }
         table

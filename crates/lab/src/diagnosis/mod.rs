@@ -42,6 +42,7 @@ use self::data::observed::observed;
 use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};
 use self::label::{ModelOfRows, Search, no_solution};
+use self::naming::proposal::{OpenFinding, proposal};
 use self::naming::separation::Separation;
 use self::naming::untestable::with_untestable;
 use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
@@ -325,6 +326,12 @@ fn summary(
     let unnamed: f64 = unnamed_by_channel.iter().sum();
     let separation = Separation::new(search, found);
     let applied: Applied = candidates.iter().map(|it| fit.applied[it.place].clone()).collect();
+    let is_open = |it: &&Candidate| !it.finding.confounded_with.is_empty();
+    let open_findings: Vec<OpenFinding> = candidates
+        .iter()
+        .filter(is_open)
+        .map(|it| (it.place, it.finding.confounded_with.clone()))
+        .collect();
     let told = |Candidate { place, finding, is_doubted }| {
         let separate_by = separation.told(place, &finding.confounded_with);
         let finding = Finding { separate_by, ..finding };
@@ -352,6 +359,7 @@ fn summary(
         unnamed_by_channel,
         findings,
         gatekeepers: unsettled(fit).into_iter().collect(),
+        next: proposal(&separation, &open_findings),
     })
 }
 

@@ -2,6 +2,7 @@
 
 use crate::diagnosis::data::target::Target;
 use crate::effect::{Effect, EffectFamily};
+use tactpad_core::tables::measured::Table;
 use tactpad_inference::observations::Sample;
 pub use tactpad_inference::search::estimates::Estimate;
 use tactpad_numeric::statistics::mean;
@@ -46,6 +47,8 @@ pub struct Diagnosis {
     pub gatekeepers: Vec<Notice>,
     /// Residuals, row by row.
     pub residuals: Residuals,
+    /// What to measure next; nothing where nothing is open.
+    pub next: Proposal,
 }
 
 /// Gains of several channels that may have one reason in common.
@@ -99,6 +102,7 @@ impl Diagnosis {
             gain: None,
             gatekeepers: Vec::new(),
             residuals: Residuals::default(),
+            next: Proposal::default(),
         }
     }
 }
@@ -247,6 +251,41 @@ pub struct WithoutFinding {
     pub target: Target,
     /// The residual without it over the nominal one.
     pub rmse_ratio: f64,
+}
+
+/// Further measurements that tell what is open, as cheaply as they were found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Proposal {
+    /// What to measure, in the order of the plan.
+    pub measurements: Vec<ProposedMeasurement>,
+    /// What else to do, where no rows of a plan tell: sentences.
+    pub others: Vec<String>,
+    /// The rows to measure, as a plan.
+    pub plan: Table,
+    /// How many pairs of causes nothing in the catalogue separates.
+    pub inseparable: usize,
+}
+
+/// A further measurement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProposedMeasurement {
+    /// What to do.
+    pub what: String,
+    /// Why that tells causes apart.
+    pub why: &'static str,
+    /// How often.
+    pub repeats: usize,
+    /// What it takes in all, in minutes.
+    pub minutes: f64,
+}
+
+/// `once`, `twice`, `3 times`.
+pub fn times_text(count: usize) -> String {
+    match count {
+        1 => "once".to_owned(),
+        2 => "twice".to_owned(),
+        _ => format!("{count} times"),
+    }
 }
 
 /// `1 row`, `2 rows`.

@@ -80,9 +80,13 @@ impl RigErrors {
         [fx, fy, fz]
     }
 
-    /// The same rig with the pad turned on the stage.
+    /// The same rig with the pad turned on the stage. A known weight has no reference that could be wrong.
     #[must_use]
-    pub const fn under(self, turned_deg: f64) -> Self {
+    pub const fn of_row(self, turned_deg: f64, is_weight: bool) -> Self {
+        if is_weight {
+            let Self { tilt_deg, gain, zero_n, .. } = Self::NONE;
+            return Self { turned_deg, tilt_deg, gain, zero_n, ..self };
+        }
         Self { turned_deg, ..self }
     }
 }
@@ -116,10 +120,10 @@ mod tests {
         let meant = Label { x_mm: 10.0, y_mm: -4.0, fx_n: 0.5, fy_n: 0.2, fz_n: 2.0 };
         let mut stage = LoadingStage::new(rig, 1);
         for turned_deg in [0.0, 120.0, -75.0] {
-            stage.clamp(turned_deg);
+            stage.set_up(turned_deg, false);
             let truth = stage.truth(&meant);
             let written = stage.written(&meant, &truth);
-            let errors = RigErrors::of(&rig).under(turned_deg);
+            let errors = RigErrors::of(&rig).of_row(turned_deg, false);
             let place_mm = errors.place_mm([written.x_mm, written.y_mm]);
             let force_n = errors.force_n([written.fx_n, written.fy_n, written.fz_n]);
             let found = place_mm.into_iter().chain(force_n);
@@ -131,7 +135,7 @@ mod tests {
     fn an_offset_turns_back_with_the_pad() {
         let rig = RigErrors { offset_mm: [1.0, 0.0], ..RigErrors::NONE };
         // The pad stands a quarter turn counter-clockwise: the stage's +x is its −y.
-        let [x_mm, y_mm] = rig.under(90.0).place_mm([3.0, 4.0]);
+        let [x_mm, y_mm] = rig.of_row(90.0, false).place_mm([3.0, 4.0]);
         assert!((x_mm - 3.0).abs() < 1e-12 && (y_mm - 3.0).abs() < 1e-12, "{x_mm} {y_mm}");
     }
 }

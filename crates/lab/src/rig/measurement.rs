@@ -122,7 +122,7 @@ impl Bench {
     /// Lifts, takes the circumstances of the row, and comes down on its contact anew.
     fn come_to(&mut self, row: &Row) {
         self.touch(RAMP_S, &UNTOUCHED);
-        self.stage.clamp(row.turned_deg.unwrap_or(0.0));
+        self.stage.set_up(row.turned_deg.unwrap_or(0.0), row.weight_g.is_some());
         let temperature_c = row.temp_c.unwrap_or(self.reference_c);
         if temperature_c != self.around.temperature_c {
             self.around.temperature_c = temperature_c;

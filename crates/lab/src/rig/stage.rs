@@ -13,6 +13,8 @@ pub(super) struct LoadingStage {
     reference: SplitMix64,
     /// By how much the pad is turned on it.
     turned_deg: f64,
+    /// A known weight lies on the pad: nothing presses or reads that could be wrong.
+    is_weight: bool,
     /// This approach's own error of place and relative error of force.
     place_mm: [f64; 2],
     force_share: f64,
@@ -22,12 +24,12 @@ impl LoadingStage {
     pub(super) fn new(rig: Rig, seed: u64) -> Self {
         let approaches = SplitMix64::named(seed, "approach");
         let reference = SplitMix64::named(seed, "sensor");
-        Self { rig, approaches, reference, turned_deg: 0.0, place_mm: [0.0; 2], force_share: 0.0 }
+        Self { rig, approaches, reference, turned_deg: 0.0, is_weight: false, place_mm: [0.0; 2], force_share: 0.0 }
     }
 
-    /// The pad is clamped so, counter-clockwise.
-    pub(super) const fn clamp(&mut self, turned_deg: f64) {
-        self.turned_deg = turned_deg;
+    /// The pad is clamped so, counter-clockwise, and a known weight is put down or the stage presses.
+    pub(super) const fn set_up(&mut self, turned_deg: f64, is_weight: bool) {
+        (self.turned_deg, self.is_weight) = (turned_deg, is_weight);
     }
 
     /// Comes to a contact anew.
@@ -40,7 +42,7 @@ impl LoadingStage {
     pub(super) fn truth(&self, meant: &Label) -> Label {
         let Rig { stage_x_mm, stage_y_mm, stage_rotation_deg, stage_scale, .. } = self.rig;
         // Place, in the stage's frame: offset + scale R(turn) meant + scatter. Force: (1 + scatter) meant.
-        let force = 1.0 + self.force_share;
+        let force = if self.is_weight { 1.0 } else { 1.0 + self.force_share };
         let [x_mm, y_mm] = turned(turned([meant.x_mm, meant.y_mm], self.turned_deg), stage_rotation_deg)
             .map(|mm| stage_scale * mm);
         let on_stage = [stage_x_mm + x_mm + self.place_mm[0], stage_y_mm + y_mm + self.place_mm[1]];
@@ -50,6 +52,9 @@ impl LoadingStage {
 
     /// The label of a contact: the place that was meant, the force as the reference reads it.
     pub(super) fn written(&mut self, meant: &Label, truth: &Label) -> Label {
+        if self.is_weight {
+            return *meant;
+        }
         // Reading, in the stage's frame: gain R F + zero + noise.
         let [fx_n, fy_n] = turned([truth.fx_n, truth.fy_n], self.turned_deg);
         let [fx_n, fy_n, fz_n] = self.tilted([fx_n, fy_n, truth.fz_n]);
@@ -124,6 +129,19 @@ mod tests {
         near(numbers(&about_x), [10.0, 0.0, 0.0, 2.0 * angle.sin(), 2.0 * angle.cos()]);
         let about_y = stage(|rig| rig.reference_tilt_y_deg = 2.0).written(&MEANT, &truth);
         near(numbers(&about_y), [10.0, 0.0, -2.0 * angle.sin(), 0.0, 2.0 * angle.cos()]);
+    }
+
+    #[test]
+    fn a_known_weight_is_written_as_it_is_by_whatever_reference() {
+        let mut stage = stage(|rig| {
+            (rig.reference_gain, rig.reference_tilt_x_deg, rig.force_scatter_share) = (1.05, 2.0, 0.1);
+            (rig.stage_x_mm, rig.reference_zero_n) = (0.5, [0.1; 3]);
+        });
+        stage.set_up(0.0, true);
+        stage.approach();
+        let truth = stage.truth(&MEANT);
+        assert_eq!(truth, Label { x_mm: 10.5, ..MEANT });
+        assert_eq!(stage.written(&MEANT, &truth), MEANT);
     }
 
     #[test]

@@ -18,6 +18,8 @@ use tactpad::lab::effect::Effect;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: tactpad diagnose --measured measured.csv --save-device found.toml\n         \
+                  tactpad diagnose --measured first.csv --next plan.csv\n         \
+                  tactpad diagnose --measured first.csv --measured further.csv\n         \
                   tactpad diagnose --measured today.csv --against january.csv\n         \
                   tactpad diagnose --measured load-cell.csv --model predicted.csv\n         \
                   tactpad diagnose --play today.cap --against january.cap\n\n\
@@ -25,9 +27,10 @@ use tactpad::lab::effect::Effect;
                   docs/diagnosis.md."
 )]
 pub(crate) struct Arguments {
-    /// The measured file: raw channels, and what the reference wrote down.
+    /// The measured file: raw channels, and what the reference wrote down. Given several times, further measurements of the same pad, each
+    /// with zeros of its own.
     #[arg(long, value_name = "M.csv", required_unless_present = "play")]
-    pub(super) measured: Option<PathBuf>,
+    pub(super) measured: Vec<PathBuf>,
     /// A capture of play instead: what changed in the pad since an earlier one? Nobody needs to know what was pressed.
     #[arg(
         long,
@@ -62,6 +65,9 @@ pub(crate) struct Arguments {
     pub(super) pad: PadOptions,
     #[command(flatten)]
     pub(super) meant: LabelOptions,
+    /// A plan to write: the cheapest further measurement that tells apart what these rows do not. - is standard output.
+    #[arg(long, value_name = "PLAN.csv", conflicts_with_all = ["play", "held_against"])]
+    pub(super) next: Option<PathBuf>,
     /// A device file to write: the model with the named causes in it; - is standard output.
     #[arg(long, value_name = "E.toml")]
     pub(super) save_device: Option<PathBuf>,
@@ -78,7 +84,7 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     fn is_measured(&self, path: &Path) -> bool {
-        self.measured.as_deref().is_some_and(|measured| is_same(measured, path))
+        self.measured.iter().any(|measured| is_same(measured, path))
     }
 }
 
@@ -88,14 +94,22 @@ fn model_error(text: &str) -> Result<f64, String> {
     if (0.0..=50.0).contains(&percent) { Ok(percent) } else { Err("it is from 0 to 50 per cent".to_owned()) }
 }
 
-/// Where the device goes: nowhere that is read, and not between the lines of a document.
-pub(super) fn destination(path: &Path, arguments: &Arguments) -> Result<Destination, Failure> {
-    if arguments.json && is_stdout(path) {
-        return Err(both_print("--save-device -"));
+/// Where the file of an option goes: nowhere that is read, and not between the lines of a document or of another file.
+pub(super) fn destination(path: &Path, option: &str, arguments: &Arguments) -> Result<Destination, Failure> {
+    let Arguments { json, next, save_device, pad, .. } = arguments;
+    let is_both = [next, save_device].iter().all(|it| it.as_deref().is_some_and(is_stdout));
+    if (*json || is_both) && is_stdout(path) {
+        return Err(both_print(&format!("{option} -")));
     }
-    arguments.pad.spare(path)?;
+    pad.spare(path)?;
     if arguments.is_measured(path) {
         return Err(written_over(path, "is the measured table"));
+    }
+    if let (Some(next), Some(device)) = (next, save_device)
+        && is_same(next, device)
+        && !is_both
+    {
+        return Err(written_over(path, "is written by --next and --save-device alike"));
     }
     Destination::of(path)
 }
@@ -115,6 +129,9 @@ pub(super) fn folder(path: &Path, arguments: &Arguments) -> Result<Folder, Failu
         }
         if arguments.save_device.as_deref().is_some_and(|saved| is_same(saved, &file)) {
             return Err(written_over(&file, "is the device to save"));
+        }
+        if arguments.next.as_deref().is_some_and(|next| is_same(next, &file)) {
+            return Err(written_over(&file, "is the plan to write"));
         }
     }
     Folder::of(path)

@@ -28,6 +28,27 @@ pub(super) struct DiagnosisDocument<'d> {
     ceiling_share: Option<f64>,
     gain: Option<Gain>,
     gatekeepers: Vec<Notice<'d>>,
+    /// Where causes are open.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    next: Option<Next<'d>>,
+}
+
+/// Further measurements that tell what is open.
+#[derive(Serialize)]
+struct Next<'d> {
+    rows: usize,
+    minutes: f64,
+    measurements: Vec<NextMeasurement<'d>>,
+    others: &'d [String],
+    inseparable: usize,
+}
+
+#[derive(Serialize)]
+struct NextMeasurement<'d> {
+    what: &'d str,
+    why: &'d str,
+    times: usize,
+    minutes: f64,
 }
 
 #[derive(Serialize)]
@@ -157,7 +178,28 @@ impl<'d> DiagnosisDocument<'d> {
             ceiling_share: diagnosis.ceiling_share,
             gain: diagnosis.gain.as_ref().map(|gain| Gain::of(gain, &diagnosis.channels)),
             gatekeepers: diagnosis.gatekeepers.iter().map(|it| Notice::of(it, &diagnosis.channels)).collect(),
+            next: Next::of(&diagnosis.next),
         }
+    }
+}
+
+impl<'d> Next<'d> {
+    fn of(proposal: &'d report::Proposal) -> Option<Self> {
+        let report::Proposal { measurements, others, plan, inseparable } = proposal;
+        let each = |it: &'d report::ProposedMeasurement| NextMeasurement {
+            what: &it.what,
+            why: it.why,
+            times: it.repeats,
+            minutes: it.minutes,
+        };
+        let is_open = !measurements.is_empty() || !others.is_empty() || *inseparable > 0;
+        is_open.then(|| Self {
+            rows: plan.rows.len(),
+            minutes: measurements.iter().map(|it| it.minutes).sum(),
+            measurements: measurements.iter().map(each).collect(),
+            others,
+            inseparable: *inseparable,
+        })
     }
 }
 

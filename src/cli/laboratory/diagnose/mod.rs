@@ -12,7 +12,7 @@ mod prediction;
 mod report;
 pub(crate) mod text;
 
-use std::path::Path;
+use std::path::PathBuf;
 
 pub(crate) use self::arguments::Arguments;
 use self::arguments::{destination, folder};
@@ -44,31 +44,44 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 .into(),
         ));
     }
-    if let (Some(measured), Some(predicted)) = (&arguments.measured, &arguments.model) {
-        return prediction::run(arguments, measured, predicted);
-    }
-    match (&arguments.play, &arguments.measured, &arguments.against) {
-        (Some(later), _, Some(earlier)) => play::run(arguments, [earlier, later]),
-        (_, Some(measured), Some(earlier)) => against::run(arguments, measured, earlier),
-        (_, Some(measured), None) => of_table(arguments, measured),
-        // The arguments' own rules leave nothing else.
-        _ => Err(Failure::Unusable(
-            "name a table with --measured, or captures with --play and --against".into(),
+    match (&arguments.play, arguments.measured.as_slice()) {
+        (Some(later), _) => match &arguments.against {
+            Some(earlier) => play::run(arguments, [earlier, later]),
+            None => Err(Failure::Unusable("name the capture of before with --against".into())),
+        },
+        (None, [measured]) => match (&arguments.model, &arguments.against) {
+            (Some(predicted), _) => prediction::run(arguments, measured, predicted),
+            (None, Some(earlier)) => against::run(arguments, measured, earlier),
+            (None, None) => of_tables(arguments),
+        },
+        (None, _) if is_of_any_sensor => Err(Failure::Unusable(
+            "--against and --model take one table; leave all --measured but one out, or join the tables' rows in one file".into(),
         )),
+        (None, _) => of_tables(arguments),
     }
 }
 
-/// Diagnoses a measured table.
-fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
-    let Arguments { pad, meant, save_device, report, without, json, .. } = arguments;
-    let saved = save_device.as_deref().map(|path| destination(path, arguments)).transpose()?;
+/// Diagnoses measured tables of one pad.
+fn of_tables(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { measured: paths, pad, meant, save_device, next, report, without, json, .. } = arguments;
+    let to = |path: &Option<PathBuf>, option: &str| {
+        path.as_deref().map(|path| destination(path, option, arguments)).transpose()
+    };
+    let (saved, plan) = (to(save_device, "--save-device")?, to(next, "--next")?);
     let device = pad.read()?;
     let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;
-    let table = meant.read(measured, &device)?;
-    tables::within_memory(&measured.display().to_string(), table.rows.len(), ROW_BYTES, tables::fewer_rows)?;
+    let tables = paths.iter().map(|path| meant.read(path, &device)).collect::<Result<Vec<_>, Failure>>()?;
+    let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    let measured = &names.join(" and ");
+    let rows = tables.iter().map(|table| table.rows.len()).sum();
+    tables::within_memory(measured, rows, ROW_BYTES, tables::fewer_rows)?;
     let field = field_of(&device)?;
     // It takes a while until the engine itself could say so.
     let known = SimulatedPad::known(&device, &field);
+    if tables.len() > 1 {
+        names.iter().zip(&tables).try_for_each(|(name, table)| meant.ask(name, table, &known))?;
+    }
+    let table = Table::joined(tables);
     diagnosis::check(&table, &known).map_err(|why| unfit(measured, &why))?;
     let progress = Progress::begin("looking for causes");
     let flaws = flaws(&device);
@@ -78,10 +91,13 @@ fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
     if let Some(to) = saved {
         save(&to, &device, &diagnosis, &table)?;
     }
+    if let Some(to) = plan.filter(|_| !diagnosis.next.plan.rows.is_empty()) {
+        tables::write(&to, &diagnosis.next.plan)?;
+    }
     if let Some(folder) = folder {
         let subject = report::Subject {
             diagnosis: &diagnosis,
-            measured: file_name(measured),
+            measured: paths.iter().map(|path| file_name(path)).collect::<Vec<_>>().join(" and "),
             model: format!("the model of {}", device.name),
             unit: "µV",
             load_unit: Some("N"),
@@ -92,7 +108,7 @@ fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
     if *json {
         return print_json(&DiagnosisDocument::of(&diagnosis));
     }
-    if save_device.as_deref().is_some_and(is_stdout) {
+    if [save_device, next].iter().any(|it| it.as_deref().is_some_and(is_stdout)) {
         say(text::DiagnosisText(&diagnosis));
         return Ok(());
     }
@@ -100,8 +116,8 @@ fn of_table(arguments: &Arguments, measured: &Path) -> Result<(), Failure> {
     Ok(write!(stdout(), "{}", text::DiagnosisText(&diagnosis))?)
 }
 
-fn unfit(measured: &Path, why: &DiagnosisError) -> Failure {
-    Failure::Unusable(format!("{}: {why}", measured.display()))
+fn unfit(measured: &str, why: &DiagnosisError) -> Failure {
+    Failure::Unusable(format!("{measured}: {why}"))
 }
 
 fn save(to: &Destination, device: &Device, diagnosis: &Diagnosis, table: &Table) -> Result<(), Failure> {

@@ -5,7 +5,9 @@ use std::fmt;
 use super::numbers::{decoded, estimate, range};
 use crate::cli::printing::wrapped::hanging;
 use tactpad::lab::diagnosis::data::target::Target;
-use tactpad::lab::diagnosis::report::{CommonGain, Diagnosis, Finding, Gain, NotDetected, Verdict};
+use tactpad::lab::diagnosis::report::{
+    CommonGain, Diagnosis, Finding, Gain, NotDetected, Proposal, Verdict, times_text,
+};
 use tactpad::lab::effect::Effect;
 
 /// A diagnosis in lines of a terminal.
@@ -27,6 +29,9 @@ impl fmt::Display for DiagnosisText<'_> {
             let text = found(finding, &diagnosis.channels) + &to_tell(finding, &diagnosis.findings);
             writeln!(f, "\n{}", hanging(&format!("{number:>3}  "), &(text + ".")))?;
         }
+        if let Some(next) = proposed(&diagnosis.next) {
+            writeln!(f, "\n{}", hanging("", &next))?;
+        }
         if let Some(gain) = &diagnosis.gain {
             writeln!(f, "\n{}", hanging("", &gained(gain, diagnosis)))?;
         }
@@ -44,6 +49,28 @@ pub(super) fn common_gain(diagnosis: &Diagnosis) -> Option<String> {
          tell whether the supply, the force sensor or each channel has it.{told_by}",
         100.0 * share
     ))
+}
+
+/// What to measure next; none where nothing would tell more.
+pub(super) fn proposed(next: &Proposal) -> Option<String> {
+    let Proposal { measurements, others, plan, .. } = next;
+    let minutes: f64 = measurements.iter().map(|it| it.minutes).sum();
+    let each: Vec<String> =
+        measurements.iter().map(|it| format!("{}, {}", it.what, times_text(it.repeats))).collect();
+    let mut text = String::new();
+    if !each.is_empty() {
+        text += &format!(
+            "Next: {} rows in {minutes:.0} minutes tell these apart: {}. --next PLAN.csv writes them as a plan, and a second --measured takes \
+             what it gave.",
+            plan.rows.len(),
+            each.join("; then ")
+        );
+    }
+    if !others.is_empty() {
+        let first = if each.is_empty() { "Next, as no plan tells more" } else { " What no plan tells" };
+        text += &format!("{first}: {}.", others.join("; and "));
+    }
+    (!text.is_empty()).then_some(text)
 }
 
 fn verdict(diagnosis: &Diagnosis) -> String {

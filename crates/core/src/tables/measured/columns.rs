@@ -34,6 +34,8 @@ pub enum Column {
     Approach,
     /// `turned_deg`.
     Turned,
+    /// `weight_g`.
+    Weight,
     /// Those that a table carries without knowing what they are.
     Others,
 }
@@ -43,7 +45,7 @@ pub const LABEL: [&str; 5] = ["x_mm", "y_mm", "fx_n", "fy_n", "fz_n"];
 
 impl Column {
     /// All of them, in the order in which they are written; the label stands before the channels.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Trial,
         Self::Session,
         Self::Time,
@@ -53,6 +55,7 @@ impl Column {
         Self::Dwell,
         Self::Approach,
         Self::Turned,
+        Self::Weight,
         Self::Others,
     ];
 
@@ -67,6 +70,7 @@ impl Column {
             Self::Dwell => Some("dwell_s"),
             Self::Approach => Some("approach"),
             Self::Turned => Some("turned_deg"),
+            Self::Weight => Some("weight_g"),
             Self::Channels | Self::Others => None,
         }
     }

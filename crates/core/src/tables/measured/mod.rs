@@ -19,6 +19,7 @@ pub mod zero;
 
 use self::columns::Column;
 use self::ending::OpenEnd;
+use crate::pad::weight::weight_n;
 use crate::quantity::{CHANNELS, Contact};
 
 /// Dwell of a static load before it is read, where a row does not say.
@@ -47,6 +48,12 @@ impl Label {
     /// x, y, Fx, Fy, Fz.
     pub const fn numbers(&self) -> [f64; 5] {
         [self.x_mm, self.y_mm, self.fx_n, self.fy_n, self.fz_n]
+    }
+
+    /// The same place under a weight of so many grams, 0 for none: (0, 0, m g).
+    #[must_use]
+    pub fn under_weight(&self, weight_g: f64) -> Self {
+        Self { fx_n: 0.0, fy_n: 0.0, fz_n: weight_n(weight_g), ..*self }
     }
 
     /// The magnitude of the force.
@@ -93,6 +100,8 @@ impl Approach {
 pub struct Row {
     /// Its line in the file, from 1; 0 for a row that comes from no file.
     pub line: usize,
+    /// Index of its table, where several were joined.
+    pub measurement: usize,
     /// Index of its trial in [`Table::trials`].
     pub trial: Option<usize>,
     /// Index of its session in [`Table::sessions`].
@@ -109,6 +118,8 @@ pub struct Row {
     pub approach: Option<Approach>,
     /// By how much the pad was turned on the stage, counter-clockwise seen from above. Labels are in the pad's frame.
     pub turned_deg: Option<f64>,
+    /// Grams of the known weight that lay there, 0 for an untouched pad; then the label's force is its, whatever the reference wrote.
+    pub weight_g: Option<f64>,
     /// What the reference wrote.
     pub label: Label,
     /// The channels, in the order of [`CHANNEL_NAMES`](crate::quantity::CHANNEL_NAMES); none in a plan.
@@ -120,6 +131,7 @@ impl Row {
     pub const fn of(label: Label) -> Self {
         Self {
             line: 0,
+            measurement: 0,
             trial: None,
             session: None,
             t_s: None,
@@ -128,6 +140,7 @@ impl Row {
             dwell_s: None,
             approach: None,
             turned_deg: None,
+            weight_g: None,
             label,
             uv: None,
         }
@@ -159,6 +172,33 @@ pub struct ExtraColumns {
 }
 
 impl Table {
+    /// The rows of several tables, one measurement after the other. Time series stay apart, sessions of one name are one; columns that nobody
+    /// knows are left out.
+    pub fn joined(tables: impl IntoIterator<Item = Self>) -> Self {
+        let mut all = Self::default();
+        for (measurement, Self { rows, trials, sessions, open_end, .. }) in tables.into_iter().enumerate() {
+            let first_trial = all.trials.len();
+            all.trials.extend(trials);
+            let places: Vec<usize> = sessions.into_iter().map(|name| all.place_of_session(name)).collect();
+            all.rows.extend(rows.into_iter().map(|row| Row {
+                measurement,
+                trial: row.trial.map(|trial| first_trial + trial),
+                session: row.session.and_then(|session| places.get(session).copied()),
+                ..row
+            }));
+            all.open_end = all.open_end.or(open_end);
+        }
+        all
+    }
+
+    fn place_of_session(&mut self, name: String) -> usize {
+        if let Some(place) = self.sessions.iter().position(|known| *known == name) {
+            return place;
+        }
+        self.sessions.push(name);
+        self.sessions.len() - 1
+    }
+
     /// The rows at these places, in this order; none for a place beyond the last.
     pub fn rows_at(&self, places: &[usize]) -> Vec<Row> {
         places.iter().filter_map(|at| self.rows.get(*at).copied()).collect()
@@ -177,6 +217,7 @@ impl Table {
             Column::Dwell => any(|row| row.dwell_s.is_some()),
             Column::Approach => any(|row| row.approach.is_some()),
             Column::Turned => any(|row| row.turned_deg.is_some()),
+            Column::Weight => any(|row| row.weight_g.is_some()),
             Column::Others => !self.others.names.is_empty(),
         };
         Column::ALL.into_iter().filter(is_there).collect()

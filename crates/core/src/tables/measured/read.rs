@@ -26,6 +26,7 @@ const TEMPERATURES_C: RangeInclusive<f64> = -100.0..=200.0;
 const CYCLES: RangeInclusive<f64> = 0.0..=1e12;
 const DWELLS_S: RangeInclusive<f64> = 0.0..=1e6;
 const TURNS_DEG: RangeInclusive<f64> = -360.0..=360.0;
+const WEIGHTS_G: RangeInclusive<f64> = 0.0..=10_000.0;
 const CHANNEL_MAX_UV: f64 = 1e8;
 
 /// Reads all rows of a table; at least one, or it is an error.
@@ -111,8 +112,11 @@ impl Reader {
             return Err(Fault::TooManyRows(ROWS_MAX));
         }
         let trial = self.trial(cells)?;
+        let weight_g = self.optional(cells, Column::Weight, &WEIGHTS_G, "g")?;
+        let label = self.label(cells)?;
         let row = Row {
             line,
+            measurement: 0,
             trial,
             session: self.session(cells)?,
             t_s: self.time(cells, trial)?,
@@ -121,7 +125,8 @@ impl Reader {
             dwell_s: self.optional(cells, Column::Dwell, &DWELLS_S, "s")?,
             approach: self.approach(cells)?,
             turned_deg: self.optional(cells, Column::Turned, &TURNS_DEG, "°")?,
-            label: self.label(cells)?,
+            weight_g,
+            label: weight_g.map_or(label, |weight_g| label.under_weight(weight_g)),
             uv: self.channels(cells)?,
         };
         self.table.rows.push(row);

@@ -223,6 +223,8 @@ pub(crate) struct WrittenLabel {
     per_s: [f64; UNKNOWNS],
     /// By how much the pad was turned on the stage.
     turned_deg: f64,
+    /// Whether the force is a known weight's.
+    is_weight: bool,
 }
 
 impl WrittenLabel {
@@ -239,17 +241,18 @@ impl WrittenLabel {
             numbers: row.label.numbers(),
             per_s: std::array::from_fn(rate),
             turned_deg: row.turned_deg.unwrap_or(0.0),
+            is_weight: row.weight_g.is_some(),
         })
     }
 
     /// A label that stands still.
     pub(crate) const fn still(numbers: [f64; UNKNOWNS]) -> Self {
-        Self { numbers, per_s: [0.0; UNKNOWNS], turned_deg: 0.0 }
+        Self { numbers, per_s: [0.0; UNKNOWNS], turned_deg: 0.0, is_weight: false }
     }
 
     /// T(L; ρ): the contact that it stands for.
     pub(crate) fn contact(&self, values: &[f64; RIG_NUMBERS]) -> [f64; UNKNOWNS] {
-        let errors = errors(values).under(self.turned_deg);
+        let errors = errors(values).of_row(self.turned_deg, self.is_weight);
         // A label that is late by τ was true τ ago: what is true now will be written then, L + τ dL/dt.
         let [x_mm, y_mm, fx_n, fy_n, fz_n] =
             std::array::from_fn(|k| self.numbers[k] + errors.lag_s * self.per_s[k]);

@@ -105,7 +105,7 @@ impl Conventions {
         for (row, part) in table.rows.iter_mut().zip(part_of) {
             present = part.unwrap_or(present);
             let Some(part) = self.parts.get(present) else { continue };
-            row.label = part.convention.meant(&row.label);
+            row.label = part.convention.meant_of(row);
             row.uv = row.uv.map(|uv| uv.map(|value| part.convention.units.uv * value));
         }
         self.strangers.iter().for_each(|row| table.rows[*row].uv = None);
@@ -272,7 +272,9 @@ fn readings(table: &Table, rows_late: isize) -> Vec<(usize, [f64; CHANNELS], Lab
         let uv: [f64; CHANNELS] = std::array::from_fn(|k| uv[k] - zero[k]);
         uv.iter().all(|uv| uv.is_finite()).then_some((row, uv, table.rows[at].label))
     };
-    pressed.into_iter().step_by(step).filter_map(relative).collect()
+    // Nobody wrote the force of a known weight.
+    let written = |at: &usize| table.rows[*at].weight_g.is_none();
+    pressed.into_iter().filter(written).step_by(step).filter_map(relative).collect()
 }
 
 /// The convention by which labels follow contacts so.

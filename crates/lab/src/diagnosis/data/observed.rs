@@ -11,6 +11,7 @@ pub(crate) fn observed(table: &Table) -> Observations {
     let sample = |row: &Row| Sample {
         place_mm: [row.label.x_mm, row.label.y_mm],
         load: [row.label.fx_n, row.label.fy_n, row.label.fz_n],
+        measurement: row.measurement,
         session: row.session.unwrap_or(0),
         trial: row.trial,
         t_s: row.t_s,
@@ -20,6 +21,7 @@ pub(crate) fn observed(table: &Table) -> Observations {
         temp_c: row.temp_c,
         cycle: row.cycle,
         turned_deg: row.turned_deg.unwrap_or(0.0),
+        is_weight: row.weight_g.is_some(),
         block: None,
     };
     Observations {

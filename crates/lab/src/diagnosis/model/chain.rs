@@ -73,6 +73,13 @@ impl Chain {
     }
 }
 
+impl Chain {
+    /// The rig's errors at a row.
+    pub(crate) const fn rig_at(&self, sample: &Sample) -> RigErrors {
+        self.rig.of_row(sample.turned_deg, sample.is_weight)
+    }
+}
+
 impl Reference {
     /// Circumstances of a row.
     pub(crate) fn conditions(&self, sample: &Sample) -> ChannelConditions {

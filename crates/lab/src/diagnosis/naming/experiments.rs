@@ -4,7 +4,10 @@
 //! is measured by hand: that tells of a cause's numbers directly.
 
 use crate::effect::Effect;
+use tactpad_core::pad::weight::weight_n;
+use tactpad_core::quantity::WEIGHT_N_PER_G;
 use tactpad_inference::observations::{Observations, Sample};
+use tactpad_numeric::statistics::rms;
 
 /// Seconds that a contact takes, to reach and to hold; the rows to repeat are those of one location in so many, and no more than this.
 const CONTACT_S: f64 = 6.0;
@@ -13,6 +16,8 @@ const CONTACTS_MAX: usize = 216;
 /// How many weights are placed, and what that takes for each.
 const WEIGHTS: usize = 12;
 const WEIGHT_MIN: f64 = 1.0;
+/// Weights come in steps of so many grams.
+const WEIGHT_STEP_G: f64 = 50.0;
 /// Samples of the untouched pad, over so many minutes.
 const UNTOUCHED: usize = 60;
 const UNTOUCHED_MIN: f64 = 60.0;
@@ -29,9 +34,6 @@ const WARMED_C: f64 = 8.0;
 /// What it takes to measure a dimension by hand.
 const BY_HAND_MIN: f64 = 20.0;
 
-/// The causes of the force sensor.
-const REFERENCE: [Effect; 3] = [Effect::ReferenceGain, Effect::ReferenceTilt, Effect::ReferenceZero];
-
 /// A further measurement.
 pub(crate) struct Experiment {
     /// What to do.
@@ -42,10 +44,20 @@ pub(crate) struct Experiment {
     pub(crate) minutes: f64,
     /// The rows that it gives.
     pub(crate) rows: Observations,
-    /// Causes that do not act on these rows.
-    pub(crate) silent: Vec<Effect>,
+    /// Whether nothing touches the pad.
+    pub(crate) is_untouched: bool,
+    /// The cause that does not act on these rows.
+    pub(crate) silent: Option<Effect>,
     /// Causes whose numbers it tells, and with which standard deviation.
     pub(crate) by_hand: Option<(Effect, f64)>,
+}
+
+impl Experiment {
+    /// Whether it is rows of a plan that are measured together with others: not what a hand does, nor another cap or tip, of which no column
+    /// tells, nor hours of an untouched pad, whose friction keeps another zero than loads come from.
+    pub(crate) const fn is_in_a_plan(&self) -> bool {
+        self.silent.is_none() && self.by_hand.is_none() && !self.is_untouched
+    }
 }
 
 /// The catalogue for a measurement of `rows`, the cheapest first.
@@ -70,7 +82,7 @@ fn plain(
     samples: Vec<Sample>,
 ) -> Experiment {
     let rows = unread(like, samples);
-    Experiment { what, why, minutes, rows, silent: Vec::new(), by_hand: None }
+    Experiment { what, why, minutes, rows, is_untouched: false, silent: None, by_hand: None }
 }
 
 /// The same contacts again, with something changed.
@@ -104,8 +116,8 @@ fn again(rows: &Observations, repeated: &[Sample]) -> Vec<Experiment> {
     vec![
         of(format!("repeat {count} of the contacts"), "another draw of the noise is all that it takes", 0.0),
         turned,
-        Experiment { silent: vec![Effect::ContactHeight], ..cap },
-        Experiment { silent: vec![Effect::ContactSize], ..indenter },
+        Experiment { silent: Some(Effect::ContactHeight), ..cap },
+        Experiment { silent: Some(Effect::ContactSize), ..indenter },
         plain(
             rows,
             dwells,
@@ -120,18 +132,18 @@ fn again(rows: &Observations, repeated: &[Sample]) -> Vec<Experiment> {
 
 /// What needs no force sensor.
 fn without_reference(rows: &Observations, repeated: &[Sample]) -> [Experiment; 2] {
-    let weight_n = weight_n(repeated);
+    let weight_g = weight_g(repeated);
     let placed = plain(
         rows,
-        format!("place a known weight of {weight_n:.0} N at {WEIGHTS} of the places"),
+        format!("place a known weight of {weight_g:.0} g at {WEIGHTS} of the places, and write so under weight_g"),
         "it needs no force sensor, so what is wrong with the pad still shows, and what is wrong with the sensor does not",
         WEIGHT_MIN * WEIGHTS as f64,
-        weights(repeated, weight_n),
+        weights(repeated, weight_g),
     );
     let why = "no force sensor and no place has a part in that";
-    let what = "record the untouched pad for an hour".to_owned();
+    let what = "record the untouched pad for an hour, with 0 under weight_g".to_owned();
     let rested = plain(rows, what, why, UNTOUCHED_MIN, untouched(repeated));
-    [placed, rested].map(|it| Experiment { silent: REFERENCE.to_vec(), ..it })
+    [placed, Experiment { is_untouched: true, ..rested }]
 }
 
 /// Dimensions that are measured by hand, with the standard deviation of that: 0.1 mm at the modules' edges, half a degree along an edge
@@ -188,16 +200,17 @@ fn repeated(rows: &Observations) -> Vec<Sample> {
     samples
 }
 
-/// A weight as heavy as the usual load, in whole newtons.
-fn weight_n(samples: &[Sample]) -> f64 {
-    let squares: f64 = samples.iter().map(|it| it.load[2] * it.load[2]).sum();
-    (squares / samples.len().max(1) as f64).sqrt().round().max(1.0)
+/// A weight as heavy as the usual load.
+fn weight_g(samples: &[Sample]) -> f64 {
+    let usual_n = rms(samples.iter().map(|it| it.load[2]));
+    (usual_n / WEIGHT_N_PER_G / WEIGHT_STEP_G).round().max(1.0) * WEIGHT_STEP_G
 }
 
-fn weights(samples: &[Sample], weight_n: f64) -> Vec<Sample> {
+fn weights(samples: &[Sample], weight_g: f64) -> Vec<Sample> {
     let step = (samples.len() / WEIGHTS).max(1);
     let placed = samples.iter().step_by(step).take(WEIGHTS);
-    placed.map(|it| Sample { load: [0.0, 0.0, weight_n], ..*it }).collect()
+    let load = [0.0, 0.0, weight_n(weight_g)];
+    placed.map(|it| Sample { load, is_weight: true, is_unloading: false, ..*it }).collect()
 }
 
 fn untouched(samples: &[Sample]) -> Vec<Sample> {
@@ -205,7 +218,7 @@ fn untouched(samples: &[Sample]) -> Vec<Sample> {
     let after_s = |at: usize| 60.0 * UNTOUCHED_MIN * at as f64 / UNTOUCHED as f64;
     let at = |at: usize| {
         let t_s = first.t_s.map(|t_s| t_s + after_s(at));
-        Sample { load: [0.0; 3], place_mm: [0.0; 2], t_s, ..*first }
+        Sample { load: [0.0; 3], is_weight: true, is_unloading: false, place_mm: [0.0; 2], t_s, ..*first }
     };
     (0..UNTOUCHED).map(at).collect()
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod experiments;
 mod findings;
+pub(crate) mod proposal;
 pub(crate) mod separation;
 pub(crate) mod untestable;
 pub(crate) mod withdrawal;

@@ -14,6 +14,7 @@
 //! Source: A. C. Atkinson, V. V. Fedorov, Biometrika 62 (1975) 57 (T-optimality).
 
 use std::cell::OnceCell;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -21,7 +22,7 @@ use rayon::prelude::*;
 use super::experiments::{Experiment, catalogue};
 use crate::diagnosis::data::target::Target;
 use crate::diagnosis::label::Search;
-use crate::diagnosis::report::INSEPARABLE;
+use crate::diagnosis::report::{INSEPARABLE, times_text};
 use crate::effect::Effect;
 use tactpad_inference::covariance::equations::NormalEquations;
 use tactpad_inference::covariance::system::ChannelSystem;
@@ -77,7 +78,7 @@ struct ChannelEquations {
 pub(crate) struct Separation<'s, 'm> {
     search: &'s Search<'m>,
     found: &'s Attribution,
-    experiments: Vec<Experiment>,
+    pub(super) experiments: Vec<Experiment>,
     elsewhere: Vec<OnceCell<Option<ExperimentModel>>>,
 }
 
@@ -95,9 +96,7 @@ impl<'s, 'm> Separation<'s, 'm> {
     /// The measurement that separates the fitted cause at this place from its rivals, as a sentence; else one for each rival. None where
     /// the model cannot say.
     pub(crate) fn told(&self, at: usize, rivals: &[(Effect, Target)]) -> Option<String> {
-        let hypotheses = self.search.model.hypotheses();
-        let is_rival = |number: &usize| rivals.contains(&hypotheses[*number].label);
-        let rivals: Vec<usize> = (0..hypotheses.len()).filter(is_rival).collect();
+        let rivals = self.numbers(rivals);
         if rivals.is_empty() {
             return None;
         }
@@ -117,6 +116,18 @@ impl<'s, 'm> Separation<'s, 'm> {
         Some(sentences.join("; and "))
     }
 
+    /// The hypotheses of these labels.
+    pub(super) fn numbers(&self, rivals: &[(Effect, Target)]) -> Vec<usize> {
+        let hypotheses = self.search.model.hypotheses();
+        (0..hypotheses.len()).filter(|number| rivals.contains(&hypotheses[*number].label)).collect()
+    }
+
+    /// How often an experiment must be made to tell the fitted cause at this place from each rival; none from one that it does not. None at
+    /// all where the model cannot say.
+    pub(super) fn repeats(&self, number: usize, at: usize, rivals: &[usize]) -> Option<Vec<Option<usize>>> {
+        self.both(number)?.repeats(at, rivals)
+    }
+
     /// The cheapest measurement that separates it from all of these rivals, if one does. None where the model cannot say.
     fn cheapest(&self, at: usize, rivals: &[usize]) -> Option<Option<String>> {
         let mut best: Option<(f64, usize, &Experiment)> = None;
@@ -124,7 +135,8 @@ impl<'s, 'm> Separation<'s, 'm> {
             if best.is_some_and(|(minutes, ..)| minutes <= experiment.minutes) {
                 break;
             }
-            let Some(repeats) = self.both(number)?.repeats(at, rivals) else { continue };
+            let each: Option<Vec<usize>> = self.repeats(number, at, rivals)?.into_iter().collect();
+            let Some(repeats) = each.and_then(|each| each.into_iter().max()) else { continue };
             let minutes = repeats as f64 * experiment.minutes;
             if best.is_none_or(|(least, ..)| minutes < least) {
                 best = Some((minutes, repeats, experiment));
@@ -142,14 +154,8 @@ impl<'s, 'm> Separation<'s, 'm> {
     }
 }
 
-fn sentence(repeats: usize, experiment: &Experiment) -> String {
-    let Experiment { what, why, .. } = experiment;
-    let times = match repeats {
-        1 => "once".to_owned(),
-        2 => "twice".to_owned(),
-        _ => format!("{repeats} times"),
-    };
-    format!("{what}, {times}: {why}")
+pub(super) fn sentence(repeats: usize, Experiment { what, why, .. }: &Experiment) -> String {
+    format!("{what}, {}: {why}", times_text(repeats))
 }
 
 impl<'s, 'm> JointRows<'s, 'm> {
@@ -187,7 +193,7 @@ impl<'s, 'm> JointRows<'s, 'm> {
         let (effect, _) = self.search.model.hypotheses()[number].label;
         let present = self.found.fit.linearised.signatures[number].clone();
         let mut further = self.further.signatures[number].clone();
-        if silent.contains(&effect) {
+        if *silent == Some(effect) {
             further.iter_mut().flatten().for_each(|channel| *channel = None);
         }
         let precision = by_hand.filter(|(of, _)| *of == effect).map_or(0.0, |(_, sd)| 1.0 / (sd * sd));
@@ -197,22 +203,29 @@ impl<'s, 'm> JointRows<'s, 'm> {
     }
 
     /// How often it takes the experiment to tell the cause from each rival; none if it does not.
-    fn repeats(&self, at: usize, rivals: &[usize]) -> Option<usize> {
+    fn repeats(&self, at: usize, rivals: &[usize]) -> Option<Vec<Option<usize>>> {
         let most = if self.experiment.by_hand.is_some() { 1 } else { REPEATS_MAX };
         let discrimination = self.discrimination(at, rivals)?;
-        let is_enough = |repeats: usize| self.separates(&discrimination, repeats).unwrap_or(false);
-        if is_enough(1) {
-            return Some(1);
-        }
-        if most == 1 || !is_enough(most) {
-            return None;
-        }
-        let (mut low, mut high) = (1, most);
-        while high - low > 1 {
-            let middle = usize::midpoint(low, high);
-            if is_enough(middle) { high = middle } else { low = middle }
-        }
-        Some(high)
+        let mut fishers: BTreeMap<usize, Option<Matrix>> = BTreeMap::new();
+        let mut is_enough = |repeats: usize, rival: &Range<usize>| {
+            let fisher = fishers.entry(repeats).or_insert_with(|| self.fisher(&discrimination, repeats));
+            fisher.as_ref().and_then(|it| self.separates(it, &discrimination, rival)).unwrap_or(false)
+        };
+        let of_rival = |rival: &Range<usize>| {
+            if is_enough(1, rival) {
+                return Some(1);
+            }
+            if most == 1 || !is_enough(most, rival) {
+                return None;
+            }
+            let (mut low, mut high) = (1, most);
+            while high - low > 1 {
+                let middle = usize::midpoint(low, high);
+                if is_enough(middle, rival) { high = middle } else { low = middle }
+            }
+            Some(high)
+        };
+        Some(discrimination.rivals.iter().map(of_rival).collect())
     }
 
     /// The columns of a fitted cause, of the others beside it and of its rivals, with what the rows tell of them.
@@ -242,19 +255,18 @@ impl<'s, 'm> JointRows<'s, 'm> {
         })
     }
 
-    /// Whether something significant of the cause is left beside each rival in nine of ten such measurements.
-    fn separates(&self, discrimination: &Discrimination, repeats: usize) -> Option<bool> {
-        let fisher = self.fisher(discrimination, repeats)?;
+    /// Whether something significant of the cause is left beside a rival in nine of ten such measurements.
+    fn separates(
+        &self,
+        fisher: &Matrix,
+        discrimination: &Discrimination,
+        rival: &Range<usize>,
+    ) -> Option<bool> {
         let freedom = discrimination.cause.len();
         let threshold = chi_square::quantile(self.found.critical, freedom);
         let wanted = chi_square::noncentrality(threshold, freedom, POWER);
-        for rival in &discrimination.rivals {
-            let free = discrimination.held.iter().copied().chain(rival.clone()).collect();
-            if left(&fisher, &discrimination.cause, &discrimination.psi, free)? < wanted {
-                return Some(false);
-            }
-        }
-        Some(true)
+        let free = discrimination.held.iter().copied().chain(rival.clone()).collect();
+        Some(left(fisher, &discrimination.cause, &discrimination.psi, free)? >= wanted)
     }
 
     /// What the present rows and so many measurements tell of the columns, and what was known of them before.
@@ -407,7 +419,8 @@ mod tests {
             (0..model.hypotheses().len()).filter(|number| of(&&model.hypotheses()[*number])).collect();
         let separation = Separation::new(&search, &found);
         let each = separation.experiments.iter().enumerate().map(|(number, experiment)| {
-            (experiment.what.clone(), separation.both(number).unwrap().repeats(0, &numbers))
+            let each = separation.repeats(number, 0, &numbers).unwrap().into_iter();
+            (experiment.what.clone(), each.collect::<Option<Vec<usize>>>().and_then(|it| it.into_iter().max()))
         });
         (separation.told(0, &rivals).unwrap(), each.collect())
     }
@@ -415,7 +428,7 @@ mod tests {
     #[test]
     fn weights_tell_a_wrong_excitation_from_a_wrong_reference() {
         let (sentence, each) = told((Effect::ExcitationGain, &[1.05]), &[Effect::ReferenceGain]);
-        assert!(sentence.starts_with("place a known weight of 3 N at 12 of the places, once"), "{sentence}");
+        assert!(sentence.starts_with("place a known weight of 300 g at 12 of the places, and write so under weight_g, once"), "{sentence}");
         // Whatever has both in it tells nothing, however often it is made: weights and a shunt have one of them.
         let helps: Vec<&str> =
             each.iter().filter(|(_, repeats)| repeats.is_some()).map(|(what, _)| what.as_str()).collect();

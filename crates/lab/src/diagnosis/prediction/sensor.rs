@@ -219,7 +219,7 @@ impl Sensor {
 
     /// The strains of a row.
     fn strain(&self, at: usize, chain: &Chain, sizes: &[f64]) -> Vec<f64> {
-        let rig = chain.rig.under(self.samples[at].turned_deg);
+        let rig = chain.rig_at(&self.samples[at]);
         let mut strain = self.strains[at].clone();
         if chain.rig != RigErrors::NONE {
             let then = self.course.moment(at, chain.rig.lag_s);
@@ -248,7 +248,7 @@ impl Sensor {
             return vec![Vec::new(); channels];
         };
         let of_row = |at: usize| {
-            let rig = chain.rig.under(self.samples[at].turned_deg);
+            let rig = chain.rig_at(&self.samples[at]);
             let written = &self.inputs[at];
             let moved = response.moved(written, &rig);
             let unknown = response.regression.unknown(&moved).sqrt();

@@ -7,6 +7,7 @@ use super::simulated::Simulated;
 use crate::diagnosis::model::chain::Chain;
 use crate::diagnosis::model::inverse::{Forward, Inverse, UNKNOWNS, Weighted};
 use crate::diagnosis::model::mechanics::Maps;
+use crate::rig::errors::RigErrors;
 use tactpad_core::pad::influence::InfluenceField;
 use tactpad_core::quantity::CHANNELS;
 use tactpad_inference::model::{ChannelBaselines, Written};
@@ -29,23 +30,30 @@ pub(crate) fn contacts(
 ) -> Vec<Option<Written>> {
     let of_order = simulated.of_order(&chain);
     let observations = simulated.sequence;
-    let turned_deg = |row: usize| observations.samples[row].turned_deg;
-    let mut turns_deg: Vec<f64> = simulated.picked.iter().map(|row| turned_deg(*row)).collect();
-    turns_deg.sort_by(f64::total_cmp);
-    turns_deg.dedup();
-    // What is written stands for another place where the pad is turned on the stage.
-    let clamped = |turned_deg: &f64| {
-        let chain = Chain { rig: chain.rig.under(*turned_deg), ..chain.clone() };
+    let mut rigs: Vec<RigErrors> = Vec::new();
+    let mut rig_of = |row: &usize| {
+        let rig = chain.rig_at(&observations.samples[*row]);
+        rigs.iter().position(|it| *it == rig).unwrap_or_else(|| {
+            rigs.push(rig);
+            rigs.len() - 1
+        })
+    };
+    let rig_of_row: Vec<usize> = simulated.picked.iter().map(&mut rig_of).collect();
+    // What is written stands for another contact where the pad is turned on the stage, or a known weight lies on it.
+    let under = |rig: RigErrors| {
+        let chain = Chain { rig, ..chain.clone() };
         Inverse::new(Bench { simulated, chain, changed: changed.clone() }, radius_mm)
     };
-    let inverses: Vec<Inverse<Bench<'_, '_>>> = turns_deg.iter().map(clamped).collect();
+    let inverses: Vec<Inverse<Bench<'_, '_>>> = rigs.into_iter().map(under).collect();
     let contact = |(at, row): (usize, &usize)| {
         let row = *row;
-        let clamping = turns_deg.partition_point(|turn_deg| *turn_deg < turned_deg(row));
-        let channels = observations.readings.iter().zip(&of_order).zip(told.zeros);
-        let readings: Vec<f64> =
-            channels.map(|((channel, of_order), zero)| channel[row] - of_order[at] - zero).collect();
-        let in_series = observations.samples[row].is_in_series();
+        let sample = &observations.samples[row];
+        let channels = observations.readings.iter().zip(&of_order).enumerate();
+        let reading = |(k, (channel, of_order)): (usize, (&Vec<f64>, &Vec<f64>))| {
+            channel[row] - of_order[at] - told.zeros.at(k, sample)
+        };
+        let readings: Vec<f64> = channels.map(reading).collect();
+        let in_series = sample.is_in_series();
         let channels = readings.iter().zip(told.noise).zip(&observations.is_told);
         let weights: Vec<f64> = channels
             .map(
@@ -55,7 +63,7 @@ pub(crate) fn contacts(
             )
             .collect();
         let tells = weights.iter().filter(|weight| **weight > 0.0).count() >= UNKNOWNS;
-        inverses[clamping].contact(row, &Weighted { readings, weights }).filter(|_| tells)
+        inverses[rig_of_row[at]].contact(row, &Weighted { readings, weights }).filter(|_| tells)
     };
     simulated.picked.par_iter().enumerate().map(contact).collect()
 }
@@ -96,7 +104,7 @@ mod tests {
     use tactpad_core::quantity::CHANNELS;
     use tactpad_inference::model::{ChannelBaselines, Model};
     use tactpad_inference::noise::Noise;
-    use tactpad_inference::observations::{Observations, Sample};
+    use tactpad_inference::observations::{Observations, Sample, Zeros};
     use tactpad_numeric::random::SplitMix64;
     use tactpad_numeric::statistics::mean;
 
@@ -148,7 +156,8 @@ mod tests {
         measured.is_told[2][7] = false;
         (0..5).for_each(|channel| measured.is_told[channel][8] = false);
         let model = Atlas::new(&pad, &[], &measured, &measured);
-        let told = ChannelBaselines { zeros: &[0.0; CHANNELS], noise: &levels };
+        let zeros = Zeros::of(&vec![vec![0.0]; CHANNELS], &measured.samples[..1]);
+        let told = ChannelBaselines { zeros: &zeros, noise: &levels };
         let found = model.contacts(&applied(&model, known), &told).unwrap();
         assert!(found[8].is_none());
         let off = |axes: std::ops::Range<usize>| {

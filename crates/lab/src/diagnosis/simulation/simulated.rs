@@ -44,6 +44,8 @@ pub(crate) struct Simulated<'f> {
     course: RowSequence,
     /// The rows of it that are asked for.
     pub(crate) picked: Vec<usize>,
+    /// How many measurements there are in all.
+    measurements: usize,
     setting: Setting,
     reference: Reference,
     hypotheses: Vec<Hypothesis>,
@@ -92,6 +94,7 @@ impl<'f> Simulated<'f> {
             sequence,
             course: course(sequence),
             picked: observations.numbers.clone(),
+            measurements: all.samples.iter().map(|it| it.measurement + 1).max().unwrap_or(1),
             setting,
             hypotheses,
             causes,
@@ -127,7 +130,7 @@ impl<'f> Simulated<'f> {
         let then = self.course.moment(at, chain.rig.lag_s);
         let place_mm = std::array::from_fn(|axis| then.of(|row| samples[row].place_mm[axis]));
         let force_n = std::array::from_fn(|axis| then.of(|row| samples[row].load[axis]));
-        let rig = chain.rig.under(samples[at].turned_deg);
+        let rig = chain.rig_at(&samples[at]);
         let (place_mm, force_n) = (rig.place_mm(place_mm), rig.force_n(force_n));
         let (gains, laplacian) = match near.filter(|it| it.place_mm == place_mm) {
             Some(near) => (near.gains, near.laplacian),
@@ -285,6 +288,18 @@ impl<'f> Simulated<'f> {
         (0..CHANNELS).map(of_channel).collect()
     }
 
+    /// What each channel's zero of a further measurement differs by from that of the first: as much as it reads.
+    fn zeros_of_further(&self) -> impl Iterator<Item = CommonError> {
+        (1..self.measurements).flat_map(move |measurement| {
+            (0..CHANNELS).map(move |channel| {
+                let is_own = |row: &usize| self.sequence.samples[*row].measurement == measurement;
+                let own: Vec<f64> = self.picked.iter().map(|row| f64::from(u8::from(is_own(row)))).collect();
+                let signature = (0..CHANNELS).map(|k| (k == channel).then(|| own.clone())).collect();
+                CommonError { deviation: self.reference.sizes[channel], signature }
+            })
+        })
+    }
+
     /// ∂readings/∂ψ by one coordinate: a central difference.
     fn signature(&self, point: &Point<'_>, [at, parameter]: [usize; 2]) -> Signature {
         let hypothesis = &self.hypotheses[at];
@@ -357,6 +372,7 @@ impl Model<Label> for Simulated<'_> {
             errors
                 .extend(like.map(|at| CommonError { deviation, signature: self.signature(&point, [at, 0]) }));
         }
+        errors.extend(self.zeros_of_further());
         errors
     }
 }

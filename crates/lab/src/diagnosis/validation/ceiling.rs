@@ -64,8 +64,8 @@ fn left(
     applied: &Applied,
     noise: &[Noise],
 ) -> Option<[Vec<f64>; 2]> {
-    let (zeros, residuals) = (open.zeros(applied), open.residuals(applied));
-    let judged_residuals = locked.residuals(applied);
+    let zeros = open.zeros(applied);
+    let [residuals, judged_residuals] = [open, locked].map(|rows| rows.beside(applied, &zeros));
     let readings = locked.model.readings(applied);
     let clusters = locked.observations.clusters();
     let mut squares = [(); 2].map(|()| vec![0.0; clusters.iter().max().map_or(0, |last| last + 1)]);
@@ -73,7 +73,7 @@ fn left(
         (0..residuals.len()).filter(|channel| open.observations.is_alive(*channel)).collect();
     // What tells nothing is at its channel's zero, which the regression has anyway.
     let told = |channel: usize| -> Vec<f64> {
-        residuals[channel].iter().map(|it| if it.is_nan() { zeros[channel] } else { *it }).collect()
+        residuals[channel].iter().map(|it| if it.is_nan() { 0.0 } else { *it }).collect()
     };
     let regression =
         Regression::of(learnt, &alive.iter().map(|channel| told(*channel)).collect::<Vec<_>>()).ok()?;
@@ -88,7 +88,7 @@ fn left(
                 continue;
             }
             let variance = noise[channel].variance(readings[channel][row], in_series[row]);
-            squares[0][clusters[row]] += (residual - zeros[channel]).powi(2) / variance;
+            squares[0][clusters[row]] += residual.powi(2) / variance;
             squares[1][clusters[row]] += (residual - fit.value(&at_locked[row])).powi(2) / variance;
         }
     }

@@ -6,7 +6,7 @@ use crate::diagnosis::report::{Decoded, Gain, WithoutFinding};
 use tactpad_core::tables::measured::zero::UNLOADED_N;
 use tactpad_inference::model::{ChannelBaselines, Model};
 use tactpad_inference::noise::Noise;
-use tactpad_inference::observations::{Observations, Sample};
+use tactpad_inference::observations::{Observations, Sample, Zeros};
 use tactpad_inference::search::{Applied, AttributionFit};
 use tactpad_numeric::statistics::mean;
 
@@ -41,19 +41,24 @@ impl Rows<'_> {
             .collect()
     }
 
-    /// The means of the residuals: each channel's zero.
-    pub(crate) fn zeros(&self, applied: &Applied) -> Vec<f64> {
-        let told = |of: &Vec<f64>| mean(of.iter().copied().filter(|residual| !residual.is_nan()));
-        self.residuals(applied).iter().map(told).collect()
+    /// The means of the residuals.
+    pub(crate) fn zeros(&self, applied: &Applied) -> Zeros {
+        Zeros::of(&self.residuals(applied), &self.observations.samples)
+    }
+
+    /// The residuals beside these zeros.
+    pub(crate) fn beside(&self, applied: &Applied, zeros: &Zeros) -> Vec<Vec<f64>> {
+        let mut residuals = self.residuals(applied);
+        for (channel, of) in residuals.iter_mut().enumerate() {
+            let rows = of.iter_mut().zip(&self.observations.samples);
+            rows.for_each(|(residual, sample)| *residual -= zeros.at(channel, sample));
+        }
+        residuals
     }
 
     /// The residuals beside each channel's zero.
     pub(crate) fn centred(&self, applied: &Applied) -> Vec<Vec<f64>> {
-        let mut residuals = self.residuals(applied);
-        for (channel, zero) in residuals.iter_mut().zip(self.zeros(applied)) {
-            channel.iter_mut().for_each(|residual| *residual -= zero);
-        }
-        residuals
+        self.beside(applied, &self.zeros(applied))
     }
 
     /// For each row, how far the decoded contact is from the one that was written; one without a contact counts nothing. None where
@@ -73,10 +78,8 @@ impl Rows<'_> {
     }
 
     /// For each row, the sum of squares beside these zeros.
-    fn squares(&self, applied: &Applied, zeros: &[f64]) -> Vec<f64> {
-        let left = self.residuals(applied);
-        let beside = |(channel, zero): (&Vec<f64>, &f64)| channel.iter().map(|it| it - zero).collect();
-        self.added(&left.iter().zip(zeros).map(beside).collect::<Vec<Vec<f64>>>(), |left| left * left)
+    fn squares(&self, applied: &Applied, zeros: &Zeros) -> Vec<f64> {
+        self.added(&self.beside(applied, zeros), |left| left * left)
     }
 
     /// For each row, the sum over all readings that are numbers.
@@ -107,16 +110,16 @@ impl Rows<'_> {
     fn expected_squares(
         &self,
         applied: &Applied,
-        zeros: &[f64],
+        zeros: &Zeros,
         expected: &[Vec<f64>],
         noise: &[Noise],
     ) -> Vec<f64> {
         let modelled = self.model.readings(applied);
         let square = |channel: usize, row: usize| {
             let is_told = self.observations.is_told[channel][row];
-            let left = expected[channel][row] - modelled[channel][row] - zeros[channel];
-            let variance = noise[channel]
-                .variance(modelled[channel][row], self.observations.samples[row].is_in_series());
+            let sample = &self.observations.samples[row];
+            let left = expected[channel][row] - modelled[channel][row] - zeros.at(channel, sample);
+            let variance = noise[channel].variance(modelled[channel][row], sample.is_in_series());
             if is_told { left * left + variance } else { f64::NAN }
         };
         let rows = self.observations.rows();
@@ -140,7 +143,7 @@ struct Errors {
 }
 
 /// Root mean square of residuals beside zeros.
-pub(crate) fn rmse(rows: &Rows<'_>, applied: &Applied, zeros: &[f64]) -> f64 {
+pub(crate) fn rmse(rows: &Rows<'_>, applied: &Applied, zeros: &Zeros) -> f64 {
     let count = rows.observations.is_told.iter().flatten().filter(|it| **it).count() as f64;
     (rows.squares(applied, zeros).iter().sum::<f64>() / count).sqrt()
 }

@@ -84,7 +84,7 @@ fn overview(subject: &Subject<'_>) -> String {
 mod tests {
     use super::*;
     use tactpad::lab::diagnosis::data::target::Target;
-    use tactpad::lab::diagnosis::report::{Estimate, Finding, Notice, Residuals, Verdict};
+    use tactpad::lab::diagnosis::report::{Estimate, Finding, Notice, Proposal, Residuals, Verdict};
     use tactpad::lab::effect::Effect;
     use tactpad::lab::inference::observations::Sample;
 
@@ -132,6 +132,7 @@ mod tests {
                 nominal: residuals(false),
                 extended: residuals(true),
             },
+            next: Proposal::default(),
         }
     }
 

@@ -145,6 +145,8 @@ fn pressed(force: [f64; 3]) -> Row {
         contact: Contact { place: [0.0; 2], force },
         dwell_s: 2.0,
         unloading: false,
+        turned_deg: 0.0,
+        weight_g: None,
     }
 }
 

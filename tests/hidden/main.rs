@@ -19,6 +19,7 @@ mod fields;
 mod files;
 mod foreign;
 mod found;
+mod further;
 mod generator;
 mod limits;
 mod measured;

@@ -174,7 +174,7 @@ impl Measured {
         text += if self.columns.cycle { "cycle," } else { "" };
         text += "x_mm,y_mm,fx_n,fy_n,fz_n";
         CHANNELS.iter().for_each(|channel| write!(text, ",{channel}_uv").unwrap());
-        text += ",dwell_s,approach\n";
+        text += ",dwell_s,approach,turned_deg,weight_g\n";
         for ((row, label), channels) in self.rows.iter().zip(&self.labels).zip(&self.channels) {
             write!(text, "{},{},{:.4}", row.trial, row.session, row.time_s).unwrap();
             if self.columns.temp_c {
@@ -191,7 +191,8 @@ impl Measured {
                 (_, true) => "unloading",
                 (_, false) => "loading",
             };
-            writeln!(text, ",{},{approach}", row.dwell_s).unwrap();
+            let weight_g = row.weight_g.map_or_else(String::new, |weight_g| weight_g.to_string());
+            writeln!(text, ",{},{approach},{},{weight_g}", row.dwell_s, row.turned_deg).unwrap();
         }
         text
     }

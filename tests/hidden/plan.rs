@@ -25,6 +25,10 @@ pub(crate) struct Row {
     pub(crate) contact: Contact,
     pub(crate) dwell_s: f64,
     pub(crate) unloading: bool,
+    /// By how much the pad is turned on the stage, counter-clockwise.
+    pub(crate) turned_deg: f64,
+    /// A known weight in place of the rig's press.
+    pub(crate) weight_g: Option<f64>,
 }
 
 impl Row {
@@ -74,7 +78,7 @@ impl Plan {
 }
 
 /// Reads a plan by the names of its columns.
-fn read(text: &str) -> Vec<Row> {
+pub(crate) fn read(text: &str) -> Vec<Row> {
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
     let row = |line: &str| {
@@ -98,6 +102,8 @@ fn read(text: &str) -> Vec<Row> {
             },
             dwell_s: number("dwell_s").unwrap_or(1.0),
             unloading: cell("approach") == "unloading",
+            turned_deg: known("turned_deg"),
+            weight_g: number("weight_g"),
         }
     };
     lines.map(row).collect()
@@ -126,6 +132,8 @@ fn stream(random: &mut Random) -> Vec<Row> {
                 contact: Contact { place: [radius * angle.cos(), radius * angle.sin()], force },
                 dwell_s: 0.0,
                 unloading: false,
+                turned_deg: 0.0,
+                weight_g: None,
             });
         }
     }

@@ -66,6 +66,17 @@ pub(crate) fn diagnosed(measured: &Path, more: &[&str]) -> Result<Value, String>
     document(command, measured)
 }
 
+/// The same of several measurements, and the plan that the program writes for the next one; none where it has none to propose.
+pub(crate) fn diagnosed_together(measured: &[PathBuf], plan: &Path) -> (Value, Option<String>) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));
+    command.args(["diagnose", "--json", "--next"]).arg(plan);
+    measured.iter().for_each(|path| {
+        command.arg("--measured").arg(path);
+    });
+    let diagnosis = document(command, plan).unwrap();
+    (diagnosis, fs::read_to_string(plan).ok())
+}
+
 /// What the program says of a pad that it calibrates; the decoder is written.
 pub(crate) fn calibrated(measured: &Path, decoder: &Path) -> Value {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tactpad"));

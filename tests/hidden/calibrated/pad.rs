@@ -133,6 +133,8 @@ fn row(contact: Contact, dwell_s: f64, unloading: bool) -> Row {
         contact,
         dwell_s,
         unloading,
+        turned_deg: 0.0,
+        weight_g: None,
     }
 }
 

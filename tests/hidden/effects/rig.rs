@@ -10,20 +10,23 @@ pub(crate) fn true_contacts(truths: &[Truth], rows: &[Row]) -> Vec<Contact> {
         if truth.effect == "time_lag" {
             contacts = earlier(rows, &contacts, -truth.value("ms") / 1000.0);
         }
-        for contact in &mut contacts {
-            contact.place = place(truth, contact.place);
+        // The stage knows nothing of how the pad lies on it.
+        for (contact, row) in contacts.iter_mut().zip(rows) {
+            contact.place = turned(place(truth, turned(contact.place, row.turned_deg)), -row.turned_deg);
         }
     }
     contacts
 }
 
+fn turned([x, y]: [f64; 2], deg: f64) -> [f64; 2] {
+    let (sin, cos) = deg.to_radians().sin_cos();
+    [cos * x - sin * y, sin * x + cos * y]
+}
+
 fn place(truth: &Truth, [x, y]: [f64; 2]) -> [f64; 2] {
     match truth.effect.as_str() {
         "stage_offset" => [x + truth.value("x_mm"), y + truth.value("y_mm")],
-        "stage_rotation" => {
-            let (sin, cos) = truth.value("deg").to_radians().sin_cos();
-            [cos * x - sin * y, sin * x + cos * y]
-        }
+        "stage_rotation" => turned([x, y], truth.value("deg")),
         "stage_scale" => [x * truth.value("scale"), y * truth.value("scale")],
         _ => [x, y],
     }
@@ -32,8 +35,12 @@ fn place(truth: &Truth, [x, y]: [f64; 2]) -> [f64; 2] {
 /// What is written about the contacts: their planned places, and their forces as the reference gives them.
 pub(crate) fn labels(truths: &[Truth], rows: &[Row]) -> Vec<Contact> {
     let written = |row: &Row| {
-        let force = truths.iter().fold(row.contact.force, |force, truth| reference(truth, force));
-        Contact { place: row.contact.place, force }
+        // Nobody asks the reference about a known weight.
+        let asked = truths.iter().filter(|_| row.weight_g.is_none());
+        let [fx, fy] = turned([row.contact.force[0], row.contact.force[1]], row.turned_deg);
+        let [fx, fy, fz] = asked.fold([fx, fy, row.contact.force[2]], |force, truth| reference(truth, force));
+        let [fx, fy] = turned([fx, fy], -row.turned_deg);
+        Contact { place: row.contact.place, force: [fx, fy, fz] }
     };
     rows.iter().map(written).collect()
 }

@@ -327,11 +327,8 @@ fn summary(
     let separation = Separation::new(search, found);
     let applied: Applied = candidates.iter().map(|it| fit.applied[it.place].clone()).collect();
     let is_open = |it: &&Candidate| !it.finding.confounded_with.is_empty();
-    let open_findings: Vec<OpenFinding> = candidates
-        .iter()
-        .filter(is_open)
-        .map(|it| (it.place, it.finding.confounded_with.clone()))
-        .collect();
+    let open_findings: Vec<OpenFinding> =
+        candidates.iter().filter(is_open).map(|it| (it.place, it.finding.confounded_with.clone())).collect();
     let told = |Candidate { place, finding, is_doubted }| {
         let separate_by = separation.told(place, &finding.confounded_with);
         let finding = Finding { separate_by, ..finding };

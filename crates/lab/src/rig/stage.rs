@@ -24,7 +24,15 @@ impl LoadingStage {
     pub(super) fn new(rig: Rig, seed: u64) -> Self {
         let approaches = SplitMix64::named(seed, "approach");
         let reference = SplitMix64::named(seed, "sensor");
-        Self { rig, approaches, reference, turned_deg: 0.0, is_weight: false, place_mm: [0.0; 2], force_share: 0.0 }
+        Self {
+            rig,
+            approaches,
+            reference,
+            turned_deg: 0.0,
+            is_weight: false,
+            place_mm: [0.0; 2],
+            force_share: 0.0,
+        }
     }
 
     /// The pad is clamped so, counter-clockwise, and a known weight is put down or the stage presses.

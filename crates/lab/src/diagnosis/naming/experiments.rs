@@ -135,7 +135,9 @@ fn without_reference(rows: &Observations, repeated: &[Sample]) -> [Experiment; 2
     let weight_g = weight_g(repeated);
     let placed = plain(
         rows,
-        format!("place a known weight of {weight_g:.0} g at {WEIGHTS} of the places, and write so under weight_g"),
+        format!(
+            "place a known weight of {weight_g:.0} g at {WEIGHTS} of the places, and write so under weight_g"
+        ),
         "it needs no force sensor, so what is wrong with the pad still shows, and what is wrong with the sensor does not",
         WEIGHT_MIN * WEIGHTS as f64,
         weights(repeated, weight_g),

@@ -420,7 +420,10 @@ mod tests {
         let separation = Separation::new(&search, &found);
         let each = separation.experiments.iter().enumerate().map(|(number, experiment)| {
             let each = separation.repeats(number, 0, &numbers).unwrap().into_iter();
-            (experiment.what.clone(), each.collect::<Option<Vec<usize>>>().and_then(|it| it.into_iter().max()))
+            (
+                experiment.what.clone(),
+                each.collect::<Option<Vec<usize>>>().and_then(|it| it.into_iter().max()),
+            )
         });
         (separation.told(0, &rivals).unwrap(), each.collect())
     }
@@ -428,7 +431,12 @@ mod tests {
     #[test]
     fn weights_tell_a_wrong_excitation_from_a_wrong_reference() {
         let (sentence, each) = told((Effect::ExcitationGain, &[1.05]), &[Effect::ReferenceGain]);
-        assert!(sentence.starts_with("place a known weight of 300 g at 12 of the places, and write so under weight_g, once"), "{sentence}");
+        assert!(
+            sentence.starts_with(
+                "place a known weight of 300 g at 12 of the places, and write so under weight_g, once"
+            ),
+            "{sentence}"
+        );
         // Whatever has both in it tells nothing, however often it is made: weights and a shunt have one of them.
         let helps: Vec<&str> =
             each.iter().filter(|(_, repeats)| repeats.is_some()).map(|(what, _)| what.as_str()).collect();

@@ -27,6 +27,10 @@ pub(crate) struct Score {
     /// Parameters of named causes, and how many of their intervals hold the truth.
     pub(crate) intervals: [usize; 2],
     pub(crate) rmse_ratio_high95: Option<f64>,
+    /// How many hidden causes are named or in a set of at most two causes of the catalogue.
+    pub(crate) in_two: usize,
+    /// How many are found as what may be a part of something else.
+    pub(crate) doubted: usize,
 }
 
 fn text<'a>(value: &'a Value, key: &str) -> &'a str {
@@ -60,6 +64,14 @@ fn found(findings: &[Value], truth: &Truth) -> Found {
     best
 }
 
+/// Whether a finding holds a cause, and the rivals in it: those of the catalogue, and whether that it is a part of something else is one.
+fn rivals(finding: &Value, truth: &Truth) -> Option<(usize, bool)> {
+    let all = list(finding, "confounded_with");
+    let unlisted = all.iter().filter(|rival| text(rival, "effect") == "unlisted_cause").count();
+    let is_held = means(finding, truth) || all.iter().any(|rival| means(rival, truth));
+    is_held.then_some((all.len() - unlisted, unlisted > 0))
+}
+
 /// The parameters of a named cause, and how many of their intervals hold the truth.
 fn intervals(findings: &[Value], truth: &Truth) -> [usize; 2] {
     let named = findings.iter().find(|finding| text(finding, "status") == "NAMED" && means(finding, truth));
@@ -90,6 +102,9 @@ impl Score {
         let wrong = named.filter(|finding| !truths.iter().any(|truth| means(finding, truth)));
         let verdict = text(diagnosis, "verdict").to_owned();
         let each = truths.iter().map(|truth| intervals(findings, truth));
+        let held = truths.iter().map(|truth| {
+            findings.iter().filter_map(|finding| rivals(finding, truth)).collect::<Vec<(usize, bool)>>()
+        });
         Self {
             found: truths.iter().map(|truth| found(findings, truth)).collect(),
             wrong: wrong
@@ -100,6 +115,8 @@ impl Score {
             unnamed_share: diagnosis["unnamed_share"].as_f64().unwrap_or_default(),
             intervals: each.fold([0, 0], |[all, held], [more, more_held]| [all + more, held + more_held]),
             rmse_ratio_high95: diagnosis["gain"]["rmse_ratio_high95"].as_f64(),
+            in_two: held.clone().filter(|of| of.iter().any(|(rivals, _)| *rivals <= 1)).count(),
+            doubted: held.filter(|of| !of.is_empty() && of.iter().all(|(_, is_doubted)| *is_doubted)).count(),
         }
     }
 
@@ -123,6 +140,8 @@ impl Score {
             "verdict": self.verdict,
             "unnamed_share": self.unnamed_share,
             "intervals": self.intervals,
+            "in_two": self.in_two,
+            "doubted": self.doubted,
             "rmse_ratio_high95": self.rmse_ratio_high95,
         })
     }

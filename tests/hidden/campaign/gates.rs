@@ -71,6 +71,7 @@ pub(super) fn of(lines: &[Value]) -> Vec<Gate> {
         let found = share(&struck, wrong);
         gates.push(gate("a cause that is struck: at most 5 % wrong names", found, found.value() <= 0.05));
     }
+    gates.extend(several(&part(lines, "several")));
     gates.extend(second(&part(lines, "second")));
     gates.extend(pads(&part(lines, "pads")));
     gates.extend(sharp(&part(lines, "sharp")));
@@ -85,6 +86,31 @@ fn nulls(nulls: &[&Value]) -> Vec<Gate> {
     vec![
         gate("nulls: at most 5 % alarms", found, found.value() <= 0.05),
         gate("nulls: one-sided upper limit at most 8 %", found, found.upper95() <= 0.08),
+    ]
+}
+
+/// Two to five causes at once.
+fn several(lines: &[&Value]) -> Vec<Gate> {
+    if lines.is_empty() {
+        return Vec::new();
+    }
+    let causes = |line: &Value| line["truths"].as_array().map_or(0, Vec::len);
+    let number = |line: &Value, key: &str| line["score"][key].as_u64().unwrap_or_default() as usize;
+    // One entry for each cause, of which the first so many count.
+    let each = |key: &str| {
+        Share::of(lines.iter().flat_map(|line| (0..causes(line)).map(|at| at < number(line, key))))
+    };
+    let [in_two, doubted] = ["in_two", "doubted"].map(each);
+    let found = share(lines, wrong);
+    let intervals = |at: usize| {
+        lines.iter().filter_map(|line| line["score"]["intervals"][at].as_u64()).sum::<u64>() as usize
+    };
+    let held = Share::of((0..intervals(0)).map(|at| at < intervals(1)));
+    vec![
+        gate("several: named or in a set of two in at least 90 %", in_two, in_two.value() >= 0.9),
+        gate("several: perhaps a part of something else in at most 10 %", doubted, doubted.value() <= 0.1),
+        gate("several: wrong names in at most 2 % of tables", found, found.value() <= 0.02),
+        gate("several: 90 to 99 % of intervals hold", held, (0.9..=0.99).contains(&held.value())),
     ]
 }
 

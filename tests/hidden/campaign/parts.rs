@@ -33,11 +33,12 @@ pub(super) struct Part {
     pub(super) jobs: fn(Length) -> Vec<Job>,
 }
 
-pub(super) const ALL: [Part; 7] = [
+pub(super) const ALL: [Part; 8] = [
     Part { name: "least", jobs: least },
     Part { name: "nulls", jobs: nulls },
     Part { name: "sizes", jobs: sizes },
     Part { name: "struck", jobs: struck },
+    Part { name: "several", jobs: several },
     Part { name: "second", jobs: second },
     Part { name: "pads", jobs: pads },
     Part { name: "sharp", jobs: sharp },
@@ -169,6 +170,60 @@ fn struck(length: Length) -> Vec<Job> {
     all_causes("struck", length.seeds(length.seeds.min(2)), &[3.0], |case, effect| {
         line(&case, &["--without", effect])
     })
+}
+
+/// So many tables of a seed have several causes at once.
+const TABLES_OF_SEVERAL: u64 = 20;
+/// Causes of the catalogue that any plan shows by contacts alone, and that come in sizes.
+const OF_CONTACTS: [&str; 22] = [
+    "channel_gain",
+    "channel_offset",
+    "channel_crosstalk",
+    "gauge_nonlinearity",
+    "module_displaced",
+    "module_rotated",
+    "module_tilted",
+    "module_stiffness",
+    "module_debonded",
+    "module_frame_open",
+    "module_crosstalk",
+    "plate_stiffness",
+    "excitation_gain",
+    "zero_drift",
+    "hysteresis",
+    "creep",
+    "reference_tilt",
+    "reference_gain",
+    "reference_zero",
+    "stage_offset",
+    "stage_rotation",
+    "stage_scale",
+];
+
+/// Two to five different causes at once, each of three minimum detectable effects.
+fn several(length: Length) -> Vec<Job> {
+    let job = |seed: u64, number: u64| {
+        let plan = Plan::BOTH[number as usize % 2];
+        let key = format!("several-{}-{seed}-{number}", plan.name());
+        let name = key.clone();
+        let run = move |lines: &Lines| {
+            let random = &mut Random::new(seed, &name);
+            let count = 2 + random.below(4);
+            let mut effects = OF_CONTACTS.to_vec();
+            let mut truths = Vec::new();
+            let without = quiet(plan, seed, Columns::default());
+            let Some(known) = lines.get(&without.key) else { return json!({"no_size": true}) };
+            while truths.len() < count && !effects.is_empty() {
+                let effect = effects.swap_remove(random.below(effects.len()));
+                let truth = drawn(effect, 1.0, random);
+                truths.extend(scaled(&truth, 3.0, &|name| minimum_detectable(&known, &truth, name)));
+            }
+            line(&Case { quality: without.quality, ..Case::new(&name, seed, plan, truths) }, &[])
+        };
+        Job { key, part: "several", plan, effect: "", run: Box::new(run) }
+    };
+    let tables = |seed: u64| (0..TABLES_OF_SEVERAL).map(move |number| job(seed, number));
+    length.seeds(length.seeds).flat_map(tables).collect()
 }
 
 /// The extended pad on another recording, by the other plan.

@@ -45,7 +45,7 @@ use self::label::{ModelOfRows, Search, no_solution};
 use self::naming::proposal::{OpenFinding, proposal};
 use self::naming::separation::Separation;
 use self::naming::untestable::with_untestable;
-use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
+use self::naming::withdrawal::{CAUSES_MAX, Candidate, NamingResult, doubted, in_common, named};
 use self::naming::{not_detected, offsets};
 use self::report::{Diagnosis, Finding, NotTestable, Notice, Residuals, Verdict};
 use self::simulation::atlas::{Atlas, attributed};
@@ -212,26 +212,40 @@ fn concluded(
         Rows { model, observations: open, unrepaired: as_measured(0) },
         Rows { model: at_locked.as_ref(), observations: locked, unrepaired: as_measured(1) },
     ];
-    // What each specimen has of its own comes in all sizes: whether more is left is asked of all of it together.
+    // Of many causes, as of what each specimen has of its own in all sizes, it is asked together whether more is left.
     let halves = open.halves().map(|rows| open.picked(&rows));
     let models = halves.each_ref().map(|half| model.at(half));
     let half = |at: usize| Rows { model: models[at].as_ref(), observations: &halves[at], unrepaired: None };
-    let is_all = !found.family.is_empty()
+    let is_all = (!found.family.is_empty() || found.fit.applied.len() > CAUSES_MAX)
         && is_all_removed([&half(0), &half(1)], &found.fit.applied, &found.fit.systems.noise);
+    if std::env::var_os("TP_DBG").is_some() {
+        let share = self::validation::ceiling::ceiling_share([&half(0), &half(1)], &found.fit.applied, &found.fit.systems.noise);
+        eprintln!("DBG family {} applied {} is_all {is_all} share {share:?}", found.family.len(), found.fit.applied.len());
+    }
     let diagnosis = summary(&search, found, &rows, &missing, Judgement { is_all, validation })?;
     let excess = (!without.contains(&Effect::NoiseExcess))
         .then(|| excess(open, &found.fit.systems.noise, &found.fit.linearised.readings));
-    let effect = |at: &usize| model.hypotheses()[*at].label.0;
-    let own = found.family.iter().filter(|members| !found.are_alike(members)).flatten().map(effect);
-    let mut family: Vec<Effect> = own.chain(individual.iter().copied()).collect();
-    if !found.family.is_empty() {
-        family.push(Effect::ChannelOffset);
+    let mut family = individual.to_vec();
+    if has_own_gains(&diagnosis.findings, open) {
+        let effect = |at: &usize| model.hypotheses()[*at].label.0;
+        let own = found.family.iter().filter(|members| !found.are_alike(members)).flatten().map(effect);
+        family.extend(own.chain([Effect::ChannelOffset]));
     }
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
     diagnosis.not_detected.retain(|it| !without.contains(&it.effect));
-    diagnosis.findings = in_common(diagnosis.findings, &family);
+    if !is_all {
+        diagnosis.findings = in_common(diagnosis.findings, &family);
+    }
     diagnosis.findings = with_untestable(diagnosis.findings, &diagnosis.not_testable, open);
     Ok(diagnosis)
+}
+
+/// Whether most channels have a gain of their own, as those of a pad have that is as it was made. Modules that all stand otherwise beside
+/// channels that are all alike have another reason.
+fn has_own_gains(findings: &[Finding], observations: &Observations) -> bool {
+    let gains = findings.iter().filter(|it| it.effect == Effect::ChannelGain).count();
+    let alive = (0..observations.channels.len()).filter(|channel| observations.is_alive(*channel)).count();
+    2 * gains > alive
 }
 
 /// The observations after the checks of the recording.

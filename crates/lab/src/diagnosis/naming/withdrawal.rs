@@ -22,7 +22,7 @@ const OVER_ALL: f64 = 4.0;
 /// So many findings of one effect need no reason in common,
 const ALIKE_MAX: usize = 1;
 /// and so many of any effects.
-const CAUSES_MAX: usize = 2;
+pub(crate) const CAUSES_MAX: usize = 2;
 /// The least part of what is known of a cause by which a channel tells of it.
 const PART_MIN: f64 = 0.01;
 

@@ -95,7 +95,7 @@ pub struct Hypothesis<L> {
     /// Standard deviation of how large its signature is, as a share: by so much of themselves its numbers are known at best.
     pub signature_error: f64,
     /// Standard deviation of its first number's coordinate in any specimen, whether it is found or not; 0 where it is there or is not.
-    pub ordinary: f64,
+    pub prior_deviation: f64,
     /// The channel whose zero it is, if it is one: all fits have the zeros anyway, and nobody asks for them as causes.
     pub zero_of: Option<usize>,
 }

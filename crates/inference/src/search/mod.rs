@@ -4,7 +4,7 @@ mod bootstrap;
 pub mod columns;
 mod constancy;
 pub mod estimates;
-mod family;
+mod random_effects;
 mod rivals;
 pub mod score_test;
 mod zeros;
@@ -42,8 +42,8 @@ const STANDS: f64 = 0.1;
 /// Hypotheses that hold, each with its coordinates.
 pub type Applied = Vec<(usize, Vec<f64>)>;
 
-/// Hypotheses by effect.
-pub type Family = Vec<Vec<usize>>;
+/// What each specimen has of its own: hypotheses whose numbers are normal, effect by effect.
+pub type RandomEffects = Vec<Vec<usize>>;
 
 /// The measurement about a fitted point.
 pub struct AttributionFit {
@@ -83,7 +83,7 @@ pub struct Attribution {
     /// The p-value below which a cause is found: the family-wise level's quantile of the least of all.
     pub critical: f64,
     /// Hypotheses that are fitted together, whether they are significant or not, effect by effect: what each specimen has of its own.
-    pub family: Family,
+    pub random_effects: RandomEffects,
     /// For each hypothesis, whether these reproduce it.
     pub reproduced: Vec<bool>,
 }
@@ -109,32 +109,32 @@ impl<'m, L> Search<'m, L> {
         Self { model, observations, smooth, columns, clusters: observations.clusters() }
     }
 
-    /// Forward selection from causes that are held to be there: whatever is not significant is taken out, but for a `family`, whose members
+    /// Forward selection from causes that are held to be there: whatever is not significant is taken out, but for `random_effects`, which
     /// are asked for together; while the best candidate is significant, it is fitted.
-    pub fn run(&self, start: &Applied, family: &[Vec<usize>]) -> Result<Attribution, InferenceError> {
+    pub fn run(&self, start: &Applied, random_effects: &[Vec<usize>]) -> Result<Attribution, InferenceError> {
         let mut fit = self.fitted(start, None)?;
         let mut critical = self.critical(&fit)?;
-        while let Some(least) = self.superfluous(&fit, critical, family)? {
+        while let Some(least) = self.superfluous(&fit, critical, random_effects)? {
             let mut applied = fit.applied.clone();
             applied.remove(least);
             fit = self.fitted(&applied, Some(&fit))?;
         }
         // What was taken out or replaced stays out, so that the search ends.
         let mut barred: Vec<usize> = Vec::new();
-        while fit.applied.len() < CAUSES_MAX + family.iter().flatten().count() {
-            let Some(next) = self.next(&fit, critical, &barred, family)? else { break };
+        while fit.applied.len() < CAUSES_MAX + random_effects.iter().flatten().count() {
+            let Some(next) = self.next(&fit, critical, &barred, random_effects)? else { break };
             let mut applied = fit.applied.clone();
             applied.push((next, vec![0.0; self.model.hypotheses()[next].parameters.len()]));
             fit = self.within_range(self.fitted(&applied, Some(&fit))?, critical, &mut barred)?;
             critical = self.critical(&fit)?;
-            while let Some(least) = self.superfluous(&fit, critical, family)? {
+            while let Some(least) = self.superfluous(&fit, critical, random_effects)? {
                 let mut applied = fit.applied.clone();
                 barred.push(applied.remove(least).0);
                 fit = self.fitted(&applied, Some(&fit))?;
             }
         }
-        let reproduced = self.reproduced(&fit, family)?;
-        Ok(Attribution { fit, critical, family: family.to_vec(), reproduced })
+        let reproduced = self.reproduced(&fit, random_effects)?;
+        Ok(Attribution { fit, critical, random_effects: random_effects.to_vec(), reproduced })
     }
 
     /// The fit, or where its last cause ended at an end of its range, that with a rival in its place which explains the data as well
@@ -339,11 +339,11 @@ impl<'m, L> Search<'m, L> {
         fit: &AttributionFit,
         critical: f64,
         barred: &[usize],
-        family: &[Vec<usize>],
+        random_effects: &[Vec<usize>],
     ) -> Result<Option<usize>, InferenceError> {
         let projected = self.projected(fit)?;
         let least = self.least_square(fit)?;
-        let reproduced = self.reproduced(fit, family)?;
+        let reproduced = self.reproduced(fit, random_effects)?;
         let holds = |at: usize| barred.contains(&at) || fit.applied.iter().any(|(held, _)| *held == at);
         let mut candidates: Vec<(Test, usize)> = (0..self.columns.of_hypothesis.len())
             .filter(|at| !holds(*at) && !self.is_zero(*at) && !reproduced[*at])
@@ -380,7 +380,7 @@ impl<'m, L> Search<'m, L> {
     }
 
     /// −2 ln of how probable a fit makes the readings, but for a constant, with 2 ln M for each cause that was chosen among M hypotheses.
-    /// The numbers ψ of a cause are normal about none, and so are those of one effect in a family, with the deviation σ that they show:
+    /// The numbers ψ of a cause are normal about none, and so are those of one effect among the random effects, with the deviation σ that they show:
     ///
     /// ```text
     /// rᵀ V⁻¹ r + ln det V + Σ ψ²/σ² + ln det(F + P) + Σ ln σ²,  σ² = mean of ψ²,  P = diag(1/σ²)
@@ -388,15 +388,17 @@ impl<'m, L> Search<'m, L> {
     ///
     /// Source: D. J. C. MacKay, Neural Computation 4 (1992) 415; of the choice J. Chen, Z. Chen, Biometrika 95 (2008) 759, γ = 1.
     pub fn criterion_of(&self, found: &Attribution) -> Result<f64, InferenceError> {
-        let Attribution { fit, family, .. } = found;
+        let Attribution { fit, random_effects, .. } = found;
         let mut precisions = self.columns.precisions.clone();
         let mut criterion = fit.marginal.log_determinant();
-        let (members, chosen): (Vec<_>, Vec<_>) =
-            fit.applied.iter().partition(|(held, _)| family.iter().flatten().any(|member| member == held));
+        let (members, chosen): (Vec<_>, Vec<_>) = fit
+            .applied
+            .iter()
+            .partition(|(held, _)| random_effects.iter().flatten().any(|member| member == held));
         let of_effect = |effect: &Vec<usize>| -> Vec<&(usize, Vec<f64>)> {
             members.iter().copied().filter(|(held, _)| effect.contains(held)).collect()
         };
-        for group in family.iter().map(of_effect).chain(chosen.iter().map(|cause| vec![*cause])) {
+        for group in random_effects.iter().map(of_effect).chain(chosen.iter().map(|cause| vec![*cause])) {
             let numbers: Vec<(usize, f64)> = group
                 .iter()
                 .flat_map(|(held, psi)| {
@@ -423,11 +425,11 @@ impl<'m, L> Search<'m, L> {
         &self,
         fit: &AttributionFit,
         critical: f64,
-        family: &[Vec<usize>],
+        random_effects: &[Vec<usize>],
     ) -> Result<Option<usize>, InferenceError> {
         let mut worst: Option<(f64, usize)> = None;
         let least = self.least_square(fit)?;
-        let is_chosen = |at: &usize| !is_member(family, fit.applied[*at].0);
+        let is_chosen = |at: &usize| !is_random_effect(random_effects, fit.applied[*at].0);
         for at in (0..fit.applied.len()).filter(is_chosen) {
             let test = self.test_within(fit, at)?;
             let p_value = test.p_value();
@@ -503,15 +505,15 @@ impl<'m, L> Search<'m, L> {
         Ok((projected, score))
     }
 
-    /// What each fitted cause takes off the weighted squares: beside all others; of a family's effect all members together, each by what
-    /// it takes off alone. Beside a family what several explain alike is shared by these parts, so that they add up to the whole.
+    /// What each fitted cause takes off the weighted squares: beside all others; of random effects all of one effect together, each by what
+    /// it takes off alone. Beside random effects what several explain alike is shared by these parts, so that they add up to the whole.
     pub fn squares(&self, found: &Attribution) -> Result<Vec<f64>, InferenceError> {
-        let Attribution { fit, family, .. } = found;
+        let Attribution { fit, random_effects, .. } = found;
         let mut squares = Vec::new();
         for at in 0..fit.applied.len() {
             squares.push(self.test_within(fit, at)?.square);
         }
-        for effect in family {
+        for effect in random_effects {
             let members: Vec<usize> =
                 (0..fit.applied.len()).filter(|at| effect.contains(&fit.applied[*at].0)).collect();
             let (projected, score) = self.without_all(fit, &members)?;
@@ -525,7 +527,7 @@ impl<'m, L> Search<'m, L> {
             }
         }
         let sum: f64 = squares.iter().sum();
-        if !family.is_empty() && sum > 0.0 {
+        if !random_effects.is_empty() && sum > 0.0 {
             let whole = self.removed(fit)?;
             squares.iter_mut().for_each(|square| *square *= whole / sum);
         }
@@ -546,9 +548,9 @@ impl<'m, L> Search<'m, L> {
     }
 }
 
-/// Whether a hypothesis is one of a family.
-pub fn is_member(family: &[Vec<usize>], hypothesis: usize) -> bool {
-    family.iter().flatten().any(|member| *member == hypothesis)
+/// Whether a hypothesis is a random effect.
+pub fn is_random_effect(random_effects: &[Vec<usize>], hypothesis: usize) -> bool {
+    random_effects.iter().flatten().any(|member| *member == hypothesis)
 }
 
 /// How much of a step is taken after one of which t₀ was taken, and of which it is ρ times: the steps vanish at the fit, and by the secant

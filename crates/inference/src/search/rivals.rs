@@ -14,7 +14,7 @@
 use std::ops::Range;
 
 use super::score_test::{Projected, Test};
-use super::{Attribution, AttributionFit, Search, is_member};
+use super::{Attribution, AttributionFit, Search, is_random_effect};
 use crate::error::{InferenceError, Stage, factorised};
 use crate::policy::{LEVEL, WITHIN_95};
 use tactpad_numeric::chi_square;
@@ -120,35 +120,36 @@ impl<L> Search<'_, L> {
         count * (square / count).ln()
     }
 
-    /// The rivals of a family's member: those that explain the data as well, and those that the family reproduces, as what is left of
+    /// The rivals of a random effect: those that explain the data as well, and those that the random effects reproduce, as what is left of
     /// the member beside these may be an error of the signatures. Not those that move several members together, as a supply moves all
-    /// gains, where the members have no more in common than chance gives such numbers (`in_common`). Of what is ordinary in any specimen so much is in
+    /// gains, where the members have no more in common than chance gives such numbers (`in_common`). Of what any specimen has so much is in
     /// each of the member's numbers, as a variance: (d σ)² of each such rival that was left out.
     ///
     /// ```text
     /// d = F⁻¹ F_r: the rival as a mixture of the members, each in units of the root mean square of its effect's numbers,
     ///     of the effects that it moves
     /// ```
-    pub fn rivals_of_member(
+    pub fn rivals_of_random_effect(
         &self,
         found: &Attribution,
         at: usize,
         projected: &Projected,
         score: &[f64],
     ) -> Result<(Vec<usize>, Vec<f64>), InferenceError> {
-        let Attribution { fit, family, reproduced, .. } = found;
+        let Attribution { fit, random_effects, reproduced, .. } = found;
         let mut rivals = self.rivals(fit, found.critical, at, projected, score);
         let held =
             |rival: usize| fit.applied.iter().any(|(held, _)| *held == rival) || rivals.contains(&rival);
         let others: Vec<usize> = (0..reproduced.len())
             .filter(|rival| reproduced[*rival] && !held(*rival) && !self.is_zero(*rival))
             .collect();
-        let chosen = fit.applied.iter().map(|(held, _)| *held).filter(|held| !is_member(family, *held));
+        let chosen =
+            fit.applied.iter().map(|(held, _)| *held).filter(|held| !is_random_effect(random_effects, *held));
         let projected = Projected::of(&fit.marginal, &self.columns.fitted(chosen))?;
         let (mut columns, mut psi, mut sizes) = (Vec::new(), Vec::new(), Vec::new());
         // Where each effect's numbers end.
         let mut ends = Vec::new();
-        for effect in family {
+        for effect in random_effects {
             let before = psi.len();
             for (held, own) in fit.applied.iter().filter(|(held, _)| effect.contains(held)) {
                 columns.extend(&self.columns.of_hypothesis[*held]);
@@ -195,10 +196,10 @@ impl<L> Search<'_, L> {
         let mut doubt = vec![0.0; own.len()];
         for rival in dismissed {
             let mixture = mixture(self.columns.of_hypothesis[rival][0]);
-            let ordinary = self.model.hypotheses()[rival].ordinary;
+            let prior_deviation = self.model.hypotheses()[rival].prior_deviation;
             for (doubt, column) in doubt.iter_mut().zip(own) {
                 let place = columns.iter().position(|member| member == column);
-                *doubt += place.map_or(0.0, |place| (mixture[place] * ordinary).powi(2));
+                *doubt += place.map_or(0.0, |place| (mixture[place] * prior_deviation).powi(2));
             }
         }
         Ok((left, doubt))

@@ -87,7 +87,7 @@ impl Sensor {
                     (vec![mm("x_mm"), mm("y_mm")], None)
                 }
             };
-            Hypothesis { label, parameters, signature_error: 0.0, ordinary: 0.0, zero_of }
+            Hypothesis { label, parameters, signature_error: 0.0, prior_deviation: 0.0, zero_of }
         };
         let all = (0..channels).flat_map(|k| [Cause::Zero(k), Cause::Gain(k)]);
         let all = all.chain([Cause::Offset, Cause::Supply]);
@@ -255,20 +255,20 @@ fn causes_are_found_with_their_numbers_in_any_number_of_channels() {
 pub(super) fn sparse_and_dense(gains: &[f64]) -> (Attribution, Attribution, bool, Vec<usize>) {
     let random = &mut SplitMix64::new(61);
     let sensor = Sensor::new(gains.len(), contacts(random));
-    let family: Family =
+    let random_effects: RandomEffects =
         vec![(0..gains.len()).map(|channel| sensor.place_of(Cause::Gain(channel))).collect()];
     let of = |log: &dyn Fn(usize) -> f64| -> Applied {
-        family[0].iter().enumerate().map(|(channel, at)| (*at, vec![log(channel)])).collect()
+        random_effects[0].iter().enumerate().map(|(channel, at)| (*at, vec![log(channel)])).collect()
     };
     let measured = sensor.measured(&of(&|channel| libm::log(gains[channel])), 0.01, random);
     let search = Search::new(&sensor, &measured, &measured);
     let sparse = search.run(&Vec::new(), &[]).unwrap();
-    let dense = search.run(&of(&|_| 0.0), &family).unwrap();
+    let dense = search.run(&of(&|_| 0.0), &random_effects).unwrap();
     let [of_sparse, of_dense] = [&sparse, &dense].map(|it| search.criterion_of(it).unwrap());
     let (projected, score) = search.without(&dense.fit, 0).unwrap();
     let rivals = search.rivals(&dense.fit, dense.critical, 0, &projected, &score);
     assert!(rivals.contains(&sensor.place_of(Cause::Supply)), "the other gains make up for it");
-    let rivals = search.rivals_of_member(&dense, 0, &projected, &score).unwrap().0;
+    let rivals = search.rivals_of_random_effect(&dense, 0, &projected, &score).unwrap().0;
     let squares = search.squares(&dense).unwrap();
     let whole = search.removed(&dense.fit).unwrap();
     assert!((squares.iter().sum::<f64>() / whole - 1.0).abs() < 1e-9, "{squares:?} of {whole}");

@@ -223,17 +223,7 @@ mod tests {
             value: *value,
             interval95: [value - 0.1, value + 0.1],
         };
-        Finding {
-            effect,
-            target,
-            parameters: parameters.iter().map(estimate).collect(),
-            shapes: Vec::new(),
-            p_value: 1e-9,
-            share: 0.1,
-            confounded_with: Vec::new(),
-            separate_by: None,
-            labels: None,
-        }
+        Finding { parameters: parameters.iter().map(estimate).collect(), ..Finding::of(effect, target) }
     }
 
     fn diagnosis(findings: Vec<Finding>) -> Diagnosis {

@@ -39,13 +39,14 @@ use std::fmt;
 use self::causes::catalogue::CATALOGUE;
 use self::conventions::Conventions;
 use self::data::observed::observed;
+use self::data::target::Target;
 use self::gatekeepers::checks::excess::{Excess, excess};
 use self::gatekeepers::{Gate, guarded};
 use self::label::{ModelOfRows, Search, no_solution};
 use self::naming::proposal::{OpenFinding, proposal};
 use self::naming::separation::Separation;
 use self::naming::untestable::with_untestable;
-use self::naming::withdrawal::{CAUSES_MAX, Candidate, NamingResult, doubted, in_common, named};
+use self::naming::withdrawal::{Candidate, NamingResult, doubted, in_common, named};
 use self::naming::{not_detected, offsets};
 use self::report::{Diagnosis, Finding, NotTestable, Notice, Residuals, Verdict};
 use self::simulation::atlas::{Atlas, attributed};
@@ -212,30 +213,26 @@ fn concluded(
         Rows { model, observations: open, unrepaired: as_measured(0) },
         Rows { model: at_locked.as_ref(), observations: locked, unrepaired: as_measured(1) },
     ];
-    // Of many causes, as of what each specimen has of its own in all sizes, it is asked together whether more is left.
+    // What each specimen has of its own comes in all sizes: whether more is left is asked of all of it together.
     let halves = open.halves().map(|rows| open.picked(&rows));
     let models = halves.each_ref().map(|half| model.at(half));
     let half = |at: usize| Rows { model: models[at].as_ref(), observations: &halves[at], unrepaired: None };
-    let is_all = (!found.family.is_empty() || found.fit.applied.len() > CAUSES_MAX)
+    let is_complete = !found.random_effects.is_empty()
         && is_all_removed([&half(0), &half(1)], &found.fit.applied, &found.fit.systems.noise);
-    if std::env::var_os("TP_DBG").is_some() {
-        let share = self::validation::ceiling::ceiling_share([&half(0), &half(1)], &found.fit.applied, &found.fit.systems.noise);
-        eprintln!("DBG family {} applied {} is_all {is_all} share {share:?}", found.family.len(), found.fit.applied.len());
-    }
-    let diagnosis = summary(&search, found, &rows, &missing, Judgement { is_all, validation })?;
+    let diagnosis = summary(&search, found, &rows, &missing, Judgement { is_complete, validation })?;
     let excess = (!without.contains(&Effect::NoiseExcess))
         .then(|| excess(open, &found.fit.systems.noise, &found.fit.linearised.readings));
-    let mut family = individual.to_vec();
+    let mut individual = individual.to_vec();
     if has_own_gains(&diagnosis.findings, open) {
         let effect = |at: &usize| model.hypotheses()[*at].label.0;
-        let own = found.family.iter().filter(|members| !found.are_alike(members)).flatten().map(effect);
-        family.extend(own.chain([Effect::ChannelOffset]));
+        let own =
+            found.random_effects.iter().filter(|members| !found.are_alike(members)).flatten().map(effect);
+        individual.extend(own.chain([Effect::ChannelOffset]));
     }
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());
     diagnosis.not_detected.retain(|it| !without.contains(&it.effect));
-    if !is_all {
-        diagnosis.findings = in_common(diagnosis.findings, &family);
-    }
+    let has_modules = model.hypotheses().iter().any(|it| matches!(it.label.1, Target::Module(_)));
+    diagnosis.findings = in_common(diagnosis.findings, &individual, has_modules);
     diagnosis.findings = with_untestable(diagnosis.findings, &diagnosis.not_testable, open);
     Ok(diagnosis)
 }
@@ -319,7 +316,7 @@ fn check_meant(table: &Table) -> Result<(), DiagnosisError> {
 #[derive(Clone, Copy)]
 struct Judgement {
     /// Nothing is left of which they may be a part.
-    is_all: bool,
+    is_complete: bool,
     validation: Validation,
 }
 
@@ -329,14 +326,14 @@ fn summary(
     found: &Attribution,
     [open, locked]: &[Rows<'_>; 2],
     missing: &[NotTestable],
-    Judgement { is_all, validation }: Judgement,
+    Judgement { is_complete, validation }: Judgement,
 ) -> Result<Diagnosis, InferenceError> {
     let (fit, rows) = (&found.fit, [open, locked]);
     let is_validated = validation == Validation::OnLockedRows;
     let remainders = unnamed_squares(found);
     let whole = search.removed(fit)? + remainders.iter().sum::<f64>();
     let NamingResult { candidates, unnamed_by_channel, doubted_by_channel } =
-        named(search, found, whole, remainders, is_all)?;
+        named(search, found, whole, remainders, is_complete)?;
     let unnamed: f64 = unnamed_by_channel.iter().sum();
     let separation = Separation::new(search, found);
     let applied: Applied = candidates.iter().map(|it| fit.applied[it.place].clone()).collect();

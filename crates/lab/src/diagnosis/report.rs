@@ -107,6 +107,24 @@ impl Diagnosis {
     }
 }
 
+#[cfg(test)]
+impl Finding {
+    /// A named one that removes a third.
+    pub(super) fn of(effect: Effect, target: Target) -> Self {
+        Self {
+            effect,
+            target,
+            parameters: Vec::new(),
+            shapes: Vec::new(),
+            p_value: 1e-9,
+            share: 0.3,
+            confounded_with: Vec::new(),
+            separate_by: None,
+            labels: None,
+        }
+    }
+}
+
 /// Residuals at the rows by which causes were found, each channel's zero taken off.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Residuals {

@@ -91,8 +91,10 @@ fn of_tables(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(to) = saved {
         save(&to, &device, &diagnosis, &table)?;
     }
-    if let Some(to) = plan.filter(|_| !diagnosis.next.plan.rows.is_empty()) {
-        tables::write(&to, &diagnosis.next.plan)?;
+    match plan {
+        Some(to) if !diagnosis.next.plan.rows.is_empty() => tables::write(&to, &diagnosis.next.plan)?,
+        Some(_) => say("no further contacts would tell more, so no plan is written"),
+        None => {}
     }
     if let Some(folder) = folder {
         let subject = report::Subject {

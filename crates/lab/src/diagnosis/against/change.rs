@@ -176,7 +176,7 @@ pub(super) fn hypotheses(
                 label: (effect, target),
                 parameters,
                 signature_error: 0.0,
-                ordinary: 0.0,
+                prior_deviation: 0.0,
                 zero_of: None,
             },
             act,

@@ -159,7 +159,7 @@ fn told(
         &found,
         &rows,
         &missing(columns, there),
-        Judgement { is_all: false, validation: Validation::OnLockedRows },
+        Judgement { is_complete: false, validation: Validation::OnLockedRows },
     )
     .map_err(no_solution)?;
     standing(&mut diagnosis, &search, &rows, &found);

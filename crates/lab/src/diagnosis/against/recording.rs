@@ -144,8 +144,8 @@ impl Recording {
         let is_narrow = |at: &usize| of_label(later, *at) < NARROW * of_label(self, *at);
         // Where other labels vary they may be why.
         let narrow: Vec<usize> = (0..self.inputs.first().map_or(0, Vec::len)).filter(is_narrow).collect();
-        let is_all = narrow.len() == self.inputs.first().map_or(0, Vec::len);
-        narrow.first().copied().filter(|_| is_all && 2 * far > self.observations.readings.len())
+        let is_complete = narrow.len() == self.inputs.first().map_or(0, Vec::len);
+        narrow.first().copied().filter(|_| is_complete && 2 * far > self.observations.readings.len())
     }
 
     /// Rows that share their errors: those of one location and session, or of one press of a series.

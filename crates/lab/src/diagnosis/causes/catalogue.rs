@@ -254,7 +254,7 @@ pub(crate) static CATALOGUE: [Cause; 29] = [
     )
     .with(Need::Dwells)
     .individual()
-    .ordinary(CREEP_OF_ANY_PAD),
+    .prior_deviation(CREEP_OF_ANY_PAD),
     // Strains become smaller with the cycles of load: glue and film tire. Loss at the end of the measurement.
     Cause::new(
         Effect::Ageing,

@@ -129,7 +129,7 @@ pub(crate) struct Cause {
     /// Whether each target has its own by make or by wear. Several at once of another cause call for one reason.
     pub(crate) is_individual: bool,
     /// Standard deviation of its first number in any pad; 0 where it is there or is not.
-    pub(crate) ordinary: f64,
+    pub(crate) prior_deviation: f64,
 }
 
 impl Cause {
@@ -140,15 +140,24 @@ impl Cause {
         parameters: fn(&Setting) -> Vec<Parameter>,
         apply: Apply,
     ) -> Self {
-        Self { effect, stage, places, parameters, apply, need: None, is_individual: false, ordinary: 0.0 }
+        Self {
+            effect,
+            stage,
+            places,
+            parameters,
+            apply,
+            need: None,
+            is_individual: false,
+            prior_deviation: 0.0,
+        }
     }
 
     pub(super) const fn with(self, need: Need) -> Self {
         Self { need: Some(need), ..self }
     }
 
-    pub(super) const fn ordinary(self, ordinary: f64) -> Self {
-        Self { ordinary, ..self }
+    pub(super) const fn prior_deviation(self, prior_deviation: f64) -> Self {
+        Self { prior_deviation, ..self }
     }
 
     pub(super) const fn individual(self) -> Self {

@@ -39,7 +39,7 @@ fn hypothesis(cause: &Cause, target: Target, setting: &Setting) -> Hypothesis {
             ChainStage::Contact | ChainStage::Mechanics => SIGNATURE_ERROR,
             ChainStage::Coupling | ChainStage::Channels => 0.0,
         },
-        ordinary: if target == Target::Pad { cause.ordinary } else { 0.0 },
+        prior_deviation: if target == Target::Pad { cause.prior_deviation } else { 0.0 },
     }
 }
 

@@ -63,6 +63,17 @@ pub enum Target {
 }
 
 impl Target {
+    /// The module that it is about: that of a channel of a pad, or the receiving one; none of the whole pad and of the rig.
+    pub fn module(&self) -> Option<usize> {
+        match *self {
+            Self::Channel(channel) | Self::Channels { into: channel, .. } => Some(channel / 3),
+            Self::Module(module) | Self::Modules { into: module, .. } | Self::ModuleSide(module, _) => {
+                Some(module)
+            }
+            Self::Pad | Self::Rig | Self::All | Self::Labels(_) => None,
+        }
+    }
+
     /// Its name in reports, where channels have these names.
     pub fn name(&self, channels: &[String]) -> String {
         match *self {

@@ -3,7 +3,7 @@
 use crate::diagnosis::label::Search;
 use crate::diagnosis::report::Finding;
 use tactpad_inference::error::InferenceError;
-use tactpad_inference::search::{Attribution, is_member};
+use tactpad_inference::search::{Attribution, is_random_effect};
 
 /// The findings with their places in the fit, the largest first. `whole` is the weighted squared residual above noise and
 /// background.
@@ -17,12 +17,12 @@ pub(crate) fn findings(
         let (hypothesis, _) = found.fit.applied[at];
         let (projected, score) = search.without(&found.fit, at)?;
         let test = projected.test(&search.columns.of_hypothesis[hypothesis], &score);
-        let is_member = is_member(&found.family, hypothesis);
-        if is_member && test.p_value() >= found.critical {
+        let is_random_effect = is_random_effect(&found.random_effects, hypothesis);
+        if is_random_effect && test.p_value() >= found.critical {
             continue;
         }
-        let (rivals, doubt) = if is_member {
-            search.rivals_of_member(found, at, &projected, &score)?
+        let (rivals, doubt) = if is_random_effect {
+            search.rivals_of_random_effect(found, at, &projected, &score)?
         } else {
             (search.rivals_in_place(found, at, &projected, &score)?, Vec::new())
         };

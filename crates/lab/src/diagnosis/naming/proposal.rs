@@ -16,6 +16,9 @@ use tactpad_core::quantity::WEIGHT_N_PER_G;
 use tactpad_core::tables::measured::{Approach, Label, Row, Table};
 use tactpad_inference::observations::Sample;
 
+/// A measurement that takes longer than a working day is none, min.
+const DAY_MIN: f64 = 480.0;
+
 /// A found cause, by its place in the fit, and its rivals.
 pub(crate) type OpenFinding = (usize, Vec<(Effect, Target)>);
 
@@ -69,7 +72,13 @@ fn pairs(separation: &Separation<'_, '_>, open: &[OpenFinding]) -> Option<Vec<Pa
         let by_experiment: Option<Vec<Pair>> =
             (0..separation.experiments.len()).map(|it| separation.repeats(it, *at, &rivals)).collect();
         let by_experiment = by_experiment?;
-        pairs.extend((0..rivals.len()).map(|rival| by_experiment.iter().map(|it| it[rival]).collect()));
+        let within_a_day = |(experiment, needed): (&Experiment, Option<usize>)| {
+            needed.filter(|repeats| *repeats as f64 * experiment.minutes <= DAY_MIN)
+        };
+        pairs.extend((0..rivals.len()).map(|rival| {
+            let needed = by_experiment.iter().map(|it| it[rival]);
+            separation.experiments.iter().zip(needed).map(within_a_day).collect::<Pair>()
+        }));
     }
     Some(pairs)
 }

@@ -410,7 +410,7 @@ mod tests {
         let found = Attribution {
             fit: search.fitted(&applied, None).unwrap(),
             critical: 1e-4,
-            family: Vec::new(),
+            random_effects: Vec::new(),
             reproduced: Vec::new(),
         };
         let of = |it: &&Hypothesis| rivals.contains(&it.label.0);

@@ -73,20 +73,6 @@ mod tests {
     use super::*;
     use crate::diagnosis::data::target::Target;
 
-    fn finding(effect: Effect) -> Finding {
-        Finding {
-            effect,
-            target: Target::Channel(4),
-            parameters: Vec::new(),
-            shapes: Vec::new(),
-            p_value: 1e-9,
-            share: 0.3,
-            confounded_with: Vec::new(),
-            separate_by: None,
-            labels: None,
-        }
-    }
-
     /// Rivals of a cause in rows of these temperatures, where the other one lacks a column.
     fn rivals(found: Effect, untestable: Effect, temp_c: impl Fn(usize) -> f64) -> Vec<Effect> {
         let sample = |row: usize| Sample { temp_c: Some(temp_c(row)), ..Sample::default() };
@@ -96,7 +82,7 @@ mod tests {
             ..Observations::default()
         };
         let missing = [NotTestable { effect: untestable, needs: "cycle" }];
-        let found = with_untestable(vec![finding(found)], &missing, &observations);
+        let found = with_untestable(vec![Finding::of(found, Target::Channel(4))], &missing, &observations);
         assert_eq!(found[0].separate_by.is_some(), !found[0].confounded_with.is_empty());
         found[0].confounded_with.iter().map(|rival| rival.0).collect()
     }

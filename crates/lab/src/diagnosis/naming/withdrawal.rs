@@ -2,7 +2,7 @@
 //!
 //! An effect that is not in the catalogue is explained by what is nearest to it, in part. Three things give that away: a cause that does
 //! not hold in all parts of the measurement (`specification`), which is no finding; a remainder that no cause explains, beside which a
-//! name means little; and many findings at once, above all of one effect, for which one reason is likelier than as many. The latter two
+//! name means little; and several findings of one effect, or about one module, for which one reason is likelier than as many. The latter two
 //! stay in the report as a set with `unlisted_cause`.
 
 use super::findings::findings;
@@ -13,7 +13,7 @@ use crate::diagnosis::label::Search;
 use crate::diagnosis::report::{Finding, INSEPARABLE};
 use crate::effect::Effect;
 use tactpad_inference::error::InferenceError;
-use tactpad_inference::search::{Attribution, is_member};
+use tactpad_inference::search::{Attribution, is_random_effect};
 
 /// A cause is named where it explains so many times what is left unexplained in the channels that tell of it,
 pub(crate) const OVER_NEAR: f64 = 10.0;
@@ -21,8 +21,8 @@ pub(crate) const OVER_NEAR: f64 = 10.0;
 const OVER_ALL: f64 = 4.0;
 /// So many findings of one effect need no reason in common,
 const ALIKE_MAX: usize = 1;
-/// and so many of any effects.
-pub(crate) const CAUSES_MAX: usize = 2;
+/// and so many about one module.
+const ABOUT_MODULE_MAX: usize = 2;
 /// The least part of what is known of a cause by which a channel tells of it.
 const PART_MIN: f64 = 0.01;
 
@@ -46,13 +46,13 @@ pub(crate) struct NamingResult {
 
 /// The findings of `whole` weighted squares, and which of them may be named. Without an explanation are the remainders, and what causes
 /// explain that hold in some parts of the measurement only. What explains little beside these is doubted, and then so is what explains
-/// little beside that; nothing is where `is_all` says that all is told.
+/// little beside that; nothing is where `is_complete` says that all is told.
 pub(crate) fn named(
     search: &Search<'_>,
     found: &Attribution,
     whole: f64,
     remainders: Vec<f64>,
-    is_all: bool,
+    is_complete: bool,
 ) -> Result<NamingResult, InferenceError> {
     let fit = &found.fit;
     let squares = |place: usize, finding: &Finding| -> Vec<f64> {
@@ -69,13 +69,13 @@ pub(crate) fn named(
         }
     }
     let mut doubted_by_channel =
-        if is_all { vec![0.0; unnamed_by_channel.len()] } else { unnamed_by_channel.clone() };
+        if is_complete { vec![0.0; unnamed_by_channel.len()] } else { unnamed_by_channel.clone() };
     let is_little =
         |it: &Candidate, left: &[f64]| !it.is_doubted && !is_told(&squares(it.place, &it.finding), left);
     while let Some(at) = candidates.iter().rposition(|it| is_little(it, &doubted_by_channel)) {
         candidates[at].is_doubted = true;
         // What a pad has of its own is expected in all sizes: a small part of it says nothing of the larger ones.
-        if !is_member(&found.family, fit.applied[candidates[at].place].0) {
+        if !is_random_effect(&found.random_effects, fit.applied[candidates[at].place].0) {
             add(&mut doubted_by_channel, &squares(candidates[at].place, &candidates[at].finding));
         }
     }
@@ -104,20 +104,34 @@ pub(crate) fn is_over(square: f64, unnamed_by_channel: &[f64]) -> bool {
 }
 
 /// Sets beside findings that one reason may have in common that it may be none of the catalogue: beside those of one effect at several
-/// targets, beside three or more of any effects, and then also beside what each target has of its own, as that may be a part of it.
-/// What the checks of the recording found does not count: it is seen in the readings themselves. Nor do effects of a `family`, of which each
-/// target has its own.
-pub(crate) fn in_common(findings: Vec<Finding>, family: &[Effect]) -> Vec<Finding> {
-    let is_own = |it: &Cause| it.is_individual || family.contains(&it.effect);
-    let asks = |effect: Effect| of_catalogue(effect).is_some_and(|it| !is_own(it));
-    let effects: Vec<Effect> = findings.iter().map(|it| it.effect).filter(|effect| asks(*effect)).collect();
-    let alike = |effect: Effect| effects.iter().filter(|it| **it == effect).count();
-    let is_doubted = |effect: Effect| alike(effect) > ALIKE_MAX || effects.len() > CAUSES_MAX;
-    let is_any = effects.iter().any(|effect| is_doubted(*effect));
-    let is_common = |it: &Finding| is_doubted(it.effect) || is_any && !asks(it.effect);
-    let set =
-        |it: Finding| if of_catalogue(it.effect).is_some() && is_common(&it) { doubted(it) } else { it };
-    findings.into_iter().map(set).collect()
+/// targets, and beside three or more about one module; then also beside what explains no more than these together, as that may be a part
+/// of it. What the checks of the recording found does not count: it is seen in the readings themselves. Nor do `individual` effects, of which
+/// each target has its own.
+pub(crate) fn in_common(findings: Vec<Finding>, individual: &[Effect], has_modules: bool) -> Vec<Finding> {
+    let asks = |it: &Finding| {
+        of_catalogue(it.effect).is_some_and(|cause| !cause.is_individual && !individual.contains(&it.effect))
+    };
+    let count =
+        |is_like: &dyn Fn(&Finding) -> bool| findings.iter().filter(|it| asks(it) && is_like(it)).count();
+    let has_reason = |it: &Finding| {
+        let alike = count(&|other| other.effect == it.effect);
+        let module = it.target.module().filter(|_| has_modules);
+        let about = module.map_or(0, |own| count(&|other| other.target.module() == Some(own)));
+        asks(it) && (alike > ALIKE_MAX || about > ABOUT_MODULE_MAX)
+    };
+    let mut is_part: Vec<bool> = findings.iter().map(has_reason).collect();
+    let is_small = |at: &usize, is_part: &[bool]| {
+        let of_parts: f64 =
+            findings.iter().zip(is_part).filter(|(_, is_part)| **is_part).map(|(it, _)| it.share).sum();
+        !is_part[*at] && of_catalogue(findings[*at].effect).is_some() && findings[*at].share <= of_parts
+    };
+    while is_part.contains(&true)
+        && let Some(small) = (0..findings.len()).find(|at| is_small(at, &is_part))
+    {
+        is_part[small] = true;
+    }
+    let set = |(it, is_part): (Finding, bool)| if is_part { doubted(it) } else { it };
+    findings.into_iter().zip(is_part).map(set).collect()
 }
 
 /// The finding as one that may be a part of what is not in the catalogue.
@@ -133,22 +147,12 @@ pub(crate) fn doubted(mut finding: Finding) -> Finding {
 mod tests {
     use super::*;
 
-    fn finding((effect, target): (Effect, Target)) -> Finding {
-        Finding {
-            effect,
-            target,
-            parameters: Vec::new(),
-            shapes: Vec::new(),
-            p_value: 1e-9,
-            share: 0.3,
-            confounded_with: Vec::new(),
-            separate_by: None,
-            labels: None,
-        }
-    }
-
     fn doubted(causes: &[(Effect, Target)]) -> Vec<usize> {
-        let findings = in_common(causes.iter().copied().map(finding).collect(), &[]);
+        let findings = in_common(
+            causes.iter().map(|(effect, target)| Finding::of(*effect, *target)).collect(),
+            &[],
+            true,
+        );
         (0..findings.len())
             .filter(|at| findings[*at].confounded_with == [(Effect::Unlisted, Target::Pad)])
             .collect()
@@ -162,7 +166,7 @@ mod tests {
         // Channels that have next to nothing of it are not its own.
         assert!(is_told(&[100.0, 0.9], &[0.0, 20.0]) && !is_told(&[100.0, 1.1], &[0.0, 20.0]));
         assert_eq!(
-            super::doubted(super::doubted(finding((Effect::Creep, Target::Pad)))).confounded_with.len(),
+            super::doubted(super::doubted(Finding::of(Effect::Creep, Target::Pad))).confounded_with.len(),
             1
         );
     }
@@ -182,8 +186,10 @@ mod tests {
         );
         assert_eq!(
             doubted(&[(displaced, module(0)), (rotated, module(0)), (Effect::StageOffset, Target::Rig)]),
-            [0, 1, 2]
+            [0; 0]
         );
+        let tilted = (Effect::ModuleTilted, module(0));
+        assert_eq!(doubted(&[(displaced, module(0)), (rotated, module(0)), tilted]), [0, 1, 2]);
         assert_eq!(doubted(&[(displaced, module(0)), (displaced, module(2))]), [0, 1]);
     }
 

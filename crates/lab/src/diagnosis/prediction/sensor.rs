@@ -390,7 +390,7 @@ fn of_derivative(it: &Derivative) -> Hypothesis {
         label: (Effect::Own(it.effect), Target::All),
         parameters: vec![value],
         signature_error: SIGNATURE_ERROR,
-        ordinary: it.prior_deviation,
+        prior_deviation: it.prior_deviation,
         zero_of: None,
     }
 }

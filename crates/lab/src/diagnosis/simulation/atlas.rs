@@ -16,7 +16,7 @@ use tactpad_inference::error::InferenceError;
 use tactpad_inference::hypothesis::{Coordinate, Parameter};
 use tactpad_inference::model::{ChannelBaselines, CommonError, Linearised, Model, Written};
 use tactpad_inference::observations::Observations;
-use tactpad_inference::search::{Applied, Attribution, AttributionFit, Family};
+use tactpad_inference::search::{Applied, Attribution, AttributionFit, RandomEffects};
 use tactpad_numeric::products::dot;
 
 /// No more fields than this are solved for one diagnosis.
@@ -62,7 +62,7 @@ pub(crate) fn attributed(atlas: &mut Atlas<'_>) -> Result<Attribution, Inference
     while atlas.solved.len() < SOLVED_MAX && atlas.is_far(&found.fit)? {
         let Some(solved) = atlas.solve(&found.fit.applied) else { break };
         atlas.add(solved);
-        found = atlas.search().run(&found.fit.applied, &found.family)?;
+        found = atlas.search().run(&found.fit.applied, &found.random_effects)?;
     }
     Ok(found)
 }
@@ -80,17 +80,17 @@ pub(crate) fn chosen(search: &Search<'_>) -> Result<Attribution, InferenceError>
         _ => true,
     };
     let of_effect = |effect: Effect| -> Vec<usize> {
-        let is_member = |at: &usize| {
+        let is_random_effect = |at: &usize| {
             let (own, target) = hypotheses[*at].label;
             own == effect && is_told(target)
         };
-        (0..hypotheses.len()).filter(is_member).collect()
+        (0..hypotheses.len()).filter(is_random_effect).collect()
     };
-    let family: Family =
+    let random_effects: RandomEffects =
         OF_EACH_PAD.map(of_effect).into_iter().filter(|members| !members.is_empty()).collect();
     let none = |at: &usize| (*at, vec![0.0; hypotheses[*at].parameters.len()]);
     // Rows that do not tell all of it have no such fit.
-    let Ok(dense) = search.run(&family.iter().flatten().map(none).collect(), &family) else {
+    let Ok(dense) = search.run(&random_effects.iter().flatten().map(none).collect(), &random_effects) else {
         return Ok(sparse);
     };
     let is_dense = search.criterion_of(&dense)? < search.criterion_of(&sparse)?;

@@ -1,8 +1,8 @@
-//! What the members of a family make up together: whatever else looks like a mixture of them cannot be told from them.
+//! What random effects make up together: whatever else looks like a mixture of them cannot be told from them.
 
 use rayon::prelude::*;
 
-use super::{Attribution, AttributionFit, Search, is_member};
+use super::{Attribution, AttributionFit, Search, is_random_effect};
 use crate::error::{InferenceError, Stage, factorised};
 use crate::model::Signature;
 use crate::policy::{LEVEL, MODEL_ERROR, SIGNATURE_ERROR, WITHIN_95};
@@ -21,8 +21,8 @@ const DRAWS: usize = 2000;
 /// What makes a solution by the background's functions unique, as a share of their mean square.
 const RIDGE: f64 = 1e-9;
 
-/// The signatures of a family's members, each channel in units of its root mean square and about its mean.
-struct FamilySpan<'s, 'm, L> {
+/// The signatures of random effects, each channel in units of its root mean square and about its mean.
+struct RandomEffectsSpan<'s, 'm, L> {
     search: &'s Search<'m, L>,
     fit: &'s AttributionFit,
     sizes: Vec<f64>,
@@ -43,11 +43,11 @@ struct Mixture {
     left: f64,
 }
 
-impl<'s, 'm, L> FamilySpan<'s, 'm, L> {
+impl<'s, 'm, L> RandomEffectsSpan<'s, 'm, L> {
     fn of(
         search: &'s Search<'m, L>,
         fit: &'s AttributionFit,
-        family: &[Vec<usize>],
+        random_effects: &[Vec<usize>],
     ) -> Result<Self, InferenceError> {
         let mut span = Self {
             search,
@@ -58,7 +58,7 @@ impl<'s, 'm, L> FamilySpan<'s, 'm, L> {
             gram: Matrix::zeros(0, 0),
             factor: None,
         };
-        for at in family.iter().flatten() {
+        for at in random_effects.iter().flatten() {
             let own: Vec<Vec<f64>> = span.asked(*at).map(|it| span.scaled(it)).collect();
             span.errors.resize(span.errors.len() + own.len(), search.model.hypotheses()[*at].signature_error);
             span.members.extend(own);
@@ -152,28 +152,28 @@ impl Attribution {
 }
 
 impl<L> Search<'_, L> {
-    /// Which hypotheses a family reproduces.
+    /// Which hypotheses random effects reproduce.
     pub(super) fn reproduced(
         &self,
         fit: &AttributionFit,
-        family: &[Vec<usize>],
+        random_effects: &[Vec<usize>],
     ) -> Result<Vec<bool>, InferenceError> {
-        Ok(FamilySpan::of(self, fit, family)?.reproduced())
+        Ok(RandomEffectsSpan::of(self, fit, random_effects)?.reproduced())
     }
 
-    /// Whether a fitted cause beside a family changes no more, beyond what the members make up, than a model itself gets wrong, and in the same
+    /// Whether a fitted cause beside random effects changes no more, beyond what the members make up, than a model itself gets wrong, and in the same
     /// way, smoothly with the place and the load.
     ///
     /// ```text
     /// q = s ψ − A c,   |q|² < ε² n for the n readings that s changes,   |B (BᵀB)⁻¹ Bᵀ q|² > ½ |q|²
     /// ```
     pub fn is_within_model_error(&self, found: &Attribution, at: usize) -> Result<bool, InferenceError> {
-        let Attribution { fit, family, .. } = found;
+        let Attribution { fit, random_effects, .. } = found;
         let (hypothesis, psi) = &fit.applied[at];
-        if family.is_empty() || is_member(family, *hypothesis) {
+        if random_effects.is_empty() || is_random_effect(random_effects, *hypothesis) {
             return Ok(false);
         }
-        let span = FamilySpan::of(self, fit, family)?;
+        let span = RandomEffectsSpan::of(self, fit, random_effects)?;
         let rows = self.observations.rows();
         let mut column = vec![0.0; rows * span.sizes.len()];
         let mut is_changed = vec![false; span.sizes.len()];

@@ -174,17 +174,16 @@ fn struck(length: Length) -> Vec<Job> {
 
 /// So many tables of a seed have several causes at once.
 const TABLES_OF_SEVERAL: u64 = 20;
-/// Causes of the catalogue that any plan shows by contacts alone, and that come in sizes.
-const OF_CONTACTS: [&str; 22] = [
+/// Causes of the catalogue that any plan shows by contacts alone, that come in sizes, and whose change of the field does not come from the
+/// program.
+const OF_CONTACTS: [&str; 20] = [
     "channel_gain",
     "channel_offset",
     "channel_crosstalk",
     "gauge_nonlinearity",
     "module_displaced",
     "module_rotated",
-    "module_tilted",
     "module_stiffness",
-    "module_debonded",
     "module_frame_open",
     "module_crosstalk",
     "plate_stiffness",

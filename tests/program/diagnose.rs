@@ -68,6 +68,9 @@ fn tables_and_arguments_that_cannot_be_are_refused() {
     write("placeless.csv", "fx_n,fy_n,fz_n\n0,0,1\n");
     write("m.csv", &table(grid(2.0)));
     write("far.csv", &table([[59.0, 0.0, 0.0, 0.0, 1.0]].into_iter()));
+    let heavy = table([[0.0, 0.0, 0.0, 0.0, 1.0]].into_iter());
+    let (names, row) = heavy.trim_end().split_once('\n').unwrap();
+    write("heavy.csv", &format!("{names},weight_g\n{row},-5\n"));
     write("typo.toml", "[nois]\nadditive_uv = 3\n");
     for (line, wanted) in [
         ("--measured plan.csv", "plan.csv:1: no column is a channel"),
@@ -78,6 +81,13 @@ fn tables_and_arguments_that_cannot_be_are_refused() {
         ("--measured m.csv --imperfections typo.toml", "did you mean \"noise\"?"),
         ("--measured m.csv --device none.toml", "device none.toml cannot be read"),
         ("--measured m.csv --save-device m.csv", "m.csv is the measured table"),
+        ("--measured m.csv --next m.csv", "m.csv is the measured table"),
+        ("--measured m.csv --next - --json", "--next -"),
+        ("--measured m.csv --next new.csv --save-device new.csv", "--next and --save-device"),
+        ("--measured m.csv --measured m.csv", "m.csv is given twice"),
+        ("--measured m.csv --measured n.csv --against m.csv", "--against and --model take one table"),
+        ("--measured m.csv --measured far.csv", "far.csv:2: x_mm is 59"),
+        ("--measured heavy.csv", "heavy.csv:2: weight_g is -5"),
         ("--measured m.csv --device typo.toml --save-device typo.toml", "typo.toml is the device"),
         ("--measured m.csv --save-device no/e.toml", "cannot be written"),
         ("--measured m.csv --save-device - --json", "both print"),

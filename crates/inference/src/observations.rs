@@ -168,3 +168,15 @@ impl Observations {
         rms(self.samples.iter().map(|it| libm::sqrt(it.load.iter().map(|n| n * n).sum())))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_measurement_has_a_zero_of_its_own() {
+        let sample = |measurement| Sample { measurement, ..Sample::default() };
+        let zeros = Zeros::of(&[vec![1.0, 3.0, f64::NAN, 8.0]], &[0, 0, 2, 2].map(sample));
+        assert_eq!([0, 1, 2, 3].map(|at| zeros.at(0, &sample(at))), [2.0, 4.0, 8.0, 0.0]);
+    }
+}

@@ -23,7 +23,7 @@ use crate::cli::files::destination::Destination;
 use crate::cli::files::field::{field_of, flaws, solve};
 use crate::cli::files::tables;
 use crate::cli::printing::progress::Progress;
-use crate::cli::printing::written::{is_stdout, print_json, say, stdout};
+use crate::cli::printing::written::{is_same, is_stdout, print_json, say, stdout};
 use tactpad::lab::diagnosis::extension::extended;
 use tactpad::lab::diagnosis::report::Diagnosis;
 use tactpad::lab::diagnosis::{self, DiagnosisError};
@@ -67,6 +67,14 @@ fn of_tables(arguments: &Arguments) -> Result<(), Failure> {
     let to = |path: &Option<PathBuf>, option: &str| {
         path.as_deref().map(|path| destination(path, option, arguments)).transpose()
     };
+    for (at, path) in paths.iter().enumerate() {
+        if paths[..at].iter().any(|before| is_same(before, path)) {
+            return Err(Failure::Unusable(format!(
+                "--measured {} is given twice, and the same rows know nothing more; name it once",
+                path.display()
+            )));
+        }
+    }
     let (saved, plan) = (to(save_device, "--save-device")?, to(next, "--next")?);
     let device = pad.read()?;
     let folder = report.as_deref().map(|path| folder(path, arguments)).transpose()?;

@@ -321,6 +321,29 @@ mod tests {
     }
 
     #[test]
+    fn a_known_weight_is_the_force_whatever_was_written() {
+        let table =
+            measured("weight_g,", &["200,1,2,0.1,0.2,3", ",1,2,0.1,0.2,3", "0,1,2,0.1,0.2,3"]).unwrap();
+        let forces = table.rows.iter().map(|row| [row.label.fx_n, row.label.fy_n, row.label.fz_n]);
+        assert_eq!(forces.collect::<Vec<_>>(), [[0.0, 0.0, 200.0 * 9.806_65e-3], [0.1, 0.2, 3.0], [0.0; 3]]);
+        assert_eq!(table.rows[0].weight_g, Some(200.0));
+    }
+
+    #[test]
+    fn joined_tables_keep_their_series_and_know_which_they_are() {
+        let first = measured("trial,session,t_s,", &["a,cold,1,0,0,0,0,1", "a,cold,2,0,0,0,0,2"]).unwrap();
+        let second = measured("trial,session,t_s,", &["a,warm,0,0,0,0,0,3", ",cold,,0,0,0,0,4"]).unwrap();
+        let both = Table::joined([first.clone(), second]);
+        let known = both.rows.iter().map(|row| (row.measurement, row.trial, row.session));
+        assert_eq!(
+            known.collect::<Vec<_>>(),
+            [(0, Some(0), Some(0)), (0, Some(0), Some(0)), (1, Some(1), Some(1)), (1, None, Some(0))]
+        );
+        assert_eq!(Table::joined([first.clone()]), first);
+        assert_eq!(Table::joined([]), Table::default());
+    }
+
+    #[test]
     fn rows_of_a_trial_are_one_series() {
         let times = |rows: &[&str]| {
             let rows: Vec<_> = rows.iter().map(|row| format!("{row},0,0,0,0,1")).collect();

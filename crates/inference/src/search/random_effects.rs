@@ -5,19 +5,14 @@ use rayon::prelude::*;
 use super::{Attribution, AttributionFit, Search, is_random_effect};
 use crate::error::{InferenceError, Stage, factorised};
 use crate::model::Signature;
-use crate::policy::{LEVEL, MODEL_ERROR, SIGNATURE_ERROR, WITHIN_95};
+use crate::policy::{MODEL_ERROR, SIGNATURE_ERROR, WITHIN_95};
 use tactpad_numeric::dense::{Matrix, gram};
 use tactpad_numeric::linear::LargeFactor;
 use tactpad_numeric::products::dot;
-use tactpad_numeric::random::SplitMix64;
 use tactpad_numeric::statistics::mean;
 
 /// A remainder of which the background's functions make up more than this part is smooth.
 const SMOOTH: f64 = 0.5;
-/// Fewest members that can be alike by more than chance.
-const ALIKE_MIN: usize = 3;
-/// Draws by which chance is known.
-const DRAWS: usize = 2000;
 /// What makes a solution by the background's functions unique, as a share of their mean square.
 const RIDGE: f64 = 1e-9;
 
@@ -120,37 +115,6 @@ impl<'s, 'm, L> RandomEffectsSpan<'s, 'm, L> {
     }
 }
 
-impl Attribution {
-    /// Whether the members of an effect, which are vectors, are as large as each other, as chance makes normal ones only [`LEVEL`] of the time:
-    /// then something moves all of them, and each of its own is no explanation. Numbers that are no vectors are not asked: what goes together
-    /// in them has a rival of its own.
-    ///
-    /// ```text
-    /// u = n Σ |ψₖ|²/(Σ |ψₖ|)², which is 1 where all are alike; its quantile by draws of normal numbers
-    /// ```
-    pub fn are_alike(&self, members: &[usize]) -> bool {
-        let held = self.fit.applied.iter().filter(|(at, _)| members.contains(at));
-        let vectors: Vec<&Vec<f64>> = held.map(|(_, psi)| psi).collect();
-        if vectors.len() < ALIKE_MIN || vectors.iter().any(|psi| psi.len() < 2) {
-            return false;
-        }
-        let unevenness = |magnitudes: Vec<f64>| {
-            let sum: f64 = magnitudes.iter().sum();
-            magnitudes.len() as f64 * dot(&magnitudes, &magnitudes) / (sum * sum).max(f64::MIN_POSITIVE)
-        };
-        let norm = |psi: &[f64]| dot(psi, psi).sqrt();
-        let own = unevenness(vectors.iter().map(|psi| norm(psi)).collect());
-        let mut random = SplitMix64::new(members.len() as u64);
-        let mut drawn = || {
-            let mut like =
-                |psi: &&Vec<f64>| norm(&psi.iter().map(|_| random.normal().into()).collect::<Vec<f64>>());
-            unevenness(vectors.iter().map(&mut like).collect())
-        };
-        let evener = (0..DRAWS).filter(|_| drawn() <= own).count();
-        (evener as f64) < LEVEL * DRAWS as f64
-    }
-}
-
 impl<L> Search<'_, L> {
     /// Which hypotheses random effects reproduce.
     pub(super) fn reproduced(
@@ -200,22 +164,5 @@ impl<L> Search<'_, L> {
             smooth += dot(&factorised(&inner, Stage::Background)?.solve(&across), &across);
         }
         Ok(smooth > SMOOTH * left)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::tests::sparse_and_dense;
-
-    #[test]
-    fn vectors_that_are_as_large_as_each_other_are_alike() {
-        let (_, mut dense, ..) = sparse_and_dense(&[1.13, 0.85, 0.94, 1.19, 0.82, 1.08, 0.9, 1.16]);
-        assert!(!dense.are_alike(&[0, 1, 2]), "gains are no vectors");
-        let mut set = |vectors: [[f64; 2]; 3]| {
-            dense.fit.applied = vectors.into_iter().map(Vec::from).enumerate().collect();
-            [dense.are_alike(&[0, 1, 2]), dense.are_alike(&[0, 1])]
-        };
-        assert_eq!(set([[0.5, 0.0], [-0.26, 0.43], [-0.25, -0.44]]), [true, false], "two say nothing");
-        assert_eq!(set([[0.5, 0.0], [-0.1, 0.2], [0.3, -0.4]]), [false, false]);
     }
 }

@@ -225,8 +225,7 @@ fn concluded(
     let mut individual = individual.to_vec();
     if has_own_gains(&diagnosis.findings, open) {
         let effect = |at: &usize| model.hypotheses()[*at].label.0;
-        let own =
-            found.random_effects.iter().filter(|members| !found.are_alike(members)).flatten().map(effect);
+        let own = found.random_effects.iter().flatten().map(effect);
         individual.extend(own.chain([Effect::ChannelOffset]));
     }
     let mut diagnosis = with_gatekeepers(diagnosis, gate, excess.unwrap_or_default());

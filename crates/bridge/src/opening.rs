@@ -10,11 +10,13 @@ use rustix::event::{Timespec, poll};
 use crate::transport::Transport;
 use crate::transport::address::PadAddress;
 use crate::transport::fault::{FaultPlan, FaultyLine};
+use crate::transport::lines::LinePort;
 use crate::transport::opener::{Opener, PadError};
 use crate::transport::playback::Playback;
 use crate::transport::virtual_pad::{PadFirmware, VirtualPadPort};
 use tactpad_core::pipeline::call::Call;
 use tactpad_core::pipeline::capture::reader::{CaptureError, CaptureReader};
+use tactpad_core::source::Lines;
 use tactpad_core::time::HostInstant;
 
 /// A pad whose permissions are not set yet is tried again this often, …
@@ -109,6 +111,21 @@ impl OpenedPad {
         let capture = CaptureReader::new(BufReader::new(file)).map_err(unusable)?;
         let pad: Box<dyn Transport> = Box::new(Playback::start(chunks(capture)).map_err(OpenError::Io)?);
         Ok(Self { pad: Some(pad), ..Self::default() })
+    }
+
+    /// The same pad, which prints lines of text, each time it is opened.
+    ///
+    /// # Errors
+    /// The system has no more descriptors.
+    pub fn with_lines(self, lines: &Lines) -> io::Result<Self> {
+        let lines = lines.clone();
+        let read =
+            move |port| -> io::Result<Box<dyn Transport>> { Ok(Box::new(LinePort::new(port, &lines)?)) };
+        let pad = self.pad.map(&read).transpose()?;
+        let opener = self.opener.map(|mut open| -> Reopen {
+            Box::new(move || read(open()?).map_err(|error| PadError::Unusable(error.to_string())))
+        });
+        Ok(Self { pad, opener, ..self })
     }
 
     /// The same pad on a bad line, each time it is opened. Without a plan it stays as it is.

@@ -9,6 +9,7 @@ use crate::opening::{OpenedPad, Patience};
 use crate::transport::Transport;
 use crate::transport::opener::PadError;
 use tactpad_core::pipeline::Pipeline;
+use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::time::HostInstant;
 
 /// Time limit for the first valid frame, in microseconds: a device that has sent none by then is no pad.
@@ -75,6 +76,11 @@ impl PadConnection {
     /// The pad, if there is one.
     pub(super) fn pad(&self) -> Option<&dyn Transport> {
         self.opened.pad.as_deref()
+    }
+
+    /// What is wrong with what the pad sends, where that is not frames.
+    pub(super) fn finding(&self) -> Option<LineFinding> {
+        self.opened.pad.as_ref().and_then(|pad| pad.finding())
     }
 
     /// The reason why no pad is connected; `None` while one is.
@@ -197,6 +203,9 @@ impl PadConnection {
     }
 
     fn why_not_a_pad(&self) -> String {
+        if let Some(finding) = self.finding() {
+            return format!("sent nothing in 3 s that can be played with: {finding}");
+        }
         match self.bytes_received {
             0 => "sent nothing for 3 s: check that the pad is powered and this is its port, or wait for it with --wait"
                 .into(),

@@ -3,6 +3,7 @@
 pub mod address;
 pub mod fault;
 pub mod hid;
+pub mod lines;
 pub mod opener;
 mod pacing;
 pub mod pads;
@@ -15,6 +16,7 @@ use std::io;
 use std::os::fd::BorrowedFd;
 
 use firmware_proto::command::Command;
+use tactpad_core::pipeline::line_check::LineFinding;
 
 /// One pad: a stream of serial frames from it, whatever way they came, and commands to it. Reading never blocks for long after `fd` polls readable.
 pub trait Transport {
@@ -32,4 +34,9 @@ pub trait Transport {
     /// # Errors
     /// The command did not get out whole.
     fn send(&mut self, command: &Command) -> io::Result<()>;
+
+    /// What is wrong with what the pad sends, where it is no frames that are sent; the pipeline finds the rest.
+    fn finding(&self) -> Option<LineFinding> {
+        None
+    }
 }

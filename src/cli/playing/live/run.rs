@@ -5,6 +5,7 @@ use std::io;
 use clap::Args;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
+use super::described::{DescribedPad, SourceOption};
 use super::displays::DisplayOptions;
 use super::files::Files;
 use super::follower;
@@ -34,12 +35,14 @@ use tactpad::bridge::transport::fault::FaultPlan;
     `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on. It ends with its \
     terminal, unless it was started with nohup; where it has none, SIGHUP reads the profile again.")]
 pub(crate) struct Arguments {
-    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], virtual, capture:FILE.
+    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], load-cells:PATH[@BAUD], virtual, capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
     /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.
     #[arg(long)]
     wait: bool,
+    #[command(flatten)]
+    source: SourceOption,
     #[command(flatten)]
     device: PadOptions,
     /// A profile's name or file; it is read again when it is changed. Or auto[:NAME]: the one whose [[program]] is in front, else NAME.
@@ -71,7 +74,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { pad, profile, output, decoder, .. } = arguments;
     let profile = profile_selection::first(profile);
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
-    let decoder = chosen::read(decoder)?;
+    let described = arguments.source.read(pad, decoder)?;
+    let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
     let audience = audience(output);
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let selection = host.selection();
@@ -81,7 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let is_shown = audience == Audience::Nobody;
     let newest = Newest::default();
     let (sink, missing) = output.open_or(|| newest.sink(is_shown))?;
-    let opened = open_pad(&arguments.pad, &arguments.device, profile.profile(), patience)?;
+    let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), patience)?;
     let opened = opened.with_faults(arguments.faults)?;
     let name = &profile.profile().name;
     let title = format!("{} → {} → {name} → {}", arguments.pad, decoder.name, sink.describe());

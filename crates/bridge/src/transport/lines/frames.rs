@@ -1,0 +1,200 @@
+//! Lines of text as frames of channels: what a firmware of ours would have sent. Told the time; it reads no clock.
+//!
+//! A source of ten lines a second is too slow for a pad, so its last state is sent again in between. Each line is a frame at once. Once no
+//! line has come for some of its usual intervals nothing is sent any more, and the pipeline hears the silence.
+
+use firmware_proto::ENCODED_MAX;
+use firmware_proto::channels::{ChannelSample, FEW_CHANNELS_MAX};
+use firmware_proto::frame::Message;
+use firmware_proto::link::encode_message;
+use firmware_proto::sample::Status;
+use tactpad_core::pipeline::line_check::LineFinding;
+use tactpad_core::source::Lines;
+
+use super::look::{LineLook, LineOutcome};
+
+/// No sound line is longer, bytes.
+pub const LINE_BYTES_MAX: usize = 256;
+
+/// The last state is sent again after so long without a line, µs: at the pace of the slowest pad.
+pub const REPEAT_US: u64 = 10_000;
+
+/// The source is silent after so many of its longest recent intervals, …
+const SILENT_INTERVALS: u64 = 3;
+
+/// … but not before, µs, as a port hands over its bytes in parts, …
+const SILENT_MIN_US: u64 = 20_000;
+
+/// … and not later, µs: ten lines a second are the fewest that can be played with.
+pub const SILENT_MAX_US: u64 = 400_000;
+
+/// So many intervals are remembered.
+const INTERVALS: usize = 8;
+
+/// Frames are at least so far apart, µs.
+const FRAME_MIN_US: u64 = 100;
+
+/// What a line says: the counts, and a status for cells that say nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Measurement {
+    counts: [i32; FEW_CHANNELS_MAX],
+    status: Status,
+}
+
+/// Makes frames of lines.
+#[derive(Clone, Debug)]
+pub struct LineFrames {
+    columns: Vec<usize>,
+    /// Counts of 1.
+    counts_per_unit: f64,
+    /// The line that is coming in; `None` before the first end of a line, and while one is too long.
+    partial: Option<Vec<u8>>,
+    /// What the last sound line said, and when it came; `None` while the source is silent.
+    newest: Option<(Measurement, u64)>,
+    intervals_us: [u64; INTERVALS],
+    lines: usize,
+    sequence: u32,
+    /// Time of the last frame.
+    sent_us: u64,
+    look: LineLook,
+}
+
+impl LineFrames {
+    /// Of a port that has said nothing yet.
+    pub fn new(lines: &Lines) -> Self {
+        Self {
+            columns: lines.columns.clone(),
+            counts_per_unit: 10_f64.powi(lines.decimals.into()),
+            partial: None,
+            newest: None,
+            intervals_us: [SILENT_MAX_US; INTERVALS],
+            lines: 0,
+            sequence: 0,
+            sent_us: 0,
+            look: LineLook::default(),
+        }
+    }
+
+    /// Takes bytes that came by `now_us`, and appends the frames of the lines that end in them to `out`.
+    pub fn take(&mut self, now_us: u64, bytes: &[u8], out: &mut Vec<u8>) {
+        let mut measured = Vec::new();
+        for &byte in bytes {
+            if let Some(outcome) = self.push(byte) {
+                self.look.line(now_us, outcome.as_ref().err().copied().or_else(|| dead_cell(&outcome)));
+                measured.extend(outcome);
+            }
+        }
+        let Some(last) = measured.last().copied() else { return };
+        self.hear(now_us, last);
+        // Lines that come together were measured one after the other.
+        let from_us = self.sent_us.max(now_us.saturating_sub(REPEAT_US));
+        let count = measured.len() as u64;
+        for (number, measurement) in (1..).zip(measured) {
+            let at_us = from_us + now_us.saturating_sub(from_us) * number / count;
+            self.send(at_us, &measurement, out);
+        }
+    }
+
+    /// When [`Self::repeat`] is to be called if nothing comes before; `None` while there is nothing to repeat.
+    pub fn due_us(&self) -> Option<u64> {
+        self.newest.map(|_| self.sent_us + REPEAT_US)
+    }
+
+    /// Appends the last state to `out` if that is due at `now_us`, unless the source is silent.
+    pub fn repeat(&mut self, now_us: u64, out: &mut Vec<u8>) {
+        let Some((measurement, heard_us)) = self.newest.filter(|_| self.sent_us + REPEAT_US <= now_us) else {
+            return;
+        };
+        if now_us.saturating_sub(heard_us) > self.silent_after_us() {
+            (self.newest, self.lines) = (None, 0);
+            self.intervals_us = [SILENT_MAX_US; INTERVALS];
+        } else {
+            self.send(now_us, &measurement, out);
+        }
+    }
+
+    /// What is wrong with the lines as a whole, if anything is.
+    pub const fn finding(&self) -> Option<&LineFinding> {
+        self.look.finding()
+    }
+
+    fn hear(&mut self, now_us: u64, measurement: Measurement) {
+        if let Some((_, heard_us)) = self.newest {
+            if let Some(slot) = self.intervals_us.get_mut(self.lines % INTERVALS) {
+                *slot = now_us.saturating_sub(heard_us);
+            }
+            self.lines += 1;
+        }
+        self.newest = Some((measurement, now_us));
+    }
+
+    fn silent_after_us(&self) -> u64 {
+        let longest_us = self.intervals_us.iter().copied().max().unwrap_or(SILENT_MAX_US);
+        longest_us.saturating_mul(SILENT_INTERVALS).clamp(SILENT_MIN_US, SILENT_MAX_US)
+    }
+
+    fn send(&mut self, at_us: u64, measurement: &Measurement, out: &mut Vec<u8>) {
+        self.sent_us = at_us.max(self.sent_us + FRAME_MIN_US);
+        let counts = measurement.counts.get(..self.columns.len()).unwrap_or_default();
+        let Some(sample) = ChannelSample::new(self.sequence, self.sent_us, counts, measurement.status) else {
+            return;
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        let mut frame = [0; ENCODED_MAX];
+        let length = encode_message(&Message::Channels(sample), &mut frame);
+        out.extend_from_slice(frame.get(..length).unwrap_or_default());
+    }
+
+    /// Takes a byte; what a line that ends with it says, if it is no empty one.
+    fn push(&mut self, byte: u8) -> Option<Result<Measurement, LineOutcome>> {
+        if !matches!(byte, b'\n' | b'\r') {
+            if let Some(partial) = &mut self.partial {
+                partial.push(byte);
+                if partial.len() > LINE_BYTES_MAX {
+                    self.partial = None;
+                    return Some(Err(LineOutcome::TooLong));
+                }
+            }
+            return None;
+        }
+        // What came before the first end of a line may be half of one.
+        let line = self.partial.replace(Vec::new())?;
+        let text = std::str::from_utf8(&line).map(str::trim);
+        if text == Ok("") { None } else { Some(self.measured(text.unwrap_or_default())) }
+    }
+
+    /// What a line says. Where some cells have numbers and others have none, those are dead.
+    fn measured(&self, line: &str) -> Result<Measurement, LineOutcome> {
+        let is_between = |letter: char| letter == ',' || letter == ';' || letter.is_whitespace();
+        // Blanks may stand beside a comma, and a field between two commas may be empty.
+        let fields: Vec<&str> = if line.contains([',', ';']) {
+            line.split([',', ';']).map(str::trim).collect()
+        } else {
+            line.split(is_between).filter(|field| !field.is_empty()).collect()
+        };
+        let mut measurement = Measurement { counts: [0; FEW_CHANNELS_MAX], status: Status::OK };
+        let mut sound = 0;
+        for (channel, (count, column)) in measurement.counts.iter_mut().zip(&self.columns).enumerate() {
+            let field = fields.get(column - 1).ok_or(LineOutcome::NotNumbers)?;
+            match self.count(field) {
+                Some(number) => (*count, sound) = (number, sound + 1),
+                None => measurement.status = measurement.status.with_out_of_range(channel),
+            }
+        }
+        if sound == 0 { Err(LineOutcome::NotNumbers) } else { Ok(measurement) }
+    }
+
+    fn count(&self, field: &str) -> Option<i32> {
+        let counts = field.parse::<f64>().ok()? * self.counts_per_unit;
+        let is_count = counts.abs() < f64::from(i32::MAX);
+        is_count.then(|| counts.round() as i32)
+    }
+}
+
+/// The first cell that a sound line has no number for.
+fn dead_cell(outcome: &Result<Measurement, LineOutcome>) -> Option<LineOutcome> {
+    let status = outcome.as_ref().ok()?.status;
+    (0..FEW_CHANNELS_MAX)
+        .find(|channel| status.is_out_of_range(*channel))
+        .map(|channel| LineOutcome::NoNumber { channel })
+}

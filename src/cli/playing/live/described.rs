@@ -38,7 +38,7 @@ impl SourceOption {
         let found = match (&self.source, pad) {
             (Some(named), _) => source::find(named)?,
             (None, PadAddress::Described { name, .. }) if is_shipped(name) => source::find(name)?,
-            (None, PadAddress::Described { name, .. }) => return Err(source::unknown(name)),
+            (None, PadAddress::Described { name, .. }) => return Err(unknown(name)),
             (None, _) => return Ok(None),
         };
         if decoder.is_given() {
@@ -51,6 +51,15 @@ impl SourceOption {
         let address = address(pad, &source)?;
         Ok(Some(DescribedPad { source, text: found.text, address }))
     }
+}
+
+/// The error for the first word of an address that is neither a kind of pad nor a description.
+fn unknown(name: &str) -> Failure {
+    let known = tactpad::source::shipped::names().collect::<Vec<_>>().join(", ");
+    Failure::Unusable(format!(
+        "{name:?} is no kind of pad and no description: write auto, serial:PATH, hid:VID:PID or usb:PORT for a strain pad, one of \
+         {known} with its port, or name a file of your own with --source"
+    ))
 }
 
 fn is_shipped(name: &str) -> bool {

@@ -28,6 +28,9 @@ const SILENT_MIN_US: u64 = 20_000;
 /// … and not later, µs: ten lines a second are the fewest that can be played with.
 pub const SILENT_MAX_US: u64 = 400_000;
 
+/// So many lines in a row with a number of fields are what the source prints now.
+const OTHER_FIELDS_LINES: u8 = 2;
+
 /// So many intervals are remembered.
 const INTERVALS: usize = 8;
 
@@ -49,8 +52,12 @@ pub struct LineFrames {
     counts_per_unit: f64,
     /// The line that is coming in; `None` before the first end of a line, and while one is too long.
     partial: Option<Vec<u8>>,
-    /// What the last sound line said, and when it came; `None` while the source is silent.
-    newest: Option<(Measurement, u64)>,
+    /// How many fields a line has, and how many lines in a row had another number, which one.
+    fields: Option<usize>,
+    other_fields: (usize, u8),
+    /// What the last line said, if it is to be repeated, and when a sound one came last; `None` while the source is silent.
+    newest: Option<Measurement>,
+    heard_us: Option<u64>,
     intervals_us: [u64; INTERVALS],
     lines: usize,
     sequence: u32,
@@ -66,7 +73,10 @@ impl LineFrames {
             columns: lines.columns.clone(),
             counts_per_unit: 10_f64.powi(lines.decimals.into()),
             partial: None,
+            fields: None,
+            other_fields: (0, 0),
             newest: None,
+            heard_us: None,
             intervals_us: [SILENT_MAX_US; INTERVALS],
             lines: 0,
             sequence: 0,
@@ -78,14 +88,20 @@ impl LineFrames {
     /// Takes bytes that came by `now_us`, and appends the frames of the lines that end in them to `out`.
     pub fn take(&mut self, now_us: u64, bytes: &[u8], out: &mut Vec<u8>) {
         let mut measured = Vec::new();
+        let mut is_last_sound = true;
         for &byte in bytes {
             if let Some(outcome) = self.push(byte) {
                 self.look.line(now_us, outcome.as_ref().err().copied().or_else(|| dead_cell(&outcome)));
+                if outcome.is_err() {
+                    // What it would have said is not known, so the state before is not repeated.
+                    self.newest = None;
+                }
+                is_last_sound = outcome.is_ok();
                 measured.extend(outcome);
             }
         }
         let Some(last) = measured.last().copied() else { return };
-        self.hear(now_us, last);
+        self.hear(now_us, last, is_last_sound);
         // Lines that come together were measured one after the other.
         let from_us = self.sent_us.max(now_us.saturating_sub(REPEAT_US));
         let count = measured.len() as u64;
@@ -102,11 +118,10 @@ impl LineFrames {
 
     /// Appends the last state to `out` if that is due at `now_us`, unless the source is silent.
     pub fn repeat(&mut self, now_us: u64, out: &mut Vec<u8>) {
-        let Some((measurement, heard_us)) = self.newest.filter(|_| self.sent_us + REPEAT_US <= now_us) else {
-            return;
-        };
-        if now_us.saturating_sub(heard_us) > self.silent_after_us() {
-            (self.newest, self.lines) = (None, 0);
+        let Some(measurement) = self.newest.filter(|_| self.sent_us + REPEAT_US <= now_us) else { return };
+        let silent_us = now_us.saturating_sub(self.heard_us.unwrap_or(now_us));
+        if silent_us > self.silent_after_us() {
+            (self.newest, self.heard_us, self.lines) = (None, None, 0);
             self.intervals_us = [SILENT_MAX_US; INTERVALS];
         } else {
             self.send(now_us, &measurement, out);
@@ -118,14 +133,16 @@ impl LineFrames {
         self.look.finding()
     }
 
-    fn hear(&mut self, now_us: u64, measurement: Measurement) {
-        if let Some((_, heard_us)) = self.newest {
+    /// Remembers what is to be repeated, unless a line came after it that says nothing.
+    fn hear(&mut self, now_us: u64, measurement: Measurement, is_last: bool) {
+        let heard_us = std::mem::replace(&mut self.heard_us, Some(now_us));
+        if let Some(heard_us) = heard_us {
             if let Some(slot) = self.intervals_us.get_mut(self.lines % INTERVALS) {
                 *slot = now_us.saturating_sub(heard_us);
             }
             self.lines += 1;
         }
-        self.newest = Some((measurement, now_us));
+        self.newest = is_last.then_some(measurement);
     }
 
     fn silent_after_us(&self) -> u64 {
@@ -164,7 +181,7 @@ impl LineFrames {
     }
 
     /// What a line says. Where some cells have numbers and others have none, those are dead.
-    fn measured(&self, line: &str) -> Result<Measurement, LineOutcome> {
+    fn measured(&mut self, line: &str) -> Result<Measurement, LineOutcome> {
         let is_between = |letter: char| letter == ',' || letter == ';' || letter.is_whitespace();
         // Blanks may stand beside a comma, and a field between two commas may be empty.
         let fields: Vec<&str> = if line.contains([',', ';']) {
@@ -172,6 +189,9 @@ impl LineFrames {
         } else {
             line.split(is_between).filter(|field| !field.is_empty()).collect()
         };
+        if !self.is_whole(fields.len()) {
+            return Err(LineOutcome::NotNumbers);
+        }
         let mut measurement = Measurement { counts: [0; FEW_CHANNELS_MAX], status: Status::OK };
         let mut sound = 0;
         for (channel, (count, column)) in measurement.counts.iter_mut().zip(&self.columns).enumerate() {
@@ -182,6 +202,18 @@ impl LineFrames {
             }
         }
         if sound == 0 { Err(LineOutcome::NotNumbers) } else { Ok(measurement) }
+    }
+
+    /// Whether a line of so many fields is whole: one that has lost its end goes on with the next line, and has more.
+    fn is_whole(&mut self, fields: usize) -> bool {
+        let (other, times) = self.other_fields;
+        let times = if other == fields { times + 1 } else { 1 };
+        if self.fields == Some(fields) || times >= OTHER_FIELDS_LINES {
+            (self.fields, self.other_fields) = (Some(fields), (0, 0));
+            return true;
+        }
+        self.other_fields = (fields, times);
+        false
     }
 
     fn count(&self, field: &str) -> Option<i32> {

@@ -2,6 +2,8 @@
 
 pub mod frames;
 mod look;
+#[cfg(test)]
+mod tests;
 
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
@@ -22,6 +24,8 @@ use frames::LineFrames;
 pub struct LinePort {
     port: Box<dyn Transport>,
     frames: LineFrames,
+    /// When the port was opened, by the monotonic clock: frames count from there.
+    origin_us: u64,
     /// Frames that were not read yet.
     out: Vec<u8>,
     /// How the port ended.
@@ -43,7 +47,15 @@ impl LinePort {
         for fd in [port.fd(), timer.as_fd()] {
             epoll::add(&either, fd, epoll::EventData::new_u64(0), epoll::EventFlags::IN)?;
         }
-        Ok(Self { port, frames: LineFrames::new(lines), out: Vec::new(), ended: None, either, timer })
+        Ok(Self {
+            port,
+            frames: LineFrames::new(lines),
+            origin_us: monotonic_us(),
+            out: Vec::new(),
+            ended: None,
+            either,
+            timer,
+        })
     }
 
     /// Takes what the port has sent by `now_us`.
@@ -69,7 +81,8 @@ impl LinePort {
     /// Lets the descriptor poll readable when the last state is to be repeated, or at once if frames or the end are to be told.
     fn set_timer(&self) -> io::Result<()> {
         let is_more = !self.out.is_empty() || self.ended.is_some();
-        let due_us = if is_more { Some(1) } else { self.frames.due_us() };
+        let due_us =
+            if is_more { Some(1) } else { self.frames.due_us().map(|due_us| self.origin_us + due_us) };
         // Zero would stop the timer, and so does `None`.
         let it_value = limit(due_us.map_or(0, |due_us| due_us.max(1)));
         let timer = Itimerspec { it_interval: limit(0), it_value };
@@ -84,7 +97,7 @@ impl Transport for LinePort {
     }
 
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let now_us = monotonic_us();
+        let now_us = monotonic_us().saturating_sub(self.origin_us);
         self.take(now_us)?;
         if self.ended.is_none() {
             self.frames.repeat(now_us, &mut self.out);

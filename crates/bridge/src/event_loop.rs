@@ -201,6 +201,7 @@ impl Bridge {
             return Ok(Some(Ending::TimeOver));
         }
         self.connection.maintain(now, &self.driver.pipeline)?;
+        self.connection.pause(self.driver.pipeline.phase() == Phase::Paused);
         self.publish(now);
         Ok(None)
     }
@@ -270,6 +271,7 @@ impl Bridge {
         self.driver.call(now, Call::ReleaseAll)?;
         // Threads that write stop with the process.
         self.driver.sink.settle().map_err(BridgeError::Sink)?;
+        self.connection.pause(true);
         signals::stop_process().map_err(BridgeError::Io)?;
         let now = self.driver.clock.now();
         self.driver.call_if_due(now)?;

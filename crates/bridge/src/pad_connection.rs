@@ -53,6 +53,8 @@ pub(super) struct PadConnection {
     /// Whether this is still the pad that was opened first.
     is_first: bool,
     bytes_received: u64,
+    /// Whether the pad was told that the player paused.
+    is_paused: bool,
 }
 
 impl PadConnection {
@@ -70,6 +72,7 @@ impl PadConnection {
             restarts: 0,
             is_first: true,
             bytes_received: 0,
+            is_paused: false,
         }
     }
 
@@ -129,6 +132,14 @@ impl PadConnection {
         self.reopen_at = now.plus_us(REOPEN_US);
     }
 
+    /// Tells the pad whether the player paused, if that is new to it.
+    pub(super) fn pause(&mut self, is_paused: bool) {
+        if let Some(pad) = self.opened.pad.as_mut().filter(|_| self.is_paused != is_paused) {
+            pad.pause(is_paused);
+            self.is_paused = is_paused;
+        }
+    }
+
     /// Closes the pad for good.
     pub(super) fn close(&mut self) {
         (self.opened.pad, self.opened.opener) = (None, None);
@@ -183,7 +194,7 @@ impl PadConnection {
         match self.opened.opener.as_mut().map(|open| open()) {
             Some(Ok(pad)) => {
                 (self.opened.pad, self.opened_at, self.identify_since) = (Some(pad), now, now);
-                self.identify_sent = 0;
+                (self.identify_sent, self.is_paused) = (0, false);
             }
             Some(Err(PadError::Denied(_))) => self.no_pad_reason = NoPadReason::Denied,
             Some(Err(PadError::Unusable(_))) => self.no_pad_reason = NoPadReason::Ambiguous,

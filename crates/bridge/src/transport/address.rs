@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use firmware_proto::DEFAULT_BAUD;
+use tactpad_core::source::shipped;
 
 /// Where a pad is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,8 +44,8 @@ pub enum PadAddress {
     Described {
         /// The description's name.
         name: String,
-        /// Where it is: a serial port's path.
-        path: String,
+        /// Where it is: the path of a serial port or an input device; without it the only one that fits.
+        path: Option<String>,
         /// Bits per second, not 0; without it those of the description.
         baud: Option<u32>,
     },
@@ -116,6 +117,9 @@ impl FromStr for PadAddress {
                 Ok(Self::Capture { file })
             }
             (name, Some(rest)) if is_name(name) && !rest.is_empty() => described(name, rest),
+            (name, None) if shipped::text(name).is_some() => {
+                Ok(Self::Described { name: name.into(), path: None, baud: None })
+            }
             _ => Err(AddressError::UnknownKind { text: text.into() }),
         }
     }
@@ -139,7 +143,7 @@ fn is_name(word: &str) -> bool {
 fn described(name: &str, rest: &str) -> Result<PadAddress, AddressError> {
     const WANTED: &str = "the port's path, as in load-cells:/dev/ttyUSB0";
     let (path, baud) = with_rate("load-cells", rest, WANTED)?;
-    Ok(PadAddress::Described { name: name.into(), path, baud })
+    Ok(PadAddress::Described { name: name.into(), path: Some(path), baud })
 }
 
 /// A path or place, and the rate that follows the last `@` of its last part.
@@ -192,8 +196,9 @@ impl fmt::Display for PadAddress {
             Self::Hid { vendor, product, serial_number: Some(number) } => {
                 write!(f, "hid:{vendor:04x}:{product:04x}:{number}")
             }
-            Self::Described { name, path, baud: None } => write!(f, "{name}:{path}"),
-            Self::Described { name, path, baud: Some(baud) } => write!(f, "{name}:{path}@{baud}"),
+            Self::Described { name, path: None, .. } => f.write_str(name),
+            Self::Described { name, path: Some(path), baud: None } => write!(f, "{name}:{path}"),
+            Self::Described { name, path: Some(path), baud: Some(baud) } => write!(f, "{name}:{path}@{baud}"),
             Self::Capture { file } => write!(f, "capture:{}", file.display()),
         }
     }
@@ -205,7 +210,7 @@ impl fmt::Display for AddressError {
             Self::UnknownKind { text } => write!(
                 f,
                 "`{text}` names no pad: write auto[:SERIAL], virtual, serial:PATH[@BAUD], \
-                 hid:VID:PID[:SERIAL], usb:PORT[@BAUD], load-cells:PATH[@BAUD] or capture:FILE"
+                 hid:VID:PID[:SERIAL], usb:PORT[@BAUD], load-cells:PATH[@BAUD], capture:FILE, or a name from `tactpad source list`"
             ),
             Self::Incomplete { kind, wanted } => write!(f, "`{kind}:` lacks {wanted}"),
             Self::BadBaud { kind, path, baud } => write!(
@@ -247,6 +252,8 @@ mod tests {
             ("hid:ABCD:ffff:a:b", "hid:abcd:ffff:a:b"),
             ("usb:1-1.2@9600", "usb:1-1.2@9600"),
             ("usb:1-1.2:1.0@9600", "usb:1-1.2:1.0@9600"),
+            ("tablet", "tablet"),
+            ("tablet:/dev/input/event5", "tablet:/dev/input/event5"),
             ("load-cells:/dev/ttyUSB0", "load-cells:/dev/ttyUSB0"),
             ("my-board:/dev/ttyUSB0@57600", "my-board:/dev/ttyUSB0@57600"),
             ("capture:run:1.tpc", "capture:run:1.tpc"),

@@ -1,6 +1,7 @@
 //! Where pad bytes come from.
 
 pub mod address;
+pub mod evdev;
 pub mod fault;
 pub mod hid;
 pub mod lines;
@@ -34,6 +35,9 @@ pub trait Transport {
     /// # Errors
     /// The command did not get out whole.
     fn send(&mut self, command: &Command) -> io::Result<()>;
+
+    /// The player paused, or went on: a device that was taken from the desktop is given back meanwhile.
+    fn pause(&mut self, _is_paused: bool) {}
 
     /// What is wrong with what the pad sends, where it is no frames that are sent; the pipeline finds the rest.
     fn finding(&self) -> Option<LineFinding> {

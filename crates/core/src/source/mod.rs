@@ -1,10 +1,12 @@
 //! Descriptions of pads that people own: where their numbers come from, what those are, and how they are a contact on the plate.
 
+pub mod codes;
 pub mod read;
 pub mod shipped;
 
-use crate::pipeline::contact::Decoder;
 use crate::pipeline::contact::balance::{Balance, BalanceNumbers, PLATE_RADIUS_MM};
+use crate::pipeline::contact::{Decoder, Method};
+use codes::InputCode;
 
 /// A force of the pad that is this force for a profile, N.
 pub const FULL_N: f64 = 5.0;
@@ -23,8 +25,6 @@ pub struct Source {
     pub origin: Origin,
     /// What its numbers are.
     pub measures: Measures,
-    /// How its area and force map onto the plate.
-    pub reach: Reach,
 }
 
 /// Where numbers come from.
@@ -34,6 +34,23 @@ pub enum Origin {
     Lines(Lines),
     /// Frames of the wire's specification.
     Wire,
+    /// An input device of the system.
+    Evdev(Evdev),
+}
+
+/// An input device of the system, and how it is known among others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Evdev {
+    /// A part of its name; any of these, or any name where there are none.
+    pub names: Vec<String>,
+    /// What it must report.
+    pub has: Vec<InputCode>,
+    /// What it must not report.
+    pub lacks: Vec<InputCode>,
+    /// Whether it is taken from the desktop while it plays, as it would move the pointer.
+    pub grabs: bool,
+    /// The axes that are the channels; none where it reports contacts.
+    pub channels: Vec<u16>,
 }
 
 /// Lines of text: numbers between commas, semicolons or blanks.
@@ -51,9 +68,26 @@ pub struct Lines {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Measures {
     /// Forces into the plate at several places.
-    Cells(Vec<Cell>),
+    Cells(Vec<Cell>, Reach),
     /// Three forces and three moments of one sensor below the plate.
-    Wrench(Wrench),
+    Wrench(Wrench, Reach),
+    /// The contact itself, by the axes of an input device.
+    Contact(Touching),
+}
+
+/// A contact as an input device reports it. The whole range of its axes is the plate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touching {
+    /// Axis to the right, and axis downwards.
+    pub place: [u16; 2],
+    /// Axis of the force, if it has one.
+    pub force: Option<u16>,
+    /// The share of the force's full scale that is [`FULL_N`] for a profile.
+    pub full_share: f64,
+    /// The force that is [`FULL_N`] for a profile, N, where the device says what its numbers weigh.
+    pub full_n: f64,
+    /// The force of a touch for a profile where the device has none, N.
+    pub touch_n: f64,
 }
 
 /// A load cell.
@@ -101,28 +135,34 @@ impl Source {
     /// Names of its channels, in order.
     pub fn channel_names(&self) -> Vec<String> {
         match &self.measures {
-            Measures::Cells(cells) => cells.iter().map(|cell| cell.name.clone()).collect(),
-            Measures::Wrench(_) => AXIS_NAMES.map(str::to_owned).to_vec(),
+            Measures::Cells(cells, _) => cells.iter().map(|cell| cell.name.clone()).collect(),
+            Measures::Wrench(..) => AXIS_NAMES.map(str::to_owned).to_vec(),
+            Measures::Contact(_) => Vec::new(),
         }
     }
 
     /// Whether it measures forces along the plate.
     pub const fn has_shear(&self) -> bool {
-        matches!(self.measures, Measures::Wrench(_))
+        matches!(self.measures, Measures::Wrench(..))
     }
 
     /// The decoder of its channels; `None` if they are too many or none, which the reader refuses.
     pub fn decoder(&self) -> Option<Decoder> {
-        let Reach { half_mm, n_per_unit, full_n, noise_n } = self.reach;
+        let reach = match &self.measures {
+            Measures::Cells(_, reach) | Measures::Wrench(_, reach) => reach,
+            Measures::Contact(_) => return Some(Method::Told.into()),
+        };
+        let Reach { half_mm, n_per_unit, full_n, noise_n } = *reach;
         let plate_n_per_n = FULL_N / full_n;
         let plate_mm_per_mm = half_mm.map(|half_mm| PLATE_RADIUS_MM / half_mm);
         let channels = match &self.measures {
-            Measures::Cells(cells) => cells.iter().map(|cell| cell_row(cell, plate_mm_per_mm)).collect(),
-            Measures::Wrench(wrench) => wrench_rows(wrench, n_per_unit, plate_mm_per_mm),
+            Measures::Cells(cells, _) => cells.iter().map(|cell| cell_row(cell, plate_mm_per_mm)).collect(),
+            Measures::Wrench(wrench, _) => wrench_rows(wrench, n_per_unit, plate_mm_per_mm),
+            Measures::Contact(_) => Vec::new(),
         };
         let units_per_count = match &self.origin {
             Origin::Lines(lines) => 0.1_f64.powi(lines.decimals.into()),
-            Origin::Wire => 1.0,
+            Origin::Wire | Origin::Evdev(_) => 1.0,
         };
         let numbers = BalanceNumbers {
             n_per_count: n_per_unit * units_per_count * plate_n_per_n,

@@ -4,13 +4,17 @@
 
 use toml::de::DeTable;
 
-use super::{AXES, Cell, Lines, Measures, Origin, Reach, Source, Wrench};
+use super::codes::{self, CODES, InputCode};
+use super::{AXES, Cell, Evdev, Lines, Measures, Origin, Reach, Source, Touching, Wrench};
 use crate::quantity::WEIGHT_N_PER_G;
 use crate::toml_text;
 use crate::toml_text::diag::{Diagnostic, Findings};
 use crate::toml_text::section::{Bounds, Placed, Section};
 
-const ROOT_KEYS: [&str; 9] = ["schema", "name", "title", "lines", "wire", "area", "force", "cell", "wrench"];
+const ROOT_KEYS: [&str; 11] =
+    ["schema", "name", "title", "lines", "wire", "evdev", "area", "force", "cell", "wrench", "contact"];
+const EVDEV_KEYS: [&str; 5] = ["names", "has", "lacks", "grab", "channels"];
+const CONTACT_KEYS: [&str; 6] = ["x", "y", "force", "full_share", "full_n", "touch_n"];
 const LINES_KEYS: [&str; 3] = ["baud", "columns", "decimals"];
 const AREA_KEYS: [&str; 2] = ["half_width_mm", "half_height_mm"];
 const FORCE_KEYS: [&str; 4] = ["unit", "n_per_count", "full_n", "noise_n"];
@@ -18,7 +22,13 @@ const CELL_KEYS: [&str; 4] = ["name", "x_mm", "y_mm", "gain"];
 const WRENCH_KEYS: [&str; 4] = ["signs", "moment_unit", "nmm_per_count", "height_mm"];
 
 /// Origins, of which a description has one.
-const ORIGINS: [&str; 2] = ["lines", "wire"];
+const ORIGINS: [&str; 3] = ["lines", "wire", "evdev"];
+
+/// What the numbers are, of which a description has one.
+const MEASURES: [&str; 3] = ["cell", "wrench", "contact"];
+
+/// A device has no more names.
+const NAMES_MAX: usize = 16;
 
 /// The most cells: eight channels fit into a frame.
 pub const CELLS_MAX: usize = firmware_proto::channels::FEW_CHANNELS_MAX;
@@ -31,6 +41,8 @@ const PLACE_MM: Bounds<f64> = Bounds { low: -1_000.0, high: 1_000.0, default: 0.
 const FULL_N: Bounds<f64> = Bounds { low: 0.1, high: 5_000.0, default: 5.0 };
 const NOISE_N: Bounds<f64> = Bounds { low: 0.0, high: 100.0, default: 0.05 };
 const GAIN: Bounds<f64> = Bounds { low: -100.0, high: 100.0, default: 1.0 };
+const FULL_SHARE: Bounds<f64> = Bounds { low: 0.05, high: 1.0, default: 0.8 };
+const TOUCH_N: Bounds<f64> = Bounds { low: 0.1, high: 5.0, default: 2.5 };
 const PER_COUNT: Bounds<f64> = Bounds { low: -1e6, high: 1e6, default: 1.0 };
 const HEIGHT_MM: Bounds<f64> = Bounds { low: -500.0, high: 500.0, default: 0.0 };
 const BAUD: Bounds<u32> = Bounds { low: 300, high: 4_000_000, default: 115_200 };
@@ -94,26 +106,42 @@ pub fn read(text: &str) -> (Option<Source>, Vec<Diagnostic>) {
     let title = root.name("title", &mut findings).map(str::to_owned);
     let measures = read_measures(&root, &mut findings);
     let origin = read_origin(&root, measures.as_ref(), &mut findings);
-    let reach = read_reach(&root, measures.as_ref(), &mut findings);
+    let reach = match &measures {
+        Some(Drafted::Contact(_)) => {
+            refuse_reach(&root, &mut findings);
+            None
+        }
+        channels => read_reach(&root, channels.as_ref(), &mut findings),
+    };
     let source = (|| {
-        Some(Source {
-            name: name?,
-            title: title?,
-            origin: origin?,
-            measures: measures?.measures,
-            reach: reach?,
-        })
+        let measures = match measures? {
+            Drafted::Cells(cells) => Measures::Cells(cells, reach?),
+            Drafted::Wrench(wrench, _) => Measures::Wrench(wrench, reach?),
+            Drafted::Contact(touching) => Measures::Contact(touching),
+        };
+        Some(Source { name: name?, title: title?, origin: origin?, measures })
     })();
     let source = source.filter(|_| !findings.failed());
     (source, findings.finish())
 }
 
 /// What the numbers are, while units are not known yet.
-struct Drafted {
-    measures: Measures,
-    channels: usize,
-    /// Whether it is in the force table that the unit of moments is found wrong.
-    moment_per_count: bool,
+enum Drafted {
+    Cells(Vec<Cell>),
+    /// With whether its moments are counts.
+    Wrench(Wrench, bool),
+    Contact(Touching),
+}
+
+impl Drafted {
+    /// How many channels they take.
+    const fn channels(&self) -> usize {
+        match self {
+            Self::Cells(cells) => cells.len(),
+            Self::Wrench(..) => AXES,
+            Self::Contact(_) => 0,
+        }
+    }
 }
 
 fn read_name(root: &Section<'_>, findings: &mut Findings<'_>) -> Option<String> {
@@ -133,7 +161,8 @@ fn read_name(root: &Section<'_>, findings: &mut Findings<'_>) -> Option<String> 
 
 fn read_origin(root: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Findings<'_>) -> Option<Origin> {
     let there: Vec<&str> = ORIGINS.into_iter().filter(|key| root.place_of(key).is_some()).collect();
-    let help = "write [lines] for lines of text on a serial port, or [wire] for frames as firmware-proto/README.md has them";
+    let help = "write [lines] for lines of text on a serial port, [evdev] for an input device of the system, or [wire] for \
+                frames as firmware-proto/README.md has them";
     match there[..] {
         [] => {
             findings.misplaced(root.at, "the description does not say where the numbers come from", help);
@@ -144,13 +173,15 @@ fn read_origin(root: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Fin
             read_lines(&lines, drafted, findings).map(Origin::Lines)
         }
         ["wire"] => root.table("wire", "[wire]".into(), &[], findings).map(|_| Origin::Wire),
-        _ => {
-            let at = root.place_of("wire").unwrap_or(root.at);
-            findings.error(
-                at,
-                "numbers come from one place: there are [lines] and [wire]",
-                "take one of them out",
-            );
+        ["evdev"] => {
+            let evdev = root.table("evdev", "[evdev]".into(), &EVDEV_KEYS, findings)?;
+            read_evdev(&evdev, drafted, findings).map(Origin::Evdev)
+        }
+        [_] => None,
+        [first, second, ..] => {
+            let at = root.place_of(second).unwrap_or(root.at);
+            let message = format!("numbers come from one place: there are [{first}] and [{second}]");
+            findings.error(at, message, "take one of them out");
             None
         }
     }
@@ -159,7 +190,7 @@ fn read_origin(root: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Fin
 fn read_lines(lines: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Findings<'_>) -> Option<Lines> {
     let baud = lines.whole("baud", BAUD, findings);
     let decimals = lines.whole("decimals", DECIMALS, findings);
-    let channels = drafted?.channels;
+    let channels = drafted?.channels();
     let columns = match lines.place_of("columns") {
         None => Some((1..=channels).collect()),
         Some(at) => lines.reals::<f64>("columns", channels, findings).and_then(|columns| {
@@ -184,37 +215,123 @@ fn read_lines(lines: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Fin
 }
 
 fn read_measures(root: &Section<'_>, findings: &mut Findings<'_>) -> Option<Drafted> {
-    match (root.place_of("cell"), root.place_of("wrench")) {
-        (None, None) => {
-            let help = "write one table [[cell]] for each load cell, or [wrench] for a sensor of six axes";
+    let there: Vec<&str> = MEASURES.into_iter().filter(|key| root.place_of(key).is_some()).collect();
+    match there[..] {
+        [] => {
+            let help = "write one table [[cell]] for each load cell, [wrench] for a sensor of six axes, or [contact] for a device that \
+                        tells the place itself";
             findings.misplaced(root.at, "the description does not say what the numbers are", help);
             None
         }
-        (Some(_), Some(at)) => {
-            findings.error(
-                at,
-                "the numbers are one thing: there are [[cell]] and [wrench]",
-                "take one of them out",
-            );
+        ["cell"] => read_cells(root, root.place_of("cell")?, findings).map(Drafted::Cells),
+        ["wrench"] => {
+            let table = root.table("wrench", "[wrench]".into(), &WRENCH_KEYS, findings)?;
+            read_wrench(&table, findings).map(|(wrench, per_count)| Drafted::Wrench(wrench, per_count))
+        }
+        ["contact"] => {
+            let table = root.table("contact", "[contact]".into(), &CONTACT_KEYS, findings)?;
+            read_contact(root, &table, findings).map(Drafted::Contact)
+        }
+        [_] => None,
+        [first, second, ..] => {
+            let at = root.place_of(second).unwrap_or(root.at);
+            let message = format!("the numbers are one thing: there are \"{first}\" and \"{second}\"");
+            findings.error(at, message, "take one of them out");
             None
         }
-        (Some(at), None) => {
-            let cells = read_cells(root, at, findings)?;
-            let channels = cells.len();
-            Some(Drafted { measures: Measures::Cells(cells), channels, moment_per_count: false })
-        }
-        (None, Some(_)) => {
-            let table = root.table("wrench", "[wrench]".into(), &WRENCH_KEYS, findings)?;
-            let (wrench, moment_per_count) = read_wrench(&table, findings)?;
-            Some(Drafted { measures: Measures::Wrench(wrench), channels: AXES, moment_per_count })
+    }
+}
+
+fn read_contact(root: &Section<'_>, table: &Section<'_>, findings: &mut Findings<'_>) -> Option<Touching> {
+    if root.place_of("evdev").is_none() && ORIGINS.iter().any(|key| root.place_of(key).is_some()) {
+        let help = "frames carry contacts without a description, and lines of text carry channels";
+        findings.error(table.at, "[contact] is for [evdev]", help);
+    }
+    for key in ["x", "y"] {
+        table.require(key, "write the axis by its kernel name, as in x = \"ABS_X\"", findings);
+    }
+    let [x, y, force] = ["x", "y", "force"].map(|key| table.word(key, &codes::AXES, findings));
+    let full_share = table.number("full_share", FULL_SHARE, findings);
+    let full_n = table.number("full_n", FULL_N, findings);
+    let touch_n = table.number("touch_n", TOUCH_N, findings);
+    let force = match (force, table.place_of("force")) {
+        (None, Some(_)) => return None,
+        (force, _) => force.map(|force| force.value),
+    };
+    Some(Touching {
+        place: [x?.value, y?.value],
+        force,
+        full_share: full_share?.value,
+        full_n: full_n?.value,
+        touch_n: touch_n?.value,
+    })
+}
+
+/// Says that a device that tells contacts has no area and no force of its own.
+fn refuse_reach(root: &Section<'_>, findings: &mut Findings<'_>) {
+    for key in ["area", "force"] {
+        if let Some(at) = root.place_of(key) {
+            let help = "the whole range of its axes is the plate; forces stand in [contact]";
+            findings.error(at, format!("[{key}] is for channels"), help);
         }
     }
+}
+
+fn read_evdev(table: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Findings<'_>) -> Option<Evdev> {
+    let names = match table.place_of("names") {
+        None => Some(Vec::new()),
+        Some(_) => table
+            .some_texts("names", NAMES_MAX, findings)
+            .map(|names| names.iter().map(|name| name.value.to_owned()).collect::<Vec<_>>()),
+    };
+    let [has, lacks] = ["has", "lacks"].map(|key| read_codes(table, key, findings));
+    let grabs = if table.place_of("grab").is_none() { Some(false) } else { table.flag("grab", findings) };
+    let wanted = drafted?.channels();
+    let channels = match (wanted, table.place_of("channels")) {
+        (0, Some(at)) => {
+            findings.error(at, "\"channels\" are for load cells and six axes", "take it out, or [contact]");
+            None
+        }
+        (0, None) => Some(Vec::new()),
+        _ => {
+            table.require(
+                "channels",
+                "name an axis for each channel, as in channels = [\"ABS_X\", …]",
+                findings,
+            );
+            let axes = table.words("channels", &codes::AXES, findings);
+            let at = table.place_of("channels").unwrap_or(table.at);
+            if axes.as_ref().is_some_and(|axes| axes.len() != wanted) {
+                findings.error(
+                    at,
+                    format!("\"channels\" must be {wanted} axes"),
+                    "one for each channel, in their order",
+                );
+            }
+            axes.map(|axes| axes.iter().map(|axis| axis.value).collect::<Vec<_>>())
+        }
+    };
+    let evdev = Evdev { names: names?, has: has?, lacks: lacks?, grabs: grabs?, channels: channels? };
+    if evdev.names.is_empty() && evdev.has.is_empty() {
+        let help =
+            "write names = [\"…\"] with a part of its name, or has = [\"ABS_X\", …] with what it reports";
+        findings.error(table.at, "[evdev] does not say which device is meant", help);
+    }
+    Some(evdev)
+}
+
+fn read_codes(table: &Section<'_>, key: &str, findings: &mut Findings<'_>) -> Option<Vec<InputCode>> {
+    if table.place_of(key).is_none() {
+        return Some(Vec::new());
+    }
+    let codes = table.words(key, &CODES, findings)?;
+    Some(codes.iter().map(|code| code.value).collect())
 }
 
 fn read_cells(root: &Section<'_>, at: usize, findings: &mut Findings<'_>) -> Option<Vec<Cell>> {
     let tables = root.tables("cell", &CELL_KEYS, CELLS_MAX + 1, findings);
     if !(CELLS_MIN..=CELLS_MAX).contains(&tables.len()) {
-        let message = format!("there are {} cells; a place takes {CELLS_MIN} to {CELLS_MAX}", tables.len());
+        let message = format!("a place takes {CELLS_MIN} to {CELLS_MAX} cells, not {}", tables.len());
         findings.error(at, message, "write one table [[cell]] for each");
         return None;
     }
@@ -307,10 +424,10 @@ fn read_reach(root: &Section<'_>, drafted: Option<&Drafted>, findings: &mut Find
     let unit = force.word("unit", &FORCE_UNITS, findings)?;
     let is_count = matches!(unit.value, ForceUnit::Count);
     let per_count = per_count(&force, "n_per_count", is_count, findings);
-    if root.place_of("wire").is_some() && !is_count {
-        findings.error(unit.at, "a frame carries counts", "write unit = \"count\", and n_per_count");
+    if (root.place_of("wire").is_some() || root.place_of("evdev").is_some()) && !is_count {
+        findings.error(unit.at, "its numbers are counts", "write unit = \"count\", and n_per_count");
     }
-    if drafted.is_some_and(|drafted| drafted.moment_per_count) && !is_count {
+    if matches!(drafted, Some(Drafted::Wrench(_, true))) && !is_count {
         findings.error(
             unit.at,
             "moments are counts and forces are not",
@@ -417,7 +534,7 @@ mod tests {
         }
         assert!(messages("").len() >= 5, "{:?}", messages(""));
         let both = format!("{CELLS}[wrench]\nmoment_unit = \"Nm\"\n");
-        assert!(messages(&both).iter().any(|found| found.contains("there are [[cell]] and [wrench]")));
+        assert!(messages(&both).iter().any(|found| found.contains("there are \"cell\" and \"wrench\"")));
     }
 
     #[test]

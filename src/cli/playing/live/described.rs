@@ -1,14 +1,20 @@
 //! Pads that a description tells of, for the live verbs.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use crate::cli::failure::Failure;
 use crate::cli::files::decoder_file::DecoderChoice;
 use crate::cli::playing::source;
+use crate::cli::printing::written::{printable, say};
 use tactpad::bridge::bridge_parts::PlayingDecoder;
 use tactpad::bridge::opening::{OpenError, OpenedPad, Patience};
 use tactpad::bridge::transport::address::PadAddress;
+use tactpad::bridge::transport::evdev::EvdevOpener;
 use tactpad::firmware_proto::DEFAULT_BAUD;
+use tactpad::pipeline::mapping::read::ReadProfile;
+use tactpad::pipeline::mapping::read::shear::bound_to_shear;
 use tactpad::source::{Origin, Source};
 
 /// The description of a pad.
@@ -18,6 +24,9 @@ pub(super) struct SourceOption {
     /// list`.
     #[arg(long, value_name = "NAME|FILE")]
     source: Option<String>,
+    /// Let a tablet or touchpad go on moving the pointer while it plays.
+    #[arg(long)]
+    no_grab: bool,
 }
 
 /// A pad that is described.
@@ -26,6 +35,8 @@ pub(super) struct DescribedPad {
     text: String,
     /// Where it is to be opened.
     address: PadAddress,
+    /// Whether it goes on moving the pointer.
+    keeps_pointer: bool,
 }
 
 impl SourceOption {
@@ -39,6 +50,11 @@ impl SourceOption {
             (Some(named), _) => source::find(named)?,
             (None, PadAddress::Described { name, .. }) if is_shipped(name) => source::find(name)?,
             (None, PadAddress::Described { name, .. }) => return Err(unknown(name)),
+            (None, _) if self.no_grab => {
+                return Err(Failure::Unusable(
+                    "--no-grab is for tablets and touchpads, as in --pad tablet: a strain pad moves no pointer".into(),
+                ));
+            }
             (None, _) => return Ok(None),
         };
         if decoder.is_given() {
@@ -49,7 +65,7 @@ impl SourceOption {
         }
         let source = source::usable(&found)?;
         let address = address(pad, &source)?;
-        Ok(Some(DescribedPad { source, text: found.text, address }))
+        Ok(Some(DescribedPad { source, text: found.text, address, keeps_pointer: self.no_grab }))
     }
 }
 
@@ -73,12 +89,29 @@ fn address(pad: &PadAddress, source: &Source) -> Result<PadAddress, Failure> {
         (_, PadAddress::Described { name: named, .. }) if named != name => Err(Failure::Unusable(format!(
             "--source describes {name}, and --pad names {named}: write --pad {name}:PATH"
         ))),
-        (Origin::Lines(lines), PadAddress::Described { path, baud, .. }) => {
+        (Origin::Lines(lines), PadAddress::Described { path: Some(path), baud, .. }) => {
             Ok(PadAddress::Serial { path: path.clone(), baud: baud.unwrap_or(lines.baud) })
         }
-        (Origin::Wire, PadAddress::Described { path, baud, .. }) => {
+        (Origin::Wire, PadAddress::Described { path: Some(path), baud, .. }) => {
             Ok(PadAddress::Serial { path: path.clone(), baud: baud.unwrap_or(DEFAULT_BAUD) })
         }
+        (Origin::Lines(_) | Origin::Wire, PadAddress::Described { path: None, .. }) => {
+            Err(Failure::Unusable(format!(
+                "{name} does not say who it is: name its port, as in --pad {name}:/dev/ttyUSB0 (`tactpad devices` lists them)"
+            )))
+        }
+        (Origin::Evdev(_), PadAddress::Described { baud: Some(_), .. }) => Err(Failure::Unusable(format!(
+            "{name} is an input device, which has no rate: write --pad {name}:/dev/input/eventN"
+        ))),
+        (
+            Origin::Evdev(_),
+            PadAddress::Serial { .. }
+            | PadAddress::Hid { .. }
+            | PadAddress::Usb { .. }
+            | PadAddress::Auto { .. },
+        ) => Err(Failure::Unusable(format!(
+            "{name} is an input device: write --pad {name}, or --pad {name}:/dev/input/eventN"
+        ))),
         (_, PadAddress::Virtual) => Err(Failure::Unusable(
             "--source describes a pad of your own, and the virtual pad is a strain pad: leave it out".into(),
         )),
@@ -88,7 +121,7 @@ fn address(pad: &PadAddress, source: &Source) -> Result<PadAddress, Failure> {
                  (`tactpad devices` lists them)"
             )))
         }
-        (Origin::Lines(_) | Origin::Wire, _) => Ok(pad.clone()),
+        _ => Ok(pad.clone()),
     }
 }
 
@@ -103,15 +136,32 @@ impl DescribedPad {
         Ok(PlayingDecoder { name: format!("{} ({name})", decoder.name()), decoder, place: None, file })
     }
 
+    /// Says what of a profile does nothing on it.
+    pub(super) fn warn_of(&self, profile: &ReadProfile) {
+        if self.source.has_shear() {
+            return;
+        }
+        for found in bound_to_shear(profile.text()) {
+            say(found.render(&printable(&profile.profile().name)));
+        }
+    }
+
     /// Opens it.
     pub(super) fn open(&self, patience: Patience) -> Result<OpenedPad, OpenError> {
         if let PadAddress::Capture { file } = &self.address {
             return OpenedPad::capture(file);
         }
+        if let (Origin::Evdev(_), PadAddress::Described { path, .. }) = (&self.source.origin, &self.address) {
+            let path = path.as_ref().map(PathBuf::from);
+            return OpenedPad::input_device(
+                EvdevOpener::new(self.source.clone(), path, self.keeps_pointer),
+                patience,
+            );
+        }
         let opened = OpenedPad::device(self.address.clone(), patience)?;
         match &self.source.origin {
             Origin::Lines(lines) => opened.with_lines(lines).map_err(OpenError::Io),
-            Origin::Wire => Ok(opened),
+            Origin::Wire | Origin::Evdev(_) => Ok(opened),
         }
     }
 }

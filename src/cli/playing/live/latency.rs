@@ -73,6 +73,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let described = arguments.source.read(pad, decoder)?;
     let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
     let profile = profile::read(profile, output.choice())?;
+    if let Some(described) = &described {
+        described.warn_of(&profile);
+    }
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), Patience::Limited)?;
     let timing = Timing::default();
     let sink = timing.sink(open_sink(output)?);

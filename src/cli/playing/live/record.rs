@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     /// Write over a file that is there already.
     #[arg(long)]
     force: bool,
-    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], load-cells:PATH[@BAUD], capture:FILE.
+    /// The pad: virtual, auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], load-cells:PATH[@BAUD], tablet, touchpad, … (source list), capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "virtual")]
     pad: PadAddress,
     #[command(flatten)]
@@ -83,6 +83,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let described = arguments.source.read(pad, decoder)?;
     let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
     let profile = profile::read(profile, output.choice())?;
+    if let Some(described) = &described {
+        described.warn_of(&profile);
+    }
     let (sink, missing) = output.open_or(|| Newest::default().sink(false))?;
     let patience = patience(&arguments.pad, WaitOption::NotGiven);
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), patience)?;

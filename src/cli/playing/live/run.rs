@@ -35,7 +35,7 @@ use tactpad::bridge::transport::fault::FaultPlan;
     `tactpad ctl` talks to it. Signals: SIGUSR1 releases everything, SIGUSR2 pauses and goes on. It ends with its \
     terminal, unless it was started with nohup; where it has none, SIGHUP reads the profile again.")]
 pub(crate) struct Arguments {
-    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], load-cells:PATH[@BAUD], virtual, capture:FILE.
+    /// The pad: auto[:SERIAL], hid:VID:PID[:SERIAL], serial:PATH[@BAUD], usb:PORT[@BAUD], load-cells:PATH[@BAUD], tablet, touchpad, … (source list), virtual, capture:FILE.
     #[arg(long, value_name = "PAD", default_value = "auto")]
     pad: PadAddress,
     /// Wait for a named pad that is not there yet or sends nothing yet; `auto` always waits.
@@ -80,6 +80,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let selection = host.selection();
     let profile = profile::read(profile, output.choice())?;
+    if let Some(described) = &described {
+        described.warn_of(&profile);
+    }
     let patience =
         patience(&arguments.pad, if arguments.wait { WaitOption::Given } else { WaitOption::NotGiven });
     let is_shown = audience == Audience::Nobody;

@@ -158,6 +158,7 @@ const fn origin(source: &Source) -> &'static str {
     match source.origin {
         Origin::Lines(_) => "lines",
         Origin::Wire => "wire",
+        Origin::Evdev(_) => "evdev",
     }
 }
 
@@ -183,8 +184,10 @@ fn print(
     }
     let Some(source) = source else { return Ok(()) };
     let what = match &source.measures {
-        Measures::Cells(cells) => format!("{} load cells: place and fz, no fx, no fy", cells.len()),
-        Measures::Wrench(_) => "six axes: place, fx, fy and fz".to_owned(),
+        Measures::Contact(touching) if touching.force.is_none() => "place, and one force".to_owned(),
+        Measures::Contact(_) => "place and fz, no fx, no fy".to_owned(),
+        Measures::Cells(cells, _) => format!("{} load cells: place and fz, no fx, no fy", cells.len()),
+        Measures::Wrench(..) => "six axes: place, fx, fy and fz".to_owned(),
     };
     Ok(writeln!(stdout(), "{place}: {} is in order ({what})", source.name)?)
 }

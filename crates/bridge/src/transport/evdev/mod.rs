@@ -8,6 +8,7 @@ use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::path::{Path, PathBuf};
 
+use ::evdev::raw_stream::RawDevice;
 use ::evdev::{AbsInfo, AbsoluteAxisCode, Device, EventType, InputEvent, KeyCode, SynchronizationCode};
 use firmware_proto::command::Command;
 use rustix::event::epoll;
@@ -26,8 +27,9 @@ use frames::{AxisRange, Change, EvdevFrames};
 pub struct EvdevPort {
     device: Device,
     frames: EvdevFrames,
-    /// Whether the desktop is to hear nothing of it while it plays.
-    grabs: bool,
+    /// The same open device, by which it is taken from the desktop while it plays, and given back. The other one would complain on
+    /// standard error that a device which has left is not given back.
+    grip: Option<RawDevice>,
     /// When it was opened, by the monotonic clock: frames count from there.
     origin_us: u64,
     /// Frames that were not read yet.
@@ -120,11 +122,20 @@ fn open_error(path: &Path, error: &io::Error) -> PadError {
 }
 
 impl EvdevPort {
-    fn new(mut device: Device, source: &Source, wanted: &Evdev, grabs: bool) -> io::Result<Self> {
+    fn new(device: Device, source: &Source, wanted: &Evdev, grabs: bool) -> io::Result<Self> {
         device.set_nonblocking(true)?;
-        if grabs {
-            device.grab()?;
-        }
+        let grip = if grabs { Some(RawDevice::from_fd(device.as_fd().try_clone_to_owned()?)?) } else { None };
+        let mut port = Self::ungrabbed(device, source, wanted, grip)?;
+        port.grip.as_mut().map_or(Ok(()), RawDevice::grab)?;
+        Ok(port)
+    }
+
+    fn ungrabbed(
+        device: Device,
+        source: &Source,
+        wanted: &Evdev,
+        grip: Option<RawDevice>,
+    ) -> io::Result<Self> {
         let range = |(axis, info): (AbsoluteAxisCode, AbsInfo)| {
             let (value, minimum) = (info.value(), info.minimum());
             let range = AxisRange { value, minimum, maximum: info.maximum(), resolution: info.resolution() };
@@ -144,7 +155,7 @@ impl EvdevPort {
         let port = Self {
             device,
             frames,
-            grabs,
+            grip,
             origin_us: monotonic_us(),
             out: Vec::new(),
             is_gone: false,
@@ -225,9 +236,9 @@ impl Transport for EvdevPort {
     }
 
     fn pause(&mut self, is_paused: bool) {
-        if self.grabs {
-            // One that left meanwhile is noticed by who reads next.
-            let _ = if is_paused { self.device.ungrab() } else { self.device.grab() };
+        // One that left meanwhile is noticed by who reads next.
+        if let Some(grip) = &mut self.grip {
+            let _ = if is_paused { grip.ungrab() } else { grip.grab() };
         }
     }
 }

@@ -119,7 +119,7 @@ fn ones_own_profile_stands_before_the_shipped_one() {
     assert_eq!(
         list,
         "super-mario\ntetris\ntank-battle\ncontra\npointer\none-button\nsuper-mario-left\nsuper-mario-light\n\
-         supertux\nvitetris\nbtanks\n"
+         supertux\nvitetris\nbtanks\ntablet\ntouchpad\nboard-seated\n"
     );
     let edited = tactpad(folder, "profile edit contra");
     let path = own(folder, "contra.toml");
@@ -159,7 +159,7 @@ fn names_that_nothing_has_are_refused_with_a_way_out() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     printed(&tactpad(folder, "profile new zelda --save"));
-    refuses(folder, "profile check nope", &["there is no profile \"nope\"", "btanks, zelda"]);
+    refuses(folder, "profile check nope", &["there is no profile \"nope\"", "board-seated, zelda"]);
     refuses(folder, "profile edit nope", &["no profile \"nope\"", "`tactpad profile new --save \"nope\"`"]);
     refuses(folder, "profile edit ./x.toml", &["./x.toml is a file: open it in an editor"]);
     // A name with a slash is a file from here on, not from the folder.

@@ -15,6 +15,7 @@ use rustix::event::epoll;
 use rustix::time::{
     Itimerspec, TimerfdClockId, TimerfdFlags, TimerfdTimerFlags, timerfd_create, timerfd_settime,
 };
+use tactpad_core::pipeline::line_check::LineFinding;
 
 use super::Transport;
 use super::pacing::{is_readable, limit, monotonic_us};
@@ -308,6 +309,14 @@ impl Transport for FaultyLine {
 
     fn send(&mut self, command: &Command) -> io::Result<()> {
         self.line.send(command)
+    }
+
+    fn pause(&mut self, is_paused: bool) {
+        self.line.pause(is_paused);
+    }
+
+    fn finding(&self) -> Option<LineFinding> {
+        self.line.finding()
     }
 }
 

@@ -539,7 +539,7 @@ mod tests {
 
     #[test]
     fn forces_and_places_are_mapped_onto_the_plate() {
-        let source = read(&CELLS.replace("columns", "columns")).0.unwrap();
+        let source = read(CELLS).0.unwrap();
         let decoder = source.decoder().unwrap();
         let uv_per_count = decoder.scale().unwrap().uv_per_count;
         // 25 N on each of the upper cells, in hundredths of a newton: 50 N, which is 5 N on the plate, half way up its rim.

@@ -73,7 +73,7 @@ impl SourceOption {
 fn unknown(name: &str) -> Failure {
     let known = tactpad::source::shipped::names().collect::<Vec<_>>().join(", ");
     Failure::Unusable(format!(
-        "{name:?} is no kind of pad and no description: write auto, serial:PATH, hid:VID:PID or usb:PORT for a strain pad, one of \
+        "`{name}` names no pad and no description: write auto, serial:PATH, hid:VID:PID or usb:PORT for a strain pad, one of \
          {known} with its port, or name a file of your own with --source"
     ))
 }

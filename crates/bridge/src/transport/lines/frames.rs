@@ -135,7 +135,7 @@ impl LineFrames {
 
     /// Remembers what is to be repeated, unless a line came after it that says nothing.
     fn hear(&mut self, now_us: u64, measurement: Measurement, is_last: bool) {
-        let heard_us = std::mem::replace(&mut self.heard_us, Some(now_us));
+        let heard_us = self.heard_us.replace(now_us);
         if let Some(heard_us) = heard_us {
             if let Some(slot) = self.intervals_us.get_mut(self.lines % INTERVALS) {
                 *slot = now_us.saturating_sub(heard_us);

@@ -137,7 +137,7 @@ fn ones_own_profile_stands_before_the_shipped_one() {
         |name: &str| list.lines().find(|line| line.split(' ').next() == Some(name)).unwrap_or_default();
     assert!(line("contra").ends_with(" your own, before the shipped one"), "{list}");
     assert!(line("zelda").ends_with(" your own") && line("pointer") == "pointer", "{list}");
-    assert_eq!(list.lines().count(), 12, "{list}");
+    assert_eq!(list.lines().count(), 15, "{list}");
     let list: Value = serde_json::from_str(&printed(&tactpad(folder, "profile list --json"))).unwrap();
     assert_eq!(list["folder"], own(folder, "").to_str().unwrap().trim_end_matches('/'));
     let contra = json!({ "name": "contra", "own": true, "shipped": true, "file": path.to_str().unwrap() });

@@ -97,7 +97,7 @@ pub(super) fn examine() -> DoctorReport {
     let root = Path::new("/");
     let mut checks = vec![check_uinput(), check_rules(root)];
     checks.extend(check_pads(&pads::attached()));
-    let bridge = match runtime::socket_path() {
+    let bridge = match runtime::socket_path(None) {
         Ok(path) => ask(&path, "status"),
         Err(failure) => Err(io::Error::new(io::ErrorKind::PermissionDenied, failure.sentence())),
     };

@@ -106,7 +106,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         decoder,
         profile,
         sink,
-        requests: requests(Some(runtime::socket_path()), audience)?,
+        requests: requests(Some(runtime::socket_path(None)), audience)?,
         host: Box::new(host),
         record: Some(Box::new(capture)),
         observers: Vec::new(),

@@ -14,6 +14,7 @@ use super::newest::Newest;
 use super::output::Output;
 use super::playing::{Audience, TerminalHost, WaitOption, microseconds, open_pad, patience, play, requests};
 use super::profile_selection;
+use super::runtime::BridgeName;
 use super::screen::Screen;
 use super::{chosen, runtime};
 use crate::cli::failure::Failure;
@@ -64,6 +65,9 @@ pub(crate) struct Arguments {
     /// It is kept for pads with a serial number whose decoder calibrate or adapt made.
     #[arg(long, value_name = "WHETHER", default_value = "yes")]
     keep_play: KeepPlay,
+    /// A name for this bridge where several play at once, each on its pad: `tactpad ctl --name NAME` talks to it.
+    #[arg(long, value_name = "NAME")]
+    name: Option<BridgeName>,
     /// End after this many seconds.
     #[arg(long, value_parser = seconds::parse, allow_hyphen_values = true)]
     seconds: Option<f64>,
@@ -98,7 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         say(missing);
     }
     audience.tell(&title);
-    let requests = requests(Some(runtime::socket_path()), audience)?;
+    let requests = requests(Some(runtime::socket_path(arguments.name.as_ref())), audience)?;
     let mut prepared = arguments.shown.prepare(&requests, &selection, output.choice())?;
     if let Some(url) = &prepared.url {
         say(format_args!("Dashboard: {url}"));

@@ -95,13 +95,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// A description's text, and what findings call the place where it stands.
-pub(in crate::cli::playing) struct FoundSource {
-    pub(in crate::cli::playing) text: String,
-    pub(in crate::cli::playing) place: String,
+pub(crate) struct FoundSource {
+    pub(crate) text: String,
+    pub(crate) place: String,
 }
 
 /// The text of the description `name`. A name with a dot or a slash is a file's.
-pub(in crate::cli::playing) fn find(name: &str) -> Result<FoundSource, Failure> {
+pub(crate) fn find(name: &str) -> Result<FoundSource, Failure> {
     if let Some(text) = shipped::text(name) {
         return Ok(FoundSource { text: text.to_owned(), place: name.to_owned() });
     }
@@ -117,7 +117,7 @@ pub(in crate::cli::playing) fn find(name: &str) -> Result<FoundSource, Failure> 
 }
 
 /// The error for a name that no description has.
-pub(in crate::cli::playing) fn unknown(name: &str) -> Failure {
+pub(crate) fn unknown(name: &str) -> Failure {
     let known = shipped::names().collect::<Vec<_>>().join(", ");
     Failure::Unusable(format!(
         "there is no description {name:?}: choose one of {known}, or give a file of your own with --source (`tactpad source new`)"
@@ -125,7 +125,7 @@ pub(in crate::cli::playing) fn unknown(name: &str) -> Failure {
 }
 
 /// Reads a description that is to be used; all that is wrong with it makes it unusable.
-pub(in crate::cli::playing) fn usable(found: &FoundSource) -> Result<Source, Failure> {
+pub(crate) fn usable(found: &FoundSource) -> Result<Source, Failure> {
     let FoundSource { text, place } = found;
     let (source, diagnostics) = read(text);
     source.ok_or_else(|| {

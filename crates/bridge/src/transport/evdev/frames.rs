@@ -94,13 +94,15 @@ impl EvdevFrames {
             }
             Measures::Cells(..) | Measures::Wrench(..) => Kind::Channels(channels.to_vec()),
         };
-        let axes = ranges.iter().map(|(axis, range)| (*axis, range.value)).collect();
+        let axes: BTreeMap<u16, i32> = ranges.iter().map(|(axis, range)| (*axis, range.value)).collect();
+        // The kernel does not say again which slot it was at.
+        let slot = usize::try_from(value(&axes, MT_SLOT)).unwrap_or(SLOTS);
         Self {
             kind,
             ranges,
             axes,
             slots: vec![Slot::default(); SLOTS],
-            slot: 0,
+            slot,
             playing: None,
             is_near: None,
             is_down: false,
@@ -392,6 +394,20 @@ mod tests {
         assert_eq!(pad.contact(&[Axis(MT_SLOT, 1), Axis(MT_X, 200), End]), None, "the second is none");
         assert_eq!(pad.contact(&[Axis(MT_TRACKING_ID, -1), End]), None);
         assert!(pad.contact(&finger(1, 9, 500)).is_some(), "any first finger plays");
+    }
+
+    #[test]
+    fn the_slot_at_the_opening_is_the_kernels() {
+        let at_two = AxisRange { value: 2, ..range(0, 4, 0) };
+        let ranges = [(MT_SLOT, at_two), (MT_X, range(0, 1_000, 10)), (MT_Y, range(0, 600, 10))];
+        let mut pad = Device::of("touchpad", &[], &ranges);
+        let touched = [Axis(MT_TRACKING_ID, 1), Axis(MT_X, 750), Axis(MT_Y, 300), End];
+        assert!(pad.contact(&touched).is_some());
+        assert!(
+            pad.contact(&finger(0, 2, 100)).is_some_and(|([x_um, _], _)| x_um == 15_000),
+            "it goes on playing"
+        );
+        assert_eq!(pad.contact(&[Axis(MT_SLOT, 2), Axis(MT_TRACKING_ID, -1), End]), None);
     }
 
     #[test]

@@ -168,7 +168,8 @@ impl EvdevPort {
 
     /// Takes what the device has reported by `now_us`.
     fn take(&mut self, now_us: u64) -> io::Result<()> {
-        if self.is_gone || !is_readable(self.device.as_fd())? {
+        // What is not handed over yet comes first: a device that floods must not fill the memory.
+        if self.is_gone || !self.out.is_empty() || !is_readable(self.device.as_fd())? {
             return Ok(());
         }
         let changes = self.device.fetch_events().map(|events| events.filter_map(change).collect::<Vec<_>>());

@@ -60,7 +60,8 @@ impl LinePort {
 
     /// Takes what the port has sent by `now_us`.
     fn take(&mut self, now_us: u64) -> io::Result<()> {
-        if self.ended.is_some() || !is_readable(self.port.fd())? {
+        // What is not handed over yet comes first: a port that floods must not fill the memory.
+        if self.ended.is_some() || !self.out.is_empty() || !is_readable(self.port.fd())? {
             return Ok(());
         }
         let mut bytes = [0; 4096];

@@ -105,6 +105,16 @@ fn a_tablet_that_leaves_lets_go_and_comes_back() {
 }
 
 #[test]
+fn a_recorded_pen_replays_byte_for_byte() {
+    in_guest("a_recorded_pen_replays_byte_for_byte", owned_pads::recorded);
+}
+
+#[test]
+fn a_cap_of_six_axes_plays() {
+    in_guest("a_cap_of_six_axes_plays", owned_pads::six_axes);
+}
+
+#[test]
 fn a_board_of_four_cells_plays() {
     in_guest("a_board_of_four_cells_plays", owned_pads::board);
 }

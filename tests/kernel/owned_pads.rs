@@ -375,3 +375,80 @@ pub(crate) fn board() {
     reader.read_available();
     assert_eq!(reader.edges(), [("BTN_SOUTH", 1), ("BTN_SOUTH", 0)], "a stamp");
 }
+
+/// What a pen did is recorded as frames, and replays to the same events, the long press of a still pen among them.
+pub(crate) fn recorded() {
+    let mut device = Device::plug_in(SHAPES[1]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let record = ["record", "pen.cap", "--pad", "tablet", "--output", "log:live", "--seconds", "4"];
+    let mut program =
+        Running::start_command(std::process::Command::new(TACTPAD).args(record).current_dir(folder.path()));
+    let capture = folder.path().join("pen.cap");
+    comes_true("the capture", || capture.metadata().is_ok_and(|file| file.len() > 0));
+    pause(300);
+    for (x_share, fz_n, ms) in [(0.8, 1.0, 150), (0.5, 3.0, 120), (0.2, 3.0, 1_000)] {
+        device.touch(x_share, 0.5, fz_n);
+        pause(ms);
+        device.lift();
+        pause(200);
+    }
+    assert!(program.wait(LIMIT_MS).success(), "{}", program.complaints());
+    let live = std::fs::read_to_string(folder.path().join("live")).expect("a log");
+    let replayed =
+        std::process::Command::new(TACTPAD).args(["replay", "pen.cap"]).current_dir(folder.path()).output();
+    let replayed = String::from_utf8(replayed.expect("replay runs").stdout).expect("text");
+    assert!(live.contains("BTN_EAST") && live.contains("BTN_SOUTH") && live.lines().count() >= 8, "{live}");
+    assert_eq!(replayed, live);
+}
+
+/// A cap of six axes: pressed at sides, pushed away, and pressed alone.
+pub(crate) fn six_axes() {
+    let axes = [
+        AbsoluteAxisCode::ABS_X,
+        AbsoluteAxisCode::ABS_Y,
+        AbsoluteAxisCode::ABS_Z,
+        AbsoluteAxisCode::ABS_RX,
+        AbsoluteAxisCode::ABS_RY,
+        AbsoluteAxisCode::ABS_RZ,
+    ];
+    let mut keys = AttributeSet::<KeyCode>::new();
+    keys.insert(KeyCode::BTN_1);
+    let built = || {
+        let mut builder =
+            VirtualDevice::builder()?.name("3Dconnexion SpaceMouse Compact").with_keys(&keys)?;
+        for axis in axes {
+            builder = builder
+                .with_absolute_axis(&UinputAbsSetup::new(axis, AbsInfo::new(0, -350, 350, 0, 0, 0)))?;
+        }
+        builder.build()
+    };
+    let mut device = built().expect("a device by uinput");
+    let mut push = |counts: [i32; 6]| {
+        let event =
+            |(axis, count): (AbsoluteAxisCode, i32)| InputEvent::new(EventType::ABSOLUTE.0, axis.0, count);
+        let events: Vec<InputEvent> = axes.into_iter().zip(counts).map(event).collect();
+        device.emit(&events).expect("events");
+        pause(200);
+    };
+    let arguments = ["run", "--pad", "spacemouse", "--profile", "contra", "--output", "uinput"];
+    let program = Running::start(TACTPAD, &arguments);
+    comes_true("the bridge's gamepad", || find(KeyCode::BTN_SOUTH).is_some());
+    let mut reader = Reader::open(&find(KeyCode::BTN_SOUTH).expect("it was there a moment ago"));
+    pause(800);
+    // Down is +z; a tilt to the right turns about the axis away from oneself, which the device counts the other way.
+    for (counts, wanted) in [
+        ([0, 0, 60, 0, -60, 0], ("ABS_HAT0X", 1)),
+        ([0, 0, 60, 0, 60, 0], ("ABS_HAT0X", -1)),
+        ([0, 0, 60, -60, 0, 0], ("ABS_HAT0Y", -1)),
+        ([0, 0, 60, 60, 0, 0], ("ABS_HAT0Y", 1)),
+        ([0, 0, 150, 0, 0, 0], ("BTN_SOUTH", 1)),
+        // Away from oneself is -y.
+        ([0, -90, 60, 0, 0, 0], ("BTN_EAST", 1)),
+    ] {
+        reader.seen.clear();
+        push(counts);
+        push([0; 6]);
+        reader.read_available();
+        assert_eq!(reader.edges(), [wanted, (wanted.0, 0)], "{counts:?}: {}", program.complaints());
+    }
+}

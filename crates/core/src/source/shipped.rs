@@ -1,11 +1,12 @@
 //! The descriptions that are inside the program, so that it runs from any folder.
 
-const SHIPPED: [(&str, &str); 5] = [
+const SHIPPED: [(&str, &str); 6] = [
     ("load-cells", include_str!("../../../../models/sources/load-cells.toml")),
     ("balance-board", include_str!("../../../../models/sources/balance-board.toml")),
     ("tablet", include_str!("../../../../models/sources/tablet.toml")),
     ("touchpad", include_str!("../../../../models/sources/touchpad.toml")),
     ("magic-trackpad", include_str!("../../../../models/sources/magic-trackpad.toml")),
+    ("spacemouse", include_str!("../../../../models/sources/spacemouse.toml")),
 ];
 
 /// The names under which descriptions are shipped.

@@ -16,8 +16,8 @@ use super::look::{LineLook, LineOutcome};
 /// No sound line is longer, bytes.
 pub const LINE_BYTES_MAX: usize = 256;
 
-/// The last state is sent again after so long without a line, µs: at the pace of the slowest pad.
-pub const REPEAT_US: u64 = 10_000;
+/// The last state is sent again after so long without a line, µs: at twice the pace of the slowest pad.
+pub const REPEAT_US: u64 = 5_000;
 
 /// The source is silent after so many of its longest recent intervals, …
 const SILENT_INTERVALS: u64 = 3;

@@ -79,6 +79,11 @@ pub enum LineFinding {
     NotNumbers,
     /// Lines of text are longer than any line of numbers.
     LineTooLong,
+    /// Lines of text have the same number for one channel all the time, and others for the others.
+    CellStands {
+        /// Its index.
+        channel: usize,
+    },
     /// Lines of text have no number for one channel.
     NoNumber {
         /// Its index.
@@ -130,6 +135,13 @@ impl fmt::Display for LineFinding {
             Self::LineTooLong => {
                 return f.write_str(
                     "lines come that are longer than 256 bytes: check the baud rate and the sketch",
+                );
+            }
+            Self::CellStands { channel } => {
+                return write!(
+                    f,
+                    "channel {} reads the same all the time while others change, nothing is pressed: check that cell and its wires",
+                    channel + 1
                 );
             }
             Self::NoNumber { channel } => {

@@ -32,13 +32,13 @@ struct Listed {
 
 /// An input device that fits a description inside the program.
 #[derive(Debug, PartialEq, Eq, Serialize)]
-struct ListedDevice {
-    address: String,
-    path: String,
+pub(super) struct ListedDevice {
+    pub(super) address: String,
+    pub(super) path: String,
     /// What it calls itself.
-    name: String,
+    pub(super) name: String,
     /// The description that fits.
-    source: String,
+    pub(super) source: String,
 }
 
 #[derive(Serialize)]
@@ -66,7 +66,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The input devices that fit a shipped description, each with the first that does: names come before what others may have, too.
-fn input_devices() -> Vec<ListedDevice> {
+pub(super) fn input_devices() -> Vec<ListedDevice> {
     let sources = shipped::names().filter_map(|name| read(shipped::text(name)?).0);
     let (named, others): (Vec<Source>, Vec<Source>) =
         sources.partition(|source| matches!(&source.origin, Origin::Evdev(evdev) if !evdev.names.is_empty()));

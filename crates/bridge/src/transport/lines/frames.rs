@@ -12,6 +12,7 @@ use tactpad_core::pipeline::line_check::LineFinding;
 use tactpad_core::source::Lines;
 
 use super::look::{LineLook, LineOutcome};
+use super::still::StillCells;
 
 /// No sound line is longer, bytes.
 pub const LINE_BYTES_MAX: usize = 256;
@@ -63,6 +64,7 @@ pub struct LineFrames {
     sequence: u32,
     /// Time of the last frame.
     sent_us: u64,
+    still: StillCells,
     look: LineLook,
 }
 
@@ -81,6 +83,7 @@ impl LineFrames {
             lines: 0,
             sequence: 0,
             sent_us: 0,
+            still: StillCells::default(),
             look: LineLook::default(),
         }
     }
@@ -91,7 +94,8 @@ impl LineFrames {
         let mut is_last_sound = true;
         for &byte in bytes {
             if let Some(outcome) = self.push(byte) {
-                self.look.line(now_us, outcome.as_ref().err().copied().or_else(|| dead_cell(&outcome)));
+                let (outcome, wrong) = self.judged(outcome);
+                self.look.line(now_us, wrong);
                 if outcome.is_err() {
                     // What it would have said is not known, so the state before is not repeated.
                     self.newest = None;
@@ -131,6 +135,24 @@ impl LineFrames {
     /// What is wrong with the lines as a whole, if anything is.
     pub const fn finding(&self) -> Option<&LineFinding> {
         self.look.finding()
+    }
+
+    /// A line with what is wrong with it: cells that stand still say nothing, as those without a number.
+    fn judged(
+        &mut self,
+        outcome: Result<Measurement, LineOutcome>,
+    ) -> (Result<Measurement, LineOutcome>, Option<LineOutcome>) {
+        let mut measurement = match outcome {
+            Ok(measurement) => measurement,
+            Err(wrong) => return (outcome, Some(wrong)),
+        };
+        let mut wrong = dead_cell(&measurement);
+        let stands = self.still.see(&measurement.counts, self.columns.len());
+        for (channel, _) in stands.iter().enumerate().filter(|(_, stands)| **stands) {
+            measurement.status = measurement.status.with_out_of_range(channel);
+            wrong = wrong.or(Some(LineOutcome::Stands { channel }));
+        }
+        (Ok(measurement), wrong)
     }
 
     /// Remembers what is to be repeated, unless a line came after it that says nothing.
@@ -224,8 +246,8 @@ impl LineFrames {
 }
 
 /// The first cell that a sound line has no number for.
-fn dead_cell(outcome: &Result<Measurement, LineOutcome>) -> Option<LineOutcome> {
-    let status = outcome.as_ref().ok()?.status;
+fn dead_cell(measurement: &Measurement) -> Option<LineOutcome> {
+    let status = measurement.status;
     (0..FEW_CHANNELS_MAX)
         .find(|channel| status.is_out_of_range(*channel))
         .map(|channel| LineOutcome::NoNumber { channel })

@@ -18,6 +18,11 @@ pub(super) enum LineOutcome {
     NotNumbers,
     /// It is longer than any line of numbers.
     TooLong,
+    /// One cell prints the same number all the time while others do not.
+    Stands {
+        /// Its index.
+        channel: usize,
+    },
     /// One cell has no number.
     NoNumber {
         /// Its index.
@@ -63,6 +68,7 @@ impl LineLook {
             self.finding = Some(match first {
                 LineOutcome::NotNumbers => LineFinding::NotNumbers,
                 LineOutcome::TooLong => LineFinding::LineTooLong,
+                LineOutcome::Stands { channel } => LineFinding::CellStands { channel },
                 LineOutcome::NoNumber { channel } => LineFinding::NoNumber { channel },
             });
         } else if self.clean >= CLEAN_LOOKS {

@@ -2,6 +2,7 @@
 
 pub mod frames;
 mod look;
+mod still;
 #[cfg(test)]
 mod tests;
 

@@ -40,6 +40,8 @@ struct Board {
     offset_g: [f64; 4],
     /// The cells that print no number.
     dead: [bool; 4],
+    /// What a cell prints line after line, once it stands still.
+    standing: [Option<f64>; 4],
     lines: u32,
     /// The most that was held at once.
     held_most: usize,
@@ -57,6 +59,7 @@ impl Board {
             next_line_us: 0,
             offset_g: [120.0, -75.5, 3_000.25, 0.0],
             dead: [false; 4],
+            standing: [None; 4],
             lines: 0,
             held_most: 0,
         }
@@ -71,6 +74,7 @@ impl Board {
             let noise_g = f64::from((self.lines * 7 + k as u32 * 3) % 11) / 5.0 - 1.0;
             let g = self.offset_g[k] + share * force_n / WEIGHT_N_PER_G + noise_g;
             let separator = if k == 0 { "" } else { ", " };
+            let g = self.standing[k].unwrap_or(g);
             if self.dead[k] {
                 write!(line, "{separator}nan").unwrap();
             } else {
@@ -209,6 +213,26 @@ fn a_cell_without_a_number_lets_go_at_once_and_is_named() {
         assert_eq!(board.frames.finding(), Some(&LineFinding::NoNumber { channel: 2 }), "{rate}");
         board.dead[2] = false;
         board.rest(4_000, NOTHING);
+        assert_eq!(board.frames.finding(), None, "{rate}");
+        assert!(board.pressed_after_ms(RIGHT, 500).is_some(), "{rate}: it plays on");
+    }
+}
+
+#[test]
+fn a_cell_that_prints_the_same_all_the_time_lets_go_and_is_named() {
+    for rate in RATES {
+        let mut board = Board::of(rate);
+        board.rest(8_000, NOTHING);
+        board.rest(500, RIGHT);
+        assert!(board.held() > 0, "{rate}");
+        board.standing[1] = Some(900.0);
+        // It is known after 32 lines.
+        board.rest(1_000 * 34 / rate + 5, RIGHT);
+        assert_eq!((board.held(), board.pipeline.phase()), (0, Phase::Faulty), "{rate}");
+        board.rest(2_000, NOTHING);
+        assert_eq!(board.frames.finding(), Some(&LineFinding::CellStands { channel: 1 }), "{rate}");
+        board.standing[1] = None;
+        board.rest(6_000, NOTHING);
         assert_eq!(board.frames.finding(), None, "{rate}");
         assert!(board.pressed_after_ms(RIGHT, 500).is_some(), "{rate}: it plays on");
     }

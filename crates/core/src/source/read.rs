@@ -502,6 +502,38 @@ mod tests {
     }
 
     #[test]
+    fn the_schema_and_the_reader_know_the_same_keys_and_words() {
+        let schema: serde_json::Value = serde_json::from_str(shipped::schema()).unwrap();
+        let sorted = |mut words: Vec<String>| {
+            words.sort();
+            words
+        };
+        let keys = |table: &serde_json::Value| {
+            sorted(table["properties"].as_object().unwrap().keys().cloned().collect())
+        };
+        let read = |words: &[&str]| sorted(words.iter().map(|word| (*word).to_owned()).collect());
+        assert_eq!(keys(&schema), read(&ROOT_KEYS));
+        let tables: [(&str, &[&str]); 7] = [
+            ("lines", &LINES_KEYS),
+            ("evdev", &EVDEV_KEYS),
+            ("area", &AREA_KEYS),
+            ("force", &FORCE_KEYS),
+            ("cell", &CELL_KEYS),
+            ("wrench", &WRENCH_KEYS),
+            ("contact", &CONTACT_KEYS),
+        ];
+        for (name, known) in tables {
+            assert_eq!(keys(&schema["$defs"][name]), read(known), "{name}");
+        }
+        let listed = |name: &str| {
+            let words = schema["$defs"][name]["enum"].as_array().unwrap().iter();
+            sorted(words.map(|word| word.as_str().unwrap().to_owned()).collect())
+        };
+        assert_eq!(listed("axis"), read(&codes::AXES.map(|(name, _)| name)));
+        assert_eq!(listed("code"), read(&CODES.map(|(name, _)| name)));
+    }
+
+    #[test]
     fn the_least_description_has_all_else_by_default() {
         let source = read(CELLS).0.unwrap();
         let Origin::Lines(lines) = &source.origin else { panic!("{source:?}") };

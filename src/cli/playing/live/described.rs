@@ -136,13 +136,13 @@ impl DescribedPad {
         Ok(PlayingDecoder { name: format!("{} ({name})", decoder.name()), decoder, place: None, file })
     }
 
-    /// Says what of a profile does nothing on it.
-    pub(super) fn warn_of(&self, profile: &ReadProfile) {
+    /// Says what of a profile, which was asked for by this name, does nothing on it.
+    pub(super) fn warn_of(&self, named: &str, profile: &ReadProfile) {
         if self.source.has_shear() {
             return;
         }
         for found in bound_to_shear(profile.text()) {
-            say(found.render(&printable(&profile.profile().name)));
+            say(found.render(&printable(named)));
         }
     }
 

@@ -72,9 +72,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     Files { pad, profile, output, decoder: chosen::file(decoder), capture: None }.check()?;
     let described = arguments.source.read(pad, decoder)?;
     let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
-    let profile = profile::read(profile, output.choice())?;
+    let named = profile;
+    let profile = profile::read(named, output.choice())?;
     if let Some(described) = &described {
-        described.warn_of(&profile);
+        described.warn_of(named, &profile);
     }
     let opened = open_pad(pad, described.as_ref(), &arguments.device, profile.profile(), Patience::Limited)?;
     let timing = Timing::default();

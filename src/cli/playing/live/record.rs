@@ -82,9 +82,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let described = arguments.source.read(pad, decoder)?;
     let decoder = described.as_ref().map_or_else(|| chosen::read(decoder), DescribedPad::decoder)?;
-    let profile = profile::read(profile, output.choice())?;
+    let named = profile;
+    let profile = profile::read(named, output.choice())?;
     if let Some(described) = &described {
-        described.warn_of(&profile);
+        described.warn_of(named, &profile);
     }
     let (sink, missing) = output.open_or(|| Newest::default().sink(false))?;
     let patience = patience(&arguments.pad, WaitOption::NotGiven);

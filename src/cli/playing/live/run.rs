@@ -83,9 +83,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let audience = audience(output);
     let host = TerminalHost::new(&arguments.profile, output.choice(), audience)?;
     let selection = host.selection();
-    let profile = profile::read(profile, output.choice())?;
+    let named = profile;
+    let profile = profile::read(named, output.choice())?;
     if let Some(described) = &described {
-        described.warn_of(&profile);
+        described.warn_of(named, &profile);
     }
     let patience =
         patience(&arguments.pad, if arguments.wait { WaitOption::Given } else { WaitOption::NotGiven });
